@@ -1,0 +1,34 @@
+# The commands of the collection; `make` alone lists them.
+
+PYTHON ?= $(shell for python in python3 python3.14 python3.13 python3.12 python3.11; do \
+	$$python -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$python && break; done)
+python := .venv/bin/python
+root := $(if $(filter 0,$(shell id -u)),--allow-root)
+
+.PHONY: help lab test bench execute
+
+help: ## list the commands
+	@grep -E '^[a-z]+:.*## ' Makefile | sed -E 's/^([a-z]+):.*## /make \1\t/'
+
+lab: .venv/ready ## open the collection in JupyterLab
+	$(python) -m jupyterlab $(root) --LabApp.default_url=/lab/tree/chapters
+
+test: .venv/ready ## prove everything: the library, the ledger and every cell of every notebook
+	$(python) -m pytest -n logical
+
+bench: .venv/ready ## measure what the collection costs beside what it stands on
+	$(python) tests/bench.py
+
+execute: .venv/ready ## run every notebook again, store its outputs and write ERRATA.md
+	$(python) -m loopbook execute
+	$(python) -m loopbook ledger
+
+# The stamp holds the folder it was made for, because an editable install does not survive a move.
+ifneq ($(file <.venv/ready),$(CURDIR))
+.PHONY: .venv/ready
+endif
+.venv/ready: environment.txt pyproject.toml
+	@test -n "$(PYTHON)" || { echo "loopbook needs Python 3.11 or newer; name one with: make PYTHON=/path/to/python3"; exit 1; }
+	$(PYTHON) -m venv .venv
+	$(python) -m pip install --quiet --disable-pip-version-check --requirement environment.txt
+	@printf '%s\n' "$(CURDIR)" > $@

@@ -1,0 +1,276 @@
+"""The sources as data: a TOML file each, read strictly, so that a slip of the pen is an error and not a hole."""
+
+import re
+import sys
+import tomllib
+from dataclasses import dataclass, field, fields
+from fractions import Fraction
+
+import sympy
+
+from loopbook.ledger.compare import (
+    INFINITE,
+    KINDS,
+    NUMBER,
+    Disagreement,
+    LedgerError,
+    agrees,
+    number,
+    parse_formula,
+    spelled,
+    suggestion,
+)
+from loopbook.ledger.report import Report, Verdict, described
+
+#: What each status needs beside the printed value.
+STATUSES = {
+    "reproduced": (),
+    "corrected": ("correct", "because"),
+    "reconstructed": ("assuming", "within"),
+    "unreproduced": ("computed", "because"),
+    "measured": ("because",),
+}
+_GIVEN = re.compile(rf"(?P<number>{NUMBER.pattern})(\s+(?P<unit>[^\W\d][\w%°·/^*()-]*|%|°[CF]?))?")
+
+
+@dataclass(frozen=True)
+class Result:
+    """One number, formula or claim that a book prints as a result."""
+
+    name: str
+    printed: str
+    equation: str = ""
+    kind: str = "number"
+    unit: str = ""
+    status: str = "reproduced"
+    correct: str = ""
+    because: str = ""
+    assuming: str = ""
+    within: str = ""
+    computed: str = ""
+
+    @classmethod
+    def read(cls, where, data):
+        """Make a result of a TOML table, or raise LedgerError."""
+        known = [f.name for f in fields(cls)]
+        if not isinstance(data, dict):
+            raise LedgerError(f"{where}: a result is {data!r}, expected a table like {{ name = ..., printed = ... }}")
+        for key, value in data.items():
+            if key not in known:
+                raise LedgerError(f"{where}: a result has the unknown key {key!r}, {suggestion(key, known)}")
+            if not isinstance(value, str) or not value.strip():
+                raise LedgerError(f"{where}: {key} is {value!r}, expected text in quotes (digits carry the tolerance)")
+        for key in ("name", "printed"):
+            if key not in data:
+                raise LedgerError(f"{where}: a result has no {key!r}: {data}")
+        result = cls(**data)
+        result._validate(f"{where}, {result.name}")
+        return result
+
+    def _validate(self, where):
+        if not self.name.isidentifier():
+            raise LedgerError(f"{where}: expected a name that can be an argument, as Kp or y_s")
+        if self.kind not in KINDS:
+            raise LedgerError(f"{where}: the kind is {self.kind!r}, {suggestion(self.kind, KINDS)}")
+        if self.status not in STATUSES:
+            raise LedgerError(f"{where}: the status is {self.status!r}, {suggestion(self.status, list(STATUSES))}")
+        for key in ("correct", "because", "assuming", "within", "computed"):
+            if bool(getattr(self, key)) != (key in STATUSES[self.status]):
+                verb = "needs" if key in STATUSES[self.status] else "has no use for"
+                raise LedgerError(f"{where}: the status {self.status!r} {verb} {key!r}")
+        for key in ("printed", "correct", "computed"):
+            if text := getattr(self, key):
+                self._validate_value(f"{where}: {key}", text)
+        if self.status == "reconstructed":
+            self.margin(where)
+
+    def _validate_value(self, where, text):
+        if self.kind == "number" and not NUMBER.fullmatch(text) and text not in INFINITE:
+            raise LedgerError(
+                f"{where} is {text!r}, expected a number like 1.50 or 2e-3, or else a kind 'formula' or 'claim'"
+            )
+        if self.kind == "formula":
+            try:
+                parse_formula(text)
+            except ValueError as error:
+                raise LedgerError(f"{where}: {error}") from None
+
+    def margin(self, where=""):
+        """How far a reconstructed number may lie from the print: `within`, absolute or in percent of the print."""
+        amount, percent = re.fullmatch(r"(.*?)(\s*%)?", self.within).groups()
+        if not (
+            self.kind == "number" and NUMBER.fullmatch(self.printed) and NUMBER.fullmatch(amount) and float(amount) > 0
+        ):
+            raise LedgerError(
+                f"{where}: within is {self.within!r}, expected a positive number or percentage, for a number"
+            )
+        return Fraction(amount) / 100 * abs(Fraction(self.printed)) if percent else Fraction(amount)
+
+    def judge(self, value):
+        """Return the verdict on a computed value, or raise TypeError, saying what the value is instead."""
+        printed_holds = agrees(self.kind, value, self.printed)
+        match self.status:
+            case "corrected" | "unreproduced":
+                how = agrees(self.kind, value, self.correct or self.computed)
+                holds = bool(how) and not printed_holds
+            case "reconstructed":
+                value = number(value)
+                how = "within"
+                holds = abs(value - Fraction(self.printed)) <= self.margin()
+            case _:
+                how, holds = printed_holds, bool(printed_holds)
+        texts = [text for text in (self.printed, self.correct, self.computed) if text]
+        return Verdict(self, spelled(self.kind, value, *texts), holds, how if holds else "")
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A worked example, section, table or figure of a book, with its inputs and the results that it prints."""
+
+    source: str
+    name: str
+    title: str
+    chapter: str
+    givens: dict = field(default_factory=dict)
+    results: tuple = ()
+
+    @classmethod
+    def read(cls, source, name, data):
+        """Make an entry of a TOML table, or raise LedgerError."""
+        where = f"{source}, {name}"
+        if not isinstance(data, dict):
+            raise LedgerError(f"{where}: the entry is {data!r}, expected a table")
+        known = ["title", "chapter", "given", "result"]
+        for key in data:
+            if key not in known:
+                raise LedgerError(f"{where}: the entry has the unknown key {key!r}, {suggestion(key, known)}")
+        for key in ("title", "chapter"):
+            if not isinstance(data.get(key), str) or not data[key].strip():
+                raise LedgerError(f"{where}: {key} is {data.get(key)!r}, expected text")
+        given, result = data.get("given", {}), data.get("result", [])
+        if not isinstance(given, dict) or not isinstance(result, list):
+            raise LedgerError(f"{where}: expected `given` to be a table and `result` a list of tables")
+        givens = {key: _read_given(f"{where}, given {key}", text) for key, text in given.items()}
+        results = tuple(Result.read(where, row) for row in result)
+        names = [row.name for row in results]
+        if twice := sorted({name for name in names if names.count(name) > 1}):
+            raise LedgerError(f"{where}: {', '.join(twice)} is a result twice, expected every name once")
+        return cls(source, name, data["title"], data["chapter"], givens, results)
+
+    def given(self, *names):
+        """Return inputs of the example as exact numbers or expressions: one for one name, a tuple for several.
+
+        Raises LedgerError for a name that the example does not give.
+
+        >>> from loopbook.ledger import haugen
+        >>> haugen["Figure 6.2"].given("K", "T")
+        (2, 5)
+        """
+        for name in names:
+            if name not in self.givens:
+                where = f"{self.source}, {self.name}"
+                raise LedgerError(f"{where}: {name!r} is not given, {suggestion(name, list(self.givens))}")
+        values = tuple(self.givens[name][0] for name in names)
+        return values[0] if len(values) == 1 else values
+
+    def unit(self, name):
+        """Return the unit of an input or a result as text, empty where the book gives none.
+
+        >>> from loopbook.ledger import haugen
+        >>> haugen["Figure 6.4"].unit("tau")
+        's'
+        """
+        units = {row.name: row.unit for row in self.results} | {key: unit for key, (_, unit, _) in self.givens.items()}
+        if name not in units:
+            raise LedgerError(f"{self.source}, {self.name}: {name!r} is not known, {suggestion(name, list(units))}")
+        return units[name]
+
+    def compare(self, **values):
+        """Return a Report on computed values, one for each result that is not measured.
+
+        Raises LedgerError for a result that is missing or unknown, and for a value that cannot be judged.
+        """
+        where = f"{self.source}, {self.name}"
+        expected = [row.name for row in self.results if row.status != "measured"]
+        for name in values:
+            if name not in expected:
+                raise LedgerError(f"{where}: {name!r} is not a result to check, {suggestion(name, expected)}")
+        if missing := [name for name in expected if name not in values]:
+            raise LedgerError(f"{where}: nothing was given for {', '.join(missing)}, expected {', '.join(expected)}")
+        verdicts = []
+        for row in self.results:
+            if row.status == "measured":
+                verdicts.append(Verdict(row, "", True, "measured"))
+                continue
+            try:
+                verdicts.append(row.judge(values[row.name]))
+            except (TypeError, ValueError) as error:
+                raise LedgerError(f"{where}, {row.name}: expected a {row.kind}, got {error}") from None
+        return Report(self, tuple(verdicts))
+
+    def check(self, **values):
+        """Show how computed values compare with the book's, and raise Disagreement where one does not hold."""
+        report = self.compare(**values)
+        _show(report)
+        if failures := report.failures:
+            more = f" (and {len(failures) - 1} more)" if failures[1:] else ""
+            raise Disagreement(f"{self.source}, {self.name}: {failures[0].complaint}{more}")
+
+    def __repr__(self):
+        return described(self)
+
+    def _repr_html_(self):
+        return described(self, as_html=True)
+
+
+@dataclass(frozen=True)
+class Source:
+    """A book: its entries in the order of the file, found by name."""
+
+    name: str
+    citation: str
+    entries: dict
+
+    @classmethod
+    def read(cls, name, text):
+        """Read a source from its TOML text, or raise LedgerError."""
+        try:
+            data = tomllib.loads(text)
+        except tomllib.TOMLDecodeError as error:
+            raise LedgerError(f"{name}.toml is not valid TOML: {error}") from None
+        head = data.pop("source", {})
+        if not isinstance(head, dict) or set(head) != {"citation"} or not isinstance(head["citation"], str):
+            raise LedgerError(f'{name}.toml: expected a table [source] with citation = "..." and nothing else')
+        return cls(name, head["citation"], {key: Entry.read(name, key, entry) for key, entry in data.items()})
+
+    def __getitem__(self, name):
+        if name not in self.entries:
+            raise LedgerError(f"{self.name} has no entry {name!r}, {suggestion(name, list(self.entries))}")
+        return self.entries[name]
+
+    def __iter__(self):
+        return iter(self.entries.values())
+
+    def __repr__(self):
+        return f"{self.name}: {self.citation} ({len(self.entries)} entries)"
+
+
+def _read_given(where, text):
+    """An input as (exact value, unit, text)."""
+    if not isinstance(text, str) or not text.strip():
+        raise LedgerError(f'{where} is {text!r}, expected text in quotes, as "1.5 s" or "K/(T*s + 1)"')
+    if quantity := _GIVEN.fullmatch(text):
+        return sympy.Rational(quantity["number"]), quantity["unit"] or "", text
+    try:
+        return parse_formula(text), "", text
+    except ValueError as error:
+        raise LedgerError(f"{where}: {error}") from None
+
+
+def _show(report):
+    """Display in a notebook, print elsewhere."""
+    ipython = sys.modules.get("IPython")
+    if ipython and ipython.get_ipython():
+        ipython.display.display(report)
+    else:
+        print(report)

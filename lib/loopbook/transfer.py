@@ -1,0 +1,377 @@
+"""Transfer functions: SymPy expressions in `s`, with dead time as ``exp(-delay*s)``.
+
+The standard models of process control, what characterises a transfer function (poles, zeros, order, gains, its two
+written forms), the rules for combining blocks, and the responses to known inputs.
+"""
+
+import sympy
+from sympy.core.function import AppliedUndef
+
+from loopbook.expressions import exact, s, t
+from loopbook.laplace import by_delay, evaluate, final_value, inverse, roots, solve_transformed, transform
+
+__all__ = [
+    "characteristic_polynomial", "dead_time", "double_integrator", "feedback", "first_order", "impulse_response",
+    "initial_gain", "integrator", "integrator_with_lag", "order", "parallel", "poles", "response", "response_time",
+    "second_order", "series", "static_gain", "step_response", "time_constant_form", "transfer_functions",
+    "zero_pole_form", "zero_pole_gain", "zeros",
+]  # fmt: skip
+
+
+# ------------------------------------------------------------------------------------------------ standard models
+
+
+def dead_time(delay):
+    """Return the transfer function of a pure dead time, exp(-delay*s). (Haugen, equation 6.32)
+
+    Raises ValueError for a negative delay.
+
+    >>> dead_time(3)
+    exp(-3*s)
+    """
+    return sympy.exp(-_at_least_zero("delay", delay) * s)
+
+
+def integrator(K, delay=0):
+    """Return K/s, with the dead time `delay` if there is one. (Haugen, equation 6.4)
+
+    >>> integrator(2)
+    2/s
+    """
+    return exact(K) / s * dead_time(delay)
+
+
+def first_order(K, T, delay=0):
+    """Return K/(T*s + 1), a lag (time-constant system) with gain K and dead time `delay`. (Haugen, equation 6.13)
+
+    Arguments:
+        K: gain, in units of the output for one unit of the input.
+        T, delay: lag and dead time in one unit of time, not negative.
+    Raises:
+        ValueError: for a negative lag or delay.
+
+    >>> first_order(2, 5, delay=1)
+    2*exp(-s)/(5*s + 1)
+    """
+    return exact(K) / (_at_least_zero("T", T) * s + 1) * dead_time(delay)
+
+
+def second_order(K, T1, T2, delay=0):
+    """Return K/((T1*s + 1)*(T2*s + 1)), two lags in series. (Haugen, equation 6.33)
+
+    >>> second_order(1, 3, 2)
+    1/((2*s + 1)*(3*s + 1))
+    """
+    return first_order(K, T1, delay) / (_at_least_zero("T2", T2) * s + 1)
+
+
+def integrator_with_lag(K, T, delay=0):
+    """Return K/(s*(T*s + 1)), an integrator behind a lag.
+
+    >>> integrator_with_lag(1, 4)
+    1/(s*(4*s + 1))
+    """
+    return first_order(K, T, delay) / s
+
+
+def double_integrator(K, delay=0):
+    """Return K/s**2.
+
+    >>> double_integrator(3)
+    3/s**2
+    """
+    return integrator(K, delay) / s
+
+
+def _at_least_zero(name, value):
+    value = exact(value)
+    if value.is_negative or value.is_real is False or value is sympy.nan:
+        raise ValueError(f"{name} is {value}: expected a time that is not negative")
+    return value
+
+
+def transfer_functions(equations, output, inputs):
+    """Derive the transfer functions from the inputs to an output out of linear differential equations.
+
+    The equations are transformed and solved for the output. Each input's transfer function is what it is multiplied
+    with there; the initial values contribute terms of their own, which are left out.
+
+    Arguments:
+        equations: one equation or a list of them, in functions of `t`.
+        output: the output signal, as ``y(t)``.
+        inputs: the input signals, as ``[u_1(t), u_2(t)]``. Every other function of t is an unknown.
+    Returns:
+        A tuple of transfer functions, expressions in `s`, one for each input.
+    Raises:
+        ValueError: if the equations are not linear, do not determine the output, or lack a signal.
+    Source: Haugen, Section 5.2, equations (5.1)-(5.11).
+
+    >>> y, u, v = (sympy.Function(name) for name in "yuv")
+    >>> transfer_functions(sympy.Eq(2 * y(t).diff(t) + y(t), 3 * u(t) - v(t)), y(t), [u(t), v(t)])
+    (3/(2*s + 1), -1/(2*s + 1))
+    """
+    equations = list(equations) if isinstance(equations, (list, tuple)) else [equations]
+    signals = {f.func(t) for equation in equations for f in equation.atoms(AppliedUndef) if f.has(t)}
+    for signal in (output, *inputs):
+        if signal not in signals:
+            raise ValueError(f"{signal} does not occur in the equations: expected one of {_listed(signals)}")
+    unknowns = sorted(signals - set(inputs), key=str)
+    if len(unknowns) != len(equations):
+        raise ValueError(
+            f"{len(equations)} equation(s) cannot determine {_listed(unknowns)}: give one equation for each signal "
+            f"that is not an input"
+        )
+    solved = sympy.expand(solve_transformed(equations, unknowns)[unknowns.index(output)])
+    return tuple(simplified(solved.coeff(transform(signal))) for signal in inputs)
+
+
+def _listed(signals):
+    return ", ".join(sorted(map(str, signals)))
+
+
+# ------------------------------------------------------------------------------------------------ blocks
+
+
+def simplified(H):
+    """Return H with common factors cancelled and the rest factored.
+
+    >>> simplified((s + 1) / (s**2 + 3 * s + 2))
+    1/(s + 2)
+    """
+    H = exact(H)
+    if not H.has(sympy.exp):
+        return sympy.factor(sympy.cancel(H))
+    try:
+        return sympy.Add(*(simplified(part) * dead_time(delay) for delay, part in by_delay(H).items()))
+    except ValueError:
+        return sympy.factor(H)
+
+
+def series(*blocks):
+    """Return the transfer function of blocks in series: their product. (Haugen, Section 5.4 and Figure 5.2)
+
+    >>> series(2 / (s + 1), 3 / s)
+    6/(s*(s + 1))
+    """
+    return simplified(sympy.Mul(*blocks))
+
+
+def parallel(*blocks):
+    """Return the transfer function of blocks with one input and added outputs: their sum. (Haugen, Figure 5.2)
+
+    >>> parallel(1, 1 / s)
+    (s + 1)/s
+    """
+    return simplified(sympy.Add(*blocks))
+
+
+def feedback(forward, back=1, sign=-1):
+    """Return the transfer function of a loop: `forward`, with its output fed back through `back`. (Haugen, Figure 5.2)
+
+    Arguments:
+        forward, back: transfer functions.
+        sign: -1 for negative feedback, the rule in control; +1 for positive.
+    Raises:
+        ValueError: for another sign, or where the loop has no solution because 1 - sign*forward*back vanishes.
+
+    >>> feedback(2 / s)
+    2/(s + 2)
+    """
+    if sign not in (-1, 1):
+        raise ValueError(f"sign is {sign}: expected -1 for negative feedback or 1 for positive feedback")
+    difference = simplified(1 - sign * sympy.sympify(forward) * back)
+    if difference == 0:
+        raise ValueError(f"the loop of {forward} and {back} has no solution: it returns exactly what it is given")
+    return simplified(forward / difference)
+
+
+# ------------------------------------------------------------------------------------------------ characteristics
+
+
+def _fraction(H):
+    """Numerator and denominator of H apart from its dead time, common factors cancelled."""
+    parts = by_delay(exact(H))
+    if len(parts) > 1:
+        raise ValueError(f"{H} adds terms of different dead times: its poles and zeros are not known")
+    return sympy.cancel(next(iter(parts.values()), sympy.S.Zero)).as_numer_denom()
+
+
+def poles(H):
+    """Return the poles of H, each as often as it occurs, sorted. A dead time has none.
+
+    Raises ValueError where a dead time stands in a denominator, as in a loop around one, or where letters prevent
+    the factoring of a denominator of third or higher degree.
+    Source: Haugen, equations (5.12)-(5.14).
+
+    >>> poles((4 * s - 4) / (s**2 + 5 * s + 6))
+    [-3, -2]
+    """
+    return roots(_fraction(H)[1])
+
+
+def zeros(H):
+    """Return the zeros of H, each as often as it occurs, sorted. (Haugen, equation 5.12)
+
+    >>> zeros((4 * s - 4) / (s**2 + 5 * s + 6))
+    [1]
+    """
+    return roots(_fraction(H)[0])
+
+
+def characteristic_polynomial(H):
+    """Return the denominator of H, scaled so that its highest power of `s` has the coefficient 1. (Haugen, 5.14)
+
+    >>> characteristic_polynomial(3 / (2 * s + 1))
+    s + 1/2
+    """
+    return sympy.Poly(_fraction(H)[1], s).monic().as_expr()
+
+
+def order(H):
+    """Return the order of H: the degree of its characteristic polynomial.
+
+    >>> order((4 * s - 4) / (s**2 + 5 * s + 6))
+    2
+    """
+    return int(sympy.degree(_fraction(H)[1], s))
+
+
+def static_gain(H):
+    """Return H(0): what a constant input is multiplied with in the end, if the output settles. (Haugen, 5.23)
+
+    It is infinite for an integrator.
+
+    >>> static_gain(3 / (s + sympy.Rational(1, 2)))
+    6
+    """
+    return sympy.limit(exact(H), s, 0)
+
+
+def initial_gain(H):
+    """Return H at infinite `s`: the immediate jump of the output for a unit step at the input.
+
+    It is zero where the denominator has the higher degree, and before a dead time is over.
+
+    >>> initial_gain((3 * s + 1) / (s + 2))
+    3
+    """
+    return sympy.limit(exact(H), s, sympy.oo)
+
+
+def zero_pole_gain(H):
+    """Return the gain K of the zero-pole form, the ratio of the leading coefficients. It is not the static gain.
+
+    >>> zero_pole_gain((4 * s - 4) / (s**2 + 5 * s + 6))
+    4
+    """
+    numerator, denominator = _fraction(H)
+    return sympy.LC(numerator, s) / sympy.LC(denominator, s)
+
+
+def zero_pole_form(H):
+    """Return H as K*(s - z1)*(s - z2).../((s - p1)*(s - p2)...); complex pairs stay together. (Haugen, 5.12)
+
+    >>> zero_pole_form((4 * s - 4) / (s**2 + 5 * s + 6))
+    4*(s - 1)/((s + 2)*(s + 3))
+    """
+    return _rebuilt(H, zero_pole_gain(H), scale=lambda factor: sympy.LC(factor, s))
+
+
+def time_constant_form(H):
+    """Return H as K*(T1*s + 1).../((T2*s + 1)...), with factors `s` for poles and zeros at the origin.
+
+    >>> time_constant_form(3 / (4 * s + 2))
+    3/(2*(2*s + 1))
+    """
+    numerator, denominator = _fraction(H)
+    lowest = [next(c for c in reversed(sympy.Poly(x, s).all_coeffs()) if c != 0) for x in (numerator, denominator)]
+    return _rebuilt(H, lowest[0] / lowest[1], scale=lambda factor: 1 if factor == s else factor.subs(s, 0))
+
+
+def _rebuilt(H, gain, scale):
+    """The product of gain, the scaled factors of numerator and denominator, and the dead time of H."""
+    above, below = ([sympy.expand(f / scale(f)) for f in _real_factors(polynomial)] for polynomial in _fraction(H))
+    (delay,) = by_delay(exact(H))
+    return sympy.Mul(gain, *above, *(1 / factor for factor in below), dead_time(delay))
+
+
+def _real_factors(polynomial):
+    """Factors of a polynomial in `s`: linear for each root, quadratic for each complex pair."""
+    found = roots(polynomial)
+    # a root with letters counts as real, as books write it
+    return [s - p for p in found if not sympy.im(p).is_nonzero] + [
+        sympy.expand((s - p) * (s - sympy.conjugate(p))) for p in found if sympy.im(p).is_positive
+    ]
+
+
+# ------------------------------------------------------------------------------------------------ responses
+
+
+def response(H, u):
+    """Return the output y(t) of H, initially at rest, for the input u(t), an expression in `t`.
+
+    Raises ValueError where H or u has no known transform.
+    Source: Haugen, Section 5.5.
+
+    >>> response(1 / (s + 1), t)
+    t - 1 + exp(-t)
+    """
+    return inverse(exact(H) * transform(exact(u)))
+
+
+def step_response(H, U=1):
+    """Return the output for a step of height U at t = 0. (Haugen, Example 5.1)
+
+    >>> step_response(3 / (s + sympy.Rational(1, 2)), U=2)
+    12 - 12*exp(-t/2)
+    """
+    return inverse(exact(H) * exact(U) / s)
+
+
+def impulse_response(H, area=1):
+    """Return the output for an impulse of the given area at t = 0.
+
+    >>> impulse_response(first_order(2, 4))
+    exp(-t/4)/2
+    """
+    return inverse(exact(H) * exact(area))
+
+
+_ONE_LAG = 1 - sympy.exp(-1)
+
+
+def response_time(H, share=_ONE_LAG):
+    """Return the time at which the unit step response of H first reaches a share of its final value.
+
+    The default share, 1 - 1/e or 63 %, makes it equal to the lag of a first-order system. The response is the exact
+    one; the moment is found to about 12 digits.
+
+    Arguments:
+        H: transfer function with numbers, stable, with a static gain that is not zero.
+        share: between 0 and 1.
+    Returns:
+        The time, a float, in the unit of the lags.
+    Raises:
+        ValueError: if the response does not settle at a value other than zero, or letters are left in H.
+    Source: Haugen, equations (6.34)-(6.36), which estimate it by the sum of the lags.
+
+    >>> round(response_time(second_order(1, 1, 1)), 4)
+    2.1462
+    """
+    import numpy
+    from scipy.optimize import brentq
+
+    final = final_value(exact(H) / s)
+    if final == 0 or final.free_symbols:
+        raise ValueError(f"the step response settles at {final}: expected a number other than zero")
+    if not 0 < share < 1:
+        raise ValueError(f"share is {share}: expected a number between 0 and 1")
+    missing = step_response(H) / final - share
+    until = 1.0
+    while (late := evaluate(missing, numpy.linspace(0, until, 2001))).max() < 0:
+        until *= 2
+    reached = int(numpy.argmax(late >= 0))
+    if reached == 0:
+        return 0.0
+    before, after = numpy.linspace(0, until, 2001)[[reached - 1, reached]]
+    return brentq(lambda time: float(evaluate(missing, time)), before, after, xtol=1e-13 * until, rtol=1e-14)
