@@ -5,6 +5,9 @@ PYTHON ?= $(shell for python in python3 python3.14 python3.13 python3.12 python3
 python := .venv/bin/python
 root := $(if $(filter 0,$(shell id -u)),--allow-root)
 
+# A backend meant for other programs would keep the figures out of the notebooks.
+unexport MPLBACKEND
+
 .PHONY: help lab test bench execute
 
 help: ## list the commands

@@ -111,7 +111,8 @@ def transfer_functions(equations, output, inputs):
     (3/(2*s + 1), -1/(2*s + 1))
     """
     equations = list(equations) if isinstance(equations, (list, tuple)) else [equations]
-    signals = {f.func(t) for equation in equations for f in equation.atoms(AppliedUndef) if f.has(t)}
+    # y(0) is a number, but u(theta) under an integral is the signal u
+    signals = {f.func(t) for equation in equations for f in equation.atoms(AppliedUndef) if f.free_symbols}
     for signal in (output, *inputs):
         if signal not in signals:
             raise ValueError(f"{signal} does not occur in the equations: expected one of {_listed(signals)}")

@@ -6,19 +6,20 @@ Each source is a TOML file beside this one, and is imported by its name:
 >>> example = haugen["Example 5.2"]
 >>> example.given("H")
 3/(s + 1/2)
->>> example.check(H_s=6, y_s=12)
+>>> example.check(model_of="Example 5.1", H_s=6, y_s=12)  # doctest: +ELLIPSIS
 haugen, Example 5.2 · Static transfer function and static response
-equation  result  book  computed  verdict
-5.26      H_s     6     6         reproduced
-5.27      y_s     12    12        reproduced
+equation  result    book         computed     verdict
+          model_of  Example ???  Example 5.1  corrected: the cross-reference was lost in the book; the transfer ...
+5.26      H_s       6            6            reproduced
+5.27      y_s       12           12           reproduced
 """
 
 import importlib.resources
 
 from loopbook.ledger.compare import Disagreement, LedgerError
-from loopbook.ledger.source import Entry, Result, Source
+from loopbook.ledger.source import Entry, Given, Result, Source
 
-__all__ = ["Disagreement", "Entry", "LedgerError", "Result", "Source", "sources"]
+__all__ = ["Disagreement", "Entry", "Given", "LedgerError", "Result", "Source", "sources"]
 
 
 def sources():

@@ -102,9 +102,10 @@ class Report:
 def described(entry, as_html=False):
     """An entry with its givens, as text or HTML."""
     if as_html:
-        rows = [(_name(name), _given(value, unit)) for name, (value, unit, _) in entry.givens.items()]
+        rows = [(_name(name), _given(given)) for name, given in entry.inputs.items()]
         return _table(_escape(_heading(entry)), ("given", ""), rows)
-    return "\n".join([_heading(entry), *_aligned([(name, "=", text) for name, (_, _, text) in entry.givens.items()])])
+    rows = [(name, "=" if "=" not in given.text else ":", given.text) for name, given in entry.inputs.items()]
+    return "\n".join([_heading(entry), *_aligned(rows)])
 
 
 def _escape(text):
@@ -116,6 +117,8 @@ def _heading(entry):
 
 
 def _aligned(rows):
+    if not rows:
+        return []
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
 
@@ -136,16 +139,8 @@ def _name(name):
     return _math(sympy.Symbol(name))
 
 
-def _given(value, unit):
-    if value.is_number:
-        return _escape(f"{_decimal(value)} {unit}".strip())
-    return _math(value)
-
-
-def _decimal(value):
-    """A given number as a reader writes it: decimal where that is exact, a fraction otherwise."""
-    digits = sympy.N(value, 15)
-    return str(value) if value.is_Integer or sympy.Rational(str(digits)) != value else str(float(digits))
+def _given(given):
+    return _escape(given.text) if isinstance(given.value, sympy.Rational) else _math(given.value)
 
 
 def _typeset(kind, text, unit=""):

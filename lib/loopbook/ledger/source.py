@@ -30,7 +30,7 @@ STATUSES = {
     "unreproduced": ("computed", "because"),
     "measured": ("because",),
 }
-_GIVEN = re.compile(rf"(?P<number>{NUMBER.pattern})(\s+(?P<unit>[^\W\d][\w%°·/^*()-]*|%|°[CF]?))?")
+_QUANTITY = re.compile(rf"(?P<number>{NUMBER.pattern})(\s+(?P<unit>[^\W\d][\w%°·/^*()-]*|%|°[CF]?))?")
 
 
 @dataclass(frozen=True)
@@ -124,6 +124,27 @@ class Result:
 
 
 @dataclass(frozen=True)
+class Given:
+    """An input of an example: its exact value, its unit, and both as the ledger writes them."""
+
+    value: object
+    unit: str
+    text: str
+
+    @classmethod
+    def read(cls, where, text):
+        """Read a number with its unit, an expression or an equation, or raise LedgerError."""
+        if not isinstance(text, str) or not text.strip():
+            raise LedgerError(f'{where} is {text!r}, expected text in quotes, as "1.5 s" or "K/(T*s + 1)"')
+        if quantity := _QUANTITY.fullmatch(text):
+            return cls(sympy.Rational(quantity["number"]), quantity["unit"] or "", text)
+        try:
+            return cls(parse_formula(text), "", text)
+        except ValueError as error:
+            raise LedgerError(f"{where}: {error}") from None
+
+
+@dataclass(frozen=True)
 class Entry:
     """A worked example, section, table or figure of a book, with its inputs and the results that it prints."""
 
@@ -131,7 +152,7 @@ class Entry:
     name: str
     title: str
     chapter: str
-    givens: dict = field(default_factory=dict)
+    inputs: dict = field(default_factory=dict)
     results: tuple = ()
 
     @classmethod
@@ -150,12 +171,12 @@ class Entry:
         given, result = data.get("given", {}), data.get("result", [])
         if not isinstance(given, dict) or not isinstance(result, list):
             raise LedgerError(f"{where}: expected `given` to be a table and `result` a list of tables")
-        givens = {key: _read_given(f"{where}, given {key}", text) for key, text in given.items()}
+        inputs = {key: Given.read(f"{where}, given {key}", text) for key, text in given.items()}
         results = tuple(Result.read(where, row) for row in result)
         names = [row.name for row in results]
         if twice := sorted({name for name in names if names.count(name) > 1}):
             raise LedgerError(f"{where}: {', '.join(twice)} is a result twice, expected every name once")
-        return cls(source, name, data["title"], data["chapter"], givens, results)
+        return cls(source, name, data["title"], data["chapter"], inputs, results)
 
     def given(self, *names):
         """Return inputs of the example as exact numbers or expressions: one for one name, a tuple for several.
@@ -167,23 +188,16 @@ class Entry:
         (2, 5)
         """
         for name in names:
-            if name not in self.givens:
+            if name not in self.inputs:
                 where = f"{self.source}, {self.name}"
-                raise LedgerError(f"{where}: {name!r} is not given, {suggestion(name, list(self.givens))}")
-        values = tuple(self.givens[name][0] for name in names)
+                raise LedgerError(f"{where}: {name!r} is not given, {suggestion(name, list(self.inputs))}")
+        values = tuple(self.inputs[name].value for name in names)
         return values[0] if len(values) == 1 else values
 
-    def unit(self, name):
-        """Return the unit of an input or a result as text, empty where the book gives none.
-
-        >>> from loopbook.ledger import haugen
-        >>> haugen["Figure 6.4"].unit("tau")
-        's'
-        """
-        units = {row.name: row.unit for row in self.results} | {key: unit for key, (_, unit, _) in self.givens.items()}
-        if name not in units:
-            raise LedgerError(f"{self.source}, {self.name}: {name!r} is not known, {suggestion(name, list(units))}")
-        return units[name]
+    @property
+    def givens(self):
+        """All inputs of the example by name: exact numbers, expressions and equations."""
+        return {name: given.value for name, given in self.inputs.items()}
 
     def compare(self, **values):
         """Return a Report on computed values, one for each result that is not measured.
@@ -204,8 +218,10 @@ class Entry:
                 continue
             try:
                 verdicts.append(row.judge(values[row.name]))
-            except (TypeError, ValueError) as error:
+            except TypeError as error:
                 raise LedgerError(f"{where}, {row.name}: expected a {row.kind}, got {error}") from None
+            except ValueError as error:
+                raise LedgerError(f"{where}, {row.name}: {error}") from None
         return Report(self, tuple(verdicts))
 
     def check(self, **values):
@@ -253,18 +269,6 @@ class Source:
 
     def __repr__(self):
         return f"{self.name}: {self.citation} ({len(self.entries)} entries)"
-
-
-def _read_given(where, text):
-    """An input as (exact value, unit, text)."""
-    if not isinstance(text, str) or not text.strip():
-        raise LedgerError(f'{where} is {text!r}, expected text in quotes, as "1.5 s" or "K/(T*s + 1)"')
-    if quantity := _GIVEN.fullmatch(text):
-        return sympy.Rational(quantity["number"]), quantity["unit"] or "", text
-    try:
-        return parse_formula(text), "", text
-    except ValueError as error:
-        raise LedgerError(f"{where}: {error}") from None
 
 
 def _show(report):

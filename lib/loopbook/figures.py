@@ -1,0 +1,335 @@
+"""Figures: one look for the whole collection, and the plot of signals against time.
+
+A signal has the same colour and the same kind of line in every figure. The colours are those of Okabe and Ito, which
+stay apart without colour vision; the dashes stay apart on a grey printout.
+"""
+
+import base64
+import io
+import numbers
+import re
+import struct
+
+import sympy
+
+from loopbook.laplace import evaluate, t
+
+__all__ = ["Picture", "TimePlot", "time_plot"]
+
+STYLE = {
+    # One typeface for words and mathematics; it comes with matplotlib, so that every machine draws the same picture.
+    "font.family": "STIXGeneral",
+    "mathtext.fontset": "stix",
+    "font.size": 11,
+    "axes.titlesize": 11.5,
+    "axes.titlelocation": "left",
+    "axes.titlepad": 8,
+    "axes.labelsize": 11,
+    "axes.linewidth": 0.8,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.ymargin": 0.1,
+    "grid.color": "#dddddd",
+    "grid.linewidth": 0.6,
+    "xtick.direction": "out",
+    "ytick.direction": "out",
+    "legend.frameon": True,
+    "legend.framealpha": 0.9,
+    "legend.edgecolor": "none",
+    "legend.handlelength": 3.2,  # long enough to show the dashes
+    "lines.dash_capstyle": "butt",
+    "lines.scale_dashes": False,
+    "figure.facecolor": "white",
+    "savefig.facecolor": "white",
+}
+
+ROLES = {
+    "setpoint": {"color": "#000000", "linestyle": (0, (4, 3)), "linewidth": 1.2},
+    "measurement": {"color": "#0072B2", "linestyle": "-", "linewidth": 2.0},
+    "control signal": {"color": "#D55E00", "linestyle": (0, (16, 2)), "linewidth": 1.6},
+    "disturbance": {"color": "#CC79A7", "linestyle": (0, (8, 2, 2, 2)), "linewidth": 1.6},
+}
+INPUTS = ("control signal", "disturbance")
+
+# What has no role takes the next of these; four colours and five kinds of line make twenty that differ in both.
+RESPONSE_COLOURS = ["#009E73", "#E69F00", "#56B4E9", "#555555"]
+RESPONSE_LINES = ["-", (0, (7, 2)), (0, (8, 2, 2, 2)), (0, (2, 1.5)), (0, (12, 2, 2, 2, 2, 2))]
+
+WIDTH = 6.4  # inches: a notebook column, and the text width of a printed page
+DOTS_PER_INCH = 192  # twice what a browser calls an inch, so that a printout is sharp
+
+
+class Picture:
+    """A finished figure that a notebook shows once, as the value of a cell, with a description for who cannot see it.
+
+    Attributes:
+        figure: the matplotlib figure, for any change that this module does not offer.
+        alt: the description in words; also what `print` and a plain-text display show.
+    """
+
+    def __init__(self, figure, alt):
+        self.figure = figure
+        self.alt = alt
+
+    def __repr__(self):
+        return f"<{self.alt}>"
+
+    def save(self, file, **options):
+        """Write the figure to a file (a name ending in .png, .pdf or .svg, or an open file).
+
+        Arguments:
+            file: name or open binary file.
+            options: what else matplotlib's ``savefig`` understands.
+        """
+        import matplotlib
+
+        with matplotlib.rc_context(STYLE):
+            self.figure.savefig(file, **{"dpi": DOTS_PER_INCH, "bbox_inches": "tight", "pad_inches": 0.06} | options)
+
+    def png(self):
+        """Return the figure as the bytes of a PNG file, the same for the same matplotlib version.
+
+        >>> from loopbook.laplace import t
+        >>> time_plot({"$y(t)$": 2 * t}, [0, 1, 2]).png()[:4]
+        b'\\x89PNG'
+        """
+        from PIL import Image
+
+        full, small = io.BytesIO(), io.BytesIO()
+        self.save(full, format="png", metadata={"Software": None})
+        # A line drawing needs no more than 128 colours, and a notebook with them is a third as large.
+        Image.open(full).convert("RGB").quantize(128, method=Image.Quantize.MEDIANCUT).save(small, "PNG", optimize=True)
+        return small.getvalue()
+
+    # The figure belongs to an object of our own because Jupyter would draw a matplotlib figure its own way, without
+    # the description, and only after pyplot has been imported.
+    def _repr_mimebundle_(self, include=None, exclude=None):
+        image = self.png()
+        width, height = (round(dots * 96 / DOTS_PER_INCH) for dots in struct.unpack(">II", image[16:24]))
+        data = {"image/png": base64.b64encode(image).decode(), "text/plain": repr(self)}
+        return data, {"image/png": {"alt": self.alt, "width": width, "height": height}}
+
+
+class TimePlot(Picture):
+    """What `time_plot` returns: a picture of signals against time, on which points and levels can be marked."""
+
+    def __init__(self, figure, alt, lines):
+        super().__init__(figure, alt)
+        self.lines = lines  # {label: matplotlib line}
+
+    def mark(self, time, label, signal=None):
+        """Mark the point where a curve is at `time`: a dot, dashed guides to both axes, and a label.
+
+        Arguments:
+            time: the time of the point, in the unit of the time axis; a number or an exact SymPy number.
+            label: text beside the point; mathematics between dollar signs.
+            signal: label of the curve; the first curve if not given.
+        Returns:
+            The plot itself, so that it can stand last in a cell.
+        Raises:
+            ValueError: for a time outside the plot, or a label that no curve has.
+
+        >>> from loopbook.laplace import t
+        >>> plot = time_plot({"$y(t)$": 2 * (1 - sympy.exp(-t / 5))}, range(26), title="Figure 6.2")
+        >>> plot.mark(5, "63 % at $t = T$").level(2, "$KU$")
+        <Figure 6.2: y(t) against t [s]; marked: 63 % at t = T; level: KU>
+        """
+        import numpy
+
+        line = self._line(signal)
+        axes, times, values = line.axes, line.get_xdata(), line.get_ydata()
+        time = float(time)
+        if not times[0] <= time <= times[-1]:
+            raise ValueError(f"cannot mark t = {time:g}: the plot shows {times[0]:g} to {times[-1]:g}")
+        value = numpy.interp(time, times, values)
+        (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+        guide = {"color": "#555555", "linestyle": (0, (2, 2)), "linewidth": 1, "scalex": False, "scaley": False}
+        # The guides run on beyond the frame, which cuts them off wherever it comes to lie.
+        axes.plot([time, time], [value, bottom - 2 * (top - bottom)], **guide)
+        axes.plot([time, left - (right - left)], [value, value], **guide)
+        axes.plot(time, value, "o", color=line.get_color(), markersize=6, zorder=4)
+
+        # A rising curve leaves room below it on the right and above it on the left; a falling one the other way.
+        on_right = time < left + 0.6 * (right - left)
+        ahead = numpy.interp(time + 0.05 * (right - left) * (1 if on_right else -1), times, values)
+        above = ahead < value if on_right else ahead <= value
+        with self._style():
+            axes.annotate(
+                label, (time, value), (9 if on_right else -9, 5 if above else -5), textcoords="offset points",
+                ha="left" if on_right else "right", va="bottom" if above else "top", zorder=5,
+                bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1},
+            )  # fmt: skip
+        self.alt += f"; marked: {plain_words(label)}"
+        return self
+
+    def level(self, value, label, signal=None):
+        """Draw a horizontal dashed line, as for a steady state, with a label above its right end.
+
+        Arguments:
+            value: the level, in the unit of the vertical axis; a number or an exact SymPy number.
+            label: text on the line; mathematics between dollar signs.
+            signal: label of a curve in the panel that is meant; the first panel if not given.
+        Returns:
+            The plot itself, so that it can stand last in a cell.
+        Raises:
+            ValueError: for a label that no curve has.
+
+        >>> from loopbook.laplace import t
+        >>> time_plot({"$h(t)$": 3 - 3 * sympy.exp(-t)}, range(9)).level(3, "$h_s$")
+        <h(t) against t [s]; level: h_s>
+        """
+        axes, value = self._line(signal).axes, float(value)
+        axes.axhline(value, color="#555555", linestyle=(0, (6, 3)), linewidth=1, zorder=1.5)
+        bottom, top = axes.get_ylim()
+        room = 0.2 * (max(top, value) - min(bottom, value))
+        axes.set_ylim(min(bottom, value - room / 2), max(top, value + room))
+        with self._style():
+            axes.annotate(
+                label, (1, value), (-2, 2), xycoords=("axes fraction", "data"), textcoords="offset points",
+                ha="right", va="bottom",
+            )  # fmt: skip
+        self.alt += f"; level: {plain_words(label)}"
+        return self
+
+    def _line(self, label):
+        if label is None:
+            return next(iter(self.lines.values()))
+        if label not in self.lines:
+            raise ValueError(f"no signal {label!r} in this plot: it has {', '.join(self.lines)}")
+        return self.lines[label]
+
+    @staticmethod
+    def _style():
+        import matplotlib
+
+        return matplotlib.rc_context(STYLE)
+
+
+def time_plot(signals, times, title=None, xlabel="$t$ [s]", ylabel=None, before=0):
+    """Plot signals against time, in one panel or in several above one another with a common time axis.
+
+    Arguments:
+        signals: ``{label: signal}``, or a list of these, one a panel from the top down. A signal is a SymPy expression
+            in `t`, a number, or an array with one value for each time; ``(signal, role)`` gives it the colour of its
+            role: "setpoint", "measurement", "control signal" or "disturbance". Labels may hold mathematics between
+            dollar signs. A panel with one input and nothing else is half as high as the others.
+        times: increasing times, in the unit that `xlabel` says.
+        title: stands above the plot; begins with the name of the book's figure where there is one.
+        xlabel, ylabel: names of the axes with their units; `ylabel` is a list where there are several panels. A panel
+            with one signal takes the signal's label if no `ylabel` is given.
+        before: how much time to show ahead of t = 0, with every signal at zero, so that a step at t = 0 is seen.
+    Returns:
+        A `TimePlot`, which a notebook shows as the value of a cell; `.mark` and `.level` add to it.
+    Raises:
+        ValueError: for times that do not increase, a signal that is neither expression nor array or has another length
+            than the times, an unknown role, a label used twice, or an expression with letters besides `t`.
+
+    >>> from loopbook.laplace import t
+    >>> time_plot([{"$y(t)$": 2 * t}, {"$u(t)$": (1, "control signal")}], range(11), title="Figure 6.1", before=1)
+    <Figure 6.1: y(t); u(t) against t [s]>
+    """
+    import matplotlib
+    from matplotlib.figure import Figure
+
+    panels = list(signals) if isinstance(signals, (list, tuple)) else [signals]
+    ylabels = list(ylabel) if isinstance(ylabel, (list, tuple)) else [ylabel] * len(panels)
+    if not panels or not all(isinstance(panel, dict) and panel for panel in panels):
+        raise ValueError("signals must be {label: signal}, or a list of these, with at least one signal in each")
+    if len(ylabels) != len(panels):
+        raise ValueError(f"{len(ylabels)} names of vertical axes for {len(panels)} panels")
+    times = _increasing(times)
+    if before < 0 or (before and times[0] != 0):
+        raise ValueError("time before t = 0 can be shown only in front of times that start at 0, and is not negative")
+    curves = [{label: _curve(label, what, times, before) for label, what in panel.items()} for panel in panels]
+    labels = [label for panel in panels for label in panel]
+    if len(set(labels)) < len(labels):
+        raise ValueError(f"two signals have the same label: {', '.join(labels)}")
+
+    inputs = [len(panel) == 1 and all(role in INPUTS for *_, role in panel.values()) for panel in curves]
+    heights = [1 if only_input and len(panels) > 1 else 2 for only_input in inputs]
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(WIDTH, 1.2 + 0.95 * sum(heights)), layout="constrained")
+        grid = figure.subplots(len(panels), sharex=True, squeeze=False, height_ratios=heights)[:, 0]
+        lines = {}
+        number = 0
+        for axes, panel, name in zip(grid, curves, ylabels, strict=True):
+            for label, (x, y, role) in panel.items():
+                (lines[label],) = axes.plot(x, y, label=label, **(ROLES[role] if role else response_look(number)))
+                number += role is None
+            if len(panel) > 1:
+                axes.legend()
+            axes.set_ylabel(name or (label if len(panel) == 1 else ""))
+            axes.set_ylim(axes.get_ylim())  # from here on, what is marked does not move the curves
+        grid[-1].set_xlim(times[0] - before, times[-1])
+        grid[-1].set_xlabel(xlabel)
+        grid[0].set_title(title or "")
+        figure.align_ylabels()
+    shown = "; ".join(", ".join(map(plain_words, panel)) for panel in panels)
+    return TimePlot(figure, f"{plain_words(title) + ': ' if title else ''}{shown} against {plain_words(xlabel)}", lines)
+
+
+def response_look(number):
+    """Return colour, kind and width of the line for response `number` (0, 1, 2 ...) that has no role of its own.
+
+    >>> response_look(0)["color"], response_look(1)["linestyle"]
+    ('#009E73', (0, (7, 2)))
+    """
+    colour = RESPONSE_COLOURS[number % len(RESPONSE_COLOURS)]
+    return {"color": colour, "linestyle": RESPONSE_LINES[number % len(RESPONSE_LINES)], "linewidth": 1.8}
+
+
+def plain_words(text):
+    r"""Return a label without its LaTeX commands, for a description in words.
+
+    >>> plain_words(r"$F_{\mathrm{in}}(t)$ after $\tau$")
+    'F_in(t) after tau'
+    """
+    return re.sub(r"\\(mathrm|mathit|left|right)\b|[$\\{}]", "", text)
+
+
+def _increasing(times):
+    import numpy
+
+    try:
+        times = numpy.asarray(times, dtype=float)
+    except (TypeError, ValueError):
+        times = numpy.empty(0)
+    if times.ndim != 1 or len(times) < 2 or not (numpy.diff(times) > 0).all():
+        raise ValueError("times must be an array of two or more increasing numbers")
+    return times
+
+
+def _curve(label, what, times, before):
+    """The points of a line, and its role."""
+    import numpy
+
+    signal, role = what if isinstance(what, tuple) and len(what) == 2 and isinstance(what[1], str) else (what, None)
+    if role is not None and role not in ROLES:
+        raise ValueError(f"{label} has the unknown role {role!r}: the roles are {', '.join(ROLES)}")
+    if isinstance(signal, (sympy.Expr, numbers.Real)):
+        signal = sympy.sympify(signal)
+        evaluate(signal, times[:1])  # says what is wrong with the expression before its steps are looked for
+        times = _with_edges(signal, times)
+        values = evaluate(signal, times)
+    else:
+        try:
+            values = numpy.asarray(list(signal), dtype=float)
+        except (TypeError, ValueError):
+            raise ValueError(f"{label} must be a SymPy expression in t or an array of numbers") from None
+        if values.shape != times.shape:
+            raise ValueError(f"{label} has {values.size} values for {times.size} times")
+    if before:
+        times, values = numpy.r_[-before, 0, times], numpy.r_[0, 0, values]
+    return times, values, role
+
+
+def _with_edges(signal, times):
+    """The times, with two more around every late step, so that the step is drawn upright and not between two times."""
+    import numpy
+
+    moments = {float(moment) for step in signal.atoms(sympy.Heaviside) for moment in sympy.solve(step.args[0], t)}
+    shortest = 1e-9 * (times[-1] - times[0])
+    edges = [moment + side for moment in moments for side in (-shortest, shortest) if times[0] < moment < times[-1]]
+    return numpy.unique(numpy.r_[times, edges])

@@ -1,0 +1,45 @@
+"""What the ledger says as a whole: its totals by status, and the books' errors as a page."""
+
+from loopbook.ledger.source import STATUSES
+
+INTRODUCTION = """\
+# Errata
+
+What the books print and a computation contradicts, with the reason. This page is written by `python -m loopbook ledger`
+from the ledger itself; a test proves each line: the computed value agrees with the correction and not with the print.
+"""
+
+
+def totals(sources):
+    """Count the results of each source by status: {source name: {status: number}}.
+
+    >>> from loopbook.ledger import sources
+    >>> totals(sources())["haugen"]["measured"]
+    0
+    """
+    return {
+        name: {status: sum(row.status == status for entry in source for row in entry.results) for status in STATUSES}
+        for name, source in sources.items()
+    }
+
+
+def errata(sources):
+    """Return the text of ERRATA.md: what is corrected, and what could not be reproduced, source by source."""
+    lines = [INTRODUCTION]
+    for source in sources.values():
+        found = [
+            _line(entry, row) for entry in source for row in entry.results if row.status in ("corrected", "unreproduced")
+        ]
+        if found:
+            lines += [f"## {source.citation}\n", *found, ""]
+    return "\n".join(lines)
+
+
+def _line(entry, row):
+    place = f"{entry.name}, equation ({row.equation})" if row.equation else entry.name
+    link = f"[{entry.chapter}](chapters/{entry.chapter}.ipynb)"
+    if row.status == "corrected":
+        verdict = f"prints `{row.printed}`, correct is `{row.correct}`"
+    else:
+        verdict = f"prints `{row.printed}`, computed is `{row.computed}`, unexplained so far"
+    return f"- **{place}**, `{row.name}`: {verdict}: {row.because}. ({link})"

@@ -1,0 +1,250 @@
+"""Run a notebook from top to bottom and store it so that the same outputs are the same bytes.
+
+A stored notebook is part of the proof: its outputs are compared cell by cell at each test, and its changes are read
+in a diff. So nothing is stored that differs from run to run or from machine to machine: no times, no widget models, no
+random cell names, no paths, no addresses. The library never imports this module; `python -m loopbook execute` does.
+"""
+
+import copy
+import json
+import os
+import re
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from pathlib import Path
+from subprocess import DEVNULL
+from time import perf_counter
+from typing import NamedTuple
+
+import nbformat
+from nbclient import NotebookClient
+from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
+from nbformat import NotebookNode
+
+SECONDS_PER_CELL = 600
+"""A cell that takes longer than this (s) waits for something that never comes, and is stopped."""
+
+METADATA = {
+    "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
+    "language_info": {"name": "python"},
+}
+WIDGET = "application/vnd.jupyter.widget-view+json"
+PICTURES = {"image/png", "image/jpeg"}  # base64 is no text, though it may happen to spell anything
+
+PATH = re.compile(
+    r"(?<![\w.~-])/(?:home|media|mnt|opt|private|root|srv|tmp|Users|usr|var|work)/[^\s\"'<>]*"
+    r"|\b[A-Za-z]:[\\/]+Users\b[^\s\"'<>]*"
+)
+ADDRESS = re.compile(r"\b0x[0-9a-fA-F]{7,}\b")
+
+
+class NotebookError(Exception):
+    """A notebook that cannot be run or stored; the message is one line that names the notebook and the cell."""
+
+
+class Outcome(NamedTuple):
+    """What became of one notebook: the time it took (s), whether its file changed, and the error if there was one."""
+
+    path: Path
+    seconds: float
+    changed: bool
+    error: NotebookError | None
+
+
+def found(paths: Iterable[Path]) -> list[Path]:
+    """The notebooks that `paths` name: each file, and those of each folder in the order of their names.
+
+    Raises NotebookError when a path does not exist or is not a notebook.
+    """
+    notebooks: list[Path] = []
+    for path in paths:
+        if path.is_dir():
+            notebooks += sorted(path.glob("*.ipynb"))
+        elif not path.exists():
+            raise NotebookError(f"{path}: no such notebook")
+        elif path.suffix != ".ipynb":
+            raise NotebookError(f"{path}: not a notebook, its name does not end in .ipynb")
+        else:
+            notebooks.append(path)
+    return list(dict.fromkeys(notebooks))
+
+
+def execute_all(paths: Iterable[Path]) -> Iterator[Outcome]:
+    """Execute and store notebooks, as many at a time as there are cores; yields outcomes in the order of finishing."""
+    pool = ThreadPoolExecutor(os.cpu_count())
+    try:
+        for finished in as_completed([pool.submit(_outcome, path) for path in paths]):
+            yield finished.result()
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)  # so that an interruption does not wait for the running cells
+
+
+def _outcome(path: Path) -> Outcome:
+    start, changed, error = perf_counter(), False, None
+    try:
+        changed = execute(path)
+    except NotebookError as problem:
+        error = problem
+    return Outcome(path, perf_counter() - start, changed, error)
+
+
+def execute(path: Path) -> bool:
+    """Run the notebook at `path` in a fresh kernel, in its own folder, and store it; returns whether its file changed.
+
+    Raises NotebookError, and leaves the file as it was, when a cell fails or shows what may not be stored.
+    """
+    try:
+        notebook = normalised(run(normalised(read(path)), path.resolve().parent))
+        if problems := unfit(notebook):
+            raise NotebookError(problems[0])
+    except NotebookError as error:
+        raise NotebookError(f"{path}: {error}") from error
+    return store(as_text(notebook), path)
+
+
+def read(path: Path) -> NotebookNode:
+    """The notebook stored at `path`. Raises NotebookError when the file is none."""
+    try:
+        return nbformat.reads(path.read_text(encoding="utf-8"), as_version=4)
+    except OSError as error:
+        raise NotebookError(error.strerror) from error
+    except Exception as error:  # nbformat fails in as many ways as a file can be malformed
+        raise NotebookError(f"not a notebook ({_first_line(str(error))})") from error
+
+
+def run(notebook: NotebookNode, folder: Path) -> NotebookNode:
+    """A copy of `notebook` with the outputs of a fresh kernel that works in `folder`.
+
+    Raises NotebookError at the first cell that fails: its execution count and the first line of the error.
+    """
+    client = NotebookClient(
+        copy.deepcopy(notebook), kernel_name="python3", timeout=SECONDS_PER_CELL, record_timing=False
+    )
+    # Figures belong in the notebook, whatever backend the caller's own programs use.
+    environment = {name: value for name, value in os.environ.items() if name != "MPLBACKEND"}
+    try:
+        # What cells print to stderr arrives as an output; what the kernel itself says there is of no use to the reader.
+        notebook = client.execute(cwd=str(folder), env=environment, stderr=DEVNULL)
+    except CellExecutionError as error:
+        problem = f"{error.ename}: {_first_line(error.evalue)}"
+        raise NotebookError(f"cell [{client.code_cells_executed}]: {problem}") from error
+    except CellTimeoutError as error:
+        raise NotebookError(f"cell [{client.code_cells_executed}]: not done after {SECONDS_PER_CELL} s") from error
+    except DeadKernelError as error:
+        raise NotebookError(f"cell [{client.code_cells_executed}]: the kernel died") from error
+    for output in _slider_outputs(notebook):
+        if output["output_type"] == "error":
+            raise NotebookError(f"a slider fails: {output['ename']}: {_first_line(output['evalue'])}")
+    return notebook
+
+
+def _slider_outputs(notebook: NotebookNode) -> Iterator[dict]:
+    """What the functions behind the sliders show: an error there is shown in the widget and does not fail the cell."""
+    widgets = notebook.metadata.get("widgets", {}).get("application/vnd.jupyter.widget-state+json", {})
+    for model in widgets.get("state", {}).values():
+        yield from model["state"].get("outputs", [])
+
+
+def _first_line(text: str) -> str:
+    return next(iter(text.strip().splitlines()), "")
+
+
+def normalised(notebook: NotebookNode) -> NotebookNode:
+    """The one form in which a notebook is stored; `normalised(normalised(n)) == normalised(n)`.
+
+    Cells are named and counted in their order, empty cells dropped, neighbouring pieces of printed text joined. Widget
+    views are dropped, because their models have random names and live in the kernel only; metadata says no more than
+    which kernel runs the notebook, so that no tag can hide a cell from the tests.
+
+    >>> from nbformat import v4
+    >>> draft = v4.new_notebook(cells=[v4.new_markdown_cell("# Lag"), v4.new_code_cell("1 + 1"), v4.new_code_cell("")])
+    >>> [(cell.id, cell.get("execution_count")) for cell in normalised(draft).cells]
+    [('cell-001', None), ('cell-002', 1)]
+    """
+    cells, count = [], 0
+    for cell in notebook.cells:
+        source = cell.source.replace("\r\n", "\n").rstrip()
+        if not source:
+            continue
+        kept = NotebookNode(
+            id=f"cell-{len(cells) + 1:03}", cell_type=cell.cell_type, source=source, metadata=NotebookNode()
+        )
+        if "attachments" in cell:
+            kept.attachments = cell.attachments
+        if cell.cell_type == "code":
+            count += 1
+            kept.execution_count = count
+            kept.outputs = _outputs(cell.outputs, count)
+        cells.append(kept)
+    return nbformat.from_dict({"nbformat": 4, "nbformat_minor": 5, "metadata": METADATA, "cells": cells})
+
+
+def _outputs(outputs: list[NotebookNode], count: int) -> list[NotebookNode]:
+    kept: list[NotebookNode] = []
+    for output in copy.deepcopy(outputs):
+        if WIDGET in output.get("data", {}):
+            continue
+        if output.output_type == "execute_result":
+            output.execution_count = count
+        # How many pieces a printed text arrives in depends on how fast the machine is.
+        if output.output_type == "stream" and kept and kept[-1].get("name") == output.name:
+            kept[-1].text += output.text
+        else:
+            kept.append(output)
+    return kept
+
+
+def unfit(notebook: NotebookNode) -> list[str]:
+    """What `notebook` shows that may not be stored: errors, warnings, paths of a machine, memory addresses.
+
+    >>> from nbformat import v4
+    >>> output = v4.new_output("stream", name="stdout", text="<Loop object at 0x7f3a5c0d1e50>")
+    >>> unfit(v4.new_notebook(cells=[v4.new_code_cell("print(loop)", outputs=[output])]))
+    ['cell [1]: shows a memory address, 0x7f3a5c0d1e50']
+    """
+    problems = []
+    for label, cell in labelled(notebook):
+        texts = [cell.source]
+        for output in cell.get("outputs", []):
+            if output.output_type == "error":
+                problems.append(f"{label}: stored error {output.ename}: {_first_line(output.evalue)}")
+            if output.get("name") == "stderr":
+                problems.append(f"{label}: writes to stderr: {_first_line(output.text)}")
+            texts += [output.get("text", "")]
+            texts += [json.dumps(data) for mime, data in output.get("data", {}).items() if mime not in PICTURES]
+        for text in texts:
+            if path := PATH.search(text):
+                problems.append(f"{label}: shows a path of one machine, {path[0]}")
+            if address := ADDRESS.search(text):
+                problems.append(f"{label}: shows a memory address, {address[0]}")
+    return problems
+
+
+def labelled(notebook: NotebookNode) -> Iterator[tuple[str, NotebookNode]]:
+    """The cells with what a reader finds them by: `cell [7]` for the seventh code cell, else the cell's first line."""
+    count = 0
+    for cell in notebook.cells:
+        if cell.cell_type == "code":
+            count += 1
+            yield f"cell [{count}]", cell
+        else:
+            yield f"text {_first_line(cell.source)[:40]!r}", cell
+
+
+def as_text(notebook: NotebookNode) -> str:
+    """The text of the notebook's file: JSON in the manner of JupyterLab, with a newline at the end."""
+    return nbformat.writes(notebook) + "\n"
+
+
+def store(text: str, path: Path) -> bool:
+    """Make `text` the content of `path` in one step, so that no interruption leaves half a notebook.
+
+    Returns whether that changed the file. Lines end in LF on every system.
+    """
+    content = text.encode()
+    if path.exists() and path.read_bytes() == content:
+        return False
+    partial = path.with_name(f".{path.name}.partial")
+    partial.write_bytes(content)
+    partial.replace(path)
+    return True

@@ -1,0 +1,346 @@
+"""The rules for stored notebooks, one function each: it takes a stored notebook and returns its complaints."""
+
+import ast
+import re
+import statistics
+import tomllib
+from collections import Counter
+from collections.abc import Iterator
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import nbformat
+from loopbook import notebooks
+from nbformat import NotebookNode
+
+ROOT = Path(__file__).parents[1]
+LEDGER = ROOT / "lib" / "loopbook" / "ledger"
+
+NAMES = {
+    "01_introduction",
+    "02_block_diagrams",
+    "03_modeling",
+    "04_laplace",
+    "05_transfer_functions",
+    "06_dynamics",
+    "07_feedback",
+    "08_feedforward",
+    "09_equipment",
+    "10_tuning",
+    "11_control_structures",
+    "12_sequential_control",
+    "13_poles_and_zeros",
+    "14_model_approximation",
+    "15_direct_synthesis",
+    "16_tuning_relations",
+    "17_dead_time_compensation",
+    "18_integral_criteria",
+    "19_robustness",
+    "A_instrument_symbols",
+}
+MOST_LINES = 12
+MOST_BYTES = 600_000
+MARKER = "# NBVAL_IGNORE_OUTPUT"
+
+# Functions that make a number of a literal, and names of constants: what consists of these alone is not computed.
+MAKERS = {"S", "sympify", "Rational", "Integer", "Float", "Fraction", "Decimal", "int", "float", "abs", "round"}
+CONSTANTS = MAKERS | {"sympy", "sp", "np", "numpy", "math", "oo", "inf", "nan", "pi", "E", "I"}
+
+
+class Stored(NamedTuple):
+    """A notebook as it lies in its folder."""
+
+    path: Path
+    text: str
+    notebook: NotebookNode
+
+    @classmethod
+    def at(cls, path: Path) -> "Stored":
+        text = path.read_bytes().decode()
+        return cls(path, text, nbformat.reads(text, as_version=nbformat.NO_CONVERT))
+
+
+# What it takes to look into a notebook.
+
+
+def code(notebook: NotebookNode) -> list[tuple[str, NotebookNode]]:
+    """The code cells, each with its label."""
+    return [(label, cell) for label, cell in notebooks.labelled(notebook) if cell.cell_type == "code"]
+
+
+def sections(notebook: NotebookNode) -> list[list[tuple[str, NotebookNode]]]:
+    """The code cells between one heading of level 2 and the next."""
+    found: list[list[tuple[str, NotebookNode]]] = [[]]
+    for label, cell in notebooks.labelled(notebook):
+        if cell.cell_type == "code":
+            found[-1].append((label, cell))
+        elif re.search(r"^## ", cell.source, re.MULTILINE):
+            found.append([])
+    return found
+
+
+def tree(cell: NotebookNode) -> ast.Module:
+    """The syntax tree of a cell, empty where it is no Python (`plain_python` complains about that)."""
+    return ast.parse(cell.source) if is_python(cell) else ast.Module([], [])
+
+
+def is_python(cell: NotebookNode) -> bool:
+    try:
+        ast.parse(cell.source)
+    except SyntaxError:
+        return False
+    return True
+
+
+def names(node: ast.AST) -> set[str]:
+    """The names and attributes used in an expression."""
+    parts = list(ast.walk(node))
+    return {n.id for n in parts if isinstance(n, ast.Name)} | {n.attr for n in parts if isinstance(n, ast.Attribute)}
+
+
+def uses_interact(cell: NotebookNode) -> bool:
+    return bool(names(tree(cell)) & {"interact", "interactive", "interact_manual", "interactive_output"})
+
+
+# The file.
+
+
+def named_as_designed(stored: Stored) -> list[str]:
+    return [] if stored.path.stem in NAMES else [f"{stored.path.name} is none of the collection's names"]
+
+
+def valid(stored: Stored) -> list[str]:
+    if (version := (stored.notebook.nbformat, stored.notebook.nbformat_minor)) != (4, 5):
+        return [f"format {version[0]}.{version[1]} instead of 4.5"]
+    try:
+        nbformat.validate(stored.notebook)
+    except nbformat.ValidationError as error:
+        return [f"not a valid notebook: {error.message}"]
+    return []
+
+
+def in_normal_form(stored: Stored) -> list[str]:
+    if stored.text != notebooks.as_text(notebooks.normalised(stored.notebook)):
+        return ["not as `python -m loopbook execute` stores it"]
+    return []
+
+
+def light(stored: Stored) -> list[str]:
+    size = len(stored.text.encode())
+    return [f"{size} bytes are more than {MOST_BYTES}"] if size > MOST_BYTES else []
+
+
+# The outputs.
+
+
+def executed_once_in_order(stored: Stored) -> list[str]:
+    counts = [cell.execution_count for _, cell in code(stored.notebook)]
+    return [] if counts == [*range(1, len(counts) + 1)] else [f"execution counts {counts}"]
+
+
+def fit_to_store(stored: Stored) -> list[str]:
+    return notebooks.unfit(stored.notebook)
+
+
+# The code.
+
+
+def plain_python(stored: Stored) -> list[str]:
+    return [f"{label}: not plain Python" for label, cell in code(stored.notebook) if not is_python(cell)]
+
+
+def without_tricks(stored: Stored) -> list[str]:
+    found = []
+    for label, cell in code(stored.notebook):
+        for node in ast.walk(tree(cell)):
+            match node:
+                case ast.Attribute(value=ast.Name("sys"), attr="path"):
+                    found.append(f"{label}: sys.path")
+                case ast.Try() if any(isinstance(n, ast.Import | ast.ImportFrom) for n in ast.walk(node)):
+                    found.append(f"{label}: try around an import")
+                case ast.ExceptHandler(type=None | ast.Name("Exception" | "BaseException")):
+                    found.append(f"{label}: an except that hides every error")
+                case ast.Assert(test=ast.Constant()):
+                    found.append(f"{label}: an assert that cannot fail")
+    return found
+
+
+def one_import_cell(stored: Stored) -> list[str]:
+    first, *others = [(label, tree(cell)) for label, cell in code(stored.notebook)] or [("", ast.Module([], []))]
+    found = [
+        f"{first[0]}: {ast.unparse(statement)[:40]!r} among the imports"
+        for statement in first[1].body
+        if not isinstance(statement, ast.Import | ast.ImportFrom)
+    ]
+    for label, module in others:
+        if any(isinstance(node, ast.Import | ast.ImportFrom) for node in ast.walk(module)):
+            found.append(f"{label}: an import outside the first cell")
+    return found
+
+
+def short_cells(stored: Stored) -> list[str]:
+    lengths = {label: len(cell.source.strip().splitlines()) for label, cell in code(stored.notebook)}
+    found = [f"{label}: {n} lines are more than {MOST_LINES}" for label, n in lengths.items() if n > MOST_LINES]
+    if lengths and not 1 <= statistics.median(lengths.values()) <= 3:
+        found.append(f"the median cell has {statistics.median(lengths.values())} lines instead of 1 to 3")
+    return found
+
+
+# The sliders.
+
+
+def only_sliders_escape_comparison(stored: Stored) -> list[str]:
+    found = []
+    for label, cell in code(stored.notebook):
+        lines = cell.source.splitlines()
+        if uses_interact(cell) and lines[0] != MARKER:
+            found.append(f"{label}: interact without {MARKER!r} on the first line")
+        if re.search(r"NBVAL|PYTEST_VALIDATE", "\n".join(lines[1:] if uses_interact(cell) else lines)):
+            found.append(f"{label}: a marker that hides a cell from comparison")
+        if cell.metadata.get("tags"):
+            found.append(f"{label}: tags {cell.metadata.tags}")
+    return found
+
+
+def sliders_follow_a_figure(stored: Stored) -> list[str]:
+    found = []
+    for section in sections(stored.notebook):
+        shown = False
+        for label, cell in section:
+            if uses_interact(cell) and not shown:
+                found.append(f"{label}: a slider without a figure before it in its section")
+            shown = shown or any(mime.startswith("image/") for o in cell.outputs for mime in o.get("data", {}))
+    return found
+
+
+# The numbers.
+
+
+def checks_are_computed(stored: Stored) -> list[str]:
+    """No argument of `.check(...)` is a literal, a name for a literal, or the printed value handed back."""
+    cells = [(label, tree(cell)) for label, cell in code(stored.notebook)]
+    bound, bound_to_literals = Counter(), Counter()
+    for node in (n for _, module in cells for n in ast.walk(module)):
+        match node:
+            case ast.Name(name, ast.Store()):
+                bound[name] += 1
+            case ast.Assign(targets=[ast.Name(name)], value=value) if names(value) <= CONSTANTS:
+                bound_to_literals[name] += 1
+    literal = CONSTANTS | {name for name, count in bound_to_literals.items() if count == bound[name]}
+    found = []
+    for label, module in cells:
+        for node in ast.walk(module):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "check":
+                for argument in [*node.args, *(keyword.value for keyword in node.keywords)]:
+                    if names(argument) <= literal:
+                        found.append(f"{label}: {ast.unparse(argument)} in a check is not computed")
+                    if names(argument) & {"printed", "correct", "computed"}:
+                        found.append(f"{label}: {ast.unparse(argument)} checks the ledger against itself")
+    return found
+
+
+def no_number_of_the_book(stored: Stored) -> list[str]:
+    """In a section, no literal is a given or a result of the ledger's entries that the section uses."""
+    sources = {}
+    for _, cell in code(stored.notebook):
+        for node in ast.walk(tree(cell)):
+            if isinstance(node, ast.ImportFrom) and node.module == "loopbook.ledger":
+                sources |= {alias.asname or alias.name: alias.name for alias in node.names}
+    found = []
+    for section in sections(stored.notebook):
+        book: dict[Fraction, str] = {}
+        for node in (n for _, cell in section for n in ast.walk(tree(cell))):
+            match node:
+                case ast.Subscript(value=ast.Name(name), slice=ast.Constant(str(entry))) if name in sources:
+                    book |= dict.fromkeys(printed_numbers(LEDGER, sources[name], entry), f"{name} {entry}")
+        for label, cell in section:
+            for value in literals(tree(cell)):
+                if abs(value) in book:
+                    found.append(f"{label}: {float(value):g} stands in {book[abs(value)]}: take it from the ledger")
+    return found
+
+
+def literals(node: ast.AST) -> Iterator[Fraction]:
+    """The numbers written in a piece of code, except where they are form and not data."""
+    value = number(node)
+    if value is not None:
+        yield value
+        return
+    for child in ast.iter_child_nodes(node):
+        if child not in form(node):
+            yield from literals(child)
+
+
+def form(node: ast.AST) -> list[ast.AST]:
+    """The numbers in `node` that are its form: an exponent, an index, the order of a derivative."""
+    match node:
+        case ast.BinOp(op=ast.Pow(), right=part) | ast.Subscript(slice=part):
+            parts = [part]
+        case ast.Call(func=ast.Name("diff" | "Derivative") | ast.Attribute(attr="diff"), args=parts):
+            pass
+        case _:
+            parts = []
+    return [part for part in parts if number(part) is not None]
+
+
+def number(node: ast.AST) -> Fraction | None:
+    """The value of a literal number, also as `-2`, `1/2`, `S("0.5")` or `Rational(1, 2)`."""
+    match node:
+        case ast.Constant(bool()):
+            return None
+        case ast.Constant(int() | float() as value):
+            return Fraction(str(value))
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            return None if (value := number(operand)) is None else -value
+        case ast.BinOp(left=over, op=ast.Div(), right=under):
+            return quotient([number(over), number(under)])
+        case ast.Call(func=ast.Name(name), args=[ast.Constant(str(text))]) if name in MAKERS:
+            try:
+                return Fraction(text)
+            except ValueError:
+                return None
+        case ast.Call(func=ast.Name(name), args=[_, *_] as arguments) if name in MAKERS:
+            return quotient([number(argument) for argument in arguments])
+    return None
+
+
+def quotient(parts: list[Fraction | None]) -> Fraction | None:
+    if None in parts or 0 in parts[1:]:
+        return None
+    return parts[0] / parts[1] if len(parts) == 2 else parts[0]
+
+
+@cache
+def printed_numbers(ledger: Path, source: str, entry: str) -> frozenset[Fraction]:
+    """The magnitudes that an entry of the ledger prints, 0 and 1 excepted."""
+    path = ledger / f"{source}.toml"
+    content = tomllib.loads(path.read_text(encoding="utf-8")).get(entry, {}) if path.exists() else {}
+    texts = [str(value) for value in content.get("given", {}).values()]
+    for result in content.get("result", []):
+        texts += [str(result[key]) for key in ("printed", "correct", "computed") if key in result]
+    # Exponents, orders of derivatives and the numbers of examples are no data.
+    data = [
+        re.sub(r"(\*\*|\^)\s*[({]?-?\d+|\(\w+, \d+\)|(Example|Equation|Figure|Section) \S+", "", text) for text in texts
+    ]
+    found = {Fraction(n) for text in data for n in re.findall(r"(?<![\w.])\d+(?:\.\d+)?(?:[eE][+-]?\d+)?", text)}
+    return frozenset(found - {0, 1})
+
+
+CHECKS = (
+    named_as_designed,
+    valid,
+    in_normal_form,
+    light,
+    executed_once_in_order,
+    fit_to_store,
+    plain_python,
+    without_tricks,
+    one_import_cell,
+    short_cells,
+    only_sliders_escape_comparison,
+    sliders_follow_a_figure,
+    checks_are_computed,
+    no_number_of_the_book,
+)

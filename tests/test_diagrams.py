@@ -1,0 +1,243 @@
+"""Block diagrams: what is drawn, where, and that every label has its room."""
+
+import itertools
+
+import pytest
+import sympy
+from loopbook.diagrams import (
+    block,
+    block_diagram,
+    conveyor_belt,
+    equivalent_diagrams,
+    feedback_loop,
+    parallel_paths,
+    sum_of,
+)
+from loopbook.expressions import s
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.patches import Circle, Polygon
+
+K, T, T1, T2, a, tau = sympy.symbols("K T T_1 T_2 a tau")
+H1, H2, H3 = (sympy.Function(f"H_{n}")(s) for n in (1, 2, 3))
+
+EXAMPLES = {
+    "Figure 5.1": lambda: block_diagram(
+        sum_of(["u_1(s)", K / (s - a), "y_1(s)"], ["u_2(s)", H2, "y_2(s)"], ["y_0", 1 / (s - a), "y_{init}(s)"]), "y(s)"
+    ),
+    "Figure 5.2": lambda: equivalent_diagrams(
+        {
+            "Series": (["u", H1, H2, "y"], ["u", H1 * H2, "y"]),
+            "Parallel": (["u", parallel_paths(H1, H2), "y"], ["u", H1 + H2, "y"]),
+            "Feedback": (["u", feedback_loop(H1, H2), "y"], ["u", H1 / (1 + H1 * H2), "y"]),
+        }
+    ),
+    "Figure 6.3": lambda: conveyor_belt(),
+    "Figure 6.5": lambda: block_diagram("u(s)", 1 / (T1 * s + 1), "y_1(s)", 1 / (T2 * s + 1), "y_2(s)"),
+    "loop": lambda: block_diagram(
+        "y_{SP}", feedback_loop(["e", K * (1 + 1 / (T * s)), "u", K * sympy.exp(-tau * s) / (T * s + 1)], [1 / s]), "y"
+    ),
+    "unity": lambda: block_diagram("r", feedback_loop(["e", parallel_paths(H1, H2, H3, signs="+-+"), "u", H1]), "y"),
+    "nested": lambda: block_diagram("u", feedback_loop(feedback_loop(H1, H2), parallel_paths(H2, H3)), "y"),
+    "long": lambda: block_diagram("a long name of a signal", block(r"\frac{s^4+a s^3+b s^2+c s+d}{s^5+e s^4+1}"), "y"),
+}
+
+
+def measured(picture):
+    """The texts, boxes, circles and wires of a picture, in drawing units."""
+    figure = picture.figure
+    FigureCanvasAgg(figure).draw()
+    (axes,) = figure.axes
+    to_units = axes.transData.inverted()
+    texts = [(text.get_text(), text.get_window_extent().transformed(to_units)) for text in axes.texts]
+    boxes = [p.get_path().get_extents() for p in axes.patches if isinstance(p, Polygon) and len(p.get_xy()) == 5]
+    circles = [p for p in axes.patches if isinstance(p, Circle)]
+    heads = [p.get_xy() for p in axes.patches if isinstance(p, Polygon) and len(p.get_xy()) == 4]
+    wires = [list(zip(*line.get_data(), strict=True)) for line in axes.lines]
+    return texts, boxes, circles, heads, wires
+
+
+def within(inner, outer, margin=0.0):
+    return (
+        outer.x0 + margin <= inner.x0 <= inner.x1 <= outer.x1 - margin
+        and outer.y0 + margin <= inner.y0 <= inner.y1 <= outer.y1 - margin
+    )
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_labels_fit_inside_their_blocks_and_never_overlap(name):
+    texts, boxes, circles, heads, _ = measured(EXAMPLES[name]())
+    inside = [label for label in texts if any(box.overlaps(label[1]) for box in boxes)]
+    assert len(inside) == len(boxes)
+    for label, extent in inside:
+        assert any(within(extent, box, margin=0.1) for box in boxes), label
+    for (one, here), (other, there) in itertools.combinations(texts, 2):
+        assert not here.overlaps(there), (one, other)
+    for label, extent in texts:
+        for circle in circles:
+            x, y = circle.center
+            assert not within(type(extent).from_extents(x, y, x, y), extent), label
+        for corners in heads:
+            assert not extent.contains(*corners.mean(axis=0)), (label, "is on an arrow head")
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_lines_are_orthogonal_and_arrow_heads_alike(name):
+    _, _, _, heads, wires = measured(EXAMPLES[name]())
+    if name != "Figure 6.3":  # the chute is slanted
+        for wire in wires:
+            for (x0, y0), (x1, y1) in itertools.pairwise(wire):
+                assert min(abs(x0 - x1), abs(y0 - y1)) < 1e-9
+    sizes = {tuple(sorted(round(float(side), 6) for side in head.max(axis=0) - head.min(axis=0))) for head in heads}
+    assert sizes == {(0.19, 0.26)}
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_nothing_but_its_own_label_crosses_a_block(name):
+    _, boxes, _, _, wires = measured(EXAMPLES[name]())
+    for box, wire in itertools.product(boxes, wires):
+        for (x0, y0), (x1, y1) in itertools.pairwise(wire):
+            middle = ((x0 + x1) / 2, (y0 + y1) / 2)
+            assert not (box.x0 + 0.01 < middle[0] < box.x1 - 0.01 and box.y0 + 0.01 < middle[1] < box.y1 - 0.01)
+
+
+def test_printed_width_of_the_rules_is_about_a_column():
+    assert EXAMPLES["Figure 5.2"]().figure.get_size_inches()[0] < 6.6
+
+
+def test_series_runs_from_left_to_right_on_one_axis():
+    texts, boxes, circles, heads, wires = measured(block_diagram("u", H1, "x", H2, "y"))
+    assert [text for text, _ in sorted(texts, key=lambda item: item[1].x0)] == [
+        "$u$", r"$H_{1}{\left(s \right)}$", "$x$", r"$H_{2}{\left(s \right)}$", "$y$",
+    ]  # fmt: skip
+    assert circles == []
+    assert len(heads) == len(wires) == 3
+    assert {y for wire in wires for _, y in wire} == {0}
+    tips = sorted(head[:, 0].max() for head in heads)
+    assert tips[:2] == pytest.approx(sorted(box.x0 for box in boxes))
+
+
+def signs_near(texts, x, y):
+    """The signs at a junction, with the side on which each stands."""
+    found = []
+    for text, extent in texts:
+        dx, dy = (extent.x0 + extent.x1) / 2 - x, (extent.y0 + extent.y1) / 2 - y
+        if text in ("$+$", "$-$") and max(abs(dx), abs(dy)) < 0.9:
+            found.append((text[1], "left" if abs(dy) < 0.4 else "above" if dy > 0 else "below"))
+    return sorted(found, key=lambda item: item[1])
+
+
+@pytest.mark.parametrize(
+    ("part", "expected"),
+    [
+        (parallel_paths(H1, H2), [("+", "above"), ("+", "below")]),
+        (parallel_paths(H1, H2, signs="+-"), [("+", "above"), ("-", "below")]),
+        (parallel_paths(H1, H2, H3, signs="-+-"), [("-", "above"), ("-", "below"), ("+", "left")]),
+        (feedback_loop(H1, H2), [("-", "below"), ("+", "left")]),
+        (feedback_loop(H1, H2, sign="+"), [("+", "below"), ("+", "left")]),
+        (feedback_loop(H1), [("-", "below"), ("+", "left")]),
+    ],
+)
+def test_signs_stand_beside_the_path_that_they_belong_to(part, expected):
+    texts, _, circles, _, _ = measured(block_diagram("u", part, "y"))
+    (junction,) = [circle for circle in circles if circle.radius > 0.1]
+    (branch,) = [circle for circle in circles if circle.radius < 0.1]
+    assert signs_near(texts, *junction.center) == expected
+    assert branch.center[1] == junction.center[1] == 0
+
+
+def test_feedback_runs_back_below_from_the_branch_point_to_the_junction():
+    _, boxes, circles, heads, wires = measured(block_diagram("u", feedback_loop(H1, H2), "y"))
+    junction, branch = sorted(circles, key=lambda circle: circle.center[0])
+    forward, back = sorted(boxes, key=lambda box: -box.y0)
+    assert back.y1 < forward.y0
+    assert junction.center[0] < back.x0 < back.x1 < branch.center[0]
+    into_back = [head for head in heads if head[:, 0].min() == pytest.approx(back.x1)]
+    assert len(into_back) == 1
+    up = [wire for wire in wires if wire[0][0] == wire[-1][0] == pytest.approx(junction.center[0])]
+    assert len(up) == 1
+    assert up[0][0][1] == pytest.approx((back.y0 + back.y1) / 2)
+
+
+def test_inputs_and_blocks_of_a_sum_stand_in_columns():
+    texts, boxes, circles, _, wires = measured(EXAMPLES["Figure 5.1"]())
+    assert len({round(box.x0, 6) for box in boxes}) == 1
+    assert [wire[0][0] for wire in wires].count(0) == 3
+    assert len(circles) == 1
+    assert signs_near(texts, *circles[0].center) == [("+", "above"), ("+", "below"), ("+", "left")]
+
+
+def test_rows_of_equivalent_diagrams_do_not_touch():
+    texts, *_ = measured(EXAMPLES["Figure 5.2"]())
+    captions = {text: extent for text, extent in texts if text in ("Series", "Parallel", "Feedback")}
+    assert captions["Series"].y0 > captions["Parallel"].y1 > captions["Feedback"].y1
+    assert len({round(extent.x0, 2) for extent in captions.values()}) == 1
+    assert [text for text, _ in texts].count(r"$\Leftrightarrow$") == 3
+
+
+@pytest.mark.parametrize(
+    ("expression", "label"),
+    [
+        (K / (s - a), r"$\dfrac{K}{s - a}$"),
+        (1 / (T * s + 1), r"$\dfrac{1}{T s + 1}$"),
+        (1 / (s**2 + 2 * a * s + 1), r"$\dfrac{1}{s^{2} + 2 a s + 1}$"),
+        (1 / (1 + H1), r"$\dfrac{1}{1 + H_{1}{\left(s \right)}}$"),
+        (sympy.exp(-tau * s), r"$e^{- \tau s}$"),
+        (2, "$2$"),
+    ],
+)
+def test_expressions_are_written_as_books_do(expression, label):
+    texts, *_ = measured(block_diagram("u", expression, "y"))
+    assert label in [text for text, _ in texts]
+
+
+def test_labels_of_ones_own():
+    texts, *_ = measured(block_diagram("$u$ [V]", block(r"\frac{K}{Ts+1}"), "y_1", block("Valve $K_v$")))
+    assert {text for text, _ in texts} == {"$u$ [V]", r"$\dfrac{K}{Ts+1}$", "$y_1$", "Valve $K_v$"}
+
+
+def test_conveyor_delay_spans_from_the_inflow_to_the_outflow():
+    texts, _, _, _, wires = measured(conveyor_belt("A", "B", "2", title="Figure 6.3"))
+    assert [text for text, _ in texts] == ["$A$", "$B$", "$2$"]
+    down = [wire for wire in wires if wire[0][0] == wire[-1][0] and wire[0][1] - wire[-1][1] > 1]
+    inflow, outflow = sorted(wire[0][0] for wire in down)
+    dimension = min((wire for wire in wires if wire[0][1] == wire[-1][1]), key=lambda wire: wire[0][1])
+    drawn = [x for x, _ in dimension]
+    assert (min(drawn), max(drawn)) == pytest.approx((inflow, outflow), abs=0.3)  # the heads take the rest
+
+
+def test_description_and_title():
+    picture = block_diagram("u", feedback_loop(H1), "y", title="Figure 7.1")
+    assert repr(picture) == "<Figure 7.1: block diagram: u → (loop [H_1(s)], back - 1) → y>"
+    assert picture.figure.axes[0].get_title(loc="left") == "Figure 7.1"
+    assert picture.png() == picture.png()
+
+
+def test_nothing_stays_open_in_pyplot():
+    import matplotlib.pyplot as plt
+
+    before = dict(plt.rcParams)
+    EXAMPLES["Figure 5.2"]().png()
+    assert plt.get_fignums() == []
+    assert dict(plt.rcParams) == before
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: block_diagram("u", "v", H1), "there must be a block between the signals u and v"),
+        (lambda: block_diagram("u", None, "y"), "None is no part of a block diagram"),
+        (lambda: block_diagram("u", sum_of(["a", H1], ["b", H2])), "sum_of brings its own signals"),
+        (lambda: block_diagram(H1, sum_of(["a", H1], ["b", H2])), "sum_of brings its own signals"),
+        (lambda: sum_of([H1], ["b", H2]), "each path of sum_of begins with the name of its signal"),
+        (lambda: parallel_paths(H1), "room for two or three paths, not 1"),
+        (lambda: parallel_paths(H1, H1, H1, H1), "room for two or three paths, not 4"),
+        (lambda: parallel_paths(H1, H2, signs="+"), "signs must be one . or - for each of the 2 paths, not '.'"),
+        (lambda: parallel_paths(H1, H2, signs="+*"), "signs must be one . or - for each of the 2 paths"),
+        (lambda: feedback_loop(H1, sign="negative"), "the sign of a feedback is - or ., not 'negative'"),
+        (lambda: equivalent_diagrams({}), "rules must be {name: "),
+        (lambda: equivalent_diagrams({"Series": ["u"]}), "rules must be {name: "),
+    ],
+)
+def test_bad_input_is_told_in_one_sentence(make, message):
+    with pytest.raises(ValueError, match=message):
+        make()

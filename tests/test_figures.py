@@ -1,0 +1,234 @@
+"""The look of the collection and the plot of signals against time."""
+
+import base64
+import re
+
+import nbclient
+import nbformat
+import numpy as np
+import pytest
+import sympy
+from loopbook.figures import INPUTS, ROLES, STYLE, plain_words, response_look, time_plot
+from loopbook.laplace import t
+from sympy import DiracDelta, Heaviside, exp
+
+TIMES = np.linspace(0, 25, 501)
+LAG = 2 * (1 - exp(-t / 5))
+
+
+def texts(axes):
+    return [text.get_text() for text in axes.texts]
+
+
+def test_expression_is_drawn_at_the_given_times():
+    line = time_plot({"$y(t)$": LAG}, TIMES).lines["$y(t)$"]
+    np.testing.assert_array_equal(line.get_xdata(), TIMES)
+    np.testing.assert_allclose(line.get_ydata(), 2 * (1 - np.exp(-TIMES / 5)), atol=1e-14)
+
+
+@pytest.mark.parametrize("signal", [3, 3.0, sympy.Integer(3), np.full(501, 3), [3] * 501])
+def test_numbers_and_arrays_are_signals_too(signal):
+    line = time_plot({"u": signal}, TIMES).lines["u"]
+    np.testing.assert_array_equal(line.get_ydata(), np.full(501, 3.0))
+
+
+def test_step_at_zero_is_an_upright_edge_after_a_time_at_zero():
+    plot = time_plot({"u": 1}, TIMES, before=2)
+    x, y = plot.lines["u"].get_data()
+    assert list(zip(x[:3], y[:3], strict=True)) == [(-2, 0), (0, 0), (0, 1)]
+    assert plot.figure.axes[0].get_xlim() == (-2, 25)
+
+
+@pytest.mark.parametrize("late", [sympy.Rational(1, 3), sympy.sqrt(2), 5, 7.77])
+def test_late_step_is_an_upright_edge_between_the_given_times(late):
+    x, y = time_plot({"u": 3 * Heaviside(t - late)}, np.linspace(0, 10, 21)).lines["u"].get_data()
+    (jump,) = np.flatnonzero(np.diff(y))
+    assert y[jump : jump + 2].tolist() == [0, 3]
+    assert x[jump : jump + 2] == pytest.approx([float(late)] * 2, abs=2e-8)
+    assert (np.diff(x) > 0).all()
+
+
+def test_panels_share_the_time_axis_and_an_input_takes_less_room():
+    plot = time_plot([{"y": LAG}, {"u": (1, "control signal")}], TIMES, title="Figure 6.2", before=2)
+    response, control = plot.figure.axes
+    plot.figure.draw_without_rendering()
+    assert response.get_xlim() == control.get_xlim() == (-2, 25)
+    assert response.get_position().height == pytest.approx(2 * control.get_position().height, rel=0.01)
+    assert (response.get_title(loc="left"), control.get_title(loc="left")) == ("Figure 6.2", "")
+    assert (response.get_xlabel(), control.get_xlabel()) == ("", "$t$ [s]")
+    assert (response.get_ylabel(), control.get_ylabel()) == ("y", "u")
+
+
+def test_several_signals_have_a_legend_and_one_has_its_name_on_the_axis():
+    plot = time_plot([{"a": 1, "b": t}, {"c": t}], TIMES, ylabel=["level [m]", None])
+    first, second = plot.figure.axes
+    assert [text.get_text() for text in first.get_legend().get_texts()] == ["a", "b"]
+    assert second.get_legend() is None
+    assert (first.get_ylabel(), second.get_ylabel()) == ("level [m]", "c")
+
+
+@pytest.mark.parametrize("role", ROLES)
+def test_role_decides_colour_wherever_it_stands(role):
+    alone = time_plot({"x": (t, role)}, TIMES).lines["x"]
+    below = time_plot([{"a": 1, "b": 2}, {"c": 3, "x": (TIMES, role)}], TIMES).lines["x"]
+    assert alone.get_color() == below.get_color() == ROLES[role]["color"]
+    assert alone.get_linewidth() == below.get_linewidth() == ROLES[role]["linewidth"]
+
+
+def test_no_two_looks_agree_in_colour_or_in_grey():
+    assert len({look["color"] for look in ROLES.values()}) == len(ROLES)
+    assert len({look["linestyle"] for look in ROLES.values()}) == len(ROLES)
+    looks = [response_look(n) for n in range(20)]
+    assert len({(look["color"], look["linestyle"]) for look in looks}) == 20
+    assert not {look["color"] for look in looks} & {look["color"] for look in ROLES.values()}
+    assert set(INPUTS) < set(ROLES)
+
+
+def test_responses_go_on_with_the_next_look_in_the_next_panel():
+    plot = time_plot([{"a": 1, "u": (1, "control signal")}, {"b": 2}], TIMES)
+    assert plot.lines["a"].get_color() == response_look(0)["color"]
+    assert plot.lines["b"].get_color() == response_look(1)["color"]
+
+
+def test_mark_is_on_the_curve_with_guides_beyond_both_axes():
+    axes = time_plot({"y": LAG}, TIMES, before=2).mark(5, "63 % at $t = T$").figure.axes[0]
+    upright, level, dot = axes.lines[-3:]
+    assert (dot.get_xdata().item(), dot.get_ydata().item()) == pytest.approx((5, 2 * (1 - np.exp(-1))))
+    assert list(upright.get_xdata()) == [5, 5]
+    assert min(upright.get_ydata()) < axes.get_ylim()[0]
+    assert level.get_ydata() == pytest.approx([2 * (1 - np.exp(-1))] * 2)
+    assert min(level.get_xdata()) < axes.get_xlim()[0]
+    assert texts(axes) == ["63 % at $t = T$"]
+
+
+def test_mark_reads_the_curve_that_it_is_told():
+    plot = time_plot([{"a": t, "b": 2 * t}, {"c": 3 * t}], TIMES)
+    plot.mark(sympy.Rational(5, 2), "here", signal="b").mark(4, "there", signal="c")
+    dots = [axes.lines[-1] for axes in plot.figure.axes]
+    assert [d.get_xdata().item() for d in dots] == pytest.approx([2.5, 4])
+    assert [d.get_ydata().item() for d in dots] == pytest.approx([5, 12])
+    assert [d.get_color() for d in dots] == [plot.lines[x].get_color() for x in "bc"]
+
+
+@pytest.mark.parametrize(
+    ("signal", "time", "corner"),
+    [(t, 5, ("left", "top")), (t, 20, ("right", "bottom")), (-t, 5, ("left", "bottom")), (-t, 20, ("right", "top"))],
+)
+def test_label_of_a_mark_stands_clear_of_the_curve(signal, time, corner):
+    (label,) = time_plot({"y": signal}, TIMES).mark(time, "here").figure.axes[0].texts
+    assert (label.get_ha(), label.get_va()) == corner
+
+
+def test_marks_and_levels_leave_the_curves_where_they_are():
+    plot = time_plot({"y": LAG}, TIMES)
+    axes = plot.figure.axes[0]
+    before = axes.get_xlim(), axes.get_ylim()
+    plot.mark(5, "63 %")
+    assert (axes.get_xlim(), axes.get_ylim()) == before
+
+
+@pytest.mark.parametrize("level", [2, 4, -3, sympy.Rational(1, 2)])
+def test_level_is_inside_the_frame_with_its_label(level):
+    plot = time_plot({"y": LAG}, TIMES).level(level, "$KU$")
+    axes = plot.figure.axes[0]
+    assert axes.lines[-1].get_ydata() == [float(level)] * 2
+    assert axes.get_ylim()[0] < level < axes.get_ylim()[1]
+    plot.png()  # places everything
+    assert axes.texts[0].get_window_extent().y1 <= axes.get_window_extent().y1 + 1
+
+
+def test_description_says_what_is_shown():
+    plot = time_plot([{"$y_1(t)$": t}, {r"$F_{\mathrm{in}}$": 1}], TIMES, title="Figure 6.1 · An integrator")
+    assert repr(plot.mark(1, "$t = T$").level(3, "$y_s$")) == (
+        "<Figure 6.1 · An integrator: y_1(t); F_in against t [s]; marked: t = T; level: y_s>"
+    )
+    assert plain_words(r"$\left(\tau\right)$") == "(tau)"
+
+
+def test_style_is_left_alone_and_nothing_stays_open_in_pyplot():
+    import matplotlib.pyplot as plt
+
+    before = dict(plt.rcParams)
+    time_plot({"y": LAG}, TIMES, title="x").mark(5, "63 %").level(2, "$KU$").png()
+    assert dict(plt.rcParams) == before
+    assert plt.get_fignums() == []
+    assert set(STYLE) <= set(before)
+
+
+def test_same_picture_every_time():
+    one, other = (time_plot({"y": LAG}, TIMES, title="Figure 6.2").mark(5, "63 %").png() for _ in range(2))
+    assert one == other
+
+
+def test_image_has_its_printed_size_and_an_alternative_text():
+    plot = time_plot({"y": LAG}, TIMES, title="Figure 6.2")
+    data, metadata = plot._repr_mimebundle_()
+    assert set(data) == {"image/png", "text/plain"}
+    assert base64.b64decode(data["image/png"]).startswith(b"\x89PNG")
+    assert metadata["image/png"]["alt"] == plot.alt == data["text/plain"].strip("<>")
+    assert metadata["image/png"]["width"] == pytest.approx(6.4 * 96, rel=0.03)
+
+
+def test_saves_as_a_file(tmp_path):
+    time_plot({"y": LAG}, TIMES).save(tmp_path / "y.pdf")
+    assert (tmp_path / "y.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_notebook_shows_a_figure_exactly_once():
+    cells = """
+import matplotlib.pyplot as plt
+from loopbook.figures import time_plot
+from loopbook.diagrams import block_diagram
+from loopbook.laplace import s, t
+---
+time_plot({"$y(t)$": t}, [0, 1, 2], title="Figure 6.1")
+---
+block_diagram("u", 1 / s, "y", title="Figure 5.2")
+"""
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(c.strip()) for c in cells.split("---")])
+    nbclient.NotebookClient(notebook, timeout=60, kernel_name="python3").execute()
+    assert notebook.cells[0].outputs == []
+    expected = ["Figure 6.1: y(t) against t [s]", "Figure 5.2: block diagram: u → [1/s] → y"]
+    for cell, words in zip(notebook.cells[1:], expected, strict=True):
+        (output,) = cell.outputs
+        assert set(output.data) == {"image/png", "text/plain"}
+        assert output.data["text/plain"] == f"<{words}>"
+        assert output.metadata["image/png"]["alt"] == words
+
+
+@pytest.mark.parametrize(
+    ("signals", "times", "options", "message"),
+    [
+        ({"y": [1, 2]}, [0, 1, 2], {}, "y has 2 values for 3 times"),
+        ({"y": np.ones((3, 3))}, [0, 1, 2], {}, "y has 9 values for 3 times"),
+        ({"y": t}, [0, 2, 1], {}, "times must be an array of two or more increasing numbers"),
+        ({"y": t}, [0, 0], {}, "times must be an array of two or more increasing numbers"),
+        ({"y": t}, [0, np.nan], {}, "times must be an array of two or more increasing numbers"),
+        ({"y": t}, "now", {}, "times must be an array of two or more increasing numbers"),
+        ({"y": (t, "output")}, [0, 1], {}, "y has the unknown role 'output': the roles are setpoint, measurement, "),
+        ({"y": "t**2"}, [0, 1], {}, "y must be a SymPy expression in t or an array of numbers"),
+        ({"y": None}, [0, 1], {}, "y must be a SymPy expression in t or an array of numbers"),
+        ({"y": sympy.Eq(t, 1)}, [0, 1], {}, "y must be a SymPy expression in t or an array of numbers"),
+        ({"y": sympy.Symbol("K") * t}, [0, 1], {}, "give a number for K"),
+        ({"y": DiracDelta(t)}, [0, 1], {}, "an impulse has an area but no value"),
+        ([{"y": t}, {"y": 2 * t}], [0, 1], {}, "two signals have the same label: y, y"),
+        ([], [0, 1], {}, "signals must be {label: signal}"),
+        ({}, [0, 1], {}, "signals must be {label: signal}"),
+        (t, [0, 1], {}, "signals must be {label: signal}"),
+        ({"y": t}, [0, 1], {"ylabel": ["a", "b"]}, "2 names of vertical axes for 1 panels"),
+        ({"y": t}, [1, 2], {"before": 1}, "only in front of times that start at 0"),
+        ({"y": t}, [0, 2], {"before": -1}, "only in front of times that start at 0"),
+    ],
+)
+def test_bad_input_is_told_in_one_sentence(signals, times, options, message):
+    with pytest.raises(ValueError, match=re.escape(message)) as error:
+        time_plot(signals, times, **options)
+    assert "\n" not in str(error.value)
+
+
+def test_bad_marks_are_told_in_one_sentence():
+    plot = time_plot({"y": LAG}, TIMES)
+    with pytest.raises(ValueError, match="cannot mark t = 30: the plot shows 0 to 25"):
+        plot.mark(30, "late")
+    with pytest.raises(ValueError, match="no signal 'z' in this plot: it has y"):
+        plot.level(2, "$KU$", signal="z")

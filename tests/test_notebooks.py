@@ -1,0 +1,274 @@
+"""Every stored notebook obeys every rule, every rule can be broken, and notebooks are stored as promised."""
+
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import hygiene
+import pytest
+from hygiene import CHECKS, ROOT, Stored
+from loopbook import notebooks
+from loopbook.__main__ import app
+from nbformat import v4
+from typer.testing import CliRunner
+
+STORED = [path for folder in ("chapters", "solutions") for path in sorted((ROOT / folder).glob("*.ipynb"))]
+
+
+@pytest.mark.parametrize("check", CHECKS, ids=lambda check: check.__name__)
+@pytest.mark.parametrize("path", STORED, ids=lambda path: f"{path.parent.name}/{path.stem}")
+def test_the_stored_notebooks(path, check):
+    assert check(Stored.at(path)) == []
+
+
+# Miniature notebooks: one that every rule accepts, and for every rule those that it refuses.
+
+
+def text(source):
+    return v4.new_markdown_cell(source)
+
+
+def code(source, *outputs):
+    return v4.new_code_cell(source, outputs=list(outputs))
+
+
+def shows(**data):
+    return v4.new_output("display_data", data={mime.replace("_", "/"): value for mime, value in data.items()})
+
+
+def prints(line, name="stdout"):
+    return v4.new_output("stream", name=name, text=line)
+
+
+IMPORTS = code("from loopbook.ledger import haugen\nfrom loopbook.tuning import simc")
+EXAMPLE = text("## Example 10.2 · a lag with dead time")
+GIVENS = code('example = haugen["Example 10.2"]\nK, T, tau = example.given("K", "T", "tau")')
+FIGURE = code("trends(loop)", shows(text_plain="<Figure>", image_png="iVBORw0KGgo/home/QAAUh0x7f3a5c0d1e50"))
+SLIDER = code("# NBVAL_IGNORE_OUTPUT\n@interact(T=(1, 3))\ndef slow(T): trends(loop(T))")
+GOOD = [text("# Tuning"), IMPORTS, EXAMPLE, GIVENS, FIGURE, SLIDER, code("example.check(Kp=settings.Kp, Ti=T + tau)")]
+
+
+def stored(*cells, name="10_tuning", change=lambda notebook: None):
+    notebook = notebooks.normalised(v4.new_notebook(cells=list(cells)))
+    change(notebook)
+    return Stored(Path(f"chapters/{name}.ipynb"), notebooks.as_text(notebook), notebook)
+
+
+def changed(change):
+    return stored(*GOOD, change=change)
+
+
+def with_code(*sources, section=True):
+    """The good notebook with more cells in the section of its example, or in a section of their own."""
+    return stored(*GOOD, *([] if section else [text("## Another")]), *(code(source) for source in sources))
+
+
+BROKEN = [
+    (hygiene.named_as_designed, "none of the collection's names", stored(*GOOD, name="10_tuning_copy")),
+    (hygiene.valid, "format 4.4", changed(lambda n: n.update(nbformat_minor=4))),
+    (hygiene.valid, "not a valid notebook", changed(lambda n: n.cells[0].pop("source"))),
+    (hygiene.in_normal_form, "not as", changed(lambda n: n.cells[0].update(id="tuning"))),
+    (hygiene.in_normal_form, "not as", changed(lambda n: n.metadata.update(widgets={}))),
+    (hygiene.in_normal_form, "not as", stored(*GOOD)._replace(text=stored(*GOOD).text.replace("\n", "\r\n"))),
+    (hygiene.light, "bytes", stored(*GOOD, code("trends(loop)", shows(image_png="A" * hygiene.MOST_BYTES)))),
+    (hygiene.executed_once_in_order, "None", changed(lambda n: n.cells[1].update(execution_count=None))),
+    (hygiene.executed_once_in_order, "[1, 7", changed(lambda n: n.cells[3].update(execution_count=7))),
+    (hygiene.fit_to_store, "stored error", stored(*GOOD, code("1/0", v4.new_output("error", ename="E", evalue="e")))),
+    (hygiene.fit_to_store, "stderr", stored(*GOOD, code("poles(H)", prints("UserWarning", "stderr")))),
+    (hygiene.fit_to_store, "address", stored(*GOOD, code("loop", shows(text_plain="<Loop at 0x7f3a5c0d1e50>")))),
+    (hygiene.fit_to_store, "/home/ada/book", stored(*GOOD, code("here", prints("in /home/ada/book")))),
+    (hygiene.fit_to_store, "/Users/ada", stored(*GOOD, code("here", prints("'/Users/ada'")))),
+    (hygiene.fit_to_store, "C:", stored(*GOOD, code("here", shows(text_plain=r"'C:\\Users\\ada'")))),
+    (hygiene.fit_to_store, "/tmp/", stored(*GOOD, code('open("/tmp/x")'))),
+    (hygiene.fit_to_store, "/work/", stored(*GOOD, text("Kept in /work/loopbook."))),
+    (hygiene.fit_to_store, "/root/", stored(*GOOD, text("Kept in /root/loopbook."))),
+    (hygiene.plain_python, "cell [6]", with_code("%matplotlib inline")),
+    (hygiene.without_tricks, "sys.path", with_code("sys.path.append('..')")),
+    (hygiene.without_tricks, "import", with_code("try:\n    import control\nexcept ImportError:\n    pass")),
+    (hygiene.without_tricks, "hides", with_code("try:\n    poles(H)\nexcept Exception:\n    pass")),
+    (hygiene.without_tricks, "hides", with_code("try:\n    poles(H)\nexcept:\n    pass")),
+    (hygiene.without_tricks, "cannot fail", with_code("assert True")),
+    (hygiene.one_import_cell, "outside", with_code("import sympy")),
+    (hygiene.one_import_cell, "outside", with_code("def f():\n    from sympy import pi\n    return pi")),
+    (hygiene.one_import_cell, "among", stored(code("import sympy\nsympy.init_printing()"))),
+    (hygiene.short_cells, "13 lines", with_code("\n".join(["K"] * 13))),
+    (hygiene.short_cells, "median", with_code(*["K\nK\nK\nK"] * 9)),
+    (hygiene.only_sliders_escape_comparison, "without", with_code("@interact(T=(1, 3))\ndef slow(T): pass")),
+    (hygiene.only_sliders_escape_comparison, "without", with_code("widgets.interact(slow, T=(1, 3))")),
+    (hygiene.only_sliders_escape_comparison, "hides", with_code("# NBVAL_IGNORE_OUTPUT\nexample.check(Kp=Kp)")),
+    (hygiene.only_sliders_escape_comparison, "hides", with_code("K\n# NBVAL_SKIP")),
+    (hygiene.only_sliders_escape_comparison, "hides", with_code(SLIDER.source + "\n# NBVAL_SKIP")),
+    (
+        hygiene.only_sliders_escape_comparison,
+        "tags",
+        changed(lambda n: n.cells[3].metadata.update(tags=["nbval-skip"])),
+    ),
+    (hygiene.sliders_follow_a_figure, "without a figure", with_code(SLIDER.source, section=False)),
+    (hygiene.checks_are_computed, "2", with_code("example.check(2)")),
+    (hygiene.checks_are_computed, "-2.5", with_code("example.check(Kp=-2.5)")),
+    (hygiene.checks_are_computed, "'stable'", with_code("example.check(loop='stable')")),
+    (hygiene.checks_are_computed, "True", with_code("example.check(stable=True)")),
+    (hygiene.checks_are_computed, "S(2)", with_code("example.check(Kp=S(2))")),
+    (hygiene.checks_are_computed, "Rational(1, 2)", with_code("example.check(Kp=Rational(1, 2))")),
+    (hygiene.checks_are_computed, "sympy.Float('0.5')", with_code("example.check(Kp=-sympy.Float('0.5'))")),
+    (hygiene.checks_are_computed, "Integer(3)", with_code("haugen['Example 10.2'].check(Kp=Integer(3) / 2)")),
+    (hygiene.checks_are_computed, "[1, 2]", with_code("example.check(poles=[1, 2])")),
+    (hygiene.checks_are_computed, "oo", with_code("example.check(Ti=oo)")),
+    (hygiene.checks_are_computed, "'Kp': 2", with_code("example.check(**{'Kp': 2})")),
+    (hygiene.checks_are_computed, "gain", with_code("gain = 2", "example.check(Kp=gain)")),
+    (hygiene.checks_are_computed, "itself", with_code("example.check(Kp=example['Kp'].printed)")),
+    (hygiene.no_number_of_the_book, "0.5 stands in haugen Example 10.2", with_code("process = lag(delay=0.5)")),
+    (hygiene.no_number_of_the_book, "0.5", with_code("process = lag(delay=1/2)")),
+    (hygiene.no_number_of_the_book, "0.5", with_code("process = lag(delay=Rational(1, 2))")),
+    (hygiene.no_number_of_the_book, "0.5", with_code("process = lag(delay=S('0.5'))")),
+    (hygiene.no_number_of_the_book, "-6.45", with_code("level = -6.45")),
+    (hygiene.no_number_of_the_book, "1500", with_code("power = 1.5e3")),
+    (hygiene.no_number_of_the_book, "0.002", with_code("area = 0.002")),
+    (hygiene.no_number_of_the_book, "7", with_code("response = 7 * exp(-t)")),
+    (hygiene.no_number_of_the_book, "4", with_code("response = exp(-4 * t)")),
+]
+
+ACCEPTED = [
+    (hygiene.one_import_cell, stored()),
+    (hygiene.fit_to_store, stored(*GOOD, text("A ratio a/home/b, https://example.org/home/x and 0xff are fine."))),
+    (hygiene.checks_are_computed, with_code("count = 0", "count += poles", "example.check(order=count)")),
+    (hygiene.checks_are_computed, with_code("example.check(Kp=T / 2, H=K / (T*s + 1))")),
+    (hygiene.no_number_of_the_book, with_code("area = 2 * x**4 + poles[7] + y(t).diff(t, 4)")),
+    (hygiene.no_number_of_the_book, with_code("3 * x", "5.1 * x")),
+    (hygiene.no_number_of_the_book, with_code("process = lag(delay=0.5)", section=False)),
+    (hygiene.no_number_of_the_book, stored(code("process = lag(delay=0.5)"))),
+]
+
+
+@pytest.fixture
+def small_ledger(tmp_path, monkeypatch):
+    (tmp_path / "haugen.toml").write_text(
+        """
+        ["Example 10.2"]
+        given = { K = "1", T = "1 s", tau = "0.5 s", area = "2e-3 m^2", power = "1500 W" }
+        result = [
+            { name = "level", printed = "-6.45", unit = "m" },
+            { name = "y", printed = "7*exp(-4*t) + K1*t**3 + Derivative(y(t), (t, 3))" },
+            { name = "model", printed = "Example 5.1" },
+        ]
+        """
+    )
+    monkeypatch.setattr(hygiene, "LEDGER", tmp_path)
+
+
+@pytest.mark.usefixtures("small_ledger")
+class TestTheRules:
+    @pytest.mark.parametrize("check", CHECKS, ids=lambda check: check.__name__)
+    def test_accept_a_good_notebook(self, check):
+        assert check(stored(*GOOD)) == []
+
+    @pytest.mark.parametrize(("check", "notebook"), ACCEPTED)
+    def test_accept_what_looks_alike(self, check, notebook):
+        assert check(notebook) == []
+
+    @pytest.mark.parametrize(("check", "words", "notebook"), BROKEN)
+    def test_refuse_a_broken_notebook(self, check, words, notebook):
+        complaints = check(notebook)
+        assert any(words in complaint for complaint in complaints), complaints
+
+    def test_have_all_been_seen_to_refuse(self):
+        assert {check for check, _, _ in BROKEN} == set(CHECKS)
+
+
+# Running and storing.
+
+CHAPTER = [
+    text("# A lag"),
+    code("import matplotlib.pyplot as plt\nfrom ipywidgets import interact\nfrom loopbook import s"),
+    code("print('one')\nprint('two')"),
+    code("1 / (2*s + 1)"),
+    code("plt.plot([0, 1])\nplt.show()"),
+    code("# NBVAL_IGNORE_OUTPUT\n@interact(T=(1, 3))\ndef lag(T=2): print(T)"),
+    code(""),
+]
+
+
+def write(path, *cells):
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(notebooks.as_text(v4.new_notebook(cells=list(cells))), encoding="utf-8")
+    return path.read_bytes()
+
+
+def execute(*paths):
+    result = CliRunner().invoke(app, ["execute", *map(str, paths)])
+    return result.exit_code, result.output.splitlines()
+
+
+def test_execute_stores_the_same_bytes_again_and_nothing_unfit(tmp_path):
+    folder = tmp_path / "a folder with spaces"
+    good = folder / "04_laplace.ipynb"
+    write(good, *CHAPTER)
+    unfit = {
+        "failing": ([code("K = 1"), code("K / 0\n\nK")], "cell [2]: ZeroDivisionError: division by zero"),
+        "hidden": ([v4.new_code_cell("1 / 0", metadata={"tags": ["raises-exception"]})], "cell [1]: ZeroDivisionError"),
+        "address": ([code("object()")], "cell [1]: shows a memory address"),
+        "path": ([code("'/'.join(['', 'home', 'ada'])")], "cell [1]: shows a path of one machine, /home/ada"),
+        "warning": ([code("import warnings\nwarnings.warn('careful')")], "cell [1]: writes to stderr"),
+        "slider": (
+            [code("from ipywidgets import interact\n@interact(T=(1, 3))\ndef f(T): 1 / 0")],
+            "a slider fails: Zero",
+        ),
+    }
+    before = {name: write(folder / f"{name}.ipynb", *cells) for name, (cells, _) in unfit.items()}
+    (folder / "text.ipynb").write_text("no notebook")
+
+    exit_code, lines = execute(folder)
+
+    assert exit_code == 1
+    assert "7 of 8 notebooks not stored" in lines
+    assert [line for line in lines if line.startswith(f"{folder / 'text.ipynb'}: not a notebook")]
+    for name, (_, words) in unfit.items():
+        path = folder / f"{name}.ipynb"
+        assert [line for line in lines if line.startswith(f"{path}: {words}")], (name, lines)
+        assert path.read_bytes() == before[name]
+    assert not list(folder.glob(".*"))
+
+    first = good.read_bytes()
+    exit_code, lines = execute(good)
+    assert exit_code == 0
+    assert lines[0].startswith(f"{good}: unchanged")
+    assert good.read_bytes() == first
+    stored = Stored.at(good)
+    for check in CHECKS:
+        assert check(stored) == [], check.__name__
+    assert [[output.output_type for output in cell.outputs] for _, cell in hygiene.code(stored.notebook)] == [
+        [],
+        ["stream"],
+        ["execute_result"],
+        ["display_data"],
+        [],
+    ]
+
+
+def test_execute_names_a_path_that_it_cannot_find(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert execute("missing.ipynb") == (1, ["missing.ipynb: no such notebook"])
+    assert execute() == (1, ["no notebooks here: name some, or run this in the folder that holds chapters"])
+
+
+def test_an_interrupted_execution_leaves_the_file_as_it_was(tmp_path):
+    path = tmp_path / "04_laplace.ipynb"
+    before = write(path, code("open('started', 'w').close()\nimport time\ntime.sleep(60)"))
+    process = subprocess.Popen([sys.executable, "-m", "loopbook", "execute", path], stdout=subprocess.DEVNULL)
+    while not (tmp_path / "started").exists():
+        assert process.poll() is None
+        time.sleep(0.05)
+    process.kill()
+    process.wait()
+    assert path.read_bytes() == before
+
+
+def test_pytest_compares_every_output_of_a_stored_notebook(tmp_path):
+    """The settings of pyproject.toml run notebooks again, and a changed output fails."""
+    path = tmp_path / "04_laplace.ipynb"
+    write(path, code("1 + 1", v4.new_output("execute_result", data={"text/plain": "3"})))
+    command = [sys.executable, "-m", "pytest", "-c", ROOT / "pyproject.toml", "-p", "no:cacheprovider", path]
+    result = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert result.returncode == 1
+    assert "1 failed" in result.stdout
