@@ -1,5 +1,6 @@
 # The commands of the collection; `make` alone lists them.
 
+asked := $(PYTHON)
 PYTHON ?= $(shell for python in python3 python3.14 python3.13 python3.12 python3.11; do \
 	$$python -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$python && break; done)
 python := .venv/bin/python
@@ -11,7 +12,7 @@ unexport MPLBACKEND
 .PHONY: help lab test bench execute
 
 help: ## list the commands
-	@grep -E '^[a-z]+:.*## ' Makefile | sed -E 's/^([a-z]+):.*## /make \1\t/'
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' Makefile
 
 lab: .venv/ready ## open the collection in JupyterLab
 	$(python) -m jupyterlab $(root) --LabApp.default_url=/lab/tree/chapters
@@ -26,12 +27,16 @@ execute: .venv/ready ## run every notebook again, store its outputs and write ER
 	$(python) -m loopbook execute
 	$(python) -m loopbook ledger
 
-# The stamp holds the folder it was made for, because an editable install does not survive a move.
-ifneq ($(file <.venv/ready),$(CURDIR))
+# The stamp holds the folder it was made in, because an editable install does not survive a move, and the Python it was
+# made with, because whoever names another one wants that.
+ifneq ($(shell sed -n 1p .venv/ready 2>/dev/null),$(CURDIR))
+.PHONY: .venv/ready
+endif
+ifneq ($(filter-out $(shell sed -n 2p .venv/ready 2>/dev/null),$(asked)),)
 .PHONY: .venv/ready
 endif
 .venv/ready: environment.txt pyproject.toml
 	@test -n "$(PYTHON)" || { echo "loopbook needs Python 3.11 or newer; name one with: make PYTHON=/path/to/python3"; exit 1; }
-	$(PYTHON) -m venv .venv
+	$(PYTHON) -m venv $(if $(asked),--clear) .venv
 	$(python) -m pip install --quiet --disable-pip-version-check --requirement environment.txt
-	@printf '%s\n' "$(CURDIR)" > $@
+	@printf '%s\n' "$(CURDIR)" "$(PYTHON)" > $@

@@ -12,10 +12,11 @@ from pathlib import Path
 from statistics import median
 from time import perf_counter
 
-from loopbook import notebooks
 from nbformat import NotebookNode, v4
 from rich.console import Console
 from rich.table import Table
+
+from loopbook import notebooks
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = {

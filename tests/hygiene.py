@@ -4,7 +4,6 @@ import ast
 import re
 import statistics
 import tomllib
-from collections import Counter
 from collections.abc import Iterator
 from fractions import Fraction
 from functools import cache
@@ -12,8 +11,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 import nbformat
-from loopbook import notebooks
 from nbformat import NotebookNode
+
+from loopbook import notebooks
 
 ROOT = Path(__file__).parents[1]
 LEDGER = ROOT / "lib" / "loopbook" / "ledger"
@@ -41,12 +41,30 @@ NAMES = {
     "A_instrument_symbols",
 }
 MOST_LINES = 12
+MOST_COLUMNS = 88  # what a notebook shows beside a file list without scrolling
 MOST_BYTES = 600_000
 MARKER = "# NBVAL_IGNORE_OUTPUT"
 
 # Functions that make a number of a literal, and names of constants: what consists of these alone is not computed.
 MAKERS = {"S", "sympify", "Rational", "Integer", "Float", "Fraction", "Decimal", "int", "float", "abs", "round"}
-CONSTANTS = MAKERS | {"sympy", "sp", "np", "numpy", "math", "oo", "inf", "nan", "pi", "E", "I"}
+BUILTINS = {
+    "sum",
+    "min",
+    "max",
+    "str",
+    "len",
+    "range",
+    "list",
+    "tuple",
+    "set",
+    "dict",
+    "sorted",
+    "zip",
+    "map",
+    "next",
+    "iter",
+}
+CONSTANTS = MAKERS | BUILTINS | {"sympy", "sp", "np", "numpy", "math", "oo", "inf", "nan", "pi", "E", "I"}
 
 
 class Stored(NamedTuple):
@@ -123,7 +141,7 @@ def valid(stored: Stored) -> list[str]:
 
 def in_normal_form(stored: Stored) -> list[str]:
     if stored.text != notebooks.as_text(notebooks.normalised(stored.notebook)):
-        return ["not as `python -m loopbook execute` stores it"]
+        return ["not as `python -m loopbook execute` stores it: run `make execute`"]
     return []
 
 
@@ -137,7 +155,7 @@ def light(stored: Stored) -> list[str]:
 
 def executed_once_in_order(stored: Stored) -> list[str]:
     counts = [cell.execution_count for _, cell in code(stored.notebook)]
-    return [] if counts == [*range(1, len(counts) + 1)] else [f"execution counts {counts}"]
+    return [] if counts == [*range(1, len(counts) + 1)] else [f"execution counts {counts}: run `make execute`"]
 
 
 def fit_to_store(stored: Stored) -> list[str]:
@@ -181,8 +199,14 @@ def one_import_cell(stored: Stored) -> list[str]:
 
 
 def short_cells(stored: Stored) -> list[str]:
+    found = [
+        f"{label}: a line of {len(line)} columns is wider than {MOST_COLUMNS}"
+        for label, cell in code(stored.notebook)
+        for line in cell.source.splitlines()
+        if len(line) > MOST_COLUMNS
+    ]
     lengths = {label: len(cell.source.strip().splitlines()) for label, cell in code(stored.notebook)}
-    found = [f"{label}: {n} lines are more than {MOST_LINES}" for label, n in lengths.items() if n > MOST_LINES]
+    found += [f"{label}: {n} lines are more than {MOST_LINES}" for label, n in lengths.items() if n > MOST_LINES]
     if lengths and not 1 <= statistics.median(lengths.values()) <= 3:
         found.append(f"the median cell has {statistics.median(lengths.values())} lines instead of 1 to 3")
     return found
@@ -221,23 +245,37 @@ def sliders_follow_a_figure(stored: Stored) -> list[str]:
 def checks_are_computed(stored: Stored) -> list[str]:
     """No argument of `.check(...)` is a literal, a name for a literal, or the printed value handed back."""
     cells = [(label, tree(cell)) for label, cell in code(stored.notebook)]
-    bound, bound_to_literals = Counter(), Counter()
-    for node in (n for _, module in cells for n in ast.walk(module)):
-        match node:
-            case ast.Name(name, ast.Store()):
-                bound[name] += 1
-            case ast.Assign(targets=[ast.Name(name)], value=value) if names(value) <= CONSTANTS:
-                bound_to_literals[name] += 1
-    literal = CONSTANTS | {name for name, count in bound_to_literals.items() if count == bound[name]}
+    literal = CONSTANTS | names_of_literals([module for _, module in cells])
     found = []
     for label, module in cells:
-        for node in ast.walk(module):
-            if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "check":
-                for argument in [*node.args, *(keyword.value for keyword in node.keywords)]:
-                    if names(argument) <= literal:
-                        found.append(f"{label}: {ast.unparse(argument)} in a check is not computed")
-                    if names(argument) & {"printed", "correct", "computed"}:
-                        found.append(f"{label}: {ast.unparse(argument)} checks the ledger against itself")
+        calls = [n for n in ast.walk(module) if isinstance(n, ast.Call) and getattr(n.func, "attr", "") == "check"]
+        uses = [n for n in ast.walk(module) if isinstance(n, ast.Attribute) and n.attr == "check"]
+        if len(uses) > len(calls):
+            found.append(f"{label}: a check under another name")
+        for argument in (a for call in calls for a in [*call.args, *(keyword.value for keyword in call.keywords)]):
+            if names(argument) <= literal:
+                found.append(f"{label}: {ast.unparse(argument)} in a check is not computed")
+            if names(argument) & {"printed", "correct", "computed"}:
+                found.append(f"{label}: {ast.unparse(argument)} checks the ledger against itself")
+    return found
+
+
+def names_of_literals(modules: list[ast.Module]) -> set[str]:
+    """The names that are bound to nothing but literals, directly or through other such names."""
+    bindings: list[tuple[set[str], set[str]]] = []  # what is bound, and what it is made of
+    for node in (n for module in modules for n in ast.walk(module)):
+        match node:
+            case ast.Assign(targets=targets, value=value):
+                bindings += [(names(target), names(value)) for target in targets]
+            case ast.AnnAssign(target=target, value=ast.expr() as value) | ast.NamedExpr(target=target, value=value):
+                bindings.append((names(target), names(value)))
+            case ast.AugAssign(target=target, value=value):
+                bindings.append((names(target), names(target) | names(value)))
+            case ast.For(target=target, iter=value) | ast.comprehension(target=target, iter=value):
+                bindings.append((names(target), names(value)))
+    found = {name for bound, _ in bindings for name in bound}
+    while rest := {name for bound, made_of in bindings if not made_of <= found | CONSTANTS for name in bound} & found:
+        found -= rest
     return found
 
 

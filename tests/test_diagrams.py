@@ -4,6 +4,9 @@ import itertools
 
 import pytest
 import sympy
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.patches import Circle, Polygon
+
 from loopbook.diagrams import (
     block,
     block_diagram,
@@ -14,8 +17,6 @@ from loopbook.diagrams import (
     sum_of,
 )
 from loopbook.expressions import s
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.patches import Circle, Polygon
 
 K, T, T1, T2, a, tau = sympy.symbols("K T T_1 T_2 a tau")
 H1, H2, H3 = (sympy.Function(f"H_{n}")(s) for n in (1, 2, 3))

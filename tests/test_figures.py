@@ -8,9 +8,10 @@ import nbformat
 import numpy as np
 import pytest
 import sympy
+from sympy import DiracDelta, Heaviside, exp
+
 from loopbook.figures import INPUTS, ROLES, STYLE, plain_words, response_look, time_plot
 from loopbook.laplace import t
-from sympy import DiracDelta, Heaviside, exp
 
 TIMES = np.linspace(0, 25, 501)
 LAG = 2 * (1 - exp(-t / 5))

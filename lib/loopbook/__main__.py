@@ -65,24 +65,28 @@ def ledger(
 ) -> None:
     """Print the totals of the ledger by source and status, and write the list of the books' errors."""
     from loopbook.ledger import LedgerError, sources
-    from loopbook.ledger import errata as report
+    from loopbook.ledger.errata import page, totals
+    from loopbook.ledger.source import STATUSES
 
     try:
         books = sources()
     except LedgerError as error:
         fail(str(error))
-    counts = report.totals(books)
-    statuses = list(next(iter(counts.values())))
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for column in ("source", *statuses, "results"):
-        table.add_column(column, justify="left" if column == "source" else "right")
-    for name, count in counts.items():
-        table.add_row(name, *map(str, count.values()), str(sum(count.values())))
-    sums = [sum(count[status] for count in counts.values()) for status in statuses]
+    counts = totals(books)
+    table = Table("", box=box.SIMPLE_HEAD, pad_edge=False)
+    for name in (*counts, "all"):
+        table.add_column(name, justify="right")
+    for status in STATUSES:
+        row = [count[status] for count in counts.values()]
+        table.add_row(status, *map(str, row), str(sum(row)))
     table.add_section()
+    sums = [sum(count.values()) for count in counts.values()]
     table.add_row("all", *map(str, sums), str(sum(sums)))
     console.print(table)
-    errata.write_text(report.errata(books), encoding="utf-8", newline="\n")
+    try:
+        errata.write_text(page(books), encoding="utf-8", newline="\n")
+    except OSError as error:
+        fail(f"{errata} cannot be written: {error.strerror}")
     console.print(f"{errata} written", markup=False)
 
 

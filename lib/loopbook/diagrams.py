@@ -341,7 +341,7 @@ class _Loop:
         self.above, self.below = self.forward.above, self.drop + self.back.below
 
     def __repr__(self):
-        return f"(loop {self.forward}, back {self.sign} {self.back or '1'})".replace(" )", " 1)")
+        return f"(loop {self.forward}, back {self.sign} {str(self.back) or '1'})"
 
     def draw(self, sheet, x, y, way=1):
         centre, out = x + way * RADIUS, x + way * self.width

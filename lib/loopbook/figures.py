@@ -89,7 +89,7 @@ class Picture:
             self.figure.savefig(file, **{"dpi": DOTS_PER_INCH, "bbox_inches": "tight", "pad_inches": 0.06} | options)
 
     def png(self):
-        """Return the figure as the bytes of a PNG file, the same for the same matplotlib version.
+        """Return the figure as the bytes of a PNG file, the same for the same versions of matplotlib and Pillow.
 
         >>> from loopbook.laplace import t
         >>> time_plot({"$y(t)$": 2 * t}, [0, 1, 2]).png()[:4]
@@ -165,7 +165,7 @@ class TimePlot(Picture):
         return self
 
     def level(self, value, label, signal=None):
-        """Draw a horizontal dashed line, as for a steady state, with a label above its right end.
+        """Draw a horizontal dashed line, as for a steady state, with a label at its right end, out of the curve's way.
 
         Arguments:
             value: the level, in the unit of the vertical axis; a number or an exact SymPy number.
@@ -180,15 +180,18 @@ class TimePlot(Picture):
         >>> time_plot({"$h(t)$": 3 - 3 * sympy.exp(-t)}, range(9)).level(3, "$h_s$")
         <h(t) against t [s]; level: h_s>
         """
-        axes, value = self._line(signal).axes, float(value)
+        line = self._line(signal)
+        axes, value = line.axes, float(value)
         axes.axhline(value, color="#555555", linestyle=(0, (6, 3)), linewidth=1, zorder=1.5)
         bottom, top = axes.get_ylim()
         room = 0.2 * (max(top, value) - min(bottom, value))
-        axes.set_ylim(min(bottom, value - room / 2), max(top, value + room))
+        curve = line.get_ydata()
+        below = curve[-len(curve) // 5 :].mean() > value  # the curve comes down to the level
+        axes.set_ylim(min(bottom, value - room / (1 if below else 2)), max(top, value + room / (2 if below else 1)))
         with self._style():
             axes.annotate(
-                label, (1, value), (-2, 2), xycoords=("axes fraction", "data"), textcoords="offset points",
-                ha="right", va="bottom",
+                label, (1, value), (-2, -3 if below else 2), xycoords=("axes fraction", "data"),
+                textcoords="offset points", ha="right", va="top" if below else "bottom",
             )  # fmt: skip
         self.alt += f"; level: {plain_words(label)}"
         return self
@@ -207,7 +210,7 @@ class TimePlot(Picture):
         return matplotlib.rc_context(STYLE)
 
 
-def time_plot(signals, times, title=None, xlabel="$t$ [s]", ylabel=None, before=0):
+def time_plot(signals, times, title=None, xlabel="$t$ [s]", ylabel=None, ylim=None, before=0):
     """Plot signals against time, in one panel or in several above one another with a common time axis.
 
     Arguments:
@@ -219,6 +222,7 @@ def time_plot(signals, times, title=None, xlabel="$t$ [s]", ylabel=None, before=
         title: stands above the plot; begins with the name of the book's figure where there is one.
         xlabel, ylabel: names of the axes with their units; `ylabel` is a list where there are several panels. A panel
             with one signal takes the signal's label if no `ylabel` is given.
+        ylim: lowest and highest value of the top panel's axis, where it must not follow the signals, as under a slider.
         before: how much time to show ahead of t = 0, with every signal at zero, so that a step at t = 0 is seen.
     Returns:
         A `TimePlot`, which a notebook shows as the value of a cell; `.mark` and `.level` add to it.
@@ -261,7 +265,8 @@ def time_plot(signals, times, title=None, xlabel="$t$ [s]", ylabel=None, before=
             if len(panel) > 1:
                 axes.legend()
             axes.set_ylabel(name or (label if len(panel) == 1 else ""))
-            axes.set_ylim(axes.get_ylim())  # from here on, what is marked does not move the curves
+            # from here on, what is marked does not move the curves
+            axes.set_ylim(ylim if ylim and axes is grid[0] else axes.get_ylim())
         grid[-1].set_xlim(times[0] - before, times[-1])
         grid[-1].set_xlabel(xlabel)
         grid[0].set_title(title or "")

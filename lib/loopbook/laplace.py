@@ -5,11 +5,12 @@ times needs no more than its poles.
 """
 
 import functools
+import itertools
 
 import sympy
 from sympy.core.function import AppliedUndef
 
-from loopbook.expressions import s, t
+from loopbook.expressions import exact, function_of, s, t
 
 __all__ = [
     "definition", "evaluate", "final_value", "initial_value", "inverse", "partial_fractions", "s", "solve_ode", "t",
@@ -26,7 +27,7 @@ def definition(f):
     >>> definition(sympy.Integer(1))
     Integral(exp(-s*t), (t, 0, oo))
     """
-    return sympy.Integral(sympy.sympify(f) * sympy.exp(-s * t), (t, 0, sympy.oo))
+    return sympy.Integral(function_of(t, f) * sympy.exp(-s * t), (t, 0, sympy.oo))
 
 
 def transform(f):
@@ -39,11 +40,13 @@ def transform(f):
 
     Arguments:
         f: expression in `t` (or an equation of two): sums of products of powers of t, exponentials, sines, cosines,
-            late steps, impulses, unknown functions of t with their derivatives and integrals.
+            late steps, impulses, unknown functions of t with their derivatives and integrals. Decimal numbers are
+            taken as exact.
     Returns:
         Expression in `s`, factored; an equation in `s` where `f` is one.
     Raises:
-        ValueError: for a term whose integral has no closed form here, as a product of unknown functions.
+        ValueError: for a term whose integral has no closed form here, as a product of unknown functions, and for an
+            expression that is no function of the library's own `t`.
     Source: Haugen, Sections 4.2-4.4, equations (4.1) and (4.14)-(4.21).
 
     >>> k, T = sympy.symbols("k T", positive=True)
@@ -55,25 +58,41 @@ def transform(f):
     """
     if isinstance(f, sympy.Equality):
         return sympy.Eq(transform(f.lhs), transform(f.rhs), evaluate=False)
-    F = sympy.Add(*(coefficient * _transform_product(blocks) for coefficient, blocks in _products(sympy.sympify(f))))
+    late, F = {}, sympy.S.Zero
+    for coefficient, blocks in _products(function_of(t, f)):
+        steps = [block for block in blocks if isinstance(block, sympy.Heaviside)]
+        signal = sympy.Mul(*(block**n for block, n in blocks.items() if block not in steps))
+        if steps and not signal.has(sympy.DiracDelta, *_IMPLICIT):
+            start = sympy.Max(*map(_moment, steps))
+            late[start] = late.get(start, 0) + coefficient * signal
+        else:
+            F += coefficient * _transform_product(blocks)
+    for start, signal in late.items():
+        # Let time begin with the last step: that is the same signal without steps, coming late.
+        F += sympy.exp(-start * s) * transform(signal.subs(t, t + start))
     return F if F.has(AppliedUndef) else _factored(F)
 
 
 _WAVES = (sympy.sin, sympy.cos, sympy.sinh, sympy.cosh)
 _EXPECTED = "expected sums of powers of t, exponentials, sines and cosines, late or not"
-_BLOCKS = (sympy.exp, sympy.Heaviside, sympy.DiracDelta, AppliedUndef, sympy.Derivative, sympy.Integral)
+_IMPLICIT = (AppliedUndef, sympy.Derivative, sympy.Integral)
+_BLOCKS = (sympy.exp, sympy.Heaviside, sympy.DiracDelta, *_IMPLICIT)
 
 
 def _products(f):
     """Multiply f(t) out: a list of terms (coefficient, {block: power}), the blocks being what depends on t."""
-    letters = {}
+    letters, constants = {}, {}
 
     def spelled(part):
         if not part.has(t):
             return part
-        if isinstance(part, _WAVES):
+        if t not in part.free_symbols:  # as an initial value, where t is bound
+            return constants.setdefault(part, sympy.Dummy())
+        if isinstance(part, _WAVES) and not part.has(AppliedUndef):
             return spelled(part.rewrite(sympy.exp))
-        if isinstance(part, _BLOCKS) or (part.is_Pow and part.base == t and not part.exp.is_Integer):
+        if isinstance(part, _BLOCKS) or (
+            part.is_Pow and (part.base == t or part.exp.has(t)) and not part.exp.is_Integer
+        ):
             return letters.setdefault(part, sympy.Dummy())
         return part.func(*map(spelled, part.args)) if part.args else part
 
@@ -82,8 +101,9 @@ def _products(f):
     except sympy.PolynomialError:
         raise ValueError(f"cannot transform {f}: {_EXPECTED}") from None
     blocks = [t, *letters]
+    meaning = {letter: constant for constant, letter in constants.items()}
     return [
-        (coefficient, {block: n for block, n in zip(blocks, powers, strict=True) if n})
+        (coefficient.xreplace(meaning), {block: n for block, n in zip(blocks, powers, strict=True) if n})
         for powers, coefficient in polynomial.terms()
     ]
 
@@ -93,23 +113,17 @@ def _transform_product(blocks):
     signal = sympy.Mul(*(block**n for block, n in blocks.items()))
     if signal.has(sympy.DiracDelta):
         return _transform_impulse(signal)
-    if signal.has(AppliedUndef):
-        return _transform_unknown(signal)
-    if signal.has(sympy.Heaviside):
-        steps = [block for block in blocks if isinstance(block, sympy.Heaviside)]
-        start = sympy.Max(*map(_moment, steps))
-        # Let time begin with the last step: that is the same signal without steps, coming late.
-        rest = sympy.Mul(*(block**n for block, n in blocks.items() if block not in steps))
-        return sympy.exp(-start * s) * transform(rest.subs(t, t + start))
+    if signal.has(*_IMPLICIT):
+        return _transform_implicit(signal)
     constant, p, n = sympy.S.One, sympy.S.Zero, sympy.S.Zero
     for block, power in blocks.items():
         base, exponent = block.as_base_exp()
         if base == t and not exponent.has(t):
             n += power * exponent
-        elif isinstance(block, sympy.exp) and block.exp.is_polynomial(t) and sympy.degree(block.exp, t) == 1:
-            line = sympy.Poly(block.exp, t)
-            p += power * line.nth(1)
-            constant *= sympy.exp(power * line.nth(0)).rewrite(sympy.cos if line.nth(0).has(sympy.I) else sympy.exp)
+        elif not base.has(t) and exponent.is_polynomial(t) and sympy.degree(exponent, t) == 1:
+            line = sympy.Poly(exponent, t)
+            p += power * line.nth(1) * sympy.log(base)
+            constant *= (base ** (power * line.nth(0))).rewrite(sympy.cos if line.nth(0).has(sympy.I) else sympy.exp)
         else:
             raise ValueError(f"cannot transform {block}: {_EXPECTED}")
     # t**n * exp(p*t): the integral converges to the right of p, and only s - p matters there.
@@ -122,7 +136,10 @@ def _transform_impulse(signal):
     beside = signal / impulse
     if beside.has(sympy.DiracDelta) or len(impulse.args) > 1:
         raise ValueError(f"cannot transform {signal}: expected one impulse DiracDelta(t - tau), not differentiated")
-    return (beside * sympy.exp(-s * t)).subs(t, _moment(impulse))
+    moment = _moment(impulse)
+    if any(_moment(step) == moment for step in beside.atoms(sympy.Heaviside)):
+        raise ValueError(f"cannot transform {signal}: an impulse at the moment of a step has no definite strength")
+    return (beside * sympy.exp(-s * t)).subs(t, moment)
 
 
 def _moment(event):
@@ -133,8 +150,8 @@ def _moment(event):
     return moment
 
 
-def _transform_unknown(signal):
-    """The transforms of y(t), y(t - tau), their derivatives and their integrals from 0 to t."""
+def _transform_implicit(signal):
+    """The transforms of an unknown y(t) or y(t - tau), and of derivatives and integrals from 0 to t."""
     match signal:
         case sympy.Derivative() if set(signal.variables) == {t}:
             # By parts: the integral of y' e^(-st) is [y e^(-st)] from 0 to oo, plus s times the integral of y e^(-st).
@@ -142,12 +159,14 @@ def _transform_unknown(signal):
             return s * transform(y) - y.subs(t, 0)
         case sympy.Integral() if len(signal.limits) == 1 and signal.limits[0][1:] == (0, t):
             # The integral is zero at first and has the integrand as its derivative: the same rule, turned round.
-            return transform(signal.function.subs(signal.limits[0][0], t)) / s
+            variable = signal.limits[0][0]
+            if variable == t or t not in signal.function.free_symbols:
+                return transform(signal.function.subs(variable, t)) / s
         case AppliedUndef() if len(signal.args) == 1 and not (delay := t - signal.args[0]).has(t):
             if not delay.is_negative:
                 # With t - tau for t in the integral, exp(-tau*s) comes out; the signal is at rest before t = 0.
                 return sympy.exp(-delay * s) * _image(signal.func)(s)
-    raise ValueError(f"cannot transform {signal}: the transform of a product of unknown signals is not known")
+    raise ValueError(f"cannot transform {signal}: expected unknown signals, late or not, times constants only")
 
 
 def _image(function):
@@ -177,28 +196,45 @@ def by_delay(F):
     >>> by_delay((1 - sympy.exp(-2 * s)) / s)
     {0: 1/s, 2: -1/s}
     """
-    F = sympy.sympify(F)
-    # Each exponential becomes a letter, so that F is a rational function of s and these letters.
-    letters = {e: sympy.Dummy() for e in sorted(F.atoms(sympy.exp), key=str) if e.has(s)}
-    delays = [sympy.expand(-e.exp / s) for e in letters]
-    rational = F.xreplace(letters)
-    if not rational.is_rational_function(s, *letters.values()) or any(delay.has(s) for delay in delays):
-        raise ValueError(f"{F} is not a rational function of s and dead times exp(-delay*s)")
-    if not letters:
+    F = function_of(s, F)
+    rational, delays = without_delays(F)
+    if not delays:
         return {sympy.S.Zero: F} if F != 0 else {}
     numerator, denominator = sympy.together(rational).as_numer_denom()
-    if denominator.has(*letters.values()):
+    if denominator.has(*delays):
         numerator, denominator = sympy.cancel(numerator / denominator).as_numer_denom()
-    (lowest, divisor), *more = sympy.Poly(denominator, *letters.values()).terms()
+    (lowest, divisor), *more = sympy.Poly(denominator, *delays).terms()
     if more:
-        raise ValueError(f"{F} has a dead time in its denominator: its response is no finite sum of terms")
+        raise ValueError(f"{F} has a dead time in its denominator: expected a finite sum of parts, each delayed or not")
     parts = {}
-    for powers, part in sympy.Poly(numerator, *letters.values()).terms():
-        delay = sympy.Add(*((n - m) * delay for n, m, delay in zip(powers, lowest, delays, strict=True)))
+    for powers, part in sympy.Poly(numerator, *delays).terms():
+        delay = sympy.Add(*((n - m) * delay for n, m, delay in zip(powers, lowest, delays.values(), strict=True)))
         if delay.is_negative:
             raise ValueError(f"{F} contains exp({-delay * s}): a dead time cannot be negative")
         parts[delay] = parts.get(delay, 0) + part / divisor
     return {delay: part for delay, part in sorted(parts.items(), key=sympy.default_sort_key) if part != 0}
+
+
+def without_delays(F):
+    """Return F(s) with a letter for each exp(-delay*s), which makes it rational, and the dictionary {letter: delay}.
+
+    Raises ValueError where F is not a rational function of s and dead times.
+    """
+    letters, replaced = {}, {}
+    for exponential in sorted(F.atoms(sympy.exp), key=str):
+        if exponential.has(s):
+            exponent = sympy.expand(exponential.exp)
+            rate = exponent.coeff(s, 1)
+            # exp(delay*s) is one over exp(-delay*s): one letter serves for both
+            sign = 1 if rate.could_extract_minus_sign() else -1
+            letter = letters.setdefault(-sign * rate, sympy.Dummy())
+            replaced[exponential] = letter**sign * sympy.exp(sympy.expand(exponent - rate * s))
+    delays = {letter: delay for delay, letter in letters.items()}
+    rational = F.xreplace(replaced)
+    constants = (*letters, *replaced.values())
+    if not rational.is_rational_function(s, *delays) or any(constant.has(s) for constant in constants):
+        raise ValueError(f"{F} is not a rational function of s and dead times exp(-delay*s)")
+    return rational, delays
 
 
 def _factored(F):
@@ -222,7 +258,7 @@ def partial_fractions(F):
 
 
 def _fractions(rational):
-    return sympy.Add.make_args(sympy.apart(sympy.cancel(sympy.nsimplify(rational, rational=True)), s))
+    return sympy.Add.make_args(sympy.apart(sympy.cancel(rational), s))
 
 
 def inverse(F):
@@ -289,7 +325,7 @@ def _inverse_quadratic(numerator, base, n):
     a, b, c = base.all_coeffs()
     decay = b / (2 * a)
     square = sympy.factor(c / a - decay**2)
-    frequency = sympy.sqrt(square)
+    frequency = sympy.I * sympy.sqrt(-square) if square.is_negative else sympy.sqrt(square)
     # Seen from -decay, the poles lie at +p and -p.
     p, shifted = sympy.I * frequency, numerator.as_expr().subs(s, s - decay) / a**n
     if n == 1:
@@ -305,11 +341,11 @@ def _inverse_quadratic(numerator, base, n):
 
 def _inverse_numerically(numerator, base, n):
     """numerator/base**n for a base of third or higher degree, at its roots."""
-    found, f = base.nroots(n=15, maxsteps=200), sympy.S.Zero
+    found, f = base.nroots(n=30, maxsteps=200), sympy.S.Zero
     for p in found:
         others = sympy.Mul(base.LC(), *(s - q for q in found if q != p))
-        real, imaginary = sympy.N(_residue(numerator / others**n, p, n), 15).expand().as_real_imag()
-        decay, w = p.as_real_imag()
+        real, imaginary = sympy.N(sympy.expand(_residue(numerator / others**n, p, n)), 15).as_real_imag()
+        decay, w = sympy.N(p, 15).as_real_imag()
         if w == 0:
             f += real * sympy.exp(decay * t)
         elif w > 0:  # with its conjugate, twice the real part
@@ -326,11 +362,12 @@ def solve_ode(equations, initial=None):
     Arguments:
         equations: one equation, or a list of them, in unknown functions of `t`; inputs stand in it as known functions.
         initial: the initial values as in SymPy's dsolve, ``{y(0): 4, y(t).diff(t).subs(t, 0): 1}``. What is not
-            given stays in the answer as a letter.
+            given stays in the answer as it is.
     Returns:
         y(t) for one equation; a dictionary {y(t): expression} for a list.
     Raises:
-        ValueError: if the equations are not linear, or not as many as the unknown functions.
+        ValueError: if the equations are not linear, or not as many as the unknown functions, or if an initial value
+            is given that they do not ask for.
     Source: Haugen, Example 4.2.
 
     >>> y = sympy.Function("y")
@@ -339,31 +376,57 @@ def solve_ode(equations, initial=None):
     """
     several = isinstance(equations, (list, tuple))
     equations = list(equations) if several else [equations]
-    unknowns = sorted({f for e in equations for f in e.atoms(AppliedUndef) if f.args == (t,)}, key=str)
+    residuals = transformed(equations)
+    unknowns = sorted({f.func(t) for e in equations for f in e.atoms(AppliedUndef) if f.free_symbols}, key=str)
     if len(unknowns) != len(equations):
-        names = ", ".join(map(str, unknowns)) or "no unknown function of t"
-        raise ValueError(f"{len(equations)} equation(s) cannot determine {names}: give one equation for each unknown")
+        raise ValueError(
+            f"{len(equations)} equation(s) for {len(unknowns)} unknown function(s) of t, "
+            f"{', '.join(map(str, unknowns)) or 'none'}: expected one equation for each"
+        )
+    asked = {value for e in residuals for value in e.atoms(AppliedUndef, sympy.Subs) if not value.free_symbols}
+    if not isinstance(initial, (dict, type(None))):
+        raise ValueError(f"{initial} gives no initial values: expected a dictionary such as {{y(0): 4}}")
+    given = {exact(key): exact(value) for key, value in (initial or {}).items()}
+    for key in given:
+        if key not in asked:
+            raise ValueError(f"{key} is no initial value here: expected {', '.join(sorted(map(str, asked))) or 'none'}")
     solution = solve_transformed(equations, unknowns)
-    at_start = {sympy.sympify(key): value for key, value in (initial or {}).items()}
-    responses = {y: inverse(Y.subs(at_start)) for y, Y in zip(unknowns, solution, strict=True)}
+    responses = {y: inverse(Y.subs(given)) for y, Y in zip(unknowns, solution, strict=True)}
     return responses if several else responses[unknowns[0]]
+
+
+def transformed(equations):
+    """Return the transforms of several equations, each as left side minus right side.
+
+    Raises ValueError for what is no equation.
+
+    >>> y = sympy.Function("y")
+    >>> transformed([sympy.Eq(y(t).diff(t), 3)])
+    [s*Y(s) - y(0) - 3/s]
+    """
+    for equation in equations:
+        if not isinstance(equation, sympy.Equality):
+            raise ValueError(f"{equation} is no equation: expected Eq(left side, right side)")
+    return [transform(equation.lhs) - transform(equation.rhs) for equation in equations]
 
 
 def solve_transformed(equations, unknowns):
     """Return the transforms of the unknown functions of t, solved from the transformed equations.
+
+    Raises ValueError if the equations are not linear in the unknown functions, or do not determine them.
 
     >>> y, u = sympy.Function("y"), sympy.Function("u")
     >>> solve_transformed([sympy.Eq(y(t).diff(t) + y(t), u(t))], [y(t)])
     [(U(s) + y(0))/(s + 1)]
     """
     images = [transform(y) for y in unknowns]
-    residuals = [transform(e.lhs) - transform(e.rhs) for e in equations]
+    names = ", ".join(map(str, unknowns))
     try:
-        matrix, right = sympy.linear_eq_to_matrix(residuals, images)
+        matrix, right = sympy.linear_eq_to_matrix(transformed(equations), images)
     except sympy.solvers.solveset.NonlinearError:
-        raise ValueError(f"the equations are not linear in {', '.join(map(str, unknowns))}") from None
+        raise ValueError(f"the equations are not linear in {names}") from None
     if matrix.shape[0] != matrix.shape[1] or sympy.cancel(matrix.det()) == 0:
-        raise ValueError(f"the equations do not determine {', '.join(map(str, unknowns))}")
+        raise ValueError(f"the equations do not determine {names}")
     return [sympy.factor(Y) for Y in matrix.LUsolve(right)]
 
 
@@ -373,7 +436,7 @@ def initial_value(F):
     >>> initial_value(4 / (s + 2))
     4
     """
-    return sympy.limit(s * F, s, sympy.oo)
+    return sympy.limit(s * function_of(s, F), s, sympy.oo)
 
 
 def final_value(F):
@@ -391,18 +454,39 @@ def final_value(F):
     Traceback (most recent call last):
     ValueError: f(t) does not settle: s*F(s) has a pole at 2
     """
-    sF = sympy.expand(s * F)
+    sF = sympy.expand(s * function_of(s, F))
     for part in by_delay(sF).values():
-        for pole in roots(sympy.cancel(sympy.together(part)).as_numer_denom()[1]):
-            side = sympy.re(pole).is_negative
-            if side is None:
-                raise ValueError(f"cannot tell whether f(t) settles: the sign of the pole {pole} is not known")
-            if not side and pole != 0:
-                raise ValueError(f"f(t) does not settle: s*F(s) has a pole at {pole}")
+        denominator = sympy.cancel(sympy.together(part)).as_numer_denom()[1]
+        for factor, _ in sympy.factor_list(denominator, s)[1]:
+            if factor != s and not _is_stable(factor):
+                poles = (
+                    f" at {', '.join(map(str, roots(factor)))}"
+                    if sympy.degree(factor, s) <= 2
+                    else f", a root of {factor}"
+                )
+                raise ValueError(f"f(t) does not settle: s*F(s) has a pole{poles}")
     value = sympy.limit(sF, s, 0)
-    if not value.is_finite:  # at s = 0 itself, dead times may cancel the pole of their parts
+    if value.has(sympy.oo, -sympy.oo, sympy.zoo):  # at s = 0 itself, dead times may cancel the pole of their parts
         raise ValueError("f(t) does not settle: s*F(s) has a pole at 0")
     return value
+
+
+def _is_stable(polynomial):
+    """Whether every root of a polynomial in `s` lies left of the imaginary axis, by the determinants of Hurwitz.
+
+    Raises ValueError where that cannot be decided because a letter has no known sign.
+    """
+    if polynomial.has(sympy.I):
+        raise ValueError(f"cannot tell whether f(t) settles: expected real coefficients in {polynomial}")
+    coefficients = (sympy.Poly(polynomial, s) * sympy.LC(polynomial, s)).all_coeffs()
+    n = len(coefficients) - 1
+    hurwitz = sympy.Matrix(n, n, lambda row, column: dict(enumerate(coefficients)).get(2 * column - row + 1, 0))
+    minors = [sympy.factor(hurwitz[:k, :k].det()) for k in range(1, n + 1)]
+    if any(minor.is_positive is False for minor in minors):
+        return False
+    if all(minor.is_positive for minor in minors):
+        return True
+    raise ValueError(f"cannot tell whether f(t) settles: the signs of the roots of {polynomial} are not known")
 
 
 def roots(polynomial):
@@ -410,13 +494,15 @@ def roots(polynomial):
 
     Exact where linear and quadratic factors are enough; numbers to 15 digits where they are not.
 
-    Raises ValueError for letters in a factor of third or higher degree.
+    Raises ValueError for what is no polynomial, and for letters in a factor of third or higher degree.
 
     >>> roots((s + 1) ** 2 * (s**2 + 4))
     [-1, -1, -2*I, 2*I]
     """
-    found = []
-    for factor, n in sympy.factor_list(sympy.nsimplify(polynomial, rational=True), s)[1]:
+    polynomial, found = function_of(s, polynomial), []
+    if not polynomial.is_polynomial(s):
+        raise ValueError(f"{polynomial} has no roots here: expected a polynomial in s")
+    for factor, n in sympy.factor_list(polynomial, s)[1]:
         factor = sympy.Poly(factor, s)
         letters = factor.free_symbols_in_domain
         if factor.degree() <= 2:
@@ -434,18 +520,55 @@ def roots(polynomial):
 def evaluate(f, times):
     """Return the values of f(t) at the given times as a NumPy array; a step has its new value at the step itself.
 
-    Raises ValueError where f is no function of time alone: another letter is left, or an impulse, which has no value.
+    Raises ValueError where f is no function of time alone: another letter is left, or an impulse, which has no value;
+    and where values are complex.
 
     >>> evaluate(sympy.exp(-t), [0, 1]).round(3)
     array([1.   , 0.368])
     """
     import numpy
 
-    f, times = sympy.sympify(f), numpy.asarray(times, dtype=float)
+    f, times = function_of(t, f), numpy.asarray(times, dtype=float)
     letters = sorted(map(str, f.free_symbols - {t}))
     if letters:
         raise ValueError(f"cannot evaluate {f}: give a number for {', '.join(letters)}")
     if f.has(sympy.DiracDelta):
         raise ValueError(f"cannot evaluate {f}: an impulse has an area but no value")
-    function = sympy.lambdify(t, f, [{"Heaviside": lambda x, _=None: numpy.heaviside(x, 1.0)}, "numpy"])
-    return numpy.broadcast_to(numpy.asarray(function(times), dtype=float), times.shape).copy()
+    if f.has(sympy.oo, sympy.zoo):
+        raise ValueError(f"cannot evaluate {f}: it is infinite")
+    values = numpy.full(times.shape, numpy.nan)
+    for start, end, between in _between_steps(f):
+        here = (start <= times) & (times < end)
+        if here.any():
+            values[here] = _values(between, times[here])
+    return values
+
+
+def _between_steps(f):
+    """Split f(t) at its steps: (start, end, f without steps) for each stretch of time between them.
+
+    What comes late is left out before its time, when a factor such as exp(1000 - t) would be beyond all numbers.
+    """
+    rates = {step: sympy.expand(step.args[0]).diff(t) for step in f.atoms(sympy.Heaviside)}
+    moments = {step: -step.args[0].subs(t, 0) / rate for step, rate in rates.items() if rate.is_nonzero}
+    for start, end in itertools.pairwise([-sympy.oo, *sorted(set(moments.values())), sympy.oo]):
+        # a step has its new value from its moment on; one that falls, as Heaviside(1 - t), is on until then
+        on = {step: (moment <= start) == (rates[step] > 0) for step, moment in moments.items()}
+        yield float(start), float(end), f.xreplace({step: sympy.Integer(bool(value)) for step, value in on.items()})
+
+
+def _values(f, times):
+    """The real values of f(t), which has no steps, at an array of times."""
+    import numpy
+
+    # NumPy divides floats: a fraction of integers that are too long for one becomes one here
+    long = {q: sympy.Float(q, 17) for q in f.atoms(sympy.Rational) if max(abs(q.p), q.q) > 2**53}
+    try:
+        with numpy.errstate(invalid="ignore"):
+            values = numpy.asarray(sympy.lambdify(t, f.xreplace(long), "numpy")(times))
+        values = values.astype(complex if numpy.iscomplexobj(values) else float)
+    except (NameError, NotImplementedError, OverflowError, TypeError):
+        raise ValueError(f"cannot evaluate {f}: NumPy has no such function or number") from None
+    if numpy.isnan(values).any() or numpy.any(abs(values.imag) > 1e-9 * (1 + abs(values))):
+        raise ValueError(f"cannot evaluate {f}: its values are not real numbers")
+    return values.real

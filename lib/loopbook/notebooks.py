@@ -17,6 +17,7 @@ from time import perf_counter
 from typing import NamedTuple
 
 import nbformat
+from jupyter_client.kernelspec import NoSuchKernel
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
 from nbformat import NotebookNode
@@ -96,10 +97,14 @@ def execute(path: Path) -> bool:
     try:
         notebook = normalised(run(normalised(read(path)), path.resolve().parent))
         if problems := unfit(notebook):
-            raise NotebookError(problems[0])
+            more = f" (and {len(problems) - 1} more)" if problems[1:] else ""
+            raise NotebookError(problems[0] + more)
     except NotebookError as error:
         raise NotebookError(f"{path}: {error}") from error
-    return store(as_text(notebook), path)
+    try:
+        return store(as_text(notebook), path)
+    except OSError as error:
+        raise NotebookError(f"{path}: cannot be stored: {error.strerror}") from error
 
 
 def read(path: Path) -> NotebookNode:
@@ -130,6 +135,8 @@ def run(notebook: NotebookNode, folder: Path) -> NotebookNode:
         raise NotebookError(f"cell [{client.code_cells_executed}]: {problem}") from error
     except CellTimeoutError as error:
         raise NotebookError(f"cell [{client.code_cells_executed}]: not done after {SECONDS_PER_CELL} s") from error
+    except NoSuchKernel as error:
+        raise NotebookError("no kernel named python3 here: install ipykernel") from error
     except DeadKernelError as error:
         raise NotebookError(f"cell [{client.code_cells_executed}]: the kernel died") from error
     for output in _slider_outputs(notebook):

@@ -7,8 +7,18 @@ written forms), the rules for combining blocks, and the responses to known input
 import sympy
 from sympy.core.function import AppliedUndef
 
-from loopbook.expressions import exact, s, t
-from loopbook.laplace import by_delay, evaluate, final_value, inverse, roots, solve_transformed, transform
+from loopbook.expressions import exact, function_of, s, t
+from loopbook.laplace import (
+    by_delay,
+    evaluate,
+    final_value,
+    inverse,
+    roots,
+    solve_transformed,
+    transform,
+    transformed,
+    without_delays,
+)
 
 __all__ = [
     "characteristic_polynomial", "dead_time", "double_integrator", "feedback", "first_order", "impulse_response",
@@ -85,7 +95,7 @@ def double_integrator(K, delay=0):
 
 def _at_least_zero(name, value):
     value = exact(value)
-    if value.is_negative or value.is_real is False or value is sympy.nan:
+    if value.is_negative or value.is_real is False:
         raise ValueError(f"{name} is {value}: expected a time that is not negative")
     return value
 
@@ -94,12 +104,12 @@ def transfer_functions(equations, output, inputs):
     """Derive the transfer functions from the inputs to an output out of linear differential equations.
 
     The equations are transformed and solved for the output. Each input's transfer function is what it is multiplied
-    with there; the initial values contribute terms of their own, which are left out.
+    with there; initial values and constants contribute terms of their own, which are left out.
 
     Arguments:
         equations: one equation or a list of them, in functions of `t`.
         output: the output signal, as ``y(t)``.
-        inputs: the input signals, as ``[u_1(t), u_2(t)]``. Every other function of t is an unknown.
+        inputs: the input signals, as ``[u_1(t), u_2(t)]``, or the only one. Every other function of t is an unknown.
     Returns:
         A tuple of transfer functions, expressions in `s`, one for each input.
     Raises:
@@ -110,16 +120,19 @@ def transfer_functions(equations, output, inputs):
     >>> transfer_functions(sympy.Eq(2 * y(t).diff(t) + y(t), 3 * u(t) - v(t)), y(t), [u(t), v(t)])
     (3/(2*s + 1), -1/(2*s + 1))
     """
-    equations = list(equations) if isinstance(equations, (list, tuple)) else [equations]
+    equations, inputs = (list(x) if isinstance(x, (list, tuple)) else [x] for x in (equations, inputs))
+    transformed(equations)
     # y(0) is a number, but u(theta) under an integral is the signal u
     signals = {f.func(t) for equation in equations for f in equation.atoms(AppliedUndef) if f.free_symbols}
     for signal in (output, *inputs):
         if signal not in signals:
             raise ValueError(f"{signal} does not occur in the equations: expected one of {_listed(signals)}")
     unknowns = sorted(signals - set(inputs), key=str)
+    if output not in unknowns:
+        raise ValueError(f"{output} is both an output and an input: expected it to be one of the two")
     if len(unknowns) != len(equations):
         raise ValueError(
-            f"{len(equations)} equation(s) cannot determine {_listed(unknowns)}: give one equation for each signal "
+            f"{len(equations)} equation(s) for {_listed(unknowns)}: expected one equation for each signal "
             f"that is not an input"
         )
     solved = sympy.expand(solve_transformed(equations, unknowns)[unknowns.index(output)])
@@ -139,13 +152,19 @@ def simplified(H):
     >>> simplified((s + 1) / (s**2 + 3 * s + 2))
     1/(s + 2)
     """
-    H = exact(H)
-    if not H.has(sympy.exp):
+    H = function_of(s, H)
+    if H.has(sympy.oo, sympy.zoo):
+        raise ValueError(f"{H} is infinite: expected a transfer function")
+    try:
+        rational, delays = without_delays(H)
+    except ValueError:  # with a block that is not known, as G(s)
         return sympy.factor(sympy.cancel(H))
     try:
-        return sympy.Add(*(simplified(part) * dead_time(delay) for delay, part in by_delay(H).items()))
-    except ValueError:
-        return sympy.factor(H)
+        parts = by_delay(H)
+    except ValueError:  # with a dead time in a denominator, as in a loop around one
+        dead_times = {letter: sympy.exp(-delay * s) for letter, delay in delays.items()}
+        return sympy.factor(sympy.cancel(rational)).xreplace(dead_times)
+    return sympy.Add(*(sympy.factor(sympy.cancel(part)) * sympy.exp(-delay * s) for delay, part in parts.items()))
 
 
 def series(*blocks):
@@ -154,7 +173,7 @@ def series(*blocks):
     >>> series(2 / (s + 1), 3 / s)
     6/(s*(s + 1))
     """
-    return simplified(sympy.Mul(*blocks))
+    return simplified(sympy.Mul(*map(exact, blocks)))
 
 
 def parallel(*blocks):
@@ -163,7 +182,7 @@ def parallel(*blocks):
     >>> parallel(1, 1 / s)
     (s + 1)/s
     """
-    return simplified(sympy.Add(*blocks))
+    return simplified(sympy.Add(*map(exact, blocks)))
 
 
 def feedback(forward, back=1, sign=-1):
@@ -180,7 +199,8 @@ def feedback(forward, back=1, sign=-1):
     """
     if sign not in (-1, 1):
         raise ValueError(f"sign is {sign}: expected -1 for negative feedback or 1 for positive feedback")
-    difference = simplified(1 - sign * sympy.sympify(forward) * back)
+    forward, back = simplified(forward), simplified(back)
+    difference = simplified(1 - sign * forward * back)
     if difference == 0:
         raise ValueError(f"the loop of {forward} and {back} has no solution: it returns exactly what it is given")
     return simplified(forward / difference)
@@ -191,7 +211,7 @@ def feedback(forward, back=1, sign=-1):
 
 def _fraction(H):
     """Numerator and denominator of H apart from its dead time, common factors cancelled."""
-    parts = by_delay(exact(H))
+    parts = by_delay(H)
     if len(parts) > 1:
         raise ValueError(f"{H} adds terms of different dead times: its poles and zeros are not known")
     return sympy.cancel(next(iter(parts.values()), sympy.S.Zero)).as_numer_denom()
@@ -245,7 +265,7 @@ def static_gain(H):
     >>> static_gain(3 / (s + sympy.Rational(1, 2)))
     6
     """
-    return sympy.limit(exact(H), s, 0)
+    return sympy.limit(function_of(s, H), s, 0)
 
 
 def initial_gain(H):
@@ -256,7 +276,7 @@ def initial_gain(H):
     >>> initial_gain((3 * s + 1) / (s + 2))
     3
     """
-    return sympy.limit(exact(H), s, sympy.oo)
+    return sympy.limit(function_of(s, H), s, sympy.oo)
 
 
 def zero_pole_gain(H):
@@ -270,39 +290,48 @@ def zero_pole_gain(H):
 
 
 def zero_pole_form(H):
-    """Return H as K*(s - z1)*(s - z2).../((s - p1)*(s - p2)...); complex pairs stay together. (Haugen, 5.12)
+    """Return H as K*(s - z1)*(s - z2).../((s - p1)*(s - p2)...). (Haugen, equation 5.12)
+
+    Complex pairs of roots stay together, and so do two roots of which letters leave open whether they are real.
 
     >>> zero_pole_form((4 * s - 4) / (s**2 + 5 * s + 6))
     4*(s - 1)/((s + 2)*(s + 3))
     """
-    return _rebuilt(H, zero_pole_gain(H), scale=lambda factor: sympy.LC(factor, s))
+    return _rebuilt(H, zero_pole_gain(H), scale=lambda factor: 1)
 
 
 def time_constant_form(H):
     """Return H as K*(T1*s + 1).../((T2*s + 1)...), with factors `s` for poles and zeros at the origin.
 
+    Factors are quadratic for complex pairs of roots, and where letters leave open whether the roots are real.
+
     >>> time_constant_form(3 / (4 * s + 2))
     3/(2*(2*s + 1))
     """
-    numerator, denominator = _fraction(H)
-    lowest = [next(c for c in reversed(sympy.Poly(x, s).all_coeffs()) if c != 0) for x in (numerator, denominator)]
+    lowest = [next(c for c in reversed(sympy.Poly(x, s).all_coeffs()) if c != 0 or x == 0) for x in _fraction(H)]
     return _rebuilt(H, lowest[0] / lowest[1], scale=lambda factor: 1 if factor == s else factor.subs(s, 0))
 
 
 def _rebuilt(H, gain, scale):
     """The product of gain, the scaled factors of numerator and denominator, and the dead time of H."""
     above, below = ([sympy.expand(f / scale(f)) for f in _real_factors(polynomial)] for polynomial in _fraction(H))
-    (delay,) = by_delay(exact(H))
-    return sympy.Mul(gain, *above, *(1 / factor for factor in below), dead_time(delay))
+    return sympy.Mul(gain, *above, *(1 / factor for factor in below), *(dead_time(delay) for delay in by_delay(H)))
 
 
 def _real_factors(polynomial):
-    """Factors of a polynomial in `s`: linear for each root, quadratic for each complex pair."""
-    found = roots(polynomial)
-    # a root with letters counts as real, as books write it
-    return [s - p for p in found if not sympy.im(p).is_nonzero] + [
-        sympy.expand((s - p) * (s - sympy.conjugate(p))) for p in found if sympy.im(p).is_positive
-    ]
+    """The factors of a polynomial in `s` with highest coefficient 1: linear for real roots, quadratic for pairs."""
+    factors = []
+    for factor, n in sympy.factor_list(polynomial, s)[1]:
+        factor = sympy.Poly(factor, s).monic()
+        if factor.has(sympy.I):
+            raise ValueError(f"{polynomial} has no real factors: expected real coefficients")
+        found = [] if factor.degree() == 1 else roots(factor.as_expr())
+        if (factor.degree() <= 2 and not all(p.is_real for p in found)) or not found:
+            factors += n * [factor.as_expr()]
+        else:
+            factors += n * [s - p for p in found if p.is_real]
+            factors += n * [sympy.expand((s - p) * (s - sympy.conjugate(p))) for p in found if sympy.im(p).is_positive]
+    return factors
 
 
 # ------------------------------------------------------------------------------------------------ responses
@@ -317,7 +346,7 @@ def response(H, u):
     >>> response(1 / (s + 1), t)
     t - 1 + exp(-t)
     """
-    return inverse(exact(H) * transform(exact(u)))
+    return inverse(function_of(s, H) * transform(u))
 
 
 def step_response(H, U=1):
@@ -326,7 +355,7 @@ def step_response(H, U=1):
     >>> step_response(3 / (s + sympy.Rational(1, 2)), U=2)
     12 - 12*exp(-t/2)
     """
-    return inverse(exact(H) * exact(U) / s)
+    return inverse(function_of(s, H) * exact(U) / s)
 
 
 def impulse_response(H, area=1):
@@ -335,7 +364,7 @@ def impulse_response(H, area=1):
     >>> impulse_response(first_order(2, 4))
     exp(-t/4)/2
     """
-    return inverse(exact(H) * exact(area))
+    return inverse(function_of(s, H) * exact(area))
 
 
 _ONE_LAG = 1 - sympy.exp(-1)
@@ -362,17 +391,28 @@ def response_time(H, share=_ONE_LAG):
     import numpy
     from scipy.optimize import brentq
 
-    final = final_value(exact(H) / s)
-    if final == 0 or final.free_symbols:
-        raise ValueError(f"the step response settles at {final}: expected a number other than zero")
-    if not 0 < share < 1:
+    H, share = function_of(s, H), exact(share)
+    if not (share.is_number and 0 < share < 1):
         raise ValueError(f"share is {share}: expected a number between 0 and 1")
+    if letters := sorted(map(str, H.free_symbols - {s})):
+        raise ValueError(f"the response-time of {H} is not known: give a number for {', '.join(letters)}")
+    final = final_value(H / s)
+    if final == 0:
+        raise ValueError(f"the step response settles at {final}: expected a number other than zero")
     missing = step_response(H) / final - share
-    until = 1.0
-    while (late := evaluate(missing, numpy.linspace(0, until, 2001))).max() < 0:
-        until *= 2
-    reached = int(numpy.argmax(late >= 0))
-    if reached == 0:
-        return 0.0
-    before, after = numpy.linspace(0, until, 2001)[[reached - 1, reached]]
-    return brentq(lambda time: float(evaluate(missing, time)), before, after, xtol=1e-13 * until, rtol=1e-14)
+
+    def still_missing(time):
+        return float(evaluate(missing, time))
+
+    # Search ever longer stretches of time, in steps that are short beside the fastest mode.
+    parts = by_delay(H)
+    rates = [float(abs(p)) for part in parts.values() for p in poles(part)]
+    start, end = 0.0, 1 / max(rates) if rates else float(max(parts)) or 1.0
+    while still_missing(start) < 0:
+        times = numpy.linspace(start, end, int(min(max(2000, 10 * max(rates, default=0) * (end - start)), 1e6)) + 1)
+        reached = evaluate(missing, times) >= 0
+        if reached.any():
+            before, after = times[reached.argmax() - 1], times[reached.argmax()]
+            return brentq(still_missing, before, after, xtol=1e-15 * after, rtol=1e-14)
+        start, end = end, 2 * end
+    return start

@@ -3,17 +3,17 @@
 Each source is a TOML file beside this one, and is imported by its name:
 
 >>> from loopbook.ledger import haugen
->>> example = haugen["Example 5.2"]
+>>> example = haugen["Equation 6.14"]
 >>> example.given("H")
-3/(s + 1/2)
->>> example.check(model_of="Example 5.1", H_s=6, y_s=12)  # doctest: +ELLIPSIS
-haugen, Example 5.2 · Static transfer function and static response
-equation  result    book         computed     verdict
-          model_of  Example ???  Example 5.1  corrected: the cross-reference was lost in the book; the transfer ...
-5.26      H_s       6            6            reproduced
-5.27      y_s       12           12           reproduced
+3/(4*s + 2)
+>>> example.check(K=1.5, T=2)
+haugen, Equation 6.14 · Gain and time-constant of a numerical example
+equation  result  book  computed  verdict
+6.14      K       1.5   3/2       reproduced
+6.14      T       2     2         reproduced
 """
 
+import functools
 import importlib.resources
 
 from loopbook.ledger.compare import Disagreement, LedgerError
@@ -28,17 +28,20 @@ def sources():
     >>> "haugen" in sources()
     True
     """
-    names = sorted(file.name for file in importlib.resources.files(__name__).iterdir() if file.name.endswith(".toml"))
-    return {name.removesuffix(".toml"): _load(name.removesuffix(".toml")) for name in names}
+    return {name: _load(name) for name in _names()}
 
 
+def _names():
+    files = importlib.resources.files(__name__).iterdir()
+    return sorted(file.name.removesuffix(".toml") for file in files if file.name.endswith(".toml"))
+
+
+@functools.cache
 def _load(name):
-    if name not in globals():
-        file = importlib.resources.files(__name__).joinpath(f"{name}.toml")
-        if not file.is_file():
-            raise AttributeError(f"the ledger has no source {name!r}: expected one of {', '.join(sources())}")
-        globals()[name] = Source.read(name, file.read_text(encoding="utf-8"))
-    return globals()[name]
+    file = importlib.resources.files(__name__).joinpath(f"{name}.toml")
+    if not file.is_file():
+        raise AttributeError(f"the ledger has no source {name!r}: expected one of {', '.join(_names())}")
+    return Source.read(name, file.read_bytes())
 
 
 def __getattr__(name):

@@ -3,21 +3,25 @@
 import decimal
 import difflib
 import fractions
+import keyword
 import math
 import numbers
 import re
 
 import sympy
 
-from loopbook.expressions import agreement, parse, symbols_by_name
+from loopbook.expressions import agreement, exact, parse
 
-NUMBER = re.compile(r"[+-]?(\d+(\.\d+)?|\.\d+)([eE][+-]?\d+)?")
+NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]+)?|\.[0-9]+)([eE][+-]?[0-9]{1,3})?")
 INFINITE = {"oo": math.inf, "-oo": -math.inf}
 KINDS = ("number", "formula", "claim")
 
 
 class LedgerError(Exception):
     """A wrong use of the ledger, or a malformed entry: one sentence that names the entry and what was expected."""
+
+    def __init__(self, message):
+        super().__init__(in_one_line(message))
 
     def _render_traceback_(self):
         """Notebooks show the sentence alone: the place in the library's code helps no reader."""
@@ -26,6 +30,11 @@ class LedgerError(Exception):
 
 class Disagreement(LedgerError):  # noqa: N818 - it reads as what it is: "Disagreement: Kp = 1.7 ..."
     """A computed value that the ledger does not confirm."""
+
+
+def in_one_line(text):
+    """The same text in one line."""
+    return " ".join(text.split())
 
 
 def suggestion(word, known):
@@ -56,16 +65,15 @@ def number(value):
         raise TypeError(f"a truth value, {value}")
     if isinstance(value, sympy.Basic):
         return _sympy_number(value)
-    if isinstance(value, decimal.Decimal):
-        value = fractions.Fraction(value) if value.is_finite() else float(value)
-    if isinstance(value, numbers.Rational):
-        return fractions.Fraction(int(value.numerator), int(value.denominator))
-    if isinstance(value, numbers.Real):
-        value = float(value)
-        if math.isnan(value):
+    if isinstance(value, numbers.Real | decimal.Decimal) and type(value).__name__ != "timedelta64":
+        if value != value:
             raise TypeError("not a number (NaN)")
-        return value if math.isinf(value) else fractions.Fraction(value)
-    if isinstance(value, numbers.Complex):
+        if value in (math.inf, -math.inf):
+            return float(value)
+        # unlike a detour over float, this is exact for every precision that NumPy and decimal know
+        ratio = value.as_integer_ratio() if hasattr(value, "as_integer_ratio") else float(value).as_integer_ratio()
+        return fractions.Fraction(*map(int, ratio))
+    if isinstance(value, numbers.Complex) and not isinstance(value, numbers.Real):
         raise TypeError(f"a complex number, {value}")
     raise TypeError(f"{_shortened(value)} of type {type(value).__name__}")
 
@@ -73,20 +81,34 @@ def number(value):
 def _sympy_number(value):
     if value in (sympy.oo, -sympy.oo):
         return float(value)
-    if not isinstance(value, sympy.Expr) or value.has(sympy.nan, sympy.zoo, sympy.oo, -sympy.oo):
+    if not isinstance(value, sympy.Expr) or value.has(sympy.nan, sympy.zoo):
         raise TypeError(f"not a number, {_shortened(value)}")
     if value.free_symbols or not value.is_number:
         raise TypeError(f"the expression {_shortened(value)}")
     if not value.is_Rational:
-        digits = sympy.N(value, 60)
-        if not digits.is_Float:
+        # 60 certain digits, also where large numbers cancel
+        real, imaginary = _parts(value.evalf(60, maxn=1000))
+        if not (real.is_Float or real.is_Rational) or not real.is_finite:
+            raise TypeError(f"the expression {_shortened(value)}")
+        if imaginary != 0:
             raise TypeError(f"a complex number, {_shortened(value)}")
-        value = sympy.Rational(digits)
+        # beyond every print, and as a fraction perhaps beyond the memory
+        if abs(real) > sympy.Float("1e2000"):
+            raise TypeError(f"a number beyond 1e2000, {_shortened(value)}")
+        value = sympy.Rational(real if abs(real) > sympy.Float("1e-2000") else 0)
     return fractions.Fraction(int(value.p), int(value.q))
 
 
+def _parts(digits):
+    """The real and the imaginary part of an evaluated number, 0 where SymPy found no certain digit.
+
+    That is how it marks a zero, as in the imaginary parts of the three real roots of a cubic.
+    """
+    return [sympy.S.Zero if part.is_Float and part._prec == 1 else part for part in digits.as_real_imag()]
+
+
 def _shortened(value, length=60):
-    text = " ".join(repr(value).split())
+    text = in_one_line(repr(value))
     return text if len(text) <= length else text[: length - 3] + "..."
 
 
@@ -103,51 +125,91 @@ def number_agrees(value, printed):
 
 
 def formula(value):
-    """Return a computed formula as a SymPy expression or equation.
+    """Return a computed formula as a SymPy expression or equation, in the letters of `loopbook.expressions.parse`.
+
+    A letter is known by its name alone. What a computation assumed about it is dropped, except that it is an integer:
+    otherwise a letter declared as zero or even could make a false formula true.
 
     Raises TypeError, saying what the value is instead, for anything else, and for one with rounded decimals, which
     no proof can start from.
     """
     if isinstance(value, numbers.Number) and not isinstance(value, bool):
-        value = sympy.sympify(value)
-    if not isinstance(value, (sympy.Expr, sympy.Equality)):
+        # a decimal alone, as 1.5, is meant as it is written
+        finite = isinstance(value, int | float) and math.isfinite(value)
+        value = exact(value) if finite else sympy.sympify(value)
+    if not isinstance(value, sympy.Expr | sympy.Equality) or getattr(value, "is_Matrix", False):
         raise TypeError(f"{_shortened(value)} of type {type(value).__name__}")
-    if value.has(sympy.nan, sympy.zoo):
-        raise TypeError(f"not a number, {_shortened(value)}")
     if value.has(sympy.Float):
         raise TypeError(f"{_shortened(value)}, which holds rounded decimals: give exact numbers")
+    letters = {}
+    for symbol in sorted(value.free_symbols, key=str):
+        if symbol.name in {known.name for known in letters}:
+            raise TypeError(f"two different symbols named {symbol.name}: declare {symbol.name} once")
+        letters[symbol] = _letter(symbol)
+    value = value.xreplace(letters)
+    if not isinstance(value, sympy.Expr | sympy.Equality) or value.has(sympy.nan, sympy.zoo, sympy.AccumBounds):
+        raise TypeError(f"not a formula, {_shortened(value)}")
     return value
 
 
+def _letter(symbol):
+    """The symbol that `parse` would read for the same name, but an integer where it was one."""
+    if symbol.is_integer:
+        return sympy.Symbol(symbol.name, positive=True, integer=True)
+    letter = parse(symbol.name) if symbol.name.isidentifier() and not keyword.iskeyword(symbol.name) else symbol
+    return letter if letter.is_Symbol else symbol
+
+
 def parse_formula(text):
-    """Read a formula, or an equation ``left = right``, as `loopbook.expressions.parse` does."""
+    """Read a formula, or an equation ``left = right``, as `loopbook.expressions.parse` does.
+
+    Raises ValueError where the text is neither, and for an equation that says nothing, as ``x = x``.
+    """
     left, equals, right = text.partition("=")
-    return sympy.Eq(parse(left), parse(right), evaluate=False) if equals else parse(left)
+    if not equals:
+        return parse(text)
+    left, right = parse(left), parse(right)
+    if sympy.expand(left - right) == 0:
+        raise ValueError(f"the equation {text!r} says nothing: both sides are the same")
+    return sympy.Eq(left, right, evaluate=False)
 
 
 def formula_agrees(value, printed):
     """Say how a formula agrees with the printed one: ``"proved"``, ``"probed"``, or ``""`` where it does not.
 
-    A letter is known by its name. An equation may have its terms on either side.
+    A letter is known by its name. An equation may have its terms on either side, but it may not be multiplied:
+    many a false equation is true times zero.
 
     >>> formula_agrees(sympy.sympify("2*K/(2*T*s + 2)"), "K/(T*s + 1)")
     'proved'
     """
-    value = formula(value)
-    printed = symbols_by_name(parse_formula(printed), like=value)
+    value, printed = formula(value), parse_formula(printed)
+    whole = {symbol.name: symbol for symbol in value.free_symbols if symbol.is_integer}
+    printed = printed.xreplace({letter: whole.get(letter.name, letter) for letter in printed.free_symbols})
     if isinstance(value, sympy.Equality) != isinstance(printed, sympy.Equality):
         return ""
     if isinstance(value, sympy.Equality):
         value, printed = (equation.lhs - equation.rhs for equation in (value, printed))
-    how = agreement(value, printed)
+        # with the sides exchanged, it is still the same equation
+        how = agreement(value, printed)
+        how = agreement(-value, printed) if how == "different" else how
+    elif value.is_infinite or printed.is_infinite:
+        how = "proved" if value == printed else "different"
+    else:
+        how = agreement(value, printed)
     return "" if how == "different" else how
 
 
 def claim(value):
-    """Return a claim, a word or a few. Raises TypeError for anything else."""
+    """Return a claim, a word or a few, in one line. Raises TypeError for anything else."""
     if not isinstance(value, str):
         raise TypeError(f"{_shortened(value)} of type {type(value).__name__}")
-    return value
+    # the plain text also of an enumeration, or of another kind of text
+    return in_one_line(str.__str__(value))
+
+
+#: How a computed value of each kind is read.
+READ = {"number": number, "formula": formula, "claim": claim}
 
 
 def agrees(kind, value, printed):
@@ -161,7 +223,7 @@ def agrees(kind, value, printed):
         case "formula":
             return formula_agrees(value, printed)
         case "claim":
-            return "word" if claim(value).casefold() == printed.casefold() else ""
+            return "word" if claim(value).casefold() == claim(printed).casefold() else ""
 
 
 def spelled(kind, value, *printed):
@@ -170,14 +232,19 @@ def spelled(kind, value, *printed):
     >>> spelled("number", 1 - math.exp(-1), "0.63")
     '0.632121'
     """
-    if kind != "number":
-        return str(formula(value) if kind == "formula" else claim(value))
+    if kind == "claim":
+        return claim(value)
+    if kind == "formula":
+        value = formula(value)
+        return f"{value.lhs} = {value.rhs}" if isinstance(value, sympy.Equality) else str(value)
     value = number(value)
     if isinstance(value, float):
         return "oo" if value > 0 else "-oo"
-    if not any(NUMBER.fullmatch(text) for text in printed):
-        return str(float(value))
-    places = 4 - min(decimal.Decimal(text).as_tuple().exponent for text in printed if NUMBER.fullmatch(text))
+    finite = [text for text in printed if NUMBER.fullmatch(text)]
+    if not finite or abs(value) > 10**6 * max(abs(fractions.Fraction(text)) + 1 for text in finite):
+        with decimal.localcontext(prec=7):
+            return f"{(decimal.Decimal(value.numerator) / value.denominator).normalize():g}"
+    places = 4 - min(decimal.Decimal(text).as_tuple().exponent for text in finite)
     sign, digits = ("-" if value < 0 else ""), f"{round(abs(value) * 10**places):0{max(places, 0) + 1}d}"
     whole, decimals = (digits[:-places], digits[-places:]) if places > 0 else (digits + "0" * -places, "")
     text = f"{whole}.{decimals}".rstrip("0").rstrip(".") if decimals else whole

@@ -5,8 +5,9 @@ from loopbook.ledger.source import STATUSES
 INTRODUCTION = """\
 # Errata
 
-What the books print and a computation contradicts, with the reason. This page is written by `python -m loopbook ledger`
-from the ledger itself; a test proves each line: the computed value agrees with the correction and not with the print.
+What the books print and a computation contradicts, or a reference that is lost, with the reason. `make execute` writes
+this page from the ledger itself, and a test proves each line: what is computed agrees with the correction and not with
+the print.
 """
 
 
@@ -23,14 +24,12 @@ def totals(sources):
     }
 
 
-def errata(sources):
+def page(sources):
     """Return the text of ERRATA.md: what is corrected, and what could not be reproduced, source by source."""
     lines = [INTRODUCTION]
     for source in sources.values():
-        found = [
-            _line(entry, row) for entry in source for row in entry.results if row.status in ("corrected", "unreproduced")
-        ]
-        if found:
+        rows = [(entry, row) for entry in source for row in entry.results]
+        if found := [_line(*pair) for pair in rows if pair[1].status in ("corrected", "unreproduced")]:
             lines += [f"## {source.citation}\n", *found, ""]
     return "\n".join(lines)
 

@@ -5,10 +5,13 @@ from dataclasses import dataclass
 
 import sympy
 
-from loopbook.ledger.compare import parse_formula
+from loopbook.ledger.compare import NUMBER, parse_formula
 
 #: The MIME type under which a stored notebook carries the verdicts as data.
 MIME_TYPE = "application/vnd.loopbook.check+json"
+
+_GREEK = {"alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi",
+          "pi", "rho", "sigma", "tau", "phi", "chi", "psi", "omega"}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -21,18 +24,19 @@ class Verdict:
     how: str
 
     @property
-    def words(self):
-        """The verdict in a few words."""
-        row = self.result
+    def word(self):
+        """The verdict in a word or two."""
         if not self.holds:
             return "does not hold"
-        return {
-            "reproduced": "reproduced",
-            "corrected": f"corrected: {row.because}",
-            "reconstructed": f"reconstructed within {row.within}, assuming {row.assuming}",
-            "unreproduced": f"not reproduced: {row.because}",
-            "measured": f"measured: {row.because}",
-        }[row.status] + (" (at random points)" if self.how == "probed" else "")
+        return self.result.status + (" (at random points)" if self.how == "probed" else "")
+
+    @property
+    def note(self):
+        """What the reader must know besides: the reason, or the assumption. Empty where there is none."""
+        row = self.result
+        if row.status == "reconstructed":
+            return f"{row.name} is reconstructed to within {row.within}, assuming {row.assuming}"
+        return f"{row.name} is {row.status}: {row.because}" if row.because else ""
 
     @property
     def complaint(self):
@@ -72,6 +76,11 @@ class Report:
         return tuple(verdict for verdict in self.verdicts if not verdict.holds)
 
     @property
+    def notes(self):
+        """The notes on the verdicts, each once."""
+        return list(dict.fromkeys(verdict.note for verdict in self.verdicts if verdict.note))
+
+    @property
     def data(self):
         """The verdicts as JSON data."""
         return {"source": self.entry.source, "entry": self.entry.name, "verdicts": [v.data for v in self.verdicts]}
@@ -80,20 +89,25 @@ class Report:
         rows = [("equation", "result", "book", "computed", "verdict")]
         for verdict in self.verdicts:
             row = verdict.result
-            rows.append((row.equation, row.name, f"{row.printed} {row.unit}".strip(), verdict.computed, verdict.words))
-        return "\n".join([_heading(self.entry), *_aligned(rows)])
+            rows.append((row.equation, row.name, f"{row.printed} {row.unit}".strip(), verdict.computed, verdict.word))
+        return "\n".join([_heading(self.entry), *_aligned(rows), *self.notes])
 
     def _repr_html_(self):
         rows = []
         for verdict in self.verdicts:
             row = verdict.result
             mark, colour = ("✓", "#00664d") if verdict.holds else ("✗", "#b33c00")
-            words = f'<span style="color: {colour}">{mark} {_escape(verdict.words)}</span>'
-            equation = _escape(f"({row.equation})") if row.equation else ""
-            printed = _typeset(row.kind, row.printed, row.unit)
-            rows.append((equation, _name(row.name), printed, _typeset(row.kind, verdict.computed), words))
+            rows.append(
+                (
+                    _escape(f"({row.equation})") if row.equation else "",
+                    _name(row.name),
+                    _typeset(row.kind, row.printed, row.unit),
+                    _typeset(row.kind, verdict.computed),
+                    f'<span style="color: {colour}">{mark} {_escape(verdict.word)}</span>',
+                )
+            )
         head = ("equation", "result", "book", "computed", "verdict")
-        return _table(_escape(_heading(self.entry)), head, rows)
+        return _table(self.entry, rows, head) + "".join(f"\n<p>{_escape(note)}</p>" for note in self.notes)
 
     def _repr_mimebundle_(self, include=None, exclude=None):
         return {"text/plain": repr(self), "text/html": self._repr_html_(), MIME_TYPE: self.data}
@@ -102,14 +116,14 @@ class Report:
 def described(entry, as_html=False):
     """An entry with its givens, as text or HTML."""
     if as_html:
-        rows = [(_name(name), _given(given)) for name, given in entry.inputs.items()]
-        return _table(_escape(_heading(entry)), ("given", ""), rows)
+        return _table(entry, [(_name(name), _given(given)) for name, given in entry.inputs.items()])
     rows = [(name, "=" if "=" not in given.text else ":", given.text) for name, given in entry.inputs.items()]
     return "\n".join([_heading(entry), *_aligned(rows)])
 
 
 def _escape(text):
-    return html.escape(text, quote=False)
+    # a dollar sign in a tag of its own opens no mathematics
+    return html.escape(text, quote=False).replace("$", "<span>$</span>")
 
 
 def _heading(entry):
@@ -117,26 +131,32 @@ def _heading(entry):
 
 
 def _aligned(rows):
-    if not rows:
-        return []
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
 
 
-def _table(caption, head, rows):
-    style = 'style="text-align: left"'
-    lines = [f'<table class="loopbook"><caption {style}>{caption}</caption>']
-    lines.append("<thead><tr>" + "".join(f"<th {style}>{cell}</th>" for cell in head) + "</tr></thead><tbody>")
-    lines += ["<tr>" + "".join(f"<td {style}>{cell}</td>" for cell in row) + "</tr>" for row in rows]
-    return "\n".join([*lines, "</tbody></table>"])
+def _table(entry, rows, head=()):
+    # JupyterLab would centre the heads and align numbers to the right
+    left = 'style="text-align: left; white-space: nowrap"'
+    lines = [f"<p><strong>{_escape(_heading(entry))}</strong></p>"]
+    if rows:
+        lines.append("<table>")
+        if head:
+            lines.append("<thead><tr>" + "".join(f"<th {left}>{cell}</th>" for cell in head) + "</tr></thead>")
+        lines += ["<tr>" + "".join(f"<td {left}>{cell}</td>" for cell in row) + "</tr>" for row in rows]
+        lines.append("</table>")
+    return "\n".join(lines)
 
 
 def _math(expression):
-    return f"$\\displaystyle {_escape(sympy.latex(expression))}$"
+    return f"$\\displaystyle {html.escape(sympy.latex(expression), quote=False)}$"
 
 
 def _name(name):
-    return _math(sympy.Symbol(name))
+    """A name as a symbol where it is one, K or T_1 or tau, and as code where it is words."""
+    letter, _, index = name.partition("_")
+    is_symbol = (len(letter) == 1 or letter in _GREEK) and len(index) <= 3
+    return _math(sympy.Symbol(name)) if is_symbol else f"<code>{_escape(name)}</code>"
 
 
 def _given(given):
@@ -144,7 +164,7 @@ def _given(given):
 
 
 def _typeset(kind, text, unit=""):
-    if kind == "formula":
+    if kind == "formula" and not NUMBER.fullmatch(text):
         try:
             return _math(parse_formula(text))
         except ValueError:  # what SymPy prints is not always what it reads

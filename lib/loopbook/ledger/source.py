@@ -1,10 +1,13 @@
 """The sources as data: a TOML file each, read strictly, so that a slip of the pen is an error and not a hole."""
 
+import decimal
+import keyword
 import re
 import sys
 import tomllib
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
 from fractions import Fraction
+from types import MappingProxyType
 
 import sympy
 
@@ -12,10 +15,12 @@ from loopbook.ledger.compare import (
     INFINITE,
     KINDS,
     NUMBER,
+    READ,
     Disagreement,
     LedgerError,
     agrees,
-    number,
+    half_unit,
+    in_one_line,
     parse_formula,
     spelled,
     suggestion,
@@ -63,13 +68,13 @@ class Result:
         for key in ("name", "printed"):
             if key not in data:
                 raise LedgerError(f"{where}: a result has no {key!r}: {data}")
-        result = cls(**data)
+        result = cls(**{key: in_one_line(value) for key, value in data.items()})
         result._validate(f"{where}, {result.name}")
         return result
 
     def _validate(self, where):
-        if not self.name.isidentifier():
-            raise LedgerError(f"{where}: expected a name that can be an argument, as Kp or y_s")
+        if not self.name.isidentifier() or keyword.iskeyword(self.name):
+            raise LedgerError(f"{where}: expected a name that can be an argument in Python, as Kp or y_s")
         if self.kind not in KINDS:
             raise LedgerError(f"{where}: the kind is {self.kind!r}, {suggestion(self.kind, KINDS)}")
         if self.status not in STATUSES:
@@ -81,6 +86,8 @@ class Result:
         for key in ("printed", "correct", "computed"):
             if text := getattr(self, key):
                 self._validate_value(f"{where}: {key}", text)
+                if self.kind == "number" and _coarser(text, self.printed):
+                    raise LedgerError(f"{where}: {key} is {text!r}, expected as many digits as in {self.printed!r}")
         if self.status == "reconstructed":
             self.margin(where)
 
@@ -98,29 +105,42 @@ class Result:
     def margin(self, where=""):
         """How far a reconstructed number may lie from the print: `within`, absolute or in percent of the print."""
         amount, percent = re.fullmatch(r"(.*?)(\s*%)?", self.within).groups()
-        if not (
-            self.kind == "number" and NUMBER.fullmatch(self.printed) and NUMBER.fullmatch(amount) and float(amount) > 0
-        ):
+        if self.kind != "number" or not NUMBER.fullmatch(self.printed):
+            raise LedgerError(f"{where}: {self.printed!r} cannot be reconstructed, expected a number")
+        if not NUMBER.fullmatch(amount) or not 0 < Fraction(amount) < (100 if percent else float("inf")):
             raise LedgerError(
-                f"{where}: within is {self.within!r}, expected a positive number or percentage, for a number"
+                f"{where}: within is {self.within!r}, expected a positive number, or a percentage below 100 %"
             )
+        if percent and not Fraction(self.printed):
+            raise LedgerError(f"{where}: within is {self.within!r} of 0, expected a positive number")
         return Fraction(amount) / 100 * abs(Fraction(self.printed)) if percent else Fraction(amount)
 
     def judge(self, value):
-        """Return the verdict on a computed value, or raise TypeError, saying what the value is instead."""
+        """Return the verdict on a computed value.
+
+        Raises TypeError, saying what the value is instead, where it is not of the result's kind.
+        """
+        value = READ[self.kind](value)
         printed_holds = agrees(self.kind, value, self.printed)
         match self.status:
             case "corrected" | "unreproduced":
                 how = agrees(self.kind, value, self.correct or self.computed)
                 holds = bool(how) and not printed_holds
             case "reconstructed":
-                value = number(value)
                 how = "within"
                 holds = abs(value - Fraction(self.printed)) <= self.margin()
             case _:
                 how, holds = printed_holds, bool(printed_holds)
         texts = [text for text in (self.printed, self.correct, self.computed) if text]
         return Verdict(self, spelled(self.kind, value, *texts), holds, how if holds else "")
+
+
+def _coarser(text, printed):
+    """Whether a number is given with fewer digits than printed, and so with a wider tolerance."""
+    if not NUMBER.fullmatch(text) or not NUMBER.fullmatch(printed):
+        return False
+    digits = [len(decimal.Decimal(number).as_tuple().digits) for number in (text, printed)]
+    return digits[0] < digits[1] and half_unit(text) > half_unit(printed)
 
 
 @dataclass(frozen=True)
@@ -136,6 +156,7 @@ class Given:
         """Read a number with its unit, an expression or an equation, or raise LedgerError."""
         if not isinstance(text, str) or not text.strip():
             raise LedgerError(f'{where} is {text!r}, expected text in quotes, as "1.5 s" or "K/(T*s + 1)"')
+        text = in_one_line(text)
         if quantity := _QUANTITY.fullmatch(text):
             return cls(sympy.Rational(quantity["number"]), quantity["unit"] or "", text)
         try:
@@ -152,8 +173,8 @@ class Entry:
     name: str
     title: str
     chapter: str
-    inputs: dict = field(default_factory=dict)
-    results: tuple = ()
+    inputs: MappingProxyType
+    results: tuple
 
     @classmethod
     def read(cls, source, name, data):
@@ -176,7 +197,8 @@ class Entry:
         names = [row.name for row in results]
         if twice := sorted({name for name in names if names.count(name) > 1}):
             raise LedgerError(f"{where}: {', '.join(twice)} is a result twice, expected every name once")
-        return cls(source, name, data["title"], data["chapter"], inputs, results)
+        title, chapter = in_one_line(data["title"]), data["chapter"]
+        return cls(source, in_one_line(name), title, chapter, MappingProxyType(inputs), results)
 
     def given(self, *names):
         """Return inputs of the example as exact numbers or expressions: one for one name, a tuple for several.
@@ -188,7 +210,7 @@ class Entry:
         (2, 5)
         """
         for name in names:
-            if name not in self.inputs:
+            if not isinstance(name, str) or name not in self.inputs:
                 where = f"{self.source}, {self.name}"
                 raise LedgerError(f"{where}: {name!r} is not given, {suggestion(name, list(self.inputs))}")
         values = tuple(self.inputs[name].value for name in names)
@@ -199,13 +221,15 @@ class Entry:
         """All inputs of the example by name: exact numbers, expressions and equations."""
         return {name: given.value for name, given in self.inputs.items()}
 
-    def compare(self, **values):
+    def compare(self, /, **values):
         """Return a Report on computed values, one for each result that is not measured.
 
         Raises LedgerError for a result that is missing or unknown, and for a value that cannot be judged.
         """
         where = f"{self.source}, {self.name}"
         expected = [row.name for row in self.results if row.status != "measured"]
+        if not self.results:
+            raise LedgerError(f"{where}: the book prints no result here, nothing to check")
         for name in values:
             if name not in expected:
                 raise LedgerError(f"{where}: {name!r} is not a result to check, {suggestion(name, expected)}")
@@ -216,15 +240,19 @@ class Entry:
             if row.status == "measured":
                 verdicts.append(Verdict(row, "", True, "measured"))
                 continue
+            value = values[row.name]
             try:
-                verdicts.append(row.judge(values[row.name]))
+                verdicts.append(row.judge(value))
             except TypeError as error:
                 raise LedgerError(f"{where}, {row.name}: expected a {row.kind}, got {error}") from None
             except ValueError as error:
                 raise LedgerError(f"{where}, {row.name}: {error}") from None
+            except Exception as error:  # whatever an object does that only pretends to be a number
+                what = f"a {type(value).__name__} that fails with {type(error).__name__}: {error}"
+                raise LedgerError(f"{where}, {row.name}: expected a {row.kind}, got {what}") from error
         return Report(self, tuple(verdicts))
 
-    def check(self, **values):
+    def check(self, /, **values):
         """Show how computed values compare with the book's, and raise Disagreement where one does not hold."""
         report = self.compare(**values)
         _show(report)
@@ -245,27 +273,34 @@ class Source:
 
     name: str
     citation: str
-    entries: dict
+    entries: MappingProxyType
 
     @classmethod
-    def read(cls, name, text):
-        """Read a source from its TOML text, or raise LedgerError."""
+    def read(cls, name, content):
+        """Read a source from the content of its TOML file, or raise LedgerError."""
         try:
-            data = tomllib.loads(text)
-        except tomllib.TOMLDecodeError as error:
+            data = tomllib.loads(content.decode())
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
             raise LedgerError(f"{name}.toml is not valid TOML: {error}") from None
         head = data.pop("source", {})
         if not isinstance(head, dict) or set(head) != {"citation"} or not isinstance(head["citation"], str):
             raise LedgerError(f'{name}.toml: expected a table [source] with citation = "..." and nothing else')
-        return cls(name, head["citation"], {key: Entry.read(name, key, entry) for key, entry in data.items()})
+        entries = {key: Entry.read(name, key, entry) for key, entry in data.items()}
+        return cls(name, in_one_line(head["citation"]), MappingProxyType(entries))
 
     def __getitem__(self, name):
-        if name not in self.entries:
+        if not isinstance(name, str) or name not in self.entries:
             raise LedgerError(f"{self.name} has no entry {name!r}, {suggestion(name, list(self.entries))}")
         return self.entries[name]
 
     def __iter__(self):
         return iter(self.entries.values())
+
+    def __contains__(self, name):
+        return name in self.entries
+
+    def __len__(self):
+        return len(self.entries)
 
     def __repr__(self):
         return f"{self.name}: {self.citation} ({len(self.entries)} entries)"

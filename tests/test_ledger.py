@@ -1,0 +1,716 @@
+"""The checker accepts what agrees with the print and nothing else, and says in one line what is wrong."""
+
+import decimal
+import enum
+import json
+import math
+import re
+import sys
+from decimal import Decimal
+from fractions import Fraction
+
+import nbclient
+import nbformat
+import numpy as np
+import pytest
+import sympy
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+
+import loopbook.ledger
+from loopbook import s, t
+from loopbook.ledger import Disagreement, LedgerError, Source, haugen
+from loopbook.ledger.compare import number_agrees
+from loopbook.ledger.report import MIME_TYPE
+
+x, K, T = sympy.symbols("x K T", positive=True)
+
+
+def toml(value):
+    """A value as TOML writes it."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{json.dumps(key)} = {toml(part)}" for key, part in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(toml, value)) + "]"
+    return json.dumps(value, ensure_ascii=False)
+
+
+def book(**entry):
+    """A source with one entry, "Example 1", of which some keys are told."""
+    entry = {"title": "An example", "chapter": "10_tuning"} | entry
+    lines = [f"{key} = {toml(value)}" for key, value in entry.items()]
+    return Source.read("book", "\n".join(['[source]\ncitation = "A. Author"\n["Example 1"]', *lines]).encode())
+
+
+def example(printed, **result):
+    """The entry of a book that prints one result `y`."""
+    return book(result=[{"name": "y", "printed": printed} | result])["Example 1"]
+
+
+def holds(value, printed, **result):
+    return example(printed, **result).compare(y=value).verdicts[0].holds
+
+
+def formula_holds(value, printed, **result):
+    return holds(value, printed, kind="formula", **result)
+
+
+# Numbers.
+
+STYLES = ["1.50", "2e-3", "0.63", "-6.45", "1500", "+3", ".5", "1E+2", "0", "-0.0"]
+OTHER_STYLES = st.builds(
+    "{}{}{}{}".format,
+    st.sampled_from(["", "+", "-"]),
+    st.integers(0, 10**6),
+    st.from_regex(r"(\.[0-9]{1,5})?", fullmatch=True),
+    st.from_regex(r"([eE][+-]?[12]?[0-9])?", fullmatch=True),
+)
+PRINTED = st.sampled_from(STYLES) | OTHER_STYLES
+DISTANCE = st.fractions(-3, 3, max_denominator=10**6) | st.sampled_from([Fraction(1), Fraction(-1)])
+
+
+def reading(printed):
+    """A printed number and half a unit of its last digit, by counting digits."""
+    sign, whole, decimals, exponent = re.fullmatch(r"([+-]?)(\d*)\.?(\d*)(?:[eE]([+-]?\d+))?", printed).groups()
+    unit = Fraction(10) ** (int(exponent or 0) - len(decimals))
+    return int(sign + "1") * int(whole + decimals) * unit, unit / 2
+
+
+def inside(value, printed):
+    middle, half = reading(printed)
+    return abs(value - middle) <= half
+
+
+def as_decimal(value):
+    with decimal.localcontext(prec=40):
+        return Decimal(value.numerator) / Decimal(value.denominator)
+
+
+# How a fraction becomes a value of each type, and that value a fraction again.
+TYPES = {
+    "Fraction": (Fraction, Fraction),
+    "float": (float, Fraction),
+    "int": (round, Fraction),
+    "Decimal": (as_decimal, Fraction),
+    "float64": (lambda v: np.float64(float(v)), lambda v: Fraction(float(v))),
+    "float32": (lambda v: np.float32(float(v)), lambda v: Fraction(float(v))),
+    "longdouble": (lambda v: np.longdouble(str(as_decimal(v))), lambda v: Fraction(*v.as_integer_ratio())),
+    "int64": (lambda v: np.int64(round(v)), lambda v: Fraction(int(v))),
+    "int32": (lambda v: np.int32(round(v)), lambda v: Fraction(int(v))),
+    "Rational": (lambda v: sympy.Rational(v.numerator, v.denominator), lambda v: Fraction(int(v.p), int(v.q))),
+    "Float": (lambda v: sympy.Float(float(v)), lambda v: Fraction(float(v))),
+}
+
+
+@pytest.mark.parametrize("name", TYPES)
+@settings(max_examples=200, deadline=None, derandomize=True)
+@given(printed=PRINTED, distance=DISTANCE)
+def test_a_number_passes_inside_half_a_unit_of_the_last_digit_and_never_outside(name, printed, distance):
+    middle, half = reading(printed)
+    make, read = TYPES[name]
+    try:
+        value = make(middle + distance * half)
+    except OverflowError:
+        assume(False)
+    assert number_agrees(value, printed) == inside(read(value), printed)
+    assert holds(value, printed) == inside(read(value), printed)
+
+
+@settings(max_examples=200, deadline=None, derandomize=True)
+@given(printed=PRINTED, k=st.fractions(-2, 2, max_denominator=1000).filter(bool))
+def test_an_irrational_number_passes_inside_and_never_outside(printed, k):
+    middle, half = (sympy.Rational(part.numerator, part.denominator) for part in reading(printed))
+    q = sympy.Rational(k.numerator, k.denominator)
+    pi = Fraction("3.14159265358979323846264338327950288")
+    assert number_agrees(middle + half * q * sympy.sqrt(2), printed) == (2 * k**2 <= 1)
+    assert number_agrees(middle + half * sympy.exp(q), printed) == (k < 0)
+    assert number_agrees(middle + half * q * sympy.pi, printed) == (abs(k) * pi < 1)
+
+
+@pytest.mark.parametrize("edge", [-1, 1])
+@pytest.mark.parametrize("printed", STYLES)
+def test_at_the_edge_a_hair_decides(printed, edge):
+    middle, half = reading(printed)
+    hair = Fraction(1, 10**30)
+    for make in (Fraction, lambda v: sympy.Rational(v.numerator, v.denominator)):
+        assert holds(make(middle + edge * half), printed)
+        assert holds(make(middle + edge * (half - hair)), printed)
+        assert not holds(make(middle + edge * (half + hair)), printed)
+        assert not holds(make(middle + edge * (half + hair)) + sympy.sqrt(2) / 10**32 * edge, printed)
+
+
+@settings(max_examples=300, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.filter_too_much])
+@given(printed=PRINTED, stored=PRINTED, near_stored=st.booleans(), distance=DISTANCE, percent=st.integers(1, 99))
+def test_every_status_asks_exactly_for_what_it_means(printed, stored, near_stored, distance, percent):
+    middle, half = reading(stored if near_stored else printed)
+    value = middle + distance * half
+    try:
+        corrected = example(printed, status="corrected", correct=stored, because="slip of the pen")
+        unreproduced = example(printed, status="unreproduced", computed=stored, because="unknown")
+    except LedgerError:  # fewer digits than printed
+        assume(False)
+    for entry in (corrected, unreproduced):
+        assert entry.compare(y=value).verdicts[0].holds == (inside(value, stored) and not inside(value, printed))
+
+    book_value, _ = reading(printed)
+    margins = [(stored.lstrip("+"), reading(stored)[0])] if reading(stored)[0] > 0 else []
+    if book_value:
+        margins.append((f"{percent} %", abs(book_value) * percent / 100))
+    for within, margin in margins:
+        value = book_value + distance * margin
+        assert holds(value, printed, status="reconstructed", assuming="a guess", within=within) == (abs(distance) <= 1)
+
+
+@pytest.mark.parametrize("value", [math.inf, np.inf, Decimal("inf"), sympy.oo, sympy.Float("inf")])
+def test_infinity_is_met_by_infinity_alone(value):
+    assert holds(value, "oo")
+    assert holds(-value, "-oo")
+    assert not any([holds(value, "-oo"), holds(value, "1e99"), holds(10**400, "oo"), holds(Fraction(1), "oo")])
+    assert not holds(value, "5", status="reconstructed", assuming="a guess", within="3")
+
+
+def test_numbers_in_unusual_clothes():
+    X = sympy.Symbol("X")
+    poles = sympy.roots(X**3 - 3 * X + 1, X, multiple=True)  # real, but SymPy can only write them with I
+    printed = {"-1.8794", "0.3473", "1.5321"}
+    assert {text for text in printed for pole in poles if holds(pole, text)} == printed
+    assert holds(sympy.Integral(sympy.exp(-x), (x, 0, sympy.oo)), "1.000")
+    assert holds(sympy.sqrt(5 + 2 * sympy.sqrt(6)) - sympy.sqrt(2) - sympy.sqrt(3), "0")
+    assert holds(sympy.sqrt(10**300 + 1) - 10**150, "5e-151")
+    assert holds(sympy.sqrt(10**300 + 2) - 10**150, "1.0e-150")
+    assert not holds(sympy.sqrt(10**300 + 1) - 10**150, "0e-155")
+    assert holds(sympy.exp(-(10**12)), "0.00")
+    # Numbers that differ from the edge only beyond a double's digits
+    assert not holds(Decimal("0.63500000000000000000001"), "0.63")
+    assert not holds(sympy.Float("0.63500000000000000000001", 30), "0.63")
+
+
+@pytest.mark.parametrize(
+    ("value", "printed", "shown"),
+    [
+        (1 - math.exp(-1), "0.63", "0.632121"),
+        (Fraction(2, 3), "0.7", "0.66667"),
+        (-0.00001, "-0.0", "-0.00001"),
+        (-1e-9, "0", "0"),
+        (63, "63", "63"),
+        (1234.5678, "1e3", "1234.6"),
+        (1234567, "2e7", "1235000"),
+        (1e308, "0.63", "1e+308"),
+        (10**4000, "0.63", "1e+4000"),
+        (-(10**400), "oo", "-1e+400"),
+        (1.5, "oo", "1.5"),
+    ],
+)
+def test_a_computed_number_is_shown_with_a_few_more_digits(value, printed, shown):
+    assert example(printed).compare(y=value).verdicts[0].computed == shown
+
+
+# Formulas.
+
+
+@pytest.mark.parametrize(
+    ("value", "printed"),
+    [
+        ((K / T) / (s + 1 / T), "K/(T*s + 1)"),
+        (sympy.Symbol("K") / (sympy.Symbol("T", real=True) * sympy.Symbol("s") + 1), "K/(T*s + 1)"),
+        (sympy.Dummy("K") * 2, "2*K"),
+        (sympy.Rational(1, 2), "0.5"),
+        (Fraction(1, 2), "0.5"),
+        (np.int64(3), "3"),
+        (sympy.sin(x) ** 2, "1 - cos(x)**2"),
+        ((-1) ** sympy.Symbol("n", integer=True), "cos(pi*n)"),
+        (K * s ** (-x - 1) * sympy.gamma(x + 1), "K*factorial(x)/s**(x + 1)"),
+        (sympy.Integral(sympy.Function("u")(x), (x, 0, t)), "Integral(u(theta), (theta, 0, t))"),
+        (sympy.Eq(s * K, 2 * T - x), "x + s*K = 2*T"),
+        (sympy.Eq(2 * T - x, s * K), "x + s*K = 2*T"),
+        (sympy.oo, "oo"),
+        (x * sympy.sqrt(5 + 2 * sympy.sqrt(6)), "x*(sqrt(2) + sqrt(3))"),
+    ],
+)
+def test_a_formula_holds_in_every_form(value, printed):
+    assert formula_holds(value, printed)
+
+
+Y = sympy.Function("Y")
+WRONG = {
+    "another letter": (x / (T * s + 1), "K/(T*s + 1)"),
+    "the other sign": (K / (T * s - 1), "K/(T*s + 1)"),
+    "a capital letter": (sympy.Symbol("k"), "K"),
+    "a letter for a function": (sympy.Symbol("Y"), "Y(s)"),
+    "another argument": (Y(0), "Y(s)"),
+    "nearly one half": (sympy.Rational(1, 2) + sympy.Rational(1, 10**40), "0.5"),
+    "nearly one third": (sympy.Rational(333333333333333, 10**15), "1/3"),
+    "a tiny term": (x + x * sympy.Rational(1, 10**25), "x"),
+    "a tiny factor": (x * sympy.Rational(1, 10**25), "2e-25*x"),
+    "a faster decay": (sympy.exp(-101 * t), "exp(-100*t)"),
+    "a much faster decay": (sympy.exp(-100001 * t), "exp(-100000*t)"),
+    "a limiter": (sympy.Min(x, 100), "x"),
+    "a distant limiter": (sympy.Min(x, 10**5), "x"),
+    "a dead band": (sympy.Max(x, sympy.Rational(1, 10**5)), "x"),
+    "a corner": (sympy.Abs(x - 50), "50 - x"),
+    "a switch": (sympy.Heaviside(50 - x), "1"),
+    "a piece": (sympy.Piecewise((x, x < 1000), (0, True)), "x"),
+    "rounding down": (sympy.floor(x) + x - sympy.floor(x) * (1 + sympy.Rational(1, 10**22)), "x"),
+    "a letter that is zero": (K / (sympy.Symbol("T", zero=True) * s + 1), "K"),
+    "a letter that is even": (sympy.Symbol("n", even=True), "n*(-1)**n"),
+    "a letter that is negative": (sympy.sqrt(sympy.Symbol("x", negative=True) ** 2), "x"),
+    "a root of a square": (sympy.sqrt(s**2), "s"),
+    "a multiple of pi": (sympy.Integer(0), "sin(pi*n)"),
+    "the product with zero": (sympy.Eq(0, 0, evaluate=False), "s*K = 2*T"),
+    "the double": (sympy.Eq(2 * s * K, 4 * T, evaluate=False), "s*K = 2*T"),
+    "another right side": (sympy.Eq(s * K, 3 * T), "s*K = 2*T"),
+    "an expression for an equation": (s * K - 2 * T, "s*K = 2*T"),
+    "an equation for an expression": (sympy.Eq(K, T), "K"),
+    "one solution for the equation": (2 * T / s, "K = 2*T/s"),
+    "minus the expression": (-K, "K"),
+    "infinity": (sympy.oo, "5"),
+    "a number for infinity": (sympy.Integer(5), "oo"),
+    "the other infinity": (-sympy.oo, "oo"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_formula_does_not_hold(name):
+    value, printed = WRONG[name]
+    report = example(printed, kind="formula").compare(y=value)
+    assert not report.verdicts[0].holds
+
+
+def test_a_wrong_formula_is_recorded_as_the_books_error_with_its_correction():
+    told = {"printed": "K/(T*s - 1)", "status": "corrected", "correct": "K/(T*s + 1)", "because": "a slip"}
+    assert formula_holds(K / (T * s + 1), **told)
+    assert not formula_holds(K / (T * s - 1), **told)
+    assert not formula_holds(K / T, **told)
+    assert not formula_holds(K / (T * s + 1), **told | {"printed": "(K/T)/(s + 1/T)"})  # the book was right
+
+
+# Claims.
+
+
+class Word(str, enum.Enum):  # noqa: UP042 - as a reader may write it
+    STABLE = "stable"
+
+
+@pytest.mark.parametrize("value", ["stable", "Stable", " stable\n", np.str_("stable"), Word.STABLE])
+def test_a_claim_is_the_same_word_whatever_its_case_and_spaces(value):
+    verdict = example("Stable", kind="claim").compare(y=value).verdicts[0]
+    assert (verdict.holds, verdict.computed.casefold()) == (True, "stable")
+
+
+@pytest.mark.parametrize("value", ["", "unstable", "stable.", "not stable", "s table"])
+def test_another_word_is_another_claim(value):
+    assert not holds(value, "stable", kind="claim")
+    assert holds("unstable", "stable", kind="claim", status="corrected", correct="unstable", because="a slip")
+
+
+# What is no value at all. Each complaint is one line, with the names of source, entry and result.
+
+
+class Hostile(float):
+    """A number that claims to be every other one."""
+
+    __hash__ = float.__hash__
+
+    def __eq__(self, other):
+        return True
+
+    def __ne__(self, other):
+        return False
+
+
+class Failing(float):
+    def as_integer_ratio(self):
+        raise ZeroDivisionError("on\npurpose")
+
+
+class Unprintable:
+    def __repr__(self):
+        raise RuntimeError("no\nrepr")
+
+
+NO_NUMBER = {
+    "nan": (math.nan, "NaN"),
+    "numpy nan": (np.float32("nan"), "NaN"),
+    "decimal nan": (Decimal("nan"), "NaN"),
+    "signalling nan": (Decimal("sNaN"), "InvalidOperation"),
+    "sympy nan": (sympy.nan, "nan"),
+    "complex infinity": (sympy.zoo, "zoo"),
+    "unevaluated nan": (sympy.Mul(0, sympy.nan, evaluate=False), "nan"),
+    "unevaluated 0 times infinity": (sympy.Mul(0, sympy.oo, evaluate=False), "0"),
+    "complex": (1 + 0j, "complex number"),
+    "numpy complex": (np.complex128(1), "complex number"),
+    "sympy complex": (1 + sympy.I / 10**50, "complex number"),
+    "string": ("1.5", "type str"),
+    "none": (None, "NoneType"),
+    "bool": (True, "truth value"),
+    "numpy bool": (np.bool_(True), "truth value"),
+    "sympy true": (sympy.true, "True"),
+    "list": ([1.5], "type list"),
+    "array of one": (np.array([1.5]), "type ndarray"),
+    "array without axes": (np.array(1.5), "type ndarray"),
+    "array of three": (np.array([[1.5], [2], [3]]), "type ndarray"),
+    "matrix": (sympy.ImmutableMatrix([[1.5]]), "Matrix"),
+    "duration": (np.timedelta64(1, "s"), "timedelta64"),
+    "letters": (2 * K, "2*K"),
+    "function": (sympy.Function("f")(2), "f(2)"),
+    "bounds": (sympy.AccumBounds(1, 2), "AccumBounds"),
+    "too large": (sympy.exp(10**12), "beyond 1e2000"),
+    "limit": (sympy.Limit(sympy.sin(x) / x, x, 0), "Limit"),
+    "equation": (sympy.Eq(x, 1), "Eq"),
+    "failing": (Failing(1.5), "ZeroDivisionError"),
+    "unprintable": (Unprintable(), "Unprintable"),
+}
+NO_FORMULA = {
+    "rounded decimals": (0.5 * K, "rounded decimals"),
+    "float": (0.5 * sympy.Symbol("K"), "rounded decimals"),
+    "rounded exponent": (sympy.exp(-0.5 * t), "rounded decimals"),
+    "nan": (math.nan, "nan"),
+    "complex infinity": (K * sympy.zoo, "zoo"),
+    "bounds": (sympy.AccumBounds(1, 2) * K, "AccumBounds"),
+    "string": ("K/(T*s + 1)", "type str"),
+    "inequality": (K > 0, "type"),
+    "true": (sympy.Eq(K, K), "BooleanTrue"),
+    "bool": (True, "type bool"),
+    "none": (None, "NoneType"),
+    "list": ([K], "type list"),
+    "matrix": (sympy.Matrix([K, T]), "Matrix"),
+    "frozen matrix": (sympy.ImmutableMatrix([[K]]), "Matrix"),
+    "tuple": (sympy.Tuple(K, T), "Tuple"),
+    "two letters of one name": (K + sympy.Symbol("K"), "two different symbols named K"),
+    "unprintable": (Unprintable(), "Unprintable"),
+}
+NO_CLAIM = {
+    "number": (1, "type int"),
+    "symbol": (sympy.Symbol("stable"), "Symbol"),
+    "bool": (True, "type bool"),
+    "bytes": (b"stable", "type bytes"),
+    "none": (None, "NoneType"),
+}
+NO_VALUE = [
+    pytest.param(kind, printed, value, words, id=f"{kind}-{name}")
+    for kind, printed, cases in [
+        ("number", "1.5", NO_NUMBER),
+        ("formula", "K/(T*s + 1)", NO_FORMULA),
+        ("claim", "stable", NO_CLAIM),
+    ]
+    for name, (value, words) in cases.items()
+]
+
+
+def complaint(call, *arguments, error=LedgerError, **named):
+    with pytest.raises(error) as caught:
+        call(*arguments, **named)
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize(("kind", "printed", "value", "words"), NO_VALUE)
+def test_what_is_no_value_is_refused_in_one_line(kind, printed, value, words):
+    said = complaint(example(printed, kind=kind).check, y=value)
+    assert said.startswith(f"book, Example 1, y: expected a {kind}, got ")
+    assert words in said
+
+
+def test_a_decimal_alone_is_an_exact_formula():
+    assert holds(1.5, "1.5", kind="formula")
+    assert not holds(1.5000001, "1.5", kind="formula")
+
+
+def test_a_number_that_claims_to_be_every_other_one():
+    assert not holds(Hostile(7), "1.5")
+
+
+def test_a_disagreement_names_the_place_the_value_and_the_print(capsys):
+    said = complaint(example("1.50").check, error=Disagreement, y=1.506)
+    assert said == "book, Example 1: y = 1.506 does not agree with the printed 1.50"
+    said = complaint(example("1", kind="claim").check, error=Disagreement, y="a\nb")
+    assert "y = a b" in said
+    said = complaint(example("1", status="corrected", correct="2", because="a slip").check, error=Disagreement, y=1)
+    assert all(word in said for word in ("y = 1", "2", "1", "corrected"))
+    said = complaint(example("1", status="reconstructed", assuming="a", within="5 %").check, error=Disagreement, y=1.06)
+    assert "5 %" in said
+    several = book(result=[{"name": name, "printed": "1"} for name in ("a", "b", "c")])["Example 1"]
+    assert complaint(several.check, error=Disagreement, a=1, b=2, c=3).endswith("(and 1 more)")
+    capsys.readouterr()
+
+
+TWO = book(given={"K": "1", "tau": "0.5 s"}, result=[{"name": "Kp", "printed": "1"}, {"name": "Ti", "printed": "2"}])
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: TWO["Example 1"].check(Kpp=1, Ti=2), ["book, Example 1", "'Kpp'", "did you mean 'Kp'"]),
+        (lambda: TWO["Example 1"].check(Kp=1), ["book, Example 1", "nothing was given for Ti", "expected Kp, Ti"]),
+        (lambda: TWO["Example 1"].check(), ["book, Example 1", "nothing was given for Kp, Ti"]),
+        (lambda: TWO["Example 1"].check(Kp=1, Ti=2, q=3), ["book, Example 1", "'q'", "expected one of Kp, Ti"]),
+        (lambda: TWO["Example 1"].check(Kp=1, Ti=2, self=3), ["book, Example 1", "'self'"]),
+        (lambda: TWO["Exampel 1"], ["book", "'Exampel 1'", "did you mean 'Example 1'"]),
+        (lambda: TWO["zzz"], ["book", "'zzz'", "expected one of Example 1"]),
+        (lambda: TWO[1], ["book", "no entry 1"]),
+        (lambda: TWO[["Example 1"]], ["book", "no entry ['Example 1']"]),
+        (lambda: TWO["Example 1"].given("Tau"), ["book, Example 1", "'Tau' is not given", "did you mean 'tau'"]),
+        (lambda: TWO["Example 1"].given("q"), ["book, Example 1", "expected one of K, tau"]),
+        (lambda: TWO["Example 1"].given(["K"]), ["book, Example 1", "['K'] is not given"]),
+        (lambda: book(given={"K": "1"})["Example 1"].check(), ["book, Example 1", "no result", "nothing to check"]),
+        (lambda: haugen["Example 4.22"], ["haugen", "did you mean 'Example 4.2'"]),
+    ],
+)
+def test_a_wrong_use_is_explained_in_one_line(call, words):
+    said = complaint(call)
+    assert all(word in said for word in words), said
+
+
+def test_an_unknown_source_is_named_with_the_known_ones():
+    with pytest.raises(AttributeError, match=r"no source 'hagen': expected one of .*haugen"):
+        loopbook.ledger.hagen  # noqa: B018
+    with pytest.raises(ImportError, match="hagen"):
+        from loopbook.ledger import hagen  # noqa: F401
+
+
+# Malformed entries.
+
+
+def entry(**keys):
+    return lambda: book(**keys)
+
+
+def result(**keys):
+    return lambda: example(**({"printed": "1"} | keys))
+
+
+def text(content):
+    return lambda: Source.read("book", content if isinstance(content, bytes) else content.encode())
+
+
+CITATION = '[source]\ncitation = "A"\n'
+RECONSTRUCTED = {"status": "reconstructed", "assuming": "a guess"}
+MALFORMED = {
+    "syntax": (text("[source"), ["book.toml", "TOML"]),
+    "a key twice": (text(CITATION + "[a]\n[a]\n"), ["book.toml", "TOML"]),
+    "another encoding": (text(CITATION.encode() + "# Å".encode("latin-1")), ["book.toml", "decode"]),
+    "no source": (text('["Example 1"]\ntitle = "A"\n'), ["book.toml", "[source]", "citation"]),
+    "a source of another type": (text('source = "A"\n'), ["book.toml", "[source]"]),
+    "an unknown key of the source": (text(CITATION + 'year = "2010"\n'), ["book.toml", "nothing else"]),
+    "a citation of another type": (text("[source]\ncitation = 1\n"), ["book.toml", "citation"]),
+    "an entry of another type": (text('a = 1\n[source]\ncitation = "A"\n'), ["book, a", "expected a table"]),
+    "no title": (text(CITATION + '["Example 1"]\nchapter = "10"\n'), ["book, Example 1", "title"]),
+    "no chapter": (text(CITATION + '["Example 1"]\ntitle = "A"\n'), ["book, Example 1", "chapter"]),
+    "an empty title": (entry(title=" "), ["book, Example 1", "title"]),
+    "a chapter of another type": (entry(chapter=10), ["book, Example 1", "chapter is 10"]),
+    "an unknown key": (entry(results=[]), ["book, Example 1", "'results'", "did you mean 'result'"]),
+    "givens of another type": (entry(given=["K"]), ["book, Example 1", "`given`"]),
+    "a given as a number": (entry(given={"K": 1.5}), ["book, Example 1, given K", "1.5", "text in quotes"]),
+    "a given that is empty": (entry(given={"K": ""}), ["book, Example 1, given K"]),
+    "a given with a comma": (entry(given={"K": "1,5"}), ["book, Example 1, given K", "'1,5'"]),
+    "a given that cannot be read": (entry(given={"K": "1.5 (s"}), ["book, Example 1, given K", "cannot read"]),
+    "a given without value": (entry(given={"K": "1/0"}), ["book, Example 1, given K", "no value"]),
+    "results of another type": (entry(result={"name": "y"}), ["book, Example 1", "`result`"]),
+    "a result of another type": (entry(result=["y"]), ["book, Example 1", "'y'", "expected a table"]),
+    "a result without a name": (entry(result=[{"printed": "1"}]), ["book, Example 1", "no 'name'"]),
+    "a result without a print": (entry(result=[{"name": "y"}]), ["book, Example 1", "no 'printed'"]),
+    "a result twice": (entry(result=[{"name": "y", "printed": "1"}] * 2), ["book, Example 1", "y", "once"]),
+    "an unknown key of a result": (result(units="s"), ["book, Example 1", "'units'", "did you mean 'unit'"]),
+    "a printed number outside quotes": (result(printed=1.50), ["book, Example 1", "printed is 1.5", "quotes"]),
+    "a printed list": (result(printed=["1"]), ["book, Example 1", "printed is ['1']", "quotes"]),
+    "an empty print": (result(printed=""), ["book, Example 1", "printed is ''"]),
+    "a printed decimal comma": (result(printed="1,5"), ["book, Example 1, y", "'1,5'", "a number like 1.50"]),
+    "a printed unit": (result(printed="1.5 s"), ["book, Example 1, y", "'1.5 s'", "a number like 1.50"]),
+    "a printed per cent": (result(printed="63 %"), ["book, Example 1, y", "'63 %'"]),
+    "a printed word": (result(printed="stable"), ["book, Example 1, y", "'claim'"]),
+    "a printed nan": (result(printed="nan"), ["book, Example 1, y", "'nan'"]),
+    "a printed number with a bare point": (result(printed="1."), ["book, Example 1, y", "'1.'"]),
+    "other digits": (result(printed="١.٥"), ["book, Example 1, y"]),
+    "an endless number": (result(printed="1e999999999"), ["book, Example 1, y"]),
+    "a name with a space": (result(name="K p"), ["book, Example 1, K p", "argument in Python"]),
+    "a name of Python": (result(name="lambda"), ["book, Example 1, lambda", "argument in Python"]),
+    "an unknown kind": (result(kind="formulae"), ["book, Example 1, y", "'formulae'", "did you mean 'formula'"]),
+    "an unknown status": (result(status="correct"), ["book, Example 1, y", "did you mean 'corrected'"]),
+    "a formula that cannot be read": (result(kind="formula", printed="K/(T*s"), ["book, Example 1, y", "'K/(T*s'"]),
+    "a formula with a comma": (result(kind="formula", printed="1,5"), ["book, Example 1, y", "'1,5'"]),
+    "a formula without value": (result(kind="formula", printed="K/0"), ["book, Example 1, y", "no value"]),
+    "an equation twice": (result(kind="formula", printed="a = b = c"), ["book, Example 1, y", "cannot read"]),
+    "an equation with one side": (result(kind="formula", printed="= b"), ["book, Example 1, y", "cannot read"]),
+    "an equation that says nothing": (result(kind="formula", printed="0 = 0"), ["book, Example 1, y", "says nothing"]),
+    "another one": (result(kind="formula", printed="2*(a + b) = 2*a + 2*b"), ["book, Example 1, y", "says nothing"]),
+    "an inequality": (result(kind="formula", printed="a <= b"), ["book, Example 1, y", "cannot read"]),
+    "a correction without reason": (result(status="corrected", correct="2"), ["needs 'because'"]),
+    "a correction without value": (result(status="corrected", because="a slip"), ["needs 'correct'"]),
+    "a correction of another kind": (result(status="corrected", correct="two", because="a"), ["correct is 'two'"]),
+    "a correction that widens the tolerance": (
+        result(printed="0.123", status="corrected", correct="1.2", because="a slip"),
+        ["correct is '1.2'", "as many digits as in '0.123'"],
+    ),
+    "a reason for nothing": (result(because="a slip"), ["'reproduced' has no use for 'because'"]),
+    "a margin for nothing": (result(within="5 %"), ["'reproduced' has no use for 'within'"]),
+    "unreproduced without value": (result(status="unreproduced", because="a"), ["needs 'computed'"]),
+    "unreproduced with a margin": (
+        result(status="unreproduced", because="a", computed="2", within="1"),
+        ["no use for 'within'"],
+    ),
+    "measured without reason": (result(status="measured"), ["'measured' needs 'because'"]),
+    "reconstructed without assumption": (result(status="reconstructed", within="1"), ["needs 'assuming'"]),
+    "reconstructed without margin": (result(**RECONSTRUCTED), ["needs 'within'"]),
+    "a margin in words": (result(**RECONSTRUCTED, within="a little"), ["within is 'a little'"]),
+    "a margin of zero": (result(**RECONSTRUCTED, within="0"), ["within is '0'", "positive"]),
+    "a negative margin": (result(**RECONSTRUCTED, within="-1 %"), ["within is '-1 %'", "positive"]),
+    "a margin with a unit": (result(**RECONSTRUCTED, within="1 s"), ["within is '1 s'"]),
+    "a margin as wide as the number": (result(**RECONSTRUCTED, within="100 %"), ["within is '100 %'", "below"]),
+    "an infinite margin": (result(**RECONSTRUCTED, within="oo"), ["within is 'oo'"]),
+    "a percentage of zero": (result(**RECONSTRUCTED, printed="0.0", within="5 %"), ["'5 %' of 0"]),
+    "a margin around infinity": (result(**RECONSTRUCTED, printed="oo", within="5 %"), ["'oo'", "expected a number"]),
+    "a margin around a formula": (result(**RECONSTRUCTED, kind="formula", within="5 %"), ["expected a number"]),
+}
+
+
+@pytest.mark.parametrize("name", MALFORMED)
+def test_a_malformed_entry_is_explained_in_one_line(name):
+    call, words = MALFORMED[name]
+    said = complaint(call)
+    assert said.startswith("book")
+    assert all(word in said for word in words), said
+
+
+def test_text_over_several_lines_is_joined():
+    entry = example("1", status="corrected", correct="2", because="the author\n  slipped")
+    assert entry.results[0].because == "the author slipped"
+    assert book(title="two\nlines")["Example 1"].title == "two lines"
+
+
+# Givens.
+
+
+def test_givens_are_exact():
+    entry = book(given={"K": "0.1", "T": "-1.5e-3 s", "share": "63 %", "H": "K/(0.5*s + 1)", "m": "a = b"})["Example 1"]
+    K_, T_, share, H, m = entry.given("K", "T", "share", "H", "m")
+    assert (K_, T_, share) == (sympy.Rational(1, 10), sympy.Rational(-15, 10**4), 63)
+    assert K / (s / 2 + 1) == H
+    assert isinstance(m, sympy.Equality)
+    assert entry.given("K") == K_
+    assert entry.givens == {"K": K_, "T": T_, "share": share, "H": H, "m": m}
+    assert [given.unit for given in entry.inputs.values()] == ["", "s", "%", "", ""]
+
+
+def test_a_notebook_cannot_change_the_ledger():
+    entry = haugen["Example 4.2"]
+    entry.givens["y_0"] = 5  # a copy
+    for change in (
+        lambda: entry.inputs.__setitem__("y_0", 5),
+        lambda: haugen.entries.__setitem__("Example 4.2", None),
+        lambda: haugen.__setitem__("Example 4.2", None),
+        lambda: setattr(entry, "results", ()),
+        lambda: setattr(entry.results[0], "printed", "2"),
+        lambda: setattr(entry.inputs["y_0"], "value", 5),
+    ):
+        with pytest.raises((AttributeError, TypeError)):
+            change()
+    assert haugen["Example 4.2"].given("y_0") == 4
+
+
+# What the reader sees.
+
+MIXED = book(
+    title='A <b>title</b> & "more"',
+    given={"K": "1.5 s", "H": "K/(T*s + 1)"},
+    result=[
+        {"name": "share", "equation": "6.21", "printed": "0.63", "unit": "m/s"},
+        {"name": "H", "kind": "formula", "printed": "K/(T*s + 1)"},
+        {"name": "action", "kind": "claim", "printed": "Reverse"},
+        {"name": "a", "printed": "1", "status": "corrected", "correct": "2", "because": 'a <b>"slip"</b> & more'},
+        {"name": "b", "printed": "1", "status": "reconstructed", "assuming": "F = 1 <kg/s>", "within": "5 %"},
+        {"name": "c", "printed": "1", "status": "unreproduced", "computed": "2", "because": "nobody knows"},
+        {"name": "d", "printed": "17.3", "status": "measured", "because": "in the laboratory"},
+    ],
+)["Example 1"]
+GOOD = {"share": 0.632121, "H": K / (T * s + 1), "action": "reverse", "a": 2, "b": 1.04, "c": 2}
+
+
+def test_a_report_tells_everything_as_text():
+    told = repr(MIXED.compare(**GOOD))
+    for row in MIXED.results:
+        assert all(part in told for part in (row.name, row.printed, row.status, row.because, row.assuming, row.within))
+    assert all(part in told for part in ("book", "Example 1", MIXED.title, "6.21", "m/s", "0.632121", "reverse"))
+    assert "does not hold" not in told
+    assert repr(MIXED.compare(**GOOD | {"a": 1})).count("does not hold") == 1
+
+
+def test_a_report_tells_everything_as_html_and_escapes_it():
+    told = MIXED.compare(**GOOD)._repr_html_()
+    for part in ("Example 1", "6.21", "0.63", "m/s", "0.632121", "reverse", "corrected", "reconstructed", "measured"):
+        assert part in told
+    assert "A &lt;b&gt;title&lt;/b&gt; &amp; " in told
+    assert "a &lt;b&gt;" in told
+    assert "F = 1 &lt;kg/s&gt;" in told
+    assert "<b>" not in told
+    assert "does not hold" in MIXED.compare(**GOOD | {"a": 1})._repr_html_()
+
+
+def test_a_report_carries_its_verdicts_as_data():
+    bundle = MIXED.compare(**GOOD)._repr_mimebundle_()
+    assert {"text/plain", "text/html", MIME_TYPE} <= set(bundle)
+    data = json.loads(json.dumps(bundle["application/vnd.loopbook.check+json"], allow_nan=False))
+    assert (data["source"], data["entry"]) == ("book", "Example 1")
+    assert [(v["name"], v["printed"], v["status"], v["computed"], v["holds"], v["how"]) for v in data["verdicts"]] == [
+        ("share", "0.63", "reproduced", "0.632121", True, "digits"),
+        ("H", "K/(T*s + 1)", "reproduced", "K/(T*s + 1)", True, "proved"),
+        ("action", "Reverse", "reproduced", "reverse", True, "word"),
+        ("a", "1", "corrected", "2", True, "digits"),
+        ("b", "1", "reconstructed", "1.04", True, "within"),
+        ("c", "1", "unreproduced", "2", True, "digits"),
+        ("d", "17.3", "measured", "", True, "measured"),
+    ]
+    failed = MIXED.compare(**GOOD | {"a": 1})._repr_mimebundle_()[MIME_TYPE]["verdicts"]
+    assert [verdict["name"] for verdict in failed if not verdict["holds"]] == ["a"]
+
+
+def test_a_report_is_the_same_every_time():
+    assert MIXED.compare(**GOOD)._repr_mimebundle_() == MIXED.compare(**GOOD)._repr_mimebundle_()
+    assert repr(MIXED) == repr(MIXED)
+
+
+def test_an_entry_shows_its_givens():
+    for told in (repr(MIXED), MIXED._repr_html_()):
+        assert all(part in told for part in ("Example 1", "1.5 s", "K", "H"))
+    assert "<b>" not in MIXED._repr_html_()
+    assert "A. Author" in repr(TWO)
+
+
+def test_a_check_is_shown_once_and_before_the_error(capsys, monkeypatch):
+    MIXED.check(**GOOD)
+    shown = capsys.readouterr().out
+    assert shown == repr(MIXED.compare(**GOOD)) + "\n"
+    monkeypatch.delitem(sys.modules, "IPython", raising=False)
+    MIXED.check(**GOOD)
+    assert capsys.readouterr().out == shown
+    with pytest.raises(Disagreement):
+        MIXED.check(**GOOD | {"a": 1})
+    assert capsys.readouterr().out.count("does not hold") == 1
+
+
+CELLS = [
+    'from loopbook.ledger import haugen\nexample = haugen["Equation 6.14"]',
+    "example.check(K=1.5, T=2)",
+    "example.check(K=1.5, T=3)",
+    'haugen["Equation 66.14"]',
+    "example.check(K=1.5, T=None)",
+]
+
+
+def test_a_notebook_shows_the_table_once_and_an_error_as_one_sentence():
+    cells = [nbformat.v4.new_code_cell(source) for source in CELLS]
+    notebook = nbformat.v4.new_notebook(cells=cells)
+    nbclient.NotebookClient(notebook, timeout=60, kernel_name="python3", allow_errors=True).execute()
+    imported, good, bad, unknown, no_number = (cell.outputs for cell in notebook.cells)
+    assert imported == []
+    assert [output.output_type for output in good] == ["display_data"]
+    assert {"text/plain", "text/html", MIME_TYPE} <= set(good[0].data)
+    assert [output.output_type for output in bad] == ["display_data", "error"]
+    assert [v["holds"] for v in bad[0].data[MIME_TYPE]["verdicts"]] == [True, False]
+    assert [output.output_type for output in (*unknown, *no_number)] == ["error", "error"]
+    for output, words in [
+        (bad[1], "haugen, Equation 6.14: T = 3 does not agree with the printed 2"),
+        (unknown[0], "haugen has no entry 'Equation 66.14', did you mean 'Equation 6.14'?"),
+        (no_number[0], "haugen, Equation 6.14, T: expected a formula, got None of type NoneType"),
+    ]:
+        assert output.evalue == words
+        assert output.traceback == [f"{output.ename}: {words}"]

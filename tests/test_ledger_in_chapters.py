@@ -1,0 +1,493 @@
+"""The ledger against the stored chapters: every result is checked where it belongs, and every status is true.
+
+Nothing here uses the library's own comparison: the ledger is read as plain TOML, numbers are compared by decimal
+arithmetic, and formulas by evaluating both at random points, with an elementary function for every unknown one.
+"""
+
+import ast
+import copy
+import functools
+import json
+import operator
+import os
+import random
+import shutil
+import subprocess
+import sys
+import tomllib
+from collections import Counter
+from decimal import Context, Decimal, InvalidOperation, localcontext
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+import sympy
+from typer.testing import CliRunner
+
+import loopbook.ledger
+import loopbook.ledger.errata as errata
+from loopbook.__main__ import app
+from loopbook.ledger import Source, sources
+from loopbook.ledger.source import STATUSES
+
+ROOT = Path(__file__).parents[1]
+LEDGER = ROOT / "lib" / "loopbook" / "ledger"
+CHAPTERS = ROOT / "chapters"
+MIME_TYPE = "application/vnd.loopbook.check+json"
+
+
+def books(folder=LEDGER):
+    """The ledger as it is written: {source: {entry: {...}}}."""
+    written = {file.stem: tomllib.loads(file.read_text(encoding="utf-8")) for file in sorted(folder.glob("*.toml"))}
+    return {name: {key: entry for key, entry in data.items() if key != "source"} for name, data in written.items()}
+
+
+def stored_checks(folder=CHAPTERS):
+    """The verdicts stored in the notebooks of a folder: [(chapter, verdicts on an entry), ...]."""
+    return [
+        (file.stem, output["data"][MIME_TYPE])
+        for file in sorted(folder.glob("*.ipynb"))
+        for cell in json.loads(file.read_text(encoding="utf-8"))["cells"]
+        for output in cell.get("outputs", [])
+        if MIME_TYPE in output.get("data", {})
+    ]
+
+
+# Coverage.
+
+
+def gaps(written, checks, chapters):
+    """What is wrong between the ledger and the checks stored in the chapters, in sentences."""
+    found = []
+    for chapter, check in checks:
+        place = f"{check['source']}, {check['entry']}, checked in {chapter}"
+        entry = written.get(check["source"], {}).get(check["entry"])
+        if entry is None:
+            found.append(f"{place}: no such entry")
+            continue
+        if chapter != entry["chapter"]:
+            found.append(f"{place}: it belongs to {entry['chapter']}")
+        expected = [(row["name"], row["printed"], row.get("status", "reproduced")) for row in entry.get("result", [])]
+        if [(row["name"], row["printed"], row["status"]) for row in check["verdicts"]] != expected:
+            found.append(f"{place}: not the results of the ledger as it stands now: run `make execute`")
+        found += [f"{place}: {row['name']} does not hold" for row in check["verdicts"] if row["holds"] is not True]
+    checked = {(check["source"], check["entry"]) for _, check in checks}
+    for source, entries in written.items():
+        for name, entry in entries.items():
+            if entry["chapter"] not in chapters:
+                found.append(f"{source}, {name}: no notebook {entry['chapter']}")
+            if entry.get("result") and (source, name) not in checked:
+                found.append(f"{source}, {name}: checked by no chapter")
+    return found
+
+
+def chapters_in(folder):
+    return {file.stem for file in folder.glob("*.ipynb")}
+
+
+def test_every_entry_of_the_ledger_is_checked_in_its_chapter():
+    found = gaps(books(), stored_checks(), chapters_in(CHAPTERS))
+    assert not found, "\n" + "\n".join(found)
+
+
+@pytest.fixture
+def doctored(tmp_path):
+    """A function that changes the first stored check of a copy of the chapters, or removes its output for None."""
+
+    def doctor(change):
+        for file in CHAPTERS.glob("*.ipynb"):
+            shutil.copy(file, tmp_path)
+        file = tmp_path / f"{stored_checks()[0][0]}.ipynb"
+        notebook = json.loads(file.read_text(encoding="utf-8"))
+        outputs = next(c["outputs"] for c in notebook["cells"] if MIME_TYPE in json.dumps(c.get("outputs", [])))
+        if change is None:
+            outputs.clear()
+        else:
+            change(next(output["data"][MIME_TYPE] for output in outputs if MIME_TYPE in output["data"]))
+        file.write_text(json.dumps(notebook), encoding="utf-8")
+        return gaps(books(), stored_checks(tmp_path), chapters_in(tmp_path))
+
+    return doctor
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (None, "checked by no chapter"),
+        (lambda check: check.update(entry="Example 99"), "no such entry"),
+        (lambda check: check.update(source="nobody"), "no such entry"),
+        (lambda check: check["verdicts"][0].update(holds=False), "does not hold"),
+        (lambda check: check["verdicts"][0].update(holds="yes"), "does not hold"),
+        (lambda check: check["verdicts"][0].update(printed="7"), "not the results of the ledger"),
+        (lambda check: check["verdicts"][0].update(status="measured"), "not the results of the ledger"),
+        (lambda check: check["verdicts"][0].update(name="other"), "not the results of the ledger"),
+        (lambda check: check["verdicts"].pop(), "not the results of the ledger"),
+        (lambda check: check["verdicts"].append(check["verdicts"][0]), "not the results of the ledger"),
+    ],
+)
+def test_a_doctored_chapter_is_found_out(doctored, change, words):
+    assert any(words in gap for gap in doctored(change))
+
+
+def test_an_untouched_copy_is_accepted(doctored):
+    assert doctored(lambda check: None) == []
+
+
+def test_a_check_may_be_shown_twice():
+    assert gaps(books(), stored_checks() * 2, chapters_in(CHAPTERS)) == []
+
+
+def test_a_ledger_that_moved_on_is_found_out():
+    written, checks, chapters = books(), stored_checks(), chapters_in(CHAPTERS)
+    _, check = checks[0]
+
+    def after(change):
+        moved = copy.deepcopy(written)
+        change(moved[check["source"]], moved[check["source"]][check["entry"]])
+        return gaps(moved, checks, chapters)
+
+    another = min(chapters - {checks[0][0]})
+    assert any(f"belongs to {another}" in gap for gap in after(lambda _, entry: entry.update(chapter=another)))
+    assert any("no notebook" in gap for gap in after(lambda _, entry: entry.update(chapter="99_nothing")))
+    new = {"chapter": "04_laplace", "result": [{"name": "y", "printed": "1"}]}
+    assert any("checked by no chapter" in gap for gap in after(lambda book, _: book.update({"Example 99": new})))
+    assert after(lambda book, _: book.update({"Figure 99": {"chapter": "04_laplace"}})) == []
+    row = {"name": "another", "printed": "1"}
+    assert any("not the results" in gap for gap in after(lambda _, entry: entry["result"].append(row)))
+
+
+# Truth.
+
+
+def untrue(written, computed):
+    """The statuses of a source that are not true, in sentences; `computed` holds texts by entry and result."""
+    found = []
+    rows = [(name, row) for name, entry in written.items() for row in entry.get("result", [])]
+    assumed = Counter(row["assuming"] for _, row in rows if row.get("status") == "reconstructed")
+    for entry, row in rows:
+        status, kind = row.get("status", "reproduced"), row.get("kind", "number")
+        if status == "measured":
+            continue
+        where = f"{entry}, {row['name']}"
+        value = computed.get((entry, row["name"]))
+        if value is None:
+            found.append(f"{where}: nothing is computed")
+            continue
+        printed_holds = same(kind, value, row["printed"])
+        if status == "reproduced" and not printed_holds:
+            found.append(f"{where}: {value} is not {row['printed']}")
+        if status in ("corrected", "unreproduced"):
+            told = row["correct" if status == "corrected" else "computed"]
+            if printed_holds:
+                found.append(f"{where}: the book is right")
+            if not same(kind, value, told):
+                found.append(f"{where}: {value} is not {told}")
+        if status == "reconstructed":
+            if not within(value, row["printed"], row["within"]):
+                found.append(f"{where}: {value} is not within {row['within']} of {row['printed']}")
+            if assumed[row["assuming"]] < 2:
+                found.append(f"{where}: an assumption for this number alone")
+    return found
+
+
+def same(kind, value, told):
+    if kind == "claim":
+        return value.split() == told.split() or value.lower().split() == told.lower().split()
+    return same_number(value, told) if kind == "number" else same_formula(value, told)
+
+
+def same_number(value, told):
+    """Whether a number lies within half a unit of the last digit of another."""
+    if "oo" in (value, told):
+        return value == told
+    mantissa, _, exponent = told.lower().partition("e")
+    half = Decimal(5).scaleb(int(exponent or 0) - len(mantissa.partition(".")[2]) - 1)
+    with localcontext(Context(prec=200)):
+        return abs(Decimal(value) - Decimal(told)) <= half
+
+
+def within(value, printed, margin):
+    with localcontext(Context(prec=200)):
+        if margin.endswith("%"):
+            margin = abs(Decimal(printed)) * Decimal(margin.rstrip("% ")) / 100
+        return abs(Decimal(value) - Decimal(printed)) <= Decimal(margin)
+
+
+KNOWN = [
+    "exp", "log", "sqrt", "Abs", "sign", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh",
+    "re", "im", "Min", "Max", "factorial", "gamma", "Heaviside", "Derivative", "Integral", "Subs",
+]  # fmt: skip
+OPERATIONS = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: operator.pow,
+}
+
+
+def read(text, draw):
+    """An expression with an elementary function in place of each unknown one: in every draw another."""
+
+    def coefficients(name, number):
+        dice = random.Random(f"{name} {draw}")
+        return [sympy.Rational(dice.randint(1, 999), 500) for _ in range(number)]
+
+    def of(node):
+        match node:
+            case ast.Constant(int() | float()):
+                return sympy.Rational(ast.get_source_segment(text, node))
+            case ast.Name("pi" | "oo" | "I" as name):
+                return getattr(sympy, name)
+            case ast.Name(name):
+                return sympy.Symbol(name, positive=True) if name != "s" else sympy.Symbol("s")
+            case ast.BinOp(left, operation, right):
+                return OPERATIONS[type(operation)](of(left), of(right))
+            case ast.UnaryOp(ast.USub(), operand):
+                return -of(operand)
+            case ast.UnaryOp(ast.UAdd(), operand):
+                return of(operand)
+            case ast.Tuple(parts):
+                return sympy.Tuple(*map(of, parts))
+            case ast.Call(ast.Name(name), arguments) if name in KNOWN:
+                return getattr(sympy, name)(*map(of, arguments))
+            case ast.Call(ast.Name(name), arguments):
+                start, height, *rates = coefficients(name, 2 + len(arguments))
+                exponent = sum(rate * of(argument) for rate, argument in zip(rates, arguments, strict=True))
+                return start + height * sympy.exp(-exponent)
+        raise ValueError(f"cannot read {text!r}")
+
+    return of(ast.parse(text, mode="eval").body).doit()
+
+
+@functools.cache
+def same_formula(one, other, points=12, least=6):
+    """Whether two formulas, or two equations, agree to 35 digits at random points."""
+    if ("=" in one) != ("=" in other):
+        return False
+    alike, opposite = [], []
+    for draw in range(points):
+        sides = []
+        for text in (one, other):
+            left, _, right = (part.strip() for part in text.partition("="))
+            sides.append(read(left, draw) - (read(right, draw) if right else 0))
+        if "oo" in (one, other):
+            return sides[0] == sides[1]
+        dice = random.Random(draw)
+        point = {}
+        for letter in sorted(sides[0].free_symbols | sides[1].free_symbols, key=str):
+            point[letter] = sympy.Rational(dice.randint(1, 10**6), 10 ** dice.randint(3, 8))
+            if letter.name == "s":
+                point[letter] = point[letter] * sympy.I + dice.randint(-3, 3)
+        a, b = (side.subs(point).evalf(60) for side in sides)
+        if a.is_number and b.is_number and a.is_finite and b.is_finite:
+            limit = sympy.Float("1e-35") * (sympy.Float("1e-20") + abs(a) + abs(b))
+            alike.append(abs(a - b) <= limit)
+            # an equation may have its sides exchanged
+            opposite.append("=" in one and abs(a + b) <= limit)
+    return len(alike) >= least and (all(alike) or all(opposite))
+
+
+def computed_in(checks, source):
+    return {
+        (check["entry"], row["name"]): row["computed"]
+        for _, check in checks
+        if check["source"] == source
+        for row in check["verdicts"]
+    }
+
+
+@pytest.mark.parametrize("source", books())
+def test_every_status_is_true(source):
+    found = untrue(books()[source], computed_in(stored_checks(), source))
+    assert not found, "\n" + "\n".join(map(str, found))
+
+
+SYNTHETIC = tomllib.loads("""
+[digits]
+result = [
+    { name = "share", printed = "0.63" },
+    { name = "large", printed = "2e3" },
+    { name = "limit", printed = "oo" },
+    { name = "wrong", printed = "1.50", status = "corrected", correct = "1.60", because = "a slip" },
+    { name = "open", printed = "1.50", status = "unreproduced", computed = "1.60", because = "unknown" },
+    { name = "measured", printed = "17.3", status = "measured", because = "in the laboratory" },
+]
+[curves]
+result = [
+    { name = "first", printed = "10", status = "reconstructed", assuming = "F = 1", within = "5 %" },
+    { name = "second", printed = "-2", status = "reconstructed", assuming = "F = 1", within = "0.1" },
+]
+[formulas]
+result = [
+    { name = "H", kind = "formula", printed = "K/(T*s + 1)" },
+    { name = "y", kind = "formula", printed = "s*Y(s) - y(0) = 2*U(s)" },
+    { name = "h", kind = "formula", printed = "Integral(q(theta)/A, (theta, 0, t)) + f(oo)" },
+    { name = "d", kind = "formula", printed = "Subs(Derivative(f(t), t), t, 0)" },
+    { name = "wrong", kind = "formula", printed = "-K", status = "corrected", correct = "K", because = "a sign" },
+]
+[claims]
+result = [
+    { name = "stable", kind = "claim", printed = "Yes" },
+    { name = "action", kind = "claim", printed = "direct", status = "corrected", correct = "reverse", because = "a" },
+]
+""")
+TRUE = {
+    ("digits", "share"): "0.632121",
+    ("digits", "large"): "1500",
+    ("digits", "limit"): "oo",
+    ("digits", "wrong"): "1.6049",
+    ("digits", "open"): "1.595",
+    ("curves", "first"): "10.5",
+    ("curves", "second"): "-1.9",
+    ("formulas", "H"): "K/T/(s + 1/T)",
+    ("formulas", "y"): "-y(0) + s*Y(s) - 2*U(s) = 0",
+    ("formulas", "h"): "f(oo) + Integral(q(x), (x, 0, t))/A",
+    ("formulas", "d"): "Subs(Derivative(f(x), x), x, 0)",
+    ("formulas", "wrong"): "K*(sin(T)**2 + cos(T)**2)",
+    ("claims", "stable"): "yes",
+    ("claims", "action"): "Reverse",
+}
+
+
+def test_true_statuses_are_accepted():
+    assert untrue(SYNTHETIC, TRUE) == []
+
+
+@pytest.mark.parametrize(
+    ("entry", "name", "value", "words"),
+    [
+        ("digits", "share", "0.6351", "0.6351 is not 0.63"),
+        ("digits", "share", "oo", "oo is not 0.63"),
+        ("digits", "large", "2501", "2501 is not 2e3"),
+        ("digits", "limit", "1e99", "is not oo"),
+        ("digits", "wrong", "1.50", "the book is right"),
+        ("digits", "wrong", "1.606", "1.606 is not 1.60"),
+        ("digits", "open", "1.505", "the book is right"),
+        ("digits", "open", "1.7", "1.7 is not 1.60"),
+        ("curves", "first", "10.51", "not within 5 %"),
+        ("curves", "second", "-2.11", "not within 0.1"),
+        ("formulas", "H", "K/(T*s - 1)", "is not K/(T*s + 1)"),
+        ("formulas", "H", "K/(T*s + 1) + 1/10**30", "is not K/(T*s + 1)"),
+        ("formulas", "H", "K/(T*s + 1) = 0", "is not K/(T*s + 1)"),
+        ("formulas", "y", "s*Y(s) + y(0) = 2*U(s)", "is not s*Y(s)"),
+        ("formulas", "h", "Integral(q(x), (x, 0, t)) + f(oo)", "is not Integral"),
+        ("formulas", "d", "Subs(Derivative(f(x), x), x, 1)", "is not Subs"),
+        ("formulas", "wrong", "-K", "the book is right"),
+        ("formulas", "wrong", "2*K", "2*K is not K"),
+        ("claims", "stable", "no", "no is not Yes"),
+        ("claims", "action", "Direct", "the book is right"),
+        ("claims", "action", "neither", "neither is not reverse"),
+        ("claims", "action", None, "nothing is computed"),
+    ],
+)
+def test_a_value_that_belies_its_status_is_found_out(entry, name, value, words):
+    found = untrue(SYNTHETIC, TRUE | {(entry, name): value})
+    assert any(words in sentence for sentence in found)
+    assert all(sentence.startswith(f"{entry}, {name}: ") for sentence in found)
+
+
+@pytest.mark.parametrize(
+    ("entry", "name", "lie", "words"),
+    [
+        ("digits", "share", {"status": "corrected", "correct": "0.632", "because": "a"}, "the book is right"),
+        ("digits", "share", {"status": "unreproduced", "computed": "0.63", "because": "a"}, "the book is right"),
+        ("digits", "wrong", {"status": "reproduced"}, "1.6049 is not 1.50"),
+        ("digits", "wrong", {"correct": "1.7"}, "1.6049 is not 1.7"),
+        ("curves", "first", {"within": "4 %"}, "not within 4 %"),
+        ("curves", "first", {"assuming": "F = 2"}, "an assumption for this number alone"),
+        ("formulas", "H", {"status": "corrected", "correct": "K", "because": "a"}, "the book is right"),
+        ("claims", "stable", {"status": "unreproduced", "computed": "no", "because": "a"}, "the book is right"),
+        ("digits", "measured", {"status": "reproduced"}, "nothing is computed"),
+    ],
+)
+def test_a_false_status_is_found_out(entry, name, lie, words):
+    book = copy.deepcopy(SYNTHETIC)
+    next(row for row in book[entry]["result"] if row["name"] == name).update(lie)
+    assert any(f"{entry}, {name}: " in sentence and words in sentence for sentence in untrue(book, TRUE))
+
+
+def test_what_cannot_be_read_is_no_agreement():
+    with pytest.raises(ValueError, match="cannot read"):
+        same_formula("K if T else s", "K")
+    with pytest.raises(InvalidOperation):
+        same_number("about 3", "3")
+
+
+# ERRATA.md and the command that writes it.
+
+
+def test_errata_is_what_the_command_writes():
+    assert (ROOT / "ERRATA.md").read_text(encoding="utf-8") == errata.page(sources())
+
+
+def test_errata_names_every_error_of_the_books():
+    told = (ROOT / "ERRATA.md").read_text(encoding="utf-8")
+    for source, entries in books().items():
+        for name, entry in entries.items():
+            for row in entry.get("result", []):
+                if row.get("status") not in ("corrected", "unreproduced"):
+                    continue
+                line = next(line for line in told.splitlines() if f"**{name}" in line and f"`{row['name']}`" in line)
+                stored = row.get("correct") or row["computed"]
+                assert all(part in line for part in (row["printed"], stored, row["because"], entry["chapter"]))
+        assert source in sources()
+
+
+def test_errata_lists_corrections_and_what_is_not_reproduced_and_nothing_else():
+    content = """
+[source]
+citation = "A. Author"
+["Example 1"]
+title = "An example"
+chapter = "10_tuning"
+result = [
+    { name = "a", printed = "1", equation = "1.2", status = "corrected", correct = "2", because = "a slip" },
+    { name = "b", printed = "3", status = "unreproduced", computed = "4", because = "nobody knows" },
+    { name = "c", printed = "5", status = "reconstructed", assuming = "F = 1", within = "5 %" },
+    { name = "d", printed = "6", status = "measured", because = "in the laboratory" },
+    { name = "e", printed = "7" },
+]
+"""
+    told = errata.page({"book": Source.read("book", content.encode())})
+    assert "A. Author" in told
+    corrected, unreproduced = [line for line in told.splitlines() if line.startswith("- ")]
+    assert all(part in corrected for part in ("Example 1", "1.2", "`a`", "`1`", "`2`", "a slip", "10_tuning"))
+    assert all(part in unreproduced for part in ("Example 1", "`b`", "`3`", "`4`", "nobody knows", "10_tuning"))
+    assert errata.page({"book": Source.read("book", content.partition("result")[0].encode())}) == errata.INTRODUCTION
+
+
+def test_the_totals_add_up():
+    for source, count in errata.totals(sources()).items():
+        expected = Counter(
+            row.get("status", "reproduced") for entry in books()[source].values() for row in entry.get("result", [])
+        )
+        assert {status: number for status, number in count.items() if number} == expected
+
+
+def test_the_command_prints_every_source_and_writes_errata(tmp_path):
+    command = [sys.executable, "-m", "loopbook", "ledger"]
+    environment = os.environ | {"PYTHONUTF8": "1"}
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, encoding="utf-8", env=environment, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    totals = errata.totals(sources())
+    head, *lines = [line.split() for line in done.stdout.splitlines() if line.split()]
+    assert head == [*totals, "all"]
+    numbers = {line[0]: [int(number) for number in line[1:]] for line in lines if line[-1].isdigit()}
+    for status in STATUSES:
+        each = [count[status] for count in totals.values()]
+        assert numbers[status] == [*each, sum(each)]
+    assert numbers["all"] == [sum(column) for column in zip(*(numbers[status] for status in STATUSES), strict=True)]
+    assert (tmp_path / "ERRATA.md").read_bytes() == (ROOT / "ERRATA.md").read_bytes().replace(b"\r\n", b"\n")
+
+
+@pytest.mark.parametrize("content", ["[source", '[source]\ncitation = "A"\n["Example 1"]\ntitle = "A"\n'])
+def test_the_command_refuses_a_malformed_source_in_one_line(tmp_path, monkeypatch, content):
+    (tmp_path / "malformed.toml").write_text(content, encoding="utf-8")
+    folder = SimpleNamespace(resources=SimpleNamespace(files=lambda package: tmp_path))
+    monkeypatch.setattr(loopbook.ledger, "importlib", folder)
+    done = CliRunner().invoke(app, ["ledger", "--errata", str(tmp_path / "ERRATA.md")])
+    assert done.exit_code == 1
+    assert done.output.startswith("malformed")
+    assert len(done.output.splitlines()) == 1
+    assert not (tmp_path / "ERRATA.md").exists()
