@@ -14,7 +14,7 @@ import sympy
 
 from loopbook.laplace import evaluate, t
 
-__all__ = ["Picture", "TimePlot", "time_plot"]
+__all__ = ["Picture", "TimePlot", "time_plot", "trends"]
 
 STYLE = {
     # One typeface for words and mathematics; it comes with matplotlib, so that every machine draws the same picture.
@@ -46,7 +46,7 @@ STYLE = {
 }
 
 ROLES = {
-    "setpoint": {"color": "#000000", "linestyle": (0, (4, 3)), "linewidth": 1.2},
+    "setpoint": {"color": "#000000", "linestyle": (0, (4, 3)), "linewidth": 1.2, "zorder": 3},
     "measurement": {"color": "#0072B2", "linestyle": "-", "linewidth": 2.0},
     "control signal": {"color": "#D55E00", "linestyle": (0, (16, 2)), "linewidth": 1.6},
     "disturbance": {"color": "#CC79A7", "linestyle": (0, (8, 2, 2, 2)), "linewidth": 1.6},
@@ -216,8 +216,9 @@ def time_plot(signals, times, title=None, xlabel="$t$ [s]", ylabel=None, ylim=No
     Arguments:
         signals: ``{label: signal}``, or a list of these, one a panel from the top down. A signal is a SymPy expression
             in `t`, a number, or an array with one value for each time; ``(signal, role)`` gives it the colour of its
-            role: "setpoint", "measurement", "control signal" or "disturbance". Labels may hold mathematics between
-            dollar signs. A panel with one input and nothing else is half as high as the others.
+            role: "setpoint", "measurement", "control signal" or "disturbance", or a number 0, 1, 2 ... for that of a
+            response. Labels may hold mathematics between dollar signs. A panel with one input and nothing else is half
+            as high as the others.
         times: increasing times, in the unit that `xlabel` says.
         title: stands above the plot; begins with the name of the book's figure where there is one.
         xlabel, ylabel: names of the axes with their units; `ylabel` is a list where there are several panels. A panel
@@ -260,8 +261,9 @@ def time_plot(signals, times, title=None, xlabel="$t$ [s]", ylabel=None, ylim=No
         number = 0
         for axes, panel, name in zip(grid, curves, ylabels, strict=True):
             for label, (x, y, role) in panel.items():
-                (lines[label],) = axes.plot(x, y, label=label, **(ROLES[role] if role else response_look(number)))
                 number += role is None
+                look = ROLES[role] if role in ROLES else response_look(number - 1 if role is None else role)
+                (lines[label],) = axes.plot(x, y, label=label, **look)
             if len(panel) > 1:
                 axes.legend()
             axes.set_ylabel(name or (label if len(panel) == 1 else ""))
@@ -273,6 +275,57 @@ def time_plot(signals, times, title=None, xlabel="$t$ [s]", ylabel=None, ylim=No
         figure.align_ylabels()
     shown = "; ".join(", ".join(map(plain_words, panel)) for panel in panels)
     return TimePlot(figure, f"{plain_words(title) + ': ' if title else ''}{shown} against {plain_words(xlabel)}", lines)
+
+
+def trends(runs, title=None, disturbances=(), measured=False, minutes=False, limits=None, output=None, control=None):
+    """Plot simulated loops as an operator sees them: setpoint and measurement above, control signal below.
+
+    Arguments:
+        runs: a `simulation.Run`, or ``{label: run}`` for several runs with the same times and the same setpoint.
+        title: stands above the plot; begins with the name of the book's figure where there is one.
+        disturbances: names of inputs of the plant, each shown in a panel of its own below the others.
+        measured: show the noisy measurement instead of the plant's output.
+        minutes: write the time in minutes, for runs in seconds.
+        limits: lowest and highest value of the upper panel's axis, where it must not follow the signals.
+        output, control: names of other signals than the plant's output and the manipulated input.
+    Returns:
+        A `TimePlot`, which a notebook shows as the value of a cell.
+    Raises:
+        ValueError: for runs with different times, or a signal that they do not have.
+
+    >>> from loopbook.pid import PID, Controller
+    >>> from loopbook.plants import HeatedTank
+    >>> from loopbook.simulation import simulate
+    >>> controller = Controller(PID(2000, Ti=300), step=10, u0=10000)
+    >>> trends(simulate(HeatedTank(), controller, until=1000, setpoint=31), "A warmer tank")
+    <A warmer tank: setpoint, T; P against t [s]>
+    """
+    import numpy
+
+    runs = runs if isinstance(runs, dict) else {"": runs}
+    first = next(iter(runs.values()))
+    if any(not numpy.array_equal(run.times, first.times) for run in runs.values()):
+        raise ValueError("the runs have different times: expected the same step and the same end")
+    output, control = output or str(first.plant.output.func), control or str(first.plant.manipulated.func)
+    source = "measurement" if measured else output
+
+    def panel(name, signal, role):
+        letter = f"${sympy.latex(sympy.Symbol(name))}$"
+        if len(runs) == 1:
+            return {letter: (first[signal], role)}
+        return {f"{letter}, {label}": (run[signal], n) for n, (label, run) in enumerate(runs.items())}
+
+    top = {"setpoint": (first["setpoint"], "setpoint")} if "setpoint" in first.signals else {}
+    panels = [top | panel(output, source, "measurement"), panel(control, control, "control signal")]
+    panels += [{f"${sympy.latex(sympy.Symbol(x))}$": (first[x], "disturbance")} for x in disturbances]
+    names = [f"${sympy.latex(sympy.Symbol(x))}$ [{_unit(first.plant, x)}]" for x in (output, control, *disturbances)]
+    times = first.times / (60 if minutes else 1)
+    xlabel = "$t$ [min]" if minutes else "$t$ [s]"
+    return time_plot(panels, times, title=title, xlabel=xlabel, ylabel=names, ylim=limits)
+
+
+def _unit(plant, name):
+    return plant.quantities[plant.signal(name)].unit or "1"
 
 
 def response_look(number):
@@ -310,8 +363,9 @@ def _curve(label, what, times, before):
     """The points of a line, and its role."""
     import numpy
 
-    signal, role = what if isinstance(what, tuple) and len(what) == 2 and isinstance(what[1], str) else (what, None)
-    if role is not None and role not in ROLES:
+    with_role = isinstance(what, tuple) and len(what) == 2 and isinstance(what[1], (str, int))
+    signal, role = what if with_role else (what, None)
+    if isinstance(role, str) and role not in ROLES:
         raise ValueError(f"{label} has the unknown role {role!r}: the roles are {', '.join(ROLES)}")
     if isinstance(signal, (sympy.Expr, numbers.Real)):
         signal = sympy.sympify(signal)

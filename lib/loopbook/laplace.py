@@ -537,14 +537,14 @@ def evaluate(f, times):
     if f.has(sympy.oo, sympy.zoo):
         raise ValueError(f"cannot evaluate {f}: it is infinite")
     values = numpy.full(times.shape, numpy.nan)
-    for start, end, between in _between_steps(f):
+    for start, end, between in between_steps(f):
         here = (start <= times) & (times < end)
         if here.any():
             values[here] = _values(between, times[here])
     return values
 
 
-def _between_steps(f):
+def between_steps(f):
     """Split f(t) at its steps: (start, end, f without steps) for each stretch of time between them.
 
     What comes late is left out before its time, when a factor such as exp(1000 - t) would be beyond all numbers.

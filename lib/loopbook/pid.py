@@ -1,0 +1,366 @@
+"""The PID controller: its settings and their forms, and the practical digital controller of Haugen, Section 7.4."""
+
+import math
+from dataclasses import dataclass
+
+import sympy
+
+from loopbook.expressions import exact, s
+from loopbook.scaling import PERCENT, Scaling
+
+__all__ = ["PID", "Controller", "LowpassFilter"]
+
+FORMS = ("parallel", "serial")
+
+
+@dataclass(frozen=True)
+class PID:
+    """Settings of a PID controller: exact numbers or letters.
+
+    The parallel form is ``Kp*(1 + 1/(Ti*s) + Td*s/(Tf*s + 1))``; the serial form, also called cascade or series
+    form, is ``Kp*(1 + 1/(Ti*s))*(Td*s + 1)/(Tf*s + 1)``. A controller without integral term has Ti = oo.
+
+    Arguments:
+        Kp: gain, in units of the control signal for one unit of the measurement; negative for direct action.
+        Ti, Td: integral time and derivative time, in the unit of the process's lags.
+        Tf: lag of the filter in the derivative term, often 0.1 Td; of the whole controller in the serial form.
+        form: "parallel" or "serial".
+    Raises:
+        ValueError: for a time that is negative, an integral time of zero, or another form.
+    Source: Haugen, equations (7.11), (7.16) to (7.18), (10.22) and (10.23).
+
+    >>> PID(2, Ti=10).expr
+    2 + 1/(5*s)
+    """
+
+    Kp: sympy.Expr
+    Ti: sympy.Expr = sympy.oo
+    Td: sympy.Expr = sympy.S.Zero
+    Tf: sympy.Expr = sympy.S.Zero
+    form: str = "parallel"
+
+    def __post_init__(self):
+        for name in ("Kp", "Ti", "Td", "Tf"):
+            try:
+                value = exact(getattr(self, name))
+            except ValueError as error:
+                raise ValueError(f"{name} is {error}") from None
+            object.__setattr__(self, name, value)
+            if (value.is_real is False and value != sympy.oo) or (name != "Ti" and value.is_infinite):
+                raise ValueError(f"{name} is {value}: expected a finite real number")
+            if name != "Kp" and value.is_negative:
+                raise ValueError(f"{name} is {value}: expected a time that is not negative")
+        if self.Ti == 0:
+            raise ValueError("Ti is 0: expected a positive integral time, or oo for a controller without integral term")
+        if self.form not in FORMS:
+            raise ValueError(f"form is {self.form!r}: expected {' or '.join(FORMS)}")
+
+    @property
+    def expr(self):
+        """The transfer function from control error to control signal, an expression in `s`.
+
+        >>> Kp, Ti = sympy.symbols("Kp Ti", positive=True)
+        >>> PID(Kp, Ti, form="serial").expr
+        Kp*(1 + 1/(Ti*s))
+        """
+        integral = 0 if self.Ti == sympy.oo else 1 / (self.Ti * s)
+        if self.form == "parallel":
+            return self.Kp * (1 + integral + self.Td * s / (self.Tf * s + 1))
+        return self.Kp * (1 + integral) * (self.Td * s + 1) / (self.Tf * s + 1)
+
+    def parallel(self):
+        """Return the same controller in parallel form. (Haugen, equations 10.24 to 10.26, here with the filter)
+
+        >>> PID(2, Ti=8, Td=2, form="serial").parallel()
+        PID(Kp=5/2, Ti=10, Td=8/5)
+        """
+        if self.form == "parallel":
+            return self
+        if self.Ti == sympy.oo:
+            return PID(self.Kp, Td=self.Td - self.Tf, Tf=self.Tf)
+        Ti = self.Ti + self.Td - self.Tf
+        return PID(self.Kp * Ti / self.Ti, Ti, self.Ti * self.Td / Ti - self.Tf, self.Tf)
+
+    def serial(self):
+        """Return the same controller in serial form.
+
+        Raises ValueError where there is none, because the zeros of the controller are complex (Ti < 4 Td without
+        filter).
+
+        >>> PID(2.5, Ti=10, Td=1.6).serial()
+        PID(Kp=2, Ti=8, Td=2, form='serial')
+        """
+        if self.form == "serial":
+            return self
+        if self.Ti == sympy.oo:
+            return PID(self.Kp, Td=self.Td + self.Tf, Tf=self.Tf, form="serial")
+        # the zeros of the controller: (Ti_serial s + 1)(Td_serial s + 1) = product s^2 + total s + 1
+        total, product = self.Ti + self.Tf, self.Ti * (self.Tf + self.Td)
+        discriminant = sympy.factor(total**2 - 4 * product)
+        if discriminant.is_negative:
+            raise ValueError(f"{self} has complex zeros and therefore no serial form: expected Ti of at least 4 Td")
+        Ti = (total + sympy.sqrt(discriminant)) / 2
+        return PID(self.Kp * Ti / self.Ti, Ti, total - Ti, self.Tf, form="serial")
+
+    @property
+    def proportional_band(self):
+        """The proportional band P_B in percent, for a gain without unit. (Haugen, equation 7.12)
+
+        >>> PID(0.2).proportional_band
+        500
+        """
+        return 100 / self.Kp
+
+    def repeats_per_minute(self, minute=60):
+        """Return how often in a minute the integral term repeats the proportional one. (Haugen, Section 7.3)
+
+        Arguments:
+            minute: a minute in the unit of Ti: 60 for seconds, 1 for minutes.
+
+        >>> PID(1, Ti=12).repeats_per_minute()
+        5
+        """
+        return minute / self.Ti
+
+    @classmethod
+    def from_panel(cls, proportional_band, repeats_per_minute=0, Td=0, Tf=0, minute=60):
+        """Return the settings of a controller whose panel shows proportional band [%] and repeats per minute.
+
+        Arguments:
+            Td, Tf: in the unit of time that is wanted.
+            minute: a minute in that unit: 60 for seconds, 1 for minutes.
+
+        >>> PID.from_panel(50, repeats_per_minute=5)
+        PID(Kp=2, Ti=12)
+        """
+        repeats = exact(repeats_per_minute)
+        return cls(100 / exact(proportional_band), sympy.oo if repeats == 0 else minute / repeats, Td, Tf)
+
+    def __repr__(self):
+        shown = {name: getattr(self, name) for name in ("Kp", "Ti", "Td", "Tf")}
+        default = {"Kp": None, "Ti": sympy.oo, "Td": 0, "Tf": 0}
+        parts = [f"{name}={value}" for name, value in shown.items() if value != default[name]]
+        return f"PID({', '.join(parts + ([] if self.form == 'parallel' else ['form=' + repr(self.form)]))})"
+
+
+class LowpassFilter:
+    """A first-order lag as a program: gain 1, lag `T`, exact for an input that is held between samples.
+
+    Arguments:
+        T: lag, not negative; 0 lets the input through.
+        step: time between two samples, positive, in the unit of T.
+    Source: Haugen, equation (7.1).
+
+    >>> smooth = LowpassFilter(T=2, step=1)
+    >>> [round(smooth.update(x), 4) for x in (0, 1, 1, 1)]
+    [0, 0.0, 0.3935, 0.6321]
+    """
+
+    def __init__(self, T, step):
+        T, self.step = _number("T", T), _positive("step", step)
+        if T < 0:
+            raise ValueError(f"T is {T:g}: expected a lag that is not negative")
+        self.remains = math.exp(-self.step / T) if T else 0.0
+        self.follows_at_once = T == 0
+        self.output = self.input = None
+
+    def update(self, x):
+        """Take the input of this sample and return the output of this sample; the first one is at rest."""
+        if self.output is None or self.follows_at_once:
+            self.output = x
+        else:
+            self.output = self.input + self.remains * (self.output - self.input)
+        self.input = x
+        return self.output
+
+
+class Controller:
+    """The practical PID controller, run once a sample. (Haugen, Sections 7.2 to 7.4)
+
+    The control signal is u = u0 + u_p + u_i + u_d + u_f, limited, with the feedforward u_f and
+
+        u_p = Kp (w_p y_SP - y),    du_i/dt = Kp/Ti (y_SP - y),    u_d = Kp Td d/dt (w_d y_SP - y), filtered by Tf.
+
+    Each part is exact for signals that are held between samples.
+
+    Arguments:
+        settings: a `PID` with numbers; a serial one is converted to parallel form.
+        step: time between two samples, in the unit of the settings' times.
+        u0: nominal (manual) control signal, in the unit of the control signal.
+        action: "reverse", or "direct" for a controller that must raise u when the measurement rises: its gain is -Kp.
+        limits: lowest and highest control signal; the actuator cannot leave them.
+        pid_limits: lowest and highest u_PID = u - u_f, as in the note to Haugen, Example 8.1.
+        w_p, w_d: setpoint weights of the proportional and the derivative term.
+        ramp: the highest rate at which the setpoint moves, in units of the measurement for one unit of time.
+        T_filter: lag of the measurement filter.
+        anti_windup: halt the integration where it would drive a control signal at its limit further.
+        bumpless: let the integral term take up the difference when the mode changes from manual to automatic.
+        measurement_range: (lowest, highest) of the measurement; the controller then works in percent of this range.
+        control_range: (lowest, highest) of what it puts out; u is then in percent of this range inside.
+    Raises:
+        ValueError: for settings with letters, a step that is not positive, limits in the wrong order, or another value
+            that makes no controller.
+
+    >>> controller = Controller(PID(2, Ti=10), step=1, u0=50, limits=(0, 100))
+    >>> [controller.update(setpoint=5, measurement=0) for _ in range(3)]
+    [60.0, 61.0, 62.0]
+    """
+
+    def __init__(
+        self,
+        settings,
+        step,
+        *,
+        u0=0,
+        action="reverse",
+        limits=(-math.inf, math.inf),
+        pid_limits=(-math.inf, math.inf),
+        w_p=1,
+        w_d=1,
+        ramp=math.inf,
+        T_filter=0,
+        anti_windup=True,
+        bumpless=True,
+        measurement_range=None,
+        control_range=None,
+    ):
+        self.step, self.u0 = _positive("step", step), _number("u0", u0)
+        if action not in ("reverse", "direct"):
+            raise ValueError(f"action is {action!r}: expected 'reverse' or 'direct'")
+        if not isinstance(settings, PID):
+            raise ValueError(f"settings is {settings!r}: expected a PID")
+        self.settings, self.action = settings, action
+        parallel = settings.parallel()
+        self.Kp, self.Td, self.Tf = (_number(x, getattr(parallel, x)) for x in ("Kp", "Td", "Tf"))
+        self.Ti = math.inf if parallel.Ti == sympy.oo else _number("Ti", parallel.Ti)
+        if action == "direct":
+            if self.Kp < 0:
+                raise ValueError(f"Kp is {self.Kp:g} and the action is direct: give a positive gain with an action")
+            self.Kp = -self.Kp
+        self.limits, self.pid_limits = _limits("limits", limits), _limits("pid_limits", pid_limits)
+        self.w_p, self.w_d = _number("w_p", w_p), _number("w_d", w_d)
+        self.ramp = _positive("ramp", ramp) * self.step if ramp != math.inf else math.inf
+        self.anti_windup, self.bumpless = bool(anti_windup), bool(bumpless)
+        self.to_percent = self.from_percent = None
+        if measurement_range is not None:
+            self.to_percent = _in_floats(Scaling(measurement_range, PERCENT))
+        if control_range is not None:
+            self.from_percent = _in_floats(Scaling(PERCENT, control_range))
+        self.filter = LowpassFilter(T_filter, step)
+        self.derivative = LowpassFilter(self.Tf, step)
+        self.integral = 0.0
+        self.in_manual = False
+        self.setpoint = self.u = None  # as of the last sample
+        self.terms = (0.0, 0.0, 0.0)
+
+    @property
+    def filtered(self):
+        """The measurement behind the filter at the last sample, in the unit of the measurement."""
+        return self.filter.output
+
+    def update(self, setpoint, measurement, feedforward=0.0, manual=None):
+        """Take the signals of this sample and return the control signal, which is held until the next one.
+
+        Before the first sample the loop was at rest: the setpoint was equal to the measurement.
+
+        Arguments:
+            setpoint, measurement: in the unit of the measurement.
+            feedforward: u_f, in the unit of u.
+            manual: the operator's control signal in manual mode, in the unit of u; NaN keeps the last one. None for
+                automatic mode.
+        Returns:
+            The control signal, in percent or in the unit of `control_range`.
+        """
+        y = self.filter.update(measurement)
+        if self.setpoint is None:
+            self.setpoint = y
+            self._differentiate(self._in_percent(y), self._in_percent(y))
+        # the setpoint that the controller sees moves no faster than the ramp
+        self.setpoint += min(max(setpoint - self.setpoint, -self.ramp), self.ramp)
+        y, y_SP = self._in_percent(y), self._in_percent(self.setpoint)
+
+        u_p = self.Kp * (self.w_p * y_SP - y)
+        u_d = self._differentiate(y_SP, y)
+        if manual is not None:
+            self._by_hand(manual)
+            growth = 0.0
+        else:
+            if self.in_manual and self.bumpless:  # go on from where the operator left the control signal
+                self.integral = self.u - (self.u0 + u_p + u_d + feedforward)
+            u_PID = self.u0 + u_p + self.integral + u_d
+            u = _between(u_PID, self.pid_limits) + feedforward
+            self.u = _between(u, self.limits)
+            growth = self.Kp * self.step / self.Ti * (y_SP - y)
+            if self.anti_windup and self._at_limit(u_PID, u, growth):
+                growth = 0.0
+        self.in_manual = manual is not None
+        self.terms = (u_p, self.integral, u_d)
+        self.integral += growth
+        return self.from_percent(self.u) if self.from_percent else self.u
+
+    def take_over(self, other):
+        """Continue where another controller stopped, as after a change of settings: the integral term stays."""
+        self.setpoint, self.u, self.integral, self.in_manual = other.setpoint, other.u, other.integral, other.in_manual
+        for mine, its in ((self.filter, other.filter), (self.derivative, other.derivative)):
+            mine.input, mine.output = its.input, its.output
+
+    def _in_percent(self, y):
+        return self.to_percent(y) if self.to_percent else y
+
+    def _differentiate(self, y_SP, y):
+        x, last = self.w_d * y_SP - y, self.derivative.input
+        lagging = self.derivative.update(x)
+        if self.Tf:
+            return self.Kp * self.Td * (x - lagging) / self.Tf
+        return self.Kp * self.Td * (x - (x if last is None else last)) / self.step
+
+    def _by_hand(self, manual):
+        if not math.isnan(manual):
+            self.u = _between(manual, self.limits)
+        elif self.u is None:
+            self.u = _between(self.u0, self.limits)
+
+    def _at_limit(self, u_PID, u, growth):
+        """Whether the integral term would drive a limited signal further beyond its limit."""
+        signals = ((u_PID, self.pid_limits), (u, self.limits))
+        return any((growth > 0 and x > high) or (growth < 0 and x < low) for x, (low, high) in signals)
+
+    def __repr__(self):
+        return f"Controller({self.settings}, step={self.step:g})"
+
+
+def _between(x, limits):
+    return min(max(x, limits[0]), limits[1])
+
+
+def _in_floats(scaling):
+    a, b = float(scaling.a), float(scaling.b)
+    return lambda x: a * x + b
+
+
+def _number(name, value):
+    """A float, or ValueError for letters and what is no finite real number."""
+    try:
+        value = exact(value)
+    except ValueError as error:
+        raise ValueError(f"{name} is {error}") from None
+    if not (value.is_number and value.is_real and value.is_finite):
+        raise ValueError(f"{name} is {value}: expected a finite number")
+    return float(value)
+
+
+def _positive(name, value):
+    value = _number(name, value)
+    if value <= 0:
+        raise ValueError(f"{name} is {value:g}: expected a positive number")
+    return value
+
+
+def _limits(name, given):
+    try:
+        low, high = (float(x) for x in given)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} is {given!r}: expected (lowest, highest)") from None
+    if not low < high:
+        raise ValueError(f"{name} is ({low:g}, {high:g}): expected the lower one first")
+    return low, high
