@@ -196,6 +196,32 @@ class TimePlot(Picture):
         self.alt += f"; level: {plain_words(label)}"
         return self
 
+    def points(self, times, values, label, signal=None):
+        """Add single points, such as data between which a curve interpolates.
+
+        Arguments:
+            times, values: one of each for every point, in the units of the axes.
+            label: how the legend calls the points.
+            signal: label of a curve in the panel that is meant; the first panel if not given.
+        Returns:
+            The plot itself, so that it can stand last in a cell.
+        Raises:
+            ValueError: for unequal lengths, or a label that no curve has.
+
+        >>> time_plot({"$u_f$": [2, 3, 5]}, [0, 1, 2], xlabel="$d$ [%]").points([0, 1, 2], [2, 3, 5], "experiments")
+        <u_f against d [%]; points: experiments>
+        """
+        if len(times) != len(values):
+            raise ValueError(f"{label} has {len(times)} times and {len(values)} values")
+        axes = self._line(signal).axes
+        low, high = axes.get_ylim()
+        axes.plot(times, values, "o", color="#000000", markersize=5, label=label, zorder=4)
+        axes.set_ylim(min(low, *map(float, values)), max(high, *map(float, values)))
+        with self._style():
+            axes.legend()
+        self.alt += f"; points: {plain_words(label)}"
+        return self
+
     def _line(self, label):
         if label is None:
             return next(iter(self.lines.values()))

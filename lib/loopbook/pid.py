@@ -84,8 +84,8 @@ class PID:
     def serial(self):
         """Return the same controller in serial form.
 
-        Raises ValueError where there is none, because the zeros of the controller are complex (Ti < 4 Td without
-        filter).
+        Raises ValueError where there is none, because the zeros of the controller are complex (Ti < 4 Td if there is
+        no filter).
 
         >>> PID(2.5, Ti=10, Td=1.6).serial()
         PID(Kp=2, Ti=8, Td=2, form='serial')
@@ -98,7 +98,9 @@ class PID:
         total, product = self.Ti + self.Tf, self.Ti * (self.Tf + self.Td)
         discriminant = sympy.factor(total**2 - 4 * product)
         if discriminant.is_negative:
-            raise ValueError(f"{self} has complex zeros and therefore no serial form: expected Ti of at least 4 Td")
+            raise ValueError(
+                f"{self} has complex zeros and no serial form: expected (Ti - Tf)**2 of at least 4 Ti Td"
+            )
         Ti = (total + sympy.sqrt(discriminant)) / 2
         return PID(self.Kp * Ti / self.Ti, Ti, total - Ti, self.Tf, form="serial")
 
@@ -188,8 +190,8 @@ class Controller:
         step: time between two samples, in the unit of the settings' times.
         u0: nominal (manual) control signal, in the unit of the control signal.
         action: "reverse", or "direct" for a controller that must raise u when the measurement rises: its gain is -Kp.
-        limits: lowest and highest control signal; the actuator cannot leave them.
-        pid_limits: lowest and highest u_PID = u - u_f, as in the note to Haugen, Example 8.1.
+        limits: lowest and highest control signal, of the actuator; none, or 0 to 100 % with a `control_range`.
+        pid_limits: lowest and highest u_PID = u - u_f, as in the note to Haugen, Example 8.1; none if not given.
         w_p, w_d: setpoint weights of the proportional and the derivative term.
         ramp: the highest rate at which the setpoint moves, in units of the measurement for one unit of time.
         T_filter: lag of the measurement filter.
@@ -213,8 +215,8 @@ class Controller:
         *,
         u0=0,
         action="reverse",
-        limits=(-math.inf, math.inf),
-        pid_limits=(-math.inf, math.inf),
+        limits=None,
+        pid_limits=None,
         w_p=1,
         w_d=1,
         ramp=math.inf,
@@ -237,6 +239,8 @@ class Controller:
             if self.Kp < 0:
                 raise ValueError(f"Kp is {self.Kp:g} and the action is direct: give a positive gain with an action")
             self.Kp = -self.Kp
+        if limits is None and control_range is not None:
+            limits = PERCENT
         self.limits, self.pid_limits = _limits("limits", limits), _limits("pid_limits", pid_limits)
         self.w_p, self.w_d = _number("w_p", w_p), _number("w_d", w_d)
         self.ramp = _positive("ramp", ramp) * self.step if ramp != math.inf else math.inf
@@ -261,7 +265,7 @@ class Controller:
     def update(self, setpoint, measurement, feedforward=0.0, manual=None):
         """Take the signals of this sample and return the control signal, which is held until the next one.
 
-        Before the first sample the loop was at rest: the setpoint was equal to the measurement.
+        Before the first sample the loop was at rest: the setpoint equal to the measurement, the control signal u0.
 
         Arguments:
             setpoint, measurement: in the unit of the measurement.
@@ -273,8 +277,9 @@ class Controller:
         """
         y = self.filter.update(measurement)
         if self.setpoint is None:
-            self.setpoint = y
-            self._differentiate(self._in_percent(y), self._in_percent(y))
+            self.setpoint, at_rest = y, self._in_percent(y)
+            self._differentiate(at_rest, at_rest)
+            self.integral = self.Kp * (1 - self.w_p) * at_rest  # so that the control signal was u0
         # the setpoint that the controller sees moves no faster than the ramp
         self.setpoint += min(max(setpoint - self.setpoint, -self.ramp), self.ramp)
         y, y_SP = self._in_percent(y), self._in_percent(self.setpoint)
@@ -357,6 +362,8 @@ def _positive(name, value):
 
 
 def _limits(name, given):
+    if given is None:
+        return -math.inf, math.inf
     try:
         low, high = (float(x) for x in given)
     except (TypeError, ValueError):

@@ -225,11 +225,16 @@ class Plant:
     def numbers(self, expression):
         """Put the plant's values in for its letters: parameters, and signals at the operating point (T, but not T(t)).
 
+        Arguments:
+            expression: an expression, an equation or a matrix.
+
         >>> tank = WoodChipTank()
         >>> tank.numbers(tank.transfer_function("w_out"))
         -1/(1943*s)
         """
-        return exact(expression).xreplace({_letter(letter): value for letter, value in self.values.items()})
+        if not isinstance(expression, (sympy.Equality, sympy.MatrixBase)):
+            expression = exact(expression)
+        return expression.xreplace({_letter(letter): value for letter, value in self.values.items()})
 
     def _in_constants(self, expression):
         """The expression at rest: derivatives are zero, and signals are constants, written as letters."""

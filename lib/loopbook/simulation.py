@@ -111,6 +111,8 @@ def simulate(
         step = controller.step
     times = _grid(begin, until, step)
 
+    if past is not None and not set(past.sources) >= set(names):
+        raise ValueError(f"the earlier run has the inputs {', '.join(past.sources)}, this plant has {', '.join(names)}")
     at_rest = {name: plant.values[plant.signal(name)] for name in names}
     sources = {name: _source(name, signal, times) for name, signal in (at_rest | inputs).items()}
     if controller is not None:
@@ -385,14 +387,14 @@ def _samples(name, signal, times):
     """A signal in time as a list with one value for each sample."""
     import numpy
 
-    if isinstance(signal, sympy.Expr) or _is_number(signal):
+    if isinstance(signal, (sympy.Expr, str)) or _is_number(signal):
         try:
             values = evaluate(exact(signal), times)
         except ValueError as error:
             raise ValueError(f"{name}: {error}") from None
     else:
         try:
-            values = numpy.asarray(signal, dtype=float)
+            values = numpy.asarray(list(signal), dtype=float)
         except (TypeError, ValueError):
             raise ValueError(f"{name} is {signal!r}: expected a number, an expression in t or an array") from None
     if values.shape != times.shape:

@@ -35,7 +35,7 @@ STATUSES = {
     "unreproduced": ("computed", "because"),
     "measured": ("because",),
 }
-_QUANTITY = re.compile(rf"(?P<number>{NUMBER.pattern})(\s+(?P<unit>[^\W\d][\w%°·/^*()-]*|%|°[CF]?))?")
+_QUANTITY = re.compile(rf"(?P<number>{NUMBER.pattern})(\s+(?P<unit>([^\W\d]|[%°]|\(\w[\w/]*\))[\w%°·/^*()-]*))?")
 
 
 @dataclass(frozen=True)
@@ -214,6 +214,19 @@ class Entry:
                 where = f"{self.source}, {self.name}"
                 raise LedgerError(f"{where}: {name!r} is not given, {suggestion(name, list(self.inputs))}")
         values = tuple(self.inputs[name].value for name in names)
+        return values[0] if len(values) == 1 else values
+
+    def measured(self, *names):
+        """Return laboratory data of the example as exact numbers: one for one name, a tuple for several.
+
+        Raises LedgerError for a name that is no result with the status "measured" and a number.
+        """
+        rows = {row.name: row.printed for row in self.results if row.status == "measured" and row.kind == "number"}
+        for name in names:
+            if name not in rows:
+                where = f"{self.source}, {self.name}"
+                raise LedgerError(f"{where}: {name!r} is no measured number, {suggestion(name, list(rows))}")
+        values = tuple(sympy.Rational(rows[name]) for name in names)
         return values[0] if len(values) == 1 else values
 
     @property

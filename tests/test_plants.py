@@ -1,0 +1,246 @@
+"""The plants: what is derived from a balance law is checked by a second derivation."""
+
+import inspect
+
+import numpy as np
+import pytest
+import sympy
+from sympy.core.function import AppliedUndef
+
+from loopbook import plants, s, t
+from loopbook.expressions import agreement
+from loopbook.plants import (
+    BlendingTank,
+    BufferTank,
+    HeatedTank,
+    HeatedTankWithElement,
+    HeatedTankWithTransport,
+    JacketedTank,
+    LiquidTank,
+    MassSpringDamper,
+    MotorWithLoad,
+    Plant,
+    Process,
+    RCCircuit,
+    WoodChipTank,
+    capacitor,
+    inductor,
+    parameters,
+    resistor,
+    resistors_in_parallel,
+    resistors_in_series,
+    signals,
+)
+from loopbook.transfer import static_gain, transfer_functions
+
+NAMED = [
+    cls
+    for _, cls in inspect.getmembers(plants, inspect.isclass)
+    if issubclass(cls, Plant) and cls not in (Plant, Process)
+]
+# These are linear in their signals; the others multiply two of them.
+LINEAR = [LiquidTank, BufferTank, WoodChipTank, MassSpringDamper, MotorWithLoad, RCCircuit, plants.AirHeater]
+SETTLING = [cls for cls in NAMED if cls not in (LiquidTank, BufferTank, WoodChipTank, MotorWithLoad)]
+named = pytest.mark.parametrize("cls", NAMED, ids=lambda cls: cls.__name__)
+
+
+@named
+def test_every_letter_and_signal_has_a_value_a_unit_and_a_meaning(cls):
+    used = set().union(*(equation.free_symbols for equation in cls.model)) - {t}
+    used |= {letter for limits in cls.limits.values() for letter in limits if not sympy.sympify(letter).is_number}
+    assert used == set(cls().parameters)
+    assert {*cls().inputs, *cls.measured.fget(cls()), *(x for x in cls().states if not x.is_Derivative)} == {
+        x for x in cls.quantities if not x.is_Symbol
+    }
+    assert all(unit and meaning for _, unit, meaning in cls.quantities.values())
+
+
+@named
+def test_the_operating_point_is_a_steady_state(cls):
+    plant = cls()
+    rest = [plant.numbers(plant._in_constants(rate)) for rate in plant.state_equations().values()]
+    assert rest == [0] * len(rest)
+    outputs = {plants.name_of(x): plant.numbers(plant._in_constants(f)) for x, f in plant.measured.items()}
+    assert outputs == {name: getattr(plant, name) for name in outputs}
+
+
+@pytest.mark.parametrize("cls", LINEAR, ids=lambda cls: cls.__name__)
+def test_the_transfer_functions_of_a_linear_plant_are_those_of_its_equations(cls):
+    plant = cls()
+    directly = transfer_functions(list(plant.model), plant.output, plant.inputs)
+    for x, H in zip(plant.inputs, directly, strict=True):
+        assert agreement(plant.transfer_function(x), H) == "proved"
+
+
+@pytest.mark.parametrize("cls", SETTLING, ids=lambda cls: cls.__name__)
+def test_a_static_gain_is_the_slope_of_the_static_response(cls):
+    plant = cls()
+    static = plant.static_response()
+    output = plant._in_constants(plant.measured.get(plant.output, plant.output)).subs(static)
+    for x in plant.inputs:
+        slope = output.diff(plants._letter(x)).subs(static)
+        gain = static_gain(plant.numbers(plant.transfer_function(x)))
+        assert sympy.simplify(plant.numbers(slope) - gain) == 0
+
+
+@named
+def test_the_linear_model_is_that_of_small_changes(cls):
+    """Rates with one signal changed a little, numerically, against the matrices."""
+    plant = cls()
+    states, equations = plant.states, plant.state_equations()
+    A, B, C, D = (np.array(plant.numbers(matrix), dtype=float) for matrix in plant.linear_model())
+    at_rest = {x: 0.0 if x.is_Derivative else float(plant.values[x]) for x in [*states, *plant.inputs]}
+
+    def rates(changed, change):
+        values = at_rest | {changed: at_rest[changed] + change}
+        for rate in equations.values():
+            rate = plant.numbers(rate)
+            late = {f: values[f.func(t)] for f in rate.atoms(AppliedUndef) if f not in values}
+            yield float(rate.xreplace({x: sympy.Float(value) for x, value in (values | late).items()}))
+
+    for column, among in ((A, states), (B, plant.inputs)):
+        for n, x in enumerate(among):
+            change = 1e-3
+            slope = np.subtract([*rates(x, change)], [*rates(x, -change)]) / (2 * change)
+            assert slope == pytest.approx(column[:, n], rel=1e-6, abs=1e-12)
+    assert (C.shape, D.shape) == ((1, len(states)), (1, len(plant.inputs)))
+
+
+def test_two_balances_solved_by_hand():
+    tank = JacketedTank()
+    T_p, T_h, T_hin = (sympy.Function(name)(t) for name in ("T_p", "T_h", "T_hin"))
+    in_numbers = [tank.numbers(equation) for equation in tank.model[:2]]
+    constant = {x.func(t): value for x, value in tank.values.items() if not x.is_Symbol and x not in (T_p, T_h, T_hin)}
+    balances = [sympy.Eq(equation.lhs, equation.rhs.subs(constant)) for equation in in_numbers]
+    (H,) = transfer_functions(balances, T_p, [T_hin])
+    assert agreement(tank.numbers(tank.transfer_function("T_hin")), H * sympy.exp(-10 * s)) == "proved"
+
+
+def test_the_heating_element_puts_a_lag_in_front():
+    with_element, without = HeatedTankWithElement(), HeatedTank()
+    ratio = with_element.transfer_function("P") / without.transfer_function("P")
+    assert sympy.simplify(ratio - 1 / (HeatedTankWithElement.T_h * s + 1)) == 0
+    assert with_element.transfer_function("T_i") == without.transfer_function("T_i")
+
+
+def test_an_insulated_tank_is_the_one_without_heat_loss():
+    F, c, m = sympy.Symbol("F", real=True), HeatedTank.c, HeatedTank.m
+    H = HeatedTank().transfer_function("P").subs(HeatedTank.U_h, 0)
+    assert sympy.simplify(H - 1 / (c * F) / (m / F * s + 1)) == 0  # Haugen, equation (6.26)
+
+
+def test_transport_delays_the_measurement_whatever_drives_it():
+    tank = HeatedTankWithTransport()
+    for x in tank.inputs:
+        direct = tank.transfer_function(x, output="T_1")
+        assert sympy.simplify(tank.transfer_function(x) - direct * sympy.exp(-tank.__class__.tau * s)) == 0
+
+
+def test_the_blending_tank_is_linearised_at_its_operating_point():
+    tank = BlendingTank(c_A=4, w_A=0.04)
+    assert tank.numbers(tank.transfer_function("q")) == -4 / (2 * s + sympy.Rational(1, 100))
+
+
+def test_values_are_letters_of_the_class_and_numbers_of_the_object():
+    tank = LiquidTank(A=2.5)
+    assert (LiquidTank.A, tank.A, tank.h_max) == (sympy.Symbol("A", positive=True), sympy.Rational(5, 2), 1)
+    assert repr(tank) == "LiquidTank(A=2.5, h_min=0, h_max=1, q_i=0, q_o=0, h=0.5)"
+    assert "cross-sectional area" in tank._repr_html_()
+
+
+def test_the_text_of_the_class_is_not_changed_by_an_object():
+    Process(1 / (s + 1))
+    assert (Process.model, Process.quantities) == ((), {})
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"B": 1}, "has no 'B'"),
+        ({"A": -1}, "A is -1"),
+        ({"A": float("nan")}, "nan"),
+        ({"A": sympy.oo}, "A is oo"),
+        ({"A": sympy.Symbol("x")}, "A is x"),
+        ({"A": "1"}, "'1'"),
+    ],
+)
+def test_values_that_are_none(wrong, message):
+    with pytest.raises(ValueError, match=message):
+        LiquidTank(**wrong)
+
+
+def test_questions_that_a_plant_cannot_answer():
+    tank = LiquidTank()
+    with pytest.raises(ValueError, match="do not determine h"):
+        tank.static_response()
+    with pytest.raises(ValueError, match="is no input: expected one of q_i, q_o"):
+        tank.transfer_function("h")
+    with pytest.raises(ValueError, match="'x' is no signal"):
+        tank.transfer_function("x")
+    with pytest.raises(ValueError, match="is an input"):
+        tank.transfer_function("q_i", output="q_o")
+    with pytest.raises(ValueError, match="'A' is no signal"):
+        tank.signal("A")
+
+
+# A given transfer function.
+
+
+@pytest.mark.parametrize(
+    "H",
+    [
+        1 / s,
+        sympy.exp(-3 * s) / s**2,
+        (2 * s + 1) / (s**2 + 3 * s + 2),
+        -5 * (s - 1) * sympy.exp(-s / 2) / ((s + 1) * (s + 2) * (s + 3)),
+        sympy.Rational(1, 3) / (4 * s + 1) ** 3,
+    ],
+)
+def test_a_process_has_the_transfer_function_that_it_was_given(H):
+    for x in ("u", "d"):
+        assert agreement(Process(H).transfer_function(x), sympy.sympify(H)) == "proved"
+
+
+@pytest.mark.parametrize(
+    ("H", "message"),
+    [
+        (sympy.Symbol("K") / s, "a number for K"),
+        (s / (s + 1), "not strictly proper"),
+        (sympy.exp(-s), "not strictly proper"),
+        (1 / s + sympy.exp(-s) / s, "different dead times"),
+        ("1/s", "expected"),
+    ],
+)
+def test_what_cannot_be_simulated(H, message):
+    with pytest.raises(ValueError, match=message):
+        Process(H)
+
+
+# Circuits.
+
+
+def test_resistors_from_kirchhoffs_laws():
+    R_1, R_2, I = parameters("R_1 R_2 I")
+    v, i_1, i_2 = signals("v i_1 i_2")
+    one_after_the_other = resistor(v, I, R_1).rhs + resistor(v, I, R_2).rhs
+    assert sympy.simplify(one_after_the_other / I - resistors_in_series(R_1, R_2)) == 0
+    side_by_side = sympy.solve([resistor(v, i_1, R_1), resistor(v, i_2, R_2), sympy.Eq(i_1 + i_2, I)], [v, i_1, i_2])
+    assert sympy.simplify(side_by_side[v] / I - resistors_in_parallel(R_1, R_2)) == 0
+    assert resistors_in_parallel(R_1, R_2) == R_1 * R_2 / (R_1 + R_2)  # equation (3.37)
+    assert resistors_in_parallel(3, 6, 2) == 1
+
+
+def test_the_circuit_follows_from_its_components():
+    v_R, i = signals("v_R i")
+    R, C, v_in, v_out = RCCircuit.R, RCCircuit.C, RCCircuit.v_in, RCCircuit.v_out
+    loop = sympy.Eq(-v_in + v_R + v_out, 0)  # equation (3.43)
+    (H,) = transfer_functions([loop, resistor(v_R, i, R), capacitor(v_out, i, C)], v_out, [v_in])
+    assert agreement(H, RCCircuit().transfer_function()) == "proved"
+
+
+def test_an_inductor_and_a_resistor_make_a_lag():
+    v, v_L, i = signals("v v_L i")
+    R, L = parameters("R L")
+    equations = [sympy.Eq(v, v_L + resistor(v, i, R).rhs), inductor(v_L, i, L)]
+    (H,) = transfer_functions(equations, i, [v])
+    assert agreement(H, 1 / (R * (L / R * s + 1))) == "proved"

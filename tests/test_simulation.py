@@ -1,0 +1,348 @@
+"""The simulator against exact solutions, and what it refuses."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import sympy
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from loopbook import plants, s, t
+from loopbook.laplace import evaluate
+from loopbook.pid import PID, Controller
+from loopbook.plants import (
+    BlendingTank,
+    BufferTank,
+    HeatedTank,
+    HeatedTankWithElement,
+    HeatedTankWithTransport,
+    LiquidTank,
+    MassSpringDamper,
+    Process,
+    RCCircuit,
+    WoodChipTank,
+)
+from loopbook.signals import stepwise
+from loopbook.simulation import simulate
+from loopbook.transfer import feedback, response, step_response
+
+EXACT = 1e-6  # relative to the size of the response
+
+
+def close(computed, exact):
+    return np.abs(computed - exact).max() <= EXACT * max(1, np.abs(exact).max())
+
+
+# The plant alone: against the response of its transfer function, which SymPy inverts.
+
+OPEN = [
+    (MassSpringDamper(), "F", 4),
+    (MassSpringDamper(D=0), "F", 4),
+    (plants.MotorWithLoad(), "i_m", 2),
+    (plants.MotorWithLoad(), "F_L", 2),
+    (RCCircuit(), "v_in", 5),
+    (LiquidTank(h_max=1000), "q_i", 0.1),
+    (LiquidTank(h_max=1000, h=900), "q_o", 0.1),
+    (BufferTank(h_max=100), "F_in", 3),
+    (WoodChipTank(h_max=1000), "u", 7),
+    (WoodChipTank(h_max=1000, tau=0), "u", 7),
+    (WoodChipTank(h=1000, h_max=2000), "w_out", 3),
+    (HeatedTank(), "P", 1000),
+    (HeatedTank(U_h=0, P=8400), "T_i", 5),
+    (HeatedTank(), "T_e", 5),
+    (HeatedTankWithElement(), "P", 1000),
+    (HeatedTankWithTransport(), "u", 10),
+    (HeatedTankWithTransport(), "T_in", -10),
+    (BlendingTank(), "w_A", 0.01),
+    (plants.AirHeater(), "u", 2),
+    (plants.JacketedTank(), "T_hin", -5),
+    (plants.JacketedTank(), "T_pin", 5),
+]
+
+
+@pytest.mark.parametrize(("plant", "source", "change"), OPEN, ids=[f"{type(p).__name__}-{x}" for p, x, _ in OPEN])
+def test_a_step_response_is_the_analytic_one(plant, source, change):
+    H = plant.numbers(plant.transfer_function(source))
+    name = plants.name_of(plant.output)
+    step = 20.0 if H.has(sympy.exp) or "Tank" in type(plant).__name__ else 0.05
+    step = 0.1 if isinstance(plant, plants.AirHeater) else step
+    delays = {float(value) for letter, value in plant.values.items() if str(letter) == "tau"}
+    step = min([step, *(delay for delay in delays if delay)])
+    run = simulate(plant, until=150 * step, step=step, **{source: getattr(plant, source) + change})
+    assert close(run[name] - float(getattr(plant, name)), evaluate(step_response(H, change), run.times))
+
+
+@settings(deadline=None, max_examples=25)
+@given(st.fractions(1, 4, max_denominator=7), st.fractions(0, 3, max_denominator=9))
+def test_dead_time_needs_no_grid(ratio, moment):
+    """Delays and steps between the samples are met exactly."""
+    delay, moment = sympy.Rational(ratio), sympy.Rational(moment)
+    H = sympy.exp(-delay * s) * 2 / ((3 * s + 1) * (s + 1))
+    u = 3 * sympy.Heaviside(t - moment) - 5 * sympy.Heaviside(t - 2 * moment - 1)
+    run = simulate(Process(H), until=12, step=0.75, u=u)
+    assert close(run["y"], evaluate(response(H, u), run.times))
+
+
+@pytest.mark.parametrize("u", [sympy.sin(t), t * sympy.exp(-t), t * sympy.Heaviside(t - 2) + 1])
+def test_signals_that_change_all_the_time_are_integrated_too(u):
+    H = sympy.exp(-sympy.Rational(3, 2) * s) / (2 * s + 1)
+    run = simulate(Process(H), until=20, step=0.7 * 10 / 7, u=u, d=0)
+    assert close(run["y"], evaluate(response(H, u), run.times))
+
+
+def test_an_array_is_held_between_the_samples():
+    levels = np.array([1.0, 1, 4, -2, 0, 0])
+    u = sum((new - old) * sympy.Heaviside(t - k) for k, (old, new) in enumerate(pairwise([0, *levels])))
+    run = simulate(Process(1 / (s + 1)), until=5, step=1, u=levels)
+    assert close(run["y"], evaluate(response(1 / (s + 1), sympy.nsimplify(u)), run.times))
+    assert (run["u"] == levels).all()
+
+
+def test_a_plant_that_is_not_linear():
+    """With a flow that changes, V c' = w - c q is still linear in c; here it is solved by an integrating factor."""
+    tank = BlendingTank()
+    run = simulate(tank, until=600, step=5, q=0.01 + t / 20000)
+    from scipy.integrate import quad
+
+    V, w, c_0 = float(tank.V), float(tank.w_A), float(tank.c_A)
+
+    def turned_over(time):
+        return (0.01 * time + time**2 / 40000) / V
+
+    exact = [
+        math.exp(-turned_over(time))
+        * (c_0 + quad(lambda x: math.exp(turned_over(x)) * w / V, 0, time, epsabs=1e-12)[0])
+        for time in run.times
+    ]
+    assert close(run["c_A"], np.array(exact))
+
+
+# Limits.
+
+
+def test_a_level_stays_within_its_limits_and_leaves_them_at_once():
+    run = simulate(LiquidTank(), until=40, step=1, q_i=stepwise(0.1, {15: 0, 25: 0.05}), q_o=stepwise(0, {15: 0.15}))
+    exact = np.interp(run.times, [0, 5, 15, 15 + 1 / 0.15, 40], [0.5, 1, 1, 0, 0])
+    assert run["h"] == pytest.approx(exact, abs=1e-9)
+
+
+def test_a_concentration_is_never_negative():
+    run = simulate(BlendingTank(), until=1000, step=10, w_A=-0.05)
+    assert run["c_A"].min() == 0
+
+
+# The loop.
+
+
+def method_of_steps(k, delay=1):
+    """Setpoint response of y' = k (1 - y(t - delay)), integrated from one multiple of the delay to the next."""
+    terms = [-((-k) ** (n + 1)) * (t - (n + 1) * delay) ** (n + 1) / sympy.factorial(n + 1) * sympy.Heaviside(
+        t - (n + 1) * delay) for n in range(12)]  # fmt: skip
+    return sum(terms)
+
+
+def test_a_loop_with_dead_time_approaches_the_exact_one_with_the_order_of_the_held_control_signal():
+    errors = []
+    for step in (0.1, 0.05, 0.025, 0.0125):
+        run = simulate(Process(sympy.exp(-s) / s), Controller(PID(0.5), step), until=10, setpoint=1)
+        errors.append(np.abs(run["y"] - evaluate(method_of_steps(sympy.Rational(1, 2)), run.times)).max())
+    orders = [math.log2(coarse / fine) for coarse, fine in pairwise(errors)]
+    assert orders == pytest.approx([1, 1, 1], abs=0.05)
+    assert errors[-1] < 0.003
+
+
+def test_a_sampled_loop_is_that_of_its_difference_equation():
+    """y' = u(t - 1), held: y rises by step*u(k - n) in each step; exact to rounding."""
+    step, n = 0.25, 4
+    run = simulate(Process(sympy.exp(-s) / s), Controller(PID(0.5, 10), step), until=20, setpoint=1)
+    y, u, integral = [0.0], [], 0.0
+    for k in range(len(run.times)):
+        error = 1 - y[k]
+        u.append(0.5 * error + integral)
+        integral += 0.5 * step / 10 * error
+        y.append(y[k] + step * (u[k - n] if k >= n else 0))
+    assert run["y"] == pytest.approx(y[:-1], abs=1e-9)
+    assert run["u"] == pytest.approx(u, abs=1e-9)
+
+
+@pytest.mark.parametrize("pid", [PID(2, 5), PID(2, 5, 1, 0.1), PID(2)])
+def test_a_loop_without_dead_time_approaches_the_transfer_function_of_the_closed_loop(pid):
+    process = 1 / ((4 * s + 1) * (s + 1))
+    times, errors = None, []
+    for step in (0.02, 0.01):
+        run = simulate(Process(process), Controller(pid, step), until=15, setpoint=1)
+        times = run.times
+        exact = evaluate(step_response(feedback(pid.expr * process)), times)
+        errors.append(np.abs(run["y"] - exact).max())
+    assert errors[1] < 0.01
+    assert errors[0] / errors[1] == pytest.approx(2, rel=0.1)
+
+
+def test_the_load_response():
+    process, pid = 1 / (4 * s + 1), PID(2, 5)
+    run = simulate(Process(process), Controller(pid, 0.005), until=15, setpoint=0, d=1)
+    exact = evaluate(step_response(feedback(process, pid.expr)), run.times)
+    assert np.abs(run["y"] - exact).max() < 0.001
+
+
+def chip_loop(**changes):
+    settings = {"step": 5, "u0": 45, "limits": (0, 100), "measurement_range": (0, 15), "T_filter": 20} | changes
+    return Controller(PID(1.35, 917), **settings)
+
+
+def test_what_a_run_contains():
+    run = simulate(
+        WoodChipTank(), chip_loop(), until=500, setpoint=10, noise=0.05, seed=3, w_out=stepwise(25, {100: 30})
+    )
+    assert set(run.signals) == {
+        "h", "u", "w_out", "setpoint", "measurement", "filtered", "u_p", "u_i", "u_d",
+    }  # fmt: skip
+    assert all(len(values) == len(run.times) == 101 for values in run.signals.values())
+    assert run["w_out"][[0, 19, 20, 100]].tolist() == [25, 25, 30, 30]
+    assert run["u"] == pytest.approx(45 + run["u_p"] + run["u_i"] + run["u_d"])
+    assert 0.03 < (run["measurement"] - run["h"]).std() < 0.07
+    assert repr(run) == (
+        "<run of 101 samples, t = 0 to 500: h, u, w_out, setpoint, measurement, filtered, u_p, u_i, u_d>"
+    )
+
+
+def test_a_run_is_the_same_for_the_same_seed_and_does_not_change_its_controller():
+    controller = chip_loop()
+    one, two, other = (
+        simulate(WoodChipTank(), controller, until=2000, setpoint=11, noise=0.05, seed=seed) for seed in (1, 1, 2)
+    )
+    assert (one["h"] == two["h"]).all()
+    assert (one["h"] != other["h"]).any()
+    assert controller.u is None
+
+
+def test_manual_mode_for_a_while():
+    run = simulate(WoodChipTank(), chip_loop(), until=2000, setpoint=10.5, manual=[(100, 300, None), (300, 500, 40)])
+    held = run["u"][19]
+    assert (run["u"][20:60] == held).all()
+    assert (run["u"][60:100] == 40).all()
+    assert run["u"][100] == pytest.approx(40)
+
+
+def test_feedforward_is_added():
+    tank = BufferTank(F_in=2, F_out=2)
+    controller = Controller(PID(1), 1, limits=(0, 5), pid_limits=(-5, 5))
+    run = simulate(tank, controller, until=50, setpoint=1, F_out=2 + sympy.sin(t / 5), feedforward=2 + sympy.sin(t / 5))
+    # what is left is the holding of the control signal: half a step of it, over the density times the area
+    assert np.abs(run["h"] - 1).max() < 1.02 * 0.5 * 1 / (1000 * 0.2)
+    assert run["F_in"] == pytest.approx(2 + np.sin(run.times / 5), abs=0.01)
+
+
+# A run that goes on.
+
+
+@pytest.mark.parametrize("parts", [[500, 1000], [255, 300, 1000]])
+def test_a_run_in_parts_is_the_whole_run(parts):
+    signals = {"setpoint": stepwise(10, {100: 11}), "w_out": stepwise(25, {400: 30}) + sympy.sin(t / 100)}
+    whole = simulate(WoodChipTank(), chip_loop(), until=1000, **signals)
+    run = None
+    for until in parts:
+        run = simulate(WoodChipTank(), chip_loop(), until=until, after=run, **signals)
+    assert run.times.tolist() == whole.times.tolist()
+    for name in whole.signals:
+        assert run[name] == pytest.approx(whole[name], abs=1e-8), name
+
+
+def test_new_settings_and_a_new_delay_take_effect_from_their_moment_on():
+    first = simulate(WoodChipTank(), chip_loop(), until=1000, setpoint=11)
+    longer = simulate(WoodChipTank(tau=600), chip_loop(), until=3000, setpoint=11, after=first)
+    assert (longer["h"][:201] == first["h"]).all()
+    # what now arrives was put on the belt 600 s ago
+    slope = np.diff(longer["h"]) / 5
+    arrived = (float(WoodChipTank().K_s) * longer["u"] - 25) / (145 * 13.4)
+    assert slope[320:500] == pytest.approx(arrived[200:380], abs=1e-9)
+
+
+def test_an_open_run_before_a_closed_one():
+    first = simulate(RCCircuit(), until=2, step=0.5, v_in=3)
+    run = simulate(RCCircuit(), Controller(PID(2, 1), 0.5), until=10, setpoint=1, after=first)
+    assert np.isnan(run["setpoint"][:4]).all()
+    assert run["v_out"][:5].tolist() == first["v_out"].tolist()
+    assert run["v_out"][-1] == pytest.approx(1, abs=0.05)
+
+
+# What is refused.
+
+TANK, LOOP = WoodChipTank(), chip_loop()
+REFUSED = {
+    "a missing step": (lambda: simulate(TANK, until=100), "step is missing"),
+    "a step of zero": (lambda: simulate(TANK, until=100, step=0), "step is 0"),
+    "a step that is no number": (lambda: simulate(TANK, until=100, step="1"), "step is '1'"),
+    "an end that is no number": (lambda: simulate(TANK, until=math.nan, step=1), "end is nan"),
+    "an end between two samples": (lambda: simulate(TANK, until=10.5, step=1), "whole number of steps"),
+    "an end before the beginning": (lambda: simulate(TANK, until=-10, step=1), "whole number of steps"),
+    "a step longer than the delay": (
+        lambda: simulate(TANK, until=900, step=300),
+        "step 300 is longer than the dead time",
+    ),
+    "two different steps": (lambda: simulate(TANK, LOOP, until=100, step=1, setpoint=10), "runs every 5"),
+    "a missing setpoint": (lambda: simulate(TANK, LOOP, until=100), "setpoint is missing"),
+    "a setpoint for nobody": (lambda: simulate(TANK, until=100, step=1, setpoint=10), "no controller"),
+    "a feedforward for nobody": (lambda: simulate(TANK, until=100, step=1, feedforward=1), "no controller"),
+    "two hands on one valve": (lambda: simulate(TANK, LOOP, until=100, setpoint=10, u=5), "controller that sets it"),
+    "an unknown input": (lambda: simulate(TANK, until=100, step=1, q=5), "no input 'q': it has u, w_out"),
+    "a letter in a signal": (lambda: simulate(TANK, until=100, step=1, u=sympy.Symbol("K")), "u: .*number for K"),
+    "a letter and time in a signal": (
+        lambda: simulate(TANK, until=100, step=1, u=sympy.Symbol("K") * t),
+        "number for K",
+    ),
+    "an impulse": (lambda: simulate(TANK, until=100, step=1, u=sympy.DiracDelta(t)), "impulse"),
+    "a signal that is text": (lambda: simulate(TANK, until=100, step=1, u="45"), "u: '45' is of type str"),
+    "a short array": (lambda: simulate(TANK, until=100, step=1, u=[1, 2, 3]), "u has 3 values for 101 samples"),
+    "a short setpoint": (lambda: simulate(TANK, LOOP, until=100, setpoint=[10, 11]), "setpoint has 2 values for 21"),
+    "NaN in an array": (lambda: simulate(TANK, until=2, step=1, u=[1, math.nan, 3]), "u is nan at t = 1"),
+    "NaN as a number": (lambda: simulate(TANK, LOOP, until=100, setpoint=math.nan), "setpoint is nan"),
+    "infinite noise": (lambda: simulate(TANK, LOOP, until=100, setpoint=10, noise=math.inf), "noise"),
+    "negative noise": (lambda: simulate(TANK, LOOP, until=100, setpoint=10, noise=-1), "deviation is -1"),
+    "half a stretch by hand": (lambda: simulate(TANK, LOOP, until=100, setpoint=10, manual=[(0, 5)]), "manual has"),
+    "another plant's run": (
+        lambda: simulate(RCCircuit(), until=20, step=1, after=simulate(TANK, until=10, step=1)),
+        "has the inputs",
+    ),
+    "a signal that the run lacks": (lambda: simulate(TANK, until=10, step=1)["setpoint"], "no signal 'setpoint'"),
+    "an unstable plant": (
+        lambda: simulate(Process(1 / (s - 1)), until=2000, step=1, u=1),
+        "grows beyond all numbers before t = 7",
+    ),
+    "an unstable loop": (
+        lambda: simulate(Process(sympy.exp(-s) / s), Controller(PID(50), 0.5), until=5000, setpoint=1),
+        "grows beyond all numbers",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_what_is_refused_in_one_sentence(case):
+    call, message = REFUSED[case]
+    with pytest.raises(ValueError, match=message) as caught:
+        call()
+    assert "\n" not in str(caught.value)
+
+
+def test_a_plant_that_answers_at_once_cannot_be_in_a_sampled_loop():
+    class Gain(plants.Plant):
+        y, x, u = plants.signals("y x u")
+        model = (sympy.Eq(x.diff(t), -x), sympy.Eq(y, x + u))
+        output, manipulated = y, u
+        quantities = {y: (0, "1", "output"), x: (0, "1", "state"), u: (0, "1", "input")}  # noqa: RUF012
+
+    with pytest.raises(ValueError, match="at once"):
+        simulate(Gain(), Controller(PID(1), 1), until=10, setpoint=1)
+
+
+def test_a_delay_inside_the_plant_is_refused():
+    class Recycle(plants.Plant):
+        x, u = plants.signals("x u")
+        model = sympy.Eq(x.diff(t), u - x.subs(t, t - 2))
+        output, manipulated = x, u
+        quantities = {x: (0, "1", "state"), u: (0, "1", "input")}  # noqa: RUF012
+
+    with pytest.raises(ValueError, match="dead time inside"):
+        simulate(Recycle(), until=10, step=1)
