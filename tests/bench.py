@@ -1,6 +1,7 @@
-"""What the collection costs beside what it stands on: `make bench` prints two tables of medians and their ratios.
+"""What the collection costs beside what it stands on: `make bench` prints tables of medians and their ratios.
 
-The library: a fresh interpreter that imports loopbook, beside one that imports SymPy only. A chapter: its import cell
+The library: a fresh interpreter that imports loopbook, beside one that imports SymPy only. The simulator: a closed loop
+with all practical features, beside a bare loop around SciPy's solver. A chapter: its import cell
 and the whole of it, each in a fresh kernel, beside a fresh kernel that imports no more than the packages the chapter
 uses. What is compared runs in turn, so that a busy minute of the machine burdens both sides.
 """
@@ -15,8 +16,13 @@ from time import perf_counter
 from nbformat import NotebookNode, v4
 from rich.console import Console
 from rich.table import Table
+from scipy.integrate import solve_ivp
 
 from loopbook import notebooks
+from loopbook.pid import PID, Controller
+from loopbook.plants import WoodChipTank
+from loopbook.signals import stepwise
+from loopbook.simulation import simulate
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = {
@@ -104,9 +110,48 @@ def the_chapters(runs: int, paths: list[Path]) -> Table:
     return table
 
 
+def the_simulator(runs: int) -> Table:
+    """A closed loop of 10,000 samples, beside a loop of one's own that calls SciPy's solver once a sample."""
+    samples = 10_000
+    tank = WoodChipTank()
+    controller = Controller(
+        PID(1.35, 917, 60, 6),
+        step=1,
+        u0=45,
+        limits=(0, 100),
+        w_p=0.3,
+        w_d=0,
+        ramp=0.01,
+        T_filter=20,
+        measurement_range=(0, 15),
+    )
+    signals = {"setpoint": stepwise(10, {1000: 11}), "w_out": stepwise(25, {5000: 30})}
+
+    def everything() -> None:
+        simulate(tank, controller, until=samples, noise=0.05, **signals)
+
+    def bare() -> None:  # a P controller and the tank, without any practical feature
+        h, belt = 10.0, [45.0] * 250
+        for k in range(samples):
+            belt.append(45 + 1.35 * ((10 if k < 1000 else 11) - h) * 100 / 15)
+            inflow = 5 / 9 * belt.pop(0)
+            outflow = 25 if k < 5000 else 30
+            rate = (inflow - outflow) / (145 * 13.4)
+            h = solve_ivp(lambda _, x, rate=rate: [rate], (k, k + 1), [h], rtol=1e-9, atol=1e-12).y[0, -1]
+
+    times = medians(runs, everything=everything, bare=bare)
+    table = Table(f"{samples} samples", "time", "ratio", title=f"Simulating a loop, median of {runs}")
+    table.add_row("simulate, all practical features", seconds(times["everything"]), "1.00")
+    table.add_row(
+        "solve_ivp once a sample, bare loop", seconds(times["bare"]), f"{times['bare'] / times['everything']:.2f}"
+    )
+    return table
+
+
 if __name__ == "__main__":
     console = Console()
     console.print(the_library(runs=7))
+    console.print(the_simulator(runs=3))
     chapters = sorted((ROOT / "chapters").glob("*.ipynb"))
     if chapters:
         with console.status("running the chapters"):

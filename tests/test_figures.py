@@ -10,8 +10,12 @@ import pytest
 import sympy
 from sympy import DiracDelta, Heaviside, exp
 
-from loopbook.figures import INPUTS, ROLES, STYLE, plain_words, response_look, time_plot
+from loopbook.figures import INPUTS, ROLES, STYLE, plain_words, response_look, time_plot, trends
 from loopbook.laplace import t
+from loopbook.pid import PID, Controller
+from loopbook.plants import WoodChipTank
+from loopbook.signals import stepwise
+from loopbook.simulation import simulate
 
 TIMES = np.linspace(0, 25, 501)
 LAG = 2 * (1 - exp(-t / 5))
@@ -233,3 +237,65 @@ def test_bad_marks_are_told_in_one_sentence():
         plot.mark(30, "late")
     with pytest.raises(ValueError, match="no signal 'z' in this plot: it has y"):
         plot.level(2, "$KU$", signal="z")
+
+
+def test_a_number_is_the_look_of_that_response():
+    plot = time_plot([{"a": (1, 1), "b": 2}, {"c": (3, 1)}], TIMES)
+    assert plot.lines["a"].get_color() == plot.lines["c"].get_color() == response_look(1)["color"]
+    assert plot.lines["b"].get_color() == response_look(0)["color"]
+
+
+def test_points_are_added_and_stay_inside():
+    plot = time_plot({"u": 1}, [0, 1, 2]).points([0, 2], [1, 7], "data")
+    (axes,) = plot.figure.axes
+    assert axes.get_ylim()[1] >= 7
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["u", "data"]
+    with pytest.raises(ValueError, match="2 times and 1 values"):
+        plot.points([0, 2], [1], "data")
+
+
+# Trends.
+
+
+def loop(Kp, **options):
+    controller = Controller(PID(Kp, 917), step=10, u0=45, limits=(0, 100), measurement_range=(0, 15))
+    signals = {"setpoint": stepwise(10, {100: 11}), "w_out": stepwise(25, {500: 30})} | options
+    return simulate(WoodChipTank(), controller, until=1000, **signals)
+
+
+def test_trends_show_the_loop_as_an_operator_sees_it():
+    run = loop(1.35, noise=0.1)
+    plot = trends(run, "Figure 1.3", disturbances=["w_out"], minutes=True)
+    top, middle, bottom = plot.figure.axes
+    assert [axes.get_ylabel() for axes in (top, middle, bottom)] == ["$h$ [m]", "$u$ [%]", "$w_{out}$ [kg/s]"]
+    assert bottom.get_xlabel() == "$t$ [min]"
+    np.testing.assert_array_equal(plot.lines["$h$"].get_xdata(), run.times / 60)
+    for label, name, role in [
+        ("setpoint", "setpoint", "setpoint"),
+        ("$h$", "h", "measurement"),
+        ("$u$", "u", "control signal"),
+        ("$w_{out}$", "w_out", "disturbance"),
+    ]:
+        np.testing.assert_array_equal(plot.lines[label].get_ydata(), run[name])
+        assert plot.lines[label].get_color() == ROLES[role]["color"]
+    assert trends(run, measured=True).lines["$h$"].get_ydata()[3] == run["measurement"][3] != run["h"][3]
+
+
+def test_trends_compare_runs_in_one_colour_each():
+    plot = trends({"slow": loop(0.5), "fast": loop(2)}, limits=(9, 12))
+    assert list(plot.lines) == ["setpoint", "$h$, slow", "$h$, fast", "$u$, slow", "$u$, fast"]
+    for label in ("slow", "fast"):
+        assert plot.lines[f"$h$, {label}"].get_color() == plot.lines[f"$u$, {label}"].get_color()
+    assert plot.figure.axes[0].get_ylim() == (9, 12)
+
+
+def test_trends_of_a_plant_alone():
+    assert list(trends(simulate(WoodChipTank(), until=500, step=10, u=50)).lines) == ["$h$", "$u$"]
+
+
+def test_trends_need_the_same_times_and_known_signals():
+    short = simulate(WoodChipTank(), until=500, step=10, u=50)
+    with pytest.raises(ValueError, match="different times"):
+        trends({"a": short, "b": loop(1)})
+    with pytest.raises(ValueError, match="'wind'"):
+        trends(short, disturbances=["wind"])

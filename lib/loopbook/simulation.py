@@ -202,7 +202,7 @@ class _System:
         else:
             self.trace = _Trace(self.names, list(past.trace.times), list(past.trace.states))
         self.ahead = iter(self._discontinuities(times))
-        self.solver = ode(self._rate_of_change).set_integrator("dopri5", **TOLERANCE)
+        self.solver = ode(self._rate_of_change).set_integrator("dopri5", first_step=times[1] - times[0], **TOLERANCE)
 
     def _compiled(self, formulas):
         """A program for the formulas, and the signals besides the undelayed states that it needs: (name, delay)."""
