@@ -11,8 +11,16 @@ from loopbook.diagrams import (
     block,
     block_diagram,
     conveyor_belt,
+    delay,
+    disturbance,
+    division,
+    elementary_blocks,
     equivalent_diagrams,
     feedback_loop,
+    gain,
+    integrator,
+    multiplication,
+    overall_diagram,
     parallel_paths,
     sum_of,
 )
@@ -39,6 +47,40 @@ EXAMPLES = {
     ),
     "unity": lambda: block_diagram("r", feedback_loop(["e", parallel_paths(H1, H2, H3, signs="+-+"), "u", H1]), "y"),
     "nested": lambda: block_diagram("u", feedback_loop(feedback_loop(H1, H2), parallel_paths(H2, H3)), "y"),
+    "Figure 1.1": lambda: block_diagram(
+        "y_SP",
+        feedback_loop(
+            ["e", block("Controller"), "u", block("Process", above=["d"])],
+            [block("Sensor", below=["n"]), "y_m", block("Measurement\nfilter"), "y_mf"],
+        ),
+        "y",
+    ),
+    "Figure 2.5": lambda: block_diagram(
+        "F",
+        feedback_loop(
+            [
+                feedback_loop([division("m"), r"\ddot{y}", integrator(r"\dot{y}(0)")], multiplication("D")),
+                r"\dot{y}",
+                integrator("y(0)"),
+            ],
+            multiplication("K"),
+        ),
+        "y",
+    ),
+    "Figure 3.5": lambda: block_diagram(
+        "q_i", disturbance("q_o", sign="-"), division("A"), integrator("h_0", limits=["h_min", "h_max"]), "h"
+    ),
+    "Figure 7.14": lambda: block_diagram(
+        "y_SP",
+        feedback_loop(
+            ["e", H1, "u", H2, disturbance("d", block(r"\frac{K_d}{T_d s+1}"))], [disturbance("n", side="below"), H3]
+        ),
+        "y",
+    ),
+    "two disturbances": lambda: block_diagram(
+        "u", disturbance("v", H1, H2, side="below"), disturbance("d", H1 / (1 + H2 * s), sign="-"), "y"
+    ),
+    "overall": lambda: overall_diagram("Tank", ["P", "Q"], ["T_i", "T_e"], ["c", "m", "U_h"], ["T", "h"]),
     "long": lambda: block_diagram("a long name of a signal", block(r"\frac{s^4+a s^3+b s^2+c s+d}{s^5+e s^4+1}"), "y"),
 }
 
@@ -175,6 +217,84 @@ def test_rows_of_equivalent_diagrams_do_not_touch():
     assert [text for text, _ in texts].count(r"$\Leftrightarrow$") == 3
 
 
+@pytest.mark.parametrize("side", ["above", "below"])
+@pytest.mark.parametrize("sign", ["+", "-"])
+def test_a_disturbance_enters_a_junction_from_its_side_through_its_block(side, sign):
+    picture = block_diagram("u", disturbance("d", H1, sign=sign, side=side), "y")
+    texts, (box,), (junction,), heads, _ = measured(picture)
+    x, y = junction.center
+    extents = dict(texts)
+    up = 1 if side == "above" else -1
+    assert y == 0
+    assert (box.x0 + box.x1) / 2 == pytest.approx(x)
+    assert up * box.y0 > 0
+    assert up * (extents["$d$"].y0 - (box.y1 if up > 0 else box.y0)) > 0
+    assert signs_near(texts, x, y) == sorted([(sign, side), ("+", "left")], key=lambda item: item[1])
+    ends = sorted(up * head[1][1] for head in heads if head[1][0] == pytest.approx(x))  # the second corner is the tip
+    assert ends == pytest.approx([junction.radius, up * (box.y1 if up > 0 else box.y0)])
+    assert repr(picture) == f"<block diagram: u → ({sign} d → [H_1(s)] from {side}) → y>"
+
+
+def test_a_disturbance_without_a_name_and_with_a_wide_block():
+    wide = block(r"\frac{s^4+a s^3+b s^2+c s+d}{s^5+e s^4+1}")
+    picture = block_diagram("u", H1, disturbance("", wide), H2, "y")
+    texts, boxes, (junction,), heads, _ = measured(picture)
+    assert len(texts) == 7
+    for one, other in itertools.combinations(boxes, 2):
+        assert not one.overlaps(other)
+    assert any(tuple(head[1]) == pytest.approx((junction.center[0] - junction.radius, 0)) for head in heads)
+
+
+@pytest.mark.parametrize(
+    ("part", "label", "entries"),
+    [
+        (integrator(), r"$\int$", []),
+        (integrator("y_0", limits=["a", "b"]), r"$\int$", ["$y_0$", "$a$", "$b$"]),
+        (multiplication("K", side="above"), r"$\times$", ["$K$"]),
+        (division("A"), r"$\div$", ["$A$"]),
+        (block("f(u)", above=["d"], below=["a", "b", "c"]), "$f(u)$", ["$d$", "$a$", "$b$", "$c$"]),
+        (delay(), "Delay\n$\\tau$", []),
+    ],
+)
+def test_values_enter_a_block_by_arrows_that_end_at_it(part, label, entries):
+    texts, (box,), _, heads, _ = measured(block_diagram("u", part, "y"))
+    assert [text for text, _ in texts if text not in ("$u$", "$y$")] == [label, *entries]
+    vertical = [head[1][1] for head in heads if box.x0 < head[1][0] < box.x1]
+    assert len(vertical) == len(entries)
+    assert all(y in (pytest.approx(box.y0), pytest.approx(box.y1)) for y in vertical)
+
+
+def test_a_gain_is_a_triangle_that_points_along_the_signal():
+    figure = block_diagram("u", feedback_loop(gain("K"), gain("L")), "y").figure
+    triangles = [p.get_xy() for p in figure.axes[0].patches if isinstance(p, Polygon) and p.get_facecolor()[0] == 1]
+    tips = [corners[2][0] - corners[0][0] for corners in triangles]
+    assert len(tips) == 2
+    assert tips[0] > 0 > tips[1]
+
+
+def test_an_overall_diagram_has_each_kind_of_variable_on_its_side():
+    texts, (box,), _, heads, _ = measured(EXAMPLES["overall"]())
+    place = {text: ((extent.x0 + extent.x1) / 2, (extent.y0 + extent.y1) / 2) for text, extent in texts}
+    assert all(place[name][0] < box.x0 for name in ("$P$", "$Q$"))
+    assert all(place[name][0] > box.x1 for name in ("$T$", "$h$"))
+    assert all(place[name][1] > box.y1 for name in ("$T_i$", "$T_e$"))
+    assert all(place[name][1] < box.y0 for name in ("$c$", "$m$", "$U_h$"))
+    assert len(heads) == 9
+    assert EXAMPLES["overall"]().alt == (
+        "overall block diagram: P, Q → [Tank; from above T_i, T_e; from below c, m, U_h] → T, h"
+    )
+
+
+def test_the_table_of_elementary_blocks_names_each_with_its_formula():
+    picture = elementary_blocks(title="Figure 2.2")
+    texts, *_ = measured(picture)
+    shown = [text for text, _ in texts]
+    assert [name for name in shown if name.isalpha()] == ["Integrator", "Sum", "Multiplication", "Division", "Gain"]
+    assert "Time delay: u → [delay tau] → y means y(t) = u(t - tau)" in picture.alt
+    for (one, here), (other, there) in itertools.combinations(texts, 2):
+        assert not here.overlaps(there), (one, other)
+
+
 @pytest.mark.parametrize(
     ("expression", "label"),
     [
@@ -234,7 +354,15 @@ def test_nothing_stays_open_in_pyplot():
         (lambda: parallel_paths(H1, H1, H1, H1), "room for two or three paths, not 4"),
         (lambda: parallel_paths(H1, H2, signs="+"), "signs must be one . or - for each of the 2 paths, not '.'"),
         (lambda: parallel_paths(H1, H2, signs="+*"), "signs must be one . or - for each of the 2 paths"),
-        (lambda: feedback_loop(H1, sign="negative"), "the sign of a feedback is - or ., not 'negative'"),
+        (lambda: feedback_loop(H1, sign="negative"), "the sign of a feedback or disturbance is - or ., not 'negative'"),
+        (lambda: disturbance("d", sign="*"), "the sign of a feedback or disturbance is - or ., not '.'"),
+        (lambda: disturbance("d", side="left"), "the side is above or below, not 'left'"),
+        (lambda: disturbance("d", parallel_paths(H1, H2)), "between a disturbance and its junction stand blocks only"),
+        (lambda: multiplication("K", side="left"), "the side is above or below, not 'left'"),
+        (lambda: division("K", side="left"), "the side is above or below, not 'left'"),
+        (lambda: integrator(limits=["a"]), "the limits of an integrator are its lowest and its highest value"),
+        (lambda: block("f", above="d"), "'d' must be a list of names"),
+        (lambda: overall_diagram("f", inputs="d"), "'d' must be a list of names"),
         (lambda: equivalent_diagrams({}), "rules must be {name: "),
         (lambda: equivalent_diagrams({"Series": ["u"]}), "rules must be {name: "),
     ],

@@ -8,7 +8,7 @@ import sympy
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from loopbook import t
+from loopbook import s, t
 from loopbook.laplace import evaluate
 from loopbook.pid import PID, Controller, LowpassFilter
 from loopbook.transfer import first_order, response
@@ -138,8 +138,10 @@ def held(levels, step):
 @pytest.mark.parametrize("action", ["reverse", "direct"])
 def test_the_control_signal_is_that_of_the_continuous_controller_for_held_errors(pid, action):
     step, errors = sympy.Rational(1, 2), [1, 1, 3, -2, 0, 0, 4]
-    control = response(sympy.expand(pid.parallel().expr), held(errors, step))
-    exact = evaluate(control, [float(k * step) for k in range(len(errors))])
+    parallel, times = pid.parallel(), [float(k * step) for k in range(len(errors) + 1)]
+    without, derivative = (PID(parallel.Kp, parallel.Ti).expr, parallel.expr - PID(parallel.Kp, parallel.Ti).expr)
+    exact = evaluate(response(sympy.expand(without), held(errors, step)), times)[:-1]
+    exact += np.diff(evaluate(response(derivative / s, held(errors, step)), times)) / float(step)  # its means
     controller = Controller(pid, step, action=action)
     computed = [controller.update(setpoint=e, measurement=0.0) for e in errors]
     assert computed == pytest.approx((exact * (1 if action == "reverse" else -1)).tolist(), abs=1e-12)
@@ -158,7 +160,16 @@ def test_weights_remove_the_kicks_and_nothing_else():
         before = [controller.update(5.0, 5.0) for _ in range(3)]
         assert before == pytest.approx(3 * [20])  # at rest, whatever the weights are
         kicks[w_p, w_d] = controller.update(6.0, 5.0) - 20
-    assert kicks == pytest.approx({(1, 1): 3.6 * (1 + 10), (0.3, 0): 3.6 * 0.3, (0, 0): 0})
+    derivative = 0.5 / 0.1 * (1 - math.exp(-0.1 / 0.05))
+    assert kicks == pytest.approx({(1, 1): 3.6 * (1 + derivative), (0.3, 0): 3.6 * 0.3, (0, 0): 0})
+
+
+@pytest.mark.parametrize("Tf", [0, 0.1, 1, 30])
+def test_the_derivative_of_a_ramp_is_its_slope(Tf):
+    controller = Controller(PID(2, Td=10, Tf=Tf), step=1)
+    for time in range(1000):
+        controller.update(0.0, -0.3 * time)
+    assert controller.terms[2] == pytest.approx(2 * 10 * 0.3)
 
 
 def test_the_setpoint_moves_no_faster_than_its_ramp():

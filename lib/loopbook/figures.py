@@ -369,7 +369,10 @@ def plain_words(text):
 
     >>> plain_words(r"$F_{\mathrm{in}}(t)$ after $\tau$")
     'F_in(t) after tau'
+    >>> plain_words(r"$\dot{h}_{SP}$")
+    'dh_SP/dt'
     """
+    text = re.sub(r"\\dot\{(\w+)\}(_\w+|_\{\w+\})?", r"d\1\2/dt", text)
     return re.sub(r"\\(mathrm|mathit|left|right)\b|[$\\{}]", "", text)
 
 

@@ -98,9 +98,7 @@ class PID:
         total, product = self.Ti + self.Tf, self.Ti * (self.Tf + self.Td)
         discriminant = sympy.factor(total**2 - 4 * product)
         if discriminant.is_negative:
-            raise ValueError(
-                f"{self} has complex zeros and no serial form: expected (Ti - Tf)**2 of at least 4 Ti Td"
-            )
+            raise ValueError(f"{self} has complex zeros and no serial form: expected (Ti - Tf)**2 of at least 4 Ti Td")
         Ti = (total + sympy.sqrt(discriminant)) / 2
         return PID(self.Kp * Ti / self.Ti, Ti, total - Ti, self.Tf, form="serial")
 
@@ -183,7 +181,8 @@ class Controller:
 
         u_p = Kp (w_p y_SP - y),    du_i/dt = Kp/Ti (y_SP - y),    u_d = Kp Td d/dt (w_d y_SP - y), filtered by Tf.
 
-    Each part is exact for signals that are held between samples.
+    Proportional and integral term are exact for signals that are held between samples; the derivative term is the mean
+    of the exact one over the coming sample.
 
     Arguments:
         settings: a `PID` with numbers; a serial one is converted to parallel form.
@@ -251,7 +250,8 @@ class Controller:
         if control_range is not None:
             self.from_percent = _in_floats(Scaling(PERCENT, control_range))
         self.filter = LowpassFilter(T_filter, step)
-        self.derivative = LowpassFilter(self.Tf, step)
+        self.lag_remains = math.exp(-self.step / self.Tf) if self.Tf else 0.0
+        self.lagging = None  # the signal behind the filter of the derivative term
         self.integral = 0.0
         self.in_manual = False
         self.setpoint = self.u = None  # as of the last sample
@@ -306,18 +306,19 @@ class Controller:
     def take_over(self, other):
         """Continue where another controller stopped, as after a change of settings: the integral term stays."""
         self.setpoint, self.u, self.integral, self.in_manual = other.setpoint, other.u, other.integral, other.in_manual
-        for mine, its in ((self.filter, other.filter), (self.derivative, other.derivative)):
-            mine.input, mine.output = its.input, its.output
+        self.filter.input, self.filter.output, self.lagging = other.filter.input, other.filter.output, other.lagging
 
     def _in_percent(self, y):
         return self.to_percent(y) if self.to_percent else y
 
     def _differentiate(self, y_SP, y):
-        x, last = self.w_d * y_SP - y, self.derivative.input
-        lagging = self.derivative.update(x)
-        if self.Tf:
-            return self.Kp * self.Td * (x - lagging) / self.Tf
-        return self.Kp * self.Td * (x - (x if last is None else last)) / self.step
+        """The derivative term, its mean over the coming sample: the slope behind the filter, exact for ramps."""
+        x = self.w_d * y_SP - y
+        if self.lagging is None:
+            self.lagging = x
+        slope = (1 - self.lag_remains) * (x - self.lagging) / self.step
+        self.lagging += slope * self.step
+        return self.Kp * self.Td * slope
 
     def _by_hand(self, manual):
         if not math.isnan(manual):

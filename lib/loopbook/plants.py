@@ -568,11 +568,11 @@ class AirHeater(Plant):
     temperature of the room, and its values are in the author's other public material.
     """
 
-    T, DeltaT, u, T_env = signals("T DeltaT u T_env")
+    T, T_rise, u, T_env = signals("T T_rise u T_env")
     K, theta, tau = parameters("K theta tau")
     model = (
-        sympy.Eq(theta * DeltaT.diff(t), K * u.subs(t, t - tau) - DeltaT),
-        sympy.Eq(T, T_env + DeltaT),
+        sympy.Eq(theta * T_rise.diff(t), K * u.subs(t, t - tau) - T_rise),
+        sympy.Eq(T, T_env + T_rise),
     )
     output, manipulated = T, u
     quantities = {
@@ -581,7 +581,7 @@ class AirHeater(Plant):
         tau: (3, "s", "dead time of the air flow"),
         u: (0, "V", "control signal of the heater"),
         T_env: (21.5, "°C", "temperature of the room"),
-        DeltaT: (0, "K", "rise of the temperature"),
+        T_rise: (0, "K", "rise of the temperature"),
         T: (21.5, "°C", "temperature at the outlet"),
     }
 

@@ -1,0 +1,67 @@
+"""Machines and circuits: labels have their room, and the description says what is drawn."""
+
+import itertools
+
+import pytest
+
+from loopbook.diagrams import (
+    kirchhoff_laws,
+    mass_spring_damper,
+    motor_with_load,
+    rc_circuit,
+    resistor_combinations,
+    two_terminal_components,
+)
+from test_diagrams import measured
+
+EXAMPLES = [
+    mass_spring_damper, motor_with_load, kirchhoff_laws, rc_circuit, resistor_combinations, two_terminal_components,
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("draw", EXAMPLES)
+def test_labels_have_their_room(draw):
+    picture = draw(title="Figure")
+    texts, _, circles, heads, _ = measured(picture)
+    for (one, here), (other, there) in itertools.combinations(texts, 2):
+        assert not here.overlaps(there), (one, other)
+    (left, right), (bottom, top) = picture.figure.axes[0].get_xlim(), picture.figure.axes[0].get_ylim()
+    for label, extent in texts:
+        assert left - 0.05 <= extent.x0 <= extent.x1 <= right + 0.05, label
+        assert bottom - 0.05 <= extent.y0 <= extent.y1 <= top + 0.05, label
+        assert not any(extent.contains(*head.mean(axis=0)) for head in heads), label
+        assert not any(extent.contains(*circle.center) for circle in circles), label
+    assert picture.figure.get_size_inches()[0] <= 7
+    assert picture.alt.startswith("Figure: ")
+
+
+@pytest.mark.parametrize("draw", EXAMPLES)
+def test_no_wire_runs_through_a_label(draw):
+    texts, *_, wires = measured(draw())
+    for wire in wires:
+        for (x0, y0), (x1, y1) in itertools.pairwise(wire):
+            for label, extent in texts:
+                for n in range(1, 20):
+                    assert not extent.contains(x0 + (x1 - x0) * n / 20, y0 + (y1 - y0) * n / 20), label
+
+
+def labels(picture):
+    return [text for text, _ in measured(picture)[0]]
+
+
+def test_the_letters_are_the_ones_asked_for():
+    assert {"$M$", "$k$", "$c$", "$f$", "$x$"} <= set(labels(mass_spring_damper("M", "k", "c", "f", "x")))
+    assert {"$R_1$", "$C_2$"} <= set(labels(rc_circuit("R_1", "C_2")))
+    assert {"$i$", "$m_L$", "$F$"} <= set(labels(motor_with_load(current="i", mass="m_L", load="F")))
+
+
+def test_the_laws_stand_with_the_components():
+    assert r"$i=C\,\dfrac{dv}{dt}$" in labels(two_terminal_components())
+    assert r"$R_{parallel}=\dfrac{R_1R_2}{R_1+R_2}$" in labels(resistor_combinations())
+    assert {"$i_1+i_2+i_3=0$", "$v_1+v_2+v_3=0$"} <= set(labels(kirchhoff_laws()))
+
+
+def test_the_rod_is_pushed_and_the_load_pushes_back():
+    _, _, _, heads, _ = measured(motor_with_load())
+    ways = sorted(head[1][0] - head[0][0] for head in heads if head[0][0] == head[2][0])
+    assert ways[0] < 0 < ways[1]
