@@ -254,6 +254,25 @@ def test_points_are_added_and_stay_inside():
         plot.points([0, 2], [1], "data")
 
 
+def hidden(plot):
+    """The curves of the first panel that run behind its legend."""
+    plot.figure.draw_without_rendering()
+    axes = plot.figure.axes[0]
+    box = axes.get_legend().get_window_extent()
+    return [
+        line.get_label()
+        for line in axes.lines
+        if line.get_path().transformed(axes.transData).intersects_bbox(box, filled=False)
+    ]
+
+
+def test_a_legend_hides_no_curve():
+    everywhere = {"one": sympy.sin(3 * t), "another": sympy.cos(3 * t), "a third": sympy.sin(2 * t)}
+    assert hidden(time_plot(everywhere, TIMES)) == []
+    assert hidden(time_plot(everywhere, TIMES, ylim=(-1, 1))) != []  # an axis that was asked for stays
+    assert time_plot({"a": LAG, "b": 1}, TIMES).figure.axes[0].get_ylim()[1] < 2.3  # there is room
+
+
 # Trends.
 
 
@@ -287,6 +306,7 @@ def test_trends_compare_runs_in_one_colour_each():
     for label in ("slow", "fast"):
         assert plot.lines[f"$h$, {label}"].get_color() == plot.lines[f"$u$, {label}"].get_color()
     assert plot.figure.axes[0].get_ylim() == (9, 12)
+    assert [axes.get_legend() is not None for axes in plot.figure.axes] == [True, False]
 
 
 def test_trends_of_a_plant_alone():

@@ -218,7 +218,7 @@ class TimePlot(Picture):
         axes.plot(times, values, "o", color="#000000", markersize=5, label=label, zorder=4)
         axes.set_ylim(min(low, *map(float, values)), max(high, *map(float, values)))
         with self._style():
-            axes.legend()
+            _add_legend(axes, may_grow=True)
         self.alt += f"; points: {plain_words(label)}"
         return self
 
@@ -290,8 +290,6 @@ def time_plot(signals, times, title=None, xlabel="$t$ [s]", ylabel=None, ylim=No
                 number += role is None
                 look = ROLES[role] if role in ROLES else response_look(number - 1 if role is None else role)
                 (lines[label],) = axes.plot(x, y, label=label, **look)
-            if len(panel) > 1:
-                axes.legend()
             axes.set_ylabel(name or (label if len(panel) == 1 else ""))
             # from here on, what is marked does not move the curves
             axes.set_ylim(ylim if ylim and axes is grid[0] else axes.get_ylim())
@@ -299,6 +297,13 @@ def time_plot(signals, times, title=None, xlabel="$t$ [s]", ylabel=None, ylim=No
         grid[-1].set_xlabel(xlabel)
         grid[0].set_title(title or "")
         figure.align_ylabels()
+        explained = set()
+        for axes, panel in zip(grid, curves, strict=True):
+            looks = {role for *_, role in panel.values()}
+            # the same responses in the same looks need no second legend
+            if len(panel) > 1 and not (looks <= explained and all(isinstance(look, int) for look in looks)):
+                _add_legend(axes, may_grow=not (ylim and axes is grid[0]))
+            explained |= looks
     shown = "; ".join(", ".join(map(plain_words, panel)) for panel in panels)
     return TimePlot(figure, f"{plain_words(title) + ': ' if title else ''}{shown} against {plain_words(xlabel)}", lines)
 
@@ -352,6 +357,24 @@ def trends(runs, title=None, disturbances=(), measured=False, minutes=False, lim
 
 def _unit(plant, name):
     return plant.quantities[plant.signal(name)].unit or "1"
+
+
+def _add_legend(axes, may_grow):
+    """A legend where it hides no curve; if there is no such place, a flat one above them, for which the panel grows."""
+    box = _legend_box(axes)
+    hides = any(line.get_path().transformed(axes.transData).intersects_bbox(box, filled=False) for line in axes.lines)
+    if hides and may_grow:
+        columns = len(axes.lines)
+        while columns > 1 and _legend_box(axes, ncols=columns).width > 0.95 * axes.bbox.width:
+            columns -= 1
+        box, (low, high) = _legend_box(axes, ncols=columns, loc="upper right"), axes.get_ylim()
+        axes.set_ylim(low, high + 1.1 * (high - low) * box.height / (axes.bbox.height - box.height))
+
+
+def _legend_box(axes, **options):
+    legend = axes.legend(**options)
+    axes.figure.draw_without_rendering()
+    return legend.get_window_extent()
 
 
 def response_look(number):

@@ -66,7 +66,7 @@ class Scaling:
         return f"Scaling({self.x_range}, {self.z_range})"
 
     def _repr_latex_(self):
-        return f"$z = {sympy.latex(self.a)}\\,x + {sympy.latex(self.b)}$"
+        return f"$z = {sympy.latex(self.a * sympy.Symbol('x') + self.b)}$"
 
 
 def _ends(given):
