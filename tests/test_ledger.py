@@ -559,6 +559,10 @@ MALFORMED = {
     "an infinite margin": (result(**RECONSTRUCTED, within="oo"), ["within is 'oo'"]),
     "a percentage of zero": (result(**RECONSTRUCTED, printed="0.0", within="5 %"), ["'5 %' of 0"]),
     "a margin around infinity": (result(**RECONSTRUCTED, printed="oo", within="5 %"), ["'oo'", "expected a number"]),
+    "a margin around a word": (
+        result(**RECONSTRUCTED, kind="claim", printed="stable", within="5 %"),
+        ["no use for 'within'"],
+    ),
     "a margin around a formula": (result(**RECONSTRUCTED, kind="formula", within="5 %"), ["expected a number"]),
 }
 

@@ -183,7 +183,9 @@ def untrue(written, computed):
             if not same(kind, value, told):
                 found.append(f"{where}: {value} is not {told}")
         if status == "reconstructed":
-            if not within(value, row["printed"], row["within"]):
+            if kind == "claim" and not printed_holds:
+                found.append(f"{where}: {value} is not {row['printed']}")
+            if kind == "number" and not within(value, row["printed"], row["within"]):
                 found.append(f"{where}: {value} is not within {row['within']} of {row['printed']}")
             if assumed[row["assuming"]] < 2:
                 found.append(f"{where}: an assumption for this number alone")
@@ -317,6 +319,7 @@ result = [
 result = [
     { name = "first", printed = "10", status = "reconstructed", assuming = "F = 1", within = "5 %" },
     { name = "second", printed = "-2", status = "reconstructed", assuming = "F = 1", within = "0.1" },
+    { name = "third", kind = "claim", printed = "settles", status = "reconstructed", assuming = "F = 1" },
 ]
 [formulas]
 result = [
@@ -340,6 +343,7 @@ TRUE = {
     ("digits", "open"): "1.595",
     ("curves", "first"): "10.5",
     ("curves", "second"): "-1.9",
+    ("curves", "third"): "Settles",
     ("formulas", "H"): "K/T/(s + 1/T)",
     ("formulas", "y"): "-y(0) + s*Y(s) - 2*U(s) = 0",
     ("formulas", "h"): "f(oo) + Integral(q(x), (x, 0, t))/A",
@@ -367,6 +371,7 @@ def test_true_statuses_are_accepted():
         ("digits", "open", "1.7", "1.7 is not 1.60"),
         ("curves", "first", "10.51", "not within 5 %"),
         ("curves", "second", "-2.11", "not within 0.1"),
+        ("curves", "third", "swings", "swings is not settles"),
         ("formulas", "H", "K/(T*s - 1)", "is not K/(T*s + 1)"),
         ("formulas", "H", "K/(T*s + 1) + 1/10**30", "is not K/(T*s + 1)"),
         ("formulas", "H", "K/(T*s + 1) = 0", "is not K/(T*s + 1)"),

@@ -197,14 +197,14 @@ def test_what_a_run_contains():
         WoodChipTank(), chip_loop(), until=500, setpoint=10, noise=0.05, seed=3, w_out=stepwise(25, {100: 30})
     )
     assert set(run.signals) == {
-        "h", "u", "w_out", "setpoint", "measurement", "filtered", "u_p", "u_i", "u_d",
+        "h", "u", "w_out", "setpoint", "measurement", "ramped", "filtered", "u_p", "u_i", "u_d",
     }  # fmt: skip
     assert all(len(values) == len(run.times) == 101 for values in run.signals.values())
     assert run["w_out"][[0, 19, 20, 100]].tolist() == [25, 25, 30, 30]
     assert run["u"] == pytest.approx(45 + run["u_p"] + run["u_i"] + run["u_d"])
     assert 0.03 < (run["measurement"] - run["h"]).std() < 0.07
     assert repr(run) == (
-        "<run of 101 samples, t = 0 to 500: h, u, w_out, setpoint, measurement, filtered, u_p, u_i, u_d>"
+        "<run of 101 samples, t = 0 to 500: h, u, w_out, setpoint, measurement, ramped, filtered, u_p, u_i, u_d>"
     )
 
 

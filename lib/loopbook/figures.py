@@ -99,8 +99,8 @@ class Picture:
 
         full, small = io.BytesIO(), io.BytesIO()
         self.save(full, format="png", metadata={"Software": None})
-        # A line drawing needs no more than 128 colours, and a notebook with them is a third as large.
-        Image.open(full).convert("RGB").quantize(128, method=Image.Quantize.MEDIANCUT).save(small, "PNG", optimize=True)
+        # A line drawing needs no more than 32 colours, and a notebook with them is a quarter as large.
+        Image.open(full).convert("RGB").quantize(32, method=Image.Quantize.MEDIANCUT).save(small, "PNG", optimize=True)
         return small.getvalue()
 
     # The figure belongs to an object of our own because Jupyter would draw a matplotlib figure its own way, without
@@ -249,7 +249,8 @@ def time_plot(signals, times, title=None, xlabel="$t$ [s]", ylabel=None, ylim=No
         title: stands above the plot; begins with the name of the book's figure where there is one.
         xlabel, ylabel: names of the axes with their units; `ylabel` is a list where there are several panels. A panel
             with one signal takes the signal's label if no `ylabel` is given.
-        ylim: lowest and highest value of the top panel's axis, where it must not follow the signals, as under a slider.
+        ylim: lowest and highest value of the top panel's axis, where it must not follow the signals, as under a slider;
+            or a list of these, one for each panel, with None where the axis follows the signals.
         before: how much time to show ahead of t = 0, with every signal at zero, so that a step at t = 0 is seen.
     Returns:
         A `TimePlot`, which a notebook shows as the value of a cell; `.mark` and `.level` add to it.
@@ -270,6 +271,9 @@ def time_plot(signals, times, title=None, xlabel="$t$ [s]", ylabel=None, ylim=No
         raise ValueError("signals must be {label: signal}, or a list of these, with at least one signal in each")
     if len(ylabels) != len(panels):
         raise ValueError(f"{len(ylabels)} names of vertical axes for {len(panels)} panels")
+    fixed_axes = ylim if isinstance(ylim, list) else [ylim] + [None] * (len(panels) - 1)
+    if len(fixed_axes) != len(panels):
+        raise ValueError(f"{len(fixed_axes)} ranges of vertical axes for {len(panels)} panels")
     times = _increasing(times)
     if before < 0 or (before and times[0] != 0):
         raise ValueError("time before t = 0 can be shown only in front of times that start at 0, and is not negative")
@@ -285,30 +289,30 @@ def time_plot(signals, times, title=None, xlabel="$t$ [s]", ylabel=None, ylim=No
         grid = figure.subplots(len(panels), sharex=True, squeeze=False, height_ratios=heights)[:, 0]
         lines = {}
         number = 0
-        for axes, panel, name in zip(grid, curves, ylabels, strict=True):
+        for axes, panel, name, fixed in zip(grid, curves, ylabels, fixed_axes, strict=True):
             for label, (x, y, role) in panel.items():
                 number += role is None
                 look = ROLES[role] if role in ROLES else response_look(number - 1 if role is None else role)
                 (lines[label],) = axes.plot(x, y, label=label, **look)
             axes.set_ylabel(name or (label if len(panel) == 1 else ""))
             # from here on, what is marked does not move the curves
-            axes.set_ylim(ylim if ylim and axes is grid[0] else axes.get_ylim())
+            axes.set_ylim(fixed or axes.get_ylim())
         grid[-1].set_xlim(times[0] - before, times[-1])
         grid[-1].set_xlabel(xlabel)
         grid[0].set_title(title or "")
         figure.align_ylabels()
         explained = set()
-        for axes, panel in zip(grid, curves, strict=True):
+        for axes, panel, fixed in zip(grid, curves, fixed_axes, strict=True):
             looks = {role for *_, role in panel.values()}
             # the same responses in the same looks need no second legend
             if len(panel) > 1 and not (looks <= explained and all(isinstance(look, int) for look in looks)):
-                _add_legend(axes, may_grow=not (ylim and axes is grid[0]))
+                _add_legend(axes, may_grow=not fixed)
             explained |= looks
     shown = "; ".join(", ".join(map(plain_words, panel)) for panel in panels)
     return TimePlot(figure, f"{plain_words(title) + ': ' if title else ''}{shown} against {plain_words(xlabel)}", lines)
 
 
-def trends(runs, title=None, disturbances=(), measured=False, minutes=False, limits=None, output=None, control=None):
+def trends(runs, title=None, disturbances=(), measured=False, minutes=False, limits=None, control_limits=None):
     """Plot simulated loops as an operator sees them: setpoint and measurement above, control signal below.
 
     Arguments:
@@ -317,8 +321,8 @@ def trends(runs, title=None, disturbances=(), measured=False, minutes=False, lim
         disturbances: names of inputs of the plant, each shown in a panel of its own below the others.
         measured: show the noisy measurement instead of the plant's output.
         minutes: write the time in minutes, for runs in seconds.
-        limits: lowest and highest value of the upper panel's axis, where it must not follow the signals.
-        output, control: names of other signals than the plant's output and the manipulated input.
+        limits, control_limits: lowest and highest value of the upper panel's axis, and of the control signal's, where
+            they must not follow the signals.
     Returns:
         A `TimePlot`, which a notebook shows as the value of a cell.
     Raises:
@@ -337,7 +341,7 @@ def trends(runs, title=None, disturbances=(), measured=False, minutes=False, lim
     first = next(iter(runs.values()))
     if any(not numpy.array_equal(run.times, first.times) for run in runs.values()):
         raise ValueError("the runs have different times: expected the same step and the same end")
-    output, control = output or str(first.plant.output.func), control or str(first.plant.manipulated.func)
+    output, control = str(first.plant.output.func), str(first.plant.manipulated.func)
     source = "measurement" if measured else output
 
     def panel(name, signal, role):
@@ -350,9 +354,10 @@ def trends(runs, title=None, disturbances=(), measured=False, minutes=False, lim
     panels = [top | panel(output, source, "measurement"), panel(control, control, "control signal")]
     panels += [{f"${sympy.latex(sympy.Symbol(x))}$": (first[x], "disturbance")} for x in disturbances]
     names = [f"${sympy.latex(sympy.Symbol(x))}$ [{_unit(first.plant, x)}]" for x in (output, control, *disturbances)]
+    ylim = [limits, control_limits, *(None for _ in disturbances)]
     times = first.times / (60 if minutes else 1)
     xlabel = "$t$ [min]" if minutes else "$t$ [s]"
-    return time_plot(panels, times, title=title, xlabel=xlabel, ylabel=names, ylim=limits)
+    return time_plot(panels, times, title=title, xlabel=xlabel, ylabel=names, ylim=ylim)
 
 
 def _unit(plant, name):
@@ -392,9 +397,10 @@ def plain_words(text):
 
     >>> plain_words(r"$F_{\mathrm{in}}(t)$ after $\tau$")
     'F_in(t) after tau'
-    >>> plain_words(r"$\dot{h}_{SP}$")
-    'dh_SP/dt'
+    >>> plain_words(r"$\dot{h}_{SP}$, $\frac{1}{T s}$")
+    'dh_SP/dt, (1)/(T s)'
     """
+    text = re.sub(r"\\d?frac\{([^{}]*)\}\{([^{}]*)\}", r"(\1)/(\2)", text)
     text = re.sub(r"\\dot\{(\w+)\}(_\w+|_\{\w+\})?", r"d\1\2/dt", text)
     return re.sub(r"\\(mathrm|mathit|left|right)\b|[$\\{}]", "", text)
 

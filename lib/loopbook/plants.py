@@ -222,19 +222,22 @@ class Plant:
         response = (s * sympy.eye(len(states)) - A).LUsolve(B)
         return simplified((C * response)[0] + gains(wanted, source))
 
-    def numbers(self, expression):
+    def numbers(self, *expressions):
         """Put the plant's values in for its letters: parameters, and signals at the operating point (T, but not T(t)).
 
         Arguments:
-            expression: an expression, an equation or a matrix.
+            expressions: expressions, equations or matrices.
+        Returns:
+            One for one, a tuple for several.
 
         >>> tank = WoodChipTank()
         >>> tank.numbers(tank.transfer_function("w_out"))
         -1/(1943*s)
         """
-        if not isinstance(expression, (sympy.Equality, sympy.MatrixBase)):
-            expression = exact(expression)
-        return expression.xreplace({_letter(letter): value for letter, value in self.values.items()})
+        values = {_letter(letter): value for letter, value in self.values.items()}
+        checked = (x if isinstance(x, (sympy.Equality, sympy.MatrixBase)) else exact(x) for x in expressions)
+        found = tuple(x.xreplace(values) for x in checked)
+        return found[0] if len(found) == 1 else found
 
     def _in_constants(self, expression):
         """The expression at rest: derivatives are zero, and signals are constants, written as letters."""

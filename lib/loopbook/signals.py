@@ -53,7 +53,8 @@ def noise(times, deviation, seed):
 def pulse_width_modulation(duty, times, period):
     """Return an on/off signal, 1 or 0, that is on for the given share of each cycle. (Haugen, Section 9.1)
 
-    The duty cycle of a cycle is the value of `duty` at its beginning.
+    The duty cycle of a cycle is the value of `duty` at its beginning. The signal is known at the given times only, so
+    that a pulse lasts to the first of them after its end.
 
     Arguments:
         duty: the duty cycle in percent, 0 to 100: a number, or an array with a value for each time.

@@ -78,7 +78,8 @@ def simulate(
         inputs: signals for the plant's inputs, by name; an input not named keeps its value at the operating point.
     Returns:
         A `Run` with the plant's states, inputs and outputs by their names, and with a controller "setpoint",
-        "measurement" (with noise), "filtered", and the terms "u_p", "u_i" and "u_d".
+        "measurement" (with noise), "ramped" and "filtered" (what the controller makes of the two), and the terms
+            "u_p", "u_i" and "u_d".
     Raises:
         ValueError: for an unknown or a missing signal, one of the wrong length or with a value that is no finite
             number, a step longer than a dead time, an end that is no whole number of steps away, or a run that grows
@@ -169,7 +170,7 @@ class _Loop:
         )
         now = {"setpoint": self.setpoint[k], "measurement": measurement}
         if hasattr(self.controller, "terms"):
-            now["filtered"] = self.controller.filtered
+            now["ramped"], now["filtered"] = self.controller.setpoint, self.controller.filtered
             now["u_p"], now["u_i"], now["u_d"] = self.controller.terms
         for name, value in now.items():
             self.record.setdefault(name, []).append(value)

@@ -102,8 +102,10 @@ def motor_with_load(
     sheet.text(1, 2.05, mathematics(inertia), valign="bottom")
     for side in (-0.06, 0.06):
         sheet.wire((2, 1.2 + side), (wheel, 1.2 + side))
-    sheet.arc(2.75, 1.2, 0.5, 1.1, -70, 70, arrow="ccw")
-    sheet.text(2.75, 1.9, mathematics(f"{torque},\\ {angle}"), valign="bottom")
+    # the load's torque acts against the turning
+    for x, turning, name in ((2.4, "ccw", angle), (3.15, "cw", torque)):
+        sheet.arc(x, 1.2, 0.4, 1.1, -70, 70, arrow=turning)
+        sheet.text(x, 1.9, mathematics(name), valign="bottom")
     # the wheel, its teeth and the rack, which is the upper side of the rod
     corners = []
     for n in range(40):

@@ -35,7 +35,8 @@ class Verdict:
         """What the reader must know besides: the reason, or the assumption. Empty where there is none."""
         row = self.result
         if row.status == "reconstructed":
-            return f"{row.name} is reconstructed to within {row.within}, assuming {row.assuming}"
+            margin = f" to within {row.within}" if row.within else ""
+            return f"{row.name} is reconstructed{margin}, assuming {row.assuming}"
         return f"{row.name} is {row.status}: {row.because}" if row.because else ""
 
     @property
@@ -43,7 +44,7 @@ class Verdict:
         """A sentence on what does not hold."""
         row = self.result
         start = f"{row.name} = {self.computed}"
-        if row.status == "reconstructed":
+        if row.within:
             return f"{start} is not within {row.within} of the printed {row.printed}"
         if row.status == "reproduced":
             return f"{start} does not agree with the printed {row.printed}"

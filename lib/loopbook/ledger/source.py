@@ -79,16 +79,17 @@ class Result:
             raise LedgerError(f"{where}: the kind is {self.kind!r}, {suggestion(self.kind, KINDS)}")
         if self.status not in STATUSES:
             raise LedgerError(f"{where}: the status is {self.status!r}, {suggestion(self.status, list(STATUSES))}")
+        needed = set(STATUSES[self.status]) - ({"within"} if self.kind == "claim" else set())  # a word has no margin
         for key in ("correct", "because", "assuming", "within", "computed"):
-            if bool(getattr(self, key)) != (key in STATUSES[self.status]):
-                verb = "needs" if key in STATUSES[self.status] else "has no use for"
+            if bool(getattr(self, key)) != (key in needed):
+                verb = "needs" if key in needed else "has no use for"
                 raise LedgerError(f"{where}: the status {self.status!r} {verb} {key!r}")
         for key in ("printed", "correct", "computed"):
             if text := getattr(self, key):
                 self._validate_value(f"{where}: {key}", text)
                 if self.kind == "number" and _coarser(text, self.printed):
                     raise LedgerError(f"{where}: {key} is {text!r}, expected as many digits as in {self.printed!r}")
-        if self.status == "reconstructed":
+        if self.within:
             self.margin(where)
 
     def _validate_value(self, where, text):
@@ -126,7 +127,7 @@ class Result:
             case "corrected" | "unreproduced":
                 how = agrees(self.kind, value, self.correct or self.computed)
                 holds = bool(how) and not printed_holds
-            case "reconstructed":
+            case "reconstructed" if self.within:
                 how = "within"
                 holds = abs(value - Fraction(self.printed)) <= self.margin()
             case _:
