@@ -317,5 +317,12 @@ def test_trends_need_the_same_times_and_known_signals():
     short = simulate(WoodChipTank(), until=500, step=10, u=50)
     with pytest.raises(ValueError, match="different times"):
         trends({"a": short, "b": loop(1)})
+    with pytest.raises(ValueError, match="different signals 'setpoint'"):
+        trends({"a": loop(1), "b": loop(1, setpoint=10)})
+    for wrong in ({}, 5, [short]):
+        with pytest.raises(ValueError, match="expected a run"):
+            trends(wrong)
+    with pytest.raises(ValueError, match="expected a list of names"):
+        trends(short, disturbances="w_out")
     with pytest.raises(ValueError, match="'wind'"):
         trends(short, disturbances=["wind"])

@@ -1,6 +1,7 @@
 """The settings of a PID controller in their forms, and the practical controller feature by feature."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -99,15 +100,20 @@ def test_how_settings_are_shown():
 
 
 @pytest.mark.parametrize("step", [0.1, 1.0, 7.0])
-def test_the_filter_is_exact_for_held_inputs(step):
-    T, levels = 3, [0, 1, 1, -2, 5, 5]
+def test_the_filter_is_exact_for_straight_lines_between_the_samples(step):
+    T, levels = 3, [0, 0, 2, 2, -1, 5, 5]
+    h = sympy.Rational(step)
+    slopes = [0, *((new - old) / h for old, new in pairwise(levels))]
+    line = sum((b - a) * (t - k * h) * sympy.Heaviside(t - k * h) for k, (a, b) in enumerate(pairwise(slopes)))
     smooth = LowpassFilter(T, step)
-    held = sum(
-        (new - old) * sympy.Heaviside(t - k * sympy.Rational(step))
-        for k, (old, new) in enumerate(zip([0, *levels], levels, strict=False))
-    )
-    exact = evaluate(response(first_order(1, T), held), step * np.arange(len(levels)))
+    exact = evaluate(response(first_order(1, T), line), step * np.arange(len(levels)))
     assert [smooth.update(x) for x in levels] == pytest.approx(exact.tolist(), abs=1e-12)
+
+
+def test_a_filter_becomes_none_as_its_lag_vanishes():
+    for T in (0, 1e-12):
+        smooth = LowpassFilter(T, step=1)
+        assert [smooth.update(x) for x in (0, 1, 5, -2)] == pytest.approx([0, 1, 5, -2])
 
 
 def test_a_filter_without_lag_lets_everything_through():
@@ -235,9 +241,9 @@ def test_percent_inside_engineering_units_outside():
 
 
 def test_the_measurement_filter_is_in_the_loop():
-    controller = Controller(PID(1), step=1, T_filter=2)
-    assert run(controller, [0, 1, 1]) == pytest.approx([0, 0, -(1 - math.exp(-0.5))])
-    assert controller.filtered == pytest.approx(1 - math.exp(-0.5))
+    controller, smooth = Controller(PID(1), step=1, T_filter=2), LowpassFilter(2, step=1)
+    for y in (0, 1, 1, 3):
+        assert controller.update(0, y) == -smooth.update(y) == -controller.filtered
 
 
 def test_the_terms_add_up_to_the_control_signal():
@@ -246,12 +252,63 @@ def test_the_terms_add_up_to_the_control_signal():
         assert controller.update(1.0, y) == pytest.approx(7 + sum(controller.terms))
 
 
-def test_new_settings_keep_the_integral_term():
-    old, new = Controller(PID(1, 10), step=1), Controller(PID(5, 10), step=1)
-    run(old, 20 * [-1.0])
-    run(old, [0.0])
+NEW = [
+    {"settings": PID(5, 10)},
+    {"settings": PID(5, 10), "w_p": 0.3},
+    {"w_p": 0.3},
+    {"settings": PID(1, 10, 4, 0.4), "w_d": 0},
+    {"settings": PID(1, 10, 4, 0.4)},
+    {"u0": 12},
+    {"T_filter": 5},
+]
+
+
+@pytest.mark.parametrize("new", NEW)
+@pytest.mark.parametrize("old", NEW)
+def test_new_settings_do_not_move_a_loop_at_rest(old, new):
+    old, new = (Controller(**({"settings": PID(1, 10), "step": 1, "u0": 40} | given)) for given in (old, new))
+    for _ in range(20):
+        old.update(7, 6.5)
+    last = [old.update(7, 7) for _ in range(200)][-1]
     new.take_over(old)
-    assert run(new, [0.0]) == run(old, [0.0])
+    assert [new.update(7, 7) for _ in range(3)] == pytest.approx(3 * [last], abs=1e-6)
+
+
+def test_a_controller_may_begin_from_a_control_signal():
+    controller = Controller(PID(2, 10), step=1, u0=30)
+    controller.start_from(55)
+    assert controller.update(1, 0.7) == pytest.approx(55)
+
+
+@pytest.mark.parametrize("pid", [PID(2, 10, 3, 0.3), PID(2, 10)])
+def test_no_derivative_of_what_happened_in_manual_mode(pid):
+    controller = Controller(pid, step=0.1, u0=50)
+    for k in range(50):
+        controller.update(1, 1 + 0.05 * k, manual=50.0)
+    # the setpoint jumps at the moment at which the controller is switched on
+    signals = [controller.update(3.5, 3.5) for _ in range(5)]
+    assert signals == pytest.approx(5 * [50])
+
+
+def test_bumpless_transfer_winds_nothing_up_beyond_the_range_of_the_feedback():
+    controller = Controller(PID(1, 10), 1, limits=(0, 100), pid_limits=(-5, 5))
+    controller.update(0, 0, manual=40, feedforward=10)
+    signals = [controller.update(0, 1, feedforward=10) for _ in range(40)]
+    assert signals[0] == 15
+    assert signals[5] < 15
+
+
+@pytest.mark.parametrize("signals", [("a", 1), (1, None), (1, 1, "x"), (1, 1, 0, "manual"), (sympy.Symbol("r"), 1)])
+def test_signals_that_are_no_numbers(signals):
+    with pytest.raises(ValueError, match="expected numbers"):
+        Controller(PID(1), step=1).update(*signals)
+
+
+def test_a_filter_slower_than_the_derivative_action_has_no_parallel_form():
+    with pytest.raises(ValueError, match="no parallel form"):
+        PID(1, 10, 0, 1, form="serial").parallel()
+    with pytest.raises(ValueError, match="proportional band is 0"):
+        PID.from_panel(0)
 
 
 @pytest.mark.parametrize(

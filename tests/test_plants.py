@@ -161,12 +161,28 @@ def test_the_text_of_the_class_is_not_changed_by_an_object():
         ({"A": float("nan")}, "nan"),
         ({"A": sympy.oo}, "A is oo"),
         ({"A": sympy.Symbol("x")}, "A is x"),
-        ({"A": "1"}, "'1'"),
+        ({"A": "1"}, "A: '1'"),
+        ({"h": 5}, "h is 5: expected a value from 0 to 1"),
+        ({"h_max": 0}, "h is 0.5: expected a value from 0 to 0"),
     ],
 )
 def test_values_that_are_none(wrong, message):
     with pytest.raises(ValueError, match=message):
         LiquidTank(**wrong)
+
+
+def test_a_measured_signal_follows_from_the_others():
+    assert HeatedTankWithTransport(T_1=35).T == 35
+    assert float(plants.AirHeater(T_rise=7, u=2).T) == 21.5 + 7
+    with pytest.raises(ValueError, match="T is not given but measured: it is T_1"):
+        HeatedTankWithTransport(T=10)
+
+
+def test_a_plant_does_not_change():
+    tank = HeatedTank()
+    with pytest.raises(ValueError, match=r"make another plant, HeatedTank\(P=5000\)"):
+        tank.P = 5000
+    assert tank.P == 10000
 
 
 def test_questions_that_a_plant_cannot_answer():
@@ -209,6 +225,8 @@ def test_a_process_has_the_transfer_function_that_it_was_given(H):
         (sympy.exp(-s), "not strictly proper"),
         (1 / s + sympy.exp(-s) / s, "different dead times"),
         ("1/s", "expected"),
+        (sympy.S.Zero, "is 0"),
+        (1 / (s + sympy.I), "complex"),
     ],
 )
 def test_what_cannot_be_simulated(H, message):

@@ -23,6 +23,11 @@ def test_a_step_is_two_numbers(changes):
         stepwise(0, changes)
 
 
+def test_the_changes_of_a_stepwise_signal_are_a_table():
+    with pytest.raises(ValueError, match="changes are 5"):
+        stepwise(0, 5)
+
+
 def test_noise_is_the_same_for_the_same_seed():
     times = np.arange(50_000)
     first, again, other = noise(times, 2, seed=1), noise(times, 2, seed=1), noise(times, 2, seed=2)
@@ -37,6 +42,12 @@ def test_noise_is_the_same_for_the_same_seed():
 def test_a_deviation_is_a_number_that_is_not_negative(deviation):
     with pytest.raises(ValueError, match="deviation"):
         noise([0, 1], deviation, seed=1)
+
+
+@pytest.mark.parametrize("seed", [None, 0.5, -1, "x"])
+def test_a_seed_is_an_integer(seed):
+    with pytest.raises(ValueError, match="seed is"):
+        noise([0, 1], 1, seed)
 
 
 @given(st.integers(0, 100), st.integers(1, 40))
@@ -66,3 +77,9 @@ def test_the_duty_cycle_of_the_beginning_holds_for_the_whole_cycle():
 def test_a_pulse_needs_a_share_and_a_period(duty, period, message):
     with pytest.raises(ValueError, match=message):
         pulse_width_modulation(duty, [0, 1], period)
+
+
+@pytest.mark.parametrize("times", [[], [1, 0], [0, float("nan")], "times", 5])
+def test_pulses_need_increasing_times(times):
+    with pytest.raises(ValueError, match="times"):
+        pulse_width_modulation(50, times, 2)

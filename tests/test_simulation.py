@@ -26,7 +26,7 @@ from loopbook.plants import (
 )
 from loopbook.signals import stepwise
 from loopbook.simulation import simulate
-from loopbook.transfer import feedback, response, step_response
+from loopbook.transfer import feedback, first_order, response, step_response
 
 EXACT = 1e-6  # relative to the size of the response
 
@@ -268,6 +268,108 @@ def test_an_open_run_before_a_closed_one():
     assert run["v_out"][-1] == pytest.approx(1, abs=0.05)
 
 
+@pytest.mark.parametrize("tau", [65, 72.3])
+def test_a_delayed_output_needs_no_grid_in_a_run_in_parts(tau):
+    tank, settings = HeatedTankWithTransport(tau=tau), PID(5, 300)
+    controller = Controller(settings, 10, u0=40, limits=(0, 100))
+    whole = simulate(tank, controller, until=1000, setpoint=stepwise(40, {100: 45}))
+    run = None
+    for until in (300, 500, 1000):
+        run = simulate(tank, controller, until=until, after=run, setpoint=stepwise(40, {100: 45}))
+    assert run["T"] == pytest.approx(whole["T"], abs=1e-9)
+    assert run["u"] == pytest.approx(whole["u"], abs=1e-9)
+    # the sensor tells what the tank was at that time, on a grid ten times finer
+    finer = simulate(tank, until=1000, step=0.1, u=np.repeat(whole["u"], 100)[: 10_000 + 1])
+    assert whole["T"][20:] == pytest.approx(np.interp(whole.times[20:] - tau, finer.times, finer["T_1"]), abs=1e-4)
+
+
+def test_new_settings_do_not_move_a_loop_at_rest():
+    weighted = chip_loop(w_p=0.3)
+    run = simulate(WoodChipTank(), weighted, until=500, setpoint=10)
+    run = simulate(
+        WoodChipTank(), Controller(PID(2, 917), 5, u0=45, measurement_range=(0, 15)), until=1000, setpoint=10, after=run
+    )
+    assert run["u"] == pytest.approx(45)
+
+
+def test_another_process_goes_on_from_the_same_output():
+    run = simulate(Process(1 / (s + 1)), until=10, step=1, u=1)
+    run = simulate(Process(1 / (2 * s + 1)), until=12, step=1, u=1, after=run)
+    assert run["y"] == pytest.approx(
+        1 - np.exp(-np.minimum(run.times, 10)) * np.exp(-np.maximum(run.times - 10, 0) / 2)
+    )
+
+
+def test_the_controller_may_act_on_another_input():
+    tank = BufferTank(F_in=3, F_out=3)
+    controller = Controller(PID(6), 1, u0=3, action="direct")
+    run = simulate(tank, controller, until=400, setpoint=1, F_in=4, manipulated="F_out")
+    # at rest: 4 kg/s = 3 kg/s + 6 kg/(m s) times the level above its setpoint
+    assert run["h"][-1] == pytest.approx(1 + 1 / 6, abs=1e-4)
+    assert run.manipulated == "F_out"
+
+
+class OnOff:
+    """A controller of one's own."""
+
+    step = 1.0
+
+    def update(self, setpoint, measurement, feedforward=0, manual=None):
+        return 10.0 if measurement < setpoint else 0.0
+
+
+def test_any_object_with_a_step_and_an_update_is_a_controller():
+    tank = HeatedTank()
+    run = simulate(tank, OnOff(), until=10, setpoint=40)
+    assert set(run["P"]) == {10.0}
+    assert "u_p" not in run.signals
+    longer = simulate(tank, OnOff(), until=20, setpoint=20, after=run)
+    assert longer["P"].tolist() == 10 * [10] + 11 * [0]
+    pid = simulate(tank, Controller(PID(1, 100), 1), until=40, setpoint=30, after=longer)
+    assert pid["P"][20] == pytest.approx(0, abs=1e-12)  # it begins as after manual mode
+
+
+def test_a_controller_begins_from_the_control_signal_of_an_open_run():
+    run = simulate(HeatedTank(), until=100, step=10, P=12000)
+    run = simulate(HeatedTank(), Controller(PID(500, 300), 10), until=200, setpoint=30, after=run)
+    assert run["P"][10] == pytest.approx(12000)
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1e-3, 1, 1e6, 1e12])
+def test_the_unit_of_time_does_not_matter(scale):
+    exact = evaluate(step_response(first_order(1, 1, delay=sympy.Rational(3, 10))), np.arange(51) / 10)
+    T, delay = sympy.Rational(scale), sympy.Rational(3, 10) * sympy.Rational(scale)
+    run = simulate(Process(sympy.exp(-delay * s) / (T * s + 1)), until=5 * scale, step=scale / 10, u=1)
+    assert run["y"] == pytest.approx(exact, abs=1e-6)
+
+
+def test_one_moment_is_one_sample_for_all_signals():
+    """Seven times 0.7 is 4.9 and not a little less."""
+    controller, step = Controller(PID(1), 0.7), stepwise(0, {4.9: 1})
+    run = simulate(
+        Process(1 / (s + 1)), controller, until=14, setpoint=step, d=step, feedforward=step, manual=[(4.9, 7, 3)]
+    )
+    assert run["setpoint"].tolist() == run["d"].tolist() == 7 * [0] + 14 * [1]
+    assert run["u"][7:11].tolist() == [3, 3, 3, pytest.approx(3)]
+
+
+def test_a_level_at_its_limit_with_an_inflow_that_changes_all_the_time():
+    run = simulate(LiquidTank(h=0.95), until=40, step=2, q_i=sympy.sin(t) / 10, q_o=0)
+    level, exact = 0.95, [0.95]
+    for start in np.arange(0, 40, 2):  # stepped finely
+        for time in start + 1e-4 * np.arange(20_000):
+            level = min(1, max(0, level + 1e-4 * math.sin(time + 5e-5) / 10))
+        exact.append(level)
+    assert run["h"] == pytest.approx(exact, abs=1e-5)
+
+
+@pytest.mark.parametrize("T", ["1/1000", "1/100000"])
+def test_a_lag_far_shorter_than_the_step(T):
+    H = 1 / ((s + 1) * (sympy.Rational(T) * s + 1))
+    run = simulate(Process(H), until=10, step=1, u=1)
+    assert close(run["y"], evaluate(step_response(H), run.times))
+
+
 # What is refused.
 
 TANK, LOOP = WoodChipTank(), chip_loop()
@@ -298,13 +400,42 @@ REFUSED = {
     "a short array": (lambda: simulate(TANK, until=100, step=1, u=[1, 2, 3]), "u has 3 values for 101 samples"),
     "a short setpoint": (lambda: simulate(TANK, LOOP, until=100, setpoint=[10, 11]), "setpoint has 2 values for 21"),
     "NaN in an array": (lambda: simulate(TANK, until=2, step=1, u=[1, math.nan, 3]), "u is nan at t = 1"),
-    "NaN as a number": (lambda: simulate(TANK, LOOP, until=100, setpoint=math.nan), "setpoint is nan"),
+    "NaN as a number": (lambda: simulate(TANK, LOOP, until=100, setpoint=math.nan), "setpoint: nan is of type float"),
     "infinite noise": (lambda: simulate(TANK, LOOP, until=100, setpoint=10, noise=math.inf), "noise"),
     "negative noise": (lambda: simulate(TANK, LOOP, until=100, setpoint=10, noise=-1), "deviation is -1"),
     "half a stretch by hand": (lambda: simulate(TANK, LOOP, until=100, setpoint=10, manual=[(0, 5)]), "manual has"),
     "another plant's run": (
         lambda: simulate(RCCircuit(), until=20, step=1, after=simulate(TANK, until=10, step=1)),
         "has the inputs",
+    ),
+    "a class for a plant": (lambda: simulate(WoodChipTank, until=10, step=1), "the plant is"),
+    "a plant for the earlier run": (lambda: simulate(TANK, until=10, step=1, after=TANK), "after is"),
+    "settings for a controller": (lambda: simulate(TANK, PID(1), until=10, setpoint=1), "the controller is PID"),
+    "noise for nobody": (lambda: simulate(TANK, until=10, step=1, noise=1), "no controller"),
+    "an unknown manipulated input": (
+        lambda: simulate(TANK, LOOP, until=10, setpoint=1, manipulated="h"),
+        "has no input 'h'",
+    ),
+    "a manual mode that ends before it begins": (
+        lambda: simulate(TANK, LOOP, until=10, setpoint=1, manual=[(300, 100, 40)]),
+        "the beginning before the end",
+    ),
+    "a manual mode that is a number": (lambda: simulate(TANK, LOOP, until=10, setpoint=1, manual=5), "manual is 5"),
+    "a manual mode in words": (
+        lambda: simulate(TANK, LOOP, until=10, setpoint=1, manual=[("now", 5, 1)]),
+        "manual has",
+    ),
+    "a seed that is none": (lambda: simulate(TANK, LOOP, until=10, setpoint=1, noise=1, seed=0.5), "seed is 0.5"),
+    "an endless run": (lambda: simulate(TANK, until=1e12, step=1), "at most"),
+    "a signal without a value": (lambda: simulate(TANK, until=10, step=1, w_out=sympy.log(t)), "w_out"),
+    "a signal with a hole between the samples": (
+        lambda: simulate(TANK, until=10, step=1, w_out=1 / (t - sympy.Rational(15, 2))),
+        "w_out has no value|grows beyond",
+    ),
+    "parameters that divide by zero": (lambda: simulate(RCCircuit(R=0), until=10, step=1), "divides by zero"),
+    "a controller that returns nothing": (
+        lambda: simulate(TANK, type("Silent", (OnOff,), {"update": lambda *a, **k: None})(), until=10, setpoint=1),
+        "returned None at t = 0",
     ),
     "a signal that the run lacks": (lambda: simulate(TANK, until=10, step=1)["setpoint"], "no signal 'setpoint'"),
     "an unstable plant": (

@@ -66,15 +66,44 @@ def test_an_unstable_process_has_a_lowest_gain():
     Ku, Pu = ultimate(sympy.exp(-s / 2) / (s - 1))
     w = 2 * math.pi / Pu
     assert (math.tan(w / 2), Ku) == pytest.approx((w, math.sqrt(1 + w**2)))
-    with pytest.raises(ValueError, match="no gain"):
+    with pytest.raises(ValueError, match=r"no positive gain .* stable$"):
         ultimate(sympy.exp(-2 * s) / (s - 1))
 
 
 def test_a_double_integrator_needs_derivative_action():
-    with pytest.raises(ValueError, match="no gain"):
+    with pytest.raises(ValueError, match=r"no positive gain .* stable$"):
         ultimate(1 / s**2)
     assert is_stable((s + 1) / s**2)
     assert not is_stable(1 / s**2)
+
+
+def test_a_process_with_the_wrong_sign():
+    """With a negative gain these loops are stable up to a static gain of one, or not at all with a positive gain."""
+    assert ultimate(-1 / (s + 1)) == ultimate((s - 1) / (s + 1) ** 2) == (1, math.inf)
+    with pytest.raises(ValueError, match=r"no positive gain .* but a negative one does"):
+        ultimate(-DELAY / s)
+
+
+def test_narrow_resonances_are_not_stepped_over():
+    # between pole pair and zero pair the phase turns by half a turn within a ten-thousandth of the frequency
+    damping, apart = sympy.Rational(1, 10**5), sympy.Rational(10001, 10**4)
+    resonance = (s**2 + damping * s + apart) / (s**2 + damping * s + 1) / (s + 1) ** 3
+    Ku, _ = ultimate(resonance)
+    assert is_stable(sympy.Rational(0.9999 * Ku) * resonance)
+    assert not is_stable(sympy.Rational(1.0001 * Ku) * resonance)
+
+
+def test_a_triple_crossing_and_multiple_poles():
+    loop = (5 * s + sympy.Rational(5, 3)) / (s**3 + 3 * s**2 + 6 * s + sympy.Rational(4, 3))
+    assert unstable_poles(loop * sympy.exp(-sympy.Rational(11, 4) * s)) == 2
+    assert is_stable(1 / (s * (s**2 + 3 * s + 3)))  # (s + 1)^3
+    assert unstable_poles(1 / (s - 1) ** 2) == 2
+
+
+def test_coefficients_need_not_be_fractions():
+    assert unstable_poles(sympy.pi / s / (s + 1) ** 2) == 2
+    assert is_stable(sympy.sqrt(2) * DELAY / (s + sympy.sqrt(3)))
+    assert is_stable(1 / (10**17 * s + 1) ** 3)
 
 
 def test_the_limit_itself_is_neither():
@@ -112,6 +141,9 @@ def test_the_simulated_loop_agrees(factor):
         ((s + 1) / (s + 2), "not strictly proper"),
         (DELAY, "not strictly proper"),
         (1 / s + DELAY / s, "different dead times"),
+        ((1 + sympy.I) / (s + 1), "complex"),
+        (sympy.S.Zero, "is 0"),
+        ("1/s", "'1/s'"),
     ],
 )
 def test_what_is_not_known(loop, message):

@@ -338,10 +338,18 @@ def trends(runs, title=None, disturbances=(), measured=False, minutes=False, lim
     import numpy
 
     runs = runs if isinstance(runs, dict) else {"": runs}
+    if not runs or not all(hasattr(run, "signals") for run in runs.values()):
+        raise ValueError("expected a run, or {label: run} with one run or more")
+    if isinstance(disturbances, str):
+        raise ValueError(f"disturbances is {disturbances!r}: expected a list of names")
     first = next(iter(runs.values()))
-    if any(not numpy.array_equal(run.times, first.times) for run in runs.values()):
-        raise ValueError("the runs have different times: expected the same step and the same end")
-    output, control = str(first.plant.output.func), str(first.plant.manipulated.func)
+    for run in runs.values():
+        if not numpy.array_equal(run.times, first.times):
+            raise ValueError("the runs have different times: expected the same step and the same end")
+        for name in ("setpoint", *disturbances):
+            if name in first.signals and not numpy.array_equal(run[name], first[name], equal_nan=True):
+                raise ValueError(f"the runs have different signals {name!r}: expected the same in all")
+    output, control = str(first.plant.output.func), first.manipulated
     source = "measurement" if measured else output
 
     def panel(name, signal, role):

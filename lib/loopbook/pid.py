@@ -71,15 +71,21 @@ class PID:
     def parallel(self):
         """Return the same controller in parallel form. (Haugen, equations 10.24 to 10.26, here with the filter)
 
+        Raises ValueError where there is none, because the filter is slower than the derivative action.
+
         >>> PID(2, Ti=8, Td=2, form="serial").parallel()
         PID(Kp=5/2, Ti=10, Td=8/5)
         """
         if self.form == "parallel":
             return self
         if self.Ti == sympy.oo:
-            return PID(self.Kp, Td=self.Td - self.Tf, Tf=self.Tf)
-        Ti = self.Ti + self.Td - self.Tf
-        return PID(self.Kp * Ti / self.Ti, Ti, self.Ti * self.Td / Ti - self.Tf, self.Tf)
+            Kp, Ti, Td = self.Kp, self.Ti, self.Td - self.Tf
+        else:
+            Ti = self.Ti + self.Td - self.Tf
+            Kp, Td = self.Kp * Ti / self.Ti, self.Ti * self.Td / Ti - self.Tf
+        if Td.is_negative or Ti.is_negative:
+            raise ValueError(f"{self} has no parallel form: its filter is slower than its derivative action")
+        return PID(Kp, Ti, Td, self.Tf)
 
     def serial(self):
         """Return the same controller in serial form.
@@ -120,7 +126,7 @@ class PID:
         >>> PID(1, Ti=12).repeats_per_minute()
         5
         """
-        return minute / self.Ti
+        return exact(minute) / self.Ti
 
     @classmethod
     def from_panel(cls, proportional_band, repeats_per_minute=0, Td=0, Tf=0, minute=60):
@@ -133,8 +139,10 @@ class PID:
         >>> PID.from_panel(50, repeats_per_minute=5)
         PID(Kp=2, Ti=12)
         """
-        repeats = exact(repeats_per_minute)
-        return cls(100 / exact(proportional_band), sympy.oo if repeats == 0 else minute / repeats, Td, Tf)
+        band, repeats = exact(proportional_band), exact(repeats_per_minute)
+        if band == 0:
+            raise ValueError("the proportional band is 0: expected a number other than zero")
+        return cls(100 / band, sympy.oo if repeats == 0 else exact(minute) / repeats, Td, Tf)
 
     def __repr__(self):
         shown = {name: getattr(self, name) for name in ("Kp", "Ti", "Td", "Tf")}
@@ -144,7 +152,7 @@ class PID:
 
 
 class LowpassFilter:
-    """A first-order lag as a program: gain 1, lag `T`, exact for an input that is held between samples.
+    """A first-order lag as a program: gain 1, lag `T`, exact for an input that changes evenly from sample to sample.
 
     Arguments:
         T: lag, not negative; 0 lets the input through.
@@ -153,23 +161,22 @@ class LowpassFilter:
 
     >>> smooth = LowpassFilter(T=2, step=1)
     >>> [round(smooth.update(x), 4) for x in (0, 1, 1, 1)]
-    [0, 0.0, 0.3935, 0.6321]
+    [0.0, 0.2131, 0.5227, 0.7105]
     """
 
     def __init__(self, T, step):
         T, self.step = _number("T", T), _positive("step", step)
         if T < 0:
             raise ValueError(f"T is {T:g}: expected a lag that is not negative")
-        self.remains = math.exp(-self.step / T) if T else 0.0
-        self.follows_at_once = T == 0
+        self.T, self.remains = T, math.exp(-self.step / T) if T else 0.0
         self.output = self.input = None
 
     def update(self, x):
-        """Take the input of this sample and return the output of this sample; the first one is at rest."""
-        if self.output is None or self.follows_at_once:
-            self.output = x
-        else:
-            self.output = self.input + self.remains * (self.output - self.input)
+        """Take the input of this sample and return the output of this sample; at the first one it is at rest."""
+        if self.output is None:
+            self.input = self.output = x
+        behind = self.T * (x - self.input) / self.step  # how far the output of an endless ramp stays behind
+        self.output = x - behind + self.remains * (self.output - self.input + behind)
         self.input = x
         return self.output
 
@@ -187,7 +194,8 @@ class Controller:
     Arguments:
         settings: a `PID` with numbers; a serial one is converted to parallel form.
         step: time between two samples, in the unit of the settings' times.
-        u0: nominal (manual) control signal, in the unit of the control signal.
+        u0: nominal (manual) control signal. It, the limits, the feedforward, the operator's control signal and the
+            terms are in the unit of u, which is percent if there is a `control_range`.
         action: "reverse", or "direct" for a controller that must raise u when the measurement rises: its gain is -Kp.
         limits: lowest and highest control signal, of the actuator; none, or 0 to 100 % with a `control_range`.
         pid_limits: lowest and highest u_PID = u - u_f, as in the note to Haugen, Example 8.1; none if not given.
@@ -273,58 +281,69 @@ class Controller:
             manual: the operator's control signal in manual mode, in the unit of u; NaN keeps the last one. None for
                 automatic mode.
         Returns:
-            The control signal, in percent or in the unit of `control_range`.
+            The control signal, in the unit of u, or with a `control_range` in the unit of that range.
+        Raises:
+            ValueError: for a signal that is no number.
         """
+        try:
+            setpoint, measurement, feedforward = float(setpoint), float(measurement), float(feedforward)
+            manual = None if manual is None else float(manual)
+        except (TypeError, ValueError):
+            given = f"({setpoint!r}, {measurement!r}, {feedforward!r}, {manual!r})"
+            raise ValueError(f"setpoint, measurement, feedforward and manual are {given}: expected numbers") from None
         y = self.filter.update(measurement)
         if self.setpoint is None:
             self.setpoint, at_rest = y, self._in_percent(y)
-            self._differentiate(at_rest, at_rest)
+            self.lagging = (self.w_d - 1) * at_rest
             self.integral = self.Kp * (1 - self.w_p) * at_rest  # so that the control signal was u0
         # the setpoint that the controller sees moves no faster than the ramp
-        self.setpoint += min(max(setpoint - self.setpoint, -self.ramp), self.ramp)
+        self.setpoint += _between(setpoint - self.setpoint, (-self.ramp, self.ramp))
         y, y_SP = self._in_percent(y), self._in_percent(self.setpoint)
 
+        by_hand = manual is not None
+        if by_hand or (self.in_manual and self.bumpless):
+            self.lagging = self.w_d * y_SP - y  # the derivative term starts at zero with the automatic mode
         u_p = self.Kp * (self.w_p * y_SP - y)
-        u_d = self._differentiate(y_SP, y)
-        if manual is not None:
-            self._by_hand(manual)
-            growth = 0.0
+        u_d = self._differentiate(self.w_d * y_SP - y)
+        growth = 0.0
+        if by_hand:
+            last = self.u0 if self.u is None else self.u
+            self.u = _between(last if math.isnan(manual) else manual, self.limits)
         else:
             if self.in_manual and self.bumpless:  # go on from where the operator left the control signal
-                self.integral = self.u - (self.u0 + u_p + u_d + feedforward)
+                self.integral = _between(self.u - feedforward, self.pid_limits) - (self.u0 + u_p + u_d)
             u_PID = self.u0 + u_p + self.integral + u_d
             u = _between(u_PID, self.pid_limits) + feedforward
             self.u = _between(u, self.limits)
             growth = self.Kp * self.step / self.Ti * (y_SP - y)
             if self.anti_windup and self._at_limit(u_PID, u, growth):
                 growth = 0.0
-        self.in_manual = manual is not None
+        self.in_manual = by_hand
         self.terms = (u_p, self.integral, u_d)
         self.integral += growth
         return self.from_percent(self.u) if self.from_percent else self.u
 
     def take_over(self, other):
-        """Continue where another controller stopped, as after a change of settings: the integral term stays."""
+        """Continue where another controller stopped, as after a change of settings; a loop at rest feels no bump."""
         self.setpoint, self.u, self.integral, self.in_manual = other.setpoint, other.u, other.integral, other.in_manual
         self.filter.input, self.filter.output, self.lagging = other.filter.input, other.filter.output, other.lagging
+        if self.setpoint is not None:
+            y_SP = self._in_percent(self.setpoint)
+            self.integral += other.u0 - self.u0 + (other.Kp * (other.w_p - 1) - self.Kp * (self.w_p - 1)) * y_SP
+            self.lagging += (self.w_d - other.w_d) * y_SP
+
+    def start_from(self, u):
+        """Begin as after manual mode with the control signal u, in the unit of u."""
+        self.u, self.in_manual = _number("u", u), True
 
     def _in_percent(self, y):
         return self.to_percent(y) if self.to_percent else y
 
-    def _differentiate(self, y_SP, y):
+    def _differentiate(self, x):
         """The derivative term, its mean over the coming sample: the slope behind the filter, exact for ramps."""
-        x = self.w_d * y_SP - y
-        if self.lagging is None:
-            self.lagging = x
         slope = (1 - self.lag_remains) * (x - self.lagging) / self.step
         self.lagging += slope * self.step
         return self.Kp * self.Td * slope
-
-    def _by_hand(self, manual):
-        if not math.isnan(manual):
-            self.u = _between(manual, self.limits)
-        elif self.u is None:
-            self.u = _between(self.u0, self.limits)
 
     def _at_limit(self, u_PID, u, growth):
         """Whether the integral term would drive a limited signal further beyond its limit."""

@@ -13,9 +13,8 @@ from typing import NamedTuple
 import sympy
 from sympy.core.function import AppliedUndef
 
-from loopbook.expressions import exact, function_of, s, t
-from loopbook.laplace import by_delay
-from loopbook.transfer import simplified
+from loopbook.expressions import exact, s, t
+from loopbook.transfer import polynomials, simplified
 
 __all__ = [
     "AirHeater", "BlendingTank", "BufferTank", "HeatedTank", "HeatedTankWithElement", "HeatedTankWithTransport",
@@ -25,7 +24,10 @@ __all__ = [
 
 
 class Quantity(NamedTuple):
-    """A parameter or a signal of a plant: its value (of a signal: at the operating point), unit and meaning."""
+    """A parameter or a signal of a plant: its value (of a signal: at the operating point), unit and meaning.
+
+    A measured signal has None for a value, which follows from the others.
+    """
 
     value: object
     unit: str
@@ -58,7 +60,8 @@ class Plant:
     Arguments:
         values: numbers that replace the default values, by name, in the units of `quantities`.
     Raises:
-        ValueError: for a name that the plant does not have, or a value that is no number, or a negative parameter.
+        ValueError: for a name that the plant does not have, for a value that is no number, a negative parameter, or a
+            state outside its limits.
     """
 
     model = ()
@@ -73,18 +76,43 @@ class Plant:
 
     def __init__(self, **values):
         known = {name_of(letter): letter for letter in self.quantities}
+        measured = {name_of(x): f for x, f in self.measured.items()}
         for name in values:
             if name not in known:
                 raise ValueError(f"{type(self).__name__} has no {name!r}: it has {', '.join(known)}")
+            if name in measured:
+                raise ValueError(f"{name} is not given but measured: it is {measured[name]}")
         self.values = {}
         for name, letter in known.items():
-            value = exact(values.get(name, self.quantities[letter].value))
-            if not (value.is_number and value.is_finite and value.is_real):
-                raise ValueError(f"{name} is {value}: expected a number")
-            if letter.is_Symbol and value < 0:
-                raise ValueError(f"{name} is {value}: expected a parameter that is not negative")
-            self.values[letter] = value
-            setattr(self, name, value)
+            if name not in measured:
+                self.values[letter] = self._checked(name, letter, values.get(name, self.quantities[letter].value))
+        for name, formula in measured.items():
+            self.values[known[name]] = self.numbers(self._in_constants(formula))
+        for state, limits in self.limits.items():
+            low, high = (self.numbers(sympy.sympify(x)) for x in limits)
+            if not low <= self.values[state] <= high or low == high:
+                raise ValueError(
+                    f"{name_of(state)} is {_short(self.values[state])}: expected a value from {low} to {high}"
+                )
+        self.__dict__.update({name_of(letter): value for letter, value in self.values.items()})
+
+    @staticmethod
+    def _checked(name, letter, value):
+        try:
+            value = exact(value)
+        except ValueError as error:
+            raise ValueError(f"{name}: {error}") from None
+        if not (value.is_number and value.is_finite and value.is_real):
+            raise ValueError(f"{name} is {value}: expected a number")
+        if letter.is_Symbol and value < 0:
+            raise ValueError(f"{name} is {value}: expected a parameter that is not negative")
+        return value
+
+    def __setattr__(self, name, value):
+        if name in {name_of(letter) for letter in self.quantities}:
+            given = f"{type(self).__name__}({name}={value})"
+            raise ValueError(f"{name} cannot be changed: make another plant, {given}")
+        super().__setattr__(name, value)
 
     # -------------------------------------------------------------------------------------------- what it consists of
 
@@ -117,7 +145,7 @@ class Plant:
 
         Raises ValueError for a name that is no signal of the plant.
         """
-        if name in self.quantities and not name.is_Symbol:
+        if isinstance(name, sympy.Basic) and name in self.quantities and not name.is_Symbol:
             return name
         found = {name_of(x): x for x in self.quantities if not x.is_Symbol}
         if name not in found:
@@ -157,7 +185,8 @@ class Plant:
         >>> WoodChipTank().static_response("u")
         {u: w_out/K_s}
         """
-        wanted = [_letter(self.signal(x)) for x in unknowns or [x for x in self.states if not x.is_Derivative]]
+        wanted = unknowns or [x for x in self.states if not x.is_Derivative]
+        wanted = list(dict.fromkeys(_letter(self.signal(x)) for x in wanted))
         constant = self._in_constants(
             [equation.lhs - equation.rhs for equation in self.model if equation.has(sympy.Derivative)]
         )
@@ -540,7 +569,8 @@ class HeatedTankWithElement(HeatedTank):
 class HeatedTankWithTransport(Plant):
     """The insulated heated tank under control, its sensor some way off. (Haugen, equations 10.33 and 10.34)
 
-    The book prints the flows 12 to 24 kg/min. The other values are ours, and the operating point is a steady state.
+    The delay is a parameter; in Example 10.4 it is inversely proportional to the flow. The book prints the flows 12 to
+    24 kg/min. The other values are ours, and the operating point is a steady state.
     """
 
     T, T_1, u, w, T_in = signals("T T_1 u w T_in")
@@ -560,7 +590,7 @@ class HeatedTankWithTransport(Plant):
         w: (0.2, "kg/s", "mass flow"),
         T_in: (20, "°C", "temperature of the inflow"),
         T_1: (40, "°C", "temperature in the tank"),
-        T: (40, "°C", "temperature at the sensor"),
+        T: (None, "°C", "temperature at the sensor"),
     }
 
 
@@ -585,7 +615,7 @@ class AirHeater(Plant):
         u: (0, "V", "control signal of the heater"),
         T_env: (21.5, "°C", "temperature of the room"),
         T_rise: (0, "K", "rise of the temperature"),
-        T: (21.5, "°C", "temperature at the outlet"),
+        T: (None, "°C", "temperature at the outlet"),
     }
 
 
@@ -622,8 +652,8 @@ class JacketedTank(Plant):
         T_e: (20, "°C", "temperature of the environment"),
         T_p: (40, "°C", "temperature in the tank"),
         T_h: (46, "°C", "temperature in the jacket"),
-        T_pm: (40, "°C", "measured temperature of the tank"),
-        T_hm: (46, "°C", "measured temperature of the jacket"),
+        T_pm: (None, "°C", "measured temperature of the tank"),
+        T_hm: (None, "°C", "measured temperature of the jacket"),
     }
 
 
@@ -643,27 +673,17 @@ class Process(Plant):
     """
 
     def __init__(self, H):
-        H = function_of(s, H)
-        if letters := sorted(map(str, H.free_symbols - {s})):
-            raise ValueError(f"cannot simulate {H}: give a number for {', '.join(letters)}")
-        if len(parts := by_delay(H)) != 1:
-            raise ValueError(f"{H} adds terms of different dead times: expected one dead time")
-        ((delay, rational),) = parts.items()
-        above, below = (sympy.Poly(part, s).all_coeffs() for part in sympy.cancel(rational).as_numer_denom())
+        above, below, delay = polynomials(H)
+        above, below = ([c / below.LC() for c in polynomial.all_coeffs()] for polynomial in (above, below))
         order = len(below) - 1
-        if len(above) > order:
-            raise ValueError(f"{H} is not strictly proper: expected more poles than zeros")
-        above, below = ([c / below[0] for c in reversed(coefficients)] for coefficients in (above, below))
+        above = [0] * (order - len(above)) + above
         u, d, y, *x = signals("u d y " + " ".join(f"x_{n}" for n in range(1, order + 1)))
-        # the controllable canonical form: a chain of integrators
+        # the observable canonical form: a chain of integrators that ends in the output
         driven = (u + d).subs(t, t - delay)
-        rates = [*x[1:], driven - sum(a * x_n for a, x_n in zip(below, x, strict=False))]
-        self.model = (
-            *(sympy.Eq(x_n.diff(t), rate) for x_n, rate in zip(x, rates, strict=True)),
-            sympy.Eq(y, sum(b * x_n for b, x_n in zip(above, x, strict=False))),
-        )
+        rates = [b * driven - a * x[0] + x_n for a, b, x_n in zip(below[1:], above, [*x[1:], 0], strict=True)]
+        self.model = (*(sympy.Eq(x_n.diff(t), rate) for x_n, rate in zip(x, rates, strict=True)), sympy.Eq(y, x[0]))
         self.output, self.manipulated = y, u
         inside = {x_n: Quantity(0, "", "inner state") for x_n in x}
-        outside = {u: "control signal", d: "load at the input", y: "output"}
-        self.quantities = {signal: Quantity(0, "", meaning) for signal, meaning in outside.items()} | inside
+        outside = {u: Quantity(0, "", "control signal"), d: Quantity(0, "", "load at the input")}
+        self.quantities = outside | {y: Quantity(None, "", "output")} | inside
         super().__init__()

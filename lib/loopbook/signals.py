@@ -1,12 +1,20 @@
-"""Signals in time: steps, noise and pulses, as expressions in `t` or as samples."""
+"""Signals in time: steps, noise and pulses, as expressions or as samples, and what a simulation makes of them.
 
+A signal in time is a number, an expression in `t`, or an array with a value for each sample, held until the next one.
+"""
+
+import bisect
 import math
+import numbers
 
 import sympy
 
 from loopbook.expressions import exact, t
+from loopbook.laplace import between_steps, evaluate
 
 __all__ = ["noise", "pulse_width_modulation", "stepwise"]
+
+CLOSE = 1e-9  # two moments that are this share of a step apart are one, but for rounding
 
 
 def stepwise(start, changes):
@@ -21,10 +29,14 @@ def stepwise(start, changes):
     >>> stepwise(10, {300: 11, 600: 10})
     -Heaviside(t - 600) + Heaviside(t - 300) + 10
     """
+    if not isinstance(changes, dict):
+        raise ValueError(f"the changes are {changes!r}: expected {{time: new value}}")
+    changes = {exact(time): exact(new) for time, new in changes.items()}
     value = total = exact(start)
-    for time, new in sorted((exact(time), exact(new)) for time, new in changes.items()):
-        if not (time.is_number and new.is_number):
+    for time, new in changes.items():
+        if not all(x.is_number and x.is_real for x in (time, new)):
             raise ValueError(f"the signal changes to {new} at t = {time}: expected two numbers")
+    for time, new in sorted(changes.items()):
         total += (new - value) * sympy.Heaviside(t - time)
         value = new
     return total
@@ -45,8 +57,13 @@ def noise(times, deviation, seed):
     """
     import numpy
 
-    if not deviation >= 0 or math.isinf(deviation):
-        raise ValueError(f"the deviation is {deviation}: expected a number that is not negative")
+    if not is_number(deviation) or deviation < 0:
+        raise ValueError(f"the deviation is {deviation!r}: expected a number that is not negative")
+    seeds = seed if isinstance(seed, tuple) else (seed,)
+    if not all(isinstance(part, numbers.Integral) and part >= 0 for part in seeds):
+        raise ValueError(f"the seed is {seed!r}: expected an integer that is not negative")
+    if isinstance(times, str):
+        raise ValueError(f"the times are {times!r}: expected an array")
     return numpy.random.default_rng(seed).normal(0, 1, len(times)) * float(deviation)
 
 
@@ -68,18 +85,122 @@ def pulse_width_modulation(duty, times, period):
     """
     import numpy
 
-    times = numpy.asarray(times, dtype=float)
-    duty = numpy.asarray(duty, dtype=float)
+    try:
+        times, duty = numpy.asarray(times, dtype=float), numpy.asarray(duty, dtype=float)
+    except (TypeError, ValueError):
+        raise ValueError("the duty cycle and the times are not numbers") from None
+    if times.ndim != 1 or not len(times) or not (numpy.diff(times) > 0).all():
+        raise ValueError("the times must be an array of increasing numbers")
+    if not is_number(period) or period <= 0:
+        raise ValueError(f"the period is {period!r}: expected a positive time")
     if duty.ndim and duty.shape != times.shape:
         raise ValueError(f"the duty cycle has {duty.size} values for {times.size} times")
     if not ((duty >= 0) & (duty <= 100)).all():
         raise ValueError(
             f"the duty cycle is {duty[~((duty >= 0) & (duty <= 100))].ravel()[0]:g} %: expected 0 to 100 %"
         )
-    if not period > 0:
-        raise ValueError(f"the period is {period}: expected a positive time")
     # a moment that rounding puts just before a whole number of cycles begins the next one
     cycle = numpy.floor((times - times[0]) / period + 1e-9)
     phase = (times - times[0]) / period - cycle
     at_beginning = duty[numpy.searchsorted(cycle, cycle)] if duty.ndim else duty
     return (phase < at_beginning / 100 - 1e-9).astype(int)
+
+
+# ---------------------------------------------------------------------------------------- for the simulation
+
+
+def is_number(value):
+    """Whether a value is one finite real number, and no text or truth value."""
+    try:
+        return not isinstance(value, (bool, str)) and math.isfinite(float(value))
+    except (TypeError, ValueError):
+        return False
+
+
+def samples(name, signal, times):
+    """Return the values of a signal in time at the given times, a list.
+
+    Raises ValueError, which calls the signal by its name, for a wrong length or a value that is no finite number.
+
+    >>> samples("setpoint", stepwise(10, {2: 11}), sympy.sympify("[0, 1, 2]"))
+    [10.0, 10.0, 11.0]
+    """
+    import numpy
+
+    times = numpy.asarray(times, dtype=float)
+    if isinstance(signal, (sympy.Expr, str, numbers.Number)):
+        try:
+            values = evaluate(exact(signal), times)
+        except ValueError as error:
+            raise ValueError(f"{name}: {error}") from None
+    else:
+        try:
+            values = numpy.asarray(list(signal), dtype=float)
+        except (TypeError, ValueError):
+            raise ValueError(f"{name} is {signal!r}: expected a number, an expression in t or an array") from None
+    if values.shape != times.shape:
+        raise ValueError(f"{name} has {values.size} values for {times.size} samples")
+    if not numpy.isfinite(values).all():
+        when = times[~numpy.isfinite(values)][0]
+        raise ValueError(f"{name} is {values[~numpy.isfinite(values)][0]} at t = {when:g}: expected finite numbers")
+    return values.tolist()
+
+
+def in_time(name, signal, times):
+    """Return a signal in time as an object that knows its value at any moment."""
+    import numpy
+
+    step = times[1] - times[0]
+    if isinstance(signal, sympy.Expr) and signal.has(t):
+        with numpy.errstate(all="ignore"):
+            samples(name, signal, times)  # says what is wrong with it
+        stretches = [(max(start, times[0]), f) for start, end, f in between_steps(exact(signal)) if end > times[0]]
+        values = [float(f) if f.is_number else _changing(name, f) for _, f in stretches]
+        return Stretches([start for start, _ in stretches], values, step)
+    if is_number(signal):
+        return Stretches(times[:1], [float(signal)], step)
+    return Stretches(times, samples(name, signal, times), step)
+
+
+class Stretches:
+    """A signal that is one number, or one function of time, from each of its moments to the next.
+
+    Before the first moment it is what its past says, another signal.
+    """
+
+    past = None
+
+    def __init__(self, times, values, step):
+        self.times, self.values, self.step = list(times), values, step
+
+    def around(self, time):
+        """A number, or a function of time, that is the signal all around a moment at which it does not jump."""
+        n = last_not_after(time, self.times, self.step)
+        return self.past.around(time) if n < 0 else self.values[min(n, len(self.values) - 1)]
+
+    def at(self, time):
+        """The value at a moment; a step has its new value."""
+        value = self.around(time)
+        return value(time) if callable(value) else value
+
+    def jumps(self):
+        """The moments at which the signal may jump."""
+        return (self.past.jumps() if self.past else []) + self.times
+
+
+def _changing(name, formula):
+    """A formula in t as a function that says at which moment it has no value."""
+    function = sympy.lambdify(t, formula, "math")
+
+    def value(time):
+        try:
+            return float(function(time))
+        except (ArithmeticError, TypeError, ValueError):
+            raise ValueError(f"{name} has no value at t = {time:g}") from None
+
+    return value
+
+
+def last_not_after(time, times, step):
+    """The index of the last of the increasing times that is not after `time`, but for rounding; -1 if there is none."""
+    return bisect.bisect_right(times, time + CLOSE * step + 1e-15 * abs(time)) - 1

@@ -5,7 +5,6 @@ by the Dormand-Prince method of order 5 (SciPy) to a relative tolerance of 1e-9.
 on any grid: the moments at which a held signal arrives late are among the discontinuities.
 """
 
-import bisect
 import copy
 import math
 import warnings
@@ -14,15 +13,14 @@ from dataclasses import dataclass
 import sympy
 from sympy.core.function import AppliedUndef
 
-from loopbook.expressions import exact, t
-from loopbook.laplace import between_steps, evaluate
-from loopbook.plants import name_of
-from loopbook.signals import noise as noise_of
+from loopbook.expressions import t
+from loopbook.plants import Plant, name_of
+from loopbook.signals import CLOSE, Stretches, in_time, is_number, last_not_after, noise, samples
 
 __all__ = ["Run", "simulate"]
 
-CLOSE = 1e-9  # two moments that are so close together, for rounding, are one
 INFINITE = (-sympy.oo, sympy.oo)
+MOST_SAMPLES = 10_000_000
 TOLERANCE = {"rtol": 1e-9, "atol": 1e-12, "nsteps": 100_000}
 
 
@@ -34,11 +32,13 @@ class Run:
         times: the moments, an array.
         signals: ``{name: array}``, one value for each moment.
         plant: the plant, which knows the units.
+        manipulated: the name of the input that the controller acts on.
     """
 
     times: object
     signals: dict
     plant: object
+    manipulated: str
     _past: object = None  # what a later run needs in order to go on
 
     def __getitem__(self, name):
@@ -55,12 +55,13 @@ class Run:
 
 def simulate(
     plant, controller=None, *, until, step=None, setpoint=None, noise=0, seed=1, feedforward=0, manual=(), after=None,
-    **inputs,
+    manipulated=None, **inputs,
 ):  # fmt: skip
     """Simulate a plant, alone or under control.
 
     A signal in time is a number, an expression in `t` (steps as `signals.stepwise` writes them), or an array with a
-    value for each sample, which is held until the next one.
+    value for each sample, which is held until the next one. It must not change much faster than the samples come:
+    a pulse far shorter than a step would be stepped over.
 
     Arguments:
         plant: a `plants.Plant`. Before the start it has been at rest at its operating point.
@@ -74,7 +75,9 @@ def simulate(
         feedforward: a signal that is added to the control signal.
         manual: ``[(beginning, end, u)]``, the stretches of time in manual mode; u is None for the last control signal.
         after: an earlier run that this one continues, with its state, its past and its controller's memory; the plant
-            and the settings may be others. The result contains the earlier run.
+            and the settings may be others. If it was without control, the controller begins as after manual mode. The
+            result contains the earlier run.
+        manipulated: the input that the controller acts on, if it is not the plant's own, as the outflow of a tank.
         inputs: signals for the plant's inputs, by name; an input not named keeps its value at the operating point.
     Returns:
         A `Run` with the plant's states, inputs and outputs by their names, and with a controller "setpoint",
@@ -90,19 +93,29 @@ def simulate(
     >>> run["v_out"].round(6)
     array([0.      , 3.160603, 4.323324])
     """
-    begin = 0.0 if after is None else float(after.times[-1])
-    past = None if after is None else after._past
-    names = [str(x.func) for x in plant.inputs]
-    driven = str(plant.manipulated.func)
-    for name in inputs:
+    if not isinstance(plant, Plant):
+        raise ValueError(f"the plant is {plant!r}: expected one such as WoodChipTank()")
+    if after is not None and not isinstance(after, Run):
+        raise ValueError(f"after is {after!r}: expected an earlier run")
+    driven = name_of(plant.manipulated if manipulated is None else plant.signal(manipulated))
+    names = [name_of(x) for x in plant.inputs]
+    for name in (driven, *inputs):
         if name not in names:
             raise ValueError(f"{type(plant).__name__} has no input {name!r}: it has {', '.join(names)}")
+    begin, past = (0.0, None) if after is None else (float(after.times[-1]), after._past)
+    if past and not set(past.system.sources) >= set(names):
+        raise ValueError(
+            f"the earlier run has the inputs {', '.join(past.system.sources)}, this plant has {', '.join(names)}"
+        )
+    loop_signals = {"setpoint": setpoint, "noise": noise, "feedforward": feedforward}
     if controller is None:
-        if setpoint is not None or manual or not _is_zero(feedforward):
-            raise ValueError("a setpoint, a manual mode or a feedforward was given, but no controller")
+        if setpoint is not None or not (_is_zero(noise) and _is_zero(feedforward) and manual in ((), [])):
+            raise ValueError("a setpoint, noise, feedforward or a manual mode was given, but no controller")
         if step is None:
             raise ValueError("the step is missing: expected the time between two samples")
     else:
+        if not (hasattr(controller, "update") and is_number(getattr(controller, "step", None))):
+            raise ValueError(f"the controller is {controller!r}: expected one such as Controller(PID(2, 10), step=1)")
         if setpoint is None:
             raise ValueError("the setpoint is missing: expected a signal for the controller to follow")
         if driven in inputs:
@@ -112,312 +125,246 @@ def simulate(
         step = controller.step
     times = _grid(begin, until, step)
 
-    if past is not None and not set(past.sources) >= set(names):
-        raise ValueError(f"the earlier run has the inputs {', '.join(past.sources)}, this plant has {', '.join(names)}")
     at_rest = {name: plant.values[plant.signal(name)] for name in names}
-    sources = {name: _source(name, signal, times) for name, signal in (at_rest | inputs).items()}
+    sources = {name: in_time(name, signal, times) for name, signal in (at_rest | inputs).items()}
     if controller is not None:
-        sources[driven] = _Held(times)
+        sources[driven] = Stretches(times, [], step)
     for name, source in sources.items():
-        source.past = _Held([-math.inf], [float(at_rest[name])]) if past is None else past.sources[name]
-    system = _System(plant, sources, times, past)
+        before = Stretches([-math.inf], [float(at_rest[name])], step)
+        source.past = past.system.sources[name] if past else before
+    system = _System(plant, sources, times, past.system if past else None)
     loop = None
     if controller is not None:
-        noise = noise_of(times, noise, (seed, round(begin / step))) if _is_number(noise) else noise
-        loop = _Loop(
-            copy.deepcopy(controller), times, setpoint, noise, feedforward, manual, None if past is None else past.loop
-        )
+        loop = _Loop(copy.deepcopy(controller), times, loop_signals, seed, _by_hand(manual, times))
+        if past:
+            loop.continue_after(past.loop, sources[driven].past.at(begin))
     for time in times:
         system.advance(time)
         if loop:
-            u = loop.sample(system.output())
-            if not math.isfinite(u):
-                raise _beyond_all_numbers(driven, time)
-            sources[driven].values.append(u)
-    signals = system.signals(times) | (loop.signals() if loop else {})
-    return _joined(plant, after, times, signals, _Past(system.trace, sources, loop))
+            sources[driven].values.append(loop.sample(system.output(), driven))
+    signals = system.signals(times) | (loop.record if loop else {})
+    run = Run(times, _arrays(signals), plant, driven, _Past(system, loop))
+    return run if after is None else _joined(after, run)
 
 
 @dataclass(frozen=True)
 class _Past:
     """What a later run needs in order to go on."""
 
-    trace: object
-    sources: dict
+    system: object
     loop: object
 
 
 class _Loop:
     """The controller with its signals, one value for each sample."""
 
-    def __init__(self, controller, times, setpoint, noise, feedforward, manual, earlier):
-        self.controller, self.times, self.k = controller, times, 0
-        given = {"setpoint": setpoint, "noise": noise, "feedforward": feedforward}
-        self.setpoint, self.noise, self.feedforward = (_samples(name, x, times) for name, x in given.items())
-        self.manual = _by_hand(manual, times)
-        self.record = {}
-        if earlier is not None:
-            self.controller.take_over(earlier.before_last)
+    def __init__(self, controller, times, given, seed, manual):
+        self.controller, self.times, self.k, self.manual = controller, times, 0, manual
+        self.record, self.before_last = {}, None
+        if is_number(given["noise"]):
+            given = given | {"noise": noise(times, given["noise"], seed)}
+        self.given = {name: samples(name, signal, times) for name, signal in given.items()}
 
-    def sample(self, output):
+    def continue_after(self, earlier, u):
+        """Take over the memory of an earlier run's controller; without one, begin from its last control signal."""
+        if earlier and type(earlier.controller) is type(self.controller) and hasattr(self.controller, "take_over"):
+            self.controller.take_over(earlier.before_last)
+        elif hasattr(self.controller, "start_from"):
+            self.controller.start_from(u)
+
+    def sample(self, output, name):
         """Run the controller once, and return the control signal."""
         k, self.k = self.k, self.k + 1
         if self.k == len(self.times):  # a run that goes on from here begins with this sample, maybe with other settings
             self.before_last = copy.deepcopy(self.controller)
-        measurement = output + self.noise[k]
-        u = self.controller.update(
-            self.setpoint[k], measurement, feedforward=self.feedforward[k], manual=self.manual[k]
-        )
-        now = {"setpoint": self.setpoint[k], "measurement": measurement}
+        setpoint, added, feedforward = (values[k] for values in self.given.values())
+        now = {"setpoint": setpoint, "measurement": output + added}
+        u = self.controller.update(setpoint, output + added, feedforward=feedforward, manual=self.manual[k])
+        if not is_number(u):
+            if isinstance(u, float):
+                raise _beyond_all_numbers(name, self.times[k])
+            raise ValueError(f"the controller returned {u!r} at t = {self.times[k]:g}: expected a number")
         if hasattr(self.controller, "terms"):
             now["ramped"], now["filtered"] = self.controller.setpoint, self.controller.filtered
             now["u_p"], now["u_i"], now["u_d"] = self.controller.terms
-        for name, value in now.items():
-            self.record.setdefault(name, []).append(value)
-        return u
-
-    def signals(self):
-        return self.record
+        for signal, value in now.items():
+            self.record.setdefault(signal, []).append(value)
+        return float(u)
 
 
 class _System:
-    """The plant's equations as programs, and the trace of its state from discontinuity to discontinuity."""
+    """The plant's equations as programs, and its state from one discontinuity to the next."""
 
     def __init__(self, plant, sources, times, past):
-        from scipy.integrate import ode
-
-        self.plant, self.sources, self.rows = plant, sources, []
+        self.plant, self.sources, self.past, self.rows = plant, sources, past, []
+        self.begin, self.step = times[0], times[1] - times[0]
         equations = plant.state_equations()
         self.states = list(equations)
         self.names = [name_of(x) for x in self.states]
+        if past and past.names != self.names:
+            raise ValueError(f"the earlier run has the states {past.names}, this plant has {self.names}")
         self.rates, self.driving = self._compiled(equations.values())
         self.measure, self.measuring = self._compiled(plant.measured.values())
-        self._refuse_delays(times[1] - times[0])
+        self._refuse_delays()
 
+        self.at_rest = [0.0 if x.is_Derivative else float(plant.values[x]) for x in self.states]
         self.limits = [tuple(float(plant.numbers(x)) for x in plant.limits.get(x, INFINITE)) for x in self.states]
-        if past is None:
-            at_rest = [0.0 if x.is_Derivative else float(plant.values[x]) for x in self.states]
-            self.trace = _Trace(self.names, [-math.inf, times[0]], [at_rest, at_rest])
-        elif past.trace.names != self.names:
-            raise ValueError(f"the earlier run has the states {past.trace.names}, this plant has {self.names}")
-        else:
-            self.trace = _Trace(self.names, list(past.trace.times), list(past.trace.states))
+        self.limited = any(map(math.isfinite, sum(self.limits, ())))
+        # the state at each discontinuity so far
+        self.times, self.trace = [self.begin], [past.state_at(self.begin) if past else self.at_rest]
         self.ahead = iter(self._discontinuities(times))
-        self.solver = ode(self._rate_of_change).set_integrator("dopri5", first_step=times[1] - times[0], **TOLERANCE)
+        self.method = "dopri5"
 
     def _compiled(self, formulas):
         """A program for the formulas, and the signals besides the undelayed states that it needs: (name, delay)."""
         formulas = [self.plant.numbers(formula) for formula in formulas]
+        if any(formula.has(sympy.zoo, sympy.nan, sympy.oo) for formula in formulas):
+            raise ValueError(f"{self.plant} divides by zero: expected parameters that are not zero")
         letters = {x: sympy.Dummy() for x in self.states}
         formulas = [formula.xreplace(letters) for formula in formulas]
         found = sorted({x for formula in formulas for x in formula.atoms(AppliedUndef)}, key=str)
         others = {x: sympy.Dummy() for x in found}
         program = sympy.lambdify([*letters.values(), *others.values()], [f.xreplace(others) for f in formulas], "math")
-        return program, [(str(x.func), float(t - x.args[0])) for x in found]
+        return program, [(name_of(x), float(t - x.args[0])) for x in found]
 
-    def _refuse_delays(self, step):
+    def _refuse_delays(self):
         for name, delay in self.driving + self.measuring:
             if delay < 0:
                 raise ValueError(f"{name} acts {-delay:g} before its time: expected a dead time that is not negative")
-            if 0 < delay < step * (1 - CLOSE):
-                raise ValueError(f"the step {step:g} is longer than the dead time {delay:g}: expected a shorter step")
+            if 0 < delay < self.step * (1 - CLOSE):
+                raise ValueError(
+                    f"the step {self.step:g} is longer than the dead time {delay:g}: expected a shorter step"
+                )
         if any(name in self.names for name, _ in self.driving):
             raise ValueError(
                 f"{type(self.plant).__name__} has a dead time inside: expected one at an input or an output"
             )
-        if any(name == name_of(self.plant.manipulated) and not delay for name, delay in self.measuring):
+        if any(not self.sources[name].values and not delay for name, delay in self.measuring if name in self.sources):
             raise ValueError(f"{self.plant.manipulated} acts on the output at once: expected a lag between the two")
 
     def _discontinuities(self, times):
         """The moments to stop at: the samples, and where a signal, maybe delayed, jumps between two of them."""
         import numpy
 
-        begin, step = times[0], times[1] - times[0]
         late = [numpy.array(self.sources[name].jumps()) + delay for name, delay in self.driving]
-        early = [times - delay for name, delay in self.measuring if name in self.names]
-        moments = numpy.concatenate([*late, *early, []])
-        moments = numpy.unique(moments[(moments > begin) & (moments < times[-1])])
-        between = abs(moments - begin - step * numpy.round((moments - begin) / step)) > CLOSE * step
-        return numpy.sort(numpy.concatenate([times[1:], moments[between]])).tolist()
+        moments = numpy.unique(numpy.concatenate([*late, []]))
+        moments = moments[(moments > self.begin) & (moments < times[-1])]
+        steps = (moments - self.begin) / self.step
+        rounding = CLOSE + 1e-15 * abs(moments) / self.step
+        return numpy.sort(numpy.concatenate([times[1:], moments[abs(steps - numpy.round(steps)) > rounding]])).tolist()
 
     def advance(self, time):
         """Integrate up to the sample at `time`, and measure there."""
-        while self.trace.times[-1] < time:
-            self._integrate(self.trace.times[-1], next(self.ahead))
+        while self.times[-1] < time:
+            end = next(self.ahead)
+            self.trace.append(self._integrated(self.trace[-1], self.times[-1], end))
+            self.times.append(end)
         needed = [self._at(name, time - delay) for name, delay in self.measuring]
-        self.rows.append(self.measure(*self.trace.states[-1], *needed))
+        self.rows.append(self.measure(*self.trace[-1], *needed))
 
-    def _integrate(self, start, end):
+    def _integrated(self, state, start, end):
+        """The state at the end of a stretch of time in which no signal jumps."""
+        from scipy.integrate import ode
+
         middle = (start + end) / 2
-        self.now = [(self.sources[name].between(middle - delay), delay) for name, delay in self.driving]
-        self.held = [value for value, _ in self.now if isinstance(value, float)]
-        state = self.trace.states[-1]
-        try:
+        self.inside = [(self.sources[name].around(middle - delay), delay) for name, delay in self.driving]
+        self.held = None if any(callable(x) for x, _ in self.inside) else [x for x, _ in self.inside]
+        self.failure = None
+        # what is too stiff for the explicit method goes to the one that switches to an implicit method by itself
+        for method in dict.fromkeys((self.method, "lsoda")):
+            first_step = {"first_step": end - start} if method == "dopri5" else {}
+            solver = ode(self._rate_of_change).set_integrator(method, **first_step, **TOLERANCE)
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", UserWarning)
-                state = self.solver.set_initial_value(state, start).integrate(end).tolist()
-        except OverflowError:
-            state = [math.inf]
-        if not (self.solver.successful() and all(map(math.isfinite, state))):
-            raise _beyond_all_numbers(", ".join(self.names), end)
-        # With held inputs a single state moves one way only, so that cutting it off here is exact.
-        state = [min(max(x, low), high) for x, (low, high) in zip(state, self.limits, strict=True)]
-        self.trace.times.append(end)
-        self.trace.states.append(state)
+                found = solver.set_initial_value(state, start).integrate(end).tolist()
+            if self.failure:
+                raise self.failure
+            if solver.successful() and all(map(math.isfinite, found)):
+                self.method = method
+                return [min(max(x, low), high) for x, (low, high) in zip(found, self.limits, strict=True)]
+        raise _beyond_all_numbers(", ".join(self.names), end)
 
     def _rate_of_change(self, time, state):
-        if len(self.held) == len(self.now):
-            return self.rates(*state.tolist(), *self.held)
-        values = [x if isinstance(x, float) else x(time - delay) for x, delay in self.now]
-        return self.rates(*state.tolist(), *values)
+        state = state.tolist()
+        try:
+            inputs = self.held or [x(time - delay) if callable(x) else x for x, delay in self.inside]
+            rates = self.rates(*state, *inputs)
+        except OverflowError:
+            return [math.nan] * len(state)
+        except ValueError as error:
+            self.failure = error
+            return [math.nan] * len(state)
+        if self.limited:  # a state stays at its limit while its rate points out of the range
+            for n, (x, rate, (low, high)) in enumerate(zip(state, rates, self.limits, strict=True)):
+                if (x >= high and rate > 0) or (x <= low and rate < 0):
+                    rates[n] = 0.0
+        return rates
+
+    def state_at(self, time):
+        """The state at any moment so far; between two discontinuities it is integrated once more."""
+        n = last_not_after(time, self.times, self.step)
+        if n < 0:
+            return self.past.state_at(time) if self.past else self.at_rest
+        if abs(time - self.times[n]) <= CLOSE * self.step + 1e-15 * abs(time):
+            return self.trace[n]
+        return self._integrated(self.trace[n], self.times[n], time)
 
     def _at(self, name, time):
-        return self.trace.at(name, time) if name in self.names else self.sources[name].at(time)
+        if name in self.names:
+            return self.state_at(time)[self.names.index(name)]
+        return self.sources[name].at(time)
 
     def output(self):
         """The plant's output at the last sample."""
-        name = name_of(self.plant.output)
-        if name in self.names:
-            return self.trace.states[-1][self.names.index(name)]
+        if self.plant.output in self.states:
+            return self.trace[-1][self.states.index(self.plant.output)]
         return self.rows[-1][list(self.plant.measured).index(self.plant.output)]
 
     def signals(self, times):
-        found = {name: [self.trace.at(name, time) for time in times] for name in self.names}
+        """The states, the measured signals and the inputs at the samples."""
+        states = [self.state_at(time) for time in times]
+        found = {name: [state[n] for state in states] for n, name in enumerate(self.names)}
         found |= {name_of(x): [row[n] for row in self.rows] for n, x in enumerate(self.plant.measured)}
         return found | {name: [source.at(time) for time in times] for name, source in self.sources.items()}
 
 
-@dataclass(frozen=True)
-class _Trace:
-    """The states at the moments at which the integration stopped; the first moment stands for all time before."""
-
-    names: list
-    times: list
-    states: list
-
-    def at(self, name, time):
-        return self.states[_last_not_after(time, self.times)][self.names.index(name)]
-
-
-class _Held:
-    """A signal that is constant between its moments; before the first one it is what its past says."""
-
-    past = None
-
-    def __init__(self, times, values=None):
-        self.times, self.values = list(times), [] if values is None else values
-
-    def at(self, time):
-        n = _last_not_after(time, self.times)
-        return self.past.at(time) if n < 0 else self.values[min(n, len(self.values) - 1)]
-
-    between = at
-
-    def jumps(self):
-        return (self.past.jumps() if self.past else []) + self.times
-
-
-class _Formula:
-    """A signal that an expression gives, stretch by stretch between its steps."""
-
-    past = None
-
-    def __init__(self, expression, begin):
-        stretches = [(max(start, begin), f) for start, end, f in between_steps(expression) if end > begin]
-        self.times = [start for start, _ in stretches]
-        self.stretches = [sympy.lambdify(t, f, "math") for _, f in stretches]
-
-    def at(self, time):
-        n = _last_not_after(time, self.times)
-        return self.past.at(time) if n < 0 else float(self.stretches[n](time))
-
-    def between(self, time):
-        n = _last_not_after(time, self.times)
-        return self.past.between(time) if n < 0 else self.stretches[n]
-
-    jumps = _Held.jumps
-
-
-def _last_not_after(time, times):
-    """The index of the last of the increasing times that is not after `time`, but for rounding; -1 if there is none."""
-    return bisect.bisect_right(times, time + CLOSE * max(1.0, abs(time))) - 1
-
-
-# ------------------------------------------------------------------------------------------------ what is given
-
-
 def _grid(begin, until, step):
+    """The moments of the samples, rounded so that 49 steps of 0.1 end at 4.9."""
     import numpy
 
     for name, value in (("step", step), ("end", until)):
-        if not _is_number(value) or not math.isfinite(value):
+        if not is_number(value):
             raise ValueError(f"the {name} is {value!r}: expected a number")
     if step <= 0:
         raise ValueError(f"the step is {step}: expected a positive time")
     count = (float(until) - begin) / float(step)
     if count < 0.5 or abs(count - round(count)) > 1e-6:
         raise ValueError(f"the end {until} is not a whole number of steps of {step} after {begin:g}")
-    return begin + float(step) * numpy.arange(round(count) + 1)
-
-
-def _is_number(value):
-    try:
-        return not isinstance(value, (bool, str)) and math.isfinite(float(value))
-    except (TypeError, ValueError):
-        return False
+    if count > MOST_SAMPLES:
+        raise ValueError(f"the run would have {count:.0f} samples: expected at most {MOST_SAMPLES}")
+    digits = 13 - math.ceil(math.log10(abs(float(until)) + begin))
+    return numpy.around(begin + float(step) * numpy.arange(round(count) + 1), digits)
 
 
 def _is_zero(value):
-    return _is_number(value) and value == 0
-
-
-def _source(name, signal, times):
-    """A signal in time as an input of the plant."""
-    if isinstance(signal, sympy.Expr) and signal.has(t):
-        evaluate(signal, times[:1])  # says what is wrong with it
-        if all(f.is_number for *_, f in between_steps(exact(signal))):
-            stretches = [(max(a, times[0]), float(f)) for a, b, f in between_steps(exact(signal)) if b > times[0]]
-            return _Held([start for start, _ in stretches], [value for _, value in stretches])
-        return _Formula(exact(signal), times[0])
-    if _is_number(signal):
-        return _Held(times[:1], [float(signal)])
-    return _Held(times, _samples(name, signal, times))
-
-
-def _samples(name, signal, times):
-    """A signal in time as a list with one value for each sample."""
-    import numpy
-
-    if isinstance(signal, (sympy.Expr, str)) or _is_number(signal):
-        try:
-            values = evaluate(exact(signal), times)
-        except ValueError as error:
-            raise ValueError(f"{name}: {error}") from None
-    else:
-        try:
-            values = numpy.asarray(list(signal), dtype=float)
-        except (TypeError, ValueError):
-            raise ValueError(f"{name} is {signal!r}: expected a number, an expression in t or an array") from None
-    if values.shape != times.shape:
-        raise ValueError(f"{name} has {values.size} values for {times.size} samples")
-    if not numpy.isfinite(values).all():
-        when = times[~numpy.isfinite(values)][0]
-        raise ValueError(f"{name} is {values[~numpy.isfinite(values)][0]} at t = {when:g}: expected finite numbers")
-    return values.tolist()
+    return is_number(value) and value == 0
 
 
 def _by_hand(manual, times):
     """For each sample None in automatic mode, else the operator's control signal, NaN for the last one."""
     found = [None] * len(times)
+    if not isinstance(manual, (list, tuple)):
+        raise ValueError(f"manual is {manual!r}: expected a list of (beginning, end, control signal)")
     for stretch in manual:
-        try:
-            begin, end, u = stretch
-            u = math.nan if u is None else float(u)
-        except (TypeError, ValueError):
-            raise ValueError(f"manual has {stretch!r}: expected (beginning, end, control signal)") from None
+        valid = isinstance(stretch, (list, tuple)) and len(stretch) == 3
+        if not valid or not all(map(is_number, stretch[:2])) or not (stretch[2] is None or is_number(stretch[2])):
+            raise ValueError(f"manual has {stretch!r}: expected (beginning, end, control signal)")
+        begin, end, u = stretch
+        if begin >= end:
+            raise ValueError(f"manual has {stretch!r}: expected the beginning before the end")
         for k, time in enumerate(times):
-            if begin <= time < end:
-                found[k] = u
+            if float(begin) <= time < float(end):
+                found[k] = math.nan if u is None else float(u)
     return found
 
 
@@ -427,19 +374,23 @@ def _beyond_all_numbers(names, time):
     )
 
 
-def _joined(plant, after, times, signals, past):
+def _arrays(signals):
     import numpy
 
-    signals = {name: numpy.array(values) for name, values in signals.items()}
-    if after is None:
-        return Run(times, signals, plant, past)
-    earlier = len(after.times) - 1
-    gap = {True: numpy.full(earlier, numpy.nan), False: numpy.full(len(times), numpy.nan)}
-    names = [*after.signals, *(name for name in signals if name not in after.signals)]
-    both = {
-        name: numpy.concatenate(
-            [after.signals[name][:-1] if name in after.signals else gap[True], signals.get(name, gap[False])]
-        )
-        for name in names
+    return {name: numpy.array(values) for name, values in signals.items()}
+
+
+def _joined(earlier, later):
+    """Two runs as one; what only one of them has is NaN in the other. The moment where they meet is the later one's."""
+    import numpy
+
+    def part(run, name, length):
+        return run.signals[name][:length] if name in run.signals else numpy.full(length, numpy.nan)
+
+    shorter, names = len(earlier.times) - 1, [*earlier.signals, *later.signals]
+    signals = {
+        name: numpy.concatenate([part(earlier, name, shorter), part(later, name, len(later.times))])
+        for name in dict.fromkeys(names)
     }
-    return Run(numpy.concatenate([after.times[:-1], times]), both, plant, past)
+    times = numpy.concatenate([earlier.times[:-1], later.times])
+    return Run(times, signals, later.plant, later.manipulated, later._past)

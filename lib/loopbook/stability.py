@@ -7,10 +7,11 @@ abs(D) = abs(N), and these are roots of a polynomial. (K. Walton and J. E. Marsh
 
 import math
 
+import mpmath
 import sympy
 
 from loopbook.expressions import function_of, s
-from loopbook.laplace import by_delay
+from loopbook.transfer import polynomials
 
 __all__ = ["StabilityLimitError", "delay_margin", "is_stable", "ultimate", "unstable_poles"]
 
@@ -33,15 +34,18 @@ def unstable_poles(loop):
     >>> unstable_poles(sympy.exp(-s) / s), unstable_poles(2 * sympy.exp(-s) / s)
     (0, 2)
     """
-    D, N, delay = _parts(loop)
+    N, D, delay = polynomials(loop)
     limit = StabilityLimitError(f"the closed loop of {loop} has poles on the imaginary axis")
-    roots = sympy.Poly(D + N, s).nroots(n=30, maxsteps=500)
-    on_axis = [abs(sympy.re(p)) < 1e-15 * max(1, abs(p)) for p in roots]
-    if any(on_axis) and (not delay or 0 in roots):
+    count, on_axis = 0, []
+    for p, n in _roots(D + N):
+        if abs(sympy.re(p)) <= 1e-15 * abs(p):
+            on_axis.append(p)
+        elif sympy.re(p) > 0:
+            count += n
+    if on_axis and (not delay or 0 in on_axis):
         raise limit
-    count = sum(bool(sympy.re(p) > 0) for p, limiting in zip(roots, on_axis, strict=True) if not limiting)
-    for crossing, period, direction in _crossings(D, N):
-        turns = (delay - crossing) / period
+    for crossing, period, direction in _crossings(N, D):
+        turns = (float(delay) - crossing) / period
         if delay and turns > -CLOSE and abs(turns - round(turns)) < CLOSE:
             raise limit
         # A pair of poles crosses at this dead time, and again with each full turn more. One that lies on the axis
@@ -80,10 +84,11 @@ def delay_margin(loop):
     """
     if not is_stable(loop):
         raise ValueError(f"the closed loop of {loop} is not stable: it has no margin")
-    D, N, delay = _parts(loop)
+    N, D, delay = polynomials(loop)
+    delay = float(delay)
     ahead = [
         crossing + period * max(0, math.ceil((delay - crossing) / period)) - delay
-        for crossing, period, _ in _crossings(D, N)
+        for crossing, period, _ in _crossings(N, D)
     ]
     return min(ahead, default=math.inf)
 
@@ -104,50 +109,63 @@ def ultimate(process):
     >>> round(Ku, 4), round(Pu, 4)    # pi/2 and 4
     (1.5708, 4.0)
     """
-    limits = _limiting_gains(process)
+    process = function_of(s, process)
+    if (found := _lowest_stable_range(process)) is None:
+        hint = ", but a negative one does" if _lowest_stable_range(-process) else ""
+        raise ValueError(f"no positive gain makes the closed loop of {process} stable{hint}")
+    gain, frequency = found
+    return gain, 2 * math.pi / frequency if frequency else math.inf
+
+
+def _lowest_stable_range(process):
+    """The upper end of the lowest range of gains for which the loop is stable, and its frequency; None without such."""
+
+    def stable(gain):
+        return is_stable(sympy.Rational(gain) * process)
+
     lower = 0.0
-    for gain, frequency in [*limits, (math.inf, math.inf)]:
-        inside = 2 * lower + 1 if gain == math.inf else (lower + gain) / 2
-        if is_stable(sympy.nsimplify(inside, rational=True) * function_of(s, process)):
-            return gain, 2 * math.pi / frequency
+    for gain, frequency in [*_limiting_gains(process), (math.inf, math.inf)]:
+        if stable(2 * lower + 1 if gain == math.inf else (lower + gain) / 2):
+            if gain < math.inf and (not stable(0.999 * gain) or stable(1.001 * gain)):
+                raise ValueError(f"the limit of stability of {process} was not found near the gain {gain:g}")
+            return gain, frequency
         lower = gain
-    raise ValueError(f"no gain makes the closed loop of {process} stable")
+    return None
 
 
-def _parts(loop):
-    """Denominator, numerator and dead time of a strictly proper loop."""
-    loop = function_of(s, loop)
-    if letters := sorted(map(str, loop.free_symbols - {s})):
-        raise ValueError(f"the stability of {loop} is not known: give a number for {', '.join(letters)}")
-    if len(parts := by_delay(loop)) != 1:
-        raise ValueError(f"{loop} adds terms of different dead times: expected one dead time")
-    ((delay, rational),) = parts.items()
-    N, D = sympy.cancel(rational).as_numer_denom()
-    if sympy.degree(N, s) >= sympy.degree(D, s):
-        raise ValueError(f"{loop} is not strictly proper: expected more poles than zeros")
-    return D, N, float(delay)
+def _roots(polynomial):
+    """The roots of a polynomial with how often each occurs, to 30 digits."""
+    for factor, n in polynomial.sqf_list()[1]:
+        # a scale of frequency at which the coefficients are of one size
+        first, *_, last = factor.all_coeffs()
+        scale = sympy.Rational(10) ** round(math.log10(abs(last / first)) / factor.degree()) if last else sympy.S.One
+        scaled = sympy.Poly(factor.as_expr().subs(s, scale * s), s)
+        try:
+            roots = scaled.nroots(n=30, maxsteps=1000)
+        except mpmath.NoConvergence:
+            raise ValueError(f"the roots of {polynomial.as_expr()} are too far apart to be found") from None
+        yield from ((scale * root, n) for root in roots)
 
 
-def _crossings(D, N):
+def _crossings(N, D):
     """Where poles cross the imaginary axis: (first dead time, period to the next, direction: 1 to the right)."""
-    omega = sympy.Symbol("omega", positive=True)
     square = sympy.Symbol("square")
 
     def power(polynomial):  # abs(polynomial)^2 on the imaginary axis, in the square of the frequency
-        there = polynomial.subs(s, sympy.I * omega)
-        return sympy.expand(there * sympy.conjugate(there)).subs(omega, sympy.sqrt(square))
+        even = sympy.Poly(polynomial.as_expr() * polynomial.as_expr().subs(s, -s), s)
+        return sympy.Poly({(n // 2,): c * (-1) ** (n // 2) for (n,), c in even.terms()}, square)
 
-    difference = sympy.Poly(sympy.expand(power(D) - power(N)), square)
-    for root, n in sympy.Poly(difference, square).real_roots(multiple=False) if difference.degree() > 0 else []:
-        if root <= 0 or n % 2 == 0:
+    difference = power(D) - power(N)
+    for root, n in difference.real_roots(multiple=False) if difference.degree() > 0 else []:
+        if root <= 0 or n % 2 == 0:  # a pole that touches the axis comes back from it
             continue
         frequency = math.sqrt(root.evalf(30))
-        ratio = complex((-N / D).subs(s, sympy.I * sympy.Float(frequency, 30)).evalf(30))
+        there = sympy.I * sympy.Float(frequency, 30)
+        ratio = complex((-N.as_expr() / D.as_expr()).subs(s, there).evalf(30))
         angle = math.atan2(ratio.imag, ratio.real)
         angle = 0.0 if abs(angle) < CLOSE else angle % (2 * math.pi)
-        rising = difference.diff(square)
-        direction = 1 if sympy.N(rising.eval(root), 30) > 0 else -1
-        yield angle / frequency, 2 * math.pi / frequency, direction
+        rising = sympy.N(difference.diff((square, n)).eval(root), 30) > 0
+        yield angle / frequency, 2 * math.pi / frequency, 1 if rising else -1
 
 
 def _limiting_gains(process):
@@ -155,20 +173,27 @@ def _limiting_gains(process):
     import numpy
     from scipy.optimize import brentq
 
-    D, N, delay = _parts(process)
-    D, N = (numpy.poly1d([float(c) for c in sympy.Poly(p, s).all_coeffs()]) for p in (D, N))
+    N, D, delay = polynomials(process)
+    delay = float(delay)
+    N, D = (numpy.poly1d([float(c) for c in polynomial.all_coeffs()]) for polynomial in (N, D))
 
     def response(w):
         return N(1j * w) / D(1j * w) * numpy.exp(-1j * w * delay)
 
-    corners = [abs(root) for root in [*D.roots, *N.roots] if abs(root) > 0] or [1 / delay if delay else 1.0]
+    roots = [*N.roots, *D.roots]
+    corners = [abs(root) for root in roots if abs(root) > 0] or [1 / delay if delay else 1.0]
     low, high = min(corners) / 1000, max(corners) * 1000
-    grid = numpy.geomspace(low, high, 20_000)
+    grids = [numpy.geomspace(low, high, 20_000)]
+    # near a lightly damped root the phase turns within a small range
+    grids += [root.imag + abs(root.real) * numpy.linspace(-50, 50, 2000) for root in roots if root.imag > 0]
     if delay:
-        # beyond the corners the phase turns with the dead time alone, and each turn needs more gain than the last
-        low, high = min(low, 0.001 / delay), max(corners) + 6 * math.pi / delay
-        grid = numpy.unique(numpy.r_[numpy.geomspace(low, high, 20_000), numpy.linspace(low, high, 20_000)])
-    imaginary = response(grid).imag
+        # the phase turns with the dead time, and beyond the corners each turn needs more gain than the last
+        end = max(corners) + 6 * math.pi / delay
+        grids.append(numpy.linspace(0, end, min(1_000_000, 20_000 + math.ceil(10 * delay * end))))
+    grid = numpy.unique(numpy.concatenate(grids))
+    grid = grid[grid > 0]
+    with numpy.errstate(divide="ignore", invalid="ignore"):  # at a pole on the axis, which no gain moves there
+        imaginary = response(grid).imag
     found = []
     for n in numpy.flatnonzero(imaginary[:-1] * imaginary[1:] < 0):
         w = brentq(lambda w: response(w).imag, grid[n], grid[n + 1], xtol=1e-15 * grid[n], rtol=1e-14)

@@ -22,9 +22,9 @@ from loopbook.laplace import (
 
 __all__ = [
     "characteristic_polynomial", "dead_time", "double_integrator", "feedback", "first_order", "impulse_response",
-    "initial_gain", "integrator", "integrator_with_lag", "order", "parallel", "poles", "response", "response_time",
-    "second_order", "series", "static_gain", "step_response", "time_constant_form", "transfer_functions",
-    "zero_pole_form", "zero_pole_gain", "zeros",
+    "initial_gain", "integrator", "integrator_with_lag", "order", "parallel", "poles", "polynomials", "response",
+    "response_time", "second_order", "series", "static_gain", "step_response", "time_constant_form",
+    "transfer_functions", "zero_pole_form", "zero_pole_gain", "zeros",
 ]  # fmt: skip
 
 
@@ -215,6 +215,38 @@ def _fraction(H):
     if len(parts) > 1:
         raise ValueError(f"{H} adds terms of different dead times: its poles and zeros are not known")
     return sympy.cancel(next(iter(parts.values()), sympy.S.Zero)).as_numer_denom()
+
+
+def polynomials(H):
+    """Return numerator, denominator and dead time of a strictly proper transfer function with numbers.
+
+    Arguments:
+        H: transfer function with real numbers and at most one dead time.
+    Returns:
+        The polynomials in `s`, as SymPy ``Poly`` with rational coefficients (of others, 30 digits), and the delay.
+    Raises:
+        ValueError: for zero, letters, complex numbers, several dead times, or no more poles than zeros.
+
+    >>> polynomials(sympy.exp(-2 * s) / (s + 3))
+    (Poly(1, s, domain='QQ'), Poly(s + 3, s, domain='QQ'), 2)
+    """
+    H = function_of(s, H)
+    if letters := sorted(map(str, H.free_symbols - {s})):
+        raise ValueError(f"give a number for {', '.join(letters)} in {H}")
+    if H.has(sympy.I):
+        raise ValueError(f"{H} is complex: expected real coefficients")
+    if H == 0:
+        raise ValueError("the transfer function is 0: expected one that is not zero")
+    if len(parts := by_delay(H)) != 1:
+        raise ValueError(f"{H} adds terms of different dead times: expected one dead time")
+    ((delay, rational),) = parts.items()
+    numerator, denominator = (
+        sympy.Poly([c if c.is_Rational else sympy.Rational(str(c.evalf(30))) for c in polynomial.all_coeffs()], s)
+        for polynomial in (sympy.Poly(part, s) for part in sympy.cancel(rational).as_numer_denom())
+    )
+    if numerator.degree() >= denominator.degree():
+        raise ValueError(f"{H} is not strictly proper: expected more poles than zeros")
+    return numerator.set_domain(sympy.QQ), denominator.set_domain(sympy.QQ), delay
 
 
 def poles(H):
