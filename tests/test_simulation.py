@@ -218,6 +218,13 @@ def test_a_run_is_the_same_for_the_same_seed_and_does_not_change_its_controller(
     assert controller.u is None
 
 
+def test_a_run_that_goes_on_has_noise_of_its_own():
+    run = simulate(WoodChipTank(), chip_loop(), until=500, setpoint=10, noise=0.05)
+    run = simulate(WoodChipTank(), chip_loop(), until=1000, setpoint=10, noise=0.05, after=run)
+    added = run["measurement"] - run["h"]
+    assert abs(np.corrcoef(added[:100], added[100:200])[0, 1]) < 0.4
+
+
 def test_manual_mode_for_a_while():
     run = simulate(WoodChipTank(), chip_loop(), until=2000, setpoint=10.5, manual=[(100, 300, None), (300, 500, 40)])
     held = run["u"][19]

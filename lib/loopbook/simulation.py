@@ -98,53 +98,67 @@ def simulate(
     if after is not None and not isinstance(after, Run):
         raise ValueError(f"after is {after!r}: expected an earlier run")
     driven = name_of(plant.manipulated if manipulated is None else plant.signal(manipulated))
+    given = {"setpoint": setpoint, "noise": noise, "feedforward": feedforward, "manual": manual}
+    step = _fitting_step(plant, controller, step, driven, given, inputs)
+    begin, past = (0.0, None) if after is None else (float(after.times[-1]), after._past)
+    times = _grid(begin, until, step)
+
+    sources = _sources(plant, times, inputs, past)
+    if controller is not None:
+        sources[driven].times, sources[driven].values = times.tolist(), []
+    system = _System(plant, sources, times, past.system if past else None)
+    loop = None
+    if controller is not None:
+        loop = _Loop(copy.deepcopy(controller), times, given, seed)
+        if past:
+            loop.continue_after(past.loop, sources[driven].past.at(begin))
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", module="scipy")  # of a step that fails, before it is tried in another way
+        for time in times:
+            system.advance(time)
+            if loop:
+                sources[driven].values.append(loop.sample(system.output(), driven))
+    signals = system.signals(times) | (loop.record if loop else {})
+    run = Run(times, _arrays(signals), plant, driven, _Past(system, loop))
+    return run if after is None else _joined(after, run)
+
+
+def _fitting_step(plant, controller, step, driven, given, inputs):
+    """The time between two samples, after a look at whether what was given fits together."""
     names = [name_of(x) for x in plant.inputs]
     for name in (driven, *inputs):
         if name not in names:
             raise ValueError(f"{type(plant).__name__} has no input {name!r}: it has {', '.join(names)}")
-    begin, past = (0.0, None) if after is None else (float(after.times[-1]), after._past)
-    if past and not set(past.system.sources) >= set(names):
-        raise ValueError(
-            f"the earlier run has the inputs {', '.join(past.system.sources)}, this plant has {', '.join(names)}"
-        )
-    loop_signals = {"setpoint": setpoint, "noise": noise, "feedforward": feedforward}
     if controller is None:
-        if setpoint is not None or not (_is_zero(noise) and _is_zero(feedforward) and manual in ((), [])):
-            raise ValueError("a setpoint, noise, feedforward or a manual mode was given, but no controller")
+        defaults = {"setpoint": given["setpoint"] is None, "manual": given["manual"] in ((), [])}
+        for name, signal in given.items():
+            if not defaults.get(name, is_number(signal) and signal == 0):
+                raise ValueError(f"{name} is given, but no controller")
         if step is None:
             raise ValueError("the step is missing: expected the time between two samples")
-    else:
-        if not (hasattr(controller, "update") and is_number(getattr(controller, "step", None))):
-            raise ValueError(f"the controller is {controller!r}: expected one such as Controller(PID(2, 10), step=1)")
-        if setpoint is None:
-            raise ValueError("the setpoint is missing: expected a signal for the controller to follow")
-        if driven in inputs:
-            raise ValueError(f"{driven} is given, but it is the controller that sets it")
-        if step is not None and step != controller.step:
-            raise ValueError(f"the step is {step}, but the controller runs every {controller.step:g}")
-        step = controller.step
-    times = _grid(begin, until, step)
+        return step
+    if not (hasattr(controller, "update") and is_number(getattr(controller, "step", None))):
+        raise ValueError(f"the controller is {controller!r}: expected one such as Controller(PID(2, 10), step=1)")
+    if given["setpoint"] is None:
+        raise ValueError("the setpoint is missing: expected a signal for the controller to follow")
+    if driven in inputs:
+        raise ValueError(f"{driven} is given, but it is the controller that sets it")
+    if step is not None and step != controller.step:
+        raise ValueError(f"the step is {step}, but the controller runs every {controller.step:g}")
+    return controller.step
 
-    at_rest = {name: plant.values[plant.signal(name)] for name in names}
+
+def _sources(plant, times, inputs, past):
+    """All inputs of the plant as signals in time, with their past."""
+    at_rest = {name_of(x): plant.values[x] for x in plant.inputs}
+    if past and not set(past.system.sources) >= set(at_rest):
+        earlier, now = (", ".join(names) for names in (past.system.sources, at_rest))
+        raise ValueError(f"the earlier run has the inputs {earlier}, this plant has {now}")
     sources = {name: in_time(name, signal, times) for name, signal in (at_rest | inputs).items()}
-    if controller is not None:
-        sources[driven] = Stretches(times, [], step)
     for name, source in sources.items():
-        before = Stretches([-math.inf], [float(at_rest[name])], step)
+        before = Stretches([-math.inf], [float(at_rest[name])], source.step)
         source.past = past.system.sources[name] if past else before
-    system = _System(plant, sources, times, past.system if past else None)
-    loop = None
-    if controller is not None:
-        loop = _Loop(copy.deepcopy(controller), times, loop_signals, seed, _by_hand(manual, times))
-        if past:
-            loop.continue_after(past.loop, sources[driven].past.at(begin))
-    for time in times:
-        system.advance(time)
-        if loop:
-            sources[driven].values.append(loop.sample(system.output(), driven))
-    signals = system.signals(times) | (loop.record if loop else {})
-    run = Run(times, _arrays(signals), plant, driven, _Past(system, loop))
-    return run if after is None else _joined(after, run)
+    return sources
 
 
 @dataclass(frozen=True)
@@ -158,12 +172,15 @@ class _Past:
 class _Loop:
     """The controller with its signals, one value for each sample."""
 
-    def __init__(self, controller, times, given, seed, manual):
-        self.controller, self.times, self.k, self.manual = controller, times, 0, manual
+    def __init__(self, controller, times, given, seed):
+        self.controller, self.times, self.k = controller, times, 0
         self.record, self.before_last = {}, None
-        if is_number(given["noise"]):
-            given = given | {"noise": noise(times, given["noise"], seed)}
-        self.given = {name: samples(name, signal, times) for name, signal in given.items()}
+        self.manual = _by_hand(given["manual"], times)
+        added = given["noise"]
+        if is_number(added):  # a run that goes on has noise of its own
+            added = noise(times, added, (seed, round(times[0] / controller.step)))
+        self.setpoint, self.feedforward = (samples(name, given[name], times) for name in ("setpoint", "feedforward"))
+        self.noise = samples("noise", added, times)
 
     def continue_after(self, earlier, u):
         """Take over the memory of an earlier run's controller; without one, begin from its last control signal."""
@@ -177,9 +194,8 @@ class _Loop:
         k, self.k = self.k, self.k + 1
         if self.k == len(self.times):  # a run that goes on from here begins with this sample, maybe with other settings
             self.before_last = copy.deepcopy(self.controller)
-        setpoint, added, feedforward = (values[k] for values in self.given.values())
-        now = {"setpoint": setpoint, "measurement": output + added}
-        u = self.controller.update(setpoint, output + added, feedforward=feedforward, manual=self.manual[k])
+        now = {"setpoint": self.setpoint[k], "measurement": output + self.noise[k]}
+        u = self.controller.update(*now.values(), feedforward=self.feedforward[k], manual=self.manual[k])
         if not is_number(u):
             if isinstance(u, float):
                 raise _beyond_all_numbers(name, self.times[k])
@@ -196,6 +212,8 @@ class _System:
     """The plant's equations as programs, and its state from one discontinuity to the next."""
 
     def __init__(self, plant, sources, times, past):
+        from scipy.integrate import ode
+
         self.plant, self.sources, self.past, self.rows = plant, sources, past, []
         self.begin, self.step = times[0], times[1] - times[0]
         equations = plant.state_equations()
@@ -213,7 +231,13 @@ class _System:
         # the state at each discontinuity so far
         self.times, self.trace = [self.begin], [past.state_at(self.begin) if past else self.at_rest]
         self.ahead = iter(self._discontinuities(times))
-        self.method = "dopri5"
+        self.method, self.solvers = (
+            "dopri5",
+            {
+                "dopri5": ode(self._rate_of_change).set_integrator("dopri5", first_step=self.step, **TOLERANCE),
+                "lsoda": ode(self._rate_of_change).set_integrator("lsoda", **TOLERANCE),
+            },
+        )
 
     def _compiled(self, formulas):
         """A program for the formulas, and the signals besides the undelayed states that it needs: (name, delay)."""
@@ -264,19 +288,14 @@ class _System:
 
     def _integrated(self, state, start, end):
         """The state at the end of a stretch of time in which no signal jumps."""
-        from scipy.integrate import ode
-
         middle = (start + end) / 2
         self.inside = [(self.sources[name].around(middle - delay), delay) for name, delay in self.driving]
         self.held = None if any(callable(x) for x, _ in self.inside) else [x for x, _ in self.inside]
         self.failure = None
         # what is too stiff for the explicit method goes to the one that switches to an implicit method by itself
         for method in dict.fromkeys((self.method, "lsoda")):
-            first_step = {"first_step": end - start} if method == "dopri5" else {}
-            solver = ode(self._rate_of_change).set_integrator(method, **first_step, **TOLERANCE)
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", UserWarning)
-                found = solver.set_initial_value(state, start).integrate(end).tolist()
+            solver = self.solvers[method]
+            found = solver.set_initial_value(state, start).integrate(end).tolist()
             if self.failure:
                 raise self.failure
             if solver.successful() and all(map(math.isfinite, found)):
@@ -344,10 +363,6 @@ def _grid(begin, until, step):
         raise ValueError(f"the run would have {count:.0f} samples: expected at most {MOST_SAMPLES}")
     digits = 13 - math.ceil(math.log10(abs(float(until)) + begin))
     return numpy.around(begin + float(step) * numpy.arange(round(count) + 1), digits)
-
-
-def _is_zero(value):
-    return is_number(value) and value == 0
 
 
 def _by_hand(manual, times):
