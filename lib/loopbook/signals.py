@@ -60,8 +60,9 @@ def noise(times, deviation, seed):
     if not is_number(deviation) or deviation < 0:
         raise ValueError(f"the deviation is {deviation!r}: expected a number that is not negative")
     seeds = seed if isinstance(seed, tuple) else (seed,)
-    if not all(isinstance(part, numbers.Integral) and part >= 0 for part in seeds):
-        raise ValueError(f"the seed is {seed!r}: expected an integer that is not negative")
+    for part in seeds:
+        if not isinstance(part, numbers.Integral) or part < 0:
+            raise ValueError(f"the seed is {part!r}: expected an integer that is not negative")
     if isinstance(times, str):
         raise ValueError(f"the times are {times!r}: expected an array")
     return numpy.random.default_rng(seed).normal(0, 1, len(times)) * float(deviation)
