@@ -195,8 +195,9 @@ def test_questions_that_a_plant_cannot_answer():
         tank.transfer_function("x")
     with pytest.raises(ValueError, match="is an input"):
         tank.transfer_function("q_i", output="q_o")
-    with pytest.raises(ValueError, match="'A' is no signal"):
-        tank.signal("A")
+    for name in ("A", [1], None, LiquidTank.A):
+        with pytest.raises(ValueError, match="is no signal of LiquidTank"):
+            tank.signal(name)
 
 
 # A given transfer function.

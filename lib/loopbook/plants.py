@@ -148,7 +148,7 @@ class Plant:
         if isinstance(name, sympy.Basic) and name in self.quantities and not name.is_Symbol:
             return name
         found = {name_of(x): x for x in self.quantities if not x.is_Symbol}
-        if name not in found:
+        if not isinstance(name, str) or name not in found:
             raise ValueError(f"{name!r} is no signal of {type(self).__name__}: it has {', '.join(found)}")
         return found[name]
 
