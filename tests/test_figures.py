@@ -297,6 +297,10 @@ def test_trends_show_the_loop_as_an_operator_sees_it():
     ]:
         np.testing.assert_array_equal(plot.lines[label].get_ydata(), run[name])
         assert plot.lines[label].get_color() == ROLES[role]["color"]
+    styles = {label: line.get_drawstyle() for label, line in plot.lines.items()}
+    assert styles == {"setpoint": "steps-post", "$h$": "default", "$u$": "steps-post", "$w_{out}$": "steps-post"}
+    swinging = trends(loop(1, w_out=25 + sympy.sin(t)), disturbances=["w_out"])
+    assert swinging.lines["$w_{out}$"].get_drawstyle() == "default"
     assert trends(run, measured=True).lines["$h$"].get_ydata()[3] == run["measurement"][3] != run["h"][3]
 
 

@@ -365,7 +365,12 @@ def trends(runs, title=None, disturbances=(), measured=False, minutes=False, lim
     ylim = [limits, control_limits, *(None for _ in disturbances)]
     times = first.times / (60 if minutes else 1)
     xlabel = "$t$ [min]" if minutes else "$t$ [s]"
-    return time_plot(panels, times, title=title, xlabel=xlabel, ylabel=names, ylim=ylim)
+    plot = time_plot(panels, times, title=title, xlabel=xlabel, ylabel=names, ylim=ylim)
+    for panel, name in zip(panels, (output, control, *disturbances), strict=True):
+        for label in panel:
+            if ("setpoint" if label == "setpoint" else name) in first.held:
+                plot.lines[label].set_drawstyle("steps-post")
+    return plot
 
 
 def _unit(plant, name):

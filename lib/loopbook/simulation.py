@@ -33,12 +33,14 @@ class Run:
         signals: ``{name: array}``, one value for each moment.
         plant: the plant, which knows the units.
         manipulated: the name of the input that the controller acts on.
+        held: the names of the signals that are constant from one sample to the next.
     """
 
     times: object
     signals: dict
     plant: object
     manipulated: str
+    held: set
     _past: object = None  # what a later run needs in order to go on
 
     def __getitem__(self, name):
@@ -119,7 +121,8 @@ def simulate(
             if loop:
                 sources[driven].values.append(loop.sample(system.output(), driven))
     signals = system.signals(times) | (loop.record if loop else {})
-    run = Run(times, _arrays(signals), plant, driven, _Past(system, loop))
+    held = {name for name, source in sources.items() if not any(map(callable, source.values))}
+    run = Run(times, _arrays(signals), plant, driven, held | ({"setpoint"} if loop else set()), _Past(system, loop))
     return run if after is None else _joined(after, run)
 
 
@@ -408,4 +411,5 @@ def _joined(earlier, later):
         for name in dict.fromkeys(names)
     }
     times = numpy.concatenate([earlier.times[:-1], later.times])
-    return Run(times, signals, later.plant, later.manipulated, later._past)
+    held = later.held & (earlier.held | {"setpoint"})
+    return Run(times, signals, later.plant, later.manipulated, held, later._past)

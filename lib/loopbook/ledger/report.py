@@ -35,9 +35,8 @@ class Verdict:
         """What the reader must know besides: the reason, or the assumption. Empty where there is none."""
         row = self.result
         if row.status == "reconstructed":
-            margin = f" to within {row.within}" if row.within else ""
-            return f"{row.name} is reconstructed{margin}, assuming {row.assuming}"
-        return f"{row.name} is {row.status}: {row.because}" if row.because else ""
+            return f"reconstructed{f' to within {row.within}' if row.within else ''}, assuming {row.assuming}"
+        return f"{row.status}: {row.because}" if row.because else ""
 
     @property
     def complaint(self):
@@ -46,7 +45,7 @@ class Verdict:
         start = f"{row.name} = {self.computed}"
         if row.within:
             return f"{start} is not within {row.within} of the printed {row.printed}"
-        if row.status == "reproduced":
+        if not (row.correct or row.computed):
             return f"{start} does not agree with the printed {row.printed}"
         stored = row.correct or row.computed
         return f"{start} must agree with {stored} and not with the printed {row.printed} to be {row.status}"
@@ -78,8 +77,12 @@ class Report:
 
     @property
     def notes(self):
-        """The notes on the verdicts, each once."""
-        return list(dict.fromkeys(verdict.note for verdict in self.verdicts if verdict.note))
+        """The notes on the verdicts, each once, with the names that it is about."""
+        about = {}
+        for verdict in self.verdicts:
+            if verdict.note:
+                about.setdefault(verdict.note, []).append(verdict.result.name)
+        return [f"{', '.join(names)} {'are' if names[1:] else 'is'} {note}" for note, names in about.items()]
 
     @property
     def data(self):
@@ -104,7 +107,7 @@ class Report:
                     _name(row.name),
                     _typeset(row.kind, row.printed, row.unit),
                     _typeset(row.kind, verdict.computed),
-                    f'<span style="color: {colour}">{mark} {_escape(verdict.word)}</span>',
+                    f'<span style="color: {colour}; white-space: nowrap">{mark} {_escape(verdict.word)}</span>',
                 )
             )
         head = ("equation", "result", "book", "computed", "verdict")
@@ -138,7 +141,7 @@ def _aligned(rows):
 
 def _table(entry, rows, head=()):
     # JupyterLab would centre the heads and align numbers to the right
-    left = 'style="text-align: left; white-space: nowrap"'
+    left = 'style="text-align: left; vertical-align: top"'
     lines = [f"<p><strong>{_escape(_heading(entry))}</strong></p>"]
     if rows:
         lines.append("<table>")
@@ -150,7 +153,10 @@ def _table(entry, rows, head=()):
 
 
 def _math(expression):
-    return f"$\\displaystyle {html.escape(sympy.latex(expression), quote=False)}$"
+    # an older MathJax breaks lines as soon as it can, unless the cell has the width that the formula needs
+    room = min(16, 1 + 0.35 * len(str(expression)))
+    formula = f"$\\displaystyle {html.escape(sympy.latex(expression), quote=False)}$"
+    return f'<div style="min-width: {room:.0f}em">{formula}</div>' if room > 6 else formula
 
 
 def _name(name):
