@@ -57,6 +57,7 @@ OPEN = [
     (HeatedTankWithTransport(), "T_in", -10),
     (BlendingTank(), "w_A", 0.01),
     (plants.AirHeater(), "u", 2),
+    (plants.AirHeaterWithFan(d=60, T_rise=18.5 / 1.16**0.5), "u", 10),
     (plants.JacketedTank(), "T_hin", -5),
     (plants.JacketedTank(), "T_pin", 5),
 ]

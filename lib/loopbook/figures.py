@@ -71,7 +71,7 @@ class Picture:
 
     def __init__(self, figure, alt):
         self.figure = figure
-        self.alt = alt
+        self.alt = " ".join(alt.split())
 
     def __repr__(self):
         return f"<{self.alt}>"
@@ -272,6 +272,7 @@ def time_plot(signals, times, title=None, xlabel="$t$ [s]", ylabel=None, ylim=No
     if len(ylabels) != len(panels):
         raise ValueError(f"{len(ylabels)} names of vertical axes for {len(panels)} panels")
     fixed_axes = ylim if isinstance(ylim, list) else [ylim] + [None] * (len(panels) - 1)
+    fixed_axes = [fixed and tuple(map(float, fixed)) for fixed in fixed_axes]
     if len(fixed_axes) != len(panels):
         raise ValueError(f"{len(fixed_axes)} ranges of vertical axes for {len(panels)} panels")
     times = _increasing(times)

@@ -17,9 +17,10 @@ from loopbook.expressions import exact, s, t
 from loopbook.transfer import polynomials, simplified
 
 __all__ = [
-    "AirHeater", "BlendingTank", "BufferTank", "HeatedTank", "HeatedTankWithElement", "HeatedTankWithTransport",
-    "JacketedTank", "LiquidTank", "MassSpringDamper", "MotorWithLoad", "Plant", "Process", "Quantity", "RCCircuit",
-    "WoodChipTank", "capacitor", "inductor", "resistor", "resistors_in_parallel", "resistors_in_series",
+    "AirHeater", "AirHeaterWithFan", "BlendingTank", "BufferTank", "HeatedTank", "HeatedTankWithElement",
+    "HeatedTankWithTransport", "JacketedTank", "LiquidTank", "MassSpringDamper", "MotorWithLoad", "Plant", "Process",
+    "Quantity", "RCCircuit", "WoodChipTank", "capacitor", "inductor", "resistor", "resistors_in_parallel",
+    "resistors_in_series",
 ]  # fmt: skip
 
 
@@ -616,6 +617,30 @@ class AirHeater(Plant):
         T_env: (21.5, "°C", "temperature of the room"),
         T_rise: (0, "K", "rise of the temperature"),
         T: (None, "°C", "temperature at the outlet"),
+    }
+
+
+class AirHeaterWithFan(AirHeater):
+    """The air heater with a fan, the disturbance of Haugen, Example 8.2. The model and its values are ours.
+
+    The pressure of the fan grows with the square of its speed and adds to that of the natural draught, and the flow of
+    air grows with the square root of the sum: relative to the fan at rest it is sqrt(1 + (d/d_0)^2). More air carries
+    more heat away.
+    """
+
+    T, T_rise, u, T_env, d = signals("T T_rise u T_env d")
+    K, theta, tau, d_0 = parameters("K theta tau d_0")
+    flow = sympy.sqrt(1 + (d / d_0) ** 2)
+    model = (
+        sympy.Eq(theta * T_rise.diff(t), K * u.subs(t, t - tau) - flow * T_rise),
+        sympy.Eq(T, T_env + T_rise),
+    )
+    quantities = AirHeater.quantities | {
+        K: (0.5, "K/%", "gain of the heater"),
+        d_0: (150, "%", "fan speed that doubles the pressure"),
+        u: (37, "%", "control signal of the heater"),
+        d: (0, "%", "fan speed"),
+        T_rise: (18.5, "K", "rise of the temperature"),
     }
 
 
