@@ -3,6 +3,7 @@
 import ast
 import re
 import statistics
+import symtable
 import tomllib
 from collections.abc import Iterator
 from fractions import Fraction
@@ -239,6 +240,30 @@ def sliders_follow_a_figure(stored: Stored) -> list[str]:
     return found
 
 
+def sliders_keep_what_they_use(stored: Stored) -> list[str]:
+    """What a slider's function uses is not bound to something else in a later cell: it is called when all have run."""
+    cells = [(label, cell, symtable.symtable(cell.source, label, "exec")) for label, cell in code(stored.notebook)
+             if is_python(cell)]  # fmt: skip
+    found, functions = [], {}
+    for n, (label, cell, table) in enumerate(cells):
+        functions |= {child.get_name(): globals_of(child) for child in table.get_children()}
+        if not uses_interact(cell):
+            continue
+        used = set().union(*map(globals_of, table.get_children()))
+        while more := set().union(*(functions[name] for name in used & set(functions))) - used:
+            used |= more
+        for later, _, other in cells[n + 1 :]:
+            for name in sorted(used & {symbol.get_name() for symbol in other.get_symbols() if symbol.is_assigned()}):
+                found.append(f"{label}: the slider uses {name}, which {later} binds again")
+    return found
+
+
+def globals_of(function: symtable.SymbolTable) -> set[str]:
+    """The names from outside that a function uses, itself or in a function or comprehension within it."""
+    own = {symbol.get_name() for symbol in function.get_symbols() if symbol.is_global()}
+    return own.union(*map(globals_of, function.get_children()))
+
+
 # The numbers.
 
 
@@ -379,6 +404,7 @@ CHECKS = (
     short_cells,
     only_sliders_escape_comparison,
     sliders_follow_a_figure,
+    sliders_keep_what_they_use,
     checks_are_computed,
     no_number_of_the_book,
 )

@@ -108,6 +108,16 @@ BROKEN = [
         changed(lambda n: n.cells[3].metadata.update(tags=["nbval-skip"])),
     ),
     (hygiene.sliders_follow_a_figure, "without a figure", with_code(SLIDER.source, section=False)),
+    (hygiene.sliders_keep_what_they_use, "uses K, which", with_code(SLIDER.source.replace("T))", "K))"), "K = 3")),
+    (
+        hygiene.sliders_keep_what_they_use,
+        "uses T, which",
+        with_code(
+            "def loop(K):\n    return [K * T for _ in range(3)]",
+            SLIDER.source.replace("(T)", "(K)").replace("T=", "K="),
+            "for T in range(3):\n    T",
+        ),
+    ),
     (hygiene.checks_are_computed, "not computed", with_code("a, b = 2.04, 3\nexample.check(Kp=a)")),
     (hygiene.checks_are_computed, "not computed", with_code("example.check(Kp=(a := 2.04))")),
     (hygiene.checks_are_computed, "not computed", with_code("a: float = 2.04\nb = a\nexample.check(Kp=-b)")),

@@ -155,8 +155,15 @@ def _table(entry, rows, head=()):
 def _math(expression):
     # an older MathJax breaks lines as soon as it can, unless the cell has the width that the formula needs
     room = min(16, 1 + 0.35 * len(str(expression)))
-    formula = f"$\\displaystyle {html.escape(sympy.latex(expression), quote=False)}$"
+    words = {x: rf"\mathrm{{{x}}}" for x in getattr(expression, "free_symbols", ()) if _is_word(str(x))}
+    latex = sympy.latex(expression, symbol_names=words, mul_symbol=r"\," if words else None)
+    formula = f"$\\displaystyle {html.escape(latex, quote=False)}$"
     return f'<div style="min-width: {room:.0f}em">{formula}</div>' if room > 6 else formula
+
+
+def _is_word(name):
+    """Whether a symbol's name is a word, such as a unit, and no letter."""
+    return len(name) > 2 and name.isalpha() and name not in _GREEK
 
 
 def _name(name):
