@@ -15,8 +15,8 @@ def totals(sources):
     """Count the results of each source by status: {source name: {status: number}}.
 
     >>> from loopbook.ledger import sources
-    >>> totals(sources())["haugen"]["measured"]
-    0
+    >>> list(totals(sources())["haugen"])
+    ['reproduced', 'corrected', 'reconstructed', 'unreproduced', 'measured']
     """
     return {
         name: {status: sum(row.status == status for entry in source for row in entry.results) for status in STATUSES}
