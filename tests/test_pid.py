@@ -278,6 +278,9 @@ def test_a_controller_may_begin_from_a_control_signal():
     controller = Controller(PID(2, 10), step=1, u0=30)
     controller.start_from(55)
     assert controller.update(1, 0.7) == pytest.approx(55)
+    scaled = Controller(PID(2, 10), step=1, u0=30, control_range=(0, 2000))
+    scaled.start_from(1100)
+    assert scaled.update(1, 0.7) == pytest.approx(1100)
 
 
 @pytest.mark.parametrize("pid", [PID(2, 10, 3, 0.3), PID(2, 10)])

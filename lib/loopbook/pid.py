@@ -252,11 +252,12 @@ class Controller:
         self.w_p, self.w_d = _number("w_p", w_p), _number("w_d", w_d)
         self.ramp = _positive("ramp", ramp) * self.step if ramp != math.inf else math.inf
         self.anti_windup, self.bumpless = bool(anti_windup), bool(bumpless)
-        self.to_percent = self.from_percent = None
+        self.to_percent = self.from_percent = self.back_to_percent = None
         if measurement_range is not None:
             self.to_percent = _in_floats(Scaling(measurement_range, PERCENT))
         if control_range is not None:
-            self.from_percent = _in_floats(Scaling(PERCENT, control_range))
+            scaling = Scaling(PERCENT, control_range)
+            self.from_percent, self.back_to_percent = _in_floats(scaling), _in_floats(scaling.inverse)
         self.filter = LowpassFilter(T_filter, step)
         self.lag_remains = math.exp(-self.step / self.Tf) if self.Tf else 0.0
         self.lagging = None  # the signal behind the filter of the derivative term
@@ -333,8 +334,9 @@ class Controller:
             self.lagging += (self.w_d - other.w_d) * y_SP
 
     def start_from(self, u):
-        """Begin as after manual mode with the control signal u, in the unit of u."""
-        self.u, self.in_manual = _number("u", u), True
+        """Begin as after manual mode with a control signal such as `update` returns."""
+        u = _number("u", u)
+        self.u, self.in_manual = self.back_to_percent(u) if self.back_to_percent else u, True
 
     def _in_percent(self, y):
         return self.to_percent(y) if self.to_percent else y
