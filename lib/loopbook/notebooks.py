@@ -22,7 +22,7 @@ from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
 from nbformat import NotebookNode
 
-SECONDS_PER_CELL = 600
+SECONDS_PER_CELL = 120
 """A cell that takes longer than this (s) waits for something that never comes, and is stopped."""
 
 METADATA = {
