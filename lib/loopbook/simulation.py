@@ -387,9 +387,8 @@ def _by_hand(manual, times):
 
 
 def _beyond_all_numbers(names, time):
-    return ValueError(
-        f"{names} grows beyond all numbers before t = {time:g}: the system is unstable, end the run earlier"
-    )
+    reason = "the system is unstable or a signal infinite, end the run earlier"
+    return ValueError(f"{names} grows beyond all numbers before t = {time:g}: {reason}")
 
 
 def _arrays(signals):
