@@ -269,16 +269,19 @@ def exact(value):
     >>> exact(0.1 + 0.2), exact(1 / 3), exact(1.000000001)
     (3/10, 1/3, 1000000001/1000000000)
     """
-    complaint = ValueError(f"{value!r} is of type {type(value).__name__}: expected a number or an expression")
     if isinstance(value, (str, bool)):
-        raise complaint
+        raise _no_expression(value)
     try:
         expression = sympy.sympify(value)
     except (sympy.SympifyError, TypeError, AttributeError):
-        raise complaint from None
+        raise _no_expression(value) from None
     if not isinstance(expression, sympy.Expr) or expression.has(sympy.nan) or getattr(expression, "is_Matrix", False):
-        raise complaint
+        raise _no_expression(value)
     return expression.xreplace({decimal: _meant(decimal) for decimal in expression.atoms(sympy.Float)})
+
+
+def _no_expression(value):
+    return ValueError(f"{value!r} is of type {type(value).__name__}: expected a number or an expression")
 
 
 def _meant(decimal):
