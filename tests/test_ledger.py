@@ -543,7 +543,7 @@ MALFORMED = {
     ),
     "a reason for nothing": (result(because="a slip"), ["'reproduced' has no use for 'because'"]),
     "a margin for nothing": (result(within="5 %"), ["'reproduced' has no use for 'within'"]),
-    "unreproduced without value": (result(status="unreproduced", because="a"), ["needs 'computed'"]),
+    "unreproduced without reason": (result(status="unreproduced", computed="2"), ["needs 'because'"]),
     "unreproduced with a margin": (
         result(status="unreproduced", because="a", computed="2", within="1"),
         ["no use for 'within'"],
@@ -624,6 +624,7 @@ MIXED = book(
         {"name": "b", "printed": "1", "status": "reconstructed", "assuming": "F = 1 <kg/s>", "within": "5 %"},
         {"name": "c", "printed": "1", "status": "unreproduced", "computed": "2", "because": "nobody knows"},
         {"name": "d", "printed": "17.3", "status": "measured", "because": "in the laboratory"},
+        {"name": "e", "printed": "8.4", "status": "unreproduced", "because": "its settings are not printed"},
     ],
 )["Example 1"]
 GOOD = {"share": 0.632121, "H": K / (T * s + 1), "action": "reverse", "a": 2, "b": 1.04, "c": 2}
@@ -662,6 +663,7 @@ def test_a_report_carries_its_verdicts_as_data():
         ("b", "1", "reconstructed", "1.04", True, "within"),
         ("c", "1", "unreproduced", "2", True, "digits"),
         ("d", "17.3", "measured", "", True, "measured"),
+        ("e", "8.4", "unreproduced", "", True, "unreproduced"),
     ]
     failed = MIXED.compare(**GOOD | {"a": 1})._repr_mimebundle_()[MIME_TYPE]["verdicts"]
     assert [verdict["name"] for verdict in failed if not verdict["holds"]] == ["a"]

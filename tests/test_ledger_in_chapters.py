@@ -166,7 +166,7 @@ def untrue(written, computed):
     assumed = Counter(row["assuming"] for _, row in rows if row.get("status") == "reconstructed")
     for entry, row in rows:
         status, kind = row.get("status", "reproduced"), row.get("kind", "number")
-        if status == "measured":
+        if status == "measured" or (status == "unreproduced" and not row.get("computed")):
             continue
         where = f"{entry}, {row['name']}"
         value = computed.get((entry, row["name"]))

@@ -1,4 +1,4 @@
-"""Figures: one look for the whole collection, and the plot of signals against time.
+"""Figures: one look for the whole collection; signals against time, and curves and areas in a plane.
 
 A signal has the same colour and the same kind of line in every figure. The colours are those of Okabe and Ito, which
 stay apart without colour vision; the dashes stay apart on a grey printout.
@@ -14,7 +14,7 @@ import sympy
 
 from loopbook.laplace import evaluate, t
 
-__all__ = ["Picture", "TimePlot", "time_plot", "trends"]
+__all__ = ["Picture", "PlanePlot", "TimePlot", "map_plot", "plane_plot", "time_plot", "trends"]
 
 STYLE = {
     # One typeface for words and mathematics; it comes with matplotlib, so that every machine draws the same picture.
@@ -314,10 +314,11 @@ def time_plot(signals, times, title=None, xlabel="$t$ [s]", ylabel=None, ylim=No
 
 
 def trends(runs, title=None, disturbances=(), measured=False, minutes=False, limits=None, control_limits=None):
-    """Plot simulated loops as an operator sees them: setpoint and measurement above, control signal below.
+    """Plot loops as an operator sees them: setpoint and measurement above, control signal below.
 
     Arguments:
-        runs: a `simulation.Run`, or ``{label: run}`` for several runs with the same times and the same setpoint.
+        runs: a `simulation.Run` or a `deadtime.LoopResponse`, or ``{label: run}`` for several with the same times and
+            the same setpoint.
         title: stands above the plot; begins with the name of the book's figure where there is one.
         disturbances: names of inputs of the plant, each shown in a panel of its own below the others.
         measured: show the noisy measurement instead of the plant's output.
@@ -350,7 +351,7 @@ def trends(runs, title=None, disturbances=(), measured=False, minutes=False, lim
         for name in ("setpoint", *disturbances):
             if name in first.signals and not numpy.array_equal(run[name], first[name], equal_nan=True):
                 raise ValueError(f"the runs have different signals {name!r}: expected the same in all")
-    output, control = str(first.plant.output.func), first.manipulated
+    output, control = first.output, first.manipulated
     source = "measurement" if measured else output
 
     def panel(name, signal, role):
@@ -362,7 +363,7 @@ def trends(runs, title=None, disturbances=(), measured=False, minutes=False, lim
     top = {"setpoint": (first["setpoint"], "setpoint")} if "setpoint" in first.signals else {}
     panels = [top | panel(output, source, "measurement"), panel(control, control, "control signal")]
     panels += [{f"${sympy.latex(sympy.Symbol(x))}$": (first[x], "disturbance")} for x in disturbances]
-    names = [f"${sympy.latex(sympy.Symbol(x))}$ [{_unit(first.plant, x)}]" for x in (output, control, *disturbances)]
+    names = [f"${sympy.latex(sympy.Symbol(x))}$ [{first.unit(x)}]" for x in (output, control, *disturbances)]
     ylim = [limits, control_limits, *(None for _ in disturbances)]
     times = first.times / (60 if minutes else 1)
     xlabel = "$t$ [min]" if minutes else "$t$ [s]"
@@ -374,8 +375,169 @@ def trends(runs, title=None, disturbances=(), measured=False, minutes=False, lim
     return plot
 
 
-def _unit(plant, name):
-    return plant.quantities[plant.signal(name)].unit or "1"
+class PlanePlot(Picture):
+    """What `plane_plot` and `map_plot` return: a picture of a plane, to which areas, points and words can be added."""
+
+    def __init__(self, figure, alt):
+        super().__init__(figure, alt)
+        self.axes = figure.axes[0]
+
+    def area(self, x, y, label):
+        """Shade the polygon with these corners; the legend calls it by its label. Returns the plot itself.
+
+        >>> plane_plot({"limit": ([1, 2], [2, 1])}, "$x$", "$y$").area([0, 1, 1], [0, 0, 1], "window")
+        <limit: y against x; area: window>
+        """
+        (patch,) = self.axes.fill(x, y, facecolor="#eeeeee", edgecolor="#555555", linewidth=1, label=label, zorder=0.5)
+        patch.set_hatch("///")
+        patch.set_hatch_linewidth(0.4)
+        return self._explained(f"; area: {plain_words(label)}")
+
+    def points(self, x, y, label):
+        """Add single points, by the name that the legend gives them. Returns the plot itself.
+
+        >>> plane_plot({"limit": ([1, 2], [2, 1])}, "$x$", "$y$").points([1], [1], "settings")
+        <limit: y against x; points: settings>
+        """
+        self.axes.plot(x, y, "o", color="#000000", markersize=6, label=label, zorder=4, scalex=False, scaley=False)
+        return self._explained(f"; points: {plain_words(label)}")
+
+    def text(self, x, y, words):
+        """Write words around a point of the plane. Returns the plot itself.
+
+        >>> plane_plot({"limit": ([1, 2], [2, 1])}, "$x$", "$y$").text(1.5, 1.8, "unstable")
+        <limit: y against x; unstable>
+        """
+        import matplotlib
+
+        white = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.5}
+        with matplotlib.rc_context(STYLE):
+            self.axes.text(x, y, words, ha="center", va="center", zorder=5, bbox=white)
+        self.alt += f"; {plain_words(words)}"
+        return self
+
+    def _explained(self, words):
+        import matplotlib
+
+        with matplotlib.rc_context(STYLE):
+            _add_legend(self.axes, may_grow=False)
+        self.alt += words
+        return self
+
+
+def plane_plot(curves, xlabel, ylabel, title=None, xlim=None, ylim=None, log=False, equal=False):
+    """Plot curves in a plane: limits of stability, frequency responses in the complex plane.
+
+    Arguments:
+        curves: ``{label: (x, y)}`` with arrays of equal length; a curve may turn back, and is broken at a NaN. A third
+            item, a role or a number as in `time_plot`, gives it that look; by itself, curve after curve has its own.
+        xlabel, ylabel: names of the axes with their units.
+        title: stands above the plot; begins with the name of the book's figure where there is one.
+        xlim, ylim: lowest and highest value of an axis.
+        log: logarithmic axes.
+        equal: one unit is as long on both axes, as for complex numbers; then both axes are drawn at zero.
+    Returns:
+        A `PlanePlot`, which a notebook shows as the value of a cell; `.area`, `.points` and `.text` add to it.
+    Raises:
+        ValueError: for no curve, or unequal lengths.
+
+    >>> plane_plot({"limit": ([1, 2, 3], [3, 2, 1])}, "gain ratio", "delay ratio", "Figure 2")
+    <Figure 2: limit: delay ratio against gain ratio>
+    """
+    import matplotlib
+    import numpy
+    from matplotlib.figure import Figure
+
+    if not isinstance(curves, dict) or not curves:
+        raise ValueError(f"the curves are {curves!r}: expected {{label: (x, y)}} with at least one")
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(WIDTH, 0.68 * WIDTH if not equal else 0.8 * WIDTH), layout="constrained")
+        axes = figure.subplots()
+        for number, (label, (x, y, *look)) in enumerate(curves.items()):
+            x, y = numpy.asarray(x, dtype=float), numpy.asarray(y, dtype=float)
+            if x.shape != y.shape:
+                raise ValueError(f"{label} has {x.size} values for x and {y.size} for y: expected as many")
+            role = look[0] if look else number
+            axes.plot(x, y, label=label, **(ROLES[role] if role in ROLES else response_look(role)))
+        _finish_plane(axes, xlabel, ylabel, title, xlim, ylim)
+        if log:
+            _logarithmic(axes)
+        if equal:
+            axes.set_aspect("equal")
+            axes.axhline(0, color="#555555", linewidth=0.8, zorder=1)
+            axes.axvline(0, color="#555555", linewidth=0.8, zorder=1)
+        if len(curves) > 1:
+            _add_legend(axes, may_grow=False)
+    shown = ", ".join(map(plain_words, curves))
+    words = f"{shown}: {plain_words(ylabel)} against {plain_words(xlabel)}"
+    return PlanePlot(figure, f"{plain_words(title) + ': ' if title else ''}{words}")
+
+
+def map_plot(x, y, numbers, xlabel, ylabel, label, title=None, log=False):
+    """Plot whole numbers on a grid as shades of grey, white for 0, with a scale: a map of unstable poles, for example.
+
+    Arguments:
+        x, y: the values along the two axes, increasing arrays.
+        numbers: an integer array with a row for each y and a column for each x; a negative one is drawn as 0.
+        xlabel, ylabel: names of the axes with their units.
+        label: what the numbers are.
+        title, log: as in `plane_plot`.
+    Returns:
+        A `PlanePlot`.
+    Raises:
+        ValueError: for an array of another shape.
+
+    >>> map_plot([1, 2], [1, 2, 3], [[0, 0], [0, 2], [2, 4]], "$K_p$", "$T_i$ [s]", "unstable poles")
+    <unstable poles (0 to 4): T_i [s] against K_p>
+    """
+    import matplotlib
+    import numpy
+    from matplotlib.figure import Figure
+
+    x, y, numbers = numpy.asarray(x, dtype=float), numpy.asarray(y, dtype=float), numpy.asarray(numbers)
+    if numbers.shape != (len(y), len(x)):
+        raise ValueError(f"the numbers have the shape {numbers.shape}: expected {(len(y), len(x))}, a row for each y")
+    levels = sorted({int(n) for n in numpy.unique(numbers)} | {0})
+    levels = [n for n in levels if n >= 0]
+    shade = numpy.searchsorted(levels, numpy.maximum(numbers, 0))
+    greys = [
+        "#ffffff",
+        *(matplotlib.colors.to_hex(str(g)) for g in numpy.linspace(0.82, 0.35, max(len(levels) - 1, 1))),
+    ]
+    colours = matplotlib.colors.ListedColormap(greys[: len(levels)])
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(WIDTH, 0.68 * WIDTH), layout="constrained")
+        axes = figure.subplots()
+        mesh = axes.pcolormesh(
+            x, y, shade, cmap=colours, vmin=-0.5, vmax=len(levels) - 0.5, shading="nearest", rasterized=True
+        )
+        axes.grid(False)
+        scale = figure.colorbar(mesh, ax=axes, ticks=range(len(levels)), label=label)
+        scale.ax.set_yticklabels(levels)
+        _finish_plane(axes, xlabel, ylabel, title, (x[0], x[-1]), (y[0], y[-1]))
+        if log:
+            _logarithmic(axes)
+    words = f"{plain_words(label)} ({levels[0]} to {levels[-1]}): {plain_words(ylabel)} against {plain_words(xlabel)}"
+    return PlanePlot(figure, f"{plain_words(title) + ': ' if title else ''}{words}")
+
+
+def _finish_plane(axes, xlabel, ylabel, title, xlim, ylim):
+    axes.set_xlabel(xlabel)
+    axes.set_ylabel(ylabel)
+    axes.set_title(title or "")
+    axes.set_xlim(xlim or axes.get_xlim())
+    axes.set_ylim(ylim or axes.get_ylim())
+
+
+def _logarithmic(axes):
+    """Logarithmic axes with ordinary numbers on them."""
+    from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
+
+    for axis, scale in ((axes.xaxis, axes.set_xscale), (axes.yaxis, axes.set_yscale)):
+        scale("log")
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+        axis.set_minor_formatter(NullFormatter())
 
 
 def _add_legend(axes, may_grow):

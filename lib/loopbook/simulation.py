@@ -43,6 +43,15 @@ class Run:
     held: set
     _past: object = None  # what a later run needs in order to go on
 
+    @property
+    def output(self):
+        """The name of the plant's output."""
+        return name_of(self.plant.output)
+
+    def unit(self, name):
+        """The unit of a signal of the plant, "1" for a number."""
+        return self.plant.quantities[self.plant.signal(name)].unit or "1"
+
     def __getitem__(self, name):
         if name not in self.signals:
             raise ValueError(f"the run has no signal {name!r}: it has {', '.join(self.signals)}")

@@ -39,6 +39,8 @@ def _line(entry, row):
     link = f"[{entry.chapter}](chapters/{entry.chapter}.ipynb)"
     if row.status == "corrected":
         verdict = f"prints `{row.printed}`, correct is `{row.correct}`"
+    elif not row.computed:
+        verdict = f"prints `{row.printed}`, which cannot be computed"
     else:
         verdict = f"prints `{row.printed}`, computed is `{row.computed}`, unexplained so far"
     return f"- **{place}**, `{row.name}`: {verdict}: {row.because}. ({link})"

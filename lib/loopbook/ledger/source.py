@@ -80,6 +80,8 @@ class Result:
         if self.status not in STATUSES:
             raise LedgerError(f"{where}: the status is {self.status!r}, {suggestion(self.status, list(STATUSES))}")
         needed = set(STATUSES[self.status]) - ({"within"} if self.kind == "claim" else set())  # a word has no margin
+        if self.status == "unreproduced" and not self.computed:  # what it takes is not printed: nothing to compare
+            needed.remove("computed")
         for key in ("correct", "because", "assuming", "within", "computed"):
             if bool(getattr(self, key)) != (key in needed):
                 verb = "needs" if key in needed else "has no use for"
@@ -102,6 +104,11 @@ class Result:
                 parse_formula(text)
             except ValueError as error:
                 raise LedgerError(f"{where}: {error}") from None
+
+    @property
+    def is_checked(self):
+        """Whether there is something to compute: not for laboratory data, nor where what it takes is not printed."""
+        return self.status != "measured" and (self.status != "unreproduced" or bool(self.computed))
 
     def margin(self, where=""):
         """How far a reconstructed number may lie from the print: `within`, absolute or in percent of the print."""
@@ -236,12 +243,12 @@ class Entry:
         return {name: given.value for name, given in self.inputs.items()}
 
     def compare(self, /, **values):
-        """Return a Report on computed values, one for each result that is not measured.
+        """Return a Report on computed values, one for each result that can be computed.
 
         Raises LedgerError for a result that is missing or unknown, and for a value that cannot be judged.
         """
         where = f"{self.source}, {self.name}"
-        expected = [row.name for row in self.results if row.status != "measured"]
+        expected = [row.name for row in self.results if row.is_checked]
         if not self.results:
             raise LedgerError(f"{where}: the book prints no result here, nothing to check")
         for name in values:
@@ -251,8 +258,8 @@ class Entry:
             raise LedgerError(f"{where}: nothing was given for {', '.join(missing)}, expected {', '.join(expected)}")
         verdicts = []
         for row in self.results:
-            if row.status == "measured":
-                verdicts.append(Verdict(row, "", True, "measured"))
+            if not row.is_checked:
+                verdicts.append(Verdict(row, "", True, row.status))
                 continue
             value = values[row.name]
             try:
