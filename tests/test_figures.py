@@ -10,8 +10,19 @@ import pytest
 import sympy
 from sympy import DiracDelta, Heaviside, exp
 
-from loopbook.figures import INPUTS, ROLES, STYLE, plain_words, response_look, time_plot, trends
-from loopbook.laplace import t
+from loopbook.deadtime import Loop
+from loopbook.figures import (
+    INPUTS,
+    ROLES,
+    STYLE,
+    map_plot,
+    plain_words,
+    plane_plot,
+    response_look,
+    time_plot,
+    trends,
+)
+from loopbook.laplace import s, t
 from loopbook.pid import PID, Controller
 from loopbook.plants import WoodChipTank
 from loopbook.signals import stepwise
@@ -330,3 +341,55 @@ def test_trends_need_the_same_times_and_known_signals():
         trends(short, disturbances="w_out")
     with pytest.raises(ValueError, match="'wind'"):
         trends(short, disturbances=["wind"])
+
+
+def test_trends_of_loops_with_exact_dead_time():
+    process = exp(-s) / (s + 1)
+    load = stepwise(0, {4: 1})
+    runs = {f"{Kp}": Loop(process, PID(Kp, Ti=1)).run(np.linspace(0, 8, 81), load=load) for Kp in (0.3, 0.6)}
+    plot = trends(runs, "Two gains", disturbances=["d"])
+    assert plot.alt == "Two gains: setpoint, y, 0.3, y, 0.6; u, 0.3, u, 0.6; d against t [s]"
+    np.testing.assert_array_equal(plot.lines["$y$, 0.6"].get_ydata(), runs["0.6"]["y"])
+    assert plot.lines["$d$"].get_drawstyle() == "steps-post"
+
+
+def test_a_plane_shows_curves_areas_points_and_words():
+    ratios = np.geomspace(0.5, 2, 7)
+    plot = plane_plot({"PI": (ratios, 1 / ratios), "PID": (ratios, 2 / ratios)}, "gain ratio", "delay ratio", log=True)
+    before = plot.axes.get_xlim(), plot.axes.get_ylim()
+    plot.area([1, 2, 1, 0.5], [2, 1, 0.5, 1], "window").points([1], [1], "tuned for").text(1.8, 1.8, "unstable")
+    assert (plot.axes.get_xlim(), plot.axes.get_ylim()) == before
+    assert [text.get_text() for text in plot.axes.get_legend().get_texts()] == ["PI", "PID", "window", "tuned for"]
+    assert plot.axes.get_xscale() == plot.axes.get_yscale() == "log"
+    assert texts(plot.axes) == ["unstable"]
+    assert plot.alt == ("PI, PID: delay ratio against gain ratio; area: window; points: tuned for; unstable")
+    assert plot.axes.lines[0].get_color() != plot.axes.lines[1].get_color()
+
+
+def test_complex_numbers_have_equal_axes():
+    circle = np.exp(1j * np.linspace(0, 6, 100))
+    plot = plane_plot({"circle": (circle.real, circle.imag, "setpoint")}, "real", "imaginary", equal=True)
+    assert plot.axes.get_aspect() == 1
+    assert plot.axes.lines[0].get_color() == ROLES["setpoint"]["color"]
+
+
+def test_a_map_has_one_grey_for_each_number():
+    numbers = np.array([[0, 0, 2], [0, 2, 4], [-1, 4, 8]])
+    plot = map_plot([1, 2, 3], [10, 20, 30], numbers, "$x$", "$y$", "poles")
+    mesh = plot.axes.collections[0]
+    np.testing.assert_array_equal(mesh.get_array(), [[0, 0, 1], [0, 1, 2], [0, 2, 3]])
+    colours = [tuple(mesh.cmap(n)) for n in range(4)]
+    assert colours[0] == (1, 1, 1, 1)
+    assert [c[0] for c in colours] == sorted((c[0] for c in colours), reverse=True)
+    assert len(set(colours)) == 4
+    scale = plot.figure.axes[1]
+    assert [label.get_text() for label in scale.get_yticklabels()] == ["0", "2", "4", "8"]
+
+
+def test_what_makes_no_plane():
+    with pytest.raises(ValueError, match=r"expected .* with at least one"):
+        plane_plot({}, "x", "y")
+    with pytest.raises(ValueError, match="limit has 2 values for x and 3 for y"):
+        plane_plot({"limit": ([1, 2], [1, 2, 3])}, "x", "y")
+    with pytest.raises(ValueError, match=r"shape \(2, 3\): expected \(3, 2\)"):
+        map_plot([1, 2], [1, 2, 3], np.zeros((2, 3)), "x", "y", "n")
