@@ -314,6 +314,18 @@ def test_algebraic_loops():
         System(1) / 0
 
 
+def test_letters_and_words_in_a_loop():
+    with pytest.raises(ValueError, match="give a number for K, T in the loop"):
+        Loop(first_order(sympy.Symbol("K"), 1), PID(1, Ti=sympy.Symbol("T")))
+    with pytest.raises(ValueError, match="'PI' is of type str"):
+        Loop(1 / s, "PI")
+    with pytest.raises(ValueError, match="the frequencies are 'high': expected numbers"):
+        System(1 / s).frequency("high")
+    for u in ("step", sympy.log(t + 1), sympy.Symbol("q") * t):
+        with pytest.raises(ValueError, match=r"step|transform|give a number for q"):
+            System(1 / s).response(TIMES, u)
+
+
 @pytest.mark.parametrize("times", [[-1], [math.nan], [math.inf], ["soon"]])
 def test_times_that_are_none(times):
     with pytest.raises(ValueError, match="times"):

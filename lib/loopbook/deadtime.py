@@ -285,7 +285,7 @@ class System:
         """
         import numpy
 
-        point = 1j * numpy.asarray(omega, dtype=float)
+        point = 1j * _numbers("frequencies", omega)
         with numpy.errstate(divide="ignore", invalid="ignore"):  # at a pole on the axis
             return _value(self.numerator, point) / _value(self.denominator, point)
 
@@ -345,15 +345,13 @@ class System:
         array([2., 4.])
         """
         times = _times(times)
-        if isinstance(u, sympy.Expr) or not hasattr(u, "__len__"):
-            U = transform(function_of(t, u))
-            return System(self.expr * U).impulse(times)
-        return self._response_to_samples(times, u)
+        if hasattr(u, "__len__") and not isinstance(u, str):
+            return self._response_to_samples(times, _numbers("values of u", u))
+        return System(self.expr * transform(function_of(t, u))).impulse(times)
 
     def _response_to_samples(self, times, u):
         import numpy
 
-        u = numpy.asarray(u, dtype=float)
         if u.shape != times.shape or len(times) < 2 or times[0] != 0 or not (numpy.diff(times) > 0).all():
             raise ValueError(
                 f"{u.size} values of u for {times.size} times: expected one each for times that increase from 0"
@@ -506,15 +504,23 @@ def _value(parts, point):
 
 
 def _times(times):
+    times = _numbers("times", times)
+    if (times < 0).any():
+        raise ValueError(f"the times begin at {times.min():g}: expected zero or later")
+    return times
+
+
+def _numbers(name, values):
+    """An array of finite floats."""
     import numpy
 
     try:
-        times = numpy.asarray(times, dtype=float)
+        array = numpy.asarray(values, dtype=float)
     except (TypeError, ValueError):
-        raise ValueError(f"the times are {times!r}: expected an array of numbers") from None
-    if not numpy.isfinite(times).all() or (times < 0).any():
-        raise ValueError("the times must be finite numbers, zero or later")
-    return times
+        raise ValueError(f"the {name} are {values!r}: expected numbers") from None
+    if not numpy.isfinite(array).all():
+        raise ValueError(f"the {name} are not all finite: expected numbers")
+    return array
 
 
 # ------------------------------------------------------------------------------------------------ responses in time
@@ -750,7 +756,12 @@ class Loop:
         self.process, self.controller = _expression(process), _expression(controller)
         self.from_setpoint = self.controller if from_setpoint is None else _expression(from_setpoint)
         self.open = self.controller * self.process
+        if letters := sorted(map(str, (self.open + self.from_setpoint).free_symbols - {s})):
+            raise ValueError(f"give a number for {', '.join(letters)} in the loop of {self.process}")
         self._difference = _return_difference(self.open)
+
+    def __repr__(self):
+        return f"Loop({self.process}, {self.controller})"
 
     def _closed(self, forward):
         return System(forward / self._difference)
