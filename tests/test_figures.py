@@ -15,6 +15,7 @@ from loopbook.figures import (
     INPUTS,
     ROLES,
     STYLE,
+    level_plot,
     map_plot,
     plain_words,
     plane_plot,
@@ -386,7 +387,21 @@ def test_a_map_has_one_grey_for_each_number():
     assert [label.get_text() for label in scale.get_yticklabels()] == ["0", "2", "4", "8"]
 
 
+def test_levels_are_where_the_values_are():
+    x, y = np.linspace(1, 3, 41), np.linspace(1, 2, 31)
+    values = np.outer(y, x)
+    values[values > 5] = np.inf  # unstable there
+    plot = level_plot(x, y, values, [2, 4, 5.5], "$x$", "$y$", "$xy$")
+    paths = plot.axes.collections[0].get_paths()
+    for level, path in zip([2, 4], paths, strict=False):
+        assert path.vertices.prod(axis=1) == pytest.approx(level, rel=1e-3)
+    assert len(paths[2].vertices) == 0
+    assert {text.get_text() for text in plot.axes.texts} == {"2", "4"}
+
+
 def test_what_makes_no_plane():
+    with pytest.raises(ValueError, match=r"shape \(2, 3\): expected \(3, 2\)"):
+        level_plot([1, 2], [1, 2, 3], np.zeros((2, 3)), [1], "x", "y", "n")
     with pytest.raises(ValueError, match=r"expected .* with at least one"):
         plane_plot({}, "x", "y")
     with pytest.raises(ValueError, match="limit has 2 values for x and 3 for y"):

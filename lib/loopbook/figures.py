@@ -14,7 +14,7 @@ import sympy
 
 from loopbook.laplace import evaluate, t
 
-__all__ = ["Picture", "PlanePlot", "TimePlot", "map_plot", "plane_plot", "time_plot", "trends"]
+__all__ = ["Picture", "PlanePlot", "TimePlot", "level_plot", "map_plot", "plane_plot", "time_plot", "trends"]
 
 STYLE = {
     # One typeface for words and mathematics; it comes with matplotlib, so that every machine draws the same picture.
@@ -376,7 +376,7 @@ def trends(runs, title=None, disturbances=(), measured=False, minutes=False, lim
 
 
 class PlanePlot(Picture):
-    """What `plane_plot` and `map_plot` return: a picture of a plane, to which areas, points and words can be added."""
+    """What `plane_plot`, `map_plot` and `level_plot` return: a picture of a plane, to which areas, points and words can be added."""
 
     def __init__(self, figure, alt):
         super().__init__(figure, alt)
@@ -393,13 +393,19 @@ class PlanePlot(Picture):
         patch.set_hatch_linewidth(0.4)
         return self._explained(f"; area: {plain_words(label)}")
 
-    def points(self, x, y, label):
+    def points(self, x, y, label, mark="o"):
         """Add single points, by the name that the legend gives them. Returns the plot itself.
+
+        Arguments:
+            x, y: one value or as many for each.
+            label: their name.
+            mark: "o" for dots, "x" for crosses, as for poles.
 
         >>> plane_plot({"limit": ([1, 2], [2, 1])}, "$x$", "$y$").points([1], [1], "settings")
         <limit: y against x; points: settings>
         """
-        self.axes.plot(x, y, "o", color="#000000", markersize=6, label=label, zorder=4, scalex=False, scaley=False)
+        look = {"color": "#000000", "markersize": 6 if mark == "o" else 8, "markeredgewidth": 1.6, "zorder": 4}
+        self.axes.plot(x, y, mark, label=label, linestyle="", scalex=False, scaley=False, **look)
         return self._explained(f"; points: {plain_words(label)}")
 
     def text(self, x, y, words):
@@ -518,6 +524,47 @@ def map_plot(x, y, numbers, xlabel, ylabel, label, title=None, log=False):
         if log:
             _logarithmic(axes)
     words = f"{plain_words(label)} ({levels[0]} to {levels[-1]}): {plain_words(ylabel)} against {plain_words(xlabel)}"
+    return PlanePlot(figure, f"{plain_words(title) + ': ' if title else ''}{words}")
+
+
+def level_plot(x, y, values, levels, xlabel, ylabel, label, title=None, log=False):
+    """Plot lines of equal value over a plane, with the value written on each: a criterion over two settings.
+
+    Arguments:
+        x, y: the values along the two axes, increasing arrays.
+        values: an array with a row for each y and a column for each x; what is not finite is left out.
+        levels: increasing values, those of the lines.
+        xlabel, ylabel: names of the axes with their units.
+        label: what the values are.
+        title, log: as in `plane_plot`.
+    Returns:
+        A `PlanePlot`.
+    Raises:
+        ValueError: for an array of another shape.
+
+    >>> import numpy
+    >>> x = y = numpy.array([1.0, 2.0, 3.0])
+    >>> level_plot(x, y, numpy.outer(y, x), [2, 4, 6], "$K_p$", "$T_i$ [s]", "ISE")
+    <levels of ISE, 2 to 6: T_i [s] against K_p>
+    """
+    import matplotlib
+    import numpy
+    from matplotlib.figure import Figure
+
+    x, y, values = (numpy.asarray(array, dtype=float) for array in (x, y, values))
+    if values.shape != (len(y), len(x)):
+        raise ValueError(f"the values have the shape {values.shape}: expected {(len(y), len(x))}, a row for each y")
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(WIDTH, 0.68 * WIDTH), layout="constrained")
+        axes = figure.subplots()
+        finite = numpy.ma.masked_invalid(values)
+        lines = axes.contour(x, y, finite, levels, colors=RESPONSE_COLOURS[0], linewidths=1.3)
+        axes.clabel(lines, fmt="%g", fontsize=9, colors="#000000")
+        _finish_plane(axes, xlabel, ylabel, title, (x[0], x[-1]), (y[0], y[-1]))
+        if log:
+            _logarithmic(axes)
+    words = f"levels of {plain_words(label)}, {levels[0]:g} to {levels[-1]:g}"
+    words = f"{words}: {plain_words(ylabel)} against {plain_words(xlabel)}"
     return PlanePlot(figure, f"{plain_words(title) + ': ' if title else ''}{words}")
 
 
