@@ -376,7 +376,7 @@ def trends(runs, title=None, disturbances=(), measured=False, minutes=False, lim
 
 
 class PlanePlot(Picture):
-    """What `plane_plot`, `map_plot` and `level_plot` return: a picture of a plane, to which areas, points and words can be added."""
+    """What `plane_plot`, `map_plot` and `level_plot` return, to which areas, points and words can be added."""
 
     def __init__(self, figure, alt):
         super().__init__(figure, alt)
