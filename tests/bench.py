@@ -1,28 +1,38 @@
 """What the collection costs beside what it stands on: `make bench` prints tables of medians and their ratios.
 
 The library: a fresh interpreter that imports loopbook, beside one that imports SymPy only. The simulator: a closed loop
-with all practical features, beside a bare loop around SciPy's solver. A chapter: its import cell
-and the whole of it, each in a fresh kernel, beside a fresh kernel that imports no more than the packages the chapter
-uses. What is compared runs in turn, so that a busy minute of the machine burdens both sides.
+with all practical features, beside a bare loop around SciPy's solver. Dead time: exact responses and integrals of the
+squared error, beside python-control with Pade approximations of order 10, and their errors; a map of stability. A
+chapter: its import cell and the whole of it, each in a fresh kernel, beside a fresh kernel that imports no more than
+the packages the chapter uses. What is compared runs in turn, so that a busy minute of the machine burdens both sides.
 """
 
+import math
 import subprocess
 import sys
 from collections.abc import Callable
+from fractions import Fraction
 from pathlib import Path
 from statistics import median
 from time import perf_counter
 
+import control
+import numpy as np
+import sympy
 from nbformat import NotebookNode, v4
 from rich.console import Console
 from rich.table import Table
 from scipy.integrate import solve_ivp
 
-from loopbook import notebooks
+from loopbook import notebooks, s
+from loopbook.deadtime import Loop, System, feedback
+from loopbook.ise import integral_of_square, pi_first_order
 from loopbook.pid import PID, Controller
 from loopbook.plants import WoodChipTank
 from loopbook.signals import stepwise
 from loopbook.simulation import simulate
+from loopbook.stability import stability_map
+from loopbook.transfer import first_order
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = {
@@ -74,7 +84,8 @@ def packages(chapter: NotebookNode) -> str:
 
 
 def seconds(value: float) -> str:
-    return f"{value:.2f} s"
+    scale, unit = next(((k, u) for k, u in ((1, "s"), (1e3, "ms")) if value * k >= 0.1), (1e6, "µs"))
+    return f"{value * scale:.2f} {unit}"
 
 
 def the_library(runs: int) -> Table:
@@ -148,10 +159,113 @@ def the_simulator(runs: int) -> Table:
     return table
 
 
+def pade_loop(K: float, T: float, delay: float, Kp: float, Ti: float) -> control.StateSpace:
+    """A PI loop around a lag with dead time, as python-control has it, from the setpoint to the output."""
+    late = control.tf(*control.pade(delay, 10)) * control.tf([K], [T, 1])
+    return control.feedback(control.ss(late * control.tf([Kp * Ti, Kp], [Ti, 0])), 1)
+
+
+def the_responses(runs: int) -> Table:
+    """The step response of a PI loop over 20 delays, of which the exact solution is a finite series."""
+    times = np.linspace(0, 20, 2001)
+    process, settings = first_order(2, 3, delay=1), PID(sympy.Rational(3, 2), Ti=3)  # L = exp(-s)/s
+
+    def series(x: Fraction) -> float:
+        return float(sum((-1) ** (n + 1) * (x - n) ** n / math.factorial(n) for n in range(1, int(x) + 1)))
+
+    expected = np.array([series(Fraction(n, 100)) for n in range(2001)])
+    exact, pade = Loop(process, settings).servo, pade_loop(2, 3, 1, 1.5, 3)
+
+    def by_pade(system: control.StateSpace) -> np.ndarray:
+        return control.forced_response(system, times, np.ones_like(times))[1]
+
+    tasks = {
+        "exact": lambda: exact.step(times),
+        "exact, with building the loop": lambda: Loop(process, settings).servo.step(times),
+        "python-control, Pade(10)": lambda: by_pade(pade),
+        "python-control, with building the loop": lambda: by_pade(pade_loop(2, 3, 1, 1.5, 3)),
+    }
+    table = Table("step response", "time", "ratio", "largest error", title=f"20 delays, 2001 points, median of {runs}")
+    errors = {name: abs(task() - expected).max() for name, task in tasks.items()}
+    times_of = medians(runs, **tasks)
+    for name, time in times_of.items():
+        table.add_row(name, seconds(time), f"{time / times_of['exact']:.2f}", f"{errors[name]:.0e}")
+    return table
+
+
+def the_criteria(runs: int) -> Table:
+    """The integral of the squared error of a PI loop and of a Smith predictor with a wrong model."""
+    process, model = first_order(2, 0.7, delay=1.4), first_order(2, 0.7)
+    smith = feedback(PID(0.35, Ti=0.7).expr, model - process)
+    wrong = System(Loop(first_order(2, 0.7, delay=2.1), smith).error("servo"))
+    filtered = System(Loop(process, PID(0.45, 1.9, 0.5, 0.05)).error("servo"))
+    crooked = System(Loop(first_order(2, 0.7, delay=sympy.sqrt(3)), smith).error("servo"))
+    gains = np.random.default_rng(1).uniform(0.05, 0.3, 1_000_000)
+    exact = pi_first_order(2.0, 0.7, 1.4, 0.3, 3.2)
+    points = 4001  # for an error of about 1e-5
+    grid = np.linspace(0, 60, points)
+
+    def simulated() -> float:
+        error = 1 - control.forced_response(pade_loop(2, 0.7, 1.4, 0.3, 3.2), grid, np.ones(points))[1]
+        return float(np.trapezoid(error**2, grid))
+
+    def thousand_calls() -> None:
+        for _ in range(1000):
+            pi_first_order(2.0, 0.7, 1.4, 0.3, 3.2)
+
+    def difference(E: System, one: str, other: str) -> str:
+        a, b = (integral_of_square(E, method) for method in (one, other))
+        return f"{abs(a / b - 1):.0e}"
+
+    tasks = {
+        "PI, closed form, a call": thousand_calls,
+        "PI, closed form, a million settings": lambda: pi_first_order(2, 0.7, 1.4, gains, 3.2),
+        "PID with filter, residues": lambda: integral_of_square(filtered, "residues"),
+        "Smith, wrong model, boundary values": lambda: integral_of_square(wrong, "boundary value"),
+        "Smith, delays without common base, quadrature": lambda: integral_of_square(crooked, "quadrature"),
+        "python-control, Pade(10), simulated": simulated,
+    }
+    errors = {
+        "PID with filter, residues": difference(filtered, "residues", "response"),
+        "Smith, wrong model, boundary values": difference(wrong, "boundary value", "response"),
+        "Smith, delays without common base, quadrature": difference(crooked, "quadrature", "response"),
+        "python-control, Pade(10), simulated": f"{abs(simulated() / exact - 1):.0e}",
+    }
+    times = medians(runs, **tasks)
+    times["PI, closed form, a call"] /= 1000
+    title = f"Integral of the squared error, median of {runs}; errors beside the integral of the exact response"
+    table = Table("", "time", "beside a call", "relative error", title=title)
+    for name, time in times.items():
+        ratio = f"{time / times['PI, closed form, a call']:.0f}"
+        table.add_row(name, seconds(time), ratio, errors.get(name, "see tests/test_ise.py"))
+    return table
+
+
+def the_map(runs: int) -> Table:
+    """The number of unstable poles on a grid of 200 x 200 settings, beside one python-control loop a point."""
+    Kp, Ti = sympy.symbols("Kp Ti", positive=True)
+    loop = first_order(2, 0.7, delay=1.4) * Kp * (1 + 1 / (Ti * s))
+    gains, integral_times = np.linspace(0.02, 1.5, 200), np.linspace(0.1, 5, 200)
+
+    def hundred_points() -> None:
+        for gain in gains[::2]:
+            pade_loop(2, 0.7, 1.4, float(gain), 2).poles()
+
+    times = medians(runs, map=lambda: stability_map(loop, Kp=gains, Ti=integral_times), hundred=hundred_points)
+    table = Table("200 x 200 points", "time", "ratio", title=f"A map of stability, median of {runs}")
+    table.add_row("stability_map, exact", seconds(times["map"]), "1.00")
+    pade = 400 * times["hundred"]
+    table.add_row("poles of a Pade(10) loop, 100 points times 400", seconds(pade), f"{pade / times['map']:.2f}")
+    return table
+
+
 if __name__ == "__main__":
     console = Console()
     console.print(the_library(runs=7))
     console.print(the_simulator(runs=3))
+    console.print(the_responses(runs=15))
+    console.print(the_criteria(runs=7))
+    console.print(the_map(runs=3))
     chapters = sorted((ROOT / "chapters").glob("*.ipynb"))
     if chapters:
         with console.status("running the chapters"):
