@@ -18,7 +18,7 @@ from loopbook.expressions import exact, function_of, s, t
 from loopbook.laplace import evaluate, transform, without_delays
 from loopbook.pid import PID
 
-__all__ = ["ChannelModel", "Loop", "LoopResponse", "Response", "System", "feedback", "normal_form"]
+__all__ = ["ChannelModel", "Loop", "LoopResponse", "Response", "System", "feedback", "normal_form", "transfer_function"]
 
 NODES = 20  # where a segment of a response is known, so that it is a polynomial of degree 19
 REACH = 4.0  # how many times the fastest lag a segment may be long
@@ -192,7 +192,7 @@ class System:
     """
 
     def __init__(self, H):
-        H = _expression(H)
+        H = transfer_function(H)
         if letters := sorted(map(str, H.free_symbols - {s})):
             raise ValueError(f"give a number for {', '.join(letters)} in {H}")
         above, below = normal_form(H)
@@ -231,22 +231,22 @@ class System:
         return hash((tuple(self.numerator.items()), tuple(self.denominator.items())))
 
     def __add__(self, other):
-        return System(self.expr + _expression(other))
+        return System(self.expr + transfer_function(other))
 
     def __sub__(self, other):
-        return System(self.expr - _expression(other))
+        return System(self.expr - transfer_function(other))
 
     def __rsub__(self, other):
-        return System(_expression(other) - self.expr)
+        return System(transfer_function(other) - self.expr)
 
     def __mul__(self, other):
-        return System(self.expr * _expression(other))
+        return System(self.expr * transfer_function(other))
 
     def __truediv__(self, other):
-        return System(_divided(self.expr, _expression(other)))
+        return System(_divided(self.expr, transfer_function(other)))
 
     def __rtruediv__(self, other):
-        return System(_divided(_expression(other), self.expr))
+        return System(_divided(transfer_function(other), self.expr))
 
     def __neg__(self):
         return System(-self.expr)
@@ -441,7 +441,7 @@ def feedback(G, H=1):
     >>> feedback(2 * sympy.exp(-s) / s, sympy.Rational(1, 2))
     System(2*exp(-s)/(s + exp(-s)))
     """
-    G, H = _expression(G), _expression(H)
+    G, H = transfer_function(G), transfer_function(H)
     return System(G / _return_difference(G * H))
 
 
@@ -453,11 +453,19 @@ def _return_difference(L):
     return 1 + L
 
 
-def _expression(value):
-    """The transfer function of whatever stands for a block, exact."""
-    if isinstance(value, System):
-        return value.expr
-    if isinstance(value, PID):
+def transfer_function(value):
+    """Return the transfer function of whatever stands for a block, an expression in `s` with exact numbers.
+
+    Arguments:
+        value: a `System`, a `PID`, a continuous single-input single-output system of python-control, an expression in
+            `s` or a number.
+    Raises:
+        ValueError: for anything else.
+
+    >>> transfer_function(PID(2, Ti=10))
+    2 + 1/(5*s)
+    """
+    if isinstance(value, (System, PID)):
         return value.expr
     if type(value).__module__.split(".")[0] == "control":
         return _from_control(value)
@@ -753,8 +761,8 @@ class Loop:
     """
 
     def __init__(self, process, controller, from_setpoint=None):
-        self.process, self.controller = _expression(process), _expression(controller)
-        self.from_setpoint = self.controller if from_setpoint is None else _expression(from_setpoint)
+        self.process, self.controller = transfer_function(process), transfer_function(controller)
+        self.from_setpoint = self.controller if from_setpoint is None else transfer_function(from_setpoint)
         self.open = self.controller * self.process
         if letters := sorted(map(str, (self.open + self.from_setpoint).free_symbols - {s})):
             raise ValueError(f"give a number for {', '.join(letters)} in the loop of {self.process}")
