@@ -1,0 +1,99 @@
+"""Dead times that are multiples of one: the autocorrelation from a boundary value problem."""
+
+import math
+from fractions import Fraction
+
+from loopbook.ise.error import NotApplicableError
+
+MOST_STATES = 80  # of a boundary value problem
+MOST_DIGITS_LOST = 1e-10  # how far two solutions in different units of time may lie apart
+
+
+def by_boundary_values(fraction):
+    """Dead times h, 2h ... m h: the autocorrelation of the response of 1/D from a boundary value problem.
+
+    R(theta), the integral of x(t) x(t + theta) where D x = delta, is even, and D R = 0 for theta > 0, because x is zero
+    before t = 0. On an interval of length h the functions phi_j(theta) = R(j h + theta) and
+    psi_j(theta) = R((j + 1) h - theta), j < m, fulfil ordinary differential equations. At zero the odd derivatives of
+    R vanish, but that of order 2n - 1 jumps to (-1)^n/2; the pieces are joined; in the middle phi_j is psi_j, mirrored.
+    The integral of e^2 is N(s, z) N(-s, 1/z) applied to R at zero, s being the derivative and z the shift.
+
+    A pole at zero that N cancels makes W in place of R, with R as its second derivative (but for the sign): that is D
+    with two more powers of s, and values that are zero at zero.
+    """
+    fraction.need_retarded()
+    # rounding comes out otherwise in another unit of time
+    one, other = (_from_autocorrelation(fraction, factor * fraction.mean_speed) for factor in (1.0, 1.6))
+    if not abs(one - other) <= MOST_DIGITS_LOST * one:
+        raise NotApplicableError(f"rounding leaves {one:.12g} or {other:.12g}")
+    return one
+
+
+def _from_autocorrelation(fraction, speed):
+    """The integral from the boundary value problem, solved with 1/speed as the unit of time."""
+    import numpy
+    from scipy.linalg import expm
+
+    delays = [d for d in (*fraction.N, *fraction.D) if d]
+    unit = Fraction(math.gcd(*(d.numerator for d in delays)) or 1, math.lcm(*(d.denominator for d in delays)))
+    m = int(max(delays, default=1) / unit)
+    twice = 2 * fraction.pole
+    order = fraction.order + twice
+    states = 2 * m * order
+    if states > MOST_STATES:
+        raise NotApplicableError(f"it has {states} states, more than {MOST_STATES}")
+    h = float(unit) * speed
+    above, above_delays, below, below_delays = fraction.arrays(speed)
+    N, D = numpy.zeros((m + 1, above.shape[1])), numpy.zeros((m + 1, order))
+    N[numpy.rint(above_delays / h).astype(int)] = above
+    D[numpy.rint(below_delays / h).astype(int), twice:] = below[:, :-1]
+
+    def place(j):  # of phi_j, and of psi_j m places later
+        return slice(j * order, (j + 1) * order)
+
+    M = numpy.kron(numpy.eye(2 * m), numpy.diag(numpy.ones(order - 1), 1))
+    mirror = (-1.0) ** numpy.arange(order)
+    for j in range(m):
+        for i in range(m + 1):
+            forward, back = (j - i, m + j - i) if i <= j else (m + i - j - 1, i - j - 1)
+            M[(j + 1) * order - 1, place(forward)] -= D[i]
+            M[(m + j + 1) * order - 1, place(back)] -= D[i] * mirror * (-1) ** order
+
+    # the derivatives at zero, as rows that multiply the state
+    highest = twice + 2 * fraction.order - 1
+    derivatives = [numpy.eye(1, states)]
+    for _ in range(highest):
+        derivatives.append(derivatives[-1] @ M)
+    at_zero = [*range(twice), *range(twice + 1, highest + 1, 2)]
+    start = numpy.vstack([derivatives[k] for k in at_zero])
+    value = numpy.zeros(states)
+    value[len(at_zero) - 1] = (-1) ** (fraction.pole + fraction.order) / 2
+    joined = numpy.zeros(((m - 1) * order, states))
+    for j in range(m - 1):
+        joined[place(j), place(m + j)] = numpy.diag(mirror)
+        joined[place(j), place(j + 1)] = -numpy.eye(order)
+    middle = numpy.hstack([numpy.eye(m * order), -numpy.kron(numpy.eye(m), numpy.diag(mirror))])
+
+    # left @ Y(0) + right @ Y(h/2) = 0, from short steps, which are joined without forming a large exponential
+    doublings = max(0, math.ceil(math.log2(abs(M).sum(axis=1).max() * h / 2)))
+    left, right = -expm(M * (h / 2 / 2**doublings)), numpy.eye(states)
+    for _ in range(doublings):
+        combination = numpy.linalg.qr(numpy.vstack([right, left]), mode="complete")[0][:, states:].T
+        left, right = combination[:, :states] @ left, combination[:, states:] @ right
+    nothing = numpy.zeros((m * order, states))
+    system = numpy.block([[numpy.vstack([start, joined]), nothing], [left, right], [nothing, middle]])
+    Y = numpy.linalg.solve(system, numpy.concatenate([value, numpy.zeros(states)]))[:states]
+
+    mirrored, total = N * (-1.0) ** numpy.arange(N.shape[1]), 0.0
+    for shift in range(m + 1):
+        product = sum(numpy.convolve(N[q + shift], mirrored[q]) for q in range(m + 1 - shift))
+        if not product.any():
+            continue
+        # R at shift*h: the beginning of phi, or the one of the last psi, where the direction is the other one
+        row = numpy.zeros(states)
+        row[(shift if shift < m else 2 * m - 1) * order] = 1
+        direction = -1.0 if shift < m else 1.0
+        for k, c in enumerate(product):
+            total += (1 if shift == 0 else 2) * c * direction**k * (row @ Y)
+            row = row @ M
+    return float(total) * speed
