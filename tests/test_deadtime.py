@@ -210,7 +210,7 @@ def test_signals_of_a_loop_agree_with_each_other():
 def test_the_error_of_a_loop():
     loop = Loop(first_order(2, 3, delay=1), PID(1, Ti=3))
     for mode, end in (("servo", 1 - loop.servo.step(TIMES)), ("regulator", -loop.regulator.step(TIMES))):
-        assert System(loop.error(mode)).impulse(TIMES) == pytest.approx(end, abs=1e-11)
+        assert loop.error(mode).impulse(TIMES) == pytest.approx(end, abs=1e-11)
     with pytest.raises(ValueError, match="the mode is 'both'"):
         loop.error("both")
 

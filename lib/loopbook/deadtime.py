@@ -15,7 +15,7 @@ from typing import NamedTuple
 import sympy
 
 from loopbook.expressions import exact, function_of, s, t
-from loopbook.laplace import evaluate, transform, without_delays
+from loopbook.laplace import evaluate, transform
 from loopbook.pid import PID
 
 __all__ = ["ChannelModel", "Loop", "LoopResponse", "Response", "System", "feedback", "normal_form", "transfer_function"]
@@ -37,7 +37,7 @@ def normal_form(H):
 
     Arguments:
         H: expression in `s`, rational in `s` and in dead times exp(-delay*s), which may stand anywhere. Other letters
-            are allowed, in delays too.
+            are allowed, in delays too. Or a `System`.
     Returns:
         Two dictionaries ``{delay: polynomial}``, the polynomials as SymPy ``Poly`` in `s`. The denominator has a part
         without dead time.
@@ -48,17 +48,22 @@ def normal_form(H):
     >>> {delay: part.as_expr() for delay, part in denominator.items()}
     {0: s, 1: 2}
     """
+    if isinstance(H, System):
+        return dict(H.numerator), dict(H.denominator)
     H = function_of(s, H)
     if H.has(sympy.oo, sympy.zoo):
         raise ValueError(f"{H} is infinite: expected a transfer function")
-    rational, delays = without_delays(H)
-    delays = {letter: _rational(delay) if delay.is_number else delay for letter, delay in delays.items()}
-    rational, delays = _on_common_bases(rational, delays)
-    letters = sorted(rational.free_symbols - {s, *delays}, key=str)
+    powers, delays = _dead_times(H)
+    letters = sorted(H.free_symbols - {s}, key=str)
+    field = sympy.QQ.frac_field(s, *delays, *letters)
+    known = dict(zip(field.symbols, field.gens, strict=True))
+    known |= {exponential: known[letter] ** n for exponential, (letter, n) in powers.items()}
     try:
-        fraction = _in_field(rational, sympy.QQ.frac_field(s, *delays, *letters))
+        fraction = _in_field(H, field, known)
     except ZeroDivisionError:
         raise ValueError(f"{H} is infinite: expected a transfer function") from None
+    except _NotRationalError:
+        raise ValueError(f"{H} is not a rational function of s and dead times exp(-delay*s)") from None
     above, below = (_collected(part, list(delays.values()), letters) for part in (fraction.numer, fraction.denom))
     base = next((d for d in below if all((other - d).is_nonnegative for other in below)), None)
     if base is None:
@@ -70,33 +75,51 @@ def normal_form(H):
     return above, below
 
 
-def _on_common_bases(rational, delays):
-    """Write dead times that are multiples of a common one as powers of one letter, so that common factors are seen."""
+def _dead_times(H):
+    """Letters for the dead times in H: {exponential: (letter, power)} and {letter: dead time}.
+
+    Dead times that are multiples of a common one are powers of one letter, so that common factors are seen.
+    """
     families = []
-    for letter, delay in delays.items():
+    for exponential in sorted(H.atoms(sympy.exp), key=str):
+        if not exponential.has(s):
+            continue
+        delay = -sympy.expand(exponential.exp) / s
+        if delay.has(s):
+            raise ValueError(f"{H} is not a rational function of s and dead times exp(-delay*s)")
+        delay = _rational(delay) if delay.is_number else delay
         for family in families:
             ratio = sympy.cancel(delay / family[0][1])
             if ratio.is_Rational:
-                family.append((letter, delay, ratio))
+                family.append((exponential, delay, ratio))
                 break
         else:
-            families.append([(letter, delay, sympy.S.One)])
-    replaced, bases = {}, {}
+            families.append([(exponential, delay, sympy.S.One)])
+    powers, delays = {}, {}
     for family in families:
         ratios = [ratio for *_, ratio in family]
         unit = sympy.Rational(math.gcd(*(r.p for r in ratios)), math.lcm(*(r.q for r in ratios)))
-        if max(abs(r) for r in ratios) / unit <= MOST_MULTIPLES:
-            first = sympy.Dummy()
-            bases[first] = unit * family[0][1]
-            replaced |= {letter: first ** (ratio / unit) for letter, _, ratio in family}
+        base = unit * family[0][1]
+        unit *= -1 if base.could_extract_minus_sign() else 1
+        if max(abs(r / unit) for r in ratios) <= MOST_MULTIPLES:
+            letter = sympy.Dummy()
+            delays[letter] = unit * family[0][1]
+            powers |= {exponential: (letter, int(ratio / unit)) for exponential, _, ratio in family}
         else:
-            bases |= {letter: delay for letter, delay, _ in family}
-    return rational.xreplace(replaced), bases
+            for exponential, delay, _ in family:
+                letter = sympy.Dummy()
+                sign = -1 if delay.could_extract_minus_sign() else 1
+                delays[letter] = sign * delay
+                powers[exponential] = letter, sign
+    return powers, delays
 
 
-def _in_field(expression, field):
-    """An expression in a field of fractions, which cancels common factors."""
-    known = dict(zip(field.symbols, field.gens, strict=True))
+class _NotRationalError(Exception):
+    """An expression is no fraction of polynomials in the known letters."""
+
+
+def _in_field(expression, field, known):
+    """An expression as an element of a field of fractions, which cancels common factors."""
 
     def read(e):
         if e in known:
@@ -108,7 +131,9 @@ def _in_field(expression, field):
             return sum(map(read, e.args), field.zero)
         if e.is_Mul:
             return math.prod(map(read, e.args), start=field.one)
-        return read(e.base) ** int(e.exp)  # a power, because the expression is rational in all letters
+        if e.is_Pow and e.exp.is_Integer:
+            return read(e.base) ** int(e.exp)
+        raise _NotRationalError
 
     return read(expression)
 
@@ -175,8 +200,8 @@ class System:
     is the block diagram. Common factors cancel exactly.
 
     Arguments:
-        H: transfer function with numbers, an expression in `s` with dead times ``exp(-delay*s)``; or a continuous
-            single-input single-output system of python-control, whose decimal numbers are taken as they are meant.
+        H: transfer function with numbers, an expression in `s` with dead times ``exp(-delay*s)``; a system itself; or a
+            continuous single-input single-output system of python-control, whose decimal numbers are taken as meant.
     Attributes:
         expr: the transfer function with common factors cancelled.
         numerator, denominator: ``{delay: polynomial in s}``, exact; the denominator's undelayed part has the leading
@@ -192,6 +217,9 @@ class System:
     """
 
     def __init__(self, H):
+        if isinstance(H, System):
+            self.numerator, self.denominator = H.numerator, H.denominator
+            return
         H = transfer_function(H)
         if letters := sorted(map(str, H.free_symbols - {s})):
             raise ValueError(f"give a number for {', '.join(letters)} in {H}")
@@ -794,15 +822,13 @@ class Loop:
         """Return E(s), the control error y_SP - y for a unit step of the setpoint ("servo") or load ("regulator").
 
         >>> Loop(1 / s, PID(2)).error("servo")
-        1/(s + 2)
+        System(1/(s + 2))
         """
         if mode not in ("servo", "regulator"):
             raise ValueError(f"the mode is {mode!r}: expected 'servo' or 'regulator'")
         if mode == "servo":
-            closed = (self._difference - self.from_setpoint * self.process) / self._difference
-        else:
-            closed = -self.process / self._difference
-        return _fraction(*normal_form(closed / s))
+            return System((self._difference - self.from_setpoint * self.process) / self._difference / s)
+        return System(-self.process / self._difference / s)
 
     def run(self, times, setpoint=1, load=0):
         """Return the signals of the loop for a setpoint and a load that change in time, the loop at rest before.
