@@ -8,6 +8,7 @@ import ast
 import copy
 import functools
 import json
+import math
 import operator
 import os
 import random
@@ -251,6 +252,12 @@ def read(text, draw):
                 return of(operand)
             case ast.Tuple(parts):
                 return sympy.Tuple(*map(of, parts))
+            case ast.Call(ast.Name("Integral"), [integrand, ast.Tuple([variable, *limits])]) if "oo" in ast.unparse(
+                node
+            ):
+                # of a signal that is not known: the integrand somewhere, and which limits are infinite
+                endless = [n for n, limit in enumerate(limits, start=2) if of(limit).is_infinite]
+                return math.prod(endless) * of(integrand).subs(of(variable), sympy.Rational(draw + 1, 7))
             case ast.Call(ast.Name(name), arguments) if name in KNOWN:
                 return getattr(sympy, name)(*map(of, arguments))
             case ast.Call(ast.Name(name), arguments):
@@ -434,7 +441,7 @@ def test_errata_names_every_error_of_the_books():
                 if row.get("status") not in ("corrected", "unreproduced"):
                     continue
                 line = next(line for line in told.splitlines() if f"**{name}" in line and f"`{row['name']}`" in line)
-                stored = row.get("correct") or row["computed"]
+                stored = row.get("correct") or row.get("computed") or "cannot be computed"
                 because = " ".join(row["because"].split())
                 assert all(part in line for part in (row["printed"], stored, because, entry["chapter"]))
         assert source in sources()

@@ -393,6 +393,16 @@ class PlanePlot(Picture):
         patch.set_hatch_linewidth(0.4)
         return self._explained(f"; area: {plain_words(label)}")
 
+    def line(self, x, y, label, role=0):
+        """Add a curve, as a limit of stability over a map; look as in `plane_plot`. Returns the plot itself.
+
+        >>> plane_plot({"limit": ([1, 2], [2, 1])}, "$x$", "$y$").line([1, 2], [1, 2], "diagonal", role=1)
+        <limit: y against x; line: diagonal>
+        """
+        look = ROLES[role] if role in ROLES else response_look(role)
+        self.axes.plot(x, y, label=label, scalex=False, scaley=False, **look)
+        return self._explained(f"; line: {plain_words(label)}")
+
     def points(self, x, y, label, mark="o"):
         """Add single points, by the name that the legend gives them. Returns the plot itself.
 
@@ -589,6 +599,9 @@ def _logarithmic(axes):
 
 def _add_legend(axes, may_grow):
     """A legend where it hides no curve; if there is no such place, a flat one above them, for which the panel grows."""
+    if any(type(drawn).__name__ == "QuadMesh" for drawn in axes.collections):
+        axes.legend(loc="upper right")  # the search for a free place would go through every cell of a map
+        return
     box = _legend_box(axes)
     hides = any(line.get_path().transformed(axes.transData).intersects_bbox(box, filled=False) for line in axes.lines)
     if hides and may_grow:
