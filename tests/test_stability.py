@@ -211,27 +211,6 @@ def test_roots_with_several_dead_times_are_counted_as_by_turns(below, others):
     assert roots_of(D) == expected
 
 
-@settings(deadline=None, max_examples=40)
-@given(st.lists(COEFFICIENTS, min_size=2, max_size=3), st.lists(COEFFICIENTS, min_size=1, max_size=2), DELAYS)
-def test_both_methods_count_the_same(below, above, delay):
-    D = s ** len(below) + sum(c * s**n for n, c in enumerate(below))
-    N = sum(c * s**n for n, c in enumerate(above))
-    assume(N != 0)
-
-    def count(question):
-        try:
-            return question()
-        except StabilityLimitError:
-            return "limit"
-
-    loop = sympy.cancel(N / D)
-    N, D = loop.as_numer_denom()  # a root of both is no pole of the loop
-    by_turns = count(
-        lambda: unstable_roots({0: sympy.Poly(D, s), delay: sympy.Poly(N, s)} if delay else {0: sympy.Poly(D + N, s)})
-    )
-    assert count(lambda: unstable_poles(loop * sympy.exp(-delay * s))) == by_turns
-
-
 def test_the_roots_of_a_product_are_those_of_its_factors():
     """Three dead times, that are no multiples of one, and five with a third factor: s + a exp(-delay*s) is known."""
     draw = np.random.default_rng(7)

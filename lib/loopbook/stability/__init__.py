@@ -1,0 +1,19 @@
+"""Stability of a feedback loop with dead time, without approximation.
+
+A closed loop with dead times has infinitely many poles, the roots of a sum of polynomials in `s` with exp(-delay*s).
+The argument principle counts those in the right half-plane. All searches walk up the imaginary axis and believe what
+they see only where a bound of the derivative proves that nothing was missed between two frequencies.
+"""
+
+from loopbook.stability.counting import StabilityLimitError, is_stable, unstable_poles, unstable_roots
+from loopbook.stability.limits import boundary_pi, boundary_pi_approximate, boundary_pid, ultimate
+from loopbook.stability.maps import stability_map
+from loopbook.stability.margins import Margins, delay_margin, margins
+from loopbook.stability.robustness import DelayRatios, robustness, robustness_pi_first_order
+from loopbook.stability.window import robust_in_window, shinskey_window
+
+__all__ = [
+    "DelayRatios", "Margins", "StabilityLimitError", "boundary_pi", "boundary_pi_approximate", "boundary_pid",
+    "delay_margin", "is_stable", "margins", "robust_in_window", "robustness", "robustness_pi_first_order",
+    "shinskey_window", "stability_map", "ultimate", "unstable_poles", "unstable_roots",
+]  # fmt: skip

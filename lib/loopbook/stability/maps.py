@@ -1,0 +1,91 @@
+"""Maps of stability: the number of unstable poles over a plane of two letters."""
+
+import time
+
+import sympy
+
+from loopbook.deadtime import transfer_function
+from loopbook.expressions import s
+from loopbook.stability.counting import characteristic, count_roots
+from loopbook.stability.sums import Sums
+
+CHUNK = 2000  # points at once
+
+
+def stability_map(loop, progress=None, **values):
+    """Return the number of unstable closed-loop poles for many values of two letters.
+
+    Arguments:
+        loop: the open loop L(s), an expression with two letters, in its coefficients or dead times.
+        progress: whether to show a progress bar; None shows one when the work takes more than two seconds.
+        **values: the values of the two letters by their names, one-dimensional arrays.
+    Returns:
+        An array of integers, with a row for each value of the second letter and a column for each of the first; -1
+        on the limit of stability, and 10**9, which stands for endless, where there is no end of unstable poles.
+    Raises:
+        ValueError: for other letters than two with values, a negative dead time, a loop that is improper or loses its
+            highest power at a point, or as `unstable_roots`.
+
+    >>> K, delay = sympy.symbols("K delay")
+    >>> stability_map(K * sympy.exp(-delay * s) / s, K=[1, 2], delay=[0.5, 1, 3])
+    array([[0, 0],
+           [0, 2],
+           [2, 2]])
+    """
+    import numpy
+
+    L = transfer_function(loop)
+    letters = {str(letter): letter for letter in L.free_symbols - {s}}
+    if set(letters) != set(values) or len(values) != 2:
+        raise ValueError(
+            f"the loop {L} has the letters {', '.join(sorted(letters)) or 'none'}, and there are values for "
+            f"{', '.join(values) or 'none'}: expected two letters, and values for both"
+        )
+    grids = []
+    for name, grid in values.items():
+        try:
+            grids.append(numpy.asarray(grid, dtype=float))
+        except (TypeError, ValueError):
+            raise ValueError(f"the values of {name} are {grid!r}: expected an array of numbers") from None
+        if grids[-1].ndim != 1 or not numpy.isfinite(grids[-1]).all():
+            raise ValueError(f"the values of {name} are {grid!r}: expected a one-dimensional array of finite numbers")
+    # letters in dead times are ordered as positive ones
+    positive = {name: sympy.Symbol(name, positive=True) for name in values}
+    parts = characteristic(L.xreplace({letters[name]: positive[name] for name in values}))
+    order = parts[0].degree()
+    rows = [part.coeff_monomial(s**n) for part in parts.values() for n in range(order + 1)]
+    numbers = sympy.lambdify([positive[name] for name in values], [*rows, *parts], "numpy", cse=True)
+    points = [grid.ravel() for grid in numpy.meshgrid(*grids)]
+    counts = numpy.empty(points[0].size, dtype=int)
+    chunks = [slice(k, k + CHUNK) for k in range(0, counts.size, CHUNK)]
+    for chunk in _watched(chunks, progress):
+        here = [x[chunk] for x in points]
+        found = [row + 0.0 * here[0] for row in numbers(*here)]
+        coefficients, delays = numpy.array(found[: len(rows)]), numpy.array(found[len(rows) :])
+        if (delays < 0).any():
+            raise ValueError(f"the values make a dead time {delays.min():g}: expected one that is not negative")
+        coefficients = coefficients.reshape(len(parts), order + 1, -1)
+        if (lost := numpy.flatnonzero(coefficients[0, -1] == 0)).size:
+            where = ", ".join(f"{name} = {x[lost[0]]:g}" for name, x in zip(values, here, strict=True))
+            raise ValueError(f"the closed loop of {L} loses its highest power at {where}: expected other values")
+        counts[chunk] = count_roots(Sums(coefficients, delays))
+    return counts.reshape(len(grids[1]), len(grids[0]))
+
+
+def _watched(chunks, progress):
+    """The chunks, with a progress bar where it is wanted or the work takes more than two seconds."""
+    begun, bar = time.monotonic(), None
+    try:
+        for number, chunk in enumerate(chunks):
+            if bar is None and progress is not False and (progress or time.monotonic() - begun > 2):
+                from rich.progress import Progress
+
+                bar = Progress(transient=True)
+                bar.start()
+                task = bar.add_task("stability map", total=len(chunks))
+            if bar is not None:
+                bar.update(task, completed=number)
+            yield chunk
+    finally:
+        if bar is not None:
+            bar.stop()
