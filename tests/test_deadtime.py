@@ -129,6 +129,39 @@ def test_the_sampled_controller_tends_to_it():
     assert errors[0] / errors[1] == pytest.approx(2, rel=0.1)  # the held control signal is late by half a step
 
 
+def test_the_end_is_a_moment_like_any_other():
+    """One that is a multiple of the dead time but for rounding, of an irrational one, or just beyond a round number."""
+    for late in (sympy.sqrt(2), sympy.pi, sympy.Rational(1, 3), sympy.Rational(3, 10)):
+        moment = float(late)
+        for end in (moment, np.nextafter(moment, 0), np.nextafter(moment, 9)):
+            assert System(sympy.exp(-late * s)).step([end]) == pytest.approx([1])
+        assert System(sympy.exp(-late * s)).step([moment * (1 - 1e-12)]) == pytest.approx([0])
+    for end in (0.1 * 3, 1 + 2**-52, 1 + 5e-13, 1.9800000000000002, np.cumsum([0.1] * 30)[-1]):
+        assert System(1 / (s + 1)).step([end]) == pytest.approx([1 - math.exp(-end)], rel=1e-12)
+
+
+def test_sums_of_irrational_dead_times_that_are_one_but_for_rounding():
+    one, other = sympy.sqrt(2), sympy.sqrt(3)
+    together = sympy.exp(-one * s) * sympy.exp(-other * s)  # SymPy writes it as one
+    loop = feedback((sympy.exp(-one * s) + sympy.exp(-other * s)) / (s + 1), together)
+    close = feedback((sympy.exp(-1.41421356237310 * s) + sympy.exp(-1.73205080756888 * s)) / (s + 1), together)
+    assert loop.step(TIMES) == pytest.approx(close.step(TIMES), abs=1e-12)
+    assert np.isfinite(loop.step([2**0.5 + 3**0.5])).all()
+
+
+@pytest.mark.parametrize("unit", [1e-20, 1e-12, 1e-9, 1e-3, 3600, 1e9])
+def test_the_unit_of_time_does_not_matter(unit):
+    def loop(unit):
+        unit = sympy.Rational(str(unit))
+        return Loop(first_order(2, 3 * unit, unit), PID(sympy.Rational(1, 2), 2 * unit)).servo
+
+    times = np.array([0.5, 1, 2.3456789, 7.123456789])
+    assert loop(unit).step(times * unit) == pytest.approx(loop(1).step(times), rel=1e-12, abs=1e-13)
+    # nor for the time that it takes
+    here, there = (loop(x).step_until(7 * x).edges for x in (unit, 1))
+    assert here == pytest.approx(there * unit, rel=1e-12)
+
+
 # ------------------------------------------------------------------------------------------------ other inputs
 
 
@@ -146,6 +179,9 @@ def test_samples_are_joined_by_straight_lines():
     times = np.union1d(TIMES, corners)
     by_samples = loop.response(times, evaluate(u, times))
     assert by_samples == pytest.approx(loop.response(times, u), abs=1e-10)
+    many = np.linspace(0, 20, 3000) ** 1.01  # none of the differences occurs twice
+    by_samples = System(1 / (s + 1)).response(many, np.sin(many))
+    assert by_samples == pytest.approx(System(1 / (s + 1)).response(many, sympy.sin(t)), abs=1e-5)
     start = 1 - np.minimum(times, 1)  # begins with a jump
     assert loop.response(times, start) == pytest.approx(
         loop.response(times, 1 - t + sympy.Heaviside(t - 1) * (t - 1)), abs=1e-10
@@ -182,6 +218,13 @@ def test_a_smith_predictor_with_the_right_model_takes_the_delay_out_of_the_loop(
     assert set(loop.servo.denominator) == {0}
     wrong = Loop(G * sympy.exp(-5 * s), smith)
     assert wrong.servo.delays == [4, 5]
+
+
+def test_dead_times_that_are_near_each_other_cancel():
+    """Dead times 1.4 and 1.5 have the common base 0.1; (1 + 2 exp(-1.5 s)) has no end of unstable zeros."""
+    P, factor = System(sympy.exp(-1.4 * s) / s), System(1 + 2 * sympy.exp(-1.5 * s))
+    assert P * factor / factor == P
+    assert System((1 - DELAY**7) / (1 - DELAY)).delays == [1, 2, 3, 4, 5, 6]
 
 
 def test_setpoint_weights():
@@ -319,7 +362,7 @@ def test_letters_and_words_in_a_loop():
         Loop(first_order(sympy.Symbol("K"), 1), PID(1, Ti=sympy.Symbol("T")))
     with pytest.raises(ValueError, match="'PI' is of type str"):
         Loop(1 / s, "PI")
-    with pytest.raises(ValueError, match="the frequencies are 'high': expected numbers"):
+    with pytest.raises(ValueError, match="the frequencies are 'high': expected real numbers"):
         System(1 / s).frequency("high")
     for u in ("step", sympy.log(t + 1), sympy.Symbol("q") * t):
         with pytest.raises(ValueError, match=r"step|transform|give a number for q"):
@@ -333,9 +376,31 @@ def test_times_that_are_none(times):
 
 
 def test_samples_that_do_not_fit():
-    for times, u in (([0, 1], [1, 2, 3]), ([1, 2], [1, 1]), ([0, 2, 1], [0, 0, 0])):
+    flat = ([0, 1], [1, 2, 3]), ([1, 2], [1, 1]), ([0, 2, 1], [0, 0, 0]), (1.0, [0, 1]), ([], [])
+    for times, u in (*flat, ([[0, 1], [2, 3]], [[0, 1], [2, 3]])):
         with pytest.raises(ValueError, match="expected one each for times that increase from 0"):
             System(1 / s).response(times, u)
+
+
+def test_complex_numbers_are_not_cut_down():
+    for values in (np.array([1 + 2j]), [1j], 1j):
+        with pytest.raises(ValueError, match="expected real numbers"):
+            System(1 / s).step(values)
+        with pytest.raises(ValueError, match="expected real numbers"):
+            System(1 / s).frequency(values)
+    model = control.ss([[-1.0]], [[1.0]], [[1.0]], [[0.0]])
+    model.A = np.array([[-1 + 1j]])
+    with pytest.raises(ValueError, match="A of the system is complex"):
+        System(model)
+
+
+def test_ends_and_moments_that_are_none():
+    for end in ("late", None, [1, 2]):
+        with pytest.raises(ValueError, match="expected a number"):
+            System(1 / s).step_until(end)
+    loop = Loop(1 / s, PID(1))
+    assert "at no time" in repr(loop.run([]))
+    assert "t = 3 to 3" in repr(loop.run(3))
 
 
 def test_responses_that_cannot_be_followed():

@@ -3,6 +3,7 @@
 import math
 import random
 
+import control
 import mpmath
 import numpy as np
 import pytest
@@ -194,6 +195,18 @@ def test_settings_that_are_none(settings):
         pi_first_order(1, 1, 1, 0.1, 1, mode="load")
 
 
+@pytest.mark.parametrize("value", [True, "1", 1j, np.array([1 + 1j]), sympy.Symbol("K"), [[1], [1, 2]]])
+def test_settings_that_are_no_numbers(value):
+    for name in ("K", "T", "delay", "Kp", "Ti"):
+        with pytest.raises(ValueError, match=f"{name} is .*: expected a number, or an array"):
+            pi_first_order(**({"K": 1, "T": 1, "delay": 1, "Kp": 0.1, "Ti": 1} | {name: value}))
+
+
+def test_settings_whose_shapes_do_not_fit():
+    with pytest.raises(ValueError, match=r"shapes of the settings are K \(2,\), T \(3,\)"):
+        pi_first_order([1, 2], [1, 2, 3], 1, 0.1, 1)
+
+
 # ------------------------------------------------------------------------------------------------ letters
 
 
@@ -248,6 +261,16 @@ def test_letters_that_leave_the_zeros_open():
     for number in (sympy.Rational(1, 2), sympy.Rational(5, 4)):  # real zeros of Delta, or imaginary ones
         value = complex(formula.subs(a, number).evalf(30))
         assert value == pytest.approx(integral_of_square(E.subs(a, number), "response"), rel=1e-11)
+
+
+def test_complex_zeros_of_A_alone():
+    """Where C is zero, A is zero at one zero of each pair, and no residue can be taken there."""
+    a = sympy.Symbol("a", positive=True)
+    E = (-(23 * s + 7) / 10 + (5 * s - 3) / 2 * DELAY) / (s**2 + a * s + sympy.Rational(11, 10))
+    for number in (sympy.Rational(2, 5), sympy.Rational(5, 2)):
+        known = integral_of_square(E.subs(a, number), "response")
+        for formula in (residue_method(E).expr.subs(a, number), residue_method(E.subs(a, number)).expr):
+            assert complex(formula.evalf(30)) == pytest.approx(known, rel=1e-11)
 
 
 def test_what_the_residue_method_is_not_for():
@@ -409,6 +432,33 @@ def test_a_narrow_resonance_is_not_stepped_over():
         assert integral_of_square(E, method) == pytest.approx(known, rel=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("process", "settings", "known"),
+    [
+        (
+            sympy.exp(-s / 10) / ((2.41 * s + 1) * (4.86 * s + 1) * (26.38 * s + 1)),
+            "40780104236223397/100000000000000000 19/10",
+            15707019.311864685,
+        ),
+        ((1 - 0.9 * s) / (58.26 * s + 1), "999999/1250000 2/5", 29744504.573322408),
+    ],
+)
+def test_near_the_limit_a_method_declines_or_is_right(process, settings, known):
+    """Against the residues with 120 digits; two solutions of the boundary value problem agreed, and were both wrong."""
+    for method in METHODS[:2]:
+        try:
+            value = ise(process, PID(*map(sympy.Rational, settings.split())), method=method)
+        except ValueError:
+            continue
+        assert value == pytest.approx(known, rel=2e-10), method
+
+
+def test_it_says_why_every_method_declines():
+    E = 1 / (s + sympy.Rational(1, 10**7) + s * DELAY / 2 + s * sympy.exp(-sympy.Rational(7, 5) * s) / 5)
+    with pytest.raises(ValueError, match=r"residues: .*; boundary value: .*; quadrature: .*; response: .* more than"):
+        integral_of_square(E)
+
+
 # ------------------------------------------------------------------------------------------------ no integral
 
 
@@ -453,6 +503,13 @@ def test_loops_and_what_is_none():
         criteria(process, PID(9, 1))
     with pytest.raises(ValueError, match="does not vanish"):
         ise(process, PID(1))
+    for method in (["residues"], 1):
+        with pytest.raises(ValueError, match="the method is"):
+            ise(process, controller, method=method)
+    assert integral_of_square(control.tf([1], [1, 1])) == pytest.approx(0.5)
+    for tolerance in (0, -1, math.nan, "small", None, 1):
+        with pytest.raises(ValueError, match="the tolerance is"):
+            criteria(process, controller, tolerance=tolerance)
 
 
 # ------------------------------------------------------------------------------------------------ four criteria

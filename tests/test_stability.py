@@ -532,7 +532,7 @@ def test_the_approximate_boundary_is_exact_where_the_lag_is_cancelled():
     ("question", "message"),
     [
         (lambda: boundary_pi(MODEL, 0), "Ti is 0: expected a positive"),
-        (lambda: boundary_pi(MODEL, [1, math.inf]), "Ti is inf"),
+        (lambda: boundary_pi(MODEL, [1, math.inf]), "values of Ti contain inf"),
         (lambda: boundary_pid(MODEL, 1, -1), "Td is -1"),
         (lambda: boundary_pid(MODEL, [1, 2], [1, 2, 3]), "arrays that fit"),
         (lambda: boundary_pid((s + 1) / (s + 2), 1, 1), "improper"),
@@ -540,7 +540,7 @@ def test_the_approximate_boundary_is_exact_where_the_lag_is_cancelled():
         (lambda: robustness(LAG, PID(1), 1), "one dead time"),
         (lambda: robustness(LAG * (1 + DELAY), PID(1), 1), "one dead time"),
         (lambda: robustness(MODEL, PID(1), [1, 0]), "gain ratio is 0"),
-        (lambda: robustness(MODEL, PID(1), "a"), "gain ratio is 'a'"),
+        (lambda: robustness(MODEL, PID(1), "a"), "gain ratios are 'a'"),
         (lambda: shinskey_window(1), "points is 1"),
     ],
 )
@@ -692,7 +692,7 @@ def test_marks_in_a_map(capsys):
         ("K/s", {"K": [1]}, "expected two letters"),
         ("K/(s + a)", {"K": [1], "b": [1]}, "has the letters K, a, and there are values for K, b"),
         ("K/(s + a)", {"K": 1, "a": [1]}, "one-dimensional"),
-        ("K/(s + a)", {"K": ["x"], "a": [1]}, "array of numbers"),
+        ("K/(s + a)", {"K": ["x"], "a": [1]}, "expected real numbers"),
         ("K*exp(-a*s)/s", {"K": [1], "a": [-1, 1]}, "dead time -1"),
         ("K*s**2/(s + a)", {"K": [1], "a": [1]}, "improper"),
         ("K/(a*s + 1)", {"K": [1], "a": [1, 0]}, "highest power"),
@@ -701,3 +701,15 @@ def test_marks_in_a_map(capsys):
 def test_maps_without_meaning(loop, values, message):
     with pytest.raises(ValueError, match=message):
         stability_map(sympy.sympify(loop, locals={"s": s}), **values)
+
+
+def test_complex_numbers_are_not_cut():
+    process, (Kp, Ti) = DELAY / (s + 1), sympy.symbols("Kp Ti", positive=True)
+    for question in (
+        lambda: boundary_pi(process, np.array([1 + 1j])),
+        lambda: boundary_pi_approximate(1, 1, np.array([1j])),
+        lambda: robustness(process, PID(1, Ti=1), np.array([1j])),
+        lambda: stability_map(process * Kp * (1 + 1 / (Ti * s)), Kp=np.array([1j]), Ti=np.array([1.0])),
+    ):
+        with pytest.raises(ValueError, match="expected real numbers"):
+            question()

@@ -7,6 +7,7 @@ that, without a Pade approximation or a time step: `System` for block diagrams, 
 import functools
 import itertools
 import math
+import numbers
 from dataclasses import dataclass
 from fractions import Fraction
 from types import MappingProxyType
@@ -18,13 +19,25 @@ from loopbook.expressions import exact, function_of, s, t
 from loopbook.laplace import evaluate, transform
 from loopbook.pid import PID
 
-__all__ = ["ChannelModel", "Loop", "LoopResponse", "Response", "System", "feedback", "normal_form", "transfer_function"]
+__all__ = [
+    "ChannelModel",
+    "Loop",
+    "LoopResponse",
+    "Response",
+    "System",
+    "feedback",
+    "normal_form",
+    "real_numbers",
+    "transfer_function",
+]
 
 NODES = 20  # where a segment of a response is known, so that it is a polynomial of degree 19
 REACH = 4.0  # how many times the fastest lag a segment may be long
 RESOLVED = 1e-12  # the share of a response that its last two coefficients may have
+ROUNDED = Fraction(1, 2**48)  # by how much, as a share of them, two moments that are meant to be one may differ
 MOST_SEGMENTS = 200_000
-MOST_MULTIPLES = 6  # of a common base, up to which delays are powers of one letter
+MOST_LENGTHS = 200  # of segments whose propagation is kept
+MOST_MULTIPLES = 60  # of a common base, up to which delays are powers of one letter
 
 
 # ------------------------------------------------------------------------------------------------ the normal form
@@ -33,7 +46,7 @@ MOST_MULTIPLES = 6  # of a common base, up to which delays are powers of one let
 def normal_form(H):
     """Return numerator and denominator of a transfer function, each a sum of polynomials with dead times.
 
-    Common factors are cancelled, also those that contain dead times.
+    Common factors are cancelled, also those that contain dead times, if these are multiples of one, up to 60 times it.
 
     Arguments:
         H: expression in `s`, rational in `s` and in dead times exp(-delay*s), which may stand anywhere. Other letters
@@ -84,7 +97,7 @@ def _dead_times(H):
     for exponential in sorted(H.atoms(sympy.exp), key=str):
         if not exponential.has(s):
             continue
-        delay = -sympy.expand(exponential.exp) / s
+        delay = -sympy.expand(exponential.exp / s)
         if delay.has(s):
             raise ValueError(f"{H} is not a rational function of s and dead times exp(-delay*s)")
         delay = _rational(delay) if delay.is_number else delay
@@ -197,7 +210,7 @@ class System:
     """A linear system with exact dead time, anywhere in it, as behind a feedback loop.
 
     The operators ``+ - * /`` work with other systems, expressions in `s` and numbers, so that an expression of systems
-    is the block diagram. Common factors cancel exactly.
+    is the block diagram. Common factors cancel exactly, as far as `normal_form` does.
 
     Arguments:
         H: transfer function with numbers, an expression in `s` with dead times ``exp(-delay*s)``; a system itself; or a
@@ -306,21 +319,23 @@ class System:
         Arguments:
             omega: frequencies in radians for one unit of time, a number or an array.
         Returns:
-            A complex array of the same shape.
+            A complex array of the same shape; not finite at a pole on the axis, also one that only dead times cancel,
+            as in (1 - exp(-s))/s.
 
         >>> System(sympy.exp(-s) / s).frequency(2.0).round(6)
         np.complex128(-0.454649+0.208073j)
         """
         import numpy
 
-        point = 1j * _numbers("frequencies", omega)
+        point = 1j * real_numbers("frequencies", omega)
         with numpy.errstate(divide="ignore", invalid="ignore"):  # at a pole on the axis
             return _value(self.numerator, point) / _value(self.denominator, point)
 
     def step(self, times):
         """Return the output for a unit step at t = 0 of the input, the system being at rest before.
 
-        At a jump it is the value after the jump. The error is about 1e-13 of the largest value up to then.
+        At a jump it is the value after the jump. The error is about 1e-13 of the largest value up to then; of a high
+        order at first, while the response is still powers of ten smaller, about 1e-13 of what it is a lag later.
 
         Arguments:
             times: an array of times, not negative, in the unit of the lags.
@@ -374,22 +389,23 @@ class System:
         """
         times = _times(times)
         if hasattr(u, "__len__") and not isinstance(u, str):
-            return self._response_to_samples(times, _numbers("values of u", u))
+            return self._response_to_samples(times, real_numbers("values of u", u))
         return System(self.expr * transform(function_of(t, u))).impulse(times)
 
     def _response_to_samples(self, times, u):
         import numpy
 
-        if u.shape != times.shape or len(times) < 2 or times[0] != 0 or not (numpy.diff(times) > 0).all():
+        fit = u.shape == times.shape and times.ndim == 1 and len(times) > 1
+        if not (fit and times[0] == 0 and (numpy.diff(times) > 0).all()):
             raise ValueError(
                 f"{u.size} values of u for {times.size} times: expected one each for times that increase from 0"
             )
         slopes = numpy.diff(u) / numpy.diff(times)
         ramp = System(self.expr / s).step_until(times[-1])
-        # each change of slope begins a ramp of its own
-        late = times[:, None] - times[:-1]
-        after = numpy.where(late > 0, ramp(numpy.maximum(late, 0)), 0)
-        return u[0] * self.step(times) + after @ numpy.diff(slopes, prepend=0)
+        # each change of slope begins a ramp of its own, at those times that are later
+        changes = numpy.diff(slopes, prepend=0)
+        after = [changes[:k] @ ramp(times[k] - times[:k]) for k in range(len(times))]
+        return u[0] * self.step(times) + after
 
     def state_space(self):
         """Return a state-space model with delay channels, the controllable canonical form with balanced states.
@@ -425,7 +441,8 @@ class System:
         to_output = numpy.r_[numpy.zeros(len(back)), numpy.ones(len(ahead))]
         D12, D22 = D11 * returns + to_output, D21 * returns
         if n:
-            _, (scale, _) = matrix_balance(A, permute=False, separate=True)
+            with numpy.errstate(invalid="ignore"):  # SciPy makes integers of scales
+                _, (scale, _) = matrix_balance(A, permute=False, separate=True)
             A, B1, B2 = A * scale / scale[:, None], B1 / scale[:, None], B2 / scale[:, None]
             C1, C2 = C1 * scale, C2 * scale
         delays = [Fraction(int(d.p), int(d.q)) for d in (*below, *above)]
@@ -445,7 +462,7 @@ class System:
         import control
         import numpy
 
-        if isinstance(order, bool) or not isinstance(order, int) or order < 1:
+        if isinstance(order, bool) or not isinstance(order, numbers.Integral) or order < 1:
             raise ValueError(f"the order of the Pade approximation is {order!r}: expected 1, 2, 3 ...")
         A, B1, B2, C1, C2, D11, D12, D21, D22, delays = self.state_space()
         B, C = numpy.hstack([B1, B2]), numpy.vstack([C1, C2])
@@ -502,6 +519,7 @@ def transfer_function(value):
 
 def _from_control(system):
     import control
+    import numpy
 
     if not isinstance(system, (control.TransferFunction, control.StateSpace)):
         raise ValueError(f"{system!r} is no transfer function and no state-space system of python-control")
@@ -509,6 +527,11 @@ def _from_control(system):
         raise ValueError(f"the system has {system.ninputs} inputs and {system.noutputs} outputs: expected one of each")
     if system.isdtime(strict=True):
         raise ValueError(f"the system works in discrete time, with the period {system.dt}: expected continuous time")
+    names = ("num", "den") if isinstance(system, control.TransferFunction) else ("A", "B", "C", "D")
+    for name in names:
+        coefficients = getattr(system, name)
+        if numpy.iscomplexobj(coefficients[0][0] if name in ("num", "den") else coefficients):
+            raise ValueError(f"{name} of the system is complex: expected real coefficients")
     if isinstance(system, control.TransferFunction):
         above, below = (sympy.Poly([exact(float(c)) for c in x[0][0]], s) for x in (system.num, system.den))
         return above.as_expr() / below.as_expr()
@@ -540,22 +563,28 @@ def _value(parts, point):
 
 
 def _times(times):
-    times = _numbers("times", times)
+    times = real_numbers("times", times)
     if (times < 0).any():
         raise ValueError(f"the times begin at {times.min():g}: expected zero or later")
     return times
 
 
-def _numbers(name, values):
-    """An array of finite floats."""
+def real_numbers(name, values):
+    """Return values as an array of floats, or raise ValueError for what is not real and finite.
+
+    >>> real_numbers("times", [0, 1])
+    array([0., 1.])
+    """
     import numpy
 
     try:
+        if numpy.iscomplexobj(values):  # which NumPy would cut down to their real parts
+            raise TypeError
         array = numpy.asarray(values, dtype=float)
     except (TypeError, ValueError):
-        raise ValueError(f"the {name} are {values!r}: expected numbers") from None
+        raise ValueError(f"the {name} are {values!r}: expected real numbers") from None
     if not numpy.isfinite(array).all():
-        raise ValueError(f"the {name} are not all finite: expected numbers")
+        raise ValueError(f"the {name} contain {array[~numpy.isfinite(array)][0]:g}: expected finite numbers")
     return array
 
 
@@ -579,7 +608,10 @@ class Response:
     def __init__(self, model, end):
         import numpy
 
-        end = float(end)
+        try:
+            end = float(end)
+        except (TypeError, ValueError):
+            raise ValueError(f"the end is {end!r}: expected a number") from None
         if not 0 <= end < math.inf:
             raise ValueError(f"the end is {end}: expected a finite time, zero or later")
         speed = _speed(model)
@@ -603,7 +635,7 @@ class Response:
         if times.size and times.max() > edges[-1]:
             raise ValueError(f"t = {times.max():g} is later than {edges[-1]:g}, the end of the response")
         # a time that is an edge but for rounding belongs to the segment that begins there
-        index = numpy.searchsorted(edges, times * (1 + 4e-15), side="right") - 1
+        index = numpy.searchsorted(edges, times * (1 + float(ROUNDED)), side="right") - 1
         index = numpy.clip(index, 0, len(edges) - 2)
         length = edges[index + 1] - edges[index]
         return legendre.legval(2 * (times - edges[index]) / length - 1, self._coefficients[:, index], tensor=False)
@@ -611,7 +643,8 @@ class Response:
     def quadrature(self):
         """Return times and weights, two arrays with a row for each segment, for integrals over the response.
 
-        The sum of weight * response(time)**2 is the integral of the square, exact for these polynomials.
+        The sum of weight * response(time)**2 is the integral of the square, exact for these polynomials. It goes to the
+        last of the edges, which may lie beyond the end that was asked for.
         """
         import numpy
 
@@ -631,25 +664,30 @@ def _speed(model):
 
     if not len(model.A):
         return 0.0
-    gains = numpy.linalg.norm(model.B2, axis=0) * numpy.linalg.norm(model.C2, axis=1)
-    return float(max(*abs(numpy.linalg.eigvals(model.A)), *(gain ** (1 / len(model.A)) for gain in gains), 0.0))
+    # of the system without dead time, with each channel cut or closed either way: independent of the unit of time
+    closed = [sign * numpy.outer(into, out) for into, out in zip(model.B2.T, model.C2, strict=True) for sign in (1, -1)]
+    return float(max(abs(numpy.linalg.eigvals(model.A + change)).max() for change in [0 * model.A, *closed]))
 
 
 def _edges(delays, end, speed):
     """The ends of the segments, exact: the sums of the delays, and points between them."""
-    end = Fraction(end).limit_denominator(10**12)  # 0.1 + 0.2 is three tenths
+    end = Fraction(end)
+    last = end * (1 + ROUNDED)
     points, newest = {Fraction(0)}, {Fraction(0)}
     while newest:  # each sum is a smaller one plus a delay
-        newest = {a + b for a in newest for b in delays if a + b <= end} - points
+        newest = {a + b for a in newest for b in delays if a + b <= last} - points
         points |= newest
         if len(points) > MOST_SEGMENTS:
             raise ValueError(
                 f"the dead times {', '.join(map(str, delays))} have more than {MOST_SEGMENTS} sums before "
                 f"t = {float(end):g}: expected an earlier end, or dead times that are multiples of one"
             )
-    if end in points:  # a jump there has a value after it
-        points.add(end + min([*delays, Fraction(REACH / max(speed, REACH)).limit_denominator(10**12)]))
-    points = sorted({*points, end})
+    points = sorted(points)  # without those that are one but for rounding, as sums of irrational dead times
+    points = [b for a, b in itertools.pairwise([Fraction(-1), *points]) if b - a > b * ROUNDED]
+    if points[-1] >= end * (1 - ROUNDED):  # a jump there has a value after it
+        points.append(points[-1] + min([*delays, Fraction(REACH / speed if speed else 1)]))
+    else:
+        points.append(end)
     edges = points[:1]
     for a, b in itertools.pairwise(points):
         pieces = max(1, math.ceil(float(b - a) * speed / REACH))
@@ -675,7 +713,7 @@ def _collocate(model, end, speed):
     nodes, weights, to_coefficients, integration = _gauss()
     integrate = weights / 2
 
-    @functools.cache
+    @functools.lru_cache(MOST_LENGTHS)
     def propagation(length):  # from the state at the beginning and the forces to the state at the nodes
         half = float(length) / 2
         system = numpy.eye(NODES * n) - half * numpy.kron(integration, A)
@@ -765,7 +803,11 @@ class LoopResponse:
         return "1"
 
     def __repr__(self):
-        return f"<response of a loop, t = {self.times[0]:g} to {self.times[-1]:g}: {', '.join(self.signals)}>"
+        import numpy
+
+        times = numpy.ravel(self.times)
+        span = f"t = {times[0]:g} to {times[-1]:g}" if times.size else "at no time"
+        return f"<response of a loop, {span}: {', '.join(self.signals)}>"
 
 
 class Loop:

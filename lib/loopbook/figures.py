@@ -602,9 +602,12 @@ def _add_legend(axes, may_grow):
     if any(type(drawn).__name__ == "QuadMesh" for drawn in axes.collections):
         axes.legend(loc="upper right")  # the search for a free place would go through every cell of a map
         return
+    if not may_grow:
+        axes.legend()
+        return
     box = _legend_box(axes)
     hides = any(line.get_path().transformed(axes.transData).intersects_bbox(box, filled=False) for line in axes.lines)
-    if hides and may_grow:
+    if hides:
         columns = len(axes.lines)
         while columns > 1 and _legend_box(axes, ncols=columns).width > 0.95 * axes.bbox.width:
             columns -= 1

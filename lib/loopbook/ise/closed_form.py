@@ -9,6 +9,9 @@ from loopbook.expressions import s
 from loopbook.ise.error import UnstableLoopError, checked_mode
 from loopbook.ise.residue_method import residue_method
 
+LARGEST = 2**53  # a whole number that is a float without loss
+SETTINGS = ("K", "T", "delay", "Kp", "Ti")
+
 __all__ = ["pi_first_order", "symbolic_pi_first_order"]
 
 
@@ -49,7 +52,8 @@ def pi_first_order(K, T, delay, Kp, Ti, mode="servo", unstable=None):
         r = sqrt(Ti^2 (k^2 - 1)^2 + 4 k^2 T^2),  k = K Kp,
 
     with P = 1 + omega^2 T^2 and Q = 1 - sigma^2 T^2 for the setpoint, P = Q = K^2 for the load. The loop is stable
-    where 2 x < pi. The relative error is about 1e-14, and larger only very near to that limit.
+    where 2 x < pi. The relative error is about 1e-14, where the times have ratios beyond 1e6 up to 1e-12, and larger
+    only very near to that limit.
 
     Arguments:
         K, Kp: gains of process and controller.
@@ -70,7 +74,7 @@ def pi_first_order(K, T, delay, Kp, Ti, mode="servo", unstable=None):
     """
     checked_mode(mode)
     given = (K, T, delay, Kp, Ti)
-    if all(isinstance(x, (float, int)) for x in given):
+    if all(isinstance(x, float) or (type(x) is int and abs(x) < LARGEST) for x in given):
         if not (0 < T < math.inf and 0 <= delay < math.inf and 0 < Ti < math.inf and math.isfinite(K * Kp)):
             raise _wrong(*given)
         if K * Kp > 0:
@@ -83,8 +87,7 @@ def pi_first_order(K, T, delay, Kp, Ti, mode="servo", unstable=None):
 
     import numpy
 
-    given = numpy.broadcast_arrays(*(numpy.asarray(x, dtype=float) for x in given))
-    K, T, delay, Kp, Ti = given
+    given = K, T, delay, Kp, Ti = _broadcast(given)
     with numpy.errstate(over="ignore", invalid="ignore"):
         right = (T > 0) & (delay >= 0) & (Ti > 0) & numpy.isfinite(K * Kp) & numpy.isfinite(T + delay + Ti)
     if not right.all():
@@ -97,6 +100,26 @@ def pi_first_order(K, T, delay, Kp, Ti, mode="servo", unstable=None):
             raise _unstable(*(float(x[~stable][0]) for x in given))
         value = numpy.where(stable, value, unstable)
     return value[()]
+
+
+def _broadcast(given):
+    """The settings as arrays of floats of one shape."""
+    import numpy
+
+    arrays = []
+    for name, value in zip(SETTINGS, given, strict=True):
+        try:
+            array = numpy.asarray(value)
+            if array.dtype.kind not in "fiuO":  # no truth values, no text, and no complex numbers, which would be cut
+                raise TypeError
+            arrays.append(array.astype(float))
+        except (TypeError, ValueError, OverflowError):
+            raise ValueError(f"{name} is {value!r}: expected a number, or an array of numbers") from None
+    try:
+        return numpy.broadcast_arrays(*arrays)
+    except ValueError:
+        shapes = ", ".join(f"{name} {array.shape}" for name, array in zip(SETTINGS, arrays, strict=True))
+        raise ValueError(f"the shapes of the settings are {shapes}: expected shapes that fit together") from None
 
 
 def _pi_first_order(m, where, K, T, delay, Kp, Ti, mode):

@@ -7,7 +7,7 @@ from fractions import Fraction
 import sympy
 
 from loopbook.deadtime import Loop, System
-from loopbook.expressions import function_of, s
+from loopbook.expressions import s
 from loopbook.stability import StabilityLimitError, unstable_roots
 
 __all__ = ["ErrorFraction", "NotApplicableError", "UnstableLoopError", "checked_mode", "error_of"]
@@ -67,7 +67,7 @@ class ErrorFraction:
 
     @classmethod
     def of(cls, E):
-        system = E if isinstance(E, System) else System(function_of(s, E))
+        system = System(E)
         if not system.numerator:
             return None
         order = system.denominator[0].degree()

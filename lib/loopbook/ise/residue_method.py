@@ -31,7 +31,7 @@ class ResidueMethod:
 
     @property
     def E(self):
-        """The transform of the error, without a dead time that all of it has."""
+        """The transform of the error, beginning where e(t) does if that leaves one dead time instead of two."""
         z = sympy.exp(-self.delay * s)
         return (self.B + self.D * z) / (self.A + self.C * z)
 
@@ -77,7 +77,11 @@ class ResidueMethod:
         squares = _squares(self.Delta)
         for number, (x, sign) in enumerate(squares, start=1):
             if sign is None:
-                total -= self._plain_share(x)
+                if x.is_number or self.C == 0:  # not on the axis, so that its root lies to the right
+                    p = sympy.Dummy("p")
+                    total -= self._share(p, 1).subs(p, sympy.sqrt(x))
+                else:
+                    total -= self._plain_share(x)
                 continue
             name = "sigma" if sign > 0 else "omega"
             if [other for _, other in squares].count(sign) > 1:

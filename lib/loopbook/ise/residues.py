@@ -34,6 +34,8 @@ def by_residues(fraction):
         slope = numpy.polyval(numpy.polyder(scaled[::-1]), x)
         sensitivity = numpy.polyval(abs(scaled[::-1]), abs(x)) / abs(x * slope)
         p = numpy.sqrt(x.astype(complex)) * math.sqrt(square)
+        # what polynomials lose where their terms cancel is seen from the sizes of the terms
+        A_terms, C_terms = (numpy.polyval([abs(float(c)) for c in part[::-1]], abs(p)) for part in (A, C))
         A, B, C, D, B_mirrored, D_mirrored = (
             numpy.polyval([float(c) for c in part[::-1]], point)
             for part, point in ((A, p), (B, p), (C, p), (D, p), (B, -p), (D, -p))
@@ -43,7 +45,7 @@ def by_residues(fraction):
         slopes = 2 * p * slope * float(lowest) / square
         shares = both_residues(A, B, C, D, B_mirrored, D_mirrored, z) / ((A + C * z) * slopes)
         total = -float(shares.real.sum())
-        near = (abs(A) + abs(C * z)) * (1 + abs(p) * float(delay)) / abs(A + C * z)
+        near = (A_terms + C_terms * abs(z)) * (1 + abs(p) * float(delay)) / abs(A + C * z)
         lost = 4e-16 * float((abs(shares) * ((1 + sensitivity) ** 2 + near)).sum())
     if not lost <= MOST_DIGITS_LOST * total:
         raise NotApplicableError("zeros of Delta lie too close together")

@@ -1,13 +1,15 @@
 """Integral criteria from the exact response, followed until the rest is negligible."""
 
+import numbers
 from typing import NamedTuple
 
 from loopbook.deadtime import System
 from loopbook.expressions import s
-from loopbook.ise.error import ErrorFraction, error_of
+from loopbook.ise.error import ErrorFraction, NotApplicableError, error_of
 
 __all__ = ["Criteria", "criteria"]
 
+SMALLEST_TOLERANCE = 1e-12  # smaller ones are lost in rounding, and the response would be followed for ever
 NEGLIGIBLE = 1e-12  # the share of the integral that may be left when a response is cut off
 
 
@@ -24,11 +26,13 @@ def criteria(process, controller=None, mode="servo", from_setpoint=None, toleran
     """Return four integral criteria of the control error after a unit step, from the exact response.
 
     The response is a polynomial in each of its segments. The integrals of abs(e) are those between its zeros, so that
-    nothing is approximated but the rest beyond a time after which it does not matter.
+    nothing is approximated but the rest beyond a time after which it does not matter: it is followed twice as far until
+    the later half adds less than the tolerance to each integral. A tail that is below 1e-11 of the error and very much
+    slower than the rest may be overlooked.
 
     Arguments:
         process, controller, mode, from_setpoint: as for `ise`.
-        tolerance: the share of each integral that may be left out.
+        tolerance: the share of each integral that may be left out, 1e-12 or more.
     Returns:
         `Criteria`: the integrals of e^2, abs(e), t abs(e) and t e^2.
     Raises:
@@ -37,6 +41,8 @@ def criteria(process, controller=None, mode="servo", from_setpoint=None, toleran
     >>> [round(value, 6) for value in criteria(1 / s, 1)]
     [0.5, 1.0, 1.0, 0.25]
     """
+    if not isinstance(tolerance, numbers.Real) or not SMALLEST_TOLERANCE <= tolerance < 1:
+        raise ValueError(f"the tolerance is {tolerance!r}: expected a number from {SMALLEST_TOLERANCE:g} to 1")
     fraction = ErrorFraction.of(error_of(process, controller, mode, from_setpoint))
     if fraction is None:
         return Criteria(0.0, 0.0, 0.0, 0.0)
@@ -75,7 +81,10 @@ def by_response(fraction):
         times, weights = response.quadrature()
         return (weights * response(times) ** 2).sum(axis=1, keepdims=True)
 
-    return float(_followed(fraction, squares, NEGLIGIBLE)[0])
+    try:
+        return float(_followed(fraction, squares, NEGLIGIBLE)[0])
+    except ValueError as reason:
+        raise NotApplicableError(str(reason)) from None
 
 
 def _followed(fraction, integrals, tolerance):

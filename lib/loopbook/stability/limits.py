@@ -2,6 +2,7 @@
 
 import math
 
+from loopbook.deadtime import real_numbers
 from loopbook.stability.counting import count_roots, fraction_sums, open_loop
 from loopbook.stability.crossings import limiting_gains
 from loopbook.stability.sums import Sums
@@ -78,12 +79,14 @@ def boundary_pid(process, Ti, Td, Tf=0):
     """
     import numpy
 
+    given = [real_numbers(f"values of {name}", x) for name, x in (("Ti", Ti), ("Td", Td), ("Tf", Tf))]
     try:
-        Ti, Td, Tf = numpy.broadcast_arrays(*(numpy.asarray(x, dtype=float) for x in (Ti, Td, Tf)))
-    except (TypeError, ValueError):
-        raise ValueError(f"Ti, Td and Tf are {Ti!r}, {Td!r} and {Tf!r}: expected numbers, or arrays that fit") from None
+        Ti, Td, Tf = numpy.broadcast_arrays(*given)
+    except ValueError:
+        shapes = ", ".join(str(x.shape) for x in given)
+        raise ValueError(f"Ti, Td and Tf have the shapes {shapes}: expected numbers, or arrays that fit") from None
     for name, times in (("Ti", Ti), ("Td", Td), ("Tf", Tf)):
-        if wrong := [x for x in times.flat if not 0 <= x < math.inf or (x == 0 and name == "Ti")]:
+        if wrong := [x for x in times.flat if x < 0 or (x == 0 and name == "Ti")]:
             raise ValueError(f"{name} is {wrong[0]:g}: expected a {'positive' if name == 'Ti' else 'finite'} time")
     L = open_loop(process)
     A, B = fraction_sums(L)
@@ -184,9 +187,9 @@ def boundary_pi_approximate(T, delay, Ti, K=1):
     """
     import numpy
 
-    Ti = numpy.asarray(Ti, dtype=float)
+    Ti = real_numbers("values of Ti", Ti)
     for name, value in (("T", T), ("delay", delay), ("K", K), ("Ti", Ti)):
-        if not (numpy.asarray(value, dtype=float) > 0).all():
+        if not (real_numbers(f"values of {name}", value) > 0).all():
             raise ValueError(f"{name} is {value}: expected a positive number")
     T, delay, K = float(T), float(delay), float(K)
     found = numpy.full(Ti.size, math.nan)

@@ -4,7 +4,7 @@ import time
 
 import sympy
 
-from loopbook.deadtime import transfer_function
+from loopbook.deadtime import real_numbers, transfer_function
 from loopbook.expressions import s
 from loopbook.stability.counting import characteristic, count_roots
 from loopbook.stability.sums import Sums
@@ -43,12 +43,9 @@ def stability_map(loop, progress=None, **values):
         )
     grids = []
     for name, grid in values.items():
-        try:
-            grids.append(numpy.asarray(grid, dtype=float))
-        except (TypeError, ValueError):
-            raise ValueError(f"the values of {name} are {grid!r}: expected an array of numbers") from None
-        if grids[-1].ndim != 1 or not numpy.isfinite(grids[-1]).all():
-            raise ValueError(f"the values of {name} are {grid!r}: expected a one-dimensional array of finite numbers")
+        grids.append(real_numbers(f"values of {name}", grid))
+        if grids[-1].ndim != 1:
+            raise ValueError(f"the values of {name} are {grid!r}: expected a one-dimensional array")
     # letters in dead times are ordered as positive ones
     positive = {name: sympy.Symbol(name, positive=True) for name in values}
     parts = characteristic(L.xreplace({letters[name]: positive[name] for name in values}))

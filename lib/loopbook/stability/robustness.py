@@ -4,7 +4,7 @@ import itertools
 import math
 from typing import NamedTuple
 
-from loopbook.deadtime import transfer_function
+from loopbook.deadtime import real_numbers, transfer_function
 from loopbook.laplace import by_delay
 from loopbook.stability.counting import count_roots, fraction_sums, open_loop
 from loopbook.stability.crossings import equal_sizes, phase_left
@@ -92,13 +92,8 @@ def robustness_pi_first_order(K, T, delay, Kp, Ti, gain_ratio):
 
 
 def _gain_ratios(gain_ratio):
-    import numpy
-
-    try:
-        gains = numpy.asarray(gain_ratio, dtype=float)
-    except (TypeError, ValueError):
-        raise ValueError(f"the gain ratio is {gain_ratio!r}: expected a number or an array of numbers") from None
-    if wrong := [x for x in gains.flat if not 0 < x < math.inf]:
+    gains = real_numbers("gain ratios", gain_ratio)
+    if wrong := [x for x in gains.flat if x <= 0]:
         raise ValueError(f"the gain ratio is {wrong[0]:g}: expected a positive number")
     return gains
 
