@@ -7,16 +7,19 @@ random cell names, no paths, no addresses. The library never imports this module
 
 import copy
 import json
+import math
 import os
 import re
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
+from queue import Empty
 from subprocess import DEVNULL
-from time import perf_counter
+from time import monotonic, perf_counter
 from typing import NamedTuple
 
 import nbformat
+from jupyter_client import KernelClient
 from jupyter_client.kernelspec import NoSuchKernel
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
@@ -122,9 +125,7 @@ def run(notebook: NotebookNode, folder: Path) -> NotebookNode:
 
     Raises NotebookError at the first cell that fails: its execution count and the first line of the error.
     """
-    client = NotebookClient(
-        copy.deepcopy(notebook), kernel_name="python3", timeout=SECONDS_PER_CELL, record_timing=False
-    )
+    client = _Client(copy.deepcopy(notebook), kernel_name="python3", timeout=SECONDS_PER_CELL, record_timing=False)
     # Figures belong in the notebook, whatever backend the caller's own programs use.
     environment = {name: value for name, value in os.environ.items() if name != "MPLBACKEND"}
     try:
@@ -143,6 +144,30 @@ def run(notebook: NotebookNode, folder: Path) -> NotebookNode:
         if output["output_type"] == "error":
             raise NotebookError(f"a slider fails: {output['ename']}: {_first_line(output['evalue'])}")
     return notebook
+
+
+class _Client(NotebookClient):
+    """A client that looks for the reply of the kernel five times a second, and does not wait to be told of it.
+
+    A slider's output answers the kernel through the socket on which the client waits for the reply. If the reply comes
+    just then, the answer takes the notice of it away, and the client would wait for as long as a cell may take.
+    """
+
+    async def async_start_new_kernel_client(self) -> KernelClient:
+        kernel = await super().async_start_new_kernel_client()
+        once = kernel.shell_channel.get_msg
+
+        async def patiently(timeout: float | None = None) -> dict:
+            end = math.inf if timeout is None else monotonic() + timeout
+            while True:
+                try:
+                    return await once(timeout=min(0.2, max(0.0, end - monotonic())))
+                except Empty:
+                    if monotonic() >= end:
+                        raise
+
+        kernel.shell_channel.get_msg = patiently
+        return kernel
 
 
 def _slider_outputs(notebook: NotebookNode) -> Iterator[dict]:
