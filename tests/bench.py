@@ -87,7 +87,7 @@ def packages(chapter: NotebookNode) -> str:
 
 
 def seconds(value: float) -> str:
-    scale, unit = next(((k, u) for k, u in ((1, "s"), (1e3, "ms")) if value * k >= 0.1), (1e6, "µs"))
+    scale, unit = next(((k, u) for k, u in ((1, "s"), (1e3, "ms")) if abs(value) * k >= 0.1), (1e6, "µs"))
     return f"{value * scale:.2f} {unit}"
 
 

@@ -82,8 +82,11 @@ class ErrorFraction:
         pole = min(next(k for k, c in enumerate(part) if c) for part in D.values())
         D = {delay: part[pole:] for delay, part in D.items()}
         try:
-            factor = sympy.Poly(s**pole, s, domain="QQ")
-            unstable = unstable_roots({delay: part.quo(factor) for delay, part in system.denominator.items()})
+            denominator = system.denominator
+            if pole:
+                factor = sympy.Poly(s**pole, s, domain="QQ")
+                denominator = {delay: part.quo(factor) for delay, part in denominator.items()}
+            unstable = unstable_roots(denominator)
         except StabilityLimitError:
             raise UnstableLoopError(f"E(s) = {system.expr} is not stable: it has poles on the imaginary axis") from None
         if unstable:

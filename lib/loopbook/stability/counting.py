@@ -80,7 +80,8 @@ def unstable_roots(denominator):
     >>> unstable_roots(System(1 / (s + 2 * sympy.exp(-s) + sympy.exp(-sympy.sqrt(2) * s))).denominator)
     2
     """
-    parts = {delay: sympy.Poly(part, s) for delay, part in denominator.items() if part != 0}
+    polynomials = {d: part if isinstance(part, sympy.Poly) else sympy.Poly(part, s) for d, part in denominator.items()}
+    parts = {delay: part for delay, part in polynomials.items() if not part.is_zero}
     written = sympy.Add(*(part.as_expr() * sympy.exp(-delay * s) for delay, part in parts.items()))
     if letters := sorted(map(str, written.free_symbols - {s})):
         raise ValueError(f"give a number for {', '.join(letters)} in {written}")
