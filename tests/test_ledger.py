@@ -650,6 +650,13 @@ def test_a_report_tells_everything_as_html_and_escapes_it():
     assert "does not hold" in MIXED.compare(**GOOD | {"a": 1})._repr_html_()
 
 
+def test_a_report_marks_agreement_only_where_there_is_some():
+    told = MIXED.compare(**GOOD)._repr_html_()
+    marks = [sign for sign in told if sign in "✓≠–✗"]
+    assert marks == ["✓", "✓", "✓", "✓", "✓", "≠", "–", "–"]
+    assert "✗" in MIXED.compare(**GOOD | {"c": 1})._repr_html_()
+
+
 def test_a_report_carries_its_verdicts_as_data():
     bundle = MIXED.compare(**GOOD)._repr_mimebundle_()
     assert {"text/plain", "text/html", MIME_TYPE} <= set(bundle)

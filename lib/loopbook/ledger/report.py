@@ -31,6 +31,15 @@ class Verdict:
         return self.result.status + (" (at random points)" if self.how == "probed" else "")
 
     @property
+    def mark(self):
+        """A sign and its colour: whether it holds, and whether book and computation agree in the end."""
+        if not self.holds:
+            return "✗", "#b33c00"
+        if not self.result.is_checked:
+            return "–", "#555555"
+        return ("≠", "#8a5a00") if self.result.status == "unreproduced" else ("✓", "#00664d")
+
+    @property
     def note(self):
         """What the reader must know besides: the reason, or the assumption. Empty where there is none."""
         row = self.result
@@ -100,7 +109,7 @@ class Report:
         rows = []
         for verdict in self.verdicts:
             row = verdict.result
-            mark, colour = ("✓", "#00664d") if verdict.holds else ("✗", "#b33c00")
+            mark, colour = verdict.mark
             rows.append(
                 (
                     _escape(f"({row.equation})") if row.equation else "",
