@@ -722,6 +722,15 @@ def _collocate(model, end, speed):
         solved = numpy.linalg.solve(system, numpy.hstack([from_start, from_forces]))
         return solved[:, :n], solved[:, n:]
 
+    def from_channel(k, channel, delay):  # what went in one delay before, at the nodes of segment k
+        source = place.get(edges[k] - delay)
+        if source is not None and edges[source + 1] - edges[source] == edges[k + 1] - edges[k]:
+            return Z[source, :, channel]
+        past = ends[k] - float(delay) + (ends[k + 1] - ends[k]) / 2 * (nodes + 1)
+        index = numpy.clip(numpy.searchsorted(ends, past, side="right") - 1, 0, k - 1)
+        local = 2 * (past - ends[index]) / (ends[index + 1] - ends[index]) - 1
+        return legendre.legval(local, to_coefficients @ Z[index, :, channel].T, tensor=False)
+
     m = len(edges) - 1
     Y, Z = numpy.zeros((m, NODES)), numpy.zeros((m, NODES, q))
     x = numpy.zeros(n)
@@ -729,17 +738,8 @@ def _collocate(model, end, speed):
         length = edges[k + 1] - edges[k]
         w = numpy.zeros((NODES, q))
         for channel, delay in enumerate(delays):
-            if edges[k] < delay:
-                continue
-            source = place.get(edges[k] - delay)
-            if source is not None and edges[source + 1] - edges[source] == length:
-                w[:, channel] = Z[source, :, channel]
-            else:
-                past = ends[k] - float(delay) + (ends[k + 1] - ends[k]) / 2 * (nodes + 1)
-                index = numpy.clip(numpy.searchsorted(ends, past, side="right") - 1, 0, k - 1)
-                local = 2 * (past - ends[index]) / (ends[index + 1] - ends[index]) - 1
-                coefficients = to_coefficients @ Z[index, :, channel].T
-                w[:, channel] = legendre.legval(local, coefficients, tensor=False)
+            if edges[k] >= delay:
+                w[:, channel] = from_channel(k, channel, delay)
         X = numpy.zeros((NODES, n))
         if n:
             forces = B1[:, 0] + w @ B2.T

@@ -409,7 +409,7 @@ class PlanePlot(Picture):
         Arguments:
             x, y: one value or as many for each.
             label: their name.
-            mark: "o" for dots, "x" for crosses, as for poles.
+            mark: "o" for dots, "x" for crosses, as for poles; or another sign of Matplotlib, as "s" and "^".
 
         >>> plane_plot({"limit": ([1, 2], [2, 1])}, "$x$", "$y$").points([1], [1], "settings")
         <limit: y against x; points: settings>
@@ -510,9 +510,7 @@ def map_plot(x, y, numbers, xlabel, ylabel, label, title=None, log=False):
     import numpy
     from matplotlib.figure import Figure
 
-    x, y, numbers = numpy.asarray(x, dtype=float), numpy.asarray(y, dtype=float), numpy.asarray(numbers)
-    if numbers.shape != (len(y), len(x)):
-        raise ValueError(f"the numbers have the shape {numbers.shape}: expected {(len(y), len(x))}, a row for each y")
+    x, y, numbers = _on_grid(x, y, numbers)
     levels = sorted({int(n) for n in numpy.unique(numbers)} | {0})
     levels = [n for n in levels if n >= 0]
     shade = numpy.searchsorted(levels, numpy.maximum(numbers, 0))
@@ -561,9 +559,7 @@ def level_plot(x, y, values, levels, xlabel, ylabel, label, title=None, log=Fals
     import numpy
     from matplotlib.figure import Figure
 
-    x, y, values = (numpy.asarray(array, dtype=float) for array in (x, y, values))
-    if values.shape != (len(y), len(x)):
-        raise ValueError(f"the values have the shape {values.shape}: expected {(len(y), len(x))}, a row for each y")
+    x, y, values = _on_grid(x, y, values)
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(WIDTH, 0.68 * WIDTH), layout="constrained")
         axes = figure.subplots()
@@ -576,6 +572,16 @@ def level_plot(x, y, values, levels, xlabel, ylabel, label, title=None, log=Fals
     words = f"levels of {plain_words(label)}, {levels[0]:g} to {levels[-1]:g}"
     words = f"{words}: {plain_words(ylabel)} against {plain_words(xlabel)}"
     return PlanePlot(figure, f"{plain_words(title) + ': ' if title else ''}{words}")
+
+
+def _on_grid(x, y, values):
+    """The arrays of two axes and of the values over them, if they fit."""
+    import numpy
+
+    x, y, values = (numpy.asarray(array, dtype=float) for array in (x, y, values))
+    if values.shape != (len(y), len(x)):
+        raise ValueError(f"the values have the shape {values.shape}: expected {(len(y), len(x))}, a row for each y")
+    return x, y, values
 
 
 def _finish_plane(axes, xlabel, ylabel, title, xlim, ylim):

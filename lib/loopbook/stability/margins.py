@@ -64,7 +64,6 @@ def margins(loop):
         loop: the open loop L(s), as for `unstable_poles`.
     Raises:
         ValueError: if the closed loop is not stable, or as `unstable_poles`.
-    Source: Haugen, Section 7.5 and Example 10.2, of gain and phase margin.
 
     >>> import sympy
     >>> from loopbook import s
