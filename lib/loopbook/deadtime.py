@@ -15,9 +15,9 @@ from typing import NamedTuple
 
 import sympy
 
-from loopbook.expressions import exact, function_of, s, t
+from loopbook.expressions import function_of, s, t
 from loopbook.laplace import evaluate, transform
-from loopbook.pid import PID
+from loopbook.transfer import transfer_function
 
 __all__ = [
     "ChannelModel",
@@ -498,54 +498,6 @@ def _return_difference(L):
     return 1 + L
 
 
-def transfer_function(value):
-    """Return the transfer function of whatever stands for a block, an expression in `s` with exact numbers.
-
-    Arguments:
-        value: a `System`, a `PID`, a continuous single-input single-output system of python-control, an expression in
-            `s` or a number.
-    Raises:
-        ValueError: for anything else.
-
-    >>> transfer_function(PID(2, Ti=10))
-    2 + 1/(5*s)
-    """
-    if isinstance(value, (System, PID)):
-        return value.expr
-    if type(value).__module__.split(".")[0] == "control":
-        return _from_control(value)
-    return function_of(s, value)
-
-
-def _from_control(system):
-    import control
-    import numpy
-
-    if not isinstance(system, (control.TransferFunction, control.StateSpace)):
-        raise ValueError(f"{system!r} is no transfer function and no state-space system of python-control")
-    if system.ninputs != 1 or system.noutputs != 1:
-        raise ValueError(f"the system has {system.ninputs} inputs and {system.noutputs} outputs: expected one of each")
-    if system.isdtime(strict=True):
-        raise ValueError(f"the system works in discrete time, with the period {system.dt}: expected continuous time")
-    names = ("num", "den") if isinstance(system, control.TransferFunction) else ("A", "B", "C", "D")
-    for name in names:
-        coefficients = getattr(system, name)
-        if numpy.iscomplexobj(coefficients[0][0] if name in ("num", "den") else coefficients):
-            raise ValueError(f"{name} of the system is complex: expected real coefficients")
-    if isinstance(system, control.TransferFunction):
-        above, below = (sympy.Poly([exact(float(c)) for c in x[0][0]], s) for x in (system.num, system.den))
-        return above.as_expr() / below.as_expr()
-    A, B, C, D = (
-        sympy.Matrix([[exact(float(c)) for c in row] for row in x]) for x in (system.A, system.B, system.C, system.D)
-    )
-    if not system.nstates:
-        return D[0]
-    # det(sI - A + BC) - det(sI - A) = C adj(sI - A) B
-    own, through = (M.to_DM().convert_to(sympy.QQ).charpoly() for M in (A, A - B * C))
-    own, through = (sympy.Poly(coefficients, s, domain="QQ") for coefficients in (own, through))
-    return D[0] + (through - own).as_expr() / own.as_expr()
-
-
 def _divided(one, other):
     if other == 0:
         raise ValueError(f"{one} is divided by 0: expected a system that is not zero")
@@ -825,6 +777,7 @@ class Loop:
     Raises:
         ValueError: for an algebraic loop without solution, or what is no `System`.
 
+    >>> from loopbook.pid import PID
     >>> loop = Loop(2 * sympy.exp(-s) / (4 * s + 1), PID(1, Ti=4))
     >>> loop.servo
     System(exp(-s)/(2*s + exp(-s)))
@@ -863,6 +816,7 @@ class Loop:
     def error(self, mode):
         """Return E(s), the control error y_SP - y for a unit step of the setpoint ("servo") or load ("regulator").
 
+        >>> from loopbook.pid import PID
         >>> Loop(1 / s, PID(2)).error("servo")
         System(1/(s + 2))
         """
@@ -881,6 +835,7 @@ class Loop:
         Returns:
             A `LoopResponse`, which `figures.trends` draws.
 
+        >>> from loopbook.pid import PID
         >>> Loop(sympy.exp(-s) / s, PID(0.5)).run([2, 3])["y"].round(6)
         array([0.5  , 0.875])
         """

@@ -24,7 +24,7 @@ __all__ = [
     "characteristic_polynomial", "dead_time", "double_integrator", "feedback", "first_order", "impulse_response",
     "initial_gain", "integrator", "integrator_with_lag", "order", "parallel", "poles", "polynomials", "response",
     "response_time", "second_order", "series", "static_gain", "step_response", "time_constant_form",
-    "transfer_functions", "zero_pole_form", "zero_pole_gain", "zeros",
+    "transfer_function", "transfer_functions", "zero_pole_form", "zero_pole_gain", "zeros",
 ]  # fmt: skip
 
 
@@ -141,6 +141,55 @@ def transfer_functions(equations, output, inputs):
 
 def _listed(signals):
     return ", ".join(sorted(map(str, signals)))
+
+
+def transfer_function(value):
+    """Return the transfer function of whatever stands for a block, an expression in `s` with exact numbers.
+
+    Arguments:
+        value: an expression in `s` or a number; whatever has one as its attribute `expr`, as a `PID`, a `Model` and a
+            `System`; or a continuous single-input single-output system of python-control.
+    Raises:
+        ValueError: for anything else.
+
+    >>> import control
+    >>> transfer_function(control.tf([2], [10, 1]))
+    2/(10*s + 1)
+    """
+    if type(value).__module__.split(".")[0] == "control":
+        return _from_control(value)
+    if not isinstance(value, sympy.Basic) and hasattr(value, "expr"):
+        value = value.expr
+    return function_of(s, value)
+
+
+def _from_control(system):
+    import control
+    import numpy
+
+    if not isinstance(system, (control.TransferFunction, control.StateSpace)):
+        raise ValueError(f"{system!r} is no transfer function and no state-space system of python-control")
+    if system.ninputs != 1 or system.noutputs != 1:
+        raise ValueError(f"the system has {system.ninputs} inputs and {system.noutputs} outputs: expected one of each")
+    if system.isdtime(strict=True):
+        raise ValueError(f"the system works in discrete time, with the period {system.dt}: expected continuous time")
+    names = ("num", "den") if isinstance(system, control.TransferFunction) else ("A", "B", "C", "D")
+    for name in names:
+        coefficients = getattr(system, name)
+        if numpy.iscomplexobj(coefficients[0][0] if name in ("num", "den") else coefficients):
+            raise ValueError(f"{name} of the system is complex: expected real coefficients")
+    if isinstance(system, control.TransferFunction):
+        above, below = (sympy.Poly([exact(float(c)) for c in x[0][0]], s) for x in (system.num, system.den))
+        return above.as_expr() / below.as_expr()
+    A, B, C, D = (
+        sympy.Matrix([[exact(float(c)) for c in row] for row in x]) for x in (system.A, system.B, system.C, system.D)
+    )
+    if not system.nstates:
+        return D[0]
+    # det(sI - A + BC) - det(sI - A) = C adj(sI - A) B
+    own, through = (M.to_DM().convert_to(sympy.QQ).charpoly() for M in (A, A - B * C))
+    own, through = (sympy.Poly(coefficients, s, domain="QQ") for coefficients in (own, through))
+    return D[0] + (through - own).as_expr() / own.as_expr()
 
 
 # ------------------------------------------------------------------------------------------------ blocks

@@ -5,9 +5,10 @@ from fractions import Fraction
 
 import sympy
 
-from loopbook.deadtime import Loop, normal_form, transfer_function
+from loopbook.deadtime import Loop, normal_form
 from loopbook.expressions import s
 from loopbook.stability.sums import MOST_INTERVALS, ROUNDING, Sums, prevailing, refined
+from loopbook.transfer import transfer_function
 
 ON_LIMIT, ENDLESS = -1, 10**9  # in place of a number of roots
 

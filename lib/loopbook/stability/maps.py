@@ -4,10 +4,11 @@ import time
 
 import sympy
 
-from loopbook.deadtime import real_numbers, transfer_function
+from loopbook.deadtime import real_numbers
 from loopbook.expressions import s
 from loopbook.stability.counting import characteristic, count_roots
 from loopbook.stability.sums import Sums
+from loopbook.transfer import transfer_function
 
 CHUNK = 2000  # points at once
 

@@ -4,11 +4,12 @@ import itertools
 import math
 from typing import NamedTuple
 
-from loopbook.deadtime import real_numbers, transfer_function
+from loopbook.deadtime import real_numbers
 from loopbook.laplace import by_delay
 from loopbook.stability.counting import count_roots, fraction_sums, open_loop
 from loopbook.stability.crossings import equal_sizes, phase_left
 from loopbook.stability.sums import Sums, axis_zeros
+from loopbook.transfer import transfer_function
 
 
 class DelayRatios(NamedTuple):
