@@ -1,5 +1,6 @@
 """The PID controller: its settings and their forms, and the practical digital controller of Haugen, Section 7.4."""
 
+import copy
 import math
 from dataclasses import dataclass
 
@@ -107,6 +108,14 @@ class PID:
             raise ValueError(f"{self} has complex zeros and no serial form: expected (Ti - Tf)**2 of at least 4 Ti Td")
         Ti = (total + sympy.sqrt(discriminant)) / 2
         return PID(self.Kp * Ti / self.Ti, Ti, total - Ti, self.Tf, form="serial")
+
+    def with_filter(self, N=10):
+        """Return the same settings with the filter Tf = Td/N for the derivative term. (Haugen, Section 7.4.1)
+
+        >>> PID(6, Ti=3, Td=0.75).with_filter()
+        PID(Kp=6, Ti=3, Td=3/4, Tf=3/40)
+        """
+        return PID(self.Kp, self.Ti, self.Td, self.Td / exact(N), self.form)
 
     @property
     def proportional_band(self):
@@ -236,16 +245,8 @@ class Controller:
         self.step, self.u0 = _positive("step", step), _number("u0", u0)
         if action not in ("reverse", "direct"):
             raise ValueError(f"action is {action!r}: expected 'reverse' or 'direct'")
-        if not isinstance(settings, PID):
-            raise ValueError(f"settings is {settings!r}: expected a PID")
-        self.settings, self.action = settings, action
-        parallel = settings.parallel()
-        self.Kp, self.Td, self.Tf = (_number(x, getattr(parallel, x)) for x in ("Kp", "Td", "Tf"))
-        self.Ti = math.inf if parallel.Ti == sympy.oo else _number("Ti", parallel.Ti)
-        if action == "direct":
-            if self.Kp < 0:
-                raise ValueError(f"Kp is {self.Kp:g} and the action is direct: give a positive gain with an action")
-            self.Kp = -self.Kp
+        self.action = action
+        self._use(settings)
         if limits is None and control_range is not None:
             limits = PERCENT
         self.limits, self.pid_limits = _limits("limits", limits), _limits("pid_limits", pid_limits)
@@ -259,12 +260,36 @@ class Controller:
             scaling = Scaling(PERCENT, control_range)
             self.from_percent, self.back_to_percent = _in_floats(scaling), _in_floats(scaling.inverse)
         self.filter = LowpassFilter(T_filter, step)
-        self.lag_remains = math.exp(-self.step / self.Tf) if self.Tf else 0.0
         self.lagging = None  # the signal behind the filter of the derivative term
         self.integral = 0.0
         self.in_manual = False
         self.setpoint = self.u = None  # as of the last sample
         self.terms = (0.0, 0.0, 0.0)
+
+    def _use(self, settings):
+        if not isinstance(settings, PID):
+            raise ValueError(f"settings is {settings!r}: expected a PID")
+        parallel = settings.parallel()
+        Kp, self.Td, self.Tf = (_number(x, getattr(parallel, x)) for x in ("Kp", "Td", "Tf"))
+        if self.action == "direct" and Kp < 0:
+            raise ValueError(f"Kp is {Kp:g} and the action is direct: give a positive gain with an action")
+        self.Kp = -Kp if self.action == "direct" else Kp
+        self.Ti = math.inf if parallel.Ti == sympy.oo else _number("Ti", parallel.Ti)
+        self.lag_remains = math.exp(-self.step / self.Tf) if self.Tf else 0.0
+        self.settings = settings
+
+    def change(self, settings):
+        """Go on with other settings from the next sample, as a gain schedule does; a loop at rest feels no bump.
+
+        >>> controller = Controller(PID(2, Ti=10), step=1, u0=50)
+        >>> _ = controller.update(setpoint=5, measurement=5)
+        >>> controller.change(PID(4, Ti=20))
+        >>> controller.update(setpoint=5, measurement=5)
+        50.0
+        """
+        before = copy.copy(self)
+        self._use(settings)
+        self.take_over(before)
 
     @property
     def filtered(self):

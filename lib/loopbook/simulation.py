@@ -65,8 +65,8 @@ class Run:
 
 
 def simulate(
-    plant, controller=None, *, until, step=None, setpoint=None, noise=0, seed=1, feedforward=0, manual=(), after=None,
-    manipulated=None, **inputs,
+    plant, controller=None, *, until, step=None, setpoint=None, noise=0, seed=1, feedforward=0, scheduling=None,
+    manual=(), after=None, manipulated=None, **inputs,
 ):  # fmt: skip
     """Simulate a plant, alone or under control.
 
@@ -84,6 +84,7 @@ def simulate(
         noise: standard deviation of normally distributed measurement noise, or an array to be added.
         seed: names the sequence of random numbers.
         feedforward: a signal that is added to the control signal.
+        scheduling: a signal for a controller with a gain schedule, such as `identification.ScheduledController`.
         manual: ``[(beginning, end, u)]``, the stretches of time in manual mode; u is None for the last control signal.
         after: an earlier run that this one continues, with its state, its past and its controller's memory; the plant
             and the settings may be others. If it was without control, the controller begins as after manual mode. The
@@ -93,7 +94,7 @@ def simulate(
     Returns:
         A `Run` with the plant's states, inputs and outputs by their names, and with a controller "setpoint",
         "measurement" (with noise), "ramped" and "filtered" (what the controller makes of the two), and the terms
-            "u_p", "u_i" and "u_d".
+            "u_p", "u_i" and "u_d"; with a signal for scheduling that, and the gain "Kp" that is in force.
     Raises:
         ValueError: for an unknown or a missing signal, one of the wrong length or with a value that is no finite
             number, a step longer than a dead time, an end that is no whole number of steps away, or a run that grows
@@ -110,6 +111,7 @@ def simulate(
         raise ValueError(f"after is {after!r}: expected an earlier run")
     driven = name_of(plant.manipulated if manipulated is None else plant.signal(manipulated))
     given = {"setpoint": setpoint, "noise": noise, "feedforward": feedforward, "manual": manual}
+    given["scheduling"] = scheduling
     step = _fitting_step(plant, controller, step, driven, given, inputs)
     begin, past = (0.0, None) if after is None else (float(after.times[-1]), after._past)
     times = _grid(begin, until, step)
@@ -142,7 +144,8 @@ def _fitting_step(plant, controller, step, driven, given, inputs):
         if name not in names:
             raise ValueError(f"{type(plant).__name__} has no input {name!r}: it has {', '.join(names)}")
     if controller is None:
-        defaults = {"setpoint": given["setpoint"] is None, "manual": given["manual"] in ((), [])}
+        defaults = {name: given[name] is None for name in ("setpoint", "scheduling")}
+        defaults["manual"] = given["manual"] in ((), [])
         for name, signal in given.items():
             if not defaults.get(name, is_number(signal) and signal == 0):
                 raise ValueError(f"{name} is given, but no controller")
@@ -193,6 +196,8 @@ class _Loop:
             added = noise(times, added, (seed, round(times[0] / controller.step)))
         self.setpoint, self.feedforward = (samples(name, given[name], times) for name in ("setpoint", "feedforward"))
         self.noise = samples("noise", added, times)
+        scheduling = given["scheduling"]
+        self.scheduling = None if scheduling is None else samples("scheduling", scheduling, times)
 
     def continue_after(self, earlier, u):
         """Take over the memory of an earlier run's controller; without one, begin from its last control signal."""
@@ -207,7 +212,8 @@ class _Loop:
         if self.k == len(self.times):  # a run that goes on from here begins with this sample, maybe with other settings
             self.before_last = copy.deepcopy(self.controller)
         now = {"setpoint": self.setpoint[k], "measurement": output + self.noise[k]}
-        u = self.controller.update(*now.values(), feedforward=self.feedforward[k], manual=self.manual[k])
+        more = {} if self.scheduling is None else {"scheduling": self.scheduling[k]}
+        u = self.controller.update(*now.values(), feedforward=self.feedforward[k], manual=self.manual[k], **more)
         if not is_number(u):
             if isinstance(u, float):
                 raise _beyond_all_numbers(name, self.times[k])
@@ -215,6 +221,7 @@ class _Loop:
         if hasattr(self.controller, "terms"):
             now["ramped"], now["filtered"] = self.controller.setpoint, self.controller.filtered
             now["u_p"], now["u_i"], now["u_d"] = self.controller.terms
+            now |= more | ({"Kp": self.controller.Kp} if more else {})
         for signal, value in now.items():
             self.record.setdefault(signal, []).append(value)
         return float(u)

@@ -1,0 +1,180 @@
+"""Skogestad's half rule, and his rules for zeros: from a process with many lags to a simple model."""
+
+from typing import NamedTuple
+
+import sympy
+
+from loopbook.approximation.model import Model, factors, sort_lags
+from loopbook.expressions import exact, s
+from loopbook.transfer import dead_time
+
+
+class Step(NamedTuple):
+    """One application of a rule: the name of the rule, a part of a transfer function, and what stands for it."""
+
+    rule: str
+    before: sympy.Expr
+    after: sympy.Expr
+
+
+def half_rule(H, order=1, Tc=None, largest_first=None):
+    """Return the `Model` that Skogestad's half rule finds for a process with many lags.
+
+    Half of the largest neglected lag goes to the smallest lag that is kept, the other half to the dead time. All
+    smaller lags, and the time constants of zeros in the right half-plane, go to the dead time. Zeros in the left
+    half-plane come first: the largest one first, each against a lag beside it, by `zero_rule`.
+
+    Arguments:
+        H: transfer function with one dead time or none, with real poles, none of them in the right half-plane; in any
+            form, or of python-control.
+        order: 1 keeps one lag, 2 keeps two; an integrator counts as an infinite lag.
+        Tc: closed-loop time-constant for which the model is meant; the rules for zeros compare with it. Without it, it
+            is the effective dead time, which is then found together with the model. The search begins at the dead time
+            of the process itself, because the fastest control that agrees with the rules is wanted.
+        largest_first: lags with letters, sorted, where the letters leave their order open.
+    Returns:
+        The model; its `steps` say which rule did what.
+    Raises:
+        ValueError: for poles in the right half-plane, complex poles or zeros, several dead times, more zeros than
+            poles, a zero or several poles too many at the origin, lags of unknown order, or where the rules for zeros
+            find no dead time that agrees with itself.
+    Source: Skogestad, slides on the half rule and on the approximation of zeros.
+
+    >>> half_rule(1 / ((s + 1) * (0.6 * s + 1)))
+    Model(K=1, T1=13/10, delay=3/10)
+    >>> half_rule(5 / (s * (3 * s + 1)))
+    Model(K=5, T1=oo, delay=3/2)
+    """
+    if order not in (1, 2):
+        raise ValueError(f"order is {order!r}: expected 1 or 2")
+    H, delay, process = factors(H)
+    if len(process.zeros) > len(process.lags):
+        raise ValueError(f"{H} has more zeros than poles: expected at least as many poles")
+    if sympy.oo in process.zeros:
+        raise ValueError(f"{H} has a zero at the origin: the half rule needs a process with a static gain")
+    if process.lags.count(sympy.oo) > order:
+        raise ValueError(f"{H} has more than {order} integrators: expected at most as many as the order of the model")
+    if unstable := [T for T in process.lags if T.is_negative]:
+        raise ValueError(f"{H} has a pole at {-1 / unstable[0]} in the right half-plane: the half rule has no answer")
+    for T in process.lags + process.zeros:
+        if T.is_extended_positive is None and T.is_extended_negative is None:
+            raise ValueError(f"the sign of {T} is not known: expected positive letters")
+    inverse = [-T for T in process.zeros if T.is_negative]
+    lifting = [T for T in process.zeros if T.is_positive]
+    steps = [Step("zero in the right half-plane", 1 - T * s, dead_time(T)) for T in inverse]
+    delay += sympy.Add(*inverse)
+    lags = sort_lags(process.lags, largest_first)
+    if not lifting:
+        return _halved(process.K, lags, delay, order, steps)
+    if letters := sorted({str(x) for T in [*lags, *lifting, delay] for x in T.free_symbols}):
+        raise ValueError(f"the rules for the zeros of {H} compare times: give numbers for {', '.join(letters)}")
+
+    def made_for(Tc):
+        return _without_zeros(process.K, lags, sorted(lifting, reverse=True), delay, order, steps, Tc)
+
+    if Tc is not None:
+        Tc = exact(Tc)
+        if not Tc.is_number or not Tc.is_positive:
+            raise ValueError(f"Tc is {Tc}: expected a positive number")
+        return made_for(Tc)
+    model = _for_itself(made_for, delay)
+    if model is None:
+        raise ValueError(f"the rules for the zeros of {H} find no dead time that agrees with itself: say Tc")
+    return model
+
+
+def zero_rule(T0, lag, Tc):
+    """Return what Skogestad's rules T1, T1a, T1b, T2 and T3 put in place of (T0*s + 1)/(lag*s + 1).
+
+    Arguments:
+        T0: time constant of the zero, positive.
+        lag: the lag that it is set against, positive; oo for an integrator, whose place 1/s takes that of the lag.
+        Tc: closed-loop time-constant for which the approximation is meant; the effective dead time in the source.
+    Returns:
+        `Step`, from the rule's name to a gain or, by rule T3, a gain with a smaller lag.
+    Raises:
+        ValueError: for letters, or a number that is not positive; Tc may be zero.
+    Source: Skogestad, slide on the approximation of zeros in the left half-plane.
+
+    >>> zero_rule(15, 20, Tc=0.15)
+    Step(rule='T2', before=(15*s + 1)/(20*s + 1), after=3/4)
+    """
+    T0, lag, Tc = exact(T0), exact(lag), exact(Tc)
+    for name, value in (("T0", T0), ("lag", lag), ("Tc", Tc)):
+        if not value.is_number or not value.is_extended_real or value < 0 or (value == 0 and name != "Tc"):
+            raise ValueError(f"{name} is {value}: expected a positive number, because the rules compare")
+    rule, gain, left = _rule(T0, lag, Tc)
+    return Step(rule, (T0 * s + 1) / _factor(lag), gain / _factor(left))
+
+
+def _rule(T0, lag, Tc):
+    """The name of the rule, the gain, and the lag that remains. Of an integrator, the slope stands for the gain."""
+    if T0 >= lag >= Tc:
+        return "T1", T0 / lag, sympy.S.Zero
+    if T0 >= Tc >= lag:
+        return "T1a", T0 / Tc, sympy.S.Zero
+    if lag <= T0:
+        return "T1b", sympy.S.One, sympy.S.Zero
+    scale = sympy.S.One if lag == sympy.oo else lag
+    if 5 * Tc <= T0:
+        return "T2", T0 / scale, sympy.S.Zero
+    shorter = sympy.Min(lag, 5 * Tc)
+    return "T3", shorter / scale, shorter - T0
+
+
+def _factor(lag):
+    return s if lag == sympy.oo else lag * s + 1
+
+
+def _neighbour(T0, lags):
+    """The lag that a zero is set against: the next larger one, unless the next smaller one is close and closer."""
+    larger = min((T for T in lags if T >= T0), default=None)
+    smaller = max((T for T in lags if T < T0), default=None)
+    if larger is None or smaller is None:
+        return smaller if larger is None else larger
+    return smaller if T0 / smaller < min(larger / T0, sympy.Rational(8, 5)) else larger
+
+
+def _for_itself(reduced, guess):
+    """The model whose own dead time is the one that it is made for, or None.
+
+    The dead time of the model is piecewise linear in the one it is made for. So from each point on the way of a simple
+    iteration, one step of Newton's method ends on the solution, if it lies on the same piece.
+    """
+    seen = []
+    while guess not in seen and len(seen) < 50:
+        seen.append(guess)
+        found = reduced(guess).delay
+        near = guess + (guess or 1) / 10**9
+        slope = (reduced(near).delay - found) / (near - guess)
+        for candidate in (guess, guess + (found - guess) / (1 - slope) if slope != 1 else found):
+            if candidate >= 0 and abs((model := reduced(candidate)).delay - candidate) <= 1e-12 * candidate:
+                return model
+        guess = found
+    return None
+
+
+def _without_zeros(K, lags, zeros, delay, order, steps, Tc):
+    """The model after the rules for zeros, made for Tc."""
+    lags, steps = list(lags), list(steps)
+    for T0 in zeros:
+        lag = _neighbour(T0, lags)
+        lags.remove(lag)
+        rule, gain, left = _rule(T0, lag, Tc)
+        steps.append(Step(rule, _factor(T0) / _factor(lag), gain / _factor(left)))
+        K *= gain
+        lags += [left] if left != 0 else []
+    return _halved(K, sorted(lags, reverse=True), delay, order, steps)
+
+
+def _halved(K, lags, delay, order, steps):
+    """The model that the half rule makes of lags, the largest first."""
+    kept, (half, *small) = lags[:order], lags[order:] or [sympy.S.Zero]
+    steps = list(steps)
+    if half != 0:
+        last = kept[-1] + half / 2
+        before = 1 / (_factor(kept[-1]) * _factor(half))
+        steps.append(Step("half rule", before, dead_time(half / 2) / _factor(last)))
+        kept[-1] = last
+    steps += [Step("small lag", 1 / _factor(T), dead_time(T)) for T in small]
+    return Model(K, *kept, delay=delay + half / 2 + sympy.Add(*small), steps=tuple(steps))

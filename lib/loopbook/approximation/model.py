@@ -1,0 +1,135 @@
+"""The simple model that tuning rules start from: a gain, one or two lags, and a dead time."""
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import sympy
+
+from loopbook.expressions import exact, s
+from loopbook.laplace import by_delay, roots
+from loopbook.transfer import dead_time, transfer_function
+
+
+@dataclass(frozen=True)
+class Model:
+    """A gain with up to two lags and a dead time: K*exp(-delay*s)/((T1*s + 1)*(T2*s + 1)).
+
+    An infinite lag is an integrator, and K is then the slope: K*exp(-delay*s)/(s*(T2*s + 1)) for T1 = oo, and
+    K*exp(-delay*s)/s**2 for two of them.
+
+    Arguments:
+        K: gain, in units of the measurement for one unit of the control signal; of an integrator, that per time.
+        T1, T2: lags, not negative, the larger one first; T1 may be oo, and then T2 too.
+        delay: dead time, not negative, in the unit of the lags.
+        steps: how the model was found, if by rules.
+    Raises:
+        ValueError: for a gain that is zero, a time that is negative, or T2 larger than T1.
+
+    >>> Model(2, T1=10, delay=3).expr
+    2*exp(-3*s)/(10*s + 1)
+    >>> Model(2, T1=sympy.oo, T2=4).expr
+    2/(s*(4*s + 1))
+    """
+
+    K: sympy.Expr
+    T1: sympy.Expr = sympy.S.Zero
+    T2: sympy.Expr = sympy.S.Zero
+    delay: sympy.Expr = sympy.S.Zero
+    steps: tuple = field(default=(), compare=False, repr=False)
+
+    def __post_init__(self):
+        for name in ("K", "T1", "T2", "delay"):
+            value = exact(getattr(self, name))
+            object.__setattr__(self, name, value)
+            if (value.is_real is False and value != sympy.oo) or (value.is_infinite and name in ("K", "delay")):
+                raise ValueError(f"{name} is {value}: expected a finite real number")
+            if name != "K" and value.is_negative:
+                raise ValueError(f"{name} is {value}: expected a time that is not negative")
+        if self.K == 0:
+            raise ValueError("K is 0: expected a gain that is not zero")
+        if sympy.oo != self.T1 and (self.T2 - self.T1).is_positive:
+            raise ValueError(f"T1 is {self.T1} and T2 is {self.T2}: expected the larger lag first")
+
+    @property
+    def expr(self):
+        """The transfer function, an expression in `s` with exact dead time."""
+        lags = sympy.Mul(*(1 / s if sympy.oo == T else 1 / (T * s + 1) for T in (self.T1, self.T2)))
+        return self.K * lags * dead_time(self.delay)
+
+    @property
+    def is_integrating(self):
+        """Whether the model has an integrator."""
+        return sympy.oo == self.T1
+
+    def __repr__(self):
+        shown = [f"{name}={value}" for name in ("T1", "T2", "delay") if (value := getattr(self, name)) != 0]
+        return f"Model({', '.join([f'K={self.K}', *shown])})"
+
+
+def model_of(H, largest_first=None):
+    """Return the `Model` that H is, in whatever form it is written.
+
+    Arguments:
+        H: a `Model`; or a transfer function with at most two poles, both real, no zero and one dead time or none, or
+            what `transfer_function` reads as one.
+        largest_first: lags with letters, sorted, where the letters leave their order open.
+    Raises:
+        ValueError: for anything else, or lags of unknown order.
+
+    >>> model_of(6 / (30 * s**2 + 33 * s + 3))
+    Model(K=2, T1=10, T2=1)
+    """
+    if isinstance(H, Model):
+        return H
+    H, delay, process = factors(H)
+    if process.zeros or len(process.lags) > 2 or any(T.is_negative for T in process.lags):
+        raise ValueError(f"{H} is no simple model: expected at most two lags, no zeros; half_rule may find one")
+    return Model(process.K, *sort_lags(process.lags, largest_first), delay=delay)
+
+
+class TimeConstants(NamedTuple):
+    """The gain, and the time constants T of the factors T*s + 1 below and above the fraction bar; oo for `s` itself."""
+
+    K: sympy.Expr
+    lags: list
+    zeros: list
+
+
+def factors(H):
+    """A transfer function as an expression, its dead time, and its factors, which must be of first order."""
+    H = transfer_function(H)
+    parts = by_delay(H)
+    if len(parts) != 1:
+        raise ValueError(
+            f"{H} {'adds several dead times' if H != 0 else 'is zero'}: expected a gain, lags, a dead time"
+        )
+    ((delay, rational),) = parts.items()
+    above, below = sympy.cancel(rational).as_numer_denom()
+    times = []
+    for polynomial, what in ((below, "poles"), (above, "zeros")):
+        found = roots(polynomial)
+        if oscillating := [p for p in found if p.is_real is False]:
+            raise ValueError(f"{H} has the complex {what} {oscillating}: expected real ones")
+        times.append([sympy.oo if p == 0 else exact(sympy.radsimp(-1 / p)) for p in found])
+    lowest = [next(c for c in reversed(sympy.Poly(x, s).all_coeffs()) if c != 0) for x in (above, below)]
+    return H, delay, TimeConstants(sympy.cancel(lowest[0] / lowest[1]), *times)
+
+
+def sort_lags(times, given):
+    """Times sorted, the largest first, by comparing them or as they are given."""
+    if given is not None:
+        given = [exact(T) for T in given]
+        if sympy.oo in times:
+            given = [sympy.oo] * (times.count(sympy.oo)) + [T for T in given if sympy.oo != T]
+        if sorted(given, key=str) != sorted(times, key=str):
+            raise ValueError(f"largest_first is {given}: expected the lags {times} in another order")
+        return given
+    rest, found = list(times), []
+    while rest:
+        largest = [T for T in rest if all(other == T or (T - other).is_extended_nonnegative for other in rest)]
+        if not largest:
+            names = ", ".join(sorted(map(str, rest)))
+            raise ValueError(f"which of the lags {names} is the largest is not known: say it with largest_first")
+        rest.remove(largest[0])
+        found.append(largest[0])
+    return found

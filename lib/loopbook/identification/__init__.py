@@ -1,0 +1,13 @@
+"""Models and settings from experiments: step responses, logged data, a relay, a P controller, and data as they come."""
+
+from loopbook.identification.fitting import Fit, fit
+from loopbook.identification.good_gain import GoodGain, good_gain_experiment, swing
+from loopbook.identification.recursive import RecursiveLeastSquares, first_order_of
+from loopbook.identification.relay import LimitCycle, Relay, oscillation, relay_experiment
+from loopbook.identification.schedule import GainSchedule, ScheduledController
+from loopbook.identification.steps import first_order_from_step, integrator_from_step
+
+__all__ = [
+    "Fit", "GainSchedule", "GoodGain", "LimitCycle", "RecursiveLeastSquares", "Relay", "first_order_from_step",
+    "first_order_of", "fit", "good_gain_experiment", "integrator_from_step", "ScheduledController", "oscillation", "relay_experiment", "swing",
+]  # fmt: skip

@@ -1,0 +1,51 @@
+"""What the rules ask of their input: one sentence that names the value and what was expected."""
+
+import sympy
+
+from loopbook.expressions import exact
+
+
+def steepest_slope(model, rule):
+    """The steepest slope of the step response: the gain over the largest lag."""
+    if model.T1 == 0:
+        raise ValueError(f"{rule} needs a lag or an integrator, and {model} has none: give it a small lag")
+    return model.K if model.is_integrating else model.K / model.T1
+
+
+def known(name, word, words):
+    if not isinstance(word, str) or word not in words:
+        raise ValueError(f"{name} is {word!r}: expected {', '.join(map(repr, words))}")
+    return word
+
+
+def within(name, value, low, high, extrapolate):
+    if not extrapolate and ((low - value).is_positive or (value - high).is_positive):
+        raise ValueError(
+            f"{name} is {value.evalf(4)}: the rule is for {low} to {high}; extrapolate=True leaves this range"
+        )
+
+
+def gain(name, value):
+    value = exact(value)
+    if value == 0 or value.is_infinite or value.is_real is False:
+        raise ValueError(f"{name} is {value}: expected a finite gain that is not zero")
+    return value
+
+
+def positive(name, value):
+    if (value := finite_time(name, value)) == 0:
+        raise ValueError(f"{name} is 0: expected a positive number")
+    return value
+
+
+def finite_time(name, value):
+    if (value := endless_time(name, value)).is_infinite:
+        raise ValueError(f"{name} is {value}: expected a finite number")
+    return value
+
+
+def endless_time(name, value):
+    value = exact(value)
+    if value.is_negative or (value.is_real is False and value != sympy.oo):
+        raise ValueError(f"{name} is {value}: expected a number that is not negative")
+    return value

@@ -1,0 +1,357 @@
+"""The tuning rules: printed tables as formulas, units, limits, and what is refused."""
+
+import itertools
+
+import pytest
+import sympy
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from sympy import Max, Min, Rational, exp, oo, sqrt, symbols
+
+from loopbook import s, tuning
+from loopbook.approximation import Model
+from loopbook.pid import PID
+from loopbook.transfer import double_integrator, first_order, integrator, integrator_with_lag, second_order
+
+K, T, T1, T2, delay, Tc, c, Ku, Pu, x = symbols("K T T1 T2 delay Tc c Ku Pu x", positive=True)
+
+POSITIVE = st.fractions(Rational(1, 20), 20, max_denominator=20).map(Rational)
+GAINS = st.fractions(-20, 20, max_denominator=20).filter(bool).map(Rational)
+RATIOS = st.fractions(Rational(1, 10), 1, max_denominator=40).map(Rational)  # of dead time and lag
+KINDS = ("P", "PI", "PID")
+
+# every rule of a model and every rule of an experiment, with its variants
+OF_A_MODEL = {
+    "simc": tuning.simc,
+    "simc, faster": lambda model: tuning.simc(model, c=1.44),
+    **{f"reaction {kind}": lambda m, kind=kind: tuning.ziegler_nichols_reaction(m, kind) for kind in KINDS},
+    **{f"Cohen-Coon {kind}": lambda m, kind=kind: tuning.cohen_coon(m, kind) for kind in KINDS},
+    **{
+        f"ITAE {kind} {mode}": lambda m, kind=kind, mode=mode: tuning.itae(m, kind, mode, extrapolate=True)
+        for kind, mode in itertools.product(("PI", "PID"), ("servo", "regulator"))
+    },
+}
+OF_A_CYCLE = {
+    **{f"ultimate {kind}": lambda Ku, Pu, kind=kind: tuning.ziegler_nichols_ultimate(Ku, Pu, kind) for kind in KINDS},
+    **{f"Good Gain {kind}": lambda Ku, Pu, kind=kind: tuning.good_gain(Ku, Pu, kind) for kind in KINDS},
+    "some overshoot": lambda Ku, Pu: tuning.modified_ziegler_nichols(Ku, Pu, "some"),
+    "no overshoot": lambda Ku, Pu: tuning.modified_ziegler_nichols(Ku, Pu, "none"),
+    "Tyreus-Luyben PI": tuning.tyreus_luyben,
+    "Tyreus-Luyben PID": lambda Ku, Pu: tuning.tyreus_luyben(Ku, Pu, "PID"),
+    "Hang": lambda Ku, Pu: tuning.hang(8 / Ku, Ku, Pu).settings,
+}
+
+
+def times(settings):
+    return settings.Ti, settings.Td
+
+
+def same(one, other):
+    return all(sympy.simplify(a - b) == 0 for a, b in zip(one, other, strict=True) if a != b)
+
+
+# Units: a rule must not know in which unit gain and time are measured.
+
+
+@pytest.mark.parametrize("rule", OF_A_MODEL.values(), ids=OF_A_MODEL)
+@settings(max_examples=20, deadline=None)
+@given(K=GAINS, T=POSITIVE, ratio=RATIOS, scale=GAINS, slower=POSITIVE)
+def test_units_of_a_rule_for_a_model(rule, K, T, ratio, scale, slower):
+    before = rule(Model(K, T, delay=ratio * T))
+    after = rule(Model(scale * K, slower * T, delay=slower * ratio * T))
+    assert same([scale * after.Kp, *times(after)], [before.Kp, slower * before.Ti, slower * before.Td])
+
+
+@pytest.mark.parametrize("rule", OF_A_CYCLE.values(), ids=OF_A_CYCLE)
+@given(Ku=GAINS, Pu=POSITIVE, scale=GAINS, slower=POSITIVE)
+def test_units_of_a_rule_for_an_experiment(rule, Ku, Pu, scale, slower):
+    before, after = rule(Ku, Pu), rule(Ku / scale, slower * Pu)
+    assert (scale * after.Kp, *times(after)) == (before.Kp, slower * before.Ti, slower * before.Td)
+
+
+@pytest.mark.parametrize("rule", OF_A_MODEL.values(), ids=OF_A_MODEL)
+def test_letters_give_the_formula_that_numbers_fit(rule):
+    formula, numbers = rule(first_order(K, T, delay)), {K: -2, T: 10, delay: 3}
+    values = rule(first_order(*numbers.values()))
+    assert same([e.subs(numbers) for e in (formula.Kp, *times(formula))], [values.Kp, *times(values)])
+    assert values.Kp.is_negative
+    assert values.Ti.is_extended_positive
+
+
+@pytest.mark.parametrize("rule", OF_A_CYCLE.values(), ids=OF_A_CYCLE)
+def test_letters_of_an_experiment(rule):
+    formula, values = rule(Ku, Pu), rule(Rational("0.7"), 11)
+    numbers = {Ku: Rational("0.7"), Pu: 11}
+    assert same([e.subs(numbers) for e in (formula.Kp, *times(formula))], [values.Kp, *times(values)])
+
+
+# Limits.
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("rule", [tuning.ziegler_nichols_reaction, tuning.cohen_coon])
+def test_an_endless_lag_is_an_integrator(rule, kind):
+    """With the slope K = gain/T fixed, the settings for a lag become those for an integrator."""
+    lag, endless = rule(first_order(K * T, T, delay), kind), rule(integrator(K, delay), kind)
+    limits = [sympy.limit(e, T, oo) for e in (lag.Kp, *times(lag))]
+    assert same(limits, [endless.Kp, *times(endless)])
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_two_reaction_curve_rules_are_near_for_a_long_lag(kind):
+    process = integrator(1, 1)
+    one, other = tuning.ziegler_nichols_reaction(process, kind), tuning.cohen_coon(process, kind)
+    assert float(other.Kp / one.Kp) == pytest.approx(1, abs=0.13)
+    if kind != "P":
+        assert float(other.Ti / one.Ti) == pytest.approx(1, abs=0.24)
+
+
+@pytest.mark.parametrize(
+    "printed", [sqrt(T / delay), Rational("0.9") * sqrt(T / delay), sqrt(T / delay) + Rational(1, 3)]
+)
+def test_a_root_would_leave_an_integrator_without_control(printed):
+    """Seborg's slides, as extracted, print roots for brackets; K is then the gain of the lag, slope times T."""
+    assert sympy.limit(printed / (K * T), T, oo) == 0
+
+
+@pytest.mark.parametrize("rule", [r for name, r in OF_A_MODEL.items() if "simc" not in name])
+def test_a_vanishing_dead_time_lets_the_gain_grow_without_end(rule):
+    sizes = [rule(Model(1, 1, delay=Rational(1, n))) for n in (10, 100, 1000)]
+    assert sizes[0].Kp < sizes[1].Kp / 5 < sizes[2].Kp / 25
+    assert sizes[0].Td >= sizes[1].Td >= sizes[2].Td
+
+
+def test_skogestad_for_a_lag_becomes_that_for_an_integrator():
+    lag, endless = tuning.simc(first_order(K * T, T, delay), Tc, c), tuning.simc(integrator(K, delay), Tc, c)
+    assert lag.Kp == endless.Kp
+    assert lag.Ti.subs({delay: 1, Tc: 2, c: 4, T: 10**6}) == endless.Ti.subs({delay: 1, Tc: 2, c: 4})
+
+
+def test_skogestad_without_dead_time_is_the_limit():
+    """Table 7.2 is Table 7.1 with a dead time of zero."""
+    for process in (integrator, double_integrator):
+        with_delay, without = tuning.simc(process(K, delay), Tc, c), tuning.simc(process(K), Tc, c)
+        assert same([e.subs(delay, 0) for e in (with_delay.Kp, *times(with_delay))], [without.Kp, *times(without)])
+
+
+# The printed tables.
+
+
+@pytest.mark.parametrize(
+    ("process", "Kp", "Ti", "Td"),
+    [
+        (integrator(K, delay), 1 / (K * (Tc + delay)), c * (Tc + delay), 0),
+        (first_order(K, T, delay), T / (K * (Tc + delay)), Min(T, c * (Tc + delay)), 0),
+        (integrator_with_lag(K, T, delay), 1 / (K * (Tc + delay)), c * (Tc + delay), T),
+        (Model(K, T1, T2, delay), T1 / (K * (Tc + delay)), Min(T1, c * (Tc + delay)), T2),
+        (double_integrator(K, delay), 1 / (4 * K * (Tc + delay) ** 2), 4 * (Tc + delay), 4 * (Tc + delay)),
+    ],
+)
+def test_skogestads_five_rows(process, Kp, Ti, Td):
+    settings = tuning.simc(process, Tc, c)
+    assert settings.form == "serial"
+    assert settings.Ti.equals(Ti)
+    assert same([settings.Kp, settings.Td], [Kp, Td])
+
+
+def test_skogestad_takes_the_dead_time_for_Tc():
+    assert tuning.simc(first_order(1, 1, 0.5), c=2) == PID(1, Ti=1, form="serial")  # Haugen, Example 10.2
+    assert tuning.simc(integrator(K, delay)).Kp == 1 / (2 * K * delay)  # Haugen, equation (10.28)
+
+
+@given(T1=POSITIVE, T2=POSITIVE, delay=POSITIVE, K=GAINS)
+def test_skogestad_cancels_the_smaller_lag(T1, T2, delay, K):
+    """In whatever order the two lags are written."""
+    settings = tuning.simc(second_order(K, T1, T2, delay))
+    assert (settings.Td, settings.Ti) == (min(T1, T2), min(max(T1, T2), 8 * delay))
+    assert settings == tuning.simc(second_order(K, T2, T1, delay))
+    assert settings.Ti == tuning.skogestad_integral_time(max(T1, T2), delay, delay)
+
+
+def test_ziegler_nichols_of_a_reaction_curve():
+    letters = [tuning.ziegler_nichols_reaction(first_order(K, T, delay), kind) for kind in KINDS]
+    gains = [settings.Kp * K for settings in letters]
+    assert same(gains, [T / delay, Rational("0.9") * T / delay, Rational("1.2") * T / delay])
+    assert [times(settings) for settings in letters] == [(oo, 0), (Rational("3.33") * delay, 0), (2 * delay, delay / 2)]
+
+
+def test_cohen_and_coon():
+    r = delay / T
+    P, PI, PID_ = (tuning.cohen_coon(first_order(K, T, delay), kind) for kind in KINDS)
+    printed = [1 / r + Rational(1, 3), Rational("0.9") / r + Rational("0.083"), Rational("1.35") / r + Rational("0.27")]
+    assert same([K * settings.Kp for settings in (P, PI, PID_)], printed)
+    Ti = delay * (Rational("3.33") + Rational("0.33") * r) / (1 + Rational("2.2") * r)
+    assert same([*times(PI), PID_.Ti / T], [Ti, 0, r * (32 + 6 * r) / (13 + 8 * r)])
+    assert same([PID_.Td / T], [Rational("0.37") * r / (1 + Rational("0.2") * r)])
+
+
+@pytest.mark.parametrize(
+    ("mode", "kind", "printed"),
+    [
+        ("regulator", "PI", [(0.859, -0.977), (0.674, -0.680)]),
+        ("regulator", "PID", [(1.357, -0.947), (0.842, -0.738), (0.381, 0.995)]),
+        ("servo", "PI", [(0.586, -0.916), (1.03, -0.165)]),
+        ("servo", "PID", [(0.965, -0.85), (0.796, -0.1465), (0.308, 0.929)]),
+    ],
+)
+def test_the_rows_of_table_12_3(mode, kind, printed):
+    """Three digits and a power law at three dead times; the integral mode of the servo is linear in the dead time."""
+    for r in (0.1, 0.37, 1):
+        settings = tuning.itae(Model(3, 20, delay=20 * r), kind, mode)
+        found = [float(3 * settings.Kp), 20 / float(settings.Ti), float(settings.Td) / 20]
+        expected = [A * r**B for A, B in printed] + [0] * (3 - len(printed))
+        if mode == "servo":
+            expected[1] = printed[1][0] + printed[1][1] * r
+        assert found == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("settings", "Kp", "Ti", "Td"),
+    [
+        (tuning.ziegler_nichols_ultimate(Ku, Pu, "P"), "0.5", None, 0),
+        (tuning.ziegler_nichols_ultimate(Ku, Pu, "PI"), "0.45", "1.2", 0),
+        (tuning.ziegler_nichols_ultimate(Ku, Pu), "0.6", "2", "8"),
+        (tuning.modified_ziegler_nichols(Ku, Pu), "0.33", "2", "3"),
+        (tuning.modified_ziegler_nichols(Ku, Pu, "none"), "0.2", "3", "2"),
+        (tuning.tyreus_luyben(Ku, Pu), "0.31", Rational(1) / Rational("2.2"), 0),
+        (tuning.tyreus_luyben(Ku, Pu, "PID"), "0.45", Rational(1) / Rational("2.2"), "6.3"),
+    ],
+)
+def test_rules_of_the_ultimate_cycle(settings, Kp, Ti, Td):
+    Ti, Td = oo if Ti is None else Pu / Rational(Ti), Pu / Rational(Td) if Td else 0
+    assert settings == PID(Rational(Kp) * Ku, Ti, Td)
+
+
+def test_good_gain():
+    assert tuning.good_gain(1.5, 12) == PID(1.2, Ti=18)  # Haugen, Example 10.1
+    assert tuning.good_gain(1.5, 12, "P") == PID(1.5)
+    assert tuning.good_gain(Ku, Pu, "PID").Td == tuning.good_gain(Ku, Pu).Ti / 4
+
+
+def test_hang_joins_at_the_ends_of_its_ranges():
+    """At k = 2.25 the integral times meet, but the weights, which allow other overshoots, do not."""
+    below, above = (tuning.hang(1, Rational("2.25") + change, 4) for change in (-Rational(1, 10**9), 0))
+    assert float(above.settings.Ti - below.settings.Ti) == pytest.approx(0, abs=1e-8)
+    assert [round(float(w.w_p), 3) for w in (below, above)] == [0.941, 0.739]
+    assert tuning.hang(1, 15, 4).w_p == 0
+
+
+@given(st.fractions(Rational(3, 2), 15, max_denominator=40).map(Rational), POSITIVE)
+def test_hang_of_letters_is_that_of_numbers(k, gain):
+    formula, found = tuning.hang(K, Ku, Pu), tuning.hang(gain, k / gain, 5)
+    numbers = {K: gain, Ku: k / gain, Pu: 5}
+    assert formula.w_p.subs(numbers) == found.w_p
+    assert formula.settings.Ti.subs(numbers) == found.settings.Ti
+    assert sympy.simplify(found.from_setpoint - found.settings.Kp * (found.w_p + 1 / (found.settings.Ti * s))) == 0
+
+
+def test_hang_outside_of_its_range():
+    assert tuning.hang(1, 1, 9, extrapolate=True).settings.Ti == 2  # mu = 4/9
+    assert tuning.hang(1, 20, 9, extrapolate=True).w_p == Rational(-1, 7)
+
+
+# The time constant of the closed loop.
+
+
+def test_guidelines_for_the_closed_loop():
+    process = first_order(K, T, delay)
+    assert tuning.closed_loop_time(process) == delay
+    range_ = tuning.closed_loop_time(process, "rivera")
+    assert (range_.start, range_.end) == (Max(Rational("0.8") * delay, T / 10), oo)
+    assert tuning.closed_loop_time(first_order(1, 20, 4), "chien") == sympy.Interval.open(4, 20)
+    assert 4 in tuning.closed_loop_time(first_order(1, 20, 4), "rivera")
+    assert tuning.closed_loop_time(integrator(1, 3)) == 3
+
+
+@given(T=POSITIVE, delay=POSITIVE)
+def test_skogestads_guideline_is_one_that_rivera_allows_unless_the_lag_is_long(T, delay):
+    allowed = delay in tuning.closed_loop_time(Model(1, T, delay=delay), "rivera")
+    assert bool(allowed) == (delay > T / 10)
+
+
+# A changed process.
+
+
+def test_adjusted_as_the_book_says():
+    """Haugen, Example 10.3: twice the gain halves Kp; twice the dead time halves Kp and doubles Ti."""
+    settings = PID(Rational("0.7"), Ti=9)
+    before = integrator(K, delay)
+    assert tuning.adjusted(settings, before, integrator(2 * K, delay)) == PID(Rational("0.35"), Ti=9)
+    assert tuning.adjusted(settings, before, integrator(K, 2 * delay)) == PID(Rational("0.35"), Ti=18)
+
+
+@settings(deadline=None)
+@given(K=GAINS, T1=POSITIVE, T2=POSITIVE, delay=POSITIVE, scale=POSITIVE, slower=POSITIVE)
+def test_adjusting_skogestads_settings_gives_skogestads_settings(K, T1, T2, delay, scale, slower):
+    before = second_order(K, T1, T2, delay)
+    after = second_order(scale * K, slower * T1, T2, delay)
+    old, new = tuning.simc(before), tuning.simc(after)
+    assert tuning.adjusted(old, before, after) == new
+    assert tuning.adjusted(old.parallel(), before, after) == new.parallel()
+    assert tuning.adjusted(new, after, before) == old
+
+
+@given(K=GAINS, T=POSITIVE, delay=POSITIVE, slower=POSITIVE)
+def test_a_slower_process_makes_every_time_longer(K, T, delay, slower):
+    """Also for a PID controller of a process for which Skogestad's is PI."""
+    settings = PID(3, Ti=4, Td=1, Tf=Rational(1, 10))
+    found = tuning.adjusted(settings, Model(K, T, delay=delay), Model(K, slower * T, delay=slower * delay))
+    assert found == PID(3, slower * 4, slower, slower / 10)
+
+
+def test_adjusted_of_a_P_controller():
+    assert tuning.adjusted(PID(3), integrator(1), integrator(6), Tc=1) == PID(Rational(1, 2))
+
+
+# What is refused.
+
+LAG, LATE = first_order(1, 2), first_order(1, 2, 1)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: tuning.simc(LAG), "no dead time to take Tc from: choose Tc"),
+        (lambda: tuning.simc(LAG, Tc=0), "both 0: expected a positive Tc"),
+        (lambda: tuning.simc(LAG, Tc=-1), "Tc is -1"),
+        (lambda: tuning.simc(LATE, Tc=oo), "Tc is oo"),
+        (lambda: tuning.simc(LATE, c=0), "c is 0: expected a positive number"),
+        (lambda: tuning.simc(2 * exp(-s)), "needs a lag or an integrator.*give it a small lag"),
+        (lambda: tuning.simc(0), "zero"),
+        (lambda: tuning.simc(1 / (s + 1) ** 3, Tc=1), "half_rule"),
+        (lambda: tuning.skogestad_integral_time(-1, 1, 1), "T1 is -1"),
+        (lambda: tuning.skogestad_integral_time(5, 1, oo), "delay is oo"),
+        (lambda: tuning.ziegler_nichols_reaction(LAG), "no dead time: .* infinite gain"),
+        (lambda: tuning.ziegler_nichols_reaction(LATE, "PD"), "kind is 'PD': expected 'P', 'PI', 'PID'"),
+        (lambda: tuning.ziegler_nichols_reaction(second_order(1, 5, 2, 1)), "one lag or integrator .* half_rule"),
+        (lambda: tuning.cohen_coon(exp(-s)), "needs a lag"),
+        (lambda: tuning.cohen_coon(LATE, ["PI"]), "kind is"),
+        (lambda: tuning.itae(LATE, "P"), "kind is 'P': expected 'PI', 'PID'"),
+        (lambda: tuning.itae(LATE, mode="load"), "mode is 'load': expected 'servo', 'regulator'"),
+        (lambda: tuning.itae(integrator(1, 1)), "integrating"),
+        (lambda: tuning.itae(first_order(1, 1, 2)), "delay/T is 2.000: the rule is for 1/10 to 1; extrapolate"),
+        (lambda: tuning.itae(first_order(1, 100, 2)), "delay/T is 0.02"),
+        (lambda: tuning.itae(first_order(1, 1, 7), mode="servo", extrapolate=True), "no positive integral time"),
+        (lambda: tuning.ziegler_nichols_ultimate(0, 1), "Ku is 0: expected a finite gain"),
+        (lambda: tuning.ziegler_nichols_ultimate(float("inf"), 0), "Ku is oo"),
+        (lambda: tuning.ziegler_nichols_ultimate(1, 0), "Pu is 0: expected a positive number"),
+        (lambda: tuning.ziegler_nichols_ultimate(1, -2), "Pu is -2"),
+        (lambda: tuning.ziegler_nichols_ultimate(1, float("nan")), "nan"),
+        (lambda: tuning.modified_ziegler_nichols(1, 1, "little"), "overshoot is 'little': expected 'some', 'none'"),
+        (lambda: tuning.tyreus_luyben(1, 1, "P"), "kind is 'P': expected 'PI', 'PID'"),
+        (lambda: tuning.good_gain(0, 1), "KpGG is 0"),
+        (lambda: tuning.good_gain(1, 0), "Tou is 0"),
+        (lambda: tuning.hang(0, 1, 1), "K is 0"),
+        (lambda: tuning.hang(1, 1, 1), "K.Ku is 1.000: the rule is for 3/2 to 15"),
+        (lambda: tuning.hang(-1, 5, 1), "K.Ku is -5.000"),
+        (lambda: tuning.closed_loop_time(LAG), "no dead time"),
+        (lambda: tuning.closed_loop_time(LATE, "morari"), "guideline is 'morari'"),
+        (lambda: tuning.closed_loop_time(integrator(1, 1), "rivera"), "one lag with dead time"),
+        (lambda: tuning.closed_loop_time(first_order(1, 1, 2), "chien"), "no Tc lies between"),
+        (lambda: tuning.adjusted(PID(1, 2), LATE, integrator(1, 1)), "same kind"),
+        (lambda: tuning.adjusted(PID(1, 2), LAG, LAG), "choose Tc"),
+    ],
+)
+def test_what_is_refused(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()
