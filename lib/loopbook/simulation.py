@@ -94,7 +94,8 @@ def simulate(
     Returns:
         A `Run` with the plant's states, inputs and outputs by their names, and with a controller "setpoint",
         "measurement" (with noise), "ramped" and "filtered" (what the controller makes of the two), and the terms
-            "u_p", "u_i" and "u_d"; with a signal for scheduling that, and the gain "Kp" that is in force.
+            "u_p", "u_i" and "u_d"; with a signal for scheduling that, and of a controller whose settings change its
+            "Kp" and "Ti".
     Raises:
         ValueError: for an unknown or a missing signal, one of the wrong length or with a value that is no finite
             number, a step longer than a dead time, an end that is no whole number of steps away, or a run that grows
@@ -156,6 +157,8 @@ def _fitting_step(plant, controller, step, driven, given, inputs):
         raise ValueError(f"the controller is {controller!r}: expected one such as Controller(PID(2, 10), step=1)")
     if given["setpoint"] is None:
         raise ValueError("the setpoint is missing: expected a signal for the controller to follow")
+    if given["scheduling"] is not None and not hasattr(controller, "schedule"):
+        raise ValueError(f"scheduling is given, but {controller!r} has no gain schedule")
     if driven in inputs:
         raise ValueError(f"{driven} is given, but it is the controller that sets it")
     if step is not None and step != controller.step:
@@ -221,7 +224,7 @@ class _Loop:
         if hasattr(self.controller, "terms"):
             now["ramped"], now["filtered"] = self.controller.setpoint, self.controller.filtered
             now["u_p"], now["u_i"], now["u_d"] = self.controller.terms
-            now |= more | ({"Kp": self.controller.Kp} if more else {})
+        now |= more | {name: getattr(self.controller, name) for name in getattr(self.controller, "recorded", ())}
         for signal, value in now.items():
             self.record.setdefault(signal, []).append(value)
         return float(u)

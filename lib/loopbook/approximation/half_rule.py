@@ -1,5 +1,6 @@
 """Skogestad's half rule, and his rules for zeros: from a process with many lags to a simple model."""
 
+import math
 from typing import NamedTuple
 
 import sympy
@@ -29,15 +30,14 @@ def half_rule(H, order=1, Tc=None, largest_first=None):
             form, or of python-control.
         order: 1 keeps one lag, 2 keeps two; an integrator counts as an infinite lag.
         Tc: closed-loop time-constant for which the model is meant; the rules for zeros compare with it. Without it, it
-            is the effective dead time, which is then found together with the model. The search begins at the dead time
-            of the process itself, because the fastest control that agrees with the rules is wanted.
+            is the effective dead time of the model itself.
         largest_first: lags with letters, sorted, where the letters leave their order open.
     Returns:
         The model; its `steps` say which rule did what.
     Raises:
         ValueError: for poles in the right half-plane, complex poles or zeros, several dead times, more zeros than
             poles, a zero or several poles too many at the origin, lags of unknown order, or where the rules for zeros
-            find no dead time that agrees with itself.
+            are made for a dead time and give none that agrees with it, or several: then say Tc.
     Source: Skogestad, slides on the half rule and on the approximation of zeros.
 
     >>> half_rule(1 / ((s + 1) * (0.6 * s + 1)))
@@ -69,18 +69,20 @@ def half_rule(H, order=1, Tc=None, largest_first=None):
     if letters := sorted({str(x) for T in [*lags, *lifting, delay] for x in T.free_symbols}):
         raise ValueError(f"the rules for the zeros of {H} compare times: give numbers for {', '.join(letters)}")
 
-    def made_for(Tc):
-        return _without_zeros(process.K, lags, sorted(lifting, reverse=True), delay, order, steps, Tc)
-
-    if Tc is not None:
+    lifting.sort(reverse=True)
+    if Tc is None:
+        found = _for_itself(lags, lifting, delay, order)
+        if len(found) != 1:
+            what = " and ".join(map(str, found)) + " agree with themselves" if found else "none agrees with itself"
+            raise ValueError(f"the rules for the zeros of {H} leave the dead time of the model open: {what}; say Tc")
+        Tc = found[0]
+    else:
         Tc = exact(Tc)
         if not Tc.is_number or not Tc.is_positive:
             raise ValueError(f"Tc is {Tc}: expected a positive number")
-        return made_for(Tc)
-    model = _for_itself(made_for, delay)
-    if model is None:
-        raise ValueError(f"the rules for the zeros of {H} find no dead time that agrees with itself: say Tc")
-    return model
+    lags, applied = _without_zeros(lags, lifting, Tc)
+    steps += [Step(rule, _factor(T0) / _factor(lag), gain / _factor(left)) for rule, T0, lag, gain, left in applied]
+    return _halved(process.K * sympy.Mul(*(gain for _, _, _, gain, _ in applied)), lags, delay, order, steps)
 
 
 def zero_rule(T0, lag, Tc):
@@ -110,15 +112,15 @@ def zero_rule(T0, lag, Tc):
 def _rule(T0, lag, Tc):
     """The name of the rule, the gain, and the lag that remains. Of an integrator, the slope stands for the gain."""
     if T0 >= lag >= Tc:
-        return "T1", T0 / lag, sympy.S.Zero
+        return "T1", T0 / lag, 0
     if T0 >= Tc >= lag:
-        return "T1a", T0 / Tc, sympy.S.Zero
+        return "T1a", T0 / Tc, 0
     if lag <= T0:
-        return "T1b", sympy.S.One, sympy.S.Zero
-    scale = sympy.S.One if lag == sympy.oo else lag
+        return "T1b", 1, 0
+    scale = 1 if lag == sympy.oo else lag
     if 5 * Tc <= T0:
-        return "T2", T0 / scale, sympy.S.Zero
-    shorter = sympy.Min(lag, 5 * Tc)
+        return "T2", T0 / scale, 0
+    shorter = min(lag, 5 * Tc)
     return "T3", shorter / scale, shorter - T0
 
 
@@ -132,49 +134,60 @@ def _neighbour(T0, lags):
     smaller = max((T for T in lags if T < T0), default=None)
     if larger is None or smaller is None:
         return smaller if larger is None else larger
-    return smaller if T0 / smaller < min(larger / T0, sympy.Rational(8, 5)) else larger
+    return smaller if T0 / smaller < larger / T0 and 8 * smaller > 5 * T0 else larger
 
 
-def _for_itself(reduced, guess):
-    """The model whose own dead time is the one that it is made for, or None.
-
-    The dead time of the model is piecewise linear in the one it is made for. So from each point on the way of a simple
-    iteration, one step of Newton's method ends on the solution, if it lies on the same piece.
-    """
-    seen = []
-    while guess not in seen and len(seen) < 50:
-        seen.append(guess)
-        found = reduced(guess).delay
-        near = guess + (guess or 1) / 10**9
-        slope = (reduced(near).delay - found) / (near - guess)
-        for candidate in (guess, guess + (found - guess) / (1 - slope) if slope != 1 else found):
-            if candidate >= 0 and abs((model := reduced(candidate)).delay - candidate) <= 1e-12 * candidate:
-                return model
-        guess = found
-    return None
-
-
-def _without_zeros(K, lags, zeros, delay, order, steps, Tc):
-    """The model after the rules for zeros, made for Tc."""
-    lags, steps = list(lags), list(steps)
+def _without_zeros(lags, zeros, Tc):
+    """The lags that the rules for zeros leave, the largest first, and what each rule did."""
+    lags, applied = list(lags), []
     for T0 in zeros:
         lag = _neighbour(T0, lags)
         lags.remove(lag)
         rule, gain, left = _rule(T0, lag, Tc)
-        steps.append(Step(rule, _factor(T0) / _factor(lag), gain / _factor(left)))
-        K *= gain
+        applied.append((rule, T0, lag, gain, left))
         lags += [left] if left != 0 else []
-    return _halved(K, sorted(lags, reverse=True), delay, order, steps)
+    return sorted(lags, reverse=True), applied
+
+
+def _for_itself(lags, zeros, delay, order):
+    """The dead times for which the model that is made for one has that one, and to which an iteration would return.
+
+    The dead time of the model is piecewise linear in the one it is made for. So from a point on the right piece, one
+    step of Newton's method ends on the solution: the search visits many points, and exact numbers have the last word.
+    """
+
+    def effective(Tc, lags, zeros, delay):
+        neglected = _without_zeros(lags, zeros, Tc)[0][order:]
+        return delay + sum(neglected) - (neglected[0] / 2 if neglected else 0)
+
+    def solution(Tc, *process):
+        """A dead time that agrees with itself if it is on the piece of Tc; None if an iteration would leave it."""
+        found = effective(Tc, *process)
+        near = Tc + (Tc or 1) / 10**6
+        slope = (effective(near, *process) - found) / (near - Tc)
+        return Tc + (found - Tc) / (1 - slope) if abs(slope) < 1 else None
+
+    rough = [float(T) for T in lags], [float(T) for T in zeros], float(delay)
+    end = rough[2] + sum(T for T in (*rough[0], *rough[1]) if math.inf > T)
+    points = []
+    for Tc in [0.0, *(end * 1.05**-k for k in range(200))]:
+        point = solution(Tc, *rough)
+        agrees = point is not None and point >= 0 and abs(effective(point, *rough) - point) <= 1e-9 * end
+        if agrees and all(abs(point - other) > 1e-6 * end for other in points):
+            points.append(point)
+    exactly = (solution(sympy.Rational(point), lags, zeros, delay) for point in sorted(points))
+    return [sympy.sympify(Tc) for Tc in exactly if Tc is not None]
 
 
 def _halved(K, lags, delay, order, steps):
     """The model that the half rule makes of lags, the largest first."""
     kept, (half, *small) = lags[:order], lags[order:] or [sympy.S.Zero]
-    steps = list(steps)
     if half != 0:
         last = kept[-1] + half / 2
         before = 1 / (_factor(kept[-1]) * _factor(half))
-        steps.append(Step("half rule", before, dead_time(half / 2) / _factor(last)))
+        steps = [*steps, Step("half rule", before, dead_time(half / 2) / _factor(last))]
         kept[-1] = last
-    steps += [Step("small lag", 1 / _factor(T), dead_time(T)) for T in small]
+    steps = [*steps, *(Step("small lag", 1 / _factor(T), dead_time(T)) for T in small)]
+    if order == 2 and len(kept) == 2 and kept[0] != sympy.oo and (kept[1] - kept[0]).is_positive:
+        kept.reverse()  # the lag that grew may be the larger one now
     return Model(K, *kept, delay=delay + half / 2 + sympy.Add(*small), steps=tuple(steps))

@@ -1,5 +1,6 @@
 """Models and settings from experiments: step responses, logged data, a relay, a P controller, and data as they come."""
 
+from loopbook.identification.adaptive import AdaptiveController
 from loopbook.identification.fitting import Fit, fit
 from loopbook.identification.good_gain import GoodGain, good_gain_experiment, swing
 from loopbook.identification.recursive import RecursiveLeastSquares, first_order_of
@@ -8,6 +9,7 @@ from loopbook.identification.schedule import GainSchedule, ScheduledController
 from loopbook.identification.steps import first_order_from_step, integrator_from_step
 
 __all__ = [
-    "Fit", "GainSchedule", "GoodGain", "LimitCycle", "RecursiveLeastSquares", "Relay", "first_order_from_step",
-    "first_order_of", "fit", "good_gain_experiment", "integrator_from_step", "ScheduledController", "oscillation", "relay_experiment", "swing",
+    "AdaptiveController", "Fit", "GainSchedule", "GoodGain", "LimitCycle", "RecursiveLeastSquares", "Relay",
+    "ScheduledController", "first_order_from_step", "first_order_of", "fit", "good_gain_experiment",
+    "integrator_from_step", "oscillation", "relay_experiment", "swing",
 ]  # fmt: skip

@@ -167,7 +167,5 @@ def _described(p, regressors, target, times, y, kind):
     if integrators:
         rounded = {"T2": rounded.pop("T1", sympy.S.Zero), "T1": sympy.oo} | rounded
         named = {("T2" if name == "T1" else name): value for name, value in named.items()}
-    return Fit(
-        Model(**rounded), kind, named, dict(zip(named, map(float, errors), strict=False)), math.sqrt(variance), times, y,
-        y - left,
-    )  # fmt: skip
+    errors = dict(zip(named, map(float, errors), strict=False))
+    return Fit(Model(**rounded), kind, named, errors, math.sqrt(variance), times, y, fitted + (y - target))

@@ -101,12 +101,13 @@ def relay_experiment(process, amplitude=1, hysteresis=0, periods=6):
     times = times[times <= switches[-1]]
     y = output(times)
     last = times >= switches[-3]
-    a = (_peak(output, times[last], y[last]) - -_peak(lambda t: -output(t), times[last], -y[last])) / 2
+    a = (_peak(output, times[last], y[last]) + _peak(lambda t: -output(t), times[last], -y[last])) / 2
     if h > a:
         raise ValueError(f"the hysteresis {h:g} is larger than the amplitude {a:g}")
     u = d * numpy.array(signs)[numpy.searchsorted(switches, times, side="right") - 1]
+    a = float(a)
     Ku, phase = 4 * d / (math.pi * a), -180 + math.degrees(math.asin(min(h / a, 1)))
-    return LimitCycle(Ku, Pu, float(a), phase, times, u, y, numpy.array(switches[1:]))
+    return LimitCycle(Ku, Pu, a, phase, times, u, y, numpy.array(switches[1:]))
 
 
 def _expected_period(system, d, h):
@@ -243,6 +244,6 @@ def oscillation(times, u, y, hysteresis=0):
     phase = numpy.arange(count) / count
     periods = [numpy.interp(a + phase * (b - a), times, y) for a, b in itertools.pairwise(times[up])]
     mean = numpy.mean(periods, axis=0)
-    a, d = (mean.max() - mean.min()) / 2, (high - low) / 2
+    a, d = float(mean.max() - mean.min()) / 2, float(high - low) / 2
     angle = -180 + math.degrees(math.asin(min(float(hysteresis) / a, 1)))
-    return LimitCycle(4 * d / (math.pi * a), Pu, float(a), angle, times, u, y, times[1:][numpy.diff(u) != 0])
+    return LimitCycle(4 * d / (math.pi * a), float(Pu), a, angle, times, u, y, times[1:][numpy.diff(u) != 0])

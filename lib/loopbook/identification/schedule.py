@@ -117,6 +117,8 @@ class ScheduledController(Controller):
     [54.0, 54.0, 55.0]
     """
 
+    recorded = ("Kp", "Ti")  # what a simulation notes besides the signals
+
     def __init__(self, schedule, step, **options):
         if not isinstance(schedule, GainSchedule):
             raise ValueError(f"the schedule is {schedule!r}: expected a GainSchedule")

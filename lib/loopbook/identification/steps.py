@@ -15,8 +15,8 @@ def first_order_from_step(times, y, U=1, at=0, delay_by="tangent"):
 
     The gain is the final change of y divided by that of the control signal. The dead time is where the steepest slope
     leaves the initial level ("tangent"), and the lag the time from there to 63 % of the final change. Two points of the
-    curve say both without a slope ("two points"): 63 % is reached one lag after the dead time, 28 % a third of one. Both
-    are read between samples by straight lines. Of noisy data, `fit` makes more.
+    curve say both without a slope ("two points"): 63 % is reached one lag after the dead time, 28 % a third of one.
+    Between samples the response is read by straight lines. Of noisy data, `fit` makes more.
 
     Arguments:
         times, y: the record, two arrays; it begins before the step and ends at rest.
@@ -36,7 +36,7 @@ def first_order_from_step(times, y, U=1, at=0, delay_by="tangent"):
     >>> y = System(2 * sympy.exp(-3 * s) / (8 * s + 1)).step(times)
     >>> model = first_order_from_step(times, y)
     >>> [round(float(x), 2) for x in (model.K, model.T1, model.delay)]
-    [2.0, 7.99, 3.0]
+    [2.0, 7.98, 3.0]
     """
     import numpy
 

@@ -1,0 +1,68 @@
+"""An adaptive controller: its settings follow from a model that is estimated while it works. (Haugen, Figure 10.18)"""
+
+from loopbook.identification.recursive import RecursiveLeastSquares, first_order_of
+from loopbook.pid import Controller
+from loopbook.tuning import simc
+
+
+class AdaptiveController(Controller):
+    """The practical PI controller with Skogestad's settings for a lag with dead time that it estimates itself.
+
+    At each sample it compares the measurement with what the last ones and its own control signal let it expect,
+    y[k+1] = a y[k] + b u[k-n] + c, and corrects a, b and c by recursive least squares. They give gain and lag; the dead
+    time is known, to whole steps of n. Each time that a new model makes sense (0 < a < 1, and b of the sign of Kp), the
+    settings follow it. Noise makes a too small, as in every equation that has the measurement on its right hand side.
+
+    Arguments:
+        settings: at the beginning, a `PID`.
+        step: time between two samples.
+        delay: the dead time of the process, known, rounded to whole steps.
+        Tc, c: as for `tuning.simc`.
+        forgetting: forgetting factor of the estimator.
+        wait: how many samples pass before the settings follow the model for the first time.
+        options: as of `Controller`.
+    Attributes:
+        model: the last `Model` that makes sense; None before the first one.
+        estimator: the `RecursiveLeastSquares`.
+
+    >>> from loopbook.pid import PID
+    >>> controller = AdaptiveController(PID(1, Ti=10), step=1, delay=3)
+    >>> controller.model is None
+    True
+    """
+
+    recorded = ("Kp", "Ti")  # what a simulation notes besides the signals
+
+    def __init__(self, settings, step, delay, Tc=None, c=4, forgetting=0.99, wait=20, **options):
+        super().__init__(settings, step, **options)
+        if not float(delay) >= 0:
+            raise ValueError(f"the dead time is {delay}: expected a time that is not negative")
+        self.whole_delay = round(float(delay) / self.step)
+        self.Tc, self.c, self.wait = Tc, c, wait
+        self.estimator = RecursiveLeastSquares(3, forgetting)
+        self.model, self.last, self.inputs = None, None, []
+
+    def update(self, setpoint, measurement, feedforward=0.0, manual=None):
+        """Take the signals of this sample, learn from them, and return the control signal."""
+        y, known = float(measurement), self.inputs
+        if len(known) > self.whole_delay:
+            self.estimator.update([self.last, known[-1 - self.whole_delay], 1.0], y)
+            self.wait -= 1
+            if self.wait <= 0:
+                self._follow()
+        self.last = y
+        u = super().update(setpoint, measurement, feedforward, manual)
+        self.inputs = [*known[-self.whole_delay - 1 :], u]
+        return u
+
+    def _follow(self):
+        a, b, _ = self.estimator.parameters
+        if 0 < a < 1 and b * self.Kp > 0:
+            self.model = first_order_of(a, b, self.step, self.whole_delay)
+            self.change(simc(self.model, self.Tc, c=self.c))
+
+    def take_over(self, other):
+        super().take_over(other)
+        if isinstance(other, AdaptiveController):
+            self.estimator, self.model = other.estimator, other.model
+            self.last, self.inputs, self.wait = other.last, other.inputs, other.wait
