@@ -104,6 +104,7 @@ ORDER = [
     ["expressions"],
     ["laplace"],
     ["transfer"],
+    ["oscillation"],
     ["approximation"],
     ["scaling"],
     ["pid"],

@@ -22,7 +22,7 @@ from loopbook.laplace import (
 
 __all__ = [
     "characteristic_polynomial", "dead_time", "double_integrator", "feedback", "first_order", "impulse_response",
-    "initial_gain", "integrator", "integrator_with_lag", "order", "parallel", "poles", "polynomials", "response",
+    "initial_gain", "initial_slope", "integrator", "integrator_with_lag", "order", "parallel", "poles", "polynomials", "response",
     "response_time", "second_order", "series", "static_gain", "step_response", "time_constant_form",
     "transfer_function", "transfer_functions", "zero_pole_form", "zero_pole_gain", "zeros",
 ]  # fmt: skip
@@ -358,6 +358,22 @@ def initial_gain(H):
     3
     """
     return sympy.limit(function_of(s, H), s, sympy.oo)
+
+
+def initial_slope(H):
+    """Return the slope of the unit step response right after the step: the limit of s*(H(s) - H(oo)) for infinite `s`.
+
+    It is zero before a dead time is over, and where H has two poles more than zeros.
+
+    Raises ValueError for an improper transfer function, whose step response begins with an impulse.
+
+    >>> initial_slope(first_order(2, 10))
+    1/5
+    """
+    jump = initial_gain(H)
+    if jump.is_infinite:
+        raise ValueError(f"{H} is improper: expected no more zeros than poles")
+    return sympy.limit(sympy.cancel(s * (function_of(s, H) - jump)), s, sympy.oo)
 
 
 def zero_pole_gain(H):

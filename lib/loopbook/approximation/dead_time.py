@@ -1,5 +1,7 @@
 """Dead time as a fraction of polynomials: Taylor, Pade, and the repeated Pade approximation of first order."""
 
+import operator
+
 import sympy
 
 from loopbook.expressions import s
@@ -21,10 +23,10 @@ def taylor(H, order=1, inverted=False):
     >>> taylor(sympy.exp(-3 * s)), taylor(sympy.exp(-3 * s), inverted=True)
     (1 - 3*s, 1/(3*s + 1))
     """
-    sign = 1 if inverted else -1
+    sign, n = 1 if inverted else -1, whole(order)
 
     def polynomial(delay):
-        return sum((sign * delay * s) ** k / sympy.factorial(k) for k in range(_degree(order) + 1)) ** -sign
+        return sum((sign * delay * s) ** k / sympy.factorial(k) for k in range(n + 1)) ** -sign
 
     return _without_dead_time(H, polynomial)
 
@@ -43,10 +45,10 @@ def pade(H, order=1):
     >>> pade(sympy.exp(-2 * s), order=2)
     (s**2/3 - s + 1)/(s**2/3 + s + 1)
     """
+    n = whole(order)
+    share = [sympy.binomial(n, k) / sympy.ff(2 * n, k) for k in range(n + 1)]
 
     def fraction(delay):
-        n = _degree(order)
-        share = [sympy.binomial(n, k) / sympy.ff(2 * n, k) for k in range(n + 1)]
         above, below = (sum(c * (sign * delay * s) ** k for k, c in enumerate(share)) for sign in (-1, 1))
         return above / below
 
@@ -69,16 +71,31 @@ def repeated_pade(H, order):
     >>> repeated_pade(sympy.exp(-2 * s), order=2)
     (1 - s/2)**2/(s/2 + 1)**2
     """
-    n = _degree(order)
+    n = whole(order)
     return _without_dead_time(H, lambda delay: ((1 - delay * s / (2 * n)) / (1 + delay * s / (2 * n))) ** n)
 
 
 def _without_dead_time(H, approximation):
-    rational, delays = without_delays(transfer_function(H))
+    H = transfer_function(H)
+    rational, delays = without_delays(H)
+    shortest = [_shortest(part, delays) for part in sympy.fraction(sympy.together(rational))]
+    if (shortest[0] - shortest[1]).is_negative:
+        raise ValueError(f"{H} comes before its input: expected dead times exp(-delay*s) that are not negative")
     return rational.xreplace({letter: approximation(delay) for letter, delay in delays.items()})
 
 
-def _degree(order):
-    if not isinstance(order, int) or isinstance(order, bool) or order < 1:
+def _shortest(part, delays):
+    """The shortest dead time among the terms of a polynomial in letters that stand for dead times."""
+    powers = sympy.Poly(part, *delays).monoms() if delays else [()]
+    return sympy.Min(*(sympy.Add(*(n * d for n, d in zip(term, delays.values(), strict=True))) for term in powers))
+
+
+def whole(order):
+    """An order as an integer."""
+    try:
+        number = operator.index(order)
+    except TypeError:
+        number = 0
+    if number < 1 or isinstance(order, bool):
         raise ValueError(f"order is {order!r}: expected a whole number of at least 1")
-    return order
+    return number

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import sympy
 
+from loopbook.approximation.dead_time import whole
 from loopbook.approximation.model import Model, factors, sort_lags
 from loopbook.expressions import exact, s
 from loopbook.transfer import dead_time
@@ -45,8 +46,10 @@ def half_rule(H, order=1, Tc=None, largest_first=None):
     >>> half_rule(5 / (s * (3 * s + 1)))
     Model(K=5, T1=oo, delay=3/2)
     """
-    if order not in (1, 2):
-        raise ValueError(f"order is {order!r}: expected 1 or 2")
+    if (order := whole(order)) > 2:
+        raise ValueError(f"order is {order}: expected 1 or 2")
+    if Tc is not None:
+        Tc = _time("Tc", Tc)
     H, delay, process = factors(H)
     if len(process.zeros) > len(process.lags):
         raise ValueError(f"{H} has more zeros than poles: expected at least as many poles")
@@ -76,10 +79,6 @@ def half_rule(H, order=1, Tc=None, largest_first=None):
             what = " and ".join(map(str, found)) + " agree with themselves" if found else "none agrees with itself"
             raise ValueError(f"the rules for the zeros of {H} leave the dead time of the model open: {what}; say Tc")
         Tc = found[0]
-    else:
-        Tc = exact(Tc)
-        if not Tc.is_number or not Tc.is_positive:
-            raise ValueError(f"Tc is {Tc}: expected a positive number")
     lags, applied = _without_zeros(lags, lifting, Tc)
     steps += [Step(rule, _factor(T0) / _factor(lag), gain / _factor(left)) for rule, T0, lag, gain, left in applied]
     return _halved(process.K * sympy.Mul(*(gain for _, _, _, gain, _ in applied)), lags, delay, order, steps)
@@ -101,12 +100,17 @@ def zero_rule(T0, lag, Tc):
     >>> zero_rule(15, 20, Tc=0.15)
     Step(rule='T2', before=(15*s + 1)/(20*s + 1), after=3/4)
     """
-    T0, lag, Tc = exact(T0), exact(lag), exact(Tc)
-    for name, value in (("T0", T0), ("lag", lag), ("Tc", Tc)):
-        if not value.is_number or not value.is_extended_real or value < 0 or (value == 0 and name != "Tc"):
-            raise ValueError(f"{name} is {value}: expected a positive number, because the rules compare")
+    T0, lag, Tc = _time("T0", T0), _time("lag", lag, sympy.oo), _time("Tc", Tc, sympy.S.Zero)
     rule, gain, left = _rule(T0, lag, Tc)
     return Step(rule, (T0 * s + 1) / _factor(lag), gain / _factor(left))
+
+
+def _time(name, value, allowed=None):
+    """A positive finite number, or the one other that is allowed."""
+    value = exact(value)
+    if not value.is_number or (not value.is_positive and value != allowed):
+        raise ValueError(f"{name} is {value}: expected a positive number")
+    return value
 
 
 def _rule(T0, lag, Tc):

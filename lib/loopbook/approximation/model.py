@@ -1,5 +1,6 @@
 """The simple model that tuning rules start from: a gain, one or two lags, and a dead time."""
 
+import itertools
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -41,13 +42,15 @@ class Model:
         for name in ("K", "T1", "T2", "delay"):
             value = exact(getattr(self, name))
             object.__setattr__(self, name, value)
+            if {"s", "t"} & {letter.name for letter in value.free_symbols}:
+                raise ValueError(f"{name} is {value}: expected a number or a letter other than s and t")
             if (value.is_real is False and value != sympy.oo) or (value.is_infinite and name in ("K", "delay")):
                 raise ValueError(f"{name} is {value}: expected a finite real number")
             if name != "K" and value.is_negative:
                 raise ValueError(f"{name} is {value}: expected a time that is not negative")
         if self.K == 0:
             raise ValueError("K is 0: expected a gain that is not zero")
-        if sympy.oo != self.T1 and (self.T2 - self.T1).is_positive:
+        if sympy.oo != self.T1 and (self.T2 - self.T1).is_extended_positive:
             raise ValueError(f"T1 is {self.T1} and T2 is {self.T2}: expected the larger lag first")
 
     @property
@@ -121,15 +124,22 @@ def sort_lags(times, given):
         given = [exact(T) for T in given]
         if sympy.oo in times:
             given = [sympy.oo] * (times.count(sympy.oo)) + [T for T in given if sympy.oo != T]
-        if sorted(given, key=str) != sorted(times, key=str):
-            raise ValueError(f"largest_first is {given}: expected the lags {times} in another order")
+        contradicted = any((after - before).is_extended_positive for before, after in itertools.pairwise(given))
+        if contradicted or sorted(given, key=str) != sorted(times, key=str):
+            raise ValueError(f"largest_first is {given}: expected the lags {times}, the largest first")
         return given
     rest, found = list(times), []
     while rest:
-        largest = [T for T in rest if all(other == T or (T - other).is_extended_nonnegative for other in rest)]
+        largest = [T for T in rest if all(other == T or _not_smaller(T, other) for other in rest)]
         if not largest:
             names = ", ".join(sorted(map(str, rest)))
             raise ValueError(f"which of the lags {names} is the largest is not known: say it with largest_first")
         rest.remove(largest[0])
         found.append(largest[0])
     return found
+
+
+def _not_smaller(one, other):
+    difference = one - other
+    known = difference.is_extended_nonnegative
+    return sympy.factor(difference).is_extended_nonnegative if known is None else known

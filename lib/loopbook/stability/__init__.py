@@ -9,11 +9,12 @@ from loopbook.stability.counting import StabilityLimitError, is_stable, unstable
 from loopbook.stability.limits import boundary_pi, boundary_pi_approximate, boundary_pid, ultimate
 from loopbook.stability.maps import stability_map
 from loopbook.stability.margins import Margins, delay_margin, margins
+from loopbook.stability.poles import dominant_poles
 from loopbook.stability.robustness import DelayRatios, robustness, robustness_pi_first_order
 from loopbook.stability.window import robust_in_window, shinskey_window
 
 __all__ = [
     "DelayRatios", "Margins", "StabilityLimitError", "boundary_pi", "boundary_pi_approximate", "boundary_pid",
-    "delay_margin", "is_stable", "margins", "robust_in_window", "robustness", "robustness_pi_first_order",
+    "delay_margin", "dominant_poles", "is_stable", "margins", "robust_in_window", "robustness", "robustness_pi_first_order",
     "shinskey_window", "stability_map", "ultimate", "unstable_poles", "unstable_roots",
 ]  # fmt: skip

@@ -1,0 +1,141 @@
+"""The dominant poles of a closed loop with dead time: those with the largest real parts, of infinitely many."""
+
+import math
+
+from loopbook.stability.counting import ENDLESS, ON_LIMIT, characteristic, count_roots, open_loop
+from loopbook.stability.sums import Sums, prevailing
+
+
+def dominant_poles(loop, count=2):
+    """Return the poles of the closed loop with the largest real parts, for negative feedback around a loop.
+
+    Newton's method finds them, from many points at once. That none is missing is proved: the argument principle counts
+    the poles to the right of a line, and the search goes on until it has as many.
+
+    Arguments:
+        loop: the open loop, as for `unstable_poles`.
+        count: how many poles; a loop without dead time may have fewer, and a complex pair is never divided.
+    Returns:
+        Complex numbers, sorted: the largest real part first, and of a pair the positive imaginary part first. A pole
+        stands there as often as it occurs.
+    Raises:
+        ValueError: as `unstable_poles`; for a count that is no positive integer; or where the loop's gain at high
+            frequencies returns with a dead time, so that an endless row of poles comes before the last one wanted.
+
+    >>> import sympy
+    >>> from loopbook import s
+    >>> [complex(round(p.real, 4), round(p.imag, 4)) for p in dominant_poles(sympy.exp(-s) / s)]
+    [(-0.3181+1.3372j), (-0.3181-1.3372j)]
+    """
+    import numpy
+
+    if not isinstance(count, int) or isinstance(count, bool) or count < 1:
+        raise ValueError(f"count is {count!r}: expected a positive integer")
+    L = open_loop(loop)
+    parts = {delay: part for delay, part in characteristic(L).items() if not part.is_zero}
+    order = parts[0].degree()
+    if not order and len(parts) == 1:
+        return []
+    sums = Sums.exact(parts, order, parts[0].LC())
+    longest = float(sums.delays.max())
+    unit = 1 / longest if longest else float(prevailing(sums.coefficients)[0])
+    right, left, most = _strip(sums, unit, count if longest else min(count, order), L)
+    found = _inside(sums, left, right, most)
+    upper = [p for p in found if p.imag >= 0]
+    poles = [q for p in sorted(upper, key=lambda p: (-p.real, p.imag)) for q in ([p, p.conjugate()] if p.imag else [p])]
+    end = count + 1 if len(poles) > count and poles[count - 1].imag > 0 else count
+    return [complex(numpy.complex128(p)) for p in poles[:end]]
+
+
+def _strip(sums, unit, count, L):
+    """Real parts right and left of the poles that are wanted, and how many lie between them."""
+    right, left = 0.37 * unit, -0.63 * unit
+    while _right_of(sums, right):
+        right *= 2
+    while (most := _right_of(sums, left)) < count:
+        left *= 2
+    inner = right
+    for _ in range(12):  # as few more as possible
+        middle = (inner + left) / 2
+        if (between := _right_of(sums, middle)) < count:
+            inner = middle
+        else:
+            left, most = middle, between
+    if most == ENDLESS:
+        raise ValueError(f"an endless row of poles of the closed loop of {L} comes before the {count} that are wanted")
+    return right, left, most
+
+
+def _right_of(sums, real_part):
+    """The number of roots to the right of a line, which moves a little to the left if some lie on it."""
+    for _ in range(5):
+        number = int(count_roots(_shifted(sums, real_part))[0])
+        if number != ON_LIMIT:
+            return number
+        real_part -= 1e-7 * abs(real_part)
+    raise ValueError(f"roots lie too close to the line of the real part {real_part:g}")
+
+
+def _shifted(sums, real_part):
+    """The sums as functions of s - real_part."""
+    import numpy
+
+    powers = range(sums.order + 1)
+    shift = [[math.comb(n, k) * real_part ** (n - k) if n >= k else 0.0 for n in powers] for k in powers]
+    coefficients = numpy.einsum("kn,pnx->pkx", numpy.array(shift, dtype=float), sums.coefficients)
+    return Sums(coefficients * numpy.exp(-sums.delays * real_part)[:, None], sums.delays)
+
+
+def _inside(sums, left, right, most):
+    """The `most` roots with real parts from left to right, by Newton's method from a grid that becomes finer."""
+    import numpy
+
+    top = float(prevailing(_shifted(sums, left).coefficients)[0])
+    derivative = sums.derivative()
+    for refinement in (1, 4, 16):
+        rows = refinement * (20 + int(top * float(sums.delays.max()) + 8 * sums.order))
+        x, y = numpy.meshgrid(numpy.linspace(left, right, 6 * refinement), numpy.linspace(0, top, min(rows, 20_000)))
+        roots = _newton(sums, derivative, (x + 1j * y).ravel())
+        roots = roots[(roots.real > left) & (roots.real < right) & (roots.imag > -1e-9 * top)]
+        distinct = []
+        for p in roots[numpy.argsort(abs(roots))]:
+            if all(abs(p - q) > 1e-6 * max(abs(p), 1e-3 * top) for q in distinct):
+                distinct.append(complex(p.real, 0.0 if abs(p.imag) < 1e-8 * max(abs(p), 1e-3 * top) else p.imag))
+        found = [p for p in distinct for _ in range(_multiplicity(sums, derivative, p, distinct, top))]
+        if sum(2 if p.imag else 1 for p in found) == most:
+            return found
+    raise ValueError(f"{most} poles are known to lie right of {left:g}, but {len(found)} of them were found")
+
+
+def _newton(sums, derivative, points):
+    import numpy
+
+    with numpy.errstate(all="ignore"):
+        for _ in range(60):
+            change = _value(sums, points) / _value(derivative, points)
+            points = points - change
+            points = points[numpy.isfinite(points)]
+            if not len(points) or (abs(change) <= 1e-14 * (1 + abs(change.real))).all():
+                break
+        rest = abs(_value(sums, points) / _value(derivative, points))
+    # at a double root Newton's steps stay long for a while
+    return points[rest <= 1e-6 * (abs(points) + 1e-12)]
+
+
+def _value(sums, points):
+    import numpy
+
+    total = 0
+    for part, delay in zip(sums.coefficients[..., 0], sums.delays[:, 0], strict=True):
+        total = total + numpy.polynomial.polynomial.polyval(points, part) * numpy.exp(-delay * points)
+    return total
+
+
+def _multiplicity(sums, derivative, root, others, top):
+    """How often a root occurs: the turns of the phase on a circle around it that leaves out the others."""
+    import numpy
+
+    apart = min((min(abs(root - p), abs(root - p.conjugate()) or math.inf) for p in others if p != root), default=top)
+    circle = min(apart, 1e-2 * top) / 3 * numpy.exp(2j * math.pi * numpy.arange(64) / 64)
+    turns = _value(derivative, root + circle) / _value(sums, root + circle) * circle
+    return max(1, round(float(turns.mean().real)))

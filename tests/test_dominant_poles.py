@@ -1,0 +1,84 @@
+"""The dominant poles of loops with dead time, against Lambert's function, polynomials, and the argument principle."""
+
+import cmath
+import math
+
+import numpy as np
+import pytest
+import sympy
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.special import lambertw
+
+from loopbook import s
+from loopbook.deadtime import normal_form
+from loopbook.pid import PID
+from loopbook.stability import dominant_poles, ultimate, unstable_poles
+from loopbook.transfer import dead_time, first_order, second_order
+
+
+def rest(L, p):
+    """The characteristic sum at a point, as a share of its terms."""
+    terms = [
+        complex(part.eval(p)) * cmath.exp(-float(delay) * p)
+        for parts in normal_form(L)
+        for delay, part in parts.items()
+    ]
+    return abs(sum(terms)) / sum(map(abs, terms))
+
+
+@pytest.mark.parametrize("K", [0.1, 0.5, 1, 1.7, 4])
+def test_the_integrator_with_dead_time_has_the_branches_of_lamberts_function(K):
+    # s + K exp(-s) = 0, so s exp(s) = -K
+    expected = sorted((lambertw(-K, k) for k in range(-4, 4)), key=lambda p: (-p.real, -p.imag))
+    found = dominant_poles(K * dead_time(1) / s, count=6)
+    assert np.allclose(found[:6], expected[:6], atol=1e-12)
+
+
+def test_a_double_pole_stands_twice():
+    L = sympy.Rational(1) * sympy.exp(-1) * dead_time(1) / s
+    assert np.allclose(dominant_poles(L, count=2), [-1, -1], atol=1e-6)
+
+
+def test_without_dead_time_they_are_the_roots_of_the_polynomial():
+    L = 2 / ((s + 1) * (3 * s + 1) * (5 * s + 1))
+    expected = sorted(np.roots([15, 23, 9, 3]), key=lambda p: (-p.real, -p.imag))
+    assert np.allclose(dominant_poles(L, count=9), expected)
+    assert dominant_poles(sympy.Integer(2)) == []
+
+
+def test_a_pair_is_not_divided():
+    assert len(dominant_poles(dead_time(1) / s, count=1)) == 2
+    assert len(dominant_poles(dead_time(1) / s, count=3)) == 4
+
+
+def test_at_the_ultimate_gain_they_lie_on_the_axis():
+    process = second_order(2, 5, 3, delay=1)
+    Ku, Pu = ultimate(process)
+    first, _ = dominant_poles(Ku * process)
+    assert abs(first.real) < 1e-9
+    assert first.imag == pytest.approx(2 * math.pi / Pu)
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    K=st.floats(0.2, 3), T=st.floats(0.2, 20), delay=st.floats(0.1, 5),
+    share=st.floats(0.1, 2), Ti=st.floats(0.3, 30),
+)  # fmt: skip
+def test_each_is_a_root_and_as_many_are_unstable_as_the_argument_principle_says(K, T, delay, share, Ti):
+    process = first_order(K, T, delay)
+    L = process * PID(share * T / (K * delay), Ti).expr
+    found = dominant_poles(L, count=5)
+    assert max(rest(L, p) for p in found) < 1e-9
+    assert [p.real for p in found] == sorted((p.real for p in found), reverse=True)
+    if not any(abs(p.real) < 1e-6 for p in found):
+        assert min(unstable_poles(L), 5) <= sum(p.real > 0 for p in found)
+
+
+def test_what_has_no_answer_is_refused():
+    with pytest.raises(ValueError, match="count is 0: expected a positive integer"):
+        dominant_poles(1 / s, count=0)
+    with pytest.raises(ValueError, match="an endless row of poles"):
+        dominant_poles(3 * dead_time(1) * (s + 1) / (s + 2))
+    with pytest.raises(ValueError, match="give a number for K"):
+        dominant_poles(sympy.Symbol("K") / s)
