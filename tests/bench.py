@@ -2,11 +2,13 @@
 
 The library: a fresh interpreter that imports loopbook, beside one that imports SymPy only. The simulator: a closed loop
 with all practical features, beside a bare loop around SciPy's solver. Dead time: exact responses and integrals of the
-squared error, beside python-control with Pade approximations of order 10, and their errors; a map of stability. A
-chapter: its import cell and the whole of it, each in a fresh kernel, beside a fresh kernel that imports no more than
-the packages the chapter uses. What is compared runs in turn, so that a busy minute of the machine burdens both sides.
+squared error, beside python-control with Pade approximations of order 10, and their errors; a map of stability. Model
+reduction and internal model control, and a fit to data. A chapter: its import cell and the whole of it, each in a fresh
+kernel, beside a fresh kernel that imports no more than the packages the chapter uses. What is compared runs in turn, so
+that a busy minute of the machine burdens both sides.
 """
 
+import functools
 import math
 import subprocess
 import sys
@@ -24,16 +26,20 @@ from nbformat import NotebookNode, v4
 from rich.console import Console
 from rich.table import Table
 from scipy.integrate import solve_ivp
+from scipy.optimize import curve_fit
 
 from loopbook import notebooks, s
+from loopbook.approximation import half_rule, taylor
 from loopbook.deadtime import Loop, System, feedback
+from loopbook.identification import fit
 from loopbook.ise import integral_of_square, pi_first_order
 from loopbook.pid import PID, Controller
 from loopbook.plants import WoodChipTank
 from loopbook.signals import stepwise
 from loopbook.simulation import simulate
 from loopbook.stability import stability_map
-from loopbook.transfer import first_order
+from loopbook.synthesis import IMC_TABLE, imc
+from loopbook.transfer import first_order, second_order
 from test_ise import by_parseval
 from test_ise import loops as random_loops
 
@@ -269,6 +275,49 @@ def the_map(runs: int) -> Table:
     return table
 
 
+def the_derivations(runs: int) -> Table:
+    """Model reduction and the table of internal model control, with numbers and with letters."""
+    K, T1, T2, T3, delay, Tc = sympy.symbols("K T1 T2 T3 delay Tc", positive=True)
+    numbers = (
+        (1 - 0.3 * s) * (0.08 * s + 1) / ((2 * s + 1) * (s + 1) * (0.4 * s + 1) * (0.2 * s + 1) * (s / 20 + 1) ** 3)
+    )
+    letters = K * sympy.exp(-delay * s) / ((T1 * s + 1) * (T2 * s + 1) * (T3 * s + 1))
+    tasks = {
+        "half_rule, two zeros and seven lags": lambda: half_rule(numbers),
+        "half_rule, three lags with letters": lambda: half_rule(letters, largest_first=[T1, T2, T3]),
+        "imc, two lags with dead time": lambda: imc(second_order(2, 10, 5, delay=1), Tc=3),
+    }
+    for case, (model, approximation) in IMC_TABLE.items():
+        tasks[f"imc, row {case} with letters"] = functools.partial(imc, model, Tc, approximation or taylor)
+    table = Table("", "time", title=f"One call, median of {runs}, after a first one")
+    for task in tasks.values():
+        task()
+    for name, time in medians(runs, **tasks).items():
+        table.add_row(name, seconds(time))
+    return table
+
+
+def the_fit(runs: int) -> Table:
+    """Two lags and a dead time fitted to 110 samples: from a grid of starts, beside Pade responses from one start."""
+    times = np.arange(110.0)
+    u = np.where(times < 10, 0.0, 1.0)
+    y = System(3 * (1 - 0.1 * s) / ((10 * s + 1) * (3 * s + 1) * (s + 1) ** 3)).response(times, u)
+
+    def by_pade(_: np.ndarray, K: float, T1: float, T2: float, delay: float) -> np.ndarray:
+        late = control.tf(*control.pade(delay, 10)) * control.tf([K], [T1 * T2, T1 + T2, 1])
+        return control.forced_response(control.ss(late), times, u)[1]
+
+    tasks = {
+        "fit, exact": lambda: fit(times, u, y, "second order"),
+        "curve_fit around python-control, Pade(10)": lambda: curve_fit(by_pade, times, y, p0=(2, 8, 2, 2)),
+    }
+    table = Table("second order with dead time", "time", "ratio", title=f"A fit to 110 samples, median of {runs}")
+    found = medians(runs, **tasks)
+    for name, time in found.items():
+        table.add_row(name, seconds(time), f"{time / found['fit, exact']:.2f}")
+    return table
+
+
 if __name__ == "__main__":
     console = Console()
     console.print(the_library(runs=7))
@@ -276,6 +325,8 @@ if __name__ == "__main__":
     console.print(the_responses(runs=15))
     console.print(the_criteria(runs=7))
     console.print(the_map(runs=3))
+    console.print(the_derivations(runs=9))
+    console.print(the_fit(runs=3))
     chapters = sorted((ROOT / "chapters").glob("*.ipynb"))
     if chapters:
         with console.status("running the chapters"):
