@@ -66,6 +66,7 @@ def normal_form(H):
     H = function_of(s, H)
     if H.has(sympy.oo, sympy.zoo):
         raise ValueError(f"{H} is infinite: expected a transfer function")
+    H = H.xreplace({exponential: _split(exponential) for exponential in H.atoms(sympy.exp)})
     powers, delays = _dead_times(H)
     letters = sorted(H.free_symbols - {s}, key=str)
     field = sympy.QQ.frac_field(s, *delays, *letters)
@@ -86,6 +87,12 @@ def normal_form(H):
         if not delay.is_nonnegative:
             raise ValueError(f"{H} contains exp({-delay * s}): a dead time cannot be negative")
     return above, below
+
+
+def _split(exponential):
+    """exp(a - delay*s), as a shift of `s` makes it, with the number exp(a) to 30 digits as a factor."""
+    number, rest = sympy.expand(exponential.exp).as_independent(s, as_Add=True)
+    return _rational(sympy.exp(number)) * sympy.exp(rest) if number.is_number and rest.has(s) else exponential
 
 
 def _dead_times(H):

@@ -314,3 +314,14 @@ def function_of(variable, value):
                 f"the {symbol} in {expression} is another symbol than the library's: write `from loopbook import s, t`"
             )
     return expression
+
+
+def written(value):
+    """Return a value as text, a fraction with a long denominator as a decimal of six digits.
+
+    >>> written(sympy.Rational(2, 3)), written(sympy.Rational(299855, 100001))
+    ('2/3', '2.99852')
+    """
+    if isinstance(value, sympy.Rational) and value.q > 1000:
+        return f"{float(value):.6g}"
+    return str(value)

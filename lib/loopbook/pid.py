@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import sympy
 
-from loopbook.expressions import exact, s
+from loopbook.expressions import exact, s, written
 from loopbook.scaling import PERCENT, Scaling
 
 __all__ = ["PID", "Controller", "LowpassFilter"]
@@ -156,7 +156,7 @@ class PID:
     def __repr__(self):
         shown = {name: getattr(self, name) for name in ("Kp", "Ti", "Td", "Tf")}
         default = {"Kp": None, "Ti": sympy.oo, "Td": 0, "Tf": 0}
-        parts = [f"{name}={value}" for name, value in shown.items() if value != default[name]]
+        parts = [f"{name}={written(value)}" for name, value in shown.items() if value != default[name]]
         return f"PID({', '.join(parts + ([] if self.form == 'parallel' else ['form=' + repr(self.form)]))})"
 
 

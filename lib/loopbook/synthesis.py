@@ -4,6 +4,7 @@ The controller comes out of the algebra of the loop. A PID controller is then re
 of its series; which of the two it was is always said.
 """
 
+from collections import Counter
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -11,7 +12,7 @@ import sympy
 
 from loopbook.approximation import pade, taylor
 from loopbook.expressions import exact, s
-from loopbook.laplace import by_delay, roots
+from loopbook.laplace import by_delay, roots, without_delays
 from loopbook.pid import PID
 from loopbook.transfer import first_order, integrator, integrator_with_lag, second_order, simplified, transfer_function
 
@@ -35,9 +36,9 @@ def direct_synthesis(model, desired):
     Returns:
         The controller, an expression in `s`.
     Raises:
-        ValueError: where no controller can do it: the desired response is unstable, or faster than the dead time of the
-            process, lacks a zero of the process in the right half-plane, or leaves an unstable pole where it is; and
-            for a desired response of 0 or 1. With letters, what they leave open is not refused.
+        ValueError: where no controller can do it: the desired response is not stable, or faster than the dead time of
+            the process, lacks a zero of the process in the right half-plane or on the imaginary axis, or leaves a pole
+            there where it is; and for a desired response of 0 or 1. With letters, what they leave open is not refused.
     Source: Seborg et al., equation (12-3b); Haugen, equation (10.10); Haugen on tuning, equation (7.88).
 
     >>> K, T, Tc = sympy.symbols("K T Tc", positive=True)
@@ -54,28 +55,41 @@ def direct_synthesis(model, desired):
 
 
 def _refuse_impossible(G, desired):
-    for p in _poles_in_the_right_half_plane(desired):
+    for p in _poles_outside(desired):
         raise ValueError(f"the desired response {desired} has a pole at {p}: expected a stable one")
-    try:
-        to_control_signal = by_delay(desired / G)
-    except ValueError:
-        to_control_signal = {sympy.S.NegativeOne: None}
-    for delay in to_control_signal:
-        if delay.is_nonnegative is not True:
-            raise ValueError(
-                f"the desired response {desired} comes before the process {G} can answer: "
-                f"expected at least the dead time of the process in it"
-            )
-    for p in _poles_in_the_right_half_plane(desired / G):
-        raise ValueError(f"the process {G} has a zero at {p}: expected a desired response with that zero")
-    for p in _poles_in_the_right_half_plane(G):
-        if sympy.simplify(1 - desired.subs(s, p)) != 0:
-            raise ValueError(f"the process {G} has a pole at {p}: expected a desired response that is 1 there")
+    answers = by_delay(G)
+    if any(all((delay - d).is_negative for d in answers) for delay in by_delay(desired)):
+        raise ValueError(
+            f"the desired response {desired} comes before the process {G} can answer: "
+            f"expected at least the dead time of the process in it"
+        )
+    if len(answers) == 1:  # zeros of a sum of dead times are not known
+        for p in _poles_outside(desired / G):
+            raise ValueError(f"the process {G} has a zero at {p}: expected a desired response with that zero")
+    for p, n in Counter(_poles_outside(G)).items():
+        if _zeros_at(p, 1 - desired, n) < n:
+            how = "1 there" if n == 1 else f"1 there, and flat up to its derivative {n - 1}"
+            raise ValueError(f"the process {G} has a pole at {p}: expected a desired response that is {how}")
 
 
-def _poles_in_the_right_half_plane(H):
-    for part in by_delay(H).values():
-        yield from (p for p in _known_roots(sympy.cancel(part).as_numer_denom()[1]) if sympy.re(p).is_positive)
+def _poles_outside(H):
+    """The known poles that are known not to be in the left half-plane, each as often as it occurs."""
+    by_delay(H)  # refuses a dead time in a denominator
+    rational, delays = without_delays(H)
+    above, below = sympy.fraction(sympy.cancel(rational))
+    above = above.xreplace({letter: sympy.exp(-delay * s) for letter, delay in delays.items()})
+    for p, n in Counter(_known_roots(below)).items():
+        if sympy.re(p).is_nonnegative:  # dead times may leave no pole, as in (1 - exp(-s))/s
+            yield from (n - (_zeros_at(p, above, n) if delays else 0)) * [p]
+
+
+def _zeros_at(p, f, most):
+    """How many zeros f(s) has at p, of the first `most`."""
+    for n in range(most):
+        left = sympy.simplify(sympy.diff(f, s, n).subs(s, p))
+        if abs(left.evalf()) > 1e-9 if left.has(sympy.Float) else left != 0:
+            return n
+    return most
 
 
 def _known_roots(polynomial):
@@ -137,6 +151,7 @@ def as_pid(controller, kind=None):
     if kind not in (None, *KINDS):
         raise ValueError(f"kind is {kind!r}: expected one of {', '.join(KINDS)}")
     C = transfer_function(controller)
+    without_delays(C)  # refuses what is neither rational nor a dead time
     settings = _exactly(C)
     if settings is not None and (kind is None or KINDS.index(_kind(settings)) <= KINDS.index(kind)):
         return Match(C, settings, exact=True)
@@ -151,7 +166,7 @@ def _kind(settings):
 
 def _exactly(C):
     """The settings of C = (n2*s**2 + n1*s + n0)/(s*(Tf*s + 1)), or None where C is something else."""
-    if C.atoms(sympy.exp):
+    if any(factor.has(s) for factor in C.atoms(sympy.exp)):
         return None
     above, below, field = _coefficients(C)
     if below[0]:
@@ -169,19 +184,33 @@ def _exactly(C):
     except ValueError:
         pass
     try:
-        return PID(*(_written(field, x) for x in (n1, n1 / n0, field.zero, Tf)), form="serial") if not n2 else None
-    except (ValueError, ZeroDivisionError):
+        return _serial_pid(*(_written(field, x) for x in (n0, n1, n2, Tf)))
+    except ValueError:
         return None
 
 
-def _coefficients(C):
-    """Numerator and denominator of C without common factors: their coefficients from the lowest power of s, in a field.
+def _serial_pid(n0, n1, n2, Tf):
+    """The serial settings of (n2*s**2 + n1*s + n0)/(s*(Tf*s + 1)), or None; ValueError for times that are negative."""
+    if n1 == 0:
+        return None
+    if n0 == 0:
+        return PID(n1, Td=n2 / n1, Tf=Tf, form="serial")
+    difference = sympy.sqrt(sympy.factor((n1 / n0) ** 2 - 4 * n2 / n0))
+    if not difference.is_real:
+        return None
+    Ti, Td = ((n1 / n0 + sign * difference) / 2 for sign in (1, -1))
+    return PID(n0 * Ti, Ti, Td, Tf, form="serial")
+
+
+def _coefficients(C, cancelled=True):
+    """Numerator and denominator of C: their coefficients from the lowest power of s, in a field.
 
     In a field of fractions, sums and products cancel at once, which is quick even with many letters.
     """
     above, below = (sympy.Poly(x, s) for x in sympy.fraction(sympy.together(C)))
     field = above.domain.unify(below.domain).get_field()
-    above, below = above.set_domain(field).cancel(below.set_domain(field), include=True)
+    if cancelled:
+        above, below = above.set_domain(field).cancel(below.set_domain(field), include=True)
     return *(polynomial.set_domain(field).rep.to_list()[::-1] for polynomial in (above, below)), field
 
 
@@ -224,8 +253,13 @@ def _by_series(C, kind):
 
 def _series(C):
     """The coefficients of 1/s, 1, s and s**2 in the series of C around s = 0, and the field they are in."""
-    above, below, field = _coefficients(taylor(C, order=8))  # more than the powers that may cancel
-    first_above, first_below = (next((k for k, c in enumerate(x) if c), 0) for x in (above, below))
+    for order in (8, 16, 32):
+        above, below, field = _coefficients(taylor(C, order), cancelled=False)
+        first_above, first_below = (next((k for k, c in enumerate(x) if c), order) for x in (above, below))
+        if max(first_above, first_below) + 3 <= order or not C.atoms(sympy.exp):
+            break
+    else:
+        raise ValueError(f"{C} has no series to read a controller off: more than 29 powers of s cancel")
     lowest = first_above - first_below
     if lowest < -1:
         raise ValueError(f"{C} grows faster than 1/s at low frequencies: expected at most one integrator")
@@ -284,8 +318,8 @@ def imc_design(model, Tc, approximation=taylor):
     Returns:
         `Design`, with all steps.
     Raises:
-        ValueError: for poles in the right half-plane, two integrators, a zero at the origin, or a Tc that is not
-            positive.
+        ValueError: for poles in the right half-plane or on the imaginary axis, but for one integrator; for zeros on the
+            axis, or with letters that leave their sign open; or for a Tc that is not positive.
     Source: Seborg et al., Table 12.1; the split without all-pass factors is the one that gives this table.
 
     >>> design = imc_design(integrator(2, delay=3), Tc=1)
@@ -299,20 +333,25 @@ def imc_design(model, Tc, approximation=taylor):
         raise ValueError(
             f"{G} {'adds several dead times' if G != 0 else 'is zero'}: expected a model with one dead time"
         )
+    if not callable(approximation):
+        raise ValueError(f"approximation is {approximation!r}: expected taylor or pade")
     approximated = approximation(G)
     above, below = sympy.cancel(approximated).as_numer_denom()
     poles, zeros = (list(_known_roots(polynomial)) for polynomial in (below, above))
     for p in poles:
-        if sympy.re(p).is_positive:
+        if p != 0 and sympy.re(p).is_nonnegative:
             raise ValueError(f"{G} has a pole at {p}: expected a process that is stable, but for an integrator")
     integrators = poles.count(0)
-    if integrators > 1 or 0 in zeros:
-        raise ValueError(
-            f"{G} has {'two integrators' if integrators > 1 else 'a zero at the origin'}: no rule is known"
-        )
+    if integrators > 1:
+        raise ValueError(f"{G} has two integrators: no rule is known")
+    for z in zeros:
+        if sympy.re(z).is_zero:
+            raise ValueError(f"{G} has a zero at {z}: no rule is known for zeros on the imaginary axis")
+        if sympy.re(z).is_positive is None:
+            raise ValueError(f"{G} has a zero at {z}, on which side is not known: expected positive letters")
     remaining = sympy.Mul(*(1 - s / z for z in zeros if sympy.re(z).is_positive))
     if remaining.has(sympy.I):
-        remaining = sympy.expand(remaining)
+        remaining = sympy.Poly(remaining, s, extension=True).as_expr()
     invertible = sympy.cancel(approximated / remaining)
     lead = 2 * Tc - sympy.diff(remaining, s).subs(s, 0) if integrators else sympy.S.Zero
     wanted = (lead * s + 1) / (Tc * s + 1) ** (1 + integrators)

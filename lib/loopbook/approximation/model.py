@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import sympy
 
-from loopbook.expressions import exact, s
+from loopbook.expressions import exact, s, written
 from loopbook.laplace import by_delay, roots
 from loopbook.transfer import dead_time, transfer_function
 
@@ -65,8 +65,8 @@ class Model:
         return sympy.oo == self.T1
 
     def __repr__(self):
-        shown = [f"{name}={value}" for name in ("T1", "T2", "delay") if (value := getattr(self, name)) != 0]
-        return f"Model({', '.join([f'K={self.K}', *shown])})"
+        shown = [f"{name}={written(value)}" for name in ("T1", "T2", "delay") if (value := getattr(self, name)) != 0]
+        return f"Model({', '.join([f'K={written(self.K)}', *shown])})"
 
 
 def model_of(H, largest_first=None):

@@ -105,9 +105,7 @@ def fit(times, u, y, kind="first order", *, start="rest", level=None, longest_de
         return numpy.column_stack([forced, free])
 
     def left(p):
-        columns = regressors(p)
-        size = numpy.linalg.norm(columns, axis=0) + 1e-300
-        return target - columns @ (numpy.linalg.lstsq(columns / size, target, rcond=1e-12)[0] / size)
+        return _without(regressors(p), target)
 
     shortest = step / 20
     low = numpy.array([math.log(shortest)] * lags + [0.0])
@@ -123,6 +121,26 @@ def fit(times, u, y, kind="first order", *, start="rest", level=None, longest_de
     ]
     best = min(searched, key=lambda found: found.cost)
     return _described(best.x, regressors, target, times, y, kind)
+
+
+def _without(columns, target):
+    """What is left of the target when the columns have explained what they can: Gram and Schmidt, twice for rounding.
+
+    For so few columns that is quicker than a general routine.
+    """
+    import numpy
+
+    found, left = [], target
+    for column in columns.T:
+        size = numpy.sqrt(column @ column)
+        for _ in range(2):
+            for q in found:
+                column = column - (q @ column) * q
+        rest = numpy.sqrt(column @ column)
+        if rest > 1e-9 * size:
+            found.append(column / rest)
+            left = left - (found[-1] @ left) * found[-1]
+    return left
 
 
 def _apart(grid, distance):

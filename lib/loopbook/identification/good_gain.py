@@ -54,7 +54,7 @@ def swing(times, y, final=None):
     >>> import numpy
     >>> t = numpy.linspace(0, 20, 2001)
     >>> [round(float(x), 3) for x in swing(t, 1 - numpy.exp(-t / 2) * numpy.cos(t), final=1)]
-    [0.236, 0.049, 3.14]
+    [0.234, 0.049, 3.14]
     """
     import numpy
 

@@ -6,6 +6,8 @@ does before and after this change, so that neither a Pade approximation nor a sm
 
 import math
 
+TERMS = 15  # of the series of the exponential of a number below 1/2
+
 KINDS = {  # how many lags, and how many integrators
     "first order": (1, 0),
     "second order": (2, 0),
@@ -35,7 +37,6 @@ def responses(kind, lags, delay, step, u):
         each state that is 1 at the first sample, the last one for a constant input of 1.
     """
     import numpy
-    from scipy.linalg import expm
 
     A, B = chain(kind, lags)
     n = len(B)
@@ -43,7 +44,7 @@ def responses(kind, lags, delay, step, u):
     late = delay - whole * step  # after a sample, so long the input before it still acts
     extended = numpy.zeros((n + 1, n + 1))
     extended[:n, :n], extended[:n, n] = A, B
-    over_step, over_rest = expm(extended * step), expm(extended * (step - late))
+    over_step, over_rest = _exponential(extended * step), _exponential(extended * (step - late))
     transition, both, newer = over_step[:n, :n], over_step[:n, n], over_rest[:n, n]
     older = both - newer
     arrived = numpy.concatenate([numpy.zeros(whole + 1), u])[: len(u) + 1]
@@ -53,6 +54,24 @@ def responses(kind, lags, delay, step, u):
     free = [_states(transition, nothing, numpy.eye(n)[k])[:, -1] for k in range(n)]
     free.append(_states(transition, nothing + both, numpy.zeros(n))[:, -1])
     return forced, numpy.column_stack(free)
+
+
+def _exponential(M):
+    """The exponential of a small matrix: its series, for a part of it that is small, squared again and again.
+
+    A search calls this thousands of times; `scipy.linalg.expm` solves equations in it, on several threads.
+    """
+    import numpy
+
+    halvings = max(0, math.frexp(abs(M).sum(axis=1).max())[1] + 1)
+    M = M / 2**halvings
+    total = term = numpy.eye(len(M))
+    for n in range(1, TERMS):
+        term = term @ M / n
+        total = total + term
+    for _ in range(halvings):
+        total = total @ total
+    return total
 
 
 def _states(transition, drive, initial):

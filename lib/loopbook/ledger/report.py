@@ -14,6 +14,9 @@ _GREEK = {"alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", 
           "pi", "rho", "sigma", "tau", "phi", "chi", "psi", "omega"}  # fmt: skip
 
 
+_HEAD = ("equation", "result", "book", "computed", "verdict")
+
+
 @dataclass(frozen=True)
 class Verdict:
     """What became of one result: the computed value as text, whether it holds, and how that was found."""
@@ -99,11 +102,17 @@ class Report:
         return {"source": self.entry.source, "entry": self.entry.name, "verdicts": [v.data for v in self.verdicts]}
 
     def __repr__(self):
-        rows = [("equation", "result", "book", "computed", "verdict")]
+        rows = []
         for verdict in self.verdicts:
             row = verdict.result
             rows.append((row.equation, row.name, f"{row.printed} {row.unit}".strip(), verdict.computed, verdict.word))
-        return "\n".join([_heading(self.entry), *_aligned(rows), *self.notes])
+        return "\n".join(
+            [_heading(self.entry), *_aligned([self._columns(_HEAD), *map(self._columns, rows)]), *self.notes]
+        )
+
+    def _columns(self, row):
+        """A row of the table, without the equations where none has a number."""
+        return row if any(verdict.result.equation for verdict in self.verdicts) else row[1:]
 
     def _repr_html_(self):
         rows = []
@@ -119,8 +128,8 @@ class Report:
                     f'<span style="color: {colour}; white-space: nowrap">{mark} {_escape(verdict.word)}</span>',
                 )
             )
-        head = ("equation", "result", "book", "computed", "verdict")
-        return _table(self.entry, rows, head) + "".join(f"\n<p>{_escape(note)}</p>" for note in self.notes)
+        table = _table(self.entry, map(self._columns, rows), self._columns(_HEAD))
+        return table + "".join(f"\n<p>{_escape(note)}</p>" for note in self.notes)
 
     def _repr_mimebundle_(self, include=None, exclude=None):
         return {"text/plain": repr(self), "text/html": self._repr_html_(), MIME_TYPE: self.data}
@@ -149,8 +158,8 @@ def _aligned(rows):
 
 
 def _table(entry, rows, head=()):
-    # JupyterLab would centre the heads and align numbers to the right
-    left = 'style="text-align: left; vertical-align: top"'
+    left = 'style="text-align:left"'  # JupyterLab would centre the heads and align numbers to the right
+    rows = list(rows)
     lines = [f"<p><strong>{_escape(_heading(entry))}</strong></p>"]
     if rows:
         lines.append("<table>")

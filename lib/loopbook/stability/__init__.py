@@ -15,6 +15,6 @@ from loopbook.stability.window import robust_in_window, shinskey_window
 
 __all__ = [
     "DelayRatios", "Margins", "StabilityLimitError", "boundary_pi", "boundary_pi_approximate", "boundary_pid",
-    "delay_margin", "dominant_poles", "is_stable", "margins", "robust_in_window", "robustness", "robustness_pi_first_order",
-    "shinskey_window", "stability_map", "ultimate", "unstable_poles", "unstable_roots",
+    "delay_margin", "dominant_poles", "is_stable", "margins", "robust_in_window", "robustness",
+    "robustness_pi_first_order", "shinskey_window", "stability_map", "ultimate", "unstable_poles", "unstable_roots",
 ]  # fmt: skip
