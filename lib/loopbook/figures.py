@@ -99,8 +99,8 @@ class Picture:
 
         full, small = io.BytesIO(), io.BytesIO()
         self.save(full, format="png", metadata={"Software": None})
-        # A line drawing needs no more than 32 colours, and a notebook with them is a quarter as large.
-        Image.open(full).convert("RGB").quantize(32, method=Image.Quantize.MEDIANCUT).save(small, "PNG", optimize=True)
+        # A line drawing needs no more than 16 colours, and a notebook with them is a fifth as large.
+        Image.open(full).convert("RGB").quantize(16, method=Image.Quantize.MEDIANCUT).save(small, "PNG", optimize=True)
         return small.getvalue()
 
     # The figure belongs to an object of our own because Jupyter would draw a matplotlib figure its own way, without
@@ -475,9 +475,9 @@ def plane_plot(curves, xlabel, ylabel, title=None, xlim=None, ylim=None, log=Fal
                 raise ValueError(f"{label} has {x.size} values for x and {y.size} for y: expected as many")
             role = look[0] if look else number
             axes.plot(x, y, label=label, **(ROLES[role] if role in ROLES else response_look(role)))
-        _finish_plane(axes, xlabel, ylabel, title, xlim, ylim)
         if log:
             _logarithmic(axes)
+        _finish_plane(axes, xlabel, ylabel, title, xlim, ylim)
         if equal:
             axes.set_aspect("equal")
             axes.axhline(0, color="#555555", linewidth=0.8, zorder=1)
@@ -528,9 +528,9 @@ def map_plot(x, y, numbers, xlabel, ylabel, label, title=None, log=False):
         axes.grid(False)
         scale = figure.colorbar(mesh, ax=axes, ticks=range(len(levels)), label=label)
         scale.ax.set_yticklabels(levels)
-        _finish_plane(axes, xlabel, ylabel, title, (x[0], x[-1]), (y[0], y[-1]))
         if log:
             _logarithmic(axes)
+        _finish_plane(axes, xlabel, ylabel, title, (x[0], x[-1]), (y[0], y[-1]))
     words = f"{plain_words(label)} ({levels[0]} to {levels[-1]}): {plain_words(ylabel)} against {plain_words(xlabel)}"
     return PlanePlot(figure, f"{plain_words(title) + ': ' if title else ''}{words}")
 
@@ -566,9 +566,9 @@ def level_plot(x, y, values, levels, xlabel, ylabel, label, title=None, log=Fals
         finite = numpy.ma.masked_invalid(values)
         lines = axes.contour(x, y, finite, levels, colors=RESPONSE_COLOURS[0], linewidths=1.3)
         axes.clabel(lines, fmt="%g", fontsize=9, colors="#000000")
-        _finish_plane(axes, xlabel, ylabel, title, (x[0], x[-1]), (y[0], y[-1]))
         if log:
             _logarithmic(axes)
+        _finish_plane(axes, xlabel, ylabel, title, (x[0], x[-1]), (y[0], y[-1]))
     words = f"levels of {plain_words(label)}, {levels[0]:g} to {levels[-1]:g}"
     words = f"{words}: {plain_words(ylabel)} against {plain_words(xlabel)}"
     return PlanePlot(figure, f"{plain_words(title) + ': ' if title else ''}{words}")
