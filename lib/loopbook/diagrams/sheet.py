@@ -23,10 +23,10 @@ def mathematics(text):
 def wording(text):
     """Text for matplotlib: plain words as they are, anything else mathematics, with all of a name's index lowered.
 
-    >>> wording("Process"), wording("K_p"), wording("F_fd"), wording("Level\\ncontroller")
-    ('Process', '$K_p$', '$F_{fd}$', 'Level\\ncontroller')
+    >>> wording("Process"), wording("K_p"), wording("F_fd"), wording("P controller")
+    ('Process', '$K_p$', '$F_{fd}$', 'P controller')
     """
-    if re.fullmatch(r"[A-Za-z]{3,}([\s/&,.-]+[A-Za-z]+)*", text):
+    if re.fullmatch(r"[A-Za-z]+([\s/&,.-]+[A-Za-z]+)*", text) and re.search("[A-Za-z]{3}", text):
         return text
     return signal_name(text) if re.fullmatch(r"[A-Za-z]+_\w+", text) else mathematics(text)
 
