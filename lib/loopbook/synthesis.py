@@ -36,9 +36,10 @@ def direct_synthesis(model, desired):
     Returns:
         The controller, an expression in `s`.
     Raises:
-        ValueError: where no controller can do it: the desired response is not stable, or faster than the dead time of
-            the process, lacks a zero of the process in the right half-plane or on the imaginary axis, or leaves a pole
-            there where it is; and for a desired response of 0 or 1. With letters, what they leave open is not refused.
+        ValueError: where no controller can do it: the desired response is not stable or not proper, or faster than the
+            dead time of the process, lacks a zero of the process in the right half-plane or on the imaginary axis, or
+            leaves a pole there where it is; and for a desired response of 0 or 1. With letters, what they leave open is
+            not refused.
     Source: Seborg et al., equation (12-3b); Haugen, equation (10.10); Haugen on tuning, equation (7.88).
 
     >>> K, T, Tc = sympy.symbols("K T Tc", positive=True)
@@ -57,8 +58,12 @@ def direct_synthesis(model, desired):
 def _refuse_impossible(G, desired):
     for p in _poles_outside(desired):
         raise ValueError(f"the desired response {desired} has a pole at {p}: expected a stable one")
-    answers = by_delay(G)
-    if any(all((delay - d).is_negative for d in answers) for delay in by_delay(desired)):
+    answers, wanted = by_delay(G), by_delay(desired)
+    for part in wanted.values():
+        above, below = sympy.cancel(part).as_numer_denom()
+        if sympy.degree(above, s) > sympy.degree(below, s):
+            raise ValueError(f"the desired response {desired} has more zeros than poles: expected at most as many")
+    if any(all((delay - d).is_negative for d in answers) for delay in wanted):
         raise ValueError(
             f"the desired response {desired} comes before the process {G} can answer: "
             f"expected at least the dead time of the process in it"
@@ -139,7 +144,8 @@ def as_pid(controller, kind=None):
         A `Match`. The form is serial where only that is exact, as for a PI controller behind a lag.
     Raises:
         ValueError: for a controller that is not a PID controller even at low frequencies: with two integrators, without
-            proportional part, or whose series gives times that are negative.
+            proportional part, or whose series gives times that are negative. With letters, signs that they leave open
+            are not refused.
     Source: Seborg et al., Table 12.1, where the rows K and L are such series.
 
     >>> as_pid((2 * s + 1) * (5 * s + 1) / (4 * s)).settings
@@ -168,7 +174,7 @@ def _exactly(C):
     """The settings of C = (n2*s**2 + n1*s + n0)/(s*(Tf*s + 1)), or None where C is something else."""
     if any(factor.has(s) for factor in C.atoms(sympy.exp)):
         return None
-    above, below, field = _coefficients(C)
+    above, below, field = _coefficients(*sympy.fraction(sympy.together(C)))
     if below[0]:
         above = [field.zero, *above]  # s above and below the fraction bar
     else:
@@ -202,12 +208,12 @@ def _serial_pid(n0, n1, n2, Tf):
     return PID(n0 * Ti, Ti, Td, Tf, form="serial")
 
 
-def _coefficients(C, cancelled=True):
-    """Numerator and denominator of C: their coefficients from the lowest power of s, in a field.
+def _coefficients(above, below, cancelled=True):
+    """The coefficients of two polynomials from the lowest power of s, without their common factors, in a field.
 
     In a field of fractions, sums and products cancel at once, which is quick even with many letters.
     """
-    above, below = (sympy.Poly(x, s) for x in sympy.fraction(sympy.together(C)))
+    above, below = sympy.Poly(above, s), sympy.Poly(below, s)
     field = above.domain.unify(below.domain).get_field()
     if cancelled:
         above, below = above.set_domain(field).cancel(below.set_domain(field), include=True)
@@ -253,10 +259,13 @@ def _by_series(C, kind):
 
 def _series(C):
     """The coefficients of 1/s, 1, s and s**2 in the series of C around s = 0, and the field they are in."""
-    for order in (8, 16, 32):
-        above, below, field = _coefficients(taylor(C, order), cancelled=False)
+    rational, delays = without_delays(C)
+    dead_times = {letter: sympy.exp(-delay * s) for letter, delay in delays.items()}
+    parts = [part.xreplace(dead_times) for part in sympy.fraction(sympy.together(rational))]
+    for order in (8, 16, 32):  # powers of s may cancel, and those beyond the order are wrong
+        above, below, field = _coefficients(*(taylor(part, order) for part in parts), cancelled=False)
         first_above, first_below = (next((k for k, c in enumerate(x) if c), order) for x in (above, below))
-        if max(first_above, first_below) + 3 <= order or not C.atoms(sympy.exp):
+        if max(first_above, first_below) + 3 <= order or not delays:
             break
     else:
         raise ValueError(f"{C} has no series to read a controller off: more than 29 powers of s cancel")
@@ -336,27 +345,51 @@ def imc_design(model, Tc, approximation=taylor):
     if not callable(approximation):
         raise ValueError(f"approximation is {approximation!r}: expected taylor or pade")
     approximated = approximation(G)
+    if without_delays(approximated)[1]:
+        raise ValueError(f"the approximation leaves {approximated}: expected no dead time in it")
     above, below = sympy.cancel(approximated).as_numer_denom()
-    poles, zeros = (list(_known_roots(polynomial)) for polynomial in (below, above))
+    poles = list(_known_roots(below))
     for p in poles:
         if p != 0 and sympy.re(p).is_nonnegative:
             raise ValueError(f"{G} has a pole at {p}: expected a process that is stable, but for an integrator")
     integrators = poles.count(0)
     if integrators > 1:
         raise ValueError(f"{G} has two integrators: no rule is known")
-    for z in zeros:
-        if sympy.re(z).is_zero:
-            raise ValueError(f"{G} has a zero at {z}: no rule is known for zeros on the imaginary axis")
-        if sympy.re(z).is_positive is None:
-            raise ValueError(f"{G} has a zero at {z}, on which side is not known: expected positive letters")
-    remaining = sympy.Mul(*(1 - s / z for z in zeros if sympy.re(z).is_positive))
-    if remaining.has(sympy.I):
-        remaining = sympy.Poly(remaining, s, extension=True).as_expr()
-    invertible = sympy.cancel(approximated / remaining)
+    remaining, inverted = _split(above, G)
+    invertible = inverted / below
     lead = 2 * Tc - sympy.diff(remaining, s).subs(s, 0) if integrators else sympy.S.Zero
     wanted = (lead * s + 1) / (Tc * s + 1) ** (1 + integrators)
     controller = simplified(1 / (invertible * (1 / wanted - remaining)))
     return Design(approximated, sympy.factor(invertible), remaining, wanted, as_pid(controller))
+
+
+def _split(above, G):
+    """The numerator of G as a product of its zeros in the right half-plane, 1 at s = 0, and of all the rest."""
+    constant, parts = sympy.Poly(above, s).factor_list()
+    remaining, inverted = [], [constant]
+    for part, n in parts:
+        zeros, at_zero = list(_known_roots(part)), part.eval(0)
+        for z in zeros:
+            if sympy.re(z).is_zero:
+                raise ValueError(f"{G} has a zero at {z}: no rule is known for zeros on the imaginary axis")
+            if sympy.re(z).is_positive is None:
+                raise ValueError(f"{G} has a zero at {z}, on which side is not known: expected positive letters")
+        right = [z for z in zeros if sympy.re(z).is_positive]
+        if not right:
+            inverted.append(part.as_expr() ** n)
+        elif len(right) == part.degree():
+            remaining.append((part.as_expr() / at_zero).expand() ** n)
+            inverted.append(at_zero**n)
+        else:
+            remaining.append(_with_zeros(right) ** n)
+            inverted.append((at_zero * _with_zeros([z for z in zeros if z not in right])) ** n)
+    return sympy.Mul(*remaining), sympy.Mul(*inverted)
+
+
+def _with_zeros(zeros):
+    """The polynomial with these zeros, of which the complex ones are pairs, that is 1 at s = 0."""
+    product = sympy.Poly(sympy.Mul(*(1 - s / z for z in zeros)), s, extension=True)
+    return sympy.Add(*(exact(sympy.re(c)) * s**k for (k,), c in product.terms()))
 
 
 def _imc_table():

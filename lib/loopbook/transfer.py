@@ -156,7 +156,7 @@ def transfer_function(value):
     >>> transfer_function(control.tf([2], [10, 1]))
     2/(10*s + 1)
     """
-    if type(value).__module__.split(".")[0] == "control":
+    if str(type(value).__module__).split(".")[0] == "control":  # None for a function as G(s)
         return _from_control(value)
     if not isinstance(value, sympy.Basic) and hasattr(value, "expr"):
         value = value.expr
