@@ -40,6 +40,44 @@ def test_a_double_pole_stands_twice():
     assert np.allclose(dominant_poles(L, count=2), [-1, -1], atol=1e-6)
 
 
+@pytest.mark.parametrize("share", [1e-2, 1e-6, 1e-10])
+def test_a_pair_beside_the_real_axis_is_no_double_pole(share):
+    K = math.exp(-1) * (1 + share)
+    expected = lambertw(-K, 0)
+    first, second = dominant_poles(K * dead_time(1) / s)
+    assert first == second.conjugate()
+    assert (first.real, first.imag) == pytest.approx((expected.real, abs(expected.imag)), rel=1e-5)
+
+
+def test_triple_poles_with_and_without_dead_time():
+    assert np.allclose(dominant_poles(1 / (s * (s**2 + 3 * s + 3)), count=3), [-1] * 3, atol=1e-12)
+    # the integrator with dead time under PI control, as fast as without oscillation: s**2*exp(s) + a*s + b
+    p = -2 + math.sqrt(2)
+    a = -(p**2 + 2 * p) * math.exp(p)
+    b = -(p**2) * math.exp(p) - a * p
+    assert np.allclose(dominant_poles(dead_time(1) * PID(a, a / b).expr / s, count=3), [p] * 3, atol=1e-4)
+
+
+@pytest.mark.parametrize("unit", [1e-9, 3.6e6])
+def test_the_unit_of_time_does_not_matter(unit):
+    L = 1.3 * dead_time(1) / (s * (3 * s + 1))
+    found = dominant_poles(L.subs(s, s * sympy.nsimplify(unit)), count=6)
+    assert np.allclose(np.array(found) * unit, dominant_poles(L, count=6), rtol=1e-9)
+
+
+@pytest.mark.parametrize("ratio", [1e4, 1e8])
+def test_a_dead_time_that_is_nothing_beside_the_lags(ratio):
+    found = dominant_poles(2 * dead_time(1) / (sympy.Integer(ratio) * s + 1) ** 2)
+    assert np.array(found) * ratio == pytest.approx(
+        [-1 + math.sqrt(2) * 1j, -1 - math.sqrt(2) * 1j], rel=3 / ratio + 1e-6
+    )
+
+
+def test_a_count_from_numpy_or_sympy():
+    for two in (np.int64(2), sympy.Integer(2)):
+        assert len(dominant_poles(dead_time(1) / s, two)) == 2
+
+
 def test_without_dead_time_they_are_the_roots_of_the_polynomial():
     L = 2 / ((s + 1) * (3 * s + 1) * (5 * s + 1))
     expected = sorted(np.roots([15, 23, 9, 3]), key=lambda p: (-p.real, -p.imag))

@@ -89,12 +89,19 @@ def test_a_step_response_that_does_not_fit_is_refused():
         first_order_from_step(times, times, U=0)
     with pytest.raises(ValueError, match="ends at rest"):
         integrator_from_step(times, np.minimum(times, 1))
-    with pytest.raises(ValueError, match="at t = 11"):
+    with pytest.raises(ValueError, match="time of the step is 11"):
         integrator_from_step(times, times, at=11)
     with pytest.raises(ValueError, match="y has 100 values"):
         integrator_from_step(times, times[1:])
     with pytest.raises(ValueError, match="delay_by is 'eye'"):
         first_order_from_step(times, times, delay_by="eye")
+    with pytest.raises(ValueError, match="step U is 'one'"):
+        first_order_from_step(times, times, U="one")
+    with pytest.raises(ValueError, match="before the step: expected the response of an integrator"):
+        integrator_from_step(times, 1 - np.exp(-times / 3))  # a lag, still on its way
+    times, y = first_order_record(1, 5, 3)
+    with pytest.raises(ValueError, match="steepest slope is that of noise"):
+        first_order_from_step(times, y + 0.02 * np.random.default_rng(0).normal(size=len(y)), at=5)
 
 
 # ---------------------------------------------------------------------------- least squares
@@ -180,6 +187,39 @@ def test_the_standard_errors_are_the_scatter_of_repeated_experiments():
         assert scatter == pytest.approx(np.mean([found.errors[name] for found in fits]), rel=0.4), name
 
 
+@pytest.mark.parametrize("kind", ["first order", "integrator with lag"])
+@pytest.mark.parametrize(
+    ("unit_t", "unit_u", "unit_y"), [(3.6e6, 1, 1), (1e-9, 1e3, 1), (1 / 3600, 1e-6, 1e6), (1, 1, 1e-9)]
+)
+def test_a_fit_does_not_depend_on_units(kind, unit_t, unit_u, unit_y):
+    times, u, y = experiment(PROCESSES[kind][0], deviation=0.1, count=150)
+    found, other = fit(times, u, y, kind), fit(times * unit_t, u * unit_u, y * unit_y, kind)
+    units = {"K": unit_y / unit_u / unit_t**found.model.is_integrating, "T1": unit_t, "T2": unit_t, "delay": unit_t}
+    assert other.residual == pytest.approx(found.residual * unit_y, rel=1e-6)
+    for name in found.parameters:
+        assert other.parameters[name] == pytest.approx(found.parameters[name] * units[name], rel=1e-5)
+        assert other.errors[name] == pytest.approx(found.errors[name] * units[name], rel=1e-3)
+
+
+def test_a_clock_that_counts_from_1970_is_even_enough():
+    times, u, y = experiment(PROCESSES["first order"][0], deviation=0)
+    assert fit(1.7e9 + times / 10, u, y).parameters["T1"] == pytest.approx(1, rel=1e-4)
+
+
+def test_a_lag_that_is_hardly_seen_has_a_large_error():
+    found = fit(*experiment(0.2 * E(-4 * s) / s, deviation=0.05), "first order")
+    assert found.parameters["K"] / found.parameters["T1"] == pytest.approx(0.2, rel=0.02)
+    assert found.errors["K"] > 0.01 * found.parameters["K"]
+    assert found.errors["T1"] > 0.01 * found.parameters["T1"]
+
+
+def test_no_dead_time_is_zero():
+    times, u, y = experiment(2 / (10 * s + 1), deviation=0)
+    found = fit(times, u, y).model
+    assert found.delay == 0
+    assert values(found, "K", "T1") == pytest.approx([2, 10], rel=1e-6)
+
+
 def test_an_unknown_start_needs_no_rest_before_the_record():
     H, parameters = PROCESSES["second order"]
     times, u, y = experiment(H, deviation=0)
@@ -222,8 +262,12 @@ def test_a_record_that_does_not_fit_is_refused():
     times, u, y = experiment(PROCESSES["first order"][0], deviation=0)
     for wrong, message in [
         (lambda: fit(times, u, y, "third order"), "the kind is 'third order'"),
+        (lambda: fit(times, u, y, longest_delay="long"), "longest dead time is 'long'"),
+        (lambda: fit(times, u, y, longest_delay=2), "dead time would be 2 or longer"),  # it is 3.3
         (lambda: fit(times, u, y, start="warm"), "the start is 'warm'"),
-        (lambda: fit(times, 0 * u, y), "0 all the time"),
+        (lambda: fit(times, 0 * u, y), "control signal is 0 all the time"),
+        (lambda: fit(times, np.where(times < 299, 0, 1), y), "control signal is 0 all the time"),  # moves too late
+        (lambda: fit(times, u, 0 * y + 3), "measurement is 3 all the time"),
         (lambda: fit(times**2, u, y), "do not come evenly"),
         (lambda: fit(times, u, y[1:]), "y has 299 values"),
         (lambda: fit(times, u, y, longest_delay=1000), "longest dead time is 1000"),
@@ -291,6 +335,38 @@ def test_the_relay_makes_the_cycle_that_can_be_computed_by_hand():
     assert cycle.phase == -180
 
 
+@pytest.mark.parametrize(
+    ("K", "T", "delay", "d", "h"),
+    [(2, 10, 0.1, 1, 0.3), (1, 1, 30, 1, 0.2), (1, 1e-6, 0, 1, 0.5), (1, 3.6e6, 1e5, 2, 0.1), (1e6, 10, 0, 1, 9e5)],
+)
+def test_a_lag_under_a_relay_with_hysteresis(K, T, delay, d, h):
+    """In whatever unit: from h on it rises for one dead time more, and then falls to -h."""
+    a = K * d - (K * d - h) * math.exp(-delay / T)
+    Pu = 2 * (delay + T * math.log((a + K * d) / (K * d - h)))
+    cycle = relay_experiment(K * E(-delay * s) / (T * s + 1), d, h)
+    assert (cycle.amplitude, cycle.Pu) == pytest.approx((a, Pu), rel=1e-9)
+
+
+def test_two_lags_under_a_relay():
+    """By the sum of the lags' own periodic responses, at the moment of a switch (Tsypkin)."""
+    K, T1, T2, delay, d, h = 1, 5, 2, 0.3, 2, 0.1
+    cycle = relay_experiment(K * E(-delay * s) / ((T1 * s + 1) * (T2 * s + 1)), d, h)
+    half = cycle.Pu / 2
+    parts = [(K * T1 / (T1 - T2), T1), (-K * T2 / (T1 - T2), T2)]
+    at_switch = sum(k * d * (1 - 2 * math.exp(-(half - delay) / T) / (1 + math.exp(-half / T))) for k, T in parts)
+    assert at_switch == pytest.approx(h, rel=1e-9)
+
+
+def test_the_first_switch_is_at_the_end_of_the_dead_time():
+    assert relay_experiment(E(-0.337 * s) / (3 * s + 1)).switches[0] == pytest.approx(0.337, rel=1e-6)
+
+
+def test_a_long_record_of_a_limit_cycle():
+    cycle = relay_experiment(E(-s) / s, periods=15)
+    assert cycle.times[-1] >= 15 * cycle.Pu
+    assert cycle.Pu == pytest.approx(4)
+
+
 def test_a_hysteresis_makes_the_cycle_longer():
     # from h on it rises for one dead time more, and then falls the same way: a = h + 1, Pu = 4*(1 + h)
     cycle = relay_experiment(E(-s) / s, hysteresis=0.5)
@@ -332,15 +408,26 @@ def test_a_relay_in_a_sampled_loop_with_noise_finds_nearly_the_same():
 
 
 def test_a_relay_that_makes_no_oscillation_is_refused():
-    for process in (1 / (s + 1), 1 / s, 1 / (s * (s + 1))):
-        with pytest.raises(ValueError, match="no gain makes"):
+    for process in (1 / (s + 1), 1 / s, 1 / (s * (s + 1)), -E(-s) / (3 * s + 1)):
+        with pytest.raises(ValueError, match="no positive gain makes"):
             relay_experiment(process)
     with pytest.raises(ValueError, match="answers at once"):
         relay_experiment((s + 2) * E(-s) / (s + 1))
     with pytest.raises(ValueError, match="amplitude of the relay is 0"):
         relay_experiment(1 / (s + 1) ** 3, amplitude=0)
+    with pytest.raises(ValueError, match="amplitude of the relay is '1'"):
+        relay_experiment(1 / (s + 1) ** 3, amplitude="1")
     with pytest.raises(ValueError, match="hysteresis is -1"):
         relay_experiment(1 / (s + 1) ** 3, hysteresis=-1)
+    with pytest.raises(ValueError, match="does not reach the hysteresis 3"):
+        relay_experiment(2 / (s + 1), hysteresis=3)
+    with pytest.raises(ValueError, match="a hysteresis that it reaches"):
+        relay_experiment(2 * E(-s) / (s + 1), hysteresis=3)
+    run = simulate(Process(PLANT), Relay(1, step=0.1), until=80, setpoint=0, noise=0.05, seed=4)
+    with pytest.raises(ValueError, match="a hysteresis above the noise"):
+        oscillation(run.times, run["u"], run["measurement"])
+    with pytest.raises(ValueError, match="measurement is 0 all the time"):
+        oscillation(run.times, np.sign(np.sin(run.times)), 0 * run.times)
     with pytest.raises(ValueError, match="switched on 0 times"):
         oscillation([0, 1, 2, 3], [1, 1, 1, 1], [0, 1, 2, 3])
 
@@ -390,12 +477,19 @@ def test_the_good_gain_of_a_simulator_is_that_of_its_transfer_function():
 def test_a_good_gain_experiment_that_cannot_be_is_refused():
     with pytest.raises(ValueError, match="between 0 and 1"):
         good_gain_experiment(PLANT, undershoot=2)
-    with pytest.raises(ValueError, match="no gain brings"):
-        good_gain_experiment(1 / (s + 1))
+    for process in (1 / (s + 1), -PLANT, E(-s)):
+        with pytest.raises(ValueError, match="no positive gain makes"):
+            good_gain_experiment(process)
     with pytest.raises(ValueError, match="highest gain to try is missing"):
         good_gain_experiment(lambda Kp: ([0, 1, 2, 3], [0, 1, 1, 1]))
     with pytest.raises(ValueError, match="expected a higher gain"):
         good_gain_experiment(PLANT, highest=0.1)
+    with pytest.raises(ValueError, match="expected one below the ultimate gain, 3"):
+        good_gain_experiment(PLANT, highest=100)  # the loop would be unstable
+    with pytest.raises(ValueError, match="highest gain is -1"):
+        good_gain_experiment(PLANT, highest=-1)
+    with pytest.raises(ValueError, match="does not oscillate without control"):
+        good_gain_experiment(E(-s) / (s**2 + sympy.Rational(1, 5) * s + 1))
 
 
 # ---------------------------------------------------------------------------- as the data come
@@ -461,7 +555,10 @@ def test_an_estimator_refuses_what_makes_no_sense():
         (lambda: RecursiveLeastSquares(2, initial=[1]), "1 initial parameters"),
         (lambda: RecursiveLeastSquares(2).update([1], 2), "1 regressors for 2"),
         (lambda: RecursiveLeastSquares(2, uncertainty=0), "uncertainty is 0"),
-        (lambda: first_order_of(1.2, 1, step=1), "a is 1.2"),
+        (lambda: RecursiveLeastSquares(2).update([1, 2], math.nan), "y is nan"),
+        (lambda: first_order_of(0.9, (0.1, 0.1, 0.5), step=1), "expected .b0, b1., or b0 alone"),
+        (lambda: first_order_of(0.9, 0.1, step=1, whole_delay=2.5), "whole delay is 2.5"),
+        (lambda: first_order_of(1.2, 1, step=1), "coefficient a is 1.2"),
         (lambda: first_order_of(0.9, (1, -0.1), step=1), "same sign"),
     ]:
         with pytest.raises(ValueError, match=message):
@@ -480,6 +577,38 @@ def test_an_adaptive_controller_finds_the_settings_and_follows_a_gain_that_doubl
     run = simulate(Process(2 * process), controller, until=400, setpoint=SETPOINT, after=run)
     assert run["Kp"][-1] == pytest.approx(float(settings.Kp) / 2, rel=0.05)
     assert run["Ti"][-1] == pytest.approx(float(settings.Ti), rel=0.05)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{"measurement_range": (-20, 80)}, {"control_range": (-20, 20), "u0": 50}, {"measurement_range": (0, 50)}],
+)
+def test_an_adaptive_controller_with_ranges_adapts_its_settings_in_percent(options):
+    process = 2 * E(-2 * s) / (10 * s + 1)
+    controller = AdaptiveController(PID(0.5, 10), step=1, delay=2, Tc=2, c=2, forgetting=0.97, **options)
+    run = simulate(Process(process), controller, until=200, setpoint=SETPOINT)
+    low, high = options.get("measurement_range", (0, 100))
+    bottom, top = options.get("control_range", (0, 100))
+    expected = float(simc(process, Tc=2, c=2).Kp) * (high - low) / (top - bottom)
+    assert run["Kp"][-1] == pytest.approx(expected, rel=1e-4)
+
+
+def test_an_adaptive_controller_with_direct_action():
+    process = -2 * E(-2 * s) / (10 * s + 1)
+    controller = AdaptiveController(PID(0.5, 10), step=1, delay=2, Tc=2, c=2, forgetting=0.97, action="direct")
+    run = simulate(Process(process), controller, until=200, setpoint=SETPOINT)
+    assert run["Kp"][-1] == pytest.approx(float(simc(process, Tc=2, c=2).Kp), rel=1e-6)
+
+
+def test_an_adaptive_controller_that_cannot_work_says_so_at_once():
+    for options, message in [
+        ({"delay": 0}, "less than a step, and Tc is None"),
+        ({"delay": math.inf}, "dead time is inf"),
+        ({"delay": 2, "Tc": -1}, "Tc is -1"),
+        ({"delay": 2, "c": 0}, "factor c is 0"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            AdaptiveController(PID(1, 10), step=1, **options)
 
 
 def test_noise_makes_the_lag_of_the_adaptive_controller_too_short():
@@ -536,6 +665,9 @@ def test_a_schedule_that_makes_no_sense_is_refused():
         (lambda: GainSchedule(TABLE, hysteresis=5), "hysteresis is 5"),
         (lambda: GainSchedule(TABLE, "linear", hysteresis=1), "none for a linear"),
         (lambda: GainSchedule(TABLE, safe="left"), "safe end is 'left'"),
+        (lambda: GainSchedule({0.1: PID(1), sympy.Rational(1, 10): PID(2)}), "different values of GS"),
+        (lambda: GainSchedule({1: PID(1), sympy.Symbol("a"): PID(2)}), "GS is a: expected a finite number"),
+        (lambda: GainSchedule({1: PID(1), 2: PID(2, Ti=5)}, "linear"), "only some rows have an integral term"),
         (lambda: GainSchedule(TABLE).settings("w"), "of type str"),
         (lambda: ScheduledController(TABLE, step=1), "expected a GainSchedule"),
         (lambda: ScheduledController(GainSchedule(TABLE), step=1).update(0, 0), "value of GS is missing"),
@@ -552,6 +684,12 @@ def test_a_scheduled_controller_changes_its_settings_without_a_bump_at_rest():
     assert (run["Kp"][199], run["Kp"][200], run["Ti"][200]) == (2, 1, 20)
     assert np.abs(np.diff(run["u"][190:])).max() < 1e-6
     assert run["scheduling"][[0, -1]].tolist() == [1, 3]
+
+
+def test_a_scheduled_controller_does_not_know_what_the_schedule_was_asked_before():
+    schedule = GainSchedule(TABLE, hysteresis=4)
+    schedule.settings(30)
+    assert ScheduledController(schedule, step=1).update(1, 0, scheduling=18.5) == 10  # P, and D over the first sample
 
 
 def test_a_scheduled_run_goes_on_after_a_change_of_the_plant():

@@ -55,6 +55,13 @@ def test_what_does_not_oscillate_has_no_period(what, zeta):
         getattr(Oscillation(1, zeta), what)
 
 
+def test_what_is_no_finite_number_is_refused():
+    with pytest.raises(ValueError, match="zeta is I: expected a finite real number"):
+        Oscillation(1, sympy.I)
+    with pytest.raises(ValueError, match="pole is oo: expected a finite one"):
+        oscillation_of_pole(math.inf)
+
+
 @pytest.mark.parametrize("H", [1 / (s + 1), 1 / (s * (s + 1)), 1 / (s**2 - 1), 1 / (s + 1) ** 3])
 def test_other_denominators_are_refused(H):
     with pytest.raises(ValueError, match="two poles of one sign"):

@@ -96,6 +96,13 @@ def test_how_settings_are_shown():
     assert eval(repr(PID(2, 10))) == PID(2, 10)
 
 
+def test_the_filter_of_the_derivative_is_a_share_of_its_time():
+    assert PID(6, Ti=3, Td=1).with_filter(5) == PID(6, Ti=3, Td=1, Tf=sympy.Rational(1, 5))
+    for wrong in (0, -2):
+        with pytest.raises(ValueError, match=f"N is {wrong}: expected a positive number"):
+            PID(6, Ti=3, Td=1).with_filter(wrong)
+
+
 # The filter.
 
 

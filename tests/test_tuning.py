@@ -2,15 +2,20 @@
 
 import itertools
 
+import numpy as np
 import pytest
 import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.optimize import minimize
 from sympy import Max, Min, Rational, exp, oo, sqrt, symbols
 
 from loopbook import s, tuning
 from loopbook.approximation import Model
+from loopbook.ise import criteria
+from loopbook.oscillation import oscillation_of_pole
 from loopbook.pid import PID
+from loopbook.stability import dominant_poles
 from loopbook.transfer import double_integrator, first_order, integrator, integrator_with_lag, second_order
 
 K, T, T1, T2, delay, Tc, c, Ku, Pu, x = symbols("K T T1 T2 delay Tc c Ku Pu x", positive=True)
@@ -250,6 +255,65 @@ def test_hang_outside_of_its_range():
     assert tuning.hang(1, 20, 9, extrapolate=True).w_p == Rational(-1, 7)
 
 
+# What the empirical rules were made for, by exact poles and exact responses.
+
+
+@pytest.mark.parametrize("r", [0, Rational(1, 10), Rational(1, 2), 1])
+def test_cohen_and_coons_proportional_control_decays_to_a_quarter(r):
+    process = Model(1 / r, 1 / Rational(r), delay=1).expr if r else integrator(1, 1)
+    pair = dominant_poles(tuning.cohen_coon(process, "P").expr * process)[0]
+    assert float(oscillation_of_pole(pair).decay_ratio) == pytest.approx(0.25, abs=0.03)
+
+
+@pytest.mark.parametrize("kind", ["P", "PI"])
+def test_ziegler_and_nichols_decay_to_a_quarter_where_the_lag_is_endless(kind):
+    process = integrator(1, 1)
+    pair = dominant_poles(tuning.ziegler_nichols_reaction(process, kind).expr * process)[0]
+    assert float(oscillation_of_pole(pair).decay_ratio) == pytest.approx(0.25, abs=0.03)
+
+
+def of_setpoint(C):
+    """The setpoint's way to the control signal where the derivative term sees the measurement only."""
+    return C.Kp * (1 + 1 / (C.Ti * s))
+
+
+def least_itae(process, start, mode, measured):
+    """The least ITAE that Nelder and Mead's search finds in sixty steps, in the logarithms."""
+
+    def cost(x):
+        C = PID(*np.exp(x).round(6))
+        return criteria(process, C, mode, of_setpoint(C) if measured else None, tolerance=1e-4).ITAE
+
+    begin = np.log([float(x) for x in (start.Kp, start.Ti, start.Td) if x != 0])
+    simplex = np.vstack([begin, begin + 0.1 * np.eye(len(begin))])
+    return minimize(cost, begin, method="Nelder-Mead", options={"maxfev": 60, "initial_simplex": simplex}).fun
+
+
+@pytest.mark.parametrize(
+    ("kind", "mode", "measured", "most"),
+    [
+        ("PI", "regulator", False, 1.05),
+        ("PID", "regulator", False, 1.07),
+        ("PI", "servo", False, 1.01),
+        ("PID", "servo", True, 1.05),
+    ],
+)
+def test_the_itae_rule_is_near_the_minimum(kind, mode, measured, most):
+    process = first_order(1, 1, Rational(1, 2))
+    settings = tuning.itae(process, kind, mode)
+    found = criteria(process, settings, mode, of_setpoint(settings) if measured else None).ITAE
+    assert 1 <= found / least_itae(process, settings, mode, measured) < most
+
+
+def test_the_itae_settings_for_the_setpoint_are_for_a_derivative_of_the_measurement():
+    process = first_order(1, 1, Rational(1, 5))
+    PI, PID_ = (tuning.itae(process, kind, "servo") for kind in ("PI", "PID"))
+    with_PI, of_the_error, of_the_measurement = (
+        criteria(process, C, "servo", R).ITAE for C, R in ((PI, None), (PID_, None), (PID_, of_setpoint(PID_)))
+    )
+    assert of_the_measurement < 0.6 * with_PI < 0.6 * of_the_error
+
+
 # The time constant of the closed loop.
 
 
@@ -321,6 +385,8 @@ LAG, LATE = first_order(1, 2), first_order(1, 2, 1)
         (lambda: tuning.simc(1 / (s + 1) ** 3, Tc=1), "half_rule"),
         (lambda: tuning.skogestad_integral_time(-1, 1, 1), "T1 is -1"),
         (lambda: tuning.skogestad_integral_time(5, 1, oo), "delay is oo"),
+        (lambda: tuning.skogestad_integral_time(5, 0, 0), "Tc . delay is 0: expected a positive number"),
+        (lambda: tuning.skogestad_integral_time(0, 1, 1), "T1 is 0: expected a lag"),
         (lambda: tuning.ziegler_nichols_reaction(LAG), "no dead time: .* infinite gain"),
         (lambda: tuning.ziegler_nichols_reaction(LATE, "PD"), "kind is 'PD': expected 'P', 'PI', 'PID'"),
         (lambda: tuning.ziegler_nichols_reaction(second_order(1, 5, 2, 1)), "one lag or integrator .* half_rule"),
@@ -350,6 +416,7 @@ LAG, LATE = first_order(1, 2), first_order(1, 2, 1)
         (lambda: tuning.closed_loop_time(first_order(1, 1, 2), "chien"), "no Tc lies between"),
         (lambda: tuning.adjusted(PID(1, 2), LATE, integrator(1, 1)), "same kind"),
         (lambda: tuning.adjusted(PID(1, 2), LAG, LAG), "choose Tc"),
+        (lambda: tuning.adjusted(2, LATE, LATE), "settings are 2: expected a PID"),
     ],
 )
 def test_what_is_refused(call, message):

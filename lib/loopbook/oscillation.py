@@ -19,7 +19,8 @@ class Oscillation:
         T: natural period over 2*pi, positive, in the unit of time.
         zeta: relative damping.
     Raises:
-        ValueError: for a T that is not positive; and by the properties for a system that does not oscillate.
+        ValueError: for a T that is not positive, or a zeta that is not real; and by the properties for a system that
+            does not oscillate.
     Source: Seborg et al., equations (5-50) to (5-53), on Skogestad's slides.
 
     >>> Oscillation(T=1, zeta=0.6).overshoot.evalf(4)
@@ -34,6 +35,8 @@ class Oscillation:
             object.__setattr__(self, name, exact(getattr(self, name)))
         if self.T.is_positive is False:
             raise ValueError(f"T is {self.T}: expected a positive time")
+        if self.zeta.is_real is False:
+            raise ValueError(f"zeta is {self.zeta}: expected a finite real number")
 
     @property
     def peak_time(self):
@@ -97,6 +100,6 @@ def oscillation_of_pole(pole):
     """
     pole = exact(pole)
     size = sympy.Abs(pole)
-    if size == 0:
-        raise ValueError("the pole is 0: expected one that is not at the origin")
+    if size == 0 or pole.is_finite is False:
+        raise ValueError(f"the pole is {pole}: expected a finite one that is not at the origin")
     return Oscillation(1 / size, -sympy.re(pole) / size)

@@ -115,7 +115,9 @@ class PID:
         >>> PID(6, Ti=3, Td=0.75).with_filter()
         PID(Kp=6, Ti=3, Td=3/4, Tf=3/40)
         """
-        return PID(self.Kp, self.Ti, self.Td, self.Td / exact(N), self.form)
+        if (N := exact(N)).is_positive is False:
+            raise ValueError(f"N is {N}: expected a positive number")
+        return PID(self.Kp, self.Ti, self.Td, self.Td / N, self.form)
 
     @property
     def proportional_band(self):

@@ -1,5 +1,8 @@
 """An adaptive controller: its settings follow from a model that is estimated while it works. (Haugen, Figure 10.18)"""
 
+from dataclasses import replace
+
+from loopbook.identification.records import not_negative, positive
 from loopbook.identification.recursive import RecursiveLeastSquares, first_order_of
 from loopbook.pid import Controller
 from loopbook.tuning import simc
@@ -14,15 +17,17 @@ class AdaptiveController(Controller):
     settings follow it. Noise makes a too small, as in every equation that has the measurement on its right hand side.
 
     Arguments:
-        settings: at the beginning, a `PID`.
+        settings: at the beginning, a `PID`; its sign, or that of the action, has to be right.
         step: time between two samples.
         delay: the dead time of the process, known, rounded to whole steps.
         Tc, c: as for `tuning.simc`.
         forgetting: forgetting factor of the estimator.
         wait: how many samples pass before the settings follow the model for the first time.
         options: as of `Controller`.
+    Raises:
+        ValueError: as `Controller`, and where neither the dead time nor Tc says how fast the loop should be.
     Attributes:
-        model: the last `Model` that makes sense; None before the first one.
+        model: the last `Model` that makes sense, of signals in percent where they have ranges; None before the first.
         estimator: the `RecursiveLeastSquares`.
 
     >>> from loopbook.pid import PID
@@ -35,16 +40,17 @@ class AdaptiveController(Controller):
 
     def __init__(self, settings, step, delay, Tc=None, c=4, forgetting=0.99, wait=20, **options):
         super().__init__(settings, step, **options)
-        if not float(delay) >= 0:
-            raise ValueError(f"the dead time is {delay}: expected a time that is not negative")
-        self.whole_delay = round(float(delay) / self.step)
-        self.Tc, self.c, self.wait = Tc, c, wait
+        self.whole_delay = round(not_negative("dead time", delay) / self.step)
+        self.Tc = None if Tc is None else not_negative("time constant Tc", Tc)
+        self.c, self.wait = positive("factor c", c), wait
+        if not (self.whole_delay or self.Tc):
+            raise ValueError(f"the dead time is {delay}, less than a step, and Tc is {Tc}: expected a positive Tc")
         self.estimator = RecursiveLeastSquares(3, forgetting)
         self.model, self.last, self.inputs = None, None, []
 
     def update(self, setpoint, measurement, feedforward=0.0, manual=None):
         """Take the signals of this sample, learn from them, and return the control signal."""
-        y, known = float(measurement), self.inputs
+        y, known = self._in_percent(float(measurement)), self.inputs
         if len(known) > self.whole_delay:
             self.estimator.update([self.last, known[-1 - self.whole_delay], 1.0], y)
             self.wait -= 1
@@ -52,14 +58,15 @@ class AdaptiveController(Controller):
                 self._follow()
         self.last = y
         u = super().update(setpoint, measurement, feedforward, manual)
-        self.inputs = [*known[-self.whole_delay - 1 :], u]
+        self.inputs = [*known[-self.whole_delay - 1 :], self.u]
         return u
 
     def _follow(self):
         a, b, _ = self.estimator.parameters
         if 0 < a < 1 and b * self.Kp > 0:
             self.model = first_order_of(a, b, self.step, self.whole_delay)
-            self.change(simc(self.model, self.Tc, c=self.c))
+            settings = simc(self.model, self.Tc, self.c)
+            self.change(replace(settings, Kp=-settings.Kp) if self.action == "direct" else settings)
 
     def take_over(self, other):
         super().take_over(other)

@@ -9,12 +9,15 @@ import sympy
 from loopbook.approximation import Model
 from loopbook.expressions import exact
 from loopbook.identification.held import KINDS, responses
-from loopbook.identification.records import record, sampling_step
+from loopbook.identification.records import number, record, sampling_step
+from loopbook.tuning.inputs import known
 
 STARTS = ("rest", "unknown")
 DELAYS, LAGS = 16, 7  # how many of each are tried at first
 BEST = 4  # of these, from which the search begins
 DIGITS = 10  # of the model's numbers
+SHORTEST = 1 / 20  # lag that is looked for, in steps
+CLOSE = 1e-5  # a dead time of so few steps is none
 
 
 @dataclass(frozen=True, repr=False)
@@ -68,8 +71,8 @@ def fit(times, u, y, kind="first order", *, start="rest", level=None, longest_de
     Returns:
         A `Fit`.
     Raises:
-        ValueError: for arrays that do not fit, uneven samples, another kind or start, or a control signal that does
-            not move.
+        ValueError: for arrays that do not fit, uneven samples, another kind or start, a signal that does not move, or
+            a dead time as long as the longest one.
 
     >>> import numpy
     >>> times = numpy.arange(60.0)
@@ -83,21 +86,23 @@ def fit(times, u, y, kind="first order", *, start="rest", level=None, longest_de
 
     times, u, y = record(times, u=u, y=y)
     step, span = sampling_step(times), times[-1] - times[0]
-    if kind not in KINDS:
-        raise ValueError(f"the kind is {kind!r}: expected {', '.join(map(repr, KINDS))}")
-    if start not in STARTS:
-        raise ValueError(f"the start is {start!r}: expected 'rest' or 'unknown'")
-    if not (u != u[0]).any():
+    known("the kind", kind, KINDS)
+    known("the start", start, STARTS)
+    if not (u[:-1] != u[0]).any():
         raise ValueError(f"the control signal is {u[0]:g} all the time: expected an experiment that moves it")
-    longest_delay = span / 2 if longest_delay is None else float(longest_delay)
-    if not 0 < longest_delay <= span:
-        raise ValueError(f"the longest dead time is {longest_delay:g}: expected a time up to that of the record")
-    lags, _ = KINDS[kind]
-    moved = u - u[0]
-    target = y - (0 if level is None else float(level))
+    if not (y != y[0]).any():
+        raise ValueError(f"the measurement is {y[0]:g} all the time: expected an experiment that moves it")
+    longest_delay = span / 2 if longest_delay is None else longest_delay
+    number("longest dead time", longest_delay, f"a time up to that of the record, {span:g}", lambda x: 0 < x <= span)
+    lags, integrators = KINDS[kind]
+    # neither the search nor the standard errors may depend on units: time counts in steps, signals in their own spans
+    unit_u, unit_y = abs(u - u[0]).max(), numpy.ptp(y)
+    moved = (u - u[0]) / unit_u
+    rest = y[0] if level is None else number("level", level)
+    target = (y - rest) / unit_y
 
     def regressors(p):
-        forced, free = responses(kind, numpy.exp(p[:-1]), p[-1], step, moved)
+        forced, free = responses(kind, numpy.exp(p[:-1]), p[-1], 1.0, moved)
         if start == "rest":
             free = numpy.ones((len(u), 0 if level is not None else 1))
         elif level is not None:
@@ -107,20 +112,28 @@ def fit(times, u, y, kind="first order", *, start="rest", level=None, longest_de
     def left(p):
         return _without(regressors(p), target)
 
-    shortest = step / 20
-    low = numpy.array([math.log(shortest)] * lags + [0.0])
-    high = numpy.array([math.log(100 * span)] * lags + [longest_delay])
-    tried = numpy.log(numpy.geomspace(step / 2, 2 * span, LAGS))
+    count, longest = span / step, float(longest_delay) / step
+    low = numpy.array([math.log(SHORTEST)] * lags + [0.0])
+    high = numpy.array([math.log(100 * count)] * lags + [longest])
+    tried = numpy.log(numpy.geomspace(0.5, 2 * count, LAGS))
     sets = itertools.combinations_with_replacement(tried[::-1], lags)
-    grid = [[*T, delay] for T in sets for delay in numpy.linspace(0, longest_delay, DELAYS, endpoint=False)]
+    grid = [[*T, delay] for T in sets for delay in numpy.linspace(0, longest, DELAYS, endpoint=False)]
     grid.sort(key=lambda p: (left(p) ** 2).sum())
     tolerances = {"xtol": 1e-12, "ftol": 1e-12, "gtol": 1e-12, "x_scale": "jac"}
     searched = [
         least_squares(left, numpy.clip(p, low + 1e-9, high - 1e-9), bounds=(low, high), **tolerances)
-        for p in _apart(grid, longest_delay / DELAYS)
+        for p in _apart(grid, longest / DELAYS)
     ]
     best = min(searched, key=lambda found: found.cost)
-    return _described(best.x, regressors, target, times, y, kind)
+    if best.x[-1] > longest * (1 - 1e-6):
+        raise ValueError(f"the dead time would be {longest_delay:g} or longer: expected a larger longest_delay")
+    units = numpy.array([unit_y / unit_u / step**integrators, *[step] * (lags + 1)])
+    parameters, errors, residual, fitted = _described(best.x, regressors, target, units)
+    names = ["K", *("T2" if integrators else f"T{n + 1}" for n in range(lags)), "delay"]
+    parameters, errors = (dict(zip(names, map(float, x), strict=True)) for x in (parameters, errors))
+    rounded = {name: exact(float(f"{value:.{DIGITS}g}")) for name, value in parameters.items()}
+    model = Model(**({"T1": sympy.oo} if integrators else {}), **rounded)
+    return Fit(model, kind, parameters, errors, float(residual * unit_y), times, y, rest + unit_y * fitted)
 
 
 def _without(columns, target):
@@ -154,19 +167,20 @@ def _apart(grid, distance):
     return chosen
 
 
-def _described(p, regressors, target, times, y, kind):
+def _described(p, regressors, target, units):
+    """The parameters and their standard errors in the units given, the standard deviation of the rest, and the fit."""
     import numpy
 
-    lags, integrators = KINDS[kind]
-    T = sorted(numpy.exp(p[:-1]), reverse=True)
-    p = numpy.array([*numpy.log(T), p[-1]])
+    lags = len(p) - 1
+    T, delay = sorted(numpy.exp(p[:-1]), reverse=True), p[-1] if p[-1] > CLOSE else 0.0
+    p = numpy.array([*numpy.log(T), delay])
     columns = regressors(p)
     linear = numpy.linalg.lstsq(columns, target, rcond=None)[0]
     fitted = columns @ linear
-    # how the response depends on each parameter, in its own unit
+    # how the response depends on each parameter
     changes = []
-    for k, value in enumerate([*T, p[-1]]):
-        width = 1e-5 * (value if k < lags else max(value, T[0] if lags else times[1] - times[0]))
+    for k, value in enumerate([*T, delay]):
+        width = 1e-5 * (value if k < lags else max(value, T[0] if lags else 1.0))
         ahead, behind = p.copy(), p.copy()
         if k < lags:
             ahead[k], behind[k] = math.log(value + width), math.log(value - width)
@@ -175,15 +189,9 @@ def _described(p, regressors, target, times, y, kind):
         width = ahead[k] - behind[k] if k == lags else 2 * width
         changes.append((regressors(ahead) - regressors(behind)) @ linear / width)
     jacobian = numpy.column_stack([columns[:, :1], *changes, columns[:, 1:]])
-    left = target - fitted
-    variance = (left**2).sum() / max(len(target) - jacobian.shape[1], 1)
-    errors = numpy.sqrt(variance * numpy.diag(numpy.linalg.pinv(jacobian.T @ jacobian)).clip(0))
-    names = ["K", *(f"T{n + 1}" for n in range(lags)), "delay"]
-    values = [float(linear[0]), *map(float, T), float(p[-1])]
-    named = dict(zip(names, values, strict=True))
-    rounded = {name: exact(float(f"{value:.{DIGITS}g}")) for name, value in named.items()}
-    if integrators:
-        rounded = {"T2": rounded.pop("T1", sympy.S.Zero), "T1": sympy.oo} | rounded
-        named = {("T2" if name == "T1" else name): value for name, value in named.items()}
-    errors = dict(zip(named, map(float, errors), strict=False))
-    return Fit(Model(**rounded), kind, named, errors, math.sqrt(variance), times, y, fitted + (y - target))
+    variance = ((target - fitted) ** 2).sum() / max(len(target) - jacobian.shape[1], 1)
+    # two equal lags act alike: their difference, which only the second order shows, is left out
+    sizes = numpy.linalg.norm(jacobian, axis=0)
+    inverse = numpy.linalg.pinv(jacobian / numpy.where(sizes, sizes, 1), rcond=1e-4)
+    errors = numpy.sqrt(variance * (inverse**2).sum(axis=1))[: lags + 2] / sizes[: lags + 2]
+    return units * [linear[0], *T, delay], units * errors, math.sqrt(variance), fitted

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from loopbook.deadtime import Loop
-from loopbook.identification.records import record
+from loopbook.identification.records import number, positive, record
 from loopbook.pid import PID
 from loopbook.stability import ultimate
 
@@ -59,7 +59,7 @@ def swing(times, y, final=None):
     import numpy
 
     times, y = record(times, y=y)
-    final = y[-1] if final is None else float(final)
+    final = y[-1] if final is None else number("final value", final)
     if final == y[0]:
         raise ValueError("the response ends where it began: expected one to a step")
     share = (y - y[0]) / (final - y[0])
@@ -105,20 +105,20 @@ def good_gain_experiment(process, undershoot=BARELY, highest=None):
     """
     from scipy.optimize import brentq
 
-    if not 0 < undershoot < 1:
-        raise ValueError(f"the undershoot is {undershoot}: expected a share between 0 and 1")
-    if callable(process):
+    undershoot = number("undershoot", undershoot, "a share between 0 and 1", lambda x: 0 < x < 1)
+    if callable(process) and type(process).__module__.split(".")[0] != "control":
         if highest is None:
             raise ValueError("the highest gain to try is missing: expected one, as for every simulator")
         respond = process
     else:
         Ku, Pu = ultimate(process)
-        if not math.isfinite(Ku):
+        if not (math.isfinite(Ku) and 0 < Pu < math.inf):
             raise ValueError(
-                f"no gain brings the loop of {process} near its limit: it has no barely observable undershoot"
+                f"no positive gain makes the loop of {process} oscillate: it has no barely observable undershoot"
             )
-        highest, respond = highest or 0.98 * Ku, _response_of(process, Pu)
-    highest = float(highest)
+        highest, respond = 0.98 * Ku if highest is None else highest, _response_of(process, Pu)
+        number("highest gain", highest, f"one below the ultimate gain, {Ku:.4g}", lambda x: x < Ku)
+    highest = positive("highest gain", highest)
 
     def beyond(Kp):
         return swing(*respond(Kp))[1] - undershoot
@@ -127,9 +127,16 @@ def good_gain_experiment(process, undershoot=BARELY, highest=None):
         raise ValueError(
             f"with the gain {highest:g} the undershoot is below {undershoot:g}: expected a higher gain to try"
         )
+    if beyond(highest / 1000) > 0:
+        raise ValueError(
+            f"with the gain {highest / 1000:g} the undershoot is above {undershoot:g}: expected a process that does "
+            "not oscillate without control"
+        )
     KpGG = brentq(beyond, highest / 1000, highest, xtol=1e-6 * highest)
     times, y, *final = respond(KpGG)
     overshoot, found, Tou = swing(times, y, *final)
+    if abs(found - undershoot) > 0.1 * undershoot:
+        raise ValueError(f"near the gain {KpGG:g} the undershoot jumps past {undershoot:g}: expected a steady growth")
     return GoodGain(float(KpGG), Tou, overshoot, found, times, y)
 
 

@@ -1,4 +1,6 @@
-"""Recorded signals: arrays of numbers at increasing times, checked in one place."""
+"""Recorded signals: arrays of numbers at increasing times; and single numbers; checked in one place."""
+
+import math
 
 from loopbook.deadtime import real_numbers
 
@@ -17,11 +19,31 @@ def record(times, **signals):
     return times, *found
 
 
+def number(name, value, expected="a number", holds=lambda x: True):
+    """Return a value as a finite float, or raise ValueError for anything else and where a condition does not hold."""
+    try:
+        x = math.nan if isinstance(value, (bool, str)) else float(value)
+    except (TypeError, ValueError):
+        x = math.nan
+    if not (math.isfinite(x) and holds(x)):
+        raise ValueError(f"the {name} is {value!r}: expected {expected}")
+    return x
+
+
+def positive(name, value):
+    return number(name, value, "a positive number", lambda x: x > 0)
+
+
+def not_negative(name, value):
+    return number(name, value, "a number that is not negative", lambda x: x >= 0)
+
+
 def sampling_step(times):
     """Return the time between two samples, or raise ValueError where they do not come evenly."""
     import numpy
 
     step = (times[-1] - times[0]) / (len(times) - 1)
-    if abs(numpy.diff(times) - step).max() > 1e-6 * step:
+    rounding = 2 * numpy.spacing(abs(times).max())  # as of seconds since 1970
+    if abs(numpy.diff(times) - step).max() > 1e-6 * step + rounding:
         raise ValueError("the samples do not come evenly: expected times with one step between them")
     return float(step)

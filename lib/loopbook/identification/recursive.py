@@ -9,6 +9,7 @@ import math
 from loopbook.approximation import Model
 from loopbook.deadtime import real_numbers
 from loopbook.expressions import exact
+from loopbook.identification.records import number, positive
 
 
 class RecursiveLeastSquares:
@@ -41,18 +42,15 @@ class RecursiveLeastSquares:
     def __init__(self, count, forgetting=1.0, initial=None, uncertainty=1e6, largest=None):
         import numpy
 
-        if isinstance(count, bool) or not isinstance(count, int) or count < 1:
-            raise ValueError(f"the number of parameters is {count!r}: expected 1, 2, 3 ...")
-        if not 0 < forgetting <= 1:
-            raise ValueError(f"the forgetting factor is {forgetting}: expected a number above 0 and at most 1")
-        if not uncertainty > 0:
-            raise ValueError(f"the uncertainty is {uncertainty}: expected a positive number")
-        self.forgetting = float(forgetting)
+        count = int(number("number of parameters", count, "1, 2, 3 ...", lambda x: x >= 1 and x == int(x)))
+        self.forgetting = number(
+            "forgetting factor", forgetting, "a number above 0 and at most 1", lambda x: 0 < x <= 1
+        )
         self.parameters = numpy.zeros(count) if initial is None else real_numbers("parameters", initial).copy()
         if self.parameters.shape != (count,):
             raise ValueError(f"{self.parameters.size} initial parameters for a count of {count}")
-        self.covariance = float(uncertainty) * numpy.eye(count)
-        self.largest = self.covariance.trace() if largest is None else float(largest)
+        self.covariance = positive("uncertainty", uncertainty) * numpy.eye(count)
+        self.largest = self.covariance.trace() if largest is None else positive("largest uncertainty", largest)
 
     def update(self, regressors, y):
         """Take a sample and return its error, what the estimate so far did not explain."""
@@ -61,7 +59,7 @@ class RecursiveLeastSquares:
         x = real_numbers("regressors", regressors)
         if x.shape != self.parameters.shape:
             raise ValueError(f"{x.size} regressors for {self.parameters.size} parameters")
-        error = float(y) - x @ self.parameters
+        error = number("value of y", y) - x @ self.parameters
         spread = self.covariance @ x
         weight = self.forgetting + x @ spread
         self.parameters = self.parameters + spread / weight * error
@@ -96,10 +94,13 @@ def first_order_of(a, b, step, whole_delay=0):
     """
     import sympy
 
-    b0, b1 = (float(x) for x in ((*b, 0.0)[:2] if hasattr(b, "__len__") else (b, 0.0)))
-    a, step = float(a), float(step)
-    if not (0 < a <= 1 and step > 0 and whole_delay >= 0):
-        raise ValueError(f"a is {a:g}, the step {step:g} and the delay {whole_delay}: expected 0 < a <= 1 and times")
+    values = real_numbers("values of b", b)
+    if values.shape not in ((), (1,), (2,)):
+        raise ValueError(f"b is {b!r}: expected (b0, b1), or b0 alone")
+    b0, b1 = (*values.ravel().tolist(), 0.0)[:2]
+    a = number("coefficient a", a, "one above 0 and at most 1", lambda x: 0 < x <= 1)
+    step = positive("step", step)
+    whole_delay = number("whole delay", whole_delay, "0, 1, 2 ... steps", lambda x: x >= 0 and x == int(x))
     if b0 + b1 == 0 or b0 * (b0 + b1) < 0 or b1 * (b0 + b1) < 0:
         raise ValueError(f"b is ({b0:g}, {b1:g}): expected two numbers of the same sign")
     share = b0 / (b0 + b1)

@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass
 
 from loopbook.deadtime import System
-from loopbook.identification.records import record
+from loopbook.identification.records import not_negative, number, positive, record
 from loopbook.stability import ultimate
 
 SAME = 1e-9  # two half periods in a row that differ by no larger share belong to a limit cycle
@@ -71,12 +71,8 @@ def relay_experiment(process, amplitude=1, hysteresis=0, periods=6):
     """
     import numpy
 
-    for name, value in (("amplitude", amplitude), ("number of periods", periods)):
-        if not value > 0:
-            raise ValueError(f"the {name} of the relay is {value}: expected a positive number")
-    if not hysteresis >= 0:
-        raise ValueError(f"the hysteresis is {hysteresis}: expected a number that is not negative")
-    system, d, h = System(process), float(amplitude), float(hysteresis)
+    d, h = positive("amplitude of the relay", amplitude), not_negative("hysteresis", hysteresis)
+    system, periods = System(process), positive("number of periods", periods)
     period = _expected_period(system, d, h)
     steps = _Steps(system, period)
     signs, switches = [1.0], [0.0]  # the relay's output changes to sign*d at these moments
@@ -87,8 +83,8 @@ def relay_experiment(process, amplitude=1, hysteresis=0, periods=6):
             y += sign * (1 if n == 0 else 2) * d * steps.since(t, moment)
         return y
 
-    while not _settled(switches) or switches[-1] - switches[0] < periods * (switches[-1] - switches[-3]):
-        if len(switches) > MOST_SWITCHES:
+    while not (settled := _settled(switches)) or switches[-1] < periods * (switches[-1] - switches[-3]):
+        if not settled and len(switches) > MOST_SWITCHES:
             raise ValueError(f"the relay does not settle into a limit cycle within {MOST_SWITCHES} switches")
         following = _next_switch(lambda t: signs[-1] * output(t) - h, switches[-1], period)
         if following - switches[-1] < 1e-6 * period:
@@ -119,8 +115,18 @@ def _expected_period(system, d, h):
     if math.isfinite(Ku) and Pu > 0 and math.isfinite(Pu):
         return Pu
     if h == 0:
-        raise ValueError(f"no gain makes the loop of {system.expr} oscillate, and so does no relay without hysteresis")
-    return max(10 * h / d / max(abs(system.frequency(1.0)), 1e-9), 1.0)
+        raise ValueError(
+            f"no positive gain makes the loop of {system.expr} oscillate, and so does no relay without hysteresis"
+        )
+    # the frequency, to a factor of two, at which the process lets through as much as the hysteresis wants
+    frequency = 1.0
+    while abs(system.frequency(frequency)) > h / d:
+        frequency *= 2
+    while abs(system.frequency(frequency)) < h / d:
+        frequency /= 2
+        if frequency < 1e-30:
+            raise ValueError(f"the output of {system.expr} does not reach the hysteresis {h:g}: expected a smaller one")
+    return 2 * math.pi / frequency
 
 
 class _Steps:
@@ -163,11 +169,21 @@ def _next_switch(distance, since, period):
             beyond[: 1 + int((~beyond).argmax())] = False
         if beyond.any():
             k = int(beyond.argmax())
-            if distance(t[k - 1]) >= 0:
-                return float(t[k - 1])
+            if distance(t[k - 1]) == 0:  # at rest up to the end of a dead time
+                return _last(lambda x: distance(x) <= 0, t[k - 1], t[k])
             return brentq(distance, t[k - 1], t[k], xtol=1e-14 * max(t[k], period), rtol=1e-14)
         if stretch > 1000:
-            raise ValueError("the measurement does not come back: expected a process with positive gain")
+            raise ValueError(
+                "the measurement does not come to the next switch: expected a process with positive gain, "
+                "and a hysteresis that it reaches"
+            )
+
+
+def _last(holds, low, high):
+    """The last moment from low to high at which a condition holds that ends once, by halves."""
+    while low < (middle := (low + high) / 2) < high:
+        low, high = (middle, high) if holds(middle) else (low, middle)
+    return float(low)
 
 
 def _peak(function, times, values):
@@ -177,9 +193,8 @@ def _peak(function, times, values):
     k = int(values.argmax())
     found = [values[k]]
     for a, b in itertools.pairwise(times[max(k - 1, 0) : k + 2]):
-        refined = minimize_scalar(
-            lambda t: -float(function(t)), bounds=(a, b), method="bounded", options={"xatol": 1e-9}
-        )
+        options = {"xatol": 1e-9 * (b - a)}
+        refined = minimize_scalar(lambda t: -float(function(t)), bounds=(a, b), method="bounded", options=options)
         found.append(-refined.fun)
     return max(found)
 
@@ -199,12 +214,8 @@ class Relay:
     """
 
     def __init__(self, amplitude, step, hysteresis=0, u0=0):
-        for name, value in (("amplitude", amplitude), ("step", step)):
-            if not float(value) > 0:
-                raise ValueError(f"the {name} is {value}: expected a positive number")
-        if not float(hysteresis) >= 0:
-            raise ValueError(f"the hysteresis is {hysteresis}: expected a number that is not negative")
-        self.amplitude, self.step, self.hysteresis, self.u0 = map(float, (amplitude, step, hysteresis, u0))
+        self.amplitude, self.step = positive("amplitude", amplitude), positive("step", step)
+        self.hysteresis, self.u0 = not_negative("hysteresis", hysteresis), number("signal u0", u0)
         self.on = True
 
     def update(self, setpoint, measurement, feedforward=0.0, manual=None):
@@ -228,16 +239,24 @@ def oscillation(times, u, y, hysteresis=0):
     Returns:
         A `LimitCycle`.
     Raises:
-        ValueError: for a record with fewer than two whole periods, or arrays that do not fit.
+        ValueError: for a record with fewer than two whole periods, or with periods of very different lengths, as where
+            noise switches the relay; or arrays that do not fit.
     """
     import numpy
 
     times, u, y = record(times, u=u, y=y)
+    h = not_negative("hysteresis", hysteresis)
     low, high = u.min(), u.max()
     up = numpy.flatnonzero((u[1:] > u[:-1]) & (u[1:] > (low + high) / 2)) + 1
     if len(up) < 3:
         raise ValueError(f"the relay switched on {len(up)} times: expected a record with two whole periods at least")
     up = up[-1 - PERIODS :]
+    shortest, *_, longest = sorted(numpy.diff(times[up]))
+    if longest > 2 * shortest:
+        raise ValueError(
+            f"the last periods are from {shortest:.3g} to {longest:.3g} long: expected a steady oscillation; "
+            "a hysteresis above the noise keeps it from switching the relay"
+        )
     Pu = (times[up[-1]] - times[up[0]]) / (len(up) - 1)
     # one mean period, on as many points as a period has samples
     count = max(4, round(len(times) * Pu / (times[-1] - times[0])))
@@ -245,5 +264,7 @@ def oscillation(times, u, y, hysteresis=0):
     periods = [numpy.interp(a + phase * (b - a), times, y) for a, b in itertools.pairwise(times[up])]
     mean = numpy.mean(periods, axis=0)
     a, d = float(mean.max() - mean.min()) / 2, float(high - low) / 2
-    angle = -180 + math.degrees(math.asin(min(float(hysteresis) / a, 1)))
+    if a == 0:
+        raise ValueError(f"the measurement is {y[0]:g} all the time: expected one that oscillates")
+    angle = -180 + math.degrees(math.asin(min(h / a, 1)))
     return LimitCycle(4 * d / (math.pi * a), float(Pu), a, angle, times, u, y, times[1:][numpy.diff(u) != 0])

@@ -3,10 +3,13 @@
 import bisect
 import copy
 import itertools
-import math
+
+import sympy
 
 from loopbook.expressions import exact
+from loopbook.identification.records import number
 from loopbook.pid import PID, Controller
+from loopbook.tuning.inputs import known
 
 WAYS = ("constant", "linear")
 
@@ -26,8 +29,8 @@ class GainSchedule:
         hysteresis: h, in the unit of GS; for "constant" only.
         safe: "low" or "high", which end of an interval has the settings that are safe in all of it.
     Raises:
-        ValueError: for a table that is too short or of mixed forms, another way, or a hysteresis larger than the
-            smallest distance of two rows.
+        ValueError: for a table that is too short, of mixed forms, with a GS twice or, if linear, with an integral term
+            in some rows only; another way; or a hysteresis larger than the smallest distance of two rows.
     Source: Haugen, Table 10.2, Figure 10.14, equations (10.30) to (10.32).
 
     >>> table = {12: PID(4.1, Ti=7), 16: PID(5.4, Ti=5.4), 20: PID(6.8, Ti=4.4)}
@@ -42,17 +45,18 @@ class GainSchedule:
             raise ValueError(f"the table is {table!r}: expected {{GS: PID}} with two rows or more")
         if len({settings.form for settings in table.values()}) > 1:
             raise ValueError("the settings in the table have different forms: expected the same form in all rows")
-        if way not in WAYS:
-            raise ValueError(f"the way is {way!r}: expected 'constant' or 'linear'")
-        if safe not in ("low", "high"):
-            raise ValueError(f"the safe end is {safe!r}: expected 'low' or 'high'")
-        self.table = {exact(GS): settings for GS, settings in sorted(table.items())}
-        self.rows, self.way, self.safe, self.hysteresis = list(self.table), way, safe, exact(hysteresis)
+        known("the way", way, WAYS)
+        known("the safe end", safe, ("low", "high"))
+        if way == "linear" and len({settings.Ti == sympy.oo for settings in table.values()}) > 1:
+            raise ValueError("only some rows have an integral term: between these no straight line leads")
+        self.rows = sorted(map(_finite, table))
+        self.table = {exact(GS): settings for GS, settings in table.items()}
         smallest = min(high - low for low, high in itertools.pairwise(self.rows))
-        if not 0 <= self.hysteresis <= smallest or (way == "linear" and self.hysteresis):
-            raise ValueError(
-                f"the hysteresis is {hysteresis}: expected 0 to {smallest}, and none for a linear schedule"
-            )
+        if smallest == 0:
+            raise ValueError(f"the table is {table!r}: expected different values of GS")
+        expected = f"0 to {smallest}, and none for a linear schedule"
+        number("hysteresis", hysteresis, expected, lambda x: 0 <= x <= (smallest if way == "constant" else 0))
+        self.way, self.safe, self.hysteresis = way, safe, exact(hysteresis)
         self.row = None  # that of the last settings
 
     def settings(self, GS):
@@ -60,9 +64,7 @@ class GainSchedule:
 
         Raises ValueError for a value that is no number.
         """
-        GS = exact(GS)
-        if not (GS.is_number and GS.is_real and math.isfinite(GS)):
-            raise ValueError(f"GS is {GS}: expected a finite number")
+        GS = _finite(GS)
         return self._linear(GS) if self.way == "linear" else self.table[self._row(GS)]
 
     def reset(self):
@@ -101,6 +103,13 @@ class GainSchedule:
         return f"GainSchedule({{{rows}}}, {self.way!r})"
 
 
+def _finite(GS):
+    GS = exact(GS)
+    if not (GS.is_number and GS.is_real and GS.is_finite):
+        raise ValueError(f"GS is {GS}: expected a finite number")
+    return GS
+
+
 class ScheduledController(Controller):
     """The practical PID controller with settings from a gain schedule. (Haugen, Figure 10.13)
 
@@ -108,7 +117,7 @@ class ScheduledController(Controller):
     loop at rest; while there is a control error, the proportional term steps with its gain.
 
     Arguments:
-        schedule: a `GainSchedule`; the controller has a copy of its own.
+        schedule: a `GainSchedule`; the controller has a copy of its own, without the values before.
         step, options: as of `Controller`.
 
     >>> schedule = GainSchedule({12: PID(4), 16: PID(5)})
@@ -123,6 +132,7 @@ class ScheduledController(Controller):
         if not isinstance(schedule, GainSchedule):
             raise ValueError(f"the schedule is {schedule!r}: expected a GainSchedule")
         self.schedule = copy.copy(schedule)
+        self.schedule.reset()
         super().__init__(next(iter(schedule.table.values())), step, **options)
 
     def update(self, setpoint, measurement, feedforward=0.0, manual=None, scheduling=None):

@@ -2,11 +2,13 @@
 
 from loopbook.approximation import Model
 from loopbook.expressions import exact
-from loopbook.identification.records import record
+from loopbook.identification.records import number, record
+from loopbook.tuning.inputs import known
 
 RISE = 0.6321205588285577  # of a lag after one time-constant, 1 - 1/e
 EARLY_RISE = 0.2834686894262108  # after a third of it, 1 - exp(-1/3)
 LAST = 10  # the final value is the mean over this part of the record: a tenth
+EARLY = 0.05  # share of the record by which an asymptote may start too early
 SETTLED = 0.03  # by how much of the change the last two tenths may differ
 
 
@@ -26,7 +28,8 @@ def first_order_from_step(times, y, U=1, at=0, delay_by="tangent"):
     Returns:
         A `Model` with K, T1 and delay.
     Raises:
-        ValueError: for arrays that do not fit, a step of zero, or a response that has not come to rest.
+        ValueError: for arrays that do not fit, a step of zero, a response that has not come to rest, or a tangent to
+            nothing but noise.
     Source: Haugen, Figure 10.9.
 
     >>> import numpy, sympy
@@ -40,9 +43,8 @@ def first_order_from_step(times, y, U=1, at=0, delay_by="tangent"):
     """
     import numpy
 
-    if delay_by not in ("tangent", "two points"):
-        raise ValueError(f"delay_by is {delay_by!r}: expected 'tangent' or 'two points'")
-    times, y, before = _from_the_step(times, y, U, at)
+    known("delay_by", delay_by, ("tangent", "two points"))
+    times, y, before, U = _from_the_step(times, y, U, at)
     tenth = max(1, len(y) // LAST)
     change = y[-tenth:].mean() - before
     drift = abs(y[-tenth:].mean() - y[-2 * tenth : -tenth].mean())
@@ -56,6 +58,8 @@ def first_order_from_step(times, y, U=1, at=0, delay_by="tangent"):
     slopes = numpy.diff(rise) / numpy.diff(times)
     k = slopes.argmax()
     delay = times[k] - rise[k] / slopes[k]
+    if delay >= t_63:
+        raise ValueError("the steepest slope is that of noise: expected a smooth record; or use 'two points', or fit")
     return _model(change / U, t_63 - delay, delay)
 
 
@@ -71,7 +75,7 @@ def integrator_from_step(times, y, U=1, at=0, part=0.5):
     Returns:
         A `Model` with K, T1 = oo and delay.
     Raises:
-        ValueError: as `first_order_from_step`.
+        ValueError: for arrays that do not fit, a step of zero, or a response without such an asymptote.
     Source: Haugen, Figure 10.8.
 
     >>> import numpy
@@ -81,9 +85,8 @@ def integrator_from_step(times, y, U=1, at=0, part=0.5):
     """
     import sympy
 
-    if not 0 < part <= 1:
-        raise ValueError(f"the part on the asymptote is {part}: expected a share from 0 to 1")
-    times, y, before = _from_the_step(times, y, U, at)
+    part = number("part on the asymptote", part, "a share from 0 to 1", lambda x: 0 < x <= 1)
+    times, y, before, U = _from_the_step(times, y, U, at)
     late = times >= times[-1] * (1 - part)
     if late.sum() < 2:
         raise ValueError(f"only {late.sum()} samples are in the last {part:.0%} of the response: expected more")
@@ -91,18 +94,19 @@ def integrator_from_step(times, y, U=1, at=0, part=0.5):
     slope = ((times[late] - t_mean) * (y[late] - y_mean)).sum() / ((times[late] - t_mean) ** 2).sum()
     if slope == 0:
         raise ValueError("the response ends at rest: use first_order_from_step")
-    return _model(slope / U, sympy.oo, t_mean - (y_mean - before) / slope)
+    delay = t_mean - (y_mean - before) / slope
+    if delay < -EARLY * times[-1]:
+        raise ValueError(f"the asymptote starts {-delay:.3g} before the step: expected the response of an integrator")
+    return _model(slope / U, sympy.oo, delay)
 
 
 def _from_the_step(times, y, U, at):
-    """The response counted from the step, and the level before it."""
+    """The response counted from the step, the level before it, and the step as a number."""
     times, y = record(times, y=y)
-    if U == 0:
-        raise ValueError("the step U is 0: expected a step of the control signal")
-    if not times[0] <= at < times[-1]:
-        raise ValueError(f"the step is at t = {at:g}: expected a time within the record")
+    U = number("step U", U, "a step of the control signal", lambda x: x != 0)
+    at = number("time of the step", at, "a time within the record", lambda x: times[0] <= x < times[-1])
     before = y[times <= at].mean()
-    return times[times >= at] - float(at), y[times >= at], before
+    return times[times >= at] - at, y[times >= at], before, U
 
 
 def _first_time(times, rise, share):

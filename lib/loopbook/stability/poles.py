@@ -1,6 +1,7 @@
 """The dominant poles of a closed loop with dead time: those with the largest real parts, of infinitely many."""
 
 import math
+import operator
 
 from loopbook.stability.counting import ENDLESS, ON_LIMIT, characteristic, count_roots, open_loop
 from loopbook.stability.sums import Sums, prevailing
@@ -29,22 +30,32 @@ def dominant_poles(loop, count=2):
     """
     import numpy
 
-    if not isinstance(count, int) or isinstance(count, bool) or count < 1:
+    if not hasattr(count, "__index__") or isinstance(count, bool) or operator.index(count) < 1:
         raise ValueError(f"count is {count!r}: expected a positive integer")
     L = open_loop(loop)
     parts = {delay: part for delay, part in characteristic(L).items() if not part.is_zero}
-    order = parts[0].degree()
-    if not order and len(parts) == 1:
-        return []
-    sums = Sums.exact(parts, order, parts[0].LC())
-    longest = float(sums.delays.max())
-    unit = 1 / longest if longest else float(prevailing(sums.coefficients)[0])
-    right, left, most = _strip(sums, unit, count if longest else min(count, order), L)
-    found = _inside(sums, left, right, most)
+    if len(parts) == 1:
+        found = _of_polynomial(parts[0])
+    else:
+        sums = Sums.exact(parts, parts[0].degree(), parts[0].LC())
+        right, left, most = _strip(sums, 1 / float(sums.delays.max()), count, L)
+        found = _inside(sums, left, right, most)
     upper = [p for p in found if p.imag >= 0]
     poles = [q for p in sorted(upper, key=lambda p: (-p.real, p.imag)) for q in ([p, p.conjugate()] if p.imag else [p])]
     end = count + 1 if len(poles) > count and poles[count - 1].imag > 0 else count
     return [complex(numpy.complex128(p)) for p in poles[:end]]
+
+
+def _of_polynomial(polynomial):
+    """The roots of a polynomial, multiple ones as exact as others: it is divided into factors without such."""
+    import numpy
+
+    return [
+        complex(root)
+        for factor, multiplicity in polynomial.sqf_list()[1]
+        for root in numpy.roots([float(c / factor.LC()) for c in factor.all_coeffs()])
+        for _ in range(multiplicity)
+    ]
 
 
 def _strip(sums, unit, count, L):
@@ -57,7 +68,11 @@ def _strip(sums, unit, count, L):
     inner = right
     for _ in range(12):  # as few more as possible
         middle = (inner + left) / 2
-        if (between := _right_of(sums, middle)) < count:
+        try:
+            between = _right_of(sums, middle)
+        except ValueError:  # too close to a multiple root
+            break
+        if between < count:
             inner = middle
         else:
             left, most = middle, between
@@ -95,19 +110,23 @@ def _inside(sums, left, right, most):
     for refinement in (1, 4, 16):
         rows = refinement * (20 + int(top * float(sums.delays.max()) + 8 * sums.order))
         x, y = numpy.meshgrid(numpy.linspace(left, right, 6 * refinement), numpy.linspace(0, top, min(rows, 20_000)))
-        roots = _newton(sums, derivative, (x + 1j * y).ravel())
-        roots = roots[(roots.real > left) & (roots.real < right) & (roots.imag > -1e-9 * top)]
-        distinct = []
-        for p in roots[numpy.argsort(abs(roots))]:
-            if all(abs(p - q) > 1e-6 * max(abs(p), 1e-3 * top) for q in distinct):
-                distinct.append(complex(p.real, 0.0 if abs(p.imag) < 1e-8 * max(abs(p), 1e-3 * top) else p.imag))
-        found = [p for p in distinct for _ in range(_multiplicity(sums, derivative, p, distinct, top))]
-        if sum(2 if p.imag else 1 for p in found) == most:
-            return found
-    raise ValueError(f"{most} poles are known to lie right of {left:g}, but {len(found)} of them were found")
+        points, rest = _newton(sums, derivative, (x + 1j * y).ravel())
+        inside = (points.real > left) & (points.real < right) & (points.imag > -1e-9 * top)
+        points, rest, size = points[inside], rest[inside], numpy.maximum(abs(points[inside]), 1e-3 * top)
+        for close, flat in ((1e-6, 1e-8), (1e-3, 1e-3)):  # rounding scatters what leads to a triple root
+            distinct = []
+            for k in numpy.argsort(rest):
+                p = points[k]
+                if rest[k] <= 1e-5 * size[k] and all(abs(p - q) > close * size[k] for q in distinct):
+                    distinct.append(complex(p.real, 0.0 if abs(p.imag) < flat * size[k] else p.imag))
+            found = [p for p in distinct for _ in range(_multiplicity(sums, derivative, p, distinct, top))]
+            if (number := sum(2 if p.imag else 1 for p in found)) == most:
+                return found
+    raise ValueError(f"{most} poles are known to lie right of {left:g}, but {number} were found")
 
 
 def _newton(sums, derivative, points):
+    """Where Newton's method leads from many points, and how long its next step would be."""
     import numpy
 
     with numpy.errstate(all="ignore"):
@@ -118,8 +137,7 @@ def _newton(sums, derivative, points):
             if not len(points) or (abs(change) <= 1e-14 * (1 + abs(change.real))).all():
                 break
         rest = abs(_value(sums, points) / _value(derivative, points))
-    # at a double root Newton's steps stay long for a while
-    return points[rest <= 1e-6 * (abs(points) + 1e-12)]
+    return points, rest
 
 
 def _value(sums, points):
@@ -135,7 +153,9 @@ def _multiplicity(sums, derivative, root, others, top):
     """How often a root occurs: the turns of the phase on a circle around it that leaves out the others."""
     import numpy
 
-    apart = min((min(abs(root - p), abs(root - p.conjugate()) or math.inf) for p in others if p != root), default=top)
+    distances = (abs(root - q) for p in others for q in (p, p.conjugate()) if q != root)
+    apart = min(distances, default=top)
     circle = min(apart, 1e-2 * top) / 3 * numpy.exp(2j * math.pi * numpy.arange(64) / 64)
-    turns = _value(derivative, root + circle) / _value(sums, root + circle) * circle
-    return max(1, round(float(turns.mean().real)))
+    with numpy.errstate(all="ignore"):
+        turns = (_value(derivative, root + circle) / _value(sums, root + circle) * circle).real.mean()
+    return max(1, round(float(turns))) if numpy.isfinite(turns) else 1

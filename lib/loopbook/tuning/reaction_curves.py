@@ -79,7 +79,8 @@ _ITAE = {
 def itae(model, kind="PI", mode="regulator", extrapolate=False):
     """Return settings that nearly minimise the integral of t*abs(e), fitted for dead times of 0.1 to 1 lag.
 
-    Each is A*r**B with r = delay/T, and for T/Ti after a setpoint step A + B*r. Servo settings do not suit a load.
+    Each is A*r**B with r = delay/T, and for T/Ti after a setpoint step A + B*r. Servo settings do not suit a load, and
+    those of a PID controller are for one whose derivative term does not see the setpoint (chapter 16 shows it).
 
     Arguments:
         model: a lag with dead time. An integrator has no such settings: with r, K*Kp*r goes to zero or infinity.

@@ -49,12 +49,18 @@ def skogestad_integral_time(T1, Tc, delay, c=4):
     Arguments:
         T1, Tc, delay: largest lag, desired time constant of the closed loop, dead time, in one unit.
         c: 4 in the original.
+    Raises:
+        ValueError: for a time that is negative, no lag, or neither dead time nor a Tc.
     Source: Seborg et al., equation (12-34).
 
     >>> skogestad_integral_time(100, Tc=1, delay=1)
     8
     """
-    return Min(endless_time("T1", T1), positive("c", c) * (finite_time("Tc", Tc) + finite_time("delay", delay)))
+    total = positive("Tc + delay", finite_time("Tc", Tc) + finite_time("delay", delay))
+    T1 = endless_time("T1", T1)
+    if T1 == 0:
+        raise ValueError("T1 is 0: expected a lag")
+    return Min(T1, positive("c", c) * total)
 
 
 def closed_loop_time(model, guideline="skogestad"):
@@ -107,6 +113,8 @@ def adjusted(settings, before, after, Tc=None, c=4):
     >>> adjusted(PID(0.6, Ti=5), before, after)
     PID(Kp=3/10, Ti=10)
     """
+    if not isinstance(settings, PID):
+        raise ValueError(f"the settings are {settings!r}: expected a PID")
     before, after = model_of(before), model_of(after)
     kinds = [(m.is_integrating, m.T2.is_infinite, m.T2 == 0, m.delay == 0) for m in (before, after)]
     if kinds[0] != kinds[1]:
