@@ -22,7 +22,7 @@ from loopbook.identification import (
     fit,
     good_gain_experiment,
     integrator_from_step,
-    oscillation,
+    limit_cycle,
     relay_experiment,
     swing,
 )
@@ -401,7 +401,7 @@ def test_a_relay_in_a_sampled_loop_with_noise_finds_nearly_the_same():
     run = simulate(
         Process(process), Relay(1, step=0.1, hysteresis=0.1), until=80, setpoint=0, noise=0.02, seed=4
     )  # fmt: skip
-    found = oscillation(run.times, run["u"], run["measurement"], hysteresis=0.1)
+    found = limit_cycle(run.times, run["u"], run["measurement"], hysteresis=0.1)
     assert found.Ku == pytest.approx(exact.Ku, rel=0.05)
     assert found.Pu == pytest.approx(exact.Pu, rel=0.05)
     assert found.phase == pytest.approx(exact.phase, abs=1)
@@ -425,11 +425,11 @@ def test_a_relay_that_makes_no_oscillation_is_refused():
         relay_experiment(2 * E(-s) / (s + 1), hysteresis=3)
     run = simulate(Process(PLANT), Relay(1, step=0.1), until=80, setpoint=0, noise=0.05, seed=4)
     with pytest.raises(ValueError, match="a hysteresis above the noise"):
-        oscillation(run.times, run["u"], run["measurement"])
+        limit_cycle(run.times, run["u"], run["measurement"])
     with pytest.raises(ValueError, match="measurement is 0 all the time"):
-        oscillation(run.times, np.sign(np.sin(run.times)), 0 * run.times)
+        limit_cycle(run.times, np.sign(np.sin(run.times)), 0 * run.times)
     with pytest.raises(ValueError, match="switched on 0 times"):
-        oscillation([0, 1, 2, 3], [1, 1, 1, 1], [0, 1, 2, 3])
+        limit_cycle([0, 1, 2, 3], [1, 1, 1, 1], [0, 1, 2, 3])
 
 
 # ---------------------------------------------------------------------------- Good Gain
@@ -703,3 +703,13 @@ def test_a_scheduled_run_goes_on_after_a_change_of_the_plant():
         simulate(Process(process), Controller(PID(1), step=1), until=10, setpoint=1, scheduling=1)
     with pytest.raises(ValueError, match="scheduling is given, but no controller"):
         simulate(Process(process), until=10, step=1, scheduling=1)
+
+
+def test_the_adaptive_controller_learns_alike_in_all_units():
+    def gains(unit):
+        process = Process(2 * unit * sympy.exp(-2 * s) / (10 * s + 1))
+        controller = AdaptiveController(PID(0.3 / unit, Ti=10), step=1, delay=2)
+        run = simulate(process, controller, until=120, setpoint=stepwise(0, {5: unit, 60: 2 * unit}))
+        return run["Kp"] * unit
+
+    assert gains(1e-4) == pytest.approx(gains(1.0), rel=1e-3)

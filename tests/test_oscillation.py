@@ -98,6 +98,7 @@ def test_initial_slope(H, slope):
     assert (second - first) / 1e-6 == pytest.approx(float(slope), abs=1e-4)
 
 
-def test_an_improper_transfer_function_has_no_initial_slope():
+@pytest.mark.parametrize("H", [s + 1, s * dead_time(1)])
+def test_an_improper_transfer_function_has_no_initial_slope(H):
     with pytest.raises(ValueError, match="improper"):
-        initial_slope(s + 1)
+        initial_slope(H)

@@ -370,10 +370,13 @@ def initial_slope(H):
     >>> initial_slope(first_order(2, 10))
     1/5
     """
-    jump = initial_gain(H)
-    if jump.is_infinite:
-        raise ValueError(f"{H} is improper: expected no more zeros than poles")
-    return sympy.limit(sympy.cancel(s * (function_of(s, H) - jump)), s, sympy.oo)
+    H = function_of(s, H)
+    for part in by_delay(H).values():
+        above, below = sympy.cancel(part).as_numer_denom()
+        if sympy.degree(above, s) > sympy.degree(below, s):
+            raise ValueError(f"{H} is improper: expected no more zeros than poles")
+    at_once = by_delay(H).get(0, sympy.S.Zero)
+    return sympy.limit(sympy.cancel(s * (at_once - initial_gain(at_once))), s, sympy.oo)
 
 
 def zero_pole_gain(H):

@@ -45,12 +45,13 @@ class AdaptiveController(Controller):
         self.c, self.wait = positive("factor c", c), wait
         if not (self.whole_delay or self.Tc):
             raise ValueError(f"the dead time is {delay}, less than a step, and Tc is {Tc}: expected a positive Tc")
-        self.estimator = RecursiveLeastSquares(3, forgetting)
+        self.estimator, self.scale = RecursiveLeastSquares(3, forgetting), abs(self.Kp) or 1.0
         self.model, self.last, self.inputs = None, None, []
 
     def update(self, setpoint, measurement, feedforward=0.0, manual=None):
         """Take the signals of this sample, learn from them, and return the control signal."""
-        y, known = self._in_percent(float(measurement)), self.inputs
+        # in units of the control signal, so that a, b and c are learnt alike in all units of the measurement
+        y, known = self.scale * self._in_percent(float(measurement)), self.inputs
         if len(known) > self.whole_delay:
             self.estimator.update([self.last, known[-1 - self.whole_delay], 1.0], y)
             self.wait -= 1
@@ -64,12 +65,12 @@ class AdaptiveController(Controller):
     def _follow(self):
         a, b, _ = self.estimator.parameters
         if 0 < a < 1 and b * self.Kp > 0:
-            self.model = first_order_of(a, b, self.step, self.whole_delay)
+            self.model = first_order_of(a, b / self.scale, self.step, self.whole_delay)
             settings = simc(self.model, self.Tc, self.c)
             self.change(replace(settings, Kp=-settings.Kp) if self.action == "direct" else settings)
 
     def take_over(self, other):
         super().take_over(other)
         if isinstance(other, AdaptiveController):
-            self.estimator, self.model = other.estimator, other.model
+            self.estimator, self.scale, self.model = other.estimator, other.scale, other.model
             self.last, self.inputs, self.wait = other.last, other.inputs, other.wait

@@ -58,14 +58,16 @@ def fit(times, u, y, kind="first order", *, start="rest", level=None, longest_de
     The output error is the measurement minus what the model makes of the control signal alone. The control signal is
     held between samples, and the model's response is exact. For given lags and dead time the rest of the problem is
     linear. Lags and dead time are searched with `scipy.optimize.least_squares`, from the best of a grid of starting
-    points, because the sum of squares over the dead time may have several minima.
+    points, because the sum of squares over the dead time may have several minima. A lag that is shorter than the time
+    between two samples is not resolved: its standard error is then too small.
 
     Arguments:
         times: moments of the samples, evenly spaced.
         u, y: control signal and measurement at these moments; u is held until the next one.
         kind: "first order", "second order" (two real lags), "integrator" or "integrator with lag".
         start: "rest", if the process was at rest with the first control signal before the record; or "unknown", and
-            then the state at the beginning is estimated, too.
+            then the state at the beginning is estimated, too. Before the record, u had its first value for as long as
+            the dead time.
         level: the measurement at rest with the first control signal, if it is known; otherwise it is estimated.
         longest_delay: up to which a dead time is looked for; half of the record if not given.
     Returns:

@@ -20,7 +20,7 @@ PERIODS = 5  # of the limit cycle that a noisy record is averaged over
 
 @dataclass(frozen=True, repr=False)
 class LimitCycle:
-    """What a relay experiment tells: `relay_experiment` and `oscillation` return it.
+    """What a relay experiment tells: `relay_experiment` and `limit_cycle` return it.
 
     Attributes:
         Ku, Pu: estimates of the ultimate gain, 4 d/(pi a), and of the ultimate period, that of the oscillation.
@@ -83,8 +83,8 @@ def relay_experiment(process, amplitude=1, hysteresis=0, periods=6):
             y += sign * (1 if n == 0 else 2) * d * steps.since(t, moment)
         return y
 
-    while not (settled := _settled(switches)) or switches[-1] < periods * (switches[-1] - switches[-3]):
-        if not settled and len(switches) > MOST_SWITCHES:
+    while not _settled(switches):
+        if len(switches) > MOST_SWITCHES:
             raise ValueError(f"the relay does not settle into a limit cycle within {MOST_SWITCHES} switches")
         following = _next_switch(lambda t: signs[-1] * output(t) - h, switches[-1], period)
         if following - switches[-1] < 1e-6 * period:
@@ -92,13 +92,16 @@ def relay_experiment(process, amplitude=1, hysteresis=0, periods=6):
         switches.append(following)
         signs.append(-signs[-1])
     Pu = switches[-1] - switches[-3]
+    while switches[-1] < periods * Pu:
+        switches.append(switches[-2] + Pu)
+        signs.append(-signs[-1])
     corners = [moment + float(delay) for moment in switches for delay in [0, *system.delays]]
     times = numpy.unique(numpy.concatenate([numpy.linspace(0, switches[-1], 60 * len(switches)), switches, corners]))
     times = times[times <= switches[-1]]
     y = output(times)
     last = times >= switches[-3]
     a = (_peak(output, times[last], y[last]) + _peak(lambda t: -output(t), times[last], -y[last])) / 2
-    if h > a:
+    if h > a * (1 + 1e-9):
         raise ValueError(f"the hysteresis {h:g} is larger than the amplitude {a:g}")
     u = d * numpy.array(signs)[numpy.searchsorted(switches, times, side="right") - 1]
     a = float(a)
@@ -226,7 +229,7 @@ class Relay:
         return self.u0 + (self.amplitude if self.on else -self.amplitude) + float(feedforward)
 
 
-def oscillation(times, u, y, hysteresis=0):
+def limit_cycle(times, u, y, hysteresis=0):
     """Return amplitude and period of an oscillation under relay control from a record, which may be noisy.
 
     The mean over the last five periods counts: the period is that between the relay's switches upwards, and the
