@@ -338,7 +338,7 @@ def test_a_filter_slower_than_the_derivative_action_has_no_parallel_form():
         ({"ramp": 0}, "ramp is 0"),
         ({"ramp": -1}, "ramp is -1"),
         ({"u0": "much"}, "u0 is 'much'"),
-        ({"w_p": float("inf")}, "w_p is oo"),
+        ({"w_p": float("inf")}, "w_p is inf"),
         ({"measurement_range": (3, 3)}, "range is"),
     ],
 )

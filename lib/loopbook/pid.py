@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import sympy
 
 from loopbook.expressions import exact, s, written
+from loopbook.inputs import number, positive
 from loopbook.scaling import PERCENT, Scaling
 
 __all__ = ["PID", "Controller", "LowpassFilter"]
@@ -176,7 +177,7 @@ class LowpassFilter:
     """
 
     def __init__(self, T, step):
-        T, self.step = _number("T", T), _positive("step", step)
+        T, self.step = number("T", T), positive("step", step)
         if T < 0:
             raise ValueError(f"T is {T:g}: expected a lag that is not negative")
         self.T, self.remains = T, math.exp(-self.step / T) if T else 0.0
@@ -244,7 +245,7 @@ class Controller:
         measurement_range=None,
         control_range=None,
     ):
-        self.step, self.u0 = _positive("step", step), _number("u0", u0)
+        self.step, self.u0 = positive("step", step), number("u0", u0)
         if action not in ("reverse", "direct"):
             raise ValueError(f"action is {action!r}: expected 'reverse' or 'direct'")
         self.action = action
@@ -252,8 +253,8 @@ class Controller:
         if limits is None and control_range is not None:
             limits = PERCENT
         self.limits, self.pid_limits = _limits("limits", limits), _limits("pid_limits", pid_limits)
-        self.w_p, self.w_d = _number("w_p", w_p), _number("w_d", w_d)
-        self.ramp = _positive("ramp", ramp) * self.step if ramp != math.inf else math.inf
+        self.w_p, self.w_d = number("w_p", w_p), number("w_d", w_d)
+        self.ramp = positive("ramp", ramp) * self.step if ramp != math.inf else math.inf
         self.anti_windup, self.bumpless = bool(anti_windup), bool(bumpless)
         self.to_percent = self.from_percent = self.back_to_percent = None
         if measurement_range is not None:
@@ -272,11 +273,11 @@ class Controller:
         if not isinstance(settings, PID):
             raise ValueError(f"settings is {settings!r}: expected a PID")
         parallel = settings.parallel()
-        Kp, self.Td, self.Tf = (_number(x, getattr(parallel, x)) for x in ("Kp", "Td", "Tf"))
+        Kp, self.Td, self.Tf = (number(x, getattr(parallel, x)) for x in ("Kp", "Td", "Tf"))
         if self.action == "direct" and Kp < 0:
             raise ValueError(f"Kp is {Kp:g} and the action is direct: give a positive gain with an action")
         self.Kp = -Kp if self.action == "direct" else Kp
-        self.Ti = math.inf if parallel.Ti == sympy.oo else _number("Ti", parallel.Ti)
+        self.Ti = math.inf if parallel.Ti == sympy.oo else number("Ti", parallel.Ti)
         self.lag_remains = math.exp(-self.step / self.Tf) if self.Tf else 0.0
         self.settings = settings
 
@@ -362,7 +363,7 @@ class Controller:
 
     def start_from(self, u):
         """Begin as after manual mode with a control signal such as `update` returns."""
-        u = _number("u", u)
+        u = number("u", u)
         self.u, self.in_manual = self.back_to_percent(u) if self.back_to_percent else u, True
 
     def _in_percent(self, y):
@@ -390,24 +391,6 @@ def _between(x, limits):
 def _in_floats(scaling):
     a, b = float(scaling.a), float(scaling.b)
     return lambda x: a * x + b
-
-
-def _number(name, value):
-    """A float, or ValueError for letters and what is no finite real number."""
-    try:
-        value = exact(value)
-    except ValueError as error:
-        raise ValueError(f"{name} is {error}") from None
-    if not (value.is_number and value.is_real and value.is_finite):
-        raise ValueError(f"{name} is {value}: expected a finite number")
-    return float(value)
-
-
-def _positive(name, value):
-    value = _number(name, value)
-    if value <= 0:
-        raise ValueError(f"{name} is {value:g}: expected a positive number")
-    return value
 
 
 def _limits(name, given):

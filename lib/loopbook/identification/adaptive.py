@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-from loopbook.identification.records import not_negative, positive
 from loopbook.identification.recursive import RecursiveLeastSquares, first_order_of
+from loopbook.inputs import not_negative, positive
 from loopbook.pid import Controller
 from loopbook.tuning import simc
 
@@ -40,9 +40,9 @@ class AdaptiveController(Controller):
 
     def __init__(self, settings, step, delay, Tc=None, c=4, forgetting=0.99, wait=20, **options):
         super().__init__(settings, step, **options)
-        self.whole_delay = round(not_negative("dead time", delay) / self.step)
-        self.Tc = None if Tc is None else not_negative("time constant Tc", Tc)
-        self.c, self.wait = positive("factor c", c), wait
+        self.whole_delay = round(not_negative("the dead time", delay) / self.step)
+        self.Tc = None if Tc is None else not_negative("the time constant Tc", Tc)
+        self.c, self.wait = positive("the factor c", c), wait
         if not (self.whole_delay or self.Tc):
             raise ValueError(f"the dead time is {delay}, less than a step, and Tc is {Tc}: expected a positive Tc")
         self.estimator, self.scale = RecursiveLeastSquares(3, forgetting), abs(self.Kp) or 1.0

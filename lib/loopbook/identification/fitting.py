@@ -9,8 +9,8 @@ import sympy
 from loopbook.approximation import Model
 from loopbook.expressions import exact
 from loopbook.identification.held import KINDS, responses
-from loopbook.identification.records import number, record, sampling_step
-from loopbook.tuning.inputs import known
+from loopbook.identification.records import record, sampling_step
+from loopbook.inputs import number, one_of
 
 STARTS = ("rest", "unknown")
 DELAYS, LAGS = 16, 7  # how many of each are tried at first
@@ -88,19 +88,21 @@ def fit(times, u, y, kind="first order", *, start="rest", level=None, longest_de
 
     times, u, y = record(times, u=u, y=y)
     step, span = sampling_step(times), times[-1] - times[0]
-    known("the kind", kind, KINDS)
-    known("the start", start, STARTS)
+    one_of("the kind", kind, KINDS)
+    one_of("the start", start, STARTS)
     if not (u[:-1] != u[0]).any():
         raise ValueError(f"the control signal is {u[0]:g} all the time: expected an experiment that moves it")
     if not (y != y[0]).any():
         raise ValueError(f"the measurement is {y[0]:g} all the time: expected an experiment that moves it")
     longest_delay = span / 2 if longest_delay is None else longest_delay
-    number("longest dead time", longest_delay, f"a time up to that of the record, {span:g}", lambda x: 0 < x <= span)
+    number(
+        "the longest dead time", longest_delay, f"a time up to that of the record, {span:g}", lambda x: 0 < x <= span
+    )
     lags, integrators = KINDS[kind]
     # neither the search nor the standard errors may depend on units: time counts in steps, signals in their own spans
     unit_u, unit_y = abs(u - u[0]).max(), numpy.ptp(y)
     moved = (u - u[0]) / unit_u
-    rest = y[0] if level is None else number("level", level)
+    rest = y[0] if level is None else number("the level", level)
     target = (y - rest) / unit_y
 
     def regressors(p):

@@ -4,7 +4,8 @@ import math
 from dataclasses import dataclass
 
 from loopbook.deadtime import Loop
-from loopbook.identification.records import number, positive, record
+from loopbook.identification.records import record
+from loopbook.inputs import number, positive
 from loopbook.pid import PID
 from loopbook.stability import ultimate
 
@@ -59,7 +60,7 @@ def swing(times, y, final=None):
     import numpy
 
     times, y = record(times, y=y)
-    final = y[-1] if final is None else number("final value", final)
+    final = y[-1] if final is None else number("the final value", final)
     if final == y[0]:
         raise ValueError("the response ends where it began: expected one to a step")
     share = (y - y[0]) / (final - y[0])
@@ -105,7 +106,7 @@ def good_gain_experiment(process, undershoot=BARELY, highest=None):
     """
     from scipy.optimize import brentq
 
-    undershoot = number("undershoot", undershoot, "a share between 0 and 1", lambda x: 0 < x < 1)
+    undershoot = number("the undershoot", undershoot, "a share between 0 and 1", lambda x: 0 < x < 1)
     if callable(process) and type(process).__module__.split(".")[0] != "control":
         if highest is None:
             raise ValueError("the highest gain to try is missing: expected one, as for every simulator")
@@ -117,8 +118,8 @@ def good_gain_experiment(process, undershoot=BARELY, highest=None):
                 f"no positive gain makes the loop of {process} oscillate: it has no barely observable undershoot"
             )
         highest, respond = 0.98 * Ku if highest is None else highest, _response_of(process, Pu)
-        number("highest gain", highest, f"one below the ultimate gain, {Ku:.4g}", lambda x: x < Ku)
-    highest = positive("highest gain", highest)
+        number("the highest gain", highest, f"one below the ultimate gain, {Ku:.4g}", lambda x: x < Ku)
+    highest = positive("the highest gain", highest)
 
     def beyond(Kp):
         return swing(*respond(Kp))[1] - undershoot

@@ -1,6 +1,4 @@
-"""Recorded signals: arrays of numbers at increasing times; and single numbers; checked in one place."""
-
-import math
+"""Recorded signals: arrays of numbers at increasing times, checked in one place."""
 
 from loopbook.deadtime import real_numbers
 
@@ -17,25 +15,6 @@ def record(times, **signals):
         if signal.shape != times.shape:
             raise ValueError(f"{name} has {signal.size} values for {len(times)} times")
     return times, *found
-
-
-def number(name, value, expected="a number", holds=lambda x: True):
-    """Return a value as a finite float, or raise ValueError for anything else and where a condition does not hold."""
-    try:
-        x = math.nan if isinstance(value, (bool, str)) else float(value)
-    except (TypeError, ValueError):
-        x = math.nan
-    if not (math.isfinite(x) and holds(x)):
-        raise ValueError(f"the {name} is {value!r}: expected {expected}")
-    return x
-
-
-def positive(name, value):
-    return number(name, value, "a positive number", lambda x: x > 0)
-
-
-def not_negative(name, value):
-    return number(name, value, "a number that is not negative", lambda x: x >= 0)
 
 
 def sampling_step(times):

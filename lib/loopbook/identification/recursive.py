@@ -9,7 +9,7 @@ import math
 from loopbook.approximation import Model
 from loopbook.deadtime import real_numbers
 from loopbook.expressions import exact
-from loopbook.identification.records import number, positive
+from loopbook.inputs import number, positive
 
 
 class RecursiveLeastSquares:
@@ -42,15 +42,15 @@ class RecursiveLeastSquares:
     def __init__(self, count, forgetting=1.0, initial=None, uncertainty=1e6, largest=None):
         import numpy
 
-        count = int(number("number of parameters", count, "1, 2, 3 ...", lambda x: x >= 1 and x == int(x)))
+        count = int(number("the number of parameters", count, "1, 2, 3 ...", lambda x: x >= 1 and x == int(x)))
         self.forgetting = number(
-            "forgetting factor", forgetting, "a number above 0 and at most 1", lambda x: 0 < x <= 1
+            "the forgetting factor", forgetting, "a number above 0 and at most 1", lambda x: 0 < x <= 1
         )
         self.parameters = numpy.zeros(count) if initial is None else real_numbers("parameters", initial).copy()
         if self.parameters.shape != (count,):
             raise ValueError(f"{self.parameters.size} initial parameters for a count of {count}")
-        self.covariance = positive("uncertainty", uncertainty) * numpy.eye(count)
-        self.largest = self.covariance.trace() if largest is None else positive("largest uncertainty", largest)
+        self.covariance = positive("the uncertainty", uncertainty) * numpy.eye(count)
+        self.largest = self.covariance.trace() if largest is None else positive("the largest uncertainty", largest)
 
     def update(self, regressors, y):
         """Take a sample and return its error, what the estimate so far did not explain."""
@@ -59,7 +59,7 @@ class RecursiveLeastSquares:
         x = real_numbers("regressors", regressors)
         if x.shape != self.parameters.shape:
             raise ValueError(f"{x.size} regressors for {self.parameters.size} parameters")
-        error = number("value of y", y) - x @ self.parameters
+        error = number("the value of y", y) - x @ self.parameters
         spread = self.covariance @ x
         weight = self.forgetting + x @ spread
         self.parameters = self.parameters + spread / weight * error
@@ -98,9 +98,9 @@ def first_order_of(a, b, step, whole_delay=0):
     if values.shape not in ((), (1,), (2,)):
         raise ValueError(f"b is {b!r}: expected (b0, b1), or b0 alone")
     b0, b1 = (*values.ravel().tolist(), 0.0)[:2]
-    a = number("coefficient a", a, "one above 0 and at most 1", lambda x: 0 < x <= 1)
-    step = positive("step", step)
-    whole_delay = number("whole delay", whole_delay, "0, 1, 2 ... steps", lambda x: x >= 0 and x == int(x))
+    a = number("the coefficient a", a, "one above 0 and at most 1", lambda x: 0 < x <= 1)
+    step = positive("the step", step)
+    whole_delay = number("the whole delay", whole_delay, "0, 1, 2 ... steps", lambda x: x >= 0 and x == int(x))
     if b0 + b1 == 0 or b0 * (b0 + b1) < 0 or b1 * (b0 + b1) < 0:
         raise ValueError(f"b is ({b0:g}, {b1:g}): expected two numbers of the same sign")
     share = b0 / (b0 + b1)

@@ -9,7 +9,8 @@ import math
 from dataclasses import dataclass
 
 from loopbook.deadtime import System
-from loopbook.identification.records import not_negative, number, positive, record
+from loopbook.identification.records import record
+from loopbook.inputs import not_negative, number, positive
 from loopbook.stability import ultimate
 
 SAME = 1e-9  # two half periods in a row that differ by no larger share belong to a limit cycle
@@ -71,8 +72,8 @@ def relay_experiment(process, amplitude=1, hysteresis=0, periods=6):
     """
     import numpy
 
-    d, h = positive("amplitude of the relay", amplitude), not_negative("hysteresis", hysteresis)
-    system, periods = System(process), positive("number of periods", periods)
+    d, h = positive("the amplitude of the relay", amplitude), not_negative("the hysteresis", hysteresis)
+    system, periods = System(process), positive("the number of periods", periods)
     period = _expected_period(system, d, h)
     steps = _Steps(system, period)
     signs, switches = [1.0], [0.0]  # the relay's output changes to sign*d at these moments
@@ -217,8 +218,8 @@ class Relay:
     """
 
     def __init__(self, amplitude, step, hysteresis=0, u0=0):
-        self.amplitude, self.step = positive("amplitude", amplitude), positive("step", step)
-        self.hysteresis, self.u0 = not_negative("hysteresis", hysteresis), number("signal u0", u0)
+        self.amplitude, self.step = positive("the amplitude", amplitude), positive("the step", step)
+        self.hysteresis, self.u0 = not_negative("the hysteresis", hysteresis), number("the signal u0", u0)
         self.on = True
 
     def update(self, setpoint, measurement, feedforward=0.0, manual=None):
@@ -248,7 +249,7 @@ def limit_cycle(times, u, y, hysteresis=0):
     import numpy
 
     times, u, y = record(times, u=u, y=y)
-    h = not_negative("hysteresis", hysteresis)
+    h = not_negative("the hysteresis", hysteresis)
     low, high = u.min(), u.max()
     up = numpy.flatnonzero((u[1:] > u[:-1]) & (u[1:] > (low + high) / 2)) + 1
     if len(up) < 3:

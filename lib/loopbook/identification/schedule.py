@@ -7,9 +7,8 @@ import itertools
 import sympy
 
 from loopbook.expressions import exact
-from loopbook.identification.records import number
+from loopbook.inputs import number, one_of
 from loopbook.pid import PID, Controller
-from loopbook.tuning.inputs import known
 
 WAYS = ("constant", "linear")
 
@@ -45,8 +44,8 @@ class GainSchedule:
             raise ValueError(f"the table is {table!r}: expected {{GS: PID}} with two rows or more")
         if len({settings.form for settings in table.values()}) > 1:
             raise ValueError("the settings in the table have different forms: expected the same form in all rows")
-        known("the way", way, WAYS)
-        known("the safe end", safe, ("low", "high"))
+        one_of("the way", way, WAYS)
+        one_of("the safe end", safe, ("low", "high"))
         if way == "linear" and len({settings.Ti == sympy.oo for settings in table.values()}) > 1:
             raise ValueError("only some rows have an integral term: between these no straight line leads")
         self.rows = sorted(map(_finite, table))
@@ -55,7 +54,7 @@ class GainSchedule:
         if smallest == 0:
             raise ValueError(f"the table is {table!r}: expected different values of GS")
         expected = f"0 to {smallest}, and none for a linear schedule"
-        number("hysteresis", hysteresis, expected, lambda x: 0 <= x <= (smallest if way == "constant" else 0))
+        number("the hysteresis", hysteresis, expected, lambda x: 0 <= x <= (smallest if way == "constant" else 0))
         self.way, self.safe, self.hysteresis = way, safe, exact(hysteresis)
         self.row = None  # that of the last settings
 

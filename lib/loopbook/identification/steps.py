@@ -2,8 +2,8 @@
 
 from loopbook.approximation import Model
 from loopbook.expressions import exact
-from loopbook.identification.records import number, record
-from loopbook.tuning.inputs import known
+from loopbook.identification.records import record
+from loopbook.inputs import number, one_of
 
 RISE = 0.6321205588285577  # of a lag after one time-constant, 1 - 1/e
 EARLY_RISE = 0.2834686894262108  # after a third of it, 1 - exp(-1/3)
@@ -43,7 +43,7 @@ def first_order_from_step(times, y, U=1, at=0, delay_by="tangent"):
     """
     import numpy
 
-    known("delay_by", delay_by, ("tangent", "two points"))
+    one_of("delay_by", delay_by, ("tangent", "two points"))
     times, y, before, U = _from_the_step(times, y, U, at)
     tenth = max(1, len(y) // LAST)
     change = y[-tenth:].mean() - before
@@ -85,7 +85,7 @@ def integrator_from_step(times, y, U=1, at=0, part=0.5):
     """
     import sympy
 
-    part = number("part on the asymptote", part, "a share from 0 to 1", lambda x: 0 < x <= 1)
+    part = number("the part on the asymptote", part, "a share from 0 to 1", lambda x: 0 < x <= 1)
     times, y, before, U = _from_the_step(times, y, U, at)
     late = times >= times[-1] * (1 - part)
     if late.sum() < 2:
@@ -103,8 +103,8 @@ def integrator_from_step(times, y, U=1, at=0, part=0.5):
 def _from_the_step(times, y, U, at):
     """The response counted from the step, the level before it, and the step as a number."""
     times, y = record(times, y=y)
-    U = number("step U", U, "a step of the control signal", lambda x: x != 0)
-    at = number("time of the step", at, "a time within the record", lambda x: times[0] <= x < times[-1])
+    U = number("the step U", U, "a step of the control signal", lambda x: x != 0)
+    at = number("the time of the step", at, "a time within the record", lambda x: times[0] <= x < times[-1])
     before = y[times <= at].mean()
     return times[times >= at] - at, y[times >= at], before, U
 

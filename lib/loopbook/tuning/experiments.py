@@ -7,8 +7,9 @@ from sympy import Min
 from sympy import Rational as Q
 
 from loopbook.expressions import exact, s
+from loopbook.inputs import one_of
 from loopbook.pid import PID
-from loopbook.tuning.inputs import gain, known, positive, within
+from loopbook.tuning.checks import gain, positive, within
 
 
 def good_gain(KpGG, Tou, kind="PI"):
@@ -29,7 +30,7 @@ def good_gain(KpGG, Tou, kind="PI"):
     KpGG, Tou = gain("KpGG", KpGG), positive("Tou", Tou)
     Kp, Ti = Q("0.8") * KpGG, Q("1.5") * Tou
     rules = {"P": PID(KpGG), "PI": PID(Kp, Ti), "PID": PID(Kp, Ti, Ti / 4)}
-    return rules[known("kind", kind, rules)]
+    return rules[one_of("kind", kind, rules)]
 
 
 def ziegler_nichols_ultimate(Ku, Pu, kind="PID"):
@@ -52,7 +53,7 @@ def ziegler_nichols_ultimate(Ku, Pu, kind="PID"):
         "PI": PID(Q("0.45") * Ku, Pu / Q("1.2")),
         "PID": PID(Q("0.6") * Ku, Pu / 2, Pu / 8),
     }
-    return rules[known("kind", kind, rules)]
+    return rules[one_of("kind", kind, rules)]
 
 
 def modified_ziegler_nichols(Ku, Pu, overshoot="some"):
@@ -70,7 +71,7 @@ def modified_ziegler_nichols(Ku, Pu, overshoot="some"):
     """
     Ku, Pu = gain("Ku", Ku), positive("Pu", Pu)
     rules = {"some": PID(Q("0.33") * Ku, Pu / 2, Pu / 3), "none": PID(Q("0.2") * Ku, Pu / 3, Pu / 2)}
-    return rules[known("overshoot", overshoot, rules)]
+    return rules[one_of("overshoot", overshoot, rules)]
 
 
 def tyreus_luyben(Ku, Pu, kind="PI"):
@@ -91,7 +92,7 @@ def tyreus_luyben(Ku, Pu, kind="PI"):
         "PI": PID(Q("0.31") * Ku, Q("2.2") * Pu),
         "PID": PID(Q("0.45") * Ku, Q("2.2") * Pu, Pu / Q("6.3")),
     }
-    return rules[known("kind", kind, rules)]
+    return rules[one_of("kind", kind, rules)]
 
 
 class WeightedPID(NamedTuple):

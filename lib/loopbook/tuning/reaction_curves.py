@@ -3,8 +3,9 @@
 from sympy import Rational as Q
 
 from loopbook.approximation import model_of
+from loopbook.inputs import one_of
 from loopbook.pid import PID
-from loopbook.tuning.inputs import known, steepest_slope, within
+from loopbook.tuning.checks import steepest_slope, within
 
 
 def ziegler_nichols_reaction(model, kind="PID"):
@@ -32,7 +33,7 @@ def ziegler_nichols_reaction(model, kind="PID"):
         "PI": PID(Q("0.9") / (slope * delay), Q("3.33") * delay),
         "PID": PID(Q("1.2") / (slope * delay), 2 * delay, Q("0.5") * delay),
     }
-    return rules[known("kind", kind, rules)]
+    return rules[one_of("kind", kind, rules)]
 
 
 def cohen_coon(model, kind="PID"):
@@ -64,7 +65,7 @@ def cohen_coon(model, kind="PID"):
             delay * Q("0.37") / (1 + Q("0.2") * r),
         ),
     }
-    return rules[known("kind", kind, rules)]
+    return rules[one_of("kind", kind, rules)]
 
 
 # A and B of Table 12.3, for K*Kp, T/Ti and Td/T
@@ -97,7 +98,7 @@ def itae(model, kind="PI", mode="regulator", extrapolate=False):
     >>> settings.Kp.round(3), settings.Ti.round(2)
     (2.559, 20.06)
     """
-    rows = _ITAE[known("mode", mode, ("servo", "regulator")), known("kind", kind, ("PI", "PID"))]
+    rows = _ITAE[one_of("mode", mode, ("servo", "regulator")), one_of("kind", kind, ("PI", "PID"))]
     model = model_of(model)
     if model.is_integrating:
         raise ValueError(f"{model} is integrating: the ITAE rule is for a lag")

@@ -5,8 +5,9 @@ from sympy import Max, Min
 from sympy import Rational as Q
 
 from loopbook.approximation import model_of
+from loopbook.inputs import one_of
 from loopbook.pid import PID
-from loopbook.tuning.inputs import endless_time, finite_time, known, positive, steepest_slope
+from loopbook.tuning.checks import endless_time, finite_time, positive, steepest_slope
 
 
 def simc(model, Tc=None, c=4):
@@ -83,7 +84,7 @@ def closed_loop_time(model, guideline="skogestad"):
     model = model_of(model)
     if model.delay == 0:
         raise ValueError(f"{model} has no dead time: the guidelines for Tc need one")
-    if known("guideline", guideline, ("rivera", "chien", "skogestad")) == "skogestad":
+    if one_of("guideline", guideline, ("rivera", "chien", "skogestad")) == "skogestad":
         return model.delay
     if model.is_integrating or model.T1 == 0 or model.T2 != 0:
         raise ValueError(f"the guideline {guideline!r} is for one lag with dead time, not for {model}")

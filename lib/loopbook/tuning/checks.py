@@ -1,4 +1,4 @@
-"""What the rules ask of their input: one sentence that names the value and what was expected."""
+"""What the rules ask of their input, numbers or letters: one sentence that names the value and what was expected."""
 
 import sympy
 
@@ -10,12 +10,6 @@ def steepest_slope(model, rule):
     if model.T1 == 0:
         raise ValueError(f"{rule} needs a lag or an integrator, and {model} has none: give it a small lag")
     return model.K if model.is_integrating else model.K / model.T1
-
-
-def known(name, word, words):
-    if not isinstance(word, str) or word not in words:
-        raise ValueError(f"{name} is {word!r}: expected {', '.join(map(repr, words))}")
-    return word
 
 
 def within(name, value, low, high, extrapolate):

@@ -1,0 +1,49 @@
+"""What functions ask of single inputs, in one sentence that names the value and what was expected."""
+
+import math
+
+
+def number(name, value, expected="a finite number", holds=lambda x: True):
+    """Return a value as a finite float.
+
+    Arguments:
+        name: of the input, as the sentence begins with it.
+        value: a number of any kind: of Python, NumPy or SymPy.
+        expected: what the sentence ends with.
+        holds: a condition on the float.
+    Raises:
+        ValueError: for letters, text, truth values and what is no finite real number, or where the condition fails.
+
+    >>> number("step", -1, "a positive number", lambda x: x > 0)
+    Traceback (most recent call last):
+    ValueError: step is -1: expected a positive number
+    """
+    try:
+        x = math.nan if isinstance(value, (bool, str)) else float(value)
+    except (TypeError, ValueError):
+        x = math.nan
+    if not (math.isfinite(x) and holds(x)):
+        raise ValueError(f"{name} is {value!r}: expected {expected}")
+    return x
+
+
+def positive(name, value):
+    """Return a value as a positive finite float, or raise ValueError."""
+    return number(name, value, "a positive number", lambda x: x > 0)
+
+
+def not_negative(name, value):
+    """Return a value as a finite float that is not negative, or raise ValueError."""
+    return number(name, value, "a number that is not negative", lambda x: x >= 0)
+
+
+def one_of(name, word, words):
+    """Return a word that is one of several, or raise ValueError.
+
+    >>> one_of("kind", "PD", ("P", "PI", "PID"))
+    Traceback (most recent call last):
+    ValueError: kind is 'PD': expected 'P', 'PI', 'PID'
+    """
+    if not isinstance(word, str) or word not in words:
+        raise ValueError(f"{name} is {word!r}: expected {', '.join(map(repr, words))}")
+    return word
