@@ -345,3 +345,10 @@ def test_a_filter_slower_than_the_derivative_action_has_no_parallel_form():
 def test_what_makes_no_controller(arguments, message):
     with pytest.raises(ValueError, match=message):
         Controller(**({"settings": PID(1), "step": 1} | arguments))
+
+
+def test_settings_are_shown_as_formulas_and_name_the_form_where_it_matters():
+    assert PID(sympy.Symbol("K"), Ti=3)._repr_latex_() == r"$\displaystyle K_p = K, \quad T_i = 3$"
+    assert PID(2, Ti=3, form="serial")._repr_latex_() == r"$\displaystyle K_p = 2, \quad T_i = 3$"
+    assert PID(2, Ti=3, Td=1, form="serial")._repr_latex_().endswith(r"T_d = 1$ (serial form)")
+    assert "2.99852" in PID(sympy.Rational(299855, 100001))._repr_latex_()

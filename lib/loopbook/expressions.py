@@ -322,6 +322,21 @@ def written(value):
     >>> written(sympy.Rational(2, 3)), written(sympy.Rational(299855, 100001))
     ('2/3', '2.99852')
     """
-    if isinstance(value, sympy.Rational) and value.q > 1000:
-        return f"{float(value):.6g}"
-    return str(value)
+    return f"{float(value):.6g}" if _is_long(value) else str(value)
+
+
+def equalities(values):
+    r"""Return named values as LaTeX between dollar signs, for the display of settings and models.
+
+    Arguments:
+        values: ``{symbol as LaTeX: value}``.
+
+    >>> print(equalities({"K_p": sympy.Rational(1, 2), "T_i": 3 * sympy.Symbol("tau")}))
+    $\displaystyle K_p = \frac{1}{2}, \quad T_i = 3 \tau$
+    """
+    shown = (f"{x} = {written(value) if _is_long(value) else sympy.latex(value)}" for x, value in values.items())
+    return r"$\displaystyle " + r", \quad ".join(shown) + "$"
+
+
+def _is_long(value):
+    return isinstance(value, sympy.Rational) and value.q > 1000

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import sympy
 
-from loopbook.expressions import exact, s, written
+from loopbook.expressions import equalities, exact, s, written
 from loopbook.inputs import number, positive
 from loopbook.scaling import PERCENT, Scaling
 
@@ -156,10 +156,18 @@ class PID:
             raise ValueError("the proportional band is 0: expected a number other than zero")
         return cls(100 / band, sympy.oo if repeats == 0 else exact(minute) / repeats, Td, Tf)
 
-    def __repr__(self):
-        shown = {name: getattr(self, name) for name in ("Kp", "Ti", "Td", "Tf")}
+    def _shown(self):
+        """The settings that are not what they are by themselves."""
         default = {"Kp": None, "Ti": sympy.oo, "Td": 0, "Tf": 0}
-        parts = [f"{name}={written(value)}" for name, value in shown.items() if value != default[name]]
+        return {name: value for name in default if (value := getattr(self, name)) != default[name]}
+
+    def _repr_latex_(self):
+        shown = equalities({f"{name[0]}_{name[1]}": value for name, value in self._shown().items()})
+        # without derivative term and filter both forms are one
+        return shown if self.form == "parallel" or self.Td == self.Tf == 0 else f"{shown} (serial form)"
+
+    def __repr__(self):
+        parts = [f"{name}={written(value)}" for name, value in self._shown().items()]
         return f"PID({', '.join(parts + ([] if self.form == 'parallel' else ['form=' + repr(self.form)]))})"
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import sympy
 
-from loopbook.expressions import exact, s, written
+from loopbook.expressions import equalities, exact, s, written
 from loopbook.laplace import by_delay, roots
 from loopbook.transfer import dead_time, transfer_function
 
@@ -64,9 +64,16 @@ class Model:
         """Whether the model has an integrator."""
         return sympy.oo == self.T1
 
+    def _shown(self):
+        """The gain, and the times that are not zero."""
+        return {name: value for name in ("K", "T1", "T2", "delay") if (value := getattr(self, name)) != 0}
+
+    def _repr_latex_(self):
+        symbols = {"K": "K", "T1": "T_1", "T2": "T_2", "delay": r"\mathrm{delay}"}
+        return equalities({symbols[name]: value for name, value in self._shown().items()})
+
     def __repr__(self):
-        shown = [f"{name}={written(value)}" for name in ("T1", "T2", "delay") if (value := getattr(self, name)) != 0]
-        return f"Model({', '.join([f'K={written(self.K)}', *shown])})"
+        return f"Model({', '.join(f'{name}={written(value)}' for name, value in self._shown().items())})"
 
 
 def model_of(H, largest_first=None):

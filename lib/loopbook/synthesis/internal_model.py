@@ -29,6 +29,15 @@ class Design(NamedTuple):
     filter: sympy.Expr
     match: Match
 
+    def _repr_html_(self):
+        *steps, (_, match) = self._asdict().items()
+        steps = {**dict(steps), "controller": match.controller, "settings": match}
+        rows = (
+            f'<tr><td style="text-align:left">{name}</td><td style="text-align:left">{value._repr_latex_()}</td></tr>'
+            for name, value in steps.items()
+        )
+        return f"<table>{''.join(rows)}</table>"
+
 
 def imc(model, Tc, approximation=taylor):
     """Return the PID settings of internal model control: `imc_design` without its steps.

@@ -28,6 +28,9 @@ class Match:
     settings: PID
     exact: bool
 
+    def _repr_latex_(self):
+        return f"{self.settings._repr_latex_()}, {'exact' if self.exact else 'the first terms of a series'}"
+
     @property
     def rest(self):
         """What the PID controller lacks, an expression in `s`: 0 for an exact match."""
