@@ -278,6 +278,13 @@ def hidden(plot):
     ]
 
 
+def test_a_low_figure_has_a_flat_legend():
+    usual, low = (time_plot({f"y{n}": n * t for n in range(6)}, [0, 1], ylim=(0, 9), low=low) for low in (False, True))
+    assert low.figure.get_figheight() < usual.figure.get_figheight()
+    heights = [p.figure.axes[0].get_legend().get_window_extent().height for p in (usual, low)]
+    assert heights[1] < heights[0] / 2
+
+
 def test_a_legend_hides_no_curve():
     everywhere = {"one": sympy.sin(3 * t), "another": sympy.cos(3 * t), "a third": sympy.sin(2 * t)}
     assert hidden(time_plot(everywhere, TIMES)) == []

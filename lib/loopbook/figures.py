@@ -261,7 +261,7 @@ class TimePlot(Picture):
         return matplotlib.rc_context(STYLE)
 
 
-def time_plot(signals, times, title=None, xlabel="$t$ [s]", ylabel=None, ylim=None, before=0):
+def time_plot(signals, times, title=None, xlabel="$t$ [s]", ylabel=None, ylim=None, before=0, low=False):
     """Plot signals against time, in one panel or in several above one another with a common time axis.
 
     Arguments:
@@ -277,6 +277,7 @@ def time_plot(signals, times, title=None, xlabel="$t$ [s]", ylabel=None, ylim=No
         ylim: lowest and highest value of the top panel's axis, where it must not follow the signals, as under a slider;
             or a list of these, one for each panel, with None where the axis follows the signals.
         before: how much time to show ahead of t = 0, with every signal at zero, so that a step at t = 0 is seen.
+        low: make it less high, and flat the legend under a given `ylim`, where a chapter has many figures.
     Returns:
         A `TimePlot`, which a notebook shows as the value of a cell; `.mark` and `.level` add to it.
     Raises:
@@ -311,7 +312,7 @@ def time_plot(signals, times, title=None, xlabel="$t$ [s]", ylabel=None, ylim=No
     inputs = [len(panel) == 1 and all(role in INPUTS for *_, role in panel.values()) for panel in curves]
     heights = [1 if only_input and len(panels) > 1 else 2 for only_input in inputs]
     with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(WIDTH, 1.2 + 0.95 * sum(heights)), layout="constrained")
+        figure = Figure(figsize=(WIDTH, 1.2 + (0.7 if low else 0.95) * sum(heights)), layout="constrained")
         grid = figure.subplots(len(panels), sharex=True, squeeze=False, height_ratios=heights)[:, 0]
         lines = {}
         number = 0
@@ -332,7 +333,7 @@ def time_plot(signals, times, title=None, xlabel="$t$ [s]", ylabel=None, ylim=No
             looks = {role for *_, role in panel.values()}
             # the same responses in the same looks need no second legend
             if len(panel) > 1 and not (looks <= explained and all(isinstance(look, int) for look in looks)):
-                _add_legend(axes, may_grow=not fixed)
+                _add_legend(axes, may_grow=not fixed, columns=3 if low else 1)
             explained |= looks
     shown = "; ".join(", ".join(map(plain_words, panel)) for panel in panels)
     return TimePlot(figure, f"{plain_words(title) + ': ' if title else ''}{shown} against {plain_words(xlabel)}", lines)
@@ -628,13 +629,13 @@ def _logarithmic(axes):
         axis.set_minor_formatter(NullFormatter())
 
 
-def _add_legend(axes, may_grow):
+def _add_legend(axes, may_grow, columns=1):
     """A legend where it hides no curve; if there is no such place, a flat one above them, for which the panel grows."""
     if any(type(drawn).__name__ == "QuadMesh" for drawn in axes.collections):
         axes.legend(loc="upper right")  # the search for a free place would go through every cell of a map
         return
     if not may_grow:
-        axes.legend()
+        axes.legend(ncols=columns)
         return
     box = _legend_box(axes)
     hides = any(line.get_path().transformed(axes.transData).intersects_bbox(box, filled=False) for line in axes.lines)
