@@ -120,3 +120,12 @@ def test_what_has_no_answer_is_refused():
         dominant_poles(3 * dead_time(1) * (s + 1) / (s + 2))
     with pytest.raises(ValueError, match="give a number for K"):
         dominant_poles(sympy.Symbol("K") / s)
+
+
+def test_poles_that_come_just_before_an_endless_row():
+    process = first_order(10, 10, delay=1)
+    L = process * PID(sympy.Rational(6, 5), Ti=2, Td=sympy.Rational(1, 2)).expr  # the row is at log(0.6)
+    found = dominant_poles(L, count=3)
+    assert len(found) == 4
+    assert max(rest(L, p) for p in found) < 1e-9
+    assert found[0].real > found[2].real > math.log(0.6)

@@ -113,11 +113,12 @@ def _inside(sums, left, right, most):
         points, rest = _newton(sums, derivative, (x + 1j * y).ravel())
         inside = (points.real > left) & (points.real < right) & (points.imag > -1e-9 * top)
         points, rest, size = points[inside], rest[inside], numpy.maximum(abs(points[inside]), 1e-3 * top)
+        there = rest <= 1e-5 * numpy.minimum(size, right - left)
         for close, flat in ((1e-6, 1e-8), (1e-3, 1e-3)):  # rounding scatters what leads to a triple root
             distinct = []
             for k in numpy.argsort(rest):
                 p = points[k]
-                if rest[k] <= 1e-5 * size[k] and all(abs(p - q) > close * size[k] for q in distinct):
+                if there[k] and all(abs(p - q) > close * size[k] for q in distinct):
                     distinct.append(complex(p.real, 0.0 if abs(p.imag) < flat * size[k] else p.imag))
             found = [p for p in distinct for _ in range(_multiplicity(sums, derivative, p, distinct, top))]
             if (number := sum(2 if p.imag else 1 for p in found)) == most:
