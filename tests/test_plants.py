@@ -31,6 +31,7 @@ from loopbook.plants import (
     resistors_in_series,
     signals,
 )
+from loopbook.plants.plant import _letter
 from loopbook.transfer import static_gain, transfer_functions
 
 NAMED = [
@@ -78,7 +79,7 @@ def test_a_static_gain_is_the_slope_of_the_static_response(cls):
     static = plant.static_response()
     output = plant._in_constants(plant.measured.get(plant.output, plant.output)).subs(static)
     for x in plant.inputs:
-        slope = output.diff(plants._letter(x)).subs(static)
+        slope = output.diff(_letter(x)).subs(static)
         gain = static_gain(plant.numbers(plant.transfer_function(x)))
         assert sympy.simplify(plant.numbers(slope) - gain) == 0
 

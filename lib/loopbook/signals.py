@@ -202,6 +202,24 @@ def _changing(name, formula):
     return value
 
 
+def by_hand(manual, times):
+    """For each sample None in automatic mode, else the operator's control signal, NaN for the last one."""
+    found = [None] * len(times)
+    if not isinstance(manual, (list, tuple)):
+        raise ValueError(f"manual is {manual!r}: expected a list of (beginning, end, control signal)")
+    for stretch in manual:
+        valid = isinstance(stretch, (list, tuple)) and len(stretch) == 3
+        if not valid or not all(map(is_number, stretch[:2])) or not (stretch[2] is None or is_number(stretch[2])):
+            raise ValueError(f"manual has {stretch!r}: expected (beginning, end, control signal)")
+        begin, end, u = stretch
+        if begin >= end:
+            raise ValueError(f"manual has {stretch!r}: expected the beginning before the end")
+        for k, time in enumerate(times):
+            if float(begin) <= time < float(end):
+                found[k] = math.nan if u is None else float(u)
+    return found
+
+
 def last_not_after(time, times, step):
     """The index of the last of the increasing times that is not after `time`, but for rounding; -1 if there is none."""
     return bisect.bisect_right(times, time + CLOSE * step + 1e-15 * abs(time)) - 1

@@ -8,14 +8,15 @@ on any grid: the moments at which a held signal arrives late are among the disco
 import copy
 import math
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy
 from sympy.core.function import AppliedUndef
 
 from loopbook.expressions import t
 from loopbook.plants import Plant, name_of
-from loopbook.signals import CLOSE, Stretches, in_time, is_number, last_not_after, noise, samples
+from loopbook.signals import CLOSE, Stretches, by_hand, in_time, is_number, last_not_after, noise, samples
+from loopbook.structures import Structure
 
 __all__ = ["Run", "simulate"]
 
@@ -34,6 +35,7 @@ class Run:
         plant: the plant, which knows the units.
         manipulated: the name of the input that the controller acts on.
         held: the names of the signals that are constant from one sample to the next.
+        measured: the name of the controlled signal, the plant's output if not said.
     """
 
     times: object
@@ -41,16 +43,34 @@ class Run:
     plant: object
     manipulated: str
     held: set
+    measured: object = None
     _past: object = None  # what a later run needs in order to go on
 
     @property
     def output(self):
-        """The name of the plant's output."""
-        return name_of(self.plant.output)
+        """The name of the controlled signal."""
+        return self.measured or name_of(self.plant.output)
 
     def unit(self, name):
-        """The unit of a signal of the plant, "1" for a number."""
+        """The unit of a signal of the plant, or of a setpoint, as that of the measurement; "1" for a number."""
+        structure = self._past.loop if self._past else None
+        while isinstance(structure, Structure) and name in (found := structure.measurement_of):
+            name = found[name]
+        if isinstance(structure, Structure) and name not in {name_of(x) for x in self.plant.quantities}:
+            return "%" if name in structure.split else "1"
         return self.plant.quantities[self.plant.signal(name)].unit or "1"
+
+    def loop(self, tag):
+        """Return the run as one loop of a control structure sees it, for `figures.trends` and the like.
+
+        Raises ValueError for a tag that no loop has.
+        """
+        loops = getattr(self._past.loop, "loops", {}) if self._past else {}
+        if tag not in loops:
+            raise ValueError(f"the run has no loop {tag!r}: it has {', '.join(loops) or 'no list of blocks'}")
+        own = {name.removeprefix(f"{tag}."): x for name, x in self.signals.items() if name.startswith(f"{tag}.")}
+        measured, output = loops[tag].measurement, loops[tag].output
+        return replace(self, signals=self.signals | own, manipulated=output, measured=measured)
 
     def __getitem__(self, name):
         if name not in self.signals:
@@ -77,25 +97,30 @@ def simulate(
     Arguments:
         plant: a `plants.Plant`. Before the start it has been at rest at its operating point.
         controller: a `pid.Controller`, or any object with a `step` and a method `update` like its own. The object
-            itself is not changed.
+            itself is not changed. For several of them on one plant, a list of the blocks of `structures`: loops,
+            calculations, split ranges, and a `sequence.Chart`.
         until: end of the run, a whole number of steps after its beginning at 0 (or at the end of `after`).
         step: time between two samples, in the plant's unit of time; with a controller, the controller's own.
-        setpoint: a signal, needed with a controller.
-        noise: standard deviation of normally distributed measurement noise, or an array to be added.
+        setpoint: a signal, needed with a single controller.
+        noise: standard deviation of normally distributed measurement noise, or an array to be added; for a list of
+            blocks ``{measured signal: one of the two}``.
         seed: names the sequence of random numbers.
         feedforward: a signal that is added to the control signal.
         scheduling: a signal for a controller with a gain schedule, such as `identification.ScheduledController`.
         manual: ``[(beginning, end, u)]``, the stretches of time in manual mode; u is None for the last control signal.
+            For a list of blocks ``{tag: such a list}``.
         after: an earlier run that this one continues, with its state, its past and its controller's memory; the plant
             and the settings may be others. If it was without control, the controller begins as after manual mode. The
             result contains the earlier run.
         manipulated: the input that the controller acts on, if it is not the plant's own, as the outflow of a tank.
-        inputs: signals for the plant's inputs, by name; an input not named keeps its value at the operating point.
+        inputs: signals for the plant's inputs, by name; an input not named keeps its value at the operating point. For
+            a list of blocks also the setpoints and other signals that the blocks read and nobody else writes.
     Returns:
         A `Run` with the plant's states, inputs and outputs by their names, and with a controller "setpoint",
         "measurement" (with noise), "ramped" and "filtered" (what the controller makes of the two), and the terms
             "u_p", "u_i" and "u_d"; with a signal for scheduling that, and of a controller whose settings change its
-            "Kp" and "Ti".
+            "Kp" and "Ti". Of a list of blocks all signals that they write, and of each loop such terms as "LC1.u_p";
+            `Run.loop` is the view of one loop.
     Raises:
         ValueError: for an unknown or a missing signal, one of the wrong length or with a value that is no finite
             number, a step longer than a dead time, an end that is no whole number of steps away, or a run that grows
@@ -110,32 +135,64 @@ def simulate(
         raise ValueError(f"the plant is {plant!r}: expected one such as WoodChipTank()")
     if after is not None and not isinstance(after, Run):
         raise ValueError(f"after is {after!r}: expected an earlier run")
-    driven = name_of(plant.manipulated if manipulated is None else plant.signal(manipulated))
+    driven = [name_of(plant.manipulated if manipulated is None else plant.signal(manipulated))]
     given = {"setpoint": setpoint, "noise": noise, "feedforward": feedforward, "manual": manual}
     given["scheduling"] = scheduling
-    step = _fitting_step(plant, controller, step, driven, given, inputs)
+    if isinstance(controller, (list, tuple)):
+        structure, inputs, external, step = _structure(plant, controller, step, manipulated, given, inputs)
+        driven = structure.driven
+    else:
+        structure, external = None, {}
+        step = _fitting_step(plant, controller, step, driven[0], given, inputs)
     begin, past = (0.0, None) if after is None else (float(after.times[-1]), after._past)
     times = _grid(begin, until, step)
 
     sources = _sources(plant, times, inputs, past)
-    if controller is not None:
-        sources[driven].times, sources[driven].values = times.tolist(), []
+    for name in driven if controller is not None else ():
+        sources[name].times, sources[name].values = times.tolist(), []
     system = _System(plant, sources, times, past.system if past else None)
     loop = None
-    if controller is not None:
-        loop = _Loop(copy.deepcopy(controller), times, given, seed)
-        if past:
-            loop.continue_after(past.loop, sources[driven].past.at(begin))
+    if structure:
+        loop = structure
+        loop.prepare(times, external, noise, seed, manual)
+    elif controller is not None:
+        loop = _Loop(copy.deepcopy(controller), times, given, seed, driven[0])
+    if loop and past:
+        loop.continue_after(past.loop, {name: sources[name].past.at(begin) for name in driven})
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", module="scipy")  # of a step that fails, before it is tried in another way
         for time in times:
             system.advance(time)
             if loop:
-                sources[driven].values.append(loop.sample(system.output(), driven))
+                for name, value in loop.sample(system.readings(time, driven)).items():
+                    sources[name].values.append(value)
     signals = system.signals(times) | (loop.record if loop else {})
     held = {name for name, source in sources.items() if not any(map(callable, source.values))}
-    run = Run(times, _arrays(signals), plant, driven, held | ({"setpoint"} if loop else set()), _Past(system, loop))
+    held |= {"setpoint"} if loop else set()
+    if structure:
+        held |= set(loop.record)
+    main = driven[0] if driven else name_of(plant.manipulated)
+    run = Run(times, _arrays(signals), plant, main, held, _past=_Past(system, loop))
     return run if after is None else _joined(after, run)
+
+
+def _structure(plant, blocks, step, manipulated, given, inputs):
+    """The control structure that a list of blocks makes, the signals for the plant and for it, and the step."""
+    for name in ("setpoint", "feedforward", "scheduling"):
+        if not (given[name] is None or (is_number(given[name]) and given[name] == 0)):
+            raise ValueError(f"{name} is given, but there are several controllers: give each loop's by its own name")
+    if manipulated is not None:
+        raise ValueError("manipulated is given, but there are several controllers: each loop names its output")
+    names = [name_of(x) for x in plant.inputs]
+    structure = Structure(blocks, [name_of(x) for x in (*plant.states, *plant.measured)], names)
+    for name in inputs:
+        if name in structure.driven:
+            raise ValueError(f"{name} is given, but it is a block that sets it")
+    step = step if step is not None else structure.step
+    if step is None:
+        raise ValueError("the step is missing: expected the time between two samples")
+    of_plant = {name: signal for name, signal in inputs.items() if name in names}
+    return structure, of_plant, {name: signal for name, signal in inputs.items() if name not in names}, step
 
 
 def _fitting_step(plant, controller, step, driven, given, inputs):
@@ -190,10 +247,10 @@ class _Past:
 class _Loop:
     """The controller with its signals, one value for each sample."""
 
-    def __init__(self, controller, times, given, seed):
-        self.controller, self.times, self.k = controller, times, 0
+    def __init__(self, controller, times, given, seed, name):
+        self.controller, self.times, self.name, self.k = controller, times, name, 0
         self.record, self.before_last = {}, None
-        self.manual = _by_hand(given["manual"], times)
+        self.manual = by_hand(given["manual"], times)
         added = given["noise"]
         if is_number(added):  # a run that goes on has noise of its own
             added = noise(times, added, (seed, round(times[0] / controller.step)))
@@ -202,16 +259,18 @@ class _Loop:
         scheduling = given["scheduling"]
         self.scheduling = None if scheduling is None else samples("scheduling", scheduling, times)
 
-    def continue_after(self, earlier, u):
+    def continue_after(self, earlier, last):
         """Take over the memory of an earlier run's controller; without one, begin from its last control signal."""
+        earlier = earlier if isinstance(earlier, _Loop) else None
         if earlier and type(earlier.controller) is type(self.controller) and hasattr(self.controller, "take_over"):
             self.controller.take_over(earlier.before_last)
         elif hasattr(self.controller, "start_from"):
-            self.controller.start_from(u)
+            self.controller.start_from(last[self.name])
 
-    def sample(self, output, name):
-        """Run the controller once, and return the control signal."""
+    def sample(self, readings):
+        """Run the controller once, and return ``{input: control signal}``."""
         k, self.k = self.k, self.k + 1
+        output, name = readings[""], self.name
         if self.k == len(self.times):  # a run that goes on from here begins with this sample, maybe with other settings
             self.before_last = copy.deepcopy(self.controller)
         now = {"setpoint": self.setpoint[k], "measurement": output + self.noise[k]}
@@ -227,7 +286,7 @@ class _Loop:
         now |= more | {name: getattr(self.controller, name) for name in getattr(self.controller, "recorded", ())}
         for signal, value in now.items():
             self.record.setdefault(signal, []).append(value)
-        return float(u)
+        return {name: float(u)}
 
 
 class _System:
@@ -244,6 +303,7 @@ class _System:
         if past and past.names != self.names:
             raise ValueError(f"the earlier run has the states {past.names}, this plant has {self.names}")
         self.rates, self.driving = self._compiled(equations.values())
+        self.measured = [name_of(x) for x in plant.measured]
         self.measure, self.measuring = self._compiled(plant.measured.values())
         self._refuse_delays()
 
@@ -285,8 +345,9 @@ class _System:
             raise ValueError(
                 f"{type(self.plant).__name__} has a dead time inside: expected one at an input or an output"
             )
-        if any(not self.sources[name].values and not delay for name, delay in self.measuring if name in self.sources):
-            raise ValueError(f"{self.plant.manipulated} acts on the output at once: expected a lag between the two")
+        for name, delay in self.measuring:
+            if name in self.sources and not self.sources[name].values and not delay:
+                raise ValueError(f"{name} acts on a measured signal at once: expected a lag between the two")
 
     def _discontinuities(self, times):
         """The moments to stop at: the samples, and where a signal, maybe delayed, jumps between two of them."""
@@ -361,6 +422,12 @@ class _System:
             return self.trace[-1][self.states.index(self.plant.output)]
         return self.rows[-1][list(self.plant.measured).index(self.plant.output)]
 
+    def readings(self, time, driven):
+        """What the plant says at the last sample: states, measured signals and inputs by name, the output as ""."""
+        inputs = {name: source.at(time) for name, source in self.sources.items() if name not in driven}
+        measured = dict(zip(self.measured, self.rows[-1], strict=True))
+        return inputs | dict(zip(self.names, self.trace[-1], strict=True)) | measured | {"": self.output()}
+
     def signals(self, times):
         """The states, the measured signals and the inputs at the samples."""
         states = [self.state_at(time) for time in times]
@@ -385,24 +452,6 @@ def _grid(begin, until, step):
         raise ValueError(f"the run would have {count:.0f} samples: expected at most {MOST_SAMPLES}")
     digits = 13 - math.ceil(math.log10(abs(float(until)) + begin))
     return numpy.around(begin + float(step) * numpy.arange(round(count) + 1), digits)
-
-
-def _by_hand(manual, times):
-    """For each sample None in automatic mode, else the operator's control signal, NaN for the last one."""
-    found = [None] * len(times)
-    if not isinstance(manual, (list, tuple)):
-        raise ValueError(f"manual is {manual!r}: expected a list of (beginning, end, control signal)")
-    for stretch in manual:
-        valid = isinstance(stretch, (list, tuple)) and len(stretch) == 3
-        if not valid or not all(map(is_number, stretch[:2])) or not (stretch[2] is None or is_number(stretch[2])):
-            raise ValueError(f"manual has {stretch!r}: expected (beginning, end, control signal)")
-        begin, end, u = stretch
-        if begin >= end:
-            raise ValueError(f"manual has {stretch!r}: expected the beginning before the end")
-        for k, time in enumerate(times):
-            if float(begin) <= time < float(end):
-                found[k] = math.nan if u is None else float(u)
-    return found
 
 
 def _beyond_all_numbers(names, time):
@@ -430,4 +479,4 @@ def _joined(earlier, later):
     }
     times = numpy.concatenate([earlier.times[:-1], later.times])
     held = later.held & (earlier.held | {"setpoint"})
-    return Run(times, signals, later.plant, later.manipulated, held, later._past)
+    return replace(later, times=times, signals=signals, held=held)
