@@ -11,6 +11,7 @@ import sympy
 
 from loopbook.expressions import exact, function_of, s
 from loopbook.inputs import number
+from loopbook.laplace import by_delay
 from loopbook.pid import Controller
 from loopbook.scaling import Scaling
 from loopbook.signals import by_hand, is_number, noise, samples
@@ -42,7 +43,7 @@ def controller_action(process):
     gain, power = H.leadterm(s) if H.has(s) else (H, 0)
     if H == 0 or power > 0:
         raise ValueError(f"the control signal has no lasting effect through {H}: expected a process gain")
-    if not H.free_symbols - {s} and any(sympy.re(p).evalf() > 0 for p in poles(H)):
+    if not H.free_symbols - {s} and any(sympy.re(p).evalf() > 0 for part in by_delay(H).values() for p in poles(part)):
         raise ValueError(f"{H} is unstable: expected a stable or integrating process, whose gain decides the action")
     if not (gain.is_positive or gain.is_negative):
         raise ValueError(f"the sign of the process gain {gain} is not known: expected numbers or positive letters")

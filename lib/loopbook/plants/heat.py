@@ -21,6 +21,7 @@ class HeatedTank(Plant):
     c, m, U_h = parameters("c m U_h")
     model = sympy.Eq(c * m * T.diff(t), P + c * F * (T_i - T) + U_h * (T_e - T))
     output, manipulated = T, P
+    balances = {"energy": (c * m * T, P + c * F * (T_i - T) + U_h * (T_e - T))}
     quantities = {
         c: (4200, "J/(kg K)", "specific heat capacity"),
         m: (100, "kg", "mass of the liquid"),
@@ -45,6 +46,7 @@ class HeatedTankWithElement(HeatedTank):
         sympy.Eq(c * m * T.diff(t), Q + c * F * (T_i - T) + U_h * (T_e - T)),
         sympy.Eq(T_h * Q.diff(t), P - Q),
     )
+    balances = {"energy": (c * m * T, Q + c * F * (T_i - T) + U_h * (T_e - T))}
     quantities = HeatedTank.quantities | {
         T_h: (60, "s", "lag of the heating element"),
         Q: (10000, "W", "power that the liquid receives"),
@@ -65,6 +67,7 @@ class HeatedTankWithTransport(Plant):
         sympy.Eq(T, T_1.subs(t, t - tau)),
     )
     output, manipulated = T, u
+    balances = {"energy": (c * rho * V * T_1, K_P * u + c * w * (T_in - T_1))}
     quantities = {
         c: (4200, "J/(kg K)", "specific heat capacity"),
         rho: (1000, "kg/m³", "density"),
@@ -144,6 +147,12 @@ class JacketedTank(Plant):
         sympy.Eq(T_hm, T_h.subs(t, t - tau)),
     )
     output, manipulated = T_pm, F_h
+    balances = {
+        "energy": (
+            c_p * d_p * V_p * T_p + c_h * d_h * V_h * T_h,
+            c_p * F_p * (T_pin - T_p) + c_h * F_h * (T_hin - T_h) + U_eh * (T_e - T_h),
+        )
+    }
     quantities = {
         c_p: (4200, "J/(kg K)", "specific heat capacity of the product"),
         d_p: (1000, "kg/m³", "density of the product"),

@@ -19,6 +19,7 @@ class LiquidTank(Plant):
     model = sympy.Eq(A * h.diff(t), q_i - q_o)
     output, manipulated = h, q_i
     limits = {h: (h_min, h_max)}
+    balances = {"volume": (A * h, q_i - q_o)}
     quantities = {
         A: (1, "m²", "cross-sectional area"),
         h_min: (0, "m", "lowest level"),
@@ -40,6 +41,7 @@ class BufferTank(Plant):
     model = sympy.Eq(rho * A * h.diff(t), F_in - F_out)
     output, manipulated = h, F_in
     limits = {h: (h_min, h_max)}
+    balances = {"mass": (rho * A * h, F_in - F_out)}
     quantities = {
         rho: (1000, "kg/m³", "density"),
         A: (0.2, "m²", "cross-sectional area"),
@@ -63,6 +65,7 @@ class WoodChipTank(Plant):
     model = sympy.Eq(rho * A * h.diff(t), K_s * u.subs(t, t - tau) - w_out)
     output, manipulated = h, u
     limits = {h: (h_min, h_max)}
+    balances = {"mass": (rho * A * h, K_s * u.subs(t, t - tau) - w_out)}
     quantities = {
         rho: (145, "kg/m³", "density of the wood chip"),
         A: (13.4, "m²", "cross-sectional area"),
@@ -88,6 +91,7 @@ class BlendingTank(Plant):
     model = sympy.Eq(V * c_A.diff(t), w_A - c_A * q)
     output, manipulated = c_A, w_A
     limits = {c_A: (0, sympy.oo)}
+    balances = {"moles of A": (V * c_A, w_A - c_A * q)}
     quantities = {
         V: (2, "m³", "volume of the liquid"),
         w_A: (0.02, "mol/s", "mole flow of material A"),
