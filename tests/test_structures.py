@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from loopbook import s, t
 from loopbook.deadtime import System
 from loopbook.figures import trends
+from loopbook.identification import AdaptiveController, GainSchedule, Relay, ScheduledController
 from loopbook.pid import PID, Controller
 from loopbook.plants import BufferTank, HeatedTank, JacketedTank, LiquidTank, Plant, parameters, signals
 from loopbook.signals import stepwise
@@ -277,3 +278,27 @@ def test_a_run_without_blocks_has_no_loops():
     run = simulate(TANK, until=10, step=1)
     with pytest.raises(ValueError, match="the run has no loop 'TC1'"):
         run.loop("TC1")
+
+
+def test_controllers_of_other_kinds_take_part_too():
+    schedule = GainSchedule({0.2: PID(0.3, Ti=500), 0.5: PID(0.2, Ti=400)})
+    controller = ScheduledController(schedule, step=1, u0=FLOW)
+    loop = ControlLoop("TC1", controller, "T_SP", "T_pm", "F_h", scheduling="F_p")
+    flow = stepwise(0.4, {300: 0.6})
+    listed = simulate(TANK, [loop], until=600, T_SP=41, F_p=flow).loop("TC1")
+    alone = simulate(TANK, controller, until=600, setpoint=41, scheduling=flow, F_p=flow)
+    assert np.array_equal(listed["F_h"], alone["F_h"])
+    assert listed["Kp"][0] != listed["Kp"][-1]
+    with pytest.raises(ValueError, match="expected a signal for a gain schedule"):
+        ControlLoop("TC1", controller, "T_SP", "T_pm", "F_h")
+    with pytest.raises(ValueError, match="expected a signal for a gain schedule"):
+        one_loop(scheduling="F_p")
+    relay = ControlLoop("TC1", Relay(0.1, step=1, u0=FLOW), 40.5, "T_pm", "F_h")
+    run = simulate(TANK, [relay], until=100)
+    assert len(set(run["F_h"].round(9))) <= 2
+
+
+def test_an_adaptive_controller_may_be_the_outer_one():
+    outer = AdaptiveController(PID(2, Ti=400), step=1, delay=20, Tc=100, u0=46, limits=(20, 60))
+    run = simulate(TANK, cascade(outer), until=300, T_SP=40.5)
+    assert abs(run["T_pm"][-1] - 40.5) < 0.5

@@ -226,6 +226,11 @@ class Controller:
         bumpless: let the integral term take up the difference when the mode changes from manual to automatic.
         measurement_range: (lowest, highest) of the measurement; the controller then works in percent of this range.
         control_range: (lowest, highest) of what it puts out; u is then in percent of this range inside.
+
+    Attributes:
+        blocked: +1 or -1 while a rise or a fall of the control signal has no effect, as that of an outer loop whose
+            inner loop is at its limit: with anti wind-up, the integration halts in this direction. 0 otherwise.
+
     Raises:
         ValueError: for settings with letters, a step that is not positive, limits in the wrong order, or another value
             that makes no controller.
@@ -274,6 +279,7 @@ class Controller:
         self.lagging = None  # the signal behind the filter of the derivative term
         self.integral = 0.0
         self.in_manual = False
+        self.blocked = 0
         self.setpoint = self.u = None  # as of the last sample
         self.terms = (0.0, 0.0, 0.0)
 
@@ -307,7 +313,7 @@ class Controller:
         """The measurement behind the filter at the last sample, in the unit of the measurement."""
         return self.filter.output
 
-    def update(self, setpoint, measurement, feedforward=0.0, manual=None, blocked=0):
+    def update(self, setpoint, measurement, feedforward=0.0, manual=None):
         """Take the signals of this sample and return the control signal, which is held until the next one.
 
         Before the first sample the loop was at rest: the setpoint equal to the measurement, the control signal u0.
@@ -317,8 +323,6 @@ class Controller:
             feedforward: u_f, in the unit of u.
             manual: the operator's control signal in manual mode, in the unit of u; NaN keeps the last one. None for
                 automatic mode.
-            blocked: +1 or -1 where the control signal has no effect upwards or downwards, as that of an outer loop
-                whose inner loop is at its limit; with anti wind-up, the integration halts in this direction.
         Returns:
             The control signal, in the unit of u, or with a `control_range` in the unit of that range.
         Raises:
@@ -355,7 +359,7 @@ class Controller:
             u = _between(u_PID, self.pid_limits) + feedforward
             self.u = _between(u, self.limits)
             growth = self.Kp * self.step / self.Ti * (y_SP - y)
-            if self.anti_windup and (growth * blocked > 0 or self._at_limit(u_PID, u, growth)):
+            if self.anti_windup and (growth * self.blocked > 0 or self._at_limit(u_PID, u, growth)):
                 growth = 0.0
         self.in_manual = by_hand
         self.terms = (u_p, self.integral, u_d)

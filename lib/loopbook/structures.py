@@ -65,6 +65,7 @@ class ControlLoop:
         measurement: the name of a signal of the plant.
         output: the name of an input of the plant or of a new signal.
         feedforward: the name of a signal to be added, if any.
+        scheduling: the name of the signal by which a controller with a gain schedule takes its settings.
         mode: the name of a signal; the loop is in automatic mode while it is TRUE, above 0.5. Always, if not given.
         manual: the output in manual mode; None keeps the last one.
     Raises:
@@ -76,16 +77,19 @@ class ControlLoop:
     """
 
     def __init__(
-        self, tag, controller, setpoint, measurement, output, feedforward=None, mode=None, manual=None
+        self, tag, controller, setpoint, measurement, output, feedforward=None, scheduling=None, mode=None, manual=None
     ):  # fmt: skip
         if not (hasattr(controller, "update") and is_number(getattr(controller, "step", None))):
             raise ValueError(f"the controller is {controller!r}: expected one such as Controller(PID(2, 10), step=1)")
         self.tag, self.controller, self.step = _name("tag", tag), controller, controller.step
         self.setpoint = setpoint if is_number(setpoint) else _name("setpoint", setpoint)
         self.measurement, self.output = _name("measurement", measurement), _name("output", output)
-        self.feedforward, self.mode = (x and _name("signal", x) for x in (feedforward, mode))
+        further = feedforward, scheduling, mode
+        self.feedforward, self.scheduling, self.mode = (None if x is None else _name("signal", x) for x in further)
+        if (scheduling is None) == hasattr(controller, "schedule"):
+            raise ValueError(f"scheduling is {scheduling!r} for {controller!r}: expected a signal for a gain schedule")
         self.manual = math.nan if manual is None else number("manual", manual)
-        named = (self.setpoint, self.measurement, self.feedforward, self.mode)
+        named = (self.setpoint, self.measurement, self.feedforward, self.scheduling, self.mode)
         self.reads, self.writes = tuple(x for x in named if isinstance(x, str)), (self.output,)
         self.inner, self.operator, self.recorded = None, None, {}
 
@@ -99,22 +103,21 @@ class ControlLoop:
 
     def update(self, values, time):
         """Run the controller once and return ``{output: value}``."""
-        manual, blocked = self.in_manual(values), 0
+        manual = self.in_manual(values)
         if self.inner is not None:
             # an outer loop follows the inner one's measurement while that does not listen, so that nothing jumps when
             # it listens again, and does not integrate beyond what the inner loop can do
             if self.inner.in_manual(values) is not None:
                 manual = values[self.inner.measurement]
-            blocked = self.inner.stuck()
+            self.controller.blocked = self.inner.stuck()
         setpoint = self.setpoint if is_number(self.setpoint) else values[self.setpoint]
-        more = {"feedforward": values[self.feedforward]} if self.feedforward else {}
-        if isinstance(self.controller, Controller):
-            more["blocked"] = blocked
+        more = {name: values[x] for name in ("feedforward", "scheduling") if (x := getattr(self, name))}
         u = self.controller.update(setpoint, values[self.measurement], manual=manual, **more)
         self.recorded = {f"{self.tag}.setpoint": setpoint, f"{self.tag}.measurement": values[self.measurement]}
         if isinstance(self.controller, Controller):
             terms = dict(zip(("u_p", "u_i", "u_d"), self.controller.terms, strict=True))
             terms |= {"ramped": self.controller.setpoint, "filtered": self.controller.filtered}
+            terms |= {name: getattr(self.controller, name) for name in getattr(self.controller, "recorded", ())}
             self.recorded |= {f"{self.tag}.{name}": value for name, value in terms.items()}
         return {self.output: u}
 
