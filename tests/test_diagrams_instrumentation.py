@@ -160,7 +160,7 @@ def test_a_capital_name_is_an_instrument_unless_it_is_given_another_label():
 
 
 def test_an_instrument_in_the_control_room_has_a_line_across_it():
-    picture = instrumentation_diagram("LC", equipment={"LC": instrument("LC", panel=True)})
+    picture = instrumentation_diagram("LC", equipment={"LC": instrument("LC", place="panel")})
     _, _, (circle,), _, (wire,) = measured(picture)
     assert [x for x, _ in wire] == [circle.center[0] - 0.5, circle.center[0] + 0.5]
 
@@ -234,7 +234,7 @@ def test_the_description_tells_pipes_and_signals():
         (lambda: instrumentation_diagram("a LT b", "a b"), "the way from a to b runs through LT"),
         (lambda: tank(filled=2), "a tank is filled between 0 and 1, not 2"),
         (lambda: vessel(filled=-1), "a vessel is filled between 0 and 1, not -1"),
-        (lambda: instrument("level"), "an instrument has one to four capital letters"),
+        (lambda: instrument("level"), "a tag has capital letters and then perhaps a loop number"),
     ],
 )
 def test_bad_input_is_told_in_one_sentence(make, message):

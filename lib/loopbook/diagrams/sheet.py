@@ -149,7 +149,7 @@ class Sheet:
         for text in axes.texts:
             (x, y), (width, height) = text.get_position(), text_size(text.get_text(), text.get_fontsize())
             left = x - width * {"left": 0, "center": 0.5, "right": 1}[text.get_ha()]
-            bottom = y - height * {"bottom": 0, "center": 0.5, "top": 1}[text.get_va()]
+            bottom = y - height * {"bottom": 0, "baseline": 0.25, "center": 0.5, "top": 1}[text.get_va()]
             xs += [left, left + width]
             ys += [bottom, bottom + height]
         return min(xs), max(xs), min(ys), max(ys)

@@ -1,0 +1,52 @@
+"""What moves solid material: a feed screw and a conveyor belt."""
+
+from loopbook.diagrams.equipment import THIN, Equipment
+
+
+def feed_screw(tag=""):
+    """Return a feed screw; it takes up all the places that its name has in the layout.
+
+    >>> feed_screw()
+    <feed screw>
+    """
+    return Screw(tag, "feed screw")
+
+
+def conveyor(tag=""):
+    """Return a conveyor belt; it takes up all the places that its name has in the layout.
+
+    >>> conveyor()
+    <conveyor belt>
+    """
+    return Conveyor(tag, "conveyor belt")
+
+
+class Screw(Equipment):
+    width, height, room = 2.4, 0.7, (0.2, 0.5)
+
+    def draw(self, sheet):
+        sheet.area([(self.x0, self.y0), (self.x0, self.y1), (self.x1, self.y1), (self.x1, self.y0)], fill="white")
+        sheet.wire((self.x0, self.y), (self.x1, self.y), width=THIN)
+        turns = max(3, round((self.x1 - self.x0) / 0.45))
+        pitch = (self.x1 - self.x0) / turns
+        for n in range(turns):
+            x = self.x0 + n * pitch
+            sheet.wire((x, self.y0), (x + pitch, self.y1))
+        self.draw_tag(sheet)
+
+
+class Conveyor(Equipment):
+    width, height, room = 3.0, 0.5, (0.4, 0.5)
+
+    def draw(self, sheet):
+        r = 0.22
+        for y in (self.y - r, self.y + r):
+            sheet.wire((self.x0 + r, y), (self.x1 - r, y))
+        for x in (self.x0 + r, self.x1 - r):
+            sheet.circle(x, self.y, r)
+            sheet.dot(x, self.y)
+        sheet.wire((self.x - 0.5, self.y), (self.x + 0.5, self.y), arrow="->", width=THIN)
+        self.draw_tag(sheet)
+
+    def edge(self, dx, dy, x, y):
+        return (self.x1 if dx > 0 else self.x0, y) if dx else (x, self.y + 0.24 * dy)
