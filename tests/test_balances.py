@@ -39,7 +39,11 @@ def with_total(cls, inflow):
 
 
 # Plants without any flow at their own operating point.
-FLOWS = {plants.LiquidTank: {"q_i": 0.001, "q_o": 0.001}, plants.BufferTank: {"F_in": 3, "F_out": 3}}
+FLOWS = {
+    plants.LiquidTank: {"q_i": 0.001, "q_o": 0.001},
+    plants.BufferTank: {"F_in": 3, "F_out": 3},
+    plants.BatchTank: {"h": 0.9, "u_valve_in": 1, "u_valve_out": 0.5, "u_heat": 50, "u_motor": 1},
+}
 
 
 @every

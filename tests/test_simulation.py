@@ -60,6 +60,12 @@ OPEN = [
     (plants.AirHeaterWithFan(d=60, T_rise=18.5 / 1.16**0.5), "u", 10),
     (plants.JacketedTank(), "T_hin", -5),
     (plants.JacketedTank(), "T_pin", 5),
+    (plants.WoodChipTankWithScale(), "u", 2),
+    (plants.WoodChipTankWithScale(), "d", -3),
+    (plants.HeatExchanger(), "T_pin", 5),
+    (plants.HeatExchanger(), "T_hin", -10),
+    (plants.BatchTank(), "u_heat", 10),
+    (plants.BatchTank(h=0.9), "u_motor", 1),
 ]
 
 
@@ -69,7 +75,7 @@ def test_a_step_response_is_the_analytic_one(plant, source, change):
     name = plants.name_of(plant.output)
     step = 20.0 if H.has(sympy.exp) or "Tank" in type(plant).__name__ else 0.05
     step = 0.1 if isinstance(plant, plants.AirHeater) else step
-    delays = {float(value) for letter, value in plant.values.items() if str(letter) == "tau"}
+    delays = {float(value) for letter, value in plant.values.items() if str(letter).startswith("tau")}
     step = min([step, *(delay for delay in delays if delay)])
     run = simulate(plant, until=150 * step, step=step, **{source: getattr(plant, source) + change})
     assert close(run[name] - float(getattr(plant, name)), evaluate(step_response(H, change), run.times))

@@ -58,7 +58,7 @@ RESPONSE_COLOURS = ["#009E73", "#E69F00", "#56B4E9", "#555555"]
 RESPONSE_LINES = ["-", (0, (7, 2)), (0, (8, 2, 2, 2)), (0, (2, 1.5)), (0, (12, 2, 2, 2, 2, 2))]
 
 WIDTH = 6.4  # inches: a notebook column, and the text width of a printed page
-DOTS_PER_INCH = 192  # twice what a browser calls an inch, so that a printout is sharp
+DOTS_PER_INCH = 144  # half as many again as a browser calls an inch: sharp in print, and light in a notebook
 
 
 class Picture:

@@ -127,8 +127,8 @@ class Tank(Container):
         x0, x1, _, y1 = self.inside()
         if dx:
             return ((x1 if dx > 0 else x0), min(y, y1)) if y > self.jacket_top() else super().edge(dx, dy, x, y)
-        if dy < 0:
-            return super().edge(dx, dy, x, y)
+        if dy < 0:  # through the jacket, whose own pipes meet it at its sides
+            return x, self.inside()[2]
         self.met_above(x)
         return x, self.roof_at(x)
 

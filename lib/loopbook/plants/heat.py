@@ -6,7 +6,8 @@ from loopbook.expressions import t
 from loopbook.plants.plant import Plant, parameters, signals
 
 __all__ = [
-    "AirHeater", "AirHeaterWithFan", "HeatedTank", "HeatedTankWithElement", "HeatedTankWithTransport", "JacketedTank",
+    "AirHeater", "AirHeaterWithFan", "HeatExchanger", "HeatedTank", "HeatedTankWithElement", "HeatedTankWithTransport",
+    "JacketedTank",
 ]  # fmt: skip
 
 
@@ -148,10 +149,11 @@ class JacketedTank(Plant):
     )
     output, manipulated = T_pm, F_h
     balances = {
+        "energy of the product": (c_p * d_p * V_p * T_p, c_p * F_p * (T_pin - T_p) + U_hp * (T_h - T_p)),
         "energy": (
             c_p * d_p * V_p * T_p + c_h * d_h * V_h * T_h,
             c_p * F_p * (T_pin - T_p) + c_h * F_h * (T_hin - T_h) + U_eh * (T_e - T_h),
-        )
+        ),
     }
     quantities = {
         c_p: (4200, "J/(kg K)", "specific heat capacity of the product"),
@@ -172,4 +174,45 @@ class JacketedTank(Plant):
         T_h: (46, "°C", "temperature in the jacket"),
         T_pm: (None, "°C", "measured temperature of the tank"),
         T_hm: (None, "°C", "measured temperature of the jacket"),
+    }
+
+
+class HeatExchanger(Plant):
+    """A heat exchanger that warms a product by hot water through a valve. (Haugen, Example 11.3)
+
+    Both sides are well mixed. The valve has an equal-percentage characteristic: each percent of opening multiplies the
+    flow by the same factor. The flow also grows with the square root of the supply pressure, which other consumers
+    disturb, and lags behind the valve. The book prints no values; these are ours, and the operating point is a steady
+    state.
+    """
+
+    T_p, T_h, F_h, T_m, u, p, F_p, T_pin, T_hin = signals("T_p T_h F_h T_m u p F_p T_pin T_hin")
+    c, m_p, m_h, U, F_max, R, p_0, T_v, tau = parameters("c m_p m_h U F_max R p_0 T_v tau")
+    model = (
+        sympy.Eq(c * m_p * T_p.diff(t), c * F_p * (T_pin - T_p) + U * (T_h - T_p)),
+        sympy.Eq(c * m_h * T_h.diff(t), c * F_h * (T_hin - T_h) - U * (T_h - T_p)),
+        sympy.Eq(T_v * F_h.diff(t), F_max * R ** (u / 100 - 1) * sympy.sqrt(p / p_0) - F_h),
+        sympy.Eq(T_m, T_p.subs(t, t - tau)),
+    )
+    output, manipulated = T_m, u
+    balances = {"energy": (c * m_p * T_p + c * m_h * T_h, c * F_p * (T_pin - T_p) + c * F_h * (T_hin - T_h))}
+    quantities = {
+        c: (4200, "J/(kg K)", "specific heat capacity of water and product"),
+        m_p: (10, "kg", "mass of the product inside"),
+        m_h: (10, "kg", "mass of the hot water inside"),
+        U: (2100, "W/K", "heat transfer coefficient"),
+        F_max: (sympy.Rational(7, 2), "kg/s", "flow through the open valve at the nominal pressure"),
+        R: (49, "1", "rangeability of the valve, its largest flow over its smallest"),
+        p_0: (2, "bar", "nominal supply pressure"),
+        T_v: (2, "s", "lag of the flow behind the valve"),
+        tau: (5, "s", "dead time of the temperature measurement"),
+        u: (50, "%", "opening of the valve"),
+        p: (2, "bar", "supply pressure of the hot water"),
+        F_p: (0.5, "kg/s", "flow of the product"),
+        T_pin: (20, "°C", "inlet temperature of the product"),
+        T_hin: (80, "°C", "inlet temperature of the hot water"),
+        T_p: (40, "°C", "outlet temperature of the product"),
+        T_h: (60, "°C", "outlet temperature of the hot water"),
+        F_h: (0.5, "kg/s", "flow of the hot water"),
+        T_m: (None, "°C", "measured temperature of the product"),
     }

@@ -5,7 +5,7 @@ import sympy
 from loopbook.expressions import t
 from loopbook.plants.plant import Plant, parameters, signals
 
-__all__ = ["BlendingTank", "BufferTank", "LiquidTank", "WoodChipTank"]
+__all__ = ["BlendingTank", "BufferTank", "LiquidTank", "WoodChipTank", "WoodChipTankWithScale"]
 
 
 class LiquidTank(Plant):
@@ -76,6 +76,40 @@ class WoodChipTank(Plant):
         u: (45, "%", "control signal of the feed screw"),
         w_out: (25, "kg/s", "outflow"),
         h: (10, "m", "level"),
+    }
+
+
+class WoodChipTankWithScale(Plant):
+    """The wood-chip tank whose belt carries a scale that measures the mass flow. (Haugen, Example 11.2)
+
+    The disturbance d is a mass flow that is added at the beginning of the belt, as the book's figure has it. The mass
+    on the belt is a state of its own, so that nothing is lost between the screw and the tank. The values are those of
+    `WoodChipTank`; the book prints none for the scale, and those of it are ours. The level has no limits here.
+    """
+
+    h, m_b, w_m, u, d, w_out = signals("h m_b w_m u d w_out")
+    rho, A, K_s, tau, tau_m, T_m = parameters("rho A K_s tau tau_m T_m")
+    w_in = K_s * u + d
+    model = (
+        sympy.Eq(rho * A * h.diff(t), w_in.subs(t, t - tau) - w_out),
+        sympy.Eq(m_b.diff(t), w_in - w_in.subs(t, t - tau)),
+        sympy.Eq(T_m * w_m.diff(t), w_in.subs(t, t - tau_m) - w_m),
+    )
+    output, manipulated = h, u
+    balances = {
+        "mass in the tank": (rho * A * h, w_in.subs(t, t - tau) - w_out),
+        "mass": (rho * A * h + m_b, w_in - w_out),
+    }
+    quantities = {
+        **{letter: WoodChipTank.quantities[letter] for letter in (rho, A, K_s, tau)},
+        tau_m: (10, "s", "time on the belt from the feed screw to the scale"),
+        T_m: (5, "s", "lag of the scale"),
+        u: (45, "%", "control signal of the feed screw"),
+        d: (0, "kg/s", "disturbance of the flow, as by lighter chips"),
+        w_out: (25, "kg/s", "outflow"),
+        h: (10, "m", "level"),
+        m_b: (6250, "kg", "mass on the belt"),
+        w_m: (25, "kg/s", "measured flow on the belt"),
     }
 
 

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import sympy
 from sympy.core.function import AppliedUndef
+from sympy.polys.matrices import DomainMatrix
 
 from loopbook.expressions import exact, s, t
 from loopbook.transfer import simplified
@@ -119,7 +120,8 @@ class Plant:
     def inputs(self):
         """The signals that drive the plant, in the order of its table."""
         inside = {x.subs(x.args[0], t) for x in sympy.Tuple(*self.model).atoms(AppliedUndef)}
-        return [x for x in self.quantities if x in inside and x not in {*self.states, *self.measured}]
+        followed = {*self.states, *self.measured}
+        return [x for x in self.quantities if x in inside and x not in followed]
 
     @property
     def parameters(self):
@@ -157,7 +159,10 @@ class Plant:
         balances = [equation for equation in self.model if equation.has(sympy.Derivative)]
         states = self.states
         highest = [x.diff(t) for x in states if x.diff(t) not in states]
-        solved = sympy.solve(balances, highest, dict=True)
+        if any(equation.has(sympy.Max, sympy.Min) for equation in balances):
+            solved = [_solved_one_by_one(balances, highest)]  # `solve` would tell the cases apart, all of them
+        else:
+            solved = sympy.solve(balances, highest, dict=True)
         if len(solved) != 1:
             raise ValueError(f"the equations of {type(self).__name__} do not determine {highest}")
         return {x: solved[0].get(x.diff(t), x.diff(t)) for x in states}
@@ -210,14 +215,15 @@ class Plant:
             for among in (states, self.inputs)
         )
 
-    def transfer_function(self, source=None, output=None):
+    def transfer_function(self, source=None, output=None, numbers=False):
         """Derive the transfer function from an input to the output, at a steady state for a plant that is not linear.
 
         Arguments:
             source: the input, a name or a signal; the manipulated one if not given.
             output: a state or the measured output; the output if not given.
+            numbers: True to put the plant's values in from the beginning, where letters would take too long.
         Returns:
-            An expression in `s` and the letters; `numbers` puts the values in.
+            An expression in `s` and the letters; the method `numbers` puts the values in.
         Raises:
             ValueError: for a name that is no input or output of the plant.
 
@@ -231,21 +237,35 @@ class Plant:
         output = self.signal(self.output if output is None else output)
         if source not in self.inputs:
             raise ValueError(f"{source} is no input: expected one of {', '.join(map(name_of, self.inputs))}")
-        equations = self.state_equations()
-        wanted = self.measured.get(output, output)
+        equations = {x: self._active(rate) for x, rate in self.state_equations().items()}
+        wanted = self._active(self.measured.get(output, output))
         if output in self.inputs:
             raise ValueError(f"{output} is an input: expected a state or {name_of(self.output)}")
 
         def gains(f, x):  # what a small change of the signal x does to f, with its dead time
-            return self._in_constants(_sensitivity(f, x, with_delay=True))
+            if numbers:  # for all but x beforehand, which leaves little to differentiate
+                f = f.xreplace({y: self.values[y.func(t)] for y in f.atoms(AppliedUndef) if y.func != x.func})
+                f = self.numbers(f)
+            found = self._in_constants(_sensitivity(f, x, with_delay=True))
+            return self.numbers(found) if numbers else found
 
         states = [x for x in equations if x in self._between(equations, source, wanted)]
         rates = [equations[x] for x in states]
         A = sympy.Matrix(len(states), len(states), [gains(rate, x) for rate in rates for x in states])
         B = sympy.Matrix(len(states), 1, [gains(rate, source) for rate in rates])
         C = sympy.Matrix(1, len(states), [gains(wanted, x) for x in states])
-        response = (C * (s * sympy.eye(len(states)) - A).LUsolve(B))[0] if states else 0
+        response = (C * _solved(s * sympy.eye(len(states)) - A, B))[0] if states else 0
         return simplified(response + gains(wanted, source))
+
+    def _active(self, f):
+        """The formula with, for each Max and Min, the one of its arguments that counts at the operating point."""
+
+        def chosen(limit):
+            values = [self.numbers(self._in_constants(part)) for part in limit.args]
+            extreme = type(limit)(*values)
+            return limit.args[values.index(extreme)] if values.count(extreme) == 1 else limit
+
+        return f.replace(lambda x: isinstance(x, (sympy.Max, sympy.Min)), chosen)
 
     @staticmethod
     def _between(equations, source, wanted):
@@ -318,6 +338,26 @@ def _signals_in(expression):
     derivatives = expression.atoms(sympy.Derivative)
     rest = expression.xreplace({x: sympy.Dummy() for x in derivatives})
     return derivatives | {x.func(t) for x in rest.atoms(AppliedUndef)}
+
+
+def _solved(A, B):
+    """The solution of A x = B; by SymPy's polynomials where it has numbers alone, since they cancel as they go."""
+    if A.free_symbols | B.free_symbols <= {s} and A.is_symbolic() and not (A.has(sympy.exp) or B.has(sympy.exp)):
+        A = DomainMatrix.from_Matrix(A).to_field()
+        return A.lu_solve(DomainMatrix.from_Matrix(B).convert_to(A.domain)).to_Matrix()
+    return A.LUsolve(B)
+
+
+def _solved_one_by_one(balances, highest):
+    """The rates, where every balance law has one of them on its left side, perhaps with a factor, and nowhere else."""
+    found = {}
+    for law in balances:
+        (rate,) = law.lhs.atoms(sympy.Derivative)
+        factor = law.lhs.coeff(rate)
+        if rate not in highest or rate in found or law.lhs != factor * rate or law.rhs.has(*highest):
+            raise ValueError(f"{law} has a Max or Min: expected a rate with a factor on its left side")
+        found[rate] = law.rhs / factor
+    return found
 
 
 def _short(value):

@@ -1,0 +1,246 @@
+"""A sequential function chart as data, and how it runs.
+
+The semantics are those of IEC 61131-3 in a controller that works in scans. In the first scan the initial step becomes
+active, and no transition is cleared (the standard leaves this open). Each later scan
+
+1. reads the inputs;
+2. finds the transitions that are enabled, which means that all steps before them have been active since the scan
+   before, and whose condition is true; conditions see the inputs, and the outputs as the scan before has left them;
+3. clears all of these at once: the steps before them become passive, the steps behind them active. Of several from one
+   step only the first in the order of the list is cleared, so that no step is left by two;
+4. executes the actions of the steps that have become active, once, in the order in which the steps are listed. An
+   action assigns a value to an output, which keeps it until another step assigns another one.
+
+So a step is active for one scan at least, also before an unconditional transition, and the time of a step is zero when
+it is activated. Actions that are executed once at activation and store their values are the standard's qualifier P1
+with assignments; a chart then lists only what a step changes, as the book's action boxes do.
+
+Why no state-machine library: in `transitions` and `python-statemachine` a machine waits for events, a transition has
+one source and one target (several sources are alternatives), and parallel states must be nested; Petri net libraries
+such as SNAKES have every convergence, but clear one transition at a time, without scan and priority.
+"""
+
+import copy
+
+from loopbook.inputs import number
+from loopbook.sequence import checks
+from loopbook.sequence.formulas import Formula
+from loopbook.sequence.transitions import Transition
+
+__all__ = ["Chart", "Scans", "scan_by_scan"]
+
+
+class Chart:
+    """A sequential function chart: a block for `simulate`, checked before it runs. (Haugen, Chapter 12)
+
+    Attributes:
+        tag: the name in a run, where "SFC.Heat" is 1 while the step Heat is active.
+        reads, writes: the names of the signals, the inputs and the outputs.
+        step: time between two scans; None for every sample of the run.
+        steps, initial, transitions, final: as given.
+        active: the names of the active steps; none before the first scan.
+        markings: all sets of steps that can be active together, as `reachable_markings` finds them.
+
+    Arguments:
+        inputs: names of the signals that the conditions use, a tuple or a text with blanks.
+        outputs: ``{name: value before the start}``; a truth value makes the output boolean, a number a number.
+        steps: ``{step: {output: value}}``: the actions are the changes. A value is a number, TRUE or FALSE, or a text
+            such as "batches + 1".
+        initial: name of the initial step.
+        transitions: list of `Transition`; where several leave one step, the first whose condition is true is taken.
+        final: names of the steps that no transition leaves.
+    Raises:
+        ValueError: for no or two initial steps, a step that is unknown, that cannot be reached or that no transition
+            leaves, an unknown signal, a signal that is input and output, a condition that is none, a value that does
+            not fit its output, a convergence whose steps are never active together, a step that could be activated
+            while it is active, a transition that is never cleared.
+
+    >>> lamp = Chart("on off", {"light": False}, {"Dark": {"light": False}, "Bright": {"light": True}}, "Dark",
+    ...              [Transition("Dark", "Bright", "on"), Transition("Bright", "Dark", "off OR Bright.T >= 60")])
+    >>> for time in (0, 1, 2):
+    ...     print(lamp.update({"on": 1, "off": 0}, time), lamp.active)
+    {'light': 0.0} ('Dark',)
+    {'light': 1.0} ('Bright',)
+    {'light': 1.0} ('Bright',)
+    """
+
+    def __init__(self, inputs, outputs, steps, initial, transitions, final=(), tag="SFC", step=None):
+        inputs = tuple(inputs.split() if isinstance(inputs, str) else inputs)
+        checks.names(inputs, outputs, steps)
+        self.tag, self.reads, self.writes, self.step = tag, inputs, tuple(outputs), step
+        if odd := [name for name, actions in steps.items() if not isinstance(actions, dict)]:
+            raise ValueError(f"the step {odd[0]} has {steps[odd[0]]!r}: expected its actions, {{output: value}}")
+        self.outputs, self.steps = dict(outputs), {name: dict(actions) for name, actions in steps.items()}
+        self.initial = checks.initial_step(initial, self.steps)
+        self.final = (final,) if isinstance(final, str) else tuple(final)
+        for way in transitions:
+            if not (isinstance(way, Transition) or (isinstance(way, (list, tuple)) and len(way) in (2, 3))):
+                raise ValueError(f"a transition is {way!r}: expected one such as Transition('Fill', 'Heat', 'h > 0.9')")
+        self.transitions = [x if isinstance(x, Transition) else Transition(*x) for x in transitions]
+        for name, value in self.outputs.items():
+            if not isinstance(value, bool):
+                number(f"the output {name}", value, "a number, or TRUE or FALSE")
+        self.conditions = [Formula(x.condition, f"the condition of {x.name}").condition() for x in self.transitions]
+        checks.connections(self)
+        for formula in self.conditions:
+            self._known(formula)
+        self.actions = {step: self._read(step, actions) for step, actions in self.steps.items()}
+        self.markings = checks.situations(self)
+        used = [*self.conditions, *(formula for actions in self.actions.values() for _, formula in actions)]
+        # the flags and times of steps that a formula needs
+        self._flags = {name: name.split(".") for formula in used for name in formula.names if "." in name}
+        self.active, self._since, self._stored = (), {}, {name: float(x) for name, x in self.outputs.items()}
+
+    def __repr__(self):
+        return f"<chart {self.tag}: {len(self.steps)} steps, {len(self.transitions)} transitions>"
+
+    def _known(self, formula):
+        for name in formula.names:
+            step, dot, _ = name.partition(".")
+            if dot and step not in self.steps:
+                raise ValueError(f"{formula.owner} has {name}, but {step} is no step of the chart")
+            if not dot and name not in (*self.reads, *self.writes):
+                raise ValueError(f"{formula.owner} has the unknown signal {name}: expected an input or an output")
+
+    def _read(self, step, actions):
+        """The actions of a step as formulas, which fit their outputs."""
+        found = []
+        for output, value in actions.items():
+            owner = f"the action on {output} in {step}"
+            if output not in self.outputs:
+                raise ValueError(f"the step {step} has an action on the unknown signal {output}: expected an output")
+            boolean = isinstance(self.outputs[output], bool)
+            if not isinstance(value, (str, bool)):
+                value = f"{number(owner, value, 'a number, TRUE, FALSE or a formula'):.15g}"
+            formula = Formula(value, owner)
+            self._known(formula)
+            if formula.kind == ("number" if boolean else "boolean"):
+                expected = "TRUE or FALSE" if boolean else "a number"
+                raise ValueError(f"{owner} assigns {formula.text}: expected {expected}, as the output is declared")
+            found.append((output, formula))
+        return found
+
+    @property
+    def recorded(self):
+        """Which steps are active, as 1 and 0, by their names in a run."""
+        return {f"{self.tag}.{step}": float(step in self.active) for step in self.steps}
+
+    def take_over(self, earlier):
+        """Go on where the same chart, maybe with other conditions, has stopped in an earlier run.
+
+        Raises:
+            ValueError: for steps that cannot be active together in this chart.
+        """
+        if earlier.active and frozenset(earlier.active) not in self.markings:
+            raise ValueError(f"{self.tag} cannot go on with {checks.listed(earlier.active, 'and')} active")
+        self.active, self._since = earlier.active, dict(earlier._since)
+        self._stored |= {name: value for name, value in earlier._stored.items() if name in self._stored}
+
+    def update(self, values, time):
+        """Run one scan and return the outputs.
+
+        Arguments:
+            values: ``{input: number}``, 1 and 0 for TRUE and FALSE.
+            time: the moment of the scan.
+        Returns:
+            ``{output: number}``.
+        Raises:
+            ValueError: for an input that is missing, or one that is no truth value where a condition needs one.
+        """
+        if missing := [name for name in self.reads if name not in values]:
+            raise ValueError(f"the input {missing[0]} is missing: the chart reads {checks.listed(self.reads)}")
+        known = {name: values[name] for name in self.reads} | self._stored
+        self._look(known, time)
+        if not self.active:
+            begun = {self.initial}
+        else:
+            left, begun = set(), set()
+            for transition, condition in zip(self.transitions, self.conditions, strict=True):
+                enabled = all(step in self.active and step not in left for step in transition.sources)
+                if enabled and condition.true(known):
+                    left.update(transition.sources)
+                    begun.update(transition.targets)
+            begun = begun if left else set()
+            active = set(self.active) - left | begun
+            self.active = tuple(step for step in self.steps if step in active)
+        if not begun:
+            return dict(self._stored)
+        self.active = self.active or (self.initial,)
+        self._since.update(dict.fromkeys(begun, time))
+        self._look(known, time)
+        for step in self.steps:
+            for output, formula in self.actions[step] if step in begun else ():
+                value = formula.true if isinstance(self.outputs[output], bool) else formula.value
+                known[output] = self._stored[output] = float(value(known))
+        return dict(self._stored)
+
+    def _look(self, known, time):
+        """Put the flags and times of the steps among the values; nine digits, so that ten steps of 0.1 are one."""
+        for name, (step, what) in self._flags.items():
+            on = step in self.active
+            known[name] = on if what == "X" else round(time - self._since[step], 9) if on else 0.0
+
+
+class Scans:
+    """What `scan_by_scan` returns: a table with one row a scan, as a notebook shows it.
+
+    Attributes:
+        heads: the names of the columns.
+        rows: a tuple of texts for each scan.
+        active: the names of the active steps after each scan.
+    """
+
+    def __init__(self, heads, rows, active):
+        self.heads, self.rows, self.active = heads, rows, active
+
+    def __repr__(self):
+        table = [self.heads, *self.rows]
+        widths = [max(len(row[n]) for row in table) for n in range(len(self.heads))]
+        return "\n".join("  ".join(f"{x:<{n}}" for x, n in zip(row, widths, strict=True)).rstrip() for row in table)
+
+    def _repr_html_(self):
+        head = "".join(f"<th>{name}</th>" for name in self.heads)
+        body = "".join(f"<tr>{''.join(f'<td>{x}</td>' for x in row)}</tr>" for row in self.rows)
+        return f"<table><tr>{head}</tr>{body}</table>"
+
+
+def scan_by_scan(chart, step=1, **inputs):
+    """Run a chart by itself, with given inputs, and show each scan.
+
+    Arguments:
+        chart: a `Chart`, which is not changed.
+        step: time between two scans.
+        inputs: a list for each input, one value a scan; True and False for TRUE and FALSE. A single value holds always.
+    Returns:
+        A `Scans`, which a notebook shows as a table: time, inputs, active steps and outputs after the scan.
+    Raises:
+        ValueError: for an input that the chart does not have or that is missing, or lists of different lengths.
+
+    >>> lamp = Chart("on", {"light": False}, {"Dark": {}, "Bright": {"light": True}}, "Dark",
+    ...              [Transition("Dark", "Bright", "on")], final="Bright")
+    >>> scan_by_scan(lamp, on=[False, True, True])
+    time  on     active steps  light
+    0     FALSE  Dark          FALSE
+    1     TRUE   Bright        TRUE
+    2     TRUE   Bright        TRUE
+    """
+    if not isinstance(chart, Chart):
+        raise ValueError(f"the chart is {chart!r}: expected a Chart")
+    chart = copy.deepcopy(chart)
+    if odd := set(inputs) ^ set(chart.reads):
+        raise ValueError(f"{sorted(odd)[0]} is missing or no input: the chart reads {checks.listed(chart.reads)}")
+    counts = {len(values) for values in inputs.values() if isinstance(values, (list, tuple))}
+    if len(counts) != 1:
+        raise ValueError("expected lists of one length, one value for each scan")
+    rows, active = [], []
+    for n in range(counts.pop()):
+        values = {name: x[n] if isinstance(x, (list, tuple)) else x for name, x in inputs.items()}
+        found = chart.update(values, n * step)
+        shown = [found[name] != 0 if isinstance(chart.outputs[name], bool) else found[name] for name in found]
+        rows.append((f"{n * step:g}", *map(_word, values.values()), ", ".join(chart.active), *map(_word, shown)))
+        active.append(chart.active)
+    return Scans(("time", *inputs, "active steps", *chart.writes), rows, active)
+
+
+def _word(value):
+    return str(value).upper() if isinstance(value, bool) else f"{value:.6g}"
