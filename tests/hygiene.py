@@ -43,7 +43,7 @@ NAMES = {
 }
 MOST_LINES = 12
 MOST_COLUMNS = 88  # what a notebook shows beside a file list without scrolling
-MOST_BYTES = 700_000
+MOST_BYTES = 800_000
 MARKER = "# NBVAL_IGNORE_OUTPUT"
 
 # Functions that make a number of a literal, and names of constants: what consists of these alone is not computed.

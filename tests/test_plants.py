@@ -45,7 +45,8 @@ LINEAR += [plants.WoodChipTankWithScale]
 LINEAR += [plants.TwoStageSeparator]
 LEVELS = [LiquidTank, BufferTank, WoodChipTank, plants.WoodChipTankWithScale, plants.TwoStageSeparator]
 # No flow depends on the level of these.
-SETTLING = [cls for cls in NAMED if cls not in (*LEVELS, MotorWithLoad, plants.BatchTank)]
+WHOLE_PLANTS = (plants.FlashPlant, plants.AmmoniaEvaporator)  # with levels among their states
+SETTLING = [cls for cls in NAMED if cls not in (*LEVELS, MotorWithLoad, plants.BatchTank, *WHOLE_PLANTS)]
 named = pytest.mark.parametrize("cls", NAMED, ids=lambda cls: cls.__name__)
 
 

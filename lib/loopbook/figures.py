@@ -132,6 +132,9 @@ def with_few_colours(image, shades=3):
         for colour in [*of_lines, *of_areas]
         for k in range(1, shades + 1)
     ]
+    if all(max(colour) == min(colour) for colour in [*of_lines, *of_areas]):  # black and white: two bits a dot
+        greys = [colour for colour in of_areas if colour != (0, 0, 0)] or [(170, 170, 170)]
+        mixed = [(0, 0, 0), (100, 100, 100), max(greys, key=lambda colour: count.get(colour, 0))]
     palette = Image.new("P", (1, 1))
     palette.putpalette([x for colour in dict.fromkeys([(255, 255, 255), *mixed]) for x in colour])
     return image.quantize(palette=palette, dither=Image.Dither.NONE)

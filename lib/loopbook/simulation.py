@@ -8,6 +8,7 @@ on any grid: the moments at which a held signal arrives late are among the disco
 import copy
 import math
 import warnings
+import weakref
 from dataclasses import dataclass, replace
 
 import sympy
@@ -289,6 +290,32 @@ class _Loop:
         return {name: float(u)}
 
 
+class _Programs:
+    """The equations of a plant as programs, and the signals besides the undelayed states that each needs."""
+
+    def __init__(self, plant):
+        equations = plant.state_equations()
+        self.plant, self.states = plant, list(equations)
+        self.rates, self.driving = self._compiled(equations.values())
+        self.measure, self.measuring = self._compiled(plant.measured.values())
+        del self.plant  # it would keep itself alive
+
+    def _compiled(self, formulas):
+        """A program for the formulas, and what else it needs: (name, delay)."""
+        formulas = [self.plant.numbers(formula) for formula in formulas]
+        if any(formula.has(sympy.zoo, sympy.nan, sympy.oo) for formula in formulas):
+            raise ValueError(f"{self.plant} divides by zero: expected parameters that are not zero")
+        letters = {x: sympy.Dummy() for x in self.states}
+        formulas = [formula.xreplace(letters) for formula in formulas]
+        found = sorted({x for formula in formulas for x in formula.atoms(AppliedUndef)}, key=str)
+        others = {x: sympy.Dummy() for x in found}
+        program = sympy.lambdify([*letters.values(), *others.values()], [f.xreplace(others) for f in formulas], "math")
+        return program, [(name_of(x), float(t - x.args[0])) for x in found]
+
+
+_PROGRAMS = weakref.WeakKeyDictionary()  # of the plants in use: a plant never changes, and compiling takes its time
+
+
 class _System:
     """The plant's equations as programs, and its state from one discontinuity to the next."""
 
@@ -297,14 +324,15 @@ class _System:
 
         self.plant, self.sources, self.past, self.rows = plant, sources, past, []
         self.begin, self.step = times[0], times[1] - times[0]
-        equations = plant.state_equations()
-        self.states = list(equations)
-        self.names = [name_of(x) for x in self.states]
+        if plant not in _PROGRAMS:
+            _PROGRAMS[plant] = _Programs(plant)
+        programs = _PROGRAMS[plant]
+        self.rates, self.driving = programs.rates, programs.driving
+        self.measure, self.measuring = programs.measure, programs.measuring
+        self.states, self.names = programs.states, [name_of(x) for x in programs.states]
         if past and past.names != self.names:
             raise ValueError(f"the earlier run has the states {past.names}, this plant has {self.names}")
-        self.rates, self.driving = self._compiled(equations.values())
         self.measured = [name_of(x) for x in plant.measured]
-        self.measure, self.measuring = self._compiled(plant.measured.values())
         self._refuse_delays()
 
         self.at_rest = [0.0 if x.is_Derivative else float(plant.values[x]) for x in self.states]
@@ -320,18 +348,6 @@ class _System:
                 "lsoda": ode(self._rate_of_change).set_integrator("lsoda", **TOLERANCE),
             },
         )
-
-    def _compiled(self, formulas):
-        """A program for the formulas, and the signals besides the undelayed states that it needs: (name, delay)."""
-        formulas = [self.plant.numbers(formula) for formula in formulas]
-        if any(formula.has(sympy.zoo, sympy.nan, sympy.oo) for formula in formulas):
-            raise ValueError(f"{self.plant} divides by zero: expected parameters that are not zero")
-        letters = {x: sympy.Dummy() for x in self.states}
-        formulas = [formula.xreplace(letters) for formula in formulas]
-        found = sorted({x for formula in formulas for x in formula.atoms(AppliedUndef)}, key=str)
-        others = {x: sympy.Dummy() for x in found}
-        program = sympy.lambdify([*letters.values(), *others.values()], [f.xreplace(others) for f in formulas], "math")
-        return program, [(name_of(x), float(t - x.args[0])) for x in found]
 
     def _refuse_delays(self):
         for name, delay in self.driving + self.measuring:

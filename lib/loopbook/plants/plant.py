@@ -208,10 +208,12 @@ class Plant:
         >>> A, B
         (Matrix([[-q/V]]), Matrix([[1/V, -c_A/V]]))
         """
-        states, rates = list(self.state_equations()), list(self.state_equations().values())
+        equations = self.state_equations()
+        states, rates = list(equations), [self._active(rate) for rate in equations.values()]
+        measured = self._active(self.measured.get(self.output, self.output))
         return tuple(
             sympy.Matrix([[self._in_constants(_sensitivity(f, x)) for x in among] for f in functions])
-            for functions in (rates, [self.measured.get(self.output, self.output)])
+            for functions in (rates, [measured])
             for among in (states, self.inputs)
         )
 

@@ -37,7 +37,7 @@ class TwoStageSeparator(Plant):
         rho_w: (1000, "kg/m³", "density of the water"),
         rho_o: (800, "kg/m³", "density of the oil"),
         A_w: (5, "m²", "area of the first separator ahead of the weir"),
-        A_1: (4, "m²", "area of its oil compartment"),
+        A_1: (4, "m²", "area of the oil compartment of the first separator"),
         A_2: (6, "m²", "area of the second separator"),
         F_w: (20, "kg/s", "water from the reservoir"),
         F_o: (40, "kg/s", "oil from the reservoir"),
@@ -45,6 +45,6 @@ class TwoStageSeparator(Plant):
         O_1: (40, "kg/s", "oil from the first to the second separator"),
         O_2: (40, "kg/s", "oil out of the second separator"),
         h_w: (1, "m", "level of the water in the first separator"),
-        h_1: (1, "m", "level of the oil in its oil compartment"),
+        h_1: (1, "m", "level of the oil in the oil compartment of the first separator"),
         h_2: (1, "m", "level of the oil in the second separator"),
     }
