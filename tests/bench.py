@@ -1,11 +1,11 @@
 """What the collection costs beside what it stands on: `make bench` prints tables of medians and their ratios.
 
 The library: a fresh interpreter that imports loopbook, beside one that imports SymPy only. The simulator: a closed loop
-with all practical features, beside a bare loop around SciPy's solver. Dead time: exact responses and integrals of the
-squared error, beside python-control with Pade approximations of order 10, and their errors; a map of stability. Model
-reduction and internal model control, and a fit to data. A chapter: its import cell and the whole of it, each in a fresh
-kernel, beside a fresh kernel that imports no more than the packages the chapter uses. What is compared runs in turn, so
-that a busy minute of the machine burdens both sides.
+with all practical features, beside a bare loop around SciPy's solver; a cascade, and a plant with all its loops. Dead
+time: exact responses and integrals of the squared error, beside python-control with Pade approximations of order 10,
+and their errors; a map of stability. Model reduction and internal model control, and a fit to data. A chapter: its
+import cell and the whole of it, each in a fresh kernel, beside a fresh kernel that imports no more than the packages
+the chapter uses. What is compared runs in turn, so that a busy minute of the machine burdens both sides.
 """
 
 import functools
@@ -34,14 +34,16 @@ from loopbook.deadtime import Loop, System, feedback
 from loopbook.identification import fit
 from loopbook.ise import integral_of_square, pi_first_order
 from loopbook.pid import PID, Controller
-from loopbook.plants import WoodChipTank
+from loopbook.plants import FlashPlant, JacketedTank, WoodChipTank
 from loopbook.signals import stepwise
 from loopbook.simulation import simulate
 from loopbook.stability import stability_map
+from loopbook.structures import ControlLoop
 from loopbook.synthesis import IMC_TABLE, imc
 from loopbook.transfer import first_order, second_order
 from test_ise import by_parseval
 from test_ise import loops as random_loops
+from test_plantwide import CALM, structure
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = {
@@ -165,6 +167,41 @@ def the_simulator(runs: int) -> Table:
     table.add_row(
         "solve_ivp once a sample, bare loop", seconds(times["bare"]), f"{times['bare'] / times['everything']:.2f}"
     )
+    return table
+
+
+def the_structures(runs: int) -> Table:
+    """Many loops on one plant: a cascade, beside a bare loop of one's own, and a plant with all its controllers."""
+    samples = 3000
+    tank, flash = JacketedTank(), FlashPlant()
+    primary = Controller(PID(2, Ti=400), step=1, u0=46)
+    secondary = Controller(PID(0.05, Ti=60), step=1, u0=tank.F_h, limits=(0, 1.5))
+    cascade = [ControlLoop("TC1", primary, 41, "T_pm", "T_hSP"), ControlLoop("TC2", secondary, "T_hSP", "T_hm", "F_h")]
+
+    def bare() -> None:  # two P controllers and the tank, without dead time or any practical feature
+        x, mass_p, mass_h = [40.0, 46.0], 4200 * 500, 4200 * 100
+        for k in range(samples):
+            flow = 0.6 + 0.05 * (46 + 2 * (41 - x[0]) - x[1])
+
+            def rates(_: float, x: list[float], flow: float = flow) -> list[float]:
+                heat = 5600 * (x[1] - x[0])
+                jacket = 4200 * flow * (60 - x[1]) - heat + 100 * (20 - x[1])
+                return [(1680 * (20 - x[0]) + heat) / mass_p, jacket / mass_h]
+
+            x = solve_ivp(rates, (k, k + 1), x, rtol=1e-9, atol=1e-12).y[:, -1].tolist()
+
+    times = medians(
+        runs,
+        cascade=lambda: simulate(tank, cascade, until=samples),
+        bare=bare,
+        plant=lambda: simulate(flash, structure(), until=7200, **(CALM | {"F_SP": stepwise(5, {600: 6})})),
+    )
+    table = Table("several loops", "time", "ratio", title=f"Control structures, median of {runs}")
+    table.add_row(f"simulate, cascade, {samples} samples", seconds(times["cascade"]), "1.00")
+    ratio = times["bare"] / times["cascade"]
+    table.add_row("solve_ivp once a sample, bare cascade", seconds(times["bare"]), f"{ratio:.2f}")
+    ratio = times["plant"] / times["cascade"]
+    table.add_row("simulate, plant with 8 loops, 2 h in 1440 samples", seconds(times["plant"]), f"{ratio:.2f}")
     return table
 
 
@@ -322,6 +359,7 @@ if __name__ == "__main__":
     console = Console()
     console.print(the_library(runs=7))
     console.print(the_simulator(runs=3))
+    console.print(the_structures(runs=3))
     console.print(the_responses(runs=15))
     console.print(the_criteria(runs=7))
     console.print(the_map(runs=3))

@@ -332,7 +332,7 @@ class _System:
         self.states, self.names = programs.states, [name_of(x) for x in programs.states]
         if past and past.names != self.names:
             raise ValueError(f"the earlier run has the states {past.names}, this plant has {self.names}")
-        self.measured = [name_of(x) for x in plant.measured]
+        self.measured, self.output = [name_of(x) for x in plant.measured], name_of(plant.output)
         self._refuse_delays()
 
         self.at_rest = [0.0 if x.is_Derivative else float(plant.values[x]) for x in self.states]
@@ -432,17 +432,12 @@ class _System:
             return self.state_at(time)[self.names.index(name)]
         return self.sources[name].at(time)
 
-    def output(self):
-        """The plant's output at the last sample."""
-        if self.plant.output in self.states:
-            return self.trace[-1][self.states.index(self.plant.output)]
-        return self.rows[-1][list(self.plant.measured).index(self.plant.output)]
-
     def readings(self, time, driven):
         """What the plant says at the last sample: states, measured signals and inputs by name, the output as ""."""
         inputs = {name: source.at(time) for name, source in self.sources.items() if name not in driven}
         measured = dict(zip(self.measured, self.rows[-1], strict=True))
-        return inputs | dict(zip(self.names, self.trace[-1], strict=True)) | measured | {"": self.output()}
+        found = inputs | dict(zip(self.names, self.trace[-1], strict=True)) | measured
+        return found | {"": found[self.output]}
 
     def signals(self, times):
         """The states, the measured signals and the inputs at the samples."""
