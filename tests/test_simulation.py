@@ -491,3 +491,12 @@ def test_a_delay_inside_the_plant_is_refused():
 
     with pytest.raises(ValueError, match="dead time inside"):
         simulate(Recycle(), until=10, step=1)
+
+
+def test_a_division_by_zero_on_the_way_ends_in_one_sentence():
+    """It is raised within SciPy's solver, which would not come back from it."""
+    x, u = plants.signals("x u")
+    body = {"model": sympy.Eq(x.diff(t), u / x), "output": x, "manipulated": u}
+    plant = type("Dividing", (plants.Plant,), body | {"quantities": {x: (0, "1", "state"), u: (-1, "1", "input")}})()
+    with pytest.raises(ValueError, match="x grows beyond all numbers before t = 1"):
+        simulate(plant, until=2, step=1)

@@ -54,11 +54,13 @@ class Run:
 
     def unit(self, name):
         """The unit of a signal of the plant, or of a setpoint, as that of the measurement; "1" for a number."""
-        structure = self._past.loop if self._past else None
-        while isinstance(structure, Structure) and name in (found := structure.measurement_of):
-            name = found[name]
-        if isinstance(structure, Structure) and name not in {name_of(x) for x in self.plant.quantities}:
-            return "%" if name in structure.split else "1"
+        structure, of_plant = self._past.loop if self._past else None, {name_of(x) for x in self.plant.quantities}
+        if isinstance(structure, Structure):
+            found = structure.measurement_of
+            while name in found and name not in of_plant:
+                name = found[name]
+            if name not in of_plant:
+                return "%" if name in structure.split else "1"
         return self.plant.quantities[self.plant.signal(name)].unit or "1"
 
     def loop(self, tag):
@@ -407,7 +409,7 @@ class _System:
         try:
             inputs = self.held or [x(time - delay) if callable(x) else x for x, delay in self.inside]
             rates = self.rates(*state, *inputs)
-        except OverflowError:
+        except ArithmeticError:  # of a trial step
             return [math.nan] * len(state)
         except ValueError as error:
             self.failure = error

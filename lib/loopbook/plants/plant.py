@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import sympy
 from sympy.core.function import AppliedUndef
+from sympy.polys.domains import QQ, ZZ
 from sympy.polys.matrices import DomainMatrix
 
 from loopbook.expressions import exact, s, t
@@ -344,9 +345,11 @@ def _signals_in(expression):
 
 def _solved(A, B):
     """The solution of A x = B; by SymPy's polynomials where it has numbers alone, since they cancel as they go."""
-    if A.free_symbols | B.free_symbols <= {s} and A.is_symbolic() and not (A.has(sympy.exp) or B.has(sympy.exp)):
-        A = DomainMatrix.from_Matrix(A).to_field()
-        return A.lu_solve(DomainMatrix.from_Matrix(B).convert_to(A.domain)).to_Matrix()
+    if not (A.free_symbols | B.free_symbols) - {s}:
+        polynomials, numbers = DomainMatrix.from_Matrix(A), DomainMatrix.from_Matrix(B)
+        if polynomials.domain in (ZZ[s], QQ[s]) and numbers.domain in (ZZ, QQ):
+            polynomials = polynomials.to_field()
+            return polynomials.lu_solve(numbers.convert_to(polynomials.domain)).to_Matrix()
     return A.LUsolve(B)
 
 
@@ -354,10 +357,10 @@ def _solved_one_by_one(balances, highest):
     """The rates, where every balance law has one of them on its left side, perhaps with a factor, and nowhere else."""
     found = {}
     for law in balances:
-        (rate,) = law.lhs.atoms(sympy.Derivative)
-        factor = law.lhs.coeff(rate)
-        if rate not in highest or rate in found or law.lhs != factor * rate or law.rhs.has(*highest):
-            raise ValueError(f"{law} has a Max or Min: expected a rate with a factor on its left side")
+        rate = next((x for x in highest if law.lhs.has(x) and x not in found), None)
+        factor = law.lhs.coeff(rate) if rate else 0
+        if not factor or law.lhs != factor * rate or law.rhs.has(*highest):
+            raise ValueError(f"{law.lhs} = {law.rhs} has a Max or Min: expected a rate with a factor on its left side")
         found[rate] = law.rhs / factor
     return found
 

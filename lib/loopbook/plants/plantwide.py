@@ -36,15 +36,15 @@ class FlashPlant(Plant):
     """Two feeds mixed in a ratio, heated and flashed. (Haugen, Section 11.5, Figure 11.17; the model is ours)
 
     Feed A is a solution of the component A, which is not volatile, feed B is solvent. Each has a vessel, 1 and 2; the
-    mixed streams go to vessel 3, through a heat exchanger with condensing steam to vessel 4, where a part of the solvent
-    evaporates; the liquid is the product, and its mass fraction of A is the product quality. All values are ours, and
-    the operating point is a steady state.
+    mixed streams go to vessel 3, through a heat exchanger with condensing steam to vessel 4, where a part of the
+    solvent evaporates; the liquid is the product, and its mass fraction of A is the product quality. All values are
+    ours, and the operating point is a steady state.
 
     Every pump and valve follows its control signal with a lag. A pump gets no more than what is above its suction
-    pipe, and loses its grip on the last kilograms above it; what is above the rim of vessel 1, 2 or 3 overflows, and in
-    vessel 4 it is carried over into the vapour. Vapour leaves through the valve in proportion to the pressure, as at the
-    speed of sound, and beyond that through a relief valve. Energy is that of liquid at 0 °C and what it takes from there;
-    vapour has the same heat capacity as liquid, and the heat of evaporation besides.
+    pipe, and loses its grip on the last kilograms above it; what is above the rim of vessel 1, 2 or 3 overflows, and
+    in vessel 4 it is carried over into the vapour. Vapour leaves through the valve in proportion to the pressure, as
+    at the speed of sound, and beyond that through a relief valve. Energy is that of liquid at 0 °C and what it takes
+    from there; vapour has the same heat capacity as liquid, and the heat of evaporation besides.
     """
 
     u_1, u_2, u_A, u_B, u_3, u_h, u_4, u_V = signals("u_1 u_2 u_A u_B u_3 u_h u_4 u_V")
@@ -221,7 +221,7 @@ class AmmoniaEvaporator(Plant):
     )
     output, manipulated = p, u_2
     balances = {"mass": (m + m_G, feed - over - gas - relief), "energy": (E, supplied - carried)}
-    _mass_of_gas = Q("6.45") * 2 / (Q("0.00488") * Q("285.15"))
+    _mass_of_gas = Q("6.1") * 4 / (Q("0.00488") * Q("285.15"))
     quantities = {
         u_1: (50, "%", "control signal of the inlet valve V1"),
         u_2: (50, "%", "control signal of the water valve V2"),
@@ -230,15 +230,15 @@ class AmmoniaEvaporator(Plant):
         T_w: (22, "°C", "temperature of the water"),
         k_1: (Q("0.03"), "kg/(s %)", "capacity of the valve V1"),
         k_2: (Q("1.2"), "kg/(s %)", "capacity of the valve V2"),
-        k_3: (Q(1, 215), "kg/(s % bar)", "capacity of the valve V3"),
-        k_e: (10, "kg/(s bar)", "evaporation for the pressure below saturation"),
+        k_3: (Q(3, 610), "kg/(s % bar)", "capacity of the valve V3"),
+        k_e: (3, "kg/(s bar)", "evaporation for the pressure below saturation"),
         k_o: (Q("0.1"), "1/s", "liquid carried over for each kilogram above the highest level"),
         k_r: (10, "kg/(s bar)", "capacity of the relief valve"),
         tau: (5, "s", "lag of the valves"),
         M: (1800, "kg", "liquid that the evaporator holds"),
         m_r: (20, "kg", "liquid below the tubes"),
         m_s: (60, "kg", "liquid above that where the evaporation begins to cease"),
-        V: (4, "m³", "volume"),
+        V: (6, "m³", "volume"),
         rho: (600, "kg/m³", "density of liquid ammonia"),
         R: (Q("0.00488"), "bar m³/(kg K)", "gas constant of ammonia"),
         T_0: (Q("273.15"), "K", "0 °C"),

@@ -1,0 +1,265 @@
+"""The plant of Figure 11.17 with all its loops, and with one of them wrong; the ammonia evaporator of Example 11.6."""
+
+import functools
+
+import numpy as np
+import pytest
+import sympy
+
+from loopbook import s, t
+from loopbook.approximation import half_rule
+from loopbook.laplace import evaluate
+from loopbook.pid import PID, Controller
+from loopbook.plants import AmmoniaEvaporator, FlashPlant, Plant, parameters, signals
+from loopbook.signals import stepwise
+from loopbook.simulation import simulate
+from loopbook.structures import Calculation, ControlLoop, controller_action
+from loopbook.transfer import step_response
+from loopbook.tuning import simc
+from test_balances import with_total
+
+ENDS = {
+    "FC1": ("u_A", "F_A"),
+    "FC2": ("u_B", "F_B"),
+    "LC1": ("u_1", "L_1"),
+    "LC2": ("u_2", "L_2"),
+    "LC3": ("u_3", "L_3"),
+    "LC4": ("u_4", "L_4"),
+    "PC1": ("u_V", "p_4"),
+    "TC1": ("u_h", "T_x"),
+}
+ACTIONS = {tag: "direct" if tag in ("LC3", "LC4", "PC1") else "reverse" for tag in ENDS}
+OTHER = {"direct": "reverse", "reverse": "direct"}
+T_C = {"F": 10, "P": 15, "T": 30, "L": 60}
+CALM = {"K": 0.6, "F_SP": 5, "T_SP": 155}
+
+
+@functools.cache
+def transfer_function(tag):
+    return FlashPlant().transfer_function(*ENDS[tag], numbers=True)
+
+
+def loop(tag, action):
+    plant, (u, y) = FlashPlant(), ENDS[tag]
+    settings = simc(half_rule(transfer_function(tag)), T_C[tag[0]], c=2)
+    settings = PID(abs(settings.Kp), settings.Ti)
+    controller = Controller(settings, 5, u0=getattr(plant, u), limits=(0, 100), action=action)
+    given = {"FC1": "F_SP", "FC2": "F_BSP", "TC1": "T_SP"}
+    return ControlLoop(tag, controller, given.get(tag, float(getattr(plant, y))), y, u)
+
+
+def structure(actions=ACTIONS):
+    K, F_A = sympy.symbols("K F_A")
+    return [Calculation("F_BSP", K * F_A), *(loop(tag, action) for tag, action in actions.items())]
+
+
+def with_all_totals(cls):
+    """The plant with one more state for each of its balances: what has flowed in since the beginning."""
+    body = {"model": cls.model, "quantities": dict(cls.quantities)}
+    for n, (_, inflow) in enumerate(cls.balances.values()):
+        total = sympy.Function(f"total_{n}")(t)
+        body["model"] = (*body["model"], sympy.Eq(total.diff(t), inflow))
+        body["quantities"][total] = (0, "1", "what has flowed in")
+    return type(cls.__name__, (cls,), body)
+
+
+def imbalances(plant, run):
+    """For each balance the largest difference between content and inflow, as a part of the content."""
+    states = [x for x in plant.states if not str(x).startswith("total")]
+    for n, (content, _) in enumerate(plant.balances.values()):
+        held = sympy.lambdify(states, plant.numbers(content), "numpy")(*(run[str(x.func)] for x in states))
+        yield abs(held - held[0] - run[f"total_{n}"]).max() / abs(held).max()
+
+
+CONTENTS = ("m_1", "m_2", "m_3", "m_4", "m_V", "a_1", "a_3", "a_4", "E_3", "E_x", "E_4")
+
+
+def physical(run):
+    """Nothing is negative, no vessel holds more than fits, A is a part of the liquid, and no water freezes or melts."""
+    assert all(run[name].min() >= 0 for name in CONTENTS)
+    assert all(run[f"O_{n}"].min() >= 0 for n in (1, 2, 3, 4, "V"))
+    assert all(run[f"L_{n}"].max() < 105 for n in (1, 2, 3, 4))
+    for n in (1, 3, 4):
+        assert np.all(run[f"a_{n}"] <= run[f"m_{n}"])
+    assert run["T_3"].min() > 24.9
+    assert max(run["T_x"].max(), run["T_4"].max()) < 185.001
+
+
+@pytest.mark.parametrize("tag", ENDS)
+def test_the_action_of_every_controller(tag):
+    assert controller_action(transfer_function(tag)) == ACTIONS[tag]
+
+
+def test_the_transfer_functions_of_the_levels_in_letters():
+    tau, k_1, k_3, M_1, M_3 = (getattr(FlashPlant, name) for name in ("tau", "k_1", "k_3", "M_1", "M_3"))
+    p_1 = sympy.Symbol("p_1", real=True)
+    by_hand = 100 * k_1 * sympy.sqrt(p_1) / (M_1 * s * (tau * s + 1)), -100 * k_3 / (M_3 * s * (tau * s + 1))
+    for (u, y), H in zip((ENDS["LC1"], ENDS["LC3"]), by_hand, strict=True):
+        assert sympy.simplify(FlashPlant().transfer_function(u, y) - H) == 0
+
+
+@pytest.mark.parametrize(
+    ("plant", "source", "output", "change"),
+    [
+        (FlashPlant(), "u_V", "p_4", 3e-3),
+        (FlashPlant(), "u_4", "L_4", 3e-3),
+        (FlashPlant(), "u_B", "x_4", 3e-3),
+        (FlashPlant(), "u_h", "T_x", 3e-3),
+        (AmmoniaEvaporator(), "u_2", "p", 3e-3),
+        (AmmoniaEvaporator(), "u_1", "L", 3e-3),
+        (AmmoniaEvaporator(), "u_3", "F_G", 3e-3),
+    ],
+    ids=lambda x: x if isinstance(x, str) else "",
+)
+def test_a_small_step_is_the_one_of_the_transfer_function(plant, source, output, change):
+    """A step small enough for the linear model, and large enough for the accuracy of the integration."""
+    from scipy.signal import lti, step
+
+    numerator, denominator = sympy.fraction(sympy.cancel(plant.transfer_function(source, output, numbers=True)))
+    coefficients = [[float(c) for c in sympy.Poly(x, s).all_coeffs()] for x in (numerator, denominator)]
+    times = np.arange(0, 301, 5.0)
+    _, expected = step(lti(*coefficients), T=times)
+    run = simulate(plant, until=300, step=5, **{source: getattr(plant, source) + change})
+    moved = (run[output] - float(getattr(plant, output))) / change
+    assert abs(moved - expected).max() < 1e-3 * abs(expected).max()
+
+
+def test_all_loops_come_to_rest_after_every_excitation():
+    """Production rate, ratio, strength and temperature of the feeds, pressure of the supply, temperature setpoint."""
+    run = simulate(
+        with_all_totals(FlashPlant)(),
+        structure(),
+        until=7200,
+        F_SP=stepwise(5, {300: 6, 4500: 5.5}),
+        K=stepwise(0.6, {1200: 0.65}),
+        x_A=stepwise(0.38, {1800: 0.36}),
+        T_B=stepwise(25, {2400: 35}),
+        p_1=stepwise(4, {3000: 3.5}),
+        T_SP=stepwise(155, {3600: 158}),
+    )
+    physical(run)
+    assert max(imbalances(run.plant, run)) < 1e-9
+    for tag in ENDS:
+        seen = run.loop(tag)
+        assert seen["measurement"][-1] == pytest.approx(seen["setpoint"][-1], rel=1e-5), tag
+        u = run[ENDS[tag][0]]
+        assert not {u.min(), u.max()} & {0.0, 100.0}, f"{tag} at a limit"
+    assert abs(np.array([run[f"L_{n}"] for n in (1, 2, 3, 4)]) - 50).max() < 5
+    assert run["x_4"][-1] < 24
+    assert abs(run["F_B"][-1] - 0.65 * 5.5) < 1e-4
+
+
+WRONG = {  # the loop, and what becomes of the plant
+    ("LC1", 1): {"L_1": "empty"},
+    ("LC1", -1): {"L_1": "full"},
+    ("LC2", 1): {"L_2": "empty"},
+    ("LC2", -1): {"L_2": "full"},
+    ("LC3", 1): {"L_3": "full", "F_4": "none"},
+    ("LC3", -1): {"L_3": "empty"},
+    ("LC4", 1): {"L_4": "full", "F_4": "none"},
+    ("LC4", -1): {"L_4": "empty"},
+    ("PC1", 1): {"p_4": "relief"},
+    ("PC1", -1): {"p_4": "low"},
+    ("TC1", 1): {},
+    ("TC1", -1): {},
+    ("FC1", 1): {"F_A": "none", "F_4": "none"},
+    ("FC1", -1): {"u_A": "open"},
+    ("FC2", 1): {"F_B": "none"},
+    ("FC2", -1): {"u_B": "open"},
+}
+SIGNS = {
+    "empty": lambda x: x[-1] < 5,
+    "full": lambda x: x[-1] > 100,
+    "none": lambda x: x[-1] < 0.01,
+    "relief": lambda x: x[-1] > 4,
+    "low": lambda x: x[-1] < 2.3,
+    "open": lambda x: x[-1] == 100,
+}
+
+
+@pytest.mark.parametrize(("tag", "nudge"), WRONG, ids=str)
+def test_one_wrong_sign_and_nothing_is_lost(tag, nudge):
+    rate = stepwise(5, {60: 5 + 0.05 * nudge})
+    blocks = structure(ACTIONS | {tag: OTHER[ACTIONS[tag]]})
+    run = simulate(with_all_totals(FlashPlant)(), blocks, until=2400, **(CALM | {"F_SP": rate}))
+    physical(run)
+    assert max(imbalances(run.plant, run)) < 1e-9
+    u = run[ENDS[tag][0]]
+    assert {u.min(), u.max()} & {0.0, 100.0}, "the wrong controller drives its valve to a limit"
+    for name, fate in WRONG[tag, nudge].items():
+        assert SIGNS[fate](run[name]), (name, run[name][-1])
+
+
+def test_with_no_control_at_all_vessels_run_dry_and_over():
+    plant = with_all_totals(FlashPlant)()
+    run = simulate(plant, until=7200, step=20, u_1=0, u_B=80, u_3=0, u_h=100, u_V=0)
+    physical(run)
+    assert run["L_1"][-1] == pytest.approx(100 / 3000 * 20, abs=1e-3), "what lies below the suction pipe stays"
+    assert run["O_2"][-1] == 0
+    assert run["O_3"].max() > 1
+    assert run["F_A"][-1] < 1e-3
+    assert max(imbalances(plant, run)) < 1e-9
+
+
+@pytest.mark.parametrize("name", AmmoniaEvaporator.balances)
+@pytest.mark.parametrize("valves", [{"u_1": 0}, {"u_1": 100}, {"u_2": 0}, {"u_2": 100, "u_3": 0}], ids=str)
+def test_the_evaporator_loses_nothing_at_its_limits(name, valves):
+    content, inflow = AmmoniaEvaporator.balances[name]
+    plant = with_total(AmmoniaEvaporator, inflow)()
+    run = simulate(plant, until=3600, step=10, **valves)
+    states = [x for x in plant.states if str(x.func) != "total"]
+    held = sympy.lambdify(states, plant.numbers(content), "numpy")(*(run[str(x.func)] for x in states))
+    assert abs(held - held[0] - run["total"]).max() < 1e-9 * abs(held).max()
+    assert min(run["m"].min(), run["m_G"].min()) > 0
+    assert run["L"].max() < 105
+
+
+def test_the_controllers_of_the_evaporator_act_in_reverse():
+    evaporator = AmmoniaEvaporator()
+    for ends in (("u_1", "L"), ("u_2", "p"), ("u_3", "F_G")):
+        assert controller_action(evaporator.transfer_function(*ends, numbers=True)) == "reverse"
+
+
+# What such plants need of `Plant`.
+
+
+class Overflowing(Plant):
+    """A vessel with a rim."""
+
+    m, F = signals("m F")
+    k, M = parameters("k M")
+    model = sympy.Eq(m.diff(t), F - k * sympy.Max(0, m - M))
+    output, manipulated = m, F
+    quantities = {k: (0.5, "1/s", ""), M: (10, "kg", ""), F: (0, "kg/s", ""), m: (5, "kg", "")}  # noqa: RUF012
+
+
+def test_a_limit_counts_where_the_plant_stands():
+    k = Overflowing.k
+    assert Overflowing().transfer_function() == 1 / s
+    assert sympy.simplify(Overflowing(m=12, F=1).transfer_function() - 1 / (s + k)) == 0
+    assert Overflowing(m=12, F=1).linear_model()[0] == sympy.Matrix([[-k]])
+    run = simulate(Overflowing(m=12, F=1), until=10, step=1, F=2)
+    assert abs(run["m"] - 12 - evaluate(step_response(1 / (s + sympy.Rational(1, 2))), run.times)).max() < 1e-6
+
+
+def test_a_balance_with_a_limit_is_solved_for_its_rate():
+    class Scaled(Overflowing):
+        model = sympy.Eq(2 * Overflowing.m.diff(t), Overflowing.F - sympy.Max(0, Overflowing.m))
+
+    class Turned(Overflowing):
+        model = sympy.Eq(Overflowing.F - sympy.Max(0, Overflowing.m), Overflowing.m.diff(t))
+
+    (rate,) = Scaled().state_equations().values()
+    assert sympy.simplify(rate - (Overflowing.F - sympy.Max(0, Overflowing.m)) / 2) == 0
+    with pytest.raises(ValueError, match="expected a rate with a factor on its left side"):
+        Turned().state_equations()
+
+
+def test_numbers_first_is_the_same_as_numbers_afterwards():
+    from loopbook.plants import HeatExchanger, JacketedTank, WoodChipTank
+
+    for cls in (HeatExchanger, JacketedTank, WoodChipTank):
+        plant = cls()
+        for x in plant.inputs:
+            afterwards = plant.numbers(plant.transfer_function(x))
+            assert sympy.simplify(plant.transfer_function(x, numbers=True) - afterwards) == 0
