@@ -240,3 +240,27 @@ def test_the_description_tells_pipes_and_signals():
 def test_bad_input_is_told_in_one_sentence(make, message):
     with pytest.raises(ValueError, match=message):
         make()
+
+
+@pytest.mark.parametrize("container", [tank(stirrer=True), vessel(stirrer=True), tank(stirrer=True, roof="cone")])
+@pytest.mark.parametrize("pipe", ["water 1 tank out", "in tank out"])
+def test_a_shaft_from_above_goes_on_to_the_stirrer(container, pipe):
+    layout = """
+        water  1     M1    .     .
+        in     tank  tank  tank  out"""
+    layout = layout.replace(
+        "water  1" if pipe.startswith("in") else "in ", ".      ." if pipe.startswith("in") else ".  "
+    )
+    picture = instrumentation_diagram(layout, pipe, "", {"M1": motor(), "tank": container}, shafts="M1 tank")
+    texts = {label: extent for label, extent in measured(picture)[0]}
+    middle = (texts["M"].x0 + texts["M"].x1) / 2
+    (axes,) = picture.figure.axes
+    pieces = []
+    for line in axes.lines:
+        (x0, x1), (y0, y1) = (list(map(float, data))[:2] for data in line.get_data())
+        if abs(x0 - x1) < 1e-9 and 0.01 < x0 - middle < 0.1:
+            pieces.append((max(y0, y1), min(y0, y1)))
+    pieces.sort(reverse=True)
+    assert len(pieces) == 2, "the one from the motor, and the stirrer's own"
+    assert pieces[0][1] == pytest.approx(pieces[1][0], abs=1e-6)
+    assert sum(text == "M" for text, _ in measured(picture)[0]) == 1

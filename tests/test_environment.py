@@ -122,6 +122,7 @@ ORDER = [
     ["sequence"],
     ["instruments"],
     ["figures"],
+    ["sequence_figures"],
     ["diagrams"],
     ["ledger", "notebooks"],
     ["exercises"],

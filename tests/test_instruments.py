@@ -39,6 +39,7 @@ WORDS = {
     "LSHL2": "high and low level switch of loop 2",
     "TZHH": "high-high temperature secure control",
     "PSV1": "pressure safety valve of loop 1",
+    "PSE1": "pressure safety sensing element of loop 1",
     "PSH": "high pressure switch",
     "FQ": "flow totalizer",
     "FQI": "flow total indicator",
@@ -168,3 +169,9 @@ def test_every_text_is_either_explained_letter_by_letter_or_refused(letters, num
     assert tag.functions
     assert all(word in tag.words for word in (tag.modifier, tag.limit))
     assert tag.loop == (int(number) if number else None)
+
+
+@pytest.mark.parametrize("tags", [5, None, "FC1"])
+def test_loops_are_sorted_of_a_list(tags):
+    with pytest.raises(ValueError, match=r"the tags are .*: expected a list of them"):
+        loops(tags)

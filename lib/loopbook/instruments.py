@@ -69,7 +69,7 @@ LETTERS = (
     Letter("D", MODIFIER, "difference", "Table A.1"),
     Letter("F", MODIFIER, "fraction (ratio)", "Table A.1"),
     Letter("Q", MODIFIER, "total", "ISA-5.1 and ISO 3511"),
-    Letter("S", MODIFIER, "safety (before a valve)", "ISA-5.1"),
+    Letter("S", MODIFIER, "safety (before V and E)", "ISA-5.1"),
     Letter("A", FUNCTION, "alarm", "Table A.1"),
     Letter("C", FUNCTION, "controller", "Table A.1", adjective="controlling"),
     Letter("E", FUNCTION, "sensing element", "ISA-5.1 and ISO 3511"),
@@ -210,7 +210,7 @@ def _parts(tag, letters):
 def _is_modifier(first, rest):
     """Whether the letter behind the first one changes what is measured: it does so before a function."""
     if rest[0] == "S":  # elsewhere a switch
-        return rest[1:] == "V"
+        return rest[1:] in ("V", "E")
     is_function = len(rest) == 1 and (rest, FUNCTION) in AT
     return (rest[0], MODIFIER) in AT and not is_function and first not in "HX"
 
@@ -238,6 +238,8 @@ def loops(tags):
     >>> {number: len(tags) for number, tags in loops(["FT123", "TT124", "FC123"]).items()}
     {123: 2, 124: 1}
     """
+    if isinstance(tags, str) or not hasattr(tags, "__iter__"):
+        raise ValueError(f"the tags are {tags!r}: expected a list of them, as ['FT123', 'FC123']")
     found = {}
     for tag in map(decode, tags):
         if tag.loop is None:

@@ -8,8 +8,9 @@ import copy
 import math
 
 import sympy
+from sympy.core.function import AppliedUndef
 
-from loopbook.expressions import exact, function_of, s
+from loopbook.expressions import exact, function_of, s, t
 from loopbook.inputs import number
 from loopbook.laplace import by_delay
 from loopbook.pid import Controller
@@ -92,23 +93,26 @@ class ControlLoop:
         named = (self.setpoint, self.measurement, self.feedforward, self.scheduling, self.mode)
         self.reads, self.writes = tuple(x for x in named if isinstance(x, str)), (self.output,)
         self.inner, self.operator, self.recorded = None, None, {}
+        self.following = ()  # what an outer loop must know of this one in order to follow it
 
     def in_manual(self, values):
-        """The output that this sample's mode prescribes, None in automatic mode."""
+        """The output that is prescribed in this sample, None in automatic mode.
+
+        An outer loop follows the inner one's measurement while that does not listen, so that nothing jumps when it
+        listens again.
+        """
+        if self.inner is not None and self.inner.in_manual(values) is not None:
+            return values[self.inner.measurement]
         if self.operator is not None:
             return self.operator
-        if self.mode and values.get(self.mode, 1.0) <= ON:
+        if self.mode and values[self.mode] <= ON:
             return self.manual
         return None
 
     def update(self, values, time):
         """Run the controller once and return ``{output: value}``."""
         manual = self.in_manual(values)
-        if self.inner is not None:
-            # an outer loop follows the inner one's measurement while that does not listen, so that nothing jumps when
-            # it listens again, and does not integrate beyond what the inner loop can do
-            if self.inner.in_manual(values) is not None:
-                manual = values[self.inner.measurement]
+        if self.inner is not None:  # do not integrate beyond what the inner loop can do
             self.controller.blocked = self.inner.stuck()
         setpoint = self.setpoint if is_number(self.setpoint) else values[self.setpoint]
         more = {name: values[x] for name in ("feedforward", "scheduling") if (x := getattr(self, name))}
@@ -141,9 +145,9 @@ class Calculation:
 
     Arguments:
         output: the name of the signal that it writes.
-        formula: an expression whose letters are the names of signals.
+        formula: an expression whose letters are the names of signals, or that has signals of a plant such as h(t).
     Raises:
-        ValueError: for a name that is none, or no expression.
+        ValueError: for a name that is none, or no expression, or one with signals of other moments, as a derivative.
 
     >>> K, F_A = sympy.symbols("K F_A")
     >>> Calculation("F_BSP", K * F_A).update({"K": 2, "F_A": 3}, 0)
@@ -155,6 +159,11 @@ class Calculation:
     def __init__(self, output, formula):
         self.tag = self.output = _name("output", output)
         self.formula = exact(formula)
+        of_plant = self.formula.atoms(AppliedUndef)
+        if self.formula.has(sympy.Derivative, sympy.Integral) or any(x.args != (t,) for x in of_plant):
+            raise ValueError(f"{output} = {self.formula}: expected a formula of the signals of one moment")
+        signals = of_plant | self.formula.free_symbols  # one letter for each name
+        self.formula = self.formula.xreplace({x: sympy.Symbol(getattr(x, "name", str(x.func))) for x in signals})
         letters = sorted(self.formula.free_symbols, key=str)
         self.reads, self.writes = tuple(map(str, letters)), (self.output,)
         self.function = sympy.lambdify(letters, self.formula, "math")
@@ -165,7 +174,7 @@ class Calculation:
     def update(self, values, time):
         try:
             return {self.output: float(self.function(*(values[name] for name in self.reads)))}
-        except (ArithmeticError, ValueError):
+        except (ArithmeticError, ValueError, TypeError, NameError):  # the last two: complex, or not for numbers
             raise ValueError(f"{self.output} = {self.formula} has no value at t = {time:g}") from None
 
     def __repr__(self):
@@ -253,10 +262,12 @@ class Structure:
                     raise ValueError(f"{block.tag} writes {name}, but it is the plant that says what it is")
                 writer[name] = block.tag
         self.loops = {block.tag: block for block in self.blocks if isinstance(block, ControlLoop)}
-        for loop in self.loops.values():
-            loop.inner = next((inner for inner in self.loops.values() if inner.setpoint == loop.output), None)
-            if loop.inner and loop.inner.mode:
-                loop.reads += (loop.inner.mode,)
+        for loop in reversed(self.loops.values()):  # from the inside out
+            behind = [inner for inner in self.loops.values() if inner.setpoint == loop.output]
+            if len(behind) == 1:  # of two loops with one setpoint neither is to be followed
+                (loop.inner,) = behind
+                loop.reads += loop.inner.following
+            loop.following = tuple(x for x in (loop.measurement, loop.mode) if x) + loop.following
         self.driven = [name for name in writer if name in self.inputs]
         self.external = self._external(writer)
 
@@ -296,10 +307,12 @@ class Structure:
         if missing:
             reader = next(block.tag for block in self.blocks if missing[0] in block.reads)
             raise ValueError(f"{reader} reads {missing[0]}, which nobody gives: expected {missing[0]}=...")
-        self.times, self.k, self.record, self.before_last = times, 0, {}, None
+        self.times, self.interval, self.record, self.before_last = times, times[1] - times[0], {}, None
+        self.k, self.k0, self.values = 0, 0, {}
+        self.beginning = {}  # the loops that begin as after manual mode, with their last outputs as far as known
         self.signals = {name: samples(name, signals[name], times) for name in self.external}
         self.noise, self.by_hand = self._noise(added_noise, seed), self._by_hand(manual)
-        self.every = {block.tag: self._every(block, times[1] - times[0]) for block in self.blocks}
+        self.every = {block.tag: self._every(block, self.interval) for block in self.blocks}
 
     def _noise(self, added, seed):
         if is_number(added) and added == 0:
@@ -311,8 +324,7 @@ class Structure:
             if name not in self.of_plant:
                 raise ValueError(f"noise has {name!r}: expected signals of the plant, {', '.join(self.of_plant)}")
             if is_number(deviation):  # a run that goes on has noise of its own
-                step = self.times[1] - self.times[0]
-                deviation = noise(self.times, deviation, (seed, n, round(self.times[0] / step)))
+                deviation = noise(self.times, deviation, (seed, n, round(self.times[0] / self.interval)))
             found[name] = samples("noise", deviation, self.times)
         return found
 
@@ -338,16 +350,15 @@ class Structure:
             old = before.get(block.tag)
             if isinstance(block, ControlLoop):
                 same = old is not None and type(old.controller) is type(block.controller)
+                same = same and (old.measurement, old.output) == (block.measurement, block.output)
                 if same and hasattr(block.controller, "take_over"):
                     block.controller.take_over(old.controller)
-                elif hasattr(block.controller, "start_from") and block.output in last:
-                    block.controller.start_from(last[block.output])
+                elif hasattr(block.controller, "start_from"):
+                    self.beginning[block.tag] = last.get(block.output)
             elif old is not None and hasattr(block, "take_over"):
                 block.take_over(old)
         if before:
-            self.k0, self.values = earlier.phase, dict(earlier.values)
-
-    k0, values = 0, {}
+            self.k0, self.values = round(earlier.phase * earlier.interval / self.interval), dict(earlier.values)
 
     @property
     def phase(self):
@@ -365,7 +376,9 @@ class Structure:
         for tag, output in self.by_hand.items():
             self.loops[tag].operator = output[k]
         for block in self.blocks:
-            if (self.k0 + k) % self.every[block.tag] == 0:
+            if (self.k0 + k) % self.every[block.tag] == 0 or any(name not in self.values for name in block.writes):
+                if block.tag in self.beginning:
+                    self._begin(block, values)
                 values |= self._checked(block, block.update(values, time), time)
             else:
                 values |= {name: self.values[name] for name in block.writes}
@@ -375,6 +388,14 @@ class Structure:
         for name in {*self.values, *self.external} - set(self.driven):
             self.record.setdefault(name, []).append(values[name])
         return {name: values[name] for name in self.driven}
+
+    def _begin(self, loop, values):
+        """Let a loop that is new on a running plant begin without a bump."""
+        last = self.beginning.pop(loop.tag)
+        if last is None and loop.inner is not None:
+            last = values[loop.inner.measurement]
+        if last is not None:
+            loop.controller.start_from(last)
 
     @staticmethod
     def _checked(block, written, time):

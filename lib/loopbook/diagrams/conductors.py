@@ -9,6 +9,7 @@ from loopbook.diagrams.sheet import LINE
 
 DASHES = "--"
 DUCT = 0.5  # half the width of an air duct
+SHAFT = 0.05  # the same of a shaft
 HEAD = 0.3  # the piece of a line that ends in an arrow head
 STEP = 0.9  # from mark to mark
 WAVE = [(0.02 * n - 0.3, 0.13 * math.sin(math.pi * n / 7.5)) for n in range(31)]
@@ -59,8 +60,10 @@ def draw_duct(sheet, points, arrow=False):
 
 
 def draw_shaft(sheet, points, arrow=False):
-    for side in (-0.05, 0.05):
-        sheet.wire(*[(x, y + side) for x, y in points])
+    for start, end in pairwise(points):
+        dx, dy = (0, SHAFT) if start[1] == end[1] else (SHAFT, 0)
+        for side in (-1, 1):
+            sheet.wire(*[(x + side * dx, y + side * dy) for x, y in (start, end)])
 
 
 def draw_signal(sheet, points, kind, arrow=False):

@@ -31,7 +31,7 @@ class Equipment(Node):
     width = height = 0.9
     openings = (LEFT, RIGHT)  # where a table of symbols draws a piece of pipe at it
     sides = taps = ()
-    in_duct = False
+    in_duct = on_shaft = False
     gap = 0.08  # between the symbol and its tag
     tag = ""
 

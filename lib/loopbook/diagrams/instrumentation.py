@@ -85,7 +85,9 @@ class _Plan:
             through = name in self.entering and name in self.leaving
             node = Label(self.names.get(name, name), through=through)
         if isinstance(node, Equipment):
-            node.in_duct = any(name in edge for edge in self.edges["ducts"])
+            node.in_duct, node.on_shaft = (
+                any(name in edge for edge in self.edges[kind]) for kind in ("ducts", "shafts")
+            )
             node.met(*meetings.get(name, ((), (), node.heading)))
         return node
 

@@ -2,7 +2,7 @@
 
 import math
 
-from loopbook.diagrams.conductors import DASHES
+from loopbook.diagrams.conductors import DASHES, draw_shaft
 from loopbook.diagrams.equipment import HALF_CIRCLE, THICK, THIN, Equipment, one_of
 from loopbook.diagrams.sheet import FONT_SIZE, LIQUID, signal_name, wording
 
@@ -87,15 +87,20 @@ class Container(Equipment):
     tops = ()  # where pipes come from above
 
     def stirrer_place(self, middle, width):
-        """In the middle, or a little aside where a pipe comes from above."""
+        """In the middle, or a little aside where a pipe comes from above; under the shaft where there is one."""
+        if self.on_shaft and self.tops:
+            return min(self.tops, key=lambda x: abs(x - middle))
         return middle + (0.27 * width if any(abs(x - middle) < 0.35 for x in self.tops) else 0)
 
     def met_above(self, x):
         self.tops = (*self.tops, x)
 
 
-def draw_stirrer(sheet, x, top, blade, half=0.41):
-    sheet.wire((x, top), (x, blade))
+def draw_stirrer(sheet, x, top, blade, half=0.41, on_shaft=False):
+    if on_shaft:
+        draw_shaft(sheet, [(x, top), (x, blade)])
+    else:
+        sheet.wire((x, top), (x, blade))
     for side in (-half, half):
         tip = [(x + part * side, blade + lift) for part, lift in ((0.6, 0.1), (1, 0), (0.6, -0.1))]
         sheet.area([(x, blade), *tip], fill="white")
@@ -159,7 +164,8 @@ class Tank(Container):
         self.draw_roof(sheet)
         if self.stirrer:
             blade = y0 + (0.5 if self.heater else 0.3) * (surface - y0)
-            draw_stirrer(sheet, self.stirrer_place(middle, x1 - x0), self.y1 + 0.2, blade)
+            x = self.stirrer_place(middle, x1 - x0)
+            draw_stirrer(sheet, x, self.roof_at(x) if self.on_shaft else self.y1 + 0.2, blade, on_shaft=self.on_shaft)
         if self.heater:
             at = self.levels[-1] if len(self.levels) > 1 else y0 + 0.25 * (y1 - y0)
             sheet.zigzag((x0, at), (x0 + 0.45 * (x1 - x0), at), teeth=4, height=0.16)
@@ -249,7 +255,11 @@ class Vessel(Container):
 
     def _stirrer(self, sheet, x0, x1, y0, y1):
         x = self.stirrer_place(self.x, x1 - x0)
-        draw_stirrer(sheet, x, y1 + 0.1, y0 + (0.55 if self.coil else 0.25) * (y1 - y0), half=0.33)
+        blade = y0 + (0.55 if self.coil else 0.25) * (y1 - y0)
+        if self.on_shaft:  # its motor is drawn elsewhere
+            draw_stirrer(sheet, x, y1, blade, half=0.33, on_shaft=True)
+            return
+        draw_stirrer(sheet, x, y1 + 0.1, blade, half=0.33)
         sheet.circle(x, y1 + 0.28, 0.2)
         sheet.text(x, y1 + 0.27, "M", size=8)
 

@@ -316,7 +316,7 @@ class Plant:
 
     def _repr_html_(self):
         rows = [
-            f"<tr><td>${sympy.latex(_letter(letter))}$</td><td>{_short(value)} {self.quantities[letter].unit}</td>"
+            f"<tr><td>${_latex(letter)}$</td><td>{_short(value)} {self.quantities[letter].unit}</td>"
             f"<td style='text-align: left'>{self.quantities[letter].meaning}</td></tr>"
             for letter, value in self.values.items()
         ]
@@ -363,6 +363,12 @@ def _solved_one_by_one(balances, highest):
             raise ValueError(f"{law.lhs} = {law.rhs} has a Max or Min: expected a rate with a factor on its left side")
         found[rate] = law.rhs / factor
     return found
+
+
+def _latex(letter):
+    """A letter as LaTeX, with everything behind its first underscore in the index: u_{valve,in}."""
+    name, _, index = name_of(letter).partition("_")
+    return f"{name}_{{{index.replace('_', ',')}}}" if "_" in index else sympy.latex(_letter(letter))
 
 
 def _short(value):

@@ -37,8 +37,8 @@ class FlashPlant(Plant):
 
     Feed A is a solution of the component A, which is not volatile, feed B is solvent. Each has a vessel, 1 and 2; the
     mixed streams go to vessel 3, through a heat exchanger with condensing steam to vessel 4, where a part of the
-    solvent evaporates; the liquid is the product, and its mass fraction of A is the product quality. All values are
-    ours, and the operating point is a steady state.
+    solvent evaporates; the liquid is the product, and its mass fraction of A is the product quality. In the exchanger
+    the pump's pressure keeps it liquid. All values are ours, and the operating point is a steady state.
 
     Every pump and valve follows its control signal with a lag. A pump gets no more than what is above its suction
     pipe, and loses its grip on the last kilograms above it; what is above the rim of vessel 1, 2 or 3 overflows, and
@@ -65,7 +65,7 @@ class FlashPlant(Plant):
     warm_3, warm_x, warm_4 = E_3 / (c * m_3), E_x / (c * m_x), (E_4 - r * m_V) / (c * (m_4 + m_V))
     steam = U * z_h / 100 * (T_s - warm_x)
     pressure = m_V * R * (warm_4 + T_0) / (V_4 - m_4 / rho)
-    saturation = p_0 * ((warm_4 + T_0) / (T_e + T_0)) ** 13
+    saturation = p_0 * ((warm_4 + T_0) / (T_e + T_0)) ** 12
     evaporated = _pumped(k_e * (saturation - pressure), m_4, *reach)  # the last kilograms do not evaporate either
     vapour, relief = k_V * z_V * pressure, _overflow(pressure, p_r, k_r)
 
@@ -205,7 +205,7 @@ class AmmoniaEvaporator(Plant):
 
     warm = (E - r * m_G) / (c * (m + m_G))
     pressure = m_G * R * (warm + T_0) / (V - m / rho)
-    saturation = p_0 * ((warm + T_0) / (T_e + T_0)) ** 9
+    saturation = p_0 * ((warm + T_0) / (T_e + T_0)) ** 10
     evaporated = _pumped(k_e * (saturation - pressure), m, m_r, m_s)
     feed, water, gas = k_1 * z_1, k_2 * z_2, k_3 * z_3 * pressure
     over, relief = _overflow(m, M, k_o), _overflow(pressure, p_r, k_r)

@@ -11,9 +11,10 @@ active, and no transition is cleared (the standard leaves this open). Each later
 4. executes the actions of the steps that have become active, once, in the order in which the steps are listed. An
    action assigns a value to an output, which keeps it until another step assigns another one.
 
-So a step is active for one scan at least, also before an unconditional transition, and the time of a step is zero when
-it is activated. Actions that are executed once at activation and store their values are the standard's qualifier P1
-with assignments; a chart then lists only what a step changes, as the book's action boxes do.
+So a step is active for one scan at least, also before an unconditional transition. The time of a step is zero when it
+is activated, runs while it is active, and keeps its value when the step becomes passive. Actions that are executed once
+at activation and store their values are the standard's qualifier P1 with assignments; a chart then lists only what a
+step changes, as the book's action boxes do.
 
 Why no state-machine library: in `transitions` and `python-statemachine` a machine waits for events, a transition has
 one source and one target (several sources are alternatives), and parallel states must be nested; Petri net libraries
@@ -22,7 +23,7 @@ such as SNAKES have every convergence, but clear one transition at a time, witho
 
 import copy
 
-from loopbook.inputs import number
+from loopbook.inputs import number, positive
 from loopbook.sequence import checks
 from loopbook.sequence.formulas import Formula
 from loopbook.sequence.transitions import Transition
@@ -50,10 +51,10 @@ class Chart:
         transitions: list of `Transition`; where several leave one step, the first whose condition is true is taken.
         final: names of the steps that no transition leaves.
     Raises:
-        ValueError: for no or two initial steps, a step that is unknown, that cannot be reached or that no transition
-            leaves, an unknown signal, a signal that is input and output, a condition that is none, a value that does
-            not fit its output, a convergence whose steps are never active together, a step that could be activated
-            while it is active, a transition that is never cleared.
+        ValueError: for no or two initial steps, a step that is unknown, that cannot be reached or that can stay active
+            for ever without being final, an unknown signal, a signal that is input and output, a condition that is
+            none, a value that does not fit its output, a convergence whose steps are never active together, a step that
+            could be activated while it is active, a transition that is never cleared, what is of another kind.
 
     >>> lamp = Chart("on off", {"light": False}, {"Dark": {"light": False}, "Bright": {"light": True}}, "Dark",
     ...              [Transition("Dark", "Bright", "on"), Transition("Bright", "Dark", "off OR Bright.T >= 60")])
@@ -65,14 +66,14 @@ class Chart:
     """
 
     def __init__(self, inputs, outputs, steps, initial, transitions, final=(), tag="SFC", step=None):
-        inputs = tuple(inputs.split() if isinstance(inputs, str) else inputs)
+        inputs = checks.several("the inputs", inputs, "names of signals")
+        checks.kinds(outputs, steps, tag, step)
         checks.names(inputs, outputs, steps)
         self.tag, self.reads, self.writes, self.step = tag, inputs, tuple(outputs), step
-        if odd := [name for name, actions in steps.items() if not isinstance(actions, dict)]:
-            raise ValueError(f"the step {odd[0]} has {steps[odd[0]]!r}: expected its actions, {{output: value}}")
         self.outputs, self.steps = dict(outputs), {name: dict(actions) for name, actions in steps.items()}
         self.initial = checks.initial_step(initial, self.steps)
-        self.final = (final,) if isinstance(final, str) else tuple(final)
+        self.final = checks.several("the final steps", final, "names of steps")
+        transitions = checks.several("the transitions", transitions, "a list of them")
         for way in transitions:
             if not (isinstance(way, Transition) or (isinstance(way, (list, tuple)) and len(way) in (2, 3))):
                 raise ValueError(f"a transition is {way!r}: expected one such as Transition('Fill', 'Heat', 'h > 0.9')")
@@ -89,7 +90,8 @@ class Chart:
         used = [*self.conditions, *(formula for actions in self.actions.values() for _, formula in actions)]
         # the flags and times of steps that a formula needs
         self._flags = {name: name.split(".") for formula in used for name in formula.names if "." in name}
-        self.active, self._since, self._stored = (), {}, {name: float(x) for name, x in self.outputs.items()}
+        self.active, self._stored = (), {name: float(x) for name, x in self.outputs.items()}
+        self._since, self._lasted = {}, {}  # when a step was activated, and its time when it became passive
 
     def __repr__(self):
         return f"<chart {self.tag}: {len(self.steps)} steps, {len(self.transitions)} transitions>"
@@ -133,7 +135,7 @@ class Chart:
         """
         if earlier.active and frozenset(earlier.active) not in self.markings:
             raise ValueError(f"{self.tag} cannot go on with {checks.listed(earlier.active, 'and')} active")
-        self.active, self._since = earlier.active, dict(earlier._since)
+        self.active, self._since, self._lasted = earlier.active, dict(earlier._since), dict(earlier._lasted)
         self._stored |= {name: value for name, value in earlier._stored.items() if name in self._stored}
 
     def update(self, values, time):
@@ -160,7 +162,7 @@ class Chart:
                 if enabled and condition.true(known):
                     left.update(transition.sources)
                     begun.update(transition.targets)
-            begun = begun if left else set()
+            self._lasted.update((step, time - self._since[step]) for step in left)
             active = set(self.active) - left | begun
             self.active = tuple(step for step in self.steps if step in active)
         if not begun:
@@ -178,7 +180,8 @@ class Chart:
         """Put the flags and times of the steps among the values; nine digits, so that ten steps of 0.1 are one."""
         for name, (step, what) in self._flags.items():
             on = step in self.active
-            known[name] = on if what == "X" else round(time - self._since[step], 9) if on else 0.0
+            lasts = time - self._since[step] if on else self._lasted.get(step, 0.0)
+            known[name] = on if what == "X" else round(lasts, 9)
 
 
 class Scans:
@@ -204,17 +207,19 @@ class Scans:
         return f"<table><tr>{head}</tr>{body}</table>"
 
 
-def scan_by_scan(chart, step=1, **inputs):
+def scan_by_scan(chart, step=1, scans=None, **inputs):
     """Run a chart by itself, with given inputs, and show each scan.
 
     Arguments:
         chart: a `Chart`, which is not changed.
         step: time between two scans.
+        scans: how many; needed only where no input is a list.
         inputs: a list for each input, one value a scan; True and False for TRUE and FALSE. A single value holds always.
     Returns:
         A `Scans`, which a notebook shows as a table: time, inputs, active steps and outputs after the scan.
     Raises:
-        ValueError: for an input that the chart does not have or that is missing, or lists of different lengths.
+        ValueError: for an input that the chart does not have or that is missing, lists of different lengths, what is no
+            number, or a step that is not positive.
 
     >>> lamp = Chart("on", {"light": False}, {"Dark": {}, "Bright": {"light": True}}, "Dark",
     ...              [Transition("Dark", "Bright", "on")], final="Bright")
@@ -229,12 +234,18 @@ def scan_by_scan(chart, step=1, **inputs):
     chart = copy.deepcopy(chart)
     if odd := set(inputs) ^ set(chart.reads):
         raise ValueError(f"{sorted(odd)[0]} is missing or no input: the chart reads {checks.listed(chart.reads)}")
-    counts = {len(values) for values in inputs.values() if isinstance(values, (list, tuple))}
-    if len(counts) != 1:
-        raise ValueError("expected lists of one length, one value for each scan")
+    step = positive("the step", step)
+    lists = {name: list(x) for name, x in inputs.items() if hasattr(x, "__len__") and not isinstance(x, str)}
+    counts = {len(values) for values in lists.values()} | ({scans} if scans is not None else set())
+    if len(counts) != 1 or not isinstance(*counts, int):
+        raise ValueError("expected lists of one length, one value for each scan, or scans=10 where there are none")
+    for name, given in inputs.items():
+        for value in lists.get(name, [given]):
+            if not isinstance(value, bool):
+                number(f"the input {name}", value, "a number, or True or False")
     rows, active = [], []
     for n in range(counts.pop()):
-        values = {name: x[n] if isinstance(x, (list, tuple)) else x for name, x in inputs.items()}
+        values = {name: lists[name][n] if name in lists else x for name, x in inputs.items()}
         found = chart.update(values, n * step)
         shown = [found[name] != 0 if isinstance(chart.outputs[name], bool) else found[name] for name in found]
         rows.append((f"{n * step:g}", *map(_word, values.values()), ", ".join(chart.active), *map(_word, shown)))

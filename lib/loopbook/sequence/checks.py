@@ -7,10 +7,34 @@ clearing several at once, because these have no step in common.
 
 import keyword
 
+from loopbook.inputs import positive
+
 __all__ = ["MOST_MARKINGS", "reachable_markings"]
 
 MOST_MARKINGS = 20_000
 RESERVED = {"AND", "OR", "NOT", "XOR", "MOD", "TRUE", "FALSE"}
+
+
+def kinds(outputs, steps, tag, step):
+    """Check what kinds of things a chart is made of."""
+    if not isinstance(outputs, dict):
+        raise ValueError(f"the outputs are {outputs!r}: expected {{name: value before the start}}")
+    if not isinstance(steps, dict):
+        raise ValueError(f"the steps are {steps!r}: expected {{step: {{output: value}}}}")
+    if odd := [name for name, actions in steps.items() if not isinstance(actions, dict)]:
+        raise ValueError(f"the step {odd[0]} has {steps[odd[0]]!r}: expected its actions, {{output: value}}")
+    if not (isinstance(tag, str) and tag.strip()):
+        raise ValueError(f"the tag is {tag!r}: expected a name, such as 'SFC'")
+    if step is not None:
+        positive("the step of the scans", step)
+
+
+def several(what, values, expected):
+    """The values as a tuple; a text is one with blanks between names."""
+    try:
+        return tuple(values.split() if isinstance(values, str) else values)
+    except TypeError:
+        raise ValueError(f"{what} are {values!r}: expected {expected}") from None
 
 
 def names(inputs, outputs, steps):
@@ -32,12 +56,12 @@ def names(inputs, outputs, steps):
 
 def initial_step(initial, steps):
     """The one initial step."""
-    found = () if initial is None else (initial,) if isinstance(initial, str) else tuple(initial)
+    found = tuple(initial) if isinstance(initial, (list, tuple, set)) else (initial,) if initial is not None else ()
     if not found:
         raise ValueError("the chart has no initial step: expected the name of one")
     if len(found) > 1:
-        raise ValueError(f"the chart has {len(found)} initial steps, {listed(found)}: expected one")
-    if found[0] not in steps:
+        raise ValueError(f"the chart has {len(found)} initial steps, {listed(map(str, found))}: expected one")
+    if not isinstance(found[0], str) or found[0] not in steps:
         raise ValueError(f"the initial step {found[0]} is no step of the chart: it has {listed(steps)}")
     return found[0]
 
@@ -58,14 +82,15 @@ def connections(chart):
             raise ValueError(f"the step {step} cannot be reached: no transition leads to it")
         if step not in chart.final and not any(step in transition.sources for transition in chart.transitions):
             raise ValueError(f"no transition leaves the step {step}: declare it final, or add one")
-    unconditional = []
+    earlier = []
     for transition, condition in zip(chart.transitions, chart.conditions, strict=True):
-        if before := [x for x in unconditional if set(x.sources) <= set(transition.sources)]:
-            raise ValueError(f"{transition.name} is never cleared: {before[0].name} comes first and is unconditional")
+        for before, other in earlier:
+            if set(before.sources) <= set(transition.sources) and (other.constant or other.text == condition.text):
+                why = "is unconditional" if other.constant else f"has the same condition, {other.text}"
+                raise ValueError(f"{transition.name} is never cleared: {before.name} comes first and {why}")
         if condition.constant is False:
             raise ValueError(f"{transition.name} is never cleared: its condition is always FALSE")
-        if condition.constant is True:
-            unconditional.append(transition)
+        earlier.append((transition, condition))
 
 
 def reachable_markings(chart):
@@ -115,13 +140,34 @@ def situations(chart):
     for step in chart.steps:
         if not any(step in marking for marking in markings):
             raise ValueError(f"the step {step} cannot be reached from the initial step {chart.initial}")
-    for marking, ways in markings.items():
-        if not ways and (waiting := [step for step in chart.steps if step in marking and step not in chart.final]):
-            together = listed([step for step in chart.steps if step in marking], "and")
+    for last in closing(markings):
+        active = frozenset().union(*last)
+        left = {step for marking in last for transition, _ in markings[marking] for step in transition.sources}
+        if waiting := [step for step in chart.steps if step in active - left and step not in chart.final]:
+            together = listed([step for step in chart.steps if step in last[0]], "and")
+            how = "go on" if any(markings[marking] for marking in last) else "stop"
             raise ValueError(
-                f"the chart can stop for good with {together} active: no transition leaves {waiting[0]} then"
+                f"the chart can {how} for good with {together} active: no transition leaves {waiting[0]} then"
             )
     return markings
+
+
+def closing(markings):
+    """The groups of markings that a chart never leaves: one in which it stops, or several through which it goes on."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    place = {marking: n for n, marking in enumerate(markings)}
+    pairs = [(n, place[following]) for n, ways in enumerate(markings.values()) for _, following in ways]
+    rows, columns = zip(*pairs, strict=True) if pairs else ((), ())
+    shape = (len(place), len(place))
+    _, group = connected_components(coo_array(([1] * len(pairs), (rows, columns)), shape), connection="strong")
+    left = {group[one] for one, other in pairs if group[one] != group[other]}
+    found = {}
+    for marking, n in place.items():
+        if group[n] not in left:
+            found.setdefault(group[n], []).append(marking)
+    return list(found.values())
 
 
 def listed(names, last=","):

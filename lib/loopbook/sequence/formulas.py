@@ -5,6 +5,7 @@ kinds of nodes that stand in this module: nothing else can be written, and nothi
 """
 
 import ast
+import numbers
 import operator
 import re
 
@@ -16,15 +17,17 @@ COMPARISONS = {
 }  # fmt: skip
 OPERATIONS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv}
 WORDS = {"AND": "and", "OR": "or", "NOT": "not", "TRUE": "True", "FALSE": "False"}
+WORD = re.compile(rf"\b({'|'.join(WORDS)})\b", re.IGNORECASE)
 EXAMPLE = "'h > 0.9 AND NOT stop'"
 
 
 class Formula:
     """A condition, or the value of an action: a text and what it says.
 
-    The words are AND, OR, NOT, TRUE and FALSE; equality is ``=`` or ``==`` and inequality ``<>``; NOT is meant for the
-    whole comparison behind it. ``Heat.X`` tells whether the step Heat is active, ``Heat.T`` for how long. A number
-    that is used as a condition, such as a button, must be 0 or 1.
+    The words are AND, OR, NOT, TRUE and FALSE, in capitals or not; equality is ``=`` or ``==`` and inequality ``<>``;
+    NOT is meant for the whole comparison behind it. ``Heat.X`` tells whether the step Heat is active, ``Heat.T`` for
+    how long, or for how long it was when it was last active; times are plain numbers. A number that is used as a
+    condition, such as a button, must be 0 or 1.
 
     Attributes:
         text: as it was written, with single blanks.
@@ -51,7 +54,9 @@ class Formula:
         self.text = " ".join(text.split())
         if ":=" in self.text:
             raise ValueError(f"{owner} is {self.text!r}: := assigns, a condition compares with ==")
-        plain = re.sub(r"\b(AND|OR|NOT|TRUE|FALSE)\b", lambda word: WORDS[word[0]], self.text.replace("<>", "!="))
+        if "#" in self.text:  # Python would read what follows as a comment
+            raise ValueError(f"{owner} is {self.text!r}: expected a time as a plain number, as in 'Heat.T >= 600'")
+        plain = re.sub(WORD, lambda word: WORDS[word[0].upper()], self.text.replace("<>", "!="))
         plain = re.sub(r"(?<![<>=!])=(?!=)", "==", plain)
         found = []
         try:
@@ -146,7 +151,8 @@ class Formula:
         def truth(values):
             x = function(values)
             if x not in (0, 1):
-                raise ValueError(f"{self.owner} is {self.text!r}, with a signal of {x:g}: expected 1 or 0")
+                found = f"{x:g}" if isinstance(x, numbers.Real) else repr(x)
+                raise ValueError(f"{self.owner} is {self.text!r}, with a signal of {found}: expected 1 or 0")
             return bool(x)
 
         return truth

@@ -33,6 +33,8 @@ class Transition:
             if twice := [step for step in steps if steps.count(step) > 1]:
                 raise ValueError(f"a transition has the step {twice[0]} twice among its {side}")
             object.__setattr__(self, side, steps)
+        if isinstance(self.condition, bool):
+            object.__setattr__(self, "condition", str(self.condition).upper())
 
     @property
     def name(self):
