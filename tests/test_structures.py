@@ -141,10 +141,40 @@ def test_a_run_goes_on_as_if_it_had_not_been_interrupted():
         assert np.allclose(second[name], whole[name], rtol=0, atol=1e-12), name
 
 
-def test_a_run_that_goes_on_with_another_structure_begins_without_a_bump():
-    first = simulate(TANK, [one_loop()], until=500, T_SP=42)
-    second = simulate(TANK, cascade(), until=501, T_SP=42, after=first)
+@pytest.mark.parametrize("first_tag", ["TC1", "TC3"])
+def test_a_run_that_goes_on_with_another_structure_begins_without_a_bump(first_tag):
+    """Also where a loop of another kind had the same tag: what it remembers is a valve, not a temperature."""
+    before = one_loop()
+    before.tag = first_tag
+    first = simulate(TANK, [before], until=500, T_SP=42)
+    second = simulate(TANK, cascade(), until=1000, T_SP=42, after=first)
     assert abs(second["F_h"][500] - first["F_h"][500]) < 0.01
+    assert second["T_hSP"][500] == first["T_hm"][500]
+    assert abs(second["T_pm"][500:] - 42).max() < 0.5
+
+
+def test_a_cascade_begins_without_a_bump_on_a_plant_that_ran_without_control():
+    first = simulate(TANK, until=500, step=1, F_h=0.9)
+    second = simulate(TANK, cascade(), until=600, T_SP=float(first["T_pm"][-1]), after=first)
+    assert second["T_hSP"][500] == first["T_hm"][500]
+    assert abs(np.diff(second["F_h"][495:])).max() < 0.01
+
+
+def test_a_slow_block_that_is_new_runs_at_once():
+    first = simulate(TANK, [one_loop()], until=440, T_SP=42)
+    slow = Controller(PID(0.02, Ti=400), step=30, u0=46)
+    second = simulate(TANK, cascade(outer=slow), until=500, T_SP=42, after=first)
+    assert np.flatnonzero(np.diff(second["T_hSP"][440:])).tolist() == [9, 39]
+
+
+def test_slow_blocks_keep_their_rhythm_when_the_shortest_step_changes():
+    slow = Controller(PID(0.02, Ti=400), step=30, u0=46)
+    fast = Controller(PID(0.05, Ti=60), step=0.5, u0=FLOW, limits=(0, 1.5))
+    first = simulate(TANK, cascade(outer=slow), until=440, T_SP=42)
+    second = simulate(TANK, cascade(outer=slow, inner=fast), until=600, T_SP=42, after=first)
+    changes = second.times[1:][np.diff(second["T_hSP"]) != 0]
+    assert (changes % 30 == 0).all()
+    assert changes[-1] == 600
 
 
 # ------------------------------------------------------------------------------------------------ modes and limits
@@ -158,6 +188,49 @@ def test_the_outer_loop_follows_while_the_inner_one_is_in_manual_mode():
     jumps = abs(np.diff(run["F_h"]))[795:805]
     assert jumps.max() < 0.005, "back in automatic mode the valve does not jump"
     assert abs(run["T_pm"][-1] - 42) < 1.5
+
+
+class ThreeLags(Plant):
+    """Three lags, all measured, for a cascade of three loops."""
+
+    y_1, y_2, y_3, u, d = signals("y_1 y_2 y_3 u d")
+    (T,) = parameters("T")
+    model = (
+        sympy.Eq(10 * T * y_1.diff(t), y_2 - y_1),
+        sympy.Eq(3 * T * y_2.diff(t), y_3 - y_2),
+        sympy.Eq(T * y_3.diff(t), u + d - y_3),
+    )
+    output, manipulated = y_1, u
+    quantities = dict.fromkeys((u, d, y_1, y_2, y_3), (0, "1", "signal")) | {T: (1, "s", "lag")}
+
+
+@pytest.mark.parametrize("how", ["by hand", "by its mode"])
+def test_all_loops_outside_one_in_manual_mode_follow(how):
+    outer, middle, inner = (Controller(PID(K, Ti), step=0.1) for K, Ti in ((2, 10), (2, 3), (3, 1)))
+    blocks = [
+        ControlLoop("A", outer, "r", "y_1", "v"),
+        ControlLoop("B", middle, "v", "y_2", "w"),
+        ControlLoop("C", inner, "w", "y_3", "u", mode="auto", manual=0.2),
+    ]
+    by_mode = how == "by its mode"
+    switch = {"auto": stepwise(1, {20: 0, 40: 1})} if by_mode else {"auto": 1, "manual": {"C": [(20, 40, 0.2)]}}
+    run = simulate(ThreeLags(), blocks, until=80, r=1, **switch)
+    by_hand = slice(200, 400)
+    assert set(run["u"][by_hand]) == {0.2}
+    assert np.array_equal(run["w"][by_hand], run["y_3"][by_hand])
+    assert np.array_equal(run["v"][by_hand], run["y_2"][by_hand])
+    assert run["y_1"][400:].max() < 1.1, "the primary loop has not wound up"
+
+
+def test_of_two_loops_with_one_setpoint_neither_is_followed():
+    tank = LiquidTank(h_max=10)
+    blocks = [
+        ControlLoop("LC1", Controller(PID(1, 50), step=1), "h_SP", "h", "w"),
+        ControlLoop("FC1", Controller(PID(0.1), step=1), "w", "h", "q_i"),
+        ControlLoop("FC2", Controller(PID(0.1), step=1), "w", "h", "q_o"),
+    ]
+    run = simulate(tank, blocks, until=20, h_SP=0.6, manual={"FC1": [(5, 15, 0)]})
+    assert np.array_equal(run["w"], run["LC1.u_p"] + run["LC1.u_i"])
 
 
 def test_the_mode_can_be_a_signal():
@@ -215,6 +288,28 @@ def test_a_calculation_is_its_formula():
         simulate(tank, [Calculation("q_o", 1 / K)], until=10, step=1, K=stepwise(1, {3: 0}))
 
 
+def test_a_formula_may_have_signals_of_the_plant_and_letters_with_assumptions():
+    K, h = sympy.Symbol("K", positive=True), LiquidTank().signal("h")
+    block = Calculation("q", 2 * K * h + sympy.Symbol("K"))
+    assert (block.reads, block.update({"K": 3, "h": 5}, 0)) == (("K", "h"), {"q": 33.0})
+
+
+@pytest.mark.parametrize(
+    ("formula", "value", "why"),
+    [
+        (sympy.cbrt(sympy.Symbol("x")), -1, "has no value at t = 0"),
+        (sympy.I * sympy.Symbol("x"), 1, "has no value at t = 0"),
+        (sympy.DiracDelta(sympy.Symbol("x")), 1, "has no value at t = 0"),
+        (sympy.Function("x")(t).diff(t), 1, "signals of one moment"),
+        (sympy.Function("x")(t - 3), 1, "signals of one moment"),
+        ("x", 1, "type str"),
+    ],
+)
+def test_a_formula_without_a_value_is_refused(formula, value, why):
+    with pytest.raises(ValueError, match=why):
+        Calculation("q", formula).update({"x": value}, 0)
+
+
 def test_split_range_shares_one_signal_out():
     valves = SplitRange("u", {"q_i": ((50, 100), (0, 1)), "q_o": ((0, 50), (1, 0))})
     u = np.array([-10, 0, 25, 50, 75, 100, 120])
@@ -260,6 +355,11 @@ def test_what_does_not_fit_together_is_refused():
     outer, inner = cascade(mode="auto")
     switch = ControlLoop("X", Controller(PID(1), step=1), 1, "T_p", "auto")
     refused([outer, switch, inner], "TC1 reads auto, which X writes: put X first", T_SP=40)
+
+
+def test_a_loop_between_a_signal_and_itself_has_its_unit():
+    run = simulate(TANK, [ControlLoop("TC1", Controller(PID(1), step=1, u0=FLOW), "T_p", "T_p", "F_h")], until=3)
+    assert run.unit("T_p") == "°C"
 
 
 def test_what_makes_no_block_is_refused():
