@@ -242,19 +242,38 @@ def sliders_follow_a_figure(stored: Stored) -> list[str]:
 
 def sliders_keep_what_they_use(stored: Stored) -> list[str]:
     """What a slider's function uses is not bound to something else in a later cell: it is called when all have run."""
-    cells = [(label, cell, symtable.symtable(cell.source, label, "exec")) for label, cell in code(stored.notebook)
-             if is_python(cell)]  # fmt: skip
+    cells = [(label, cell) for label, cell in code(stored.notebook) if is_python(cell)]
     found, functions = [], {}
-    for n, (label, cell, table) in enumerate(cells):
+    for n, (label, cell) in enumerate(cells):
+        table = symtable.symtable(cell.source, label, "exec")
         functions |= {child.get_name(): globals_of(child) for child in table.get_children()}
         if not uses_interact(cell):
             continue
         used = set().union(*map(globals_of, table.get_children()))
         while more := set().union(*(functions[name] for name in used & set(functions))) - used:
             used |= more
-        for later, _, other in cells[n + 1 :]:
-            for name in sorted(used & {symbol.get_name() for symbol in other.get_symbols() if symbol.is_assigned()}):
+        for later, other in cells[n + 1 :]:
+            for name in sorted(used & bound_in(other)):
                 found.append(f"{label}: the slider uses {name}, which {later} binds again")
+    return found
+
+
+def bound_in(cell: NotebookNode) -> set[str]:
+    """The names that a cell binds for those after it; those of functions and comprehensions remain in them."""
+    found, waiting = set(), [tree(cell)]
+    while waiting:
+        for node in ast.iter_child_nodes(waiting.pop()):
+            match node:
+                case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
+                    found.add(name)
+                case ast.Name(id=name, ctx=ast.Store()):
+                    found.add(name)
+                case ast.alias():
+                    found.add((node.asname or node.name).split(".")[0])
+                case ast.Lambda() | ast.comprehension():
+                    pass
+                case _:
+                    waiting.append(node)
     return found
 
 
