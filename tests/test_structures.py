@@ -352,6 +352,8 @@ def test_what_does_not_fit_together_is_refused():
     refused(cascade(Controller(PID(1), step=1.5)), "TC1 runs every 1.5: expected a whole multiple", T_SP=40)
     refused([Calculation("F_h", T_SP / 100)], "the step is missing", T_SP=40)
     refused([3], "the structure has 3")
+    named = ControlLoop("TC1", one_loop().controller, "setpoint", "T_pm", "F_h")
+    refused([named], "TC1 reads setpoint, which is an argument of simulate", setpoint=40)
     outer, inner = cascade(mode="auto")
     switch = ControlLoop("X", Controller(PID(1), step=1), 1, "T_p", "auto")
     refused([outer, switch, inner], "TC1 reads auto, which X writes: put X first", T_SP=40)

@@ -6,6 +6,7 @@ on any grid: the moments at which a held signal arrives late are among the disco
 """
 
 import copy
+import inspect
 import math
 import warnings
 import weakref
@@ -181,13 +182,17 @@ def simulate(
 
 def _structure(plant, blocks, step, manipulated, given, inputs):
     """The control structure that a list of blocks makes, the signals for the plant and for it, and the step."""
+    names = [name_of(x) for x in plant.inputs]
+    structure = Structure(blocks, [name_of(x) for x in (*plant.states, *plant.measured)], names)
+    for name in structure.external:
+        if name in inspect.signature(simulate).parameters:
+            reader = next(block.tag for block in structure.blocks if name in block.reads)
+            raise ValueError(f"{reader} reads {name}, which is an argument of simulate: expected another name")
     for name in ("setpoint", "feedforward", "scheduling"):
         if not (given[name] is None or (is_number(given[name]) and given[name] == 0)):
             raise ValueError(f"{name} is given, but there are several controllers: give each loop's by its own name")
     if manipulated is not None:
         raise ValueError("manipulated is given, but there are several controllers: each loop names its output")
-    names = [name_of(x) for x in plant.inputs]
-    structure = Structure(blocks, [name_of(x) for x in (*plant.states, *plant.measured)], names)
     for name in inputs:
         if name in structure.driven:
             raise ValueError(f"{name} is given, but it is a block that sets it")

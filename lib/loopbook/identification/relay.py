@@ -220,14 +220,23 @@ class Relay:
     def __init__(self, amplitude, step, hysteresis=0, u0=0):
         self.amplitude, self.step = positive("the amplitude", amplitude), positive("the step", step)
         self.hysteresis, self.u0 = not_negative("the hysteresis", hysteresis), number("the signal u0", u0)
-        self.on = True
+        self.on, self.u = True, self.u0
 
     def update(self, setpoint, measurement, feedforward=0.0, manual=None):
-        """Take the signals of this sample and return the control signal; `manual` is not obeyed."""
+        """Take the signals of this sample and return the control signal, in manual mode the operator's (NaN: the last).
+
+        >>> relay = Relay(amplitude=5, step=1, u0=50)
+        >>> [relay.update(20, 19, manual=u) for u in (None, 47, math.nan, None)]
+        [55.0, 47.0, 47.0, 55.0]
+        """
         error = float(setpoint) - float(measurement)
         if abs(error) > self.hysteresis:
             self.on = error > 0
-        return self.u0 + (self.amplitude if self.on else -self.amplitude) + float(feedforward)
+        if manual is None:
+            self.u = self.u0 + (self.amplitude if self.on else -self.amplitude) + float(feedforward)
+        elif not math.isnan(manual):
+            self.u = float(manual)
+        return self.u
 
 
 def limit_cycle(times, u, y, hysteresis=0):
