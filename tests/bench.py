@@ -34,7 +34,7 @@ from loopbook.deadtime import Loop, System, feedback
 from loopbook.identification import fit
 from loopbook.ise import integral_of_square, pi_first_order
 from loopbook.pid import PID, Controller
-from loopbook.plants import FlashPlant, JacketedTank, WoodChipTank
+from loopbook.plants import BatchTank, FlashPlant, JacketedTank, WoodChipTank
 from loopbook.signals import stepwise
 from loopbook.simulation import simulate
 from loopbook.stability import stability_map
@@ -44,6 +44,7 @@ from loopbook.transfer import first_order, second_order
 from test_ise import by_parseval
 from test_ise import loops as random_loops
 from test_plantwide import CALM, structure
+from test_sequence import batches_of_two
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = {
@@ -173,7 +174,7 @@ def the_simulator(runs: int) -> Table:
 def the_structures(runs: int) -> Table:
     """Many loops on one plant: a cascade, beside a bare loop of one's own, and a plant with all its controllers."""
     samples = 3000
-    tank, flash = JacketedTank(), FlashPlant()
+    tank, flash, batch_tank, batch = JacketedTank(), FlashPlant(), BatchTank(), batches_of_two()
     primary = Controller(PID(2, Ti=400), step=1, u0=46)
     secondary = Controller(PID(0.05, Ti=60), step=1, u0=tank.F_h, limits=(0, 1.5))
     cascade = [ControlLoop("TC1", primary, 41, "T_pm", "T_hSP"), ControlLoop("TC2", secondary, "T_hSP", "T_hm", "F_h")]
@@ -194,6 +195,7 @@ def the_structures(runs: int) -> Table:
         runs,
         cascade=lambda: simulate(tank, cascade, until=samples),
         bare=bare,
+        batches=lambda: simulate(batch_tank, batch, until=4800, start=stepwise(0, {60: 1})),
         plant=lambda: simulate(flash, structure(), until=7200, **(CALM | {"F_SP": stepwise(5, {600: 6})})),
     )
     table = Table("several loops", "time", "ratio", title=f"Control structures, median of {runs}")
@@ -202,6 +204,8 @@ def the_structures(runs: int) -> Table:
     table.add_row("solve_ivp once a sample, bare cascade", seconds(times["bare"]), f"{ratio:.2f}")
     ratio = times["plant"] / times["cascade"]
     table.add_row("simulate, plant with 8 loops, 2 h in 1440 samples", seconds(times["plant"]), f"{ratio:.2f}")
+    ratio = times["batches"] / times["cascade"]
+    table.add_row("simulate, two batches under a chart, 2400 scans", seconds(times["batches"]), f"{ratio:.2f}")
     return table
 
 

@@ -176,6 +176,14 @@ def small_ledger(tmp_path, monkeypatch):
     monkeypatch.setattr(hygiene, "LEDGER", tmp_path)
 
 
+@pytest.mark.parametrize(
+    "later", ["[T for T in (1, 2)]", "sum(T for T in (1, 2))", "def f():\n    T = 3", "lambda T: T"]
+)
+def test_a_name_within_a_comprehension_or_a_function_is_no_other_one_for_a_slider(later):
+    slider = with_code("def loop(K):\n    return K * T", SLIDER.source.replace("(T)", "(K)").replace("T=", "K="), later)
+    assert hygiene.sliders_keep_what_they_use(slider) == []
+
+
 @pytest.mark.usefixtures("small_ledger")
 class TestTheRules:
     @pytest.mark.parametrize("check", CHECKS, ids=lambda check: check.__name__)

@@ -16,6 +16,7 @@ from loopbook.simulation import simulate
 from loopbook.structures import Calculation, ControlLoop, controller_action
 from loopbook.transfer import step_response
 from loopbook.tuning import simc
+from test_balances import imbalances, with_totals
 
 ENDS = {
     "FC1": ("u_A", "F_A"),
@@ -60,30 +61,9 @@ def structure(actions=ACTIONS):
 
 
 @functools.cache
-def with_all_totals(cls):
-    """The plant, compiled once, with one more state for each balance: what has flowed in since the beginning."""
-    body = {"model": cls.model, "quantities": dict(cls.quantities)}
-    for n, (_, inflow) in enumerate(cls.balances.values()):
-        total = sympy.Function(f"total_{n}")(t)
-        body["model"] = (*body["model"], sympy.Eq(total.diff(t), inflow))
-        body["quantities"][total] = (0, "1", "what has flowed in")
-    return type(cls.__name__, (cls,), body)()
-
-
-@functools.cache
-def contents(plant):
-    """The names of the states, and for each balance the content as a program."""
-    states = [x for x in plant.states if not str(x).startswith("total")]
-    programs = [sympy.lambdify(states, plant.numbers(content), "numpy") for content, _ in plant.balances.values()]
-    return [str(x.func) for x in states], programs
-
-
-def imbalances(plant, run):
-    """For each balance the largest difference between content and inflow, as a part of the content."""
-    names, programs = contents(plant)
-    for n, program in enumerate(programs):
-        held = program(*(run[name] for name in names))
-        yield abs(held - held[0] - run[f"total_{n}"]).max() / abs(held).max()
+def balanced(cls):
+    """The plant with the totals of its balances, compiled once."""
+    return with_totals(cls)()
 
 
 CONTENTS = ("m_1", "m_2", "m_3", "m_4", "m_V", "a_1", "a_3", "a_4", "E_3", "E_x", "E_4")
@@ -142,7 +122,7 @@ def test_a_small_step_is_the_one_of_the_transfer_function(plant, source, output,
 def test_all_loops_come_to_rest_after_every_excitation():
     """Production rate, ratio, strength and temperature of the feeds, pressure of the supply, temperature setpoint."""
     run = simulate(
-        with_all_totals(FlashPlant),
+        balanced(FlashPlant),
         structure(),
         until=7200,
         F_SP=stepwise(5, {300: 6, 4500: 5.5}),
@@ -153,7 +133,7 @@ def test_all_loops_come_to_rest_after_every_excitation():
         T_SP=stepwise(155, {3600: 158}),
     )
     physical(run)
-    assert max(imbalances(run.plant, run)) < 1e-9
+    assert max(imbalances(run)) < 1e-9
     for tag in ENDS:
         seen = run.loop(tag)
         assert seen["measurement"][-1] == pytest.approx(seen["setpoint"][-1], rel=1e-5), tag
@@ -196,9 +176,9 @@ SIGNS = {
 def test_one_wrong_sign_and_nothing_is_lost(tag, nudge):
     rate = stepwise(5, {60: 5 + 0.05 * nudge})
     blocks = structure(ACTIONS | {tag: OTHER[ACTIONS[tag]]})
-    run = simulate(with_all_totals(FlashPlant), blocks, until=2400, **(CALM | {"F_SP": rate}))
+    run = simulate(balanced(FlashPlant), blocks, until=2400, **(CALM | {"F_SP": rate}))
     physical(run)
-    assert max(imbalances(run.plant, run)) < 1e-9
+    assert max(imbalances(run)) < 1e-9
     u = run[ENDS[tag][0]]
     assert {u.min(), u.max()} & {0.0, 100.0}, "the wrong controller drives its valve to a limit"
     for name, fate in WRONG[tag, nudge].items():
@@ -206,20 +186,20 @@ def test_one_wrong_sign_and_nothing_is_lost(tag, nudge):
 
 
 def test_with_no_control_at_all_vessels_run_dry_and_over():
-    plant = with_all_totals(FlashPlant)
+    plant = balanced(FlashPlant)
     run = simulate(plant, until=7200, step=20, u_1=0, u_B=80, u_3=0, u_h=100, u_V=0)
     physical(run)
     assert run["L_1"][-1] == pytest.approx(100 / 3000 * 20, abs=1e-3), "what lies below the suction pipe stays"
     assert run["O_2"][-1] == 0
     assert run["O_3"].max() > 1
     assert run["F_A"][-1] < 1e-3
-    assert max(imbalances(plant, run)) < 1e-9
+    assert max(imbalances(run)) < 1e-9
 
 
 @pytest.mark.parametrize("valves", [{"u_1": 0}, {"u_1": 100}, {"u_2": 0}, {"u_2": 100, "u_3": 0}], ids=str)
 def test_the_evaporator_loses_nothing_at_its_limits(valves):
-    run = simulate(with_all_totals(AmmoniaEvaporator), until=3600, step=10, **valves)
-    assert max(imbalances(run.plant, run)) < 1e-9
+    run = simulate(balanced(AmmoniaEvaporator), until=3600, step=10, **valves)
+    assert max(imbalances(run)) < 1e-9
     assert min(run["m"].min(), run["m_G"].min()) > 0
     assert run["L"].max() < 105
 

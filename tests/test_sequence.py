@@ -2,11 +2,9 @@
 
 import copy
 import itertools
-from time import process_time
 
 import numpy as np
 import pytest
-import sympy
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -16,7 +14,7 @@ from loopbook.sequence import Chart, Formula, Transition, reachable_markings, sc
 from loopbook.signals import stepwise
 from loopbook.simulation import simulate
 from loopbook.structures import ControlLoop
-from test_balances import with_total
+from test_balances import imbalances, with_totals
 
 SIGNALS = ("a", "b", "c", "d")
 
@@ -423,8 +421,8 @@ def test_what_is_more_than_the_tank_holds_runs_over():
     assert run["h"][-1] == pytest.approx(1.2 + 0.0012 ** (2 / 3), rel=1e-6)
 
 
-def test_two_batches_under_a_chart_lose_neither_water_nor_energy():
-    """Also where valves open and close, and it takes less than two seconds."""
+def batches_of_two():
+    """The blocks of a batch process that is restarted once: the chart, and the temperature loop that it switches."""
     steps = {
         "Idle": {},
         "Fill": {"u_valve_in": True},
@@ -445,15 +443,16 @@ def test_two_batches_under_a_chart_lose_neither_water_nor_energy():
     batch = Chart("h start", outputs, steps, "Idle", ways, final="End")
     controller = Controller(PID(20, 400), step=2, limits=(0, 100), bumpless=False)
     loop = ControlLoop("TC1", controller, setpoint=60, measurement="T", output="u_heat", mode="heating", manual=0)
-    for name, (content, inflow) in BatchTank.balances.items():
-        tank = with_total(BatchTank, inflow)()
-        began = process_time()
-        run = simulate(tank, [batch, loop], until=4800, start=stepwise(0, {60: 1}))
-        assert process_time() - began < 2
-        assert [run[f"SFC.{step}"][-1] for step in steps] == [0, 0, 0, 0, 0, 1]
-        assert run["batches"][-1] == 2
-        stored = sympy.lambdify([BatchTank.h, BatchTank.T], tank.numbers(content), "numpy")(run["h"], run["T"])
-        assert abs(stored - stored[0] - run["total"]).max() < 1e-9 * abs(stored).max(), name
+    return [batch, loop]
+
+
+def test_two_batches_under_a_chart_lose_neither_water_nor_energy():
+    """Also where valves open and close."""
+    batch, loop = batches_of_two()
+    run = simulate(with_totals(BatchTank)(), [batch, loop], until=4800, start=stepwise(0, {60: 1}))
+    assert [run[f"SFC.{step}"][-1] for step in batch.steps] == [0, 0, 0, 0, 0, 1]
+    assert run["batches"][-1] == 2
+    assert max(imbalances(run)) < 1e-9
     assert 60 < run["T"].max() < 62
     assert set(run["u_valve_in"]) == {0, 1}
     assert (run["u_heat"][run["u_motor"] == 0] == 0).all()
