@@ -177,11 +177,12 @@ def small_ledger(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "later", ["[T for T in (1, 2)]", "sum(T for T in (1, 2))", "def f():\n    T = 3", "lambda T: T"]
+    "later", ["[K for K in (1, 2)]", "sum(K for K in (1, 2))", "def f():\n    K = 3", "lambda K: K"]
 )
-def test_a_name_within_a_comprehension_or_a_function_is_no_other_one_for_a_slider(later):
-    slider = with_code("def loop(K):\n    return K * T", SLIDER.source.replace("(T)", "(K)").replace("T=", "K="), later)
-    assert hygiene.sliders_keep_what_they_use(slider) == []
+def test_a_name_within_a_comprehension_or_a_function_is_another_one(later):
+    uses_K = SLIDER.source.replace("T))", "K))")
+    assert hygiene.sliders_keep_what_they_use(with_code(uses_K, later)) == []
+    assert hygiene.sliders_keep_what_they_use(with_code(uses_K, "K = 3")) != []
 
 
 @pytest.mark.usefixtures("small_ledger")
