@@ -3,13 +3,15 @@
 The library: a fresh interpreter that imports loopbook, beside one that imports SymPy only. The simulator: a closed loop
 with all practical features, beside a bare loop around SciPy's solver; a cascade, and a plant with all its loops. Dead
 time: exact responses and integrals of the squared error, beside python-control with Pade approximations of order 10,
-and their errors; a map of stability. Model reduction and internal model control, and a fit to data. A chapter: its
-import cell and the whole of it, each in a fresh kernel, beside a fresh kernel that imports no more than the packages
-the chapter uses. What is compared runs in turn, so that a busy minute of the machine burdens both sides.
+and their errors; a map of stability. Model reduction and internal model control, and a fit to data. The responses to
+answers of the exercises. A chapter: its import cell and the whole of it, each in a fresh kernel, beside a fresh kernel
+that imports no more than the packages the chapter uses. What is compared runs in turn, so that a busy minute of the
+machine burdens both sides.
 """
 
 import functools
 import math
+import os
 import subprocess
 import sys
 from collections.abc import Callable
@@ -31,6 +33,7 @@ from scipy.optimize import curve_fit
 from loopbook import notebooks, s
 from loopbook.approximation import half_rule, taylor
 from loopbook.deadtime import Loop, System, feedback
+from loopbook.exercises import bank
 from loopbook.identification import fit
 from loopbook.ise import integral_of_square, pi_first_order
 from loopbook.pid import PID, Controller
@@ -41,6 +44,7 @@ from loopbook.stability import stability_map
 from loopbook.structures import ControlLoop
 from loopbook.synthesis import IMC_TABLE, imc
 from loopbook.transfer import first_order, second_order
+from test_exercises import key_as_given, wrong_answers
 from test_ise import by_parseval
 from test_ise import loops as random_loops
 from test_plantwide import CALM, structure
@@ -359,6 +363,24 @@ def the_fit(runs: int) -> Table:
     return table
 
 
+def the_exercises(runs: int) -> Table:
+    """The responses to right and to wrong answers: the slowest exercise of each kind of answer."""
+    os.environ["LOOPBOOK_PROGRESS"] = "off"
+    slowest: dict[str, tuple[float, str]] = {}
+    for chapter in bank.chapters():
+        for number, exercise in bank.exercises(chapter).items():
+            question = exercise.question()
+            for name, kind in question.key.items():
+                for answer in (key_as_given(kind), *wrong_answers(kind)):
+                    time = medians(runs, check=functools.partial(question.check, **{name: answer}))["check"]
+                    found = slowest.get(type(kind).__name__, (0.0, ""))
+                    slowest[type(kind).__name__] = max(found, (time, f"{number}, {name}"))
+    table = Table("kind of answer", "slowest response", "exercise", title=f"Responses, median of {runs}")
+    for kind, (time, where) in sorted(slowest.items()):
+        table.add_row(kind, seconds(time), where)
+    return table
+
+
 if __name__ == "__main__":
     console = Console()
     console.print(the_library(runs=7))
@@ -369,6 +391,7 @@ if __name__ == "__main__":
     console.print(the_map(runs=3))
     console.print(the_derivations(runs=9))
     console.print(the_fit(runs=3))
+    console.print(the_exercises(runs=3))
     chapters = sorted((ROOT / "chapters").glob("*.ipynb"))
     if chapters:
         with console.status("running the chapters"):

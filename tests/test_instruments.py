@@ -110,6 +110,11 @@ def test_what_is_added_to_the_textbook_s_table_has_a_star():
     assert "<td" in letter_table()._repr_html_()
 
 
+def test_a_tag_is_shown_with_and_without_a_number():
+    assert "of the loop" in decode("FC123")._repr_html_()
+    assert "of the loop" not in decode("PDIC")._repr_html_()
+
+
 def test_a_loop_keeps_its_number():
     found = loops(["FT123", "TT124", "FC123", "TC124", "FV123"])
     assert {number: [tag.text for tag in tags] for number, tags in found.items()} == {

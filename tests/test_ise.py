@@ -24,6 +24,7 @@ from loopbook.ise import (
 from loopbook.pid import PID
 from loopbook.stability import is_stable
 from loopbook.transfer import first_order
+from loopbook.transfer import integrator as transfer_integrator
 
 DELAY = sympy.exp(-s)
 MODES = ("servo", "regulator")
@@ -271,6 +272,12 @@ def test_complex_zeros_of_A_alone():
         known = integral_of_square(E.subs(a, number), "response")
         for formula in (residue_method(E).expr.subs(a, number), residue_method(E.subs(a, number)).expr):
             assert complex(formula.evalf(30)) == pytest.approx(known, rel=1e-11)
+
+
+@pytest.mark.parametrize(("Kp", "Ti"), [(4, 1), (2, 2), (1, 4)])
+def test_zeros_that_coincide_exactly(Kp, Ti):
+    """A critically damped loop around an integrator: the error is (1 - Kp t/2) exp(-Kp t/2)."""
+    assert ise(transfer_integrator(1), PID(Kp, Ti)) == pytest.approx(1 / (2 * Kp), rel=1e-9)
 
 
 def test_what_the_residue_method_is_not_for():

@@ -149,7 +149,7 @@ class Tag:
 
     def _repr_html_(self):
         rows = [(part.letter, part.place, part.meaning, part.source) for part in self.parts]
-        rows += [(re.search(r"\d+", self.text)[0], "number", "of the loop", "")] * (self.loop is not None)
+        rows += [(digits, "number", "of the loop", "") for digits in re.findall(r"\d+", self.text)]
         rows += [(self.suffix, "suffix", "which one of its kind in the loop", "")] * bool(self.suffix)
         return _table(("", "place", "meaning", "source"), rows, f"{self.text}: {self.words}")
 

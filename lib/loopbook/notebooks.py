@@ -128,6 +128,8 @@ def run(notebook: NotebookNode, folder: Path) -> NotebookNode:
     client = _Client(copy.deepcopy(notebook), kernel_name="python3", timeout=SECONDS_PER_CELL, record_timing=False)
     # Figures belong in the notebook, whatever backend the caller's own programs use.
     environment = {name: value for name, value in os.environ.items() if name != "MPLBACKEND"}
+    # What the reader has answered so far stays as it is, and out of what is stored.
+    environment["LOOPBOOK_PROGRESS"] = "off"
     try:
         # What cells print to stderr arrives as an output; what the kernel itself says there is of no use to the reader.
         notebook = client.execute(cwd=str(folder), env=environment, stderr=DEVNULL)

@@ -47,7 +47,7 @@ def by_residues(fraction):
         total = -float(shares.real.sum())
         near = (A_terms + C_terms * abs(z)) * (1 + abs(p) * float(delay)) / abs(A + C * z)
         lost = 4e-16 * float((abs(shares) * ((1 + sensitivity) ** 2 + near)).sum())
-    if not lost <= MOST_DIGITS_LOST * total:
+    if not (math.isfinite(total) and lost <= MOST_DIGITS_LOST * total):
         raise NotApplicableError("zeros of Delta lie too close together")
     return total
 

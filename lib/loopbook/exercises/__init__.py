@@ -1,0 +1,53 @@
+"""Exercises that respond to answers.
+
+>>> from loopbook.exercises import exercise
+>>> len(exercise("10.1", student="Ada").statement) > 100
+True
+"""
+
+import difflib
+
+from loopbook.exercises import bank
+from loopbook.exercises.records import Progress
+
+__all__ = ["ExerciseError", "exercise", "progress"]
+
+
+class ExerciseError(Exception):
+    """A wrong use of the exercises, in one sentence."""
+
+    def _render_traceback_(self):
+        """Notebooks show the sentence alone: the place in the library's code helps no reader."""
+        return [f"{type(self).__name__}: {self}"]
+
+
+def exercise(number, student=None):
+    """Return an exercise as a question: shown, it is the statement; `.check(...)` responds to answers.
+
+    Arguments:
+        number: chapter and place in it, as "10.3".
+        student: a name, for numbers of one's own, the same every time; the reference variant if not given.
+    Raises:
+        ExerciseError: for a number that there is not.
+    """
+    known = bank.exercises(_chapter(str(number).partition(".")[0]))
+    if number not in known:
+        raise ExerciseError(f"there is no exercise {number!r}: expected one of {', '.join(known)}")
+    try:
+        return known[number].question(student)
+    except (TypeError, ValueError) as error:
+        raise ExerciseError(str(error)) from None
+
+
+def progress(chapter, student=None):
+    """Return which exercises of a chapter are right so far, as "10"; a file beside the notebook keeps it."""
+    return Progress.of(bank.exercises(_chapter(str(chapter))).values(), student)
+
+
+def _chapter(name):
+    name = name.lstrip("0")
+    if name not in bank.chapters():
+        close = difflib.get_close_matches(name, bank.chapters(), n=1)
+        hint = f"did you mean {close[0]!r}?" if close else f"expected one of {', '.join(bank.chapters())}"
+        raise ExerciseError(f"there is no chapter {name!r} with exercises: {hint}")
+    return name

@@ -1,0 +1,150 @@
+"""Writing exercises: statement, parameters, key and known mistakes in one place.
+
+@exercise("10.2", title="Settings for the air heater", points=4, where=lambda T, delay: delay < T)
+def air_heater(K=between(2, 6, "K/%"), T=between(15, 40, "s"), delay=between(2, 6, "s")):
+    '''The statement in Markdown, with {K}, {T} and {delay}.'''
+    return answers(
+        Kp=number(T / (2 * K * delay), "%/K", "the proportional gain"),
+        Ti=number(min(T, 4 * delay), "s", "the integral time"),
+    )
+
+@air_heater.mistake("That is the integral time for $c = 4$; here $c = 2$ is asked.")
+def _(T, delay):
+    return {"Ti": min(T, 8 * delay)}
+"""
+
+import functools
+import inspect
+import textwrap
+
+import sympy
+
+from loopbook.exercises.kinds import (
+    Criterion,
+    Design,
+    Expression,
+    Kind,
+    Number,
+    Numbers,
+    Poles,
+    Settings,
+    TimeFunction,
+    TransferFunction,
+    Word,
+    Words,
+)  # fmt: skip
+from loopbook.exercises.parameters import Parameter, between, call, choice, written
+from loopbook.exercises.question import Question
+
+__all__ = [
+    "Exercise", "answers", "between", "choice", "criterion", "design", "exercise", "expression", "number", "numbers",
+    "poles", "settings", "time_function", "transfer_function", "word", "words",
+]  # fmt: skip
+
+number, numbers, poles, settings = Number, Numbers, Poles, Settings
+expression, transfer_function, time_function = Expression, TransferFunction, TimeFunction
+word, words, criterion, design = Word, Words, Criterion, Design
+
+MOST_DRAWS = 1000
+
+
+def answers(**kinds):
+    """Return the key of an exercise: a kind for each asked quantity; a bare number is one without unit.
+
+    >>> answers(K=2, Ti=number(12, "s", "the integral time"))["K"].key
+    2.0
+    """
+    if not kinds:
+        raise ValueError("an exercise asks for nothing: expected at least one quantity")
+    return {name: kind if isinstance(kind, Kind) else Number(kind, what=name) for name, kind in kinds.items()}
+
+
+def exercise(number, title, points=1, where=lambda: True):
+    """Make an exercise of a function that returns its key.
+
+    Arguments:
+        number: chapter and place in it, as "10.2".
+        title: a few words.
+        points: of the whole exercise; each asked quantity brings the same part.
+        where: a condition on the parameters that it names; other draws are discarded.
+    """
+    return functools.partial(Exercise, number, title, points, where)
+
+
+class Exercise:
+    """An exercise, with all its variants.
+
+    Attributes:
+        number, title, points: as given.
+        parameters: {name: `Parameter`}.
+    """
+
+    def __init__(self, number, title, points, where, key):
+        self.number, self.title, self.points, self.where, self.key = number, title, points, where, key
+        self.statement = textwrap.dedent(" " * 4 + (key.__doc__ or "")).strip()
+        self.parameters = {name: item.default for name, item in inspect.signature(key).parameters.items()}
+        self.mistakes = []
+        self.shown = lambda: {}
+        for name, parameter in self.parameters.items():
+            if not isinstance(parameter, Parameter):
+                raise ValueError(f"{name} of exercise {number} is {parameter!r}: expected between(...) or choice(...)")
+        if not self.statement:
+            raise ValueError(f"exercise {number} has no statement: expected one as the docstring of its function")
+
+    @property
+    def heading(self):
+        """Number and title."""
+        return f"Exercise {self.number} · {self.title}"
+
+    def mistake(self, sentence):
+        """Declare a known mistake: a function of parameters that it names, returning {name: wrong value}."""
+
+        def declared(function):
+            self.mistakes.append((sentence, function))
+            return function
+
+        return declared
+
+    def shows(self, function):
+        """Declare what else the statement shows: {name: expression, equation or text}."""
+        self.shown = function
+        return function
+
+    @functools.lru_cache(maxsize=64)  # noqa: B019 - the exercises live as long as the program
+    def question(self, student=None):
+        """Return the variant of a student, or the reference variant.
+
+        Raises ValueError where the condition does not hold for the reference, or hardly ever.
+        """
+        if student is not None and not isinstance(student, str):
+            raise ValueError(f"student is {student!r}: expected a name or an identification, as text")
+        if student is None:
+            values = {name: parameter.reference for name, parameter in self.parameters.items()}
+            if not call(self.where, values):
+                raise ValueError(f"the reference variant of exercise {self.number} does not satisfy its condition")
+            return Question(self, student, values)
+        for attempt in range(MOST_DRAWS):
+            text = f"{self.number}|{student}|{attempt}"
+            values = {name: one.draw(f"{text}|{name}") for name, one in self.parameters.items()}
+            if call(self.where, values):
+                return Question(self, student, values)
+        raise ValueError(f"the condition of exercise {self.number} holds in none of {MOST_DRAWS} draws: widen it")
+
+    def places(self, values):
+        """Return what stands in the places of a text: the values of the parameters, and what else is shown."""
+        places = {name: written(value, self.parameters[name].unit) for name, value in values.items()}
+        for name, value in call(self.shown, values).items():
+            places[name] = value if isinstance(value, str) else f"${sympy.latex(_in_decimals(value), full_prec=False)}$"
+        return places
+
+    def __repr__(self):
+        return self.heading
+
+
+def _in_decimals(value):
+    """An expression with its fractions as decimals, where few digits write them; exponents stay."""
+    if isinstance(value, sympy.Rational) and not value.is_Integer and 10**4 % value.q == 0:
+        return sympy.Float(value, 10)
+    if isinstance(value, sympy.Pow):
+        return sympy.Pow(_in_decimals(value.base), value.exp)
+    return value.func(*map(_in_decimals, value.args)) if value.args else value

@@ -1,0 +1,31 @@
+"""The exercises of the chapters, a module each, loaded when one of them is asked for."""
+
+import functools
+import importlib
+import pkgutil
+
+from loopbook.exercises.authoring import Exercise
+
+
+@functools.cache
+def chapters():
+    """Return the names of the modules by their chapters, in order: {"1": "ch01_introduction", ...}."""
+    names = sorted(module.name for module in pkgutil.iter_modules(__path__) if module.name.startswith("ch"))
+    return {name[2:].split("_")[0].lstrip("0"): name for name in names}
+
+
+@functools.cache
+def exercises(chapter):
+    """Return the exercises of a chapter in their order: {number: `Exercise`}. Raises KeyError for no chapter."""
+    return collected(importlib.import_module(f"{__name__}.{chapters()[chapter]}"))
+
+
+def collected(module):
+    """Return the exercises that a module defines: {number: `Exercise`}. Raises ValueError where two have a number."""
+    found = {}
+    for one in vars(module).values():
+        if isinstance(one, Exercise):
+            if one.number in found:
+                raise ValueError(f"there are two exercises {one.number} in {module.__name__}: expected one")
+            found[one.number] = one
+    return found

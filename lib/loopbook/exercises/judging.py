@@ -1,0 +1,51 @@
+"""Judging an answer: right, a mistake with a name, wrong, or nothing that can be judged."""
+
+from dataclasses import dataclass
+
+from loopbook.exercises.kinds import NOT_ANSWERED
+from loopbook.exercises.reading import Unreadable
+
+RIGHT, MISTAKE, WRONG, UNJUDGED, OPEN = "right", "mistake", "wrong", "not judged", "open"
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What became of the answer to one asked quantity: a status and a sentence."""
+
+    name: str
+    status: str
+    says: str
+
+    @property
+    def is_right(self):
+        """Whether the answer counts."""
+        return self.status == RIGHT
+
+
+def judge(name, kind, given, mistakes=()):
+    """Return the `Verdict` on an answer. Whatever the answer is, this raises nothing.
+
+    Arguments:
+        name: of the asked quantity.
+        kind: its kind, with the key.
+        given: the answer, of any type.
+        mistakes: those of the exercise, pairs of a sentence and a wrong value; they come before the general ones.
+
+    >>> from loopbook.exercises.kinds import Number
+    >>> judge("Ti", Number(120, "s", "the integral time"), 2)
+    Verdict(name='Ti', status='mistake', says='that would be the value in min; asked: the integral time, in s')
+    """
+    try:
+        answer, remark = kind.read(given)
+        if kind.agrees(answer):
+            return Verdict(name, RIGHT, "right" + (f", {remark}" if remark else ""))
+        for sentence, wrong in (*mistakes, *kind.mistakes()):
+            if kind.is_value(answer, wrong):
+                return Verdict(name, MISTAKE, sentence)
+        hint = kind.hint(answer)
+    except Unreadable as problem:
+        status = OPEN if str(problem) == NOT_ANSWERED else UNJUDGED
+        return Verdict(name, status, str(problem))
+    except Exception as problem:  # the answer may be an object that fails in any way
+        return Verdict(name, UNJUDGED, f"this cannot be judged ({type(problem).__name__}): expected {kind.expected}")
+    return Verdict(name, WRONG, hint or f"not right; asked: {kind.asked}")

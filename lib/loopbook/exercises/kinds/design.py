@@ -1,0 +1,141 @@
+"""Designs: whatever meets the criteria is right."""
+
+import math
+from dataclasses import dataclass
+
+from loopbook.exercises import units
+from loopbook.exercises.kinds.kind import Kind
+from loopbook.exercises.kinds.numeric import Number, in_unit
+from loopbook.exercises.limits import limited
+from loopbook.exercises.reading import Unreadable
+
+SECONDS = 1.5
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """What a design must achieve: a measure of it with a limit, or a condition that is true or false.
+
+    Arguments:
+        what: the measure in words, as "the overshoot", or the condition as a clause, as "the loop is stable".
+        measure: function of the answer; infinite where it has no value.
+        below, above: limits, themselves allowed.
+        unit: of the measure.
+        otherwise: the sentence where a condition does not hold; that it is not so, if not given.
+    """
+
+    what: str
+    measure: object
+    below: float | None = None
+    above: float | None = None
+    unit: str = ""
+    otherwise: str = ""
+
+    @property
+    def demand(self):
+        """The criterion in words."""
+        limits = [f"at {word} {_written(limit, self.unit)}" for word, limit in self.limits()]
+        return f"{self.what} is {' and '.join(limits)}" if limits else self.what
+
+    def limits(self):
+        """The limits that there are, each with its word."""
+        return [pair for pair in (("least", self.above), ("most", self.below)) if pair[1] is not None]
+
+    def complaint(self, answer):
+        """Return a sentence on what an answer does not achieve; empty where it does."""
+        value = self.measure(answer)
+        if not self.limits():
+            return "" if value else self.otherwise or f"asked is that {self.what}, and it is not so"
+        value = float(value)
+        low = -math.inf if self.above is None else float(self.above)
+        high = math.inf if self.below is None else float(self.below)
+        slack = 1e-9 * max(abs(limit) for limit in (low, high) if math.isfinite(limit))
+        if low - slack <= value <= high + slack and math.isfinite(value):
+            return ""
+        found = (
+            f"{self.what} is {_written(value, self.unit)}"
+            if math.isfinite(value)
+            else f"{self.what} has no finite value"
+        )
+        return f"{found}; asked is {' and '.join(f'at {word} {_written(x, self.unit)}' for word, x in self.limits())}"
+
+
+class Design(Kind):
+    """An answer of another kind that is judged by what it achieves.
+
+    Arguments:
+        example: the asked quantity, as one of the kinds; its key is a design that meets the criteria.
+        criteria: each a `Criterion`.
+
+    >>> from loopbook.exercises.kinds import Number
+    >>> gain = Design(Number(2, what="a gain"), Criterion("the offset", lambda K: 1 / (1 + K), below=0.4))
+    >>> gain.agrees(1.6), gain.hint(1)
+    (True, 'the offset is 0.5; asked is at most 0.4')
+    """
+
+    def __init__(self, example, *criteria):
+        if not criteria:
+            raise ValueError("there are no criteria: expected at least one for a design")
+        self.example, self.criteria = example, criteria
+        self.unit, self.what, self.within, self.key = example.unit, example.what, example.within, example.key
+
+    def like(self, value):
+        """A design by the same criteria."""
+        return Design(self.example.like(value), *self.criteria)
+
+    @property
+    def asked(self):
+        """The quantity with its criteria."""
+        return f"{self.example.asked}, such that {'; '.join(one.demand for one in self.criteria)}"
+
+    @property
+    def expected(self):
+        """As the quantity's kind."""
+        return self.example.expected
+
+    accuracy = ""
+
+    def read(self, given):
+        """Return the answer as the quantity's kind reads it."""
+        return self.example.read(given)
+
+    def complaints(self, answer):
+        """Return what an answer does not achieve, in sentences; a condition that fails stands alone."""
+
+        def judge():
+            found = []
+            for one in self.criteria:
+                try:
+                    complaint = one.complaint(answer)
+                except (ValueError, ArithmeticError) as error:
+                    complaint = f"{one.what} has no value ({error})"
+                found += [complaint] if complaint else []
+                if complaint and not one.limits():
+                    break
+            return found
+
+        try:
+            return limited(SECONDS, judge)
+        except TimeoutError:
+            raise Unreadable("judging this design takes too long: expected one nearer to what is usual") from None
+
+    def agrees(self, answer):
+        """Whether the design meets all criteria."""
+        return not self.complaints(answer)
+
+    def is_value(self, answer, wrong):
+        """Whether an answer is the value of a mistake."""
+        return self.example.is_value(answer, wrong)
+
+    def hint(self, answer):
+        """Say which criteria are not met, and how far it is; or in which other unit the number would meet them."""
+        if isinstance(self.example, Number):
+            for unit in units.neighbours(self.unit):
+                if not self.complaints(units.convert(answer, unit, to=self.unit)):
+                    return f"that would be right {in_unit(unit)}; asked: {self.example.asked}"
+        return "; ".join(self.complaints(answer))
+
+
+def _written(value, unit):
+    text = f"{float(value):.4g}"
+    return f"{text}\N{NO-BREAK SPACE}{unit}" if unit else text

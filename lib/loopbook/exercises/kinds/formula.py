@@ -1,0 +1,175 @@
+"""Expressions, transfer functions, and functions of time."""
+
+import numpy as np
+import sympy
+
+from loopbook.exercises import formulas
+from loopbook.exercises.formulas import Formula
+from loopbook.exercises.kinds.kind import Kind, answered, in_a_row
+from loopbook.exercises.reading import Unreadable
+from loopbook.expressions import exact, s
+
+
+class Expression(Kind):
+    """An expression in letters, equal in any form; its numbers may be rounded.
+
+    >>> gain = Expression(sympy.sympify("K*T/(K + 1)"), "the gain")
+    >>> gain.agrees(gain.read("T/(1 + 1/K)")[0])
+    True
+    """
+
+    def __init__(self, key, what="the expression", letters="", within=0.01, unit=""):
+        self.expr = exact(key)
+        names = {symbol.name for symbol in self.expr.free_symbols} | set(letters.split())
+        self.letters = sorted(names | self.always)
+        super().__init__(self.expr, unit, what, within)
+
+    always = frozenset()
+
+    def like(self, value):
+        """The same quantity with another key."""
+        other = super().like(value)
+        other.expr = None if isinstance(value, Formula) else exact(value)
+        return other
+
+    @property
+    def expected(self):
+        """An expression in its letters."""
+        return f"an expression in {', '.join(self.letters)}" if self.letters else "an expression"
+
+    def read(self, given):
+        """Return the `Formula`."""
+        given = answered(given)
+        if isinstance(given, Formula):
+            return given, ""
+        row = in_a_row(given)
+        if row is not None and len(row) == 1:  # as `solve` returns it
+            return self.read(row[0])
+        formula = Formula(given, self.letters)
+        self._demand_values(formula)
+        return formula, ""
+
+    def points(self):
+        """The values of the letters at which formulas are compared."""
+        return formulas.points_for(self.letters)
+
+    def _demand_values(self, formula):
+        if not np.isfinite(formula(**self.points())).any():
+            raise Unreadable(f"this has no finite value: expected {self.expected}")
+
+    def agrees(self, answer):
+        """Whether both have the same values."""
+        return formulas.agree(self.key, answer, self.points(), self.within)
+
+    def mistakes(self):
+        """Wrong sign, the inverse."""
+        yield "that is right but for its sign", -self.expr
+        if self.expr != 0:
+            yield "that is the inverse: one divided by what is asked", 1 / self.expr
+
+
+class TransferFunction(Expression):
+    """A transfer function in s, with or without letters; dead time is exact.
+
+    >>> H = TransferFunction(2 * sympy.exp(-3 * s) / (10 * s + 1))
+    >>> H.agrees(H.read("0.2*exp(-3*s)/(s + 0.1)")[0])
+    True
+    """
+
+    always = frozenset({"s"})
+
+    def __init__(self, key, what="the transfer function", letters="", within=0.01, unit=""):
+        super().__init__(key, what, letters, within, unit)
+
+    def mistakes(self):
+        """Those of an expression, a forgotten dead time, its sign, and an s too many or too few."""
+        yield from super().mistakes()
+        if self.expr.has(sympy.exp):
+            yield "the dead time is missing", self.expr.replace(sympy.exp, lambda _: sympy.S.One)
+            yield (
+                "the sign in the exponent of the dead time is wrong: a delay is exp of something negative times s",
+                self.expr.replace(sympy.exp, lambda x: sympy.exp(-x)),
+            )
+            for order in (1, 2):
+                yield (
+                    "that is a Pade approximation of the dead time; asked is the exact one",
+                    self.expr.replace(sympy.exp, lambda x, n=order: _pade(x, n)),
+                )
+        yield "there is a factor s too many: compare with the transform of a response to a step", self.expr * s
+        yield "a factor s is missing in it, or it is the transform of a step response", self.expr / s
+
+
+def _pade(x, order):
+    if order == 1:
+        return (1 + x / 2) / (1 - x / 2)
+    return (1 + x / 2 + x**2 / 12) / (1 - x / 2 + x**2 / 12)
+
+
+class TimeFunction(Expression):
+    """A function of time from t = 0 on, given as an expression in t or as a function of an array of times.
+
+    Arguments:
+        until: the end of the times at which it is compared, in the unit of t.
+
+    >>> from loopbook import t
+    >>> y = TimeFunction(1 - sympy.exp(-t / 5), until=25, what="the response")
+    >>> y.agrees(y.read("1 - exp(-0.2*t)")[0])
+    True
+    """
+
+    always = frozenset({"t"})
+
+    def __init__(self, key, until, unit="", what="the function of time", within=0.01):
+        self.until = float(until)
+        super().__init__(key, what, "", within, unit)
+
+    @property
+    def expected(self):
+        """An expression in t."""
+        return "an expression in t, or a function of an array of times" + (f", in {self.unit}" if self.unit else "")
+
+    def read(self, given):
+        """Return the `Formula`, or of a function its values at the times of the grid."""
+        if callable(answered(given)) and not isinstance(given, sympy.Basic | Formula) and not hasattr(given, "expr"):
+            return self._of_function(given), ""
+        return super().read(given)
+
+    @property
+    def times(self):
+        """The grid: no simple number, at which a step might stand, is on it."""
+        return self.until * (np.arange(120) + 0.382) / 120
+
+    def points(self):
+        """The times."""
+        return {"t": self.times}
+
+    def _of_function(self, given):
+        try:
+            values = self._called(given)
+        except Exception:  # the function is the reader's
+            raise Unreadable(f"the function returns no numbers: expected {self.expected}") from None
+        if not np.isfinite(values).all():
+            raise Unreadable(f"the function has no finite value at some times: expected {self.expected}")
+        return values
+
+    def _called(self, given):
+        """The values of a function for all times at once, or one time after another."""
+        try:
+            values = np.asarray(given(self.times), complex)
+            if values.shape == self.times.shape:
+                return values
+        except Exception:  # it asks for one time
+            pass
+        return np.array([complex(given(float(time))) for time in self.times])
+
+    def mistakes(self):
+        """Wrong sign."""
+        yield "that is right but for its sign", -self.expr
+
+    def agrees(self, answer):
+        """Whether the values differ by no more than a fraction of the largest one, or what rounded numbers explain."""
+        expected, found = (one if isinstance(one, np.ndarray) else one(**self.points()) for one in (self.key, answer))
+        allowed = self.within * np.max(np.abs(expected))
+        if isinstance(self.key, Formula):
+            allowed = np.maximum(allowed, formulas.rounding(self.key, expected, self.points(), self.within))
+        return bool(np.all(np.abs(found - expected) <= allowed + 1e-12))

@@ -1,0 +1,87 @@
+"""What all kinds of asked quantities have in common."""
+
+import sympy
+
+from loopbook.exercises import units
+from loopbook.exercises.reading import Unreadable
+
+#: What is left of an answer cell that nobody has filled in.
+NOT_ANSWERED = "not answered yet"
+
+
+class Kind:
+    """An asked quantity: its key, and how an answer is read, compared and responded to.
+
+    Arguments:
+        key: the right answer.
+        unit: of the answer; none for a number without unit.
+        what: the quantity in words, with its article, as "the integral time".
+        within: how far a number may be off, as a fraction of it.
+    """
+
+    #: How an answer looks, for one that cannot be judged.
+    expected = "an answer"
+
+    def __init__(self, key, unit="", what="the value", within=0.01):
+        if not units.is_unit(unit):
+            raise ValueError(f"the unit of {what} is {unit!r}: expected one such as 's', 'kg/min' or '%/K'")
+        self.unit, self.what, self.within = unit, what, within
+        self.key = self.read(key)[0]
+
+    def like(self, value):
+        """The same quantity with another key, as a mistake has one."""
+        other = object.__new__(type(self))
+        other.__dict__ |= self.__dict__
+        other.key = other.read(value)[0]
+        return other
+
+    @property
+    def asked(self):
+        """The quantity with its unit, as in a sentence."""
+        return f"{self.what}, in {self.unit}" if self.unit else self.what
+
+    @property
+    def accuracy(self):
+        """How near an answer must be, in words; empty where that is no question."""
+        return "exact" if self.within == 0 else f"{100 * self.within:g}\N{NO-BREAK SPACE}%"
+
+    def read(self, given):
+        """Return the answer as it is compared, and a remark on how it was understood, which may be empty.
+
+        Reading looks at the form alone, never at the key. Raises Unreadable in a sentence.
+        """
+        raise NotImplementedError
+
+    def agrees(self, answer):
+        """Whether an answer, as it was read, is right."""
+        raise NotImplementedError
+
+    def mistakes(self):
+        """The mistakes that can be recognised in every exercise: pairs of a sentence and a wrong value, as read."""
+        return ()
+
+    def hint(self, answer):
+        """Return a sentence on a wrong answer that nothing else explains; it may be empty."""
+        return ""
+
+    def is_value(self, answer, wrong):
+        """Whether an answer, as it was read, is the value of a mistake."""
+        return self.like(wrong).agrees(answer)
+
+
+def answered(given):
+    """Return what was given; raises Unreadable where that is nothing yet."""
+    if given is None or given is Ellipsis:
+        raise Unreadable(NOT_ANSWERED)
+    return given
+
+
+def in_a_row(given):
+    """Return the values of a list, tuple, array, matrix or range as a list; None where there is no row of values."""
+    if isinstance(given, sympy.MatrixBase):
+        return given.tolist()
+    if isinstance(given, sympy.Tuple | list | tuple | range):
+        return list(given)
+    if hasattr(given, "tolist") and hasattr(given, "ndim"):
+        return given.tolist() if given.ndim else None
+    return None

@@ -1,0 +1,261 @@
+"""Numbers, rows and tables of numbers, and poles in any order."""
+
+import math
+import re
+
+import numpy as np
+import sympy
+
+from loopbook.exercises import units
+from loopbook.exercises.formulas import Formula
+from loopbook.exercises.kinds.kind import Kind, answered, in_a_row
+from loopbook.exercises.reading import Unreadable
+
+_WITH_UNIT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(\S.*)?", re.DOTALL)
+#: Up to so many times the tolerance, an answer is nearly right.
+NEARLY = 4
+
+
+class Number(Kind):
+    """A real number with its unit; a text may name another unit, as "2 min" where seconds are asked.
+
+    >>> Ti = Number(120, "s", "the integral time")
+    >>> Ti.agrees(Ti.read("2 min")[0])
+    True
+    """
+
+    @property
+    def expected(self):
+        """A number in its unit."""
+        return f"a number, in {self.unit}" if self.unit else "a number"
+
+    def read(self, given):
+        """Return the number in the asked unit, as a float, and a remark where it came in another one."""
+        value, remark = one_number(answered(given), self.unit, self.expected)
+        return _real(value, self.expected), remark
+
+    def agrees(self, answer):
+        """Whether the number is within the tolerance."""
+        return near(answer, self.key, self.within)
+
+    def mistakes(self):
+        """Wrong sign, another unit, the inverse."""
+        yield "the size is right, the sign is not", -self.key
+        for unit, converted in units.neighbours(self.unit).items():
+            yield (
+                f"that would be the value {in_unit(unit)}; asked: {self.asked}",
+                converted(self.key),
+            )
+        if self.key:
+            yield "that is the inverse: one divided by what is asked", 1 / self.key
+
+    def hint(self, answer):
+        """Say that the number is nearly right."""
+        if near(answer, self.key, NEARLY * self.within):
+            return f"that is close, and asked is an accuracy of {self.accuracy}: keep more digits on the way"
+        return ""
+
+
+class Numbers(Kind):
+    """A row or a table of real numbers, in order.
+
+    >>> A = Numbers([[0, 1], [-2, -3]], what="the matrix A")
+    >>> A.agrees(A.read(sympy.Matrix([[0, 1], [-2, -3]]))[0])
+    True
+    """
+
+    @property
+    def expected(self):
+        """A row or a table of numbers."""
+        unit = f", in {self.unit}" if self.unit else ""
+        return f"a list of numbers such as [1, 2]{unit}"
+
+    def read(self, given):
+        """Return an array of floats, and a remark where a number came in another unit."""
+        rows = in_a_row(answered(given))
+        if rows is None:
+            raise Unreadable(f"this is no list: expected {self.expected}")
+        remarks = []
+
+        def number(value):
+            value, remark = one_number(value, self.unit, self.expected)
+            remarks.append(remark)
+            return _real(value, self.expected)
+
+        inner = [in_a_row(row) for row in rows]
+        if any(row is not None for row in inner):
+            if any(row is None or len(row) != len(inner[0]) for row in inner):
+                raise Unreadable(f"the rows are of different length: expected {self.expected}")
+            return np.array([[number(value) for value in row] for row in inner], float), max(remarks, default="")
+        return np.array([number(value) for value in rows], float), max(remarks, default="")
+
+    def agrees(self, answer):
+        """Whether the shape is the same and each number within the tolerance; a column is a row."""
+        answer, key = _flat(answer), _flat(self.key)
+        return answer.shape == key.shape and bool(np.all(self._near(answer, key)))
+
+    def _near(self, answer, key):
+        scale = np.max(np.abs(key), initial=0.0)
+        return np.abs(answer - key) <= self.within * np.where(key == 0, scale or 1, np.abs(key)) + 1e-12 * scale
+
+    def mistakes(self):
+        """Wrong sign, another unit, rows for columns, the order turned."""
+        yield "the sizes are right, the signs are not", -self.key
+        for unit, converted in units.neighbours(self.unit).items():
+            yield f"those would be the values {in_unit(unit)}; asked: {self.asked}", np.vectorize(converted)(self.key)
+        if self.key.ndim == 2 and min(self.key.shape) > 1:
+            if self.key.shape[0] == self.key.shape[1]:
+                yield "rows and columns are exchanged", self.key.T
+        else:
+            yield "the values are right, in the opposite order", self.key[::-1]
+
+    def hint(self, answer):
+        """Say how many are right. Raises Unreadable for another shape."""
+        answer, key = _flat(answer), _flat(self.key)
+        if answer.shape != key.shape:
+            raise Unreadable(f"the shape is {_shape(answer)}: expected {_shape(key)}")
+        right = int(np.sum(self._near(answer, key)))
+        return f"{right} of {key.size} numbers are right" if right else ""
+
+
+class Poles(Kind):
+    """Complex numbers in any order, as often as they occur, such as poles and zeros.
+
+    >>> poles = Poles([-1, -1, -2])
+    >>> poles.agrees(poles.read({-1: 2, -2: 1})[0])
+    True
+    """
+
+    def __init__(self, key, unit="rad/s", what="the poles", within=0.01):
+        super().__init__(key, unit, what, within)
+
+    @property
+    def expected(self):
+        """A list of numbers."""
+        return "a list of numbers such as [-1, -2 + 3j]"
+
+    def read(self, given):
+        """Return an array of complex numbers; a dictionary says how often each one occurs."""
+        if isinstance(answered(given), dict):
+            given = [pole for pole, times in given.items() for _ in range(self._times(times))]
+        elif isinstance(given, set | frozenset | sympy.FiniteSet):
+            given = list(given)
+        rows = in_a_row(given)
+        rows = [given] if rows is None else rows
+        read = [one_number(value, self.unit, self.expected) for value in rows]
+        return np.array([value for value, _ in read], complex), max((remark for _, remark in read), default="")
+
+    def _times(self, times):
+        times = _real(one_number(times, "", self.expected)[0], self.expected)
+        if not (times == int(times) and 0 <= times <= 20):
+            raise Unreadable(f"a pole cannot occur {times:g} times: expected {self.expected}")
+        return int(times)
+
+    def agrees(self, answer):
+        """Whether each pole has its counterpart."""
+        return len(answer) == len(self.key) == self._matched(answer)
+
+    def _matched(self, answer):
+        """How many of the answer's values are among the key's, each taken once."""
+        left, scale = list(self.key), np.max(np.abs(self.key), initial=0.0)
+        for value in answer:
+            distances = [abs(value - pole) for pole in left]
+            if distances:
+                k = int(np.argmin(distances))
+                if distances[k] <= self.within * (abs(left[k]) or scale or 1) + 1e-9 * scale:
+                    del left[k]
+        return len(self.key) - len(left)
+
+    def mistakes(self):
+        """All signs turned, times instead of poles, another unit."""
+        yield "the sizes are right, the signs are not", -self.key
+        if np.all(self.key != 0):
+            yield "those are the inverses, the times instead of the values in s", 1 / self.key
+            yield "those are the time constants: a time constant of T makes the value -1/T", -1 / self.key
+        if np.any(self.key.imag):
+            yield "real part and imaginary part are exchanged", self.key.imag + 1j * self.key.real
+        for unit, converted in units.neighbours(self.unit).items():
+            yield f"those would be the values {in_unit(unit)}; asked: {self.asked}", self.key * converted(1)
+
+    def hint(self, answer):
+        """Say how many there should be, and how many are right."""
+        if len(answer) != len(self.key):
+            return f"{len(answer)} is not their number: a multiple one counts as often as it occurs"
+        right = self._matched(answer)
+        return f"{right} of {len(self.key)} are right" if right else ""
+
+
+def near(answer, key, within):
+    """Whether a number is within a fraction of the key; of a key of 0, within as much absolutely."""
+    return math.isfinite(answer) and abs(answer - key) <= within * (abs(key) or 1) + 1e-12 * abs(key)
+
+
+def one_number(given, unit, expected):
+    """Return a finite number, real or complex, in a unit, and a remark where it was given in another one."""
+    if isinstance(given, str):
+        return _number_of_text(given, unit, expected)
+    row = in_a_row(given)
+    if row is not None and len(row) == 1:  # as `solve` returns it
+        return one_number(row[0], unit, expected)
+    if row is not None:
+        raise Unreadable(f"there are {len(row)} values: expected {expected}")
+    if given is None or given is Ellipsis:
+        raise Unreadable(f"a value is missing: expected {expected}")
+    if isinstance(given, bool | np.bool_) or given is sympy.true or given is sympy.false:
+        raise Unreadable(f"{given} is a truth value: expected {expected}")
+    if isinstance(given, sympy.Expr) and given.free_symbols:
+        letters = ", ".join(sorted(symbol.name for symbol in given.free_symbols))
+        raise Unreadable(f"there is still {letters} in it: expected {expected}")
+    if (isinstance(given, dict | set) or callable(given)) and not isinstance(given, sympy.Basic):
+        raise Unreadable(f"this is of type {type(given).__name__}: expected {expected}")
+    try:
+        value = complex(given)
+    except Exception:  # objects of others may fail in any way
+        raise Unreadable(f"this is of type {type(given).__name__}: expected {expected}") from None
+    return _finite(value, expected), ""
+
+
+def _number_of_text(text, unit, expected):
+    match = _WITH_UNIT.fullmatch(text)
+    if match and match[2] and units.is_unit(match[2]):
+        try:
+            value = units.convert(float(match[1]), match[2], to=unit)
+        except ValueError as error:
+            raise Unreadable(f"{error}: expected {expected}") from None
+        same = units.convert(1, match[2], to=unit) == 1
+        return _finite(complex(value), expected), "" if same else f"converted from {match[2]}"
+    if re.fullmatch(r"\s*[+-]?\d+,\d+\s*", text):
+        raise Unreadable("write the decimal comma as a point")
+    try:
+        return _finite(complex(Formula(text)()), expected), ""
+    except Unreadable:
+        shown = text if len(text) <= 40 else text[:37] + "..."
+        raise Unreadable(f"{shown!r} is a text that is no number: expected {expected}") from None
+
+
+def _finite(value, expected):
+    if math.isnan(value.real) or math.isnan(value.imag):
+        raise Unreadable(f"this is not a number (NaN): expected {expected}")
+    if math.isinf(value.real) or math.isinf(value.imag):
+        raise Unreadable(f"this is infinite: expected {expected}")
+    return value
+
+
+def _real(value, expected):
+    # roots of polynomials keep a trace of an imaginary part
+    if abs(value.imag) > 1e-9 * abs(value):
+        raise Unreadable(f"this is a complex number: expected {expected}")
+    return value.real
+
+
+def in_unit(unit):
+    """A unit in a sentence."""
+    return {"": "as a fraction", "%": "in percent"}.get(unit, f"in {unit}")
+
+
+def _flat(array):
+    return array.ravel() if array.ndim == 2 and 1 in array.shape else array
+
+
+def _shape(array):
+    return " by ".join(map(str, array.shape)) if array.ndim > 1 else f"a row of {array.size}"

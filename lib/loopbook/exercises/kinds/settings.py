@@ -1,0 +1,172 @@
+"""Settings of a PID controller."""
+
+import sympy
+
+from loopbook.exercises import units
+from loopbook.exercises.kinds.kind import Kind, answered, in_a_row
+from loopbook.exercises.kinds.numeric import near, one_number
+from loopbook.exercises.reading import Unreadable, listed
+from loopbook.pid import PID
+
+NAMES = ("Kp", "Ti", "Td", "Tf")
+
+
+class Settings(Kind):
+    """The settings of a controller; a `PID` knows its form, numbers alone are in the form that is asked.
+
+    Arguments:
+        key: `PID` with numbers.
+        gain, time: units of Kp and of the times.
+        form: "parallel", "serial", or "any" where both are right.
+
+    >>> asked = Settings(PID(2.5, Ti=10, Td=1.6), form="any")
+    >>> asked.agrees(asked.read(PID(2, Ti=8, Td=2, form="serial"))[0])
+    True
+    """
+
+    def __init__(self, key, gain="", time="s", what="the settings", form="any", within=0.01):
+        if form not in ("any", "parallel", "serial"):
+            raise ValueError(f"form is {form!r}: expected 'any', 'parallel' or 'serial'")
+        if not (units.is_unit(gain) and units.is_unit(time)):
+            raise ValueError(f"the units are {gain!r} and {time!r}: expected such as '%/K' and 's'")
+        self.gain, self.time, self.form = gain, time, form
+        super().__init__(key, "", what, within)
+
+    @property
+    def asked(self):
+        """The settings with their units and form."""
+        gain = f"Kp in {self.gain}, " if self.gain else ""
+        form = "" if self.form == "any" else f", in {self.form} form"
+        return f"{self.what}: {gain}times in {self.time}{form}"
+
+    @property
+    def expected(self):
+        """A controller."""
+        return f"a controller such as PID(Kp=1, Ti=10), {'times in ' + self.time}"
+
+    def read(self, given):
+        """Return a `PID` of exact numbers; from a PID, a dictionary of its settings, or a list Kp, Ti, Td, Tf."""
+        if isinstance(answered(given), PID):
+            parts, form = {name: getattr(given, name) for name in NAMES}, given.form
+        else:
+            row = in_a_row(given)
+            if row is not None and 2 <= len(row) <= 4:
+                given = dict(zip(NAMES, row, strict=False))
+            form = "serial" if self.form == "serial" else "parallel"
+            if (
+                not isinstance(given, dict)
+                or "Kp" not in given
+                or (unknown := sorted(map(str, set(given) - set(NAMES))))
+            ):
+                why = (
+                    f"{unknown[0]} is no setting"
+                    if isinstance(given, dict) and "Kp" in given
+                    else "this is no controller"
+                )
+                raise Unreadable(f"{why}: expected {self.expected}")
+            parts = {"Ti": sympy.oo, "Td": 0, "Tf": 0} | given
+        remarks, numbers = set(), {}
+        for name, value in parts.items():
+            if name == "Ti" and value in (sympy.oo, float("inf")):
+                numbers[name] = sympy.oo
+                continue
+            value, remark = one_number(value, self.gain if name == "Kp" else self.time, f"a number for {name}")
+            if value.imag:
+                raise Unreadable(f"{name} is a complex number: expected {self.expected}")
+            numbers[name] = value.real
+            remarks.add(remark)
+        try:
+            return PID(**numbers, form=form), max(remarks, default="")
+        except ValueError as error:
+            raise Unreadable(str(error)) from None
+
+    def agrees(self, answer):
+        """Whether all settings agree, in the asked form or, where both are right, after conversion."""
+        if self.form != "any":
+            return answer.form == self._asked_form(answer) and self._near(answer, self.key)
+        return self._same_controller(answer)
+
+    def is_value(self, answer, wrong):
+        """Whether an answer is the controller of a mistake; where one form is asked, in the form of the mistake."""
+        other = self.like(wrong)
+        if self.form == "any":
+            return other._same_controller(answer)
+        return answer.form == other.key.form and self._near(answer, other.key)
+
+    def _asked_form(self, answer):
+        # without a derivative term, both forms are one
+        return answer.form if answer.Td == answer.Tf == 0 else self.form
+
+    def _same_controller(self, answer):
+        if answer.form != self.key.form:
+            try:
+                answer = answer.serial() if self.key.form == "serial" else answer.parallel()
+            except ValueError:  # it has no such form
+                return False
+        return self._near(answer, self.key)
+
+    def _near(self, answer, key):
+        return all(self._parts_near(answer, key).values())
+
+    def _parts_near(self, answer, key):
+        return {name: _near(getattr(answer, name), getattr(key, name), self.within) for name in NAMES}
+
+    def mistakes(self):
+        """Sign of the gain, the forms exchanged, other units, Kp/Ti for Ti, a proportional band for a gain."""
+        key = self.key
+        numbers = {name: getattr(key, name) for name in NAMES}
+
+        def changed(**values):
+            try:
+                return PID(**(numbers | values), form=key.form)
+            except ValueError:  # a serial form may be none
+                return None
+
+        wrong = [("the sign of Kp is wrong", changed(Kp=-key.Kp)), ("Kp is inverted", changed(Kp=1 / key.Kp))]
+        wrong.append(("that is the proportional band, 100 % divided by Kp", changed(Kp=100 / key.Kp)))
+        if key.Td != 0:
+            other = _other_form(key)
+            if other:
+                swapped = {name: getattr(other, name) for name in NAMES}
+                wrong.append((f"those are the numbers of the {other.form} form", PID(**swapped, form=key.form)))
+                if self.form != "any":
+                    wrong.append((f"the controller is right, and asked is its {self.form} form", other))
+            if key.Ti not in (key.Td, sympy.oo):
+                wrong.append(("Ti and Td are exchanged", changed(Ti=key.Td, Td=key.Ti)))
+        if key.Ti != sympy.oo:
+            wrong.append(("instead of Ti there is the integral gain Kp/Ti", changed(Ti=abs(key.Kp / key.Ti))))
+            wrong.append(("instead of Ti there is its inverse", changed(Ti=1 / key.Ti)))
+        for unit, converted in units.neighbours(self.time).items():
+            times = {n: v if v == sympy.oo else converted(v) for n, v in numbers.items() if n != "Kp"}
+            wrong.append((f"the times are those in {unit}; asked are times in {self.time}", changed(**times)))
+        yield from ((sentence, value) for sentence, value in wrong if value is not None)
+
+    def hint(self, answer):
+        """Say which of the settings are right."""
+        key = self.key
+        if answer.form != key.form:
+            try:
+                answer = answer.serial() if key.form == "serial" else answer.parallel()
+            except ValueError:
+                return ""
+        right = self._parts_near(answer, key)
+        good = [name for name in NAMES if right[name] and getattr(key, name) not in (0, sympy.oo)]
+        off = [name for name in NAMES if not right[name]]
+        return f"{_are(good)} right, {_are(off)} not" if good else ""
+
+
+def _near(value, key, within):
+    if sympy.oo in (value, key):
+        return value == key
+    return near(float(value), float(key), within if key else 1e-9)
+
+
+def _are(names):
+    return f"{listed(names)} {'are' if names[1:] else 'is'}"
+
+
+def _other_form(key):
+    try:
+        return key.parallel() if key.form == "serial" else key.serial()
+    except ValueError:
+        return None

@@ -1,0 +1,41 @@
+"""A limit for the time that a computation may take, on every system and in every thread."""
+
+import ctypes
+import threading
+
+
+class TooSlow(BaseException):
+    """The computation took longer than it may."""
+
+
+def limited(seconds, function, *arguments):
+    """Return `function(*arguments)`, which may take that many seconds.
+
+    The computation runs in a thread of its own, which is stopped at its next step in Python when the time is over.
+
+    Raises:
+        TimeoutError: when the time is over.
+        Exception: whatever the function raises.
+
+    >>> limited(1, max, 2, 3)
+    3
+    """
+    result, failure = [], []
+
+    def work():
+        try:
+            result.append(function(*arguments))
+        except TooSlow:
+            pass
+        except BaseException as error:
+            failure.append(error)
+
+    worker = threading.Thread(target=work, daemon=True)
+    worker.start()
+    worker.join(seconds)
+    if worker.is_alive():
+        ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(worker.ident), ctypes.py_object(TooSlow))
+        raise TimeoutError(f"not done after {seconds:g} s")
+    if failure:
+        raise failure[0]
+    return result[0]

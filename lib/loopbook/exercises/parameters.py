@@ -1,0 +1,116 @@
+"""The parameters of an exercise: their ranges, and the values that a variant draws from them."""
+
+import hashlib
+import inspect
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+
+import sympy
+
+from loopbook.exercises import units
+from loopbook.expressions import exact
+
+FEWEST, MOST = 8, 40
+#: What a person would write between 1 and 10, for ranges over more than a decade and a half.
+_PLEASANT = [Fraction(n, 10) for n in (10, 12, 15, 20, 25, 30, 40, 50, 60, 80)]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """Values that a variant may draw, their unit, and the value of the reference variant."""
+
+    values: tuple
+    unit: str
+    reference: object
+
+    def draw(self, text):
+        """Return one of the values, the same for the same text on every machine and Python.
+
+        >>> between(1, 4, "s").draw("any text") in between(1, 4, "s").values
+        True
+        """
+        digest = hashlib.sha256(text.encode()).digest()
+        return self.values[int.from_bytes(digest[:8], "big") % len(self.values)]
+
+
+def between(low, high, unit="", reference=None, step=None):
+    """Return a parameter between two numbers, both included, that takes values such as a person would choose.
+
+    Arguments:
+        low, high: the range, in the unit.
+        unit: such as "s", "kg/min" or "%/K".
+        reference: value in the reference variant; about the middle if not given.
+        step: between two values; 1, 2 or 5 times a power of ten if not given.
+    Raises:
+        ValueError: for a range that is empty, or something that is no unit.
+
+    >>> [str(value) for value in between(2, 6).values]
+    ['2', '5/2', '3', '7/2', '4', '9/2', '5', '11/2', '6']
+    """
+    low, high = exact(low), exact(high)
+    if not (low.is_Rational and high.is_Rational and low < high):
+        raise ValueError(f"the range is {low} to {high}: expected two numbers, the smaller one first")
+    if step is None and low > 0 and high / low > 30:
+        values = _over_decades(low, high)
+    else:
+        step = exact(step) if step is not None else _pleasant_step(high - low)
+        first = low if low == 0 else sympy.ceiling(low / step) * step
+        values = [first + k * step for k in range(int((high - first) / step) + 1)]
+    if len(values) < 2:
+        raise ValueError(f"the step {step} leaves no choice between {low} and {high}: expected a smaller one")
+    return _parameter(values, unit, reference)
+
+
+def choice(*values, unit="", reference=None):
+    """Return a parameter that takes one of several values, words or numbers; the first one is the reference.
+
+    >>> choice("heating", "cooling").values
+    ('heating', 'cooling')
+    """
+    if len(values) < 2:
+        raise ValueError(f"the values are {values!r}: expected at least two of them")
+    values = [value if isinstance(value, str) else exact(value) for value in values]
+    return _parameter(values, unit, values[0] if reference is None else reference)
+
+
+def _parameter(values, unit, reference):
+    if not units.is_unit(unit):
+        raise ValueError(f"{unit!r} is no unit: expected one such as 's', 'kg/min' or '%/K'")
+    if reference is None:
+        reference = values[len(values) // 2]
+    elif not isinstance(reference, str):
+        reference = exact(reference)
+    return Parameter(tuple(values), unit, reference)
+
+
+def _pleasant_step(length):
+    """The largest of 1, 2 and 5 times a power of ten that leaves enough values."""
+    power = math.floor(math.log10(float(length)))
+    steps = [sympy.Integer(10) ** k * m for k in (power, power - 1, power - 2) for m in (5, 2, 1)]
+    return next(step for step in steps if length / step >= FEWEST - 1)
+
+
+def _over_decades(low, high):
+    first, last = math.floor(math.log10(float(low))), math.ceil(math.log10(float(high)))
+    values = [exact(m) * sympy.Integer(10) ** k for k in range(first, last + 1) for m in _PLEASANT]
+    return [value for value in values if low <= value <= high]
+
+
+def written(value, unit=""):
+    """Return a value with its unit, as it stands in a sentence.
+
+    >>> written(sympy.Rational(5, 2), "kg/min")
+    '2.5\\xa0kg/min'
+    """
+    if isinstance(value, str):
+        return value
+    text = f"{float(value):.6f}".rstrip("0").rstrip(".") if abs(value) < 10**6 else f"{float(value):g}"
+    if float(text) != float(value):
+        text = f"{float(value):.6g}"
+    return f"{text}\N{NO-BREAK SPACE}{unit}" if unit else text
+
+
+def call(function, values):
+    """Call a function with those of the values that it names."""
+    return function(**{name: values[name] for name in inspect.signature(function).parameters})

@@ -1,0 +1,131 @@
+"""A question: one variant of an exercise, as a reader sees and answers it."""
+
+import difflib
+import functools
+import re
+
+from loopbook.exercises import records
+from loopbook.exercises.judging import OPEN, Verdict, judge
+from loopbook.exercises.kinds import NOT_ANSWERED
+from loopbook.exercises.parameters import call
+from loopbook.exercises.response import Response
+
+_PLACE = re.compile(r"\{\{(\w+)\}\}|\{(\w+)\}")
+
+
+class Question:
+    """One variant of an exercise. Shown in a notebook, it is the statement; `check` responds to answers.
+
+    Attributes:
+        values: {name: value} of the parameters, exact numbers or words.
+    """
+
+    def __init__(self, exercise, student, values):
+        self.exercise, self.student, self.values = exercise, student, values
+
+    def given(self, *names):
+        """Return values of parameters, exact, and of what else the statement shows; a single one alone.
+
+        Raises ValueError for a name that is none of them.
+
+        >>> from loopbook.exercises.authoring import answers, between, exercise
+        >>> @exercise("1.1", title="Twice", points=1)
+        ... def twice(x=between(1, 9, "m", reference=3)):
+        ...     "What is twice {x}?"
+        ...     return answers(y=2 * x)
+        >>> twice.question().given("x")
+        3
+        """
+        known = self.values | call(self.exercise.shown, self.values)
+        for name in names:
+            if name not in known:
+                raise ValueError(f"exercise {self.exercise.number} gives no {name!r}: expected {_listed(known)}")
+        found = tuple(known[name] for name in names)
+        return found[0] if len(found) == 1 else found
+
+    @functools.cached_property
+    def key(self):
+        """The asked quantities with their keys: {name: kind}."""
+        return self.exercise.key(**self.values)
+
+    @functools.cached_property
+    def mistakes(self):
+        """The known mistakes of the exercise in this variant: {name of a quantity: pairs of sentence and value}."""
+        found = {name: [] for name in self.key}
+        for sentence, function in self.exercise.mistakes:
+            for name, value in (call(function, self.values) or {}).items():
+                found[name].append((self.filled_in(sentence), value))
+        return found
+
+    @functools.cached_property
+    def _places(self):
+        return self.exercise.places(self.values)
+
+    def filled_in(self, text):
+        """Return a text with the values of this variant in the places of their names; ``{{K}}`` is the letter K."""
+
+        def fill(match):
+            letter, name = match.groups()
+            return "{" + letter + "}" if letter else self._places.get(name, match[0])
+
+        return _PLACE.sub(fill, text)
+
+    def check(self, *alone, **given):
+        """Respond to answers, whatever they are: `check(Kp=2, Ti="3 min")`; a single quantity needs no name.
+
+        Raises nothing: what cannot be judged is said in the response.
+        """
+        names, notes = list(self.key), []
+        if alone and len(names) == len(alone) == 1 and not given:
+            given = {names[0]: alone[0]}
+        elif alone:
+            notes.append(f"give the answers by their names: {_listed(names)}")
+        for name in given:
+            if name not in names:
+                close = difflib.get_close_matches(name, names, n=1)
+                notes.append(
+                    f"{name} is not asked: " + (f"did you mean {close[0]}?" if close else f"asked is {_listed(names)}")
+                )
+        verdicts = tuple(
+            judge(name, kind, given[name], self.mistakes[name]) if name in given else Verdict(name, OPEN, NOT_ANSWERED)
+            for name, kind in self.key.items()
+        )
+        response = Response(self.exercise.heading, verdicts, self.exercise.points, tuple(notes))
+        if any(verdict.status != OPEN for verdict in verdicts):
+            records.note(self.exercise.number, self.student, response.is_right)
+        return response
+
+    @property
+    def statement(self):
+        """The statement in Markdown, with the values of this variant and a list of what is asked."""
+        points = f"{self.exercise.points} point{'' if self.exercise.points == 1 else 's'}"
+        lines = [f"**{self.exercise.heading}** ({points})", ""]
+        lines += [self.filled_in(self.exercise.statement), ""]
+        listed = set()
+        for name, kind in self.key.items():
+            among = getattr(kind, "among", None)
+            lines.append(f"- `{name}`: " + (f"{kind.what}, out of the same list" if among in listed else kind.asked))
+            listed.add(among or name)
+        return "\n".join(lines + self._accuracy())
+
+    def _accuracy(self):
+        """A line on how near the answers must be: what holds for most of them, and then the others by name."""
+        about = {}
+        for name, kind in self.key.items():
+            if kind.accuracy:
+                about.setdefault(kind.accuracy, []).append(f"`{name}`")
+        if not about:
+            return []
+        most, *others = sorted(about, key=lambda accuracy: -len(about[accuracy]))
+        parts = [most, *(", ".join(about[one]) + ": " + one for one in others)]
+        return ["", f"*Accuracy: {'; '.join(parts)}*"]
+
+    def _repr_mimebundle_(self, include=None, exclude=None):
+        return {"text/plain": repr(self), "text/markdown": self.statement}
+
+    def __repr__(self):
+        return self.statement
+
+
+def _listed(names):
+    return ", ".join(map(repr, names)) or "nothing"

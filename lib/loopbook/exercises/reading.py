@@ -1,0 +1,174 @@
+"""Reading formulas that readers give, without running anything of theirs.
+
+Python's grammar reads the text, and what is no arithmetic is refused. SymPy's expressions, and systems of the library
+and of python-control, are read from what they spell.
+"""
+
+import ast
+import difflib
+import math
+
+import numpy as np
+import sympy
+
+LONGEST, MOST_NODES = 4000, 2000
+
+#: What a formula may call, and with how many values.
+ONE_VALUE = (
+    "exp", "log", "ln", "sqrt", "sin", "cos", "tan", "sinh", "cosh", "tanh", "asin", "acos", "atan",
+    "arcsin", "arccos", "arctan", "Abs", "abs", "sign", "re", "im",
+)  # fmt: skip
+SEVERAL_VALUES = ("Min", "Max", "min", "max", "Heaviside", "Piecewise")
+CONSTANTS = {"pi": np.pi, "E": np.e, "e": np.e, "I": 1j, "j": 1j}
+
+_ARITHMETIC = (
+    ast.BinOp, ast.UnaryOp, ast.Call, ast.Compare, ast.Tuple, ast.Load,
+    ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Pow, ast.USub, ast.UAdd,
+    ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.BitAnd, ast.BitOr,
+)  # fmt: skip
+
+
+class Unreadable(ValueError):  # noqa: N818 - it is what became of the answer
+    """An answer that cannot be judged; the sentence says why and what is expected."""
+
+
+def parsed(text, letters):
+    """Return the syntax tree of a formula in some letters: arithmetic, known functions, and nothing else.
+
+    Raises Unreadable in a sentence.
+
+    >>> parsed("K/(T*s + 1)", ["s"])
+    Traceback (most recent call last):
+    loopbook.exercises.reading.Unreadable: 'K' is no letter of this answer: expected an expression in s
+    """
+    source = " ".join(text.split()).replace("^", "**")
+    expected = "expected an expression" + (f" in {listed(letters)}" if letters else "")
+    if not source:
+        raise Unreadable(f"the text is empty: {expected}")
+    if len(source) > LONGEST:
+        raise Unreadable(f"the text has {len(source)} characters: expected at most {LONGEST}")
+    try:
+        tree = ast.parse(source, mode="eval").body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        raise Unreadable(f"{shortened(source)} cannot be read: {expected}, with * for every product") from None
+    nodes = list(ast.walk(tree))
+    if len(nodes) > MOST_NODES:
+        raise Unreadable("the expression is very long: expected a simpler one")
+    calls = [node for node in nodes if isinstance(node, ast.Call)]
+    called = {id(call.func) for call in calls}
+    pieces = {id(piece) for call in calls for piece in call.args if getattr(call.func, "id", "") == "Piecewise"}
+    conditions = {id(piece.elts[-1]) for call in calls for piece in call.args if isinstance(piece, ast.Tuple)}
+    for node in nodes:
+        match node:
+            case ast.Constant(bool()) if id(node) in conditions:
+                pass
+            case ast.Constant():
+                _check_number(node.value, expected)
+            case ast.Name() if id(node) in called:
+                _check_function(node.id, letters)
+            case ast.Name():
+                _check_letter(node.id, letters)
+            case ast.Call():
+                _check_call(node)
+            case ast.Tuple() if id(node) not in pieces or len(node.elts) != 2:
+                raise Unreadable("there is a comma between two values: expected one expression, with a decimal point")
+            case ast.Compare() if len(node.ops) > 1:
+                raise Unreadable(
+                    f"{shortened(ast.unparse(node))} compares twice: expected one comparison, or & between two"
+                )
+            case _ if not isinstance(node, _ARITHMETIC):
+                what = ast.unparse(node) if isinstance(node, ast.expr) else source
+                raise Unreadable(f"{shortened(what)} cannot be read: {expected}")
+    return tree
+
+
+def _check_number(value, expected):
+    if type(value) not in (int, float, complex):
+        raise Unreadable(f"{shortened(repr(value))} is no number: {expected}")
+    try:
+        in_range = np.isfinite(complex(value))
+    except OverflowError:
+        in_range = False
+    if not in_range:
+        raise Unreadable("a number in the expression is out of range: expected a simpler one")
+
+
+def _check_function(name, letters):
+    known = (*ONE_VALUE, *SEVERAL_VALUES)
+    if name in letters or name in CONSTANTS:
+        raise Unreadable(f"{name} stands before a bracket: a product needs its *")
+    if name not in known:
+        close = difflib.get_close_matches(name, known, n=1)
+        hint = f"did you mean {close[0]}?" if close else "expected exp, log, sqrt, sin ..."
+        raise Unreadable(f"{name!r} is no function that is known here: {hint}")
+
+
+def _check_letter(name, letters):
+    if name in letters or name in CONSTANTS:
+        return
+    if not letters:
+        raise Unreadable(f"{name!r} stands for no number: expected a value without letters")
+    close = [letter for letter in letters if letter.casefold().replace("_", "") == name.casefold().replace("_", "")]
+    hint = f"did you mean {close[0]}?" if close else f"expected an expression in {listed(letters)}"
+    raise Unreadable(f"{name!r} is no letter of this answer: {hint}")
+
+
+def _check_call(node):
+    if not isinstance(node.func, ast.Name) or node.keywords or any(isinstance(one, ast.Starred) for one in node.args):
+        raise Unreadable(f"{shortened(ast.unparse(node))} cannot be read: expected one function of a value")
+    if node.func.id in ONE_VALUE and len(node.args) != 1:
+        raise Unreadable(f"{node.func.id} has {len(node.args)} arguments: expected one")
+    if node.func.id == "Piecewise" and not all(isinstance(piece, ast.Tuple) for piece in node.args):
+        raise Unreadable(f"{shortened(ast.unparse(node))} cannot be read: expected pairs of a value and a condition")
+    if not node.args:
+        raise Unreadable(f"{node.func.id} has no arguments: expected at least one")
+
+
+def spelled(given):
+    """Return the text of a formula that was given as text, number, expression or system; raises Unreadable."""
+    if isinstance(given, str):
+        return given
+    if isinstance(given, bool | np.bool_):
+        raise Unreadable(f"{given} is a truth value: expected an expression")
+    try:
+        expression = _expression(given)
+    except Exception:  # objects of others may fail in any way
+        expression = None
+    if expression is None:
+        raise Unreadable("this is neither an expression nor a text that spells one")
+    nodes = zip(sympy.preorder_traversal(expression), range(MOST_NODES + 1), strict=False)
+    if sum(1 for _ in nodes) > MOST_NODES:
+        raise Unreadable("the expression is very long: expected a simpler one")
+    return str(expression)
+
+
+def _expression(given):
+    """The expression in SymPy that an object is or has; None where there is none."""
+    if isinstance(given, sympy.Expr):
+        return None if given.is_Matrix else given
+    if isinstance(getattr(given, "expr", None), sympy.Expr):
+        return given.expr
+    if hasattr(given, "num") and hasattr(given, "den"):
+        (above,), (below,) = given.num, given.den  # one output
+        (above,), (below,) = above, below  # one input
+        s = sympy.Symbol("s")
+        return sympy.Poly([float(x) for x in above], s).as_expr() / sympy.Poly([float(x) for x in below], s).as_expr()
+    if np.ndim(given) == 0:
+        value = complex(given)
+        return sympy.sympify(value if value.imag else value.real) if math.isfinite(abs(value)) else None
+    return None
+
+
+def shortened(text, length=60):
+    """The text, or its beginning."""
+    return text if len(text) <= length else text[: length - 3] + "..."
+
+
+def listed(names):
+    """Names in a sentence.
+
+    >>> listed(["K", "T", "s"])
+    'K, T and s'
+    """
+    *others, last = names
+    return f"{', '.join(others)} and {last}" if others else last

@@ -1,0 +1,80 @@
+"""Which exercises are right so far: a small file beside the notebook."""
+
+import html
+import json
+import os
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+
+FILE = Path(".loopbook-progress.json")
+#: Set to "off", this variable of the environment keeps the file from being read and written, as in tests.
+SWITCH = "LOOPBOOK_PROGRESS"
+
+
+def note(number, student, is_right):
+    """Note that an exercise was answered, and whether all of it was right; what was right once stays so."""
+    if os.environ.get(SWITCH) == "off":
+        return
+    known = load()
+    key = _key(number, student)
+    if known.get(key) is True or known.get(key) is is_right:
+        return
+    _store(known | {key: bool(is_right)})
+
+
+def load():
+    """Return what the file says: {exercise: whether it was right}. A damaged file is ignored, with a warning."""
+    if os.environ.get(SWITCH) == "off" or not FILE.exists():
+        return {}
+    try:
+        stored = json.loads(FILE.read_text(encoding="utf-8"))["answered"]
+        if not (isinstance(stored, dict) and all(isinstance(right, bool) for right in stored.values())):
+            raise ValueError("not a table of exercises")
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        warnings.warn(f"{FILE} is damaged and ignored; your next answer begins a new one", stacklevel=3)
+        return {}
+    return stored
+
+
+def _store(known):
+    """Replace the file in one step, so that an interruption leaves the old one or the new one."""
+    partial = FILE.with_name(f"{FILE.name}.{os.getpid()}")
+    try:
+        partial.write_text(json.dumps({"answered": known}, indent=1, sort_keys=True) + "\n", encoding="utf-8")
+        partial.replace(FILE)
+    except OSError as problem:
+        warnings.warn(f"the progress cannot be stored in {FILE}: {problem.strerror}", stacklevel=4)
+
+
+def _key(number, student):
+    return number if student is None else f"{number} {student}"
+
+
+@dataclass(frozen=True)
+class Progress:
+    """The exercises of a chapter: pairs of a heading and True, False or, where not answered yet, None."""
+
+    rows: tuple
+
+    @classmethod
+    def of(cls, exercises, student=None):
+        """The progress in these exercises."""
+        known = load()
+        return cls(tuple((one.heading, known.get(_key(one.number, student))) for one in exercises))
+
+    @property
+    def right(self):
+        """How many are right."""
+        return sum(right is True for _, right in self.rows)
+
+    def __repr__(self):
+        return "\n".join([f"{self.right} of {len(self.rows)} right", *(f"  {_mark(r)} {h}" for h, r in self.rows)])
+
+    def _repr_html_(self):
+        rows = "".join(f"<div>{_mark(right)} {html.escape(heading)}</div>" for heading, right in self.rows)
+        return f'<div role="status"><strong>{self.right} of {len(self.rows)} right</strong>{rows}</div>'
+
+
+def _mark(right):
+    return {True: "✓", False: "✗", None: "·"}[right]

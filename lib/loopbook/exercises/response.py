@@ -1,0 +1,98 @@
+"""The response to the answers of an exercise, as a small coloured box or as text."""
+
+import html
+import re
+from dataclasses import dataclass
+
+from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
+
+#: The MIME type under which a stored notebook carries the response as data.
+MIME_TYPE = "application/vnd.loopbook.response+json"
+
+#: A sign and a colour for each status, as in the ledger's tables.
+MARKS = {
+    RIGHT: ("✓", "#00664d"),
+    MISTAKE: ("≈", "#8a5a00"),
+    WRONG: ("✗", "#b33c00"),
+    UNJUDGED: ("?", "#5a5a5a"),
+    OPEN: ("…", "#5a5a5a"),
+}
+
+
+@dataclass(frozen=True)
+class Response:
+    """The verdicts on all asked quantities of an exercise, and the points they bring.
+
+    Attributes:
+        heading: number and title of the exercise.
+        verdicts: one for each asked quantity, in their order.
+        points: of the whole exercise; each asked quantity brings the same part.
+        notes: sentences on the answers as a whole.
+    """
+
+    heading: str
+    verdicts: tuple
+    points: int
+    notes: tuple = ()
+
+    @property
+    def is_right(self):
+        """Whether all of it is right."""
+        return all(verdict.is_right for verdict in self.verdicts)
+
+    @property
+    def earned(self):
+        """The points earned."""
+        return self.points * sum(verdict.is_right for verdict in self.verdicts) / len(self.verdicts)
+
+    @property
+    def _status(self):
+        """The status that the whole box shows."""
+        statuses = {verdict.status for verdict in self.verdicts}
+        order = (WRONG, MISTAKE, UNJUDGED, OPEN, RIGHT)
+        return next(status for status in order if status in statuses)
+
+    @property
+    def _sum(self):
+        right = sum(verdict.is_right for verdict in self.verdicts)
+        if all(verdict.status == OPEN for verdict in self.verdicts):
+            return "not answered yet"
+        if self.is_right:
+            return "right"
+        return f"{right} of {len(self.verdicts)} right" if len(self.verdicts) > 1 else "not right yet"
+
+    @property
+    def data(self):
+        """The response as JSON data."""
+        verdicts = [{"name": v.name, "status": v.status, "says": v.says} for v in self.verdicts]
+        return {"exercise": self.heading, "right": self.is_right, "verdicts": verdicts}
+
+    def __repr__(self):
+        lines = [f"{MARKS[self._status][0]} {self.heading}: {self._sum}"]
+        lines += [f"  {MARKS[v.status][0]} {v.name}: {v.says}" for v in self.verdicts]
+        return "\n".join([*lines, *(f"  {note}" for note in self.notes)])
+
+    def _repr_html_(self):
+        mark, colour = MARKS[self._status]
+        box = f"border-left: 4px solid {colour}; background: {colour}14; padding: 0.4em 0.8em; margin: 0.3em 0"
+        lines = [
+            f'<div role="status" style="{box}">',
+            f'<strong><span style="color: {colour}">{mark}</span> {_escape(self.heading)}: {self._sum}</strong>',
+        ]
+        for verdict in self.verdicts:
+            mark, colour = MARKS[verdict.status]
+            lines.append(
+                f'<div><span style="color: {colour}">{mark}</span> <code>{_escape(verdict.name)}</code>: '
+                f"{_escape(verdict.says)}</div>"
+            )
+        lines += [f"<div>{_escape(note)}</div>" for note in self.notes]
+        return "\n".join([*lines, "</div>"])
+
+    def _repr_mimebundle_(self, include=None, exclude=None):
+        return {"text/plain": repr(self), "text/html": self._repr_html_(), MIME_TYPE: self.data}
+
+
+def _escape(text):
+    """Text as HTML, where a formula between two dollar signs stays one, and a single dollar sign is one."""
+    text = html.escape(text, quote=False)
+    return text if len(re.findall(r"\$", text)) % 2 == 0 else text.replace("$", "<span>$</span>")

@@ -1,0 +1,110 @@
+"""Units: what an answer means in the unit that is asked, and in which other unit it may have been meant."""
+
+import functools
+import re
+
+#: Units that are taken for one another.
+FAMILIES = (
+    ("s", "min", "h", "ms", "d"),
+    ("m", "cm", "mm"),
+    ("kg", "g", "t"),
+    ("m³", "L", "mL"),
+    ("mol", "kmol"),
+    ("Pa", "kPa", "bar"),
+    ("W", "kW", "MW"),
+    ("J", "kJ", "MJ"),
+    ("A", "mA"),
+    ("V", "mV"),
+    ("rad", "deg"),
+)
+_PART = re.compile(r"[^\W\d_]+³?|%")
+_READABLE = re.compile(r"(1\s*/)?[^\W\d_²³%°]*[\w\s%°·*/()²³⁻¹^-]*")
+_LONGEST = 40
+
+
+def is_unit(text):
+    """Whether a text is a unit, as "m³/s", "%/K", "1/min" or "kJ/(kg K)"; nothing is one of them.
+
+    >>> [is_unit(text) for text in ("kg/min", "°C", "%", "", "apples", "s^99")]
+    [True, True, True, True, False, False]
+    """
+    try:
+        _parsed(text)
+    except ValueError:
+        return False
+    return True
+
+
+def convert(value, unit, to):
+    """Return a value in another unit.
+
+    A turn is not forgotten: 1 Hz is 2 pi rad/s. Where a temperature stands alone it is one, not a difference.
+
+    Raises ValueError where one of the two is no unit, or they measure different quantities.
+
+    >>> convert(0.5, "min", to="s"), convert(20, "°C", to="K"), convert(3, "%", to="")
+    (30.0, 293.15, 0.03)
+    >>> convert(2, "kg", to="s")
+    Traceback (most recent call last):
+    ValueError: kg is no unit of the same quantity as s
+    """
+    import pint
+
+    if "Hz" in unit + to and re.search("rad|deg", unit + to):
+        unit, to = unit.replace("Hz", "turn/s"), to.replace("Hz", "turn/s")
+    try:
+        return float(_registry().Quantity(float(value), _parsed(unit)).to(_parsed(to)).magnitude)
+    except pint.DimensionalityError:
+        raise ValueError(f"{unit or 'a number without unit'} is no unit of the same quantity as {to or 1}") from None
+
+
+def neighbours(unit):
+    """Return the units in which a value may have been meant: {unit: what 1 of the asked unit is in it, or a function}.
+
+    One part of the unit is exchanged for another of its family; percent and fraction, °C and K, Hz and rad/s, too.
+
+    >>> {name: round(in_it(30), 3) for name, in_it in neighbours("s").items()}
+    {'min': 0.5, 'h': 0.008, 'ms': 30000.0, 'd': 0.0}
+    """
+    names = []
+    for part in _PART.finditer(unit):
+        for family in FAMILIES:
+            if part[0] in family:
+                names += [unit[: part.start()] + other + unit[part.end() :] for other in family if other != part[0]]
+    if unit in ("", "%"):
+        names.append("%" if unit == "" else "")
+    elif unit.startswith("%/"):
+        names.append("1" + unit.removeprefix("%"))
+    elif unit.endswith("/%"):
+        names.append(unit.removesuffix("/%"))
+    names += {"°C": ["K"], "K": ["°C"], "Hz": ["rad/s"], "rad/s": ["Hz"]}.get(unit, [])
+    return {name: functools.partial(convert, unit=unit, to=name) for name in names if _compatible(unit, name)}
+
+
+def _compatible(unit, other):
+    try:
+        convert(1, unit, other)
+    except ValueError:
+        return False
+    return unit != other
+
+
+@functools.cache
+def _registry():
+    import pint
+
+    return pint.UnitRegistry(cache_folder=None)
+
+
+@functools.lru_cache(maxsize=1000)
+def _parsed(text):
+    # a number in a unit is an exponent, of one digit
+    sound = isinstance(text, str) and len(text) <= _LONGEST and _READABLE.fullmatch(text)
+    if not sound or re.search(r"\d\d|\*\*\*|\^\^", text):
+        raise ValueError(f"{text!r} is no unit: expected one such as 's', 'kg/min' or '%/K'")
+    if text.strip() != "°C":
+        text = text.replace("°C", "delta_degC")
+    try:
+        return _registry().parse_units(text)
+    except Exception:  # Pint fails in as many ways as a text can be no unit
+        raise ValueError(f"{text!r} is no unit: expected one such as 's', 'kg/min' or '%/K'") from None

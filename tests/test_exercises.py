@@ -1,0 +1,294 @@
+"""The exercise bank: every exercise, in the reference variant and in 200 others."""
+
+import functools
+import math
+
+import numpy as np
+import pytest
+import sympy
+
+from loopbook.exercises import bank, kinds
+from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
+from loopbook.exercises.parameters import call
+from loopbook.pid import PID
+
+VARIANTS = 200
+
+EXERCISES = [
+    pytest.param(one, id=f"{name}-{one.number}")
+    for chapter, name in bank.chapters().items()
+    for one in bank.exercises(chapter).values()
+]
+each_exercise = pytest.mark.parametrize("exercise", EXERCISES)
+
+
+# Answers of every kind: the key in other forms, and wrong answers.
+
+
+@functools.singledispatch
+def key_as_given(kind):
+    """The key as a reader might give it."""
+    return kind.key
+
+
+@key_as_given.register
+def _(kind: kinds.Poles):
+    return [complex(value) for value in kind.key]
+
+
+@key_as_given.register
+def _(kind: kinds.Expression):
+    return kind.expr
+
+
+@key_as_given.register
+def _(kind: kinds.Design):
+    return key_as_given(kind.example)
+
+
+@functools.singledispatch
+def other_forms(kind):
+    """At least three other forms of the key."""
+    raise NotImplementedError(kind)
+
+
+@other_forms.register
+def _(kind: kinds.Number):
+    x = kind.key
+    yield np.float64(x)
+    yield repr(x)
+    yield [sympy.Float(x, 17)]
+    yield f"{x!r} {kind.unit}"
+
+
+@other_forms.register
+def _(kind: kinds.Numbers):
+    yield kind.key.tolist()
+    yield sympy.Matrix(kind.key)
+    yield np.array([repr(float(x)) for x in kind.key.ravel()]).reshape(kind.key.shape)
+    yield kind.key * (1 + kind.within / 2)
+
+
+@other_forms.register
+def _(kind: kinds.Poles):
+    values = [complex(value) for value in kind.key]
+    yield values[::-1]
+    yield np.array(values)
+    yield {value: values.count(value) for value in values}
+    yield [sympy.Float(z.real) + sympy.I * sympy.Float(z.imag) for z in values]
+
+
+@other_forms.register
+def _(kind: kinds.Expression):
+    yield str(kind.expr)
+    yield sympy.expand(kind.expr)
+    yield sympy.together(kind.expr)
+    yield f"({kind.expr})*(1 + 2/3) - 2*({kind.expr})/3"
+    plain = {symbol: sympy.Symbol(symbol.name) for symbol in kind.expr.free_symbols}  # letters of the reader's own
+    yield kind.expr.xreplace(plain)
+
+
+@other_forms.register
+def _(kind: kinds.Settings):
+    pid = kind.key
+    times = {"Ti": pid.Ti, "Td": pid.Td, "Tf": pid.Tf}
+    yield {"Kp": pid.Kp, **times} if pid.form == "parallel" or kind.form == "serial" else pid
+    yield PID(float(pid.Kp), **{name: x if x == sympy.oo else float(x) for name, x in times.items()}, form=pid.form)
+    yield PID(pid.Kp * (1 + kind.within / 2), **times, form=pid.form)
+
+
+@other_forms.register
+def _(kind: kinds.Word):
+    yield kind.key.upper()
+    yield kind.key.capitalize()
+    yield f"  {kind.key} "
+
+
+@other_forms.register
+def _(kind: kinds.Words):
+    yield tuple(kind.key)
+    yield ", ".join(kind.key)
+    yield [word.upper() for word in kind.key]
+
+
+@other_forms.register
+def _(kind: kinds.Design):
+    example = kind.example
+    yield from (form for form in other_forms(example) if kind.agrees(kind.read(form)[0]))
+
+
+@functools.singledispatch
+def wrong_answers(kind):
+    """Three wrong answers."""
+    raise NotImplementedError(kind)
+
+
+@wrong_answers.register
+def _(kind: kinds.Number):
+    yield from (-kind.key - 1, 1.7 * kind.key + 1, 0.3 * kind.key - 2)
+
+
+@wrong_answers.register
+def _(kind: kinds.Numbers):
+    yield kind.key + np.max(np.abs(kind.key)) + 1
+    yield 1.7 * kind.key + 1
+    yield 0.4 * kind.key - 3
+
+
+@wrong_answers.register
+def _(kind: kinds.Poles):
+    yield [*kind.key, -1]
+    yield 1.3 * kind.key + 1
+    yield kind.key[1:] if len(kind.key) > 1 else [-77.7]
+
+
+@wrong_answers.register
+def _(kind: kinds.Expression):
+    yield 2.5 * kind.expr
+    yield -3 * kind.expr
+    yield (kind.expr + 7) * 5
+
+
+@wrong_answers.register
+def _(kind: kinds.Settings):
+    pid = kind.key
+    yield PID(1.5 * pid.Kp, pid.Ti, pid.Td, pid.Tf, pid.form)
+    yield PID(pid.Kp, 77 if pid.Ti == sympy.oo else 1.5 * pid.Ti, pid.Td, pid.Tf, pid.form)
+    yield PID(pid.Kp / 3, pid.Ti, pid.Td + 5, pid.Tf, pid.form)
+
+
+@wrong_answers.register
+def _(kind: kinds.Word):
+    yield from [word for word in kind.among if word != kind.key][:3]
+
+
+@wrong_answers.register
+def _(kind: kinds.Words):
+    yield [word for word in kind.among if word not in kind.key]
+    yield kind.key[1:]
+    yield [*kind.key, kind.among[-1] if kind.among[-1] not in kind.key else kind.among[0]] if not kind.ordered else []
+
+
+@wrong_answers.register
+def _(kind: kinds.Design):
+    yield from (form for form in wrong_answers(kind.example) if not kind.agrees(kind.read(form)[0]))
+
+
+NOT_TO_BE_JUDGED = {
+    "None": None, "ellipsis": ..., "NaN": math.nan, "infinite": math.inf, "a text": "about this much",
+    "unclosed": "2*(s", "another letter": "xyzzy + 1", "an object": object(), "a type": dict, "empty list": [],
+    "nested": [[1, 2], [3]], "truth": True, "code": "__import__('os').getcwd()", "a set": {"a", 1}, "bytes": b"1",
+    "array of objects": np.array([None, object()]), "a failing function": lambda _: 1 / 0,
+}  # fmt: skip
+
+
+# The reference variant.
+
+
+@each_exercise
+def test_the_key_is_right_in_every_form(exercise):
+    question = exercise.question()
+    given = {name: key_as_given(kind) for name, kind in question.key.items()}
+    assert question.check(**given).is_right, question.check(**given)
+    for name, kind in question.key.items():
+        forms = list(other_forms(kind))
+        assert len(forms) >= (1 if isinstance(kind, kinds.Design) else 3)
+        for form in forms:
+            verdict = _verdict(question, name, form)
+            assert verdict.status == RIGHT, f"{form!r}: {verdict}"
+
+
+@each_exercise
+def test_wrong_answers_are_wrong_and_quickly_so(exercise):
+    question = exercise.question()
+    for name, kind in question.key.items():
+        answers = list(wrong_answers(kind))
+        assert answers
+        assert len(answers) >= 3 or isinstance(kind, kinds.Word | kinds.Design)
+        for answer in answers:
+            assert _verdict(question, name, answer).status in (WRONG, MISTAKE), f"{name} = {answer!r}"
+
+
+@each_exercise
+def test_an_answer_that_cannot_be_judged_says_what_is_expected(exercise):
+    question = exercise.question()
+    for label, answer in NOT_TO_BE_JUDGED.items():
+        response = question.check(**dict.fromkeys(question.key, answer))
+        for verdict in response.verdicts:
+            assert verdict.status in (UNJUDGED, OPEN) or label in ("truth", "empty list"), f"{label}: {verdict}"
+            assert verdict.says
+            assert "\n" not in verdict.says
+        assert repr(response)
+        assert response._repr_html_()
+
+
+@each_exercise
+def test_each_mistake_is_named(exercise):
+    """In the reference variant, or where it does not occur there in one of the others."""
+    students = [None, *(f"student {k}" for k in range(VARIANTS))]
+    unseen = {function: sentence for sentence, function in exercise.mistakes}
+    for student in students:
+        question = exercise.question.__wrapped__(exercise, student)
+        for function, sentence in list(unseen.items()):
+            found = call(function, question.values)
+            for name, wrong in (found or {}).items():
+                verdict = _verdict(question, name, wrong)
+                assert verdict.status == MISTAKE, f"{name} = {wrong}: {verdict}"
+                if verdict.says == question.filled_in(sentence):
+                    unseen.pop(function, None)
+        if not unseen:
+            return
+    assert not unseen, "a mistake is never named"
+
+
+@each_exercise
+def test_the_statement_reads_well(exercise):
+    text = exercise.question().statement
+    assert text.count("$") % 2 == 0
+    assert "{" not in text.replace("\\", "") or "$" in text
+    for name in exercise.parameters:
+        assert "{" + name + "}" in exercise.statement or exercise.shown.__name__ == "_", f"{name} is never shown"
+    for name, kind in exercise.question().key.items():
+        what = kind.example.what if isinstance(kind, kinds.Design) else kind.what
+        assert what not in ("the value", name), f"{name} needs words for what it is"
+
+
+def _verdict(question, name, answer):
+    (verdict,) = [one for one in question.check(**{name: answer}).verdicts if one.name == name]
+    return verdict
+
+
+# Many variants.
+
+
+@each_exercise
+def test_variants(exercise):
+    seen = set()
+    for k in range(VARIANTS):
+        question = exercise.question.__wrapped__(exercise, f"student {k}")
+        seen.add(tuple(map(str, question.values.values())))
+        for name, kind in question.key.items():
+            assert _finite(kind), f"the key of {name} is {kind.key} for {question.values}"
+            given = key_as_given(kind)
+            answer, _ = kind.read(given)
+            assert kind.agrees(answer), f"the key of {name} fails for {question.values}"
+            for sentence, wrong in question.mistakes[name]:
+                answer, _ = kind.read(wrong)
+                assert not kind.agrees(answer), f"{name} = {wrong} passes for {question.values}: {sentence}"
+    assert len(seen) >= 8, "hardly any two variants differ"
+
+
+def _finite(kind):
+    match kind:
+        case kinds.Design():
+            return _finite(kind.example)
+        case kinds.Number() | kinds.Numbers() | kinds.Poles():
+            return bool(np.all(np.isfinite(kind.key)))
+        case kinds.Settings():
+            return kind.key.Kp.is_finite
+        case kinds.TimeFunction() if isinstance(kind.key, np.ndarray):
+            return bool(np.all(np.isfinite(kind.key)))
+        case kinds.Expression():
+            # a dead time leaves the range of decimal numbers where s is large
+            return bool(np.mean(np.isfinite(kind.key(**kind.points()))) > 0.3)
+    return True

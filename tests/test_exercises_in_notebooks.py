@@ -1,0 +1,99 @@
+"""The exercises in the stored notebooks: each is asked in its chapter, unanswered, and solved in its solution."""
+
+import ast
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+import hygiene
+from loopbook.exercises import bank
+from loopbook.exercises.judging import OPEN
+
+ROOT = Path(__file__).parents[1]
+MIME_TYPE = "application/vnd.loopbook.response+json"
+CHAPTERS = [pytest.param(chapter, name[2:], id=name[2:]) for chapter, name in bank.chapters().items()]
+each_chapter = pytest.mark.parametrize(("chapter", "name"), CHAPTERS)
+
+
+def cells(folder, name):
+    return json.loads((ROOT / folder / f"{name}.ipynb").read_text(encoding="utf-8"))["cells"]
+
+
+def responses(folder, name):
+    """The responses stored in a notebook, in their order."""
+    return [
+        output["data"][MIME_TYPE]
+        for cell in cells(folder, name)
+        for output in cell.get("outputs", [])
+        if MIME_TYPE in output.get("data", {})
+    ]
+
+
+def calls(folder, name):
+    """What a notebook does with exercises: pairs of a number and the answers, None where it shows the statement."""
+    found = []
+    for cell in cells(folder, name):
+        if cell["cell_type"] != "code":
+            continue
+        for statement in ast.parse("".join(cell["source"])).body:
+            match statement:
+                case ast.Expr(ast.Call(ast.Name("exercise"), [ast.Constant(number)])):
+                    found.append((number, None))
+                case ast.Expr(ast.Call(ast.Attribute(ast.Call(ast.Name("exercise"), [ast.Constant(number)]), "check"))):
+                    found.append((number, {word.arg: ast.unparse(word.value) for word in statement.value.keywords}))
+    return found
+
+
+def test_every_chapter_has_exercises():
+    assert {name[2:] for name in bank.chapters().values()} == hygiene.NAMES
+
+
+@each_chapter
+def test_a_chapter_has_at_least_four_numbered_in_their_order(chapter, name):
+    numbers = list(bank.exercises(chapter))
+    assert len(numbers) >= 4
+    assert numbers == [f"{chapter}.{k}" for k in range(1, len(numbers) + 1)]
+
+
+@each_chapter
+def test_a_chapter_asks_each_of_its_exercises_and_answers_none(chapter, name):
+    expected = []
+    for number, one in bank.exercises(chapter).items():
+        expected += [(number, None), (number, dict.fromkeys(one.question().key, "..."))]
+    assert calls("chapters", name) == expected
+    assert {verdict["status"] for response in responses("chapters", name) for verdict in response["verdicts"]} == {OPEN}
+    sources = ["".join(cell["source"]) for cell in cells("chapters", name)]
+    assert f'progress("{chapter}")' in sources
+    headings = [source for source in sources if source.startswith("## ")]
+    assert any(heading.startswith("## Exercises\n") for heading in headings[-2:])
+
+
+@each_chapter
+def test_a_solution_solves_each_exercise(chapter, name):
+    exercises = bank.exercises(chapter)
+    solved = [response["exercise"] for response in responses("solutions", name) if response["right"] is True]
+    assert solved == [one.heading for one in exercises.values()]
+    assert all(response["right"] for response in responses("solutions", name))
+    shown = [number for number, answers in calls("solutions", name) if answers is None]
+    assert shown == list(exercises)
+    headings = re.findall(r"^## (Exercise .*)", "\n".join(map(_text, cells("solutions", name))), re.MULTILINE)
+    assert headings == [one.heading for one in exercises.values()]
+
+
+@each_chapter
+def test_a_solution_does_not_ask_for_the_key(chapter, name):
+    code = "\n".join("".join(cell["source"]) for cell in cells("solutions", name) if cell["cell_type"] == "code")
+    attributes = {node.attr for node in ast.walk(ast.parse(code)) if isinstance(node, ast.Attribute)}
+    assert not attributes & {"key", "mistakes", "criteria"}
+    assert "bank" not in code
+
+
+@each_chapter
+def test_a_chapter_does_not_need_the_solutions(chapter, name):
+    assert "solutions" not in "\n".join(map(_text, cells("chapters", name)))
+
+
+def _text(cell):
+    return "".join(cell["source"])
