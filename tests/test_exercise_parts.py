@@ -264,6 +264,7 @@ GAIN = number(0.25, "", "the gain")
 ANGLE = number(math.pi / 3, "rad", "the phase margin")
 H = transfer_function(3 * sympy.exp(-2 * s) / (5 * s + 1))
 Y = time_function(1 - sympy.exp(-t / 5), until=25, what="the response")
+LONG = time_function(1 - sympy.exp(-t / 5) + sympy.exp(-50 * t) / 300, until=2500, what="the response")
 P = poles([-1 + 2j, -1 - 2j, -3])
 A = numbers([[0, 1], [-2, -3]], what="the matrix")
 STEPS = words(["S2", "S4"], ["S1", "S2", "S3", "S4"], "the active steps")
@@ -271,9 +272,8 @@ ROUTE = words(["fill", "heat", "empty"], ["fill", "heat", "empty", "wait"], "the
 ACTION = word("reverse", ["reverse", "direct"], "the action")
 TRUE = word("yes", ["yes", "no"], "whether it is stable")
 OFFSET = design(number(2, what="a gain"), criterion("the offset", lambda K: 1 / (1 + K), below=0.4))
-DAMPER = design(
-    number(2000, "g", "the mass"), criterion("the mass", lambda mass: mass, above=1500, below=2500, unit="g")
-)
+
+DAMPER = design(number(2000, "g", "the mass"), criterion("the mass", lambda m: m, above=1500, below=2500, unit="g"))
 STABLE = design(
     settings(PID(1)),
     criterion("the loop is stable", lambda pid: pid.Kp < 3),
@@ -324,6 +324,9 @@ JUDGED = [
     (Y, lambda time: 1 - math.exp(-time / 5), RIGHT, "right"),
     (Y, sympy.exp(-t / 5) - 1, MISTAKE, "sign"),
     (Y, "exp(-0.2*t)", WRONG, "the response"),
+    (Y, "1 - exp(-0.2*t) + exp(-2000*t)/1e6", RIGHT, "right"),
+    (LONG, "1 - exp(-t)*exp(0.8*t)", RIGHT, "right"),
+    (LONG, "0*t", WRONG, "the response"),
     (Y, lambda times: "much", UNJUDGED, "no numbers"),
     (P, [-3, -1 - 2j, -1 + 2j], RIGHT, "right"),
     (P, {-3: 1, -1 - 2j: 1, -1 + 2j: 1}, RIGHT, "right"),

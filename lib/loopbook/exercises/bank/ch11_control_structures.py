@@ -244,7 +244,7 @@ def basin(
     return answers(
         T=number(T, "s", "the time constant of the level"),
         left=number(F / k, "m", "the deviation of the level in the end"),
-        deviation=time_function(F / k * (1 - exp(-t / T)), 5 * T, "m", "the deviation of the level"),
+        deviation=time_function(F / k * (1 - exp(-t / T)), 5 * T, "m", "the deviation for t in s"),
     )
 
 

@@ -52,7 +52,7 @@ def _(letters):
     return {"modifier": "none"} if decode(letters).modifier else {}
 
 
-@tag.mistake("The T comes twice, or as the first letter. Does it mean the same at both places?")
+@tag.mistake("The T is the first letter here. Does it mean the same there as behind another letter?")
 def _(letters):
     return {"functions": ["transmitter", *functions_of(letters)]} if letters == "TIC" else {}
 

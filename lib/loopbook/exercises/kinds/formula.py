@@ -168,8 +168,10 @@ class TimeFunction(Expression):
 
     def agrees(self, answer):
         """Whether the values differ by no more than a fraction of the largest one, or what rounded numbers explain."""
-        expected, found = (one if isinstance(one, np.ndarray) else one(**self.points()) for one in (self.key, answer))
-        allowed = self.within * np.max(np.abs(expected))
-        if isinstance(self.key, Formula):
-            allowed = np.maximum(allowed, formulas.rounding(self.key, expected, self.points(), self.within))
-        return bool(np.all(np.abs(found - expected) <= allowed + 1e-12))
+        values = [one if isinstance(one, np.ndarray) else one(**self.points()) for one in (self.key, answer)]
+        expected, found = np.broadcast_arrays(*values, self.times)[:2]
+        allowed = np.maximum(self.within * np.nanmax(np.abs(expected)), self._rounding(expected))
+        return formulas.near_everywhere(expected, found, allowed + 1e-12)
+
+    def _rounding(self, expected):
+        return formulas.rounding(self.key, expected, self.points(), self.within)
