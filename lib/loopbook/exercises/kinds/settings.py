@@ -42,7 +42,7 @@ class Settings(Kind):
     @property
     def expected(self):
         """A controller."""
-        return f"a controller such as PID(Kp=1, Ti=10), {'times in ' + self.time}"
+        return f"a controller such as PID(1, Ti=10), or its numbers as [1, 10], with times in {self.time}"
 
     def read(self, given):
         """Return a `PID` of exact numbers; from a PID, a dictionary of its settings, or a list Kp, Ti, Td, Tf."""
