@@ -1,22 +1,30 @@
 """What exercises are made of: units, formulas, parameters, kinds of answers, judging, responses, progress."""
 
+import itertools
 import json
 import math
+import os
 import subprocess
 import sys
 import time
 import types
+from decimal import Decimal
+from fractions import Fraction
 
 import control
+import mpmath
 import numpy as np
+import pint
 import pytest
+import scipy.signal
 import sympy
+import sympy.physics.control
 from hypothesis import given
 from hypothesis import strategies as st
 
 from loopbook import exercises, s, t
 from loopbook.deadtime import System
-from loopbook.exercises import bank, formulas, records, units
+from loopbook.exercises import bank, formulas, judging, records, units
 from loopbook.exercises.authoring import (
     Exercise,
     answers,
@@ -36,9 +44,10 @@ from loopbook.exercises.authoring import (
     words,
 )
 from loopbook.exercises.formulas import Formula
-from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG, judge
+from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG, Verdict, judge
 from loopbook.exercises.limits import limited
 from loopbook.exercises.reading import Unreadable
+from loopbook.exercises.response import Response
 from loopbook.pid import PID
 
 # Units.
@@ -65,7 +74,27 @@ def test_units_convert(value, unit, to, expected):
 
 
 @pytest.mark.parametrize(
-    "text", ["apples", "s**99999", "s^-12", "__import__", "()", "m" * 50, "1/", "s;m", 3, None, "2 s"]
+    "text",
+    [
+        "apples",
+        "s**99999",
+        "s^-12",
+        "__import__",
+        "()",
+        "m" * 50,
+        "1/",
+        "s;m",
+        3,
+        None,
+        "2 s",
+        "m^9^9^9",
+        "(m^9)^9",
+        "m²²²",
+        "%**%",
+        "(m)**(m)",
+        "1 2",
+        "1 m",
+    ],
 )
 def test_what_is_no_unit(text):
     assert not units.is_unit(text)
@@ -207,6 +236,37 @@ def test_other_formulas_do_not(given):
     assert not formulas.agree(KEY, Formula(given, "s"), formulas.points_for("s"), 0.01)
 
 
+def test_a_formula_must_have_values_at_many_points():
+    expected, found = np.ones(10), np.full(10, np.nan)
+    found[:2] = 1
+    assert not formulas.near_everywhere(expected, found, 0.1 * expected)
+    found[:4] = 1
+    assert formulas.near_everywhere(expected, found, 0.1 * expected)
+    nothing = np.full(10, np.nan)
+    assert not formulas.near_everywhere(expected, nothing, 0.1 * expected)
+    assert not formulas.near_everywhere(nothing, nothing, nothing)
+
+
+@pytest.mark.parametrize(
+    ("key", "given"),
+    [
+        ("exp(-3*s)", "exp(-s)*exp(-s)*exp(-s)"),
+        ("exp(-3*s) - exp(-4*s)", "exp(-3*s)*(1 - exp(-s))"),
+        ("s", "(s + 1) - 1"),
+    ],
+)
+def test_an_exact_answer_may_have_another_form(key, given):
+    points = formulas.points_for("s")
+    assert formulas.agree(Formula(key, "s"), Formula(given, "s"), points, within=0)
+    assert not formulas.agree(Formula(key, "s"), Formula(f"({given})*1.0000001", "s"), points, within=0)
+
+
+def test_a_piece_counts_only_where_it_holds():
+    piecewise = Formula("Piecewise((exp(1000*t), t < 0.1), (Min(t, 2), True))", "t")
+    assert piecewise(t=np.array([0.001, 1.0, 5.0])) == pytest.approx([math.e, 1, 2])
+    assert Formula("max(t, 2, 3)", "t")(t=np.array([1.0, 5.0])) == pytest.approx([3, 5])
+
+
 def test_a_system_of_python_control_is_a_formula():
     key = Formula("2/(10*s + 1)", "s")
     assert formulas.agree(key, Formula(control.tf([2], [10, 1]), "s"), formulas.points_for("s"), 0.01)
@@ -226,6 +286,28 @@ def test_the_draws_are_the_same_on_every_machine():
 DRAWN = ["11/2", "11/2", "3", "3"]
 
 
+def test_over_decades_the_values_grow_by_a_ratio():
+    assert [float(value) for value in between(1, 40).values] == [
+        1,
+        1.2,
+        1.5,
+        2,
+        2.5,
+        3,
+        4,
+        5,
+        6,
+        8,
+        10,
+        12,
+        15,
+        20,
+        25,
+        30,
+        40,
+    ]
+
+
 @given(st.floats(1e-3, 1e4), st.floats(1.2, 1e4))
 def test_a_range_has_values_that_a_person_would_choose(low, ratio):
     parameter = between(low, low * ratio)
@@ -241,6 +323,10 @@ def test_a_range_has_values_that_a_person_would_choose(low, ratio):
         (lambda: between(6, 2), "the smaller one first"),
         (lambda: between(2, 6, "apples"), "no unit"),
         (lambda: between(2, 6, step=10), "leaves no choice"),
+        (lambda: between(2, 6, step=0), "the step is 0"),
+        (lambda: between(2, 6, reference=7), "the reference is 7"),
+        (lambda: between(2, 6, reference="many"), "the reference is many"),
+        (lambda: choice("hot", "cold", reference="warm"), "the reference is warm"),
         (lambda: choice("one"), "at least two"),
         (lambda: answers(), "at least one quantity"),
         (lambda: number(2, "apples", "the gain"), "the unit of the gain"),
@@ -273,6 +359,17 @@ ACTION = word("reverse", ["reverse", "direct"], "the action")
 TRUE = word("yes", ["yes", "no"], "whether it is stable")
 OFFSET = design(number(2, what="a gain"), criterion("the offset", lambda K: 1 / (1 + K), below=0.4))
 
+X = sympy.Symbol("x")
+FORM = sympy.sympify("K*T/(K + 1)")
+GAIN_OF_K = expression(FORM, "the gain")
+LAG = transfer_function(3 / (5 * s + 1))
+MINUS = number(-2, "K/%", "the gain")
+FLOW = number(0.5, "m³/s", "the flow")
+OMEGA = number(3, "rad/s", "the frequency")
+ROOM = number(20, "°C", "the temperature")
+DIFFERENCE = number(10, "K", "the rise")
+OFFSET_Y = time_function(60 + 3 * (1 - sympy.exp(-t / 5)), until=25, unit="°C", what="the reading")
+PINT = pint.UnitRegistry(cache_folder=None)
 DAMPER = design(number(2000, "g", "the mass"), criterion("the mass", lambda m: m, above=1500, below=2500, unit="g"))
 STABLE = design(
     settings(PID(1)),
@@ -372,10 +469,133 @@ JUDGED = [
     (ROUTE, {"heat", "fill", "empty"}, UNJUDGED, "a set has no order"),
     (OFFSET, 5, RIGHT, "right"),
     (OFFSET, 1, WRONG, "the offset is 0.5; asked is at most 0.4"),
+    (OFFSET, 1.499, RIGHT, "right"),
+    (OFFSET, 1.49, WRONG, "the offset is 0.4016; asked is at most 0.4"),
     (DAMPER, 2, WRONG, "that would be right in kg; asked: the mass, in g"),
     (STABLE, PID(2), RIGHT, "right"),
     (STABLE, PID(9), WRONG, "asked is that the loop is stable"),
     (STABLE, PID(0.1), WRONG, "the gain is 0.1; asked is at least 0.5"),
+    # as people write numbers and units
+    *(
+        (TI, text, RIGHT, "right")
+        for text in ("2min", "120\N{NO-BREAK SPACE}s", "120\N{THIN SPACE}s", "Ti = 120 s", "= 120")
+    ),
+    *((TI, text, RIGHT, "right") for text in ("1/30 h", "2*60 s", "1.2·10²", "1.2×10^2 s", "2 · 60 s", "120 seconds")),
+    (MINUS, "\N{MINUS SIGN}2 K/%", RIGHT, "right"),
+    (MINUS, "- 2 K/%", RIGHT, "right"),
+    *((FLOW, f"0.5 {unit}", RIGHT, "right") for unit in ("m3/s", "m^3/s", "m**3/s", "m³ s⁻¹", "m³·s⁻¹", "m^3 s-1")),
+    *(
+        (OMEGA, text, RIGHT, "right")
+        for text in ("3 rad/sec", "3/s", "3 1/s", "0.47746 Hz", "28.648 rpm", "3*pi/pi rad/s")
+    ),
+    *((ROOM, f"20 {unit}", RIGHT, "right") for unit in ("°C", "℃", "C", "deg C", "degC")),
+    (DIFFERENCE, "10 K", RIGHT, "right"),
+    (DIFFERENCE, "10 °C", UNJUDGED, "a temperature or a difference"),
+    (DIFFERENCE, "10 degC", UNJUDGED, "a temperature or a difference"),
+    (TI, "2 minutes per second", UNJUDGED, "no unit of the same quantity"),
+    (TI, "10 dozen s", UNJUDGED, "is no number"),
+    (TI, "1 m^9^9^9", UNJUDGED, "is no number"),
+    (TI, "1" * 5000, UNJUDGED, "5000 characters"),
+    (number(2, "%/K", "the gain"), 0.02, MISTAKE, "in 1/K"),
+    (number(2, "K/%", "the gain"), 200, MISTAKE, "in K"),
+    (number(0, "m", "the offset"), 0.005, RIGHT, "right"),
+    (number(0, "m", "the offset"), 0.02, WRONG, "close"),
+    (TI, 120 + 0.01j, UNJUDGED, "complex"),
+    (P, {-3: 30}, UNJUDGED, "cannot occur 30 times"),
+    (H, 3 * s * sympy.exp(-2 * s) / (5 * s + 1), MISTAKE, "factor s too many"),
+    (Y, lambda times: np.where(times < 3, np.nan, 1 - np.exp(-times / 5)), UNJUDGED, "no finite value at some times"),
+    (expression(sympy.Symbol("q_2i") * sympy.Symbol("ζ")), "q_2i*ζ", RIGHT, "right"),
+    (P, ["-3.0", "-1 + 2.0i", "-1 - 2i"], RIGHT, "right"),
+    (PARALLEL, PID(2.5, Ti=10, Td=1.6, form="serial"), WRONG, "not right"),
+    (STEPS, ["S4", "S2", "S2"], RIGHT, "right"),
+    (OFFSET, 1.5, RIGHT, "right"),
+    # as programs give numbers
+    *(
+        (TI, one, RIGHT, "right")
+        for one in (np.array(120), np.float32(120), np.int8(120), np.array("120"), np.array([[120]]))
+    ),
+    *((TI, one, RIGHT, "right") for one in (Fraction(120), Decimal(120), mpmath.mpf(120), {120}, {"a": 120}.values())),
+    *((TI, one, RIGHT, "right") for one in (sympy.Eq(X, 120), {X: 120}, [{X: 120}], sympy.FiniteSet(120), iter([120]))),
+    (TI, PINT.Quantity(2, "min"), RIGHT, "converted from min"),
+    (TI, PINT.Quantity(2, "kg"), UNJUDGED, "no unit of the same quantity"),
+    (GAIN, PINT.Quantity(25, "percent"), RIGHT, "right"),
+    (DIFFERENCE, PINT.Quantity(10, "delta_degC"), RIGHT, "right"),
+    (number(0, "m"), np.ma.masked, UNJUDGED, "missing"),
+    # formulas in other spellings and forms
+    *(
+        (GAIN_OF_K, text, RIGHT, "right")
+        for text in ("y = K*T/(K+1)", "y(t) = K·T/(1 + K)", "K*T÷(K+1)", "K*T/(K−1+2)")
+    ),
+    *((GAIN_OF_K, one, RIGHT, "right") for one in (sympy.Eq(X, FORM), {FORM}, {X: FORM}, np.array(FORM), iter([FORM]))),
+    (expression(sympy.sympify("theta*a**2/tau")), "θ*a²/τ", RIGHT, "right"),
+    (expression(sympy.log(10) * X), "2.302585*x", RIGHT, "right"),
+    (expression(sympy.log(X) / sympy.log(10)), "log10(x)", RIGHT, "right"),
+    (Y, "1 - np.exp(-t/5)", RIGHT, "right"),
+    (Y, sympy.Eq(sympy.Function("y")(t), 1 - sympy.exp(-t / 5)), RIGHT, "right"),
+    (LAG, control.ss([[-0.2]], [[1]], [[0.6]], [[0]]), RIGHT, "right"),
+    (LAG, scipy.signal.StateSpace([[-0.2]], [[1]], [[0.6]], [[0]]), RIGHT, "right"),
+    (LAG, scipy.signal.ZerosPolesGain([], [-0.2], 0.6), RIGHT, "right"),
+    (LAG, scipy.signal.TransferFunction([3], [5, 1]), RIGHT, "right"),
+    (LAG, sympy.physics.control.TransferFunction(3, 5 * s + 1, s), RIGHT, "right"),
+    (
+        transfer_function(7 / (3 * s + 1) ** 5),
+        control.ss(control.tf([7 / 3**5], np.poly([-1 / 3] * 5))),
+        RIGHT,
+        "right",
+    ),
+    (LAG, control.tf([3], [5, 1], 0.1), UNJUDGED, "neither an expression"),
+    (LAG, control.tf([[[3], [1]]], [[[5, 1], [5, 1]]]), UNJUDGED, "neither an expression"),
+    # lists in other forms
+    *(
+        (P, one, RIGHT, "right")
+        for one in ("-3, -1+2j, -1-2j", "[-3, -1 + 2i, -1 - 2i]", "-3; -1+2j; -1-2j", [[-3, -1 + 2j, -1 - 2j]])
+    ),
+    *(
+        (P, one, RIGHT, "right")
+        for one in (iter([-3, -1 + 2j, -1 - 2j]), [{s: -3}, {s: -1 + 2j}, sympy.Eq(s, -1 - 2j)])
+    ),
+    (P, PINT.Quantity(np.array([-3, -1 + 2j, -1 - 2j]), "rad/s"), RIGHT, "right"),
+    (P, "", UNJUDGED, "is no number"),
+    (poles([-2]), "-2,5", UNJUDGED, "decimal comma"),
+    (poles([]), "[]", RIGHT, "right"),
+    (numbers([1, 2], "s"), "[1,2]", RIGHT, "right"),
+    (numbers([1, 2], "s"), "1 s, 2 s", RIGHT, "right"),
+    (numbers([1, 2], "s"), range(1, 3), RIGHT, "right"),
+    (PI, "2, 10", RIGHT, "right"),
+    (PI, [[2, 10]], RIGHT, "right"),
+    (PI, (2, np.array([10, 11])), UNJUDGED, "2 values"),
+    (settings(PID(2)), (2, "inf"), RIGHT, "right"),
+    *(
+        (ACTION, one, RIGHT, "right")
+        for one in ("reverse.", "'Reverse'", ["reverse"], {"reverse"}, np.array("reverse"))
+    ),
+    *((TRUE, one, RIGHT, "right") for one in (np.True_, sympy.true)),
+    (ACTION, "-", UNJUDGED, "none of the words"),
+    (word("cascade control", ["cascade control", "feedforward"]), "cascade-control", RIGHT, "right"),
+    (word("2", ["1", "2"]), 2, RIGHT, "right"),
+    (word("+", ["+", "-"]), "-", WRONG, "not right"),
+    *(
+        (STEPS, one, RIGHT, "right")
+        for one in ("S2; S4", "{S2, S4}", np.array(["S2", "S4"]), {"S2": 1, "S4": 1}.keys())
+    ),
+    (ROUTE, "fill -> heat → empty", RIGHT, "right"),
+    # what is nearly right beside something large
+    (expression(1000 + X), "1000", WRONG, "not right"),
+    (expression(1000 + X), "1000 - x", WRONG, "not right"),
+    (expression(X), "x + Max(x - 5, 0)", WRONG, "not right"),
+    (OFFSET_Y, "60 + 3*(1 - exp(-t/5))", RIGHT, "right"),
+    (OFFSET_Y, "60.5 + 3*(1 - exp(-t/5))", RIGHT, "right"),
+    (OFFSET_Y, "60 + 3*(1 - exp(-t/5.04))", RIGHT, "right"),
+    (OFFSET_Y, "60", WRONG, "the reading"),
+    (OFFSET_Y, "60 + 3.4*(1 - exp(-t/5))", WRONG, "the reading"),
+    (OFFSET_Y, "60 + 3*(1 - exp(-t/7))", WRONG, "the reading"),
+    (Y, "1 - exp(-t/5) + exp(-1000*t)/2", WRONG, "the response"),
+    (Y, "1 - exp(-t/5) + 0.5*sin(pi*(t*120/25 - 0.382))*Heaviside(t - 1)", WRONG, "the response"),
+    (numbers([[0, 1], [-500, -3]]), [[4, 1], [-500, -3]], WRONG, "3 of 4"),
+    (numbers([[0, 1], [-500, -3]]), [[1e-10, 1], [-500, -3]], RIGHT, "right"),
+    (poles([0, -1000, -1]), [-0.5, -1000, -1], WRONG, "2 of 3"),
+    (poles([0, -1000, -1]), [1e-7, -1000, -1], RIGHT, "right"),
+    (poles([0, 0]), [0, 0.005], RIGHT, "right"),
 ]
 
 
@@ -384,6 +604,10 @@ def test_judging(kind, given, status, says):
     verdict = judge("x", kind, given)
     assert verdict.status == status, verdict
     assert says in verdict.says
+
+
+def test_the_mistakes_of_an_exercise_come_before_the_general_ones():
+    assert judge("x", TI, 2, [("Look again.", 2)]).says == "Look again."
 
 
 class Liar:
@@ -404,6 +628,67 @@ def test_an_answer_that_fails_in_every_way_is_not_judged(kind):
     assert judge("x", kind, Liar()).status == UNJUDGED
 
 
+class Interrupting:
+    """An answer whose methods end the program."""
+
+    def _ends(self, *_):
+        raise SystemExit
+
+    def _interrupts(self, *_):
+        raise KeyboardInterrupt
+
+    __complex__ = __float__ = _ends
+    __getattr__ = _interrupts
+
+
+@pytest.mark.parametrize("kind", ALL, ids=lambda kind: type(kind).__name__)
+def test_an_answer_cannot_end_the_program(kind):
+    assert judge("x", kind, Interrupting()).status == UNJUDGED
+
+
+def test_a_function_cannot_end_the_program():
+    assert judge("y", Y, exit).status == UNJUDGED
+
+
+@pytest.mark.parametrize("make", [lambda: (time.sleep(0.001) for _ in itertools.count()), lambda: EndlessNumber()])
+def test_an_endless_answer_is_not_judged(make, monkeypatch):
+    monkeypatch.setattr(judging, "SECONDS", 0.1)
+    verdict = judge("x", TI, make())
+    assert verdict.status == UNJUDGED
+    assert "takes too long" in verdict.says
+
+
+class EndlessNumber:
+    """A number that never comes to an end."""
+
+    def __complex__(self):
+        while True:
+            time.sleep(0.001)
+
+
+def test_of_an_endless_list_the_beginning_is_read():
+    assert "there are 10000 values" in judge("x", TI, itertools.count()).says
+
+
+@pytest.mark.parametrize(
+    "given",
+    ["$\\href{javascript:alert(1)}{x}$", "\ud800", "two\nlines", sympy.Symbol("$x$"), sympy.Symbol("x" * 10**5)],
+)
+@pytest.mark.parametrize("kind", ALL, ids=lambda kind: type(kind).__name__)
+def test_what_is_quoted_of_an_answer_is_harmless(kind, given):
+    says = judge("x", kind, given).says
+    assert "$" not in says
+    assert "\n" not in says
+    assert len(says) <= 400
+    assert says.encode("utf-8")
+
+
+def test_a_long_chain_of_functions_is_no_formula():
+    for text in ("lambda:" * 400 + "s", "s if " * 500 + "s", "not " * 500 + "s"):
+        with pytest.raises(Unreadable):
+            Formula(text, "s")
+
+
 def test_a_design_that_takes_too_long_is_not_judged():
     def slow(_):
         while True:
@@ -414,13 +699,22 @@ def test_a_design_that_takes_too_long_is_not_judged():
     assert "too long" in verdict.says
 
 
+def test_of_a_design_that_fails_a_condition_nothing_else_is_said():
+    unstable = criterion("the loop is stable", lambda pid: pid.Kp < 3)
+    asked = design(settings(PID(1)), unstable, criterion("the gain", lambda pid: pid.Kp, below=5))
+    assert judge("x", asked, PID(9)).says == "asked is that the loop is stable, and it is not so"
+
+
 def test_a_limited_computation_is_stopped():
     seen = []
 
     def endless():
         while True:
-            seen.append(len(seen))
-            time.sleep(0.001)
+            try:
+                seen.append(len(seen))
+                time.sleep(0.001)
+            except Exception:  # it does not want to be stopped
+                pass
 
     with pytest.raises(TimeoutError):
         limited(0.05, endless)
@@ -433,6 +727,8 @@ def test_a_limited_computation_is_stopped():
 def test_a_limited_computation_raises_what_it_raises():
     with pytest.raises(ZeroDivisionError):
         limited(1, lambda: 1 / 0)
+    with pytest.raises(RuntimeError, match="stopped by SystemExit"):
+        limited(1, sys.exit)
 
 
 # Writing an exercise.
@@ -466,6 +762,22 @@ def test_a_question():
         question.given("V")
 
 
+def accuracies(x=between(1, 9)):
+    """A statement about {x}."""
+    return answers(a=number(x, within=0), b=number(x), c=number(x), d=word("yes", ["yes", "no"]))
+
+
+def test_what_is_shown_has_decimals_where_few_digits_write_them():
+    one = Exercise("99.2", "Decimals", 1, lambda: True, key_of_one)
+    one.shows(lambda: {"x": sympy.Rational(5, 2) * s + sympy.Rational(1, 3)})
+    assert r"$2.5 s + \frac{1}{3}$" in one.question().statement
+
+
+def test_the_statement_says_the_accuracy():
+    statement = Exercise("99.2", "Accuracies", 1, lambda: True, accuracies).question().statement
+    assert statement.endswith("\n\n*Accuracy: 1\N{NO-BREAK SPACE}%; `a`: exact*")
+
+
 def test_a_response():
     question = tank.question()
     response = question.check(rate=0.25, H="0.5/s")
@@ -483,6 +795,73 @@ def test_a_response():
 def test_html_of_a_reader_is_shown_and_not_run():
     text = tank.question().check(H="<script>alert(1)</script>")._repr_html_()
     assert "<script>" not in text
+
+
+def test_signs_of_formulas_outside_of_formulas_are_none():
+    response = Response("1.1", (Verdict("x", WRONG, r"of $\zeta$ and \(x\)"),), 1)
+    assert r"of $\zeta$ and <span>\</span>(x<span>\</span>)" in response._repr_html_()
+    response = Response("1.1", (Verdict("x", WRONG, "costs 3 $"),), 1)
+    assert "costs 3 <span>$</span>" in response._repr_html_()
+
+
+def test_any_name_can_be_given():
+    response = tank.question().check(**{"self": 1, "alone": 2, "$x$": 3, "\ud800": 4})
+    assert "self is not asked" in repr(response)
+    assert "$" not in repr(response)
+    assert repr(response).encode()
+
+
+def test_a_student_has_one_name_in_any_spelling():
+    assert tank.question("Zoe\u0308").values == tank.question("Zo\u00eb").values
+    assert tank.question("\ud800").values
+    with pytest.raises(ValueError, match="empty text: expected"):
+        tank.question(" ")
+
+
+def key_of_numbers(x=between(1, 9)):
+    """A statement about {x}."""
+    return {"y": x}
+
+
+def key_of_apples(x=between(1, 9)):
+    """A statement about {x}."""
+    return answers(y="apples")
+
+
+def key_of_one(x=between(1, 9)):
+    """A statement about {x}."""
+    return answers(y=x)
+
+
+def test_a_choice_of_words_and_numbers():
+    assert choice("none", 3, reference=3).reference == 3
+    assert choice("none", 3).reference == "none"
+
+
+def test_a_key_that_is_no_answers():
+    with pytest.raises(ValueError, match=r"exercise 99\.2 returns .*: expected answers"):
+        Exercise("99.2", "A key", 1, lambda: True, key_of_numbers).question().check(y=3)
+
+
+def test_a_mistake_in_what_is_not_asked():
+    one = Exercise("99.2", "A mistake", 1, lambda: True, key_of_one)
+    one.mistake("Wrong.")(lambda x: {"z": x + 1})
+    with pytest.raises(ValueError, match=r"a mistake of exercise 99\.2 is in 'z': expected 'y'"):
+        one.question().check(y=3)
+
+
+def test_a_function_of_the_author_that_fails():
+    one = Exercise("99.2", "A mistake", 1, lambda: True, key_of_one)
+    one.mistake("Wrong.")(lambda T: {"y": T})
+    with pytest.raises(ValueError, match=r"a mistake of exercise 99\.2 fails for x = \d.*: 'T' is no parameter"):
+        one.question().check(y=3)
+    with pytest.raises(ValueError, match=r"the key of exercise 99\.2 fails for x = \d.*: 'apples' is a text"):
+        Exercise("99.2", "A key", 1, lambda: True, key_of_apples).question().check(y=3)
+
+
+def test_a_condition_on_what_is_no_parameter():
+    with pytest.raises(ValueError, match="'T' is no parameter of the exercise: expected x"):
+        Exercise("99.2", "A condition", 1, lambda T: T > 1, key_of_one).question()
 
 
 def test_variants_are_the_same_every_time_and_differ():
@@ -506,6 +885,8 @@ def test_two_exercises_of_one_number():
     [
         (lambda: exercises.exercise("10.99"), "there is no exercise '10.99': expected one of 10.1"),
         (lambda: exercises.exercise("99.1"), "there is no chapter '99'"),
+        (lambda: exercises.exercise(10.1), "the exercise is 10.1: expected chapter and place in it as text"),
+        (lambda: exercises.exercise("10.1", student=""), "empty text"),
         (lambda: exercises.exercise("10.1", student=3), "student is 3"),
         (lambda: exercises.progress("B"), "there is no chapter 'B'"),
     ],
@@ -543,7 +924,17 @@ def test_progress_survives_a_restart(desk):
 
 
 @pytest.mark.parametrize(
-    "content", [b"", b"{", b"[]", b"\xff\xfe", b'{"answered": 3}', b'{"answered": {"10.1": "yes"}}']
+    "content",
+    [
+        b"",
+        b"{",
+        b"[]",
+        b"\xff\xfe",
+        b"[" * 100_000,
+        b" " * 2_000_000,
+        b'{"answered": 3}',
+        b'{"answered": {"10.1": "yes"}}',
+    ],
 )
 def test_a_damaged_file_is_ignored_with_a_warning(desk, content):
     desk.write_bytes(content)
@@ -558,6 +949,23 @@ def test_a_folder_that_cannot_be_written_is_said(desk):
     desk.mkdir()
     with pytest.warns(UserWarning, match="cannot be stored|damaged"):
         exercises.exercise("10.1").check(K=77)
+    assert [file.name for file in desk.parent.iterdir()] == [desk.name]
+
+
+def test_a_link_leads_to_the_file(desk):
+    stored = desk.with_name("elsewhere.json")
+    stored.write_bytes(b"\xef\xbb\xbf" + b'{"answered": {"10.2": true}}')  # as an editor may save it
+    desk.symlink_to(stored)
+    exercises.exercise("10.1").check(K=77)
+    assert desk.is_symlink()
+    assert json.loads(stored.read_text()) == {"answered": {"10.1": False, "10.2": True}}
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no pipes")
+def test_a_pipe_is_no_file(desk):
+    os.mkfifo(desk)
+    with pytest.warns(UserWarning, match="is damaged and ignored"):
+        assert exercises.progress("10").right == 0
 
 
 def test_what_is_not_answered_leaves_no_trace(desk):

@@ -30,7 +30,9 @@ def exercise(number, student=None):
     Raises:
         ExerciseError: for a number that there is not.
     """
-    known = bank.exercises(_chapter(str(number).partition(".")[0]))
+    if not isinstance(number, str):
+        raise ExerciseError(f"the exercise is {number!r}: expected chapter and place in it as text, such as '10.3'")
+    known = bank.exercises(_chapter(number.partition(".")[0]))
     if number not in known:
         raise ExerciseError(f"there is no exercise {number!r}: expected one of {', '.join(known)}")
     try:

@@ -16,6 +16,7 @@ def _(T, delay):
 import functools
 import inspect
 import textwrap
+import unicodedata
 
 import sympy
 
@@ -118,13 +119,15 @@ class Exercise:
         """
         if student is not None and not isinstance(student, str):
             raise ValueError(f"student is {student!r}: expected a name or an identification, as text")
+        if student is not None and not student.strip():
+            raise ValueError("student is an empty text: expected a name or an identification")
         if student is None:
             values = {name: parameter.reference for name, parameter in self.parameters.items()}
             if not call(self.where, values):
                 raise ValueError(f"the reference variant of exercise {self.number} does not satisfy its condition")
             return Question(self, student, values)
         for attempt in range(MOST_DRAWS):
-            text = f"{self.number}|{student}|{attempt}"
+            text = unicodedata.normalize("NFC", f"{self.number}|{student}|{attempt}")
             values = {name: one.draw(f"{text}|{name}") for name, one in self.parameters.items()}
             if call(self.where, values):
                 return Question(self, student, values)

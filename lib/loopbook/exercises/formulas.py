@@ -14,6 +14,8 @@ from loopbook.exercises.reading import CONSTANTS, Unreadable, parsed, shortened,
 
 #: The part of the points at which an answer must have a value: some forms leave the range of decimal numbers early.
 FEWEST = 0.3
+#: The fraction by which forms of one expression differ: their digits may cancel.
+EXACT = 1e-9
 #: An exponential below this has lost its digits.
 SMALLEST = 1e-300
 
@@ -30,7 +32,8 @@ _OPERATORS = {
     ast.Lt: np.less, ast.LtE: np.less_equal, ast.Gt: np.greater, ast.GtE: np.greater_equal,
 }  # fmt: skip
 _FUNCTIONS = {
-    "exp": np.exp, "log": _complex(np.log), "ln": _complex(np.log), "sqrt": _complex(np.sqrt),
+    "exp": np.exp, "log": _complex(np.log), "ln": _complex(np.log), "log10": _complex(np.log10),
+    "sqrt": _complex(np.sqrt),
     "sin": np.sin, "cos": np.cos, "tan": np.tan, "sinh": np.sinh, "cosh": np.cosh, "tanh": np.tanh,
     "asin": _complex(np.arcsin), "acos": _complex(np.arccos), "atan": np.arctan,
     "arcsin": _complex(np.arcsin), "arccos": _complex(np.arccos), "arctan": np.arctan,
@@ -153,7 +156,7 @@ def agree(key, given, points, within):
     shape = np.broadcast_shapes(*(np.shape(values) for values in points.values()))
     expected, found = (np.broadcast_to(one(**points), shape) for one in (key, given))
     allowed = np.maximum(within * np.abs(expected), rounding(key, expected, points, within))
-    return near_everywhere(expected, found, allowed + 1e-12 * np.abs(expected))
+    return near_everywhere(expected, found, allowed + EXACT * np.abs(expected))
 
 
 def near_everywhere(expected, found, allowed):
@@ -164,22 +167,23 @@ def near_everywhere(expected, found, allowed):
     return bool(enough and np.all(np.abs(found[judged] - expected[judged]) <= allowed[judged]))
 
 
-def rounding(key, expected, points, within):
-    """Return by how much the values of the key may change when each of its numbers is wrong by that fraction."""
-    changes = [np.abs(key(literal, 1 + within, **points) - expected) for literal in key.literals]
+def rounding(key, expected, points, within, seen=np.asarray):
+    """Return by how much what is seen of the key may change when each of its numbers is wrong by that fraction."""
+    changes = [np.abs(seen(key(literal, 1 + within, **points) - expected)) for literal in key.literals]
     return np.sum(changes, axis=0) if changes else np.zeros(np.shape(expected))
 
 
 def points_for(letters):
     """Return values of letters at which formulas are compared: {letter: array}, the same every time.
 
-    The letter s takes complex values of nine orders of magnitude in the right half-plane; others are positive numbers
-    near one.
+    The letter s takes complex values of nine orders of magnitude in the right half-plane; others are positive numbers,
+    two of three near one and the others of eight orders of magnitude.
     """
     letters = letters.split() if isinstance(letters, str) else list(letters)
     dice = random.Random(7)
     # no simple number, at which a value might not exist
     sizes = 1.0137 * 10 ** (np.arange(-30, 25) / 6)
     angles = np.exp(1j * np.radians([0, 40, 85]))
-    points = {name: np.array([math.exp(dice.uniform(-1.2, 1.2)) for _ in range(165)]) for name in sorted(letters)}
+    ranges = [1.2 if k % 3 else 9 for k in range(165)]
+    points = {name: np.array([math.exp(dice.uniform(-a, a)) for a in ranges]) for name in sorted(letters)}
     return points | ({"s": np.outer(sizes, angles).ravel()} if "s" in letters else {})

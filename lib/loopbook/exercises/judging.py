@@ -3,9 +3,12 @@
 from dataclasses import dataclass
 
 from loopbook.exercises.kinds import NOT_ANSWERED
-from loopbook.exercises.reading import Unreadable
+from loopbook.exercises.limits import limited
+from loopbook.exercises.reading import Unreadable, shortened
 
 RIGHT, MISTAKE, WRONG, UNJUDGED, OPEN = "right", "mistake", "wrong", "not judged", "open"
+#: Reading an answer may take so many seconds: it may be a function, or an object with methods of its own.
+SECONDS = 5
 
 
 @dataclass(frozen=True)
@@ -36,7 +39,7 @@ def judge(name, kind, given, mistakes=()):
     Verdict(name='Ti', status='mistake', says='that would be the value in min; asked: the integral time, in s')
     """
     try:
-        answer, remark = kind.read(given)
+        answer, remark = limited(SECONDS, kind.read, given)
         if kind.agrees(answer):
             return Verdict(name, RIGHT, "right" + (f", {remark}" if remark else ""))
         for sentence, wrong in (*mistakes, *kind.mistakes()):
@@ -45,7 +48,16 @@ def judge(name, kind, given, mistakes=()):
         hint = kind.hint(answer)
     except Unreadable as problem:
         status = OPEN if str(problem) == NOT_ANSWERED else UNJUDGED
-        return Verdict(name, status, str(problem))
+        return Verdict(name, status, harmless(str(problem)))
+    except TimeoutError:
+        return Verdict(name, UNJUDGED, f"reading this takes too long: expected {kind.expected}")
     except Exception as problem:  # the answer may be an object that fails in any way
-        return Verdict(name, UNJUDGED, f"this cannot be judged ({type(problem).__name__}): expected {kind.expected}")
+        says = f"this cannot be judged ({type(problem).__name__}): expected {kind.expected}"
+        return Verdict(name, UNJUDGED, harmless(says))
     return Verdict(name, WRONG, hint or f"not right; asked: {kind.asked}")
+
+
+def harmless(text):
+    """A sentence that may quote a reader: not long, in one line, without formulas, in signs that can be printed."""
+    line = " ".join(text.replace("$", "").split())
+    return shortened(line.encode("utf-8", "backslashreplace").decode(), 400)

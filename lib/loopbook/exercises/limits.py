@@ -15,7 +15,7 @@ def limited(seconds, function, *arguments):
 
     Raises:
         TimeoutError: when the time is over.
-        Exception: whatever the function raises.
+        Exception: whatever the function raises; RuntimeError for what would end the program, as SystemExit.
 
     >>> limited(1, max, 2, 3)
     3
@@ -27,8 +27,10 @@ def limited(seconds, function, *arguments):
             result.append(function(*arguments))
         except TooSlow:
             pass
-        except BaseException as error:
+        except Exception as error:
             failure.append(error)
+        except BaseException as error:
+            failure.append(RuntimeError(f"stopped by {type(error).__name__}"))
 
     worker = threading.Thread(target=work, daemon=True)
     worker.start()

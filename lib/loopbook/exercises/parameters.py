@@ -30,7 +30,7 @@ class Parameter:
         >>> between(1, 4, "s").draw("any text") in between(1, 4, "s").values
         True
         """
-        digest = hashlib.sha256(text.encode()).digest()
+        digest = hashlib.sha256(text.encode("utf-8", "surrogatepass")).digest()
         return self.values[int.from_bytes(digest[:8], "big") % len(self.values)]
 
 
@@ -51,6 +51,8 @@ def between(low, high, unit="", reference=None, step=None):
     low, high = exact(low), exact(high)
     if not (low.is_Rational and high.is_Rational and low < high):
         raise ValueError(f"the range is {low} to {high}: expected two numbers, the smaller one first")
+    if step is not None and not exact(step) > 0:
+        raise ValueError(f"the step is {step}: expected a positive number")
     if step is None and low > 0 and high / low > 30:
         values = _over_decades(low, high)
     else:
@@ -81,7 +83,17 @@ def _parameter(values, unit, reference):
         reference = values[len(values) // 2]
     elif not isinstance(reference, str):
         reference = exact(reference)
+    if not _possible(reference, values):
+        raise ValueError(f"the reference is {reference}, beyond {values[0]} to {values[-1]}: expected one within")
     return Parameter(tuple(values), unit, reference)
+
+
+def _possible(reference, values):
+    """Whether a word is one of the values, or a number within their range."""
+    numbers = [value for value in values if not isinstance(value, str)]
+    if isinstance(reference, str) or not numbers:
+        return reference in values
+    return min(numbers) <= reference <= max(numbers)
 
 
 def _pleasant_step(length):
@@ -112,5 +124,9 @@ def written(value, unit=""):
 
 
 def call(function, values):
-    """Call a function with those of the values that it names."""
-    return function(**{name: values[name] for name in inspect.signature(function).parameters})
+    """Call a function with those of the values that it names; raises ValueError for a name that there is not."""
+    names = list(inspect.signature(function).parameters)
+    unknown = [name for name in names if name not in values]
+    if unknown:
+        raise ValueError(f"{unknown[0]!r} is no parameter of the exercise: expected {', '.join(values)}")
+    return function(**{name: values[name] for name in names})

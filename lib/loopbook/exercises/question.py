@@ -5,8 +5,8 @@ import functools
 import re
 
 from loopbook.exercises import records
-from loopbook.exercises.judging import OPEN, Verdict, judge
-from loopbook.exercises.kinds import NOT_ANSWERED
+from loopbook.exercises.judging import OPEN, Verdict, harmless, judge
+from loopbook.exercises.kinds import NOT_ANSWERED, Kind
 from loopbook.exercises.parameters import call
 from loopbook.exercises.response import Response
 
@@ -46,16 +46,31 @@ class Question:
     @functools.cached_property
     def key(self):
         """The asked quantities with their keys: {name: kind}."""
-        return self.exercise.key(**self.values)
+        key = self._called(self.exercise.key, "the key")
+        if not (isinstance(key, dict) and key and all(isinstance(kind, Kind) for kind in key.values())):
+            raise ValueError(f"exercise {self.exercise.number} returns {key!r}: expected answers(...)")
+        return key
 
     @functools.cached_property
     def mistakes(self):
         """The known mistakes of the exercise in this variant: {name of a quantity: pairs of sentence and value}."""
         found = {name: [] for name in self.key}
         for sentence, function in self.exercise.mistakes:
-            for name, value in (call(function, self.values) or {}).items():
+            for name, value in (self._called(function, "a mistake") or {}).items():
+                if name not in found:
+                    raise ValueError(
+                        f"a mistake of exercise {self.exercise.number} is in {name!r}: expected {_listed(found)}"
+                    )
                 found[name].append((self.filled_in(sentence), value))
         return found
+
+    def _called(self, function, what):
+        """What a function of the author returns for this variant; raises ValueError where it fails."""
+        try:
+            return call(function, self.values)
+        except Exception as error:
+            values = ", ".join(f"{name} = {value}" for name, value in self.values.items())
+            raise ValueError(f"{what} of exercise {self.exercise.number} fails for {values}: {error}") from error
 
     @functools.cached_property
     def _places(self):
@@ -70,7 +85,7 @@ class Question:
 
         return _PLACE.sub(fill, text)
 
-    def check(self, *alone, **given):
+    def check(self, /, *alone, **given):
         """Respond to answers, whatever they are: `check(Kp=2, Ti="3 min")`; a single quantity needs no name.
 
         Raises nothing: what cannot be judged is said in the response.
@@ -84,7 +99,8 @@ class Question:
             if name not in names:
                 close = difflib.get_close_matches(name, names, n=1)
                 notes.append(
-                    f"{name} is not asked: " + (f"did you mean {close[0]}?" if close else f"asked is {_listed(names)}")
+                    f"{harmless(name)} is not asked: "
+                    + (f"did you mean {close[0]}?" if close else f"asked is {_listed(names)}")
                 )
         verdicts = tuple(
             judge(name, kind, given[name], self.mistakes[name]) if name in given else Verdict(name, OPEN, NOT_ANSWERED)

@@ -7,19 +7,26 @@ and of python-control, are read from what they spell.
 import ast
 import difflib
 import math
+import re
+import unicodedata
 
 import numpy as np
+import scipy.signal
 import sympy
 
 LONGEST, MOST_NODES = 4000, 2000
 
 #: What a formula may call, and with how many values.
 ONE_VALUE = (
-    "exp", "log", "ln", "sqrt", "sin", "cos", "tan", "sinh", "cosh", "tanh", "asin", "acos", "atan",
+    "exp", "log", "ln", "log10", "sqrt", "sin", "cos", "tan", "sinh", "cosh", "tanh", "asin", "acos", "atan",
     "arcsin", "arccos", "arctan", "Abs", "abs", "sign", "re", "im",
 )  # fmt: skip
 SEVERAL_VALUES = ("Min", "Max", "min", "max", "Heaviside", "Piecewise")
-CONSTANTS = {"pi": np.pi, "E": np.e, "e": np.e, "I": 1j, "j": 1j}
+CONSTANTS = {"pi": np.pi, "E": np.e, "e": np.e, "I": 1j, "j": 1j, "i": 1j}
+
+#: Signs as they are printed, and as Python writes them.
+_SIGNS = str.maketrans({"−": "-", "–": "-", "·": "*", "⋅": "*", "×": "*", "÷": "/", "√": "sqrt"})
+_RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
 
 _ARITHMETIC = (
     ast.BinOp, ast.UnaryOp, ast.Call, ast.Compare, ast.Tuple, ast.Load,
@@ -32,6 +39,29 @@ class Unreadable(ValueError):  # noqa: N818 - it is what became of the answer
     """An answer that cannot be judged; the sentence says why and what is expected."""
 
 
+def plain(text):
+    """Return a text in one line, with Python's signs, and without a name and = before it.
+
+    Raises Unreadable for a long one.
+
+    >>> plain("T_i = 2 · 10 min")
+    '2 * 10 min'
+    """
+    if len(text) > LONGEST:
+        raise Unreadable(f"the text has {len(text)} characters: expected at most {LONGEST}")
+    line = " ".join(text.translate(_SIGNS).split())
+    return re.sub(r"^(\w+ ?(\(\w+\))?)? ?=(?!=) ?", "", line)
+
+
+def _in_python(text, letters):
+    """A formula as Python writes it: powers, names of Greek letters, 2j for 2i, exp for np.exp."""
+    text = re.sub("[⁰¹²³⁴-⁹⁻]+", lambda raised: "^" + raised[0].translate(_RAISED), plain(text))
+    for greek in set(re.findall("[α-ω]", text)) - set("".join(letters)):
+        text = text.replace(greek, unicodedata.name(greek).split()[-1].lower())
+    text = re.sub(r"\b(np|numpy|math|cmath|sympy|sp)\.(?=[A-Za-z])", "", text)
+    return re.sub(r"\b(\d+\.?\d*)i\b", r"\1j", text).replace("^", "**")
+
+
 def parsed(text, letters):
     """Return the syntax tree of a formula in some letters: arithmetic, known functions, and nothing else.
 
@@ -41,12 +71,10 @@ def parsed(text, letters):
     Traceback (most recent call last):
     loopbook.exercises.reading.Unreadable: 'K' is no letter of this answer: expected an expression in s
     """
-    source = " ".join(text.split()).replace("^", "**")
+    source = _in_python(text, letters)
     expected = "expected an expression" + (f" in {listed(letters)}" if letters else "")
     if not source:
         raise Unreadable(f"the text is empty: {expected}")
-    if len(source) > LONGEST:
-        raise Unreadable(f"the text has {len(source)} characters: expected at most {LONGEST}")
     try:
         tree = ast.parse(source, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
@@ -69,17 +97,20 @@ def parsed(text, letters):
             case ast.Name():
                 _check_letter(node.id, letters)
             case ast.Call():
-                _check_call(node)
+                _check_call(node, source)
             case ast.Tuple() if id(node) not in pieces or len(node.elts) != 2:
                 raise Unreadable("there is a comma between two values: expected one expression, with a decimal point")
             case ast.Compare() if len(node.ops) > 1:
-                raise Unreadable(
-                    f"{shortened(ast.unparse(node))} compares twice: expected one comparison, or & between two"
-                )
+                raise Unreadable(f"{_quoted(source, node)} compares twice: expected one comparison, or & between two")
             case _ if not isinstance(node, _ARITHMETIC):
-                what = ast.unparse(node) if isinstance(node, ast.expr) else source
-                raise Unreadable(f"{shortened(what)} cannot be read: {expected}")
+                raise Unreadable(f"{_quoted(source, node)} cannot be read: {expected}")
     return tree
+
+
+def _quoted(source, node):
+    """The part of the text that a node was read from."""
+    part = ast.get_source_segment(source, node) if isinstance(node, ast.expr) else None
+    return shortened(part or source)
 
 
 def _check_number(value, expected):
@@ -113,13 +144,13 @@ def _check_letter(name, letters):
     raise Unreadable(f"{name!r} is no letter of this answer: {hint}")
 
 
-def _check_call(node):
+def _check_call(node, source):
     if not isinstance(node.func, ast.Name) or node.keywords or any(isinstance(one, ast.Starred) for one in node.args):
-        raise Unreadable(f"{shortened(ast.unparse(node))} cannot be read: expected one function of a value")
+        raise Unreadable(f"{_quoted(source, node)} cannot be read: expected one function of a value")
     if node.func.id in ONE_VALUE and len(node.args) != 1:
         raise Unreadable(f"{node.func.id} has {len(node.args)} arguments: expected one")
     if node.func.id == "Piecewise" and not all(isinstance(piece, ast.Tuple) for piece in node.args):
-        raise Unreadable(f"{shortened(ast.unparse(node))} cannot be read: expected pairs of a value and a condition")
+        raise Unreadable(f"{_quoted(source, node)} cannot be read: expected pairs of a value and a condition")
     if not node.args:
         raise Unreadable(f"{node.func.id} has no arguments: expected at least one")
 
@@ -148,15 +179,29 @@ def _expression(given):
         return None if given.is_Matrix else given
     if isinstance(getattr(given, "expr", None), sympy.Expr):
         return given.expr
-    if hasattr(given, "num") and hasattr(given, "den"):
-        (above,), (below,) = given.num, given.den  # one output
-        (above,), (below,) = above, below  # one input
-        s = sympy.Symbol("s")
-        return sympy.Poly([float(x) for x in above], s).as_expr() / sympy.Poly([float(x) for x in below], s).as_expr()
+    if hasattr(given, "to_expr"):  # SymPy's own systems
+        return given.to_expr()
+    if hasattr(given, "gain") and hasattr(given, "to_tf"):  # SciPy's zeros and poles
+        given = given.to_tf()
+    if all(hasattr(given, part) for part in ("num", "den")) or all(hasattr(given, part) for part in "ABCD"):
+        return _of_system(given)
     if np.ndim(given) == 0:
         value = complex(given)
         return sympy.sympify(value if value.imag else value.real) if math.isfinite(abs(value)) else None
     return None
+
+
+def _of_system(given):
+    """The expression of a system of python-control or SciPy; None unless it is one in s with one input and output."""
+    if getattr(given, "dt", None) or getattr(given, "ninputs", 1) * getattr(given, "noutputs", 1) != 1:
+        return None
+    if hasattr(given, "num"):
+        above, below = np.ravel(given.num), np.ravel(given.den)
+    else:
+        above, below = map(np.ravel, scipy.signal.ss2tf(given.A, given.B, given.C, given.D))
+        above = np.where(np.abs(above) > 1e-12 * np.abs(below), above, 0)  # powers that are there by rounding alone
+    above, below = (sympy.Poly([float(x) for x in part], sympy.Symbol("s")).as_expr() for part in (above, below))
+    return above / below
 
 
 def shortened(text, length=60):

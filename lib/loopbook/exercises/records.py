@@ -1,5 +1,6 @@
 """Which exercises are right so far: a small file beside the notebook."""
 
+import contextlib
 import html
 import json
 import os
@@ -8,6 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 FILE = Path(".loopbook-progress.json")
+#: A larger file is none that was written here.
+LARGEST = 10**6
 #: Set to "off", this variable of the environment keeps the file from being read and written, as in tests.
 SWITCH = "LOOPBOOK_PROGRESS"
 
@@ -25,10 +28,12 @@ def note(number, student, is_right):
 
 def load():
     """Return what the file says: {exercise: whether it was right}. A damaged file is ignored, with a warning."""
-    if os.environ.get(SWITCH) == "off" or not FILE.exists():
+    if os.environ.get(SWITCH) == "off" or not os.path.lexists(FILE):
         return {}
     try:
-        stored = json.loads(FILE.read_text(encoding="utf-8"))["answered"]
+        if not FILE.is_file() or FILE.stat().st_size > LARGEST:
+            raise ValueError("no file, or a very large one")
+        stored = json.loads(FILE.read_text(encoding="utf-8-sig"))["answered"]
         if not (isinstance(stored, dict) and all(isinstance(right, bool) for right in stored.values())):
             raise ValueError("not a table of exercises")
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
@@ -39,11 +44,14 @@ def load():
 
 def _store(known):
     """Replace the file in one step, so that an interruption leaves the old one or the new one."""
-    partial = FILE.with_name(f"{FILE.name}.{os.getpid()}")
+    file = FILE.resolve() if FILE.is_file() else FILE  # where a link leads
+    partial = file.with_name(f"{file.name}.{os.getpid()}")
     try:
         partial.write_text(json.dumps({"answered": known}, indent=1, sort_keys=True) + "\n", encoding="utf-8")
-        partial.replace(FILE)
+        partial.replace(file)
     except OSError as problem:
+        with contextlib.suppress(OSError):
+            partial.unlink(missing_ok=True)
         warnings.warn(f"the progress cannot be stored in {FILE}: {problem.strerror}", stacklevel=4)
 
 

@@ -1,7 +1,6 @@
 """The response to the answers of an exercise, as a small coloured box or as text."""
 
 import html
-import re
 from dataclasses import dataclass
 
 from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
@@ -93,6 +92,8 @@ class Response:
 
 
 def _escape(text):
-    """Text as HTML, where a formula between two dollar signs stays one, and a single dollar sign is one."""
-    text = html.escape(text, quote=False)
-    return text if len(re.findall(r"\$", text)) % 2 == 0 else text.replace("$", "<span>$</span>")
+    """Text as HTML, where a formula between two dollar signs stays one; other signs of formulas are none."""
+    parts = html.escape(text, quote=False).split("$")
+    sign = "$" if len(parts) % 2 else "<span>$</span>"
+    parts[::2] = [part.replace("\\", "<span>\\</span>") for part in parts[::2]]
+    return sign.join(parts)

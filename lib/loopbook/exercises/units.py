@@ -18,7 +18,9 @@ FAMILIES = (
     ("rad", "deg"),
 )
 _PART = re.compile(r"[^\W\d_]+³?|%")
-_READABLE = re.compile(r"(1\s*/)?[^\W\d_²³%°]*[\w\s%°·*/()²³⁻¹^-]*")
+#: A name and its exponent of one digit, as "m³", "s^-1", "m**2" or "m3".
+_FACTOR = re.compile(r"[^\W\d_¹²³]+\s?(?:\^|\*\*)?(?:-?[1-9]|⁻?[¹²³])?(?![\d^]|\*\*)")
+_CELSIUS = re.compile(r"\s*(°\s?C|º\s?C|℃|C|deg(rees?)?\s?C|[Cc]elsius)\s*")
 _LONGEST = 40
 
 
@@ -50,11 +52,11 @@ def convert(value, unit, to):
     """
     import pint
 
-    if "Hz" in unit + to and re.search("rad|deg", unit + to):
+    if re.search("rad|deg", unit + to):
         unit, to = unit.replace("Hz", "turn/s"), to.replace("Hz", "turn/s")
     try:
         return float(_registry().Quantity(float(value), _parsed(unit)).to(_parsed(to)).magnitude)
-    except pint.DimensionalityError:
+    except (pint.PintError, OverflowError):
         raise ValueError(f"{unit or 'a number without unit'} is no unit of the same quantity as {to or 1}") from None
 
 
@@ -89,6 +91,11 @@ def _compatible(unit, other):
     return unit != other
 
 
+def spelled(unit):
+    """Return °C for its other spellings, and other units as they are."""
+    return "°C" if isinstance(unit, str) and _CELSIUS.fullmatch(unit) else unit
+
+
 @functools.cache
 def _registry():
     import pint
@@ -98,13 +105,12 @@ def _registry():
 
 @functools.lru_cache(maxsize=1000)
 def _parsed(text):
-    # a number in a unit is an exponent, of one digit
-    sound = isinstance(text, str) and len(text) <= _LONGEST and _READABLE.fullmatch(text)
-    if not sound or re.search(r"\d\d|\*\*\*|\^\^", text):
+    text = spelled(text)
+    # names with exponents, and what stands between them: no power of a power can be worked out for hours
+    between = _FACTOR.sub("", text) if isinstance(text, str) and len(text) <= _LONGEST else "?"
+    if not re.fullmatch(r"(\s*1\s*/)?[\s%°·*/()]*", between):
         raise ValueError(f"{text!r} is no unit: expected one such as 's', 'kg/min' or '%/K'")
-    if text.strip() != "°C":
-        text = text.replace("°C", "delta_degC")
     try:
-        return _registry().parse_units(text)
+        return _registry().parse_units(re.sub(r"(?<=[A-Za-z])(-?[1-9])(?!\d)", r"^\1", text))
     except Exception:  # Pint fails in as many ways as a text can be no unit
         raise ValueError(f"{text!r} is no unit: expected one such as 's', 'kg/min' or '%/K'") from None

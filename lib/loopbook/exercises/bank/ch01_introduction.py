@@ -2,7 +2,8 @@
 
 import math
 
-from loopbook import t
+from sympy import Rational
+
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -15,6 +16,7 @@ from loopbook.exercises.authoring import (
     time_function,
     word,
 )
+from loopbook.expressions import t
 from loopbook.pid import PID
 
 ROLES = {
@@ -106,12 +108,17 @@ def _taken_for(page, wrong):
     return {name: ROLES[wrong[role]] for name, role in zip("abcd", PAGES[page], strict=True) if role in wrong}
 
 
+@parts.mistake("Ask what is to be kept where somebody wants it, and what only happens to the plant.")
+def _(plant, page):
+    return _taken_for(page, {"d": "y", "y": "d"}) if plant != "a water tower" else {}
+
+
 @parts.mistake(
     "Ask what is to be kept where somebody wants it, and what only happens to the plant. "
-    "It does not matter whether something flows out of the plant."
+    "It does not matter that water flows out of the tower."
 )
-def _(page):
-    return _taken_for(page, {"d": "y", "y": "d"})
+def _(plant, page):
+    return _taken_for(page, {"d": "y", "y": "d"}) if plant == "a water tower" else {}
 
 
 @parts.mistake(
@@ -124,6 +131,11 @@ def _(page):
 @parts.mistake("What somebody wishes for, and what the process does, are two signals. Which of them is this one?")
 def _(page):
     return _taken_for(page, {"r": "y"})
+
+
+@parts.mistake("What somebody wishes for, and what the process does, are two signals. Which of them is this one?")
+def _(page):
+    return _taken_for(page, {"y": "r"})
 
 
 @parts.mistake(
@@ -242,6 +254,21 @@ def _(length, speed, w_0, change):
     return {"dm": -w_0 * (1 + change / 100) * length / speed}
 
 
+@bunker.mistake("So much lies on the belt. By how much do the flows into the bunker and out of it differ?")
+def _(length, speed, w_0):
+    return {"dm": w_0 * length / speed}
+
+
+@bunker.mistake("So much lies on the belt. By how much do the flows into the bunker and out of it differ?")
+def _(length, speed, w_0):
+    return {"dm": -w_0 * length / speed}
+
+
+@bunker.mistake("When more is drawn, more has to arrive in the end, and when less is drawn, less.")
+def _(u_0, change):
+    return {"u": u_0 * (1 - change / 100)} if change != 50 else {}
+
+
 @bunker.mistake(
     "At rest, inflow and outflow are equal again. Does the old control signal bring as much as is drawn now?"
 )
@@ -280,6 +307,23 @@ def left_alone(
 def _(A, h_0, h_low, q, more):
     rate = (q + more) / 1000 / A
     return {"h": h_0 - rate * t, "t_alarm": (h_0 - h_low) / rate / 60}
+
+
+@left_alone.mistake("So much the pump delivers. How much more than that is drawn?")
+def _(A, h_0, h_low, q, more):
+    rate = q / 1000 / A
+    found = {"h": h_0 - rate * t, "t_alarm": (h_0 - h_low) / rate / 60}
+    return found if abs(q / more - 1) > Rational(1, 20) else {}
+
+
+@left_alone.mistake("So far the level falls in this time. Where does it stand at the beginning?")
+def _(A, more):
+    return {"h": -more / 1000 / A * t}
+
+
+@left_alone.mistake("The level does not fall by the height of the alarm, but down to it.")
+def _(A, h_0, h_low, more):
+    return {"t_alarm": h_low * A * 1000 / more / 60} if abs(h_low / (h_0 - h_low) - 1) > Rational(1, 20) else {}
 
 
 @left_alone.mistake("That is the time until the tank is empty. The alarm comes before.")
@@ -341,7 +385,12 @@ def swings(
 
 @swings.mistake("The advice is for loops that swing too much, and for no others. Does this one?")
 def _(above, below, Kp, Ti):
-    return {"settings": PID(Kp, Ti) if _is_poor(above, below) else PID(Kp / 2, Ti * 2)}
+    return {} if _is_poor(above, below) else {"settings": PID(Kp / 2, Ti * 2)}
+
+
+@swings.mistake("Those are the settings that the controller has. Are the swings of this loop within the limit?")
+def _(above, below, Kp, Ti):
+    return {"settings": PID(Kp, Ti)} if _is_poor(above, below) else {}
 
 
 @swings.mistake("The advice changes both settings, each in its own direction: what does more gain do to the swings?")
@@ -352,6 +401,16 @@ def _(above, below, Kp, Ti):
 @swings.mistake("Only one of the two settings has been changed. The advice of Section 1.4 changes both.")
 def _(above, below, Kp, Ti):
     return {"settings": PID(Kp / 2, Ti)} if _is_poor(above, below) else {}
+
+
+@swings.mistake("Only one of the two settings has been changed. The advice of Section 1.4 changes both.")
+def _(above, below, Kp, Ti):
+    return {"settings": PID(Kp, Ti * 2)} if _is_poor(above, below) else {}
+
+
+@swings.mistake("That is how much smaller the next swing is. Asked is the part that is left of it.")
+def _(above, below):
+    return {"left": 1 - below / above}
 
 
 def _gain_limits(reach, sigma, per_percent, more, e_max, u_max):

@@ -4,7 +4,6 @@ import math
 
 import sympy
 
-from loopbook import s
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -19,9 +18,19 @@ from loopbook.exercises.authoring import (
     transfer_function,
     word,
 )
+from loopbook.expressions import s
+
+g_earth = sympy.Rational("9.81")
 
 
-@exercise("2.1", title="An integrator remembers", points=2, where=lambda t_1, t_2, t_end: t_end - t_1 - t_2 >= 5)
+@exercise(
+    "2.1",
+    title="An integrator remembers",
+    points=2,
+    where=lambda K, y_0, a, t_1, t_2, t_end: (
+        t_end - t_1 - t_2 >= 5 and abs(K - 1) * y_0 >= (y_0 + K * a * (t_2 - t_1)) / 30
+    ),
+)
 def two_meters(
     K=choice(0.8, 0.9, 1.1, 1.2, 1.25, 1.5, reference=1.2),
     y_0=between(20, 100, "L", reference=50),
@@ -53,6 +62,13 @@ def _(K, a, t_1, t_2):
 )
 def _(K, y_0, a, t_1, t_end):
     return {"y_A": y_0 + K * a * (t_end - t_1), "y_B": K * (y_0 + a * (t_end - t_1))}
+
+
+@two_meters.mistake("There is a gain in the meter, too. What does it multiply?")
+def _(K, y_0, a, t_1, t_2):
+    volume = a * (t_2 - t_1)
+    found = {"y_A": y_0 + volume, "y_B": y_0 + volume}
+    return found if abs(K - 1) * volume >= (y_0 + K * volume) / 30 else {}
 
 
 @two_meters.mistake("When does the flow begin? The integrator adds up nothing before.")
@@ -193,6 +209,13 @@ def _(model):
     return {"formula": (driving - against.replace(sympy.sin, lambda x: x)) / factor} if against.has(sympy.sin) else {}
 
 
+@first_integrator.mistake("In the formula, leave $g$ a letter.")
+def _(model):
+    driving, against, factor, _ = MODELS[model][2]
+    formula = (driving - against) / factor
+    return {"formula": formula.subs(g, g_earth)} if formula.has(g) else {}
+
+
 @first_integrator.mistake("From each integrator on there is one dot less. How many dots has the highest derivative?")
 def _(model):
     return {"integrators": MODELS[model][2][3] + 1}
@@ -257,10 +280,12 @@ def _(m, D, K, y_0, h):
     return {"y": y} if m > sympy.Rational(7, 2) else {}
 
 
-g_earth = sympy.Rational("9.81")
-
-
-@exercise("2.4", title="Does the scale settle?", points=4, where=lambda m, D, K: abs(D**2 / (4 * m * K) - 1) > 0.15)
+@exercise(
+    "2.4",
+    title="Does the scale settle?",
+    points=4,
+    where=lambda m, D, K: abs(D**2 / (4 * m * K) - 1) > 0.15 and m * g_earth / K <= 0.15,
+)
 def scale(
     m=between(10, 50, "kg", reference=20, step=5),
     D=between(100, 1200, "N s/m", reference=240, step=20),
@@ -356,6 +381,12 @@ def _(K):
 @other_states.mistake("That is the transfer function to the other one of the two new states.")
 def _(T_1, T_2, K, wanted):
     return {"H": (K if "difference" in wanted else K * T_2 * s) / ((T_1 * s + 1) * (T_2 * s + 1))}
+
+
+@other_states.mistake("That is right with the time in seconds. Here it is asked in minutes.")
+def _(T_1, T_2, K, wanted):
+    numerator = K * T_2 * 60 * s if "difference" in wanted else K
+    return {"H": numerator / ((60 * T_1 * s + 1) * (60 * T_2 * s + 1))}
 
 
 @other_states.mistake("That is the transfer function to the temperature of the furnace.")

@@ -5,7 +5,6 @@ import math
 
 import sympy
 
-from loopbook import s, t
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -19,6 +18,7 @@ from loopbook.exercises.authoring import (
     transfer_function,
     word,
 )
+from loopbook.expressions import s, t
 
 
 @exercise(
@@ -57,8 +57,15 @@ def _(A, q_1, q_2, q_o):
 
 
 @cistern.mistake("There are two gutters, and both bring water.")
-def _(A, q_1, q_o):
-    return {"rate": (q_1 - q_o) / A}
+def _(A, q_1, q_2, q_o):
+    alone, both = q_1 - q_o, q_1 + q_2 - q_o
+    return {"rate": alone / A} if abs(abs(alone / both) - 1) > 0.05 else {}
+
+
+@cistern.mistake("There are two gutters, and both bring water.")
+def _(A, q_1, q_2, q_o):
+    alone, both = q_2 - q_o, q_1 + q_2 - q_o
+    return {"rate": alone / A} if abs(abs(alone / both) - 1) > 0.05 else {}
 
 
 @cistern.mistake("Which way does the level have to go, and how far is it from where it stands now?")
@@ -207,6 +214,29 @@ def _(V, q, k, c_in):
     return {"T": V / (q - k * V), "c_s": q * c_in / (q - k * V)}
 
 
+@pond.mistake("That is the time constant of the bacteria alone. What else carries waste out of the pond?")
+def _(V, q, k):
+    return {"T": 1 / k} if abs(k * V / q - 1) > 0.03 else {}
+
+
+@pond.mistake("Your concentration ends at that of the inflow. Do the bacteria eat nothing?")
+def _(V, q, k, c_in):
+    T, _ = _decay(V, q, k)
+    return {"c": c_in * (1 - sympy.exp(-t / T))}
+
+
+@pond.mistake("Your concentration ends where it should. How fast does it get there when the bacteria help?")
+def _(V, q, k, c_in):
+    _, share = _decay(V, q, k)
+    return {"c": share * c_in * (1 - sympy.exp(-t * q / V))}
+
+
+@pond.mistake("An exponent is a pure number: here it must be a time over a time constant.")
+def _(V, q, k, c_in):
+    T, share = _decay(V, q, k)
+    return {"c": share * c_in * (1 - sympy.exp(-t * T))}
+
+
 @pond.mistake("At first the pond is clean, and in the end it is not. That is the other way round.")
 def _(V, q, k, c_in):
     T, share = _decay(V, q, k)
@@ -238,12 +268,12 @@ def milk(
     )
 
 
-@milk.mistake("The vat also loses heat to the dairy.")
+@milk.mistake("Heat also passes through the wall, between the vat and the dairy.")
 def _(m, F, c, T_i, T_SP):
     return {"P": c * F * (T_SP - T_i) / 1000, "T_off": T_i, "H": 1 / (c * m * s + c * F)}
 
 
-@milk.mistake("The milk that flows in has to be heated, too.")
+@milk.mistake("The milk that flows through carries heat, too: it comes in cold and leaves as warm as the vat.")
 def _(m, F, c, U_h, T_e, T_SP):
     found = {"P": U_h * (T_SP - T_e) / 1000, "T_off": T_e}
     return found if abs(U_h / (c * F) - 1) < 0.05 else found | {"H": 1 / (c * m * s + U_h)}
@@ -265,6 +295,11 @@ def _(F, c, U_h, T_i, T_e):
 @milk.mistake("That is per kilowatt. The power is asked in watts here.")
 def _(m, F, c, U_h):
     return {"H": 1000 / (c * m * s + c * F + U_h)}
+
+
+@milk.mistake("That is right with the time in minutes. Here it is asked in seconds.")
+def _(m, F, c, U_h):
+    return {"H": 1 / (c * m * s / 60 + c * F + U_h)}
 
 
 @milk.mistake("The lag is right. By how many kelvin does one watt more warm the milk in the end?")
@@ -293,6 +328,7 @@ def _lift(T, J, r, m_1, m_2, g):
     points=5,
     where=lambda m_1, m_2, J, r, T: (
         abs(m_1 - m_2) >= 60
+        and abs(T) >= 200
         and sympy.Rational(1, 5) <= abs(_lift(T, J, r, m_1, m_2, g_earth)) <= 2
         and abs(T / r) <= 3 * abs(T / r - (m_1 - m_2) * g_earth)
     ),
@@ -339,6 +375,11 @@ def _lift_with(mass, weight):
     return found
 
 
+def _moved(m_1, m_2, J, r):
+    """The mass that the rope seems to move."""
+    return m_1 + m_2 + J / r**2
+
+
 def _only(found, *names):
     return {name: found[name] for name in names}
 
@@ -361,7 +402,33 @@ def _(m_1, m_2, J, r, T):
 
 @lift.mistake("The counterweight helps the motor: it pulls on the other side of the drum.")
 def _(m_1, m_2, J, r, T):
-    return {"T_hold": m_1 * g_earth * r}
+    found = _lift_with(_moved, lambda m_1, m_2, J, r: m_1)(m_1, m_2, J, r, T)
+    return _only(found, "formula", "T_hold", "a")
+
+
+@lift.mistake(
+    "The weights of cabin and counterweight are on two sides of the drum. Do they pull it the same way round?"
+)
+def _(m_1, m_2, J, r, T):
+    found = _lift_with(_moved, lambda m_1, m_2, J, r: m_1 + m_2)(m_1, m_2, J, r, T)
+    return _only(found, "formula", "T_hold", "a")
+
+
+@lift.mistake("Which of the two weights pulls the cabin down, and which one up?")
+def _(m_1, m_2, J, r, T):
+    found = _lift_with(_moved, lambda m_1, m_2, J, r: m_2 - m_1)(m_1, m_2, J, r, T)
+    return _only(found, "formula", "a")
+
+
+@lift.mistake("That belongs to the turning of the drum. How is the motion of the rope connected with it?")
+def _(m_1, m_2, J, r, T):
+    angular = _lift(TORQUE, INERTIA, RADIUS, CABIN, WEIGHT, G) / RADIUS
+    return {"formula": angular, "mass": J + (m_1 + m_2) * r**2, "a": _lift(T, J, r, m_1, m_2, g_earth) / r}
+
+
+@lift.mistake("A mass is not yet a force. With which force does the earth pull at it?")
+def _(m_1, m_2, r):
+    return {"T_hold": (m_1 - m_2) * r}
 
 
 @lift.mistake("An inertia in kg m² does not become a mass when it is multiplied by the radius. Look at the units.")
@@ -443,7 +510,17 @@ def _(circuit):
 def _(circuit, r_1, c):
     if circuit == "stepped":
         return {"H": 1 / (R_1 * C * s + 1), "T": r_1 * c}
-    return {"H": 1 / (R_1 * C * s + 1) if circuit == "loaded" else R_1 * C * s / (R_1 * C * s + 1), "T": r_1 * c}
+    return {"H": 1 / (R_1 * C * s + 1) if circuit == "loaded" else R_2 * C * s / (R_2 * C * s + 1), "T": r_1 * c}
+
+
+@two_resistors.mistake("There is a second resistor, and a current flows through it as well.")
+def _(r_2, c):
+    return {"T": r_2 * c}
+
+
+@two_resistors.mistake("Over which of the two resistors lies the voltage at the output?")
+def _(circuit, r_1, r_2):
+    return {"fast" if circuit == "stepped" else "slow": r_1 / (r_1 + r_2)} if abs(r_1 / r_2 - 1) > 0.03 else {}
 
 
 @two_resistors.mistake(

@@ -2,7 +2,6 @@
 
 from sympy import Symbol, exp, log
 
-from loopbook import s, t
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -13,6 +12,7 @@ from loopbook.exercises.authoring import (
     transfer_function,
     words,
 )
+from loopbook.expressions import s, t
 
 
 @exercise("4.1", title="An oil bath warms up", points=2)
@@ -42,7 +42,12 @@ def _(start, rate):
     return {"F": (start + rate) / s}
 
 
-@oil_bath.mistake("Multiplying with $s$ is right for a signal that starts at zero. This one has an initial value.")
+@oil_bath.mistake("That is a bath that starts at 0 °C. What does this one have at $t = 0$?")
+def _(rate):
+    return {"F": rate / s**2}
+
+
+@oil_bath.mistake("Multiplying by $s$ is right for a signal that starts at zero. This one has an initial value.")
 def _(start, rate):
     return {"F_rate": start + rate / s}
 
@@ -80,6 +85,16 @@ def _(q, begin):
 )
 def _(q, begin, duration):
     return {"F": q * (exp(-begin * s) - exp(-(begin + duration) * s))}
+
+
+@dose.mistake("Your pump starts a second time instead of stopping. Which sign has the second step?")
+def _(q, begin, duration):
+    return {"F": q / s * (exp(-begin * s) + exp(-(begin + duration) * s))}
+
+
+@dose.mistake("Your pump runs from $t = 0$ on. When does it start?")
+def _(q, duration):
+    return {"F": q / s * (1 - exp(-duration * s))}
 
 
 @dose.mistake("No dye flows before the pump starts. For how long does it run?")
@@ -131,7 +146,7 @@ def _(A, B, p, q):
 def thermometer(
     T=between(4, 20, "s", reference=8, step=1),
     start=between(15, 30, "°C", reference=22, step=1),
-    bath=between(40, 95, "°C", reference=62, step=1),
+    bath=between(40, 75, "°C", reference=62, step=1),
     rest=between(0.5, 2, "K", reference=1, step=0.25),
 ):
     r"""A thermometer shows {start}. At $t = 0$ it is put into water of {bath}. From then on its reading $y(t)$ follows
@@ -157,9 +172,7 @@ def _(T, bath, rest):
     return {"Y": bath / (s * (T * s + 1)), "y": bath * (1 - exp(-t / T)), "t_near": T * log(bath / rest)}
 
 
-@thermometer.mistake(
-    "In the equation the derivative is multiplied with the time-constant, and so is its initial value."
-)
+@thermometer.mistake("In the equation the derivative is multiplied by the time-constant, and so is its initial value.")
 def _(T, start, bath):
     return {"Y": (start * s + bath) / (s * (T * s + 1)), "y": bath - (bath - start / T) * exp(-t / T)}
 
@@ -183,7 +196,13 @@ def _(T, start, bath):
 
 @thermometer.mistake("You have added the final value and the whole response from zero. What is the reading at $t = 0$?")
 def _(T, start, bath):
-    return {"y": start + bath * (1 - exp(-t / T))}
+    return {"Y": start / s + bath / (s * (T * s + 1)), "y": start + bath * (1 - exp(-t / T))}
+
+
+@thermometer.mistake("That is by how much the reading has risen. What does the thermometer show at $t = 0$?")
+def _(T, start, bath):
+    rise = bath - start
+    return {"Y": rise / (s * (T * s + 1)), "y": rise * (1 - exp(-t / T))}
 
 
 @exercise("4.5", title="Which of them settle?", points=3)
@@ -294,6 +313,12 @@ def _():
     return {"U": u_1 / s + u_2 / s * exp(-t_1 * s)}
 
 
+@full_power_first.mistake("Your power is $u_1 - u_2$ after the switch. How large is the step from $u_1$ to $u_2$?")
+def _():
+    u_1, u_2, t_1 = (Symbol(name, positive=True) for name in ("u_1", "u_2", "t_1"))
+    return {"U": u_1 / s - u_2 / s * exp(-t_1 * s)}
+
+
 @full_power_first.mistake("Under full power the temperature does not rise along a straight line to its end: it bends.")
 def _(T, K, full, warmer):
     return {"t_1": T * warmer / (K * full)}
@@ -307,7 +332,7 @@ def _(T, K, full, warmer):
 
 
 @full_power_first.mistake(
-    "After one time-constant, 63 % of the way to $Ku_1$ are done. Is that the temperature that is wanted?"
+    "After one time-constant, 63 % of the way to $Ku_1$ is done. Is that the temperature that is wanted?"
 )
 def _(T, K, full, warmer):
     return {"t_1": T} if abs(_excess(K, full, warmer) - 1.582) > 0.05 else {}

@@ -2,7 +2,6 @@
 
 from sympy import Symbol, exp, symbols
 
-from loopbook import s, t
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -17,6 +16,7 @@ from loopbook.exercises.authoring import (
     transfer_function,
     word,
 )
+from loopbook.expressions import s, t
 
 
 @exercise("5.1", title="A stirrer and its load", points=2)
@@ -47,7 +47,7 @@ def _(J, k):
     return {"H_u": k / (J * s), "H_M": -1 / (J * s)}
 
 
-@stirrer.mistake("Only the voltage is multiplied with $k$. With what is the torque multiplied in the equation?")
+@stirrer.mistake("Only the voltage is multiplied by $k$. By what is the torque multiplied in the equation?")
 def _(J, k, b):
     return {"H_M": -k / (J * s + b)} if k != 1 else {}
 
@@ -110,7 +110,17 @@ def _(K, z, scale):
     return {"H_s": -scale * K * z}
 
 
-@exercise("5.3", title="A force sensor that creeps", points=4, where=lambda T, T_0: 5 * T_0 <= 4 * T)
+@fraction.mistake("At $s = 0$ the denominator is not one. Divide by what remains of it.")
+def _(K, z):
+    return {"H_s": -K * z} if z != -1 else {}
+
+
+@exercise(
+    "5.3",
+    title="A force sensor that creeps",
+    points=4,
+    where=lambda T, T_0: 4 * T_0 <= 3 * T and abs(2 * T_0 - T) >= T / 10,
+)
 def creeping_sensor(
     K=between(0.2, 1.2, "mV/N", reference=0.5, step=0.1),
     T=between(20, 80, "s", reference=40, step=5),
@@ -146,6 +156,18 @@ def _(K, T, T_0, U):
 def _(K, T, T_0, U):
     unit = K * (1 - (1 - T_0 / T) * exp(-t / T))
     return {"y_0": K * T_0 / T, "y_s": K, "y": unit}
+
+
+@creeping_sensor.mistake(
+    "What does your signal begin with? Compare its value at $t = 0$ with that just after the step."
+)
+def _(K, T, T_0, U):
+    return {"y": K * U * (1 - T_0 / T * exp(-t / T))}
+
+
+@creeping_sensor.mistake("Beginning and end are right. Which time-constant belongs to the pole?")
+def _(K, T, T_0, U):
+    return {"y": K * U * (1 - (1 - T_0 / T) * exp(-t / T_0))}
 
 
 @creeping_sensor.mistake("That is the response of the denominator alone. The numerator lets the sensor react at once.")

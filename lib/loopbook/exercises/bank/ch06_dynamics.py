@@ -5,7 +5,6 @@ from math import log as logarithm
 
 from sympy import E, Heaviside, exp, log
 
-from loopbook import s, t
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -17,6 +16,7 @@ from loopbook.exercises.authoring import (
     time_function,
     transfer_function,
 )
+from loopbook.expressions import s, t
 
 
 @exercise(
@@ -74,7 +74,7 @@ def half_way(
     t_half=between(2, 15, "min", reference=7, step=0.5),
 ):
     """The air of a dryer is warmed by steam. The steam valve stood at {u_1}, and the air had a temperature of {y_1}.
-    Then the valve was opened by a further {du}. The air became {dy} warmer in the end, and it had gone half of this
+    Then the valve was opened further, to {u_2}. The air became {dy} warmer in the end, and it had gone half of this
     way after {t_half}. Take the dryer for a time-constant system. Find its gain and its time-constant. Which
     temperature did the air have when one time-constant had passed since the step?
     """
@@ -83,6 +83,16 @@ def half_way(
         T=number(t_half / log(2), "min", "the time-constant"),
         y_T=number(y_1 + (1 - 1 / E) * dy, "°C", "the temperature after one time-constant", within=0.005),
     )
+
+
+@half_way.shows
+def _(u_1, du):
+    return {"u_2": f"{u_1 + du}\N{NO-BREAK SPACE}%"}
+
+
+@half_way.mistake("By how much has the valve been opened? The gain is a ratio of changes.")
+def _(u_1, du, dy):
+    return {"K": dy / (u_1 + du)}
 
 
 @half_way.mistake("The gain is a ratio of changes. You have divided the values after the step.")
@@ -226,6 +236,16 @@ def _(length, v):
     return {"H": exp(-length / v * s)}
 
 
+@belt.mistake("A transfer function does not contain the size of the input: it multiplies whatever the feeder gives.")
+def _(length, v, F):
+    return {"H": F * exp(-length / v * s) / s} if F != 1 else {}
+
+
+@belt.mistake("That is the mass flow at the end of the belt. The hopper adds it up.")
+def _(length, v, F, run):
+    return {"m": F * (Heaviside(t - length / v) - Heaviside(t - length / v - run))}
+
+
 @belt.mistake("The hopper fills on for ever. The feeder stops, and after a while nothing more arrives.")
 def _(length, v, F):
     return {"m": F * (t - length / v) * Heaviside(t - length / v)}
@@ -310,7 +330,8 @@ def _(T_1, T_2):
     "When the time runs from the step at the boiler, the first seconds of it are delay and do not count for the lags."
 )
 def _(T_1, T_2, delay):
-    return {"share": 100 - 100 * _share_left(float(T_1 + T_2 + delay), float(T_1), float(T_2))}
+    share = 100 - 100 * _share_left(float(T_1 + T_2 + delay), float(T_1), float(T_2))
+    return {"share": share} if not _near(share, 100 - 100 * exponential(-1)) else {}
 
 
 @pocket.mistake("That is the estimate again. The sensor has not quite come to 63.2 % there.")

@@ -38,7 +38,7 @@ def boiler(
     burner of 0 to {q_max}.
 
     The panel shows a pressure of {y}. Find the pressure $p$ in bar and the current $I$ in the cable. The gain of the
-    controller is {K_p}, percent for percent. Which gain has the same controller when it works in bar and kg/h?
+    controller is {K_p}, percent for percent. What is its gain in engineering units, in kg/h of oil for each bar?
     """
     span = p_high - p_low
     return answers(
@@ -136,6 +136,11 @@ def _(K_p, rise):
     return {"u": K_p * rise}
 
 
+@jacket.mistake("This is the proportional term, or its magnitude. From which value does the control signal begin?")
+def _(K_p, rise):
+    return {"u": -K_p * rise}
+
+
 @exercise(
     "7.3",
     title="A panel in another language",
@@ -146,17 +151,7 @@ def _(K_p, rise):
 )
 def panel(
     P_B=choice(25, 40, 50, 80, 125, 160, 200, 250, unit="%", reference=80),
-    repeats=choice(
-        0.5,
-        0.8,
-        1.2,
-        1.5,
-        2,
-        2.5,
-        3,
-        4,
-        reference=1.5,
-    ),
+    repeats=choice(0.5, 0.8, 1.2, 1.5, 2, 2.5, 3, 4, reference=1.5),
     u_0=between(20, 50, "%", reference=40, step=5),
     error=between(1, 8, "%", reference=4, step=1),
 ):
@@ -213,8 +208,8 @@ def oil_tank(
 ):
     """The heater of an oil tank acts on the temperature with a gain of $K$ = {K} and a lag of {T}. On cold nights the
     tank loses so much more heat that the heater would have to give $W$ = {W} more to make up for it: the loss acts
-    like a control signal that is $W$ too small. A P controller with the gain $K_p$ [%/K] has its nominal value from
-    the days.
+    like a control signal that is $W$ too small. The controller is a P controller with the gain $K_p$ [%/K]. Its nominal
+    control signal is right for the days, and is not changed.
 
     Which control error remains in the end? Give it first as a formula in $K$, $K_p$ and $W$. Then find the gain with
     which {e_max} remain. A PI controller replaces the P controller: by how much has it raised the control signal in
@@ -247,6 +242,16 @@ def _():
 def _():
     K, K_p, W = Symbol("K"), Symbol("K_p"), Symbol("W")
     return {"e": K * K_p * W / (1 + K * K_p)}
+
+
+@oil_tank.mistake("Here numbers have been put in. Asked is first the formula with the letters.")
+def _(K, W):
+    return {"e": K * W / (1 + K * Symbol("K_p"))}
+
+
+@oil_tank.mistake("This is a loop gain, without unit. Which part of it belongs to the controller?")
+def _(K, W, e_max):
+    return {"K_p": K * W / e_max - 1} if K != 1 else {}
 
 
 @oil_tank.mistake(
@@ -336,6 +341,21 @@ def _(K_p, T_i, u_0, e_frost, e_after, frost):
 @dryer.mistake("The proportional term was there before, with the error of the frost. By how much does it change?")
 def _(K_p, e_after):
     return {"u_after": 100 - K_p * e_after}
+
+
+@dryer.mistake("Here only the old proportional term has gone. With the error after the frost there is another one.")
+def _(K_p, e_frost, e_after):
+    return {"u_after": 100 - K_p * e_frost} if e_frost != e_after else {}
+
+
+@dryer.mistake("So it was while the frost lasted. Which term follows the error at once, when the frost ends?")
+def _():
+    return {"u_after": 100}
+
+
+@dryer.mistake("So large it would be without anti wind-up. At which value has the integral term been halted?")
+def _(K_p, T_i, u_0, e_frost, e_after, frost):
+    return {"u_after": _wound_up(K_p, T_i, u_0, e_frost, e_after, frost)[1] - K_p * (e_frost + e_after)}
 
 
 def _angle(A, tau, K_p):
@@ -428,9 +448,12 @@ def heat_exchanger(
     return answers(
         settings=design(
             settings(PID(T / (2 * K * delay), T), gain="%/%", time="s"),
-            criterion("the loop is stable", lambda pid: is_stable(process * pid.expr)),
-            criterion("the factor that the gain bears", lambda pid: _gain_factor(process, pid), above=2.5),
-            criterion("the factor that the dead time bears", lambda pid: _delay_factor(process, delay, pid), above=2.5),
+            criterion("the controller is a PI controller", lambda pid: pid.Td == 0 and pid.Ti.is_finite),
+            criterion("the loop is stable", lambda pid: pid.Kp != 0 and is_stable(process * pid.expr)),
+            criterion("the factor by which the gain may grow", lambda pid: _gain_factor(process, pid), above=2.5),
+            criterion(
+                "the factor by which the dead time may grow", lambda pid: _delay_factor(process, delay, pid), above=2.5
+            ),
             criterion("the integral of the error", _area, below=float(area), unit="% s"),
         )
     )

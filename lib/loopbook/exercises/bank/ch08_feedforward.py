@@ -87,6 +87,16 @@ def _(T_SP, T_c, T_h, before, more):
     }
 
 
+@wash_water.mistake("Here numbers have been put in. Asked is the formula with all its letters.")
+def _(T_SP, T_c, T_h):
+    return {"w_h": Symbol("w_c") * (T_SP - T_c) / (T_h - T_SP)}
+
+
+@wash_water.mistake("This is the setpoint. But the cold flow has changed, and nothing has made up for it.")
+def _(T_SP):
+    return {"T_without": T_SP}
+
+
 @wash_water.mistake("This is how much more hot water is needed. Asked is the whole hot flow.")
 def _(T_SP, T_c, T_h, before, more):
     return {"w_new": _hot_flows(T_SP, T_c, T_h, before, more)[3]}
@@ -155,6 +165,11 @@ def _():
     return {"F_f": _force(wind=0)}
 
 
+@trolley.mistake("Here numbers have been put in. Asked is the formula with all its letters.")
+def _(m, D, F_w):
+    return {"F_f": m * Symbol("a_SP") + D * Symbol("v_SP") + F_w}
+
+
 @trolley.mistake("After the rise the setpoint is constant. What is its slope then?")
 def _(m, D, v, rise, F_w):
     return {"F_after": m * v / rise + D * v + F_w}
@@ -164,7 +179,9 @@ def _(m, D, v, rise, F_w):
     "8.3",
     title="Feedforward from two transfer functions",
     points=4,
-    where=lambda T, T_d, tau, tau_d: tau_d > tau and abs(T - T_d) >= 0.2 * T,
+    where=lambda K, T, tau, K_d, T_d, tau_d, rise: (
+        tau_d > tau and abs(T - T_d) >= 0.2 * T and rise * K_d <= 20 * K and rise * K_d * T <= 30 * K * T_d
+    ),
 )
 def pasteuriser(
     K=between(0.4, 2, "K/%", reference=0.8, step=0.1),
@@ -196,6 +213,13 @@ def _(K, K_d, tau, tau_d, rise):
     return {"F_fd": K_d / K * exp(-(tau_d - tau) * s), "u_first": rise * K_d / K}
 
 
+@pasteuriser.mistake(
+    "These are the gains alone: right in the end, but on the way there the lags and the dead times count."
+)
+def _(K, K_d):
+    return {"F_fd": K_d / K}
+
+
 @pasteuriser.mistake("The two lags are exchanged. Whichever is divided by brings its lag into the numerator.")
 def _(K, T, tau, K_d, T_d, tau_d, rise):
     F_fd = K_d * (T_d * s + 1) / (K * (T * s + 1)) * exp(-(tau_d - tau) * s)
@@ -215,8 +239,8 @@ def _(K, T, K_d, T_d, tau_d):
 
 
 @pasteuriser.mistake("This is for a rise of 1 kg/s. How large was the step?")
-def _(K, K_d):
-    return {"u_end": K_d / K}
+def _(K, T, K_d, T_d):
+    return {"u_end": K_d / K, "u_first": K_d * T / (K * T_d)}
 
 
 def _x(theta, P):
@@ -256,9 +280,14 @@ def _compared(theta, P):
     return "smaller" if 6 * theta < P else "larger"
 
 
-@ship.mistake("This share of the error is removed. Which share is left? (An error has no sign here.)")
+@ship.mistake("So much the feedforward takes away. How much is left? (A swing has no sign here.)")
 def _(e_0, k):
     return {"e_wrong": k * e_0}
+
+
+@ship.mistake("This is the factor by which the feedforward changes the swing. How many metres are that?")
+def _(k, theta, P):
+    return {"e_wrong": abs(1 - k), "e_late": 2 * math.sin(_x(theta, P) / 2)}
 
 
 @ship.mistake("Here an angle in radians was put into a sine that takes degrees.")
@@ -357,9 +386,16 @@ def _(u_0, u_full, d):
     return {"u_f": _needed(u_0, u_full, d)}
 
 
-@water_main.mistake("This is the value of a point beside it. Between two points the feedforward is on a straight line.")
+@water_main.mistake("This is the value of the point before. Between two points the feedforward is on a straight line.")
 def _(u_0, u_full, points, d):
     return {"u_f": _left_point(u_0, u_full, points, d)}
+
+
+@water_main.mistake("This is the value of the next point. Between two points the feedforward is on a straight line.")
+def _(u_0, u_full, points, d):
+    width = 100 / (points - 1)
+    right = _needed(u_0, u_full, d // width * width + width)
+    return {"u_f": right} if _apart((right, _line(u_0, u_full, points, d))) else {}
 
 
 @water_main.mistake("This is the number of intervals. How many points do they have?")

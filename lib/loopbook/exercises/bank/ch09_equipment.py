@@ -32,7 +32,7 @@ def kiln(
     V=between(0.6, 9, "V", reference=3, step=0.1),
 ):
     """The thermometer of a kiln sends 4 to 20 mA for {T_low} to {T_high}. A resistor of {R} turns the current into a
-    voltage, and a voltmeter beside it shows {V}. What is the current, and how hot is the kiln? Then the cable breaks.
+    voltage, and a voltmeter across it shows {V}. What is the current, and how hot is the kiln? Then the cable breaks.
     Which temperature would the controller show, if it went on with the same scaling and gave no alarm?
     """
     I = 1000 * V / R
@@ -78,13 +78,14 @@ def silo(
     """A silo stands on load cells with a range of 0 to {span}. The input of the controller turns their signal into a
     number of {bits} bits, so that a change shows only if it is a step of this number. How many kilograms is a step? The
     data sheet also states an inaccuracy of {inaccuracy} of full scale at most, and a drift of {drift} (of full scale).
-    How wrong may the display be, in kilograms, when it has become {warming} warmer? Which of the two is larger, the
-    resolution or the inaccuracy with its drift? And how many bits, at least, make the step no larger than {finest}?
+    How many kilograms do these two make together, at most, when it has become {warming} warmer? Which is larger, the
+    resolution (the step) or the inaccuracy with its drift? And how many bits, at least, make the step no larger than
+    {finest}?
     """
     step, error = _step(span, bits), _error(span, inaccuracy, drift, warming)
     return answers(
         step=number(step, "kg", "the step"),
-        error=number(error, "kg", "the largest error of the display"),
+        error=number(error, "kg", "the largest error by inaccuracy and drift"),
         larger=word("resolution" if step > error else "inaccuracy", ["resolution", "inaccuracy"], "the larger one"),
         bits=number(_bits(span, finest), what="the number of bits", within=0),
     )
@@ -153,7 +154,7 @@ def dam(
     R_voltage=choice(2, 5, 10, 20, 100, unit="kΩ", reference=10),
 ):
     """A controller sets a gate at the far end of a dam by a current of 4 to 20 mA. Its output drives at most {R_load}
-    in all. In the loop {receivers} an input of {R_in}, and the cable, each of whose two wires has {wire}.
+    in all. In the loop are {receivers} an input of {R_in}, and the cable. Each of its two wires has {wire}.
 
     Which voltage must the output have at 20 mA, when its load is the largest one? How far away may the gate be? A
     colleague would rather send a voltage to an input of {R_voltage}. Which share of it, in percent, is lost on {length}
@@ -169,7 +170,7 @@ def dam(
 
 @dam.shows
 def _(inputs):
-    one, two = "is the positioner of the gate, with", "are the positioner of the gate and a display, each with"
+    one, two = "the positioner of the gate with", "the positioner of the gate and a display, each with"
     return {"receivers": one if inputs == 1 else two}
 
 
@@ -196,11 +197,11 @@ def _(wire, length, R_voltage):
     return {"lost": 100 - 100 * R_cable / (R_cable + 1000 * R_voltage)}
 
 
-@exercise("9.4", title="Pulses for a pump", points=3)
+@exercise("9.4", title="Pulses for a pump", points=3, where=lambda A, q, ripple: 4 * ripple * A >= 15 * q)
 def pump_sump(
     A=between(1, 8, "m²", reference=3, step=0.5),
     q=between(4, 30, "L/s", reference=12, step=1),
-    D=choice(0.2, 0.25, 0.3, 0.4, 0.6, 0.7, 0.75, 0.8, reference=0.6),
+    D=choice(0.2, 0.25, 0.3, 0.7, 0.75, 0.8, reference=0.7),
     ripple=between(5, 40, "mm", reference=20, step=5),
 ):
     """A pump can only run or stand still. When it runs it delivers $q$ [L/s] into a tank with the area $A$ [m²]. It is
@@ -227,6 +228,11 @@ def _sump_ripple():
 def _(A, q, D, ripple):
     letters = _sump_ripple() / (1 - Symbol("D"))
     return {"ripple": letters, "P": ripple * A / (q * D), "P_any": ripple * A / q}
+
+
+@pump_sump.mistake("Here numbers have been put in. Asked is first the formula with the letters.")
+def _(A, q, D):
+    return {"ripple": q * D * (1 - D) / A * Symbol("P")}
 
 
 @pump_sump.mistake("At this rate the level falls or rises only for a part of the cycle. For how long?")
@@ -296,6 +302,13 @@ def _(full, T, D, P):
     return {"y": Piecewise((full * (1 - exp(-t / T)), t < on), (full * exp(-(t - on) / T), True))}
 
 
+@oven.mistake("In the off-state this cools as if the relay had opened at the very beginning. When did it open?")
+def _(full, T, D, P):
+    on = D * P
+    cooling = full * (1 - exp(-on / T)) * exp(-t / T)
+    return {"y": Piecewise((full * (1 - exp(-t / T)), t < on), (cooling, True))}
+
+
 @oven.mistake("This is the response to the mean of the power. The relay lets full power through, or nothing.")
 def _(full, T, D):
     return {"y": full * D * (1 - exp(-t / T))}
@@ -329,9 +342,9 @@ def program(
     K_p=between(0.5, 6, reference=2, step=0.1),
     h=between(0.2, 2, "s", reference=0.4, step=0.2),
 ):
-    """A flow answers to its valve with a gain of $K$ = {K} (percent for percent), a lag of $T$ = {T} and a dead time of
-    $\\tau$ = {tau}. The PI controller has a gain of $K_p$ = {K_p}, and its integral time is equal to $T$. Then the open
-    loop is an integrator with dead time.
+    """A steam pressure answers to its valve with a gain of $K$ = {K} (percent for percent), a lag of $T$ = {T} and a
+    dead time of $\\tau$ = {tau}. The PI controller has a gain of $K_p$ = {K_p}, and its integral time is equal to $T$.
+    Then the open loop is an integrator with dead time.
 
     Find the delay margin of the loop with a controller that runs all the time. A digital controller runs once in a
     time step. Above which time step is the loop unstable, by the estimate with half a step of dead time? How much of
@@ -349,7 +362,7 @@ def _margin(K, T, tau, K_p):
     return math.pi / 2 * float(T / (K * K_p)) - float(tau)
 
 
-@program.mistake("This is the whole dead time at the limit. Some of it is there already.")
+@program.mistake("Here the margin is the whole dead time at the limit. But some of it is there already.")
 def _(K, T, tau, K_p, h):
     whole = pi * T / (2 * K * K_p)
     return {"margin": whole, "h_limit": 2 * whole, "left": whole - h / 2}
@@ -422,7 +435,7 @@ def _fine(cycle, P):
 
 
 def _life(life, P):
-    return float(life) * 1e6 * P / YEAR
+    return float(life) * 1e6 * max(P, 0) / YEAR
 
 
 def _longest(T, ripple):

@@ -1,10 +1,10 @@
 """Exercises of chapter 11, control structures."""
 
+import cmath
 import math
 
 from sympy import Min, Rational, exp, symbols
 
-from loopbook import s, t
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -20,6 +20,7 @@ from loopbook.exercises.authoring import (
     word,
 )
 from loopbook.exercises.parameters import written
+from loopbook.expressions import s, t
 from loopbook.pid import PID
 
 OTHER = {"reverse": "direct", "direct": "reverse"}
@@ -62,11 +63,23 @@ def _(x_S, x_L, F_S):
     return {"K": x_L / x_S, "F_W": x_L / x_S * F_S}
 
 
+@lemonade.mistake("That is the share of the water in the lemonade. The ratio controller starts from the flow of syrup.")
+def _(x_S, x_L, F_S):
+    return {"K": 1 - x_L / x_S, "F_W": (1 - x_L / x_S) * F_S}
+
+
 @lemonade.mistake(
     "With $K F_S$ as setpoint the loop gain would stay as it is. The quotient has the flow of syrup in its denominator."
 )
 def _():
     return {"factor": 1}
+
+
+@lemonade.mistake(
+    "That is the part by which the flow of syrup falls. Write the quotient's gain before and after, and divide."
+)
+def _(part):
+    return {"factor": 1 - part / 100} if part != 50 else {}
 
 
 # --- 11.2 ---------------------------------------------------------------------------------------------------------
@@ -90,9 +103,9 @@ def blanket(
     u=between(5, 95, "%", reference=30, step=5),
 ):
     """The space above a solvent in a tank is filled with nitrogen. One pressure controller keeps the pressure with two
-    valves: one lets nitrogen in, the other one, the vent, lets gas out. Never shall both be open, and each uses its
-    part of the control signal fully, from closed to open. Below {split} one of them works, above {split} the other. The
-    controller is set to *{action}* action.
+    valves: one lets nitrogen in, the other one, the vent, lets gas out. The two must never be open at the same time,
+    and each passes its whole way between closed and open in its part of the control signal. Below {split} one of them
+    works, above {split} the other. The controller is set to *{action}* action.
 
     Which of the valves moves in the lower part of the range? What are the openings when the control signal is {u}?
     """
@@ -105,7 +118,7 @@ def blanket(
 
 
 @blanket.mistake(
-    "These are the openings for the other action of the controller. Does its signal rise or fall with the pressure?"
+    "That belongs to the other action of the controller. Does its signal rise or fall as the pressure rises?"
 )
 def _(u, split, action):
     vent, inlet = blanket_valves(u, split, OTHER[action])
@@ -121,6 +134,18 @@ def _(u, split, action):
     return {valve: 100 - opening for valve, opening in openings.items() if opening}
 
 
+@blanket.mistake("At this control signal the other valve is open. May this one be open, too?")
+def _(u, split, action):
+    openings = dict(zip(("vent", "inlet"), blanket_valves(u, split, action), strict=True))
+    return {valve: 100 for valve, opening in openings.items() if not opening}
+
+
+@blanket.mistake("That is the control signal. Each valve passes its whole way over a part of it.")
+def _(u, split, action):
+    openings = dict(zip(("vent", "inlet"), blanket_valves(u, split, action), strict=True))
+    return {valve: u for valve, opening in openings.items() if opening and abs(opening - u) > 2}
+
+
 @blanket.mistake("That would be right if the range were split in the middle. Where is it split here?")
 def _(u, split, action):
     if (u - split) * (u - 50) <= 0:
@@ -134,32 +159,45 @@ def _(u, split, action):
 # --- 11.3 ---------------------------------------------------------------------------------------------------------
 
 
+ONE = [f"LC{n}" for n in (4, 1, 2, 3)]
+TWO = [f"LC{n} and LC{m}" for n in range(1, 5) for m in range(n + 1, 5)]
+
+
 def actions_in_row(place, closing):
-    actions = {n: "reverse" if n <= place else "direct" for n in range(1, 5)}
-    return actions | {closing: OTHER[actions[closing]]}
+    """The actions of the level controllers; the valves of some of them close as the signal rises."""
+    actions = {f"LC{n}": "reverse" if n <= place else "direct" for n in range(1, 5)}
+    return {name: OTHER[action] if name in closing else action for name, action in actions.items()}
 
 
 @exercise("11.3", title="Four tanks in a row", points=2)
-def tanks_in_row(place=choice(2, 1, 3), closing=choice(4, 1, 2, 3)):
+def tanks_in_row(place=choice(2, 0, 1, 3, 4), closing=choice(*ONE, *TWO)):
     r"""In a dairy the milk passes four tanks, one after the other. Each has a level controller, LC1 to LC4, whose valve
-    is in the pipe in front of the tank or behind it. A flow controller between tank {place} and tank {after} sets the
-    production rate, and so that pipe has no valve of a level controller. Every valve opens as its control signal rises,
-    with one exception: the valve of LC{closing} is open without signal and closes as the signal rises.
+    is in the pipe in front of the tank or behind it. A flow controller {where} sets the production rate, and so that
+    pipe has no valve of a level controller. Every valve opens as its control signal rises, with {exceptions} without
+    signal and closed at 100 %.
 
     Which action does each level controller need, if no two controllers may share a pipe?
     """
     actions = actions_in_row(place, closing)
-    return answers(**{f"LC{n}": word(actions[n], ["reverse", "direct"], what=f"the action of LC{n}") for n in actions})
+    return answers(
+        **{name: word(action, ["reverse", "direct"], what=f"the action of {name}") for name, action in actions.items()}
+    )
 
 
 @tanks_in_row.shows
-def _(place):
-    return {"after": str(place + 1)}
+def _(place, closing):
+    wheres = {0: "in front of tank 1", 4: "behind tank 4"}
+    two = "and" in closing
+    exceptions = "two exceptions: the valves of {} are open" if two else "one exception: the valve of {} is open"
+    return {
+        "where": wheres.get(place, f"between tank {place} and tank {place + 1}"),
+        "exceptions": exceptions.format(closing),
+    }
 
 
 @tanks_in_row.mistake("That is right for a valve that opens as its signal rises. What does the valve of this one do?")
 def _(place, closing):
-    return {f"LC{closing}": OTHER[actions_in_row(place, closing)[int(closing)]]}
+    return {name: OTHER[action] for name, action in actions_in_row(place, closing).items() if name in closing}
 
 
 @tanks_in_row.mistake(
@@ -167,8 +205,7 @@ def _(place, closing):
     "downstream of there by what goes out."
 )
 def _(place, closing):
-    actions = actions_in_row(place, closing)
-    return {f"LC{n}": OTHER[actions[n]] for n in actions if n != closing}
+    return {name: OTHER[action] for name, action in actions_in_row(place, closing).items() if name not in closing}
 
 
 # --- 11.4 ---------------------------------------------------------------------------------------------------------
@@ -216,6 +253,16 @@ def _(K_1, T_1, K_2, T_2, K_p2):
     return {"H": K_p2 * K_1 * K_2 / ((T_1 * s + 1) * (T_2 * s + 1 + K_p2 * K_2))}
 
 
+@oven.mistake("That is the part by which the effect falls. Asked is how many times smaller it becomes.")
+def _(K_2, K_p2):
+    return {"factor": 1 - 1 / (1 + K_p2 * K_2)}
+
+
+@oven.mistake("The secondary loop makes its lag shorter. Does it leave the effect of a constant disturbance as it was?")
+def _(K_1, T_1, K_2, T_2, K_p2):
+    return {"H": K_1 * K_2 / ((T_1 * s + 1) * (T_2 / (1 + K_p2 * K_2) * s + 1))}
+
+
 @oven.mistake(
     "That is the gain of the secondary loop alone. What stands in the denominator of a closed loop besides it?"
 )
@@ -248,9 +295,9 @@ def basin(
     )
 
 
-@basin.mistake("That has the volume in the balance, but the flows are given as masses per second.")
-def _(A, k):
-    return {"T": A / k}
+@basin.mistake("There volumes and masses are mixed: all the flows are masses per second, and so is what $K_p$ moves.")
+def _(A, F, k):
+    return {"T": A / k, "left": F / (1000 * k)}
 
 
 @basin.mistake("That is the level without control, where the outflow stays as it was.")
@@ -333,6 +380,26 @@ def _(K_1, T_1, K_2, T_2, L_1, L_2):
     return {"left": float((1 + K_2 * K_p2) / (1 + K_2 * K_p2 + K_1 * K_2 * K_p1 * K_p2))}
 
 
+@two_poles.mistake("That is the gain of a controller times that of its process. Asked is the controller's alone.")
+def _(K_1, T_1, K_2, T_2, L_1, L_2):
+    K_p1, K_p2 = two_P(K_1, T_1, K_2, T_2, L_1, L_2)
+    return {"K_p1": K_1 * K_p1} | ({"K_p2": K_2 * K_p2} if K_2 != 1 else {})
+
+
+@two_poles.mistake("That is how far the drum comes. Asked is what is missing in the end.")
+def _():
+    k_1, k_2, p_1, p_2 = symbols("K_1 K_2 K_p1 K_p2", positive=True)
+    return {"left": k_1 * k_2 * p_1 * p_2 / (1 + k_2 * p_2 + k_1 * k_2 * p_1 * p_2)}
+
+
+@two_poles.mistake(
+    "There the air would follow its setpoint without an error, but the secondary controller is a P, too."
+)
+def _():
+    k_1, p_1 = symbols("K_1 K_p1", positive=True)
+    return {"left": 1 / (1 + k_1 * p_1)}
+
+
 @two_poles.mistake("There the air is not fed back. At rest the secondary loop answers with less than what it is asked.")
 def _():
     k_1, k_2, p_1, p_2 = symbols("K_1 K_2 K_p1 K_p2", positive=True)
@@ -362,7 +429,7 @@ def inside_out(
     Tune both PI controllers of the cascade by Skogestad's rule with $c = 4$, each with $T_C$ equal to the dead time of
     its model. For the primary controller take the secondary loop as it was ordered, a lag $T_C$ behind the dead time,
     and use the half rule. For comparison: which dead time would the half rule leave for a single PI controller from
-    $y_1$ to the valve? And which of the two structures follows a setpoint of $y_1$ with the shorter dead time in its
+    $y_1$ to the valve? And in which of the two structures has the controller of $y_1$ the shorter dead time in its
     model?
     """
     inner, outer, alone = tuned_inside_out(K_1, T_1, K_2, T_2, delay)
@@ -392,6 +459,21 @@ def _(K_1, T_1, delay):
 
 
 @inside_out.mistake(
+    "In Skogestad's rule $c$ multiplies $T_C$ and the dead time, both. Which integral time does that allow?"
+)
+def _(K_1, T_1, K_2, T_2, delay):
+    inner, outer, _ = tuned_inside_out(K_1, T_1, K_2, T_2, delay)
+    short = {"secondary": (inner, 4 * delay), "primary": (outer, 6 * delay)}
+    return {name: PID(pid.Kp, Ti) for name, (pid, Ti) in short.items() if Ti < pid.Ti}
+
+
+@inside_out.mistake("What stands in the denominator of Skogestad's gain besides $T_C$?")
+def _(K_1, T_1, K_2, T_2, delay):
+    inner, outer, _ = tuned_inside_out(K_1, T_1, K_2, T_2, delay)
+    return {"secondary": PID(2 * inner.Kp, inner.Ti), "primary": PID(2 * outer.Kp, outer.Ti)}
+
+
+@inside_out.mistake(
     "That is tuned in front of the whole process. The primary controller has the closed secondary loop before it."
 )
 def _(K_1, T_1, K_2, T_2, delay):
@@ -404,6 +486,11 @@ def _(K_1, T_1, K_2, T_2, delay):
 )
 def _(T_2, delay):
     return {"alone": delay + T_2}
+
+
+@inside_out.mistake("That is only what comes from the neglected lag. Which dead time has been there before?")
+def _(T_2, delay):
+    return {"alone": T_2 / 2}
 
 
 @inside_out.mistake(
@@ -472,6 +559,11 @@ def _(K_c, K_h):
 @where_to_split.mistake("There the valve with the larger effect has become the steeper one. It needs the wider part.")
 def _(K_c, K_h):
     return {"split": 100 * K_h / (K_c + K_h)}
+
+
+@where_to_split.mistake("There the range is split already, and the two gains differ.")
+def _():
+    return {"split": 50}
 
 
 @where_to_split.mistake(
@@ -543,11 +635,16 @@ def largest_flow_gain(pid, A):
     return flow_gain(pid, A, math.sqrt((math.sqrt(b**4 + 2 * a * a * b**3) - b * b) / (a * a)))
 
 
-def level_left(pid, A, F):
-    """The deviation of the level in the end, in m."""
+def level_after(pid, A, F, time):
+    """The deviation of the level at a time after the step of the inflow, in m."""
     if (loop := buffer_loop(pid, A)) is None:
         return math.inf
-    return 0.0 if loop[1] else float(F) / (1000 * float(A) * loop[0])
+    a, b = loop
+    size, w = float(F) / (1000 * float(A)), cmath.sqrt(a * a / 4 - b)
+    if abs(w) < 1e-6 * a:
+        return size * time * math.exp(-a * time / 2)
+    modes = cmath.exp((w - a / 2) * time) - cmath.exp(-(w + a / 2) * time)
+    return size * abs(modes / (2 * w))
 
 
 @exercise("11.9", title="A lazy tank", points=6, where=_some_room)
@@ -560,9 +657,9 @@ def lazy_tank(
 ):
     r"""Process water reaches a distillation column by way of a tank with vertical walls and an area of {A}. The pump
     upstream swings: its flow has a wave with a period of {period}, of which at most {gain} may reach the column. Now
-    and then another pump is started; then {F} more flow in for good, and the level may not rise by more than {dh}. In
-    the end it must come back to its setpoint. And no wave of any other period may leave the tank with more than 130 %
-    of its size. The level controller acts on the outflow $u$ in kg/s, and the density is 1000 kg/m³.
+    and then another pump is started; then {F} more flow in for good, and the level must not rise by more than {dh}. Two
+    hours later it must be back at its setpoint, to 1 cm. And no wave of any other period may leave the tank with more
+    than 130 % of its size. The level controller acts on the outflow $u$ in kg/s, and the density is 1000 kg/m³.
 
     First, for Skogestad's settings with $c = 2$: the longest time constant $T_C$ that the rise of the level allows.
     Then design a PI controller that meets all the demands, by whatever method; write its gain with the sign that
@@ -576,13 +673,18 @@ def lazy_tank(
         controller=design(
             settings(PID(-1000 * float(A) / T_C, 2 * T_C), gain="kg/(s m)", time="s", what="the settings"),
             criterion("there is no derivative term", lambda pid: pid.Td == 0),
-            criterion("the loop is stable", lambda pid: buffer_loop(pid, A) is not None),
+            criterion(
+                "the loop is stable",
+                lambda pid: buffer_loop(pid, A) is not None,
+                otherwise="the loop is not stable: must more or less flow out when the level is too high, and where "
+                "is $e$ then?",
+            ),
             criterion("the rise of the level", lambda pid: rise_of_level(pid, A, F), below=float(dh), unit="m"),
             criterion(
                 "the flow gain at the wave's period", lambda pid: flow_gain(pid, A, w), below=float(gain), unit="%"
             ),
             criterion("the largest flow gain", lambda pid: largest_flow_gain(pid, A), below=130, unit="%"),
-            criterion("the deviation in the end", lambda pid: level_left(pid, A, F), below=0.001, unit="m"),
+            criterion("the deviation two hours later", lambda pid: level_after(pid, A, F, 7200), below=0.01, unit="m"),
         ),
     )
 

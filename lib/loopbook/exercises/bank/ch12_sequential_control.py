@@ -75,6 +75,16 @@ def _(arrival):
     return {"Fill": arrival + 1}
 
 
+@bottles.mistake("At that scan the limit is not yet reached: the mass of whole scans counts.")
+def _(arrival, m, q):
+    return {"Cap": arrival + floor(m / q), "mass": floor(m / q) * q}
+
+
+@bottles.mistake("That is one scan too late. In the scan in which `Fill` becomes active the valve is already opened.")
+def _(arrival, m, q):
+    return {"Cap": arrival + ceiling(m / q) + 1, "Away": arrival + ceiling(m / q) + 2, "mass": (ceiling(m / q) + 1) * q}
+
+
 @bottles.mistake("That is the limit in the condition. The valve stays open until a scan finds it reached.")
 def _(m):
     return {"mass": m}
@@ -85,37 +95,45 @@ def _(m):
 OUTPUTS = ["pump", "heater", "dosing", "stirrer", "drain", "lamp"]
 
 
-def boxes(stop):
-    """The actions of the steps, in their order; the pump is stopped in one of them."""
+def boxes(stop, lamp, stir):
+    """The actions of the steps, in their order; where the pump stops, the lamp and the stirrer start, varies."""
     steps = {
         "Rinse": {"pump": True, "drain": True},
         "Dose": {"drain": False, "dosing": True},
         "Heat": {"dosing": False, "heater": True},
-        "Soak": {"stirrer": True, "lamp": True},
+        "Soak": {},
         "Empty": {"heater": False, "stirrer": False, "drain": True},
     }
-    steps[stop] = steps[stop] | {"pump": False}
+    steps[stir]["stirrer"] = steps[lamp]["lamp"] = True
+    steps[stop]["pump"] = False
     return steps
 
 
-def stored(stop, step):
+def stored(stop, lamp, stir, step):
     """What is on in a step when every value is kept until another action changes it."""
     on = {}
-    for name, actions in boxes(stop).items():
+    for name, actions in boxes(stop, lamp, stir).items():
         on |= actions
         if name == step:
             return [output for output in OUTPUTS if on.get(output)]
 
 
-def while_active(stop, step):
+def while_active(stop, lamp, stir, step):
     """What is on in a step when an action lasts as long as its step."""
-    return [output for output in OUTPUTS if boxes(stop)[step].get(output)]
+    return [output for output in OUTPUTS if boxes(stop, lamp, stir)[step].get(output)]
 
 
-@exercise(
-    "12.2", title="What is on?", points=2, where=lambda stop, step: stored(stop, step) != while_active(stop, step)
-)
-def what_is_on(stop=choice("Soak", "Dose", "Heat", "Empty"), step=choice("Heat", "Dose", "Soak", "Empty")):
+def _two_answers(stop, lamp, stir, step):
+    return 0 < len(while_active(stop, lamp, stir, step)) < len(stored(stop, lamp, stir, step))
+
+
+@exercise("12.2", title="What is on?", points=2, where=_two_answers)
+def what_is_on(
+    stop=choice("Soak", "Dose", "Heat", "Empty"),
+    lamp=choice("Soak", "Rinse", "Dose", "Heat", "Empty"),
+    stir=choice("Soak", "Dose", "Heat"),
+    step=choice("Heat", "Dose", "Soak", "Empty"),
+):
     """A vessel is cleaned by a chart without branches. Before the start all outputs are FALSE; the steps follow one
     another from top to bottom, and their actions are those in the table.
 
@@ -126,36 +144,36 @@ def what_is_on(stop=choice("Soak", "Dose", "Heat", "Empty"), step=choice("Heat",
     sets it to TRUE, as with the standard's default qualifier N?
     """
     return answers(
-        stored=words(stored(stop, step), OUTPUTS, what="the outputs that are on with stored values"),
-        default=words(while_active(stop, step), OUTPUTS, what="the outputs that are on with the qualifier N"),
+        stored=words(stored(stop, lamp, stir, step), OUTPUTS, what="the outputs that are on with stored values"),
+        default=words(while_active(stop, lamp, stir, step), OUTPUTS, what="the outputs that are on with qualifier N"),
     )
 
 
 @what_is_on.shows
-def _(stop):
+def _(stop, lamp, stir):
     rows = ["| step | actions |", "|---|---|"]
-    for name, actions in boxes(stop).items():
+    for name, actions in boxes(stop, lamp, stir).items():
         done = ", ".join(f"`{output} := {str(value).upper()}`" for output, value in actions.items())
-        rows.append(f"| `{name}` | {done} |")
+        rows.append(f"| `{name}` | {done or 'none'} |")
     return {"table": "\n".join(rows)}
 
 
 @what_is_on.mistake(
     "The two rules are exchanged there. With stored values an output stays as it is until an action changes it."
 )
-def _(stop, step):
-    return {"stored": while_active(stop, step), "default": stored(stop, step)}
+def _(stop, lamp, stir, step):
+    return {"stored": while_active(stop, lamp, stir, step), "default": stored(stop, lamp, stir, step)}
 
 
 @what_is_on.mistake("Go through the table from the top and cross out what an action has set to FALSE on the way.")
-def _(stop, step):
+def _(stop, lamp, stir, step):
     ever = {}
-    for name, actions in boxes(stop).items():
+    for name, actions in boxes(stop, lamp, stir).items():
         ever |= {output: True for output, value in actions.items() if value}
         if name == step:
             break
     ever = [output for output in OUTPUTS if ever.get(output)]
-    return {"stored": ever} if ever != stored(stop, step) else {}
+    return {"stored": ever} if ever != stored(stop, lamp, stir, step) else {}
 
 
 # --- 12.3 ---------------------------------------------------------------------------------------------------------
@@ -251,10 +269,10 @@ def _(order, w_1, w_2, a, b, c):
 # --- 12.4 ---------------------------------------------------------------------------------------------------------
 
 PLANTS = {
-    "A paint shop": ("Load", "Degrease", "Prime", "Paint"),
-    "A brewery": ("Mill", "Mash", "Boil", "Cool"),
-    "A laundry": ("Fill", "Wash", "Rinse", "Spin"),
-    "A bakery": ("Weigh", "Knead", "Proof", "Bake"),
+    "A paint shop": ("Load", "Heat", "Mix", "Rinse"),
+    "A dye works": ("Fill", "Warm", "Dose", "Drain"),
+    "A dairy": ("Start", "Heat", "Stir", "Flush"),
+    "A bakery": ("Weigh", "Knead", "Preheat", "Clean"),
 }
 MISTAKES = {
     "dead end": "no transition leaves the step",
@@ -264,6 +282,12 @@ MISTAKES = {
     "twice active": "the step can be activated again while it is still active",
     "sound": "none of these, and the step is `none`",
 }
+
+
+def steps_of(plant, swapped):
+    """The four steps of a chart, in one of two orders."""
+    first, second, third, last = PLANTS[plant]
+    return (first, third, second, last) if swapped else (first, second, third, last)
 
 
 def faulty_chart(mistake, A, B, C, D):
@@ -288,18 +312,22 @@ def faulty_chart(mistake, A, B, C, D):
 def wrong_chart(
     plant=choice(*PLANTS),
     mistake=choice("twice active", "dead end", "orphan", "covered branch", "waiting for ever", "sound"),
+    swapped=choice(0, 1),
 ):
-    """{plant} runs by this chart, whose initial step is `{first}`; the transitions stand in their order:
+    """{plant} runs by a chart with the initial step `{first}`. These are its transitions in their order, each with the
+    steps in front of it, those behind it, and its condition:
 
+    ```
     {transitions}
+    ```
 
-    It has one of these mistakes, or none:
+    The chart has one of these mistakes, or none:
 
     {list}
 
     Which one? And which is the step?
     """
-    _, step = faulty_chart(mistake, *PLANTS[plant])
+    _, step = faulty_chart(mistake, *steps_of(plant, swapped))
     return answers(
         mistake=word(mistake, [*MISTAKES], what="the mistake"),
         step=word(step, [*PLANTS[plant], "none"], what="the step"),
@@ -307,12 +335,12 @@ def wrong_chart(
 
 
 @wrong_chart.shows
-def _(plant, mistake):
-    ways, _ = faulty_chart(mistake, *PLANTS[plant])
+def _(plant, mistake, swapped):
+    ways, _ = faulty_chart(mistake, *steps_of(plant, swapped))
     lines = []
     for before, behind, condition in ways:
-        before, behind = (" and ".join(f"`{x}`" for x in ([y] if isinstance(y, str) else y)) for y in (before, behind))
-        lines.append(f"- from {before} to {behind}: `{condition}`")
+        before, behind = (y if isinstance(y, str) else " and ".join(y) for y in (before, behind))
+        lines.append(f"{before} → {behind}: {condition}")
     names = "\n".join(f"- *{name}*: {meaning}" for name, meaning in MISTAKES.items())
     return {"first": PLANTS[plant][0], "transitions": "\n".join(lines), "list": names}
 
@@ -326,15 +354,22 @@ def _(mistake):
 
 
 @wrong_chart.mistake(
-    "Each transition by itself is fine. But how many of the steps in front of the last but one are active?"
+    "Each transition by itself is fine. But one of them has two steps in front of it: are both ever active?"
 )
 def _(mistake):
     return {"mistake": "sound"} if mistake == "waiting for ever" else {}
 
 
+@wrong_chart.mistake(
+    "If all goes well, both branches come to their end. What is active after a fault, and what comes next?"
+)
+def _(mistake):
+    return {"mistake": "waiting for ever"} if mistake == "twice active" else {}
+
+
 @wrong_chart.mistake("This one is left by the transition. Look at what goes on in the other branch meanwhile.")
-def _(plant, mistake):
-    return {"step": PLANTS[plant][1]} if mistake == "twice active" else {}
+def _(plant, mistake, swapped):
+    return {"step": steps_of(plant, swapped)[1]} if mistake == "twice active" else {}
 
 
 @wrong_chart.mistake("A transition does leave it and one leads to it. Look at when these can be cleared.")
@@ -408,6 +443,13 @@ def _(n):
     return {"states": n + 5}
 
 
+@heat_and_dose.mistake(
+    "So many are passed in one run. The diagram has all that can be active together, whatever the times."
+)
+def _(n):
+    return {"states": n + 4} if n != 2 else {}
+
+
 @heat_and_dose.mistake("Something is missing: the waiting steps count, and so do the steps outside the branches.")
 def _(n):
     return {"states": 2 * (n + 1)} if n != 3 else {}
@@ -445,14 +487,14 @@ def shift(
     tau=between(60, 120, "min", reference=90),
     T_0=between(10, 20, "°C", reference=15, step=1),
     T_SP=between(50, 70, "°C", reference=60, step=5),
-    T_end=between(85, 130, "°C", reference=100, step=5),
+    T_end=between(85, 100, "°C", reference=100, step=5),
     hold=between(15, 40, "min", reference=25, step=5),
 ):
     r"""Wool is dyed in batches. The vat has an area of {A}. Its chart runs in a circle: `Fill` at {q} L/s from the
     level $h_0$ = {h_0} up to $h_1$ = {h_1}; `Heat` at full power from $T_0$ = {T_0} to $T_{SP}$ = {T_SP}; `Dye`, which
     its timer ends after {hold}; `Empty` back to $h_0$ through a valve at $h = 0$ with $K_v$ = {K_v} L/(s m$^{1/2}$), by
     Torricelli's law $A\,dh/dt = -K_v \sqrt{h}$. At full power the water follows a lag of $\tau$ = {tau} towards
-    {T_end}, which is called $T_{end}$.
+    $T_{end}$ = {T_end}.
 
     Give the time of `Empty` in the letters `A`, `K_v`, `h_0` and `h_1`, in units that fit together; then the time of
     `Heat` and of a whole batch. How many whole batches are finished in a shift of eight hours that begins with `Fill`?
@@ -480,6 +522,12 @@ def _():
 def _():
     a, k, low, high = symbols("A K_v h_0 h_1", positive=True)
     return {"Empty": 2 * a * sqrt(high - low) / k}
+
+
+@shift.mistake("That empties the vat to its bottom. At which level does `Empty` end?")
+def _():
+    a, k, high = symbols("A K_v h_1", positive=True)
+    return {"Empty": 2 * a * sqrt(high) / k}
 
 
 @shift.mistake("Differentiate the root of the level with respect to time once more: a factor is missing.")
@@ -568,7 +616,7 @@ def way_out(
     flow falls to zero at a constant rate.
 
     How long does filling take at the longest if all is well? Choose the limit, in s. The longest normal filling may
-    take 90 % of it at most, so that nobody gets used to false alarms; and if the transmitter is stuck, the water may
+    take 90 % of it at most, so that nobody gets used to false alarms; and if the transmitter is stuck, the water must
     not run over even when the alarm comes one whole scan late.
     """
     longest = slowest(A, h_0, h_1, q_low)
@@ -578,7 +626,10 @@ def way_out(
         limit=design(
             number(floor((longest / 0.9 + last) / 2), "s", "the limit"),
             criterion(
-                "the longest normal filling", lambda x: 100 * float(longest) / x, below=90, unit="% of the limit"
+                "the longest normal filling",
+                lambda x: 100 * float(longest) / x if x > 0 else math.inf,
+                below=90,
+                unit="% of the limit",
             ),
             criterion(
                 "the highest level", lambda x: level_at_last(x, A, h_0, q_high, close), below=float(rim), unit="m"

@@ -7,7 +7,6 @@ from math import sin as sine
 import sympy
 from sympy import Rational, exp, log, symbols
 
-from loopbook import s, t
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -23,6 +22,7 @@ from loopbook.exercises.authoring import (
     transfer_function,
     word,
 )
+from loopbook.expressions import s, t
 from loopbook.pid import PID
 
 _SHAPES = ["inverse response", "overshoot", "neither"]
@@ -95,10 +95,29 @@ def _(tau_1, T):
     return {"shape": "overshoot"} if tau_1 > T else {}
 
 
+@before_it_is_drawn.mistake("The zero is slower than the slowest lag here. What does that do to the response?")
+def _(tau_1, T):
+    return {"shape": "neither"} if tau_1 < T else {}
+
+
+@before_it_is_drawn.mistake(
+    "An inverse response sets out away from its end. Compare the signs of the initial slope and of the final value."
+)
+def _(T):
+    return {"shape": "inverse response"} if T > 0 else {}
+
+
 def _damping(overshoot):
     """The damping that belongs to an overshoot, a share of the step."""
     size = -log(overshoot)
     return size / sympy.sqrt(sympy.pi**2 + size**2)
+
+
+def _real_part(percent, P):
+    """The real part of the poles, and the time constant."""
+    zeta = float(_damping(percent / 100))
+    tau = float(P) * sqrt(1 - zeta**2) / (2 * float(sympy.pi))
+    return -zeta / tau, tau
 
 
 @exercise("13.2", title="A pressure loop swings", points=3, where=lambda before, after: after >= before + 1)
@@ -145,6 +164,18 @@ def _(percent):
 )
 def _(P):
     return {"tau": P / (2 * sympy.pi)}
+
+
+@swinging_loop.mistake("The imaginary part is the frequency of the swing in rad/s. You know its period.")
+def _(percent, P):
+    real, tau = _real_part(percent, P)
+    return {"poles": [complex(real, 1 / tau), complex(real, -1 / tau)]}
+
+
+@swinging_loop.mistake("That is one of them. A complex pole of a real process never comes alone.")
+def _(percent, P):
+    real, _ = _real_part(percent, P)
+    return {"poles": [complex(real, 2 * float(sympy.pi / P))]}
 
 
 @swinging_loop.mistake(
@@ -212,6 +243,11 @@ def _(k):
     return {"K_limit": k}
 
 
+@cold_feed.mistake("Compare how steeply the two effects begin: each slope is a gain over a lag.")
+def _(k, tau_1, tau_2):
+    return {"K_limit": k * tau_1 / tau_2}
+
+
 @exercise(
     "13.4",
     title="How much gain, how much damping?",
@@ -264,6 +300,11 @@ def _():
     return {"damping": 2 * _damping_in_letters(1)}
 
 
+@gain_and_damping.mistake("Here numbers have been put in. Asked is first the formula with the letters.")
+def _(k, tau_1, tau_2):
+    return {"damping": (tau_1 + tau_2) / (2 * sympy.sqrt(tau_1 * tau_2 * (1 + k * symbols("K_c"))))}
+
+
 @gain_and_damping.mistake("That is the loop gain $K_ck$. Which part of it belongs to the controller?")
 def _(k, tau_1, tau_2, zeta):
     return {"K_c": (tau_1 + tau_2) ** 2 / (4 * Rational(zeta) ** 2 * tau_1 * tau_2) - 1}
@@ -273,6 +314,18 @@ def _(k, tau_1, tau_2, zeta):
 def _(tau_1, tau_2, zeta):
     left = 4 * Rational(zeta) ** 2 * tau_1 * tau_2 / (tau_1 + tau_2) ** 2
     return {"offset": 100 * (1 - left)} if abs(1 / left - 2) > 0.05 else {}
+
+
+@gain_and_damping.mistake("That is one over the loop gain. At rest the error is one over something else.")
+def _(tau_1, tau_2, zeta):
+    square = (tau_1 + tau_2) ** 2 / (4 * Rational(zeta) ** 2 * tau_1 * tau_2)
+    return {"offset": 100 / (square - 1)}
+
+
+@gain_and_damping.mistake("That is the coefficient of $s^2$. Which power of the time constant stands there?")
+def _(tau_1, tau_2, zeta):
+    wrong = 4 * Rational(zeta) ** 2 * (tau_1 * tau_2) ** 2 / (tau_1 + tau_2) ** 2
+    return {"tau": wrong} if abs(wrong - 1) > Rational(1, 10) else {}
 
 
 @gain_and_damping.mistake("That is the time constant of the process without control. The loop makes it smaller.")
@@ -320,6 +373,11 @@ def _(rate, K, tau, M):
 @shrinking_drum.mistake("A level that goes on rising belongs to an integrator. Your first effect ends somewhere.")
 def _(rate, K, tau):
     return {"G": rate - K / (tau * s + 1)}
+
+
+@shrinking_drum.mistake("These are two effects in series. But each of them starts from the feedwater, and they add up.")
+def _(rate, K, tau):
+    return {"G": -rate * K / (s * (tau * s + 1))}
 
 
 @shrinking_drum.mistake("That is the response to one kg/s. How much feedwater is added?")

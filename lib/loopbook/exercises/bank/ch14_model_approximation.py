@@ -2,7 +2,6 @@
 
 from sympy import Integer, exp, pi, sqrt
 
-from loopbook import s, t
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -15,6 +14,7 @@ from loopbook.exercises.authoring import (
     transfer_function,
     word,
 )
+from loopbook.expressions import s, t
 from loopbook.pid import PID
 
 
@@ -139,6 +139,11 @@ def _(k, tau_2, tau_3):
     return {"g_2": k * exp(-tau_3 / 2 * s) / (s * (tau_2 * s + 1))}
 
 
+@gas_holder.mistake("That is how far the ramp of $g$ lies below $kt$. And where does the ramp of $g_1$ lie?")
+def _(k, tau_2, tau_3):
+    return {"ahead": k * (tau_2 + tau_3)}
+
+
 @gas_holder.mistake("That is how far the ramp of $g_1$ lies below $kt$. And where does the ramp of $g$ lie?")
 def _(k, tau_2, tau_3):
     return {"ahead": k * (tau_2 / 2 + tau_3)}
@@ -174,7 +179,7 @@ def zero_beside_a_lag(
     tau_0=between(1, 60, "s", reference=40),
     theta=between(0.5, 8, "s", step=0.5, reference=4),
 ):
-    r"""A damper acts on the temperature of an oven in two ways, one of them quick and one of them slow. Together
+    r"""A damper acts on the temperature in an air duct in two ways, one of them quick and one of them slow. Together
     they make a zero in the left half-plane, with the time constant $T_0$ = {T_0}, beside a lag $\tau_0$ = {tau_0}.
     (Times in seconds.)
 
@@ -193,6 +198,12 @@ def zero_beside_a_lag(
 @zero_beside_a_lag.shows
 def _(T_0, tau_0):
     return {"part": (T_0 * s + 1) / (tau_0 * s + 1)}
+
+
+@zero_beside_a_lag.mistake("The zero is beside a longer lag, that is so. Now compare $T_0$ with five dead times.")
+def _(T_0, tau_0, theta):
+    other = {"T2": "T3", "T3": "T2"}.get(_rule(T_0, tau_0, theta)[0])
+    return {"rule": other} if other else {}
 
 
 @zero_beside_a_lag.mistake(
@@ -279,7 +290,9 @@ def _(T, theta):
     }
 
 
-@price_of_a_fraction.mistake("That is the Taylor approximation, which has no denominator. Padé's fraction has one.")
+@price_of_a_fraction.mistake(
+    "That comes from the Taylor approximation, which has no denominator. Padé's fraction has one."
+)
 def _(T, theta):
     return {"g": (1 - theta * s) / (T * s + 1), "Ku": T / theta}
 
@@ -287,6 +300,14 @@ def _(T, theta):
 @price_of_a_fraction.mistake("That is the process itself. The program has no dead time: what stands in its place?")
 def _(T, theta):
     return {"g": exp(-theta * s) / (T * s + 1)}
+
+
+@price_of_a_fraction.mistake(
+    "That is so with the exact dead time. The program does not know it: take its transfer function."
+)
+def _(T, theta):
+    omega = _phase_crossing(float(T), float(theta))
+    return {"Ku": (1 + (float(T) * omega) ** 2) ** 0.5, "Pu": 2 * float(pi) / omega}
 
 
 @price_of_a_fraction.mistake("That is the frequency in rad/s. How long does one oscillation take?")
@@ -357,6 +378,13 @@ def _(K, tau, theta):
     return {"y": K * (1 - exp(-(t - theta) / tau)) * Heaviside(t - theta)}
 
 
+@before_the_dead_time.mistake(
+    "That belongs to the exact dead time, and there only to the time after it. That of the fraction begins at once."
+)
+def _(K, tau, theta):
+    return {"y": K * (1 - exp(-(t - theta) / tau))}
+
+
 @before_the_dead_time.mistake("The gain of the process is missing.")
 def _(K, tau, theta):
     if K != 1:
@@ -400,8 +428,16 @@ def whole_process(
     return answers(
         pid=design(
             settings(good, "", "s", "the settings"),
-            criterion("the controller is a PI controller", _is_pi),
-            criterion("the loop is stable", lambda pid: _is_stable(process, pid)),
+            criterion(
+                "the controller is a PI controller",
+                _is_pi,
+                otherwise="asked is a PI controller: with an integral time, and without a derivative term",
+            ),
+            criterion(
+                "the loop is stable",
+                lambda pid: _is_stable(process, pid),
+                otherwise="this loop is unstable: look at the sign and the size of the gain, and at the integral time",
+            ),
             criterion("the largest sensitivity", lambda pid: _sensitivity(pid, k, (T_1, T_2, T_3), theta), below=1.8),
             criterion("the integral of the error", _area, below=_most(good), unit="% s"),
         )

@@ -5,7 +5,6 @@ import math
 import numpy as np
 from sympy import Rational, exp
 
-from loopbook import s, t
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -17,12 +16,18 @@ from loopbook.exercises.authoring import (
     time_function,
     transfer_function,
 )
+from loopbook.expressions import s, t
 from loopbook.ise import pi_first_order
 from loopbook.pid import PID
 from loopbook.transfer import integrator
 
 
-@exercise("15.1", title="A tank that shall answer faster", points=2, where=lambda T, Tc: Tc <= Rational(3, 5) * T)
+@exercise(
+    "15.1",
+    title="A tank that shall answer faster",
+    points=2,
+    where=lambda K, T, Tc: Tc <= Rational(3, 5) * T and T <= 10 * K * Tc,
+)
 def faster_tank(
     K=between(0.2, 2, "K/%", reference=0.8),
     T=between(10, 60, "min", reference=24),
@@ -61,7 +66,12 @@ def _(Tc):
     return {"time": Tc}
 
 
-@exercise("15.2", title="A level that does not come back", points=4)
+@exercise(
+    "15.2",
+    title="A level that does not come back",
+    points=4,
+    where=lambda K, delay, Tc: Tc >= delay and K * (Tc + delay) >= Rational(1, 10),
+)
 def level_offset(
     K=between(0.01, 0.1, "1/min", reference=0.04),
     delay=between(0.5, 3, "min", reference=1, step=0.25),
@@ -207,8 +217,9 @@ def inverse_response(
 
 @inverse_response.shows
 def _(K, T1, T2, beta):
-    gain, lead, slow, quick = (f"{float(x):g}" for x in (K, beta, T1, T2))
-    return {"process": rf"$\frac{{{gain}\,(1 - {lead} s)}}{{({slow} s + 1)({quick} s + 1)}}$"}
+    gain, lead = ("" if x == 1 else f"{float(x):g}\\," for x in (K, beta))
+    slow, quick = (f"{float(x):g}" for x in (T1, T2))
+    return {"process": rf"$\frac{{{gain}(1 - {lead}s)}}{{({slow}\,s + 1)({quick}\,s + 1)}}$"}
 
 
 @inverse_response.mistake("Without feedback that would do. In the loop, $M/(1 - M)$ takes the place of $M$.")
@@ -299,8 +310,16 @@ def oven(
             settings(
                 PID(T / (2 * K * delay), 8 * delay), gain="%/K", time="min", what="the settings of the PI controller"
             ),
-            criterion("it is a PI controller", _is_PI),
-            criterion("the loop is stable", lambda controller: _is_stable(*process, controller)),
+            criterion(
+                "it is a PI controller",
+                _is_PI,
+                otherwise="asked is a PI controller: with an integral time, and without a derivative term",
+            ),
+            criterion(
+                "the loop is stable",
+                lambda controller: _is_stable(*process, controller),
+                otherwise="this loop is unstable: look at the sign and the size of the gain, and at the integral time",
+            ),
             criterion("$M_s$", lambda controller: _Ms(*process, controller), below=1.7),
             criterion(
                 "the time of recovery",

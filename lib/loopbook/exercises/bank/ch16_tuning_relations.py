@@ -2,7 +2,6 @@
 
 from sympy import Max, Min, Rational, exp, pi, symbols
 
-from loopbook import s
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -15,6 +14,7 @@ from loopbook.exercises.authoring import (
     settings,
     words,
 )
+from loopbook.expressions import s
 from loopbook.pid import PID
 
 
@@ -84,6 +84,11 @@ def _(rule, band, P_u):
     return {"pid": _by_cycle(rule, band / 100, P_u)}
 
 
+@panel.mistake("The band is in percent. Does a band of 100 % mean a gain of 0.01?")
+def _(rule, band, P_u):
+    return {"pid": _by_cycle(rule, 1 / band, P_u)}
+
+
 @panel.mistake("That is the setting of a P controller with the gain margin 2. Integral action takes a further share.")
 def _(rule, band, P_u):
     return {"pid": PID(50 / band, _by_cycle(rule, 1, P_u).Ti)}
@@ -112,7 +117,9 @@ def _loop_gain(tau_1, tau_2, damping_squared):
     "16.3",
     title="A quarter, or less",
     points=3,
-    where=lambda tau_1, tau_2, left: tau_1 >= 2 * tau_2 and _loop_gain(tau_1, tau_2, _damping_squared(left, 2)) < 40,
+    where=lambda K, tau_1, tau_2, left: (
+        tau_1 >= 2 * tau_2 and _loop_gain(tau_1, tau_2, _damping_squared(left, 2)) < min(40, 25 * K)
+    ),
 )
 def decay(
     K=between(0.5, 3, "", step=0.25, reference=2),
@@ -121,8 +128,8 @@ def decay(
     left=between(5, 30, "%", step=5, reference=25),
 ):
     r"""Two lags in series, {tau_1} and {tau_2}, have the gain $K$ = {K}. (Control signal and measurement are in
-    percent.) They are under P control, and the gain $K_c$ shall be chosen by the decay ratio: of each swing after a
-    setpoint step, {left} shall be left in the next one.
+    percent.) They are under P control, and the gain $K_c$ shall be chosen by the decay ratio: after a setpoint
+    step, each peak above the final value shall be followed by one of {left} of its height.
 
     Find $K_c$. And which share of the setpoint step will remain as an offset?
     """
@@ -133,9 +140,18 @@ def decay(
     )
 
 
-@decay.mistake("That is the gain for an overshoot of this size. From one peak to the next there are two half turns.")
+@decay.mistake("That belongs to an overshoot of this size. From one peak to the next there are two half turns.")
 def _(K, tau_1, tau_2, left):
     loop_gain = _loop_gain(tau_1, tau_2, _damping_squared(left, 1))
+    return {"Kc": loop_gain / K, "offset": 100 / (1 + loop_gain)}
+
+
+@decay.mistake("That is near, for a small damping. But the decay ratio has a root of $1 - \\zeta^2$ in it.")
+def _(K, tau_1, tau_2, left):
+    from math import log
+    from math import pi as half_turn
+
+    loop_gain = _loop_gain(tau_1, tau_2, (log(100 / left) / (2 * half_turn)) ** 2)
     return {"Kc": loop_gain / K, "offset": 100 / (1 + loop_gain)}
 
 
@@ -285,7 +301,10 @@ def _(a, b, c, d):
     return {label: _FORMULAS[text][0] for label, text in zip(_LABELS, (a, b, c, d), strict=True)}
 
 
-@bad_copy.mistake("One of these, at least, has sound units: a ratio of times is a pure number, and so is its root.")
+@bad_copy.mistake(
+    "One of these, at least, has sound units: a ratio of times is a pure number, and so is its root; the root of a "
+    "product of two times is a time."
+)
 def _(a, b, c, d):
     return {"units": sorted(_which("units", a, b, c, d) + _which("limit", a, b, c, d))}
 
@@ -315,8 +334,8 @@ def factor_for_a_damping(
     n=choice(1.5, 2, 2.5, 3, reference=2),
     zeta=between(0.55, 0.95, step=0.05, reference=0.8),
 ):
-    r"""A fermenter's temperature answers to the cooling water with the gain {K}, a lag $T$ of {T} and a dead time
-    $\tau$ of {tau}. (The controller takes care of the sign.) Skogestad's rule shall be used with $T_C = {n}\,\tau$
+    r"""A fermenter's temperature answers to the warm water in its jacket with the gain {K}, a lag $T$ of {T} and a
+    dead time $\tau$ of {tau}. Skogestad's rule shall be used with $T_C = {n}\,\tau$
     and with such a factor $k_1$ that the loop of an integrator would have the damping $\zeta = {zeta}$.
 
     Find the factor, and the PI settings for the fermenter.
@@ -383,8 +402,16 @@ def not_so_nervous(
     return answers(
         pid=design(
             settings(good, "%/K", "min", "the settings"),
-            criterion("the controller is a PI controller", _is_pi),
-            criterion("the loop is stable", lambda pid: _is_stable(process, pid)),
+            criterion(
+                "the controller is a PI controller",
+                _is_pi,
+                otherwise="asked is a PI controller: with an integral time, and without a derivative term",
+            ),
+            criterion(
+                "the loop is stable",
+                lambda pid: _is_stable(process, pid),
+                otherwise="this loop is unstable: look at the sign and the size of the gain, and at the integral time",
+            ),
             criterion("the largest sensitivity", lambda pid: _sensitivity(pid, K, tau, theta), below=2),
             criterion("the ISE", lambda pid: _ise(pid, K, tau, theta), below=_limit(K, tau, theta), unit="K² min"),
         )

@@ -5,7 +5,6 @@ import math
 import numpy as np
 from sympy import Heaviside, Poly, Rational, exp
 
-from loopbook import s, t
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -18,6 +17,7 @@ from loopbook.exercises.authoring import (
     time_function,
     transfer_function,
 )
+from loopbook.expressions import s, t
 from loopbook.ise import pi_first_order
 from loopbook.pid import PID
 from loopbook.transfer import first_order
@@ -50,6 +50,11 @@ def _uncontrolled(T, end):
     return end - 2 * T * (1 - math.exp(-end / T)) + T / 2 * (1 - math.exp(-2 * end / T))
 
 
+@unavoidable.mistake("A new setpoint is known at once. How often does the dead time pass until its effect is seen?")
+def _(delay):
+    return {"servo": 2 * delay}
+
+
 @unavoidable.mistake("After one dead time the load is only noticed. How long until the answer to it arrives?")
 def _(delay):
     return {"first_effect": delay}
@@ -72,9 +77,14 @@ def _(K, T, delay):
     return {"load": float(K) * _uncontrolled(T, delay)} if K != 1 else {}
 
 
-@exercise("17.2", title="A predictor for a dairy", points=3, where=lambda T, Tc: 4 * abs(T - Tc) >= T)
+@exercise(
+    "17.2",
+    title="A predictor for a dairy",
+    points=3,
+    where=lambda K, T, Tc: 4 * abs(T - Tc) >= T and T <= 12 * K * Tc,
+)
 def dairy(
-    K=between(0.2, 3, "", reference=0.4),
+    K=between(0.1, 0.8, "", reference=0.4),
     T=between(10, 60, "s", reference=24),
     delay=between(10, 80, "s", reference=40),
     Tc=between(4, 40, "s", reference=12),
@@ -112,6 +122,18 @@ def _(Tc):
     return {"y": 1 - exp(-t / Tc), "ISE": Tc / 2}
 
 
+@dairy.mistake(
+    "The integral action brings the fat content to the setpoint. Is the gain of the process still to be seen then?"
+)
+def _(K, delay, Tc):
+    return {"y": K * Heaviside(t - delay) * (1 - exp(-(t - delay) / Tc))}
+
+
+@dairy.mistake("This is not zero while the dead time lasts. Which factor switches the response on?")
+def _(delay, Tc):
+    return {"y": 1 - exp(-(t - delay) / Tc)}
+
+
 @dairy.mistake("That is the integral of the error itself. A squared error fades twice as fast.")
 def _(delay, Tc):
     return {"ISE": delay + Tc}
@@ -131,10 +153,11 @@ def one_block(
     Ti=between(2, 12, "min", reference=4),
 ):
     r"""A rotary kiln is controlled by a Smith predictor. The process is {process}, with the time in minutes, and its
-    model is right. Inside the predictor works a PI controller with the gain {Kc} and the integral time {Ti}.
+    model is right. Both signals are in percent. Inside the predictor works a PI controller with the gain {Kc} and the
+    integral time {Ti}.
 
     Write the whole predictor, from the control error to the control signal, as one transfer function. Then find the
-    poles of the loop.
+    poles of the closed loop, from the setpoint to the measurement.
     """
     polynomial = Poly(T * Ti * s**2 + (1 + K * Kc) * Ti * s + K * Kc, s)
     return answers(
@@ -155,6 +178,11 @@ def _(K, T, delay):
     return {"process": first_order(K, T, delay)}
 
 
+@one_block.mistake("That is the PI controller alone. What does the model feed back around it?")
+def _(Kc, Ti):
+    return {"predictor": Kc * (1 + 1 / (Ti * s))}
+
+
 @one_block.mistake(
     "The controller is also told what the process has not shown yet. Which part of the model must be taken away again?"
 )
@@ -170,6 +198,15 @@ def _(K, T, delay, Kc, Ti):
     return {"predictor": _predictor(K, T, Kc, Ti, exp(-delay * s) - 1)}
 
 
+@one_block.mistake(
+    "One of these is the lag's own, and only a load wakes it. On the way from the setpoint, a zero of the predictor "
+    "cancels it."
+)
+def _(K, T, Kc, Ti):
+    polynomial = [float(T * Ti), float((1 + K * Kc) * Ti), float(K * Kc)]
+    return {"poles": [*(complex(p) for p in np.roots(polynomial)), -1 / float(T)]}
+
+
 @one_block.mistake("The poles of the open loop move when the loop is closed.")
 def _(T):
     return {"poles": [0, -1 / float(T)]}
@@ -183,7 +220,10 @@ def _(K, T, Kc):
 
 
 @exercise(
-    "17.4", title="How far does a load push?", points=5, where=lambda T, delay: T / 5 <= delay <= Rational(3, 2) * T
+    "17.4",
+    title="How far does a load push?",
+    points=5,
+    where=lambda K, T, delay, load: T / 5 <= delay <= Rational(3, 2) * T and K * load <= 12,
 )
 def load_response(
     K=between(0.5, 4, "K/%", reference=1.5),
@@ -228,11 +268,20 @@ def _(K, T, delay, load):
     return {"y": push * Heaviside(t - delay) * (1 - exp(-(t - delay) / T)) - _taken_back(push, T, delay)}
 
 
-@load_response.mistake(
-    "That is where the deviation is when the first action arrives. It goes on a little before it turns."
-)
+@load_response.mistake("So far it has come when the first action arrives. It still grows a little before it turns.")
 def _(K, T, delay, load):
-    return {"largest": float(K * load) * (1 - math.exp(-float(delay / T))), "time": 2 * delay}
+    return {"largest": float(K * load) * (1 - math.exp(-float(delay / T)))}
+
+
+@load_response.mistake("At that time the first action arrives. The deviation still grows a little before it turns.")
+def _(delay):
+    return {"time": 2 * delay}
+
+
+@load_response.mistake("This is not zero while nothing can happen yet. Which factor switches each part on?")
+def _(K, T, delay, load):
+    late = (t - 2 * delay) / T
+    return {"y": K * load * ((1 + late) * exp(-late) - exp(-(t - delay) / T))}
 
 
 @load_response.mistake("Count the time from the step of the load, not from the first action of the controller.")
@@ -244,7 +293,9 @@ def _(T, delay):
     "17.5",
     title="A pipe with two flows",
     points=6,
-    where=lambda low, high: Rational(5, 4) * low <= high <= 2 * low,
+    where=lambda K, T, volume, low, high: (
+        Rational(5, 4) * low <= high <= 2 * low and T <= 12 * K * _middle(volume, low, high)[1]
+    ),
 )
 def two_flows(
     K=between(0.5, 4, "", reference=2),
@@ -253,9 +304,10 @@ def two_flows(
     low=between(2, 8, "L/min", reference=4),
     high=between(3, 12, "L/min", reference=6),
 ):
-    r"""A dosing loop has the gain {K} and a lag of {T}; its dead time is the time that the liquid spends in a pipe of
-    {volume}. The flow is anything between {low} and {high}, and nobody measures it. So the model in the Smith
-    predictor gets a constant dead time $\theta_m$, the one that is off by the same time at both ends.
+    r"""A dosing loop has the gain {K} (its signals are in percent) and a lag of {T}. Its dead time is the time that the
+    liquid spends in a pipe of {volume}. The flow is anything between {low} and {high}, and nobody measures
+    it. So the model in the Smith predictor gets a constant dead time $\theta_m$, the one that is off by the same time
+    at both ends.
 
     Which $\theta_m$ is that? Then design the PI controller in the predictor. Let $T_0(s)$ be the closed loop without
     dead time, and $M(s) = T_0(s)\,(e^{-\theta s} - e^{-\theta_m s})$. As long as $|M(j\omega)|$ stays below 1, the
@@ -268,10 +320,15 @@ def two_flows(
         model_delay=number(model, "min", "the dead time of the model"),
         controller=design(
             settings(PID(T / (K * off), T), time="min", what="the settings of the PI controller"),
-            criterion("it is a PI controller", _is_PI),
+            criterion(
+                "it is a PI controller",
+                _is_PI,
+                otherwise="asked is a PI controller: with an integral time, and without a derivative term",
+            ),
             criterion(
                 "the loop is stable with the right model",
                 lambda controller: _servo_ISE(K, T, model, controller) < math.inf,
+                otherwise="this loop is unstable: look at the sign and the size of the gain, and at the integral time",
             ),
             criterion("the largest $|M|$", lambda controller: _largest_M(K, T, off, controller), below=0.8),
             criterion(

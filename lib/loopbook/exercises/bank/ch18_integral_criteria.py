@@ -5,7 +5,6 @@ import math
 import numpy as np
 from sympy import Rational
 
-from loopbook import s
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -18,6 +17,7 @@ from loopbook.exercises.authoring import (
     transfer_function,
     word,
 )
+from loopbook.expressions import s
 from loopbook.ise import pi_first_order
 from loopbook.pid import PID
 
@@ -34,7 +34,7 @@ def _winner(A, B):
 @exercise(
     "18.1",
     title="Two loops in a contest",
-    points=3,
+    points=2,
     where=lambda T, delay: 3 * delay >= T and delay <= 3 * T and _clear(T, delay),
 )
 def contest(
@@ -160,6 +160,11 @@ def _(K, Kp):
     return {"ISE": 1 / (2 * K * Kp)}
 
 
+@conveyor.mistake("The integrator has turned the phase by a right angle already.")
+def _(K, delay, Kp):
+    return {"phase_margin": 180 - math.degrees(float(K * Kp * delay))}
+
+
 @conveyor.mistake("By that angle the dead time turns the phase. The margin is what is left of a right angle.")
 def _(K, delay, Kp):
     x = math.degrees(float(K * Kp * delay))
@@ -176,7 +181,7 @@ def _(delay):
     "derivative."
 )
 def _(K, delay):
-    return {"best_gain": math.pi / (4 * float(K * delay)), "least_ISE": float(delay) * 2}
+    return {"best_gain": math.pi / (4 * float(K * delay))}
 
 
 def _crossover(K, T, Kc, Ti):
@@ -271,9 +276,15 @@ def nearly_least(
     return answers(
         controller=design(
             settings(PID(Rational(57, 100) * T / (K * delay), T), time="s", what="the settings of the PI controller"),
-            criterion("it is a PI controller", _is_PI),
             criterion(
-                "the loop is stable", lambda controller: _ISE(K, T, delay, controller.Kp, controller.Ti) < math.inf
+                "it is a PI controller",
+                _is_PI,
+                otherwise="asked is a PI controller: with an integral time, and without a derivative term",
+            ),
+            criterion(
+                "the loop is stable",
+                lambda controller: _ISE(K, T, delay, controller.Kp, controller.Ti) < math.inf,
+                otherwise="this loop is unstable: look at the sign and the size of the gain, and at the integral time",
             ),
             criterion("$M_s$", lambda controller: _Ms(K, T, delay, controller), below=1.8),
             criterion(

@@ -34,8 +34,8 @@ def three_margins(
     delay=between(2, 20, "s", reference=6),
     Kc=between(0.5, 4, "", reference=1.5),
 ):
-    r"""A heat exchanger has the gain {K}, a lag of {T} and a dead time of {delay}. Its PI controller has the gain
-    {Kc}, and its integral time equals the lag.
+    r"""A heat exchanger, with its signals in percent, has the gain {K}, a lag of {T} and a dead time of {delay}. Its
+    PI controller has the gain {Kc}, and its integral time equals the lag.
 
     Simplify the loop transfer function $L(s)$ on paper, and find its gain margin, its phase margin and its delay
     margin.
@@ -56,6 +56,11 @@ def _(K, T, Kc):
 @three_margins.mistake("That is the gain on the limit. By which factor is it larger than the present one?")
 def _(K, T, delay, Kc):
     return {"gain_margin": math.pi * float(T / (K * delay)) / 2} if Kc != 1 else {}
+
+
+@three_margins.mistake("That is the margin in decibels. Asked is the factor itself.")
+def _(K, T, delay, Kc):
+    return {"gain_margin": 20 * math.log10(math.pi * float(T / (K * Kc * delay)) / 2)}
 
 
 @three_margins.mistake("By so much the dead time turns the phase. The margin is what is left up to half a turn.")
@@ -161,6 +166,11 @@ def _delay_on_limit(T, Ti, w):
     return (math.pi / 2 + math.atan(w * float(Ti)) - math.atan(w * float(T))) / w
 
 
+@diagnosis.mistake("So many oscillations are in a minute. How many radians does one of them have?")
+def _(period):
+    return {"omega": 1 / float(period)}
+
+
 @diagnosis.mistake("The controller does not stand for its gain alone: its integral term acts at this frequency, too.")
 def _(T, Kc, Ti, period):
     w = 2 * math.pi / float(period)
@@ -241,7 +251,7 @@ def _frequency(K, T, Kc, Ti, k=1):
 
 
 @gain_changes.mistake(
-    "That is the frequency for the gain as it was. The one on the limit depends on the gain of the process."
+    "That belongs to the gain as it was. With another gain of the process, the limit is at another frequency."
 )
 def _(K, T, delay, Kc, Ti):
     w = _frequency(K, T, Kc, Ti)
@@ -287,8 +297,16 @@ def in_the_window(
                 time="s",
                 what="the settings of the PI controller",
             ),
-            criterion("it is a PI controller", _is_PI),
-            criterion("the loop is stable", lambda controller: _load_ISE(K, T, delay, controller) < math.inf),
+            criterion(
+                "it is a PI controller",
+                _is_PI,
+                otherwise="asked is a PI controller: with an integral time, and without a derivative term",
+            ),
+            criterion(
+                "the loop is stable",
+                lambda controller: _load_ISE(K, T, delay, controller) < math.inf,
+                otherwise="this loop is unstable: look at the sign and the size of the gain, and at the integral time",
+            ),
             criterion("the distance from the window", lambda controller: _distance(K, T, delay, controller), above=1),
             criterion(
                 "the ISE after the load step",

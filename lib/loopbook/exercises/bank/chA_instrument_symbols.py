@@ -60,56 +60,71 @@ def _(letters):
 # --- A.2 ----------------------------------------------------------------------------------------------------------
 
 ALPHABET = list("ACDFGHILPQSTVYZ")
-INSTRUMENTS = {
-    "an indicating controller of a pressure difference": "PDIC",
-    "a transmitter of a viscosity": "VT",
-    "an indicating controller of the fraction of two flows": "FFIC",
-    "an indicating transmitter of a density": "DIT",
-    "a high alarm of a temperature": "TAH",
-    "a low alarm of a speed": "SAL",
-    "an indicating controller of a quality": "QIC",
-    "a transmitter of a temperature difference": "TDT",
-    "an interlock, that is, a secure control, of a level": "LZ",
-    "an indicator of a position": "GI",
-    "a mathematical function of a flow": "FY",
-    "a valve that a pressure moves": "PV",
+DEVICES = {
+    "an indicating controller": "IC",
+    "a transmitter": "T",
+    "an indicating transmitter": "IT",
+    "an indicator": "I",
+    "a high alarm": "AH",
+    "a low alarm": "AL",
+    "an interlock, that is, a secure control,": "Z",
+    "a mathematical function": "Y",
+}
+MEASURED = {
+    "a pressure difference": "PD",
+    "a viscosity": "V",
+    "the fraction of two flows": "FF",
+    "a density": "D",
+    "a temperature": "T",
+    "a speed": "S",
+    "a quality": "Q",
+    "a temperature difference": "TD",
+    "a level": "L",
+    "a position": "G",
+    "a pressure": "P",
 }
 
 
+def letters_of(device, measured):
+    """The letters of a tag, one by one."""
+    return list(MEASURED[measured] + DEVICES[device])
+
+
 @exercise("A.2", title="Write a tag", points=1)
-def writing(instrument=choice(*INSTRUMENTS)):
-    """A drawing needs {instrument}. Which letters does its tag have? Give them one by one as a list, as `["F", "C"]`
-    for a flow controller.
+def writing(device=choice(*DEVICES), measured=choice(*MEASURED)):
+    """A drawing needs {device} of {measured}. Which letters does its tag have? Give them one by one as a list, as
+    `["F", "C"]` for a flow controller.
     """
-    return answers(letters=words(list(INSTRUMENTS[instrument]), ALPHABET, what="the letters of the tag", ordered=True))
+    letters = letters_of(device, measured)
+    return answers(letters=words(letters, ALPHABET, what="the letters of the tag", ordered=True))
 
 
-@writing.mistake("What the instrument is in the end stands last: an indicating controller is a controller.")
-def _(instrument):
-    letters = list(INSTRUMENTS[instrument])
-    return {"letters": [*letters[:-2], *letters[:-3:-1]]} if letters[-2] == "I" else {}
+@writing.mistake("What the instrument is in the end stands last. Is it, above all, an indicator?")
+def _(device, measured):
+    letters = letters_of(device, measured)
+    return {"letters": [*letters[:-2], *letters[:-3:-1]]} if DEVICES[device] in ("IC", "IT") else {}
 
 
 @writing.mistake(
     "A modifier stands behind the letter that it changes. As the first letter it has a meaning of its own."
 )
-def _(instrument):
-    letters = list(INSTRUMENTS[instrument])
+def _(device, measured):
+    letters = letters_of(device, measured)
     if decode("".join(letters)).modifier and letters[0] != letters[1]:
         return {"letters": [letters[1], letters[0], *letters[2:]]}
     return {}
 
 
 @writing.mistake("The measured quantity is there, and what is done with it. What is made of the quantity before?")
-def _(instrument):
-    letters = list(INSTRUMENTS[instrument])
+def _(device, measured):
+    letters = letters_of(device, measured)
     return {"letters": [letters[0], *letters[2:]]} if decode("".join(letters)).modifier else {}
 
 
 @writing.mistake("That says at which side the quantity is, and then what reacts to it. The limit stands at the end.")
-def _(instrument):
-    letters = list(INSTRUMENTS[instrument])
-    return {"letters": [letters[0], letters[2], letters[1]]} if decode("".join(letters)).limit else {}
+def _(device, measured):
+    letters = letters_of(device, measured)
+    return {"letters": [*letters[:-2], letters[-1], letters[-2]]} if DEVICES[device] in ("AH", "AL") else {}
 
 
 # --- A.3 ----------------------------------------------------------------------------------------------------------
@@ -133,7 +148,9 @@ def open_loops(
     watched=choice(2, 1, 3, 4),
     lacking=choice(4, 1, 2, 3),
 ):
-    """A list of instruments, sorted by their kinds, reads {tags}. The numbers run on from loop to loop.
+    """Four loops of a plant are numbered one after the other. A list of their instruments, sorted by kinds, reads:
+
+    > {tags}
 
     Which loops are closed, that is, have a transmitter, a controller and a valve? Which quantity is only watched: what
     is the number of its loop? In another loop the draughtsman has forgotten the valve: in which one?
@@ -148,7 +165,7 @@ def open_loops(
 
 @open_loops.shows
 def _(first, watched, lacking):
-    return {"tags": ", ".join(f"`{tag}`" for tag in plant_tags(first, watched, lacking))}
+    return {"tags": ", ".join(plant_tags(first, watched, lacking))}
 
 
 @open_loops.mistake("A controller without a valve has nothing to act on. Look for the V of each loop.")

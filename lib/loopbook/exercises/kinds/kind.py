@@ -1,12 +1,19 @@
 """What all kinds of asked quantities have in common."""
 
+import itertools
+import re
+from collections.abc import Iterator, MappingView
+
 import sympy
+from sympy.core.function import AppliedUndef
 
 from loopbook.exercises import units
 from loopbook.exercises.reading import Unreadable
 
 #: What is left of an answer cell that nobody has filled in.
 NOT_ANSWERED = "not answered yet"
+#: Of what gives one value after another, so many are read.
+MOST_VALUES = 10_000
 
 
 class Kind:
@@ -80,8 +87,41 @@ def in_a_row(given):
     """Return the values of a list, tuple, array, matrix or range as a list; None where there is no row of values."""
     if isinstance(given, sympy.MatrixBase):
         return given.tolist()
-    if isinstance(given, sympy.Tuple | list | tuple | range):
-        return list(given)
+    if isinstance(given, sympy.Tuple | list | tuple | range | Iterator | MappingView):
+        return list(itertools.islice(given, MOST_VALUES))
     if hasattr(given, "tolist") and hasattr(given, "ndim"):
         return given.tolist() if given.ndim else None
     return None
+
+
+def alone(given):
+    """Return the value that stands alone in a row, a set, an array, or an equation for a letter; others as they are.
+
+    >>> alone([{sympy.Symbol("x"): 3}]), alone(sympy.Eq(sympy.Symbol("x"), 3)), alone([1, 2])
+    (3, 3, [1, 2])
+    """
+    if isinstance(given, sympy.Equality) and isinstance(given.lhs, sympy.Symbol | AppliedUndef):
+        return given.rhs
+    if isinstance(given, dict) and len(given) == 1 and isinstance(next(iter(given)), sympy.Symbol | AppliedUndef):
+        return next(iter(given.values()))
+    if isinstance(given, set | frozenset | sympy.FiniteSet):
+        given = list(given)
+    elif getattr(given, "ndim", None) == 0 and hasattr(given, "tolist") and not hasattr(given, "units"):
+        return given.tolist()
+    row = in_a_row(given)
+    if row is None:
+        return given
+    return alone(row[0]) if len(row) == 1 else row
+
+
+def listed_in(text):
+    """Return the parts of a text that lists several: "[1, 2]" or "1; 2".
+
+    >>> listed_in("[-1,-2]"), listed_in("-1 + 2j; -3"), listed_in("1,5")
+    (['-1', '-2'], ['-1 + 2j', '-3'], ['1,5'])
+    """
+    text = text.strip()
+    inside = text.strip("[]{}")
+    separator = r";|,\s" if inside == text else "[;,]"
+    parts = [part.strip() for part in re.split(separator, inside) if part.strip()]
+    return parts if text else [text]

@@ -8,10 +8,10 @@ import sympy
 
 from loopbook.exercises import units
 from loopbook.exercises.formulas import Formula
-from loopbook.exercises.kinds.kind import Kind, answered, in_a_row
-from loopbook.exercises.reading import Unreadable
+from loopbook.exercises.kinds.kind import Kind, alone, answered, in_a_row, listed_in
+from loopbook.exercises.reading import Unreadable, plain, shortened
 
-_WITH_UNIT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(\S.*)?", re.DOTALL)
+_WITH_UNIT = re.compile(r"([+-]? ?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?) ?(.*)")
 #: Up to so many times the tolerance, an answer is nearly right.
 NEARLY = 4
 
@@ -72,7 +72,7 @@ class Numbers(Kind):
 
     def read(self, given):
         """Return an array of floats, and a remark where a number came in another unit."""
-        rows = in_a_row(answered(given))
+        rows = _rows(answered(given))
         if rows is None:
             raise Unreadable(f"this is no list: expected {self.expected}")
         remarks = []
@@ -95,8 +95,7 @@ class Numbers(Kind):
         return answer.shape == key.shape and bool(np.all(self._near(answer, key)))
 
     def _near(self, answer, key):
-        scale = np.max(np.abs(key), initial=0.0)
-        return np.abs(answer - key) <= self.within * np.where(key == 0, scale or 1, np.abs(key)) + 1e-12 * scale
+        return np.abs(answer - key) <= _allowed(key, self.within, 1e-12)
 
     def mistakes(self):
         """Wrong sign, another unit, rows for columns, the order turned."""
@@ -136,12 +135,14 @@ class Poles(Kind):
 
     def read(self, given):
         """Return an array of complex numbers; a dictionary says how often each one occurs."""
-        if isinstance(answered(given), dict):
+        if isinstance(answered(given), dict) and alone(given) is given:
             given = [pole for pole, times in given.items() for _ in range(self._times(times))]
         elif isinstance(given, set | frozenset | sympy.FiniteSet):
             given = list(given)
-        rows = in_a_row(given)
+        rows = _rows(given)
         rows = [given] if rows is None else rows
+        inner = in_a_row(rows[0]) if len(rows) == 1 else None
+        rows = rows if inner is None else inner
         read = [one_number(value, self.unit, self.expected) for value in rows]
         return np.array([value for value, _ in read], complex), max((remark for _, remark in read), default="")
 
@@ -157,12 +158,12 @@ class Poles(Kind):
 
     def _matched(self, answer):
         """How many of the answer's values are among the key's, each taken once."""
-        left, scale = list(self.key), np.max(np.abs(self.key), initial=0.0)
+        left = list(zip(self.key, _allowed(self.key, self.within, 1e-9), strict=True))
         for value in answer:
-            distances = [abs(value - pole) for pole in left]
+            distances = [abs(value - pole) for pole, _ in left]
             if distances:
                 k = int(np.argmin(distances))
-                if distances[k] <= self.within * (abs(left[k]) or scale or 1) + 1e-9 * scale:
+                if distances[k] <= left[k][1]:
                     del left[k]
         return len(self.key) - len(left)
 
@@ -192,11 +193,13 @@ def near(answer, key, within):
 
 def one_number(given, unit, expected):
     """Return a finite number, real or complex, in a unit, and a remark where it was given in another one."""
+    given = alone(given)
     if isinstance(given, str):
         return _number_of_text(given, unit, expected)
+    if hasattr(given, "magnitude") and hasattr(given, "units"):  # a quantity of Pint
+        value, named = one_number(given.magnitude, "", expected)[0], f"{given.units:~C}".replace("Δ°C", "K")
+        return _in_unit_asked(value, named, unit, expected)
     row = in_a_row(given)
-    if row is not None and len(row) == 1:  # as `solve` returns it
-        return one_number(row[0], unit, expected)
     if row is not None:
         raise Unreadable(f"there are {len(row)} values: expected {expected}")
     if given is None or given is Ellipsis:
@@ -204,7 +207,7 @@ def one_number(given, unit, expected):
     if isinstance(given, bool | np.bool_) or given is sympy.true or given is sympy.false:
         raise Unreadable(f"{given} is a truth value: expected {expected}")
     if isinstance(given, sympy.Expr) and given.free_symbols:
-        letters = ", ".join(sorted(symbol.name for symbol in given.free_symbols))
+        letters = shortened(", ".join(sorted(symbol.name for symbol in given.free_symbols)))
         raise Unreadable(f"there is still {letters} in it: expected {expected}")
     if (isinstance(given, dict | set) or callable(given)) and not isinstance(given, sympy.Basic):
         raise Unreadable(f"this is of type {type(given).__name__}: expected {expected}")
@@ -216,21 +219,38 @@ def one_number(given, unit, expected):
 
 
 def _number_of_text(text, unit, expected):
-    match = _WITH_UNIT.fullmatch(text)
-    if match and match[2] and units.is_unit(match[2]):
-        try:
-            value = units.convert(float(match[1]), match[2], to=unit)
-        except ValueError as error:
-            raise Unreadable(f"{error}: expected {expected}") from None
-        same = units.convert(1, match[2], to=unit) == 1
-        return _finite(complex(value), expected), "" if same else f"converted from {match[2]}"
-    if re.fullmatch(r"\s*[+-]?\d+,\d+\s*", text):
+    line = plain(text)
+    match = _WITH_UNIT.fullmatch(line)
+    if match and match[2]:
+        named = f"1{match[2]}" if match[2].startswith("/") else match[2]
+        if units.is_unit(named):
+            return _in_unit_asked(float(match[1].replace(" ", "")), named, unit, expected)
+    if re.fullmatch(r"[+-]?\d+,\d+", line):
         raise Unreadable("write the decimal comma as a point")
+    # arithmetic, and perhaps a unit after one of the spaces
+    for space in (len(line), *(found.start() for found in re.finditer(" ", line))):
+        named = line[space + 1 :]
+        if named and not units.is_unit(named):
+            continue
+        try:
+            value = complex(Formula(line[:space])())
+        except Unreadable:
+            continue
+        return _in_unit_asked(value, named, unit, expected) if named else (_finite(value, expected), "")
+    raise Unreadable(f"{shortened(text, 40)!r} is a text that is no number: expected {expected}")
+
+
+def _in_unit_asked(value, named, unit, expected):
+    """A number that was given with a unit, in the asked one."""
+    if (units.spelled(named), unit) == ("°C", "K"):
+        raise Unreadable(f"in °C, this may be a temperature or a difference of two: expected {expected}")
+    value = _finite(complex(value), expected)
     try:
-        return _finite(complex(Formula(text)()), expected), ""
-    except Unreadable:
-        shown = text if len(text) <= 40 else text[:37] + "..."
-        raise Unreadable(f"{shown!r} is a text that is no number: expected {expected}") from None
+        factor = units.convert(1, named, to=unit)
+        converted = value * factor if value.imag else complex(units.convert(value.real, named, to=unit))
+    except ValueError as error:
+        raise Unreadable(f"{error}: expected {expected}") from None
+    return _finite(converted, expected), "" if factor == 1 else f"converted from {named}"
 
 
 def _finite(value, expected):
@@ -251,6 +271,18 @@ def _real(value, expected):
 def in_unit(unit):
     """A unit in a sentence."""
     return {"": "as a fraction", "%": "in percent"}.get(unit, f"in {unit}")
+
+
+def _rows(given):
+    """The values of a list in a text too."""
+    return listed_in(given) if isinstance(given, str) else in_a_row(given)
+
+
+def _allowed(key, within, least):
+    """By how much each number may be off: a fraction of it, where it is 0 of the smallest other one."""
+    sizes = np.abs(key)
+    smallest = min(sizes[sizes > 0], default=1.0)
+    return within * np.where(sizes == 0, smallest, sizes) + least * np.max(sizes, initial=0.0)
 
 
 def _flat(array):

@@ -1,9 +1,11 @@
 """Settings of a PID controller."""
 
+import math
+
 import sympy
 
 from loopbook.exercises import units
-from loopbook.exercises.kinds.kind import Kind, answered, in_a_row
+from loopbook.exercises.kinds.kind import Kind, alone, answered, in_a_row, listed_in
 from loopbook.exercises.kinds.numeric import near, one_number
 from loopbook.exercises.reading import Unreadable, listed
 from loopbook.pid import PID
@@ -49,7 +51,7 @@ class Settings(Kind):
         if isinstance(answered(given), PID):
             parts, form = {name: getattr(given, name) for name in NAMES}, given.form
         else:
-            row = in_a_row(given)
+            row = listed_in(given) if isinstance(given, str) else in_a_row(alone(given))
             if row is not None and 2 <= len(row) <= 4:
                 given = dict(zip(NAMES, row, strict=False))
             form = "serial" if self.form == "serial" else "parallel"
@@ -67,7 +69,8 @@ class Settings(Kind):
             parts = {"Ti": sympy.oo, "Td": 0, "Tf": 0} | given
         remarks, numbers = set(), {}
         for name, value in parts.items():
-            if name == "Ti" and value in (sympy.oo, float("inf")):
+            value = alone(value)
+            if name == "Ti" and value in ("inf", "oo", math.inf, sympy.oo):
                 numbers[name] = sympy.oo
                 continue
             value, remark = one_number(value, self.gain if name == "Kp" else self.time, f"a number for {name}")

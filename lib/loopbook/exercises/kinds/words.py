@@ -1,11 +1,16 @@
 """Words from a list, one or several."""
 
+import re
 from collections import Counter
 
-from loopbook.exercises.kinds.kind import Kind, answered
-from loopbook.exercises.reading import Unreadable
+import sympy
+from sympy.logic.boolalg import BooleanAtom
+
+from loopbook.exercises.kinds.kind import Kind, alone, answered, in_a_row
+from loopbook.exercises.reading import Unreadable, shortened
 
 _TRUTH = {True: "yes", False: "no"}
+_SEPARATOR = re.compile(r"[,;\n]|[-=]>|→")
 
 
 class Word(Kind):
@@ -69,13 +74,16 @@ class Words(Kind):
     def read(self, given):
         """Return the words as they stand in the list."""
         if isinstance(answered(given), str):
-            single = "," not in given and all(len(word) == 1 for word in self.among)
-            given = [part for part in (given if single else given.split(",")) if part.strip()]
-        if not isinstance(given, list | tuple | set | frozenset):
+            text = given.strip(" []{}")
+            single = not _SEPARATOR.search(text) and all(len(word) == 1 for word in self.among)
+            given = [part for part in (text if single else _SEPARATOR.split(text)) if part.strip()]
+        is_set = isinstance(given, set | frozenset)
+        row = list(given) if is_set else in_a_row(given)
+        if row is None:
             raise Unreadable(f"this is no list: expected {self.expected}")
-        if self.ordered and isinstance(given, set | frozenset):
+        if self.ordered and is_set:
             raise Unreadable(f"a set has no order: expected {self.expected}")
-        words = [_word(word, self.among, self.expected) for word in given]
+        words = [_word(word, self.among, self.expected) for word in row]
         return words if self.ordered else sorted(set(words), key=self.among.index), ""
 
     def agrees(self, answer):
@@ -102,16 +110,23 @@ class Words(Kind):
 
 
 def _word(given, among, expected):
-    if isinstance(given, bool):
-        given = _TRUTH[given]
+    given = alone(given)
+    if isinstance(given, bool | BooleanAtom):
+        given = _TRUTH[bool(given)]
+    elif isinstance(given, int | float | sympy.Number) and f"{float(given):g}" in among:
+        given = f"{float(given):g}"
     if not isinstance(given, str):
         raise Unreadable(f"this is no text: expected {expected}")
-    wanted = " ".join(given.split()).casefold()
+    wanted = _bare(given)
     for word in among:
-        if word.casefold() == wanted:
+        if _bare(word) == wanted:
             return word
-    shown = given if len(given) <= 40 else given[:37] + "..."
-    raise Unreadable(f"{shown!r} is none of the words: expected {expected}")
+    raise Unreadable(f"{shortened(given, 40)!r} is none of the words: expected {expected}")
+
+
+def _bare(word):
+    """A word without what makes no difference: case, spaces, hyphens, quotes and the full stop."""
+    return " ".join(re.sub(r"(?<=\w)-(?=\w)", " ", word).split()).strip(" '\".").casefold() or word
 
 
 def _either(words):
