@@ -350,6 +350,9 @@ GAIN = number(0.25, "", "the gain")
 ANGLE = number(math.pi / 3, "rad", "the phase margin")
 H = transfer_function(3 * sympy.exp(-2 * s) / (5 * s + 1))
 Y = time_function(1 - sympy.exp(-t / 5), until=25, what="the response")
+METRES = time_function(2 * (1 - sympy.exp(-t / 5)), until=25, unit="m", what="the level")
+BOX = expression(sympy.sympify("pi*r**2*h"), "the volume", unit="m³")
+pi_r2_h = sympy.pi * sympy.Symbol("r") ** 2 * sympy.Function("h")(t)
 LONG = time_function(1 - sympy.exp(-t / 5) + sympy.exp(-50 * t) / 300, until=2500, what="the response")
 P = poles([-1 + 2j, -1 - 2j, -3])
 A = numbers([[0, 1], [-2, -3]], what="the matrix")
@@ -371,6 +374,9 @@ DIFFERENCE = number(10, "K", "the rise")
 OFFSET_Y = time_function(60 + 3 * (1 - sympy.exp(-t / 5)), until=25, unit="°C", what="the reading")
 PINT = pint.UnitRegistry(cache_folder=None)
 DAMPER = design(number(2000, "g", "the mass"), criterion("the mass", lambda m: m, above=1500, below=2500, unit="g"))
+STABLE_MINUTES = design(
+    settings(PID(1, Ti=120)), criterion("the integral time", lambda pid: pid.Ti, above=100, below=130)
+)
 STABLE = design(
     settings(PID(1)),
     criterion("the loop is stable", lambda pid: pid.Kp < 3),
@@ -430,7 +436,7 @@ JUDGED = [
     (P, np.roots(np.poly([-3, -1 - 2j, -1 + 2j])), RIGHT, "right"),
     (P, ["-3", "-1 + 2j", "-1 - 2*I"], RIGHT, "right"),
     (P, [3, 1 - 2j, 1 + 2j], MISTAKE, "signs"),
-    (P, [-3, -1 + 2j], WRONG, "2 is not their number"),
+    (P, [-3, -1 + 2j], WRONG, "2 is not their number: count a multiple one several times"),
     (P, [-3, -1 + 2j, -7], WRONG, "2 of 3"),
     (P, "none", UNJUDGED, "expected a list of numbers"),
     (A, [[0, 1], [-2, -3]], RIGHT, "right"),
@@ -470,6 +476,23 @@ JUDGED = [
     (OFFSET, 5, RIGHT, "right"),
     (OFFSET, 1, WRONG, "the offset is 0.5; asked is at most 0.4"),
     (OFFSET, 1.499, RIGHT, "right"),
+    (BOX, pi_r2_h, RIGHT, "right"),
+    (BOX, "r^2*pi*h(t)", RIGHT, "right"),
+    (Y, "3-0,000625*t", UNJUDGED, "comma as a point"),
+    (Y, "4(1+t)", UNJUDGED, "every product needs one"),
+    (Y, "Piecewise((1 - exp(-t/5), t < 15))", UNJUDGED, "no value at some points"),
+    (Y, "1 - exp(-12*t)", MISTAKE, "unit of time"),
+    (METRES, "200*(1 - exp(-t/5))", MISTAKE, "the values in cm"),
+    (H, "3*exp(-120*s)/(300*s + 1)", MISTAKE, "unit of time"),
+    (ACTION, True, UNJUDGED, "True is a truth value: expected reverse or direct"),
+    (STEPS, "S2 and S4", RIGHT, "right"),
+    (STEPS, "S2 S4", RIGHT, "right"),
+    (number(1.7, "", "the gain margin"), "4.609 dB", RIGHT, "converted from dB"),
+    (number(1120, "N", "the force"), 1.12, MISTAKE, "in kN"),
+    (number(12, "", "the number of batches", within=0), 13, WRONG, "not right"),
+    (P, [-3.06, -1 - 2j, -1 + 2j], WRONG, "they are close"),
+    (A, 5, UNJUDGED, "such as [[1, 2], [3, 4]]"),
+    (STABLE_MINUTES, PID(1, Ti=2), WRONG, "that would be right in min"),
     (OFFSET, 1.49, WRONG, "the offset is 0.4016; asked is at most 0.4"),
     (DAMPER, 2, WRONG, "that would be right in kg; asked: the mass, in g"),
     (STABLE, PID(2), RIGHT, "right"),

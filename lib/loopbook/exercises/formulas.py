@@ -110,12 +110,16 @@ class Formula:
             beyond = before
             shape = np.broadcast_shapes(*(np.shape(part) for pair in pairs for part in pair))
             conditions = [np.broadcast_to(np.asarray(condition, bool), shape) for _, condition in pairs]
+            if not np.all(np.any(conditions, axis=0)):
+                raise Unreadable("the Piecewise has no value at some points: end it with (value, True)")
             return np.select(conditions, [np.broadcast_to(value, shape) for value, _ in pairs], np.nan)
 
         try:
             with np.errstate(all="ignore"):
                 found = np.asarray(work_out(self.tree), complex)
                 return np.where(beyond, np.nan, found)
+        except Unreadable:
+            raise
         except RecursionError:
             raise Unreadable("the expression is very long: expected a simpler one") from None
         except (ArithmeticError, TypeError, ValueError):

@@ -13,6 +13,7 @@ import unicodedata
 import numpy as np
 import scipy.signal
 import sympy
+from sympy.core.function import AppliedUndef
 
 LONGEST, MOST_NODES = 4000, 2000
 
@@ -58,6 +59,8 @@ def _in_python(text, letters):
     text = re.sub("[⁰¹²³⁴-⁹⁻]+", lambda raised: "^" + raised[0].translate(_RAISED), plain(text))
     for greek in set(re.findall("[α-ω]", text)) - set("".join(letters)):
         text = text.replace(greek, unicodedata.name(greek).split()[-1].lower())
+    if "t" not in letters:  # a signal is a letter here
+        text = re.sub(r"\b(\w+) ?\(t\)", lambda call: call[1] if call[1] in letters else call[0], text)
     text = re.sub(r"\b(np|numpy|math|cmath|sympy|sp)\.(?=[A-Za-z])", "", text)
     return re.sub(r"\b(\d+\.?\d*)i\b", r"\1j", text).replace("^", "**")
 
@@ -78,6 +81,8 @@ def parsed(text, letters):
     try:
         tree = ast.parse(source, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
+        if re.search(r"\d,\d", source):
+            raise Unreadable("write the decimal comma as a point") from None
         raise Unreadable(f"{shortened(source)} cannot be read: {expected}, with * for every product") from None
     nodes = list(ast.walk(tree))
     if len(nodes) > MOST_NODES:
@@ -145,6 +150,8 @@ def _check_letter(name, letters):
 
 
 def _check_call(node, source):
+    if isinstance(node.func, ast.Constant | ast.BinOp | ast.Call):
+        raise Unreadable(f"{_quoted(source, node)} lacks a *: every product needs one, before a bracket too")
     if not isinstance(node.func, ast.Name) or node.keywords or any(isinstance(one, ast.Starred) for one in node.args):
         raise Unreadable(f"{_quoted(source, node)} cannot be read: expected one function of a value")
     if node.func.id in ONE_VALUE and len(node.args) != 1:
@@ -176,7 +183,8 @@ def spelled(given):
 def _expression(given):
     """The expression in SymPy that an object is or has; None where there is none."""
     if isinstance(given, sympy.Expr):
-        return None if given.is_Matrix else given
+        # a signal, h(t), is a letter here
+        return None if given.is_Matrix else given.replace(_is_signal, lambda signal: sympy.Symbol(signal.func.__name__))
     if isinstance(getattr(given, "expr", None), sympy.Expr):
         return given.expr
     if hasattr(given, "to_expr"):  # SymPy's own systems
@@ -189,6 +197,10 @@ def _expression(given):
         value = complex(given)
         return sympy.sympify(value if value.imag else value.real) if math.isfinite(abs(value)) else None
     return None
+
+
+def _is_signal(part):
+    return isinstance(part, AppliedUndef) and [str(argument) for argument in part.args] == ["t"]
 
 
 def _of_system(given):

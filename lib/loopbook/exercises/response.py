@@ -52,6 +52,10 @@ class Response:
         return next(status for status in order if status in statuses)
 
     @property
+    def _heading(self):
+        return self.heading if self.heading.endswith("?") else f"{self.heading}:"
+
+    @property
     def _sum(self):
         right = sum(verdict.is_right for verdict in self.verdicts)
         if all(verdict.status == OPEN for verdict in self.verdicts):
@@ -67,7 +71,7 @@ class Response:
         return {"exercise": self.heading, "right": self.is_right, "verdicts": verdicts}
 
     def __repr__(self):
-        lines = [f"{MARKS[self._status][0]} {self.heading}: {self._sum}"]
+        lines = [f"{MARKS[self._status][0]} {self._heading} {self._sum}"]
         lines += [f"  {MARKS[v.status][0]} {v.name}: {v.says}" for v in self.verdicts]
         return "\n".join([*lines, *(f"  {note}" for note in self.notes)])
 
@@ -76,7 +80,7 @@ class Response:
         box = f"border-left: 4px solid {colour}; background: {colour}14; padding: 0.4em 0.8em; margin: 0.3em 0"
         lines = [
             f'<div role="status" style="{box}">',
-            f'<strong><span style="color: {colour}">{mark}</span> {_escape(self.heading)}: {self._sum}</strong>',
+            f'<strong><span style="color: {colour}">{mark}</span> {_escape(self._heading)} {self._sum}</strong>',
         ]
         for verdict in self.verdicts:
             mark, colour = MARKS[verdict.status]

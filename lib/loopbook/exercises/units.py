@@ -6,15 +6,18 @@ import re
 #: Units that are taken for one another.
 FAMILIES = (
     ("s", "min", "h", "ms", "d"),
-    ("m", "cm", "mm"),
+    ("m", "km", "cm", "mm"),
     ("kg", "g", "t"),
     ("m³", "L", "mL"),
     ("mol", "kmol"),
     ("Pa", "kPa", "bar"),
     ("W", "kW", "MW"),
     ("J", "kJ", "MJ"),
+    ("N", "kN"),
     ("A", "mA"),
     ("V", "mV"),
+    ("Ω", "kΩ", "MΩ"),
+    ("F", "µF", "nF"),
     ("rad", "deg"),
 )
 _PART = re.compile(r"[^\W\d_]+³?|%")
@@ -40,7 +43,8 @@ def is_unit(text):
 def convert(value, unit, to):
     """Return a value in another unit.
 
-    A turn is not forgotten: 1 Hz is 2 pi rad/s. Where a temperature stands alone it is one, not a difference.
+    A turn is not forgotten: 1 Hz is 2 pi rad/s. A ratio in dB is one of amplitudes. Where a temperature stands alone
+    it is one, not a difference.
 
     Raises ValueError where one of the two is no unit, or they measure different quantities.
 
@@ -52,6 +56,8 @@ def convert(value, unit, to):
     """
     import pint
 
+    if (unit, to) == ("dB", ""):  # of an amplitude, as margins are
+        return 10 ** (float(value) / 20)
     if re.search("rad|deg", unit + to):
         unit, to = unit.replace("Hz", "turn/s"), to.replace("Hz", "turn/s")
     try:

@@ -3,9 +3,8 @@
 import math
 from dataclasses import dataclass
 
-from loopbook.exercises import units
 from loopbook.exercises.kinds.kind import Kind
-from loopbook.exercises.kinds.numeric import Number, in_unit
+from loopbook.exercises.kinds.numeric import in_unit
 from loopbook.exercises.limits import limited
 from loopbook.exercises.reading import Unreadable
 
@@ -130,11 +129,10 @@ class Design(Kind):
         return self.example.is_value(answer, wrong)
 
     def hint(self, answer):
-        """Say which criteria are not met, and how far it is; or in which other unit the number would meet them."""
-        if isinstance(self.example, Number):
-            for unit in units.neighbours(self.unit):
-                if not self.complaints(units.convert(answer, unit, to=self.unit)):
-                    return f"that would be right {in_unit(unit)}; asked: {self.example.asked}"
+        """Say which criteria are not met, and how far it is; or in which other unit it would meet them."""
+        for unit, meant in self.example.in_other_units(answer):
+            if not self.complaints(meant):
+                return f"that would be right {in_unit(unit)}; asked: {self.example.asked}"
         return "; ".join(self.complaints(answer))
 
 

@@ -5,11 +5,12 @@ import random
 import numpy as np
 import sympy
 
-from loopbook.exercises import formulas
+from loopbook.exercises import formulas, units
 from loopbook.exercises.formulas import Formula
 from loopbook.exercises.kinds.kind import Kind, alone, answered
+from loopbook.exercises.kinds.numeric import in_unit
 from loopbook.exercises.reading import Unreadable
-from loopbook.expressions import exact, s
+from loopbook.expressions import exact, s, t
 
 
 class Expression(Kind):
@@ -65,6 +66,13 @@ class Expression(Kind):
         yield "that is right but for its sign", -self.expr
         if self.expr != 0:
             yield "that is the inverse: one divided by what is asked", 1 / self.expr
+        yield from self._in_other_units()
+
+    def _in_other_units(self):
+        """The values in other units; a temperature in another scale is no multiple."""
+        for unit, converted in units.neighbours(self.unit).items():
+            if converted(0) == 0:
+                yield f"those would be the values {in_unit(unit)}; asked: {self.asked}", self.expr * exact(converted(1))
 
 
 class TransferFunction(Expression):
@@ -96,6 +104,14 @@ class TransferFunction(Expression):
                 )
         yield "there is a factor s too many: compare with the transform of a response to a step", self.expr * s
         yield "a factor s is missing in it, or it is the transform of a step response", self.expr / s
+        yield from _in_other_time(self.expr, s)
+
+
+def _in_other_time(expr, variable):
+    """The same with another unit of time, seconds and minutes or minutes and hours exchanged, or milliseconds."""
+    for factor in (60, 3600, 1000):
+        for scale in (sympy.Integer(factor), sympy.Rational(1, factor)):
+            yield "its unit of time is another one than in the question", expr.subs(variable, scale * variable)
 
 
 def _pade(x, order):
@@ -110,7 +126,6 @@ class TimeFunction(Expression):
     Arguments:
         until: the end of the times at which it is compared, in the unit of t.
 
-    >>> from loopbook import t
     >>> y = TimeFunction(1 - sympy.exp(-t / 5), until=25, what="the response")
     >>> y.agrees(y.read("1 - exp(-0.2*t)")[0])
     True
@@ -166,6 +181,8 @@ class TimeFunction(Expression):
     def mistakes(self):
         """Wrong sign."""
         yield "that is right but for its sign", -self.expr
+        yield from self._in_other_units()
+        yield from _in_other_time(self.expr, t)
 
     def agrees(self, answer):
         """Whether the values, and their changes, differ by no more than a fraction of the largest one.

@@ -75,6 +75,10 @@ class Kind:
         """Whether an answer, as it was read, is the value of a mistake."""
         return self.like(wrong).agrees(answer)
 
+    def in_other_units(self, answer):
+        """What an answer would be if it had been given in another unit: pairs of the unit and the value."""
+        return ()
+
 
 def answered(given):
     """Return what was given; raises Unreadable where that is nothing yet."""

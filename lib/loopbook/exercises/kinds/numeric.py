@@ -14,6 +14,8 @@ from loopbook.exercises.reading import Unreadable, plain, shortened
 _WITH_UNIT = re.compile(r"([+-]? ?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?) ?(.*)")
 #: Up to so many times the tolerance, an answer is nearly right.
 NEARLY = 4
+#: A mistake is recognised in a rounded value, too.
+ROUNDED = 0.01
 
 
 class Number(Kind):
@@ -42,12 +44,21 @@ class Number(Kind):
         """Wrong sign, another unit, the inverse."""
         yield "the size is right, the sign is not", -self.key
         for unit, converted in units.neighbours(self.unit).items():
-            yield (
-                f"that would be the value {in_unit(unit)}; asked: {self.asked}",
-                converted(self.key),
-            )
+            yield f"that would be the value {in_unit(unit)}; asked: {self.asked}", converted(self.key)
         if self.key:
             yield "that is the inverse: one divided by what is asked", 1 / self.key
+
+    def is_value(self, answer, wrong):
+        """Whether an answer is the value of a mistake, which a reader may have rounded."""
+        wrong = self.like(wrong).key
+        if wrong == 0:
+            return abs(answer) <= self.within * abs(self.key)
+        return near(answer, wrong, max(self.within, ROUNDED))
+
+    def in_other_units(self, answer):
+        """What an answer would be if it had been given in another unit: pairs of the unit and the value."""
+        for unit in units.neighbours(self.unit):
+            yield unit, units.convert(answer, unit, to=self.unit)
 
     def hint(self, answer):
         """Say that the number is nearly right."""
@@ -68,7 +79,8 @@ class Numbers(Kind):
     def expected(self):
         """A row or a table of numbers."""
         unit = f", in {self.unit}" if self.unit else ""
-        return f"a list of numbers such as [1, 2]{unit}"
+        table = getattr(getattr(self, "key", None), "ndim", 1) > 1
+        return f"a list of numbers such as {'[[1, 2], [3, 4]]' if table else '[1, 2]'}{unit}"
 
     def read(self, given):
         """Return an array of floats, and a remark where a number came in another unit."""
@@ -154,11 +166,11 @@ class Poles(Kind):
 
     def agrees(self, answer):
         """Whether each pole has its counterpart."""
-        return len(answer) == len(self.key) == self._matched(answer)
+        return len(answer) == len(self.key) == self._matched(answer, self.within)
 
-    def _matched(self, answer):
+    def _matched(self, answer, within):
         """How many of the answer's values are among the key's, each taken once."""
-        left = list(zip(self.key, _allowed(self.key, self.within, 1e-9), strict=True))
+        left = list(zip(self.key, _allowed(self.key, within, 1e-9), strict=True))
         for value in answer:
             distances = [abs(value - pole) for pole, _ in left]
             if distances:
@@ -181,8 +193,10 @@ class Poles(Kind):
     def hint(self, answer):
         """Say how many there should be, and how many are right."""
         if len(answer) != len(self.key):
-            return f"{len(answer)} is not their number: a multiple one counts as often as it occurs"
-        right = self._matched(answer)
+            return f"{len(answer)} is not their number: count a multiple one several times, and both of a complex pair"
+        if self._matched(answer, NEARLY * self.within) == len(self.key):
+            return f"they are close, and asked is an accuracy of {self.accuracy}: keep more digits on the way"
+        right = self._matched(answer, self.within)
         return f"{right} of {len(self.key)} are right" if right else ""
 
 

@@ -96,6 +96,12 @@ class Settings(Kind):
             return other._same_controller(answer)
         return answer.form == other.key.form and self._near(answer, other.key)
 
+    def in_other_units(self, answer):
+        """The controller if its times had been given in another unit."""
+        for unit in units.neighbours(self.time):
+            factor = units.convert(1, unit, to=self.time)
+            yield unit, PID(answer.Kp, factor * answer.Ti, factor * answer.Td, factor * answer.Tf, answer.form)
+
     def _asked_form(self, answer):
         # without a derivative term, both forms are one
         return answer.form if answer.Td == answer.Tf == 0 else self.form

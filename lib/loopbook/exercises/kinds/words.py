@@ -10,7 +10,7 @@ from loopbook.exercises.kinds.kind import Kind, alone, answered, in_a_row
 from loopbook.exercises.reading import Unreadable, shortened
 
 _TRUTH = {True: "yes", False: "no"}
-_SEPARATOR = re.compile(r"[,;\n]|[-=]>|→")
+_SEPARATOR = re.compile(r"[,;\n]|[-=]>|→|\band\b")
 
 
 class Word(Kind):
@@ -74,9 +74,7 @@ class Words(Kind):
     def read(self, given):
         """Return the words as they stand in the list."""
         if isinstance(answered(given), str):
-            text = given.strip(" []{}")
-            single = not _SEPARATOR.search(text) and all(len(word) == 1 for word in self.among)
-            given = [part for part in (text if single else _SEPARATOR.split(text)) if part.strip()]
+            given = [part for part in self._parts(given.strip(" []{}")) if part.strip()]
         is_set = isinstance(given, set | frozenset)
         row = list(given) if is_set else in_a_row(given)
         if row is None:
@@ -85,6 +83,14 @@ class Words(Kind):
             raise Unreadable(f"a set has no order: expected {self.expected}")
         words = [_word(word, self.among, self.expected) for word in row]
         return words if self.ordered else sorted(set(words), key=self.among.index), ""
+
+    def _parts(self, text):
+        """The parts of a text, between separators, or between spaces or letters where no word has several of them."""
+        if _SEPARATOR.search(text):
+            return _SEPARATOR.split(text)
+        if all(len(word) == 1 for word in self.among):
+            return text
+        return [text] if any(" " in word for word in self.among) else text.split()
 
     def agrees(self, answer):
         """Whether they are the words."""
@@ -112,6 +118,8 @@ class Words(Kind):
 def _word(given, among, expected):
     given = alone(given)
     if isinstance(given, bool | BooleanAtom):
+        if not {*_TRUTH.values()} <= {*among}:
+            raise Unreadable(f"{given} is a truth value: expected {expected}")
         given = _TRUTH[bool(given)]
     elif isinstance(given, int | float | sympy.Number) and f"{float(given):g}" in among:
         given = f"{float(given):g}"
