@@ -176,6 +176,10 @@ def small_ledger(tmp_path, monkeypatch):
     monkeypatch.setattr(hygiene, "LEDGER", tmp_path)
 
 
+def test_an_answer_of_an_exercise_may_be_a_word_or_a_place_for_one():
+    assert hygiene.checks_are_computed(with_code('exercise("1.1").check(a="setpoint", b=...)')) == []
+
+
 @pytest.mark.parametrize(
     "later", ["[K for K in (1, 2)]", "sum(K for K in (1, 2))", "def f():\n    K = 3", "lambda K: K"]
 )
