@@ -20,6 +20,7 @@ import unicodedata
 
 import sympy
 
+from loopbook.exercises.criteria import largest_sensitivity, pi_controller, stable
 from loopbook.exercises.kinds import (
     Criterion,
     Design,
@@ -38,8 +39,9 @@ from loopbook.exercises.parameters import Parameter, between, call, choice, writ
 from loopbook.exercises.question import Question
 
 __all__ = [
-    "Exercise", "answers", "between", "choice", "criterion", "design", "exercise", "expression", "number", "numbers",
-    "poles", "settings", "time_function", "transfer_function", "word", "words",
+    "Exercise", "answers", "between", "choice", "criterion", "design", "exercise", "expression", "largest_sensitivity",
+    "number", "numbers", "pi_controller", "poles", "settings", "stable", "time_function", "transfer_function", "word",
+    "words",
 ]  # fmt: skip
 
 number, numbers, poles, settings = Number, Numbers, Poles, Settings

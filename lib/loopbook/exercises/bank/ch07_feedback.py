@@ -13,13 +13,15 @@ from loopbook.exercises.authoring import (
     exercise,
     expression,
     number,
+    pi_controller,
     settings,
+    stable,
     time_function,
     word,
 )
 from loopbook.expressions import t
 from loopbook.pid import PID
-from loopbook.stability import delay_margin, is_stable, ultimate
+from loopbook.stability import delay_margin, ultimate
 from loopbook.transfer import first_order
 
 ACTIONS = ["reverse", "direct"]
@@ -448,8 +450,8 @@ def heat_exchanger(
     return answers(
         settings=design(
             settings(PID(T / (2 * K * delay), T), gain="%/%", time="s"),
-            criterion("the controller is a PI controller", lambda pid: pid.Td == 0 and pid.Ti.is_finite),
-            criterion("the loop is stable", lambda pid: pid.Kp != 0 and is_stable(process * pid.expr)),
+            pi_controller(),
+            stable(process),
             criterion("the factor by which the gain may grow", lambda pid: _gain_factor(process, pid), above=2.5),
             criterion(
                 "the factor by which the dead time may grow", lambda pid: _delay_factor(process, delay, pid), above=2.5

@@ -8,8 +8,11 @@ from loopbook.exercises.authoring import (
     criterion,
     design,
     exercise,
+    largest_sensitivity,
     number,
+    pi_controller,
     settings,
+    stable,
     time_function,
     transfer_function,
     word,
@@ -428,17 +431,9 @@ def whole_process(
     return answers(
         pid=design(
             settings(good, "", "s", "the settings"),
-            criterion(
-                "the controller is a PI controller",
-                _is_pi,
-                otherwise="asked is a PI controller: with an integral time, and without a derivative term",
-            ),
-            criterion(
-                "the loop is stable",
-                lambda pid: _is_stable(process, pid),
-                otherwise="this loop is unstable: look at the sign and the size of the gain, and at the integral time",
-            ),
-            criterion("the largest sensitivity", lambda pid: _sensitivity(pid, k, (T_1, T_2, T_3), theta), below=1.8),
+            pi_controller(),
+            stable(process),
+            largest_sensitivity(process, 100 / T_1, below=1.8),
             criterion("the integral of the error", _area, below=_most(good), unit="% s"),
         )
     )
@@ -457,27 +452,6 @@ def _most(good):
     """The integral of the error that may be: some 15 % more than that of the settings by the half rule."""
     value = 1.15 * _area(good)
     return round(value) if value < 50 else 5 * round(value / 5)
-
-
-def _is_pi(pid):
-    return pid.Td == 0 and pid.Ti.is_finite
-
-
-def _is_stable(process, pid):
-    from loopbook.stability import is_stable
-
-    return pid.Kp != 0 and is_stable(pid.expr * process)
-
-
-def _sensitivity(pid, k, lags, theta):
-    """The largest sensitivity of the loop."""
-    import numpy as np
-
-    k, theta, Kp, Ti = (float(x) for x in (k, theta, pid.Kp, pid.Ti))
-    lags = np.array(lags, float)
-    z = 1j * np.geomspace(0.01, 100, 2000) / lags.max()
-    L = Kp * (1 + 1 / (Ti * z)) * k * np.exp(-theta * z) / np.prod(np.multiply.outer(lags, z) + 1, axis=0)
-    return float((1 / abs(1 + L)).max())
 
 
 def _area(pid):

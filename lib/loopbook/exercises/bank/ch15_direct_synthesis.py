@@ -11,8 +11,11 @@ from loopbook.exercises.authoring import (
     criterion,
     design,
     exercise,
+    largest_sensitivity,
     number,
+    pi_controller,
     settings,
+    stable,
     time_function,
     transfer_function,
 )
@@ -251,20 +254,9 @@ def _(K, T1, T2, beta, Tc):
     return {"controller": (T1 * s + 1) * (T2 * s + 1) / (K * s * (Tc**2 * s + 2 * Tc) * (1 - beta * s))}
 
 
-def _is_PI(controller):
-    return controller.Td == 0 and controller.Ti.is_finite
-
-
 def _is_stable(K, T, delay, controller):
     Kp, Ti = float(controller.Kp), float(controller.Ti)
     return 0 < Ti < math.inf and math.isfinite(pi_first_order(K, T, delay, Kp, Ti, "regulator", math.inf))
-
-
-def _Ms(K, T, delay, controller):
-    """The largest sensitivity of a stable PI loop around a lag with dead time."""
-    jw = 1j * np.geomspace(0.01, 20, 3000) / delay
-    L = K / (T * jw + 1) * np.exp(-delay * jw) * float(controller.Kp) * (1 + 1 / (float(controller.Ti) * jw))
-    return float(np.max(1 / abs(1 + L)))
 
 
 def _recovery(K, T, delay, controller):
@@ -310,17 +302,9 @@ def oven(
             settings(
                 PID(T / (2 * K * delay), 8 * delay), gain="%/K", time="min", what="the settings of the PI controller"
             ),
-            criterion(
-                "it is a PI controller",
-                _is_PI,
-                otherwise="asked is a PI controller: with an integral time, and without a derivative term",
-            ),
-            criterion(
-                "the loop is stable",
-                lambda controller: _is_stable(*process, controller),
-                otherwise="this loop is unstable: look at the sign and the size of the gain, and at the integral time",
-            ),
-            criterion("$M_s$", lambda controller: _Ms(*process, controller), below=1.7),
+            pi_controller(),
+            stable(by=lambda controller: _is_stable(*process, controller)),
+            largest_sensitivity(K * exp(-delay * s) / (T * s + 1), 20 / delay, below=1.7),
             criterion(
                 "the time of recovery",
                 lambda controller: _recovery(*process, controller),

@@ -10,8 +10,11 @@ from loopbook.exercises.authoring import (
     design,
     exercise,
     expression,
+    largest_sensitivity,
     number,
+    pi_controller,
     settings,
+    stable,
     words,
 )
 from loopbook.expressions import s
@@ -402,17 +405,9 @@ def not_so_nervous(
     return answers(
         pid=design(
             settings(good, "%/K", "min", "the settings"),
-            criterion(
-                "the controller is a PI controller",
-                _is_pi,
-                otherwise="asked is a PI controller: with an integral time, and without a derivative term",
-            ),
-            criterion(
-                "the loop is stable",
-                lambda pid: _is_stable(process, pid),
-                otherwise="this loop is unstable: look at the sign and the size of the gain, and at the integral time",
-            ),
-            criterion("the largest sensitivity", lambda pid: _sensitivity(pid, K, tau, theta), below=2),
+            pi_controller(),
+            stable(process),
+            largest_sensitivity(process, 30 / theta, below=2),
             criterion("the ISE", lambda pid: _ise(pid, K, tau, theta), below=_limit(K, tau, theta), unit="K² min"),
         )
     )
@@ -430,26 +425,6 @@ def _limit(K, tau, theta):
     """85 % of the ISE that Skogestad's settings make."""
     value = 0.85 * _ise(PID(tau / (2 * K * theta), min(tau, 8 * theta)), K, tau, theta)
     return float(f"{value:.2g}")
-
-
-def _is_pi(pid):
-    return pid.Td == 0 and pid.Ti.is_finite
-
-
-def _is_stable(process, pid):
-    from loopbook.stability import is_stable
-
-    return pid.Kp != 0 and is_stable(pid.expr * process)
-
-
-def _sensitivity(pid, K, tau, theta):
-    """The largest sensitivity of the loop."""
-    import numpy as np
-
-    K, tau, theta, Kp, Ti = (float(x) for x in (K, tau, theta, pid.Kp, pid.Ti))
-    z = 1j * np.geomspace(0.01, 30, 2000) / theta
-    L = Kp * (1 + 1 / (Ti * z)) * K * np.exp(-theta * z) / (tau * z + 1)
-    return float((1 / abs(1 + L)).max())
 
 
 @not_so_nervous.shows

@@ -12,8 +12,10 @@ from loopbook.exercises.authoring import (
     design,
     exercise,
     number,
+    pi_controller,
     poles,
     settings,
+    stable,
     time_function,
     transfer_function,
 )
@@ -320,16 +322,8 @@ def two_flows(
         model_delay=number(model, "min", "the dead time of the model"),
         controller=design(
             settings(PID(T / (K * off), T), time="min", what="the settings of the PI controller"),
-            criterion(
-                "it is a PI controller",
-                _is_PI,
-                otherwise="asked is a PI controller: with an integral time, and without a derivative term",
-            ),
-            criterion(
-                "the loop is stable with the right model",
-                lambda controller: _servo_ISE(K, T, model, controller) < math.inf,
-                otherwise="this loop is unstable: look at the sign and the size of the gain, and at the integral time",
-            ),
+            pi_controller(),
+            stable(by=lambda controller: _servo_ISE(K, T, model, controller) < math.inf),
             criterion("the largest $|M|$", lambda controller: _largest_M(K, T, off, controller), below=0.8),
             criterion(
                 "the ISE with the right model",
@@ -339,10 +333,6 @@ def two_flows(
             ),
         ),
     )
-
-
-def _is_PI(controller):
-    return controller.Td == 0 and controller.Ti.is_finite
 
 
 def _middle(volume, low, high):

@@ -2,8 +2,7 @@
 
 import math
 
-import numpy as np
-from sympy import Rational
+from sympy import Rational, exp
 
 from loopbook.exercises.authoring import (
     answers,
@@ -11,9 +10,12 @@ from loopbook.exercises.authoring import (
     criterion,
     design,
     exercise,
+    largest_sensitivity,
     number,
     numbers,
+    pi_controller,
     settings,
+    stable,
     transfer_function,
     word,
 )
@@ -276,17 +278,9 @@ def nearly_least(
     return answers(
         controller=design(
             settings(PID(Rational(57, 100) * T / (K * delay), T), time="s", what="the settings of the PI controller"),
-            criterion(
-                "it is a PI controller",
-                _is_PI,
-                otherwise="asked is a PI controller: with an integral time, and without a derivative term",
-            ),
-            criterion(
-                "the loop is stable",
-                lambda controller: _ISE(K, T, delay, controller.Kp, controller.Ti) < math.inf,
-                otherwise="this loop is unstable: look at the sign and the size of the gain, and at the integral time",
-            ),
-            criterion("$M_s$", lambda controller: _Ms(K, T, delay, controller), below=1.8),
+            pi_controller(),
+            stable(by=lambda controller: _ISE(K, T, delay, controller.Kp, controller.Ti) < math.inf),
+            largest_sensitivity(K * exp(-delay * s) / (T * s + 1), 20 / delay, below=1.8),
             criterion(
                 "the ISE",
                 lambda controller: _ISE(K, T, delay, controller.Kp, controller.Ti),
@@ -297,22 +291,8 @@ def nearly_least(
     )
 
 
-def _is_PI(controller):
-    return controller.Td == 0 and controller.Ti.is_finite
-
-
 def _limit(delay):
     return round(1.08 * float(delay) * _of_integrator(0.7390851332151607), 2)
-
-
-def _Ms(K, T, delay, controller):
-    """The largest sensitivity of a PI loop around a lag with dead time, infinite if it is not stable."""
-    Kc, Ti = controller.Kp, controller.Ti
-    if math.isinf(_ISE(K, T, delay, Kc, Ti)):
-        return math.inf
-    K, T, delay, Kc, Ti = (float(x) for x in (K, T, delay, Kc, Ti))
-    jw = 1j * np.geomspace(0.01, 20, 3000) / delay
-    return float(np.max(1 / abs(1 + K * np.exp(-delay * jw) / (T * jw + 1) * Kc * (1 + 1 / (Ti * jw)))))
 
 
 @nearly_least.shows

@@ -13,7 +13,9 @@ from loopbook.exercises.authoring import (
     design,
     exercise,
     number,
+    pi_controller,
     settings,
+    stable,
     word,
 )
 from loopbook.ise import pi_first_order
@@ -297,16 +299,8 @@ def in_the_window(
                 time="s",
                 what="the settings of the PI controller",
             ),
-            criterion(
-                "it is a PI controller",
-                _is_PI,
-                otherwise="asked is a PI controller: with an integral time, and without a derivative term",
-            ),
-            criterion(
-                "the loop is stable",
-                lambda controller: _load_ISE(K, T, delay, controller) < math.inf,
-                otherwise="this loop is unstable: look at the sign and the size of the gain, and at the integral time",
-            ),
+            pi_controller(),
+            stable(by=lambda controller: _load_ISE(K, T, delay, controller) < math.inf),
             criterion("the distance from the window", lambda controller: _distance(K, T, delay, controller), above=1),
             criterion(
                 "the ISE after the load step",
@@ -316,10 +310,6 @@ def in_the_window(
             ),
         )
     )
-
-
-def _is_PI(controller):
-    return controller.Td == 0 and controller.Ti.is_finite
 
 
 def _distance(K, T, delay, controller):
