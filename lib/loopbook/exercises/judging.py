@@ -7,7 +7,7 @@ from loopbook.exercises.limits import limited
 from loopbook.exercises.reading import Unreadable, shortened
 
 RIGHT, MISTAKE, WRONG, UNJUDGED, OPEN = "right", "mistake", "wrong", "not judged", "open"
-#: Reading an answer may take so many seconds: it may be a function, or an object with methods of its own.
+#: Reading and comparing may take so many seconds: an answer may be a function, or an object with methods of its own.
 SECONDS = 5
 
 
@@ -39,22 +39,26 @@ def judge(name, kind, given, mistakes=()):
     Verdict(name='Ti', status='mistake', says='that would be the value in min; asked: the integral time, in s')
     """
     try:
-        answer, remark = limited(SECONDS, kind.read, given)
-        if kind.agrees(answer):
-            return Verdict(name, RIGHT, "right" + (f", {remark}" if remark else ""))
-        for sentence, wrong in (*mistakes, *kind.mistakes()):
-            if kind.is_value(answer, wrong):
-                return Verdict(name, MISTAKE, sentence)
-        hint = kind.hint(answer)
+        status, says = limited(SECONDS, _judged, kind, given, mistakes)
     except Unreadable as problem:
         status = OPEN if str(problem) == NOT_ANSWERED else UNJUDGED
         return Verdict(name, status, harmless(str(problem)))
     except TimeoutError:
-        return Verdict(name, UNJUDGED, f"reading this takes too long: expected {kind.expected}")
+        return Verdict(name, UNJUDGED, f"judging this takes too long: expected {kind.expected}")
     except Exception as problem:  # the answer may be an object that fails in any way
         says = f"this cannot be judged ({type(problem).__name__}): expected {kind.expected}"
         return Verdict(name, UNJUDGED, harmless(says))
-    return Verdict(name, WRONG, hint or f"not right; asked: {kind.asked}")
+    return Verdict(name, status, says)
+
+
+def _judged(kind, given, mistakes):
+    answer, remark = kind.read(given)
+    if kind.agrees(answer):
+        return RIGHT, "right" + (f", {remark}" if remark else "")
+    for sentence, wrong in (*mistakes, *kind.mistakes()):
+        if kind.is_value(answer, wrong):
+            return MISTAKE, sentence
+    return WRONG, kind.hint(answer) or f"not right; asked: {kind.asked}"
 
 
 def harmless(text):

@@ -13,7 +13,9 @@ from loopbook.exercises.authoring import (
     exercise,
     expression,
     number,
+    pi_controller,
     settings,
+    stable,
     word,
 )
 from loopbook.expressions import s
@@ -344,8 +346,8 @@ def between_two_and_four(
     return answers(
         pid=design(
             settings(good, "", "min", "the settings"),
-            criterion("the controller is a PI controller", lambda pid: pid.Td == 0 and pid.Ti.is_finite),
-            criterion("the loop is stable", lambda pid: _is_stable(K * delay * pid.Kp, pid.Ti / delay)),
+            pi_controller(),
+            stable(by=lambda pid: _is_stable(K * delay * pid.Kp, pid.Ti / delay)),
             criterion("the overshoot", lambda pid: _overshoot(K * delay * pid.Kp, pid.Ti / delay), below=40, unit="%"),
             criterion("the integral of the error", lambda pid: pid.Ti / pid.Kp, below=_limit(K, delay), unit="% min"),
         )

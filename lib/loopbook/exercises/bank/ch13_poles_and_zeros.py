@@ -16,8 +16,10 @@ from loopbook.exercises.authoring import (
     exercise,
     expression,
     number,
+    pi_controller,
     poles,
     settings,
+    stable,
     time_function,
     transfer_function,
     word,
@@ -421,10 +423,6 @@ def _zeta(controller, A):
     return sqrt(Kp * Ti / A) / 2 if Kp > 0 and Ti > 0 else -inf
 
 
-def _is_pi(controller):
-    return controller.Td == 0 and controller.Ti != sympy.oo
-
-
 @exercise(
     "13.6",
     title="A calm level and a calm outflow",
@@ -455,8 +453,8 @@ def calm_level(
             settings(
                 PID(Kp, Ti=Rational(41, 10) * A / Kp), gain="m²/min", time="min", what="the settings of the controller"
             ),
-            criterion("the controller has an integral term and no derivative term", _is_pi),
-            criterion("the loop is stable", lambda controller: controller.Kp > 0 and controller.Ti > 0),
+            pi_controller(),
+            stable(by=lambda controller: controller.Kp > 0 and controller.Ti > 0),
             criterion("the damping", lambda controller: _zeta(controller, numbers[0]), above=1),
             criterion(
                 "the largest rise of the level",
