@@ -9,7 +9,7 @@ root := $(if $(filter 0,$(shell id -u)),--allow-root)
 # A backend meant for other programs would keep the figures out of the notebooks.
 unexport MPLBACKEND
 
-.PHONY: help lab test bench execute
+.PHONY: help lab test bench grade execute
 
 help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' Makefile
@@ -22,6 +22,10 @@ test: .venv/ready ## prove everything: the library, the ledger and every cell of
 
 bench: .venv/ready ## measure what the collection costs beside what it stands on
 	$(python) tests/bench.py
+
+grade: .venv/ready ## release the example course, collect a dozen submissions, and grade them
+	$(python) examples/course/make_submissions.py
+	$(python) -m loopbook grade examples/course/air_heater.py examples/course/build/submissions --to examples/course/build/graded
 
 execute: .venv/ready ## run every notebook again, store its outputs and write ERRATA.md
 	$(python) -m loopbook execute

@@ -1,4 +1,4 @@
-"""The command line: `python -m loopbook` lists the commands."""
+"""The command line: `loopbook`, or `python -m loopbook`, lists the commands."""
 
 import os
 from pathlib import Path
@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 app = typer.Typer(
-    name="python -m loopbook",
+    name="loopbook",
     add_completion=False,
     pretty_exceptions_show_locals=False,
 )
@@ -88,6 +88,101 @@ def ledger(
     except OSError as error:
         fail(f"{errata} cannot be written: {error.strerror}")
     console.print(f"{errata} written", markup=False)
+
+
+ROSTER = (
+    "The class as CSV: id and name, or an export of Canvas or Moodle; if not given, roster.csv beside the assignment."
+)
+
+
+@app.command()
+def release(
+    assignment: Annotated[Path, typer.Argument(help="The assignment, a Python module in the exercise format.")],
+    to: Annotated[Path, typer.Option(help="Folder for the notebooks, a folder a student.")],
+    students: Annotated[Path | None, typer.Option(help=ROSTER)] = None,
+    nbgrader: Annotated[bool, typer.Option(help="Write one source assignment for nbgrader instead.")] = False,
+) -> None:
+    """Write a notebook a student: own numbers, places for answers, nothing of the key."""
+    from loopbook.grading import GradingError
+    from loopbook.grading.assignment import load
+
+    try:
+        given = load(assignment)
+        if nbgrader:
+            from loopbook import notebooks
+            from loopbook.grading.files import write
+            from loopbook.grading.nbgrader import source
+
+            paths = [to / f"{given.name}.ipynb"]
+            write(paths[0], notebooks.as_text(source(given)))
+        else:
+            from loopbook.grading.release import release
+            from loopbook.grading.roster import read_roster
+
+            paths = release(given, read_roster(students or assignment.with_name("roster.csv")), to)
+    except GradingError as error:
+        fail(str(error))
+    console.print(f"{len(paths)} notebook{'' if len(paths) == 1 else 's'} of {given.title!r} in {to}", markup=False)
+
+
+@app.command()
+def grade(
+    assignment: Annotated[Path, typer.Argument(help="The assignment that was released.")],
+    submissions: Annotated[Path, typer.Argument(help="Their folder, or the zip file of Canvas or Moodle.")],
+    to: Annotated[Path, typer.Option(help="Folder for grades and feedback; after an interruption, the same one.")],
+    students: Annotated[Path | None, typer.Option(help=ROSTER)] = None,
+    only: Annotated[list[str] | None, typer.Option(help="Id of a student; grade this one and keep the others.")] = None,
+    regrade: Annotated[bool, typer.Option("--regrade", help="Grade again what is graded.")] = False,
+    reveal: Annotated[bool, typer.Option("--reveal", help="Show the right answers in the feedback.")] = False,
+    workers: Annotated[int, typer.Option(min=1, help="Submissions at a time on this machine.")] = os.cpu_count() or 1,
+    cluster: Annotated[str | None, typer.Option(help="Address of a Dask scheduler whose workers grade.")] = None,
+    without_jail: Annotated[
+        bool, typer.Option("--without-jail", help="Run submissions with your own rights; every output says so.")
+    ] = False,
+) -> None:
+    """Run the submissions of a class in a jail, judge their answers, and write grades and feedback."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    from loopbook.grading import GradingError
+
+    try:
+        from loopbook.grading.assignment import load
+        from loopbook.grading.grade import grade
+        from loopbook.grading.roster import read_roster
+
+        given, roster = load(assignment), read_roster(students or assignment.with_name("roster.csv"))
+        columns = TextColumn("grading"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
+        with Progress(*columns, console=errors, transient=True) as progress:
+            bar = progress.add_task("", total=None)
+            done = grade(
+                given,
+                roster,
+                submissions,
+                to,
+                workers=workers,
+                cluster=cluster,
+                only=only or (),
+                regrade=regrade,
+                jailed=not without_jail,
+                reveal=reveal,
+                follow=lambda total, count: progress.update(bar, total=total, completed=count),
+            )
+    except GradingError as error:
+        fail(str(error))
+    except KeyboardInterrupt:
+        # An ordinary exit would wait for the running submissions; they end by themselves once this process is gone.
+        errors.print("interrupted; the same command goes on from here", style="bold red")
+        os._exit(130)
+    if without_jail:
+        errors.print("graded without a jail: submissions ran with your own rights", style="bold red")
+    for complaint in done.complaints:
+        errors.print(complaint, style="yellow", markup=False)
+    for student, why in done.failures:
+        errors.print(f"{student}: {why}", style="bold red", markup=False)
+    counts = f"{done.graded} graded, {done.kept} kept, {done.missing} missing"
+    console.print(f"{counts}; {to / 'summary.html'} tells the rest", markup=False)
+    if done.failures:
+        fail(f"{len(done.failures)} not graded")
 
 
 def fail(message: str) -> None:

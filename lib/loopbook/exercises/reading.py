@@ -112,6 +112,30 @@ def parsed(text, letters):
     return tree
 
 
+def letters_in(given):
+    """Return the letters of a formula, whichever they are, in their order; of what is no formula, none.
+
+    Raises Unreadable where nothing spells it.
+
+    >>> letters_in("K*exp(-tau*s)/(T*s + 1)")
+    ['K', 'T', 's', 'tau']
+    """
+    try:
+        nodes = list(ast.walk(ast.parse(_in_python(spelled(given), ()), mode="eval")))
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as problem:
+        if isinstance(problem, Unreadable):
+            raise
+        return []
+    calls = [node for node in nodes if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)]
+    # h(t) is a signal, a letter; K(s + 1) a product without its sign, which is said of a letter
+    signals = [call for call in calls if [ast.unparse(argument) for argument in call.args] == ["t"]]
+    signals = [call for call in signals if call.func.id not in (*ONE_VALUE, *SEVERAL_VALUES)]
+    letters = {call.func.id for call in calls if len(call.func.id.partition("_")[0]) == 1 or call in signals}
+    passed = {id(call.func) for call in calls} | {id(call.args[0]) for call in signals}
+    letters |= {node.id for node in nodes if isinstance(node, ast.Name) and id(node) not in passed}
+    return sorted(letters - CONSTANTS.keys())
+
+
 def _quoted(source, node):
     """The part of the text that a node was read from."""
     part = ast.get_source_segment(source, node) if isinstance(node, ast.expr) else None

@@ -96,9 +96,23 @@ class Design(Kind):
 
     accuracy = ""
 
+    @property
+    def asking(self):
+        """As of the quantity's kind: the criteria stay here."""
+        return self.example.asking
+
     def read(self, given):
         """Return the answer as the quantity's kind reads it."""
         return self.example.read(given)
+
+    def written(self, answer):
+        """As the quantity's kind."""
+        return self.example.written(answer)
+
+    @property
+    def solution(self):
+        """One of the designs that meet the criteria."""
+        return f"for example {self.example.solution}"
 
     def complaints(self, answer):
         """Return what an answer does not achieve, in sentences; a condition that fails stands alone."""

@@ -7,9 +7,10 @@ import sympy
 
 from loopbook.exercises import formulas, units
 from loopbook.exercises.formulas import Formula
-from loopbook.exercises.kinds.kind import Kind, alone, answered
+from loopbook.exercises.kinds.kind import Kind, alone, answered, with_unit
 from loopbook.exercises.kinds.numeric import in_unit
-from loopbook.exercises.reading import Unreadable
+from loopbook.exercises.kinds.settings import Settings
+from loopbook.exercises.reading import Unreadable, letters_in, listed
 from loopbook.expressions import exact, s, t
 
 
@@ -28,6 +29,8 @@ class Expression(Kind):
         super().__init__(self.expr, unit, what, within)
 
     always = frozenset()
+    #: Without a key, any letter may occur.
+    letters = None
 
     def like(self, value):
         """The same quantity with another key."""
@@ -41,20 +44,37 @@ class Expression(Kind):
         return f"an expression in {', '.join(self.letters)}" if self.letters else "an expression"
 
     def read(self, given):
-        """Return the `Formula`."""
+        """Return the `Formula`; without a key, also a remark on its letters."""
         given = answered(given)
         if isinstance(given, Formula):
             return given, ""
-        formula = Formula(alone(given), self.letters)
+        given = alone(given)
+        if isinstance(given, dict) and {"Kp", "form"} <= given.keys():  # a controller, as data
+            given, _ = Settings.without_key().read(given)
+        used = letters_in(given) if self.letters is None else ()
+        formula = Formula(given, sorted(self.always.union(used)) if self.letters is None else self.letters)
         self._demand_values(formula)
-        return formula, ""
+        return formula, f"an expression in {listed(used)}" if used else ""
+
+    def written(self, answer):
+        """The expression with its unit."""
+        return with_unit(answer.text, self.unit)
+
+    @property
+    def solution(self):
+        """The key with its unit; fractions of many digits are decimals."""
+        if self.expr is None:
+            return super().solution
+        long = [number for number in self.expr.atoms(sympy.Rational) if number.q > 1000]
+        return with_unit(str(self.expr.xreplace({number: sympy.Float(number, 8) for number in long})), self.unit)
 
     def points(self):
         """The values of the letters at which formulas are compared."""
         return formulas.points_for(self.letters)
 
     def _demand_values(self, formula):
-        if not np.isfinite(formula(**self.points())).any():
+        points = self.points() if self.letters is not None else formulas.points_for(formula.letters)
+        if not np.isfinite(formula(**points)).any():
             raise Unreadable(f"this has no finite value: expected {self.expected}")
 
     def agrees(self, answer):
@@ -132,6 +152,8 @@ class TimeFunction(Expression):
     """
 
     always = frozenset({"t"})
+    letters = ("t",)
+    until = None
 
     def __init__(self, key, until, unit="", what="the function of time", within=0.01):
         self.until = float(until)
@@ -139,14 +161,20 @@ class TimeFunction(Expression):
 
     @property
     def expected(self):
-        """An expression in t."""
-        return "an expression in t, or a function of an array of times" + (f", in {self.unit}" if self.unit else "")
+        """An expression in t; where there is no key, there are no times at which a function could be called."""
+        other = "" if self.until is None else ", or a function of an array of times"
+        return f"an expression in t{other}" + (f", in {self.unit}" if self.unit else "")
 
     def read(self, given):
         """Return the `Formula`, or of a function its values at the times of the grid."""
-        if callable(answered(given)) and not isinstance(given, sympy.Basic | Formula) and not hasattr(given, "expr"):
+        is_function = callable(answered(given)) and not isinstance(given, sympy.Basic | Formula)
+        if self.until is not None and is_function and not hasattr(given, "expr"):
             return self._of_function(given), ""
         return super().read(given)
+
+    def written(self, answer):
+        """The expression with its unit, or that it is a function."""
+        return "a function of an array of times" if isinstance(answer, np.ndarray) else super().written(answer)
 
     @property
     def times(self):
@@ -156,8 +184,8 @@ class TimeFunction(Expression):
         return self.until * np.array(early + [(k + dice.random()) / 120 for k in range(120)])
 
     def points(self):
-        """The times."""
-        return {"t": self.times}
+        """The times; without a key, any."""
+        return super().points() if self.until is None else {"t": self.times}
 
     def _of_function(self, given):
         try:

@@ -1,6 +1,8 @@
 """What all kinds of asked quantities have in common."""
 
+import inspect
 import itertools
+import json
 import re
 from collections.abc import Iterator, MappingView
 
@@ -28,12 +30,56 @@ class Kind:
 
     #: How an answer looks, for one that cannot be judged.
     expected = "an answer"
+    #: The arguments that say how an answer looks. None of them comes from the key.
+    FORM = ("unit",)
+    key, unit, what = None, "", "the value"
 
     def __init__(self, key, unit="", what="the value", within=0.01):
         if not units.is_unit(unit):
             raise ValueError(f"the unit of {what} is {unit!r}: expected one such as 's', 'kg/min' or '%/K'")
         self.unit, self.what, self.within = unit, what, within
         self.key = self.read(key)[0]
+
+    @classmethod
+    def without_key(cls, *parts, **named):
+        """Return a kind that reads answers and has nothing to compare them with.
+
+        Arguments:
+            parts, named: those of the constructor that are in `FORM`.
+
+        >>> from loopbook.exercises.kinds import Number
+        >>> Number.without_key("s").read("2 min")
+        (120.0, 'converted from min')
+        """
+        given = dict(zip(cls.FORM, parts, strict=False)) | named
+        if unknown := [name for name in named if name not in cls.FORM] or parts[len(cls.FORM) :]:
+            raise ValueError(f"{unknown[0]!r} says nothing about a form: expected {', '.join(cls.FORM)}")
+        kind = object.__new__(cls)
+        kind.__dict__ |= cls._usual_form() | given
+        return kind
+
+    @classmethod
+    def _usual_form(cls):
+        parameters = inspect.signature(cls).parameters
+        return {name: parameters[name].default for name in cls.FORM}
+
+    @property
+    def maker(self):
+        """The name of the function for authors that makes such a kind, as "transfer_function"."""
+        return re.sub("(?<!^)(?=[A-Z])", "_", type(self).__name__).lower()
+
+    @property
+    def asking(self):
+        """The call, as code, that makes a kind of this form without the key; nothing in it comes from the key.
+
+        >>> from loopbook.exercises.kinds import Number
+        >>> Number(2.5, "K/%", "the gain").asking
+        'number("K/%")'
+        """
+        usual = self._usual_form()
+        said = {name: getattr(self, name) for name in self.FORM if getattr(self, name) != usual[name]}
+        named = [f"{name}={literal(value)}" if name != self.FORM[0] else literal(value) for name, value in said.items()]
+        return f"{self.maker}({', '.join(named)})"
 
     def like(self, value):
         """The same quantity with another key, as a mistake has one."""
@@ -46,6 +92,15 @@ class Kind:
     def asked(self):
         """The quantity with its unit, as in a sentence."""
         return f"{self.what}, in {self.unit}" if self.unit else self.what
+
+    def written(self, answer):
+        """An answer, as it was read, as a text for people."""
+        return str(answer)
+
+    @property
+    def solution(self):
+        """The key as a text for people."""
+        return self.written(self.key)
 
     @property
     def accuracy(self):
@@ -78,6 +133,22 @@ class Kind:
     def in_other_units(self, answer):
         """What an answer would be if it had been given in another unit: pairs of the unit and the value."""
         return ()
+
+
+def literal(value):
+    """Return plain data as code.
+
+    >>> literal(("heating", "cooling")), literal(True)
+    ('["heating", "cooling"]', 'True')
+    """
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(literal, value))}]"
+    return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)
+
+
+def with_unit(text, unit):
+    """Return a text with a unit behind it."""
+    return f"{text}\N{NO-BREAK SPACE}{unit}" if unit else text
 
 
 def answered(given):

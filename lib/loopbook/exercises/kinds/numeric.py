@@ -8,7 +8,7 @@ import sympy
 
 from loopbook.exercises import units
 from loopbook.exercises.formulas import Formula
-from loopbook.exercises.kinds.kind import Kind, alone, answered, in_a_row, listed_in
+from loopbook.exercises.kinds.kind import Kind, alone, answered, in_a_row, listed_in, with_unit
 from loopbook.exercises.reading import Unreadable, plain, shortened
 
 _WITH_UNIT = re.compile(r"([+-]? ?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?) ?(.*)")
@@ -35,6 +35,10 @@ class Number(Kind):
         """Return the number in the asked unit, as a float, and a remark where it came in another one."""
         value, remark = one_number(answered(given), self.unit, self.expected)
         return _real(value, self.expected), remark
+
+    def written(self, answer):
+        """The number with its unit."""
+        return with_unit(in_digits(answer), self.unit)
 
     def agrees(self, answer):
         """Whether the number is within the tolerance."""
@@ -101,6 +105,11 @@ class Numbers(Kind):
             return np.array([[number(value) for value in row] for row in inner], float), max(remarks, default="")
         return np.array([number(value) for value in rows], float), max(remarks, default="")
 
+    def written(self, answer):
+        """The list, or the list of rows, with its unit."""
+        rows = [f"[{', '.join(map(in_digits, row))}]" for row in np.atleast_2d(answer)]
+        return with_unit(rows[0] if answer.ndim == 1 else f"[{', '.join(rows)}]", self.unit)
+
     def agrees(self, answer):
         """Whether the shape is the same and each number within the tolerance; a column is a row."""
         answer, key = _flat(answer), _flat(self.key)
@@ -164,6 +173,10 @@ class Poles(Kind):
             raise Unreadable(f"a pole cannot occur {times:g} times: expected {self.expected}")
         return int(times)
 
+    def written(self, answer):
+        """The list with its unit."""
+        return with_unit(f"[{', '.join(map(in_digits, answer))}]", self.unit)
+
     def agrees(self, answer):
         """Whether each pole has its counterpart."""
         return len(answer) == len(self.key) == self._matched(answer, self.within)
@@ -205,6 +218,18 @@ def near(answer, key, within):
     return math.isfinite(answer) and abs(answer - key) <= within * (abs(key) or 1) + 1e-12 * abs(key)
 
 
+def in_digits(value):
+    """Return a number as text, to eight digits.
+
+    >>> in_digits(8 / 3), in_digits(-1 - 2.5j), in_digits(2 + 0j)
+    ('2.6666667', '-1 - 2.5j', '2')
+    """
+    value = complex(value)
+    if not value.imag:
+        return f"{value.real:.8g}"
+    return f"{value.real:.8g} {'-' if value.imag < 0 else '+'} {abs(value.imag):.8g}j"
+
+
 def one_number(given, unit, expected):
     """Return a finite number, real or complex, in a unit, and a remark where it was given in another one."""
     given = alone(given)
@@ -235,7 +260,7 @@ def one_number(given, unit, expected):
 def _number_of_text(text, unit, expected):
     line = plain(text)
     match = _WITH_UNIT.fullmatch(line)
-    if match and match[2]:
+    if match and match[2] and not re.search(r"\bpi\b|π", match[2]):  # Pint takes pi for a unit
         named = f"1{match[2]}" if match[2].startswith("/") else match[2]
         if units.is_unit(named):
             return _in_unit_asked(float(match[1].replace(" ", "")), named, unit, expected)

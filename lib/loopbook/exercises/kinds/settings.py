@@ -5,8 +5,8 @@ import math
 import sympy
 
 from loopbook.exercises import units
-from loopbook.exercises.kinds.kind import Kind, alone, answered, in_a_row, listed_in
-from loopbook.exercises.kinds.numeric import near, one_number
+from loopbook.exercises.kinds.kind import Kind, alone, answered, in_a_row, listed_in, with_unit
+from loopbook.exercises.kinds.numeric import in_digits, near, one_number
 from loopbook.exercises.reading import Unreadable, listed
 from loopbook.pid import PID
 
@@ -25,6 +25,8 @@ class Settings(Kind):
     >>> asked.agrees(asked.read(PID(2, Ti=8, Td=2, form="serial"))[0])
     True
     """
+
+    FORM = ("gain", "time", "form")
 
     def __init__(self, key, gain="", time="s", what="the settings", form="any", within=0.01):
         if form not in ("any", "parallel", "serial"):
@@ -47,7 +49,10 @@ class Settings(Kind):
         return f"a controller such as PID(1, Ti=10), or its numbers as [1, 10], with times in {self.time}"
 
     def read(self, given):
-        """Return a `PID` of exact numbers; from a PID, a dictionary of its settings, or a list Kp, Ti, Td, Tf."""
+        """Return a `PID` of exact numbers; from a PID, a dictionary of its settings, or a list Kp, Ti, Td, Tf.
+
+        A dictionary may say the form too, {"Kp": 2, "Ti": 8, "Td": 2, "form": "serial"}.
+        """
         if isinstance(answered(given), PID):
             parts, form = {name: getattr(given, name) for name in NAMES}, given.form
         else:
@@ -55,6 +60,9 @@ class Settings(Kind):
             if row is not None and 2 <= len(row) <= 4:
                 given = dict(zip(NAMES, row, strict=False))
             form = "serial" if self.form == "serial" else "parallel"
+            if isinstance(given, dict) and "form" in given:
+                given = dict(given)
+                form = given.pop("form")
             if (
                 not isinstance(given, dict)
                 or "Kp" not in given
@@ -82,6 +90,16 @@ class Settings(Kind):
             return PID(**numbers, form=form), max(remarks, default="")
         except ValueError as error:
             raise Unreadable(str(error)) from None
+
+    def written(self, answer):
+        """The settings with their units, and the form where there are two."""
+        usual = {"Ti": sympy.oo, "Td": 0, "Tf": 0}
+        parts = [
+            f"{name} = {with_unit(in_digits(getattr(answer, name)), self.gain if name == 'Kp' else self.time)}"
+            for name in NAMES
+            if getattr(answer, name) != usual.get(name)
+        ]
+        return ", ".join(parts) + ("" if answer.Td == answer.Tf == 0 else f", {answer.form} form")
 
     def agrees(self, answer):
         """Whether all settings agree, in the asked form or, where both are right, after conversion."""

@@ -36,10 +36,15 @@ class Word(Kind):
         return _either(self.among)
 
     accuracy = ""
+    FORM = ("among",)
 
     def read(self, given):
         """Return the word as it stands in the list."""
         return _word(answered(given), self.among, self.expected), ""
+
+    def written(self, answer):
+        """The word."""
+        return answer
 
     def agrees(self, answer):
         """Whether it is the word."""
@@ -70,6 +75,7 @@ class Words(Kind):
         return f"a list of words out of {', '.join(self.among)}"
 
     accuracy = ""
+    FORM = ("among", "ordered")
 
     def read(self, given):
         """Return the words as they stand in the list."""
@@ -83,6 +89,10 @@ class Words(Kind):
             raise Unreadable(f"a set has no order: expected {self.expected}")
         words = [_word(word, self.among, self.expected) for word in row]
         return words if self.ordered else sorted(set(words), key=self.among.index), ""
+
+    def written(self, answer):
+        """The words, or that there are none."""
+        return ", ".join(answer) or "none of them"
 
     def _parts(self, text):
         """The parts of a text, between separators, or between spaces or letters where no word has several of them."""

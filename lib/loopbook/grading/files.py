@@ -1,0 +1,33 @@
+"""Files that are whole at any moment: an interruption leaves the old one or the new one."""
+
+import os
+
+from loopbook.grading import GradingError
+
+
+def write(path, text):
+    """Make a text the content of a file, in one step; the folders on the way are made.
+
+    Returns whether that changed the file: the same bytes are not written again. Raises GradingError where the file
+    cannot be written.
+
+    >>> import pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "new", "grades.csv")
+    ...     write(path, "a,b"), write(path, "a,b")
+    (True, False)
+    """
+    content = text.encode()
+    partial = path.with_name(f".{path.name}.partial")
+    try:
+        if path.is_file() and path.read_bytes() == content:
+            return False
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with open(partial, "wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())  # a crash of the machine keeps what was reported as done
+        partial.replace(path)
+    except OSError as problem:
+        raise GradingError(f"{path} cannot be written: {problem.strerror}") from None
+    return True

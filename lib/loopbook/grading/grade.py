@@ -1,0 +1,227 @@
+"""Grading a class: collect, run, judge, keep, report. Interrupted at any moment, the same call goes on.
+
+Each submission is one task, which knows nothing of the others. It runs on a thread of this machine, or on a worker of
+a Dask cluster; on both, the student's code is in a child, behind the jail's walls.
+"""
+
+import contextlib
+import fcntl
+import threading
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from dataclasses import dataclass
+
+from loopbook.grading import GradingError, NoJail
+from loopbook.grading.events import Outcome
+from loopbook.grading.jail import USUAL, Jail, Limits, demand_hidden
+from loopbook.grading.judge import Judge
+from loopbook.grading.reports import write_all
+from loopbook.grading.results import Results, fingerprint, result
+from loopbook.grading.submissions import collect
+
+#: Tasks that wait for each worker: none is idle, and the notebooks of a large class are not all in memory.
+WAITING = 2
+
+
+@dataclass(frozen=True)
+class Task:
+    """A submission to be graded, as a worker gets it: plain values, for a worker may be another machine."""
+
+    name: str
+    source: str
+    path: str
+    student: str
+    label: str
+    content: bytes
+    problem: str
+    jailed: bool
+    limits: Limits
+    fingerprint: str
+
+
+class Desk:
+    """What a worker keeps between two submissions of one assignment: a jail and a judge, started when first needed."""
+
+    def __init__(self, task):
+        self.jailed, self.limits = task.jailed, task.limits
+        self.judge, self.jail = Judge(task.name, task.source, task.path), None
+
+    def graded(self, task):
+        """Return the result of a task. Raises GradingError where it has none, through no fault of the student."""
+        outcome = Outcome(refused=task.problem)
+        if task.label and not task.problem:
+            self.jail = self.jail or Jail(self.jailed, self.limits)
+            outcome = self.jail.run(task.content)
+        exercises = self.judge.judge(task.student, outcome.answers)
+        return result(task.student, task.label, task.fingerprint, task.jailed, outcome, exercises)
+
+    def close(self):
+        """End both processes."""
+        self.judge.close()
+        if self.jail:
+            self.jail.close()
+
+
+_desks = threading.local()
+_all_desks = []
+
+
+def graded(task):
+    """Grade a task on this thread's desk; returns the result, or a sentence where there is none."""
+    wanted = (task.name, task.source, task.path, task.jailed, task.limits)
+    try:
+        if getattr(_desks, "wanted", None) != wanted:
+            if hasattr(_desks, "desk"):
+                _desks.desk.close()
+            _desks.desk, _desks.wanted = Desk(task), wanted
+            _all_desks.append(_desks.desk)
+        return _desks.desk.graded(task)
+    except NoJail:  # the next one would fare no better
+        raise
+    except GradingError as problem:
+        return str(problem)
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What a run of the grader did.
+
+    Attributes:
+        graded, kept, missing: how many submissions were graded, had been before, and are not there.
+        complaints: sentences on files that are nobody's, or cannot be.
+        failures: pairs of a student's id and a sentence: these have no result.
+    """
+
+    graded: int
+    kept: int
+    missing: int
+    complaints: tuple
+    failures: tuple
+
+
+def grade(
+    assignment, students, submissions, folder, *, workers=1, cluster=None, only=(), regrade=False, jailed=True,
+    reveal=False, limits=USUAL, follow=lambda total, done: None,
+):  # fmt: skip
+    """Grade the submissions of a class, and write the reports.
+
+    Arguments:
+        assignment: `Assignment`.
+        students: the roster.
+        submissions: folder or zip file.
+        folder: where results and reports go.
+        workers: submissions at a time on this machine.
+        cluster: address of a Dask scheduler, whose workers are used instead.
+        only: ids of the students to grade; all if empty.
+        regrade: grade again what has a result.
+        jailed: without a jail, submissions run with the rights of whoever grades, and every output says so.
+        reveal: show the key in the feedback.
+        limits: `jail.Limits`.
+        follow: is called with the number of submissions and how many are done.
+    Returns:
+        The `Summary`.
+    Raises:
+        GradingError: for submissions that cannot be read, ids that are on no roster, a folder that another grader
+            works in, or where there is no jail.
+    """
+    unknown = sorted(set(only) - {student.id for student in students})
+    if unknown:
+        raise GradingError(f"there is no student {unknown[0]!r} on the roster")
+    if jailed:
+        demand_hidden(*filter(None, [assignment.path, submissions, folder]))
+    collection = collect(submissions, students, assignment.name)
+    results = Results(folder / "results")
+    with _alone(folder):
+        found = {one.student.id: one for one in collection.submissions}
+        wanted = [student for student in students if not only or student.id in only]
+        tasks = (_task(assignment, student, found.get(student.id), jailed, limits) for student in wanted)
+        graded, kept, failures = 0, 0, []
+        for done, (student, outcome) in enumerate(_outcomes(tasks, results, regrade, workers, cluster), start=1):
+            if isinstance(outcome, str):
+                failures.append((student, outcome))
+            elif outcome is None:
+                kept += student in found
+            else:
+                graded += student in found
+                results.keep(outcome)
+            follow(len(wanted), done)
+        stored = [one for one in (results.of(student.id) for student in students) if one]
+        write_all(folder, assignment.title, students, stored, collection.complaints, reveal)
+        missing = sum(student.id not in found for student in wanted)
+    return Summary(graded, kept, missing, collection.complaints, tuple(sorted(failures)))
+
+
+def _task(assignment, student, submission, jailed, limits):
+    """The task of one student; without a submission, one without a label."""
+    label, content, problem = "", b"", ""
+    if submission:
+        label, problem = submission.label, submission.problem
+        if not problem:
+            try:
+                content = submission.read()
+            except GradingError as why:
+                problem = str(why)
+    mark = fingerprint(assignment, content, label, problem, jailed, limits)
+    return Task(
+        assignment.name, assignment.source, str(assignment.path or ""), student.id, label, content, problem, jailed,
+        limits, mark,
+    )  # fmt: skip
+
+
+def _outcomes(tasks, results, regrade, workers, cluster):
+    """Yield pairs of a student and the result, None where the stored one holds, or a sentence; as they are done."""
+    with _executor(workers, cluster) as (executor, at_a_time):
+        running = {}
+        try:
+            for task in tasks:
+                stored = None if regrade else results.of(task.student)
+                if stored and stored["fingerprint"] == task.fingerprint:
+                    yield task.student, None
+                    continue
+                running[executor.submit(graded, task)] = task.student
+                while len(running) >= WAITING * at_a_time:
+                    yield from _done(running)
+            while running:
+                yield from _done(running)
+        finally:
+            for future in running:
+                future.cancel()
+
+
+def _done(running):
+    finished, _ = wait(running, return_when=FIRST_COMPLETED)
+    for future in finished:
+        yield running.pop(future), future.result()
+
+
+@contextlib.contextmanager
+def _executor(workers, cluster):
+    """Where tasks run, and how many at a time."""
+    if cluster is not None:
+        from loopbook.grading.cluster import connected
+
+        with connected(cluster) as connection:
+            yield connection
+        return
+    executor = ThreadPoolExecutor(workers)
+    try:
+        yield executor, workers
+    finally:
+        executor.shutdown(wait=False, cancel_futures=True)
+        while _all_desks:
+            _all_desks.pop().close()
+
+
+@contextlib.contextmanager
+def _alone(folder):
+    """Keep other graders out of a folder; the system lets go when this process ends, however it ends."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        file = open(folder / ".lock", "w")  # noqa: SIM115 - it is closed below
+    except OSError as problem:
+        raise GradingError(f"{folder} cannot be written: {problem.strerror}") from None
+    with file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise GradingError(f"another grader works in {folder}: wait for it, or take another folder") from None
+        yield

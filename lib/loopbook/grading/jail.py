@@ -1,0 +1,221 @@
+"""A jail for submissions: bubblewrap around a warm process, and what a submission told before it ended.
+
+The list of what is visible inside is `visible`: the system's programs and libraries, Python, its packages, and this
+library, all read-only. There is no network, no environment, no descriptor but one for the events, and nothing else of
+the machine.
+"""
+
+import json
+import os
+import select
+import shutil
+import signal
+import site
+import socket
+import subprocess
+import sys
+import tempfile
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from time import monotonic
+
+import loopbook
+from loopbook.grading import GradingError, NoJail
+from loopbook.grading.events import Story
+from loopbook.grading.warm import KILL
+
+MEGA = 2**20
+#: What libraries may take to be imported (s).
+STARTING = 120
+#: Between the end of a cell's time and the end of its process (s): the cell is asked to stop first.
+PATIENCE = 2
+#: What the end of a process may take (s).
+STUBBORN = 10
+SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/etc/ld.so.cache", "/etc/fonts", "/etc/localtime")
+ENVIRONMENT = {
+    "HOME": "/tmp",
+    "PATH": f"{Path(sys.executable).parent}:/usr/bin:/bin",
+    "LANG": "C.UTF-8",
+    "PYTHONHASHSEED": "0",
+    "PYTHONDONTWRITEBYTECODE": "1",
+    "OPENBLAS_NUM_THREADS": "1",
+    "OMP_NUM_THREADS": "1",
+    "MPLBACKEND": "agg",
+    "LOOPBOOK_PROGRESS": "off",
+}
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a submission may take: times in s, sizes in bytes.
+
+    Attributes:
+        cell, total: wall time of a cell, and of the notebook.
+        cpu: processor time of each process.
+        memory: of all processes, beyond what they share with the warm one.
+        processes: processes and threads.
+        file, disk: of one file, and of all.
+        events: of what it tells, a line and all of it.
+    """
+
+    cell: float = 60
+    total: float = 180
+    cpu: int = 120
+    memory: int = 1024 * MEGA
+    processes: int = 64
+    file: int = 32 * MEGA
+    disk: int = 64 * MEGA
+    line: int = MEGA // 8
+    events: int = 4 * MEGA
+
+
+USUAL = Limits()
+
+
+def visible():
+    """Return the folders and files that a submission can read: the system's, Python's, its packages', this library."""
+    python = [sys.base_prefix, sys.prefix]
+    if site.ENABLE_USER_SITE and site.getusersitepackages() in sys.path:
+        python.append(site.getusersitepackages())
+    paths = [*SYSTEM, *python, str(Path(loopbook.__file__).parent)]
+    within = [path for path in dict.fromkeys(paths) if os.path.lexists(path)]
+    return [path for path in within if not any(Path(path) != Path(o) and Path(path).is_relative_to(o) for o in within)]
+
+
+def demand_hidden(*paths):
+    """Raise GradingError where one of the paths is visible inside."""
+    for path in paths:
+        for seen in visible():
+            if Path(path).resolve().is_relative_to(Path(seen).resolve()):
+                raise GradingError(f"{path} is in {seen}, which every submission can read: move it elsewhere")
+
+
+def command():
+    """Return the command that starts the warm process in bubblewrap. Raises NoJail where there is none."""
+    program = shutil.which("bwrap")
+    if sys.platform != "linux" or program is None:
+        why = "bubblewrap is not installed" if sys.platform == "linux" else "a jail needs Linux"
+        raise NoJail(
+            f"there is no jail here, {why}: install bubblewrap and libseccomp2 on a Linux machine, "
+            "or say --without-jail and every output is marked so"
+        )
+    line = [program, "--die-with-parent", "--new-session", "--hostname", "jail"]
+    line += ["--unshare-pid", "--unshare-ipc", "--unshare-net", "--unshare-uts", "--unshare-cgroup-try"]
+    if os.geteuid() == 0:  # the warm process itself becomes nobody; the walls are built with root's rights
+        line += ["--cap-drop", "ALL", "--cap-add", "CAP_SETUID", "--cap-add", "CAP_SETGID"]
+    folders = [str(folder) for path in visible() for folder in [*Path(path).parents][-2::-1]]
+    for folder in dict.fromkeys(folders):  # for nobody to pass through
+        line += ["--perms", "0755", "--dir", folder]
+    for path in visible():
+        line += ["--symlink", os.readlink(path), path] if os.path.islink(path) else ["--ro-bind", path, path]
+    line += ["--proc", "/proc", "--dev", "/dev", "--tmpfs", "/dev/shm", "--perms", "1777", "--tmpfs", "/tmp"]
+    line += ["--remount-ro", "/dev", "--remount-ro", "/", "--chdir", "/tmp", "--"]
+    return line
+
+
+class Jail:
+    """A warm process that runs one submission after another, each in walls of its own.
+
+    Arguments:
+        jailed: without a jail, submissions run with the rights of whoever grades.
+        limits: `Limits`.
+    Raises:
+        NoJail: where no jail can be had, or the libraries cannot be imported in it.
+    """
+
+    def __init__(self, jailed=True, limits=USUAL):
+        self.jailed, self.limits = jailed, limits
+        self.process = None
+        self._start()
+
+    def _start(self):
+        ours, theirs = socket.socketpair()
+        line = [*(command() if self.jailed else ()), sys.executable, "-m", "loopbook.grading.warm"]
+        with theirs, tempfile.TemporaryFile() as complaints:
+            self.process = subprocess.Popen(
+                [*line, *(["jailed"] if self.jailed else [])],
+                stdin=theirs,
+                stdout=subprocess.DEVNULL,
+                stderr=complaints,
+                env=ENVIRONMENT,
+                cwd="/",
+            )
+            theirs.close()
+            self._control = ours
+            reply = self._reply(STARTING)
+            if "ready" not in reply:
+                self.close()
+                complaints.seek(0)
+                said = complaints.read(10**6).decode(errors="replace").strip().splitlines()
+                why = reply.get("failed") or (said[-1] if said else "it ended without a word")
+                raise NoJail(f"the {'jail' if self.jailed else 'process'} for submissions does not start: {why}")
+
+    def _reply(self, seconds):
+        """The next line of the warm process; empty where it is gone or silent."""
+        self._control.settimeout(seconds)
+        try:
+            line = self._control.recv(65536)
+            return json.loads(line) if line else {}
+        except (OSError, ValueError):
+            return {}
+
+    def close(self):
+        """End the warm process, and whatever runs in its walls."""
+        self._control.close()
+        if self.process.poll() is None:
+            self.process.kill()
+        self.process.wait()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *problem):
+        self.close()
+
+    def run(self, content):
+        """Run a notebook, given as the bytes of its file; returns the `Outcome`. Raises NoJail as the start."""
+        if self.process.poll() is not None:
+            self.close()
+            self._start()
+        reader, writer = os.pipe()
+        with tempfile.TemporaryFile() as notebook, open(reader, "rb", buffering=0) as events:
+            try:
+                notebook.write(content)
+                notebook.seek(0)
+                job = json.dumps(asdict(self.limits)).encode() + b"\n"
+                socket.send_fds(self._control, [job], [notebook.fileno(), writer])
+            finally:
+                os.close(writer)
+            return self._followed(events)
+
+    def _followed(self, events):
+        """The outcome of the submission that tells these events."""
+        story, end, why = Story(self.limits.line, self.limits.events), monotonic() + self.limits.total, ""
+        watched, done = [events, self._control], False
+        while not done:
+            due = end if why else min(end, story.cell_began + self.limits.cell + PATIENCE)
+            ready, _, _ = select.select(watched, [], [], max(0.0, due - monotonic()))
+            if events in ready and not story.read(events):
+                watched.remove(events)  # nothing more will come: the process is about to end
+            done = self._control in ready
+            if done or (monotonic() < due and not story.too_long):
+                continue
+            if why:  # it was to be ended, and was not: then everything in these walls is
+                break
+            why = story.too_long or self._late(monotonic() >= end)
+            end = monotonic() + STUBBORN
+            self._control.send(KILL)
+        reply = self._reply(STUBBORN) if done else {}
+        if not reply:
+            self.close()
+        os.set_blocking(events.fileno(), False)
+        while story.read(events):
+            pass
+        if reply.get("memory"):
+            why = f"it took more than {self.limits.memory // MEGA} MB of memory"
+        return story.outcome(why, reply.get("exit", -signal.SIGKILL))
+
+    def _late(self, in_all):
+        if in_all:
+            return f"the notebook took longer than {self.limits.total:g} s"
+        return f"the cell took longer than {self.limits.cell:g} s"

@@ -1,0 +1,174 @@
+"""The judge: a process of its own, which holds the assignment and its keys, and sees answers as plain data only.
+
+`python -m loopbook.grading.judge` is that process; `Judge` talks with it in lines of JSON. What takes too long, or
+takes the process down, is not judged, and the judge begins again behind it.
+"""
+
+import contextlib
+import json
+import os
+import select
+import subprocess
+import sys
+from pathlib import Path
+
+from loopbook.exercises.judging import SECONDS, UNJUDGED, harmless
+from loopbook.grading import GradingError
+
+MEMORY = 2 * 2**30
+#: What comparing one answer may take (s). The comparison itself has a limit; this one is for what does not heed it.
+PATIENCE = SECONDS + 5
+#: What loading the assignment, and working out the keys of a variant, may take (s).
+STARTING = 120
+
+
+class Judge:
+    """A judge for an assignment.
+
+    Arguments:
+        name, source, path: of the `Assignment`, which this process need not load; no path is an empty text.
+    """
+
+    def __init__(self, name, source, path=""):
+        self.assignment = {"name": name, "source": source, "path": path}
+        self.process = None
+
+    def _start(self):
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "loopbook.grading.judge"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0
+        )
+        self._say(self.assignment)
+        self._left = b""
+        if "ready" not in (reply := self._heard(STARTING)):
+            self.close()
+            raise GradingError(reply.get("failed", "the judge does not start"))
+
+    def _say(self, data):
+        with contextlib.suppress(BrokenPipeError):  # then it says nothing, which is noticed
+            self.process.stdin.write(json.dumps(data).encode() + b"\n")
+
+    def _heard(self, seconds):
+        """The next line of the judge; empty where it is silent for longer, or gone."""
+        while b"\n" not in self._left:
+            ready, _, _ = select.select([self.process.stdout], [], [], seconds)
+            chunk = self.process.stdout.read(65536) if ready else b""
+            if not chunk:
+                return {}
+            self._left += chunk
+        line, self._left = self._left.split(b"\n", 1)
+        return json.loads(line)
+
+    def judge(self, student, given):
+        """Judge answers; returns the part "exercises" of a result.
+
+        Arguments:
+            student: id.
+            given: {exercise: {name: plain data}}.
+        Raises:
+            GradingError: where the assignment has no variant for the student.
+        """
+        exercises, hopeless = [], []
+        while True:
+            if self.process is None:
+                self._start()
+            self._say({"student": student, "given": given, "hopeless": hopeless})
+            exercises, at = [], None
+            while reply := self._heard(STARTING if at is None else PATIENCE):
+                if "failed" in reply:
+                    raise GradingError(reply["failed"])
+                if "done" in reply:
+                    return exercises
+                if "exercise" in reply:
+                    exercises.append(reply["exercise"])
+                at = reply.get("at")
+            self.close()
+            if at is None or at in hopeless:
+                raise GradingError(f"the judge ends without a word for student {student}")
+            hopeless.append(at)
+
+    def close(self):
+        """End the process."""
+        if self.process is not None:
+            self.process.kill()
+            self.process.communicate()
+            self.process = None
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *problem):
+        self.close()
+
+
+def judged(question, given, hopeless=(), at=lambda name: None):
+    """Return the result of one exercise, as JSON data.
+
+    Arguments:
+        question: the student's variant.
+        given: {name: plain data}.
+        hopeless: names of quantities that cannot be judged.
+        at: is told each name before it is judged.
+    """
+    from loopbook.exercises.judging import Verdict, judge
+    from loopbook.grading.plain import unreadable
+
+    verdicts = []
+    for name, kind in question.key.items():
+        answer = given.get(name)
+        at(name)
+        if name in hopeless:
+            verdict = Verdict(name, UNJUDGED, f"judging this takes too long: expected {kind.expected}")
+        elif says := unreadable(answer):
+            verdict = Verdict(name, UNJUDGED, harmless(says))
+        else:
+            verdict = judge(name, kind, answer, question.mistakes[name])
+        verdicts.append(
+            {"name": name, "status": verdict.status, "says": verdict.says, "answer": answer, "key": kind.solution}
+        )
+    exercise = question.exercise
+    earned = exercise.points * sum(verdict["status"] == "right" for verdict in verdicts) / len(verdicts)
+    return {
+        "number": exercise.number,
+        "title": exercise.title,
+        "points": exercise.points,
+        "earned": earned,
+        "verdicts": verdicts,
+    }
+
+
+def main():
+    """Read an assignment from standard input, and then answers; write what is judged to standard output."""
+    import resource
+
+    from loopbook.grading.assignment import Assignment
+
+    out = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)  # what the assignment prints
+
+    def say(data):
+        print(json.dumps(data), file=out, flush=True)
+
+    said = json.loads(sys.stdin.readline())
+    try:
+        assignment = Assignment.of(said["source"], said["name"], Path(said["path"]) if said["path"] else None)
+    except GradingError as problem:
+        say({"failed": str(problem)})
+        return
+    say({"ready": True})
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    for line in sys.stdin:
+        job = json.loads(line)
+        try:
+            for number in assignment.exercises:
+                question = assignment.question(job["student"], number)
+                hopeless = [name for one, name in job["hopeless"] if one == number]
+                given = job["given"].get(number, {})
+                say({"exercise": judged(question, given, hopeless, lambda name, n=number: say({"at": [n, name]}))})
+        except (GradingError, ValueError) as problem:
+            say({"failed": f"exercise {number} for student {job['student']}: {problem}"})
+        else:
+            say({"done": True})
+
+
+if __name__ == "__main__":
+    main()

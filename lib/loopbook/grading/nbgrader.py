@@ -1,0 +1,169 @@
+"""An assignment for courses that run nbgrader: its source notebook, with cells of nbgrader's schema 3.
+
+What is lost there: nbgrader puts the hidden tests back into the student's notebook and runs both in one process. The
+keys stand in that process and the comparison happens in it, so that code of the student can read or replace them. All
+students get the same numbers, and a feedback page made by nbgrader shows the hidden tests with the keys.
+
+Source of the schema and of the marks in the cells: jupyter/nbgrader, nbgrader/nbgraderformat/v3.json and the
+preprocessors clearsolutions.py and clearhiddentests.py, version 0.9.6.
+"""
+
+import inspect
+import json
+
+from nbformat import v4
+
+from loopbook.exercises.judging import RIGHT, judge
+from loopbook.exercises.kinds import Design, Expression, Numbers, Poles, Settings
+from loopbook.exercises.kinds.kind import literal
+from loopbook.expressions import parse
+from loopbook.grading.plain import plain, unreadable
+from loopbook.grading.release import answer_call, asked, bare, checked, set_up, wrapped
+
+SCHEMA = 3
+_HOW_TO_ANSWER = "Assign your answers to the names that are listed, in the place of the comment, and run the cell."
+
+
+def source(assignment, student_id=None):
+    """Return the source notebook of an assignment, for `nbgrader generate_assignment`.
+
+    An exercise is a locked statement, a cell with the solution between nbgrader's marks, and a locked cell whose
+    hidden tests judge and end in the points. What cannot be written into a cell is graded by hand: designs, whose
+    criteria are functions, and formulas with pieces.
+
+    Arguments:
+        student_id: whose variant; the reference variant if not given, as all students of nbgrader get one source.
+    Raises:
+        GradingError: where a variant fails.
+    """
+    questions = {number: _question(assignment, student_id, number) for number in assignment.exercises}
+    parts = [f"# {assignment.title}", assignment.introduction, _HOW_TO_ANSWER]
+    cells = [(v4.new_markdown_cell("\n\n".join(part for part in parts if part)), _locked("introduction"))]
+    for k, code in enumerate(set_up(assignment.title, student_id or "", questions), start=1):
+        cells.append((v4.new_code_cell(code), _locked(f"sheet-{k}")))
+    for place, (number, question) in enumerate(questions.items(), start=1):
+        cells += _cells(f"exercise-{place}", number, question)
+    made = bare([cell for cell, _ in cells])
+    for cell, (_, marks) in zip(made.cells, cells, strict=True):
+        cell.metadata["nbgrader"] = marks
+    return made
+
+
+def earned(taken, points, **key):
+    """Return the points that answers earn, and print what became of each; the hidden tests end in this call.
+
+    Arguments:
+        taken: {quantity: plain data}, from `Sheet.taken`.
+        points: of these quantities together; each brings the same part.
+        key: a kind with its key for each quantity.
+
+    >>> from loopbook.exercises.authoring import number
+    >>> earned({"Ti": 10, "Kp": "much"}, points=4, Ti=number(10, "s"), Kp=number(2))
+    Ti: right
+    Kp: 'much' is a text that is no number: expected a number
+    2.0
+    """
+    verdicts = [judge(name, kind, taken.get(name)) for name, kind in key.items()]
+    for one in verdicts:
+        print(f"{one.name}: {unreadable(taken.get(one.name)) or one.says}")
+    return points * sum(verdict.status == RIGHT for verdict in verdicts) / len(verdicts)
+
+
+def _question(assignment, student_id, number):
+    if student_id is not None:
+        return asked(assignment, student_id, number)
+    return checked(assignment.exercises[number].question, f"exercise {number} of {assignment.name}")
+
+
+def _cells(grade_id, number, question):
+    """The cells of an exercise, each with its marks."""
+    yield v4.new_markdown_cell(question.statement), _locked(f"{grade_id}-statement")
+    calls = {name: spelled_out(kind) for name, kind in question.key.items()}
+    judged = {name: kind for name, kind in question.key.items() if calls[name]}
+    others = {name: kind for name, kind in question.key.items() if not calls[name]}
+    points = question.exercise.points
+    if judged:
+        part = points * len(judged) / len(question.key)
+        yield v4.new_code_cell(_solved(number, judged)), _marks(grade_id, solution=True)
+        test = v4.new_code_cell(_hidden_tests(number, {name: calls[name] for name in judged}, part))
+        yield test, _marks(f"{grade_id}-test", grade=True, locked=True, points=part)
+    if others:
+        part = points * len(others) / len(question.key)
+        by_hand = _marks(f"{grade_id}-by-hand", grade=True, solution=True, points=part)
+        yield v4.new_code_cell(_solved(number, others)), by_hand
+
+
+def _locked(grade_id):
+    return _marks(grade_id, locked=True)
+
+
+def _marks(grade_id, grade=False, solution=False, locked=False, points=None):
+    marks = {
+        "schema_version": SCHEMA, "grade_id": grade_id, "grade": grade, "solution": solution, "locked": locked,
+        "task": False,
+    }  # fmt: skip
+    return marks | ({"points": points} if grade else {})
+
+
+def _solved(number, key):
+    """The cell in which quantities are answered, with the solution between nbgrader's marks."""
+    lines = [" = ".join([*key, "..."]), "### BEGIN SOLUTION"]
+    lines += [_assignment(name, kind) for name, kind in key.items()]
+    lines += ["### END SOLUTION", answer_call(number, {name: name for name in key})]
+    return "\n".join(lines)
+
+
+def _assignment(name, kind):
+    """The line that gives a quantity the value of its key, as a student might write it."""
+    example = kind.example if isinstance(kind, Design) else kind
+    value = plain(example.expr if isinstance(example, Expression) else example.key)
+    return wrapped(f"{name} = {json.dumps(value, ensure_ascii=False)}")
+
+
+def _hidden_tests(number, calls, points):
+    code = " ".join(calls.values())
+    lines = [f"# The answers to exercise {number} are judged here.", "### BEGIN HIDDEN TESTS"]
+    # by its module: the student may have a number or poles of another meaning
+    lines.append("from loopbook.exercises import authoring")
+    lines += ["from loopbook.expressions import parse"] * ("(parse(" in code)
+    lines.append("from loopbook.grading.nbgrader import earned")
+    lines += ["from loopbook.pid import PID"] * ("(PID(" in code)
+    arguments = [f"sheet.taken({literal(number)})", f"points={points!r}", *(f"{n}={call}" for n, call in calls.items())]
+    return "\n".join([*lines, wrapped(f"earned({', '.join(arguments)})"), "### END HIDDEN TESTS"])
+
+
+def spelled_out(kind):
+    """Return the call that makes a kind with its key, as code; an empty text where there is none.
+
+    >>> from loopbook.exercises.authoring import number
+    >>> print(spelled_out(number(2.5, "s", "the integral time")))
+    authoring.number(2.5, unit="s", what="the integral time")
+    """
+    key = "" if isinstance(kind, Design) else _key(kind)
+    if not key:
+        return ""
+    _, *others = inspect.signature(type(kind)).parameters.values()
+    said = {one.name: getattr(kind, one.name) for one in others}
+    if isinstance(kind, Expression) and "letters" in said:
+        said["letters"] = " ".join(kind.letters)
+    named = [f"{one.name}={literal(said[one.name])}" for one in others if said[one.name] != one.default]
+    return f"authoring.{kind.maker}({', '.join([key, *named])})"
+
+
+def _key(kind):
+    """The key of a kind as code; an empty text for a formula that `parse` does not read."""
+    match kind:
+        case Expression():
+            text = str(kind.expr)
+            try:
+                is_read = kind.is_value(kind.key, parse(text))
+            except ValueError:
+                is_read = False
+            return f"parse({literal(text)})" if is_read else ""
+        case Settings():
+            parts = {part: getattr(kind.key, part) for part in ("Kp", "Ti", "Td", "Tf")}
+            numbers = [f"{part}={float(value)!r}" for part, value in parts.items() if value.is_finite]
+            return f"PID({', '.join([*numbers, f'form={literal(kind.key.form)}'])})"
+        case Poles() | Numbers():
+            return literal(kind.key.tolist())
+    return literal(kind.key)

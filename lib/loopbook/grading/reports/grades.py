@@ -1,0 +1,60 @@
+"""The table of grades, as learning management systems import it."""
+
+import csv
+import io
+import re
+
+from loopbook.grading.reports.wording import number, visible, without_jail
+
+COLUMNS = ("Student", "ID", "SIS User ID", "SIS Login ID", "Section")
+#: What a spreadsheet takes for the beginning of a formula; a semicolon begins a cell where the comma is decimal.
+_FORMULA = re.compile(r"((?:^|;)\s*)(?=[=+\-@＝＋－＠])")
+
+
+def grades_csv(title, students, results):
+    """Return the grades as CSV: a row for each student with a result, in the roster's order.
+
+    Canvas imports it as it is: the header begins with Student and ID, then the SIS columns and Section, and what
+    follows is an assignment, found by its title; a student is found by ID, then SIS User ID, SIS Login ID and name.
+    (https://github.com/instructure/canvas-lms/blob/master/lib/gradebook_importer.rb)
+    In Moodle's import of CSV, "map from" SIS User ID "to" ID number or from SIS Login ID to username, and the last
+    column to the grade item. (https://docs.moodle.org/en/Grade_import, and grade/import/csv/classes/load_data.php)
+    There is no row "Points Possible": Canvas needs none, and Moodle would take it for a student.
+
+    - A student who handed in nothing has an empty cell, which both systems read as no grade: what it costs is the
+      instructor's decision.
+    - Where a roster has none of the three identifications of an LMS, SIS User ID is the student's id here.
+    - A text that a spreadsheet would run as a formula gets an apostrophe in front, as OWASP suggests
+      (https://owasp.org/www-community/attacks/CSV_Injection). Such a name or identification matches nobody in the
+      LMS, one of the other columns does.
+    - Where a submission ran without a jail, the column is named so; the LMS then asks which assignment is meant.
+
+    Arguments:
+        title: of the assignment; the name of the last column.
+        students: the roster.
+        results: of submissions, as data.
+
+    >>> from types import SimpleNamespace as Student
+    >>> ada = Student(id="s1", name="Ada", canvas_id="17", sis_id="", login="ada", section="A")
+    >>> print(grades_csv("Tuning", [ada], [{"student": "s1", "jailed": True, "status": "complete", "earned": 8 / 3}]))
+    Student,ID,SIS User ID,SIS Login ID,Section,Tuning
+    Ada,17,,ada,A,2.67
+    <BLANKLINE>
+    """
+    by_student = {result["student"]: result for result in results}
+    column = f"{title} (graded without a jail)" if without_jail(results) else title
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow([*COLUMNS, _no_formula(column)])
+    for student in students:
+        if student.id in by_student:
+            result = by_student[student.id]
+            sis_id = student.sis_id or ("" if student.canvas_id or student.login else student.id)
+            told = (student.name, student.canvas_id, sis_id, student.login, student.section)
+            grade = "" if result["status"] == "missing" else number(result["earned"])
+            writer.writerow([*map(_no_formula, told), grade])
+    return file.getvalue()
+
+
+def _no_formula(text):
+    return _FORMULA.sub(r"\1'", visible(text))

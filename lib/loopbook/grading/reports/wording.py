@@ -1,0 +1,180 @@
+"""Words and numbers of the outputs, and texts of students made harmless for text and for Markdown."""
+
+import re
+
+from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
+from loopbook.exercises.reading import shortened
+from loopbook.figures import plain_words
+
+#: The line that every output carries where student code ran with nothing around it.
+NO_JAIL = "Graded without a jail: nothing kept the code of the notebook from the grader, and results can be forged."
+#: The statuses of a verdict, from good to bad.
+STATUSES = (RIGHT, MISTAKE, WRONG, UNJUDGED, OPEN)
+
+LONGEST_ANSWER = 200
+LONGEST_REMARK = 400
+MOST_REMARKS = 20
+#: Joiners are invisible and belong to names in several scripts, and to emoji.
+_JOINERS = "\u200c\u200d"
+#: What Markdown would take for more than text: signs anywhere, addresses, and what begins a list.
+_MARKDOWN = re.compile(r"[\\`*_{}\[\]<>#|~$&^@]|:(?=//)|(?<=www)\.|^[-+=]|(?<=^\d)[.)]|(?<=^\d\d)[.)]")
+
+
+def visible(text):
+    r"""Return a text in one line, with all that cannot be seen or cannot be stored written as an escape.
+
+    >>> visible("two\nlines \x1b[31m \u202e \ud800")
+    'two lines \\x1b[31m \\u202e \\ud800'
+    """
+    line = " ".join(text.split())
+    if line.isprintable():
+        return line
+    return "".join(c if c.isprintable() or c in _JOINERS else _escaped(c) for c in line)
+
+
+def _escaped(character):
+    return character.encode("ascii", "backslashreplace").decode() if character > "\x7f" else f"\\x{ord(character):02x}"
+
+
+def number(value):
+    """Return a number with at most two decimals.
+
+    >>> number(8 / 3), number(4), number(2.5)
+    ('2.67', '4', '2.5')
+    """
+    return f"{value:.2f}".rstrip("0").rstrip(".")
+
+
+def of_points(earned, points):
+    """Return the points earned of those possible, in words.
+
+    >>> of_points(8 / 3, 4), of_points(0, 1)
+    ('2.67 of 4 points', '0 of 1 point')
+    """
+    return f"{number(earned)} of {number(points)} point{'' if points == 1 else 's'}"
+
+
+def percent(fraction):
+    """Return a fraction in percent.
+
+    >>> percent(2 / 3)
+    '67 %'
+    """
+    return f"{100 * fraction:.0f} %"
+
+
+def counted(count, noun):
+    """Return a number of things.
+
+    >>> counted(1, "submission"), counted(0, "student")
+    ('1 submission', '0 students')
+    """
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def answer_in_words(answer):
+    """Return an answer that came as plain data, on one line and not long; empty for none and for an unreadable one.
+
+    >>> answer_in_words([2.5, "3 min", {"-1": 2}]), answer_in_words({"unreadable": "a function"})
+    ('[2.5, 3 min, {-1: 2}]', '')
+    """
+    if isinstance(answer, dict) and [*answer] == ["unreadable"]:
+        return ""
+    return shortened(visible(_in_words(answer)), LONGEST_ANSWER)
+
+
+def _in_words(answer):
+    if isinstance(answer, dict):
+        return "{" + ", ".join(f"{name}: {_in_words(value)}" for name, value in answer.items()) + "}"
+    if isinstance(answer, list):
+        return "[" + ", ".join(map(_in_words, answer)) + "]"
+    if isinstance(answer, float):
+        return f"{answer:.12g}"
+    return "" if answer is None else str(answer)
+
+
+def remarks(result):
+    """Return what became of a notebook besides its answers, as sentences of which students may have written parts."""
+    if result["status"] == "missing":
+        return [result["says"] or "no notebook was handed in"]
+    found = [result["says"]] if result["says"] else []
+    if not found and result["status"] != "complete":
+        found = [f"the notebook was {result['status']}"]
+    found += [f"cell {error['cell']}: {error['says']}" for error in result["errors"]]
+    more = [f"and {len(found) - MOST_REMARKS} more"] if len(found) > MOST_REMARKS else []
+    return [shortened(visible(text), LONGEST_REMARK) for text in found[:MOST_REMARKS]] + more
+
+
+def explained(verdict):
+    """Return the sentence of a verdict without the word that its status says already.
+
+    One on an answer that could not be judged may quote it: it holds no formulas.
+
+    >>> explained({"status": "right", "says": "right, converted from min"})
+    'converted from min'
+    """
+    says = verdict["says"]
+    if verdict["status"] == UNJUDGED:
+        return says.replace("$", "")
+    return says.removeprefix("right").removeprefix(", ") if verdict["status"] == RIGHT else says
+
+
+def parts(sentence):
+    """Return the pieces of a sentence, by turns text and formula; a dollar sign without another one is text.
+
+    >>> parts("here $c = 4$ is asked"), parts("5 $ each")
+    (['here ', 'c = 4', ' is asked'], ['5 $ each'])
+    """
+    pieces = visible(sentence).split("$")
+    return pieces if len(pieces) % 2 else ["$".join(pieces)]
+
+
+def in_text(sentence):
+    r"""Return a sentence without signs of formulas.
+
+    >>> in_text(r"here $T_c = \tau$ is asked")
+    'here T_c = tau is asked'
+    """
+    return "".join(plain_words(piece) if place % 2 else piece for place, piece in enumerate(parts(sentence)))
+
+
+def in_markdown(text):
+    r"""Return a text that Markdown shows as it is, whatever is in it.
+
+    >>> print(in_markdown("<b>*x*</b> | $y$"))
+    \<b\>\*x\*\</b\> \| \$y\$
+    """
+    return _with_backslashes(visible(text))
+
+
+def _with_backslashes(line):
+    return _MARKDOWN.sub(r"\\\g<0>", line)
+
+
+def sentence_in_markdown(sentence):
+    r"""Return a sentence for Markdown in which formulas stay formulas.
+
+    >>> print(sentence_in_markdown("here $K < 4$ is *asked*"))
+    here $K \lt 4$ is \*asked\*
+    """
+    pieces = parts(sentence)
+    pieces[::2] = map(_with_backslashes, pieces[::2])
+    pieces[1::2] = [re.sub("[<>]", lambda sign: {"<": r"\lt", ">": r"\gt"}[sign[0]], piece) for piece in pieces[1::2]]
+    return "$".join(pieces)
+
+
+def code_in_markdown(text):
+    """Return a text as code for Markdown.
+
+    >>> code_in_markdown("a`b"), code_in_markdown("`")
+    ('``a`b``', '`` ` ``')
+    """
+    line = visible(text)
+    fence = "`" * (1 + max((len(run) for run in re.findall("`+", line)), default=0))
+    room = " " if line.startswith("`") or line.endswith("`") else ""
+    return f"{fence}{room}{line}{room}{fence}"
+
+
+def without_jail(results):
+    """Whether a submission of these ran without a jail."""
+    return any(not result["jailed"] for result in results)

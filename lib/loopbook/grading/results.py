@@ -1,0 +1,93 @@
+"""The result of a submission: what the reports are written from, and what a resumed run does not grade again.
+
+Each is a file of its own, which is there whole or not at all. It carries a fingerprint of all that it depends on.
+"""
+
+import hashlib
+import json
+import re
+from dataclasses import asdict
+
+from loopbook.exercises.judging import harmless
+from loopbook.grading import GradingError
+from loopbook.grading.files import write
+
+#: An address of memory, in an error's text, differs from run to run.
+ADDRESS = re.compile(r"\b0x[0-9a-fA-F]{6,}\b")
+
+
+def fingerprint(assignment, content, label, problem, jailed, limits):
+    """Return a text that differs where a result might: by the assignment, the submission, the jail, or its limits."""
+    parts = [assignment.fingerprint, hashlib.sha256(content).hexdigest(), label, problem, jailed, asdict(limits)]
+    return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
+
+
+def result(student, label, mark, jailed, outcome, exercises):
+    """Return the result of a submission, as JSON data.
+
+    Arguments:
+        student: id.
+        label: name of the file; empty where there is none.
+        mark: the fingerprint.
+        outcome: `events.Outcome`.
+        exercises: as `judge.Judge.judge` returns them.
+    """
+    status = "missing" if not label else "not run" if outcome.refused else "stopped" if outcome.stopped else "complete"
+    return {
+        "student": student,
+        "file": label,
+        "jailed": jailed,
+        "fingerprint": mark,
+        "status": status,
+        "says": _same_each_time(outcome.refused or outcome.stopped),
+        "errors": [{"cell": cell, "says": _same_each_time(says)} for cell, says in outcome.errors],
+        "looks": looks(student, outcome, exercises),
+        "exercises": exercises,
+        "points": sum(one["points"] for one in exercises),
+        "earned": sum(one["earned"] for one in exercises),
+    }
+
+
+def looks(student, outcome, exercises):
+    """Return why an instructor should look at a submission, in sentences."""
+    found = []
+    others = [name for name in outcome.named if name != student]
+    if others:
+        found.append(f"it names another student: {', '.join(map(harmless, others[:3]))}")
+    if outcome.odd:
+        found.append(f"it told {outcome.odd} lines that are no answers")
+    asked = {one["number"]: {verdict["name"] for verdict in one["verdicts"]} for one in exercises}
+    for number, given in outcome.answers.items():
+        if number not in asked:
+            found.append(f"it answers {harmless(repr(number))}, which is no exercise of this assignment")
+        elif extra := [name for name in given if name not in asked[number]]:
+            found.append(f"in exercise {number} it answers {harmless(repr(extra[0]))}, which is not asked")
+    return sorted(found)[:20]
+
+
+def _same_each_time(says):
+    return ADDRESS.sub("0x...", says)
+
+
+class Results:
+    """The results in a folder, a file a student."""
+
+    def __init__(self, folder):
+        self.folder = folder
+
+    def _path(self, student):
+        return self.folder / f"{student}.json"
+
+    def of(self, student):
+        """Return the result of a student; None where there is none that is whole."""
+        try:
+            stored = json.loads(self._path(student).read_text(encoding="utf-8"))
+        except FileNotFoundError:
+            return None
+        except (OSError, ValueError) as problem:
+            raise GradingError(f"{self._path(student)} cannot be read ({problem}): remove it") from None
+        return stored
+
+    def keep(self, found):
+        """Store a result."""
+        write(self._path(found["student"]), json.dumps(found, indent=1, sort_keys=True) + "\n")

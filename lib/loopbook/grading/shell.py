@@ -1,0 +1,146 @@
+"""Running the cells of a notebook as its kernel would, without a kernel: the student's side of the grader.
+
+What happens is told as events, one after another; nothing is kept for later, so that what came before a crash counts.
+"""
+
+import asyncio
+import json
+import signal
+
+import nbformat
+from IPython.core.displayhook import DisplayHook
+from IPython.core.displaypub import DisplayPublisher
+from IPython.core.interactiveshell import InteractiveShell
+from traitlets.config import Config
+
+from loopbook.exercises.judging import harmless
+from loopbook.grading import sheet
+
+
+class _Quiet(DisplayHook):
+    """The value of a cell goes into ``_``, and nowhere else."""
+
+    def __call__(self, result=None):
+        if result is not None and not self.quiet():
+            self.update_user_ns(result)
+
+
+class _Unseen(DisplayPublisher):
+    """What a cell displays is seen by nobody."""
+
+    def publish(self, *arguments, **options):
+        pass
+
+
+class _Shell(InteractiveShell):
+    """IPython with magics and shell escapes, which shows nothing; a cell's error is in its result."""
+
+    displayhook_class = _Quiet
+    display_pub_class = _Unseen
+
+    def init_display_formatter(self):
+        super().init_display_formatter()
+        self.display_formatter.format = lambda *arguments, **options: ({}, {})
+
+    def showtraceback(self, *arguments, **options):
+        pass
+
+    showsyntaxerror = showtraceback
+
+    def enable_gui(self, gui=None):
+        pass
+
+
+class OutOfTime(BaseException):
+    """A cell took longer than it may; no ``except Exception`` of the cell stops this one."""
+
+
+def shell():
+    """Return a shell without history, in which `sheet` is a sheet that takes every answer."""
+    settings = Config()
+    settings.HistoryManager.enabled = False
+    settings.InteractiveShell.colors = "nocolor"
+    made = _Shell.instance(config=settings)
+    made.user_ns["sheet"] = sheet.Sheet("", student="")
+    return made
+
+
+def cells(content):
+    """Return the sources of the code cells of a notebook, and its metadata.
+
+    Arguments:
+        content: the file, as bytes.
+    Raises:
+        ValueError: for what is no notebook, or one of another language, in a sentence.
+    """
+    try:
+        notebook = json.loads(content.decode("utf-8-sig"))
+        if notebook["nbformat"] < 4:
+            notebook = nbformat.convert(nbformat.from_dict(notebook), 4)
+        sources = [cell["source"] for cell in notebook["cells"] if cell["cell_type"] == "code"]
+        sources = [source if isinstance(source, str) else "".join(source) for source in sources]
+        metadata = notebook.get("metadata", {})
+        language = metadata.get("kernelspec", {}).get("language") or metadata.get("language_info", {}).get("name")
+    except Exception as problem:  # a file can be malformed in many ways
+        says = harmless(f"{type(problem).__name__}: {problem}")
+        raise ValueError(f"the file is no notebook that can be read ({says})") from None
+    if language not in (None, "python"):
+        raise ValueError(f"the notebook is written in {harmless(str(language))}: expected Python")
+    return sources, metadata
+
+
+def run(content, warm, tell, seconds):
+    """Run a notebook, cell after cell; after an error the next cell follows.
+
+    Arguments:
+        content: the file, as bytes.
+        warm: the shell.
+        tell: a function that takes an event, a dictionary with one entry: "refused" with a sentence, "made for" with
+            the student that the notebook names, "cell" with the number of a code cell that begins, "error" with the
+            cell and a sentence, "answer" with student, exercise and what was given, "end".
+        seconds: that a cell may take.
+    """
+    try:
+        sources, metadata = cells(content)
+    except ValueError as problem:
+        tell({"refused": str(problem)})
+        return
+    named = metadata.get("loopbook")
+    if isinstance(named, dict) and isinstance(named.get("student"), str):
+        tell({"made for": named["student"]})
+    sheet.deliver = lambda student, exercise, given: tell(
+        {"answer": {"student": student, "exercise": exercise, "given": given}}
+    )
+    signal.signal(signal.SIGALRM, _out_of_time)
+    asyncio.set_event_loop(asyncio.new_event_loop())
+    for number, source in enumerate(sources, start=1):
+        tell({"cell": number})
+        says = _error(warm, source, seconds)
+        if says:
+            tell({"error": {"cell": number, "says": says}})
+    tell({"end": True})
+
+
+def _error(warm, source, seconds):
+    """Run a cell, and return the error that ended it, in a line; an empty text where there was none."""
+    # again each second: the first one may meet an ``except:`` of the cell
+    signal.setitimer(signal.ITIMER_REAL, seconds, 1)
+    try:
+        result = warm.run_cell(source)
+        problem = result.error_before_exec or result.error_in_exec
+        signal.setitimer(signal.ITIMER_REAL, 0)
+    except BaseException as late:  # in the shell's own work, before or after the cell's
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        problem = late
+    if problem is None:
+        return ""
+    if isinstance(problem, OutOfTime):
+        return f"it took longer than {seconds:g} s"
+    try:
+        return harmless(f"{type(problem).__name__}: {problem}")
+    except Exception:  # an error of the student's own making may not even have a text
+        return harmless(type(problem).__name__)
+
+
+def _out_of_time(number, frame):
+    raise OutOfTime

@@ -1,0 +1,267 @@
+"""Grading a class from end to end: release, submissions, grades; interrupted, resumed, on a cluster, without a jail."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import nbformat
+import pytest
+from typer.testing import CliRunner
+
+from loopbook.__main__ import app
+from loopbook.grading import GradingError, NoJail, jail
+from loopbook.grading.assignment import load
+from loopbook.grading.grade import grade
+from loopbook.grading.judge import Judge
+from loopbook.grading.release import release
+from loopbook.grading.roster import read_roster
+from needs import needs_jail
+
+ASSIGNMENT = '''"""A lag
+
+With its controller.
+"""
+
+from loopbook.exercises.authoring import answers, between, exercise, number, settings
+from loopbook.transfer import first_order
+from loopbook.tuning import simc
+
+SECRET = "a secret of the tests"
+
+
+@exercise("1", title="The response", points=2)
+def response(K=between(2, 6, "K/%"), T=between(15, 40, "s")):
+    """A process has the gain {K} and the time-constant {T}."""
+    return answers(y=number(2 * K, "K", "the response to 2 %"), p=number(-1 / T, "rad/s", "the pole"))
+
+
+@response.mistake("That is the gain.")
+def _(K):
+    return {"y": K}
+
+
+@exercise("2", title="Settings", points=3)
+def tuned(K=between(2, 6, "K/%"), T=between(15, 40, "s"), delay=between(2, 6, "s")):
+    """A lag has the gain {K}, the time-constant {T} and the dead time {delay}."""
+    return answers(C=settings(simc(first_order(K, T, delay), Tc=delay, c=2), gain="%/K"))
+'''
+SOLUTION = {
+    "1": 'sheet.answer("1", y={K} * 2, p=-1 / {T})',
+    "2": "from loopbook.pid import PID\n"
+    'sheet.answer("2", C=PID({T} / (2 * {K} * {delay}), Ti=min({T}, 4 * {delay})))',
+}
+
+
+class Course:
+    """A class of a few students, in a folder: who has solved all of it, one who stopped halfway, one who is missing."""
+
+    def __init__(self, folder, students=5):
+        self.folder = folder
+        self.path = folder / "lag.py"
+        self.path.write_text(ASSIGNMENT, encoding="utf-8")
+        rows = [f"s{number},Student {number}\n" for number in range(students)]
+        (folder / "roster.csv").write_text("id,name\n" + "".join(rows), encoding="utf-8")
+        self.assignment = load(self.path)
+        self.students = read_roster(folder / "roster.csv")
+        self.submissions = folder / "submissions"
+        release(self.assignment, self.students[:-1], self.submissions)
+        for student in self.students[:-1]:
+            halfway = {"1": 'sheet.answer("1", y={K})', "2": "1 / 0"}
+            self.fill_in(student.id, halfway if student.id == "s1" else SOLUTION)
+
+    def fill_in(self, student, cells):
+        path = self.submissions / student / "lag.ipynb"
+        notebook = nbformat.read(path, as_version=4)
+        for cell in notebook.cells:
+            for number, source in cells.items():
+                if cell.source.startswith(f'sheet.answer("{number}"'):
+                    values = self.assignment.question(student, number).values
+                    cell.source = source.format(**{name: float(value) for name, value in values.items()})
+        nbformat.write(notebook, path)
+
+    def grade(self, to, **options):
+        return grade(self.assignment, self.students, self.submissions, self.folder / to, **options)
+
+    def command(self, to):
+        return [
+            sys.executable, "-m", "loopbook", "grade", str(self.path), str(self.submissions), "--to", str(self.folder / to),
+        ]  # fmt: skip
+
+
+def files(folder):
+    """All that lies in a folder, by its relative name."""
+    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+@pytest.fixture(scope="module")
+def course(tmp_path_factory):
+    return Course(tmp_path_factory.mktemp("course"))
+
+
+@pytest.fixture(scope="module")
+def graded(course):
+    summary = course.grade("graded")
+    return summary, course.folder / "graded"
+
+
+@needs_jail
+class TestAClass:
+    def test_everybody_has_what_is_due(self, graded):
+        summary, folder = graded
+        assert (summary.graded, summary.kept, summary.missing, summary.failures) == (4, 0, 1, ())
+        rows = (folder / "grades.csv").read_text(encoding="utf-8").splitlines()
+        assert [row.split(",")[-1] for row in rows] == ["A lag", "5", "0", "5", "5", ""]
+
+    def test_a_mistake_is_named_and_an_error_told(self, graded):
+        page = (graded[1] / "feedback" / "s1" / "feedback.md").read_text(encoding="utf-8")
+        assert "That is the gain." in page
+        assert "ZeroDivisionError" in page
+
+    def test_the_key_is_for_the_instructor(self, course, graded):
+        kind = course.assignment.question("s1", "1").key["p"]
+        kept = json.loads((graded[1] / "results" / "s1.json").read_text(encoding="utf-8"))
+        assert kept["exercises"][0]["verdicts"][1]["key"] == kind.solution
+        shown = files(graded[1] / "feedback" / "s1")
+        assert not any(f"{kind.key:.4g}".encode() in content for content in shown.values())
+
+    def test_again_nothing_is_graded_and_nothing_changes(self, course, graded):
+        before = files(graded[1])
+        summary = course.grade("graded")
+        assert (summary.graded, summary.kept, summary.missing) == (0, 4, 1)
+        assert files(graded[1]) == before
+
+    def test_from_nothing_the_bytes_are_the_same_in_another_order_of_work(self, course, graded):
+        course.grade("again", workers=3)
+        assert files(course.folder / "again") == files(graded[1])
+
+    def test_what_changed_is_graded_again_and_only_that(self, course, graded):
+        path = course.submissions / "s2" / "lag.ipynb"
+        before = path.read_bytes()
+        try:
+            path.write_bytes(before.replace(b"* 2,", b"* 3,"))
+            summary = course.grade("graded", reveal=True)
+            assert (summary.graded, summary.kept) == (1, 3)
+            key = course.assignment.question("s2", "1").key["y"].solution.replace("\N{NO-BREAK SPACE}", " ")
+            page = (graded[1] / "feedback" / "s2" / "feedback.md").read_text(encoding="utf-8")
+            assert f"key: `{key}`" in page
+        finally:
+            path.write_bytes(before)
+            course.grade("graded")
+
+    def test_one_student_alone_again(self, course, graded):
+        before = files(graded[1])
+        summary = course.grade("graded", only=["s1"], regrade=True)
+        assert (summary.graded, summary.kept, summary.missing) == (1, 0, 0)
+        assert files(graded[1]) == before
+
+    def test_a_dask_cluster(self, course, graded):
+        distributed = pytest.importorskip("distributed")
+        with distributed.LocalCluster(
+            n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None, silence_logs=50
+        ) as cluster:
+            course.grade("cluster", cluster=cluster.scheduler_address)
+        assert files(course.folder / "cluster") == files(graded[1])
+
+    def test_killed_at_any_moment_it_goes_on(self, course, graded):
+        for seconds in (2.5, 4.5):
+            process = subprocess.Popen(
+                course.command("killed"), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
+            )
+            time.sleep(seconds)
+            os.kill(process.pid, signal.SIGKILL)
+            process.wait()
+        subprocess.run(course.command("killed"), check=True, capture_output=True)
+        assert files(course.folder / "killed") == files(graded[1])
+
+
+def test_two_graders_do_not_share_a_folder(course):
+    from loopbook.grading.grade import _alone
+
+    with _alone(course.folder / "busy"), pytest.raises(GradingError, match="another grader works in"):
+        course.grade("busy", jailed=False)
+
+
+def test_a_student_who_is_not_there(course):
+    with pytest.raises(GradingError, match="no student 's99' on the roster"):
+        course.grade("nobody", only=["s99"])
+
+
+def test_what_every_submission_could_read_is_refused(course):
+    with pytest.raises(GradingError, match="which every submission can read: move it elsewhere"):
+        grade(course.assignment, course.students, Path(sys.prefix) / "share", course.folder / "exposed")
+
+
+def test_without_bubblewrap_it_says_what_to_install(course, monkeypatch):
+    monkeypatch.setattr(jail.shutil, "which", lambda name: None)
+    with pytest.raises(NoJail, match="install bubblewrap and libseccomp2 .* or say --without-jail"):
+        course.grade("nowhere")
+    assert not (course.folder / "nowhere" / "grades.csv").exists()
+
+
+@needs_jail
+def test_without_a_jail_every_output_says_so(course):
+    """Inside a jail's walls, where nobody can read Python, for root runs no submissions without one."""
+    command = [*course.command("open"), "--without-jail"]
+    if os.geteuid() == 0:
+        walls = jail.command()
+        os.chmod(course.folder, 0o777)
+        folders = [str(folder) for folder in reversed(course.folder.parents[:-2])]
+        place = [word for folder in folders for word in ("--perms", "0755", "--dir", folder)]
+        place += ["--bind", str(course.folder), str(course.folder)]
+        user = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"]
+        command = [*walls[:-5], *place, "--chdir", "/tmp", "--", *user, *command]
+    done = subprocess.run(command, capture_output=True, encoding="utf-8", env=jail.ENVIRONMENT)
+    assert done.returncode == 0, done.stderr
+    assert "graded without a jail" in done.stderr
+    for name, content in files(course.folder / "open").items():
+        if name != ".lock":
+            assert b"without a jail" in content or b'"jailed": false' in content, name
+
+
+def test_what_the_judge_cannot_finish_is_not_judged(tmp_path, monkeypatch):
+    """An author's comparison that hangs in C, and one that takes the process down."""
+    monkeypatch.setattr("loopbook.grading.judge.PATIENCE", 1)
+    source = '''"""Traps"""
+import ctypes, os
+from loopbook.exercises.authoring import answers, criterion, design, exercise, number
+SECRET = "a secret of the tests"
+def hang(x):
+    return ctypes.PyDLL(None).sleep(60) if x == 5 else 1
+def die(x):
+    return os._exit(1) if x == 5 else 1
+@exercise("1", title="Traps", points=3)
+def traps():
+    "..."
+    return answers(
+        a=design(number(1), criterion("a", hang, below=2)),
+        b=number(2),
+        c=design(number(1), criterion("c", die, below=2)),
+    )
+'''
+    with Judge("traps", source) as judge:
+        (one,) = judge.judge("s1", {"1": {"a": 5, "b": 2, "c": 5}})
+        assert [verdict["status"] for verdict in one["verdicts"]] == ["not judged", "right", "not judged"]
+        assert one["earned"] == 1
+        (one,) = judge.judge("s1", {"1": {"a": 1, "b": {"unreadable": "this is a $lambda$"}}})
+        assert [verdict["status"] for verdict in one["verdicts"]] == ["right", "not judged", "open"]
+
+
+def test_an_assignment_that_fails_says_where():
+    with pytest.raises(GradingError, match=r"bad\.py, line 2: NameError"), Judge("bad", '"""Bad"""\nx = y\n') as judge:
+        judge.judge("s1", {})
+
+
+def test_the_commands(course, tmp_path):
+    run = CliRunner().invoke
+    result = run(app, ["release", str(course.path), "--to", str(tmp_path / "released")])
+    assert result.exit_code == 0
+    assert "5 notebooks of 'A lag' in" in result.output
+    result = run(app, ["grade", str(course.path), str(tmp_path / "none"), "--to", str(tmp_path / "out")])
+    assert result.exit_code == 1
+    assert "there is no folder and no zip file" in result.output
+    result = run(app, ["grade", str(tmp_path / "none.py"), str(tmp_path), "--to", str(tmp_path / "out")])
+    assert (result.exit_code, result.output.count("\n")) == (1, 1)
