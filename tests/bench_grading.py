@@ -25,7 +25,7 @@ from rich.table import Table
 from loopbook import notebooks
 from loopbook.grading.assignment import load
 from loopbook.grading.files import write
-from loopbook.grading.grade import grade
+from loopbook.grading.grade import grade, here
 from loopbook.grading.jail import Jail
 from loopbook.grading.judge import Judge
 from loopbook.grading.release import release
@@ -54,9 +54,7 @@ class Class:
         self.submissions = folder / "submissions"
         rows = [f"{student.id},{student.name}\n" for student in self.students]
         (folder / "roster.csv").write_text("id,name\n" + "".join(rows), encoding="utf-8")
-        for student, path in zip(
-            self.students, release(self.assignment, self.students, self.submissions), strict=True
-        ):
+        for student, path in zip(self.students, release(self.assignment, self.students, self.submissions), strict=True):
             notebook = json.loads(path.read_text(encoding="utf-8"))
             fill_in_all(notebook, lambda number, student=student: self.assignment.question(student.id, number))
             for number, source in zip("1234", (IMPORTS, STEPS, PLOT, SYMBOLS), strict=True):
@@ -101,12 +99,12 @@ def of_hundred(table, folder):
     course = Class(folder, 100)
     measured = stages(course)
     start = perf_counter()
-    course.grade("graded", workers=1)
+    course.grade("graded", place=here(1))
     all_of_it = perf_counter() - start
     for name in ("in the jail", "before the judge"):
         table.add_row(f"a notebook {name}", f"{median(measured[name]):.3f} s", f"longest {max(measured[name]):.3f} s")
     table.add_row("starts", f"{measured['jail, start']:.1f} s", f"judge {measured['judge, start']:.1f} s")
-    table.add_row("class of 100, one worker", f"{all_of_it:.1f} s", f"{all_of_it / 100:.3f} s a notebook, starts included")
+    table.add_row("class of 100, one worker", f"{all_of_it:.1f} s", f"{all_of_it / 100:.3f} s a notebook, with starts")
     if shutil.which("nbgrader"):
         table.add_row("nbgrader, 10 of them", f"{_nbgrader(course, 10):.2f} s a notebook", "autograde alone")
     return course
@@ -126,8 +124,8 @@ def _nbgrader(course, size):
         place.mkdir(parents=True)
         notebook = json.loads(released.read_text(encoding="utf-8"))
         code = [cell for cell in notebook["cells"] if cell["cell_type"] == "code"]
-        for cell, source in zip(code[1:5], (IMPORTS, STEPS, PLOT, SYMBOLS), strict=False):
-            cell["source"] = source + "\n" + "".join(cell["source"])
+        for cell, own in zip(code[1:5], (IMPORTS, STEPS, PLOT, SYMBOLS), strict=False):
+            cell["source"] = own + "\n" + "".join(cell["source"])
         (place / "air_heater.ipynb").write_text(json.dumps(notebook), encoding="utf-8")
     start = perf_counter()
     subprocess.run(["nbgrader", "autograde", "air_heater"], **run)
@@ -146,14 +144,16 @@ def of_thousand(table, folder):
     watcher = threading.Thread(target=watch)
     watcher.start()
     start = perf_counter()
-    course.grade("graded", workers=2)
+    course.grade("graded", place=here(2))
     seconds = perf_counter() - start
     done.set()
     watcher.join()
     quarter = len(sizes) // 4
     table.add_row("class of 1000, two workers", f"{seconds:.0f} s", f"{2 * seconds / 1000:.3f} s a core a notebook")
     memory = f"{median(sizes[quarter : 2 * quarter]):.0f} MB in the second quarter"
-    table.add_row("the grader's memory", memory, f"{median(sizes[-quarter:]):.0f} MB in the last, {max(sizes):.0f} at most")
+    table.add_row(
+        "the grader's memory", memory, f"{median(sizes[-quarter:]):.0f} MB in the last, {max(sizes):.0f} at most"
+    )
 
 
 def killed(table, course, times=20):
@@ -175,12 +175,16 @@ def killed(table, course, times=20):
         for path in (course.folder / "graded").rglob("*")
         if path.is_file()
     )
-    table.add_row(f"killed at {times} moments, resumed", "the same bytes" if same else "OTHER GRADES", "all outputs compared")
+    table.add_row(
+        f"killed at {times} moments, resumed", "the same bytes" if same else "OTHER GRADES", "all outputs compared"
+    )
 
 
 def main():
     """Print the table."""
-    table = Table("grading", "median", "", title="a notebook has five answers, NumPy, SymPy, python-control, Matplotlib")
+    table = Table(
+        "grading", "median", "", title="a notebook has five answers, NumPy, SymPy, python-control, Matplotlib"
+    )
     with tempfile.TemporaryDirectory() as hundred, tempfile.TemporaryDirectory() as thousand:
         course = of_hundred(table, Path(hundred))
         killed(table, course)

@@ -15,7 +15,8 @@ from typer.testing import CliRunner
 from loopbook.__main__ import app
 from loopbook.grading import GradingError, NoJail, jail
 from loopbook.grading.assignment import load
-from loopbook.grading.grade import grade
+from loopbook.grading.cluster import connected
+from loopbook.grading.grade import grade, here
 from loopbook.grading.judge import Judge
 from loopbook.grading.release import release
 from loopbook.grading.roster import read_roster
@@ -51,8 +52,7 @@ def tuned(K=between(2, 6, "K/%"), T=between(15, 40, "s"), delay=between(2, 6, "s
 '''
 SOLUTION = {
     "1": 'sheet.answer("1", y={K} * 2, p=-1 / {T})',
-    "2": "from loopbook.pid import PID\n"
-    'sheet.answer("2", C=PID({T} / (2 * {K} * {delay}), Ti=min({T}, 4 * {delay})))',
+    "2": 'from loopbook.pid import PID\nsheet.answer("2", C=PID({T} / (2 * {K} * {delay}), Ti=min({T}, 4 * {delay})))',
 }
 
 
@@ -88,7 +88,8 @@ class Course:
 
     def command(self, to):
         return [
-            sys.executable, "-m", "loopbook", "grade", str(self.path), str(self.submissions), "--to", str(self.folder / to),
+            sys.executable, "-m", "loopbook", "grade", str(self.path), str(self.submissions),
+            "--to", str(self.folder / to), "--workers", "1",
         ]  # fmt: skip
 
 
@@ -135,7 +136,7 @@ class TestAClass:
         assert files(graded[1]) == before
 
     def test_from_nothing_the_bytes_are_the_same_in_another_order_of_work(self, course, graded):
-        course.grade("again", workers=3)
+        course.grade("again", place=here(2))
         assert files(course.folder / "again") == files(graded[1])
 
     def test_what_changed_is_graded_again_and_only_that(self, course, graded):
@@ -163,7 +164,7 @@ class TestAClass:
         with distributed.LocalCluster(
             n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None, silence_logs=50
         ) as cluster:
-            course.grade("cluster", cluster=cluster.scheduler_address)
+            course.grade("cluster", place=connected(cluster.scheduler_address))
         assert files(course.folder / "cluster") == files(graded[1])
 
     def test_killed_at_any_moment_it_goes_on(self, course, graded):
@@ -197,7 +198,7 @@ def test_what_every_submission_could_read_is_refused(course):
 
 def test_without_bubblewrap_it_says_what_to_install(course, monkeypatch):
     monkeypatch.setattr(jail.shutil, "which", lambda name: None)
-    with pytest.raises(NoJail, match="install bubblewrap and libseccomp2 .* or say --without-jail"):
+    with pytest.raises(NoJail, match=r"install bubblewrap and libseccomp2 .* or say --without-jail"):
         course.grade("nowhere")
     assert not (course.folder / "nowhere" / "grades.csv").exists()
 

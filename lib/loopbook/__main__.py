@@ -147,20 +147,21 @@ def grade(
 
     try:
         from loopbook.grading.assignment import load
-        from loopbook.grading.grade import grade
+        from loopbook.grading.cluster import connected
+        from loopbook.grading.grade import grade as grade_all
+        from loopbook.grading.grade import here
         from loopbook.grading.roster import read_roster
 
         given, roster = load(assignment), read_roster(students or assignment.with_name("roster.csv"))
         columns = TextColumn("grading"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
         with Progress(*columns, console=errors, transient=True) as progress:
             bar = progress.add_task("", total=None)
-            done = grade(
+            done = grade_all(
                 given,
                 roster,
                 submissions,
                 to,
-                workers=workers,
-                cluster=cluster,
+                place=connected(cluster) if cluster else here(workers),
                 only=only or (),
                 regrade=regrade,
                 jailed=not without_jail,

@@ -234,6 +234,7 @@ ATTACKS = (
     _file(_LARGE, "one cell of 10 MB", lambda cells: notebook([*cells, "x = '" + "y" * 10**7 + "'"]), _EITHER),
     _file(_LARGE, "comments of 9 MB", lambda cells: notebook([*cells, "#" * 9 * 10**6]), _EITHER),
     _file(_LARGE, "100,000 cells", lambda cells: notebook([*cells, *["pass"] * 100_000]), _EITHER),
+    _file(_LARGE, "60,000 cells", lambda cells: notebook([*cells, *["pass"] * 60_000]), _EITHER),
     _file(_LARGE, "5,000 cells that fail", lambda cells: notebook([*cells, *["1 / 0"] * 5000]), _EITHER),
     _file(_LARGE, "one line of 100,000 sums", lambda cells: notebook([*cells, "+".join(["1"] * 100_000)]), _EITHER),
     _place(_MISSING, "an empty folder", _empty_folder, _NOTHING),

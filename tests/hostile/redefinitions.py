@@ -239,8 +239,14 @@ builtins.compile = builtins.exec = builtins.eval = lambda *given, **named: None
         _DELETES,
         "traces and audits",
         """
-sys.settrace(lambda *given: sys.settrace)
-threading.settrace(lambda *given: None)
+def trace(frame, event, value):
+    frame.f_trace_lines = False
+    frame.f_locals.clear()
+    return trace
+
+
+sys.settrace(trace)
+threading.settrace(trace)
 sys.setprofile(lambda *given: 1 / 0)
 """,
     ),

@@ -63,7 +63,9 @@ def drop_root(needed):
     os.setresuid(NOBODY, NOBODY, NOBODY)
     for folder in needed:
         if os.path.dirname(folder) and not os.access(os.path.dirname(folder), os.R_OK | os.X_OK):
-            raise PermissionError(f"{os.path.dirname(folder)} can be read by root alone, who runs no submissions: grade as another user")
+            raise PermissionError(
+                f"{os.path.dirname(folder)} can be read by root alone, who runs no submissions: grade as another user"
+            )
     # the change of user took away the right to one's own /proc, where the maps of a namespace are written
     _demand(_libc().prctl(_PR_SET_DUMPABLE, 1, 0, 0, 0), "dumpable")
 

@@ -99,8 +99,8 @@ class Summary:
 
 
 def grade(
-    assignment, students, submissions, folder, *, workers=1, cluster=None, only=(), regrade=False, jailed=True,
-    reveal=False, limits=USUAL, follow=lambda total, done: None,
+    assignment, students, submissions, folder, *, place=None, only=(), regrade=False, jailed=True, reveal=False,
+    limits=USUAL, follow=lambda total, done: None,
 ):  # fmt: skip
     """Grade the submissions of a class, and write the reports.
 
@@ -109,8 +109,7 @@ def grade(
         students: the roster.
         submissions: folder or zip file.
         folder: where results and reports go.
-        workers: submissions at a time on this machine.
-        cluster: address of a Dask scheduler, whose workers are used instead.
+        place: where submissions are graded, `here(workers)` or `cluster.connected(address)`; one at a time, if not given.
         only: ids of the students to grade; all if empty.
         regrade: grade again what has a result.
         jailed: without a jail, submissions run with the rights of whoever grades, and every output says so.
@@ -135,7 +134,7 @@ def grade(
         wanted = [student for student in students if not only or student.id in only]
         tasks = (_task(assignment, student, found.get(student.id), jailed, limits) for student in wanted)
         graded, kept, failures = 0, 0, []
-        for done, (student, outcome) in enumerate(_outcomes(tasks, results, regrade, workers, cluster), start=1):
+        for done, (student, outcome) in enumerate(_outcomes(tasks, results, regrade, place or here(1)), start=1):
             if isinstance(outcome, str):
                 failures.append((student, outcome))
             elif outcome is None:
@@ -167,9 +166,9 @@ def _task(assignment, student, submission, jailed, limits):
     )  # fmt: skip
 
 
-def _outcomes(tasks, results, regrade, workers, cluster):
+def _outcomes(tasks, results, regrade, place):
     """Yield pairs of a student and the result, None where the stored one holds, or a sentence; as they are done."""
-    with _executor(workers, cluster) as (executor, at_a_time):
+    with place as (executor, at_a_time):
         running = {}
         try:
             for task in tasks:
@@ -194,14 +193,8 @@ def _done(running):
 
 
 @contextlib.contextmanager
-def _executor(workers, cluster):
-    """Where tasks run, and how many at a time."""
-    if cluster is not None:
-        from loopbook.grading.cluster import connected
-
-        with connected(cluster) as connection:
-            yield connection
-        return
+def here(workers):
+    """Yield an executor of threads on this machine, and how many tasks they take at a time; their desks end with it."""
     executor = ThreadPoolExecutor(workers)
     try:
         yield executor, workers

@@ -19,7 +19,6 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from time import monotonic
 
-import loopbook
 from loopbook.grading import GradingError, NoJail
 from loopbook.grading.events import Story
 from loopbook.grading.warm import KILL
@@ -77,7 +76,7 @@ def visible():
     python = [sys.base_prefix, sys.prefix]
     if site.ENABLE_USER_SITE and site.getusersitepackages() in sys.path:
         python.append(site.getusersitepackages())
-    paths = [*SYSTEM, *python, str(Path(loopbook.__file__).parent)]
+    paths = [*SYSTEM, *python, str(Path(__file__).parents[1])]
     within = [path for path in dict.fromkeys(paths) if os.path.lexists(path)]
     return [path for path in within if not any(Path(path) != Path(o) and Path(path).is_relative_to(o) for o in within)]
 

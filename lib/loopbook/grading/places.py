@@ -111,7 +111,9 @@ def _in_folder(root, wrappers):
                 if len(found) > MOST:
                     raise _TooManyError
         except _TooManyError:
-            found = [Entry(shown("/".join((*within, top.name))), (top.name,), f"has more than {MOST} files and folders")]
+            found = [
+                Entry(shown("/".join((*within, top.name))), (top.name,), f"has more than {MOST} files and folders")
+            ]
         yield from found
 
 

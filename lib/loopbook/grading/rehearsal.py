@@ -15,9 +15,9 @@ def rehearse():
     import scipy.signal
     import sympy
 
-    from loopbook import s, t
     from loopbook.deadtime import Loop
     from loopbook.exercises import exercise
+    from loopbook.expressions import s, t
     from loopbook.pid import PID
     from loopbook.transfer import first_order
     from loopbook.tuning import simc
