@@ -25,7 +25,8 @@ bench: .venv/ready ## measure what the collection costs beside what it stands on
 
 grade: .venv/ready ## release the example course, collect a dozen submissions, and grade them
 	$(python) examples/course/make_submissions.py
-	$(python) -m loopbook grade examples/course/air_heater.py examples/course/build/submissions --to examples/course/build/graded
+	$(python) -m loopbook grade examples/course/air_heater.py examples/course/build/submissions \
+		--to examples/course/build/graded --cell-seconds 5
 
 execute: .venv/ready ## run every notebook again, store its outputs and write ERRATA.md
 	$(python) -m loopbook execute

@@ -135,6 +135,9 @@ def grade(
     regrade: Annotated[bool, typer.Option("--regrade", help="Grade again what is graded.")] = False,
     reveal: Annotated[bool, typer.Option("--reveal", help="Show the right answers in the feedback.")] = False,
     workers: Annotated[int, typer.Option(min=1, help="Submissions at a time on this machine.")] = os.cpu_count() or 1,
+    cell_seconds: Annotated[float, typer.Option(min=1, help="What a cell may take.")] = 60,
+    seconds: Annotated[float, typer.Option(min=1, help="What a notebook may take.")] = 180,
+    megabytes: Annotated[int, typer.Option(min=100, help="Memory that a notebook may take.")] = 1024,
     cluster: Annotated[str | None, typer.Option(help="Address of a Dask scheduler whose workers grade.")] = None,
     without_jail: Annotated[
         bool, typer.Option("--without-jail", help="Run submissions with your own rights; every output says so.")
@@ -150,6 +153,7 @@ def grade(
         from loopbook.grading.cluster import connected
         from loopbook.grading.grade import grade as grade_all
         from loopbook.grading.grade import here
+        from loopbook.grading.jail import MEGA, Limits
         from loopbook.grading.roster import read_roster
 
         given, roster = load(assignment), read_roster(students or assignment.with_name("roster.csv"))
@@ -165,6 +169,7 @@ def grade(
                 only=only or (),
                 regrade=regrade,
                 jailed=not without_jail,
+                limits=Limits(cell=cell_seconds, total=seconds, memory=megabytes * MEGA),
                 reveal=reveal,
                 follow=lambda total, count: progress.update(bar, total=total, completed=count),
             )
