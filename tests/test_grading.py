@@ -1,5 +1,6 @@
 """Grading a class from end to end: release, submissions, grades; interrupted, resumed, on a cluster, without a jail."""
 
+import dataclasses
 import json
 import os
 import signal
@@ -19,6 +20,7 @@ from loopbook.grading.cluster import connected
 from loopbook.grading.grade import grade, here
 from loopbook.grading.judge import Judge
 from loopbook.grading.release import release
+from loopbook.grading.results import Results
 from loopbook.grading.roster import read_roster
 from needs import needs_jail
 
@@ -156,8 +158,21 @@ class TestAClass:
     def test_one_student_alone_again(self, course, graded):
         before = files(graded[1])
         summary = course.grade("graded", only=["s1"], regrade=True)
-        assert (summary.graded, summary.kept, summary.missing) == (1, 0, 0)
+        assert (summary.graded, summary.kept, summary.missing, summary.outdated) == (1, 0, 0, ())
         assert files(graded[1]) == before
+
+    def test_results_of_before_a_change_are_told(self, course, graded):
+        path = course.submissions / "s2" / "lag.ipynb"
+        before = path.read_bytes()
+        try:
+            path.write_bytes(before.replace(b"* 2,", b"* 3,"))
+            assert course.grade("graded", only=["s1"]).outdated == ("s2",)
+            done = CliRunner().invoke(app, [*course.command("graded")[3:], "--only", "s1"])
+            says = "s2: graded before the assignment, the submission or the limits changed; grade without --only"
+            assert done.output.splitlines()[0] == says
+        finally:
+            path.write_bytes(before)
+            course.grade("graded")
 
     def test_a_dask_cluster(self, course, graded):
         distributed = pytest.importorskip("distributed")
@@ -189,6 +204,28 @@ def test_two_graders_do_not_share_a_folder(course):
 def test_a_student_who_is_not_there(course):
     with pytest.raises(GradingError, match="no student 's99' on the roster"):
         course.grade("nobody", only=["s99"])
+
+
+@pytest.mark.parametrize("inside", ["submissions", "submissions/graded"])
+def test_what_is_written_does_not_lie_among_the_submissions(course, inside):
+    with pytest.raises(GradingError, match="lies among the submissions in"):
+        course.grade(inside)
+    assert not (course.folder / inside / ".lock").exists()
+
+
+def test_another_assignment_has_another_folder(course):
+    other = dataclasses.replace(course.assignment, name="other")
+    results = Results(course.folder / "taken" / "results")
+    results.keep({"student": "s1", "assignment": "lag"})
+    with pytest.raises(GradingError, match="holds results of the assignment 'lag': expected a folder of its own for"):
+        grade(other, course.students, course.submissions, course.folder / "taken", jailed=False)
+    assert results.of("s1") == {"student": "s1", "assignment": "lag"}
+
+
+def test_a_system_without_locks_is_refused(course, monkeypatch):
+    monkeypatch.setitem(sys.modules, "fcntl", None)
+    with pytest.raises(GradingError, match="this system cannot lock a folder: grade on Linux"):
+        course.grade("unlocked", jailed=False)
 
 
 def test_what_every_submission_could_read_is_refused(course):

@@ -120,13 +120,19 @@ def test_the_participants_and_grades_of_moodle(roster):
     ("content", "says"),
     [
         ("", "line 1: no header of a roster"),
-        ("who,what\na,b\n", "line 1: no header of a roster"),
+        ("Vorname,Nachname\na,b\n", "an export in English of Canvas's"),
         ("id,name\n", "a header and no student"),
         ("Student,ID\n    Points Possible,\n", "a header and no student"),
         ("id,name\ns1,A\n\ns1,B\n", "line 4: the id 's1' is already that of line 2"),
         ("id,name\ns1,A\nS1,B\n", "line 3: the id 'S1' is already that of line 2"),
-        ('id,name\ns1,"A\nB"\n,C\n', "line 4: a student without an id; ids come from the first full of: id"),
-        ("Student,ID,SIS User ID\nA,,\n", "line 2: a student without an id"),
+        ('id,name\ns1,"A\nB"\n,C\n', "line 4: a student without an id"),
+        (
+            "Student,ID,SIS User ID\nA,,\n",
+            "line 2: a student without an id; ids come from the first full of: SIS User ID",
+        ),
+        ("id,name\nNul.a,A\n", "line 2: 'Nul.a' cannot be an id"),
+        ("id,name\ncom1,A\n", "line 2: 'com1' cannot be an id"),
+        ("id,name\ns1.,A\n", "line 2: 's1.' cannot be an id"),
         ("id,name\n../x,A\n", "line 2: '../x' cannot be an id"),
         ("id,name\n.x,A\n", "line 2: '.x' cannot be an id"),
         ("id,name\n2.3E+08,A\n", "line 2: '2.3E+08' cannot be an id"),
@@ -145,6 +151,10 @@ def test_a_roster_that_is_none(roster, content, says):
     assert says in str(raised.value)
     assert str(raised.value).startswith("roster.csv")
     assert "\n" not in str(raised.value)
+
+
+def test_a_name_that_only_begins_like_a_device_is_an_id(roster):
+    assert [student.id for student in roster("id,name\nconrad,A\ncom10,B\ns.con,C\n")] == ["conrad", "com10", "s.con"]
 
 
 def test_a_roster_that_is_missing(tmp_path):

@@ -41,7 +41,7 @@ from loopbook.exercises.reading import Unreadable
 from loopbook.grading import GradingError, nbgrader, sheet
 from loopbook.grading.assignment import Assignment, load
 from loopbook.grading.plain import LONGEST_TEXT, MOST_VALUES, plain, unreadable
-from loopbook.grading.release import as_markdown, notebook, release, wrapped
+from loopbook.grading.release import as_markdown, checked, notebook, release, wrapped
 from loopbook.pid import PID
 
 X, K = sympy.symbols("x K")
@@ -254,13 +254,22 @@ def test_plain_data_of_anything_is_bounded_json(answer):
 
 # Forms without a key.
 
+
+@pytest.mark.parametrize("text", ["0,5", "0,5 %/K"])
+def test_a_decimal_comma_is_named(text):
+    with pytest.raises(Unreadable, match="write the decimal comma as a point"):
+        number(0.5, "%/K").read(text)
+
+
 EVERY_KIND = {
     'number("K/%")': number(2.5, "K/%", "the gain", within=0.02),
     "number()": number(2),
     'numbers("s")': numbers([[1, 2], [3, 4]], "s", "the matrix"),
     "poles()": poles([-1, -2]),
     'poles("1/min")': poles([-1, -2], "1/min"),
-    'expression("m³")': expression(X**2 * K, "the volume", letters="y", unit="m³"),
+    'expression("m³")': expression(X**2 * K, "the volume", unit="m³"),
+    'expression("m³", letters="K x y")': expression(X**2 * K, "the volume", letters="K x y", unit="m³"),
+    'transfer_function(letters="K T")': transfer_function(K / (5 * s + 1), letters="K T"),
     "transfer_function()": transfer_function(K / (X * s + 1)),
     'time_function("°C")': time_function(1 - sympy.exp(-t / 7), 35, "°C", "the response"),
     "settings()": settings(PID(2, Ti=10)),
@@ -279,8 +288,16 @@ def test_a_form_is_made_again_from_its_code_and_knows_no_key(code):
     form = eval(code, vars(sheet))
     assert form.key is None
     assert form.asking == code
-    assert set(vars(form)) <= {"unit", "gain", "time", "form", "among", "ordered"}
+    assert set(vars(form)) <= {"unit", "gain", "time", "form", "among", "ordered", "letters", "_told"}
     assert form.expected
+
+
+def test_letters_that_the_author_tells_are_demanded_before_the_grader_does():
+    told = transfer_function(K / (X * s + 1), letters="K x y")
+    with pytest.raises(Unreadable, match="'k' is no letter of this answer: did you mean K"):
+        eval(told.asking, vars(sheet)).read("k/(x*s + 1)")
+    with pytest.raises(ValueError, match="the key has the letter x: expected only K and s"):
+        transfer_function(K / (X * s + 1), letters="K")
 
 
 @pytest.mark.parametrize(
@@ -365,6 +382,23 @@ def test_the_last_answer_counts(asked):
     assert "2 of 4 not answered yet" in overview
 
 
+def test_only_what_is_asked_is_counted(asked):
+    asked.answer("1", K=1, zzz=2, T="two")
+    asked.answer("77", Z=1)
+    assert repr(asked).endswith("2 of 4 not answered yet, 1 cannot be read")
+    asked.answer("1", T=3, H=1)
+    asked.answer("2", action="direct")
+    assert repr(asked).endswith("An answer to all that is asked.")
+
+
+@pytest.mark.parametrize(
+    ("exercise", "alone", "given", "is_taken"),
+    [("1", [], {"K": 1}, True), ("1", [], {"K": ...}, False), ("1", [2], {}, False), ("77", [], {"K": 1}, False)],
+)
+def test_it_says_that_answers_are_taken_down_where_they_are(asked, exercise, alone, given, is_taken):
+    assert ("Taken down." in repr(asked.answer(exercise, *alone, **given))) == is_taken
+
+
 def test_answers_are_delivered_whatever_they_are_of(asked, monkeypatch):
     found = []
 
@@ -422,7 +456,7 @@ def first(K=between(2, 6, "K/%"), T=between(15, 40, "s")):
     """It is {K} and {T}."""
     return answers(
         Kp=number(<gain> * K * T, "%/K", "the gain"<within>),
-        H=transfer_function(<gain> * K * s / (T + <letter>), letters="z"),
+        H=transfer_function(<gain> * K * s / (T + <letter>), letters="q z"),
         y=time_function(<gain> * sympy.exp(-t / T), <gain> * T, "K"),
         A=numbers([<gain> * K, T], what="the matrix"),
         p=poles([-<gain>, -T]),
@@ -436,7 +470,7 @@ def _(K, T):
 def second(K=between(1, 9), action=choice("heating", "cooling")):
     """K is {K}, {action}."""
     return answers(
-        C=design(settings(PID(<gain>, Ti=10), gain="%/K"), criterion("the gain", lambda pid: pid.Kp, above=1)),
+        C=design(settings(PID(<gain>, Ti=10), gain="%/K"), criterion("the gain", lambda pid: pid.Kp, above=-10)),
         w=word("<word>", ["direct", "reverse"], "the action"),
         W=words(["<word>", "other"], ["direct", "reverse", "other"], "the steps", ordered=True),
     )
@@ -581,7 +615,7 @@ def _says_nothing(cell):
 def test_a_notebook_reveals_nothing_of_the_key(tuning):
     for student in students(*["Ada"] * 20):
         made = notebook(tuning, student)
-        forms = {"1", "2", "K", "%", "%/K", "direct", "reverse", "other", tuning.title, student.id}
+        forms = {"1", "2", "K", "%", "%/K", "q z", "direct", "reverse", "other", tuning.title, student.id}
         for cell in code(made):
             _says_nothing(cell)
             assert {n.value for n in ast.walk(ast.parse(cell)) if isinstance(n, ast.Constant)} - {..., True} <= forms
@@ -644,6 +678,42 @@ def test_nothing_is_written_where_a_variant_fails(tmp_path, key, says):
     with pytest.raises(GradingError, match=says):
         release(assignment, students("Ada"), tmp_path)
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        (
+            "{K} and",
+            "{Kp} and",
+            "exercise 1 has {Kp} in a text: expected one of K, T, or {{Kp}} for the braces themselves",
+        ),
+        ("is wrong.", "is wrong: {x}.", "exercise 1 has {x} in a text"),
+        (
+            '{"Kp": 7',
+            '{"Kp": "much" or 7',
+            'the mistake "That is wrong." of Kp in exercise 1 is no possible answer for K = ',
+        ),
+        ("above=-10)", "above=8)", "the key of C in exercise 2 would not be right for K = "),
+    ],
+)
+def test_what_an_author_overlooks_is_said_before_anything_is_written(tmp_path, old, new, says):
+    text = written()
+    assert old in text
+    for make in (release, lambda given, *_: nbgrader.source(given)):
+        with pytest.raises(GradingError, match=re.escape(says)):
+            make(Assignment.of(text.replace(old, new), "tuning"), students("Ada"), tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("text", [r"$\frac{a}{b} {c}$", r"$${c}$$", "`{c}`", r"\begin{align}", "{{c}}", "{1}", "x_{c}"])
+def test_braces_of_formulas_and_code_stay(text):
+    def twice(x=authoring.between(1, 9)):
+        return authoring.answers(y=2 * x)
+
+    twice.__doc__ = text
+    question = checked(authoring.exercise("1", title="Twice")(twice).question, "exercise 1")
+    assert text.replace("{{c}}", "{c}") in question.statement
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ from loopbook.grading import reports
 from loopbook.grading.reports import page
 from loopbook.grading.reports.equal_answers import equal_answers, significant_digits
 from loopbook.grading.reports.findings import Findings
-from loopbook.grading.reports.wording import NO_JAIL, in_markdown, sentence_in_markdown
+from loopbook.grading.reports.wording import NO_JAIL, answer_in_words, in_markdown, sentence_in_markdown
 from loopbook.grading.roster import Student
 
 TITLE = "Tuning the air heater"
@@ -392,7 +392,7 @@ def test_the_tables_of_the_summary_in_markdown_have_equal_rows():
         counts = {len(re.findall(r"(?<!\\)\|", line)) for line in block.splitlines()}
         assert len(counts) == 1
         widths |= counts
-    assert widths == {4, 5, 9}
+    assert widths == {4, 5, 6, 9}
 
 
 # Gradescope.
@@ -445,6 +445,38 @@ def test_complaints_are_in_the_summary():
     complaint = "x_<y>.ipynb belongs to no student"
     assert "x_&lt;y&gt;.ipynb belongs to no student" in reports.summary_html(TITLE, CLASS, [], [complaint])
     assert r"- x\_\<y\>.ipynb belongs to no student" in reports.summary_markdown(TITLE, CLASS, [], [complaint])
+
+
+def test_what_was_not_judged_is_in_the_summary():
+    unreadable = {"2": {"action": "rev"}, "1": {"H": "K | $x$"}}
+    results = [result_of(BOB, unreadable), RIGHT_ALL]
+    assert [one[:4] for one in Findings(CLASS, results).unjudged] == [
+        ("1", "H", "s1002", "K | $x$"),
+        ("2", "action", "s1002", "rev"),
+    ]
+    assert "## Not judged" not in reports.summary_markdown(TITLE, CLASS, [RIGHT_ALL])
+    for text in (reports.summary_html(TITLE, CLASS, results), reports.summary_markdown(TITLE, CLASS, results)):
+        assert "You may see what was meant." in text
+        assert "is none of the words: expected reverse or direct" in text
+    many = [result_of(Student(f"s{k}", "A"), unreadable) for k in range(51)]
+    assert "There are 2 more, on the pages of the students." in reports.summary_markdown(TITLE, CLASS, many)
+
+
+@pytest.mark.parametrize(
+    ("settings", "says"),
+    [
+        ({"Kp": 2, "Ti": "inf", "Td": 0, "Tf": 0, "form": "parallel"}, "Kp = 2"),
+        (
+            {"Kp": "1/3", "Ti": "2 min", "Td": 1.5, "form": "serial"},
+            "Kp = 0.33333333, Ti = 2 min, Td = 1.5, serial form",
+        ),
+        ({"Kp": "1/0", "Ti": [HOSTILE[:5]], "form": {}}, "Kp = 1/0, Ti = [</cod]"),
+        ({"Kp": 2, "form": "parallel", "more": 1}, "{Kp: 2, form: parallel, more: 1}"),
+        ({"Kp": "9" * 400 + "/7", "form": ""}, "Kp = 9999"),
+    ],
+)
+def test_a_controller_in_words(settings, says):
+    assert answer_in_words(settings).startswith(says)
 
 
 def test_the_hardest_exercise_comes_first():

@@ -158,7 +158,7 @@ def grade(
 
         given, roster = load(assignment), read_roster(students or assignment.with_name("roster.csv"))
         columns = TextColumn("grading"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
-        with Progress(*columns, console=errors, transient=True) as progress:
+        with Progress(*columns, console=errors, transient=True, disable=not errors.is_terminal) as progress:
             bar = progress.add_task("", total=None)
             done = grade_all(
                 given,
@@ -185,6 +185,11 @@ def grade(
         errors.print(complaint, style="yellow", markup=False)
     for student, why in done.failures:
         errors.print(f"{student}: {why}", style="bold red", markup=False)
+    if done.outdated:
+        first, *others = done.outdated
+        who = f"{first} and {len(others)} more" if others else first
+        says = f"{who}: graded before the assignment, the submission or the limits changed; grade without --only"
+        errors.print(says, style="yellow", markup=False)
     counts = f"{done.graded} graded, {done.kept} kept, {done.missing} missing"
     console.print(f"{counts}; {to / 'summary.html'} tells the rest", markup=False)
     if done.failures:

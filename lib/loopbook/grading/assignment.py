@@ -162,7 +162,10 @@ def _known(module):
 
 def _check(exercise, name):
     if not (isinstance(exercise, Exercise) and isinstance(exercise.number, str) and _NUMBER.fullmatch(exercise.number)):
-        raise GradingError(f"{name}.py: the number of an exercise is {exercise.number!r}: expected a text such as '1'")
+        raise GradingError(
+            f"{name}.py: the number of an exercise is {exercise.number!r}: expected a text such as '1' or '2b', of "
+            "at most 20 letters, digits, dots and hyphens"
+        )
     points = exercise.points
     if isinstance(points, bool) or not isinstance(points, int | float) or not 0 < points < float("inf"):
         raise GradingError(f"{name}.py: exercise {exercise.number} has {points!r} points: expected a positive number")

@@ -7,29 +7,40 @@ calls by libseccomp. Each step that fails raises OSError, and nothing is run.
 import ctypes
 import errno
 import os
-import resource
 
 NOBODY = 65534
-#: Who a submission is, inside.
-STUDENT = 1000
+#: Who a submission is inside, and the only place where it can write.
+STUDENT, HOME = 1000, "/home/student"
 
 _NEW = {"files": 0x00020000, "name": 0x04000000, "ipc": 0x08000000, "user": 0x10000000, "processes": 0x20000000,
         "network": 0x40000000}  # fmt: skip
 _NOSUID_NODEV = 2 | 4
+#: Terminals, of which a machine has 4096: shell escapes take one at a time.
+_MOST_TERMINALS = 16
 _PR_SET_DUMPABLE, _PR_CAPBSET_DROP, _PR_SET_NO_NEW_PRIVS = 4, 24, 38
 _CAPABILITIES_V3 = 0x20080522
 
-#: No calculation needs these: memory that no limit of a process counts, other processes, new namespaces, new mounts,
-#: the kernel's keys, programs in the kernel, and the interfaces that go round a filter.
+#: No calculation needs these: memory that no limit of a process counts, what a machine or a user has few of, another
+#: share of the processors, other processes, new namespaces, new mounts, the kernel's keys, programs in the kernel, and
+#: the interfaces that go round a filter.
 _REFUSED = (
-    "memfd_create", "memfd_secret", "shmget", "msgget", "mq_open",
+    "memfd_create", "memfd_secret", "shmget", "semget", "msgget", "mq_open", "vmsplice", "splice", "tee",
+    "inotify_init", "inotify_init1", "fanotify_init", "io_setup", "syslog",
+    "sched_setaffinity",
     "ptrace", "process_vm_readv", "process_vm_writev", "kcmp", "pidfd_getfd",
     "unshare", "setns", "chroot",
     "mount", "umount2", "pivot_root", "move_mount", "open_tree", "fsopen", "fsmount", "fspick", "mount_setattr",
     "add_key", "request_key", "keyctl",
     "bpf", "perf_event_open", "userfaultfd", "io_uring_setup",
 )  # fmt: skip
-_ALLOW, _ERRNO, _MASKED_EQUAL = 0x7FFF0000, 0x00050000, 7
+_ALLOW, _ERRNO = 0x7FFF0000, 0x00050000
+_EQUAL, _ABOVE, _MASKED_EQUAL = 4, 6, 7
+#: The families of sockets that stay within the namespaces: local ones, the internet's, and the kernel's about them.
+#: Others reach further, as that to the host of a virtual machine does.
+_FAMILIES = (1, 2, 10, 16)
+#: Commands of fcntl for locks on parts of a file: the kernel keeps as many as one likes, in memory that is nobody's.
+_LOCKS = (6, 7, 37, 38)
+_SOL_SOCKET, _SNDBUF, _RCVBUF = 1, 7, 8
 
 
 class _Comparison(ctypes.Structure):
@@ -83,9 +94,11 @@ def confine(disk):
     for name, line in (("setgroups", "deny"), ("uid_map", f"{STUDENT} {user} 1"), ("gid_map", f"{STUDENT} {group} 1")):
         with open(f"/proc/self/{name}", "w") as file:
             file.write(line)
-    for place, size in (("/tmp", disk), ("/dev/shm", disk), ("/proc", 4096)):
+    for place, size in ((HOME, disk), ("/dev/shm", disk), ("/proc", 4096)):
         options = f"size={size},nr_inodes=4096,mode=0{'555' if place == '/proc' else '1777'}".encode()
         _demand(libc.mount(b"tmpfs", place.encode(), b"tmpfs", _NOSUID_NODEV, options), f"{place} of its own")
+    options = f"ptmxmode=0666,mode=0620,max={_MOST_TERMINALS}".encode()
+    _demand(libc.mount(b"devpts", b"/dev/pts", b"devpts", _NOSUID_NODEV & ~4, options), "terminals of its own")
 
 
 def address_space():
@@ -97,24 +110,28 @@ def address_space():
         return None
 
 
-def limit(limits, size, processes):
+def limit(limits, size, jailed):
     """Limit this process, and what it will make.
 
     Arguments:
         limits: those of `jail.Limits`, as a dictionary.
         size: of the address space that it begins with (bytes); without it, memory has no limit.
-        processes: whether their number has a limit; without a namespace, all of the same user would count.
+        jailed: whether the number of processes has a limit; without a namespace, all of the same user would count.
     """
+    import resource  # which Windows does not have
+
     bounds = {
         resource.RLIMIT_CPU: limits["cpu"],
         resource.RLIMIT_FSIZE: limits["file"],
         resource.RLIMIT_NOFILE: 256,
-        resource.RLIMIT_CORE: 0,
+        resource.RLIMIT_CORE: 1,  # at 0, the kernel still hands a dump to the program that collects them
     }
     if size is not None:
         bounds[resource.RLIMIT_AS] = size + limits["memory"]
-    if processes:
+    if jailed:
         bounds[resource.RLIMIT_NPROC] = limits["processes"]
+        # some users may go before all others, up to the machine's standstill
+        bounds[resource.RLIMIT_RTPRIO] = bounds[resource.RLIMIT_NICE] = 0
     for which, bound in bounds.items():
         resource.setrlimit(which, (bound, bound))
 
@@ -141,6 +158,13 @@ def call_filter():
     for name in _REFUSED:
         refuse(name, errno.EPERM)
     refuse("clone", errno.EPERM, _Comparison(0, _MASKED_EQUAL, _NEW["user"], _NEW["user"]))
+    for family in set(range(max(_FAMILIES))) - {*_FAMILIES}:
+        refuse("socket", errno.EAFNOSUPPORT, _Comparison(0, _EQUAL, family))
+    refuse("socket", errno.EAFNOSUPPORT, _Comparison(0, _ABOVE, max(_FAMILIES)))
+    for size in (_SNDBUF, _RCVBUF):  # `warm.SOCKET` is what it is without
+        refuse("setsockopt", errno.EPERM, _Comparison(1, _EQUAL, _SOL_SOCKET), _Comparison(2, _EQUAL, size))
+    for command in _LOCKS:
+        refuse("fcntl", errno.ENOLCK, _Comparison(1, _EQUAL, command))
     refuse("clone3", errno.ENOSYS)  # its flags are out of a filter's sight; the C library then takes clone
     return library, made
 

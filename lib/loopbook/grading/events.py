@@ -11,9 +11,12 @@ from dataclasses import dataclass, field
 from time import monotonic
 
 from loopbook.exercises.judging import harmless
+from loopbook.grading.plain import DEEPEST, MOST_DIGITS
 
 #: So many exercises, quantities of one, and errors are kept.
 MOST = 200
+#: No notebook has more cells.
+MOST_CELLS = 10**6
 
 
 @dataclass(frozen=True)
@@ -60,10 +63,11 @@ class Story:
         chunk = events.read(65536)
         if not chunk:
             return False
-        self._taken += len(chunk)
+        # cut where the limit is, not where a piece happens to end: so that the same lines count each time
+        chunk, size = chunk[: max(0, self.most - self._taken)], len(chunk)
+        self._taken += size
         if self._taken > self.most:
             self.too_long = "it told more than the grader takes"
-            return True
         *lines, self._left = (self._left + chunk).split(b"\n")
         for line in lines:
             if self._skipping or len(line) > self.longest:
@@ -84,6 +88,8 @@ class Story:
             self.odd += 1
 
     def _refused(self, says):
+        if self.cell or self.answers:  # by now it runs
+            raise ValueError(says)
         self.refused = self.refused or harmless(says)
 
     def _named(self, student):
@@ -91,10 +97,10 @@ class Story:
             self.named[harmless(student)] = True
 
     def _cell(self, number):
-        self.cell, self.cell_began = int(number), monotonic()
+        self.cell, self.cell_began = _place(number), monotonic()
 
     def _error(self, error):
-        number, says = int(error["cell"]), harmless(error["says"])
+        number, says = _place(error["cell"]), harmless(error["says"])
         if len(self.errors) < MOST:
             self.errors.append((number, says))
 
@@ -102,7 +108,7 @@ class Story:
         number, given = answer["exercise"], answer["given"]
         if not (isinstance(number, str) and isinstance(given, dict) and len(self.answers) < MOST and len(given) < MOST):
             raise ValueError
-        if not _finite(given):
+        if not all(map(_is_plain, given.values())):
             raise ValueError
         self._named(answer["student"])
         # what is still a placeholder, in a copy of the cell, takes nothing back
@@ -120,11 +126,7 @@ class Story:
             exit_code: of its first process, or minus the signal that ended it.
         """
         if not (why or self.refused) and not (self.ended and exit_code == 0):
-            why = (
-                f"its process ended by {_SIGNALS.get(-exit_code, f'signal {-exit_code}')}"
-                if exit_code < 0
-                else ("its process ended by itself")
-            )
+            why = f"its process ended by {_ended(exit_code)}"
         stopped = f"stopped in cell {self.cell}: {why}" if why and self.cell else why
         return Outcome(self.answers, tuple(self.errors), tuple(self.named), stopped, self.refused, self.odd)
 
@@ -133,21 +135,39 @@ _KINDS = {
     "refused": "_refused", "made for": "_named", "cell": "_cell", "error": "_error", "answer": "_answer", "end": "_end",
 }  # fmt: skip
 _SIGNALS = {
-    signal.SIGSEGV: "a segmentation fault",
-    signal.SIGXCPU: "too much processor time",
-    signal.SIGXFSZ: "a file that is too large",
-    signal.SIGKILL: "force",
+    "SIGSEGV": "a segmentation fault",
+    "SIGXCPU": "too much processor time",
+    "SIGXFSZ": "a file that is too large",
+    "SIGKILL": "force",
 }
+
+
+def _ended(exit_code):
+    if exit_code >= 0:
+        return "itself"
+    name = {one.value: one.name for one in signal.Signals}.get(-exit_code, f"signal {-exit_code}")
+    return _SIGNALS.get(name, name)
 
 
 def _no_number(name):
     raise ValueError(name)
 
 
-def _finite(value):
-    """Whether all numbers are finite: 1e999 is none."""
-    if isinstance(value, float):
-        return math.isfinite(value)
-    if isinstance(value, dict):
-        value = value.values()
-    return all(map(_finite, value)) if isinstance(value, list | type({}.values())) else True
+def _place(number):
+    """The number of a cell; raises ValueError for another one."""
+    if type(number) is not int or not 0 < number <= MOST_CELLS:
+        raise ValueError(number)
+    return number
+
+
+def _is_plain(value, depth=0):
+    """Whether data may come from `plain`: finite (1e999 is not), and not too deep for whoever goes through it later."""
+    match value:
+        case float():
+            return math.isfinite(value)
+        case int():
+            return value.bit_length() <= MOST_DIGITS * math.log2(10)
+        case list() | dict():
+            inside = value.values() if isinstance(value, dict) else value
+            return depth < DEEPEST and all(_is_plain(one, depth + 1) for one in inside)
+    return True

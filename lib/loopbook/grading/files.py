@@ -1,5 +1,6 @@
 """Files that are whole at any moment: an interruption leaves the old one or the new one."""
 
+import contextlib
 import os
 
 from loopbook.grading import GradingError
@@ -29,5 +30,7 @@ def write(path, text):
             os.fsync(file.fileno())  # a crash of the machine keeps what was reported as done
         partial.replace(path)
     except OSError as problem:
+        with contextlib.suppress(OSError):
+            partial.unlink(missing_ok=True)
         raise GradingError(f"{path} cannot be written: {problem.strerror}") from None
     return True

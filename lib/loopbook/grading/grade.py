@@ -5,7 +5,6 @@ a Dask cluster; on both, the student's code is in a child, behind the jail's wal
 """
 
 import contextlib
-import fcntl
 import threading
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from dataclasses import dataclass
@@ -52,7 +51,7 @@ class Desk:
             self.jail = self.jail or Jail(self.jailed, self.limits)
             outcome = self.jail.run(task.content)
         exercises = self.judge.judge(task.student, outcome.answers)
-        return result(task.student, task.label, task.fingerprint, task.jailed, outcome, exercises)
+        return result(task.name, task.student, task.label, task.fingerprint, task.jailed, outcome, exercises)
 
     def close(self):
         """End both processes."""
@@ -77,7 +76,7 @@ def graded(task):
         return _desks.desk.graded(task)
     except NoJail:  # the next one would fare no better
         raise
-    except GradingError as problem:
+    except (GradingError, OSError) as problem:  # a full disk, say, under one submission
         return str(problem)
 
 
@@ -87,6 +86,8 @@ class Summary:
 
     Attributes:
         graded, kept, missing: how many submissions were graded, had been before, and are not there.
+        outdated: ids of students who were not to be graded and whose result is another one by now: the assignment, the
+            submission or the limits have changed.
         complaints: sentences on files that are nobody's, or cannot be.
         failures: pairs of a student's id and a sentence: these have no result.
     """
@@ -94,6 +95,7 @@ class Summary:
     graded: int
     kept: int
     missing: int
+    outdated: tuple
     complaints: tuple
     failures: tuple
 
@@ -109,7 +111,7 @@ def grade(
         students: the roster.
         submissions: folder or zip file.
         folder: where results and reports go.
-        place: where submissions are graded, `here(workers)` or `cluster.connected(address)`; one at a time, if not given.
+        place: where submissions are graded, `here(workers)` or `cluster.connected(address)`; `here(1)` if not given.
         only: ids of the students to grade; all if empty.
         regrade: grade again what has a result.
         jailed: without a jail, submissions run with the rights of whoever grades, and every output says so.
@@ -120,21 +122,28 @@ def grade(
         The `Summary`.
     Raises:
         GradingError: for submissions that cannot be read, ids that are on no roster, a folder that another grader
-            works in, or where there is no jail.
+            works in, that lies among the submissions or holds another assignment, or where there is no jail.
     """
     unknown = sorted(set(only) - {student.id for student in students})
     if unknown:
         raise GradingError(f"there is no student {unknown[0]!r} on the roster")
+    _demand_apart(folder, submissions)
     if jailed:
         demand_hidden(*filter(None, [assignment.path, submissions, folder]))
     collection = collect(submissions, students, assignment.name)
     results = Results(folder / "results")
     with _alone(folder):
+        results.demand_of(assignment.name, [student.id for student in students])
         found = {one.student.id: one for one in collection.submissions}
         wanted = [student for student in students if not only or student.id in only]
-        tasks = (_task(assignment, student, found.get(student.id), jailed, limits) for student in wanted)
+
+        def task(student):
+            return _task(assignment, student, found.get(student.id), jailed, limits)
+
         graded, kept, failures = 0, 0, []
-        for done, (student, outcome) in enumerate(_outcomes(tasks, results, regrade, place or here(1)), start=1):
+        for done, (student, outcome) in enumerate(
+            _outcomes(map(task, wanted), results, regrade, place or here(1)), start=1
+        ):
             if isinstance(outcome, str):
                 failures.append((student, outcome))
             elif outcome is None:
@@ -143,10 +152,18 @@ def grade(
                 graded += student in found
                 results.keep(outcome)
             follow(len(wanted), done)
-        stored = [one for one in (results.of(student.id) for student in students) if one]
-        write_all(folder, assignment.title, students, stored, collection.complaints, reveal)
+        stored = {student.id: one for student in students if (one := results.of(student.id))}
+        write_all(folder, assignment.title, students, stored.values(), collection.complaints, reveal)
+        others = [student for student in students if student not in wanted and student.id in stored]
+        outdated = [one.id for one in others if stored[one.id]["fingerprint"] != task(one).fingerprint]
         missing = sum(student.id not in found for student in wanted)
-    return Summary(graded, kept, missing, collection.complaints, tuple(sorted(failures)))
+    return Summary(graded, kept, missing, tuple(outdated), collection.complaints, tuple(sorted(failures)))
+
+
+def _demand_apart(folder, submissions):
+    """Raise GradingError where what is written would be collected as handed in."""
+    if submissions.resolve() in (folder.resolve(), *folder.resolve().parents):
+        raise GradingError(f"{folder} lies among the submissions in {submissions}: expected a folder beside them")
 
 
 def _task(assignment, student, submission, jailed, limits):
@@ -207,6 +224,10 @@ def here(workers):
 @contextlib.contextmanager
 def _alone(folder):
     """Keep other graders out of a folder; the system lets go when this process ends, however it ends."""
+    try:
+        import fcntl  # Windows has none
+    except ImportError:
+        raise GradingError("this system cannot lock a folder: grade on Linux, or in a container") from None
     try:
         folder.mkdir(parents=True, exist_ok=True)
         file = open(folder / ".lock", "w")  # noqa: SIM115 - it is closed below

@@ -7,7 +7,6 @@ the machine.
 
 import json
 import os
-import select
 import shutil
 import signal
 import site
@@ -16,10 +15,12 @@ import subprocess
 import sys
 import tempfile
 from dataclasses import asdict, dataclass
+from multiprocessing.connection import wait
 from pathlib import Path
 from time import monotonic
 
 from loopbook.grading import GradingError, NoJail
+from loopbook.grading.confinement import HOME
 from loopbook.grading.events import Story
 from loopbook.grading.warm import KILL
 
@@ -31,9 +32,11 @@ PATIENCE = 2
 #: What the end of a process may take (s).
 STUBBORN = 10
 SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/etc/ld.so.cache", "/etc/fonts", "/etc/localtime")
+PYTHON = os.path.abspath(sys.executable)
 ENVIRONMENT = {
-    "HOME": "/tmp",
-    "PATH": f"{Path(sys.executable).parent}:/usr/bin:/bin",
+    "HOME": HOME,
+    "TMPDIR": HOME,
+    "PATH": f"{os.path.dirname(PYTHON)}:/usr/bin:/bin",
     "LANG": "C.UTF-8",
     "PYTHONHASHSEED": "0",
     "PYTHONDONTWRITEBYTECODE": "1",
@@ -107,8 +110,10 @@ def command():
         line += ["--perms", "0755", "--dir", folder]
     for path in visible():
         line += ["--symlink", os.readlink(path), path] if os.path.islink(path) else ["--ro-bind", path, path]
-    line += ["--proc", "/proc", "--dev", "/dev", "--tmpfs", "/dev/shm", "--perms", "1777", "--tmpfs", "/tmp"]
-    line += ["--remount-ro", "/dev", "--remount-ro", "/", "--chdir", "/tmp", "--"]
+    line += ["--proc", "/proc", "--dev", "/dev", "--tmpfs", "/dev/shm", "--perms", "1777", "--tmpfs", HOME]
+    if not any(Path(path).is_relative_to("/tmp") for path in visible()):
+        line += ["--symlink", HOME.lstrip("/"), "/tmp"]
+    line += ["--remount-ro", "/dev", "--remount-ro", "/", "--chdir", HOME, "--"]
     return line
 
 
@@ -129,14 +134,15 @@ class Jail:
 
     def _start(self):
         ours, theirs = socket.socketpair()
-        line = [*(command() if self.jailed else ()), sys.executable, "-m", "loopbook.grading.warm"]
+        home = {} if self.jailed else dict.fromkeys(("HOME", "TMPDIR"), tempfile.gettempdir())
+        line = [*(command() if self.jailed else ()), PYTHON, "-m", "loopbook.grading.warm"]
         with theirs, tempfile.TemporaryFile() as complaints:
             self.process = subprocess.Popen(
                 [*line, *(["jailed"] if self.jailed else [])],
                 stdin=theirs,
                 stdout=subprocess.DEVNULL,
                 stderr=complaints,
-                env=ENVIRONMENT,
+                env=ENVIRONMENT | home,
                 cwd="/",
             )
             theirs.close()
@@ -172,10 +178,22 @@ class Jail:
         self.close()
 
     def run(self, content):
-        """Run a notebook, given as the bytes of its file; returns the `Outcome`. Raises NoJail as the start."""
-        if self.process.poll() is not None:
-            self.close()
-            self._start()
+        """Run a notebook, given as the bytes of its file; returns the `Outcome`. Raises NoJail as the start.
+
+        Where the warm process ends under it, which no submission in a jail can bring about, it runs once more.
+        """
+        for _ in range(2):
+            if self.process.poll() is not None:
+                self.close()
+                self._start()
+            story = Story(self.limits.line, self.limits.events)
+            try:
+                return self._run(content, story)
+            except ConnectionError:
+                self.close()
+        return story.outcome("the process around it ended", -signal.SIGKILL)
+
+    def _run(self, content, story):
         reader, writer = os.pipe()
         with tempfile.TemporaryFile() as notebook, open(reader, "rb", buffering=0) as events:
             try:
@@ -185,15 +203,15 @@ class Jail:
                 socket.send_fds(self._control, [job], [notebook.fileno(), writer])
             finally:
                 os.close(writer)
-            return self._followed(events)
+            return self._followed(events, story)
 
-    def _followed(self, events):
-        """The outcome of the submission that tells these events."""
-        story, end, why = Story(self.limits.line, self.limits.events), monotonic() + self.limits.total, ""
+    def _followed(self, events, story):
+        """The outcome of the submission that tells these events. Raises ConnectionError where the warm process ends."""
+        end, why = monotonic() + self.limits.total, ""
         watched, done = [events, self._control], False
         while not done:
             due = end if why else min(end, story.cell_began + self.limits.cell + PATIENCE)
-            ready, _, _ = select.select(watched, [], [], max(0.0, due - monotonic()))
+            ready = wait(watched, max(0.0, due - monotonic()))
             if events in ready and not story.read(events):
                 watched.remove(events)  # nothing more will come: the process is about to end
             done = self._control in ready
@@ -206,10 +224,13 @@ class Jail:
             self._control.send(KILL)
         reply = self._reply(STUBBORN) if done else {}
         if not reply:
+            if not why:
+                raise ConnectionResetError
             self.close()
         os.set_blocking(events.fileno(), False)
-        while story.read(events):
+        while not story.too_long and story.read(events):
             pass
+        why = why or story.too_long
         if reply.get("memory"):
             why = f"it took more than {self.limits.memory // MEGA} MB of memory"
         return story.outcome(why, reply.get("exit", -signal.SIGKILL))

@@ -7,9 +7,9 @@ takes the process down, is not judged, and the judge begins again behind it.
 import contextlib
 import json
 import os
-import select
 import subprocess
 import sys
+from multiprocessing.connection import wait
 from pathlib import Path
 
 from loopbook.exercises.judging import SECONDS, UNJUDGED
@@ -50,7 +50,7 @@ class Judge:
     def _heard(self, seconds):
         """The next line of the judge; empty where it is silent for longer, or gone."""
         while b"\n" not in self._left:
-            ready, _, _ = select.select([self.process.stdout], [], [], seconds)
+            ready = wait([self.process.stdout], seconds)
             chunk = self.process.stdout.read(65536) if ready else b""
             if not chunk:
                 return {}

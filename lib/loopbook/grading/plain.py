@@ -162,7 +162,7 @@ class _Reader:
         except Unreadable as problem:
             if inspect.isroutine(value) or isinstance(value, np.ufunc | np.poly1d | functools.partial):
                 raise Unreadable(
-                    "a function cannot be handed in: give its values, or an expression such as 2*exp(-t/5)"
+                    "a function cannot be handed in: give an expression such as 2*exp(-t/5), or its values"
                 ) from None
             raise Unreadable(str(problem) if isinstance(value, sympy.Basic) else _says(value)) from None
 

@@ -17,6 +17,10 @@ from loopbook.grading import GradingError, files
 from loopbook.grading.assignment import check_names
 
 MOST_LINES, MOST_COLUMNS = 12, 88
+#: Formulas and code, in which braces have a meaning of their own.
+_NOT_FILLED_IN = re.compile(r"\$\$.*?\$\$|\$.*?\$|`.*?`", re.DOTALL)
+#: The place of a value; in front of it is none of what LaTeX has before a brace.
+_PLACE = re.compile(r"(?<![\w\\{}])\{([^\W\d]\w*)\}(?!\})")
 _HOW_TO_ANSWER = (
     "Put your answers in the places of the dots and run the cells: each shows how your answer is read, and nothing "
     "about right or wrong. You can answer as often as you like before you save this notebook and hand it in; the last "
@@ -80,12 +84,44 @@ def checked(make, label):
     try:
         question = make()
         check_names(question)
-        question.statement, question.mistakes  # noqa: B018 - both are computed when they are looked at
+        _check_places(question)
+        _check_key(question)
+        question.statement  # noqa: B018 - it is computed when it is looked at
     except GradingError:
         raise
     except Exception as problem:  # the functions are the author's
         raise GradingError(f"{label}: {problem}") from problem
     return question
+
+
+def _check_places(question):
+    """Raise GradingError for a place in the statement, or in the sentence of a mistake, that no value fills."""
+    exercise = question.exercise
+    places = exercise.places(question.values)
+    for text in (exercise.statement, *(sentence for sentence, _ in exercise.mistakes)):
+        for place in _PLACE.finditer(_NOT_FILLED_IN.sub("", text)):
+            if place[1] not in places:
+                raise GradingError(
+                    f"exercise {exercise.number} has {place[0]} in a text: expected one of {', '.join(places)}, or "
+                    f"{{{place[0]}}} for the braces themselves"
+                )
+
+
+def _check_key(question):
+    """Raise GradingError for a key that would not be right, and for a mistake that is no possible answer."""
+    number = question.exercise.number
+    values = ", ".join(f"{name} = {value}" for name, value in question.values.items())
+    for name, kind in question.key.items():
+        if not kind.agrees(kind.key):
+            raise GradingError(
+                f"the key of {name} in exercise {number} would not be right for {values}: {kind.hint(kind.key)}"
+            )
+        for sentence, wrong in question.mistakes[name]:
+            try:
+                kind.like(wrong)
+            except ValueError as problem:
+                says = f'the mistake "{sentence}" of {name} in exercise {number} is no possible answer for {values}'
+                raise GradingError(f"{says}: {problem}") from problem
 
 
 def bare(cells):

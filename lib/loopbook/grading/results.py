@@ -18,14 +18,16 @@ ADDRESS = re.compile(r"\b0x[0-9a-fA-F]{6,}\b")
 
 def fingerprint(assignment, content, label, problem, jailed, limits):
     """Return a text that differs where a result might: by the assignment, the submission, the jail, or its limits."""
-    parts = [assignment.fingerprint, hashlib.sha256(content).hexdigest(), label, problem, jailed, asdict(limits)]
+    amounts = {name: float(amount) for name, amount in asdict(limits).items()}  # 60 s are 60.0 s
+    parts = [assignment.fingerprint, hashlib.sha256(content).hexdigest(), label, problem, jailed, amounts]
     return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
 
 
-def result(student, label, mark, jailed, outcome, exercises):
+def result(assignment, student, label, mark, jailed, outcome, exercises):
     """Return the result of a submission, as JSON data.
 
     Arguments:
+        assignment: its name.
         student: id.
         label: name of the file; empty where there is none.
         mark: the fingerprint.
@@ -34,6 +36,7 @@ def result(student, label, mark, jailed, outcome, exercises):
     """
     status = "missing" if not label else "not run" if outcome.refused else "stopped" if outcome.stopped else "complete"
     return {
+        "assignment": assignment,
         "student": student,
         "file": label,
         "jailed": jailed,
@@ -87,6 +90,16 @@ class Results:
         except (OSError, ValueError) as problem:
             raise GradingError(f"{self._path(student)} cannot be read ({problem}): remove it") from None
         return stored
+
+    def demand_of(self, assignment, students):
+        """Raise GradingError where a student's result is that of another assignment, which would be lost."""
+        for student in students:
+            other = (self.of(student) or {}).get("assignment", assignment)
+            if other != assignment:
+                raise GradingError(
+                    f"{self.folder} holds results of the assignment {other!r}: expected a folder of its own for "
+                    f"{assignment!r}"
+                )
 
     def keep(self, found):
         """Store a result."""

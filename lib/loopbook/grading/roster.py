@@ -19,7 +19,9 @@ from pathlib import Path
 from loopbook.grading import GradingError
 
 #: What an id may be: it is the name of a folder on any system, and part of a web address.
-POSSIBLE_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._@-]{0,99}")
+POSSIBLE_ID = re.compile(
+    r"(?!(?i:con|prn|aux|nul|com\d|lpt\d)(?:\.|$))[A-Za-z0-9][A-Za-z0-9._@-]{0,99}(?<!\.)", re.ASCII
+)
 
 #: A name ending in one of these is read as Canvas does: "Doe, John, Jr." is John Doe Jr.
 _SUFFIX = re.compile(r"(?i)(sn?r\.?|senior|jn?r\.?|junior|ii|iii|iv|v|vi|esq\.?|esquire)")
@@ -93,17 +95,16 @@ def read_roster(path):
     if field is None:
         last = list(kind.ids)[-1]
         line = next(line for line, fields in found if not fields[last])
-        columns = ", ".join(kind.ids.values())
-        raise GradingError(
-            f"{path.name}, line {line}: a student without an id; ids come from the first full of: {columns}"
-        )
+        columns = f"; ids come from the first full of: {', '.join(kind.ids.values())}" if len(kind.ids) > 1 else ""
+        raise GradingError(f"{path.name}, line {line}: a student without an id{columns}")
     students, lines = [], {}
     for line, fields in found:
         student = Student(**{**fields, "id": fields[field]})
         if not POSSIBLE_ID.fullmatch(student.id):
             raise GradingError(
                 f"{path.name}, line {line}: {student.id[:120]!r} cannot be an id, which is made of letters without "
-                "accents, digits and . _ @ -, begins with a letter or a digit and has at most 100 characters"
+                "accents, digits and . _ @ -, begins with a letter or a digit, does not end in a dot, has at most 100 "
+                "characters and is no name of a device, as con"
             )
         first = lines.setdefault(student.id.casefold(), line)
         if first != line:
@@ -146,8 +147,8 @@ def _rows(path, text):
         except csv.Error as problem:
             raise GradingError(f"{path.name}, line {reader.line_num}: no table, {problem}") from None
     raise GradingError(
-        f"{path.name}, line 1: no header of a roster; expected the columns id and name, or an export of Canvas's "
-        "gradebook or of Moodle's grading worksheet, grades or participants"
+        f"{path.name}, line 1: no header of a roster; expected the columns id and name, or an export in English of "
+        "Canvas's gradebook or of Moodle's grading worksheet, grades or participants"
     )
 
 

@@ -30,7 +30,7 @@ deliver = None
 
 READ, UNREAD, OPEN = "·", "?", "…"
 _COLOUR = "#5a5a5a"
-_NO_VERDICT = "Taken down. This says nothing about right or wrong."
+_NO_VERDICT = "This says nothing about right or wrong."
 
 
 class Sheet:
@@ -70,7 +70,7 @@ class Sheet:
             with contextlib.suppress(Exception):  # what becomes of the answers is no matter of the student's cell
                 deliver(self.student, name, data)
         rows = [self._row(name, quantity) for quantity in dict.fromkeys([*self._forms.get(name, ()), *given])]
-        return Box(f"Exercise {name}" if name else "Which exercise?", tuple(rows), self._notes(name, alone))
+        return Box(f"Exercise {name}" if name else "Which exercise?", tuple(rows), self._notes(name, alone, data))
 
     def taken(self, exercise):
         """Return what is taken down of an exercise: {quantity: plain data}."""
@@ -101,11 +101,13 @@ class Sheet:
             return UNREAD, f"this cannot be read ({type(problem).__name__})"
         return READ, f"{says}, {remark}" if remark else says
 
-    def _notes(self, exercise, alone):
-        notes = [_NO_VERDICT]
+    def _notes(self, exercise, alone, data):
+        is_asked = not self._forms or exercise in self._forms
+        is_given = any(value is not None for value in data.values())
+        notes = [f"Taken down. {_NO_VERDICT}" if is_asked and is_given else _NO_VERDICT]
         if alone:
             notes.insert(0, "Give each answer by its name, as in sheet.answer('1', K=2); others are not taken down.")
-        if self._forms and exercise not in self._forms:
+        if not is_asked:
             notes.insert(0, f"This exercise is not asked here: expected {', '.join(map(repr, self._forms))}.")
         return tuple(notes)
 
@@ -115,8 +117,11 @@ class Sheet:
             quantities = dict.fromkeys([*self._forms.get(exercise, ()), *self._taken.get(exercise, ())])
             for mark, quantity, says in (self._row(exercise, one) for one in quantities):
                 rows.append((mark, f"{exercise}  {quantity}", says))
-        still_open = sum(mark == OPEN for mark, _, _ in rows)
-        note = f"{still_open} of {len(rows)} not answered yet" if still_open else "An answer to all that is asked."
+        asked = [(exercise, quantity) for exercise, forms in self._forms.items() for quantity in forms]
+        marks = [self._read(*one)[0] for one in asked]
+        counts = [(OPEN, f"of {len(asked)} not answered yet"), (UNREAD, "cannot be read")]
+        notes = [f"{marks.count(mark)} {says}" for mark, says in counts if mark in marks]
+        note = ", ".join(notes) or "An answer to all that is asked."
         return Box(f"{self.title} · {self.student}".strip(" ·") or "Answers", tuple(rows), (note,) if rows else ())
 
     def __repr__(self):

@@ -5,9 +5,11 @@ What happens is told as events, one after another; nothing is kept for later, so
 
 import asyncio
 import json
+import random
 import signal
 
 import nbformat
+import numpy as np
 from IPython.core.displayhook import DisplayHook
 from IPython.core.displaypub import DisplayPublisher
 from IPython.core.interactiveshell import InteractiveShell
@@ -48,6 +50,9 @@ class _Shell(InteractiveShell):
     showsyntaxerror = showtraceback
 
     def enable_gui(self, gui=None):
+        pass
+
+    def ask_exit(self):
         pass
 
 
@@ -113,6 +118,7 @@ def run(content, warm, tell, seconds):
     )
     signal.signal(signal.SIGALRM, _out_of_time)
     asyncio.set_event_loop(asyncio.new_event_loop())
+    random.seed(0), np.random.seed(0)  # the same numbers each time it is graded
     for number, source in enumerate(sources, start=1):
         tell({"cell": number})
         says = _error(warm, source, seconds)

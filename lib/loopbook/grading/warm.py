@@ -12,17 +12,21 @@ import contextlib
 import gc
 import json
 import os
-import select
 import shutil
 import signal
 import socket
 import sys
 import tempfile
+from multiprocessing.connection import wait
 
 from loopbook.grading import confinement
 
-#: How often (s) the memory of a submission's processes is added up.
+#: How often (s) a submission's processes are looked at.
 WATCH = 0.1
+#: What the kernel keeps for a full socket (bytes).
+SOCKET = 2**18
+#: Of more processes and threads than this, a submission has a crowd.
+CROWD = 4
 KILL = b"kill\n"
 
 
@@ -67,27 +71,50 @@ def _job(control, prepared, limits, notebook, events):
         os.close(descriptor)
     too_much = False
     while True:
-        ready, _, _ = select.select([control, ended], [], [], WATCH)
+        ready = wait([control, ended], WATCH)
         if ended in ready:
             break
         if control in ready:
             os.kill(guard, signal.SIGTERM)
             if not control.recv(4096):  # the grader is gone
                 break
-        if not too_much and _memory(guard) > limits["memory"]:
-            too_much = True
-            os.kill(guard, signal.SIGTERM)
+        if prepared[1] and not too_much:  # without a jail, its processes cannot be told from others
+            others = _processes(guard)
+            _hold_together(others)
+            too_much = _is_too_much(others, guard, limits["memory"])
+            if too_much:
+                os.kill(guard, signal.SIGTERM)
     code = int(os.read(ended, 20) or -signal.SIGKILL)
     os.close(ended)
     os.waitpid(guard, 0)
     return {"exit": code, "memory": too_much}
 
 
-def _memory(guard):
-    """What all processes but this one and the guard hold beyond what they share with this one (bytes)."""
-    own = _resident("self")
-    others = (name for name in os.listdir("/proc") if name.isdigit() and int(name) not in (1, guard, os.getpid()))
-    return sum(max(0, _resident(name) - own) for name in others)
+def _processes(guard):
+    """The processes of the submission, as the jail numbers them."""
+    passed = {"1", str(guard), str(os.getpid())}
+    return [name for name in os.listdir("/proc") if name.isdigit() and name not in passed]
+
+
+def _hold_together(processes):
+    """Keep a crowd on one processor: who divides the others is then no matter of how many it starts."""
+    tasks = []
+    for process in processes:
+        with contextlib.suppress(OSError):  # it has just ended
+            tasks += map(int, os.listdir(f"/proc/{process}/task"))
+    if len(tasks) > CROWD:
+        last = {max(os.sched_getaffinity(0))}
+        for task in tasks:
+            with contextlib.suppress(OSError):
+                os.sched_setaffinity(task, last)
+
+
+def _is_too_much(processes, guard, memory):
+    """Whether processes hold more memory (bytes) than that, beyond what they share with this one, and in sockets."""
+    most = memory + _resident("self") - SOCKET * _sockets(guard)
+    if sum(map(_resident, processes)) <= most:  # which counts what they share several times
+        return False
+    return sum(map(_share, processes)) > most
 
 
 def _resident(process):
@@ -98,17 +125,36 @@ def _resident(process):
         return 0
 
 
+def _share(process):
+    """What a process holds, with its part of what it shares (bytes); all of that, where it does not let one see."""
+    try:
+        with open(f"/proc/{process}/smaps_rollup") as file:
+            return next(1024 * int(line.split()[1]) for line in file if line.startswith("Pss:"))
+    except (OSError, StopIteration):
+        return _resident(process)
+
+
+def _sockets(guard):
+    """The number of sockets in the network of the submission, which is the guard's too."""
+    try:
+        with open(f"/proc/{guard}/net/sockstat") as file:
+            return int(file.readline().split()[-1])
+    except (OSError, ValueError, IndexError):
+        return 0
+
+
 def _guard(prepared, limits, notebook, events, ending):
     """Fork the submission's first process, wait for it, and tell how it ended; SIGTERM ends it."""
     shell, call_filter = prepared
     first = 0
 
     def end(number, frame):
-        os.kill(first, signal.SIGKILL)
+        with contextlib.suppress(ProcessLookupError):  # it has ended by itself
+            os.kill(first, signal.SIGKILL)
 
     signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGTERM])  # until there is something to end
     signal.signal(signal.SIGTERM, end)
-    folder = "/tmp" if call_filter else tempfile.mkdtemp(prefix="loopbook-")
+    folder = confinement.HOME if call_filter else tempfile.mkdtemp(prefix="loopbook-")
     size = confinement.address_space()
     try:
         if call_filter:
@@ -145,7 +191,7 @@ def _submission(shell, call_filter, limits, size, notebook, events, folder):
             os.dup2(nothing, standard)
         os.close(nothing)
         os.chdir(folder)
-        confinement.limit(limits, size, processes=bool(call_filter))
+        confinement.limit(limits, size, jailed=bool(call_filter))
         if call_filter:
             confinement.surrender(call_filter)
         with open(3, "rb") as file:

@@ -160,11 +160,11 @@ def first_integrator(model=choice(*MODELS, reference="pendulum")):
     compute? Write it with these letters and those of the model.
     """
     driving, against, factor, order = MODELS[model][2]
+    formula = (driving - against) / factor
+    letters = " ".join(["x_1 x_2 x_3", *(symbol.name for symbol in formula.free_symbols)])
     return answers(
         integrators=number(order, "", "the number of integrators", within=0),
-        formula=expression(
-            (driving - against) / factor, "the formula in front of the first integrator", letters="x_1 x_2 x_3"
-        ),
+        formula=expression(formula, "the formula in front of the first integrator", letters=letters),
     )
 
 

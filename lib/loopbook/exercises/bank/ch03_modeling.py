@@ -128,9 +128,10 @@ def sloping_walls(shape=choice(*SHAPES, reference="funnel"), outlet=choice(*OUTL
     formulas in these letters.
     """
     (V, area), out = _volume(shape), OUTLETS[outlet][1]
+    letters = " ".join(["rho", *(symbol.name for symbol in (V + area + out + q_i).free_symbols)])
     return answers(
-        V=expression(V, "the volume", letters="q_i rho", unit="m³"),
-        rate=expression((q_i - out) / area, "the rate of the level", letters="rho", unit="m/s"),
+        V=expression(V, "the volume", letters=letters, unit="m³"),
+        rate=expression((q_i - out) / area, "the rate of the level", letters=letters, unit="m/s"),
     )
 
 

@@ -7,7 +7,7 @@ import sympy
 
 from loopbook.exercises import formulas, units
 from loopbook.exercises.formulas import Formula
-from loopbook.exercises.kinds.kind import Kind, alone, answered, with_unit
+from loopbook.exercises.kinds.kind import Kind, alone, answered, literal, with_unit
 from loopbook.exercises.kinds.numeric import in_unit
 from loopbook.exercises.kinds.settings import Settings
 from loopbook.exercises.reading import Unreadable, letters_in, listed
@@ -17,6 +17,12 @@ from loopbook.expressions import exact, s, t
 class Expression(Kind):
     """An expression in letters, equal in any form; its numbers may be rounded.
 
+    Arguments:
+        letters: that an answer may have, all of the key's among them; a notebook that is handed out tells a wrong one.
+            Those of the key, if not given: what letters there are is then a part of the answer.
+    Raises:
+        ValueError: for a key with a letter that is not among them.
+
     >>> gain = Expression(sympy.sympify("K*T/(K + 1)"), "the gain")
     >>> gain.agrees(gain.read("T/(1 + 1/K)")[0])
     True
@@ -24,13 +30,31 @@ class Expression(Kind):
 
     def __init__(self, key, what="the expression", letters="", within=0.01, unit=""):
         self.expr = exact(key)
-        names = {symbol.name for symbol in self.expr.free_symbols} | set(letters.split())
-        self.letters = sorted(names | self.always)
+        names, self._told = {symbol.name for symbol in self.expr.free_symbols}, letters
+        self.letters = sorted(self.always.union(letters.split() or names))
+        if beyond := sorted(names.difference(self.letters)):
+            raise ValueError(f"the key has the letter {beyond[0]}: expected only {listed(self.letters)}")
         super().__init__(self.expr, unit, what, within)
 
     always = frozenset()
     #: Without a key, any letter may occur.
     letters = None
+    _told = ""
+
+    @classmethod
+    def without_key(cls, *parts, letters="", **named):
+        """Return a kind that reads answers; in the letters that the author has told, or in any."""
+        kind = super().without_key(*parts, **named)
+        if letters:
+            kind._told, kind.letters = letters, sorted(cls.always.union(letters.split()))
+        return kind
+
+    @property
+    def asking(self):
+        """The call that makes a kind of this form, with the letters that the author has told."""
+        call = super().asking[:-1]
+        told = f"{'' if call.endswith('(') else ', '}letters={literal(self._told)}" if self._told else ""
+        return f"{call}{told})"
 
     def like(self, value):
         """The same quantity with another key."""

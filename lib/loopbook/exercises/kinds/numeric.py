@@ -264,7 +264,7 @@ def _number_of_text(text, unit, expected):
         named = f"1{match[2]}" if match[2].startswith("/") else match[2]
         if units.is_unit(named):
             return _in_unit_asked(float(match[1].replace(" ", "")), named, unit, expected)
-    if re.fullmatch(r"[+-]?\d+,\d+", line):
+    if re.match(r"[+-]?\d+,\d+( |$)", line):
         raise Unreadable("write the decimal comma as a point")
     # arithmetic, and perhaps a unit after one of the spaces
     for space in (len(line), *(found.start() for found in re.finditer(" ", line))):

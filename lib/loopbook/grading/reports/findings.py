@@ -5,9 +5,9 @@ import statistics
 from collections import Counter
 from dataclasses import dataclass
 
-from loopbook.exercises.judging import MISTAKE, RIGHT
+from loopbook.exercises.judging import MISTAKE, RIGHT, UNJUDGED
 from loopbook.grading.reports.equal_answers import equal_answers
-from loopbook.grading.reports.wording import STATUSES, remarks, without_jail
+from loopbook.grading.reports.wording import STATUSES, answer_in_words, explained, remarks, without_jail
 
 #: So many of the named mistakes are told.
 MOST_MISTAKES = 15
@@ -61,6 +61,7 @@ class Findings:
         looks: pairs of an id and the reasons why somebody should look at the submission.
         mistakes: number of exercise, quantity, sentence and count, the most common first.
         equal: equal answers where the keys differ.
+        unjudged: number of exercise, quantity, id, answer in words and sentence of each answer that was not judged.
     """
 
     def __init__(self, students, results, complaints=()):
@@ -77,6 +78,7 @@ class Findings:
         self.exercises = _exercises(self.handed_in)
         self.mistakes = _mistakes(self.handed_in)
         self.equal = equal_answers(self.handed_in)
+        self.unjudged = _unjudged(self.handed_in)
 
     def name(self, student):
         """The name of a student, by the id."""
@@ -141,6 +143,20 @@ def _exercises(results):
         mean = statistics.fmean(exercise["earned"] for exercise in given)
         exercises.append(Exercise(number, given[0]["title"], given[0]["points"], mean, asked))
     return sorted(exercises, key=lambda exercise: exercise.fraction)
+
+
+def _unjudged(results):
+    """The answers that were not judged, in the order of the exercises."""
+    found, order = [], {}
+    for result in results:
+        for exercise in result["exercises"]:
+            for verdict in exercise["verdicts"]:
+                asked = exercise["number"], verdict["name"]
+                place = order.setdefault(asked, len(order))
+                if verdict["status"] == UNJUDGED:
+                    answer = answer_in_words(verdict["answer"])
+                    found.append((place, (*asked, result["student"], answer, explained(verdict))))
+    return [one for _, one in sorted(found, key=lambda pair: pair[0])]
 
 
 def _mistakes(results):

@@ -16,6 +16,11 @@ from loopbook.grading.reports.wording import (
 )
 
 _EQUAL = "The numbers of these students differ, so that their answers should. That is a reason to look, and no proof."
+_LEFT_ALONE = "Files that were left alone"
+_UNJUDGED = "Not judged"
+_WHY_UNJUDGED = "These answers earn nothing, because they could not be judged. You may see what was meant."
+#: So many of the answers that were not judged are told.
+MOST_UNJUDGED = 100
 _NONE = "Nothing."
 
 
@@ -40,7 +45,7 @@ def summary_html(title, students, results, complaints=()):
     rows = [(_student(found, one), "<br>".join(map(page.of_student, reasons))) for one, reasons in found.looks]
     body += page.table("Submissions to look at", ["student", "why"], rows) if rows else [f"<p>{_NONE}</p>"]
     if found.complaints:
-        body += ["<h2>Could not be assigned to a student</h2>", "<ul>"]
+        body += [f"<h2>{_LEFT_ALONE}</h2>", "<ul>"]
         body += [*(f"<li>{page.of_student(complaint)}</li>" for complaint in found.complaints), "</ul>"]
     for heading, ids in _absent(found):
         body += [f"<h2>{heading}</h2>", f"<p>{', '.join(_student(found, one) for one in ids)}</p>"]
@@ -82,6 +87,19 @@ def summary_html(title, students, results, complaints=()):
         ]
         head = ["exercise", "quantity", "in percent", *map(page.marked, STATUSES)]
         body += ["<h2>Answers</h2>", *page.table("Answers", head, rows, counts=range(2, len(head)))]
+    if found.unjudged:
+        rows = [
+            (
+                page.escaped(exercise),
+                f"<code>{page.escaped(name)}</code>",
+                _student(found, student),
+                f"<code>{page.of_student(answer)}</code>" if answer else "",
+                page.of_student(says),
+            )
+            for exercise, name, student, answer, says in found.unjudged[:MOST_UNJUDGED]
+        ]
+        body += [f"<h2>{_UNJUDGED}</h2>", f"<p>{_WHY_UNJUDGED}{_more(found)}</p>"]
+        body += page.table(_UNJUDGED, ["exercise", "quantity", "student", "answer", "why"], rows)
     if found.mistakes:
         rows = [
             (page.escaped(exercise), f"<code>{page.escaped(name)}</code>", str(count), page.sentence(says))
@@ -114,7 +132,7 @@ def summary_markdown(title, students, results, complaints=()):
     lines += [f"- {_named(found, one)}: {'; '.join(map(in_markdown, reasons))}" for one, reasons in found.looks]
     lines += [""] if found.looks else [_NONE, ""]
     if found.complaints:
-        lines += ["## Could not be assigned to a student", ""]
+        lines += [f"## {_LEFT_ALONE}", ""]
         lines += [*(f"- {in_markdown(complaint)}" for complaint in found.complaints), ""]
     for heading, ids in _absent(found):
         lines += [f"## {heading}", "", ", ".join(_named(found, one) for one in ids), ""]
@@ -153,6 +171,19 @@ def summary_markdown(title, students, results, complaints=()):
             for asked in one.asked
         ]
         lines += ["## Answers", "", *_table(["exercise", "quantity", "in percent", *STATUSES], rows)]
+    if found.unjudged:
+        rows = [
+            (
+                in_markdown(exercise),
+                _code(name),
+                _named(found, student),
+                _code(answer) if answer else "",
+                in_markdown(says),
+            )
+            for exercise, name, student, answer, says in found.unjudged[:MOST_UNJUDGED]
+        ]
+        lines += [f"## {_UNJUDGED}", "", f"{_WHY_UNJUDGED}{_more(found)}", ""]
+        lines += _table(["exercise", "quantity", "student", "answer", "why"], rows)
     if found.mistakes:
         rows = [
             (in_markdown(exercise), _code(name), str(count), _cell(says))
@@ -172,6 +203,12 @@ def _overview(found):
         mean = f"Mean {number(found.mean)}, median {number(found.median)}"
         lines.append(f"{mean} of {number(found.points)} points, over the submissions.")
     return lines
+
+
+def _more(found):
+    """What is said where not all of the answers that were not judged are told."""
+    more = len(found.unjudged) - MOST_UNJUDGED
+    return f" There are {more} more, on the pages of the students." if more > 0 else ""
 
 
 def _absent(found):

@@ -1,6 +1,7 @@
 """Words and numbers of the outputs, and texts of students made harmless for text and for Markdown."""
 
 import re
+from fractions import Fraction
 
 from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
 from loopbook.exercises.reading import shortened
@@ -16,6 +17,8 @@ LONGEST_REMARK = 400
 MOST_REMARKS = 20
 #: Joiners are invisible and belong to names in several scripts, and to emoji.
 _JOINERS = "\u200c\u200d"
+_SETTINGS = ("Kp", "Ti", "Td", "Tf")
+_FRACTION = re.compile(r"-?[0-9]{1,300}/[1-9][0-9]{0,6}")
 #: What Markdown would take for more than text: signs anywhere, addresses, and what begins a list.
 _MARKDOWN = re.compile(r"[\\`*_{}\[\]<>#|~$&^@]|:(?=//)|(?<=www)\.|^[-+=]|(?<=^\d)[.)]|(?<=^\d\d)[.)]")
 
@@ -77,6 +80,8 @@ def answer_in_words(answer):
 
     >>> answer_in_words([2.5, "3 min", {"-1": 2}]), answer_in_words({"unreadable": "a function"})
     ('[2.5, 3 min, {-1: 2}]', '')
+    >>> answer_in_words({"Kp": "30303/5000", "Ti": 12, "Td": 0, "Tf": 0, "form": "parallel"})
+    'Kp = 6.0606, Ti = 12'
     """
     if isinstance(answer, dict) and [*answer] == ["unreadable"]:
         return ""
@@ -84,6 +89,8 @@ def answer_in_words(answer):
 
 
 def _in_words(answer):
+    if isinstance(answer, dict) and {"Kp", "form"} <= {*answer} <= {"form", *_SETTINGS}:
+        return _controller(answer)
     if isinstance(answer, dict):
         return "{" + ", ".join(f"{name}: {_in_words(value)}" for name, value in answer.items()) + "}"
     if isinstance(answer, list):
@@ -91,6 +98,19 @@ def _in_words(answer):
     if isinstance(answer, float):
         return f"{answer:.12g}"
     return "" if answer is None else str(answer)
+
+
+def _controller(settings):
+    """A controller, whose settings may be exact fractions, without those that it does not use."""
+    usual = {"Ti": "inf", "Td": 0, "Tf": 0}
+    used = [name for name in _SETTINGS if settings.get(name, usual.get(name)) != usual.get(name)]
+    form = f", {settings['form']} form" if {"Td", "Tf"} & {*used} else ""
+    return ", ".join(f"{name} = {_in_decimals(settings[name])}" for name in used) + form
+
+
+def _in_decimals(value):
+    is_fraction = isinstance(value, str) and _FRACTION.fullmatch(value)
+    return f"{float(Fraction(value)):.8g}" if is_fraction else _in_words(value)
 
 
 def remarks(result):
