@@ -22,6 +22,7 @@ test: .venv/ready ## prove everything: the library, the ledger and every cell of
 
 bench: .venv/ready ## measure what the collection costs beside what it stands on
 	$(python) tests/bench.py
+	$(python) tests/bench_grading.py
 
 grade: .venv/ready ## release the example course, collect a dozen submissions, and grade them
 	$(python) examples/course/make_submissions.py

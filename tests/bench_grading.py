@@ -1,7 +1,7 @@
 """What grading costs: `make bench` runs this too.
 
 A class of 100 with ordinary notebooks, a class of 1000 with two workers and its memory, the grader killed at twenty
-random moments, and the same notebooks through nbgrader where that is installed.
+random moments, the hostile corpus, and the same notebooks through nbgrader where that is installed.
 """
 
 import json
@@ -22,6 +22,7 @@ from time import perf_counter
 from rich.console import Console
 from rich.table import Table
 
+from hostile import ATTACKS
 from loopbook import notebooks
 from loopbook.grading.assignment import load
 from loopbook.grading.files import write
@@ -180,6 +181,13 @@ def killed(table, course, times=20):
     )
 
 
+def besieged(table):
+    """The hostile corpus: its tests are that nothing got out, no mark was gained, and nobody else was touched."""
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "tests/test_grading_hostile.py"]
+    *_, said = subprocess.run(command, cwd=ROOT, capture_output=True, encoding="utf-8").stdout.strip().splitlines()
+    table.add_row("hostile corpus", f"{len(ATTACKS)} attacks", said)
+
+
 def main():
     """Print the table."""
     table = Table(
@@ -189,6 +197,7 @@ def main():
         course = of_hundred(table, Path(hundred))
         killed(table, course)
         of_thousand(table, Path(thousand))
+    besieged(table)
     Console().print(table)
 
 
