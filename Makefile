@@ -9,7 +9,7 @@ root := $(if $(filter 0,$(shell id -u)),--allow-root)
 # A backend meant for other programs would keep the figures out of the notebooks.
 unexport MPLBACKEND
 
-.PHONY: help lab test bench grade execute
+.PHONY: help lab test bench book pictures grade execute
 
 help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' Makefile
@@ -23,6 +23,12 @@ test: .venv/ready ## prove everything: the library, the ledger and every cell of
 bench: .venv/ready ## measure what the collection costs beside what it stands on
 	$(python) tests/bench.py
 	$(python) tests/bench_grading.py
+
+book: .venv/ready ## make the site of the collection, build/book/index.html
+	$(python) -m sphinx -W --keep-going -q -b html docs build/book
+
+pictures: .venv/ready ## make the README's pictures again
+	$(python) docs/pictures.py
 
 grade: .venv/ready ## release the example course, collect a dozen submissions, and grade them
 	$(python) examples/course/make_submissions.py
