@@ -25,7 +25,7 @@ bench: .venv/ready ## measure what the collection costs beside what it stands on
 	$(python) tests/bench_grading.py
 
 book: .venv/ready ## make the site of the collection, build/book/index.html
-	$(python) -m sphinx -W --keep-going -q -b html docs build/book
+	$(python) -m sphinx -W --keep-going -q -j auto -b html docs build/book
 
 pictures: .venv/ready ## make the README's pictures again
 	$(python) docs/pictures.py

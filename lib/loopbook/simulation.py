@@ -122,9 +122,9 @@ def simulate(
     Returns:
         A `Run` with the plant's states, inputs and outputs by their names, and with a controller "setpoint",
         "measurement" (with noise), "ramped" and "filtered" (what the controller makes of the two), and the terms
-            "u_p", "u_i" and "u_d"; with a signal for scheduling that, and of a controller whose settings change its
-            "Kp" and "Ti". Of a list of blocks all signals that they write, and of each loop such terms as "LC1.u_p";
-            `Run.loop` is the view of one loop.
+        "u_p", "u_i" and "u_d"; with a signal for scheduling that, and of a controller whose settings change its
+        "Kp" and "Ti". Of a list of blocks all signals that they write, and of each loop such terms as "LC1.u_p";
+        `Run.loop` is the view of one loop.
     Raises:
         ValueError: for an unknown or a missing signal, one of the wrong length or with a value that is no finite
             number, a step longer than a dead time, an end that is no whole number of steps away, or a run that grows

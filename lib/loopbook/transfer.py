@@ -23,8 +23,8 @@ from loopbook.laplace import (
 __all__ = [
     "characteristic_polynomial", "dead_time", "double_integrator", "feedback", "first_order", "impulse_response",
     "initial_gain", "initial_slope", "integrator", "integrator_with_lag", "order", "parallel", "poles", "polynomials",
-    "response", "response_time", "second_order", "series", "static_gain", "step_response", "time_constant_form",
-    "transfer_function", "transfer_functions", "zero_pole_form", "zero_pole_gain", "zeros",
+    "response", "response_time", "second_order", "series", "simplified", "static_gain", "step_response",
+    "time_constant_form", "transfer_function", "transfer_functions", "zero_pole_form", "zero_pole_gain", "zeros",
 ]  # fmt: skip
 
 

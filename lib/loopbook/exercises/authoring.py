@@ -1,16 +1,18 @@
 """Writing exercises: statement, parameters, key and known mistakes in one place.
 
-@exercise("10.2", title="Settings for the air heater", points=4, where=lambda T, delay: delay < T)
-def air_heater(K=between(2, 6, "K/%"), T=between(15, 40, "s"), delay=between(2, 6, "s")):
-    '''The statement in Markdown, with {K}, {T} and {delay}.'''
-    return answers(
-        Kp=number(T / (2 * K * delay), "%/K", "the proportional gain"),
-        Ti=number(min(T, 4 * delay), "s", "the integral time"),
-    )
+So an exercise looks::
 
-@air_heater.mistake("That is the integral time for $c = 4$; here $c = 2$ is asked.")
-def _(T, delay):
-    return {"Ti": min(T, 8 * delay)}
+    @exercise("10.2", title="Settings for the air heater", points=4, where=lambda T, delay: delay < T)
+    def air_heater(K=between(2, 6, "K/%"), T=between(15, 40, "s"), delay=between(2, 6, "s")):
+        '''The statement in Markdown, with {K}, {T} and {delay}.'''
+        return answers(
+            Kp=number(T / (2 * K * delay), "%/K", "the proportional gain"),
+            Ti=number(min(T, 4 * delay), "s", "the integral time"),
+        )
+
+    @air_heater.mistake("That is the integral time for $c = 4$; here $c = 2$ is asked.")
+    def _(T, delay):
+        return {"Ti": min(T, 8 * delay)}
 """
 
 import functools

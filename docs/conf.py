@@ -1,0 +1,48 @@
+"""How Sphinx makes the site: ``python -m sphinx -W -b html docs build/book``."""
+
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).parent
+sys.path[:0] = [str(HERE), str(HERE / "extensions")]
+
+import repository  # noqa: E402 - of docs/extensions/, which has just become a place to import from
+
+project = "loopbook"
+author = repository.AUTHORS
+project_copyright = repository.COPYRIGHT
+version = release = repository.VERSION
+language = "en"
+
+own = ["stored", "mathml", "readme", "lazy_figures", "library", "repository_pages", "command_options", "ledger_page"]
+own += ["cheat_sheet", "front_page"]
+extensions = ["myst_nb", *(name for name in own if (HERE / "extensions" / f"{name}.py").exists())]
+if (HERE / "extensions" / "lessons.py").exists():
+    extensions.append("extensions.lessons")  # docs/lessons has the short name
+exclude_patterns = ["lessons", "**/.ipynb_checkpoints"]
+
+# notebooks: as stored, never run
+nb_execution_mode = "off"
+nb_ipywidgets_js = {}  # no page holds a widget, and none may fetch one from elsewhere
+nb_merge_streams = True
+myst_enable_extensions = ["attrs_block", "attrs_inline", "colon_fence", "dollarmath"]
+myst_heading_anchors = 4
+myst_dmath_double_inline = True
+
+# the look
+html_theme = "furo"
+html_title = "loopbook"
+html_math_renderer = "mathml"
+html_static_path = ["_static"]
+templates_path = ["_templates"]
+html_css_files = ["loopbook.css"]
+html_favicon = "_static/favicon.svg"
+html_copy_source = False
+html_show_sourcelink = False
+html_show_search_summary = False  # excerpts are fetched, and a page opened from a file may fetch nothing
+pygments_style = "a11y-high-contrast-light"
+pygments_dark_style = "a11y-high-contrast-dark"
+html_theme_options = {
+    "light_css_variables": {"color-brand-primary": "#005a8c", "color-brand-content": "#005a8c"},
+    "dark_css_variables": {"color-brand-primary": "#7cc4f0", "color-brand-content": "#7cc4f0"},
+}

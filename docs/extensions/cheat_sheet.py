@@ -1,0 +1,75 @@
+"""The directive `cheat-sheet`: all formulas of the cheat sheet as a page of the site, with the PDF to download."""
+
+import logging
+import re
+from pathlib import Path
+
+from docutils import nodes
+from sheet.contents import LETTERS, TITLE, sections
+from sheet.layout import draw
+from slugs import slug
+from sphinx import addnodes
+from sphinx.util.docutils import SphinxDirective
+
+FILE = "cheat_sheet.pdf"
+
+
+def inline(text):
+    """Return the nodes of a text with formulas between dollars."""
+    pieces = re.split(r"\$(.*?)\$", text)
+    return [nodes.math(piece, piece) if n % 2 else nodes.Text(piece) for n, piece in enumerate(pieces) if piece]
+
+
+def paragraph(text):
+    return nodes.paragraph("", "", *inline(text))
+
+
+def table(header, rows):
+    """Return the table of a section; without a header where it has none."""
+    group = nodes.tgroup(cols=len(rows[0]))
+    group += [nodes.colspec(colwidth=1) for _ in rows[0]]
+    if header:
+        group += nodes.thead("", table_row(header))
+    group += nodes.tbody("", *map(table_row, rows))
+    return nodes.table("", group, classes=["cheat-sheet"])
+
+
+def table_row(cells):
+    return nodes.row("", *(nodes.entry("", paragraph(cell)) for cell in cells))
+
+
+class CheatSheet(SphinxDirective):
+    """Sections with their tables, and from each the way to its chapter."""
+
+    def run(self):
+        download = nodes.reference("", f"{TITLE}: the sheet as a PDF, A4", refuri=FILE, classes=["download"])
+        letters = [nodes.list_item("", paragraph(line)) for line in LETTERS]
+        return [nodes.paragraph("", "", download), nodes.bullet_list("", *letters), *map(self.section, sections())]
+
+    def section(self, part):
+        words = re.sub(r"\$.*?\$", "", part.title).strip(" ,")
+        place = nodes.section("", nodes.title("", "", *inline(part.title)), ids=[slug(words)], names=[])
+        place += table(part.header, part.cells())
+        if part.note:
+            place += paragraph(part.note)
+        place += nodes.paragraph("", "", nodes.Text("Derived in "), self.chapter(part.chapter), nodes.Text("."))
+        return place
+
+    def chapter(self, name):
+        """A link whose text is the title of the chapter's page."""
+        target = {"refdoc": self.env.docname, "reftype": "doc", "refdomain": "std", "reftarget": f"/chapters/{name}"}
+        return addnodes.pending_xref("", nodes.inline("", name), **target, refexplicit=False, refwarn=True)
+
+
+def write_file(app, exception):
+    """Put the PDF beside the page that links to it."""
+    if exception is None and app.builder.format == "html":
+        logging.getLogger("fontTools").setLevel(logging.WARNING)  # which else tells of every table of every font
+        draw(sections(), TITLE, LETTERS, Path(app.outdir) / FILE)
+
+
+def setup(app):
+    """Tell Sphinx of the directive and of the file."""
+    app.add_directive("cheat-sheet", CheatSheet)
+    app.connect("build-finished", write_file)
+    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,0 +1,53 @@
+"""Where a notebook can be opened and run without an installation: Binder, Colab and Codespaces.
+
+The repository's address stands in pyproject.toml and nowhere else; a branch other than main stands behind it, as in
+https://github.com/loopbook/loopbook/tree/next.
+"""
+
+import re
+from pathlib import Path
+from urllib.parse import quote
+
+import repository
+
+ROOT = Path(__file__).resolve().parents[2]
+ADDRESS = re.compile(r"https://github\.com/(?P<name>[\w.-]+/[\w.-]+?)(?:\.git)?(?:/tree/(?P<branch>[\w./-]+))?/?")
+COPIES = "colab"  # the branch where the workflow colab.yml puts the notebooks with a cell that installs loopbook
+FIRST = "chapters/01_introduction.ipynb"  # what Colab, which opens notebooks and no folders, shows of the collection
+
+
+def of_repository(address=repository.ADDRESS):
+    """Return owner and name of a repository, as "loopbook/loopbook", and its branch.
+
+    Raises ValueError for an address that is not on GitHub.
+
+    >>> of_repository("https://github.com/loopbook/loopbook/tree/next")
+    ('loopbook/loopbook', 'next')
+    """
+    if not (found := ADDRESS.fullmatch(address)):
+        raise ValueError(f"the repository is {address}: expected one on github.com")
+    return found["name"], found["branch"] or "main"
+
+
+def links(path=""):
+    """Return name and address of each place that opens a notebook, or without one the collection.
+
+    A codespace is the whole repository: no address opens one notebook in it.
+
+    Arguments:
+        path: of a notebook from the root of the repository, as "chapters/01_introduction.ipynb".
+    Raises:
+        ValueError: for a path at which there is nothing, or if there is no repository.
+
+    >>> [name for name, address in links("chapters/01_introduction.ipynb")]
+    ['Binder', 'Colab', 'Codespaces']
+    """
+    if not (ROOT / path).exists():
+        raise ValueError(f"there is no {path}: expected the path of a notebook from the root of the repository")
+    name, branch = of_repository()
+    on_binder = quote(f"lab/tree/{path or 'chapters'}", safe="")
+    return (
+        ("Binder", f"https://mybinder.org/v2/gh/{name}/{quote(branch, safe='')}?urlpath={on_binder}"),
+        ("Colab", f"https://colab.research.google.com/github/{name}/blob/{COPIES}/{quote(path or FIRST)}"),
+        ("Codespaces", f"https://codespaces.new/{name}/tree/{quote(branch)}?quickstart=1"),
+    )

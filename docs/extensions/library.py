@@ -1,0 +1,251 @@
+"""The library's reference from its docstrings: the directive `library` documents a module, with all that it offers.
+
+A package is documented by its parts, under the names that a reader imports: `loopbook.tuning.simc` and not the module
+within. Docstrings are plain text with code in back-quotes; what reStructuredText would read into a formula such as
+`T**2*s**2` is taken out of its sight.
+"""
+
+import functools
+import importlib
+import inspect
+import json
+import re
+from pathlib import Path
+
+import functions_used
+from docutils.parsers.rst import directives
+from sphinx.pycode import ModuleAnalyzer
+from sphinx.util.docutils import SphinxDirective
+
+ROOT = Path(__file__).parents[2]
+_DOCTEST = re.compile(r"^( *)>>>.*(?:\n(?! *$).*)*", re.MULTILINE)
+_LITERAL = re.compile(r"::\n\n(?:(?: {4}.*)?\n)*(?: {4}.*)?")
+_RETURNS = re.compile(r"^Returns:\n((?: {4}.*(?:\n|$))+)", re.MULTILINE)
+_BLOCK = "\f"  # stands before what is kept of whole lines, so that a paragraph ends there
+_CODE = re.compile(r"``[^`]+``|`[^`]+`")
+_SOURCE = re.compile(r"\n(Source): (.*(?:\n(?! *$|\f).*)*)\n*")
+
+
+def modules():
+    """Return the rows of the README's table of modules: [(names, what they do), ...]."""
+    rows = (ROOT / "README.md").read_text(encoding="utf-8").partition("| module | what it does |\n")[2]
+    table = rows.partition("\n\n")[0].splitlines()[1:]
+    return [(re.findall(r"`(\w+)`", row.split("|")[1]), row.split("|")[2].strip()) for row in table]
+
+
+def offered(module):
+    """Return the public names of a module, in the order of its source; of a package part by part."""
+    names = getattr(module, "__all__", None) or [
+        name
+        for name, value in vars(module).items()
+        if not name.startswith("_") and getattr(value, "__module__", "") == module.__name__
+    ]
+    return sorted(names, key=lambda name: _place(module, name))
+
+
+def _place(module, name):
+    """Where a name is made: the part of the package as `__init__` imports it, and the line there."""
+    home = part_of(module, name)
+    parts = [part for part in _imported_parts(module) if part != module.__name__]
+    return (parts.index(home) if home in parts else -1, _tags(home).get(name, 10**9))
+
+
+@functools.cache
+def _imported_parts(module):
+    found = re.findall(
+        rf"^from ({re.escape(module.__package__)}[\w.]*) import", inspect.getsource(module), re.MULTILINE
+    )
+    return list(dict.fromkeys(found))
+
+
+@functools.cache
+def _tags(name):
+    """The line at which a module makes each of its names, constants too."""
+    analyzer = ModuleAnalyzer.for_module(name)
+    analyzer.analyze()
+    return {key: line for key, line in analyzer.tagorder.items() if "." not in key}
+
+
+def part_of(module, name):
+    """Return the module that makes what another one offers: itself, or a part of a package."""
+    for part in (module.__name__, *_imported_parts(module)):
+        if name in _tags(part) and not _imports(part, name):
+            return part
+    made_in = getattr(getattr(module, name), "__module__", "")
+    return made_in if made_in.startswith("loopbook") else module.__name__
+
+
+def _imports(part, name):
+    return name in re.findall(r"\w+", " ".join(re.findall(r"^from [\w.]+ import (\([^)]*\)|.*)", _source(part), re.M)))
+
+
+@functools.cache
+def _source(name):
+    return inspect.getsource(importlib.import_module(name))
+
+
+@functools.cache
+def public():
+    """Return what a back-quoted name means: {name: its address in the reference}, for names of more than a letter."""
+    found = {}
+    for names, _ in modules():
+        for name in names:
+            module = importlib.import_module(f"loopbook.{name}")
+            found |= {key: f"{module.__name__}.{key}" for key in offered(module) if len(key) > 1 and key not in found}
+            found.setdefault(name, f"loopbook.{name}")
+    return found
+
+
+def as_rst(text, module="loopbook"):
+    """Return a docstring of the library as reStructuredText that shows just what the docstring says.
+
+    >>> as_rst("It is T**2*s, as `simc` has it; `x` is |y|.")
+    'It is T\\\\*\\\\*2\\\\*s, as :py:obj:`simc <loopbook.tuning.simc>` has it; ``x`` is \\\\|y\\\\|.'
+    """
+    kept = []
+
+    def keep(match):
+        is_code = match[0].startswith("`")
+        kept.append(_code(match[0], module) if is_code else match[0])
+        return f"{'' if is_code else _BLOCK}\0{len(kept) - 1}\0"
+
+    for pattern in (_DOCTEST, _LITERAL, _CODE):
+        text = pattern.sub(keep, text)
+    text = re.sub(r"[\\*|]|_(?!\w)", r"\\\g<0>", text)
+    text = _RETURNS.sub(lambda match: f"\n:Returns:\n{match[1]}\n", text)  # napoleon would look for a type in it
+    text = _SOURCE.sub(lambda match: f"\n\n:{match[1]}: " + re.sub(r"\n\s*", "\n    ", match[2]) + "\n\n", text)
+    return re.sub(f"{_BLOCK}?\0(\\d+)\0", lambda match: kept[int(match[1])], text)
+
+
+def _code(quoted, module):
+    code = " ".join(quoted.strip("`").split())
+    name, _, rest = code.removeprefix("loopbook.").partition(".")
+    own = f"{module}.{name}"
+    target = own if own in public().values() else public().get(name)
+    if not target or not re.fullmatch(r"\w+(\.\w+)*", code):
+        return f"``{code}``"
+    return f":py:obj:`{code} <{target}{'.' + rest if rest else ''}>`"
+
+
+@functools.cache
+def chapters_with():
+    """Return the chapters that use a function or a class: {its address in the reference: [chapter, ...]}."""
+    found = {}
+    for file in sorted((ROOT / "chapters").glob("*.ipynb")):
+        names, used = functions_used.Names(), set()
+        for cell in json.loads(file.read_text(encoding="utf-8"))["cells"]:
+            if cell["cell_type"] == "code":
+                used |= set(names.used("".join(cell["source"])))
+        for address in used:
+            found.setdefault(address, []).append(file.stem)
+    return found
+
+
+def mend(app, what, name, obj, options, lines):
+    """Make a docstring readable for Sphinx before napoleon reads its sections."""
+    if name.startswith("loopbook"):
+        module = name if what == "module" else re.match(r"loopbook(\.[a-z_]\w*)*(?=\.)", name)[0]
+        text = as_rst("\n".join(lines), module)
+        pages = [chapter for chapter in chapters_with().get(name, ()) if f"chapters/{chapter}" in app.env.found_docs]
+        if pages:
+            links = ", ".join(f":doc:`{page.partition('_')[0].lstrip('0')} </chapters/{page}>`" for page in pages)
+            example = re.search(r"^>>>|\Z", text, re.MULTILINE).start()
+            text = f"{text[:example]}\n\n:In {'chapters' if pages[1:] else 'chapter'}: {links}\n\n{text[example:]}"
+        lines[:] = text.split("\n")
+
+
+class Library(SphinxDirective):
+    """`.. library:: loopbook.tuning` documents a module, and with `:parts:` modules within it, a section each."""
+
+    required_arguments = 1
+    option_spec = {"parts": directives.unchanged}  # noqa: RUF012 - as docutils has it
+
+    def run(self):
+        name = self.arguments[0]
+        module = importlib.import_module(name)
+        self.env.note_dependency(module.__file__)
+        lines = [f".. py:module:: {name}", "", as_rst(inspect.getdoc(module), name), ""]
+        homes = {}
+        for key in offered(module):
+            homes.setdefault(part_of(module, key), []).append(key)
+        for home, keys in homes.items():
+            if len(homes) > 1 and home != name and hasattr(module, "__path__"):
+                lines += self.heading(home)
+            lines += [line for key in keys for line in documented(module, key)]
+        for part in self.options.get("parts", "").split():
+            inner = importlib.import_module(f"{name}.{part}")
+            lines += self.heading(inner.__name__, f"{name}.{part}")
+            lines += [f".. py:module:: {inner.__name__}", ""]
+            lines += [line for key in offered(inner) for line in documented(inner, key)]
+        return self.parse_text_to_nodes("\n".join(lines), allow_section_headings=True)
+
+    def heading(self, home, title=""):
+        """The title of a part, and what its module says of itself."""
+        part = importlib.import_module(home)
+        self.env.note_dependency(part.__file__)
+        title = title.removeprefix("loopbook.") or home.rpartition(".")[2].replace("_", " ")
+        return [title, "-" * len(title), "", as_rst(inspect.getdoc(part), home), ""]
+
+
+def documented(module, name):
+    """Return the lines that document one name of a module."""
+    value, address = getattr(module, name), f"{module.__name__}.{name}"
+    if inspect.isclass(value):
+        if value.__name__ != name:  # another name for a class that has its place elsewhere
+            return [f".. py:class:: {address}", "", f"   The same as {_code(value.__name__, module.__name__)}.", ""]
+        lines = [f".. auto{'exception' if issubclass(value, Exception) else 'class'}:: {address}", "   :members:"]
+        bases = [base for base in value.__bases__ if base.__module__.startswith("loopbook")]
+        return [*lines, *(["   :show-inheritance:"] if bases else []), ""]
+    if callable(value) and hasattr(value, "__code__"):
+        return [f".. autofunction:: {address}", ""]
+    home = part_of(module, name)
+    comment = ModuleAnalyzer.for_module(home).find_attr_docs().get(("", name), [])
+    return [f".. py:data:: {address}", "", *(f"   {line}" for line in as_rst("\n".join(comment), home).split("\n")), ""]
+
+
+class Modules(SphinxDirective):
+    """`.. modules::` is the README's table of modules, each with its page."""
+
+    def run(self):
+        self.env.note_dependency(ROOT / "README.md")
+        lines = [
+            ".. list-table::",
+            "   :header-rows: 1",
+            "   :widths: 25 75",
+            "",
+            "   * - module",
+            "     - what it does",
+        ]
+        for names, what in modules():
+            pages = ", ".join(f":doc:`/reference/{name}`" for name in names)
+            what = re.sub(r"`(\w+)`", r"``\1``", what)
+            lines += [f"   * - {pages}", f"     - {what}"]
+        lines += ["", ".. toctree::", "   :hidden:", ""]
+        lines += [f"   /reference/{name}" for names, _ in modules() for name in names]
+        return self.parse_text_to_nodes("\n".join(lines))
+
+
+def setup(app):
+    """Join Sphinx: autodoc, napoleon for the sections of the docstrings, and the directives."""
+    app.setup_extension("sphinx.ext.autodoc")
+    app.setup_extension("sphinx.ext.napoleon")
+    app.connect("autodoc-process-docstring", mend, priority=400)
+    app.connect("config-inited", configure)
+    app.add_directive("library", Library)
+    app.add_directive("modules", Modules)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
+
+
+def configure(app, config):
+    """Choose how autodoc and napoleon write, for the docstrings of this library."""
+    config.autodoc_member_order = "bysource"
+    config.autodoc_preserve_defaults = True
+    config.autodoc_inherit_docstrings = False
+    config.napoleon_numpy_docstring = False
+    config.napoleon_use_rtype = False
+    sections = ("Arguments", "Attributes", "Attributes of the class")
+    config.napoleon_custom_sections = [(name, "params_style") for name in sections]
+    config.autodoc_typehints = "none"
+    config.smartquotes_action = "D"  # dashes, but no quotes: "PI" in a docstring is what one types
+    config.add_module_names = False
+    config.python_maximum_signature_line_length = 80

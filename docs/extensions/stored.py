@@ -1,0 +1,241 @@
+"""Chapters and solutions become pages: the notebooks as stored are copied into docs/, with what a page needs.
+
+A copy differs from its notebook in this: exercises have headings and boxes, solutions are folded, formulas within
+tables are MathML, checks have a place of their own and a link to the ledger, sections name the functions that they
+use, and every page says where else it can be opened. The notebooks themselves are not touched, and nothing is run.
+"""
+
+import json
+import re
+from pathlib import Path
+
+import functions_used
+import launch
+import mathml
+import nbformat
+import slugs
+from lessons import places
+from nbformat.v4.rwbase import rejoin_lines
+from sphinx import addnodes
+
+DOCS = Path(__file__).parents[1]
+ROOT = DOCS.parent
+FOLDERS = ("chapters", "solutions")
+SLIDER = "# NBVAL_IGNORE_OUTPUT\n"
+CHECK = "application/vnd.loopbook.check+json"
+RESPONSE = "application/vnd.loopbook.response+json"
+SHOWN = ("image/png", "text/html", "text/latex", "text/markdown", "text/plain")  # the first of these that there is
+STATEMENT = re.compile(r"\*\*Exercise ([\dA-Z]+\.\d+) · (.*?)\*\*( \(\d+ points?\))?\s*(.*)", re.DOTALL)
+
+
+def stored(path):
+    """Return a notebook, each text in it in one piece. (nbformat would check it besides, which tests do.)"""
+    return rejoin_lines(nbformat.from_dict(json.loads(path.read_text(encoding="utf-8"))))
+
+
+def markdown(source):
+    """A cell of text."""
+    return nbformat.v4.new_markdown_cell(source)
+
+
+def page(path):
+    """Return the notebook at a path, as its page needs it.
+
+    Arguments:
+        path: of a notebook in chapters/ or solutions/.
+    """
+    content = stored(path)
+    folder, name = path.parent.name, path.stem
+    whole = content["cells"]
+    if folder == "chapters":
+        whole = with_functions(noted(places.with_lessons(whole, name)))
+    cells = []
+    for cell in whole:
+        cells += in_markdown(cell) if cell["cell_type"] == "markdown" else in_code(cell, folder, name)
+    cells.insert(1, markdown(opening(folder, name)))
+    if folder == "solutions":
+        cells = folded(cells)
+    for number, cell in enumerate(cells, start=1):
+        cell["id"] = f"cell-{number}"
+    content["cells"] = cells
+    return content
+
+
+def opening(folder, name):
+    """The line below a page's title: its other half, and where else it can be opened."""
+    other = {"chapters": "solutions", "solutions": "chapters"}[folder]
+    word = {"chapters": "Solutions", "solutions": "Chapter"}[folder]
+    places = " · ".join(f"[{place}]({address})" for place, address in launch.links(f"{folder}/{name}.ipynb"))
+    return f"{{.opening}}\n[{word} of this chapter](/{other}/{name}.ipynb) · Open in: {places}".replace(
+        "Chapter of this chapter", "The chapter"
+    )
+
+
+def in_markdown(cell):
+    """A cell of text; the headings of the solutions are places to link to."""
+    lines = []
+    for line in cell["source"].splitlines():
+        exercise = re.match(r"## Exercise ([\dA-Z]+\.\d+)", line)
+        if exercise:  # in the solutions
+            lines.append(f"(solution-{slugs.slug(exercise[1])})=")
+        lines.append(line)
+    return [markdown("\n".join(lines))]
+
+
+def noted(cells):
+    """After each cell with sliders, which show nothing in a page, a line that says where they can be turned."""
+    result = []
+    for number, cell in enumerate(cells):
+        result.append(cell)
+        if cell["cell_type"] == "code" and cell["source"].startswith(SLIDER):
+            below = cells[number + 1 : number + 2]
+            here = ", and one like it stands below" if below and "{lesson}" in below[0]["source"] else ""
+            result.append(markdown(f"{{.slider-note}}\nIn JupyterLab this cell has sliders{here}."))
+    return result
+
+
+def with_functions(cells):
+    """Put at the end of each section the functions of the library that its code uses."""
+    sections = functions_used.of_sections(cells)
+    result, number = [], 0
+    for cell in cells:
+        pieces = re.split(r"(?m)^(?=## )", cell["source"]) if cell["cell_type"] == "markdown" else [""]
+        for piece in pieces[1:]:
+            if pieces[0].strip():
+                result.append(markdown(pieces[0]))
+            result += line_of_functions(sections[number][1])
+            number += 1
+            pieces[0] = piece
+        result.append(markdown(pieces[0]) if len(pieces) > 1 else cell)
+    return result + line_of_functions(sections[-1][1])
+
+
+def line_of_functions(used):
+    names = sorted(used.items(), key=lambda pair: pair[1].lower())
+    text = ", ".join(f"{{py:obj}}`{name} <{address}>`" for address, name in names)
+    return [markdown(f"{{.functions}}\nFunctions used here: {text}")] if names else []
+
+
+def in_code(cell, folder, name):
+    """A cell of code: an exercise becomes a heading and a box, anything else keeps its code and its output."""
+    outputs = [shown for output in cell["outputs"] if (shown := one_way(output))]
+    statement = next(
+        (STATEMENT.match(o["data"]["text/markdown"]) for o in outputs if "text/markdown" in o.get("data", {})), None
+    )
+    if statement:
+        return [markdown(exercise(folder, *statement.groups()))]
+    response = any(RESPONSE in output.get("data", {}) for output in cell["outputs"])
+    if folder == "chapters" and (response or cell["source"].startswith("progress(")):
+        outputs = []  # of dots in the place of an answer there is nothing to say yet
+    source = cell["source"].removeprefix(SLIDER)
+    metadata = {"mystnb": {"image": {"alt": alt}}} if (alt := alternative(outputs)) else {}
+    if all(line.startswith(("from ", "import ", " ", ")")) for line in source.splitlines()):
+        metadata = {"tags": ["hide-input"], "mystnb": {"code_prompt_show": "Imports", "code_prompt_hide": "Imports"}}
+    code = nbformat.from_dict({**cell, "source": source, "metadata": metadata, "outputs": outputs})
+    return [code]
+
+
+def alternative(outputs):
+    """The words for a figure that the notebook stores beside it."""
+    return next((o["metadata"]["image/png"].get("alt") for o in outputs if "image/png" in o.get("data", {})), None)
+
+
+def one_way(output):
+    """Return an output in the one form that the page shows, or nothing if it has none."""
+    if "data" not in output:
+        return output
+    mime = next((mime for mime in SHOWN if mime in output["data"]), None)
+    if mime is None:
+        return None
+    content = output["data"][mime]
+    if mime == "text/latex" and not re.fullmatch(r"\$\$?([^$]|\\text\{[^}]*\})*\$\$?", content.strip()):
+        mime, content = "text/html", f'<div class="math" tabindex="0">{mathml.in_html(content)}</div>'
+    elif mime == "text/html":
+        content = html(content, output["data"].get(CHECK))
+    return {**output, "data": {mime: content}}
+
+
+def html(content, check):
+    """A table or a response: formulas as MathML, colours by name, and for a check its place and its link."""
+    content = mathml.in_html(content)
+    content = re.sub(r'style="color: (#\w+)(?:; (white-space: nowrap))?"', with_class, content)
+    content = re.sub(
+        r'style="border-left: 4px solid (#\w+); background: [^"]*"',
+        lambda match: f'class="response {COLOURS[match[1]]}"',
+        content,
+    )
+    content = content.replace(' role="status"', "")  # what stands in a page from the beginning is no news
+    content = content.replace(' style="text-align:left"', "").replace(' style="text-align:right"', ' class="number"')
+    if not check:
+        return f'<div class="table" tabindex="0">{content}</div>' if "<table" in content else content
+    source, entry = check["source"], check["entry"]
+    target = f"../ledger.html#{slugs.ledger_anchor(source, entry)}"
+    content = re.sub(r"<p><strong>(.*?)</strong></p>", rf'<p><a href="{target}">\1</a></p>', content, count=1)
+    return f'<div class="table check" id="{slugs.check_anchor(source, entry)}" tabindex="0">{content}</div>'
+
+
+COLOURS = {"#00664d": "right", "#5a5a5a": "open", "#555555": "open", "#8a5a00": "differs"}
+
+
+def with_class(match):
+    return f'class="{COLOURS[match[1]]}{" nowrap" if match[2] else ""}"'
+
+
+def exercise(folder, number, title, points, statement):
+    """The statement of an exercise in a box, in the chapter under a heading, with the way to its solution or back."""
+    here, there = ("exercise", "solution") if folder == "chapters" else ("solution", "exercise")
+    link = f"{{ref}}`{'Solution' if there == 'solution' else 'In the chapter'} <{there}-{slugs.slug(number)}>`"
+    points = (points or "").strip(" ()")
+    head = f"({here}-{slugs.slug(number)})=\n### Exercise {number} · {title}\n\n" if folder == "chapters" else ""
+    last = f"{{.exercise-links}}\n{' · '.join(filter(None, [points, link]))}"
+    return f"{head}:::::{{container}} exercise\n{statement}\n\n{last}\n:::::"
+
+
+def folded(cells):
+    """The solutions: from below an exercise's statement to the next heading everything is behind "Solution"."""
+    result, is_open = [], False
+    for cell in cells:
+        if cell["cell_type"] == "markdown" and re.search(r"^## ", cell["source"], re.MULTILINE) and is_open:
+            result.append(markdown("```{raw} html\n</details>\n```"))
+            is_open = False
+        result.append(cell)
+        if cell["cell_type"] == "markdown" and "{container} exercise" in cell["source"]:
+            result.append(markdown('```{raw} html\n<details class="solution"><summary>Solution</summary>\n```'))
+            is_open = True
+    return [*result, markdown("```{raw} html\n</details>\n```")] if is_open else result
+
+
+def copy(app, config):
+    """Write the copies that have changed, and take away those whose notebook is gone."""
+    for folder in FOLDERS:
+        target = DOCS / folder
+        target.mkdir(exist_ok=True)
+        paths = sorted((ROOT / folder).glob("*.ipynb"))
+        for path in paths:
+            text = json.dumps(page(path), ensure_ascii=False, indent=1)
+            write(target / path.name, text)
+        for stale in {file.name for file in target.glob("*.ipynb")} - {path.name for path in paths}:
+            (target / stale).unlink()
+
+
+def write(path, text):
+    """Write a file if it is to change, at once, so that another build never reads half of it."""
+    if not path.exists() or path.read_text(encoding="utf-8") != text:
+        fresh = path.with_suffix(".new")
+        fresh.write_text(text, encoding="utf-8")
+        fresh.replace(path)
+
+
+def with_short_titles(app, doctree):
+    """In the list of the solutions, which says already what they are, a solution has the title of its chapter."""
+    for toctree in doctree.findall(addnodes.toctree):
+        for place, (title, page_name) in enumerate(toctree["entries"]):
+            if (page_name or "").startswith("solutions/"):
+                title = stored(DOCS / f"{page_name}.ipynb").cells[0].source.splitlines()[0]
+                toctree["entries"][place] = (title.removeprefix("# Solutions · "), page_name)
+
+
+def setup(app):
+    app.connect("config-inited", copy)
+    app.connect("doctree-read", with_short_titles)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

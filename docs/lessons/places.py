@@ -1,0 +1,74 @@
+"""Where the lessons stand in the chapters: after the reader's own slider there."""
+
+import copy
+from typing import NamedTuple
+
+import nbformat
+
+from lessons.store import load
+
+TRY_IT = "Try it"
+
+
+class Place(NamedTuple):
+    """The chapter of a lesson, and the beginning of the heading whose part "Try it" it follows."""
+
+    chapter: str
+    section: str
+
+
+PLACES = {
+    "pi": Place("07_feedback", "Example 7.5"),
+    "good_gain": Place("10_tuning", "Example 10.1"),
+    "half_rule": Place("14_model_approximation", "How good is a reduced model?"),
+    "smith": Place("17_dead_time_compensation", "Section 7.4"),
+    "windup": Place("07_feedback", "Example 7.4"),
+    "cascade": Place("11_control_structures", "Example 11.1"),
+}
+
+
+def headings(cell):
+    """The headings in a cell, as [(level, text)]."""
+    if cell.cell_type != "markdown":
+        return []
+    lines = [line.partition(" ") for line in cell.source.splitlines() if line.startswith("#")]
+    return [(len(marks), text.strip()) for marks, _, text in lines if not marks.strip("#")]
+
+
+def place_in(cells, section):
+    """Return the number of the cell before which a lesson stands, and the level of its heading.
+
+    Raises ValueError where there is no such section, or nothing to try in it.
+    """
+    at = 0
+    for wanted in (section, TRY_IT):
+        found = (
+            (number, level)
+            for number, cell in enumerate(cells[at:], at)
+            for level, text in headings(cell)
+            if text.startswith(wanted)
+        )
+        at, level = next(found, (None, None))
+        if at is None:
+            raise ValueError(f"there is no heading {wanted!r} where the lesson for {section!r} should stand")
+    end = next((k for k, cell in enumerate(cells) if k > at and headings(cell)), len(cells))
+    return end, level + 1
+
+
+def with_lessons(cells, chapter):
+    """Return the cells of a chapter with its lessons among them, as Markdown cells with the directive.
+
+    Arguments:
+        cells: of the notebook; they are not changed.
+        chapter: name of the notebook, without its folder and ending.
+    """
+    cells = list(map(copy.copy, cells))
+    for name, place in PLACES.items():
+        if place.chapter == chapter:
+            number, level = place_in(cells, place.section)
+            directive = f"```{{lesson}} {name}\n```"
+            lesson = nbformat.v4.new_markdown_cell(
+                f"{'#' * level} {load(name).title}\n\n{directive}", id=f"lesson-{name}"
+            )
+            cells.insert(number, lesson)
+    return cells

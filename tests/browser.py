@@ -1,0 +1,187 @@
+"""What the tests in a browser share: Chromium, a page that remembers complaints, JupyterLab, and a server of files."""
+
+import contextlib
+import functools
+import http.server
+import json
+import os
+import re
+import secrets
+import shutil
+import socket
+import subprocess
+import threading
+import time
+import urllib.request
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+
+import matplotlib
+import pytest
+
+from recipes import recipe
+
+ROOT = Path(__file__).parents[1]
+#: Pictures for people to look at; git ignores the folder.
+SCREENSHOTS = ROOT / "build" / "screenshots"
+DESKTOP = {"width": 1280, "height": 900}
+PHONE = {"width": 390, "height": 844}
+
+NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+MISSING = "no browser: nothing was proved in a browser; install Chromium, for example with: apt-get install chromium"
+
+
+def chromium() -> str | None:
+    """Where the system's Chromium is, or ``None``."""
+    return next(filter(None, map(shutil.which, NAMES)), None)
+
+
+@contextlib.contextmanager
+def opened() -> Iterator:
+    """A running Chromium, steered by Playwright."""
+    from playwright.sync_api import sync_playwright
+
+    # a container has no user namespaces to build the browser's own sandbox of, and often little shared memory
+    arguments = ["--no-sandbox", "--disable-dev-shm-usage"]
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium(), args=arguments)
+        yield browser
+        browser.close()
+
+
+def required() -> None:
+    """Skip loudly where there is no browser; in continuous integration that is a failure."""
+    if chromium():
+        return
+    if os.environ.get("CI"):
+        pytest.fail(MISSING)
+    warnings.warn(pytest.PytestWarning(MISSING), stacklevel=2)
+    pytest.skip(MISSING)
+
+
+class Complaints(list):
+    """What a page complains about: errors and warnings on its console, exceptions, requests that fail.
+
+    Messages that match one of ``noise`` are passed over.
+    """
+
+    def __init__(self, page, noise: tuple[str, ...] = ()):
+        super().__init__()
+        self.noise = re.compile("|".join(noise) or r"(?!)")
+        page.on("console", lambda message: self.note(message.type, f"{message.text} ({message.location['url']})"))
+        page.on("pageerror", lambda error: self.note("error", str(error)))
+        page.on("requestfailed", self.note_failure)
+        page.on("response", lambda answer: answer.status < 400 or self.note("error", f"{answer.url}: {answer.status}"))
+
+    def note_failure(self, request) -> None:
+        if request.failure != "net::ERR_ABORTED":  # what a reader who walks on leaves behind
+            self.note("error", f"{request.url}: {request.failure}")
+
+    def note(self, kind: str, text: str) -> None:
+        if kind in ("error", "warning") and not self.noise.search(text):
+            self.append(f"{kind}: {text}")
+
+
+# JupyterLab.
+
+
+@contextlib.contextmanager
+def jupyterlab(folder: Path, notebook: str) -> Iterator[str]:
+    """JupyterLab as ``make lab`` starts it, in a folder of its own with one chapter in it: the chapter's address."""
+    (folder / "chapters").mkdir(parents=True)
+    shutil.copy(ROOT / "chapters" / notebook, folder / "chapters")
+    settings = folder / "config" / "labconfig"
+    settings.mkdir(parents=True)
+    # the question about news would ask the network
+    off = {"disabledExtensions": {"@jupyterlab/apputils-extension:announcements": True}}
+    (settings / "page_config.json").write_text(json.dumps(off), encoding="utf-8")
+    port, token = free_port(), secrets.token_hex(16)
+    own = {"HOME": "home", "IPYTHONDIR": "ipython", "JUPYTER_CONFIG_DIR": "config", "JUPYTER_DATA_DIR": "data"}
+    own |= {
+        "JUPYTER_RUNTIME_DIR": "runtime",
+        "JUPYTERLAB_SETTINGS_DIR": "settings",
+        "JUPYTERLAB_WORKSPACES_DIR": "desks",
+    }
+    environment = {**os.environ, **{name: str(folder / place) for name, place in own.items()}}
+    environment["MPLCONFIGDIR"] = matplotlib.get_cachedir()  # a new list of fonts costs seconds
+    environment.pop("LOOPBOOK_PROGRESS", None)
+    command = [*recipe("lab"), "--no-browser", f"--ServerApp.port={port}", "--ServerApp.port_retries=0"]
+    with open(folder / "log", "w", encoding="utf-8") as log:
+        server = subprocess.Popen(
+            [*command, f"--IdentityProvider.token={token}"], cwd=folder, env=environment, stdout=log, stderr=log
+        )
+        try:
+            wait_for(f"http://127.0.0.1:{port}/api/status?token={token}", server, folder / "log")
+            yield f"http://127.0.0.1:{port}/lab/tree/chapters/{notebook}?token={token}"
+        finally:
+            shut_down(port, token)
+            try:
+                server.wait(timeout=20)
+            except subprocess.TimeoutExpired:
+                server.kill()
+                server.wait()
+
+
+def free_port() -> int:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        return free.getsockname()[1]
+
+
+def wait_for(address: str, server: subprocess.Popen, log: Path, seconds: float = 60) -> None:
+    end = time.monotonic() + seconds
+    while time.monotonic() < end and server.poll() is None:
+        with contextlib.suppress(OSError), urllib.request.urlopen(address, timeout=5):
+            return
+        time.sleep(0.1)
+    pytest.fail(f"JupyterLab does not answer:\n{log.read_text(encoding='utf-8')}")
+
+
+def shut_down(port: int, token: str) -> None:
+    """Ask JupyterLab to end its kernels and itself."""
+    request = urllib.request.Request(
+        f"http://127.0.0.1:{port}/api/shutdown", method="POST", headers={"Authorization": f"token {token}"}
+    )
+    with contextlib.suppress(OSError):
+        urllib.request.urlopen(request, timeout=10).close()
+
+
+# The site.
+
+
+class Silent(http.server.SimpleHTTPRequestHandler):
+    """A server of files that does not tell what it serves."""
+
+    def log_message(self, *_):
+        pass
+
+
+@contextlib.contextmanager
+def served(folder: Path, prefix: str = "some/prefix") -> Iterator[str]:
+    """The address under which a local server shows a folder, below a prefix as on a site for many projects."""
+    handler = functools.partial(Silent, directory=str(folder))
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_port}/"
+        server.shutdown()
+
+
+def first_paint(page) -> float:
+    """When something was first to be seen of the page, in seconds after it was asked for."""
+    script = """() => new Promise(resolve => new PerformanceObserver(list =>
+        resolve(list.getEntriesByName("first-contentful-paint")[0].startTime)
+    ).observe({type: "paint", buffered: true}))"""
+    return page.evaluate(script) / 1000
+
+
+def serious(page, part: str | None = None, **options) -> list[str]:
+    """What axe finds that keeps people from reading a page, or a part of it: rule, how many times, where first."""
+    from axe_playwright_python.sync_playwright import Axe
+
+    found = Axe().run(page, part, options={"resultTypes": ["violations"], **options}).response["violations"]
+    return [
+        f"{each['id']} ({each['impact']}), {len(each['nodes'])} times: {each['nodes'][0]['html'][:200]}"
+        for each in found
+        if each["impact"] in ("serious", "critical")
+    ]

@@ -1,0 +1,161 @@
+"""A chapter in JupyterLab as a reader has it: opened, run from the menu, its sliders moved, its exercises answered."""
+
+import hashlib
+import json
+import re
+
+import pytest
+from playwright.sync_api import expect
+
+from browser import DESKTOP, PHONE, ROOT, SCREENSHOTS, Complaints, jupyterlab
+
+#: A quick one that has sliders, and exercises whose responses can say a lot.
+CHAPTER = "05_transfer_functions.ipynb"
+#: What JupyterLab and its packages write on the console by themselves.
+NOISE = ()
+
+
+class Desk:
+    """JupyterLab with a chapter in it."""
+
+    def __init__(self, page, file):
+        self.page, self.file, self.complaints = page, file, Complaints(page, NOISE)
+
+    def open(self, address):
+        self.page.goto(address)
+        self.rest()
+        self.code = self.page.locator(".jp-NotebookPanel .jp-CodeCell")
+
+    def rest(self):
+        """Wait until nothing is computed."""
+        self.page.locator(".jp-Notebook-ExecutionIndicator[data-status=idle]").wait_for()
+
+    def choose(self, *names):
+        """Choose from the menu, as ``choose("Run", "Run All Cells")``."""
+        for name in names:
+            self.page.locator(".lm-MenuBar-itemLabel, .lm-Menu-itemLabel").get_by_text(name, exact=True).click()
+
+    def cell(self, text):
+        """The code cell whose source begins with a text."""
+        source = self.page.locator(".cm-content").filter(has_text=re.compile("^" + re.escape(text)))
+        return self.code.filter(has=source).first
+
+    def answer(self, number, words):
+        """Put an answer into the cell of an exercise and run it: what the response says."""
+        cell = self.cell(f'exercise("{number}").check(')
+        cell.scroll_into_view_if_needed()
+        before = cell.locator(".jp-InputPrompt").inner_text()
+        cell.locator(".cm-content").click()
+        self.page.keyboard.press("Control+a")
+        self.page.keyboard.insert_text(f'exercise("{number}").check({words})')
+        self.page.keyboard.press("Shift+Enter")
+        self.page.wait_for_function(
+            "([cell, before]) => /\\d/.test(cell.innerText) && cell.innerText != before",
+            arg=[cell.locator(".jp-InputPrompt").element_handle(), before],
+        )
+        return cell.locator(".jp-OutputArea-output").inner_text()
+
+    def stored(self):
+        """The code cells of the file."""
+        cells = json.loads(self.file.read_text(encoding="utf-8"))["cells"]
+        return [cell for cell in cells if cell["cell_type"] == "code"]
+
+    def picture(self, cell):
+        return cell.locator(".jp-OutputArea-output img").get_attribute("src")
+
+    def screenshot(self, name):
+        self.page.screenshot(path=SCREENSHOTS / f"lab_{name}.png")
+
+
+@pytest.fixture(scope="class")
+def desk(chromium, tmp_path_factory):
+    """A chapter that has been run from the menu to its end."""
+    folder = tmp_path_factory.mktemp("lab") / "desk"
+    with jupyterlab(folder, CHAPTER) as address:
+        desk = Desk(chromium.new_page(viewport=DESKTOP), folder / "chapters" / CHAPTER)
+        desk.open(address)
+        desk.screenshot("opened")
+        last = desk.code.last.locator(".jp-InputPrompt")
+        desk.choose("Edit", "Clear Outputs of All Cells")
+        expect(last).to_have_text("[ ]:")
+        desk.choose("Run", "Run All Cells")
+        expect(last).to_have_text(f"[{len(desk.stored())}]:", timeout=120_000)  # the page still grows: count the file
+        desk.choose("File", "Save Notebook")
+        desk.page.get_by_text("Saving completed").wait_for()
+        desk.screenshot("run")
+        yield desk
+        desk.page.close()
+
+
+@pytest.fixture(scope="class")
+def chapters_before():
+    return fingerprint()
+
+
+def fingerprint():
+    """What lies in the folder of the chapters."""
+    files = (path for path in (ROOT / "chapters").rglob("*") if path.is_file())
+    return {path: hashlib.sha256(path.read_bytes()).hexdigest() for path in files}
+
+
+@pytest.mark.usefixtures("chapters_before")
+class TestJupyterLab:
+    def test_a_chapter_runs_from_the_menu_to_its_end(self, desk):
+        code = desk.stored()
+        assert [cell["execution_count"] for cell in code] == list(range(1, len(code) + 1))
+        outputs = [output for cell in code for output in cell["outputs"]]
+        assert [output for output in outputs if output["output_type"] in ("error", "stream")] == []
+        assert any("image/png" in output.get("data", {}) for output in outputs)
+
+    @pytest.mark.parametrize("way", ["by mouse", "by keyboard"])
+    def test_a_slider_moves_the_figure(self, desk, way):
+        cell = desk.cell("# NBVAL_IGNORE_OUTPUT@interact(K=")
+        cell.scroll_into_view_if_needed()
+        slider = cell.locator(".noUi-handle").last
+        slider.scroll_into_view_if_needed()
+        before, value = desk.picture(cell), slider.get_attribute("aria-valuenow")
+        if way == "by mouse":
+            box = slider.bounding_box()
+            x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+            desk.page.mouse.move(x, y)
+            desk.page.mouse.down()
+            desk.page.mouse.move(x + 40, y, steps=5)
+            desk.page.mouse.up()
+        else:
+            slider.focus()
+            desk.page.keyboard.press("ArrowLeft")
+        desk.page.wait_for_function(
+            "([cell, before]) => [...cell.querySelectorAll('.jp-OutputArea-output img')].some(i => i.src != before)",
+            arg=[cell.element_handle(), before],
+        )
+        assert slider.get_attribute("aria-valuenow") != value
+        desk.rest()
+        desk.screenshot("slider_" + way.replace(" ", "_"))
+
+    def test_an_exercise_answers_to_what_is_wrong_and_to_what_is_right(self, desk):
+        wrong = desk.answer("5.1", 'H_u="1.5/(0.6*s + 0.2)", H_M=..., pole=1/3')
+        desk.screenshot("wrong")
+        assert "H_u: right" in wrong, wrong
+        assert "pole: the size is right, the sign is not" in wrong
+        assert "H_M: not answered yet" in wrong
+        right = desk.answer("5.1", 'H_u="1.5/(0.6*s + 0.2)", H_M="-1/(0.6*s + 0.2)", pole=-1/3')
+        desk.screenshot("right")
+        assert "right" in right.splitlines()[0], right
+
+    def test_a_response_is_read_on_a_phone(self, desk):
+        """With the list of files put away, as JupyterLab's own View menu does it."""
+        desk.page.set_viewport_size(PHONE)
+        desk.page.keyboard.press("Control+b")
+        response = desk.cell('exercise("5.1").check(').locator(".jp-OutputArea-output")
+        response.scroll_into_view_if_needed()
+        desk.screenshot("phone")
+        assert response.bounding_box()["width"] > 0.5 * PHONE["width"]
+        assert response.evaluate("part => part.scrollWidth <= part.clientWidth"), "the response is cut"
+        desk.page.keyboard.press("Control+b")
+        desk.page.set_viewport_size(DESKTOP)
+
+    def test_nothing_complains(self, desk):
+        assert desk.complaints == []
+
+    def test_the_chapters_are_as_before(self, desk, chapters_before):
+        assert fingerprint() == chapters_before

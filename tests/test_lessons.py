@@ -1,0 +1,268 @@
+"""The live lessons: their numbers by another route, and what a page needs for readers without eyes or mouse."""
+
+import dataclasses
+import importlib
+import re
+import sys
+from html.parser import HTMLParser
+from pathlib import Path
+
+import nbformat
+import numpy
+import pytest
+import sympy
+
+from loopbook import approximation, s, stability, tuning
+from loopbook.deadtime import Loop, System, feedback
+from loopbook.identification import good_gain_experiment
+from loopbook.pid import PID
+from loopbook.transfer import first_order
+
+ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT / "docs"))
+
+lessons = importlib.import_module("lessons")
+lesson = importlib.import_module("lessons.lesson")
+places = importlib.import_module("lessons.places")
+cascade, good_gain, half_rule, pi, smith, windup = (
+    importlib.import_module(f"lessons.{name}")
+    for name in ("cascade", "good_gain", "half_rule", "pi", "smith", "windup")
+)
+
+
+def at_the_start(name):
+    """A lesson whose sliders have only the values at which they start: quickly computed."""
+    whole = lessons.load(name)
+    only = [dataclasses.replace(x, values=(x.start,), words=x.words[x.first :][:1]) for x in whole.sliders]
+    return dataclasses.replace(whole, sliders=tuple(only))
+
+
+# ------------------------------------------------------------------------------------------------ the numbers
+
+
+def by_small_steps(T, delay, controller, times, load_at, steps=200):
+    """A lag with dead time under control, by Heun's method with `steps` steps to one unit of time."""
+    h, late = 1 / steps, round(delay * steps)
+    count = round(times[-1] * steps)
+    u, y = numpy.zeros(count + 1), numpy.zeros(count + 1)
+    remember = [0.0]
+    for k in range(count):
+        u[k] = controller(1 - y[k], remember, h)
+        now, then = (u[j - late] + (j >= load_at * steps + late) if j >= late else 0.0 for j in (k, k + 1))
+        then = now if k + 1 == late or k + 1 == load_at * steps + late else then  # a jump belongs to the next step
+        slope = (now - y[k]) / T
+        y[k + 1] = y[k] + h / 2 * (slope + (then - y[k] - h * slope) / T)
+    u[-1] = controller(1 - y[-1], remember, h)
+    every = round(steps * (times[1] - times[0]))
+    return y[::every], u[::every]
+
+
+@pytest.mark.parametrize(("Kp", "Ti"), [(1.25, 10), (2, 4), (0.5, 30)])
+def test_the_pi_lesson_shows_a_dead_time_and_no_approximation_of_it(Kp, Ti):
+    def controller(e, memory, h):
+        memory[0] += h * e
+        return Kp * (e + (memory[0] - h * e / 2) / Ti)
+
+    answer = pi.respond(sympy.Rational(str(Kp)), Ti)
+    for name, expected in zip("yu", by_small_steps(pi.T, pi.DELAY, controller, pi.TIMES, pi.LOAD_AT), strict=True):
+        assert answer.signals[name] == pytest.approx(expected, abs=0.01)
+    assert (answer.signals["y"][pi.TIMES < pi.DELAY] == 0).all()
+
+
+def test_the_pi_lesson_knows_the_limit_of_stability():
+    limit = stability.boundary_pi(first_order(pi.K, pi.T, pi.DELAY), 10)
+    verdicts = [pi.respond(limit * share, 10).verdict for share in (0.98, 1.02)]
+    assert verdicts == ["Stable, with little to spare", "Unstable"]
+
+
+@pytest.mark.parametrize("delay", [1, 4])
+def test_the_good_gain_by_hand_is_that_of_the_library(delay):
+    found = good_gain_experiment(good_gain.process_with(delay))
+    answer = good_gain.respond(sympy.Rational(found.KpGG), delay)
+    assert answer.verdict.startswith("Barely observable")
+    assert answer.results["undershoot"] == "5.0\u202f%"
+    assert float(answer.results[good_gain.KP]) == pytest.approx(0.8 * found.KpGG, rel=0.01)
+    (_, top, *_), (_, bottom, *_) = answer.marks
+    assert bottom - top == pytest.approx(found.Tou, rel=0.02)
+
+
+def test_without_an_undershoot_there_is_no_pi_controller():
+    answer = good_gain.respond(sympy.Rational(2, 5), 0)
+    assert answer.verdict == "No undershoot: more gain"
+    assert "PI" not in answer.signals
+    assert not answer.marks
+
+
+@pytest.mark.parametrize("ratio", [sympy.Rational(1, 5), sympy.Rational(1, 2), sympy.Rational(4, 5)])
+def test_half_is_the_share_of_the_half_rule(ratio):
+    model = approximation.half_rule(half_rule.process_of(ratio, 2))
+    shared = half_rule.shared_model(ratio, 2, sympy.Rational(1, 2))
+    assert (shared.T1, shared.delay) == (model.T1, model.delay)
+    # the process by its partial fractions
+    lags = [float(T) for T in half_rule.lags_of(ratio)]
+    y = 1.0
+    for T in lags:
+        share = (1 + 2 / T) * T**3 / numpy.prod([T - other for other in lags if other != T])
+        y = y - share * numpy.exp(-half_rule.TIMES / T)
+    assert half_rule.of_process(ratio, 2)[0] == pytest.approx(y, abs=1e-9)
+
+
+@pytest.mark.parametrize(("delay", "gain", "Tc"), [(1, 1, 2), ("1.2", "0.8", 1), (0, "1.5", "0.5")])
+def test_the_short_formula_of_the_predictor_is_the_predictor(delay, gain, Tc):
+    delay, gain, Tc = map(sympy.Rational, (delay, gain, Tc))
+    model = first_order(smith.K * gain, smith.T)
+    inner = PID(smith.T / (smith.K * gain * Tc), Ti=smith.T).expr
+    controller = feedback(inner, model - model * sympy.exp(-smith.DELAY * delay * s))
+    loop = Loop(first_order(smith.K, smith.T, smith.DELAY), controller)
+    servo, regulator = smith.predictor(delay, gain, Tc)
+    omega = numpy.logspace(-2, 1, 40)
+    assert servo.frequency(omega) == pytest.approx(loop.servo.frequency(omega), rel=1e-9)
+    assert regulator.frequency(omega) == pytest.approx(loop.regulator.frequency(omega), rel=1e-9)
+    assert smith.is_stable(servo) == stability.is_stable(loop.open)
+
+
+def test_with_the_right_model_the_predictor_does_what_was_wanted():
+    answer = smith.respond(sympy.Rational(1), sympy.Rational(1), sympy.Rational(2))
+    before = smith.TIMES < smith.LOAD_AT
+    wanted = System(sympy.exp(-smith.DELAY * s) / (2 * s + 1)).step(smith.TIMES)
+    assert answer.signals["smith"][before] == pytest.approx(wanted[before], abs=1e-9)
+
+
+@pytest.mark.parametrize(("cold", "limit"), [(2, 80), (30, 100)])
+def test_the_heater_that_winds_up_obeys_its_balance(cold, limit):
+    answer = windup.respond(cold, limit)
+    at = numpy.searchsorted(windup.TIMES, windup.END / 60) - 1
+    per_percent = (windup.SETPOINT - windup.WARM) / windup.NOMINAL
+    balance = min(windup.SETPOINT, cold + limit * per_percent)
+    for way in ("with", "without"):
+        assert answer.signals[f"T {way}"][at] == pytest.approx(balance, abs=0.3)
+        assert max(answer.signals[f"u {way}"]) <= limit
+    assert answer.verdict == ("The heater is at its limit" if balance < windup.SETPOINT else "The heater can do it")
+
+
+def test_anti_windup_brings_the_temperature_back_sooner():
+    times = [windup.back_after(*windup.run_with(10, 100, halt)[:2]) for halt in (False, True)]
+    assert times[0] > 3 * times[1]
+
+
+def test_the_cascade_ends_where_the_balances_of_its_plant_say():
+    tank, run = cascade.TANK, cascade.run_with("colder heating liquid", 1)
+    T_h = tank.T_p + tank.c_p * tank.F_p * (tank.T_p - tank.T_pin) / tank.U_hp
+    F_h = (tank.U_hp * (T_h - tank.T_p) - tank.U_eh * (tank.T_e - T_h)) / (tank.c_h * (55 - T_h))
+    assert run["T_p"][-1] == pytest.approx(float(tank.T_p), abs=0.02)
+    assert run["F_h"][-1] == pytest.approx(float(F_h), rel=0.01)
+
+
+def test_the_settings_of_the_cascade_are_those_of_chapter_11():
+    sensor = 1 / (5 * s + 1)
+    jacket, tank = (cascade.TANK.numbers(cascade.TANK.transfer_function("F_h", *to)) * sensor for to in (("T_hm",), ()))
+    found = tuning.simc(approximation.half_rule(jacket))
+    assert [f"{float(x):.3g}" for x in (found.Kp, found.Ti)] == ["0.301", "48.6"]
+    assert PID(0.301, Ti=48.6) == cascade.SECONDARY
+    assert 1.5 < stability.margins(tank * cascade.SINGLE.expr).Ms <= 1.7
+
+
+# ------------------------------------------------------------------------------------------------ the data
+
+
+def counting_lesson(**changes):
+    """A lesson whose one curve and result say which values the sliders have."""
+    sliders = lesson.Slider("a", "A", (0, 1, 2), 1), lesson.Slider("b", "B", (0, 1), 0, words=("no", "yes"))
+    whole = lesson.Lesson(
+        title="Counting", about="", questions=(), sliders=sliders, panels=(lesson.Panel("y", 0, 4),),
+        curves=(lesson.Curve("y", "y"), lesson.Curve("none", "none")), times=numpy.linspace(0, 1, 5),
+        respond=lambda a, b: lesson.Answer(f"{a} {b}", {"a": str(a)}, {"y": numpy.full(5, a)}),
+    )  # fmt: skip
+    return dataclasses.replace(whole, **changes)
+
+
+def test_each_position_of_the_sliders_has_its_answer_and_equal_curves_are_kept_once():
+    data = counting_lesson().data()
+    assert data["counts"] == [3, 2]
+    verdicts = [answer[0] for answer in data["answers"]]
+    assert verdicts == ["0 0", "0 1", "1 0", "1 1", "2 0", "2 1"]
+    assert [answer[2] for answer in data["answers"]] == [[0, -1], [0, -1], [1, -1], [1, -1], [2, -1], [2, -1]]
+    assert lesson.decoded(data["lines"][2], lesson.Panel("y", 0, 4)) == pytest.approx([2] * 5, abs=1e-3)
+
+
+def test_what_is_far_outside_of_a_picture_stays_outside():
+    panel = lesson.Panel("y", 0, 2)
+    read = lesson.decoded(lesson.Lesson._encoded([-1e9, 0, 2, 1e9], panel), panel)
+    assert read == pytest.approx([-1, 0, 2, 3], abs=1e-3)
+
+
+def test_a_lesson_that_is_too_large_is_refused():
+    slow = counting_lesson(times=numpy.linspace(0, 1, 10**5), respond=lambda a, b: lesson.Answer(
+        "", {}, {"y": numpy.full(10**5, a + b)}))  # fmt: skip
+    with pytest.raises(ValueError, match="characters: expected 300000 at most"):
+        slow.data()
+
+
+def test_a_slider_cannot_start_between_its_values():
+    with pytest.raises(ValueError, match="cannot start at 3"):
+        lesson.Slider("a", "A", (1, 2), 3)
+
+
+def test_an_unknown_lesson_is_refused_by_name():
+    with pytest.raises(ValueError, match="there is no lesson 'bode': expected one of pi, good_gain"):
+        lessons.load("bode")
+
+
+# ------------------------------------------------------------------------------------------------ the page
+
+
+class Elements(HTMLParser):
+    """All elements of a piece of HTML, as (name, attributes)."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.found = []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.found.append((tag, dict(attrs)))
+
+    def all(self, *tags):
+        return [attributes for tag, attributes in self.found if tag in tags]
+
+
+@pytest.mark.parametrize("name", lessons.NAMES)
+def test_every_input_has_a_label_and_every_picture_a_description(name):
+    desk = importlib.import_module("extensions.lessons").desk
+    small = at_the_start(name)
+    data = small.data()
+    page = Elements(desk(name, small, data))
+    inputs = page.all("input", "select")
+    assert len(inputs) == len(small.sliders)
+    labelled = [label["for"] for label in page.all("label")]
+    assert [field["id"] for field in inputs] == labelled
+    assert all(field["aria-valuetext"] for field in page.all("input"))
+    pictures = [attributes for attributes in page.all("div") if attributes.get("class") == "lesson-plot"]
+    assert len(pictures) == len(small.panels)
+    assert all(picture["role"] == "img" and picture["aria-label"] for picture in pictures)
+    assert [p.get("aria-live") for p in page.all("p") if p.get("class") == "lesson-result"] == ["polite"]
+    assert len(data["answers"]) == 1
+    assert {curve["light"] for curve in data["curves"]} <= set(lesson.IN_THE_DARK)
+
+
+@pytest.mark.parametrize("name", lessons.NAMES)
+def test_the_lessons_stand_in_their_chapters_after_the_readers_own_slider(name):
+    chapter, _ = places.PLACES[name]
+    cells = nbformat.read(ROOT / "chapters" / f"{chapter}.ipynb", as_version=4).cells
+    cells = places.with_lessons(cells, chapter)
+    at = next(number for number, cell in enumerate(cells) if cell.get("id") == f"lesson-{name}")
+    assert re.search(r"^```\{lesson\} " + name, cells[at].source, re.MULTILINE)
+    before = [
+        number for number in range(at) if any(text == places.TRY_IT for _, text in places.headings(cells[number]))
+    ]
+    assert any("interact" in cell.source for cell in cells[before[-1] : at])
+    assert places.headings(cells[at + 1])
+
+
+def test_each_library_in_the_page_has_its_licence():
+    vendor = ROOT / "docs" / "_static" / "vendor"
+    assert "MIT License" in (vendor / "uPlot.LICENSE").read_text(encoding="utf-8")
+    script = (ROOT / "docs" / "_static" / "lessons.js").read_text(encoding="utf-8")
+    assert lesson.ALPHABET in script
+    assert f"ROOM = {lesson.ROOM}" in script
+    assert "http" not in script
