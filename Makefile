@@ -6,6 +6,9 @@ PYTHON ?= $(shell for python in python3 python3.14 python3.13 python3.12 python3
 python := .venv/bin/python
 root := $(if $(filter 0,$(shell id -u)),--allow-root)
 
+# One process more than there are cores, because some tests wait: for a browser, or for the end of a submission.
+workers = $(shell $(python) -c "import os; print(1 + (os.cpu_count() or 1))")
+
 # A backend meant for other programs would keep the figures out of the notebooks.
 unexport MPLBACKEND
 
@@ -18,7 +21,7 @@ lab: .venv/ready ## open the collection in JupyterLab
 	$(python) -m jupyterlab $(root) --LabApp.default_url=/lab/tree/chapters
 
 test: .venv/ready ## prove everything: the library, the ledger and every cell of every notebook
-	$(python) -m pytest -n logical
+	$(python) -m pytest -n $(workers)
 
 bench: .venv/ready ## measure what the collection costs beside what it stands on
 	$(python) tests/bench.py

@@ -1,26 +1,17 @@
-"""What the tests in a browser share: Chromium, a page that remembers complaints, JupyterLab, and a server of files."""
+"""What the tests in a browser share: Chromium, what a page complains about, a server of files, an audit."""
 
 import contextlib
 import functools
 import http.server
-import json
 import os
 import re
-import secrets
 import shutil
-import socket
-import subprocess
 import threading
-import time
-import urllib.request
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
-import matplotlib
 import pytest
-
-from recipes import recipe
 
 ROOT = Path(__file__).parents[1]
 #: Pictures for people to look at; git ignores the folder.
@@ -83,73 +74,6 @@ class Complaints(list):
             self.append(f"{kind}: {text}")
 
 
-# JupyterLab.
-
-
-@contextlib.contextmanager
-def jupyterlab(folder: Path, notebook: str) -> Iterator[str]:
-    """JupyterLab as ``make lab`` starts it, in a folder of its own with one chapter in it: the chapter's address."""
-    (folder / "chapters").mkdir(parents=True)
-    shutil.copy(ROOT / "chapters" / notebook, folder / "chapters")
-    settings = folder / "config" / "labconfig"
-    settings.mkdir(parents=True)
-    # the question about news would ask the network
-    off = {"disabledExtensions": {"@jupyterlab/apputils-extension:announcements": True}}
-    (settings / "page_config.json").write_text(json.dumps(off), encoding="utf-8")
-    port, token = free_port(), secrets.token_hex(16)
-    own = {"HOME": "home", "IPYTHONDIR": "ipython", "JUPYTER_CONFIG_DIR": "config", "JUPYTER_DATA_DIR": "data"}
-    own |= {
-        "JUPYTER_RUNTIME_DIR": "runtime",
-        "JUPYTERLAB_SETTINGS_DIR": "settings",
-        "JUPYTERLAB_WORKSPACES_DIR": "desks",
-    }
-    environment = {**os.environ, **{name: str(folder / place) for name, place in own.items()}}
-    environment["MPLCONFIGDIR"] = matplotlib.get_cachedir()  # a new list of fonts costs seconds
-    environment.pop("LOOPBOOK_PROGRESS", None)
-    command = [*recipe("lab"), "--no-browser", f"--ServerApp.port={port}", "--ServerApp.port_retries=0"]
-    with open(folder / "log", "w", encoding="utf-8") as log:
-        server = subprocess.Popen(
-            [*command, f"--IdentityProvider.token={token}"], cwd=folder, env=environment, stdout=log, stderr=log
-        )
-        try:
-            wait_for(f"http://127.0.0.1:{port}/api/status?token={token}", server, folder / "log")
-            yield f"http://127.0.0.1:{port}/lab/tree/chapters/{notebook}?token={token}"
-        finally:
-            shut_down(port, token)
-            try:
-                server.wait(timeout=20)
-            except subprocess.TimeoutExpired:
-                server.kill()
-                server.wait()
-
-
-def free_port() -> int:
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        return free.getsockname()[1]
-
-
-def wait_for(address: str, server: subprocess.Popen, log: Path, seconds: float = 60) -> None:
-    end = time.monotonic() + seconds
-    while time.monotonic() < end and server.poll() is None:
-        with contextlib.suppress(OSError), urllib.request.urlopen(address, timeout=5):
-            return
-        time.sleep(0.1)
-    pytest.fail(f"JupyterLab does not answer:\n{log.read_text(encoding='utf-8')}")
-
-
-def shut_down(port: int, token: str) -> None:
-    """Ask JupyterLab to end its kernels and itself."""
-    request = urllib.request.Request(
-        f"http://127.0.0.1:{port}/api/shutdown", method="POST", headers={"Authorization": f"token {token}"}
-    )
-    with contextlib.suppress(OSError):
-        urllib.request.urlopen(request, timeout=10).close()
-
-
-# The site.
-
-
 class Silent(http.server.SimpleHTTPRequestHandler):
     """A server of files that does not tell what it serves."""
 
@@ -176,10 +100,18 @@ def first_paint(page) -> float:
 
 
 def serious(page, part: str | None = None, **options) -> list[str]:
-    """What axe finds that keeps people from reading a page, or a part of it: rule, how many times, where first."""
+    """What axe finds that keeps people from reading a page, or a part of its text: rule, how many times, where first.
+
+    What is hidden and what is not asked for is taken away first: axe passes it over, but takes seconds to do so.
+    """
     from axe_playwright_python.sync_playwright import Axe
 
-    found = Axe().run(page, part, options={"resultTypes": ["violations"], **options}).response["violations"]
+    if part:
+        page.evaluate(
+            "part => document.querySelector('article').replaceChildren(...document.querySelectorAll(part))", part
+        )
+    page.evaluate("document.querySelectorAll('[hidden]').forEach(part => part.remove())")
+    found = Axe().run(page, options={"resultTypes": ["violations"], **options}).response["violations"]
     return [
         f"{each['id']} ({each['impact']}), {len(each['nodes'])} times: {each['nodes'][0]['html'][:200]}"
         for each in found

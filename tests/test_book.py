@@ -1,5 +1,6 @@
 """The site: every link leads somewhere, every formula is MathML, every figure has words, and all of it is local."""
 
+import importlib
 import re
 import sys
 from functools import cached_property
@@ -7,6 +8,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
+import nbformat
 import pytest
 
 ROOT = Path(__file__).parents[1]
@@ -63,6 +65,15 @@ class Page(HTMLParser):
 @pytest.fixture(scope="module")
 def pages(book):
     return {path: Page(path) for path in sorted(book.rglob("*.html")) if "_static" not in path.parts}
+
+
+def extension(name):
+    """Return a module of docs/extensions/."""
+    sys.path.insert(0, str(ROOT / "docs" / "extensions"))
+    try:
+        return importlib.import_module(name)
+    finally:
+        sys.path.pop(0)
 
 
 def name(book, path):
@@ -138,8 +149,6 @@ def test_every_figure_has_words_a_size_and_waits_for_the_reader(book, pages):
 
 
 def test_the_words_of_a_figure_are_those_that_the_notebook_stores(book, pages):
-    import nbformat
-
     for stored in sorted(ROOT.glob("chapters/*.ipynb")):
         outputs = [o for cell in nbformat.read(stored, as_version=4).cells for o in cell.get("outputs", [])]
         words = [o.data["text/plain"][1:-1] for o in outputs if "image/png" in o.get("data", {})]
@@ -179,13 +188,7 @@ def test_a_solution_is_folded_and_the_way_leads_there_and_back(book, pages):
 
 
 def test_every_check_of_a_chapter_has_its_place_and_a_link_to_the_ledger(book, pages):
-    sys.path.insert(0, str(ROOT / "docs" / "extensions"))
-    try:
-        import slugs
-    finally:
-        sys.path.pop(0)
-    import nbformat
-
+    slugs = extension("slugs")
     for stored in sorted(ROOT.glob("chapters/*.ipynb")):
         page = pages[book / "chapters" / f"{stored.stem}.html"]
         links = {attributes.get("href") for attributes in page.all("a")}
@@ -203,3 +206,44 @@ def test_sections_lead_to_the_reference_of_the_functions_that_they_use(book, pag
             assert [a for a in page.all("a") if re.match(r"\.\./reference/\w+\.html#loopbook\.", a.get("href") or "")]
             named = [above for tag, a, above in page.elements if tag == "code" and "py-obj" in (a.get("class") or "")]
             assert all("a" in above for above in named), name(book, path)
+
+
+@pytest.mark.parametrize(
+    ("latex", "mathml"),
+    [
+        (r"\left(s + 1\right)", '<mo stretchy="false">(</mo><mi>s</mi><mo>+</mo><mn>1</mn><mo stretchy="false">)</mo>'),
+        (
+            r"\left(-1\right)",
+            '<mo stretchy="false">(</mo><mo form="prefix">−</mo><mn>1</mn><mo stretchy="false">)</mo>',
+        ),
+        (r"\ln 2", '<mi>ln</mi><mo>\u2061</mo><mspace width="0.167em" /><mn>2</mn>'),
+        (r"\operatorname{atan}{\left(x\right)}", "<mi>atan</mi><mo>\u2061</mo>"),
+        (r"k'", '<mi>k</mi><mo lspace="0" rspace="0">′</mo>'),
+        (r"\mathrm{d}t", "<mtext>d</mtext><mi>t</mi>"),
+        (r"1/s", '<mn>1</mn><mo lspace="0" rspace="0">/</mo><mi>s</mi>'),
+        (r"\dot{x}", '<mover accent="true"><mi>x</mi><mo>˙</mo></mover>'),
+        (r"\text{remains, $R$}", "<mi>R</mi>"),
+    ],
+)
+def test_a_formula_is_set_as_in_print(latex, mathml):
+    assert mathml in extension("mathml").convert(latex)
+
+
+def test_a_formula_that_cannot_be_set_is_named():
+    with pytest.raises(ValueError, match="cannot be written as MathML"):
+        extension("mathml").convert(r"\frac{1}{")
+
+
+def test_formulas_in_a_table_are_set_and_code_is_left_alone():
+    in_html = extension("mathml").in_html
+    assert in_html("<td>$a &lt; b$</td>").startswith("<td><math><mi>a</mi>")
+    assert in_html("<code>$HOME</code>") == "<code>$HOME</code>"
+
+
+def test_what_a_section_uses_is_read_from_its_code():
+    names = extension("functions_used").Names()
+    assert names.used("from loopbook import transfer, tuning as rules\nfrom loopbook.deadtime import Loop") == {}
+    used = names.used("loop = Loop(transfer.first_order(1, 2), rules.simc(x))")
+    assert set(used) == {"loopbook.deadtime.Loop", "loopbook.transfer.first_order", "loopbook.tuning.simc"}
+    assert names.used("Loop = 3") == {}
+    assert names.used("Loop") == {}

@@ -1,85 +1,25 @@
 """A chapter in JupyterLab as a reader has it: opened, run from the menu, its sliders moved, its exercises answered."""
 
 import hashlib
-import json
-import re
 
 import pytest
-from playwright.sync_api import expect
 
-from browser import DESKTOP, PHONE, ROOT, SCREENSHOTS, Complaints, jupyterlab
+from browser import DESKTOP, PHONE, ROOT
+from desk import Desk, jupyterlab
 
 #: A quick one that has sliders, and exercises whose responses can say a lot.
 CHAPTER = "05_transfer_functions.ipynb"
-#: What JupyterLab and its packages write on the console by themselves.
-NOISE = ()
-
-
-class Desk:
-    """JupyterLab with a chapter in it."""
-
-    def __init__(self, page, file):
-        self.page, self.file, self.complaints = page, file, Complaints(page, NOISE)
-
-    def open(self, address):
-        self.page.goto(address)
-        self.rest()
-        self.code = self.page.locator(".jp-NotebookPanel .jp-CodeCell")
-
-    def rest(self):
-        """Wait until nothing is computed."""
-        self.page.locator(".jp-Notebook-ExecutionIndicator[data-status=idle]").wait_for()
-
-    def choose(self, *names):
-        """Choose from the menu, as ``choose("Run", "Run All Cells")``."""
-        for name in names:
-            self.page.locator(".lm-MenuBar-itemLabel, .lm-Menu-itemLabel").get_by_text(name, exact=True).click()
-
-    def cell(self, text):
-        """The code cell whose source begins with a text."""
-        source = self.page.locator(".cm-content").filter(has_text=re.compile("^" + re.escape(text)))
-        return self.code.filter(has=source).first
-
-    def answer(self, number, words):
-        """Put an answer into the cell of an exercise and run it: what the response says."""
-        cell = self.cell(f'exercise("{number}").check(')
-        cell.scroll_into_view_if_needed()
-        before = cell.locator(".jp-InputPrompt").inner_text()
-        cell.locator(".cm-content").click()
-        self.page.keyboard.press("Control+a")
-        self.page.keyboard.insert_text(f'exercise("{number}").check({words})')
-        self.page.keyboard.press("Shift+Enter")
-        self.page.wait_for_function(
-            "([cell, before]) => /\\d/.test(cell.innerText) && cell.innerText != before",
-            arg=[cell.locator(".jp-InputPrompt").element_handle(), before],
-        )
-        return cell.locator(".jp-OutputArea-output").inner_text()
-
-    def stored(self):
-        """The code cells of the file."""
-        cells = json.loads(self.file.read_text(encoding="utf-8"))["cells"]
-        return [cell for cell in cells if cell["cell_type"] == "code"]
-
-    def picture(self, cell):
-        return cell.locator(".jp-OutputArea-output img").get_attribute("src")
-
-    def screenshot(self, name):
-        self.page.screenshot(path=SCREENSHOTS / f"lab_{name}.png")
 
 
 @pytest.fixture(scope="class")
 def desk(chromium, tmp_path_factory):
-    """A chapter that has been run from the menu to its end."""
+    """JupyterLab with a chapter that has been run from the menu to its end, and saved."""
     folder = tmp_path_factory.mktemp("lab") / "desk"
     with jupyterlab(folder, CHAPTER) as address:
         desk = Desk(chromium.new_page(viewport=DESKTOP), folder / "chapters" / CHAPTER)
         desk.open(address)
         desk.screenshot("opened")
-        last = desk.code.last.locator(".jp-InputPrompt")
-        desk.choose("Edit", "Clear Outputs of All Cells")
-        expect(last).to_have_text("[ ]:")
-        desk.choose("Run", "Run All Cells")
-        expect(last).to_have_text(f"[{len(desk.stored())}]:", timeout=120_000)  # the page still grows: count the file
+        desk.run_all()
         desk.choose("File", "Save Notebook")
         desk.page.get_by_text("Saving completed").wait_for()
         desk.screenshot("run")

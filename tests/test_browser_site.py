@@ -1,4 +1,4 @@
-"""The site in a browser: its pages, its search, its links and switches, its live lessons; and who is kept from reading."""
+"""The site in a browser: its pages, its search, its links and switches, its live lessons; and an audit."""
 
 import pytest
 from playwright.sync_api import expect

@@ -7,6 +7,7 @@ with their space, accents that sit close, bars without air, and a fraction of th
 import functools
 import html
 import re
+from itertools import pairwise
 from xml.etree import ElementTree as ET
 
 from latex2mathml.converter import convert as translate
@@ -17,6 +18,8 @@ NAMESPACE = "{http://www.w3.org/1998/Math/MathML}"
 APPLY = "\u2061"  # the invisible sign between a function and its argument
 PRIMES = {"′", "″", "‴"}
 BRACKETS = set("()[]{}⟨⟩")
+SIGNS = {"−", "+", "±"}
+CLOSING = {")", "]", "}", "|", "!"}
 HIGH = {"mfrac", "mtable", "msqrt", "mroot", "munder", "mover", "munderover"}
 BIG = {"lim", "max", "min", "sup", "inf", "arg min", "arg max"}  # their index stands below in a formula of its own
 
@@ -84,6 +87,9 @@ def mend(parent, large):
         slim(parent)
     if parent.tag == "mrow" and len(parent) > 1:
         keep_small(parent)
+    for before, child in pairwise(parent):
+        if child.tag == before.tag == "mo" and child.text in SIGNS and before.text not in CLOSING:
+            child.set("form", "prefix")  # the sign of a number, not an operation
     for place, child in enumerate(list(parent)):
         if child.tag == "mrow" and len(child) == 1:
             parent[place] = child[0]

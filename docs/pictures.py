@@ -1,0 +1,104 @@
+"""The pictures of the README, made by what they show: `make pictures`.
+
+JupyterLab, the site and a graded course are opened in a browser as the tests do it, and what matters is cut out.
+"""
+
+import subprocess
+import sys
+import tempfile
+from io import BytesIO
+from pathlib import Path
+
+from PIL import Image
+
+DOCS = Path(__file__).parent
+ROOT = DOCS.parent
+sys.path.insert(0, str(ROOT / "tests"))
+
+import browser  # noqa: E402 - tests/ has just become a place to import from
+from desk import Desk, jupyterlab  # noqa: E402
+from recipes import recipe  # noqa: E402
+
+CHAPTER = "10_tuning"
+LESSON, ITS_CHAPTER = "smith", "17_dead_time_compensation"
+GRADED = ROOT / "examples" / "course" / "build" / "graded"
+STUDENT = "s1003"
+SHARPNESS = 1.5  # pixels of the picture for one of the page
+LARGEST = 150_000  # bytes
+
+
+def save(name: str, page, parts: list, margin: int = 12, tallest: int = 2000) -> None:
+    """Cut out the rectangle that holds all the parts, and store it with as many colours as a small file can have."""
+    boxes = [part.bounding_box() for part in parts]
+    x, y = (min(box[axis] for box in boxes) - margin for axis in ("x", "y"))
+    right = max(box["x"] + box["width"] for box in boxes) + margin
+    bottom = min(max(box["y"] + box["height"] for box in boxes) + margin, y + tallest)
+    clip = {"x": max(x, 0), "y": max(y, 0), "width": right - max(x, 0), "height": bottom - max(y, 0)}
+    picture = Image.open(BytesIO(page.screenshot(clip=clip, animations="disabled"))).convert("RGB")
+    for colours in (256, 128, 64, 32):
+        picture.quantize(colours, dither=Image.Dither.NONE).save(DOCS / name, optimize=True)
+        if (size := (DOCS / name).stat().st_size) < LARGEST:
+            break
+    print(f"docs/{name}: {picture.width} x {picture.height}, {size / 1000:.0f} kB")
+
+
+def of_jupyterlab(chromium) -> None:
+    """A chapter: a figure and its check. An exercise: an answer that is right, one in another unit, one to come."""
+    with tempfile.TemporaryDirectory() as folder, jupyterlab(Path(folder) / "desk", f"{CHAPTER}.ipynb") as address:
+        page = chromium.new_page(viewport={"width": 980, "height": 1900}, device_scale_factor=SHARPNESS)
+        desk = Desk(page, Path(folder) / "desk" / "chapters" / f"{CHAPTER}.ipynb")
+        desk.open(address)
+        page.keyboard.press("Control+b")  # the list of files is put away
+        desk.run_all()
+        cells = page.locator(".jp-NotebookPanel .jp-Cell")
+
+        question = cells.filter(has_text="Is the loop calm when the setpoint makes a step").first
+        check = desk.cell("T_i_at_most = given_c * (T_C_chosen + numbers[tau])")
+        cells.filter(has_text="With the numbers of the book, and its suggestion").first.click()
+        bring_into_view(page, question)
+        save("chapter.png", page, [question, check])
+
+        desk.answer("10.1", "K=1.5, T=1.25, tau=...")
+        statement, answer = desk.cell('exercise("10.1")'), desk.cell('exercise("10.1").check(')
+        bring_into_view(page, statement)
+        save("exercise.png", page, [statement, answer])
+        page.close()
+
+
+def bring_into_view(page, cell) -> None:
+    """Put a cell to the top of the window, and wait until nothing moves."""
+    cell.evaluate("cell => cell.scrollIntoView({block: 'start'})")
+    page.wait_for_timeout(1000)
+
+
+def of_the_site(chromium) -> None:
+    """A live lesson, its model wrong by what a reader has set."""
+    with tempfile.TemporaryDirectory() as folder:
+        site = Path(folder) / "book"
+        subprocess.run([site if word == "build/book" else word for word in recipe("book")], cwd=ROOT, check=True)
+        page = chromium.new_page(viewport={"width": 1280, "height": 1600}, device_scale_factor=SHARPNESS)
+        page.goto((site / "chapters" / f"{ITS_CHAPTER}.html").as_uri())
+        lesson = page.locator(f".lesson[data-lesson={LESSON}]")
+        lesson.evaluate("lesson => lesson.scrollIntoView({block: 'start'})")
+        for _ in range(3):
+            lesson.locator("input[type=range]").first.press("ArrowRight")
+        lesson.locator("input[type=range]").first.blur()
+        page.wait_for_timeout(500)
+        save("lesson.png", page, [lesson.locator(".lesson-sliders, .lesson-plot, .lesson-result")])
+        page.close()
+
+
+def of_a_graded_course(chromium) -> None:
+    """A page of feedback for a student who has found a half."""
+    subprocess.run(["make", "grade"], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+    page = chromium.new_page(viewport={"width": 900, "height": 1400}, device_scale_factor=SHARPNESS)
+    page.goto(next((GRADED / "feedback" / STUDENT).glob("*.html")).as_uri())
+    save("feedback.png", page, [page.locator("body")], tallest=1000)
+    page.close()
+
+
+if __name__ == "__main__":
+    with browser.opened() as chromium:
+        of_jupyterlab(chromium)
+        of_the_site(chromium)
+        of_a_graded_course(chromium)

@@ -1,0 +1,142 @@
+"""JupyterLab as ``make lab`` starts it, with a chapter to work on that is a copy."""
+
+import contextlib
+import json
+import os
+import re
+import secrets
+import shutil
+import socket
+import subprocess
+import time
+import urllib.request
+from collections.abc import Iterator
+from pathlib import Path
+
+import matplotlib
+import pytest
+
+from browser import SCREENSHOTS, Complaints
+from recipes import recipe
+
+ROOT = Path(__file__).parents[1]
+#: What JupyterLab and its packages write on the console by themselves.
+NOISE = ()
+
+
+class Desk:
+    """JupyterLab with a chapter in it."""
+
+    def __init__(self, page, file):
+        self.page, self.file, self.complaints = page, file, Complaints(page, NOISE)
+
+    def open(self, address):
+        self.page.goto(address)
+        self.rest()
+        self.code = self.page.locator(".jp-NotebookPanel .jp-CodeCell")
+
+    def rest(self):
+        """Wait until nothing is computed."""
+        self.page.locator(".jp-Notebook-ExecutionIndicator[data-status=idle]").wait_for()
+
+    def choose(self, *names):
+        """Choose from the menu, as ``choose("Run", "Run All Cells")``."""
+        for name in names:
+            self.page.locator(".lm-MenuBar-itemLabel, .lm-Menu-itemLabel").get_by_text(name, exact=True).click()
+
+    def run_all(self):
+        """Run all cells from the menu, after the stored outputs have been cleared, and wait for the last one."""
+        last = self.code.last.locator(".jp-InputPrompt")
+        self.choose("Edit", "Clear Outputs of All Cells")
+        expect(last).to_have_text("[ ]:")
+        self.choose("Run", "Run All Cells")
+        expect(last).to_have_text(f"[{len(self.stored())}]:", timeout=120_000)  # the page still grows: count the file
+
+    def cell(self, text):
+        """The code cell whose source begins with a text."""
+        source = self.page.locator(".cm-content").filter(has_text=re.compile("^" + re.escape(text)))
+        return self.code.filter(has=source).first
+
+    def answer(self, number, words):
+        """Put an answer into the cell of an exercise and run it: what the response says."""
+        cell = self.cell(f'exercise("{number}").check(')
+        cell.scroll_into_view_if_needed()
+        before = cell.locator(".jp-InputPrompt").inner_text()
+        cell.locator(".cm-content").click()
+        self.page.keyboard.press("Control+a")
+        self.page.keyboard.insert_text(f'exercise("{number}").check({words})')
+        self.page.keyboard.press("Shift+Enter")
+        self.page.wait_for_function(
+            "([cell, before]) => /\\d/.test(cell.innerText) && cell.innerText != before",
+            arg=[cell.locator(".jp-InputPrompt").element_handle(), before],
+        )
+        return cell.locator(".jp-OutputArea-output").inner_text()
+
+    def stored(self):
+        """The code cells of the file."""
+        cells = json.loads(self.file.read_text(encoding="utf-8"))["cells"]
+        return [cell for cell in cells if cell["cell_type"] == "code"]
+
+    def picture(self, cell):
+        return cell.locator(".jp-OutputArea-output img").get_attribute("src")
+
+    def screenshot(self, name):
+        self.page.screenshot(path=SCREENSHOTS / f"lab_{name}.png")
+
+
+@contextlib.contextmanager
+def jupyterlab(folder: Path, notebook: str) -> Iterator[str]:
+    """JupyterLab as ``make lab`` starts it, in a folder of its own with one chapter in it: the chapter's address."""
+    (folder / "chapters").mkdir(parents=True)
+    shutil.copy(ROOT / "chapters" / notebook, folder / "chapters")
+    settings = folder / "config" / "labconfig"
+    settings.mkdir(parents=True)
+    # the question about news would ask the network
+    off = {"disabledExtensions": {"@jupyterlab/apputils-extension:announcements": True}}
+    (settings / "page_config.json").write_text(json.dumps(off), encoding="utf-8")
+    port, token = free_port(), secrets.token_hex(16)
+    own = {"HOME": "home", "IPYTHONDIR": "ipython", "JUPYTER_CONFIG_DIR": "config", "JUPYTER_DATA_DIR": "data"}
+    own |= {"JUPYTER_RUNTIME_DIR": "runtime", "JUPYTERLAB_SETTINGS_DIR": "settings"}
+    own |= {"JUPYTERLAB_WORKSPACES_DIR": "desks"}
+    environment = {**os.environ, **{name: str(folder / place) for name, place in own.items()}}
+    environment["MPLCONFIGDIR"] = matplotlib.get_cachedir()  # a new list of fonts costs seconds
+    environment.pop("LOOPBOOK_PROGRESS", None)
+    command = [*recipe("lab"), "--no-browser", f"--ServerApp.port={port}", "--ServerApp.port_retries=0"]
+    with open(folder / "log", "w", encoding="utf-8") as log:
+        server = subprocess.Popen(
+            [*command, f"--IdentityProvider.token={token}"], cwd=folder, env=environment, stdout=log, stderr=log
+        )
+        try:
+            wait_for(f"http://127.0.0.1:{port}/api/status?token={token}", server, folder / "log")
+            yield f"http://127.0.0.1:{port}/lab/tree/chapters/{notebook}?token={token}"
+        finally:
+            shut_down(port, token)
+            try:
+                server.wait(timeout=20)
+            except subprocess.TimeoutExpired:
+                server.kill()
+                server.wait()
+
+
+def free_port() -> int:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        return free.getsockname()[1]
+
+
+def wait_for(address: str, server: subprocess.Popen, log: Path, seconds: float = 60) -> None:
+    end = time.monotonic() + seconds
+    while time.monotonic() < end and server.poll() is None:
+        with contextlib.suppress(OSError), urllib.request.urlopen(address, timeout=5):
+            return
+        time.sleep(0.1)
+    pytest.fail(f"JupyterLab does not answer:\n{log.read_text(encoding='utf-8')}")
+
+
+def shut_down(port: int, token: str) -> None:
+    """Ask JupyterLab to end its kernels and itself."""
+    request = urllib.request.Request(
+        f"http://127.0.0.1:{port}/api/shutdown", method="POST", headers={"Authorization": f"token {token}"}
+    )
+    with contextlib.suppress(OSError):
+        urllib.request.urlopen(request, timeout=10).close()
