@@ -27,7 +27,7 @@ SHARPNESS = 1.5  # pixels of the picture for one of the page
 LARGEST = 150_000  # bytes
 
 
-def save(name: str, page, parts: list, margin: int = 12, tallest: int = 2000) -> None:
+def save(name: str, page, parts: list, margin: int = 0, tallest: int = 2000) -> None:
     """Cut out the rectangle that holds all the parts, and store it with as many colours as a small file can have."""
     boxes = [part.bounding_box() for part in parts]
     x, y = (min(box[axis] for box in boxes) - margin for axis in ("x", "y"))
@@ -52,11 +52,11 @@ def of_jupyterlab(chromium) -> None:
         desk.run_all()
         cells = page.locator(".jp-NotebookPanel .jp-Cell")
 
-        question = cells.filter(has_text="Is the loop calm when the setpoint makes a step").first
+        figure = desk.cell('title = "Figure 10.7')
         check = desk.cell("T_i_at_most = given_c * (T_C_chosen + numbers[tau])")
         cells.filter(has_text="With the numbers of the book, and its suggestion").first.click()
-        bring_into_view(page, question)
-        save("chapter.png", page, [question, check])
+        bring_into_view(page, figure)
+        save("chapter.png", page, [figure, check])
 
         desk.answer("10.1", "K=1.5, T=1.25, tau=...")
         statement, answer = desk.cell('exercise("10.1")'), desk.cell('exercise("10.1").check(')
@@ -65,9 +65,9 @@ def of_jupyterlab(chromium) -> None:
         page.close()
 
 
-def bring_into_view(page, cell) -> None:
-    """Put a cell to the top of the window, and wait until nothing moves."""
-    cell.evaluate("cell => cell.scrollIntoView({block: 'start'})")
+def bring_into_view(page, part) -> None:
+    """Put a part to the top of the window, and wait until nothing moves."""
+    part.evaluate("part => part.scrollIntoView({block: 'start', behavior: 'instant'})")
     page.wait_for_timeout(1000)
 
 
@@ -78,13 +78,13 @@ def of_the_site(chromium) -> None:
         subprocess.run([site if word == "build/book" else word for word in recipe("book")], cwd=ROOT, check=True)
         page = chromium.new_page(viewport={"width": 1280, "height": 1600}, device_scale_factor=SHARPNESS)
         page.goto((site / "chapters" / f"{ITS_CHAPTER}.html").as_uri())
-        lesson = page.locator(f".lesson[data-lesson={LESSON}]")
-        lesson.evaluate("lesson => lesson.scrollIntoView({block: 'start'})")
+        lesson = page.locator(f".lesson[data-lesson={LESSON}] .lesson-desk")
+        slider = lesson.locator("input[type=range]").first
         for _ in range(3):
-            lesson.locator("input[type=range]").first.press("ArrowRight")
-        lesson.locator("input[type=range]").first.blur()
-        page.wait_for_timeout(500)
-        save("lesson.png", page, [lesson.locator(".lesson-sliders, .lesson-plot, .lesson-result")])
+            slider.press("ArrowRight")
+        slider.blur()
+        bring_into_view(page, lesson)
+        save("lesson.png", page, [lesson])
         page.close()
 
 

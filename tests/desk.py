@@ -15,6 +15,7 @@ from pathlib import Path
 
 import matplotlib
 import pytest
+from playwright.sync_api import expect
 
 from browser import SCREENSHOTS, Complaints
 from recipes import recipe

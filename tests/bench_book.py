@@ -1,0 +1,69 @@
+"""What the site costs: `make bench` prints how long it takes to build, how large its pages are, and how soon they show.
+
+A page counts without its figures. It shows when something of it is first painted, from a server on the same machine,
+to a browser that comes for the first time, and to one that comes again.
+"""
+
+import shutil
+import statistics
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+import browser
+from recipes import recipe
+
+ROOT = Path(__file__).parents[1]
+RUNS = 5
+#: The front page, the largest pages, and one with a live lesson.
+VISITED = ["index", "ledger", "chapters/11_control_structures", "chapters/17_dead_time_compensation"]
+
+
+def build(folder: Path) -> tuple[Path, float]:
+    """Build the site as ``make book`` does, from nothing: where it is, and the seconds."""
+    site = folder / "book"
+    begin = time.perf_counter()
+    subprocess.run([str(site) if word == "build/book" else word for word in recipe("book")], cwd=ROOT, check=True)
+    return site, time.perf_counter() - begin
+
+
+def the_pages(site: Path, seconds: float) -> Table:
+    sizes = {page.relative_to(site).as_posix(): page.stat().st_size for page in site.rglob("*.html")}
+    whole = sum(file.stat().st_size for file in site.rglob("*") if file.is_file() and ".doctrees" not in file.parts)
+    table = Table("", "", title=f"{len(sizes)} pages, built in {seconds:.0f} s")
+    for page in sorted(sizes, key=sizes.get, reverse=True)[:5]:
+        table.add_row(page, f"{sizes[page] / 1000:.0f} kB")
+    table.add_row("median page", f"{statistics.median(sizes.values()) / 1000:.0f} kB")
+    table.add_row("the whole site", f"{whole / 1e6:.1f} MB")
+    return table
+
+
+def the_first_paint(site: Path) -> Table:
+    table = Table("page", "first visit", "second visit", title=f"First paint, median of {RUNS}")
+    with browser.opened() as chromium, browser.served(site.parent) as address:
+        for name in VISITED:
+            found = [[], []]
+            for _ in range(RUNS):
+                visitor = chromium.new_context(viewport=browser.DESKTOP)
+                page = visitor.new_page()
+                for times in found:
+                    page.goto(f"{address}{site.name}/{name}.html")
+                    times.append(browser.first_paint(page))
+                visitor.close()
+            table.add_row(name, *(f"{1000 * statistics.median(times):.0f} ms" for times in found))
+    return table
+
+
+if __name__ == "__main__":
+    console = Console()
+    folder = Path(tempfile.mkdtemp())
+    try:
+        site, seconds = build(folder)
+        console.print(the_pages(site, seconds))
+        console.print(the_first_paint(site) if browser.chromium() else browser.MISSING)
+    finally:
+        shutil.rmtree(folder)
