@@ -26,6 +26,7 @@ test: .venv/ready ## prove everything: the library, the ledger and every cell of
 bench: .venv/ready ## measure what the collection costs beside what it stands on
 	$(python) tests/bench.py
 	$(python) tests/bench_grading.py
+	$(python) tests/bench_book.py
 
 book: .venv/ready ## make the site of the collection, build/book/index.html
 	$(python) -m sphinx -W --keep-going -q -j auto -b html docs build/book

@@ -14,11 +14,11 @@ project_copyright = repository.COPYRIGHT
 version = release = repository.VERSION
 language = "en"
 
-own = ["stored", "mathml", "readme", "lazy_figures", "library", "repository_pages", "command_options", "ledger_page"]
-own += ["cheat_sheet", "front_page"]
-extensions = ["myst_nb", *(name for name in own if (HERE / "extensions" / f"{name}.py").exists())]
-if (HERE / "extensions" / "lessons.py").exists():
-    extensions.append("extensions.lessons")  # docs/lessons has the short name
+extensions = [
+    "myst_nb", "stored", "mathml", "readme", "lazy_figures", "library", "repository_pages", "command_options",
+    "ledger_page", "cheat_sheet", "front_page", "accessible",
+    "extensions.lessons",  # docs/lessons has the short name
+]  # fmt: skip
 exclude_patterns = ["lessons", "**/.ipynb_checkpoints"]
 
 # notebooks: as stored, never run

@@ -22,17 +22,17 @@ from recipes import recipe  # noqa: E402
 CHAPTER = "10_tuning"
 LESSON, ITS_CHAPTER = "smith", "17_dead_time_compensation"
 GRADED = ROOT / "examples" / "course" / "build" / "graded"
-STUDENT = "s1003"
+STUDENT = "s1002"
 SHARPNESS = 1.5  # pixels of the picture for one of the page
 LARGEST = 150_000  # bytes
 
 
-def save(name: str, page, parts: list, margin: int = 0, tallest: int = 2000) -> None:
+def save(name: str, page, parts: list, margin: int = 0) -> None:
     """Cut out the rectangle that holds all the parts, and store it with as many colours as a small file can have."""
     boxes = [part.bounding_box() for part in parts]
     x, y = (min(box[axis] for box in boxes) - margin for axis in ("x", "y"))
     right = max(box["x"] + box["width"] for box in boxes) + margin
-    bottom = min(max(box["y"] + box["height"] for box in boxes) + margin, y + tallest)
+    bottom = max(box["y"] + box["height"] for box in boxes) + margin
     clip = {"x": max(x, 0), "y": max(y, 0), "width": right - max(x, 0), "height": bottom - max(y, 0)}
     picture = Image.open(BytesIO(page.screenshot(clip=clip, animations="disabled"))).convert("RGB")
     for colours in (256, 128, 64, 32):
@@ -67,8 +67,9 @@ def of_jupyterlab(chromium) -> None:
 
 def bring_into_view(page, part) -> None:
     """Put a part to the top of the window, and wait until nothing moves."""
-    part.evaluate("part => part.scrollIntoView({block: 'start', behavior: 'instant'})")
-    page.wait_for_timeout(1000)
+    for _ in range(2):  # the figures above it load while it comes, and push it away
+        part.evaluate("part => part.scrollIntoView({block: 'start', behavior: 'instant'})")
+        page.wait_for_timeout(1000)
 
 
 def of_the_site(chromium) -> None:
@@ -78,6 +79,7 @@ def of_the_site(chromium) -> None:
         subprocess.run([site if word == "build/book" else word for word in recipe("book")], cwd=ROOT, check=True)
         page = chromium.new_page(viewport={"width": 1280, "height": 1600}, device_scale_factor=SHARPNESS)
         page.goto((site / "chapters" / f"{ITS_CHAPTER}.html").as_uri())
+        page.add_style_tag(content=".back-to-top { display: none !important }")  # it appears over what is scrolled to
         lesson = page.locator(f".lesson[data-lesson={LESSON}] .lesson-desk")
         slider = lesson.locator("input[type=range]").first
         for _ in range(3):
@@ -89,11 +91,11 @@ def of_the_site(chromium) -> None:
 
 
 def of_a_graded_course(chromium) -> None:
-    """A page of feedback for a student who has found a half."""
+    """A page of feedback for a student with a mistake in every answer: the first three exercises."""
     subprocess.run(["make", "grade"], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     page = chromium.new_page(viewport={"width": 900, "height": 1400}, device_scale_factor=SHARPNESS)
     page.goto(next((GRADED / "feedback" / STUDENT).glob("*.html")).as_uri())
-    save("feedback.png", page, [page.locator("body")], tallest=1000)
+    save("feedback.png", page, [page.locator("h1"), page.locator("ul.verdicts").nth(2)], margin=16)
     page.close()
 
 

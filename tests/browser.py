@@ -31,8 +31,9 @@ def chromium() -> str | None:
 @contextlib.contextmanager
 def opened() -> Iterator:
     """A running Chromium, steered by Playwright."""
-    from playwright.sync_api import sync_playwright
+    from playwright.sync_api import expect, sync_playwright
 
+    expect.set_options(timeout=30_000)  # milliseconds, for a machine that has other things to do
     # a container has no user namespaces to build the browser's own sandbox of, and often little shared memory
     arguments = ["--no-sandbox", "--disable-dev-shm-usage"]
     with sync_playwright() as playwright:

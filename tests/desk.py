@@ -30,6 +30,7 @@ class Desk:
 
     def __init__(self, page, file):
         self.page, self.file, self.complaints = page, file, Complaints(page, NOISE)
+        page.set_default_timeout(60_000)
 
     def open(self, address):
         self.page.goto(address)
@@ -125,7 +126,7 @@ def free_port() -> int:
         return free.getsockname()[1]
 
 
-def wait_for(address: str, server: subprocess.Popen, log: Path, seconds: float = 60) -> None:
+def wait_for(address: str, server: subprocess.Popen, log: Path, seconds: float = 120) -> None:
     end = time.monotonic() + seconds
     while time.monotonic() < end and server.poll() is None:
         with contextlib.suppress(OSError), urllib.request.urlopen(address, timeout=5):

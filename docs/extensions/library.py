@@ -248,4 +248,3 @@ def configure(app, config):
     config.autodoc_typehints = "none"
     config.smartquotes_action = "D"  # dashes, but no quotes: "PI" in a docstring is what one types
     config.add_module_names = False
-    config.python_maximum_signature_line_length = 80

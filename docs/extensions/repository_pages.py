@@ -40,6 +40,8 @@ def target(file, link, anchor=""):
     path = posixpath.normpath(posixpath.join(posixpath.dirname(file), link))
     if path.endswith(".ipynb"):
         return f"/{path}{anchor}"
+    if path.startswith("docs/"):
+        return f"/{path.removeprefix('docs/')}"
     if path in PAGES:
         return f"/{PAGES[path]}{anchor}"
     return f"{ADDRESS}/{'tree' if (ROOT / path).is_dir() else 'blob'}/main/{path}{anchor}"
