@@ -23,6 +23,7 @@ from loopbook.grading.release import release
 from loopbook.grading.results import Results
 from loopbook.grading.roster import read_roster
 from needs import needs_jail
+from places import lasting
 
 ASSIGNMENT = '''"""A lag
 
@@ -86,6 +87,7 @@ class Course:
         nbformat.write(notebook, path)
 
     def grade(self, to, **options):
+        options.setdefault("place", self.place())
         return grade(self.assignment, self.students, self.submissions, self.folder / to, **options)
 
     def command(self, to):
@@ -102,7 +104,9 @@ def files(folder):
 
 @pytest.fixture(scope="module")
 def course(tmp_path_factory):
-    return Course(tmp_path_factory.mktemp("course"))
+    course = Course(tmp_path_factory.mktemp("course"))
+    with lasting(2) as course.place:
+        yield course
 
 
 @pytest.fixture(scope="module")

@@ -3,11 +3,9 @@
 All attacks are one class, with honest students among them; each archive is a class of its own, with the same ones.
 """
 
-import contextlib
 import os
 import socket
 import time
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -15,13 +13,13 @@ import pytest
 import hostile
 from hostile import ATTACKS, Target, canary, notebook
 from loopbook.grading import GradingError, jail
-from loopbook.grading import grade as grading
 from loopbook.grading.assignment import load
 from loopbook.grading.grade import grade
 from loopbook.grading.jail import Limits
 from loopbook.grading.results import Results
 from loopbook.grading.roster import Student
 from needs import needs_jail
+from places import lasting
 
 pytestmark = needs_jail
 
@@ -57,7 +55,7 @@ def four(K=between(2, 6, step=0.01)):
     """{{K}}"""
     return answers(becomes=word("a", ["a", "b"]))
 '''
-LIMITS = Limits(cell=1.5, total=4, cpu=4, memory=400 * jail.MEGA, processes=32)
+LIMITS = Limits(cell=1, total=2.5, cpu=3, memory=400 * jail.MEGA, processes=32)
 NAME = "air_heater.ipynb"
 #: Students who mean no harm; some attacks reach for the first one.
 HONEST = ("s1002", "h0001", "h0002", "h0003")
@@ -134,11 +132,8 @@ class Siege:
 @pytest.fixture(scope="module")
 def place():
     """Two workers for all classes."""
-    executor = ThreadPoolExecutor(2)
-    yield lambda: contextlib.nullcontext((executor, 2))
-    executor.shutdown()
-    while grading._all_desks:
-        grading._all_desks.pop().close()
+    with lasting(2) as place:
+        yield place
 
 
 @pytest.fixture(scope="module")

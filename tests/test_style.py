@@ -12,7 +12,11 @@ ROOT = Path(__file__).parents[1]
 pytestmark = pytest.mark.skipif(os.environ.get("LOOPBOOK_UNPINNED") == "1", reason="a newer ruff may know more rules")
 
 
-@pytest.mark.parametrize("command", [["check", "."], ["format", "--check", "lib", "tests"]], ids=lambda words: words[0])
+@pytest.mark.parametrize(
+    "command",
+    [["check", "."], ["format", "--check", "lib", "tests", "docs", "examples", ".colab"]],
+    ids=lambda words: words[0],
+)
 def test_ruff_has_nothing_to_say(command):
     command = [sys.executable, "-m", "ruff", *command]
     ruff = subprocess.run(command, cwd=ROOT, capture_output=True, encoding="utf-8", check=False)

@@ -212,13 +212,14 @@ def _done(running):
 @contextlib.contextmanager
 def here(workers):
     """Yield an executor of threads on this machine, and how many tasks they take at a time; their desks end with it."""
-    executor = ThreadPoolExecutor(workers)
+    executor, others = ThreadPoolExecutor(workers), list(_all_desks)
     try:
         yield executor, workers
     finally:
         executor.shutdown(wait=False, cancel_futures=True)
-        while _all_desks:
-            _all_desks.pop().close()
+        for desk in [one for one in _all_desks if one not in others]:
+            _all_desks.remove(desk)
+            desk.close()
 
 
 @contextlib.contextmanager
