@@ -12,7 +12,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from loopbook import s, t
-from loopbook.deadtime import Loop, System, feedback, normal_form
+from loopbook.deadtime import Loop, System, closed_loop, normal_form
 from loopbook.laplace import evaluate, inverse, transform
 from loopbook.pid import PID, Controller
 from loopbook.plants import Process
@@ -41,7 +41,7 @@ def test_an_integrator_with_delay_follows_its_series(k):
         return float(sum((-1) ** (n + 1) * k**n * (x - n) ** n / math.factorial(n) for n in range(1, int(x) + 1)))
 
     times = [Fraction(n, 100) for n in range(2001)]
-    loop = feedback(sympy.Rational(k.numerator, k.denominator) * DELAY / s)
+    loop = closed_loop(sympy.Rational(k.numerator, k.denominator) * DELAY / s)
     expected = np.array([exact(x) for x in times])
     assert loop.step([float(x) for x in times]) == pytest.approx(expected, rel=1e-12, abs=1e-12)
 
@@ -84,7 +84,7 @@ def test_a_neutral_loop_repeats_its_jumps():
     assert system.is_neutral
     assert system.step(TIMES) == pytest.approx(evaluate(series(L, 1 / (s + 1), 7), TIMES), abs=1e-12)
     # and an output that jumps: unit gain, half of it comes back with the other sign
-    jumps = feedback(sympy.Rational(1, 2) * DELAY)
+    jumps = closed_loop(sympy.Rational(1, 2) * DELAY)
     assert jumps.step([0.5, 1, 1.5, 2, 3, 4]) == pytest.approx([0, 0.5, 0.5, 0.25, 0.375, 0.3125])
 
 
@@ -115,7 +115,7 @@ def test_an_unstable_loop_is_followed_as_exactly():
     times = np.linspace(0, 12, 50)
     expected = evaluate(series(L, L, 12), times)
     assert abs(expected).max() > 100
-    assert feedback(L).step(times) == pytest.approx(expected, rel=1e-10, abs=1e-11 * abs(expected).max())
+    assert closed_loop(L).step(times) == pytest.approx(expected, rel=1e-10, abs=1e-11 * abs(expected).max())
 
 
 def test_the_sampled_controller_tends_to_it():
@@ -143,8 +143,8 @@ def test_the_end_is_a_moment_like_any_other():
 def test_sums_of_irrational_dead_times_that_are_one_but_for_rounding():
     one, other = sympy.sqrt(2), sympy.sqrt(3)
     together = sympy.exp(-one * s) * sympy.exp(-other * s)  # SymPy writes it as one
-    loop = feedback((sympy.exp(-one * s) + sympy.exp(-other * s)) / (s + 1), together)
-    close = feedback((sympy.exp(-1.41421356237310 * s) + sympy.exp(-1.73205080756888 * s)) / (s + 1), together)
+    loop = closed_loop((sympy.exp(-one * s) + sympy.exp(-other * s)) / (s + 1), together)
+    close = closed_loop((sympy.exp(-1.41421356237310 * s) + sympy.exp(-1.73205080756888 * s)) / (s + 1), together)
     assert loop.step(TIMES) == pytest.approx(close.step(TIMES), abs=1e-12)
     assert np.isfinite(loop.step([2**0.5 + 3**0.5])).all()
 
@@ -202,8 +202,8 @@ def test_an_impulse():
 
 def test_the_code_is_the_block_diagram():
     C, P = System(PID(2, Ti=3).expr), System(first_order(1, 2, delay=1))
-    assert feedback(C * P) == C * P / (1 + C * P) == Loop(P, C).servo
-    assert feedback(P, C) == P / (1 + C * P) == Loop(P, C).regulator
+    assert closed_loop(C * P) == C * P / (1 + C * P) == Loop(P, C).servo
+    assert closed_loop(P, C) == P / (1 + C * P) == Loop(P, C).regulator
     assert P - P == 0 * P == System(0)
     assert 1 - P == -(P - 1)
     assert 2 / (s * P + 1) == System(2 / (s * P.expr + 1))
@@ -212,9 +212,9 @@ def test_the_code_is_the_block_diagram():
 
 def test_a_smith_predictor_with_the_right_model_takes_the_delay_out_of_the_loop():
     C, G = PID(3, Ti=5).expr, first_order(2, 5)
-    smith = feedback(C, G - G * sympy.exp(-4 * s))
+    smith = closed_loop(C, G - G * sympy.exp(-4 * s))
     loop = Loop(G * sympy.exp(-4 * s), smith)
-    assert loop.servo == feedback(C * G) * sympy.exp(-4 * s)
+    assert loop.servo == closed_loop(C * G) * sympy.exp(-4 * s)
     assert set(loop.servo.denominator) == {0}
     wrong = Loop(G * sympy.exp(-5 * s), smith)
     assert wrong.servo.delays == [4, 5]
@@ -349,10 +349,10 @@ def test_what_is_no_system(H, message):
 def test_algebraic_loops():
     for G, H in ((-1, 1), (-s / (s + 1), 1), ((1 - s) / (s + 1), 1), (-1 + DELAY / s, 1)):
         with pytest.raises(ValueError, match="algebraic loop"):
-            feedback(sympy.sympify(G), H)
+            closed_loop(sympy.sympify(G), H)
     with pytest.raises(ValueError, match="algebraic loop"):
         Loop((1 - s) / (1 + s), PID(1))
-    assert feedback(1, 1) == System(sympy.Rational(1, 2))  # a loop of gains that has one
+    assert closed_loop(1, 1) == System(sympy.Rational(1, 2))  # a loop of gains that has one
     with pytest.raises(ValueError, match="divided by 0"):
         System(1) / 0
 

@@ -47,3 +47,30 @@ def one_of(name, word, words):
     if not isinstance(word, str) or word not in words:
         raise ValueError(f"{name} is {word!r}: expected {', '.join(map(repr, words))}")
     return word
+
+
+def real_numbers(name, values):
+    """Return values as an array of floats, or raise ValueError for what is not real and finite.
+
+    >>> real_numbers("times", [0, 1])
+    array([0., 1.])
+    """
+    import numpy
+
+    try:
+        if numpy.iscomplexobj(values):  # which NumPy would cut down to their real parts
+            raise TypeError
+        array = numpy.asarray(values, dtype=float)
+    except (TypeError, ValueError):
+        raise ValueError(f"the {name} are {values!r}: expected real numbers") from None
+    if not numpy.isfinite(array).all():
+        raise ValueError(f"the {name} contain {array[~numpy.isfinite(array)][0]:g}: expected finite numbers")
+    return array
+
+
+def times_from_zero(values):
+    """Return times as an array of floats, or raise ValueError where one is negative."""
+    times = real_numbers("times", values)
+    if (times < 0).any():
+        raise ValueError(f"the times begin at {times.min():g}: expected zero or later")
+    return times

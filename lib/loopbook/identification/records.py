@@ -1,6 +1,6 @@
 """Recorded signals: arrays of numbers at increasing times, checked in one place."""
 
-from loopbook.deadtime import real_numbers
+from loopbook.inputs import real_numbers
 
 
 def record(times, **signals):

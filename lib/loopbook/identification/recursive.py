@@ -7,7 +7,7 @@ The estimator itself is four lines, and there is none in SciPy or python-control
 import math
 
 from loopbook.approximation import Model
-from loopbook.deadtime import real_numbers
+from loopbook.inputs import real_numbers
 from loopbook.expressions import exact
 from loopbook.inputs import number, positive
 

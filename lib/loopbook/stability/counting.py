@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import sympy
 
-from loopbook.deadtime import Loop, normal_form
+from loopbook.quasipolynomials import normal_form
 from loopbook.expressions import s
 from loopbook.stability.sums import MOST_INTERVALS, ROUNDING, Sums, prevailing, refined
 from loopbook.transfer import transfer_function
@@ -100,7 +100,7 @@ def unstable_roots(denominator):
 
 def open_loop(loop):
     """The open loop L(s) of whatever stands for it, with the errors that all questions share."""
-    L = loop.open if isinstance(loop, Loop) else transfer_function(loop)
+    L = loop.open if hasattr(loop, "open_fraction") else transfer_function(loop)
     if letters := sorted(map(str, L.free_symbols - {s})):
         raise ValueError(f"give a number for {', '.join(letters)} in {L}")
     if L.has(sympy.I):

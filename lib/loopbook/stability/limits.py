@@ -2,7 +2,7 @@
 
 import math
 
-from loopbook.deadtime import real_numbers
+from loopbook.inputs import real_numbers
 from loopbook.stability.counting import count_roots, fraction_sums, open_loop
 from loopbook.stability.crossings import limiting_gains
 from loopbook.stability.sums import Sums

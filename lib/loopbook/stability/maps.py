@@ -4,7 +4,7 @@ import time
 
 import sympy
 
-from loopbook.deadtime import real_numbers
+from loopbook.inputs import real_numbers
 from loopbook.expressions import s
 from loopbook.stability.counting import characteristic, count_roots
 from loopbook.stability.sums import Sums

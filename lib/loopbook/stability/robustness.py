@@ -4,7 +4,7 @@ import itertools
 import math
 from typing import NamedTuple
 
-from loopbook.deadtime import real_numbers
+from loopbook.inputs import real_numbers
 from loopbook.laplace import by_delay
 from loopbook.stability.counting import count_roots, fraction_sums, open_loop
 from loopbook.stability.crossings import equal_sizes, phase_left

@@ -1,0 +1,306 @@
+"""A system with exact dead time anywhere in it: its algebra, its responses, its poles."""
+
+from __future__ import annotations
+
+import functools
+import math
+import numbers
+from fractions import Fraction
+from typing import TYPE_CHECKING, Self
+
+import sympy
+
+from loopbook.deadtime.response import ChannelModel, Response
+from loopbook.expressions import function_of, s, t
+from loopbook.inputs import real_numbers, times_from_zero
+from loopbook.laplace import transform
+from loopbook.quasipolynomials import DelayFraction, read
+from loopbook.quasipolynomials.fraction import Sum
+from loopbook.stability import is_stable
+
+if TYPE_CHECKING:
+    import control
+    import numpy
+    from numpy.typing import ArrayLike
+
+__all__ = ["System", "closed_loop"]
+
+DIFFERENTIATOR = read(s)
+
+
+class System(DelayFraction):
+    """A linear system with exact dead time, anywhere in it, as behind a feedback loop.
+
+    The operators ``+ - * / **`` work with other systems, expressions in `s`, controllers and numbers, so that an
+    expression of systems is the block diagram. Common factors cancel exactly, as `DelayFraction` says. Called with a
+    complex number, a system returns its transfer function there.
+
+    Arguments:
+        H: transfer function with numbers, an expression in `s` with dead times ``exp(-delay*s)``; a system itself; or a
+            continuous single-input single-output system of python-control, whose decimal numbers are taken as meant.
+    Attributes:
+        expr: the transfer function with common factors cancelled.
+        numerator, denominator: ``{delay: coefficients}``, whole numbers, the lowest power first.
+    Raises:
+        ValueError: for letters, an improper system, a negative dead time, or one whose output would depend on later
+            inputs.
+
+    >>> System(sympy.exp(-s) / s) * 2
+    System(2*exp(-s)/s)
+    >>> closed_loop(System(sympy.exp(-s) / s))
+    System(exp(-s)/(s + exp(-s)))
+    """
+
+    def __init__(self, H: object):
+        fraction = read(H)
+        self.numerator, self.denominator = fraction.numerator, fraction.denominator
+        if not self.is_proper:
+            delay, part = max(
+                ((delay, part) for side in (self.denominator, self.numerator) for delay, part in side.items()),
+                key=lambda item: len(item[1]),
+            )
+            late = f" with the dead time {delay}" if delay else ""
+            raise ValueError(
+                f"{self.expr} is improper: it has s**{len(part) - 1}{late} over s**{self.order}; expected no more "
+                f"zeros than poles, as with a filter in the derivative term"
+            )
+
+    @classmethod
+    def _make(cls, above: Sum, below: Sum) -> Self:
+        return cls(DelayFraction(above, below))
+
+    # ---- what it is
+
+    @property
+    def static_gain(self) -> sympy.Expr:
+        """H(0), exact: what a constant input is multiplied with in the end, if the output settles.
+
+        It is infinite for an integrator.
+
+        >>> closed_loop(3 * sympy.exp(-s) / (s + 1)).static_gain
+        3/4
+        """
+        if not self.numerator:
+            return sympy.S.Zero
+        (zeros, above), (poles, below) = map(_lowest_term, (self.numerator, self.denominator))
+        if zeros != poles:
+            return sympy.S.Zero if zeros > poles else sympy.oo * sympy.sign(above / below)
+        return sympy.Rational(above.numerator * below.denominator, above.denominator * below.numerator)
+
+    @property
+    def is_stable(self) -> bool:
+        """Whether all poles lie in the left half-plane, proved; one on the imaginary axis is not stable.
+
+        >>> System(1 / (s + 1)).is_stable, closed_loop(2 * sympy.exp(-s) / s).is_stable
+        (True, False)
+        """
+        return is_stable(self)
+
+    # ---- frequency
+
+    def frequency(self, omega: ArrayLike) -> numpy.ndarray:
+        """Return the frequency response H(j omega), exact but for rounding.
+
+        Arguments:
+            omega: frequencies in radians for one unit of time, a number or an array.
+        Returns:
+            A complex array of the same shape; not finite at a pole on the axis, also one that only dead times cancel,
+            as in (1 - exp(-s))/s.
+
+        >>> System(sympy.exp(-s) / s).frequency(2.0).round(6)
+        np.complex128(-0.454649+0.208073j)
+        """
+        return self(1j * real_numbers("frequencies", omega))
+
+    # ---- responses in time
+
+    def step(self, times: ArrayLike | None = None) -> numpy.ndarray | Response:
+        """Return the output for a unit step at t = 0 of the input, the system being at rest before.
+
+        At a jump it is the value after the jump. The error is about 1e-13 of the largest value up to then; of a high
+        order at first, while the response is still powers of ten smaller, about 1e-13 of what it is a lag later.
+
+        Arguments:
+            times: an array of times, not negative, in the unit of the lags.
+        Returns:
+            An array; without times the response itself, as `step_until` returns it.
+        Raises:
+            ValueError: for negative times, or where so many combinations of the dead times are points of discontinuity
+                that the response cannot be followed.
+
+        >>> closed_loop(System(sympy.exp(-s) / s)).step([0.5, 1.5, 2.5]).round(6)
+        array([0.   , 0.5  , 1.375])
+        """
+        if times is None:
+            return self.step_until()
+        times = times_from_zero(times)
+        return self.step_until(times.max(initial=0.0))(times)
+
+    def step_until(self, end: float) -> Response:
+        """Return the step response up to the time `end` as a `Response`, a function of time with its integrals.
+
+        >>> System(1 / (s + 1)).step_until(5)(1.0).round(6)
+        np.float64(0.632121)
+        """
+        return Response(self.state_space(), end)
+
+    def impulse(self, times: ArrayLike) -> numpy.ndarray:
+        """Return the output for a unit impulse at t = 0: the step response of ``s*H``, with the accuracy of `step`.
+
+        Raises ValueError if the system is not strictly proper, so that the output itself contains impulses.
+
+        >>> System(sympy.exp(-s) / (s + 1)).impulse([0.5, 1, 2]).round(6)
+        array([0.      , 1.      , 0.367879])
+        """
+        if any(len(part) > self.order for part in self.numerator.values()):
+            raise ValueError(f"{self.expr} is not strictly proper: its response to an impulse contains impulses")
+        return (self * DIFFERENTIATOR).step(times)
+
+    def response(self, times: ArrayLike, u: object) -> numpy.ndarray:
+        """Return the output for an input u(t) that begins at t = 0, the system being at rest before.
+
+        Arguments:
+            times: an array of times, not negative.
+            u: an expression in `t` that has a rational Laplace transform apart from dead times (steps, ramps,
+                polynomials, exponentials, sines, also later ones); or an array with a value for each of the times,
+                increasing and beginning with 0, which are joined by straight lines.
+        Returns:
+            An array, exact in the sense of `step` for both kinds of input.
+        Raises:
+            ValueError: for a signal without a transform, an input with impulses where the output would have impulses,
+                or arrays that do not fit.
+
+        >>> System(2 / s).response([3, 4], sympy.Heaviside(t - 2)).round(6)
+        array([2., 4.])
+        """
+        times = times_from_zero(times)
+        if hasattr(u, "__len__") and not isinstance(u, str):
+            return self._response_to_samples(times, real_numbers("values of u", u))
+        forced = DelayFraction(self.numerator, self.denominator) * read(transform(function_of(t, u)))
+        return System(forced).impulse(times)
+
+    def _response_to_samples(self, times, u):
+        import numpy
+
+        fit = u.shape == times.shape and times.ndim == 1 and len(times) > 1
+        if not (fit and times[0] == 0 and (numpy.diff(times) > 0).all()):
+            raise ValueError(
+                f"{u.size} values of u for {times.size} times: expected one each for times that increase from 0"
+            )
+        slopes = numpy.diff(u) / numpy.diff(times)
+        ramp = System(self.expr / s).step_until(times[-1])
+        # each change of slope begins a ramp of its own, at those times that are later
+        changes = numpy.diff(slopes, prepend=0)
+        after = [changes[:k] @ ramp(times[k] - times[:k]) for k in range(len(times))]
+        return u[0] * self.step(times) + after
+
+    # ---- other forms
+
+    def state_space(self) -> ChannelModel:
+        """Return a state-space model with delay channels, the controllable canonical form with balanced states.
+
+        Each dead time of the denominator is a channel that leads back to the states, and each one of the numerator a
+        channel that leads to the output.
+
+        >>> System(sympy.exp(-3 * s) / (s + 2)).state_space().delays
+        [Fraction(3, 1)]
+        """
+        return self._state_space
+
+    @functools.cached_property
+    def _state_space(self) -> ChannelModel:
+        import numpy
+        from scipy.linalg import matrix_balance
+
+        n, leading = self.order, self.denominator[Fraction(0)][-1]
+
+        def rows(parts):  # lowest power first
+            return numpy.array([[c / leading for c in part] + [0.0] * (n + 1 - len(part)) for part in parts]).reshape(
+                -1, n + 1
+            )
+
+        below = {delay: part for delay, part in self.denominator.items() if delay}
+        above = {delay: part for delay, part in self.numerator.items() if delay}
+        direct = rows([self.numerator.get(Fraction(0), ())])
+        own, back, ahead = rows([self.denominator[Fraction(0)]])[0, :n], rows(below.values()), rows(above.values())
+        channels = numpy.vstack([back, ahead])
+        # the last derivative is u - own x - (what comes back), and what it is multiplied with follows from that
+        A = numpy.diag(numpy.ones(max(n - 1, 0)), 1)[:n, :n]
+        B1, B2 = numpy.zeros((n, 1)), numpy.zeros((n, len(channels)))
+        returns = numpy.r_[-numpy.ones(len(back)), numpy.zeros(len(ahead))]
+        if n:
+            A[-1], B1[-1], B2[-1] = -own, 1, returns
+        C1, C2 = (c[:, :n] - c[:, n:] * own for c in (direct, channels))
+        D11, D21 = direct[:, n:], channels[:, n:]
+        to_output = numpy.r_[numpy.zeros(len(back)), numpy.ones(len(ahead))]
+        D12, D22 = D11 * returns + to_output, D21 * returns
+        if n:
+            with numpy.errstate(invalid="ignore"):  # SciPy makes integers of scales
+                _, (scale, _) = matrix_balance(A, permute=False, separate=True)
+            A, B1, B2 = A * scale / scale[:, None], B1 / scale[:, None], B2 / scale[:, None]
+            C1, C2 = C1 * scale, C2 * scale
+        return ChannelModel(A, B1, B2, C1, C2, D11, D12, D21, D22, [*below, *above])
+
+    def to_control(self, order: int) -> control.StateSpace:
+        """Return a state-space system of python-control, with a Pade approximation in place of each dead time.
+
+        Arguments:
+            order: of the approximations, at least 1; there is no default, because it decides what the result is worth.
+        Raises:
+            ValueError: for another order.
+
+        >>> System(sympy.exp(-s) / (s + 1)).to_control(order=4).nstates
+        5
+        """
+        import control
+        import numpy
+
+        if isinstance(order, bool) or not isinstance(order, numbers.Integral) or order < 1:
+            raise ValueError(f"the order of the Pade approximation is {order!r}: expected 1, 2, 3 ...")
+        A, B1, B2, C1, C2, D11, D12, D21, D22, delays = self.state_space()
+        B, C = numpy.hstack([B1, B2]), numpy.vstack([C1, C2])
+        D = numpy.block([[D11, D12], [D21, D22]])
+        model = control.ss(A, B, C, D)
+        if not delays:
+            return model
+        channels = control.append(*(control.ss(control.tf(*control.pade(float(delay), order))) for delay in delays))
+        return model.lft(channels)
+
+
+def _lowest_term(parts: Sum) -> tuple[int, Fraction]:
+    """The lowest power of `s` in the Taylor series of a sum, and its coefficient, exact."""
+    k = 0
+    while True:
+        coefficient = sum(
+            c * (-delay) ** (k - i) / math.factorial(k - i)
+            for delay, part in parts.items()
+            for i, c in enumerate(part[: k + 1])
+        )
+        if coefficient:
+            return k, Fraction(coefficient)
+        k += 1
+
+
+def closed_loop(G: object, H: object = 1) -> System:
+    """Return the closed loop G/(1 + G*H), with G in the forward path and H in the path back, as a `System`.
+
+    Arguments:
+        G, H: systems, controllers, expressions in `s`, or systems of python-control. Each may be improper.
+    Raises:
+        ValueError: for an algebraic loop that has no solution because 1 + G*H is zero at infinite frequency, or as
+            `System`.
+
+    >>> closed_loop(2 * sympy.exp(-s) / s, sympy.Rational(1, 2))
+    System(2*exp(-s)/(s + exp(-s)))
+    """
+    G, H = (DelayFraction(x.numerator, x.denominator) for x in map(read, (G, H)))
+    return System(G / return_difference(G * H))
+
+
+def return_difference(L: DelayFraction) -> DelayFraction:
+    """1 + L, if a loop with the open loop L has a solution."""
+    difference = 1 + L
+    at_once = difference.numerator.get(Fraction(0), ())
+    if len(at_once) < len(difference.denominator[Fraction(0)]):
+        raise ValueError(f"the algebraic loop around {L.expr} has no solution: its gain at infinite frequency is -1")
+    return difference
