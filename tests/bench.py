@@ -32,7 +32,7 @@ from scipy.optimize import curve_fit
 
 from loopbook import notebooks, s
 from loopbook.approximation import half_rule, taylor
-from loopbook.deadtime import Loop, System, feedback
+from loopbook.deadtime import Loop, System, closed_loop
 from loopbook.exercises import bank
 from loopbook.identification import fit
 from loopbook.ise import integral_of_square, pi_first_order
@@ -250,7 +250,7 @@ def the_responses(runs: int) -> Table:
 def the_criteria(runs: int) -> Table:
     """The integral of the squared error of a PI loop and of a Smith predictor with a wrong model."""
     process, model = first_order(2, 0.7, delay=1.4), first_order(2, 0.7)
-    smith = feedback(PID(0.35, Ti=0.7).expr, model - process)
+    smith = closed_loop(PID(0.35, Ti=0.7), model - process)
     wrong = System(Loop(first_order(2, 0.7, delay=2.1), smith).error("servo"))
     filtered = System(Loop(process, PID(0.45, 1.9, 0.5, 0.05)).error("servo"))
     crooked = System(Loop(first_order(2, 0.7, delay=sympy.sqrt(3)), smith).error("servo"))

@@ -52,7 +52,7 @@ def respond(gain, delay):
         "setpoint": numpy.ones_like(TIMES),
     }
     results = dict.fromkeys(("overshoot", "undershoot", TOU, KP, TI, MS), "–")
-    if unstable_poles(experiment.open):
+    if unstable_poles(experiment):
         return Answer("Unstable: less gain", results, signals)
     over, under, Tou = swing(FINE, y, final)
     results |= {"overshoot": percent(over), "undershoot": f"{under:.1%}".replace("%", "\u202f%")}
@@ -63,7 +63,7 @@ def respond(gain, delay):
     settings = good_gain(float(gain), Tou)
     loop = Loop(process, PID(*(float(f"{float(x):.3g}") for x in (settings.Kp, settings.Ti))))
     signals["PI"] = stepped(TIMES, loop.servo, loop.regulator, LOAD_AT)
-    unstable = unstable_poles(loop.open)
+    unstable = unstable_poles(loop)
     results |= {
         TOU: figures(Tou, unit="s"), KP: figures(settings.Kp), TI: figures(settings.Ti, unit="s"),
         MS: "unstable" if unstable else figures(margins(loop.open).Ms),

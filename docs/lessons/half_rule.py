@@ -60,7 +60,7 @@ def respond(ratio, zero, share):
         DISTANCE: "–", "overshoot of the loop": "–", MS: "–",
     }  # fmt: skip
     results[DISTANCE] = " and ".join(f"{abs(exact - signals[name]).max():.3f}" for name in ("first", "second"))
-    if unstable_poles(loop.open):
+    if unstable_poles(loop):
         return Answer("The loop is unstable", results, signals)
     Ms = margins(loop.open).Ms
     results |= {"overshoot of the loop": overshoot(loop.servo.step(TIMES)), MS: figures(Ms)}

@@ -34,7 +34,7 @@ def respond(Kp, Ti):
         "setpoint": numpy.ones_like(TIMES),
     }
     results = dict.fromkeys(LABELS, "–")
-    if unstable_poles(loop.open):
+    if unstable_poles(loop):
         return Answer("Unstable", results, signals)
     margin = margins(loop.open)
     squares = (pi_first_order(K, T, DELAY, float(Kp), float(Ti), mode) for mode in ("servo", "regulator"))

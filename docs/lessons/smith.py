@@ -10,7 +10,6 @@ from lessons.lesson import Answer, Curve, Lesson, Panel, Slider, overshoot, step
 from loopbook import s
 from loopbook.deadtime import Loop, System
 from loopbook.pid import PID
-from loopbook.stability import unstable_roots
 from loopbook.transfer import first_order
 
 K, T, DELAY = 1, 4, 4
@@ -39,18 +38,13 @@ def ordinary(delay, gain, Tc):
     """The response under the PI controller that the same model and the same wish lead to, and whether it is stable."""
     controller = PID(T / (K * gain * (Tc + DELAY * delay)), Ti=T)
     loop = Loop(first_order(K, T, DELAY), controller)
-    return stepped(TIMES, loop.servo, loop.regulator, LOAD_AT), is_stable(loop.servo)
-
-
-def is_stable(servo):
-    """Whether no root of the exact characteristic function lies in the right half-plane."""
-    return unstable_roots(servo.denominator) == 0
+    return stepped(TIMES, loop.servo, loop.regulator, LOAD_AT), loop.servo.is_stable
 
 
 def respond(delay, gain, Tc):
     """Answer for one ratio of dead times, one ratio of gains (model to process) and one wanted time-constant."""
     servo, regulator = predictor(delay, gain, Tc)
-    y, stable = stepped(TIMES, servo, regulator, LOAD_AT), is_stable(servo)
+    y, stable = stepped(TIMES, servo, regulator, LOAD_AT), servo.is_stable
     beside, beside_stable = ordinary(delay, gain, Tc)
     before = TIMES < LOAD_AT
     results = {}

@@ -2,6 +2,7 @@
 
 import copy
 import math
+import numbers
 from dataclasses import dataclass
 
 import sympy
@@ -9,6 +10,7 @@ import sympy
 from loopbook.expressions import equalities, exact, s, written
 from loopbook.inputs import number, positive
 from loopbook.scaling import PERCENT, Scaling
+from loopbook.transfer import transfer_function
 
 __all__ = ["PID", "Controller", "LowpassFilter"]
 
@@ -155,6 +157,18 @@ class PID:
         if band == 0:
             raise ValueError("the proportional band is 0: expected a number other than zero")
         return cls(100 / band, sympy.oo if repeats == 0 else exact(minute) / repeats, Td, Tf)
+
+    def __mul__(self, block: object) -> sympy.Expr:
+        """Return the product with an expression, another controller or a number, an expression in `s`.
+
+        >>> PID(2, Ti=10) * (3 / s)
+        3*(2 + 1/(5*s))/s
+        """
+        if isinstance(block, (sympy.Expr, PID, numbers.Real)):
+            return self.expr * transfer_function(block)
+        return NotImplemented  # a system multiplies by itself
+
+    __rmul__ = __mul__
 
     def _shown(self):
         """The settings that are not what they are by themselves."""

@@ -201,7 +201,7 @@ def simplified(H):
     >>> simplified((s + 1) / (s**2 + 3 * s + 2))
     1/(s + 2)
     """
-    H = function_of(s, H)
+    H = transfer_function(H)
     if H.has(sympy.oo, sympy.zoo):
         raise ValueError(f"{H} is infinite: expected a transfer function")
     try:
@@ -222,7 +222,7 @@ def series(*blocks):
     >>> series(2 / (s + 1), 3 / s)
     6/(s*(s + 1))
     """
-    return simplified(sympy.Mul(*map(exact, blocks)))
+    return simplified(sympy.Mul(*map(transfer_function, blocks)))
 
 
 def parallel(*blocks):
@@ -231,7 +231,7 @@ def parallel(*blocks):
     >>> parallel(1, 1 / s)
     (s + 1)/s
     """
-    return simplified(sympy.Add(*map(exact, blocks)))
+    return simplified(sympy.Add(*map(transfer_function, blocks)))
 
 
 def feedback(forward, back=1, sign=-1):
@@ -260,7 +260,7 @@ def feedback(forward, back=1, sign=-1):
 
 def _fraction(H):
     """Numerator and denominator of H apart from its dead time, common factors cancelled."""
-    parts = by_delay(H)
+    parts = by_delay(transfer_function(H))
     if len(parts) > 1:
         raise ValueError(f"{H} adds terms of different dead times: its poles and zeros are not known")
     return sympy.cancel(next(iter(parts.values()), sympy.S.Zero)).as_numer_denom()
@@ -279,7 +279,7 @@ def polynomials(H):
     >>> polynomials(sympy.exp(-2 * s) / (s + 3))
     (Poly(1, s, domain='QQ'), Poly(s + 3, s, domain='QQ'), 2)
     """
-    H = function_of(s, H)
+    H = transfer_function(H)
     if letters := sorted(map(str, H.free_symbols - {s})):
         raise ValueError(f"give a number for {', '.join(letters)} in {H}")
     if H.has(sympy.I):
@@ -346,7 +346,7 @@ def static_gain(H):
     >>> static_gain(3 / (s + sympy.Rational(1, 2)))
     6
     """
-    return sympy.limit(function_of(s, H), s, 0)
+    return sympy.limit(transfer_function(H), s, 0)
 
 
 def initial_gain(H):
@@ -357,7 +357,7 @@ def initial_gain(H):
     >>> initial_gain((3 * s + 1) / (s + 2))
     3
     """
-    return sympy.limit(function_of(s, H), s, sympy.oo)
+    return sympy.limit(transfer_function(H), s, sympy.oo)
 
 
 def initial_slope(H):
@@ -370,7 +370,7 @@ def initial_slope(H):
     >>> initial_slope(first_order(2, 10))
     1/5
     """
-    H = function_of(s, H)
+    H = transfer_function(H)
     for part in by_delay(H).values():
         above, below = sympy.cancel(part).as_numer_denom()
         if sympy.degree(above, s) > sympy.degree(below, s):
@@ -415,7 +415,7 @@ def time_constant_form(H):
 def _rebuilt(H, gain, scale):
     """The product of gain, the scaled factors of numerator and denominator, and the dead time of H."""
     above, below = ([sympy.expand(f / scale(f)) for f in _real_factors(polynomial)] for polynomial in _fraction(H))
-    return sympy.Mul(gain, *above, *(1 / factor for factor in below), *(dead_time(delay) for delay in by_delay(H)))
+    return sympy.Mul(gain, *above, *(1 / factor for factor in below), *(dead_time(delay) for delay in by_delay(transfer_function(H))))
 
 
 def _real_factors(polynomial):
@@ -446,7 +446,7 @@ def response(H, u):
     >>> response(1 / (s + 1), t)
     t - 1 + exp(-t)
     """
-    return inverse(function_of(s, H) * transform(u))
+    return inverse(transfer_function(H) * transform(u))
 
 
 def step_response(H, U=1):
@@ -455,7 +455,7 @@ def step_response(H, U=1):
     >>> step_response(3 / (s + sympy.Rational(1, 2)), U=2)
     12 - 12*exp(-t/2)
     """
-    return inverse(function_of(s, H) * exact(U) / s)
+    return inverse(transfer_function(H) * exact(U) / s)
 
 
 def impulse_response(H, area=1):
@@ -464,7 +464,7 @@ def impulse_response(H, area=1):
     >>> impulse_response(first_order(2, 4))
     exp(-t/4)/2
     """
-    return inverse(function_of(s, H) * exact(area))
+    return inverse(transfer_function(H) * exact(area))
 
 
 _ONE_LAG = 1 - sympy.exp(-1)
@@ -477,7 +477,7 @@ def response_time(H, share=_ONE_LAG):
     one; the moment is found to about 12 digits.
 
     Arguments:
-        H: transfer function with numbers, stable, with a static gain that is not zero.
+        H: transfer function with numbers, or a `System`; stable, with a static gain that is not zero.
         share: between 0 and 1.
     Returns:
         The time, a float, in the unit of the lags.
@@ -491,9 +491,12 @@ def response_time(H, share=_ONE_LAG):
     import numpy
     from scipy.optimize import brentq
 
-    H, share = function_of(s, H), exact(share)
+    share = exact(share)
     if not (share.is_number and 0 < share < 1):
         raise ValueError(f"share is {share}: expected a number between 0 and 1")
+    if hasattr(H, "response_time"):  # a `System`, whose dead times may stand anywhere
+        return H.response_time(float(share))
+    H = transfer_function(H)
     if letters := sorted(map(str, H.free_symbols - {s})):
         raise ValueError(f"the response-time of {H} is not known: give a number for {', '.join(letters)}")
     final = final_value(H / s)

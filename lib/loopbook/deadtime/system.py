@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 import numbers
 from fractions import Fraction
@@ -11,8 +12,9 @@ from typing import TYPE_CHECKING, Self
 import sympy
 
 from loopbook.deadtime.response import ChannelModel, Response
+from loopbook.deadtime.step_info import StepInfo, first_time_at, settled_response, step_info
 from loopbook.expressions import function_of, s, t
-from loopbook.inputs import real_numbers, times_from_zero
+from loopbook.inputs import number, real_numbers, times_from_zero
 from loopbook.laplace import transform
 from loopbook.quasipolynomials import DelayFraction, read
 from loopbook.quasipolynomials.fraction import Sum
@@ -193,6 +195,43 @@ class System(DelayFraction):
         changes = numpy.diff(slopes, prepend=0)
         after = [changes[:k] @ ramp(times[k] - times[:k]) for k in range(len(times))]
         return u[0] * self.step(times) + after
+
+    def step_info(self, settling: float = 0.02, rise: tuple[float, float] = (0.1, 0.9)) -> StepInfo:
+        """Return rise time, settling time, overshoot, undershoot and peak of the unit step response, as `StepInfo`.
+
+        Arguments:
+            settling: half the width of the band in which the response has settled, as a share of the final value.
+            rise: the shares of the final value between which the rise time is counted.
+        Raises:
+            ValueError: for a system that is not stable, or shares that are none.
+
+        >>> info = closed_loop(sympy.exp(-s) / (2 * s)).step_info()
+        >>> round(info.overshoot, 4), round(info.peak_time, 4)
+        (0.0405, 4.7401)
+        """
+        return step_info(self.step_until, *self._end_and_final_value(), settling, rise)
+
+    def response_time(self, share: float = 1 - math.exp(-1)) -> float:
+        """Return the time at which the unit step response first reaches a share of its final value, by default 63 %.
+
+        Raises ValueError for a system that is not stable, a final value of zero, or a share that is none.
+
+        >>> round(System(1 / (5 * s + 1)).response_time(), 6)
+        5.0
+        """
+        number("the share", share, "one between 0 and 1", lambda x: 0 < x < 1)
+        end, final = self._end_and_final_value()
+        if not final:
+            raise ValueError(f"the step response of {self.expr} settles at 0: expected a number other than zero")
+        return first_time_at(settled_response(self.step_until, end, final, 0.5), share * final)
+
+    def _end_and_final_value(self) -> tuple[float, float]:
+        """A time to begin with, and the value at which the step response settles."""
+        if not self.is_stable:
+            raise ValueError(f"{self.expr} is not stable: its step response does not settle")
+        lags = [c / d for part in self.denominator.values() for c, d in itertools.pairwise(map(abs, part[::-1])) if d]
+        slow = min((ratio for ratio in lags if ratio), default=0)
+        return float(sum(self.delays)) * 2 + (4 / float(slow) if slow else 1.0), float(self.static_gain)
 
     # ---- other forms
 

@@ -24,9 +24,9 @@ def stable(process=None, by=None):
     """
 
     def is_stable(pid):
-        from loopbook.stability import is_stable
+        from loopbook.stability import is_closed_loop_stable
 
-        return pid.Kp != 0 and is_stable(process * pid.expr)
+        return pid.Kp != 0 and is_closed_loop_stable(process * pid.expr)
 
     return Criterion(
         "the loop is stable",

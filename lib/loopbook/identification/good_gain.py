@@ -149,7 +149,6 @@ def _response_of(process, Pu):
 
     def respond(Kp):
         servo = Loop(process, PID(float(f"{Kp:.12g}"))).servo
-        above, below = (sum(part.eval(0) for part in parts.values()) for parts in (servo.numerator, servo.denominator))
-        return times, servo.step(times), float(above / below)
+        return times, servo.step(times), float(servo.static_gain)
 
     return respond

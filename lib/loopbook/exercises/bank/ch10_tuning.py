@@ -365,9 +365,9 @@ _INTEGRATOR = exp(-s) / s  # with the dead time as the unit of time and the slop
 
 @lru_cache
 def _is_stable(Kp, Ti):
-    from loopbook.stability import is_stable
+    from loopbook.stability import is_closed_loop_stable
 
-    return Kp != 0 and is_stable(PID(Kp, Ti).expr * _INTEGRATOR)
+    return Kp != 0 and is_closed_loop_stable(PID(Kp, Ti).expr * _INTEGRATOR)
 
 
 @lru_cache
