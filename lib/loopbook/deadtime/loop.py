@@ -131,11 +131,11 @@ class Loop:
 
     @functools.cached_property
     def S(self) -> System:
-        return System(1 / self._difference)
+        return System(DelayFraction.coprime(self._difference.denominator, self._difference.numerator))
 
     @functools.cached_property
     def T(self) -> System:
-        return self._closed(self.open_fraction)
+        return System(DelayFraction.coprime(self.open_fraction.numerator, self._difference.numerator))
 
     @functools.cached_property
     def PS(self) -> System:
@@ -147,6 +147,8 @@ class Loop:
 
     @functools.cached_property
     def servo(self) -> System:
+        if self.setpoint_fraction == self.controller_fraction:
+            return self.T
         return self._closed(self.setpoint_fraction * self.process_fraction)
 
     @functools.cached_property

@@ -17,7 +17,7 @@ from loopbook.expressions import function_of, s, t
 from loopbook.inputs import number, real_numbers, times_from_zero
 from loopbook.laplace import transform
 from loopbook.quasipolynomials import DelayFraction, read
-from loopbook.quasipolynomials.fraction import Sum
+from loopbook.quasipolynomials.fraction import Sum, plus
 from loopbook.stability import is_stable
 
 if TYPE_CHECKING:
@@ -338,8 +338,7 @@ def closed_loop(G: object, H: object = 1) -> System:
 
 def return_difference(L: DelayFraction) -> DelayFraction:
     """1 + L, if a loop with the open loop L has a solution."""
-    difference = 1 + L
-    at_once = difference.numerator.get(Fraction(0), ())
-    if len(at_once) < len(difference.denominator[Fraction(0)]):
+    above, zero = plus(L.denominator, L.numerator), Fraction(0)
+    if len(above.get(zero, ())) < len(L.denominator[zero]):
         raise ValueError(f"the algebraic loop around {L.expr} has no solution: its gain at infinite frequency is -1")
-    return difference
+    return DelayFraction.coprime(above, L.denominator)  # a common factor would be one of L

@@ -227,6 +227,17 @@ class DelayFraction:
     def _make(cls, above: Sum, below: Sum) -> Self:
         return cls(above, below)
 
+    @classmethod
+    def coprime(cls, above: Sum, below: Sum) -> DelayFraction:
+        """The fraction of two sums that are known to have no common factor, the denominator with a part at zero."""
+        fraction = DelayFraction.__new__(DelayFraction)
+        below = below if above else ONE
+        sign = -1 if below[ZERO][-1] < 0 else 1
+        fraction.numerator, fraction.denominator = (
+            dict(sorted(_scaled(parts, sign).items())) for parts in (above, below)
+        )
+        return fraction
+
     @functools.cached_property
     def expr(self) -> sympy.Expr:
         """The transfer function, an expression in `s` with whole coefficients."""
