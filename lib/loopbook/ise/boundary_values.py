@@ -6,7 +6,7 @@ from fractions import Fraction
 from loopbook.ise.error import NotApplicableError
 
 MOST_STATES = 48  # of a boundary value problem; beyond, quadrature is faster
-MOST_DIGITS_LOST = 1e-10  # how far solutions in different units of time may lie apart
+MOST_DIGITS_LOST = 2e-11  # how far solutions in different units of time may lie apart
 CERTAIN = 1e-12  # how near two of them lie where no third is needed
 
 

@@ -48,7 +48,7 @@ def integral_of_square(E, method=None):
       that it loses where zeros lie close together.
     - "boundary value": all dead times multiples of one. The autocorrelation of the response of 1/D, D being the
       denominator, fulfils linear differential equations with conditions at both ends. They are solved in three units
-      of time, and the results have to agree to 1e-10.
+      of time, and the results have to agree to 2e-11.
     - "quadrature": any dead times. Parseval's integral along the frequencies, in intervals in which no pole is near;
       relative error below 1e-9.
     - "response": from the exact step response, followed until its later half adds no more than 1e-12 of the integral;

@@ -5,10 +5,13 @@ from typing import NamedTuple
 
 from loopbook.deadtime import System
 from loopbook.expressions import s
+from loopbook.quasipolynomials import read
+
 from loopbook.ise.error import ErrorFraction, NotApplicableError, error_of
 
 __all__ = ["Criteria", "criteria"]
 
+DIFFERENTIATOR = read(s)
 SMALLEST_TOLERANCE = 1e-12  # smaller ones are lost in rounding, and the response would be followed for ever
 NEGLIGIBLE = 1e-12  # the share of the integral that may be left when a response is cut off
 
@@ -89,8 +92,8 @@ def by_response(fraction):
 
 def _followed(fraction, integrals, tolerance):
     """Integrals over the response, followed twice as far until the later half adds nothing that matters."""
-    e = System(s * fraction.system.expr)
-    end = 4 * float(sum(fraction.system.delays)) + 16 / fraction.speed
+    e = System(fraction.fraction * DIFFERENTIATOR)
+    end = 4 * float(sum(fraction.fraction.delays)) + 16 / fraction.speed
     while True:
         response = e.step_until(end)
         table = integrals(response)
