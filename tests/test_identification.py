@@ -26,7 +26,7 @@ from loopbook.identification import (
     relay_experiment,
     swing,
 )
-from loopbook.identification.held import KINDS, _exponential, chain, responses
+from loopbook.identification.held import HOLDS, KINDS, DrivenChain, responses
 from loopbook.pid import PID, Controller
 from loopbook.plants import Process
 from loopbook.signals import noise, stepwise
@@ -115,39 +115,60 @@ PROCESSES = {
 }
 
 
-def test_the_response_to_a_held_input_is_that_of_the_exact_solver():
-    times, u = np.arange(40.0), np.random.default_rng(3).normal(size=40)
-    u[0] = 0
+@pytest.mark.parametrize("hold", HOLDS)
+@pytest.mark.parametrize("even", [True, False])
+def test_the_response_to_samples_is_that_of_the_exact_solver(hold, even):
+    rng = np.random.default_rng(3)
+    times, u = np.arange(40.0) if even else np.cumsum(rng.uniform(0.1, 2, 40)), rng.normal(size=40)
+    times -= times[0]
     for kind, (H, parameters) in PROCESSES.items():
         lags = [parameters[name] for name in ("T1", "T2") if name in parameters]
-        forced, _ = responses(kind, lags, parameters["delay"], 1.0, u)
-        step = System(sympy.nsimplify(H)).step_until(40)
+        forced, _ = responses(kind, lags, parameters["delay"], times, u, hold)
+        if hold == "zero order":
+            moves, one = np.diff(u, prepend=0), System(sympy.nsimplify(H)).step_until(times[-1])
+        else:
+            moves, one = np.diff(np.diff(u) / np.diff(times), prepend=0), System(sympy.nsimplify(H) / s).step_until(80)
         exact = sum(
-            change * np.where(times >= k, step(np.maximum(times - k, 0)), 0)
-            for k, change in enumerate(np.diff(u, prepend=0))
+            move * np.where(times >= begin, one(np.maximum(times - begin, 0)), 0)
+            for move, begin in zip(moves, times, strict=False)
         )
+        if hold == "first order":
+            exact = exact + u[0] * System(sympy.nsimplify(H)).step(times)
         assert forced * parameters["K"] == pytest.approx(exact, abs=1e-9 * abs(exact).max()), kind
 
 
-@given(st.lists(st.floats(0.01, 1e4), min_size=2, max_size=2), st.floats(1e-3, 50))
+@given(st.floats(0.01, 1e4), st.floats(0, 1), st.floats(0, 5), st.sampled_from(HOLDS))
 @settings(max_examples=50, deadline=None)
-def test_the_exponential_of_a_chain_is_that_of_scipy(lags, step):
-    from scipy.linalg import expm
+def test_even_samples_and_nearly_equal_lags_need_no_way_of_their_own(T, alike, delay, hold):
+    times, u = np.arange(60.0), np.random.default_rng(1).normal(size=60)
+    lags, late = np.array([[T], [T * max(alike, 1e-3)]]), np.array([delay])
+    even = DrivenChain("second order", times, u, hold, step=1.0).forced(lags, late)
+    assert even == pytest.approx(DrivenChain("second order", times, u, hold).forced(lags, late), abs=1e-11)
+    nearly = DrivenChain("second order", times, u, hold).forced(lags * [[1 + 1e-9], [1]], late)
+    assert even == pytest.approx(nearly, abs=1e-7)
 
-    A, _ = chain("second order", lags)
-    assert _exponential(A * step) == pytest.approx(expm(A * step), rel=1e-9, abs=1e-12 * (1 + abs(A * step).max()))
+
+def test_many_sets_of_lags_at_once_are_each_one_alone():
+    times, u = np.cumsum(np.random.default_rng(1).uniform(0.5, 1.5, 30)), np.random.default_rng(2).normal(size=30)
+    lags, delays = np.array([[5.0, 9.0, 2.0], [1.0, 9.0, 0.5]]), np.array([0.0, 1.3, 7.7])
+    chain = DrivenChain("second order", times, u, "first order")
+    together = chain.forced(lags, delays)
+    for k in range(3):
+        assert together[:, k] == pytest.approx(chain.forced(lags[:, [k]], delays[[k]])[:, 0], abs=1e-14)
+        alike = chain.forced(lags[:, [k]], delays)  # one set for all dead times
+        assert alike[:, k] == pytest.approx(together[:, k], abs=1e-14)
 
 
 def test_the_free_responses_are_those_of_the_states():
     for kind, (lags, integrators) in KINDS.items():
-        T = [8.0, 3.0][:lags]
-        _, free = responses(kind, T, 2.5, 0.5, np.zeros(30))
-        times = np.arange(30) * 0.5
+        T, times = [8.0, 3.0][:lags], np.arange(30) * 0.5
+        _, free = responses(kind, T, 2.5, times, np.zeros(30))
         assert free.shape == (30, lags + integrators + 1)
         if integrators:
             assert free[:, -2] == pytest.approx(np.ones(30))
         else:
             assert free[:, -2] == pytest.approx(np.exp(-times / T[-1]))
+        assert free[:, -1] == pytest.approx(responses(kind, T, 0, times, np.ones(30))[0])
 
 
 def experiment(H, deviation, seed=1, count=300):
@@ -265,10 +286,11 @@ def test_a_record_that_does_not_fit_is_refused():
         (lambda: fit(times, u, y, longest_delay="long"), "longest dead time is 'long'"),
         (lambda: fit(times, u, y, longest_delay=2), "dead time would be 2 or longer"),  # it is 3.3
         (lambda: fit(times, u, y, start="warm"), "the start is 'warm'"),
+        (lambda: fit(times, u, y, hold="second order"), "the hold is 'second order'"),
         (lambda: fit(times, 0 * u, y), "control signal is 0 all the time"),
         (lambda: fit(times, np.where(times < 299, 0, 1), y), "control signal is 0 all the time"),  # moves too late
         (lambda: fit(times, u, 0 * y + 3), "measurement is 3 all the time"),
-        (lambda: fit(times**2, u, y), "do not come evenly"),
+        (lambda: fit(times - 2 * times.clip(0, 9), u, y), "increasing numbers"),
         (lambda: fit(times, u, y[1:]), "y has 299 values"),
         (lambda: fit(times, u, y, longest_delay=1000), "longest dead time is 1000"),
         (lambda: fit(times, u, np.where(times == 5, math.nan, y)), "contain nan"),

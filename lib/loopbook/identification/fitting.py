@@ -1,23 +1,34 @@
 """A simple model fitted to logged data of control signal and measurement, by least squares."""
 
+from __future__ import annotations
+
 import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import sympy
 
 from loopbook.approximation import Model
 from loopbook.expressions import exact
-from loopbook.identification.held import KINDS, responses
-from loopbook.identification.records import record, sampling_step
+from loopbook.identification.held import HOLDS, KINDS, DrivenChain
+from loopbook.identification.profiles import Residuals, interval
+from loopbook.identification.records import even_step, record
+from loopbook.identification.search import least_squares
 from loopbook.inputs import number, one_of
 
+if TYPE_CHECKING:
+    from numpy import ndarray
+    from numpy.typing import ArrayLike
+
 STARTS = ("rest", "unknown")
-DELAYS, LAGS = 16, 7  # how many of each are tried at first
-BEST = 4  # of these, from which the search begins
+LAGS = 7  # how many of each are tried at first
+FEWEST, MOST = 16, 110  # dead times that are tried at first
+POINTS = 3_000_000  # samples times sets of lags and dead times, computed for the grid
+BEST = 6  # of these, from which the search begins
 DIGITS = 10  # of the model's numbers
-SHORTEST = 1 / 20  # lag that is looked for, in steps
 CLOSE = 1e-5  # a dead time of so few steps is none
+AGREE = 0.2  # by how much of its half an interval may differ from the linear one, where a standard error says enough
 
 
 @dataclass(frozen=True, repr=False)
@@ -26,45 +37,109 @@ class Fit:
 
     Attributes:
         model: the `Model`.
-        kind: as given to `fit`.
+        kind, hold: as given to `fit`.
         parameters: K, T1 or T1 and T2, and delay, floats by name.
-        errors: the standard error of each of them, if what is left of the data is white noise.
+        errors: the standard error of each of them, if what is left of the data is white noise, and if the response is
+            nearly linear in them over some standard errors. It is not where two lags may be equal, or one be too short
+            to be seen, or noise is large; then `intervals` tells more. `inf` is what cannot be said.
         residual: standard deviation of what is left, in the unit of the measurement.
         times, y, fitted: the record, and what the model makes of the control signal; arrays.
     """
 
     model: Model
     kind: str
-    parameters: dict
-    errors: dict
+    parameters: dict[str, float]
+    errors: dict[str, float]
     residual: float
-    times: object
-    y: object
-    fitted: object
+    times: ndarray
+    y: ndarray
+    fitted: ndarray
+    hold: str = "zero order"
+    _residuals: Residuals | None = field(default=None, compare=False)
+    _known: dict = field(default_factory=dict, compare=False)
 
     @property
-    def expr(self):
+    def expr(self) -> sympy.Expr:
         """The transfer function of the model."""
         return self.model.expr
 
-    def __repr__(self):
-        values = ", ".join(f"{name} = {value:.4g} ± {self.errors[name]:.1g}" for name, value in self.parameters.items())
-        return f"<fit, {self.kind} with dead time: {values}; residual {self.residual:.3g}>"
+    def intervals(self, level: float = 0.95) -> dict[str, tuple[float, float]]:
+        """Return an interval for each parameter that holds the true one with a probability, if the noise is white.
+
+        A value is in the interval if the best model with that value fits not much worse than the best one of all, by
+        an F test (a profile likelihood). So the interval need not be symmetric; it ends at zero where a lag or a dead
+        time is not to be told from none, and at infinity where the record sets no limit. For two lags, the first one
+        is the longer one. The response need not be nearly linear in the parameters, as for `errors`.
+
+        Arguments:
+            level: the probability, between 0 and 1.
+        Raises:
+            ValueError: for another level, or a record of no more samples than the fit has numbers.
+
+        >>> import numpy
+        >>> times = numpy.arange(60.0)
+        >>> u, noise = numpy.where(times < 5, 0, 1), 0.1 * numpy.sin(times**2)
+        >>> y = 2 * (1 - numpy.exp(-numpy.maximum(times - 7.5, 0) / 10))
+        >>> {name: [round(x, 1) for x in ends] for name, ends in fit(times, u, y + noise).intervals().items()}
+        {'K': [2.0, 2.1], 'T1': [9.7, 11.7], 'delay': [1.7, 2.8]}
+        """
+        level = number("the level", level, "a probability between 0 and 1", lambda x: 0 < x < 1)
+        if level not in self._known:
+            if self._residuals.freedom < 1:
+                numbers = self._residuals.numbers
+                raise ValueError(
+                    f"{len(self.y)} samples tell no noise from a model of {numbers} numbers: expected more"
+                )
+            self._known[level] = {
+                name: interval(self._residuals, name, self.parameters, self.errors, level) for name in self.parameters
+            }
+        return dict(self._known[level])
+
+    def __repr__(self) -> str:
+        # a standard error is said where it says as much as an interval does
+        from scipy.special import stdtrit
+
+        intervals, beyond = None, 0.0
+        if self._residuals is not None and self._residuals.freedom > 0 and self.residual > 0:
+            intervals, beyond = self.intervals(), float(stdtrit(self._residuals.freedom, 0.975))
+        values = []
+        for name, value in self.parameters.items():
+            error = self.errors[name]
+            if (
+                intervals
+                and max(abs(abs(end - value) - beyond * error) for end in intervals[name]) > AGREE * beyond * error
+            ):
+                values.append(f"{name} = {value:.4g} ({intervals[name][0]:.3g} to {intervals[name][1]:.3g})")
+            else:
+                values.append(f"{name} = {value:.4g} ± {error:.1g}")
+        return f"<fit, {self.kind} with dead time: {', '.join(values)}; residual {self.residual:.3g}>"
 
 
-def fit(times, u, y, kind="first order", *, start="rest", level=None, longest_delay=None):
+def fit(
+    times: ArrayLike,
+    u: ArrayLike,
+    y: ArrayLike,
+    kind: str = "first order",
+    *,
+    hold: str = "zero order",
+    start: str = "rest",
+    level: float | None = None,
+    longest_delay: float | None = None,
+) -> Fit:
     """Fit a simple model with dead time to logged data, so that the sum of squared output errors is least.
 
-    The output error is the measurement minus what the model makes of the control signal alone. The control signal is
-    held between samples, and the model's response is exact. For given lags and dead time the rest of the problem is
-    linear. Lags and dead time are searched with `scipy.optimize.least_squares`, from the best of a grid of starting
-    points, because the sum of squares over the dead time may have several minima. A lag that is shorter than the time
-    between two samples is not resolved: its standard error is then too small.
+    The output error is the measurement minus what the model makes of the control signal alone; this response is exact,
+    and the samples need not come evenly. For given lags and dead time the rest of the problem is linear. Lags and dead
+    time are searched by the method of Levenberg and Marquardt, from the best of a grid of starting points, because the
+    sum of squares over the dead time may have several minima. A lag that is shorter than a twentieth of the mean time
+    between two samples is not looked for.
 
     Arguments:
-        times: moments of the samples, evenly spaced.
-        u, y: control signal and measurement at these moments; u is held until the next one.
+        times: moments of the samples, increasing.
+        u, y: control signal and measurement at these moments.
         kind: "first order", "second order" (two real lags), "integrator" or "integrator with lag".
+        hold: what the control signal does between samples: "zero order", if it is held until the next one, as by a
+            computer; or "first order", if its values are joined by straight lines.
         start: "rest", if the process was at rest with the first control signal before the record; or "unknown", and
             then the state at the beginning is estimated, too. Before the record, u had its first value for as long as
             the dead time.
@@ -73,8 +148,8 @@ def fit(times, u, y, kind="first order", *, start="rest", level=None, longest_de
     Returns:
         A `Fit`.
     Raises:
-        ValueError: for arrays that do not fit, uneven samples, another kind or start, a signal that does not move, or
-            a dead time as long as the longest one.
+        ValueError: for arrays that do not fit, times that do not increase, another kind, hold or start, a signal that
+            does not move, or a dead time as long as the longest one.
 
     >>> import numpy
     >>> times = numpy.arange(60.0)
@@ -84,12 +159,13 @@ def fit(times, u, y, kind="first order", *, start="rest", level=None, longest_de
     Model(K=2, T1=10, delay=5/2)
     """
     import numpy
-    from scipy.optimize import least_squares
 
     times, u, y = record(times, u=u, y=y)
-    step, span = sampling_step(times), times[-1] - times[0]
     one_of("the kind", kind, KINDS)
+    one_of("the hold", hold, HOLDS)
     one_of("the start", start, STARTS)
+    span = times[-1] - times[0]
+    step = span / (len(times) - 1)
     if not (u[:-1] != u[0]).any():
         raise ValueError(f"the control signal is {u[0]:g} all the time: expected an experiment that moves it")
     if not (y != y[0]).any():
@@ -98,104 +174,59 @@ def fit(times, u, y, kind="first order", *, start="rest", level=None, longest_de
     number(
         "the longest dead time", longest_delay, f"a time up to that of the record, {span:g}", lambda x: 0 < x <= span
     )
-    lags, integrators = KINDS[kind]
+    _, integrators = KINDS[kind]
     # neither the search nor the standard errors may depend on units: time counts in steps, signals in their own spans
     unit_u, unit_y = abs(u - u[0]).max(), numpy.ptp(y)
-    moved = (u - u[0]) / unit_u
     rest = y[0] if level is None else number("the level", level)
-    target = (y - rest) / unit_y
-
-    def regressors(p):
-        forced, free = responses(kind, numpy.exp(p[:-1]), p[-1], 1.0, moved)
-        if start == "rest":
-            free = numpy.ones((len(u), 0 if level is not None else 1))
-        elif level is not None:
-            free = free[:, :-1]
-        return numpy.column_stack([forced, free])
-
-    def left(p):
-        return _without(regressors(p), target)
-
-    count, longest = span / step, float(longest_delay) / step
-    low = numpy.array([math.log(SHORTEST)] * lags + [0.0])
-    high = numpy.array([math.log(100 * count)] * lags + [longest])
-    tried = numpy.log(numpy.geomspace(0.5, 2 * count, LAGS))
-    sets = itertools.combinations_with_replacement(tried[::-1], lags)
-    grid = [[*T, delay] for T in sets for delay in numpy.linspace(0, longest, DELAYS, endpoint=False)]
-    grid.sort(key=lambda p: (left(p) ** 2).sum())
-    tolerances = {"xtol": 1e-12, "ftol": 1e-12, "gtol": 1e-12, "x_scale": "jac"}
-    searched = [
-        least_squares(left, numpy.clip(p, low + 1e-9, high - 1e-9), bounds=(low, high), **tolerances)
-        for p in _apart(grid, longest / DELAYS)
-    ]
-    best = min(searched, key=lambda found: found.cost)
-    if best.x[-1] > longest * (1 - 1e-6):
+    even = even_step(times) is not None
+    chain = DrivenChain(
+        kind, numpy.arange(len(times)) * 1.0 if even else (times - times[0]) / step, (u - u[0]) / unit_u, hold,
+        1.0 if even else None,
+    )  # fmt: skip
+    units = {"K": unit_y / unit_u / step**integrators, "T1": step, "T2": step, "delay": step}
+    longest = float(longest_delay) / step
+    residuals = Residuals(chain, (y - rest) / unit_y, start, level is not None, longest, units)
+    p = _search(residuals)
+    if p[-1] > longest * (1 - 1e-6):
         raise ValueError(f"the dead time would be {longest_delay:g} or longer: expected a larger longest_delay")
-    units = numpy.array([unit_y / unit_u / step**integrators, *[step] * (lags + 1)])
-    parameters, errors, residual, fitted = _described(best.x, regressors, target, units)
-    names = ["K", *("T2" if integrators else f"T{n + 1}" for n in range(lags)), "delay"]
-    parameters, errors = (dict(zip(names, map(float, x), strict=True)) for x in (parameters, errors))
+    if p[-1] < CLOSE:
+        p[-1] = 0.0
+    found, errors, residual, fitted = residuals.described(p)
+    parameters = {name: float(units[name] * value) for name, value in found.items()}
+    errors = {name: float(units[name] * value) for name, value in errors.items()}
     rounded = {name: exact(float(f"{value:.{DIGITS}g}")) for name, value in parameters.items()}
     model = Model(**({"T1": sympy.oo} if integrators else {}), **rounded)
-    return Fit(model, kind, parameters, errors, float(residual * unit_y), times, y, rest + unit_y * fitted)
+    fitted = rest + unit_y * fitted
+    return Fit(model, kind, parameters, errors, float(residual * unit_y), times, y, fitted, hold, residuals)
 
 
-def _without(columns, target):
-    """What is left of the target when the columns have explained what they can: Gram and Schmidt, twice for rounding.
-
-    For so few columns that is quicker than a general routine.
-    """
+def _search(residuals):
+    """The lags and the dead time, as `Residuals` counts them, with the least sum of squares."""
     import numpy
 
-    found, left = [], target
-    for column in columns.T:
-        size = numpy.sqrt(column @ column)
-        for _ in range(2):
-            for q in found:
-                column = column - (q @ column) * q
-        rest = numpy.sqrt(column @ column)
-        if rest > 1e-9 * size:
-            found.append(column / rest)
-            left = left - (found[-1] @ left) * found[-1]
-    return left
-
-
-def _apart(grid, distance):
-    """The best starting points, no more than one for each dead time."""
-    chosen = []
-    for p in grid:
-        if all(abs(p[-1] - other[-1]) > distance / 2 for other in chosen):
-            chosen.append(p)
+    low, high = residuals.low, residuals.high
+    count, longest = len(residuals.target), high[-1]
+    tried = numpy.geomspace(0.5, 2 * count, LAGS)
+    sets = list(itertools.combinations_with_replacement(tried[::-1], residuals.chain.lags))
+    many = min(MOST, math.ceil(longest), POINTS // (count * len(sets)))
+    delays = numpy.linspace(0, longest, max(FEWEST, many), endpoint=False)
+    sums = [(residuals.of(numpy.reshape(T, (-1, 1)), delays) ** 2).sum(axis=0) for T in sets]
+    order = numpy.argsort(numpy.ravel(sums), kind="stable")
+    chosen = []  # no more than one for each dead time
+    for k in order:
+        T, delay = sets[k // len(delays)], delays[k % len(delays)]
+        if all(abs(delay - other[-1]) > longest / FEWEST / 2 for other in chosen):
+            chosen.append([*residuals.counted(T), delay])
         if len(chosen) == BEST:
             break
-    return chosen
-
-
-def _described(p, regressors, target, units):
-    """The parameters and their standard errors in the units given, the standard deviation of the rest, and the fit."""
-    import numpy
-
-    lags = len(p) - 1
-    T, delay = sorted(numpy.exp(p[:-1]), reverse=True), p[-1] if p[-1] > CLOSE else 0.0
-    p = numpy.array([*numpy.log(T), delay])
-    columns = regressors(p)
-    linear = numpy.linalg.lstsq(columns, target, rcond=None)[0]
-    fitted = columns @ linear
-    # how the response depends on each parameter
-    changes = []
-    for k, value in enumerate([*T, delay]):
-        width = 1e-5 * (value if k < lags else max(value, T[0] if lags else 1.0))
-        ahead, behind = p.copy(), p.copy()
-        if k < lags:
-            ahead[k], behind[k] = math.log(value + width), math.log(value - width)
-        else:
-            ahead[k], behind[k] = value + width, max(value - width, 0.0)
-        width = ahead[k] - behind[k] if k == lags else 2 * width
-        changes.append((regressors(ahead) - regressors(behind)) @ linear / width)
-    jacobian = numpy.column_stack([columns[:, :1], *changes, columns[:, 1:]])
-    variance = ((target - fitted) ** 2).sum() / max(len(target) - jacobian.shape[1], 1)
-    # two equal lags act alike: their difference, which only the second order shows, is left out
-    sizes = numpy.linalg.norm(jacobian, axis=0)
-    inverse = numpy.linalg.pinv(jacobian / numpy.where(sizes, sizes, 1), rcond=1e-4)
-    errors = numpy.sqrt(variance * (inverse**2).sum(axis=1))[: lags + 2] / sizes[: lags + 2]
-    return units * [linear[0], *T, delay], units * errors, math.sqrt(variance), fitted
+    start = numpy.array(chosen).T
+    wide = numpy.ones_like(start)
+    found, sums = least_squares(residuals.at, start, low[:, None] * wide, high[:, None] * wide)
+    best = found[:, sums.argmin()]
+    # where a dead time is a number of samples, the sum of squares has a kink: the pieces beside it, each for itself
+    floor = math.floor(best[-1])
+    floors = numpy.array([x for x in (floor - 1, floor, floor + 1) if 0 <= x < longest], dtype=float)
+    lows, highs = (numpy.repeat(x[:, None], len(floors), axis=1) for x in (low, high))
+    lows[-1], highs[-1] = floors, numpy.minimum(floors + 1, longest)
+    found, pieces = least_squares(residuals.at, numpy.repeat(best[:, None], len(floors), axis=1), lows, highs)
+    return found[:, pieces.argmin()] if pieces.min() <= sums.min() else best

@@ -1,12 +1,20 @@
-"""The output of simple processes at the samples, exact, for a control signal that is held between them.
+"""The output of simple processes at the samples, exact, for a recorded control signal, however the samples come.
 
-A held signal that arrives late by a dead time changes once between two samples. The matrix exponential gives what it
-does before and after this change, so that neither a Pade approximation nor a small step is needed.
+Between two samples the control signal is constant or a straight line, so that the states of a chain of lags are known
+in closed form from one sample to the next. A dead time only asks for them at earlier moments than those of the
+samples. So neither a Pade approximation nor a small step is needed, nor one step between all the samples. Everything is
+done for many sets of lags and dead times at once.
 """
 
-import math
+from __future__ import annotations
 
-TERMS = 15  # of the series of the exponential of a number below 1/2
+import math
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy import ndarray
 
 KINDS = {  # how many lags, and how many integrators
     "first order": (1, 0),
@@ -14,73 +22,199 @@ KINDS = {  # how many lags, and how many integrators
     "integrator": (0, 1),
     "integrator with lag": (1, 1),
 }
+HOLDS = ("zero order", "first order")
 
 
-def chain(kind, lags):
-    """Return A and B of a chain of lags, and perhaps an integrator at its end, with gain one; the output is its end."""
-    import numpy
+class DrivenChain:
+    """Lags in a row, and perhaps an integrator at their end, with gain one, driven by a recorded control signal.
 
-    rates = [1 / T for T in lags] + [0.0] * KINDS[kind][1]
-    inflow = [1 / T for T in lags] + [1.0] * KINDS[kind][1]
-    A = numpy.diag([-rate for rate in rates])
-    A[range(1, len(rates)), range(len(rates) - 1)] = inflow[1:]
-    B = numpy.zeros(len(rates))
-    B[0] = inflow[0]
-    return A, B
+    Arguments:
+        kind: one of `KINDS`.
+        times: moments of the samples, increasing.
+        u: the control signal at these moments; it is 0 before, and the chain at rest.
+        hold: "zero order", if u is held until the next sample, or "first order", if its values are joined by straight
+            lines.
+        step: the time between two samples, if they come evenly, which is quicker.
+
+    >>> import numpy
+    >>> chain = DrivenChain("integrator", numpy.arange(5.0), numpy.array([0, 1, 1, 0, 0]), "zero order")
+    >>> chain.forced(numpy.empty((0, 1)), numpy.array([0.5])).ravel()
+    array([0. , 0. , 0.5, 1.5, 2. ])
+    """
+
+    def __init__(self, kind: str, times: ndarray, u: ndarray, hold: str, step: float | None = None) -> None:
+        import numpy
+
+        self.kind, self.step = kind, step
+        self.lags, self.integrators = KINDS[kind]
+        self.times = times - times[0]
+        self.u = u[:, None].astype(float)
+        self.slopes = None
+        if hold == "first order":
+            self.slopes = numpy.append(numpy.diff(u) / numpy.diff(times), 0.0)[:, None]
+        self.between = numpy.diff(self.times)[:, None] if step is None else numpy.array([[step]])
+
+    def forced(self, lags: ndarray, delay: ndarray) -> ndarray:
+        """Return the responses, a column for each set of lags and dead time.
+
+        Arguments:
+            lags: a row for each lag, the longest first.
+            delay: as many dead times as there are columns in `lags`; or more, if that is one column.
+        """
+        import numpy
+
+        before, elapsed = self._places(delay)
+        signals = [*self._states(lags), self.u, self.slopes]
+        shares = self._shares(lags, elapsed)[-1]
+        if self.step is None:
+            return _sum(shares, [None if x is None else _at(x, before) for x in signals])
+        late = _sum(shares, signals)  # by less than a sample, alike for all samples
+        return _at(numpy.concatenate([numpy.zeros((1, late.shape[1])), late]), before)
+
+    def free(self, lags: ndarray) -> ndarray:
+        """Return what the chain does without the control signal, an array of samples, sets of lags, and ways to move.
+
+        One way for each state that is 1 at the first sample, and the last one for a constant input of 1.
+        """
+        import numpy
+
+        shares = self._shares(lags, self.times[:, None])[-1]
+        shape = (len(self.times), lags.shape[1])
+        return numpy.stack([numpy.broadcast_to(share, shape) for share in shares[:-1]], axis=2)
+
+    def _places(self, delay):
+        """For each sample and dead time: the sample before the moment that is seen, and the time from there.
+
+        Of samples that come evenly these are counted from one, zero being any before the record, and the time is one.
+        """
+        import numpy
+
+        if self.step is not None:
+            whole = numpy.ceil(delay / self.step)
+            before = numpy.arange(1, len(self.times) + 1)[:, None] - whole.astype(int)
+            return numpy.maximum(before, 0), (whole * self.step - delay)[None]
+        seen = self.times[:, None] - delay
+        before = numpy.maximum(numpy.searchsorted(self.times, seen, side="right") - 1, 0)
+        return before, numpy.maximum(seen - self.times[before], 0.0)
+
+    def _states(self, lags):
+        """The states at the samples, from rest."""
+        states = []
+        for k, (*before, own, u, slope) in enumerate(self._shares(lags, self.between)):
+            known = [None if x is None else x[:-1] for x in (*states, self.u, self.slopes)]
+            states.append(_accumulated(own if k < self.lags else None, _sum([*before, u, slope], known)))
+        return states
+
+    def _shares(self, lags, elapsed):
+        """What each state is some time later: how much of itself, of those before it, of the input and of its slope.
+
+        In the order of the chain, for an input that begins at u and rises with a slope.
+        """
+        import numpy
+
+        found = []
+        for k in range(self.lags):
+            lost = -numpy.expm1(-elapsed / lags[k])
+            line = lags[: k + 1].sum(axis=0)  # so far a state is behind a line
+            if k == 0:
+                found.append([1 - lost, lost, elapsed - line * lost])
+                first = lost
+            else:  # the second lag also follows what is left in the first, which is the longer one
+                faster = elapsed / lags[1] - elapsed / lags[0]
+                follows = elapsed / lags[1] * (1 - first) * _share(faster)
+                rest = lost - follows
+                found.append([follows, 1 - lost, rest, elapsed - line * lost + follows * lags[0]])
+        if self.integrators:
+            one = numpy.ones_like(elapsed)
+            if self.lags:
+                passed = lags[0] * first
+                late = elapsed - passed
+                found.append([passed, one, late, elapsed**2 / 2 - lags[0] * late])
+            else:
+                found.append([one, elapsed, elapsed**2 / 2])
+        return found
 
 
-def responses(kind, lags, delay, step, u):
-    """Return the response to the held input u, at rest before with u = 0, and the free ones.
+def responses(
+    kind: str, lags: Sequence[float], delay: float, times: ndarray, u: ndarray, hold: str = "zero order"
+) -> tuple[ndarray, ndarray]:
+    """Return the response to the input u, at rest before with u = 0, and the free ones.
 
+    Arguments:
+        kind: one of `KINDS`, with as many `lags`.
+        delay: the dead time.
+        times, u, hold: as for `DrivenChain`.
     Returns:
         An array with a value for each sample, and one with a column for each way to move without that input: one for
         each state that is 1 at the first sample, the last one for a constant input of 1.
+
+    >>> import numpy
+    >>> forced, free = responses("first order", [2.0], 0.5, numpy.array([0.0, 1.0, 2.5]), numpy.array([0.0, 1.0, 1.0]))
+    >>> forced.round(4)
+    array([0.    , 0.    , 0.3935])
     """
     import numpy
 
-    A, B = chain(kind, lags)
-    n = len(B)
-    whole = math.floor(delay / step)
-    late = delay - whole * step  # after a sample, so long the input before it still acts
-    extended = numpy.zeros((n + 1, n + 1))
-    extended[:n, :n], extended[:n, n] = A, B
-    over_step, over_rest = _exponential(extended * step), _exponential(extended * (step - late))
-    transition, both, newer = over_step[:n, :n], over_step[:n, n], over_rest[:n, n]
-    older = both - newer
-    arrived = numpy.concatenate([numpy.zeros(whole + 1), u])[: len(u) + 1]
-    drive = numpy.outer(arrived[:-1], older) + numpy.outer(arrived[1:], newer)
-    forced = _states(transition, drive, numpy.zeros(n))[:, -1]
-    nothing = numpy.zeros((len(u), n))
-    free = [_states(transition, nothing, numpy.eye(n)[k])[:, -1] for k in range(n)]
-    free.append(_states(transition, nothing + both, numpy.zeros(n))[:, -1])
-    return forced, numpy.column_stack(free)
+    lags = numpy.array(sorted(lags, reverse=True), dtype=float)[:, None] if len(lags) else numpy.empty((0, 1))
+    chain = DrivenChain(kind, times, u, hold)
+    return chain.forced(lags, numpy.array([float(delay)]))[:, 0], chain.free(lags)[:, 0]
 
 
-def _exponential(M):
-    """The exponential of a small matrix: its series, for a part of it that is small, squared again and again.
-
-    A search calls this thousands of times; `scipy.linalg.expm` solves equations in it, on several threads.
-    """
-    import numpy
-
-    halvings = max(0, math.frexp(abs(M).sum(axis=1).max())[1] + 1)
-    M = M / 2**halvings
-    total = term = numpy.eye(len(M))
-    for n in range(1, TERMS):
-        term = term @ M / n
-        total = total + term
-    for _ in range(halvings):
-        total = total @ total
+def _sum(shares, signals):
+    """The sum of shares times signals; of a slope that is None there is none."""
+    total = 0.0
+    for share, signal in zip(shares, signals, strict=True):
+        if signal is not None:
+            total = total + share * signal
     return total
 
 
-def _states(transition, drive, initial):
-    """The states at all samples, x[k+1] = transition x[k] + drive[k]: one after the other along the chain."""
+def _at(x, rows):
+    """The values of each column, or of the only one, in rows of its own."""
     import numpy
-    from scipy.signal import lfilter
 
-    x = numpy.empty_like(drive)
-    for i in range(len(initial)):
-        from_before = x[:-1, :i] @ transition[i, :i] + drive[:-1, i]
-        x[:, i] = lfilter([1.0], [1.0, -transition[i, i]], numpy.concatenate([initial[i : i + 1], from_before]))
+    columns = x.shape[1]
+    return x.ravel().take(rows * columns + (numpy.arange(columns) if columns > 1 else 0))
+
+
+def _share(x):
+    """(1 - exp(-x))/x, for x not negative."""
+    import numpy
+
+    small = x < 1e-8
+    return numpy.where(small, 1 - x / 2, -numpy.expm1(-x) / numpy.where(small, 1.0, x))
+
+
+def _accumulated(decay, change):
+    """x from x[0] = 0 and x[k+1] = decay[k] x[k] + change[k], in columns; decay None is 1, one row is all of them.
+
+    In blocks of about the root of the length: all blocks go on at once, and then what each leaves to the next.
+    """
+    import numpy
+
+    count, columns = change.shape
+    x = numpy.zeros((count + 1, columns))
+    if decay is None:
+        numpy.cumsum(change, axis=0, out=x[1:])
+        return x
+    size = math.isqrt(count - 1) + 1
+    blocks = -(-count // size)
+    inside = numpy.zeros((blocks * size, columns))
+    inside[:count] = change
+    inside = inside.reshape(blocks, size, columns)
+    if len(decay) == 1:
+        decays = numpy.broadcast_to(decay[None], (1, size, columns))
+    else:
+        decays = numpy.ones((blocks * size, columns))
+        decays[:count] = decay
+        decays = decays.reshape(blocks, size, columns)
+    for k in range(1, size):
+        inside[:, k] += decays[:, k] * inside[:, k - 1]
+    products = numpy.cumprod(decays, axis=1)
+    whole, last = numpy.broadcast_to(products[:, -1], (blocks, columns)), inside[:, -1]
+    entering = numpy.zeros((blocks, columns))
+    for k in range(1, blocks):
+        entering[k] = whole[k - 1] * entering[k - 1] + last[k - 1]
+    inside += products * entering[:, None]
+    x[1:] = inside.reshape(-1, columns)[:count]
     return x

@@ -1,10 +1,24 @@
 """Recorded signals: arrays of numbers at increasing times, checked in one place."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from loopbook.inputs import real_numbers
 
+if TYPE_CHECKING:
+    from numpy import ndarray
+    from numpy.typing import ArrayLike
 
-def record(times, **signals):
-    """Return times and signals as arrays of floats of one length, or raise ValueError."""
+EVEN = 1e-9  # by how much of a step samples that come evenly may be early or late
+
+
+def record(times: ArrayLike, **signals: ArrayLike) -> tuple[ndarray, ...]:
+    """Return times and signals as arrays of floats of one length, or raise ValueError.
+
+    >>> record([0, 1, 2, 3], y=[0, 0, 1, 1])
+    (array([0., 1., 2., 3.]), array([0., 0., 1., 1.]))
+    """
     import numpy
 
     times = real_numbers("times", times)
@@ -17,12 +31,16 @@ def record(times, **signals):
     return times, *found
 
 
-def sampling_step(times):
-    """Return the time between two samples, or raise ValueError where they do not come evenly."""
+def even_step(times: ndarray) -> float | None:
+    """Return the time between two samples; or None where they do not come evenly, apart from rounding.
+
+    >>> import numpy
+    >>> even_step(numpy.array([1.0, 1.5, 2.0])), even_step(numpy.array([1.0, 1.5, 2.1]))
+    (0.5, None)
+    """
     import numpy
 
     step = (times[-1] - times[0]) / (len(times) - 1)
     rounding = 2 * numpy.spacing(abs(times).max())  # as of seconds since 1970
-    if abs(numpy.diff(times) - step).max() > 1e-6 * step + rounding:
-        raise ValueError("the samples do not come evenly: expected times with one step between them")
-    return float(step)
+    even = times[0] + step * numpy.arange(len(times))
+    return float(step) if abs(times - even).max() <= EVEN * step + rounding else None

@@ -1,0 +1,330 @@
+"""How well a record tells each parameter of a simple model: standard errors, and intervals by the profile likelihood.
+
+The sum of squares of a model with two lags is symmetric in them, so that it is not regular in the lags where they are
+equal; it is in their sum and in how equal they are, `4*T1*T2/(T1 + T2)**2`, a number from 0 to 1. A profile is the
+least sum of squares for each value of one parameter, whatever the others are then.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from loopbook.identification.held import DrivenChain
+from loopbook.identification.search import least_squares
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy import ndarray
+
+SHORTEST = 1 / 20  # lag that is looked for, in steps
+LONGEST = 100  # lag that is looked for, in records
+DEPENDENT = 1e-9  # a regressor of which so little is left by others is none
+WIDTH = 1e-5  # of a difference for a standard error
+MARCH = (0.4, 0.8, 1.2, 1.6, 2.0, 2.5, 3.0, 3.6, 4.5, 6.0)  # standard errors at which a profile is looked at
+FURTHER = 1.6  # factor from there on
+MORE = 8  # values at once, from there on
+INSIDE = 5  # values between the last that fits and the first that does not
+ZOOMS = 2
+MOST_STEPS = 80  # of the march
+ROUNDS, ENOUGH = 25, 1e-7  # of the search for the other parameters
+
+
+class Residuals:
+    """What a model leaves of the data, as a function of its lags and its dead time; the rest is linear.
+
+    Times count in steps, the measurement in its span, the control signal in its greatest change.
+
+    Arguments:
+        chain: the `DrivenChain` of the record.
+        target: the measurement, from a level near that of the beginning.
+        start: "rest" or "unknown".
+        leveled: whether that level is known.
+        longest: dead time.
+        units: of the parameters, by name.
+    """
+
+    def __init__(
+        self, chain: DrivenChain, target: ndarray, start: str, leveled: bool, longest: float, units: dict[str, float]
+    ) -> None:
+        import numpy
+
+        self.chain, self.target, self.start, self.leveled, self.units = chain, target, start, leveled, units
+        self.longest_lag = LONGEST * len(target)
+        lags = chain.lags
+        self.low = numpy.array([[], [math.log(SHORTEST)], [math.log(2 * SHORTEST), 0.0]][lags] + [0.0])
+        self.high = numpy.array(
+            [[], [math.log(self.longest_lag)], [math.log(2 * self.longest_lag), 1.0]][lags] + [longest]
+        )
+        beside = 0 if leveled else 1
+        if start == "unknown":
+            beside += chain.lags + chain.integrators
+        self.numbers = 1 + len(self.low) + beside
+        self.freedom = len(target) - self.numbers
+
+    def lags(self, p: ndarray) -> ndarray:
+        """The lags, the longest first, of parameters as the search counts them, in columns."""
+        import numpy
+
+        if self.chain.lags < 2:
+            return numpy.exp(p[:-1])
+        together, alike = numpy.exp(p[0]), p[1]
+        longer = together / 2 * (1 + numpy.sqrt(1 - alike))
+        shorter = together * alike / 2 / (1 + numpy.sqrt(1 - alike))
+        return numpy.array([longer, numpy.maximum(shorter, SHORTEST)])
+
+    def counted(self, lags: Sequence[float]) -> list[float]:
+        """The other way round: what the search counts instead of lags."""
+        if len(lags) < 2:
+            return [math.log(T) for T in lags]
+        return [math.log(sum(lags)), 4 * lags[0] * lags[1] / sum(lags) ** 2]
+
+    def at(self, p: ndarray, which: ndarray | None = None) -> ndarray:
+        """What is left, for parameters as the search counts them, in columns."""
+        return self.of(self.lags(p), p[-1])
+
+    def of(self, lags: ndarray, delay: ndarray, K: ndarray | None = None) -> ndarray:
+        """What is left, a column for each set of lags and dead time, and gain if it is given."""
+        import numpy
+
+        target = self.target[:, None]
+        basis, forced = self._free(lags), self.chain.forced(lags, delay)
+        orthonormal = []
+        if K is not None:
+            target = target - K * forced
+        for column in [*basis, *([forced] if K is None else [])]:
+            size = rest = _norm(column)
+            for _ in range(2 if orthonormal else 0):  # twice for rounding, if much was taken away
+                for q in orthonormal:
+                    column = column - (q * column).sum(axis=0) * q
+                rest = _norm(column)
+                if (rest > 0.1 * size).all():
+                    break
+            there = rest > DEPENDENT * size
+            orthonormal.append(column * (there / numpy.where(there, rest, 1.0)))
+        left = target
+        for q in orthonormal:
+            left = left - (q * left).sum(axis=0) * q
+        return numpy.broadcast_to(left, forced.shape)
+
+    def _free(self, lags):
+        """The regressors beside the response to the control signal."""
+        import numpy
+
+        if self.start == "rest":
+            return [] if self.leveled else [numpy.ones((len(self.target), 1))]
+        free = self.chain.free(lags)
+        return [free[:, :, k] for k in range(free.shape[2] - self.leveled)]
+
+    def described(self, p: ndarray) -> tuple[dict[str, float], dict[str, float], float, ndarray]:
+        """Parameters and standard errors by name, the standard deviation of what is left, and the model's response."""
+        import numpy
+
+        def response(p, linear=None):
+            lags = self.lags(p[:, None])
+            columns = numpy.column_stack([self.chain.forced(lags, p[-1:]), *self._free(lags)])
+            if linear is None:
+                linear = numpy.linalg.lstsq(columns, self.target, rcond=None)[0]
+            return columns, linear
+
+        columns, linear = response(p)
+        fitted = columns @ linear
+        T, delay = self.lags(p[:, None])[:, 0], p[-1]
+        changes = []
+        for k in range(len(p)):
+            width = WIDTH * (max(delay, T.max(initial=1.0)) if k == len(p) - 1 else 1.0)
+            ahead, behind = p.copy(), p.copy()
+            ahead[k], behind[k] = min(p[k] + width, self.high[k]), max(p[k] - width, self.low[k])
+            if len(T) == 2 and k == 1 and T[1] < 1:  # so short that it is hardly seen: as if it were longer
+                behind[k] = max(p[k], 4 * SHORTEST / T.sum())
+                ahead[k] = min(behind[k] + 2 / T.sum(), 1.0)
+            changes.append((response(ahead, linear)[0] - response(behind, linear)[0]) @ linear / (ahead[k] - behind[k]))
+        jacobian = numpy.column_stack([columns[:, :1], *changes, columns[:, 1:]])
+        names = ["K", *self.names, "delay"]
+        # how the named parameters depend on those of the search
+        named = numpy.eye(len(names), jacobian.shape[1])
+        if len(T) == 1:
+            named[1, 1] = T[0]
+        elif len(T) == 2:
+            apart = math.sqrt(max(1 - p[1], 1e-300))
+            bend = T.sum() / 4 / apart
+            named[1, 1:3], named[2, 1:3] = [T[0], -bend], [T[1], bend]
+        variance = ((self.target - fitted) ** 2).sum() / max(self.freedom, 1)
+        sizes = numpy.linalg.norm(jacobian, axis=0)
+        seen = sizes > DEPENDENT * sizes.max()
+        errors = numpy.full(len(names), math.inf)
+        _, R = numpy.linalg.qr(jacobian[:, seen] / sizes[seen])
+        if abs(numpy.diag(R)).min() > DEPENDENT and self.freedom > 0:
+            shares = numpy.linalg.solve(R.T, (named[:, seen] / sizes[seen]).T)
+            errors = math.sqrt(variance) * numpy.linalg.norm(shares, axis=0)
+            errors[(named[:, ~seen] != 0).any(axis=1)] = math.inf
+        parameters = dict(zip(names, [linear[0], *T, delay], strict=True))
+        return parameters, dict(zip(names, errors, strict=True)), math.sqrt(variance), fitted
+
+    @property
+    def names(self) -> list[str]:
+        """Of the lags."""
+        return ["T2"] if self.chain.integrators and self.chain.lags else ["T1", "T2"][: self.chain.lags]
+
+
+def _norm(columns):
+    import numpy
+
+    return numpy.sqrt(numpy.einsum("nb,nb->b", columns, columns))
+
+
+class _Profile:
+    """The least sum of squares for given values of one parameter."""
+
+    def __init__(self, residuals, name, best):
+        """The best parameters, by name, all in the units of the residuals."""
+        import numpy
+
+        self.residuals, self.name = residuals, name
+        two, longest = residuals.chain.lags == 2, residuals.longest_lag
+        low, high = residuals.low, residuals.high
+        T = [best[n] for n in residuals.names]
+        start = [*residuals.counted(T), best["delay"]]
+        if name == "delay":
+            low, high, start = low[:-1], high[:-1], start[:-1]
+            self.bottom, self.top = 0.0, residuals.high[-1]
+        elif name == "K":
+            self.bottom, self.top = -math.inf, math.inf
+        else:
+            self.bottom, self.top = math.log(SHORTEST), math.log(longest)
+            low, high = low[-1:], high[-1:]
+            if not two:
+                start = start[-1:]
+            elif name == "T1":  # and the other as a part of it
+                low, high, start = numpy.array([0.0, *low]), numpy.array([1.0, *high]), [T[1] / T[0], start[-1]]
+            else:  # and the other by how many times it is longer
+                low, high = numpy.array([0.0, *low]), numpy.array([math.log(longest / SHORTEST), *high])
+                start = [math.log(T[0] / T[1]), start[-1]]
+        self.low, self.high, self.start = low[:, None], high[:, None], numpy.array(start)[:, None]
+
+    def left(self, p, values):
+        import numpy
+
+        of = self.residuals
+        if self.name == "K":
+            return of.of(of.lags(p), p[-1], K=values)
+        if self.name == "delay":
+            return of.of(of.lags(numpy.vstack([p, values])), values)
+        T = numpy.exp(values)
+        if of.chain.lags == 1:
+            return of.of(T[None], p[-1])
+        if self.name == "T1":
+            return of.of(numpy.array([T, numpy.maximum(T * p[0], SHORTEST)]), p[-1])
+        return of.of(numpy.array([numpy.minimum(T * numpy.exp(p[0]), of.longest_lag), T]), p[-1])
+
+    def sums(self, values, starts):
+        """The least sums for these values, and where they are; from several starts each, the better one."""
+        import numpy
+
+        def search(chosen, start):
+            taken, wide = values[chosen], numpy.ones((1, len(chosen)))
+            return least_squares(
+                lambda p, which: self.left(p, taken[which]), start, self.low * wide, self.high * wide, rounds=ROUNDS,
+                enough=ENOUGH,
+            )  # fmt: skip
+
+        everywhere = numpy.arange(len(values))
+        found, best = search(everywhere, starts[0])
+        for start in starts[1:]:
+            other, sums = search(everywhere, start)
+            better = sums < best
+            found, best = numpy.where(better, other, found), numpy.where(better, sums, best)
+        if len(self.start):  # a neighbour may have found a better place
+            for shift in (1, -1):
+                neighbours = numpy.clip(everywhere + shift, 0, len(values) - 1)
+                promising = (self.left(found[:, neighbours], values) ** 2).sum(axis=0) < best * (1 - 1e-9)
+                if promising.any():
+                    chosen = everywhere[promising]
+                    other, sums = search(chosen, found[:, neighbours[chosen]])
+                    better = sums < best[chosen]
+                    chosen = chosen[better]
+                    found[:, chosen], best[chosen] = other[:, better], sums[better]
+        return best, found
+
+
+def interval(
+    residuals: Residuals, name: str, parameters: dict[str, float], errors: dict[str, float], level: float
+) -> tuple[float, float]:
+    """Return the values of one parameter whose profile does not exceed the least sum of squares by too much.
+
+    Arguments:
+        residuals: of the record.
+        name: of the parameter.
+        parameters, errors: the best ones and their standard errors, by name.
+        level: the probability that the interval holds the true value.
+    """
+    import numpy
+    from scipy.special import stdtrit  # scipy.stats takes a second to import
+
+    units = residuals.units
+    best = {key: value / units[key] for key, value in parameters.items()}
+    T = numpy.array([[best[n]] for n in residuals.names]).reshape(-1, 1)
+    least = (residuals.of(T, numpy.array([best["delay"]])) ** 2).sum()
+    limit = least * (1 + stdtrit(residuals.freedom, (1 + level) / 2) ** 2 / residuals.freedom)
+    if not least > 0:
+        return parameters[name], parameters[name]
+    profile = _Profile(residuals, name, best)
+    is_lag = name.startswith("T")
+    centre = math.log(best[name]) if is_lag else best[name]
+    error = errors[name] / units[name]
+    error = error / best[name] if is_lag else error
+    usual = 0.3 if is_lag else 0.3 * abs(centre) if name == "K" else 1.0
+    error = usual if not math.isfinite(error) or error <= 0 else min(error, 3 * usual + abs(centre))
+    ends = []
+    for side, end in ((-1, profile.bottom), (1, profile.top)):
+        ends.append(_end(profile, centre, error * side, end, least, limit))
+    if is_lag:
+        ends = [
+            0.0 if ends[0] <= profile.bottom else math.exp(ends[0]),
+            math.inf if ends[1] >= profile.top else math.exp(ends[1]),
+        ]
+    return tuple(float(x * units[name]) for x in ends)
+
+
+def _end(profile, centre, error, bound, least, limit):
+    """Where, on one side, the profile last exceeds the limit; or the bound."""
+    import numpy
+
+    place = profile.start
+    inner, inner_excess, inner_place = centre, -1.0, place[:, 0]  # excess: from -1 at the best to 0 at the limit
+    steps = numpy.array(MARCH)
+    while True:
+        values = centre + steps * error
+        values = numpy.unique(numpy.clip(values, min(bound, centre), max(bound, centre)))
+        if error < 0:
+            values = values[::-1]
+        starts = [numpy.repeat(x[:, None], len(values), axis=1) for x in (inner_place, place[:, 0])]
+        sums, places = profile.sums(values, starts if inner != centre else starts[:1])
+        excess = numpy.sqrt(numpy.maximum(sums - least, 0) / (limit - least)) - 1
+        fits = numpy.flatnonzero(excess < 0)
+        last = fits[-1] if len(fits) else -1
+        if last >= 0:
+            inner, inner_excess, inner_place = values[last], excess[last], places[:, last]
+        if last + 1 < len(values):
+            outer, outer_excess, outer_place = values[last + 1], excess[last + 1], places[:, last + 1]
+            break
+        if inner == bound or steps[-1] > FURTHER**MOST_STEPS:
+            return bound
+        steps = steps[-1] * FURTHER ** numpy.arange(1, MORE + 1)
+    for _ in range(ZOOMS):
+        share = (numpy.arange(INSIDE) + 1) / (INSIDE + 1)
+        values = inner + share * (outer - inner)
+        starts = [
+            inner_place[:, None] + share * (outer_place - inner_place)[:, None],
+            numpy.repeat(inner_place[:, None], INSIDE, axis=1),
+        ]
+        sums, places = profile.sums(values, starts)
+        excess = numpy.sqrt(numpy.maximum(sums - least, 0) / (limit - least)) - 1
+        fits = numpy.flatnonzero(excess < 0)
+        last = fits[-1] if len(fits) else -1
+        if last + 1 < INSIDE:
+            outer, outer_excess, outer_place = values[last + 1], excess[last + 1], places[:, last + 1]
+        if last >= 0:
+            inner, inner_excess, inner_place = values[last], excess[last], places[:, last]
+    return inner + (outer - inner) * inner_excess / (inner_excess - outer_excess)

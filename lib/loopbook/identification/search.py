@@ -1,0 +1,101 @@
+"""Least squares for many starting points or many fixed values at once, by the method of Levenberg and Marquardt.
+
+SciPy's searches take one problem at a time. Here a problem is a column, and all columns move together, each within
+bounds of its own and until it has arrived.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy import ndarray
+
+WIDTH = 1e-7  # of a difference for a derivative
+DAMPED, FREE, STUCK = 1e-2, 1e-12, 1e10  # the damping: at first, the least, and when nothing helps
+ARRIVED = 1e-11  # a step so short, as a part of a lag or of a sample, is none
+
+
+def least_squares(
+    left: Callable[[ndarray, ndarray], ndarray],
+    start: ndarray,
+    low: ndarray,
+    high: ndarray,
+    *,
+    rounds: int = 60,
+    enough: float = 1e-15,
+) -> tuple[ndarray, ndarray]:
+    """Return where each column's sum of squares is least, near its starting point, and these sums.
+
+    Arguments:
+        left: what is left of the data, a column of residuals for each column of parameters; it is given these, and the
+            numbers of the columns.
+        start: the starting points, a row for each parameter and a column for each problem.
+        low, high: bounds of the same shape.
+        rounds: the most steps that are tried.
+        enough: a column has arrived when a step lessens its sum by no more than this part.
+
+    >>> import numpy
+    >>> data = numpy.array([[1.0], [2.0]])
+    >>> left = lambda p, which: data - numpy.exp(p)
+    >>> zero = numpy.zeros((1, 2))
+    >>> found, sums = least_squares(left, zero, zero - 1, numpy.array([[1.0, 0.2]]))
+    >>> numpy.exp(found).round(4), sums.round(4)
+    (array([[1.5   , 1.2214]]), array([0.5   , 0.6552]))
+    """
+    import numpy
+
+    p = numpy.clip(start, low, high)
+    count, columns = p.shape
+    if count == 0:
+        return p, (left(p, numpy.arange(columns)) ** 2).sum(axis=0)
+    at_work = numpy.arange(columns)
+    sums, slopes, squares = _described(left, p, at_work, low, high)
+    damping, best = numpy.full(columns, DAMPED), p
+    diagonal = numpy.arange(count)
+    for _ in range(rounds):
+        # a parameter at a bound that would have to leave stays there
+        held = ((best <= low) & (slopes.T > 0)) | ((best >= high) & (slopes.T < 0))
+        gradient = numpy.where(held.T, 0.0, slopes)
+        matrix = numpy.where(held.T[:, :, None] | held.T[:, None, :], 0.0, squares)
+        size = matrix[:, diagonal, diagonal]
+        size = size + 1e-14 * size.max(axis=1, keepdims=True)
+        matrix[:, diagonal, diagonal] = numpy.where(held.T | (size == 0), 1.0, size * (1 + damping[:, None]))
+        step = -numpy.linalg.solve(matrix, gradient[:, :, None])[:, :, 0].T
+        tried = numpy.clip(best + step, low, high)
+        step = tried - best
+        new, new_slopes, new_squares = _described(left, tried, at_work, low, high)
+        better = new < sums
+        gain = numpy.where(better, sums - new, 0.0)
+        arrived = (abs(step) < ARRIVED).all(axis=0) | (better & (gain <= enough * sums)) | (damping > STUCK)
+        best = numpy.where(better, tried, best)
+        sums = numpy.where(better, new, sums)
+        slopes = numpy.where(better[:, None], new_slopes, slopes)
+        squares = numpy.where(better[:, None, None], new_squares, squares)
+        damping = numpy.where(better, numpy.maximum(damping / 8, FREE), damping * 6)
+        if arrived.any():
+            p[:, at_work[arrived]] = best[:, arrived]
+            on = ~arrived
+            at_work, best, low, high = at_work[on], best[:, on], low[:, on], high[:, on]
+            sums, slopes, squares, damping = sums[on], slopes[on], squares[on], damping[on]
+            if not on.any():
+                break
+    p[:, at_work] = best
+    return p, (left(p, numpy.arange(columns)) ** 2).sum(axis=0)
+
+
+def _described(left, p, which, low, high):
+    """The sums of squares, half their slopes, and the products of the residuals' derivatives, one after another."""
+    import numpy
+
+    count, columns = p.shape
+    forward = numpy.where(p + WIDTH > high, -WIDTH, WIDTH)
+    points = numpy.concatenate([p] + [p + forward * (numpy.arange(count) == k)[:, None] for k in range(count)], axis=1)
+    r = left(points, numpy.tile(which, count + 1)).reshape(-1, count + 1, columns)
+    here = r[:, 0]
+    derivatives = (r[:, 1:] - here[:, None]) / forward
+    slopes = numpy.einsum("nkc,nc->ck", derivatives, here)
+    squares = numpy.einsum("nkc,nmc->ckm", derivatives, derivatives)
+    return (here**2).sum(axis=0), slopes, squares
