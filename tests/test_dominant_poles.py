@@ -13,7 +13,7 @@ from scipy.special import lambertw
 from loopbook import s
 from loopbook.deadtime import normal_form
 from loopbook.pid import PID
-from loopbook.stability import dominant_poles, ultimate, unstable_poles
+from loopbook.stability import dominant_poles, ultimate, unstable_closed_loop_poles
 from loopbook.transfer import dead_time, first_order, second_order
 
 
@@ -110,7 +110,7 @@ def test_each_is_a_root_and_as_many_are_unstable_as_the_argument_principle_says(
     assert max(rest(L, p) for p in found) < 1e-9
     assert [p.real for p in found] == sorted((p.real for p in found), reverse=True)
     if not any(abs(p.real) < 1e-6 for p in found):
-        assert min(unstable_poles(L), 5) <= sum(p.real > 0 for p in found)
+        assert min(unstable_closed_loop_poles(L), 5) <= sum(p.real > 0 for p in found)
 
 
 def test_what_has_no_answer_is_refused():

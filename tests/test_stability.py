@@ -21,7 +21,7 @@ from loopbook.stability import (
     boundary_pi_approximate,
     boundary_pid,
     delay_margin,
-    is_stable,
+    is_closed_loop_stable,
     margins,
     robust_in_window,
     robustness,
@@ -29,7 +29,7 @@ from loopbook.stability import (
     shinskey_window,
     stability_map,
     ultimate,
-    unstable_poles,
+    unstable_closed_loop_poles,
     unstable_roots,
 )
 
@@ -54,7 +54,7 @@ def test_poles_are_counted_as_the_argument_principle_does(below, above, delay):
     arc = radius * np.exp(1j * np.linspace(math.pi / 2, -math.pi / 2, 200_001))
     values = np.concatenate([around(up), around(arc)])
     assume(abs(values).min() > 1e-3)  # too close to the limit for the counting by turns
-    assert unstable_poles(loop) == -round(np.angle(values[1:] / values[:-1]).sum() / (2 * math.pi))
+    assert unstable_closed_loop_poles(loop) == -round(np.angle(values[1:] / values[:-1]).sum() / (2 * math.pi))
 
 
 def test_an_integrator_with_dead_time():
@@ -63,14 +63,14 @@ def test_an_integrator_with_dead_time():
     # with each half turn more of the phase another pair of poles has crossed
     for k in range(4):
         crossing = sympy.pi / 2 + 2 * sympy.pi * k
-        assert unstable_poles(sympy.Rational(str(float(crossing) + 0.01)) * DELAY / s) == 2 * (k + 1)
-        assert unstable_poles(sympy.Rational(str(float(crossing) - 0.01)) * DELAY / s) == 2 * k
+        assert unstable_closed_loop_poles(sympy.Rational(str(float(crossing) + 0.01)) * DELAY / s) == 2 * (k + 1)
+        assert unstable_closed_loop_poles(sympy.Rational(str(float(crossing) - 0.01)) * DELAY / s) == 2 * k
 
 
 def test_three_equal_lags():
     # Routh: 1 + K < 9 for (s + 1)^3 + K
     assert ultimate(1 / (s + 1) ** 3) == pytest.approx((8, 2 * math.pi / math.sqrt(3)), rel=1e-12)
-    assert (unstable_poles(9 / (s + 1) ** 3), unstable_poles(7 / (s + 1) ** 3)) == (2, 0)
+    assert (unstable_closed_loop_poles(9 / (s + 1) ** 3), unstable_closed_loop_poles(7 / (s + 1) ** 3)) == (2, 0)
 
 
 def test_loops_that_no_gain_or_no_delay_makes_unstable():
@@ -79,7 +79,10 @@ def test_loops_that_no_gain_or_no_delay_makes_unstable():
 
 
 def test_an_unstable_process_has_a_lowest_gain():
-    assert (unstable_poles(2 / (s - 1)), unstable_poles(sympy.Rational(1, 2) / (s - 1))) == (0, 1)
+    assert (unstable_closed_loop_poles(2 / (s - 1)), unstable_closed_loop_poles(sympy.Rational(1, 2) / (s - 1))) == (
+        0,
+        1,
+    )
     assert ultimate(1 / (s - 1)) == (math.inf, 0)
     Ku, Pu = ultimate(sympy.exp(-s / 2) / (s - 1))
     w = 2 * math.pi / Pu
@@ -91,8 +94,8 @@ def test_an_unstable_process_has_a_lowest_gain():
 def test_a_double_integrator_needs_derivative_action():
     with pytest.raises(ValueError, match=r"no positive gain .* stable$"):
         ultimate(1 / s**2)
-    assert is_stable((s + 1) / s**2)
-    assert not is_stable(1 / s**2)
+    assert is_closed_loop_stable((s + 1) / s**2)
+    assert not is_closed_loop_stable(1 / s**2)
 
 
 def test_a_process_with_the_wrong_sign():
@@ -107,34 +110,34 @@ def test_narrow_resonances_are_not_stepped_over():
     damping, apart = sympy.Rational(1, 10**5), sympy.Rational(10001, 10**4)
     resonance = (s**2 + damping * s + apart) / (s**2 + damping * s + 1) / (s + 1) ** 3
     Ku, _ = ultimate(resonance)
-    assert is_stable(sympy.Rational(0.9999 * Ku) * resonance)
-    assert not is_stable(sympy.Rational(1.0001 * Ku) * resonance)
+    assert is_closed_loop_stable(sympy.Rational(0.9999 * Ku) * resonance)
+    assert not is_closed_loop_stable(sympy.Rational(1.0001 * Ku) * resonance)
 
 
 def test_a_triple_crossing_and_multiple_poles():
     loop = (5 * s + sympy.Rational(5, 3)) / (s**3 + 3 * s**2 + 6 * s + sympy.Rational(4, 3))
-    assert unstable_poles(loop * sympy.exp(-sympy.Rational(11, 4) * s)) == 2
-    assert is_stable(1 / (s * (s**2 + 3 * s + 3)))  # (s + 1)^3
-    assert unstable_poles(1 / (s - 1) ** 2) == 2
+    assert unstable_closed_loop_poles(loop * sympy.exp(-sympy.Rational(11, 4) * s)) == 2
+    assert is_closed_loop_stable(1 / (s * (s**2 + 3 * s + 3)))  # (s + 1)^3
+    assert unstable_closed_loop_poles(1 / (s - 1) ** 2) == 2
 
 
 def test_coefficients_need_not_be_fractions():
-    assert unstable_poles(sympy.pi / s / (s + 1) ** 2) == 2
-    assert is_stable(sympy.sqrt(2) * DELAY / (s + sympy.sqrt(3)))
-    assert is_stable(1 / (10**17 * s + 1) ** 3)
+    assert unstable_closed_loop_poles(sympy.pi / s / (s + 1) ** 2) == 2
+    assert is_closed_loop_stable(sympy.sqrt(2) * DELAY / (s + sympy.sqrt(3)))
+    assert is_closed_loop_stable(1 / (10**17 * s + 1) ** 3)
 
 
 def test_the_limit_itself_is_neither():
     for limit in (1 / s**2, -1 / (s + 1), 8 / (s + 1) ** 3):
         with pytest.raises(StabilityLimitError, match="imaginary axis"):
-            unstable_poles(limit)
-        assert not is_stable(limit)
+            unstable_closed_loop_poles(limit)
+        assert not is_closed_loop_stable(limit)
 
 
 def test_a_loop_that_returns_to_stability_with_more_delay():
     # s^2 + 0.1 s + 1 + 0.5 exp(-delay*s): stable, unstable, stable again
     loop = sympy.Rational(1, 2) / (s**2 + s / 10 + 1)
-    pattern = [is_stable(loop * sympy.exp(-sympy.Rational(n, 4) * s)) for n in range(40)]
+    pattern = [is_closed_loop_stable(loop * sympy.exp(-sympy.Rational(n, 4) * s)) for n in range(40)]
     changes = sum(one != other for one, other in pairwise(pattern))
     assert pattern[0]
     assert changes >= 3
@@ -159,14 +162,20 @@ def test_the_simulated_loop_agrees(factor):
         (s, "s is improper"),
         ((s + 1) ** 2 * DELAY / (s + 2), r"improper: it has s\*\*2 over s\*\*1"),
         ((1 + sympy.I) / (s + 1), "complex"),
-        (sympy.S.Zero, "is 0"),
         ("1/s", "'1/s'"),
     ],
 )
 def test_what_is_not_known(loop, message):
-    for question in (is_stable, unstable_poles, ultimate, delay_margin, margins):
+    for question in (is_closed_loop_stable, unstable_closed_loop_poles, ultimate, delay_margin, margins):
         with pytest.raises(ValueError, match=message):
             question(loop)
+
+
+def test_nothing_in_the_loop():
+    assert is_closed_loop_stable(0)
+    assert unstable_closed_loop_poles(sympy.S.Zero) == 0
+    with pytest.raises(ValueError, match="is 0"):
+        ultimate(0)
 
 
 def test_an_unstable_loop_has_no_margin():
@@ -296,7 +305,7 @@ def test_responses_grow_where_roots_are_unstable():
     Ku, Pu = ultimate(process)
     for factor in (sympy.Rational(97, 100), sympy.Rational(103, 100)):
         loop = sympy.Rational(Ku) * factor * process
-        assert unstable_poles(loop) == (0 if factor < 1 else 2)
+        assert unstable_closed_loop_poles(loop) == (0 if factor < 1 else 2)
         y = System(1 / (1 + loop)).step_until(40 * Pu)
         swings = [np.ptp(y(np.linspace(n * Pu, (n + 1) * Pu, 200))) for n in (15, 38)]
         assert (swings[1] > swings[0]) == (factor > 1)
@@ -305,13 +314,13 @@ def test_responses_grow_where_roots_are_unstable():
 def test_every_form_of_a_loop():
     process, settings_ = 2 * DELAY / (4 * s + 1), PID(1, Ti=4)
     loop = Loop(process, settings_)
-    assert {is_stable(x) for x in (loop, loop.open, System(loop.open))} == {True}
+    assert {is_closed_loop_stable(x) for x in (loop, loop.open, System(loop.open))} == {True}
     assert delay_margin(loop) == delay_margin(loop.open) == pytest.approx(math.pi - 1)
     # derivative action without filter: exp(-s) returns with Kp Td, and 1 is the limit for the lag 1
     for Kp, count in ((0.9, 0), (1.1, math.inf)):
-        assert unstable_poles(Loop(DELAY / (s + 1), PID(Kp, Ti=5, Td=1))) == count
+        assert unstable_closed_loop_poles(Loop(DELAY / (s + 1), PID(Kp, Ti=5, Td=1))) == count
     with pytest.raises(ValueError, match="no solution"):
-        unstable_poles(-s / (s + 1))
+        unstable_closed_loop_poles(-s / (s + 1))
 
 
 # ------------------------------------------------------------------------------------------------ margins
@@ -383,10 +392,10 @@ PREDICTOR = predictor(MODEL, PID(1.5, Ti=0.7).expr, MODEL)
 )
 def test_margins_with_several_dead_times_are_on_the_limit(loop):
     found = margins(loop)
-    assert is_stable(loop)
+    assert is_closed_loop_stable(loop)
     for factor, stable in ((0.9999, True), (1.0001, False)):
-        assert is_stable(sympy.Rational(factor * found.gain_margin) * loop) == stable
-        assert is_stable(sympy.exp(-sympy.Rational(factor * found.delay_margin) * s) * loop) == stable
+        assert is_closed_loop_stable(sympy.Rational(factor * found.gain_margin) * loop) == stable
+        assert is_closed_loop_stable(sympy.exp(-sympy.Rational(factor * found.delay_margin) * s) * loop) == stable
     assert delay_margin(loop) == found.delay_margin
     L = System(loop).frequency
     assert abs(L(found.omega_c)) == pytest.approx(1, rel=1e-12)
@@ -440,8 +449,8 @@ def test_ultimate_gains_with_several_dead_times():
     process = DELAY / (s + 1)
     controller = predictor(process, PID(0.3, Td=1).expr, process)
     assert ultimate(controller * process) == (pytest.approx(2 + 1 / 0.3), 0)
-    assert unstable_poles(sympy.Rational(533, 100) * controller * process) == 0
-    assert unstable_poles(sympy.Rational(534, 100) * controller * process) == math.inf
+    assert unstable_closed_loop_poles(sympy.Rational(533, 100) * controller * process) == 0
+    assert unstable_closed_loop_poles(sympy.Rational(534, 100) * controller * process) == math.inf
     with pytest.raises(ValueError, match="still stable"):
         ultimate((1 + DELAY) / s)  # the poles approach the axis, but no gain brings them there
 
@@ -481,10 +490,12 @@ def test_loops_are_stable_on_one_side_of_the_boundary(process):
         Kp = boundary_pid(process, Ti, Td, Tf)
         if math.isnan(Kp):
             gains = np.geomspace(1e-4, 1e3, 60)
-            assert not any(is_stable(process * PID(sympy.Rational(gain), Ti, Td, Tf).expr) for gain in gains)
+            assert not any(
+                is_closed_loop_stable(process * PID(sympy.Rational(gain), Ti, Td, Tf).expr) for gain in gains
+            )
         else:
-            assert is_stable(process * PID(sympy.Rational(Kp * 0.99999), Ti, Td, Tf).expr)
-            assert not is_stable(process * PID(sympy.Rational(Kp * 1.00001), Ti, Td, Tf).expr)
+            assert is_closed_loop_stable(process * PID(sympy.Rational(Kp * 0.99999), Ti, Td, Tf).expr)
+            assert not is_closed_loop_stable(process * PID(sympy.Rational(Kp * 1.00001), Ti, Td, Tf).expr)
 
 
 def test_the_boundary_without_filter():
@@ -495,7 +506,8 @@ def test_the_boundary_without_filter():
     assert (Kp[:-3] < 1 / np.maximum(Td[:-3], 1e-9)).all()
     for d, gain in zip(Td, Kp, strict=True):
         counts = [
-            unstable_poles(PID(sympy.Rational(f * gain), 2, sympy.Rational(d)).expr * process) for f in (0.999, 1.001)
+            unstable_closed_loop_poles(PID(sympy.Rational(f * gain), 2, sympy.Rational(d)).expr * process)
+            for f in (0.999, 1.001)
         ]
         assert counts[0] == 0
         assert counts[1] == (math.inf if d >= 0.7 else 2)
@@ -578,7 +590,7 @@ def test_the_limit_of_a_third_order_process_under_pid_control():
         assert low == 0
         for factor, stable in ((0.9999, True), (1.0001, False)):
             changed = sympy.Rational(gain) * process.subs(DELAY, sympy.exp(-sympy.Rational(factor * high) * s))
-            assert is_stable(changed * controller.expr) == stable
+            assert is_closed_loop_stable(changed * controller.expr) == stable
     assert robustness(process, controller, 1).upper == pytest.approx(1 + delay_margin(process * controller.expr))
     assert math.isnan(robustness(process, controller, 50).upper)
     assert robustness(process, PID(0.4), 1) == (0, math.inf, [(0, math.inf)])  # abs(L) is below 1
@@ -595,7 +607,7 @@ def test_a_predictor_has_limits_on_both_sides():
         between = [*((edges[1:] + edges[:-1]) / 2), edges[-1] + 0.01]
         for delay in between:
             loop = sympy.Rational(gain) * PREDICTOR * LAG * sympy.exp(-sympy.Rational(1.4 * delay) * s)
-            assert is_stable(loop) == any(low < delay < high for low, high in regions)
+            assert is_closed_loop_stable(loop) == any(low < delay < high for low, high in regions)
 
 
 def test_the_window_of_shinskey():
@@ -661,7 +673,9 @@ def test_a_map_counts_as_single_loops_do(loop, a, b):
     draw = np.random.default_rng(3)
     for _ in range(15):
         i, j = draw.integers(90), draw.integers(70)
-        assert counts[j, i] == unstable_poles(loop.subs({x: sympy.Rational(across[i]), y: sympy.Rational(up[j])}))
+        assert counts[j, i] == unstable_closed_loop_poles(
+            loop.subs({x: sympy.Rational(across[i]), y: sympy.Rational(up[j])})
+        )
 
 
 def test_a_map_ends_at_the_boundary_and_at_the_regions():

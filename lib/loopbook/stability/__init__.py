@@ -5,7 +5,14 @@ The argument principle counts those in the right half-plane. All searches walk u
 they see only where a bound of the derivative proves that nothing was missed between two frequencies.
 """
 
-from loopbook.stability.counting import StabilityLimitError, is_stable, unstable_poles, unstable_roots
+from loopbook.stability.counting import (
+    StabilityLimitError,
+    is_closed_loop_stable,
+    is_stable,
+    unstable_closed_loop_poles,
+    unstable_poles,
+    unstable_roots,
+)
 from loopbook.stability.limits import boundary_pi, boundary_pi_approximate, boundary_pid, ultimate
 from loopbook.stability.maps import stability_map
 from loopbook.stability.margins import Margins, delay_margin, margins
@@ -15,6 +22,7 @@ from loopbook.stability.window import robust_in_window, shinskey_window
 
 __all__ = [
     "DelayRatios", "Margins", "StabilityLimitError", "boundary_pi", "boundary_pi_approximate", "boundary_pid",
-    "delay_margin", "dominant_poles", "is_stable", "margins", "robust_in_window", "robustness",
-    "robustness_pi_first_order", "shinskey_window", "stability_map", "ultimate", "unstable_poles", "unstable_roots",
+    "delay_margin", "dominant_poles", "is_closed_loop_stable", "is_stable", "margins", "robust_in_window", "robustness",
+    "robustness_pi_first_order", "shinskey_window", "stability_map", "ultimate", "unstable_closed_loop_poles",
+    "unstable_poles", "unstable_roots",
 ]  # fmt: skip

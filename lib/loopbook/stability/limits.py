@@ -3,9 +3,9 @@
 import math
 
 from loopbook.inputs import real_numbers
-from loopbook.stability.counting import count_roots, fraction_sums, open_loop
+from loopbook.stability.counting import count_roots, open_loop
 from loopbook.stability.crossings import limiting_gains
-from loopbook.stability.sums import Sums
+from loopbook.stability.sums import Sums, fraction_sums
 
 
 def ultimate(process):
@@ -32,7 +32,7 @@ def ultimate(process):
     if math.isnan(gain):
         other = _stable_range(-1 * A, B)[0][0]
         hint = "" if math.isnan(other) else ", but a negative one does"
-        raise ValueError(f"no positive gain makes the closed loop of {L} stable{hint}")
+        raise ValueError(f"no positive gain makes the closed loop of {L.expr} stable{hint}")
     return gain, 2 * math.pi / frequency if frequency else math.inf
 
 
@@ -100,7 +100,7 @@ def boundary_pid(process, Ti, Td, Tf=0):
         )
         order = numpy.flatnonzero(below.coefficients.any(axis=(0, 2)))[-1]
         if above.coefficients[:, order + 1 :].any():
-            raise ValueError(f"PID control of {L} without filter is improper: expected a lag Tf that is positive")
+            raise ValueError(f"PID control of {L.expr} without filter is improper: expected a lag Tf that is positive")
         above, below = (Sums(x.coefficients[:, : order + 1], x.delays) for x in (above, below))
         found[points] = _stable_range(above, below)[0]
     found = found.reshape(Ti.shape)

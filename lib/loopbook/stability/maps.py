@@ -6,7 +6,8 @@ import sympy
 
 from loopbook.inputs import real_numbers
 from loopbook.expressions import s
-from loopbook.stability.counting import characteristic, count_roots
+from loopbook.quasipolynomials import normal_form
+from loopbook.stability.counting import count_roots
 from loopbook.stability.sums import Sums
 from loopbook.transfer import transfer_function
 
@@ -49,7 +50,7 @@ def stability_map(loop, progress=None, **values):
             raise ValueError(f"the values of {name} are {grid!r}: expected a one-dimensional array")
     # letters in dead times are ordered as positive ones
     positive = {name: sympy.Symbol(name, positive=True) for name in values}
-    parts = characteristic(L.xreplace({letters[name]: positive[name] for name in values}))
+    parts = _characteristic(L.xreplace({letters[name]: positive[name] for name in values}))
     order = parts[0].degree()
     rows = [part.coeff_monomial(s**n) for part in parts.values() for n in range(order + 1)]
     numbers = sympy.lambdify([positive[name] for name in values], [*rows, *parts], "numpy", cse=True)
@@ -87,3 +88,20 @@ def _watched(chunks, progress):
     finally:
         if bar is not None:
             bar.stop()
+
+
+def _characteristic(L):
+    """The sum A + B whose roots are the poles of the closed loop of L = A/B, with letters."""
+    above, below = normal_form(L)
+    order = below[0].degree()
+    for part in (*above.values(), *below.values()):
+        if part.degree() > order:
+            raise ValueError(
+                f"{L} is improper: it has s**{part.degree()} over s**{order}; expected no more zeros than poles"
+            )
+    parts = dict(below)
+    for delay, part in above.items():
+        parts[delay] = parts.get(delay, 0) + part
+    if 0 not in parts or parts[0].degree() < order:
+        raise ValueError(f"the algebraic loop of {L} has no solution: its gain at infinite frequency is -1")
+    return parts

@@ -4,9 +4,9 @@ import math
 from fractions import Fraction
 from typing import NamedTuple
 
-from loopbook.stability.counting import fraction_sums, is_stable, open_loop
+from loopbook.stability.counting import is_closed_loop_stable, open_loop
 from loopbook.stability.crossings import equal_sizes, limiting_gains, phase_left
-from loopbook.stability.sums import axis_zeros, prevailing, refined
+from loopbook.stability.sums import axis_zeros, fraction_sums, prevailing, refined
 
 LARGEST_GAIN = 1e6  # up to which a gain margin is looked for
 
@@ -90,8 +90,8 @@ def margins(loop):
 def _stable_loop(loop):
     """Numerator and denominator of a loop that is stable."""
     L = open_loop(loop)
-    if not is_stable(L):
-        raise ValueError(f"the closed loop of {L} is not stable: it has no margin")
+    if not is_closed_loop_stable(L):
+        raise ValueError(f"the closed loop of {L.expr} is not stable: it has no margin")
     return fraction_sums(L)
 
 

@@ -3,8 +3,13 @@
 import math
 import operator
 
+import sympy
+
+from loopbook.expressions import s
+from loopbook.quasipolynomials.arrays import Quasipolynomials
+
 from loopbook.stability.counting import ENDLESS, ON_LIMIT, characteristic, count_roots, open_loop
-from loopbook.stability.sums import Sums, prevailing
+from loopbook.stability.sums import prevailing
 
 
 def dominant_poles(loop, count=2):
@@ -33,12 +38,12 @@ def dominant_poles(loop, count=2):
     if not hasattr(count, "__index__") or isinstance(count, bool) or operator.index(count) < 1:
         raise ValueError(f"count is {count!r}: expected a positive integer")
     L = open_loop(loop)
-    parts = {delay: part for delay, part in characteristic(L).items() if not part.is_zero}
+    parts = characteristic(L)
     if len(parts) == 1:
-        found = _of_polynomial(parts[0])
+        found = _of_polynomial(sympy.Poly(parts[0][::-1], s))
     else:
-        sums = Sums.exact(parts, parts[0].degree(), parts[0].LC())
-        right, left, most = _strip(sums, 1 / float(sums.delays.max()), count, L)
+        sums = Quasipolynomials.exact(parts, len(parts[0]) - 1, parts[0][-1])
+        right, left, most = _strip(sums, 1 / float(sums.delays.max()), count, L.expr)
         found = _inside(sums, left, right, most)
     upper = [p for p in found if p.imag >= 0]
     poles = [q for p in sorted(upper, key=lambda p: (-p.real, p.imag)) for q in ([p, p.conjugate()] if p.imag else [p])]
@@ -98,7 +103,7 @@ def _shifted(sums, real_part):
     powers = range(sums.order + 1)
     shift = [[math.comb(n, k) * real_part ** (n - k) if n >= k else 0.0 for n in powers] for k in powers]
     coefficients = numpy.einsum("kn,pnx->pkx", numpy.array(shift, dtype=float), sums.coefficients)
-    return Sums(coefficients * numpy.exp(-sums.delays * real_part)[:, None], sums.delays)
+    return Quasipolynomials(coefficients * numpy.exp(-sums.delays * real_part)[:, None], sums.delays)
 
 
 def _inside(sums, left, right, most):

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 from loopbook.inputs import real_numbers
 from loopbook.laplace import by_delay
-from loopbook.stability.counting import count_roots, fraction_sums, open_loop
+from loopbook.stability.counting import count_roots, open_loop
 from loopbook.stability.crossings import equal_sizes, phase_left
-from loopbook.stability.sums import Sums, axis_zeros
+from loopbook.stability.sums import Sums, axis_zeros, fraction_sums
 from loopbook.transfer import transfer_function
 
 
@@ -102,11 +102,13 @@ def _gain_ratios(gain_ratio):
 def open_loop_without_dead_time(process, controller):
     """Numerator and denominator of a loop without the one dead time of its process, and that dead time."""
     P = open_loop(process)
-    parts = by_delay(P)
+    parts = by_delay(P.expr)
     if len(parts) != 1 or 0 in parts:
-        raise ValueError(f"the process is {P}: expected a fraction of polynomials with one dead time exp(-delay*s)")
+        raise ValueError(
+            f"the process is {P.expr}: expected a fraction of polynomials with one dead time exp(-delay*s)"
+        )
     ((delay, rational),) = parts.items()
-    return *fraction_sums(transfer_function(controller) * rational), float(delay)
+    return *fraction_sums(open_loop(transfer_function(controller) * rational)), float(delay)
 
 
 def _distance_from_1(region):

@@ -6,6 +6,8 @@ A `Sums` holds many sums of one shape, one for each point of a map or a boundary
 import math
 from typing import NamedTuple
 
+from loopbook.stability import counting
+
 ROUNDING = 1e-12  # a sum that is smaller than this share of its terms is zero but for rounding
 MOST_INTERVALS = 3_000_000
 
@@ -242,3 +244,7 @@ def _newton(values, which, a, b, rising):
         w[moving] = better
         moving = moving[change > 1e-15 * better]
     return w
+
+
+def fraction_sums(L):
+    return tuple(Sums(x.coefficients, x.delays) for x in counting.fraction_sums(L))

@@ -1,0 +1,224 @@
+"""Many sums of polynomials with dead times at once, as arrays of numbers, and their expansions on the imaginary axis."""
+
+from __future__ import annotations
+
+import functools
+import math
+from typing import TYPE_CHECKING, Self
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from fractions import Fraction
+
+    import numpy
+
+__all__ = ["DEGREE", "Quasipolynomials"]
+
+DEGREE = 4  # of the expansions in the frequency
+
+
+class Quasipolynomials:
+    """Sums of p(s)*exp(-delay*s) of one shape, one for each point of a map, a boundary or a family.
+
+    Arguments:
+        coefficients: array [part, power, point], the lowest power first.
+        delays: array [part, point]. The first part has no dead time.
+
+    >>> from fractions import Fraction
+    >>> two = Quasipolynomials.exact({Fraction(0): (0, 2), Fraction(1): (1,)}, order=1, divisor=2)
+    >>> two.coefficients[:, :, 0].tolist(), two.delays[:, 0].tolist()
+    ([[0.0, 1.0], [0.5, 0.0]], [0.0, 1.0])
+    """
+
+    __array_ufunc__ = None  # so that an array of factors, one for each point, leaves its multiplication to this class
+
+    def __init__(self, coefficients: numpy.ndarray, delays: numpy.ndarray):
+        import numpy
+
+        count = max(coefficients.shape[-1], delays.shape[-1])
+        if coefficients.shape[-1] != count:
+            coefficients = numpy.broadcast_to(coefficients, (*coefficients.shape[:2], count))
+        if delays.shape[-1] != count:
+            delays = numpy.broadcast_to(delays, (len(delays), count))
+        self.coefficients, self.delays = coefficients, delays
+
+    @classmethod
+    def exact(cls, parts: Mapping[Fraction, tuple[int, ...]], order: int, divisor: int) -> Self:
+        """One sum ``{delay: coefficients}`` over a divisor, as numbers; no part is one that is zero.
+
+        It is divided before, because exact numbers may be too large or too small for floating point.
+        """
+        import numpy
+
+        parts = parts or {0: ()}
+        rows = [[*(c / divisor for c in part), *[0.0] * (order + 1 - len(part))] for part in parts.values()]
+        return cls(numpy.array(rows, dtype=float)[:, :, None], numpy.array([[float(delay)] for delay in parts]))
+
+    @property
+    def order(self) -> int:
+        """The highest power."""
+        return self.coefficients.shape[1] - 1
+
+    @property
+    def count(self) -> int:
+        """The number of sums."""
+        return self.coefficients.shape[-1]
+
+    @functools.cached_property
+    def longest(self) -> numpy.ndarray:
+        """The longest dead time of each sum."""
+        return self.delays.max(axis=0)
+
+    # ---- algebra
+
+    def __getitem__(self, points: object) -> Quasipolynomials:
+        return Quasipolynomials(self.coefficients[..., points], self.delays[..., points])
+
+    def __rmul__(self, factor: float | numpy.ndarray) -> Quasipolynomials:
+        return Quasipolynomials(factor * self.coefficients, self.delays)
+
+    def __add__(self, other: Quasipolynomials) -> Quasipolynomials:
+        """What has the same dead times becomes one part, the undelayed one first, so that terms cancel."""
+        import numpy
+
+        order, count = max(self.order, other.order), max(self.count, other.count)
+        parts = {numpy.zeros(count).tobytes(): (numpy.zeros(count), numpy.zeros((order + 1, count)))}
+        for sums in (self, other):
+            for part, delay in zip(sums.coefficients, sums.delays, strict=True):
+                delay = numpy.broadcast_to(delay, count) + 0.0
+                total = parts.setdefault(delay.tobytes(), (delay, numpy.zeros((order + 1, count))))[1]
+                total[: len(part)] += part
+        return Quasipolynomials(
+            numpy.stack([part for _, part in parts.values()]), numpy.stack([delay for delay, _ in parts.values()])
+        )
+
+    def __mul__(self, other: Quasipolynomials) -> Quasipolynomials:
+        import numpy
+
+        parts, delays = [], []
+        for p, delay in zip(self.coefficients, self.delays, strict=True):
+            for q, later in zip(other.coefficients, other.delays, strict=True):
+                part = numpy.zeros((len(p) + len(q) - 1, max(self.count, other.count)))
+                for n, row in enumerate(p):
+                    part[n : n + len(q)] += row * q
+                parts.append(part)
+                delays.append(delay + later)
+        return Quasipolynomials(numpy.stack(parts), numpy.stack(delays))
+
+    def delayed(self, delay: numpy.ndarray) -> Quasipolynomials:
+        """The sums with an additional dead time, or one less."""
+        return Quasipolynomials(self.coefficients, self.delays + delay)
+
+    def derivative(self) -> Quasipolynomials:
+        """The derivative with respect to s."""
+        import numpy
+
+        lowered = numpy.roll(numpy.arange(self.order + 1)[:, None] * self.coefficients, -1, axis=1)
+        return Quasipolynomials(lowered - self.delays[:, None] * self.coefficients, self.delays)
+
+    def slower(self, unit: numpy.ndarray, power: int | None = None) -> Quasipolynomials:
+        """The sums divided by unit**power, with time in a unit in which the frequency `unit` is 1."""
+        import numpy
+
+        powers = numpy.arange(self.order + 1) - (self.order if power is None else power)
+        return Quasipolynomials(self.coefficients * unit ** powers[:, None].astype(float), self.delays * unit)
+
+    # ---- on the imaginary axis
+
+    def value(self, which: numpy.ndarray, w: numpy.ndarray) -> numpy.ndarray:
+        """The values of some sums at s = j w, one frequency for each."""
+        return self.taylor(which, w, 0)[0]
+
+    def taylor(self, which: numpy.ndarray, w: numpy.ndarray, degree: int = DEGREE) -> numpy.ndarray:
+        """The coefficients of the powers 0, 1 ... of h in the sums at s = j (w + h): array [power, frequency]."""
+        import numpy
+
+        matrices = self._expansion
+        if self.count == 1:
+            powers, total = _powers(w, self.order + 1), 0
+            for matrix, delay in zip(self._turned, self.delays[:, 0].tolist(), strict=True):
+                value = matrix[: degree + 1] @ powers
+                total = total + (value * numpy.exp(-1j * (w * delay)) if delay else value)
+            return total
+        total, square = numpy.zeros((degree + 1, len(w)), dtype=complex), -w * w
+        for matrix, delay in zip(matrices, self.delays, strict=True):
+            value = numpy.empty((degree + 1, len(w)), dtype=complex)
+            for k in range(degree + 1):
+                # in powers of w alone, which is quicker: the even powers are real, the odd ones imaginary
+                even, odd = (_polynomial(matrix[k, first::2], which, square) for first in (0, 1))
+                value[k] = (even + 1j * (w * odd)) * 1j**k
+            total += value * numpy.exp(-1j * (w * delay[which])) if delay.any() else value
+        return total
+
+    def sizes(self, which: numpy.ndarray, w: numpy.ndarray, degree: int = DEGREE) -> numpy.ndarray:
+        """Bounds of the coefficients of the powers 0 to degree + 1 in `taylor`, from zero to the frequency w.
+
+        They are those of the sum of the sizes of all terms, and the last one bounds the remainder.
+        """
+        import numpy
+
+        sizes = self._sizes[: degree + 2]
+        if self.count == 1:
+            return sizes[..., 0] @ _powers(w, self.order + 1)
+        return numpy.stack([_polynomial(each, which, w) + 0 * w for each in sizes])
+
+    @functools.cached_property
+    def _expansion(self):
+        """Array [part, k, power, point]: polynomials that, times exp(-delay*s), are the derivatives over k!."""
+        import numpy
+
+        return numpy.stack(self._expanded(self.coefficients, -self.delays, DEGREE), axis=1)
+
+    @functools.cached_property
+    def _turned(self):
+        """The same for a single sum, in powers of the frequency."""
+        import numpy
+
+        turns = 1j ** (numpy.arange(DEGREE + 1)[:, None] + numpy.arange(self.order + 1))
+        return self._expansion[..., 0] * turns
+
+    @functools.cached_property
+    def _sizes(self):
+        import numpy
+
+        expanded = self._expanded(abs(self.coefficients), abs(self.delays), DEGREE + 1)
+        return numpy.stack([each.sum(axis=0) for each in expanded])
+
+    def _expanded(self, coefficients, rates, degree):
+        import numpy
+
+        count = self.order + 1
+        derivatives = []
+        for i in range(min(degree, self.order) + 1):
+            part = numpy.zeros(coefficients.shape)
+            factors = numpy.array([math.comb(n + i, i) for n in range(count - i)], dtype=float)
+            part[:, : count - i] = factors[:, None] * coefficients[:, i:]
+            derivatives.append(part)
+        return [
+            sum(
+                part * (rates ** (k - i) / math.factorial(k - i))[:, None] if k > i else part
+                for i, part in enumerate(derivatives[: k + 1])
+            )
+            for k in range(degree + 1)
+        ]
+
+
+def _powers(w, count):
+    import numpy
+
+    powers = numpy.empty((count, len(w)))
+    powers[0] = 1
+    for n in range(1, count):
+        numpy.multiply(powers[n - 1], w, out=powers[n])
+    return powers
+
+
+def _polynomial(rows, which, x):
+    """The values of polynomials, lowest power first; rows of zeros cost nothing."""
+    total = None
+    for row in rows[::-1]:
+        if total is not None:
+            total = total * x
+        if row.any():
+            total = row[which] if total is None else total + row[which]
+    return 0.0 if total is None else total

@@ -1,0 +1,120 @@
+"""The highest powers of a sum, which alone count at endless frequency: 1 + c1*exp(-delay1*s) + c2*exp(-delay2*s) ...
+
+Where that has roots in the right half-plane, so has the sum, an endless row of them. Where its size has a lower bound in
+all of the right half-plane, the sum has none beyond a certain frequency.
+"""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    import numpy
+
+HIGHEST_MULTIPLE = 200  # of one dead time, up to which others count as multiples of it
+CLOSE = 1e-9
+
+
+class Endless(NamedTuple):
+    """What the highest powers say: a lower bound of their size, and their roots in z = exp(-unit*s).
+
+    `least` is zero on the limit, negative where there are roots in the right half-plane. The roots are None where the sum
+    of sizes is below 1, so that the phase is that of the undelayed term within a quarter turn.
+    """
+
+    least: float
+    unit: float = 0.0
+    roots: numpy.ndarray | None = None
+
+    def phase(self, w: float) -> float:
+        """The phase at s = j w, continued from the far right, where it is zero."""
+        import numpy
+
+        if self.roots is None:
+            return 0.0
+        return float(numpy.angle(1 - numpy.exp(-1j * self.unit * w) / self.roots).sum())
+
+
+def common_unit(delays: list[float]) -> tuple[float, list[int]] | None:
+    """The dead time of which all are whole multiples, and these; None where they are none of up to some hundred."""
+    ratios = [Fraction(delay / delays[0]).limit_denominator(1000) for delay in delays]
+    if any(abs(r * delays[0] / delay - 1) > 1e-13 for r, delay in zip(ratios, delays, strict=True)):
+        return None
+    share = Fraction(math.gcd(*(r.numerator for r in ratios)), math.lcm(*(r.denominator for r in ratios)))
+    powers = [int(ratio / share) for ratio in ratios]
+    return (delays[0] * float(share), powers) if max(powers) <= HIGHEST_MULTIPLE else None
+
+
+def at_endless_frequency(later: numpy.ndarray, delays: numpy.ndarray) -> Endless:
+    """What 1 + sum(later*exp(-delays*s)) is in the right half-plane.
+
+    Raises ValueError where that is not decided: where the sizes add up to 1 or more and the dead times are no multiples
+    of one.
+    """
+    import numpy
+
+    some = later != 0
+    later, delays = later[some], delays[some]
+    total = float(abs(later).sum())
+    if total < 1:
+        return Endless(1 - total)
+    if len(set(delays.tolist())) == 1:
+        later = later.sum(keepdims=True)
+        total = abs(float(later[0]))
+        if total < 1:
+            return Endless(1 - total)
+        return Endless(0.0 if total == 1 else -1.0)
+    if abs(later).max() > total - abs(later).max() + 1:
+        return Endless(-1.0)  # one outweighs the undelayed one and all others
+    unit = common_unit(delays.tolist())
+    if unit:
+        base, powers = unit
+        polynomial = numpy.zeros(max(powers) + 1)
+        polynomial[0] = 1
+        numpy.add.at(polynomial, powers, later)
+        roots = numpy.roots(polynomial[::-1])  # in z = exp(-base*s), so that the right half-plane is the unit disc
+        if abs(roots).min() < 1 - CLOSE:
+            return Endless(-1.0)
+        if abs(roots).min() > 1 + CLOSE:
+            steep = float(numpy.abs(later) @ powers)
+            for count in (512, 8192, 2**17):
+                z = numpy.exp(-1j * math.pi * (numpy.arange(count) + 0.5) / count)
+                least = abs(numpy.polyval(polynomial[::-1], z)).min() - steep * math.pi / (2 * count)
+                if least > 0:
+                    return Endless(float(least), base, roots)
+    raise ValueError(
+        f"whether there is an end of unstable roots is not decided: the highest power returns with the coefficients "
+        f"{', '.join(f'{c:g}' for c in later)}, whose sizes add up to 1 or more, and with the dead times "
+        f"{', '.join(f'{delay:g}' for delay in delays)}"
+    )
+
+
+def prevailing(coefficients: numpy.ndarray, least: numpy.ndarray | None = None) -> numpy.ndarray:
+    """A frequency beyond which the highest power of the first part outweighs all other terms; nan without one.
+
+    Arguments:
+        coefficients: array [part, power, point].
+        least: a lower bound of the size of all terms with the highest power, if it is known to be better than that of
+            the first part without the sizes of the others.
+    """
+    import numpy
+
+    sizes = abs(coefficients).sum(axis=0)
+    order = len(sizes) - 1
+    reserve = 2 * abs(coefficients[0, -1]) - sizes[-1]
+    if least is not None:
+        reserve = numpy.maximum(reserve, least)
+    reserve = numpy.where(reserve > 0, reserve, math.nan)
+    # Fujiwara's bound: there each lower term is below a half, a quarter, an eighth ... of the highest
+    bounds = 2 * (sizes[:-1] / reserve) ** (1 / numpy.arange(order, 0, -1)[:, None])
+    end = bounds.max(axis=0) if order else 0 * reserve
+    return numpy.where(end == 0, 1.0, end)
+
+
+def power_of_two(frequency: numpy.ndarray) -> numpy.ndarray:
+    """The next power of two, so that time in its unit rounds nothing."""
+    import numpy
+
+    return 2.0 ** numpy.ceil(numpy.log2(frequency))

@@ -1,0 +1,342 @@
+"""Enclosures of sums with dead times on intervals of frequency, and the walk that halves intervals until all is known.
+
+On an interval from c - r to c + r a sum is its expansion in the frequency around c, a polynomial, and a rest that is
+bounded: by the next derivative of the sum of all terms' sizes, and by the rounding of these terms. So an interval may be
+as wide as the nearest zero is far away, and few intervals lead to a sharp resonance.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from loopbook.quasipolynomials.arrays import DEGREE, Quasipolynomials
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from fractions import Fraction
+
+    import numpy
+
+EPSILON = 2.0**-52
+MOST_INTERVALS = 1_000_000  # in one walk, and for each point of many
+MORE_INTERVALS = 2_000
+MOST_AT_ONCE = 2**15
+MOST_EXACT = 3_000  # intervals that are looked at with more digits
+NARROWEST = 1e-13  # the half width, as a share of the frequency, at which an interval is left undecided
+NOISY = 16  # times the rounding, below which a value is looked at with more digits
+
+
+@dataclass
+class Enclosure:
+    """A function on intervals, scaled to run from -1 to 1: polynomial terms and bounds of the rest.
+
+    Attributes:
+        terms: array [power, interval].
+        noise: bound of the rounding.
+        rest, slope: bounds of the rest of the function, rounding included, and of its derivative.
+    """
+
+    terms: numpy.ndarray
+    noise: numpy.ndarray
+    rest: numpy.ndarray
+    slope: numpy.ndarray
+
+    def __getitem__(self, chosen: object) -> Enclosure:
+        return Enclosure(self.terms[:, chosen], self.noise[chosen], self.rest[chosen], self.slope[chosen])
+
+    def __add__(self, other: Enclosure) -> Enclosure:
+        terms = self.terms + other.terms
+        return Enclosure(terms, self.noise + other.noise, self.rest + other.rest, self.slope + other.slope)
+
+    def __sub__(self, other: Enclosure) -> Enclosure:
+        return self + -1 * other
+
+    def __rmul__(self, factor: float | numpy.ndarray) -> Enclosure:
+        size = abs(factor)
+        return Enclosure(factor * self.terms, size * self.noise, size * self.rest, size * self.slope)
+
+    def __matmul__(self, other: Enclosure) -> Enclosure:
+        """The product with the other's conjugate."""
+        terms = self.terms[:, None] * other.terms.conj()
+        count = len(self.terms)
+        terms = _diagonals(count) @ terms.reshape(count * count, -1)
+        noise = self.size * other.noise + other.size * self.noise + 4 * EPSILON * self.size * other.size
+        rest = self.size * other.rest + other.size * self.rest + self.rest * other.rest
+        steep, other_steep = self.steepness, other.steepness
+        slope = (
+            steep * other.rest + self.slope * (other.size + other.rest)
+            + other_steep * self.rest + other.slope * (self.size + self.rest)
+        )  # fmt: skip
+        return Enclosure(terms, noise, rest + noise, slope + noise)
+
+    @property
+    def real(self) -> Enclosure:
+        return Enclosure(self.terms.real, self.noise, self.rest, self.slope)
+
+    @property
+    def imag(self) -> Enclosure:
+        return Enclosure(self.terms.imag, self.noise, self.rest, self.slope)
+
+    @functools.cached_property
+    def sizes(self) -> numpy.ndarray:
+        return abs(self.terms)
+
+    @functools.cached_property
+    def size(self) -> numpy.ndarray:
+        """A bound of the polynomial."""
+        return self.sizes.sum(axis=0)
+
+    @functools.cached_property
+    def steepness(self) -> numpy.ndarray:
+        """A bound of the polynomial's derivative."""
+        import numpy
+
+        return numpy.arange(len(self.terms)) @ self.sizes
+
+    @property
+    def spread(self) -> numpy.ndarray:
+        """How far values are from that in the middle, at most."""
+        return self.size - self.sizes[0] + self.rest
+
+    @property
+    def least(self) -> numpy.ndarray:
+        """A bound from below of the size; negative where there may be a zero."""
+        return 2 * self.sizes[0] - self.size - self.rest
+
+    @property
+    def most(self) -> numpy.ndarray:
+        return self.size + self.rest
+
+    @property
+    def is_noisy(self) -> numpy.ndarray:
+        """Whether rounding is a reason for not knowing."""
+        return self.sizes[0] <= NOISY * self.noise
+
+    @property
+    def is_monotone(self) -> numpy.ndarray:
+        """Whether a real function certainly rises or falls all the way."""
+        return self.sizes[1] > self.steepness - self.sizes[1] + self.slope
+
+    @property
+    def is_positive(self) -> numpy.ndarray:
+        """Whether a real function is certainly positive: a parabola is, and the rest does not change that."""
+        import numpy
+
+        value, rise = self.terms[0], self.sizes[1]
+        bend = self.terms[2] - (self.size - self.sizes[0] - self.sizes[1] - self.sizes[2])
+        with numpy.errstate(divide="ignore", invalid="ignore"):
+            lowest = numpy.where(rise < 2 * bend, value - rise * rise / (4 * bend), value + bend - rise)
+        return lowest > self.rest
+
+
+@functools.cache
+def _diagonals(count):
+    """The matrix that adds the products of two polynomials' terms to the terms of their product."""
+    import numpy
+
+    matrix = numpy.zeros((2 * count - 1, count, count))
+    for i in range(count):
+        for k in range(count):
+            matrix[i + k, i, k] = 1
+    return matrix.reshape(2 * count - 1, count * count)
+
+
+def enclosed(sums: Quasipolynomials, which: numpy.ndarray, c: numpy.ndarray, r: numpy.ndarray,
+             exact: Exact | None = None) -> Enclosure:  # fmt: skip
+    """The sums on the intervals from c - r to c + r; with more digits where there is an exact one."""
+    import numpy
+
+    end = c + r
+    scale = r ** _DEGREES()[:, None]
+    sizes = sums.sizes(which, end) * scale
+    if exact is None:
+        terms = sums.taylor(which, c) * scale[:-1]
+        share = EPSILON * (2 * sums.order + 8 + 2 * end * sums.longest[which])
+        noise, steep = share * sizes[:-1].sum(axis=0), share * (_DEGREES()[:-1] @ sizes[:-1])
+    else:
+        terms = exact.taylor(c) * scale[:-1]
+        noise = 8 * EPSILON * abs(terms).sum(axis=0) + 2.0**-140 * sizes[0]
+        steep = DEGREE * noise
+    return Enclosure(terms, noise, noise + sizes[-1], steep + (DEGREE + 1) * sizes[-1])
+
+
+@functools.cache
+def _DEGREES():
+    import numpy
+
+    return numpy.arange(DEGREE + 2)
+
+
+# ---- more digits
+
+
+class Exact:
+    """One sum with more digits: a sum ``{delay: coefficients}`` over divisor*unit**order, as a function of w = W/unit."""
+
+    def __init__(self, parts: dict[Fraction, tuple[int, ...]], order: int, divisor: int, unit: float):
+        self.parts, self.order, self.divisor, self.unit = parts, order, divisor, unit
+
+    def taylor(self, w: numpy.ndarray, degree: int = DEGREE) -> numpy.ndarray:
+        """The coefficients of the powers of h in the sum at j (w + h)*unit: array [power, frequency]."""
+        import mpmath
+        import numpy
+
+        columns = []
+        context = mpmath.mp
+        with context.workprec(220):
+            unit = context.mpf(self.unit)
+            divisor = context.mpf(self.divisor) * unit**self.order
+            for frequency in w.tolist():
+                point = context.mpf(frequency) * unit
+                total = [context.mpc(0)] * (degree + 1)
+                for delay, part in self.parts.items():
+                    late = context.mpf(delay.numerator) / delay.denominator
+                    derivatives = [context.mpc(0)] * (degree + 1)
+                    s = context.mpc(0, point)
+                    for c in reversed(part):
+                        for i in range(degree, 0, -1):
+                            derivatives[i] = derivatives[i] * s + derivatives[i - 1]
+                        derivatives[0] = derivatives[0] * s + c
+                    turn = context.expj(-point * late) if delay else context.mpf(1)
+                    for k in range(degree + 1):
+                        total[k] += turn * sum(
+                            (derivatives[i] * (-late) ** (k - i) / math.factorial(k - i) for i in range(k + 1)),
+                            context.mpc(0),
+                        )
+                columns.append(
+                    [complex(value * context.mpc(0, 1) ** k * unit**k / divisor) for k, value in enumerate(total)]
+                )
+        return numpy.array(columns, dtype=complex).T.reshape(degree + 1, len(columns))
+
+
+# ---- the walk
+
+
+class UndecidedError(ValueError):
+    """An interval of frequency on which a question could not be decided."""
+
+    def __init__(self, what: str, low: float, high: float, unit: float = 1.0):
+        self.what, self.low, self.high = what, low * unit, high * unit
+        super().__init__(f"{what} is not decided between the frequencies {self.low:.12g} and {self.high:.12g}")
+
+
+def geometric(start: numpy.ndarray, end: numpy.ndarray, ratio: float = 1.45):
+    """Intervals from zero, and from `start` to `end` in geometric steps: points, and both ends of each."""
+    import numpy
+
+    points = numpy.arange(len(start))
+    reach = math.log(max(1.0, (end / start).max())) if len(start) else 0.0
+    steps = max(1, math.ceil(reach / math.log(ratio)))
+    edges = start * (end / start) ** (numpy.arange(steps + 1)[:, None] / steps)
+    edges = numpy.vstack([0 * start, edges])
+    edges[-1] = end
+    which = numpy.broadcast_to(points, (steps + 1, len(points)))
+    a, b = edges[:-1].ravel(), edges[1:].ravel()
+    some = b > a
+    return which.ravel()[some], a[some], b[some]
+
+
+def walk(
+    judge: Callable,
+    which: numpy.ndarray,
+    a: numpy.ndarray,
+    b: numpy.ndarray,
+    what: str,
+    unit: numpy.ndarray,
+    exact: bool = False,
+) -> None:
+    """Divide intervals until `judge` has decided about all.
+
+    Arguments:
+        judge: function of points, both ends and whether to compute with more digits; it returns which intervals are
+            undecided, for which of these rounding is a reason, and the longest dead time of each.
+        which, a, b: the intervals at first.
+        what: is asked, for the message.
+        exact: whether more digits are at hand.
+    Raises:
+        UndecidedError: for an interval that is so narrow that it cannot be divided any more, or too many intervals.
+    """
+    import numpy
+
+    left, digits_left = MOST_INTERVALS + MORE_INTERVALS * len(unit), MOST_EXACT
+    pending = [(which, a, b)]
+    while pending:
+        which, a, b = pending.pop()
+        if len(which) > MOST_AT_ONCE:
+            pending += [(which[MOST_AT_ONCE:], a[MOST_AT_ONCE:], b[MOST_AT_ONCE:])]
+            which, a, b = (x[:MOST_AT_ONCE] for x in (which, a, b))
+        left -= len(which)
+        undecided, noisy, delay = judge(which, a, b, False)
+        if not undecided.any():
+            continue
+        narrow = (b - a) <= 2 * NARROWEST * b
+        if exact and (undecided & (noisy | narrow)).any():
+            again = numpy.flatnonzero(undecided & (noisy | narrow))
+            digits_left -= len(again)
+            if digits_left >= 0:
+                undecided[again] = judge(which[again], a[again], b[again], True)[0]
+        stuck = numpy.flatnonzero(undecided & (narrow | (b <= 1e-250)))
+        if left < 0 or digits_left < 0 or len(stuck):
+            k = stuck[0] if len(stuck) else numpy.flatnonzero(undecided)[0]
+            raise UndecidedError(what, a[k], b[k], float(unit[which[k]]))
+        which, a, b, delay = (x[undecided] for x in (which, a, b, delay))
+        pieces = numpy.clip(numpy.ceil((b - a) * delay / 0.8), 4, 64).astype(int)
+        pending.append(divided(which, a, b, pieces))
+
+
+def divided(which, a, b, pieces):
+    """Intervals in equal pieces."""
+    import numpy
+
+    source = numpy.repeat(numpy.arange(len(which)), pieces)
+    number = numpy.arange(len(source)) - numpy.repeat(numpy.cumsum(pieces) - pieces, pieces)
+    step, pieces = ((b - a) / pieces)[source], pieces[source]
+    start = a[source]
+    end = numpy.where(number + 1 == pieces, b[source], start + (number + 1) * step)
+    return which[source], start + number * step, end
+
+
+# ---- at zero
+
+
+def origin(sums: Quasipolynomials, degree: int, exact: Exact | None = None):
+    """The power series in s at zero: coefficients [power, point] up to a degree, and what bounds the next ones.
+
+    Coefficients that are zero but for rounding are zero; those of an exact sum are zero where they are.
+    """
+    import numpy
+
+    degrees = numpy.arange(degree + 2)
+    factorials = numpy.array([math.factorial(n) for n in degrees], dtype=float)
+    late = sums.delays[:, None, :] ** degrees[:, None] / factorials[:, None]
+    series, bounds = numpy.zeros((degree + 2, sums.count)), numpy.zeros((degree + 2, sums.count))
+    signs = (-1.0) ** degrees[:, None]
+    for n in range(min(sums.order, degree + 1) + 1):
+        part = sums.coefficients[:, n, None]
+        series[n:] += (part * late * signs)[:, : degree + 2 - n].sum(axis=0)
+        bounds[n:] += (abs(part) * late)[:, : degree + 2 - n].sum(axis=0)
+    small = abs(series) <= 1e-14 * bounds
+    if exact is None:
+        series[small] = 0
+    else:
+        for n in numpy.flatnonzero((abs(series) <= 1e-9 * bounds)[:, 0]):
+            series[n, 0] = exact_coefficient(exact, int(n))
+    return series[:-1], bounds[-1]
+
+
+def exact_coefficient(exact: Exact, n: int) -> float:
+    """The coefficient of s**n in the power series of an exact sum at zero, time in its unit."""
+    from fractions import Fraction
+
+    total = sum(
+        (
+            c * (-delay) ** (n - i) / math.factorial(n - i)
+            for delay, part in exact.parts.items()
+            for i, c in enumerate(part[: n + 1])
+        ),
+        start=Fraction(0),
+    )
+    return float(total / exact.divisor * Fraction(exact.unit) ** (n - exact.order))
