@@ -6,6 +6,7 @@ stay apart without colour vision; the dashes stay apart on a grey printout.
 
 import base64
 import io
+import math
 import numbers
 import re
 import struct
@@ -246,7 +247,7 @@ class TimePlot(Picture):
         axes.plot(times, values, "o", color="#000000", markersize=5, label=label, zorder=4)
         axes.set_ylim(min(low, *map(float, values)), max(high, *map(float, values)))
         with self._style():
-            _add_legend(axes, may_grow=True)
+            add_legend(axes, may_grow=True)
         self.alt += f"; points: {plain_words(label)}"
         return self
 
@@ -336,7 +337,7 @@ def time_plot(signals, times, title=None, xlabel="$t$ [s]", ylabel=None, ylim=No
             looks = {role for *_, role in panel.values()}
             # the same responses in the same looks need no second legend
             if len(panel) > 1 and not (looks <= explained and all(isinstance(look, int) for look in looks)):
-                _add_legend(axes, may_grow=not fixed, columns=3 if low else 1)
+                add_legend(axes, may_grow=not fixed, columns=3 if low else 1)
             explained |= looks
     shown = "; ".join(", ".join(map(plain_words, panel)) for panel in panels)
     return TimePlot(figure, f"{plain_words(title) + ': ' if title else ''}{shown} against {plain_words(xlabel)}", lines)
@@ -465,7 +466,7 @@ class PlanePlot(Picture):
         import matplotlib
 
         with matplotlib.rc_context(STYLE):
-            _add_legend(self.axes, may_grow=False)
+            add_legend(self.axes, may_grow=False)
         self.alt += words
         return self
 
@@ -512,7 +513,7 @@ def plane_plot(curves, xlabel, ylabel, title=None, xlim=None, ylim=None, log=Fal
             axes.axhline(0, color="#555555", linewidth=0.8, zorder=1)
             axes.axvline(0, color="#555555", linewidth=0.8, zorder=1)
         if len(curves) > 1:
-            _add_legend(axes, may_grow=False)
+            add_legend(axes, may_grow=False)
     shown = ", ".join(map(plain_words, curves))
     words = f"{shown}: {plain_words(ylabel)} against {plain_words(xlabel)}"
     return PlanePlot(figure, f"{plain_words(title) + ': ' if title else ''}{words}")
@@ -632,7 +633,7 @@ def _logarithmic(axes):
         axis.set_minor_formatter(NullFormatter())
 
 
-def _add_legend(axes, may_grow, columns=1):
+def add_legend(axes, may_grow, columns=1):
     """A legend where it hides no curve; if there is no such place, a flat one above them, for which the panel grows."""
     if any(type(drawn).__name__ == "QuadMesh" for drawn in axes.collections):
         axes.legend(loc="upper right")  # the search for a free place would go through every cell of a map
@@ -646,14 +647,85 @@ def _add_legend(axes, may_grow, columns=1):
         columns = len(axes.lines)
         while columns > 1 and _legend_box(axes, ncols=columns).width > 0.95 * axes.bbox.width:
             columns -= 1
-        box, (low, high) = _legend_box(axes, ncols=columns, loc="upper right"), axes.get_ylim()
-        axes.set_ylim(low, high + 1.1 * (high - low) * box.height / (axes.bbox.height - box.height))
+        box, scale = _legend_box(axes, ncols=columns, loc="upper right"), axes.yaxis.get_transform()
+        low, high = scale.transform(axes.get_ylim())
+        high += 1.1 * (high - low) * box.height / (axes.bbox.height - box.height)
+        axes.set_ylim(scale.inverted().transform([low, high]))
 
 
 def _legend_box(axes, **options):
     legend = axes.legend(**options)
     axes.figure.draw_without_rendering()
     return legend.get_window_extent()
+
+
+def decades(axis, low, high):
+    """Ordinary numbers on a logarithmic axis from `low` to `high`: powers of ten, or 1, 2 and 5 where it is short."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    long = high / low > 60
+    axis.set_major_locator(LogLocator(subs=(1,) if long else (1, 2, 5), numticks=9 if long else 12))
+    plain = low >= 0.9e-3 and high <= 1.1e4
+    name = (lambda x, _: f"{x:g}") if plain or not long else (lambda x, _: f"$10^{{{round(math.log10(x))}}}$")
+    axis.set_major_formatter(FuncFormatter(name))
+    axis.set_minor_formatter(NullFormatter())
+
+
+# in points from the point that is named, and how the words lie around there
+PLACES = {
+    "right": (7, 0, "left", "center"),
+    "left": (-7, 0, "right", "center"),
+    "above": (0, 6, "center", "bottom"),
+    "below": (0, -6, "center", "top"),
+    "above right": (6, 4, "left", "bottom"),
+    "above left": (-6, 4, "right", "bottom"),
+    "below right": (6, -4, "left", "top"),
+    "below left": (-6, -4, "right", "top"),
+}
+
+
+def free_place(axes, words, point, preferred=(), color="#000000"):
+    """Write words beside a point, at the first place where they hide no curve and no other words.
+
+    Arguments:
+        axes: of a figure that is otherwise finished.
+        words: the text.
+        point: what it names, in the units of the axes.
+        preferred: the names of places that are tried first, as "above right".
+        color: of the words.
+    Returns:
+        The text of matplotlib.
+    """
+    figure = axes.figure
+    figure.draw_without_rendering()  # which decides where the axes lie
+    frame = axes.get_window_extent()
+    taken = [text.get_window_extent() for text in axes.texts if text.get_text()]
+    if axes.get_legend():
+        taken.append(axes.get_legend().get_window_extent())
+    curves = [line.get_path().transformed(line.get_transform()) for line in axes.lines]
+    best = None
+    for far in (1, 2.5, 5):
+        for name in dict.fromkeys([*preferred, *PLACES]):
+            x, y, ha, va = PLACES[name]
+            text = axes.annotate(
+                words, point, (far * x, far * y), textcoords="offset points", ha=ha, va=va, color=color, zorder=5,
+                bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1},
+            )  # fmt: skip
+            box = text.get_window_extent()
+            hidden = sum(path.intersects_bbox(box, filled=False) for path in curves)
+            hidden += 3 * sum(box.overlaps(other) for other in taken)
+            hidden += 10 * (box.x0 < frame.x0 or box.x1 > frame.x1 or box.y0 < frame.y0 or box.y1 > frame.y1)
+            if not hidden:
+                if best:
+                    best[1].remove()
+                return text
+            if best is None or hidden < best[0]:
+                if best:
+                    best[1].remove()
+                best = hidden, text
+            else:
+                text.remove()
+    return best[1]
 
 
 def response_look(number):

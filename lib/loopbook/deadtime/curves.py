@@ -1,0 +1,340 @@
+"""The curve H(j omega) for a picture: where to look, how densely, and a phase that is known to be continuous.
+
+Numerator and denominator are followed one by one. Between two neighbouring frequencies a Taylor polynomial with a bound
+of its remainder proves that each stays within a cone that does not contain zero, so that no turn is missed, however
+sharp a resonance is.
+"""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import TYPE_CHECKING, NamedTuple
+
+from loopbook.quasipolynomials import DelayFraction
+from loopbook.quasipolynomials.fraction import Sum
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    import numpy
+
+__all__ = ["FrequencyCurve", "frequency_curve", "natural_range"]
+
+TERMS = 6  # of the Taylor polynomials
+CONE = math.sin(math.radians(60))  # two values within 60 degrees of a third differ by the smaller angle between them
+NARROWEST = 1e-12  # of an interval, as a share of the frequency; one as narrow and undecided holds a zero
+MOST_POINTS = 300_000
+STEP = math.radians(3)  # of the phase, from point to point
+SHARE = 0.01  # of the decades of magnitude that are shown, from point to point
+TURNS = 20.0  # radians that dead times may turn the phase within a natural range, if nothing else asks for more
+SHARP = 0.3  # the damping of a pair of roots below which its frequency is shown in any case
+
+
+class FrequencyCurve(NamedTuple):
+    """The frequency response of a system at increasing frequencies, dense where it bends.
+
+    At a zero or pole on the imaginary axis, where the phase jumps, value and phase are nan.
+
+    Attributes:
+        omega: frequencies in radians for one unit of time, an array.
+        values: H(j omega), complex.
+        phase: in degrees, continuous. Far below all corners, K*s**n has n times 90 degrees, less 180 if K is negative.
+    """
+
+    omega: numpy.ndarray
+    values: numpy.ndarray
+    phase: numpy.ndarray
+
+
+def frequency_curve(
+    H: DelayFraction,
+    low: float,
+    high: float,
+    coarse: Callable[[numpy.ndarray, numpy.ndarray], numpy.ndarray] | None = None,
+) -> FrequencyCurve:
+    """Return the frequency response between two frequencies, dense enough for a picture, with a continuous phase.
+
+    Points are added until the phase changes by 3 degrees at most from one to the next, which gives peaks their height
+    to one part in a thousand. At a zero or pole on the imaginary axis the phase jumps as if it were just to the left.
+
+    Arguments:
+        H: the fraction; an improper one is allowed.
+        low, high: positive frequencies, increasing.
+        coarse: function of the values at the beginnings and the ends of intervals, true where a point is missing.
+    Raises:
+        ValueError: for frequencies that do not increase, a transfer function that is zero, or a curve that turns too
+            often between the two.
+
+    >>> import sympy
+    >>> from loopbook.expressions import s
+    >>> from loopbook.quasipolynomials import read
+    >>> curve = frequency_curve(read(sympy.exp(-s)), 0.1, 100)
+    >>> round(math.radians(curve.phase[-1]), 9)
+    -100.0
+    """
+    import numpy
+
+    if not 0 < low < high < math.inf:
+        raise ValueError(f"the frequencies go from {low:g} to {high:g}: expected positive ones that increase")
+    if not H.numerator:
+        raise ValueError("the transfer function is 0: it has no phase")
+    scale = H.denominator[Fraction(0)][-1]
+    above, below = sides = [_OnAxis(parts, scale) for parts in (H.numerator, H.denominator)]
+    start = low
+    while not all(side.has_begun(start) for side in sides):
+        start /= 4
+    first = numpy.geomspace(start, low, 2 + int(16 * math.log10(low / start)))[:-1]
+    grid = numpy.r_[first, numpy.geomspace(low, high, 2 + int(64 * math.log10(high / low)))]
+    grid, is_gap = _followed(sides, grid)
+    values = [side(grid) for side in sides]
+    phases = [side.phases(grid, at, is_gap) for side, at in zip(sides, values, strict=True)]
+
+    kept = grid >= low
+    grid, is_gap = grid[kept], is_gap[kept[:-1]]
+    values, phases = ([row[kept] for row in rows] for rows in (values, phases))
+    delay = above.delay - below.delay
+    for _ in range(60):
+        a, b = slice(None, -1), slice(1, None)
+        turn = phases[0] - phases[1] - delay * grid
+        with numpy.errstate(divide="ignore"):
+            height = numpy.log10(abs(values[0])) - numpy.log10(abs(values[1]))
+        finite = height[numpy.isfinite(height)]
+        missing = abs(numpy.diff(turn)) > STEP
+        missing |= abs(numpy.diff(height)) > SHARE * max(numpy.ptp(finite), 1)
+        for phase in phases:  # what turns in both would cancel in the quotient
+            missing |= abs(numpy.diff(phase)) > 3 * STEP
+        if coarse is not None:
+            H_there = values[0] / values[1] * numpy.exp(-1j * delay * grid)
+            missing |= coarse(H_there[a], H_there[b])
+        missing &= ~is_gap & (numpy.diff(grid) > 4 * NARROWEST * grid[b])
+        where = numpy.flatnonzero(missing)
+        if not len(where) or len(grid) > MOST_POINTS:
+            break
+        middle = (grid[where] + grid[where + 1]) / 2
+        there = [side(middle) for side in sides]
+        between = [
+            phase[where] + numpy.angle(new / at[where]) for phase, at, new in zip(phases, values, there, strict=True)
+        ]
+        grid, is_gap = numpy.insert(grid, where + 1, middle), numpy.insert(is_gap, where, False)
+        values = [numpy.insert(at, where + 1, new) for at, new in zip(values, there, strict=True)]
+        phases = [numpy.insert(phase, where + 1, new) for phase, new in zip(phases, between, strict=True)]
+    phase = numpy.degrees(phases[0] - phases[1] - delay * grid) - (180 if above.sign != below.sign else 0)
+    gaps = numpy.flatnonzero(is_gap)
+    omega = numpy.insert(grid, gaps + 1, (grid[gaps] + grid[gaps + 1]) / 2)
+    values = H(1j * omega)
+    values[gaps + 1 + numpy.arange(len(gaps))] = numpy.nan
+    return FrequencyCurve(omega, values, numpy.insert(phase, gaps + 1, numpy.nan))
+
+
+class _OnAxis:
+    """A sum on the imaginary axis, q(w) = Q(jw), without its shortest dead time; its derivatives by w, their bounds."""
+
+    def __init__(self, parts: Sum, scale: int):
+        import numpy
+        from numpy.polynomial import polynomial
+
+        shortest = min(parts)
+        parts = {delay - shortest: part for delay, part in parts.items()}
+        self.delay, self.delays = float(shortest), [float(delay) for delay in parts]
+        self.power, lowest = _lowest_term(parts)
+        self.sign, self.lowest = (1 if lowest > 0 else -1), abs(float(lowest / scale))
+        self.real = [numpy.array([c / scale for c in part]) for part in parts.values()]
+        self.derivatives = [[part * 1j ** (numpy.arange(len(part)) % 4) for part in self.real]]
+        for _ in range(max(TERMS, self.power + 1)):
+            latest = zip(self.delays, self.derivatives[-1], strict=True)
+            self.derivatives.append(
+                [polynomial.polyadd(polynomial.polyder(part), -1j * delay * part) for delay, part in latest]
+            )
+
+    def __call__(self, w: numpy.ndarray, order: int = 0) -> numpy.ndarray:
+        import numpy
+        from numpy.polynomial import polynomial
+
+        parts = zip(self.delays, self.derivatives[order], strict=True)
+        return sum(polynomial.polyval(w, part) * numpy.exp(-1j * delay * w) for delay, part in parts)
+
+    def bound(self, w: numpy.ndarray, order: int = 0) -> numpy.ndarray:
+        """What a derivative does not exceed from 0 to w."""
+        from numpy.polynomial import polynomial
+
+        return sum(polynomial.polyval(w, abs(part)) for part in self.derivatives[order])
+
+    def noise(self, w: numpy.ndarray) -> numpy.ndarray:
+        """A value below this may be nothing but rounding."""
+        return 4e-16 * max(map(len, self.real)) * self.bound(w)
+
+    def has_begun(self, w: float) -> bool:
+        """Whether the sum stays near its lowest power from 0 to w."""
+        k = self.power + 1
+        return self.bound(w, k) * w / math.factorial(k) <= CONE * self.lowest
+
+    def change(self, a: numpy.ndarray, b: numpy.ndarray) -> tuple[numpy.ndarray, numpy.ndarray]:
+        """The value in the middle of intervals, and how far others in it are away from that at most."""
+        c, r = (a + b) / 2, (b - a) / 2
+        most = self.bound(b, TERMS) * r**TERMS / math.factorial(TERMS)
+        for order in range(1, TERMS):
+            most = most + abs(self(c, order)) * r**order / math.factorial(order)
+        return self(c), most
+
+    def phases(self, grid: numpy.ndarray, values: numpy.ndarray, is_gap: numpy.ndarray) -> numpy.ndarray:
+        """The continuous phase of the sum, divided by its sign, at frequencies that follow each other closely."""
+        import numpy
+
+        turns = numpy.angle(values[1:] / values[:-1])
+        for k in numpy.flatnonzero(is_gap):
+            around = numpy.angle(self.beside(grid[k], grid[k + 1]))
+            turns[k] = numpy.sum((numpy.diff(around) + math.pi) % (2 * math.pi) - math.pi)
+        first = numpy.angle(values[0] * self.sign / 1j**self.power) + self.power * math.pi / 2
+        return first + numpy.r_[0, numpy.cumsum(turns)]
+
+    def beside(self, a: float, b: float) -> numpy.ndarray:
+        """The values on the way from ja to jb along a half circle in the right half-plane."""
+        import numpy
+        from numpy.polynomial import polynomial
+
+        s = 1j * (a + b) / 2 + (b - a) / 2 * numpy.exp(1j * numpy.linspace(-math.pi / 2, math.pi / 2, 129))
+        parts = zip(self.delays, self.real, strict=True)
+        return sum(polynomial.polyval(s, part) * numpy.exp(-delay * s) for delay, part in parts)
+
+
+def _lowest_term(parts: Sum) -> tuple[int, Fraction]:
+    """The lowest power of `s` in the Taylor series of a sum, and its coefficient, exact."""
+    k = 0
+    while True:
+        coefficient = sum(
+            c * (-delay) ** (k - i) / Fraction(math.factorial(k - i))
+            for delay, part in parts.items()
+            for i, c in enumerate(part[: k + 1])
+        )
+        if coefficient:
+            return k, coefficient
+        k += 1
+
+
+def _followed(sides: list[_OnAxis], grid: numpy.ndarray) -> tuple[numpy.ndarray, numpy.ndarray]:
+    """The grid so fine that each side is followed from point to point, and which intervals are gaps with a zero."""
+    import numpy
+
+    points, gaps = [grid], []
+    a, b = grid[:-1], grid[1:]
+    count = len(grid)
+    while len(a):
+        open_, empty = numpy.zeros((2, len(a)), dtype=bool)
+        for side in sides:
+            value, most = side.change(a, b)
+            noise = side.noise(b)
+            undecided = ~(most + noise <= CONE * abs(value))
+            small = (b - a <= NARROWEST * b) | ((abs(value) <= 3 * noise) & (most <= 100 * noise))
+            empty |= undecided & small
+            open_ |= undecided & ~small
+        gaps += zip(a[empty], b[empty], strict=True)
+        open_ &= ~empty
+        a, b = a[open_], b[open_]
+        c = (a + b) / 2
+        points.append(c)
+        a, b = numpy.r_[a, c], numpy.r_[c, b]
+        count += len(c)
+        if count > MOST_POINTS:
+            raise ValueError(
+                f"the curve turns too often between {grid[0]:g} and {grid[-1]:g} rad per unit of time: "
+                f"expected a narrower range of frequencies"
+            )
+    grid = numpy.unique(numpy.concatenate(points))
+    gaps = _wide_enough(sides, gaps)
+    for a, b in gaps:
+        grid = numpy.r_[grid[grid < a], a, b, grid[grid > b]]
+    return grid, numpy.isin(grid[:-1], [a for a, _ in gaps])
+
+
+def _wide_enough(sides: list[_OnAxis], gaps: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Gaps that hang together as one, and so wide that values beside the axis are more than rounding."""
+    merged: list[tuple[float, float]] = []
+    for a, b in sorted(gaps):
+        if merged and a - merged[-1][1] < 4 * (b - a + merged[-1][1] - merged[-1][0]):
+            a = merged.pop()[0]
+        middle, radius = (a + b) / 2, (b - a) / 2
+        for _ in range(40):
+            a, b = middle - radius, middle + radius
+            if all(abs(side.beside(a, b)).min() > 100 * side.noise(b) for side in sides):
+                break
+            radius *= 2
+        merged.append((a, b))
+    return merged
+
+
+# ------------------------------------------------------------------------------------------------ where to look
+
+
+def natural_range(systems: Iterable[DelayFraction], also: Iterable[float] = ()) -> tuple[float, float]:
+    """Return the lowest and the highest frequency of a picture of these systems: a decade around all corners.
+
+    Corners are the sizes of zeros and poles without the dead times, and 1/delay. Where dead times turn the phase many
+    times before the last corner, the range ends earlier, but not before a resonance.
+
+    Arguments:
+        systems: fractions.
+        also: frequencies that the range holds in any case, with some room.
+
+    >>> import sympy
+    >>> from loopbook.expressions import s
+    >>> from loopbook.quasipolynomials import read
+    >>> natural_range([read(sympy.exp(-s) / (20 * s + 1))])
+    (0.005, 10.0)
+    """
+    ranges = [_own_range(H) for H in systems]
+    also = [float(w) for w in also if 0 < w < math.inf]
+    low = min([*(low for low, _ in ranges), *(w / 3 for w in also)], default=0.1)
+    high = max([*(high for _, high in ranges), *(3 * w for w in also)], default=10.0)
+    return _round_number(low, up=False), _round_number(high, up=True)
+
+
+def _own_range(H: DelayFraction) -> tuple[float, float]:
+    corners, sharp, delays = [], [], [float(delay) for delay in H.delays]
+    for parts in (H.numerator, H.denominator):
+        for root in _roots_without_delay(parts):
+            corners.append(abs(root))
+            if abs(root.real) < SHARP * abs(root):
+                sharp.append(abs(root))
+    corners += [1 / delay for delay in delays]
+    if not corners:
+        return 0.1, 10.0
+    low, high = min(corners) / 10, 10 * max(corners)
+    if delays:
+        high = min(high, max([TURNS / max(delays), *(3 * w for w in sharp)]))
+    return low, high
+
+
+def _roots_without_delay(parts: Sum) -> list[complex]:
+    """The roots of a sum's first polynomial, and of all of them together, with either sign of what comes later."""
+    import numpy
+
+    if not parts:
+        return []
+    first, *later = (part for _, part in sorted(parts.items()))
+    sums = [list(first)]
+    for sign in (1, -1) if later else ():
+        total = [0] * max(map(len, (first, *later)))
+        for factor, part in [(1, first), *((sign, part) for part in later)]:
+            for k, c in enumerate(part):
+                total[k] += factor * c
+        sums.append(total)
+    found = []
+    for coefficients in sums:
+        while coefficients and not coefficients[-1]:
+            coefficients.pop()
+        while coefficients and not coefficients[0]:
+            del coefficients[0]
+        if len(coefficients) > 1:
+            found += numpy.roots([c / coefficients[-1] for c in reversed(coefficients)]).tolist()
+    return found
+
+
+def _round_number(value: float, up: bool) -> float:
+    """The next 1, 2 or 5 times a power of ten."""
+    decade = 10.0 ** math.floor(math.log10(value))
+    if up:
+        step = next(x for x in (1, 2, 5, 10) if x * decade >= value * (1 - 1e-9))
+    else:
+        step = next(x for x in (5, 2, 1) if x * decade <= value * (1 + 1e-9))
+    return float(f"{step * decade:.6g}")
