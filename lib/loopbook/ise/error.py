@@ -8,14 +8,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-import sympy
-
 from loopbook.deadtime import Loop
 from loopbook.ise.one_delay import OneDelay
 from loopbook.quasipolynomials import DelayFraction, read
 from loopbook.quasipolynomials.fraction import Sum, plus, times
 from loopbook.stability import StabilityLimitError, unstable_roots
-from loopbook.expressions import s
 
 if TYPE_CHECKING:
     import numpy
@@ -56,7 +53,7 @@ def error_of(process: object, controller: object, mode: str, from_setpoint: obje
     if checked_mode(mode) == "regulator":
         above = {delay: tuple(-c for c in part) for delay, part in times(P.numerator, L.denominator).items()}
         return DelayFraction(above, times(P.denominator, returned))
-    if R == loop.controller_fraction:
+    if loop.controller_fraction == R:
         return DelayFraction(L.denominator, returned)
     # 1/(1 + L) - (R/C) L/(1 + L), over the denominator of R P
     own = times(R.denominator, P.denominator)
@@ -116,7 +113,7 @@ class ErrorFraction:
                 f"E(s) = {fraction.expr} is not stable: it has poles on the imaginary axis"
             ) from None
         if unstable:
-            raise UnstableLoopError(f"E(s) = {fraction.expr} is not stable: {unstable} poles in the right half-plane")
+            raise UnstableLoopError(f"{fraction.expr} is not stable: {unstable} poles in the right half-plane")
         for k in range(pole):
             if _taylor_coefficient(N, k):
                 raise ValueError(f"the error does not vanish: E(s) = {fraction.expr} has a pole at zero")
@@ -126,7 +123,7 @@ class ErrorFraction:
         """How many poles lie in the right half-plane."""
         number = self.one_delay.unstable if self.one_delay else None
         if number is None:
-            number = unstable_roots({delay: sympy.Poly(part[::-1], s) for delay, part in self.D.items()})
+            number = unstable_roots(self.D)
         return number
 
     @functools.cached_property

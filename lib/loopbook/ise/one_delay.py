@@ -16,7 +16,7 @@ CLEAR = 100.0  # how many times its error a phase has to be away from one that w
 
 
 class Zero(NamedTuple):
-    """A zero x = s^2 of Delta, how far it may lie from the true one, and dDelta/dx there, for a leading coefficient 1."""
+    """A zero x = s^2 of Delta, how far it may lie from the true one, and dDelta/dx there, for monic A."""
 
     x: complex
     radius: float

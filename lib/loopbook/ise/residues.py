@@ -1,4 +1,4 @@
-"""The residue method in numbers, for one dead time and processes of any order: in floating point, then in more digits."""
+"""The residue method in numbers, for one dead time and processes of any order, with more digits where it needs them."""
 
 from __future__ import annotations
 

@@ -1,19 +1,30 @@
-"""Integral criteria from the exact response, followed until the rest is negligible."""
+"""Integral criteria from the exact response, followed until its slowest modes are left, and those in closed form."""
 
+from __future__ import annotations
+
+import functools
+import math
 import numbers
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from loopbook.deadtime import System
 from loopbook.expressions import s
+from loopbook.ise.error import ErrorFraction, NotApplicableError, error_of
+from loopbook.ise.modes import ManyModesError, slow_modes
 from loopbook.quasipolynomials import read
 
-from loopbook.ise.error import ErrorFraction, NotApplicableError, error_of
+if TYPE_CHECKING:
+    import numpy
+
+    from loopbook.deadtime import Response
 
 __all__ = ["Criteria", "criteria"]
 
 DIFFERENTIATOR = read(s)
 SMALLEST_TOLERANCE = 1e-12  # smaller ones are lost in rounding, and the response would be followed for ever
-NEGLIGIBLE = 1e-12  # the share of the integral that may be left when a response is cut off
+NEGLIGIBLE = 1e-11  # the share of the integral that may be left when a response is cut off
+MOST_SEGMENTS = 16_000  # of a response that is followed
+GONE = 30.0  # the exponent after which a mode has decayed below what floating point holds
 
 
 class Criteria(NamedTuple):
@@ -25,13 +36,20 @@ class Criteria(NamedTuple):
     ITSE: float
 
 
-def criteria(process, controller=None, mode="servo", from_setpoint=None, tolerance=1e-9):
+def criteria(
+    process: object,
+    controller: object = None,
+    mode: str = "servo",
+    from_setpoint: object = None,
+    tolerance: float = 1e-9,
+) -> Criteria:
     """Return four integral criteria of the control error after a unit step, from the exact response.
 
-    The response is a polynomial in each of its segments. The integrals of abs(e) are those between its zeros, so that
-    nothing is approximated but the rest beyond a time after which it does not matter: it is followed twice as far until
-    the later half adds less than the tolerance to each integral. A tail that is below 1e-11 of the error and very much
-    slower than the rest may be overlooked.
+    The response is a polynomial in each of its segments. The integrals of abs(e) are those between its zeros. What
+    comes after a certain time is the sum of a few modes, of which the argument principle proves that they are all that
+    have not decayed by then, and which have to agree with the response before it: their integrals are known in closed
+    form, also that of abs(e), as a geometric series of half periods, when one mode is left. So the response need not be
+    followed for long where the loop is hardly damped.
 
     Arguments:
         process, controller, mode, from_setpoint: as for `ise`.
@@ -39,7 +57,8 @@ def criteria(process, controller=None, mode="servo", from_setpoint=None, toleran
     Returns:
         `Criteria`: the integrals of e^2, abs(e), t abs(e) and t e^2.
     Raises:
-        UnstableLoopError, ValueError: as `ise`; or where the response lasts too long to be followed.
+        UnstableLoopError, ValueError: as `ise`; or where the response lasts too long to be followed: with more than
+            16,000 segments before few modes are left, or several modes that last too long together.
 
     >>> [round(value, 6) for value in criteria(1 / s, 1)]
     [0.5, 1.0, 1.0, 0.25]
@@ -49,55 +68,181 @@ def criteria(process, controller=None, mode="servo", from_setpoint=None, toleran
     fraction = ErrorFraction.of(error_of(process, controller, mode, from_setpoint))
     if fraction is None:
         return Criteria(0.0, 0.0, 0.0, 0.0)
-    return Criteria(*map(float, _followed(fraction, _four_integrals, tolerance)))
+    return Criteria(*map(float, _followed(fraction, float(tolerance), sizes=True)))
 
 
-def _four_integrals(response):
-    """The integrals over each segment of e^2, abs(e), t abs(e) and t e^2."""
-    import numpy
-    from numpy.polynomial import legendre
-
-    times, weights = response.quadrature()
-    e = response(times)
-    table = numpy.stack([e**2, abs(e), times * abs(e), times * e**2])
-    table = (table * weights).sum(axis=2).T
-    nodes, their_weights = legendre.leggauss(e.shape[1])
-    coefficients = response.coefficients
-    # only where the mean is not larger than all the rest can there be a zero
-    for k in numpy.flatnonzero(abs(coefficients[:, 0]) <= abs(coefficients[:, 1:]).sum(axis=1)):
-        row = numpy.trim_zeros(coefficients[k], "b")
-        zeros = legendre.legroots(row) if len(row) > 1 else numpy.array([])
-        zeros = numpy.sort(zeros.real[(abs(zeros.imag) < 1e-6) & (abs(zeros.real) < 1)])
-        if not len(zeros):
-            continue
-        edges = numpy.r_[-1, zeros, 1]
-        half = numpy.diff(edges)[:, None] / 2
-        local = edges[:-1, None] + half * (nodes + 1)
-        length = response.edges[k + 1] - response.edges[k]
-        size = abs(legendre.legval(local, row)) * half * their_weights * length / 2
-        table[k, 1:3] = size.sum(), (size * (response.edges[k] + length / 2 * (local + 1))).sum()
-    return table
-
-
-def by_response(fraction):
-    def squares(response):
-        times, weights = response.quadrature()
-        return (weights * response(times) ** 2).sum(axis=1, keepdims=True)
-
+def by_response(fraction: ErrorFraction) -> float:
     try:
-        return float(_followed(fraction, squares, NEGLIGIBLE)[0])
+        return float(_followed(fraction, NEGLIGIBLE, sizes=False)[0])
     except ValueError as reason:
         raise NotApplicableError(str(reason)) from None
 
 
-def _followed(fraction, integrals, tolerance):
-    """Integrals over the response, followed twice as far until the later half adds nothing that matters."""
+# ---- over the segments of a response
+
+
+def _four_integrals(response: Response, sizes: bool) -> numpy.ndarray:
+    """The integrals over each segment of e^2, abs(e), t abs(e) and t e^2; without sizes the second and third are zero."""
+    import numpy
+
+    times, weights = response.quadrature()
+    squares = response(times) ** 2 * weights
+    plain = weighted = numpy.zeros(len(squares))
+    if sizes:
+        plain, weighted = _of_sizes(response)
+    return numpy.stack([squares.sum(axis=1), plain, weighted, (times * squares).sum(axis=1)], axis=1)
+
+
+def _of_sizes(response: Response) -> tuple[numpy.ndarray, numpy.ndarray]:
+    """The integrals over each segment of abs(e) and t abs(e), between the zeros of the polynomials."""
+    import numpy
+    from numpy.polynomial import legendre
+
+    coefficients, edges = response.coefficients, response.edges
+    points, at_points, at_points_slope, slopes, moments = _tables(coefficients.shape[1])
+    half, middle = numpy.diff(edges)[:, None] / 2, (edges[1:] + edges[:-1])[:, None] / 2
+    value, slope = coefficients @ at_points.T, coefficients @ at_points_slope.T
+    derivatives = coefficients @ slopes.T
+
+    def at(rows, x):
+        return legendre.legval(x, rows.T, tensor=False)
+
+    def zeros_of(rows, row_slopes, a, b):
+        at_a, at_b = at(rows, a), at(rows, b)
+        x = numpy.where(at_a == at_b, a, a + (b - a) * at_a / numpy.where(at_a == at_b, 1, at_a - at_b))
+        low, high = a, b
+        for _ in range(60):
+            here = at(rows, x)
+            same = (here < 0) == (at_a < 0)
+            low, high = numpy.where(same, x, low), numpy.where(same, high, x)
+            with numpy.errstate(all="ignore"):
+                better = x - here / at(row_slopes, x)
+            outside = ~((better >= low) & (better <= high))
+            better = numpy.where(outside, (low + high) / 2, better)
+            done = (abs(better - x) <= 1e-15).all()
+            x = better
+            if done:
+                break
+        return x
+
+    # where it dips through zero and comes back between two points, the bottom of the dip is one more
+    dips = numpy.nonzero(
+        (value[:, :-1] * slope[:, :-1] < 0) & (value[:, 1:] * slope[:, 1:] > 0) & (value[:, :-1] * value[:, 1:] > 0)
+    )
+    segments = [numpy.repeat(numpy.arange(len(value)), len(points) - 1)]
+    left, right = (
+        numpy.broadcast_to(part, (len(value), len(points) - 1)).ravel() for part in (points[:-1], points[1:])
+    )
+    at_left, at_right = value[:, :-1].ravel(), value[:, 1:].ravel()
+    if len(dips[0]):
+        rows = dips[0]
+        second = derivatives[rows] @ slopes[: derivatives.shape[1], : derivatives.shape[1]].T
+        bottom = zeros_of(derivatives[rows], second, points[dips[1]], points[dips[1] + 1])
+        at_bottom = at(coefficients[rows], bottom)
+        through = at_bottom * value[dips] < 0
+        rows, bottom, at_bottom = rows[through], bottom[through], at_bottom[through]
+        segments += [rows, rows]
+        left = numpy.concatenate([left, points[dips[1][through]], bottom])
+        right = numpy.concatenate([right, bottom, points[dips[1][through] + 1]])
+        at_left = numpy.concatenate([at_left, value[dips][through], at_bottom])
+        at_right = numpy.concatenate([at_right, at_bottom, value[dips[0][through], dips[1][through] + 1]])
+    rows = numpy.concatenate(segments)
+    crossing = (at_left < 0) != (at_right < 0)
+    rows, falling = rows[crossing], at_left[crossing] >= 0
+    zeros = zeros_of(coefficients[rows], derivatives[rows], left[crossing], right[crossing])
+    # integrals from the left end, of e and of x e: they change their sign at each zero
+    total = []
+    for table in moments:
+        integral = coefficients @ table.T
+        ends = at(integral, numpy.ones(len(integral)))
+        found = numpy.where(value[:, -1] < 0, -ends, ends)
+        numpy.add.at(found, rows, numpy.where(falling, 2.0, -2.0) * at(integral[rows], zeros))
+        total.append(found)
+    return total[0] * half[:, 0], (total[0] * middle[:, 0] + total[1] * half[:, 0]) * half[:, 0]
+
+
+@functools.cache
+def _tables(n: int):
+    """Points, the values and slopes of n Legendre polynomials there, and matrices of derivatives and of integrals."""
+    import numpy
+    from numpy.polynomial import legendre
+
+    points = -numpy.cos(numpy.linspace(0, math.pi, 3 * n))
+    slopes = numpy.zeros((n, n))
+    slopes[: n - 1] = legendre.legder(numpy.eye(n), axis=0)
+    moments = [legendre.legint(numpy.eye(n), lbnd=-1, axis=0)]
+    by_x = numpy.zeros((n + 1, n))
+    for k, row in enumerate(numpy.eye(n)):
+        found = legendre.legmulx(row)
+        by_x[: len(found), k] = found
+    moments.append(legendre.legint(by_x, lbnd=-1, axis=0))
+    vander = legendre.legvander(points, n - 1)
+    return points, vander, vander @ slopes, slopes, moments
+
+
+# ---- and beyond
+
+
+def _followed(fraction: ErrorFraction, tolerance: float, sizes: bool) -> numpy.ndarray:
+    """Integrals over the response, followed twice as far until what comes later is known or does not matter."""
     e = System(fraction.fraction * DIFFERENTIATOR)
     end = 4 * float(sum(fraction.fraction.delays)) + 16 / fraction.speed
+    number, reason = 0, ""
     while True:
         response = e.step_until(end)
-        table = integrals(response)
+        table = _four_integrals(response, sizes)
         total, later = table.sum(axis=0), table[response.edges[1:] > end / 2].sum(axis=0)
-        if (later <= tolerance * total).all():
+        negligible = bool((later <= tolerance * total).all())
+        if negligible or number >= 2:
+            rest, reason = _beyond(fraction, response, total, tolerance, sizes)
+            if rest is not None:
+                return total + rest
+        if negligible:
             return total
-        end *= 2
+        if 2 * len(response.edges) > MOST_SEGMENTS:
+            left = max(b / a for a, b in zip(total, later, strict=True) if a)
+            raise ValueError(
+                f"the response up to t = {end:g} needs more than {MOST_SEGMENTS // 2} segments, its later half adds "
+                f"{left:.0e} of an integral, and {reason}: expected an error that decays sooner"
+            )
+        end, number = 2 * end, number + 1
+
+
+def _beyond(
+    fraction: ErrorFraction, response: Response, total: numpy.ndarray, tolerance: float, sizes: bool
+) -> tuple[numpy.ndarray | None, str]:
+    """The integrals from the end of a response on, or None and the reason why they are not known."""
+    import numpy
+
+    end = float(response.edges[-1])
+    rate = GONE / end
+    modes = slow_modes(fraction, rate)
+    if modes is None:
+        return None, "the modes that last longer were not found"
+    late = response.edges[:-1] >= 0.9 * response.edges[-1]
+    late[-1] = True
+    times = response.quadrature()[0][late]
+    apart = float(abs(response(times) - modes(times)).max())
+    rest_modes = modes.later(end)
+    square, square_later = rest_modes.squares() if len(modes.poles) else (0.0, 0.0)
+    found = numpy.array([square, 0.0, 0.0, end * square + square_later])
+    if sizes:
+        scale = total + found
+        lead = max(rest_modes.bounds()[0].tolist(), default=0.0)
+        lead_later = end * lead + max(rest_modes.bounds()[1].tolist(), default=0.0)
+        allowed = tolerance / 20 * (scale[1] + lead / 2), tolerance / 20 * (scale[2] + lead_later / 2)
+        try:
+            found[1:3] = rest_modes.sizes(end, allowed)
+        except ManyModesError:
+            return None, "several modes that hardly decay last too long together"
+    # what is no mode decays at that rate or faster
+    size = float((rest_modes.weights * abs(rest_modes.residues)).sum())
+    plain, weighted = apart / rate, apart * (end / rate + 1 / rate**2)
+    error = numpy.array([(2 * size + apart) * plain, plain, weighted, (2 * size + apart) * weighted])
+    if not sizes:
+        error, found_total = error[[0]], (total + found)[[0]]
+    else:
+        found_total = total + found
+    if not (error <= tolerance / 2 * found_total).all():
+        return None, f"what the modes leave of it, {apart:.0e}, has not decayed"
+    return found, ""

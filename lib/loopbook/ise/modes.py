@@ -1,0 +1,305 @@
+"""The slowest modes of an error, of infinitely many: all poles to the right of a line, and the integrals of what they do."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from loopbook.ise.error import ErrorFraction
+from loopbook.quasipolynomials.arrays import Quasipolynomials
+from loopbook.stability.counting import count_roots
+
+if TYPE_CHECKING:
+    import numpy
+
+DIGITS = 40
+MOST_MODES = 24
+MOST_SAMPLES = 12_000_000  # of a sum of several modes, before one of them is left
+CHUNK = 8192
+STEP = 0.2  # between samples, as a share of the fastest mode's time
+
+
+class ManyModesError(Exception):
+    """Several modes last too long together."""
+
+
+@dataclass(frozen=True)
+class Modes:
+    """The sum of the real parts of weight*residue*exp(pole*t), the weight 2 for one of a pair and 1 for a real pole.
+
+    Attributes:
+        poles, residues: arrays, of each pair the upper pole.
+    """
+
+    poles: numpy.ndarray
+    residues: numpy.ndarray
+
+    @property
+    def weights(self) -> numpy.ndarray:
+        import numpy
+
+        return numpy.where(self.poles.imag > 0, 2.0, 1.0)
+
+    def __call__(self, times: numpy.ndarray) -> numpy.ndarray:
+        import numpy
+
+        total = numpy.zeros(numpy.shape(times))
+        for p, c, weight in zip(self.poles, self.residues, self.weights, strict=True):
+            total += weight * (c * numpy.exp(p * times)).real
+        return total
+
+    def later(self, time: float) -> Modes:
+        """The same as a function of the time since then."""
+        import numpy
+
+        return Modes(self.poles, self.residues * numpy.exp(self.poles * time))
+
+    def bounds(self) -> tuple[numpy.ndarray, numpy.ndarray]:
+        """Of each mode, bounds of its integral from zero on, without and with the time as a weight."""
+        sizes, rates = self.weights * abs(self.residues), -self.poles.real
+        return sizes / rates, sizes / rates**2
+
+    def squares(self) -> tuple[float, float]:
+        """The integrals of the square from zero on, without and with the time as a weight."""
+        import numpy
+
+        pairs = self.poles.imag > 0
+        p = numpy.concatenate([self.poles, self.poles[pairs].conj()])
+        c = numpy.concatenate([self.residues, self.residues[pairs].conj()])
+        products, sums = c[:, None] * c, p[:, None] + p
+        return float(-(products / sums).sum().real), float((products / sums**2).sum().real)
+
+    def sizes(self, begin: float, allowed: tuple[float, float]) -> tuple[float, float]:
+        """The integrals of the absolute value, and of that with begin + t as a weight, from zero on.
+
+        Arguments:
+            begin: the time at which t is zero.
+            allowed: the errors that both may have.
+        Raises:
+            ManyModesError: if several modes last so long together that their zeros would be too many.
+        """
+        import numpy
+
+        if not len(self.poles):
+            return 0.0, 0.0
+        order = numpy.argsort(-self.poles.real)
+        modes, now, total, samples = Modes(self.poles[order], self.residues[order]), 0.0, numpy.zeros(2), 0
+        while True:
+            plain, weighted = modes.bounds()
+            weighted = weighted + (begin + now) * plain
+            # what is small enough is left out, the fastest first
+            rest = numpy.maximum(plain[::-1].cumsum() / allowed[0], weighted[::-1].cumsum() / allowed[1])[::-1]
+            keep = (rest > 1).sum()
+            if keep <= 1:
+                return tuple(total + modes._alone(begin + now))
+            modes = Modes(modes.poles[:keep], modes.residues[:keep])
+            step = STEP / abs(modes.poles).max()
+            samples += CHUNK
+            if samples > MOST_SAMPLES:
+                raise ManyModesError
+            total += modes._chunk(begin + now, step)
+            modes, now = modes.later(CHUNK * step), now + CHUNK * step
+
+    def _alone(self, begin: float) -> numpy.ndarray:
+        """The integrals of `sizes` for the first mode: of a pair, half periods that shrink by one factor."""
+        import numpy
+
+        p, c = complex(self.poles[0]), complex(self.residues[0])
+        rate, w = -p.real, p.imag
+        if not w:
+            return numpy.array([abs(c) / rate, abs(c) * (begin / rate + 1 / rate**2)])
+        amplitude, angle = 2 * abs(c), math.atan2(c.imag, c.real)
+        # the first zero of cos(w t + angle)
+        first = ((math.pi / 2 - angle) % math.pi) / w
+        head = [(2 * part).real for part in _integrals(p, c, 0.0, first, begin)]
+        # half a period from there: amplitude exp(-rate t) sin(w t)
+        start, half = amplitude * math.exp(-rate * first), math.pi / w
+        J, J_t = (part.imag for part in _integrals(p, 1.0, 0.0, half, 0.0))
+        q, lost = math.exp(-rate * half), -math.expm1(-rate * half)
+        plain = J / lost
+        weighted = (begin + first) * plain + half * q * J / lost**2 + J_t / lost
+        return numpy.array([abs(head[0]) + start * plain, abs(head[1]) + start * weighted])
+
+    def _chunk(self, begin: float, step: float) -> numpy.ndarray:
+        """The integrals of `sizes` over the first samples, between zeros that are sought between the samples."""
+        import numpy
+
+        p, c = self.poles, self.weights * self.residues
+        times = step * numpy.arange(CHUNK + 1)
+        # powers of powers, which is quicker than as many exponentials
+        rough, fine = (
+            numpy.exp(p[:, None] * step * 64 * numpy.arange(CHUNK // 64 + 1)),
+            numpy.exp(p[:, None] * step * numpy.arange(64)),
+        )
+        waves = (rough[:, :, None] * fine[:, None, :]).reshape(len(p), -1)[:, : CHUNK + 1]
+        value, slope = (c @ waves).real, ((c * p) @ waves).real
+
+        def at(times, k):
+            return ((c * p**k) @ numpy.exp(p[:, None] * times)).real
+
+        # between two samples it may dip through zero and come back
+        dips = numpy.flatnonzero(
+            (value[:-1] * slope[:-1] < 0) & (value[1:] * slope[1:] > 0) & (value[:-1] * value[1:] > 0)
+        )
+        if len(dips):
+            turning = _newton(lambda t: at(t, 1), lambda t: at(t, 2), times[dips], times[dips + 1])
+            times = numpy.insert(times, dips + 1, turning)
+            value = numpy.insert(value, dips + 1, at(turning, 0))
+        sign = numpy.where(value < 0, -1.0, 1.0)
+        change = numpy.flatnonzero(sign[:-1] != sign[1:])
+        zeros = _newton(lambda t: at(t, 0), lambda t: at(t, 1), times[change], times[change + 1])
+        knots = numpy.concatenate([times[:1], zeros, times[-1:]])
+        signs = numpy.concatenate([sign[change], sign[-1:]])
+        waves = numpy.exp(p[:, None] * knots)
+        plain = ((c / p) @ waves).real
+        weighted = (begin + knots) * plain - ((c / p**2) @ waves).real
+        return numpy.array([(signs * numpy.diff(plain)).sum(), (signs * numpy.diff(weighted)).sum()])
+
+
+def _integrals(p: complex, c: complex, a: float, b: float, begin: float) -> tuple[complex, complex]:
+    """The integrals of c exp(p t), and of that with begin + t as a weight, from a to b."""
+    import cmath
+
+    one, other = c * cmath.exp(p * a), c * cmath.exp(p * b)
+    plain = (other - one) / p
+    return plain, ((begin + b) * other - (begin + a) * one) / p - plain / p
+
+
+def _newton(function, derivative, a, b):
+    """The zeros between a and b, one in each interval, in which the functions are nearly straight."""
+    import numpy
+
+    at_a, at_b = function(a), function(b)
+    with numpy.errstate(all="ignore"):
+        x = numpy.where(at_a == at_b, a, a + (b - a) * at_a / (at_a - at_b))
+        for _ in range(5):
+            better = x - function(x) / derivative(x)
+            x = numpy.where(numpy.isfinite(better), numpy.clip(better, a, b), x)
+    return x
+
+
+# ---- finding them
+
+
+def slow_modes(fraction: ErrorFraction, rate: float) -> Modes | None:
+    """The modes of all poles of an error with real parts above -rate, as many as the argument principle counts.
+
+    None if there are too many, or they are not found: multiple ones, or some on the line itself.
+    """
+    import numpy
+
+    unit = rate
+    _, _, below, delays = fraction.arrays(unit)
+    with numpy.errstate(over="ignore", invalid="ignore"):
+        shifted = _moved(below, delays)
+        if not numpy.isfinite(shifted).all():
+            return None
+        sizes = abs(shifted).sum(axis=0)
+        reserve = 2 * abs(shifted[_undelayed(delays), -1]) - sizes[-1]
+        if reserve <= 0:  # endless rows of poles come as far as that
+            return None
+        order = below.shape[1] - 1
+        top = max((2 * (sizes[:-1] / reserve) ** (1 / numpy.arange(order, 0, -1))).tolist(), default=0.0)
+    first = _undelayed(delays)
+    arranged = [first, *(k for k in range(len(delays)) if k != first)]
+    try:
+        count = int(count_roots(Quasipolynomials(shifted[arranged][:, :, None], delays[arranged][:, None]))[0])
+    except ValueError:
+        return None
+    if not 0 <= count <= MOST_MODES:
+        return None
+    poles = _roots_right_of_line(below, delays, top, count)
+    if poles is None:
+        return None
+    exact = [_exact(fraction, p * unit) for p in poles]
+    if any(e is None for e in exact):
+        return None
+    return Modes(numpy.array([p for p, _ in exact]), numpy.array([c for _, c in exact]))
+
+
+def _undelayed(delays) -> int:
+    return int(delays.argmin())
+
+
+def _moved(below, delays):
+    """The coefficients as functions of s + 1."""
+    import numpy
+
+    n = below.shape[1]
+    shift = numpy.array([[math.comb(k, j) * (-1.0) ** (k - j) if k >= j else 0.0 for k in range(n)] for j in range(n)])
+    return below @ shift.T * numpy.exp(delays)[:, None]
+
+
+def _roots_right_of_line(below, delays, top: float, count: int):
+    """The upper ones of so many roots to the right of -1, by Newton's method; None if others are found."""
+    import numpy
+
+    if not count:
+        return []
+    powers = numpy.arange(1, below.shape[1])
+    slopes = below[:, 1:] * powers
+
+    def newton_step(x):
+        value = derivative = 0
+        for row, slope, delay in zip(below, slopes, delays, strict=True):
+            wave = numpy.exp(-delay * x)
+            polynomial = numpy.polynomial.polynomial.polyval(x, row)
+            lowered = numpy.polynomial.polynomial.polyval(x, slope) if len(slope) else 0.0
+            value, derivative = value + polynomial * wave, derivative + (lowered - delay * polynomial) * wave
+        return value / derivative
+
+    for fineness in (1, 4):
+        rows = int(min(fineness * (20 + 2 * top * delays.max()), 8000 * fineness))
+        heights = numpy.concatenate(
+            [[0.0], numpy.geomspace(1e-3, max(top, 1), fineness * 120), numpy.linspace(0, max(top, 1), rows)]
+        )
+        x = numpy.concatenate([-share + 1j * heights for share in (0.0, 0.4, 0.9)])
+        with numpy.errstate(all="ignore"):
+            for number in range(60):
+                change = newton_step(x)
+                x = x - change
+                there = abs(change) <= 1e-14 * abs(x)
+                if number in (8, 16, 32):  # what has gone far away will hardly come back
+                    stay = (x.real > -3) & (x.real < 3) & (abs(x.imag) < 2 * max(top, 1))
+                    x, there = x[stay], there[stay]
+                if there.all():
+                    break
+            rest = abs(newton_step(x))
+        inside = numpy.isfinite(x) & (x.real > -1) & (x.real < 0) & (x.imag > -1e-9 * abs(x)) & (rest < 1e-7 * abs(x))
+        x, rest = x[inside], rest[inside]
+        distinct: list[complex] = []
+        for k in numpy.argsort(rest):
+            if all(abs(x[k] - q) > 1e-7 * abs(q) for q in distinct):
+                distinct.append(complex(x[k].real, 0.0 if abs(x[k].imag) < 1e-7 * abs(x[k].real) else x[k].imag))
+        if sum(2 if p.imag else 1 for p in distinct) == count:
+            return distinct
+    return None
+
+
+def _exact(fraction: ErrorFraction, pole: complex) -> tuple[complex, complex] | None:
+    """A pole, from one that is nearly that, and its residue, each with all digits of floating point."""
+    import mpmath
+
+    def value(parts, p, k):
+        total = mpmath.mpf(0)
+        for delay, part in parts.items():
+            late = mpmath.mpf(delay.numerator) / delay.denominator
+            polynomial, slope = mpmath.polyval(part[::-1], p, derivative=True)
+            total += (slope - late * polynomial if k else polynomial) * mpmath.exp(-late * p)
+        return total
+
+    with mpmath.workdps(DIGITS):
+        p = mpmath.mpf(pole.real) if not pole.imag else mpmath.mpc(pole)
+        for _ in range(20):
+            step = value(fraction.D, p, 0) / value(fraction.D, p, 1)
+            p -= step
+            if abs(step) <= mpmath.mpf(10) ** (5 - DIGITS) * abs(p):
+                break
+        else:
+            return None
+        if abs(p - mpmath.mpmathify(pole)) > 1e-5 * abs(p) or not p.real < 0:
+            return None
+        residue = value(fraction.N, p, 0) / value(fraction.D, p, 1) / p**fraction.pole
+        late = mpmath.mpf(fraction.earliest.numerator) / fraction.earliest.denominator
+        return complex(p), complex(residue * mpmath.exp(-late * p))
