@@ -100,8 +100,8 @@ def test_a_step_response_that_does_not_fit_is_refused():
     with pytest.raises(ValueError, match="before the step: expected the response of an integrator"):
         integrator_from_step(times, 1 - np.exp(-times / 3))  # a lag, still on its way
     times, y = first_order_record(1, 5, 3)
-    with pytest.raises(ValueError, match="steepest slope is that of noise"):
-        first_order_from_step(times, y + 0.02 * np.random.default_rng(0).normal(size=len(y)), at=5)
+    with pytest.raises(ValueError, match="hides a change of"):
+        first_order_from_step(times, y + np.random.default_rng(0).normal(size=len(y)), at=5)
 
 
 # ---------------------------------------------------------------------------- least squares
