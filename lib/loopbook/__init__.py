@@ -3,8 +3,8 @@
 What is wanted most often is here by itself; it is imported when it is first used.
 
 >>> import loopbook as lb
->>> lb.Loop(lb.first_order(2, 5, delay=4), lb.PID(1, Ti=5)).margins().gain_margin.__round__(4)
-0.9817
+>>> lb.Loop(lb.first_order(2, 5, delay=4), lb.PID(0.5, Ti=5)).margins().gain_margin.__round__(4)
+1.9635
 """
 
 from __future__ import annotations
@@ -16,7 +16,6 @@ from loopbook.expressions import s, t
 
 if TYPE_CHECKING:
     from loopbook.approximation import half_rule as half_rule
-    from loopbook.deadtime import Family as Family
     from loopbook.deadtime import Loop as Loop
     from loopbook.deadtime import System as System
     from loopbook.deadtime import closed_loop as closed_loop
@@ -35,7 +34,7 @@ if TYPE_CHECKING:
     from loopbook.tuning import simc as simc
 
 HOMES = {
-    "Family": "deadtime", "Loop": "deadtime", "PID": "pid", "System": "deadtime", "closed_loop": "deadtime",
+    "Loop": "deadtime", "PID": "pid", "System": "deadtime", "closed_loop": "deadtime",
     "criteria": "ise", "dead_time": "transfer", "delay_margin": "stability", "first_order": "transfer",
     "fit": "identification", "half_rule": "approximation", "integrator": "transfer",
     "integrator_with_lag": "transfer", "is_stable": "stability", "margins": "stability",
