@@ -1,7 +1,8 @@
 """How well a record tells each parameter of a simple model: standard errors, and intervals by the profile likelihood.
 
 The sum of squares of a model with two lags is symmetric in them, so that it is not regular in the lags where they are
-equal; it is in their sum and in how equal they are, `4*T1*T2/(T1 + T2)**2`, a number from 0 to 1. A profile is the
+equal; it is in their sum and in how equal they are, `4*T1*T2/(T1 + T2)**2`, a number from 0 to 1. (Both count from
+the shortest lag that is looked for.) A profile is the
 least sum of squares for each value of one parameter, whatever the others are then.
 """
 
@@ -27,6 +28,7 @@ FURTHER = 1.6  # factor from there on
 MORE = 8  # values at once, from there on
 INSIDE = 5  # values between the last that fits and the first that does not
 ZOOMS = 2
+SHARES = (0.9, 0.2)  # of a shorter lag in the longer one, from which the search begins, too
 MOST_STEPS = 80  # of the march
 ROUNDS, ENOUGH = 25, 1e-7  # of the search for the other parameters
 
@@ -53,7 +55,7 @@ class Residuals:
         self.chain, self.target, self.start, self.leveled, self.units = chain, target, start, leveled, units
         self.longest_lag = LONGEST * len(target)
         lags = chain.lags
-        self.low = numpy.array([[], [math.log(SHORTEST)], [math.log(2 * SHORTEST), 0.0]][lags] + [0.0])
+        self.low = numpy.array([[], [math.log(SHORTEST)], [math.log(SHORTEST), 0.0]][lags] + [0.0])
         self.high = numpy.array(
             [[], [math.log(self.longest_lag)], [math.log(2 * self.longest_lag), 1.0]][lags] + [longest]
         )
@@ -72,13 +74,17 @@ class Residuals:
         together, alike = numpy.exp(p[0]), p[1]
         longer = together / 2 * (1 + numpy.sqrt(1 - alike))
         shorter = together * alike / 2 / (1 + numpy.sqrt(1 - alike))
-        return numpy.array([longer, numpy.maximum(shorter, SHORTEST)])
+        return SHORTEST + numpy.array([longer, shorter])
 
-    def counted(self, lags: Sequence[float]) -> list[float]:
-        """The other way round: what the search counts instead of lags."""
+    def counted(self, lags: Sequence[float | ndarray]) -> list[float | ndarray]:
+        """The other way round: what the search counts instead of lags, numbers or arrays."""
+        import numpy
+
         if len(lags) < 2:
-            return [math.log(T) for T in lags]
-        return [math.log(sum(lags)), 4 * lags[0] * lags[1] / sum(lags) ** 2]
+            return [numpy.log(T) for T in lags]
+        longer, shorter = (T - SHORTEST for T in lags)
+        together = longer + shorter
+        return [numpy.log(together), 4 * longer * shorter / together**2]
 
     def at(self, p: ndarray, which: ndarray | None = None) -> ndarray:
         """What is left, for parameters as the search counts them, in columns."""
@@ -137,8 +143,7 @@ class Residuals:
             ahead, behind = p.copy(), p.copy()
             ahead[k], behind[k] = min(p[k] + width, self.high[k]), max(p[k] - width, self.low[k])
             if len(T) == 2 and k == 1 and T[1] < 1:  # so short that it is hardly seen: as if it were longer
-                behind[k] = max(p[k], 4 * SHORTEST / T.sum())
-                ahead[k] = min(behind[k] + 2 / T.sum(), 1.0)
+                behind[k], ahead[k] = p[k], min(p[k] + 2 / T.sum(), 1.0)
             changes.append((response(ahead, linear)[0] - response(behind, linear)[0]) @ linear / (ahead[k] - behind[k]))
         jacobian = numpy.column_stack([columns[:, :1], *changes, columns[:, 1:]])
         names = ["K", *self.names, "delay"]
@@ -148,8 +153,8 @@ class Residuals:
             named[1, 1] = T[0]
         elif len(T) == 2:
             apart = math.sqrt(max(1 - p[1], 1e-300))
-            bend = T.sum() / 4 / apart
-            named[1, 1:3], named[2, 1:3] = [T[0], -bend], [T[1], bend]
+            bend = math.exp(p[0]) / 4 / apart
+            named[1, 1:3], named[2, 1:3] = [T[0] - SHORTEST, -bend], [T[1] - SHORTEST, bend]
         variance = ((self.target - fitted) ** 2).sum() / max(self.freedom, 1)
         sizes = numpy.linalg.norm(jacobian, axis=0)
         seen = sizes > DEPENDENT * sizes.max()
@@ -182,26 +187,60 @@ class _Profile:
         import numpy
 
         self.residuals, self.name = residuals, name
-        two, longest = residuals.chain.lags == 2, residuals.longest_lag
+        self.best, self.longest_lag = best, residuals.longest_lag
         low, high = residuals.low, residuals.high
-        T = [best[n] for n in residuals.names]
-        start = [*residuals.counted(T), best["delay"]]
         if name == "delay":
-            low, high, start = low[:-1], high[:-1], start[:-1]
+            low, high = low[:-1], high[:-1]
             self.bottom, self.top = 0.0, residuals.high[-1]
         elif name == "K":
             self.bottom, self.top = -math.inf, math.inf
         else:
-            self.bottom, self.top = math.log(SHORTEST), math.log(longest)
+            self.bottom, self.top = math.log(SHORTEST), math.log(self.longest_lag)
             low, high = low[-1:], high[-1:]
-            if not two:
-                start = start[-1:]
-            elif name == "T1":  # and the other as a part of it
-                low, high, start = numpy.array([0.0, *low]), numpy.array([1.0, *high]), [T[1] / T[0], start[-1]]
-            else:  # and the other by how many times it is longer
-                low, high = numpy.array([0.0, *low]), numpy.array([math.log(longest / SHORTEST), *high])
-                start = [math.log(T[0] / T[1]), start[-1]]
-        self.low, self.high, self.start = low[:, None], high[:, None], numpy.array(start)[:, None]
+            if residuals.chain.lags == 2:  # T2 as a part of T1; or T1 by how many times it is longer
+                low = numpy.array([0.0, *low])
+                high = numpy.array([1.0 if name == "T1" else math.log(self.longest_lag / SHORTEST), *high])
+        self.low, self.high = low[:, None], high[:, None]
+
+    def starts(self, values):
+        """Places from which to look for the other parameters: as they are at the best, and others as late in all.
+
+        What a record tells first is how late the response is in all, the sum of dead time and lags.
+        """
+        import numpy
+
+        own = [self.best[n] for n in self.residuals.names]
+        total, delay = self.best["delay"] + sum(own), self.best["delay"]
+        places = [(own, delay)]
+        if self.name in ("K", "delay"):
+            late = total - (values if self.name == "delay" else delay)
+            if len(own) == 2:
+                places += [([late / (1 + share), late * share / (1 + share)], delay) for share in SHARES]
+            elif len(own) == 1:
+                places.append(([late], delay))
+        elif len(own) == 2:
+            T = numpy.exp(values)
+            pairs = [[T, share * T] if self.name == "T1" else [T / share, T] for share in SHARES]
+            places += [(pair, total - sum(pair)) for pair in pairs]
+        else:
+            places.append((own, total - numpy.exp(values)))
+        return [self._counted(lags, delay, values) for lags, delay in places]
+
+    def _counted(self, lags, delay, values):
+        """The parameters that are free, as the search counts them, from all of them."""
+        import numpy
+
+        lags = [numpy.maximum(T, 1.01 * SHORTEST) for T in lags]
+        if self.name in ("K", "delay"):
+            free = self.residuals.counted(lags)
+        elif len(lags) == 1:
+            free = []
+        elif self.name == "T1":
+            free = [(lags[1] - SHORTEST) / (lags[0] - SHORTEST)]
+        else:
+            free = [numpy.log(lags[0] / numpy.exp(values))]
+        free = free if self.name == "delay" else [*free, delay]
+        return numpy.array([x * numpy.ones_like(values) for x in free]).reshape(len(free), len(values))
 
     def left(self, p, values):
         import numpy
@@ -215,10 +254,10 @@ class _Profile:
         if of.chain.lags == 1:
             return of.of(T[None], p[-1])
         if self.name == "T1":
-            return of.of(numpy.array([T, numpy.maximum(T * p[0], SHORTEST)]), p[-1])
-        return of.of(numpy.array([numpy.minimum(T * numpy.exp(p[0]), of.longest_lag), T]), p[-1])
+            return of.of(numpy.array([T, SHORTEST + p[0] * (T - SHORTEST)]), p[-1])
+        return of.of(numpy.array([numpy.minimum(T * numpy.exp(p[0]), self.longest_lag), T]), p[-1])
 
-    def sums(self, values, starts):
+    def sums(self, values, near=None):
         """The least sums for these values, and where they are; from several starts each, the better one."""
         import numpy
 
@@ -230,12 +269,13 @@ class _Profile:
             )  # fmt: skip
 
         everywhere = numpy.arange(len(values))
+        starts = [*self.starts(values), *([] if near is None else [near])]
         found, best = search(everywhere, starts[0])
         for start in starts[1:]:
             other, sums = search(everywhere, start)
             better = sums < best
             found, best = numpy.where(better, other, found), numpy.where(better, sums, best)
-        if len(self.start):  # a neighbour may have found a better place
+        if len(found):  # a neighbour may have found a better place
             for shift in (1, -1):
                 neighbours = numpy.clip(everywhere + shift, 0, len(values) - 1)
                 promising = (self.left(found[:, neighbours], values) ** 2).sum(axis=0) < best * (1 - 1e-9)
@@ -291,19 +331,18 @@ def _end(profile, centre, error, bound, least, limit):
     """Where, on one side, the profile last exceeds the limit; or the bound."""
     import numpy
 
-    place = profile.start
-    inner, inner_excess, inner_place = centre, -1.0, place[:, 0]  # excess: from -1 at the best to 0 at the limit
+    def looked_at(values, near=None):
+        sums, places = profile.sums(values, near)
+        excess = numpy.sqrt(numpy.maximum(sums - least, 0) / (limit - least)) - 1  # -1 at the best, 0 at the limit
+        fits = numpy.flatnonzero(excess < 0)
+        return excess, places, fits[-1] if len(fits) else -1
+
+    inner, inner_excess, inner_place = centre, -1.0, profile.starts(numpy.array([centre]))[0][:, 0]
     steps = numpy.array(MARCH)
     while True:
-        values = centre + steps * error
-        values = numpy.unique(numpy.clip(values, min(bound, centre), max(bound, centre)))
-        if error < 0:
-            values = values[::-1]
-        starts = [numpy.repeat(x[:, None], len(values), axis=1) for x in (inner_place, place[:, 0])]
-        sums, places = profile.sums(values, starts if inner != centre else starts[:1])
-        excess = numpy.sqrt(numpy.maximum(sums - least, 0) / (limit - least)) - 1
-        fits = numpy.flatnonzero(excess < 0)
-        last = fits[-1] if len(fits) else -1
+        values = numpy.clip(centre + steps * error, min(bound, centre), max(bound, centre))
+        values = numpy.unique(values)[:: 1 if error > 0 else -1]
+        excess, places, last = looked_at(values, numpy.repeat(inner_place[:, None], len(values), axis=1))
         if last >= 0:
             inner, inner_excess, inner_place = values[last], excess[last], places[:, last]
         if last + 1 < len(values):
@@ -315,14 +354,7 @@ def _end(profile, centre, error, bound, least, limit):
     for _ in range(ZOOMS):
         share = (numpy.arange(INSIDE) + 1) / (INSIDE + 1)
         values = inner + share * (outer - inner)
-        starts = [
-            inner_place[:, None] + share * (outer_place - inner_place)[:, None],
-            numpy.repeat(inner_place[:, None], INSIDE, axis=1),
-        ]
-        sums, places = profile.sums(values, starts)
-        excess = numpy.sqrt(numpy.maximum(sums - least, 0) / (limit - least)) - 1
-        fits = numpy.flatnonzero(excess < 0)
-        last = fits[-1] if len(fits) else -1
+        excess, places, last = looked_at(values, inner_place[:, None] + share * (outer_place - inner_place)[:, None])
         if last + 1 < INSIDE:
             outer, outer_excess, outer_place = values[last + 1], excess[last + 1], places[:, last + 1]
         if last >= 0:
