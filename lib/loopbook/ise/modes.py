@@ -1,7 +1,8 @@
-"""The slowest modes of an error, of infinitely many: all poles to the right of a line, and the integrals of what they do."""
+"""The slowest modes of an error, of infinitely many: all poles to the right of a line, and their integrals."""
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -15,9 +16,9 @@ if TYPE_CHECKING:
 
 DIGITS = 40
 MOST_MODES = 24
-MOST_SAMPLES = 12_000_000  # of a sum of several modes, before one of them is left
+MOST_SAMPLES = 15_000_000  # of a sum of several modes, before one of them is left
 CHUNK = 8192
-STEP = 0.2  # between samples, as a share of the fastest mode's time
+STEP = 0.4  # between samples, as a share of the fastest mode's time
 
 
 class ManyModesError(Exception):
@@ -85,21 +86,34 @@ class Modes:
             return 0.0, 0.0
         order = numpy.argsort(-self.poles.real)
         modes, now, total, samples = Modes(self.poles[order], self.residues[order]), 0.0, numpy.zeros(2), 0
+        grid = None
         while True:
             plain, weighted = modes.bounds()
             weighted = weighted + (begin + now) * plain
             # what is small enough is left out, the fastest first
             rest = numpy.maximum(plain[::-1].cumsum() / allowed[0], weighted[::-1].cumsum() / allowed[1])[::-1]
-            keep = (rest > 1).sum()
-            if keep <= 1:
+            keep = max(1, int((rest > 1).sum()))
+            if keep == 1:
                 return tuple(total + modes._alone(begin + now))
-            modes = Modes(modes.poles[:keep], modes.residues[:keep])
-            step = STEP / abs(modes.poles).max()
+            amplitudes = modes.weights * abs(modes.residues)
+            if not modes.poles[0].imag and amplitudes[0] > amplitudes[1:].sum():  # it changes its sign no more
+                return tuple(total + abs(modes._signed(begin + now)))
+            if keep < len(modes.poles) or grid is None:
+                modes = Modes(modes.poles[:keep], modes.residues[:keep])
+                grid = _Grid.of(modes.poles)
             samples += CHUNK
             if samples > MOST_SAMPLES:
                 raise ManyModesError
-            total += modes._chunk(begin + now, step)
-            modes, now = modes.later(CHUNK * step), now + CHUNK * step
+            total += modes._chunk(begin + now, grid)
+            modes, now = modes.later(grid.times[-1]), now + float(grid.times[-1])
+
+    def _signed(self, begin: float) -> numpy.ndarray:
+        """The integrals from zero on, without and with begin + t as a weight."""
+        import numpy
+
+        c = self.weights * self.residues
+        plain = -(c / self.poles).sum().real
+        return numpy.array([plain, begin * plain + (c / self.poles**2).sum().real])
 
     def _alone(self, begin: float) -> numpy.ndarray:
         """The integrals of `sizes` for the first mode: of a pair, half periods that shrink by one factor."""
@@ -121,40 +135,53 @@ class Modes:
         weighted = (begin + first) * plain + half * q * J / lost**2 + J_t / lost
         return numpy.array([abs(head[0]) + start * plain, abs(head[1]) + start * weighted])
 
-    def _chunk(self, begin: float, step: float) -> numpy.ndarray:
-        """The integrals of `sizes` over the first samples, between zeros that are sought between the samples."""
+    def _chunk(self, begin: float, grid: _Grid) -> numpy.ndarray:
+        """The integrals of `sizes` over the times of a grid, between zeros that are sought between the samples."""
         import numpy
 
         p, c = self.poles, self.weights * self.residues
-        times = step * numpy.arange(CHUNK + 1)
-        # powers of powers, which is quicker than as many exponentials
-        rough, fine = (
-            numpy.exp(p[:, None] * step * 64 * numpy.arange(CHUNK // 64 + 1)),
-            numpy.exp(p[:, None] * step * numpy.arange(64)),
-        )
-        waves = (rough[:, :, None] * fine[:, None, :]).reshape(len(p), -1)[:, : CHUNK + 1]
-        value, slope = (c @ waves).real, ((c * p) @ waves).real
+        times, value, slope = grid.times, grid(c), grid(c * p)
 
         def at(times, k):
-            return ((c * p**k) @ numpy.exp(p[:, None] * times)).real
+            waves = numpy.exp(p[:, None] * times)
+            return ((c * p**k) @ waves).real, ((c * p ** (k + 1)) @ waves).real
 
         # between two samples it may dip through zero and come back
-        dips = numpy.flatnonzero(
-            (value[:-1] * slope[:-1] < 0) & (value[1:] * slope[1:] > 0) & (value[:-1] * value[1:] > 0)
-        )
-        if len(dips):
-            turning = _newton(lambda t: at(t, 1), lambda t: at(t, 2), times[dips], times[dips + 1])
+        turns = (value[:-1] * slope[:-1] < 0) & (value[1:] * slope[1:] > 0) & (value[:-1] * value[1:] > 0)
+        if len(dips := numpy.flatnonzero(turns)):
+            turning = _zeros(functools.partial(at, k=1), times[dips], times[dips + 1], slope[dips], slope[dips + 1])
             times = numpy.insert(times, dips + 1, turning)
-            value = numpy.insert(value, dips + 1, at(turning, 0))
-        sign = numpy.where(value < 0, -1.0, 1.0)
-        change = numpy.flatnonzero(sign[:-1] != sign[1:])
-        zeros = _newton(lambda t: at(t, 0), lambda t: at(t, 1), times[change], times[change + 1])
+            value = numpy.insert(value, dips + 1, at(turning, 0)[0])
+        negative = value < 0
+        change = numpy.flatnonzero(negative[:-1] != negative[1:])
+        zeros = _zeros(functools.partial(at, k=0), times[change], times[change + 1], value[change], value[change + 1])
         knots = numpy.concatenate([times[:1], zeros, times[-1:]])
-        signs = numpy.concatenate([sign[change], sign[-1:]])
+        signs = numpy.where(numpy.concatenate([negative[change], negative[-1:]]), -1.0, 1.0)
         waves = numpy.exp(p[:, None] * knots)
         plain = ((c / p) @ waves).real
         weighted = (begin + knots) * plain - ((c / p**2) @ waves).real
         return numpy.array([(signs * numpy.diff(plain)).sum(), (signs * numpy.diff(weighted)).sum()])
+
+
+@dataclass(frozen=True)
+class _Grid:
+    """Times, and the real and imaginary parts of exp(pole*t) there, which are the same for each chunk."""
+
+    times: numpy.ndarray
+    waves: numpy.ndarray
+
+    @classmethod
+    def of(cls, poles: numpy.ndarray) -> _Grid:
+        import numpy
+
+        times = STEP / abs(poles).max() * numpy.arange(CHUNK + 1)
+        waves = numpy.exp(poles[:, None] * times)
+        return cls(times, numpy.concatenate([waves.real, -waves.imag]))
+
+    def __call__(self, residues: numpy.ndarray) -> numpy.ndarray:
+        import numpy
+
+        return numpy.concatenate([residues.real, residues.imag]) @ self.waves
 
 
 def _integrals(p: complex, c: complex, a: float, b: float, begin: float) -> tuple[complex, complex]:
@@ -166,16 +193,18 @@ def _integrals(p: complex, c: complex, a: float, b: float, begin: float) -> tupl
     return plain, ((begin + b) * other - (begin + a) * one) / p - plain / p
 
 
-def _newton(function, derivative, a, b):
-    """The zeros between a and b, one in each interval, in which the functions are nearly straight."""
+def _zeros(function, a, b, at_a, at_b):
+    """The zeros between a and b, one in each interval, of functions that are nearly straight there."""
     import numpy
 
-    at_a, at_b = function(a), function(b)
     with numpy.errstate(all="ignore"):
         x = numpy.where(at_a == at_b, a, a + (b - a) * at_a / (at_a - at_b))
-        for _ in range(5):
-            better = x - function(x) / derivative(x)
-            x = numpy.where(numpy.isfinite(better), numpy.clip(better, a, b), x)
+        for _ in range(4):
+            value, slope = function(x)
+            step = value / slope
+            x = numpy.where(numpy.isfinite(step), numpy.clip(x - step, a, b), x)
+            if not len(x) or (abs(step) < 1e-9 * (b - a)).all():
+                break
     return x
 
 

@@ -24,6 +24,7 @@ DIFFERENTIATOR = read(s)
 SMALLEST_TOLERANCE = 1e-12  # smaller ones are lost in rounding, and the response would be followed for ever
 NEGLIGIBLE = 1e-11  # the share of the integral that may be left when a response is cut off
 MOST_SEGMENTS = 16_000  # of a response that is followed
+EARLY = 400  # segments from which it pays to ask for the modes at once
 GONE = 30.0  # the exponent after which a mode has decayed below what floating point holds
 
 
@@ -82,7 +83,7 @@ def by_response(fraction: ErrorFraction) -> float:
 
 
 def _four_integrals(response: Response, sizes: bool) -> numpy.ndarray:
-    """The integrals over each segment of e^2, abs(e), t abs(e) and t e^2; without sizes the second and third are zero."""
+    """The integrals over each segment of e^2, abs(e), t abs(e) and t e^2, those of abs(e) only where wanted."""
     import numpy
 
     times, weights = response.quadrature()
@@ -193,7 +194,7 @@ def _followed(fraction: ErrorFraction, tolerance: float, sizes: bool) -> numpy.n
         table = _four_integrals(response, sizes)
         total, later = table.sum(axis=0), table[response.edges[1:] > end / 2].sum(axis=0)
         negligible = bool((later <= tolerance * total).all())
-        if negligible or number >= 2:
+        if negligible or number >= 2 or len(response.edges) > EARLY:
             rest, reason = _beyond(fraction, response, total, tolerance, sizes)
             if rest is not None:
                 return total + rest
