@@ -28,6 +28,7 @@ POINTS = 3_000_000  # samples times sets of lags and dead times, computed for th
 BEST = 6  # of these, from which the search begins
 DIGITS = 10  # of the model's numbers
 CLOSE = 1e-5  # a dead time of so few steps is none
+CLEAR = 6  # so many standard errors away, a parameter is told well
 AGREE = 0.2  # by how much of its half an interval may differ from the linear one, where a standard error says enough
 
 
@@ -96,23 +97,30 @@ class Fit:
         return dict(self._known[level])
 
     def __repr__(self) -> str:
-        # a standard error is said where it says as much as an interval does
-        from scipy.special import stdtrit
-
-        intervals, beyond = None, 0.0
-        if self._residuals is not None and self._residuals.freedom > 0 and self.residual > 0:
-            intervals, beyond = self.intervals(), float(stdtrit(self._residuals.freedom, 0.975))
+        errors, intervals = self.errors, {}
+        if not self._is_regular() and self._residuals is not None and self._residuals.freedom > 0:
+            intervals = self.intervals()
         values = []
         for name, value in self.parameters.items():
-            error = self.errors[name]
-            if (
-                intervals
-                and max(abs(abs(end - value) - beyond * error) for end in intervals[name]) > AGREE * beyond * error
-            ):
+            if name in intervals and self._differs(name, intervals[name]):
                 values.append(f"{name} = {value:.4g} ({intervals[name][0]:.3g} to {intervals[name][1]:.3g})")
             else:
-                values.append(f"{name} = {value:.4g} ± {error:.1g}")
+                values.append(f"{name} = {value:.4g} ± {errors[name]:.1g}")
         return f"<fit, {self.kind} with dead time: {', '.join(values)}; residual {self.residual:.3g}>"
+
+    def _is_regular(self):
+        """Whether all parameters are so many standard errors from where they are not regular that these say enough."""
+        far = [abs(value) > CLEAR * self.errors[name] for name, value in self.parameters.items() if name != "delay"]
+        delay, lags = self.parameters["delay"], [name for name in self.parameters if name.startswith("T")]
+        apart = len(lags) < 2 or self.parameters["T1"] - self.parameters["T2"] > CLEAR * self.errors["T2"]
+        return all(far) and apart and delay >= 3 * self.errors["delay"]
+
+    def _differs(self, name, ends):
+        """Whether an interval is another than its standard error says."""
+        from scipy.special import stdtrit
+
+        reach = self.errors[name] * float(stdtrit(self._residuals.freedom, 0.975))
+        return not max(abs(abs(end - self.parameters[name]) - reach) for end in ends) <= AGREE * reach
 
 
 def fit(

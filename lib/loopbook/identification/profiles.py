@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 SHORTEST = 1 / 20  # lag that is looked for, in steps
 LONGEST = 100  # lag that is looked for, in records
 DEPENDENT = 1e-9  # a regressor of which so little is left by others is none
+EQUAL = 1e-9  # share by which equal lags differ
 WIDTH = 1e-5  # of a difference for a standard error
 MARCH = (0.4, 0.8, 1.2, 1.6, 2.0, 2.5, 3.0, 3.6, 4.5, 6.0)  # standard errors at which a profile is looked at
 FURTHER = 1.6  # factor from there on
@@ -30,7 +31,7 @@ INSIDE = 5  # values between the last that fits and the first that does not
 ZOOMS = 2
 SHARES = (0.9, 0.2)  # of a shorter lag in the longer one, from which the search begins, too
 MOST_STEPS = 80  # of the march
-ROUNDS, ENOUGH = 25, 1e-7  # of the search for the other parameters
+ROUNDS, ENOUGH = 25, 1e-6  # of the search for the other parameters
 
 
 class Residuals:
@@ -152,7 +153,7 @@ class Residuals:
         if len(T) == 1:
             named[1, 1] = T[0]
         elif len(T) == 2:
-            apart = math.sqrt(max(1 - p[1], 1e-300))
+            apart = max(math.sqrt(1 - p[1]), EQUAL)
             bend = math.exp(p[0]) / 4 / apart
             named[1, 1:3], named[2, 1:3] = [T[0] - SHORTEST, -bend], [T[1] - SHORTEST, bend]
         variance = ((self.target - fitted) ** 2).sum() / max(self.freedom, 1)
@@ -163,7 +164,9 @@ class Residuals:
         if abs(numpy.diag(R)).min() > DEPENDENT and self.freedom > 0:
             shares = numpy.linalg.solve(R.T, (named[:, seen] / sizes[seen]).T)
             errors = math.sqrt(variance) * numpy.linalg.norm(shares, axis=0)
-            errors[(named[:, ~seen] != 0).any(axis=1)] = math.inf
+            errors[(named[:, ~seen] != 0).any(axis=1) | (abs(named) > 0.1 / EQUAL * (1 + T.sum())).any(axis=1)] = (
+                math.inf
+            )
         parameters = dict(zip(names, [linear[0], *T, delay], strict=True))
         return parameters, dict(zip(names, errors, strict=True)), math.sqrt(variance), fitted
 
@@ -257,35 +260,33 @@ class _Profile:
             return of.of(numpy.array([T, SHORTEST + p[0] * (T - SHORTEST)]), p[-1])
         return of.of(numpy.array([numpy.minimum(T * numpy.exp(p[0]), self.longest_lag), T]), p[-1])
 
-    def sums(self, values, near=None):
+    def sums(self, values, near=None, everywhere=True):
         """The least sums for these values, and where they are; from several starts each, the better one."""
         import numpy
 
-        def search(chosen, start):
-            taken, wide = values[chosen], numpy.ones((1, len(chosen)))
+        starts = [*(self.starts(values) if everywhere else []), *([] if near is None else [near])]
+        columns, count = numpy.arange(len(values)), len(starts)
+
+        def search(start, taken):
+            wide = numpy.ones((1, len(taken)))
             return least_squares(
                 lambda p, which: self.left(p, taken[which]), start, self.low * wide, self.high * wide, rounds=ROUNDS,
                 enough=ENOUGH,
             )  # fmt: skip
 
-        everywhere = numpy.arange(len(values))
-        starts = [*self.starts(values), *([] if near is None else [near])]
-        found, best = search(everywhere, starts[0])
-        for start in starts[1:]:
-            other, sums = search(everywhere, start)
-            better = sums < best
-            found, best = numpy.where(better, other, found), numpy.where(better, sums, best)
+        found, sums = search(numpy.concatenate(starts, axis=1), numpy.tile(values, count))
+        best = sums.reshape(count, -1).argmin(axis=0) * len(values) + columns
+        found, sums = found[:, best], sums[best]
         if len(found):  # a neighbour may have found a better place
-            for shift in (1, -1):
-                neighbours = numpy.clip(everywhere + shift, 0, len(values) - 1)
-                promising = (self.left(found[:, neighbours], values) ** 2).sum(axis=0) < best * (1 - 1e-9)
-                if promising.any():
-                    chosen = everywhere[promising]
-                    other, sums = search(chosen, found[:, neighbours[chosen]])
-                    better = sums < best[chosen]
-                    chosen = chosen[better]
-                    found[:, chosen], best[chosen] = other[:, better], sums[better]
-        return best, found
+            shifted = numpy.clip([columns - 1, columns + 1], 0, len(values) - 1).ravel()
+            both = numpy.tile(columns, 2)
+            promising = (self.left(found[:, shifted], values[both]) ** 2).sum(axis=0) < sums[both] * (1 - ENOUGH)
+            if promising.any():
+                others, theirs = search(found[:, shifted[promising]], values[both[promising]])
+                for k, place, found_sum in zip(both[promising], others.T, theirs, strict=True):
+                    if found_sum < sums[k]:
+                        found[:, k], sums[k] = place, found_sum
+        return sums, found
 
 
 def interval(
@@ -331,8 +332,8 @@ def _end(profile, centre, error, bound, least, limit):
     """Where, on one side, the profile last exceeds the limit; or the bound."""
     import numpy
 
-    def looked_at(values, near=None):
-        sums, places = profile.sums(values, near)
+    def looked_at(values, near, everywhere):
+        sums, places = profile.sums(values, near, everywhere)
         excess = numpy.sqrt(numpy.maximum(sums - least, 0) / (limit - least)) - 1  # -1 at the best, 0 at the limit
         fits = numpy.flatnonzero(excess < 0)
         return excess, places, fits[-1] if len(fits) else -1
@@ -342,7 +343,7 @@ def _end(profile, centre, error, bound, least, limit):
     while True:
         values = numpy.clip(centre + steps * error, min(bound, centre), max(bound, centre))
         values = numpy.unique(values)[:: 1 if error > 0 else -1]
-        excess, places, last = looked_at(values, numpy.repeat(inner_place[:, None], len(values), axis=1))
+        excess, places, last = looked_at(values, numpy.repeat(inner_place[:, None], len(values), axis=1), True)
         if last >= 0:
             inner, inner_excess, inner_place = values[last], excess[last], places[:, last]
         if last + 1 < len(values):
@@ -354,7 +355,9 @@ def _end(profile, centre, error, bound, least, limit):
     for _ in range(ZOOMS):
         share = (numpy.arange(INSIDE) + 1) / (INSIDE + 1)
         values = inner + share * (outer - inner)
-        excess, places, last = looked_at(values, inner_place[:, None] + share * (outer_place - inner_place)[:, None])
+        excess, places, last = looked_at(
+            values, inner_place[:, None] + share * (outer_place - inner_place)[:, None], False
+        )
         if last + 1 < INSIDE:
             outer, outer_excess, outer_place = values[last + 1], excess[last + 1], places[:, last + 1]
         if last >= 0:
