@@ -190,7 +190,7 @@ class Quasipolynomials:
         count = self.order + 1
         derivatives = []
         for i in range(min(degree, self.order) + 1):
-            part = numpy.zeros(coefficients.shape)
+            part = numpy.zeros_like(coefficients)
             factors = numpy.array([math.comb(n + i, i) for n in range(count - i)], dtype=float)
             part[:, : count - i] = factors[:, None] * coefficients[:, i:]
             derivatives.append(part)

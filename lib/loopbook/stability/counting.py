@@ -26,7 +26,7 @@ from loopbook.stability.enclosures import (
 from loopbook.transfer import transfer_function
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     import numpy
 
@@ -80,16 +80,16 @@ def unstable_poles(x: object) -> float:
     """
     if not _is_loop(x):
         H = open_loop(x, zero=True)
-        return _count_of(H.denominator, removable=_zeros_at_origin(H.numerator), of=H.expr)
+        return _count_of(H.denominator, _zeros_at_origin(H.numerator), lambda: H.expr)
     process, controller = x.process_fraction, x.controller_fraction
     below = times(controller.denominator, process.denominator)
     parts = plus(times(controller.numerator, process.numerator), below)
     if _degree(parts) < _degree(below) or len(parts.get(Fraction(0), ())) < _degree(parts):
         _fraction(x.open_fraction)  # raises for what is improper
         raise ValueError(f"the algebraic loop of {x.open_fraction.expr} has no solution")
-    count = _count_of(parts, removable=_common_zeros_at_origin(process, controller), of=f"{x}")
+    count = _count_of(parts, _common_zeros_at_origin(process, controller), lambda: x)
     R = getattr(x, "setpoint_fraction", None)
-    if R is not None and R != controller and R.denominator != controller.denominator:
+    if R is not None and controller != R and R.denominator != controller.denominator:
         count += _of_prefilter(R, controller, x)
     return count
 
@@ -130,7 +130,7 @@ def unstable_closed_loop_poles(loop: object) -> float:
     """
     L = open_loop(loop, zero=True)
     removable = min(_zeros_at_origin(L.numerator), _zeros_at_origin(L.denominator))
-    return _count_of(characteristic(L), removable, of=f"the closed loop of {L.expr}")
+    return _count_of(characteristic(L), removable, lambda: f"the closed loop of {L.expr}")
 
 
 def unstable_roots(denominator: Mapping) -> float:
@@ -161,7 +161,7 @@ def unstable_roots(denominator: Mapping) -> float:
     parts = _whole(denominator)
     if Fraction(0) not in parts or any(delay < 0 for delay in parts):
         raise ValueError(f"the sum is {_written(parts)}: expected a part without dead time, and later ones")
-    return _count_of(parts, removable=0, of=_written(parts))
+    return _count_of(parts, 0, lambda: _written(parts))
 
 
 # ---- from what is given to sums
@@ -269,15 +269,15 @@ def _of_prefilter(R: DelayFraction, C: DelayFraction, loop: object) -> float:
     rest = R / C if C.numerator else R
     # the poles of R/C that are no zeros of C
     own = DelayFraction(rest.denominator, C.numerator or {Fraction(0): (1,)}).numerator
-    return _count_of(own, removable=_zeros_at_origin(rest.numerator), of=f"the block from the setpoint of {loop}")
+    return _count_of(own, _zeros_at_origin(rest.numerator), lambda: f"the block from the setpoint of {loop}")
 
 
-def _count_of(parts: Sum, removable: int, of: object) -> float:
+def _count_of(parts: Sum, removable: int, name: Callable[[], object]) -> float:
     """The number of roots of an exact sum in the right half-plane, without so many at zero."""
     base = min(parts, default=Fraction(0))
     parts = {delay - base: part for delay, part in parts.items()}
     if not parts:
-        raise ValueError(f"{of}: the sum is zero, expected one that is not")
+        raise ValueError(f"{name()}: the sum is zero, expected one that is not")
     order = len(parts[Fraction(0)]) - 1
     if _degree(parts) - 1 > order:
         return math.inf
@@ -285,19 +285,26 @@ def _count_of(parts: Sum, removable: int, of: object) -> float:
     sums = Quasipolynomials.exact(parts, order, divisor)
     count = int(count_roots(sums, Exact(parts, order, divisor, 1.0), removable)[0])
     if count == ON_LIMIT:
-        raise StabilityLimitError(f"{of} has poles on the imaginary axis, or an endless row that approaches it")
+        raise StabilityLimitError(f"{name()} has poles on the imaginary axis, or an endless row that approaches it")
     return math.inf if count == ENDLESS else count
 
 
 # ---- counting
 
 
-def count_roots(sums: Quasipolynomials, exact: Exact | None = None, removable: int = 0) -> numpy.ndarray:
+def count_roots(
+    sums: Quasipolynomials, exact: Exact | None = None, removable: int = 0, near: numpy.ndarray | None = None
+) -> numpy.ndarray:
     """The number of roots in the right half-plane of many sums; ON_LIMIT with some on the axis, ENDLESS without end.
 
     Arguments:
         exact: the same as `sums`, if it is a single one and more digits are at hand.
         removable: how many roots at zero do not count.
+        near: a frequency for each sum about which there are roots close to the axis; nan without one. It costs time
+            not to know it.
+    Returns:
+        An array of floats. With complex coefficients it is half the number for a sum and the one with the conjugate
+        coefficients together, of which the two have different shares.
     """
     import numpy
 
@@ -307,7 +314,7 @@ def count_roots(sums: Quasipolynomials, exact: Exact | None = None, removable: i
         for part, delay in zip(coefficients[1:], delays[1:], strict=True):  # what has no dead time at some points
             coefficients[0] += numpy.where(delay == 0, part, 0)
             part[:, delay == 0] = 0
-    counts = numpy.zeros(sums.count, dtype=int)
+    counts = numpy.zeros(sums.count)
     with numpy.errstate(divide="ignore", invalid="ignore"):
         returning = coefficients[1:, -1] / coefficients[0, -1]
     counts[coefficients[0, -1] == 0] = ENDLESS
@@ -324,78 +331,90 @@ def count_roots(sums: Quasipolynomials, exact: Exact | None = None, removable: i
         scaled = Quasipolynomials(coefficients, delays[:, points]).slower(unit)
         if exact is not None:
             exact = Exact(exact.parts, exact.order, exact.divisor, float(unit[0]))
-        counts[points] = _by_turns(scaled, unit, [far.get(point) for point in points] if far else [], exact, removable)
+        hints = None if near is None else near[points] / unit
+        counts[points] = Turns(scaled, unit, [far.get(point) for point in points], exact, removable).count(hints)
     return counts
 
 
-def _by_turns(sums, unit, far: list[Endless | None], exact, removable):
-    """The number of roots by the turns of the phase, from zero to the frequency 1 where the highest power prevails."""
-    import numpy
+class Turns:
+    """The turns of the phase of sums along the imaginary axis, from zero to 1, where the highest power prevails."""
 
-    one = numpy.ones(sums.count)
-    phase, limit = numpy.zeros(sums.count), numpy.zeros(sums.count, dtype=bool)
-    first, rest = sums[:1], None
-    if len(sums.coefficients) > 1 and sums.coefficients[1:].any():
-        first = Quasipolynomials(sums.coefficients[:1], sums.delays[:1])
-        rest = Quasipolynomials(sums.coefficients[1:], sums.delays[1:])
-    which, a, b = geometric(_lowest(sums, removable), one)
-    if removable:
-        start, turn = _above_origin(sums, removable, exact)
-        phase += turn
-        inside = b > start
-        which, a, b = which[inside], numpy.maximum(a[inside], start), b[inside]
+    name = "the number of unstable poles"
 
-    def value(which, w, precise):
-        return exact.taylor(w, 0)[0] if precise else sums.value(which, w)
+    def __init__(self, sums, unit, far: list[Endless | None], exact: Exact | None, removable: int):
+        import numpy
 
-    def judge(which, a, b, precise):
-        c, r = (a + b) / 2, (b - a) / 2
-        around = enclosed(sums, which, c, r, exact if precise else None)
+        self.sums, self.unit, self.far, self.exact, self.removable = sums, unit, far, exact, removable
+        self.phase, self.limit = numpy.zeros(sums.count), numpy.zeros(sums.count, dtype=bool)
+        self.first = self.rest = None
+        if len(sums.coefficients) > 1 and sums.coefficients[1:].any():
+            self.first = Quasipolynomials(sums.coefficients[:1], sums.delays[:1])
+            self.rest = Quasipolynomials(sums.coefficients[1:], sums.delays[1:])
+
+    def count(self, near: numpy.ndarray | None) -> numpy.ndarray:
+        import numpy
+
+        sums = self.sums
+        one, points = numpy.ones(sums.count), numpy.arange(sums.count)
+        which, a, b = geometric(_lowest(sums), one)
+        if self.removable:
+            start, turn = _above_origin(sums, self.removable, self.exact)
+            self.phase += turn
+            some = b > start[which]
+            which, a, b = which[some], numpy.maximum(a[some], start[which[some]]), b[some]
+        else:
+            # a sum that vanishes at zero; of an exact one, only where it does
+            size, at_zero = sums.sizes(points, 0 * one)[0], sums.coefficients[:, 0].sum(axis=0)
+            vanishes = abs(at_zero) <= 1e-15 * size if self.exact is None else not exact_coefficient(self.exact, 0)
+            self.limit |= vanishes
+        if near is not None:
+            which, a, b = closer(which, a, b, near)
+        some = ~self.limit[which]
+        walk(self.judge, which[some], a[some], b[some], self.name, self.unit, self.exact is not None)
+        ends = sums.value(points, one) * (-1j) ** sums.order
+        beyond = [each.phase(scale) if each else 0.0 for each, scale in zip(self.far, self.unit.tolist(), strict=True)]
+        # of n roots on the left, each turns the phase by a quarter turn; the rest of it comes beyond the frequency 1
+        left = numpy.array(beyond) + numpy.angle(ends * numpy.exp(-1j * numpy.array(beyond)))
+        counts = (sums.order - self.removable) / 2 - (self.phase - left) / math.pi
+        if not numpy.iscomplexobj(sums.coefficients):
+            whole = numpy.rint(counts)
+            if (lost := numpy.flatnonzero(~self.limit & (abs(counts - whole) > 0.1))).size:
+                raise UndecidedError(self.name, 0.0, float(self.unit[lost[0]]))
+            counts = whole
+        return numpy.where(self.limit, ON_LIMIT, counts)
+
+    def _value(self, which, w, precise):
+        return self.exact.taylor(w, 0)[0] if precise else self.sums.value(which, w)
+
+    def judge(self, which, a, b, precise):
+        import numpy
+
+        sums, c, r = self.sums, (a + b) / 2, (b - a) / 2
+        around = enclosed(sums, which, c, r, self.exact if precise else None)
         proven = around.least > 3 * around.noise
-        at_a, at_b = value(which, a, precise), value(which, b, precise)
+        at_a, at_b = self._value(which, a, precise), self._value(which, b, precise)
         turns = numpy.angle(at_b * at_a.conj())
-        noisy = around.is_noisy
-        if rest is not None and not proven.all():
+        if self.rest is not None and not proven.all():
             # where the undelayed part outweighs the others, the phase is its own, and less than a quarter turn more
-            open_ = numpy.flatnonzero(~proven)
-            alone = enclosed(first, which[open_], c[open_], r[open_])
-            outweighs = alone.least > rest.sizes(which[open_], b[open_])[0] + 3 * alone.noise
-            of = open_[outweighs]
+            left = numpy.flatnonzero(~proven)
+            alone = enclosed(self.first, which[left], c[left], r[left])
+            outweighs = alone.least > self.rest.sizes(which[left], b[left])[0] + 3 * alone.noise
+            of = left[outweighs]
             if len(of):
-                alone_a, alone_b = first.value(which[of], a[of]), first.value(which[of], b[of])
                 proven[of] = True
+                alone_a, alone_b = self.first.value(which[of], a[of]), self.first.value(which[of], b[of])
                 turns[of] = numpy.angle(alone_b * alone_a.conj())
                 turns[of] += numpy.angle(at_b[of] / alone_b) - numpy.angle(at_a[of] / alone_a)
-        phase[:] += numpy.bincount(which[proven], weights=turns[proven], minlength=sums.count)
-        if precise or exact is None:
-            lost = ~proven & (
-                (b - a <= 2 * NARROWEST * b) | (b < 1e-200) | (noisy & (around.spread < 64 * around.noise))
-            )
-            limit[which[lost]] = True
-        return ~proven & ~limit[which], noisy, sums.longest[which]
-
-    if not removable:
-        # a sum that vanishes at zero; of an exact one, only where it does
-        size, at_zero = sums.sizes(numpy.arange(sums.count), 0 * one)[0], sums.coefficients[:, 0].sum(axis=0)
-        limit |= abs(at_zero) <= 1e-15 * size if exact is None else numpy.array([not exact_coefficient(exact, 0)])
-    some = ~limit[which]
-    walk(judge, which[some], a[some], b[some], "the number of unstable poles", unit, exact is not None)
-    points = numpy.arange(sums.count)
-    ends = sums.value(points, one) * (-1j) ** sums.order
-    beyond = (
-        numpy.array([each.phase(scale) if each else 0.0 for each, scale in zip(far, unit.tolist(), strict=True)])
-        if far
-        else 0.0
-    )
-    # of n roots on the left, each turns the phase by a quarter turn; the rest of it comes beyond the frequency 1
-    left = beyond + numpy.angle(ends * numpy.exp(-1j * beyond))
-    counts = (sums.order - removable) / 2 - (phase - left) / math.pi
-    if (lost := numpy.flatnonzero(~limit & (abs(counts - numpy.rint(counts)) > 0.1))).size:
-        raise UndecidedError("the number of unstable poles", 0.0, float(unit[lost[0]]))
-    return numpy.where(limit, ON_LIMIT, numpy.rint(counts)).astype(int)
+        self.phase += numpy.bincount(which[proven], weights=turns[proven], minlength=sums.count)
+        noisy = around.is_noisy
+        if precise or self.exact is None:
+            within = noisy & (around.spread < 64 * around.noise)
+            lost = ~proven & ((b - a <= 2 * NARROWEST * b) | (b < 1e-200) | within)
+            self.limit[which[lost]] = True
+        return ~proven & ~self.limit[which], noisy, sums.longest[which]
 
 
-def _lowest(sums, removable):
+def _lowest(sums):
     """A frequency about which the lowest power begins to give way to the others."""
     import numpy
 
@@ -407,17 +426,40 @@ def _lowest(sums, removable):
 
 
 def _above_origin(sums, removable, exact):
-    """A frequency up to which a sum is about its lowest power, which is that of roots at zero, and its turn there."""
+    """Frequencies up to which sums are about their lowest power, which is that of roots at zero, and their turns there.
+
+    Raises StabilityLimitError for more roots at zero than are removable.
+    """
     import numpy
 
     series, more = origin(sums, removable + sums.order + 4, exact)
-    series = series[:, 0]
-    if not series[removable]:
+    if not series[removable].all():
         raise StabilityLimitError("there are poles at zero")
-    lowest, start = abs(series[removable]), 0.1 / max(1.0, float(sums.longest[0]))
-    powers = numpy.arange(len(series) - removable)
-    while (abs(series[removable:]) * start**powers)[1:].sum() + 2 * more[0] * start ** len(powers) > lowest / 2:
-        start /= 2
-    at_start = sums.value(numpy.zeros(1, dtype=int), numpy.array([start])) if exact is None else exact.taylor(
-        numpy.array([start]), 0)[0]  # fmt: skip
-    return start, float(numpy.angle(at_start[0] / (1j**removable * series[removable])))
+    start = 0.1 / numpy.maximum(1.0, sums.longest)
+    powers = numpy.arange(len(series) - removable)[:, None]
+    lowest = abs(series[removable])
+    for _ in range(400):
+        others = (abs(series[removable:]) * start**powers)[1:].sum(axis=0) + 2 * more * start ** len(powers)
+        if not (high := others > lowest / 2).any():
+            break
+        start = numpy.where(high, start / 2, start)
+    value = sums.value(numpy.arange(sums.count), start) if exact is None else exact.taylor(start, 0)[0]
+    return start, numpy.angle(value / (1j**removable * series[removable]))
+
+
+def closer(which, a, b, near, closest=1e-8):
+    """The intervals, those about a frequency of each point in ever smaller steps towards it."""
+    import numpy
+
+    steps = closest * 4.0 ** numpy.arange(math.ceil(math.log(0.5 / closest, 4)) + 1)
+    offsets = numpy.concatenate([-steps[::-1], steps])
+    parts = []
+    for point, w in enumerate(near.tolist()):
+        mine = which == point
+        edges = [a[mine], b[mine]]
+        if math.isfinite(w) and w > 0:
+            more = w * (1 + offsets)
+            edges.append(more[(more > a[mine].min()) & (more < b[mine].max())])
+        edges = numpy.unique(numpy.concatenate(edges))
+        parts.append((numpy.full(len(edges) - 1, point), edges[:-1], edges[1:]))
+    return tuple(numpy.concatenate(x) for x in zip(*parts, strict=True))

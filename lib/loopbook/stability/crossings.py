@@ -1,140 +1,396 @@
 """Where closed-loop poles cross the imaginary axis, as the gain or the dead time of a loop L = A/B grows.
 
-With a gain k, they cross where L is real, at k = -1/L: Im A(s) B(-s) = 0. With a dead time, they cross where L has the
-size 1, whatever its phase: A(s) A(-s) = B(s) B(-s). (K. Walton and J. E. Marshall, IEE Proceedings D 134, 1987)
+With a gain k, they cross where L is real, at k = -1/L: Im A conj(B) = 0. With a dead time, they cross where L has the
+size 1, whatever its phase: abs(A) = abs(B). (K. Walton and J. E. Marshall, IEE Proceedings D 134, 1987)
+
+A question is asked on intervals of frequency, and decided on each by enclosures: there is no zero, or the function is
+monotone, so that the signs at the ends tell whether there is one. What cannot be decided is never taken for a zero.
 """
 
-import itertools
+from __future__ import annotations
+
+import functools
 import math
+from typing import TYPE_CHECKING
 
-from loopbook.stability.sums import ROUNDING, Sums, axis_zeros, prevailing
+from loopbook.stability.enclosures import Enclosure, divided, enclosed, geometric, walk
+from loopbook.stability.sensitivity import to_the_top, with_peaks
 
-CLOSE = 1e-9
-MOST_TURNS = 400  # of the phase by dead time, in radians, in which a limiting gain is looked for
-
-
-def equal_sizes(A, B):
-    """abs(B)**2 - abs(A)**2, a frequency beyond which it is not zero, and whether it is positive there."""
+if TYPE_CHECKING:
     import numpy
 
-    difference = B * B.mirrored() - A * A.mirrored()
-    order = numpy.flatnonzero(difference.coefficients.any(axis=(0, 2))).max(initial=0)
-    difference = Sums(difference.coefficients[:, : order + 1], difference.delays)
-    end = prevailing(difference.coefficients)
-    highest = (-1) ** (order // 2) * difference.coefficients[0, -1]
-    return difference, end, ~numpy.isnan(end) & (highest > 0)
+    from loopbook.stability.loops import Loops
+
+LARGEST_GAIN = 1e12  # times 1, or times that which brings abs(L) to 1 about the fastest pole: larger ones are infinite
+DOUBTFUL = 1e-12  # the share of rounding in A or B above which crossings are computed with more digits
 
 
-def phase_left(A, B, which, w):
-    """How much more the phase of L may fall until L is negative, between 0 and 2 pi."""
-    import numpy
+class View:
+    """Loops on intervals of frequency: what the questions look at, each thing computed once."""
 
-    angle = numpy.angle(-A.value(which, w) / B.value(which, w))
-    return numpy.where(abs(angle) < CLOSE, 0, angle) % (2 * math.pi)
+    def __init__(self, loops: Loops, which: numpy.ndarray, a: numpy.ndarray, b: numpy.ndarray, precise: bool = False):
+        self.loops, self.which, self.a, self.b, self.precise = loops, which, a, b, precise
+        self.c, self.r = (a + b) / 2, (b - a) / 2
+
+    @functools.cached_property
+    def A(self) -> Enclosure:
+        return enclosed(self.loops.A, self.which, self.c, self.r, self.loops.exact[0] if self.precise else None)
+
+    @functools.cached_property
+    def B(self) -> Enclosure:
+        return enclosed(self.loops.B, self.which, self.c, self.r, self.loops.exact[1] if self.precise else None)
+
+    @functools.cached_property
+    def early(self) -> Enclosure:
+        """A without its common dead time, which does not change its size."""
+        if self.precise or self.loops.early is self.loops.A:
+            return self.A
+        return enclosed(self.loops.early, self.which, self.c, self.r)
+
+    @functools.cached_property
+    def C(self) -> Enclosure:
+        return self.B + self.A
+
+    @functools.cached_property
+    def across(self) -> Enclosure:
+        return self.A @ self.B
+
+    @functools.cached_property
+    def square_of_B(self) -> Enclosure:
+        return (self.B @ self.B).real
+
+    @functools.cached_property
+    def ends(self):
+        """A and B at both ends."""
+        return [[x[0] for x in self.loops.values(self.which, end, precise=self.precise)] for end in (self.a, self.b)]
 
 
-def limiting_gains(A, B):
-    """Find the gains with poles on the axis, in ever wider ranges of frequency, of many loops.
+class NearZero(View):
+    """The intervals from -b to b, without zeros at zero that A and B have in common."""
 
-    Yields points, gains and frequencies of all found so far; and for each loop a gain below which they are complete,
-    and the one at which infinitely many poles become unstable, which is where the former ends.
+    def __init__(self, loops: Loops, b: numpy.ndarray):
+        import numpy
+
+        super().__init__(loops, numpy.arange(loops.count), 0 * b, b)
+        self.c, self.r = 0 * b, b
+        self.both = loops.near_zero(self.which, b)
+
+    @property
+    def A(self) -> Enclosure:
+        return self.both[0]
+
+    @property
+    def B(self) -> Enclosure:
+        return self.both[1]
+
+    @property
+    def early(self) -> Enclosure:
+        return self.both[0]
+
+    @functools.cached_property
+    def C(self) -> Enclosure:
+        import numpy
+
+        total = self.B + self.A
+        lost = abs(total.terms[0]) <= 4e-16 * (abs(self.A.terms[0]) + abs(self.B.terms[0]))
+        total.terms[0] = numpy.where(lost, 0, total.terms[0])
+        return total
+
+
+class Question:
+    """What is asked on intervals.
+
+    `judge` says which are undecided, and for which of them rounding is a reason; `take` gets those about which all
+    questions are decided.
     """
-    import numpy
 
-    unit = prevailing(B.coefficients)
-    if numpy.isnan(unit).any():
-        raise ValueError("the highest power of the open loop's denominator returns so strongly that nothing is decided")
-    A, B = A.slower(unit), B.slower(unit)
-    longest = numpy.maximum(A.delays.max(axis=0), B.delays.max(axis=0))
-    imaginary, turn = _imaginary_part(A, B)
-    endless = _endless_gain(A, B)
-    # no crossing beyond it; nan if there may be
-    last = numpy.where(imaginary.coefficients.any(axis=(0, 1)), prevailing(imaginary.coefficients), 0)
-    if (ending := numpy.flatnonzero(endless < math.inf)).size:
-        last[ending] = numpy.fmin(last[ending], _last_below(endless[ending], A[ending], B[ending]))
-    points, gains = _static_limits(A, B)
-    frequencies = 0 * gains
-    begin, end = numpy.zeros(A.count), numpy.full(A.count, 4.0)
-    while True:
-        end = numpy.where(end >= last, last, end)
-        which, w = axis_zeros(imaginary, turn, begin, end)
-        with numpy.errstate(divide="ignore", invalid="ignore"):
-            gain = (-B.value(which, w) / A.value(which, w)).real
-        seen = (gain > 0) & numpy.isfinite(gain) & (w > 1e-9)
-        points = numpy.concatenate([points, which[seen]])
-        gains = numpy.concatenate([gains, gain[seen]])
-        frequencies = numpy.concatenate([frequencies, (w * unit[which])[seen]])
-        top = numpy.where(end >= last, math.inf, _least_beyond(end, A, B))
-        yield points, gains, frequencies, numpy.minimum(top, endless), endless
-        far = end * longest > MOST_TURNS
-        if (far | (top == math.inf)).all():
-            return
-        begin, end = end, numpy.where(far, end, 4 * end)
+    name = ""
+
+    def judge(self, view: View):
+        raise NotImplementedError
+
+    def take(self, view: View, chosen: numpy.ndarray) -> None:
+        pass
 
 
-def _imaginary_part(A, B):
-    """The sum that is zero where L is real, and the turn that makes its values real on the axis.
+class SizeOne(Question):
+    """Where abs(L) = 1."""
 
-    It is the odd part of A(s) B(-s), divided by a power of s.
+    name = "whether the loop's gain is 1"
+
+    def __init__(self):
+        self.brackets = []
+
+    def judge(self, view):
+        import numpy
+
+        if isinstance(view, NearZero):  # `Loops.start` has taken care of that
+            self.crossing = numpy.zeros(len(view.which), dtype=bool)
+            return self.crossing, self.crossing
+        square = (view.early @ view.early).real
+        self.rest = view.square_of_B - square
+        away = (self.rest.least > 0) | self.rest.is_positive | (-1 * self.rest).is_positive
+        self.crossing = ~away & self.rest.is_monotone
+        return ~away & ~self.crossing, self.rest.is_noisy
+
+    def take(self, view, chosen):
+        import numpy
+
+        some = numpy.flatnonzero(self.crossing & chosen)
+        if len(some):
+            low, high = (abs(B[some]) > abs(A[some]) for A, B in view.ends)
+            some = some[low != high]
+            self.brackets.append((view.which[some], view.a[some], view.b[some]))
+
+
+class Real(Question):
+    """Where L is real and negative, with a gain in between `lowest` and `highest`, each an array over the loops.
+
+    With `all_gains` it is not the question which is nearest to 1. Otherwise the crossings nearest to the gain 1 are wanted, on either side, and those
+    found draw the limits together.
     """
-    import numpy
 
-    both = A * B.mirrored()
-    odd = both - both.mirrored()
-    powers = numpy.flatnonzero(odd.coefficients.any(axis=(0, 2)))
-    lowest, highest = (powers[0], powers[-1]) if len(powers) else (0, 0)
-    return Sums(odd.coefficients[:, lowest : highest + 1], odd.delays), 1j ** (lowest - 1)
+    name = "whether poles cross the imaginary axis"
+
+    def __init__(self, loops: Loops, all_gains: bool = False):
+        import numpy
+
+        self.loops, self.all_gains = loops, all_gains
+        every, one = numpy.arange(loops.count), numpy.ones(loops.count)
+        A, B = (abs(x[0]) for x in loops.values(every, one))
+        with numpy.errstate(divide="ignore"):
+            self.endless = LARGEST_GAIN * numpy.maximum(1, numpy.where(A > 0, B / A, 1))
+        self.lowest, self.highest = numpy.zeros(loops.count), self.endless.copy()
+        self.points, self.gains, self.frequencies = numpy.zeros(0, dtype=int), numpy.zeros(0), numpy.zeros(0)
+
+    def add(self, points, gains, frequencies):
+        """Remember crossings."""
+        import numpy
+
+        self.points = numpy.concatenate([self.points, points])
+        self.gains = numpy.concatenate([self.gains, gains])
+        self.frequencies = numpy.concatenate([self.frequencies, frequencies])
+        if not self.all_gains:
+            above, below = gains > 1, gains < 1
+            numpy.minimum.at(self.highest, points[above], gains[above])
+            numpy.maximum.at(self.lowest, points[below], gains[below])
+
+    def is_known(self, points, a, b):
+        """Whether a crossing was found in an interval before."""
+        import numpy
+
+        if len(self.points) > 1000:
+            return numpy.zeros(len(points), dtype=bool)
+        w = self.frequencies
+        return ((self.points == points[:, None]) & (w >= a[:, None]) & (w <= b[:, None])).any(axis=1)
+
+    def judge(self, view):
+        import numpy
+
+        which = view.which
+        if isinstance(view, NearZero):  # `Loops.start` has taken care of that
+            nothing = numpy.zeros(len(which), dtype=bool)
+            return nothing, nothing
+        low, high = self.lowest[which], self.highest[which]
+        small = high * view.early.most < view.B.least
+        large = low * view.early.least > view.B.most
+        product = view.across
+        middle = product.terms[0]
+        distance = numpy.where(middle.real < 0, abs(middle.imag), abs(middle))
+        away = small | large | (distance > product.spread)
+        imag = product.imag
+        monotone = ~away & imag.is_monotone
+        candidates = numpy.flatnonzero(monotone)
+        if len(candidates):
+            (A_a, B_a), (A_b, B_b) = view.ends
+            signs = [(A[candidates] * B[candidates].conj()).imag > 0 for A, B in ((A_a, B_a), (A_b, B_b))]
+            new = candidates[signs[0] != signs[1]]
+            new = new[~self.is_known(which[new], view.a[new], view.b[new])]
+            if len(new):
+                points, w = which[new], solved(self.loops, which[new], view.a[new], view.b[new], _imaginary)
+                gain = gains_at(self.loops, points, w)
+                seen = (gain > 0) & numpy.isfinite(gain)
+                self.add(points[seen], gain[seen], w[seen])
+        open_ = ~away & ~monotone
+        if open_.any() and not self.all_gains:
+            # 0 is farther from all B + k A, for k from lowest to highest, than these differ from those in the middle
+            low, high = self.lowest[which], self.highest[which]
+            some = numpy.flatnonzero(open_)
+            A, B = view.A[some], view.B[some]
+            first, last = (B + k[some] * A for k in (low, high))
+            start, step = first.terms[0], last.terms[0] - first.terms[0]
+            with numpy.errstate(divide="ignore", invalid="ignore"):
+                along = numpy.clip(numpy.nan_to_num((-start * step.conj()).real / abs(step) ** 2), 0, 1)
+            far = abs(start + along * step) > numpy.maximum(first.spread, last.spread)
+            open_[some[far]] = False
+        return open_, product.is_noisy | (abs(middle.imag) < 16 * product.noise)
 
 
-def _static_limits(A, B):
-    """The loops with a gain for which a pole is at zero, and that gain."""
-    import numpy
+class Positive(Question):
+    """Whether abs(B/C) stays below `most`, one for each loop, which is the largest that was seen, and a little more."""
 
-    above, below = A.coefficients[:, 0].sum(axis=0), B.coefficients[:, 0].sum(axis=0)
-    with numpy.errstate(divide="ignore", invalid="ignore"):
-        gain = -below / above
-    integrating = abs(below) <= ROUNDING * abs(B.coefficients[:, 0]).sum(axis=0)
-    points = numpy.flatnonzero((gain > 0) & numpy.isfinite(gain) & ~integrating)
-    return points, gain[points]
+    name = "the largest sensitivity"
 
+    def __init__(self, loops: Loops, share: float = 1e-9):
+        import numpy
 
-def _least_beyond(w, A, B):
-    """A gain that is too small for poles on the axis beyond the frequency w: there abs(L) only falls below a bound."""
-    import numpy
+        self.loops, self.share = loops, share
+        self.most, self.place = numpy.zeros(loops.count), numpy.zeros(loops.count)
 
-    powers = numpy.maximum(w, 1.0) ** numpy.arange(B.order + 1)[:, None]
-    most = (abs(A.coefficients).sum(axis=0) * powers).sum(axis=0)
-    least = 2 * abs(B.coefficients[0, -1]) * powers[-1] - (abs(B.coefficients).sum(axis=0) * powers).sum(axis=0)
-    with numpy.errstate(divide="ignore", invalid="ignore"):
-        return numpy.where(least > 0, least / most, 0)
+    def see(self, points, sizes, frequencies):
+        import numpy
 
+        order = numpy.argsort(sizes)
+        points, sizes, frequencies = points[order], sizes[order], frequencies[order]
+        higher = sizes > self.most[points]
+        self.most[points[higher]] = sizes[higher]
+        self.place[points[higher]] = frequencies[higher]
 
-def _endless_gain(A, B):
-    """The gain at which the highest powers of B + gain*A with dead times outweigh the one without; or infinite."""
-    import numpy
+    def judge(self, view):
+        import numpy
 
-    # both with the same dead times in the same order
-    a, b = (A + 0 * B).coefficients[:, -1], (0 * A + B).coefficients[:, -1]
-    lowest = numpy.full(A.count, math.inf)
-    for signs in itertools.product((-1, 1), repeat=len(a) - 1):
-        # a sum of sizes is the largest of all sums with signs
-        signs = numpy.array([1, *signs])[:, None]
-        falling = -(signs * a).sum(axis=0)
+        which = view.which
+        before = self.most.copy()
         with numpy.errstate(divide="ignore", invalid="ignore"):
-            lowest = numpy.where(falling > 0, numpy.minimum(lowest, (signs * b).sum(axis=0) / falling), lowest)
-    return lowest
+            self.see(which, abs(view.B.terms[0] / view.C.terms[0]), view.c)
+        if (self.most > before * (1 + 1e-12)).any():
+            to_the_top(self.loops, self)
+        most = self.most[which] * (1 + self.share)
+        above = (most * most) * (view.C @ view.C).real - view.square_of_B
+        away = (most * (view.B.least - view.early.most) > view.B.most) | above.is_positive
+        return ~away, above.is_noisy
 
 
-def _last_below(endless, A, B):
-    """The frequency beyond which no gain lower than the endless one is a limit."""
+# ---- zeros
+
+
+def _imaginary(A, B):
+    """Im A conj(B) and its derivative."""
+    return (A[0] * B[0].conj()).imag, (A[1] * B[0].conj() + A[0] * B[1].conj()).imag
+
+
+def _difference(A, B):
+    """abs(B)**2 - abs(A)**2 and its derivative."""
+    value = (abs(B[0]) - abs(A[0])) * (abs(B[0]) + abs(A[0]))
+    return value, 2 * (B[1] * B[0].conj() - A[1] * A[0].conj()).real
+
+
+def solved(loops: Loops, which, a, b, function) -> numpy.ndarray:
+    """The zeros between a and b of monotone functions: Newton's steps, halves where they lead out.
+
+    With more digits where rounding has a share in A or B.
+    """
+    w = _newton(loops, which, a, b, function, False)
+    if loops.exact is not None and len(w):
+        import numpy
+
+        doubtful = numpy.zeros(len(w), dtype=bool)
+        for sums in (loops.A, loops.B):
+            around = enclosed(sums, which, w, 0 * w)
+            doubtful |= around.noise > DOUBTFUL * around.sizes[0]
+        if (again := numpy.flatnonzero(doubtful)).size:
+            w[again] = _newton(loops, which[again], a[again], b[again], function, True, w[again])
+    return w
+
+
+def _newton(loops, which, a, b, function, precise, start=None):
     import numpy
 
-    equal, end, _ = equal_sizes((1 - CLOSE) * endless * A, B)
-    decided = ~numpy.isnan(end)
-    which, w = axis_zeros(equal, 1, 0 * endless, numpy.where(decided, end, 0))
-    last = numpy.zeros(len(endless))
-    numpy.maximum.at(last, which, w)
-    # where the sizes do not decide, the highest powers do, but for the last thousandth of the gain
-    sizes = abs(B.coefficients).sum(axis=0) + endless * abs(A.coefficients).sum(axis=0)
-    sizes[-1] = (2 * abs(B.coefficients[0, -1]) - abs(B.coefficients[:, -1]).sum(axis=0)) / 1000
-    return numpy.where(decided, last, prevailing(sizes[None]))
+    a, b, moving = a.copy(), b.copy(), numpy.arange(len(which))
+    w = (a + b) / 2 if start is None else start.copy()
+    at_a, at_b = (function(*loops.values(which, x, 1, precise))[0] for x in (a, b))
+    rising = at_b > at_a
+    for _ in range(100):
+        if not len(moving):
+            break
+        value, slope = function(*loops.values(which[moving], w[moving], 1, precise))
+        before = (value < 0) == rising[moving]
+        a[moving] = numpy.where(before, w[moving], a[moving])
+        b[moving] = numpy.where(before, b[moving], w[moving])
+        with numpy.errstate(divide="ignore", invalid="ignore"):
+            better = w[moving] - value / slope
+        outside = ~((better >= a[moving]) & (better <= b[moving]))
+        better[outside] = ((a + b) / 2)[moving][outside]
+        change = abs(better - w[moving])
+        w[moving] = better
+        moving = moving[(change > 4e-16 * better) & (value != 0)]
+    return w
+
+
+def gains_at(loops: Loops, which, w) -> numpy.ndarray:
+    """The gains -B/A where L is real."""
+    import numpy
+
+    A, B = (x[0] for x in loops.values(which, w))
+    if loops.exact is not None and len(w):
+        noise = [enclosed(sums, which, w, 0 * w) for sums in (loops.A, loops.B)]
+        doubtful = numpy.any([x.noise > DOUBTFUL * x.sizes[0] for x in noise], axis=0)
+        if (again := numpy.flatnonzero(doubtful)).size:
+            A[again], B[again] = (x[0] for x in loops.values(which[again], w[again], precise=True))
+    with numpy.errstate(divide="ignore", invalid="ignore"):
+        return -(B / A).real
+
+
+def phase_left(A, B) -> numpy.ndarray:
+    """How much more the phase of L = A/B may fall until L is negative, between 0 and 2 pi."""
+    import numpy
+
+    angle = numpy.angle(-A / B)
+    return numpy.where(abs(angle) < 1e-9, 0, angle) % (2 * math.pi)
+
+
+# ---- asking
+
+
+def asked(loops: Loops, questions: list[Question], which, a, b) -> None:
+    """Ask questions about all intervals, dividing them until all are decided."""
+    import numpy
+
+    def judge(which, a, b, precise):
+        view = View(loops, which, a, b, precise)
+        undecided, noisy = numpy.zeros(len(which), dtype=bool), numpy.zeros(len(which), dtype=bool)
+        for question in questions:
+            open_, doubtful = question.judge(view)
+            undecided |= open_
+            noisy |= open_ & doubtful
+        for question in questions:
+            question.take(view, ~undecided)
+        return undecided, noisy, loops.longest[which]
+
+    peak = next((question for question in questions if isinstance(question, Positive)), None)
+
+    def divide(which, a, b, pieces):
+        if peak is None:
+            return divided(which, a, b, pieces)
+        about = (a < peak.place[which]) & (peak.place[which] < b)
+        others = divided(*(x[~about] for x in (which, a, b, pieces)))
+        return tuple(
+            numpy.concatenate(x) for x in zip(others, with_peaks(*(x[about] for x in (which, a, b)), peak.place))
+        )
+
+    walk(judge, which, a, b, questions[0].name, loops.unit, loops.exact is not None, divide)
+
+
+def below(loops: Loops, questions: list[Question]) -> numpy.ndarray:
+    """A frequency up to which all questions are decided from zero on."""
+    import numpy
+
+    start = loops.start.copy()
+    for _ in range(300):
+        view = NearZero(loops, start)
+        undecided = numpy.zeros(loops.count, dtype=bool)
+        for question in questions:
+            undecided |= question.judge(view)[0]
+        if not undecided.any():
+            for question in questions:
+                question.take(view, ~undecided)
+            return start
+        start = numpy.where(undecided, start / 4, start)
+    raise ValueError(f"{questions[0].name} is not decided at the frequency zero")
+
+
+def steps(start, end):
+    """Intervals from start to end, in geometric steps."""
+    which, a, b = geometric(start, end)
+    some = a >= start[which]
+    return which[some], a[some], b[some]

@@ -62,7 +62,7 @@ def at_endless_frequency(later: numpy.ndarray, delays: numpy.ndarray) -> Endless
         return Endless(1 - total)
     if len(set(delays.tolist())) == 1:
         later = later.sum(keepdims=True)
-        total = abs(float(later[0]))
+        total = float(abs(later[0]))
         if total < 1:
             return Endless(1 - total)
         return Endless(0.0 if total == 1 else -1.0)

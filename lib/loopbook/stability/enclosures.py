@@ -39,6 +39,8 @@ class Enclosure:
         rest, slope: bounds of the rest of the function, rounding included, and of its derivative.
     """
 
+    __array_ufunc__ = None  # so that an array of factors leaves its multiplication to this class
+
     terms: numpy.ndarray
     noise: numpy.ndarray
     rest: numpy.ndarray
@@ -147,7 +149,6 @@ def _diagonals(count):
 def enclosed(sums: Quasipolynomials, which: numpy.ndarray, c: numpy.ndarray, r: numpy.ndarray,
              exact: Exact | None = None) -> Enclosure:  # fmt: skip
     """The sums on the intervals from c - r to c + r; with more digits where there is an exact one."""
-    import numpy
 
     end = c + r
     scale = r ** _DEGREES()[:, None]
@@ -247,6 +248,7 @@ def walk(
     what: str,
     unit: numpy.ndarray,
     exact: bool = False,
+    divide: Callable | None = None,
 ) -> None:
     """Divide intervals until `judge` has decided about all.
 
@@ -256,6 +258,7 @@ def walk(
         which, a, b: the intervals at first.
         what: is asked, for the message.
         exact: whether more digits are at hand.
+        divide: another function than `divided`.
     Raises:
         UndecidedError: for an interval that is so narrow that it cannot be divided any more, or too many intervals.
     """
@@ -284,7 +287,7 @@ def walk(
             raise UndecidedError(what, a[k], b[k], float(unit[which[k]]))
         which, a, b, delay = (x[undecided] for x in (which, a, b, delay))
         pieces = numpy.clip(numpy.ceil((b - a) * delay / 0.8), 4, 64).astype(int)
-        pending.append(divided(which, a, b, pieces))
+        pending.append((divide or divided)(which, a, b, pieces))
 
 
 def divided(which, a, b, pieces):
@@ -329,6 +332,14 @@ def origin(sums: Quasipolynomials, degree: int, exact: Exact | None = None):
 
 def exact_coefficient(exact: Exact, n: int) -> float:
     """The coefficient of s**n in the power series of an exact sum at zero, time in its unit."""
+    if not n:
+        total = sum(part[0] for part in exact.parts.values())
+        return total / exact.divisor / exact.unit**exact.order
+    return float(exact_coefficient_fraction(exact, n))
+
+
+def exact_coefficient_fraction(exact: Exact, n: int) -> Fraction:
+    """The same, as a fraction."""
     from fractions import Fraction
 
     total = sum(
@@ -339,4 +350,4 @@ def exact_coefficient(exact: Exact, n: int) -> float:
         ),
         start=Fraction(0),
     )
-    return float(total / exact.divisor * Fraction(exact.unit) ** (n - exact.order))
+    return total / exact.divisor * Fraction(exact.unit) ** (n - exact.order)

@@ -4,7 +4,7 @@ import math
 
 from loopbook.inputs import real_numbers
 from loopbook.stability.counting import count_roots, open_loop
-from loopbook.stability.crossings import limiting_gains
+from loopbook.stability.former import limiting_gains
 from loopbook.stability.sums import Sums, fraction_sums
 
 

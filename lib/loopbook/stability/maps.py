@@ -4,8 +4,8 @@ import time
 
 import sympy
 
-from loopbook.inputs import real_numbers
 from loopbook.expressions import s
+from loopbook.inputs import real_numbers
 from loopbook.quasipolynomials import normal_form
 from loopbook.stability.counting import count_roots
 from loopbook.stability.sums import Sums

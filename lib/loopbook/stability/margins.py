@@ -1,14 +1,32 @@
 """The margins of a stable loop: how far its gain, its phase and its dead time are from the limit, and Ms."""
 
+from __future__ import annotations
+
+import functools
 import math
-from fractions import Fraction
 from typing import NamedTuple
 
-from loopbook.stability.counting import is_closed_loop_stable, open_loop
-from loopbook.stability.crossings import equal_sizes, limiting_gains, phase_left
-from loopbook.stability.sums import axis_zeros, fraction_sums, prevailing, refined
+from loopbook.stability.confirmation import confirm
+from loopbook.stability.counting import (
+    fraction_sums,
+    is_closed_loop_stable,
+    open_loop,
+)
+from loopbook.stability.crossings import (
+    Positive,
+    Real,
+    SizeOne,
+    _difference,
+    asked,
+    below,
+    phase_left,
+    solved,
+    steps,
+)
+from loopbook.stability.endless import Far
+from loopbook.stability.loops import ENOUGH, Loops
 
-LARGEST_GAIN = 1e6  # up to which a gain margin is looked for
+MOST_TURNS = 4000.0  # of the phase by dead time, in radians, in which a gain margin is looked for
 
 
 class Margins(NamedTuple):
@@ -21,7 +39,7 @@ class Margins(NamedTuple):
         delay_margin: the additional dead time, in the unit of the lags.
         Ms: the largest value of abs(1/(1 + L)) at any frequency; 1/Ms is the distance of L from -1.
         omega_180, omega_c, omega_ms: the frequencies of gain margin, phase margin and Ms, in radians for one unit of
-            time; nan where a margin is infinite, inf where Ms is that of ever higher frequencies.
+            time; nan where a margin is infinite, inf where it is that of ever higher frequencies.
     """
 
     gain_margin: float
@@ -34,36 +52,45 @@ class Margins(NamedTuple):
     omega_ms: float
 
 
-def delay_margin(loop):
+NOTHING = Margins(math.inf, 0.0, math.inf, math.inf, 1.0, math.nan, math.nan, math.nan)
+
+
+def delay_margin(loop: object) -> float:
     """Return the additional dead time in the loop that brings a stable closed loop to the limit of stability.
 
     Arguments:
-        loop: the open loop L(s), as for `unstable_poles`.
+        loop: the open loop L(s), as for `unstable_closed_loop_poles`.
     Returns:
-        The additional dead time, in the unit of the lags; infinite where none makes the loop unstable.
+        The additional dead time, in the unit of the lags; infinite where none makes the loop unstable, zero where any
+        does, because the gain at endless frequency is 1 or more.
     Raises:
-        ValueError: if the loop is not stable to begin with, or as `unstable_poles`.
+        ValueError: if the loop is not stable to begin with, or as `unstable_closed_loop_poles`.
 
     >>> import sympy
     >>> from loopbook import s
     >>> round(delay_margin(sympy.exp(-s) / s), 4)    # pi/2 in all
     0.5708
     """
-    A, B = _stable_loop(loop)
-    return _delay_margin(*_gain_crossings(A, B))
+    loops = _stable_loop(loop)
+    if loops is None:
+        return math.inf
+    survey = Survey(loops, [SizeOne()])
+    found = survey.delay_margins()
+    confirm(loops, found)
+    return found["delay_margin"]
 
 
-def margins(loop):
+def margins(loop: object) -> Margins:
     """Return gain margin, phase margin, delay margin and Ms of a stable loop, with any dead times, as `Margins`.
 
-    All crossings are found, by bounds that exclude others, and of several the nearest one counts. The search for a gain
-    margin has an end: one above 1e6, or at a frequency where the dead times alone turn the phase by more than 400 rad,
-    is reported as infinite.
+    All crossings are found, by enclosures that exclude others, and of several the nearest one counts. Of the limits,
+    each is confirmed by the number of unstable poles on either side of it. A gain margin above 1e12 counts as infinite.
 
     Arguments:
-        loop: the open loop L(s), as for `unstable_poles`.
+        loop: the open loop L(s), as for `unstable_closed_loop_poles`.
     Raises:
-        ValueError: if the closed loop is not stable, or as `unstable_poles`.
+        ValueError: if the closed loop is not stable, as `unstable_closed_loop_poles`, or where something is not decided
+            with a million intervals of frequency; the message says what, and where.
 
     >>> import sympy
     >>> from loopbook import s
@@ -71,133 +98,139 @@ def margins(loop):
     >>> round(found.gain_margin, 4), round(found.phase_margin, 4), round(found.delay_margin, 4)
     (3.1416, 61.3521, 2.1416)
     """
-    import numpy
-
-    A, B = _stable_loop(loop)
-    gain_margin, gain_reduction, omega_180 = _gain_margin(A, B)
-    w, left, fading = _gain_crossings(A, B)
-    either_way = numpy.minimum(left, 2 * math.pi - left)
-    phase_margin, omega_c = math.inf, math.nan
-    if len(w):
-        nearest = either_way.argmin()
-        phase_margin, omega_c = math.degrees(either_way[nearest]), float(w[nearest])
-    Ms, omega_ms = _largest_sensitivity(A, B)
+    loops = _stable_loop(loop)
+    if loops is None:
+        return NOTHING
+    real, size, peak = Real(loops), SizeOne(), Positive(loops)
+    survey = Survey(loops, [real, size, peak])
+    found = survey.gain_margins() | survey.phase_margins() | survey.delay_margins()
+    confirm(loops, found)
+    Ms, omega_ms = float(peak.most[0]), float(peak.place[0] * loops.unit[0])
     return Margins(
-        gain_margin, gain_reduction, phase_margin, _delay_margin(w, left, fading), Ms, omega_180, omega_c, omega_ms
-    )
+        found["gain_margin"], found["gain_reduction"], found["phase_margin"], found["delay_margin"], Ms,
+        found["omega_180"], found["omega_c"], omega_ms,
+    )  # fmt: skip
 
 
-def _stable_loop(loop):
-    """Numerator and denominator of a loop that is stable."""
-    L = open_loop(loop)
+def _stable_loop(loop: object) -> Loops | None:
+    """A loop that is stable; None for none."""
+    L = open_loop(loop, zero=True)
     if not is_closed_loop_stable(L):
         raise ValueError(f"the closed loop of {L.expr} is not stable: it has no margin")
-    return fraction_sums(L)
+    return Loops(*fraction_sums(L), L) if L.numerator else None
 
 
-def _gain_margin(A, B):
-    """How far the gain may grow and fall, and the frequency of the former."""
-    reduction = 0.0
-    for _, gains, frequencies, (top,), (endless,) in limiting_gains(A, B):
-        higher = gains > 1
-        reduction = float(gains[gains < 1].max(initial=0.0))
-        if higher.any() and gains[higher].min() <= top:
-            nearest = gains[higher].argmin()
-            return float(gains[higher][nearest]), reduction, float(frequencies[higher][nearest])
-        if top == endless < math.inf:
-            return float(endless), reduction, math.inf
-        if top > LARGEST_GAIN:
-            break
-    return math.inf, reduction, math.nan
+class Survey:
+    """Questions about one loop, asked in windows of frequency until bounds answer them for all that is beyond."""
 
+    def __init__(self, loops: Loops, questions: list):
+        self.loops, self.far = loops, Far(loops)
+        kinds = {type(question): question for question in questions}
+        self.real, self.size, self.peak = (kinds.get(kind) for kind in (Real, SizeOne, Positive))
+        self._begin()
+        self._ask(questions)
 
-def _gain_crossings(A, B):
-    """The frequencies where abs(L) = 1, how far the phase may still fall there, and whether abs(L) ends below 1."""
-    import numpy
+    def _begin(self):
+        """What is known at zero and at endless frequency."""
+        import numpy
 
-    equal, end, fading = equal_sizes(A, B)
-    if numpy.isnan(end).any():
-        raise ValueError("whether the loop's gain at ever higher frequencies stays away from 1 is not decided")
-    which, w = axis_zeros(equal, 1, 0 * end, end)
-    return w, phase_left(A, B, which, w), bool(fading[0])
+        loops, far, one = self.loops, self.far, numpy.zeros(1, dtype=int)
+        if self.real:
+            self.real.highest = numpy.minimum(self.real.highest, far.highest)
+            self.real.lowest = numpy.maximum(self.real.lowest, far.lowest)
+            if (static := loops.static_gains())[0] > 0:
+                self.real.add(one, static, numpy.zeros(1))
+        if self.peak:
+            A, B = loops.near_zero(one, numpy.full(1, 1e-300))
+            zero = abs(B.terms[0] / (A.terms[0] + B.terms[0]))
+            self.peak.see(one, zero, numpy.zeros(1))
+            self.peak.see(one, numpy.array([far.sensitivity]), numpy.full(1, math.inf))
 
+    def _end(self, question) -> float:
+        """A frequency beyond which a question is decided; nan where none is known yet."""
+        far = self.far
+        if question is self.real:
+            low, high = float(question.lowest[0]), float(question.highest[0])
+            end = far.no_crossing_beyond(low, high)
+            if math.isnan(end) or high == question.endless[0]:
+                end = min(end if end == end else math.inf, self.loops.real_beyond)
+            return end
+        if question is self.size:
+            return far.size_end()
+        return far.no_peak_beyond(float(question.most[0]) * (1 + ENOUGH))
 
-def _delay_margin(w, left, fading):
-    # where the gain at ever higher frequencies is 1 or more, any additional dead time is too much
-    return float((left / w).min(initial=math.inf)) if fading else 0.0
+    def _ask(self, questions):
+        import numpy
 
+        loops = self.loops
+        if self.size and self.far.size == 0:
+            raise ValueError("whether the loop's gain at ever higher frequencies stays away from 1 is not decided")
+        done = below(loops, questions)
+        while True:
+            ends = [self._end(question) for question in questions]
+            ends = [math.inf if math.isnan(end) else end for end in ends]
+            left = [question for question, end in zip(questions, ends, strict=True) if end > done[0]]
+            if not left:
+                return
+            longest = float(loops.longest[0])
+            if done[0] * longest > MOST_TURNS and math.inf in ends:
+                raise ValueError(f"{left[0].name} is not decided beyond the frequency {done[0] * loops.unit[0]:.6g}")
+            window = max(4 * float(done[0]), 2.0 if done[0] < 1 else 0.0)
+            if longest and window > 1:
+                window = max(window, float(done[0]) + 20 / longest)
+            end = numpy.array([min(max(ends), window)])
+            asked(loops, left, *steps(done, end))
+            done = end
 
-# ---- the largest sensitivity
+    # ---- what was found
 
+    def gain_margins(self):
+        """How far the gain may grow and fall, and the frequencies of both."""
+        import numpy
 
-def _largest_sensitivity(A, B):
-    """The largest value of abs(1/(1 + L)) = abs(B/(A + B)) and its frequency; bounds exclude all other places.
+        real, unit = self.real, float(self.loops.unit[0])
+        found = {}
+        for name, omega, value, none in (
+            ("gain_margin", "omega_180", float(real.highest[0]), float(real.endless[0])),
+            ("gain_reduction", "omega_reduction", float(real.lowest[0]), 0.0),
+        ):
+            if value == none:
+                found |= {name: math.inf if none else 0.0, omega: math.nan}
+                continue
+            at = numpy.flatnonzero(real.gains == value)
+            found |= {name: value, omega: float(real.frequencies[at[0]]) * unit if len(at) else math.inf}
+        return found
 
-    Where the loop's gain does not vanish at high frequencies, the tail is taken as periodic beyond 1000 times the
-    frequency at which the highest powers begin to prevail.
-    """
-    import numpy
+    @functools.cached_property
+    def _crossings(self):
+        """The frequencies where abs(L) is 1, and how far the phase may still fall there."""
+        import numpy
 
-    C, one = A + B, numpy.zeros(1, dtype=int)
+        loops = self.loops
+        if not self.size.brackets:
+            return numpy.zeros(0), numpy.zeros(0)
+        which, a, b = (numpy.concatenate(x) for x in zip(*self.size.brackets, strict=True))
+        w = solved(loops, which, a, b, _difference)
+        A, B = (x[0] for x in loops.values(which, w, precise=loops.is_doubtful(which, w)))
+        return w * float(loops.unit[0]), phase_left(A, B)
 
-    def values(which, w):
-        return numpy.array([B.value(which, w), C.value(which, w)])
+    def phase_margins(self):
+        """How far the phase may turn, either way, and the frequency; infinite where abs(L) is never 1."""
+        import numpy
 
-    def sensitivity(w):
-        above, below = abs(values(one, numpy.array([w])))
-        return float(above[0] / below[0])
+        w, left = self._crossings
+        if not len(w):
+            return {"phase_margin": math.inf, "omega_c": math.nan}
+        either_way = numpy.minimum(left, 2 * math.pi - left)
+        nearest = either_way.argmin()
+        return {"phase_margin": math.degrees(either_way[nearest]), "omega_c": float(w[nearest])}
 
-    best, place = max((_sensitivity_far_out(B, C), math.inf), (sensitivity(0.0), 0.0))
-
-    def undecided(intervals):
-        nonlocal best, place
-        which, a, b, at_a, at_b = intervals
-        height = abs(at_b[0] / at_b[1])
-        if height.max() > best:
-            best, place = float(height.max()), float(b[height.argmax()])
-        sizes, change = abs(at_a) + abs(at_b), (b - a) * numpy.array([f.bounds(which, b)[1] for f in (B, C)])
-        return sizes[0] + change[0] > best * (1 + 1e-5) * (sizes[1] - change[1])
-
-    begin, end = numpy.zeros(1), 4 * prevailing(B.coefficients)
-    last = 1000 * end
-    while begin < end:
-        refined(values, one, begin, end, undecided)
-        # beyond this frequency abs(L) is so small that 1/(1 - abs(L)) stays below what was found
-        most = 1 - 1 / max(best, 1.0003)
-        small = prevailing(numpy.concatenate([B.coefficients, A.coefficients / most]))
-        begin, end = end, numpy.where(numpy.isnan(small), last, small)
-    return _top(sensitivity, best, place) if 0 < place < math.inf else (best, place)
-
-
-def _top(sensitivity, best, place):
-    """The top of the peak on whose side a place is."""
-    from scipy.optimize import minimize_scalar
-
-    width = 1e-7 * place
-    while width < place / 4 and max(sensitivity(place - width), sensitivity(place + width)) >= best * (1 - 1e-9):
-        width *= 2
-    peak = minimize_scalar(
-        lambda w: -sensitivity(w),
-        bounds=(place - width, place + width),
-        method="bounded",
-        options={"xatol": 1e-10 * place},
-    )
-    return max((best, place), (float(-peak.fun), float(peak.x)))
-
-
-def _sensitivity_far_out(B, C):
-    """The largest abs(B/C) for ever higher frequencies, where only the highest powers count."""
-    import numpy
-
-    highest = [dict(zip(x.delays[:, 0].tolist(), x.coefficients[:, -1, 0].tolist(), strict=True)) for x in (B, C)]
-    later = sorted({delay for each in highest for delay, c in each.items() if c and delay})
-    if not later:
-        return abs(highest[0][0] / highest[1][0])
-    ratios = [Fraction(delay / later[0]).limit_denominator(100) for delay in later]
-    unit = later[0] / math.lcm(*(r.denominator for r in ratios))
-    # with dead times that are no multiples of one, the phases come as near to any as one wants
-    angle = numpy.linspace(0, 2 * math.pi, 400_001) if len(later) == 1 else numpy.linspace(0, 2000 * math.pi, 4_000_001)
-    above, below = (
-        sum(c * numpy.exp(-1j * angle * (delay / unit)) for delay, c in each.items() if c) for each in highest
-    )
-    return float(abs(above / below).max())
+    def delay_margins(self):
+        """How much more dead time there may be; none where the gain at ever higher frequencies is 1 or more."""
+        w, left = self._crossings
+        if self.far.size >= 0:
+            return {"delay_margin": 0.0, "omega_delay": math.inf}
+        if not len(w):
+            return {"delay_margin": math.inf, "omega_delay": math.nan}
+        nearest = (left / w).argmin()
+        return {"delay_margin": float(left[nearest] / w[nearest]), "omega_delay": float(w[nearest])}

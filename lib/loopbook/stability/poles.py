@@ -7,7 +7,6 @@ import sympy
 
 from loopbook.expressions import s
 from loopbook.quasipolynomials.arrays import Quasipolynomials
-
 from loopbook.stability.counting import ENDLESS, ON_LIMIT, characteristic, count_roots, open_loop
 from loopbook.stability.sums import prevailing
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from loopbook.inputs import real_numbers
 from loopbook.laplace import by_delay
 from loopbook.stability.counting import count_roots, open_loop
-from loopbook.stability.crossings import equal_sizes, phase_left
+from loopbook.stability.former import equal_sizes, phase_left
 from loopbook.stability.sums import Sums, axis_zeros, fraction_sums
 from loopbook.transfer import transfer_function
 

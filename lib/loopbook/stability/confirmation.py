@@ -1,0 +1,116 @@
+"""Limits of stability confirmed by what does not know how they were found: the number of poles on both sides."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import TYPE_CHECKING, NamedTuple
+
+from loopbook.quasipolynomials.arrays import Quasipolynomials
+from loopbook.quasipolynomials.fraction import Sum, plus
+from loopbook.stability.counting import ENDLESS, ON_LIMIT, count_roots
+from loopbook.stability.enclosures import Exact
+
+if TYPE_CHECKING:
+    from loopbook.stability.loops import Loops
+
+SHARES = (1e-6, 1e-5, 1e-4, 1e-3)  # of a limit, by which the two sides differ from it, the first that decides
+
+
+class Change(NamedTuple):
+    """A loop with another gain, more dead time or another phase, in what it is a limit of, and near which frequency."""
+
+    name: str
+    limit: float
+    inside: bool
+    outwards: float
+    near: float
+
+    def at(self, share: float):
+        """Factor, dead time and angle."""
+        value = self.limit * (1 + (-self.outwards if self.inside else self.outwards) * share)
+        if self.name in ("gain_margin", "gain_reduction"):
+            return value, 0.0, 0.0
+        return (1.0, value, 0.0) if self.name == "delay_margin" else (1.0, 0.0, math.radians(value))
+
+
+def confirm(loops: Loops, found: dict[str, float]) -> None:
+    """Count the unstable poles on both sides of each limit of a stable loop.
+
+    Arguments:
+        found: the limits by their names among those of `Margins`, and the frequencies at which they are.
+    Raises:
+        ArithmeticError: where the numbers contradict a limit.
+    """
+    changes = []
+    for name, omega, outwards in (
+        ("gain_margin", "omega_180", 1.0),
+        ("gain_reduction", "omega_reduction", -1.0),
+        ("phase_margin", "omega_c", 1.0),
+        ("delay_margin", "omega_delay", 1.0),
+    ):
+        limit = found.get(name, math.inf)
+        if 0 < limit < math.inf:
+            near = found[omega]
+            if near < math.inf:
+                changes.append(Change(name, limit, True, outwards, near))
+            changes.append(Change(name, limit, False, outwards, near))
+    for share in SHARES:
+        if not changes:
+            return
+        counts = _counts(loops, [change.at(share) for change in changes], [change.near for change in changes])
+        left = []
+        for change, count in zip(changes, counts, strict=True):
+            if count == ON_LIMIT and change.name != "phase_margin":
+                count = _exactly(loops, *change.at(share)[:2])
+            if count == ON_LIMIT:
+                left.append(change)
+            elif (count == 0) != change.inside:
+                side = "inside" if change.inside else "outside"
+                raise ArithmeticError(
+                    f"the {change.name.replace('_', ' ')} {change.limit:.12g} is not confirmed: just {side} of it "
+                    f"there are {count:g} unstable poles"
+                )
+        changes = left
+
+
+def _counts(loops, changes, near):
+    """The numbers of unstable poles of a loop with several changes; of those with another phase, of both conjugates."""
+    import numpy
+
+    both = [*changes, *((factor, delay, -angle) for factor, delay, angle in changes if angle)]
+    factors = numpy.array([factor * complex(math.cos(angle), math.sin(angle)) for factor, _, angle in both])
+    if not factors.imag.any():
+        factors = factors.real
+    unit = float(loops.unit[0])
+    late = numpy.array([delay * unit for _, delay, _ in both])
+    near = [*near, *(w for w, (*_, angle) in zip(near, changes, strict=True) if angle)]
+    A, B = loops.A, loops.B
+    count = len(both)
+    coefficients = numpy.concatenate(
+        [numpy.broadcast_to(B.coefficients, (*B.coefficients.shape[:2], count)), factors * A.coefficients]
+    )
+    delays = numpy.concatenate([numpy.broadcast_to(B.delays, (len(B.delays), count)), A.delays + late])
+    counts = count_roots(
+        Quasipolynomials(coefficients, delays), removable=int(loops.at_zero[4][0]), near=numpy.array(near) / unit
+    )
+    turned = iter(counts[len(changes) :])
+    found = []
+    for number, (*_, angle) in zip(counts, changes, strict=False):
+        other = next(turned) if angle else number
+        found.append(ON_LIMIT if ON_LIMIT in (number, other) else round((number + other) / 2))
+    return found
+
+
+def _exactly(loops, factor, delay):
+    """The number of unstable poles with more digits."""
+    A, B = loops.exact
+    factor, delay = Fraction(factor), Fraction(delay)
+    above = {d + delay: tuple(factor.numerator * c for c in part) for d, part in A.parts.items()}
+    below = {d: tuple(factor.denominator * c for c in part) for d, part in B.parts.items()}
+    parts: Sum = plus(below, above)
+    order, divisor = len(parts[Fraction(0)]) - 1, parts[Fraction(0)][-1]
+    if max(map(len, parts.values())) - 1 > order:
+        return ENDLESS
+    sums = Quasipolynomials.exact(parts, order, divisor)
+    return int(count_roots(sums, Exact(parts, order, divisor, 1.0), int(loops.at_zero[4][0]))[0])

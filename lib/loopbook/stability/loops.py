@@ -1,0 +1,312 @@
+"""Open loops L = A/B in numbers, many at once: enclosures on intervals, what they are at zero and beyond all intervals."""
+
+from __future__ import annotations
+
+import functools
+import math
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from loopbook.quasipolynomials.arrays import DEGREE, Quasipolynomials
+from loopbook.stability.difference import at_endless_frequency, power_of_two, prevailing
+from loopbook.stability.enclosures import EPSILON, Enclosure, Exact, enclosed, origin
+
+if TYPE_CHECKING:
+    import numpy
+
+    from loopbook.quasipolynomials import DelayFraction
+
+DOUBTFUL = 1e-12  # the share of rounding in A or B above which crossings are computed with more digits
+ENOUGH = 1e-9  # two gains that differ by this share need not be told from each other
+
+
+class Loops:
+    """Numerators A and denominators B of loops, with time in units in which the frequency `unit` is 1.
+
+    Arguments:
+        A, B: with as many powers; B has an undelayed part first, with the highest power.
+        fraction: the exact loop, where there is one only.
+    """
+
+    def __init__(self, A: Quasipolynomials, B: Quasipolynomials, fraction: DelayFraction | None = None):
+        import numpy
+
+        self.endless_least = numpy.array([_least_at_endless(B, k) for k in range(B.count)])
+        if not (self.endless_least > 0).all():
+            raise ValueError(
+                "the highest power of the open loop's denominator returns so strongly that nothing is decided"
+            )
+        self.unit = power_of_two(prevailing(B.coefficients, self.endless_least))
+        order = B.order
+        self.A, self.B = A.slower(self.unit), B.slower(self.unit)
+        self.early = self.A.delayed(-self.A.delays.min(axis=0))
+        self.C = self.B + self.A
+        self.count, self.exact, self.fraction = B.count, None, fraction
+        if fraction is not None:
+            divisor, scale = fraction.denominator[Fraction(0)][-1], float(self.unit[0])
+            self.exact = (
+                Exact(fraction.numerator, order, divisor, scale), Exact(fraction.denominator, order, divisor, scale)
+            )  # fmt: skip
+
+    def __getitem__(self, points: object) -> Loops:
+        chosen = object.__new__(Loops)
+        for name in ("A", "B", "C", "early", "unit", "endless_least"):
+            setattr(chosen, name, getattr(self, name)[points])
+        chosen.count, chosen.exact, chosen.fraction = chosen.B.count, None, None
+        return chosen
+
+    @functools.cached_property
+    def longest(self) -> numpy.ndarray:
+        """The longest dead time of each loop."""
+        import numpy
+
+        return numpy.maximum(self.A.longest, self.B.longest)
+
+    def values(self, which: numpy.ndarray, w: numpy.ndarray, degree: int = 0, precise: bool = False):
+        """The expansions of A and B at frequencies."""
+        if precise:
+            return tuple(each.taylor(w, degree) for each in self.exact)
+        return self.A.taylor(which, w, degree), self.B.taylor(which, w, degree)
+
+    def is_doubtful(self, which: numpy.ndarray, w: numpy.ndarray) -> bool:
+        """Whether rounding has a share in A or B at some frequencies, and more digits are at hand."""
+        if self.exact is None or not len(w):
+            return False
+        around = [enclosed(sums, which, w, 0 * w) for sums in (self.A, self.B)]
+        return any((x.noise > DOUBTFUL * x.sizes[0]).any() for x in around)
+
+    # ---- at zero
+
+    @functools.cached_property
+    def at_zero(self):
+        """The power series of A and B at zero in j w, zeros that both have removed; and bounds of the next terms."""
+        import numpy
+
+        degree = 2 * self.B.order + 6
+        exact = self.exact or (None, None)
+        (a, more_a), (b, more_b) = (origin(x, degree, e) for x, e in zip((self.A, self.B), exact, strict=True))
+        removed = numpy.argmax((a != 0) | (b != 0), axis=0)
+        more_a, more_b = 2 * more_a, 2 * more_b  # for all terms, where the frequency times each delay is below 1/2
+        if removed.any():
+            for n in set(removed[removed > 0].tolist()):
+                some = removed == n
+                a[:-n, some], b[:-n, some] = a[n:, some], b[n:, some]
+                a[-n:, some] = b[-n:, some] = 0
+        turns = 1j ** numpy.arange(degree + 1)[:, None]
+        return a * turns, b * turns, more_a, more_b, removed
+
+    def near_zero(self, which: numpy.ndarray, r: numpy.ndarray) -> tuple[Enclosure, Enclosure]:
+        """Enclosures of A and B from -r to r, without the zeros at zero that both have."""
+        import numpy
+
+        a, b, more_a, more_b, removed = self.at_zero
+        found = []
+        for series, more in ((a, more_a), (b, more_b)):
+            scale = r ** numpy.arange(len(series))[:, None]
+            terms = series[:, which] * scale
+            sizes = abs(terms)
+            noise = 8 * EPSILON * sizes.sum(axis=0)
+            powers = numpy.arange(DEGREE + 1, len(series))
+            last = more[which] * r ** (len(series) - removed[which])
+            rest = sizes[DEGREE + 1 :].sum(axis=0) + last
+            slope = powers @ sizes[DEGREE + 1 :] + 2 * len(series) * last
+            found.append(Enclosure(terms[: DEGREE + 1], noise, rest + noise, slope + DEGREE * noise))
+        return tuple(found)
+
+    @functools.cached_property
+    def start(self) -> numpy.ndarray:
+        """A frequency up to which L turns off the real axis and the size 1, if it begins there, but never returns."""
+        import numpy
+
+        a, b, more_a, more_b, removed = self.at_zero
+        count = len(a)
+        start = 0.25 / numpy.maximum(self.longest, 1.0)
+        product, sizes = _conjugate_product(a, b), _conjugate_product(abs(a), abs(b))
+        squares = _conjugate_product(b, b).real - _conjugate_product(a, a).real
+        square_sizes = _conjugate_product(abs(b), abs(b)) + _conjugate_product(abs(a), abs(a))
+        # time as it is in the sums, so that this is about the scale of their terms
+        for series, size, parity in ((product.imag, sizes, 1), (squares, square_sizes, 0)):
+            series = series.copy()
+            series[(abs(series) <= 1e-12 * size) | (numpy.arange(len(series)) % 2 != parity)[:, None]] = 0
+            if self.exact is not None:
+                self._exactly(series, size, parity)
+            lowest = numpy.argmax(series[:count] != 0, axis=0)
+            some = series[:count].any(axis=0)
+            for _ in range(400):
+                powers = start ** (numpy.arange(len(series))[:, None] - lowest)
+                terms = abs(series) * powers
+                known = numpy.take_along_axis(terms, lowest[None], axis=0)[0]
+                beyond = (size[count:] * powers[count:]).sum(axis=0)
+                tails = [more * start ** (count - removed) for more in (more_a, more_b)]
+                sums = [(abs(x) * start ** numpy.arange(count)[:, None]).sum(axis=0) for x in (a, b)]
+                if parity:
+                    tail = sums[0] * tails[1] + sums[1] * tails[0] + tails[0] * tails[1]
+                else:
+                    tail = sum(2 * size * tail + tail**2 for size, tail in zip(sums, tails, strict=True))
+                tail = tail * start ** (-1.0 * lowest)
+                high = some & (terms[:count].sum(axis=0) - known + beyond + tail > known / 2)
+                if not high.any():
+                    break
+                start = numpy.where(high, start / 2, start)
+        return start
+
+    def _exactly(self, series, size, parity):
+        """Terms that may be zero but for rounding, set to what they are."""
+
+        from loopbook.stability.enclosures import exact_coefficient_fraction as coefficient
+
+        removed = int(self.at_zero[4][0])
+        count = len(self.at_zero[0])
+        close = [n for n in range(parity, count, 2) if abs(series[n, 0]) <= 1e-8 * size[n, 0] and size[n, 0]]
+        if not close:
+            return
+        A, B = ([coefficient(each, n + removed) for n in range(max(close) + 1)] for each in self.exact)
+        pairs = [(A, B)] if parity else [(B, B), (A, A)]
+        for n in close:
+            value = Fraction(0)
+            for sign, (one, other) in zip((1, -1), pairs, strict=False):
+                for i in range(n + 1):
+                    # j**i times the conjugate of j**(n - i)
+                    turn = 1j**i * (-1j) ** (n - i)
+                    value += sign * int(turn.imag if parity else turn.real) * one[i] * other[n - i]
+            series[n, 0] = float(value)
+
+    def static_gains(self) -> numpy.ndarray:
+        """The gain with which there is a pole at zero; nan without one."""
+        import numpy
+
+        a, b, *_ = self.at_zero
+        with numpy.errstate(divide="ignore", invalid="ignore"):
+            gain = -b[0].real / a[0].real
+        return numpy.where((gain > 0) & numpy.isfinite(gain), gain, math.nan)
+
+    # ---- beyond
+
+    def beyond(self, factor: numpy.ndarray) -> numpy.ndarray:
+        """A frequency beyond which abs(L)*factor is below 1; nan where none is known."""
+        import numpy
+
+        A, B = abs(self.A.coefficients).sum(axis=0), abs(self.B.coefficients).sum(axis=0)
+        sizes = B + factor * A
+        reserve = numpy.maximum(2 * abs(self.B.coefficients[0, -1]) - B[-1], self.endless_least) - factor * A[-1]
+        sizes[-1] = numpy.where(reserve > 0, reserve, math.nan)
+        end = prevailing(sizes[None])
+        if self._squares is not None and not end[0] < 8:
+            better = _positive_beyond([b - factor[0] ** 2 * a for a, b in zip(*self._squares, strict=True)])
+            end = numpy.fmin(end, better)
+        return end
+
+    @functools.cached_property
+    def _squares(self):
+        """abs(A)**2 and abs(B)**2 of a single loop with one dead time, polynomials in the square of the frequency."""
+        if self.exact is None or len(self.exact[0].parts) != 1 or len(self.exact[1].parts) != 1:
+            return None
+        squares = []
+        for exact in self.exact:
+            ((_, part),) = exact.parts.items()
+            part = [*part, *[0] * (exact.order + 1 - len(part))]
+            scale = Fraction(exact.unit)
+            row = []
+            for n in range(exact.order + 1):
+                total = sum(
+                    (-1) ** abs(n - i) * part[i] * part[2 * n - i]
+                    for i in range(max(0, 2 * n - exact.order), min(2 * n, exact.order) + 1)
+                )
+                row.append(float(Fraction(total, exact.divisor**2) * scale ** (2 * n - 2 * exact.order)))
+            squares.append(row)
+        return squares
+
+    def beyond_limit(self) -> float:
+        """A frequency beyond which abs(L) is not above what it is at endless frequency, of one with one dead time."""
+        if self._squares is None:
+            return math.nan
+        a, b = (_exact_square(exact) for exact in self.exact)
+        limit = b[-1] / a[-1]
+        scale = Fraction(self.exact[0].unit)
+        rows = [float((y - limit * x) * scale ** (2 * n)) for n, (x, y) in enumerate(zip(a, b, strict=True))]
+        while rows and not rows[-1]:
+            rows.pop()
+        return _positive_beyond(rows) if rows else 1.0
+
+    @functools.cached_property
+    def real_beyond(self) -> float:
+        """A frequency beyond which L is never real, of a single loop; nan if it may be, zero if L is always real."""
+        import numpy
+
+        parts: dict[Fraction, list[Fraction]] = {}
+        A, B = self.exact
+        for early, p in A.parts.items():
+            for late, q in B.parts.items():
+                # p(s) q(-s) exp((late - early)*s), and the same with -s, subtracted
+                product = [0] * (len(p) + len(q) - 1)
+                for i, x in enumerate(p):
+                    for k, y in enumerate(q):
+                        product[i + k] += (-1) ** k * x * y
+                for delay, sign in ((early - late, 1), (late - early, -1)):
+                    row = parts.setdefault(delay, [])
+                    row += [0] * (len(product) - len(row))
+                    for n, c in enumerate(product):
+                        row[n] += sign * c * (1 if sign > 0 else (-1) ** n)
+        parts = {delay: row for delay, row in parts.items() if any(row)}
+        if not parts:
+            return 0.0
+        order = max(n for row in parts.values() for n, c in enumerate(row) if c)
+        lead = parts.pop(Fraction(0), [0])
+        rows = [lead, *parts.values()]
+        scale = float(A.unit)
+        largest = max(abs(c) for row in rows for c in row)
+        coefficients = numpy.zeros((len(rows), order + 1))
+        for k, row in enumerate(rows):
+            coefficients[k, : len(row)] = [
+                float(Fraction(c, largest)) * scale**n for n, c in enumerate(row[: order + 1])
+            ]
+        end = float(prevailing(coefficients[:, :, None])[0])
+        return end if coefficients[0, -1] else math.nan
+
+
+def _exact_square(exact):
+    ((_, part),) = exact.parts.items()
+    part = [*part, *[0] * (exact.order + 1 - len(part))]
+    return [
+        Fraction(
+            sum(
+                (-1) ** abs(n - i) * part[i] * part[2 * n - i]
+                for i in range(max(0, 2 * n - exact.order), min(2 * n, exact.order) + 1)
+            )
+        )
+        for n in range(exact.order + 1)
+    ]
+
+
+def _positive_beyond(rows: list[float]) -> float:
+    """The root of a number beyond which a polynomial, lowest power first, is positive; nan without one."""
+    found = math.inf
+    for n in range(len(rows) - 1, -1, -1):
+        if rows[n] < 0:
+            break
+        if rows[n] > 0:
+            below = [(abs(c), n - i) for i, c in enumerate(rows[:n]) if c < 0]
+            found = min(found, max((2 * (c * len(below) / rows[n]) ** (1 / gap) for c, gap in below), default=1e-3))
+    return math.sqrt(found) if found < math.inf else math.nan
+
+
+def _conjugate_product(x, y):
+    """The power series in w of one times the other's conjugate."""
+    import numpy
+
+    product = numpy.zeros((len(x) + len(y) - 1, x.shape[1]), dtype=x.dtype)
+    other = y.conj()
+    for i, row in enumerate(x):
+        product[i : i + len(y)] += row * other
+    return product
+
+
+def _least_at_endless(B, point):
+    import numpy
+
+    lead = B.coefficients[:, -1, point]
+    if not lead[1:].any():
+        return abs(lead[0])
+    with numpy.errstate(divide="ignore", invalid="ignore"):
+        later = lead[1:] / lead[0]
+    return abs(lead[0]) * at_endless_frequency(later, B.delays[1:, point]).least
