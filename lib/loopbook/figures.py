@@ -59,6 +59,7 @@ RESPONSE_COLOURS = ["#009E73", "#E69F00", "#56B4E9", "#555555"]
 RESPONSE_LINES = ["-", (0, (7, 2)), (0, (8, 2, 2, 2)), (0, (2, 1.5)), (0, (12, 2, 2, 2, 2, 2))]
 
 WIDTH = 6.4  # inches: a notebook column, and the text width of a printed page
+BELOW = "below"  # the name of a legend that lies under its axes
 DOTS_PER_INCH = 144  # half as many again as a browser calls an inch: sharp in print, and light in a notebook
 
 
@@ -635,6 +636,9 @@ def _logarithmic(axes):
 
 def add_legend(axes, may_grow, columns=1):
     """A legend where it hides no curve; if there is no such place, a flat one above them, for which the panel grows."""
+    if axes.get_legend() and axes.get_legend().get_gid() == BELOW:
+        legend_below(axes)
+        return
     if any(type(drawn).__name__ == "QuadMesh" for drawn in axes.collections):
         axes.legend(loc="upper right")  # the search for a free place would go through every cell of a map
         return
@@ -653,6 +657,11 @@ def add_legend(axes, may_grow, columns=1):
         axes.set_ylim(scale.inverted().transform([low, high]))
 
 
+def legend_below(axes, columns=2):
+    """A legend under the axes, where a picture has no empty corner; what is added later is explained there, too."""
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=columns).set_gid(BELOW)
+
+
 def _legend_box(axes, **options):
     legend = axes.legend(**options)
     axes.figure.draw_without_rendering()
@@ -663,7 +672,7 @@ def decades(axis, low, high):
     """Ordinary numbers on a logarithmic axis from `low` to `high`: powers of ten, or 1, 2 and 5 where it is short."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-    long = high / low > 60
+    long = high / low > 300
     axis.set_major_locator(LogLocator(subs=(1,) if long else (1, 2, 5), numticks=9 if long else 12))
     plain = low >= 0.9e-3 and high <= 1.1e4
     name = (lambda x, _: f"{x:g}") if plain or not long else (lambda x, _: f"$10^{{{round(math.log10(x))}}}$")
@@ -688,7 +697,7 @@ def free_place(axes, words, point, preferred=(), color="#000000"):
     """Write words beside a point, at the first place where they hide no curve and no other words.
 
     Arguments:
-        axes: of a figure that is otherwise finished.
+        axes: of a figure that is otherwise finished, and has been drawn, so that its axes lie where they remain.
         words: the text.
         point: what it names, in the units of the axes.
         preferred: the names of places that are tried first, as "above right".
@@ -696,8 +705,6 @@ def free_place(axes, words, point, preferred=(), color="#000000"):
     Returns:
         The text of matplotlib.
     """
-    figure = axes.figure
-    figure.draw_without_rendering()  # which decides where the axes lie
     frame = axes.get_window_extent()
     taken = [text.get_window_extent() for text in axes.texts if text.get_text()]
     if axes.get_legend():

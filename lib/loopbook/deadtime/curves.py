@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 __all__ = ["FrequencyCurve", "frequency_curve", "natural_range"]
 
 TERMS = 6  # of the Taylor polynomials
-CONE = math.sin(math.radians(60))  # two values within 60 degrees of a third differ by the smaller angle between them
+CONE = math.sin(math.radians(20))  # so far from a third two values of a side may be, seen from zero
 NARROWEST = 1e-12  # of an interval, as a share of the frequency; one as narrow and undecided holds a zero
 MOST_POINTS = 300_000
 STEP = math.radians(3)  # of the phase, from point to point
 SHARE = 0.01  # of the decades of magnitude that are shown, from point to point
-TURNS = 20.0  # radians that dead times may turn the phase within a natural range, if nothing else asks for more
+TURNS = 10.0  # radians that dead times may turn the phase within a natural range, if nothing else asks for more
 SHARP = 0.3  # the damping of a pair of roots below which its frequency is shown in any case
 
 
@@ -225,7 +225,7 @@ def _followed(sides: list[_OnAxis], grid: numpy.ndarray) -> tuple[numpy.ndarray,
             value, most = side.change(a, b)
             noise = side.noise(b)
             undecided = ~(most + noise <= CONE * abs(value))
-            small = (b - a <= NARROWEST * b) | ((abs(value) <= 3 * noise) & (most <= 100 * noise))
+            small = (b - a <= NARROWEST * b) | ((abs(value) <= 3 * noise / CONE) & (most <= 100 * noise / CONE))
             empty |= undecided & small
             open_ |= undecided & ~small
         gaps += zip(a[empty], b[empty], strict=True)

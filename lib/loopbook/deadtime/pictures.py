@@ -19,6 +19,7 @@ from loopbook.figures import (
     add_legend,
     decades,
     free_place,
+    legend_below,
     plain_words,
     response_look,
     time_plot,
@@ -45,6 +46,7 @@ REFERENCE = {"color": GREY, "linestyle": (0, (6, 3)), "linewidth": 1, "zorder": 
 GUIDE = {"color": GREY, "linestyle": (0, (2, 2)), "linewidth": 1, "zorder": 1.6}
 LOWEST = 1e-8  # of the magnitude at low frequencies: what is drawn at least
 WHOLE = 3.0  # magnitude up to which a Nyquist plot shows a whole curve
+FLATTEST = 0.6, 0.75  # the least and the greatest height of a Nyquist plot beside its width
 NEAR = 1.6  # otherwise the part of it below this
 
 
@@ -155,7 +157,7 @@ def _bode_margins(above, below, H, curve, margins, size, unit) -> None:
         below.plot([w, w], [top_of_phase, angle], **GUIDE, **still)
         below.plot([w], [angle], "o", color=OF_GAIN, markersize=5, zorder=4, **still)
         half_turns.add(round(angle))
-        words = f"{name} {_short(value)}"
+        words = f"{name} {_short(size(value))} dB" if size(10.0) == 20 else f"{name} {_short(value)}"
         labels.append((above, words, (w, one if there < one else there), OF_GAIN, ("above right", "above left")))
     if math.isfinite(margins.phase_margin) and left < margins.omega_c < right:
         w = margins.omega_c
@@ -170,6 +172,7 @@ def _bode_margins(above, below, H, curve, margins, size, unit) -> None:
         labels.append((below, words, (w, half_turn), OF_PHASE, ("below left", "above left", "below right")))
     for angle in half_turns or {-180}:
         below.axhline(angle, **REFERENCE)
+    above.figure.draw_without_rendering()
     for axes, words, point, colour, places in labels:
         free_place(axes, words, point, places, color=colour)
     if margins.omega_180 == math.inf:
@@ -228,8 +231,8 @@ def _degrees(axes: Axes, low: float, high: float) -> None:
     """Angles on the vertical axis, marked at parts or multiples of a half turn."""
     from matplotlib.ticker import FuncFormatter, MultipleLocator
 
-    steps = [15, 30, 45, 90, 180, 360, 720]
-    step = next((x for x in steps if (high - low) / x <= 6), 360 * math.ceil((high - low) / 6 / 360))
+    steps = [15, 45, 90, 180, 360, 720]
+    step = next((x for x in steps if (high - low) / x <= 8), 360 * math.ceil((high - low) / 8 / 360))
     axes.yaxis.set_major_locator(MultipleLocator(step))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:.0f}".replace("-", "\N{MINUS SIGN}")))
     axes.set_ylim(low, high)
@@ -287,7 +290,8 @@ def nyquist_plot(
     window = _window(curves.values(), margins, mirror, xlim, ylim)
     (left, right), (bottom, top) = window
     with matplotlib.rc_context(STYLE):
-        tall = (WIDTH - 0.8) * min(max((top - bottom) / (right - left), 0.5), 1) + 0.7 + (0.2 if title else 0)
+        rows = math.ceil((len(curves) + (3 if margins is None else 6)) / 2)
+        tall = (WIDTH - 0.8) * (top - bottom) / (right - left) + 0.7 + 0.22 * rows + (0.2 if title else 0)
         figure = Figure(figsize=(WIDTH, tall), layout="constrained")
         axes = figure.subplots()
         axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)
@@ -299,7 +303,8 @@ def nyquist_plot(
             x, y = curve.values.real, curve.values.imag
             axes.plot(x, y, label=label or r"$L(j\omega)$", **look)
             if mirror:
-                axes.plot(x, -y, **(look | {"linewidth": 0.7, "linestyle": "-", "zorder": 1.8}))
+                thin = {"linewidth": 0.7, "linestyle": "-", "zorder": 1.8}
+                axes.plot(x, -y, label=r"$L(-j\omega)$" if len(curves) == 1 else None, **(look | thin))
         axes.set_xlim(left, right)
         axes.set_ylim(bottom, top)
         axes.set_aspect("equal")
@@ -312,7 +317,7 @@ def nyquist_plot(
         axes.set_xlabel("real part")
         axes.set_ylabel("imaginary part")
         axes.set_title(title or "")
-        add_legend(axes, may_grow=False)
+        legend_below(axes)
     names = f"{', '.join(map(plain_words, curves))}: " if len(curves) > 1 else ""
     plot = PlanePlot(figure, _alt(title, f"{names}imaginary part against real part", margins, with_sensitivity=True))
     return plot
@@ -332,8 +337,11 @@ def _window(curves, margins, mirror, xlim, ylim):
     x, y = [-1.15, 1.15], [-1.15, 1.15]
     for curve in curves:
         values = curve.values[numpy.isfinite(curve.values)]
-        if abs(values).max() > WHOLE:
-            values = values[abs(values) <= NEAR]
+        near = abs(values) <= NEAR
+        if near.any() and abs(values[near.argmax() :]).max() <= WHOLE:  # it comes from far, as from an integrator
+            values = values[near.argmax() :]
+        elif abs(values).max() > WHOLE:
+            values = values[near]
         if len(values):
             x += [values.real.min(), values.real.max()]
             y += [values.imag.min(), values.imag.max()]
@@ -348,10 +356,10 @@ def _window(curves, margins, mirror, xlim, ylim):
     x, y = (min(x) - 0.06 * width, max(x) + 0.06 * width), (min(y) - 0.06 * height, max(y) + 0.06 * height)
     x, y = (tuple(map(float, limits)) if limits is not None else own for limits, own in ((xlim, x), (ylim, y)))
     width, height = x[1] - x[0], y[1] - y[0]
-    if xlim is None and width < 1.25 * height:  # room for the legend beside the curve
-        x = (x[0], x[0] + 1.25 * height)
-    elif ylim is None and height < 0.6 * width:
-        y = ((y[0] + y[1]) / 2 - 0.3 * width, (y[0] + y[1]) / 2 + 0.3 * width)
+    if xlim is None and width < height / FLATTEST[1]:
+        x = (sum(x) / 2 - height / FLATTEST[1] / 2, sum(x) / 2 + height / FLATTEST[1] / 2)
+    elif ylim is None and height < FLATTEST[0] * width:
+        y = (sum(y) / 2 - FLATTEST[0] * width / 2, sum(y) / 2 + FLATTEST[0] * width / 2)
     return x, y
 
 
@@ -461,7 +469,9 @@ def step_plot(
     def panel(letter, rows, role):
         if len(systems) == 1:
             return {f"${letter}(t)$": (rows[0], role)}
-        return {f"${letter}$, {label}" if controls else label: row for label, row in zip(systems, rows, strict=True)}
+        return {
+            label if letter == "y" else f"${letter}$, {label}": row for label, row in zip(systems, rows, strict=True)
+        }
 
     y = panel("y", values[: len(systems)], "measurement")
     setpoint = {"setpoint": (numpy.ones(len(times)), "setpoint")} if controls else {}
@@ -492,13 +502,16 @@ def _mark_info(axes, line, info, settling, rise, unit) -> list[str]:
     found, labels = [], []
     (bottom, top), size = axes.get_ylim(), abs(info.final_value) or abs(info.peak)
     sign = -1 if final < 0 else 1
+    if 0 < info.overshoot < math.inf:  # room for its name
+        bottom, top = (bottom, top + 0.08 * (top - bottom)) if sign > 0 else (bottom - 0.08 * (top - bottom), top)
+    axes.set_ylim(bottom, top)
     axes.axhline(final, **REFERENCE)
     axes.axhspan(final - settling * size, final + settling * size, color="#eeeeee", zorder=0.4)
     bar = {"linewidth": 2.4, "marker": "_", "markersize": 9, "markeredgewidth": 2, "zorder": 4, **still}
     if info.overshoot > 0 and info.peak_time <= end:
         found.append(f"overshoot {_short(100 * info.overshoot)} %")
         axes.plot([info.peak_time] * 2, [final, info.peak], color=OF_GAIN, **bar)
-        places = ("right", "above right", "left") if sign > 0 else ("right", "below right", "left")
+        places = ("above right", "above", "right") if sign > 0 else ("below right", "below", "right")
         labels.append((found[-1], (info.peak_time, info.peak), places, OF_GAIN))
     if math.isfinite(info.rise_time):
         start, finish = (times[numpy.argmax(sign * values >= share * abs(final))] for share in rise)
@@ -518,7 +531,7 @@ def _mark_info(axes, line, info, settling, rise, unit) -> list[str]:
         axes.plot([info.settling_time], [there], "o", color="#000000", markersize=5, zorder=4, **still)
         middle = floor + 0.45 * (final - floor)
         labels.append((found[-1], (info.settling_time, middle), ("left", "right"), "#000000"))
-    axes.set_ylim(bottom, top)
+    axes.figure.draw_without_rendering()
     for words, point, places, colour in labels:
         free_place(axes, words, point, places, color=colour)
     return found
@@ -568,13 +581,17 @@ def _times(responses, end):
 # ------------------------------------------------------------------------------------------------ python-control
 
 
-def frequency_data(H: object, omega: ArrayLike | None = None) -> control.FrequencyResponseData:
+def frequency_data(H: object, omega: ArrayLike | None = None, name: str = "H") -> control.FrequencyResponseData:
     """Return the exact frequency response as a data object of python-control, which its plots accept.
+
+    ``control.bode_plot(frequency_data(H))``, ``nyquist_plot``, ``nichols_plot`` and ``margin`` take it as a system, and
+    ``frequency_data(H) * C`` with a transfer function C of python-control is one, too.
 
     Arguments:
         H: as for `bode_plot`, one of them.
         omega: frequencies in radians for one unit of time, increasing and positive; by itself as many as a picture
             needs, around the corner frequencies.
+        name: by which python-control calls it in titles and legends.
     Raises:
         ValueError: for other frequencies, a pole at one of them, or H = 0.
 
@@ -600,7 +617,7 @@ def frequency_data(H: object, omega: ArrayLike | None = None) -> control.Frequen
         values = fraction(1j * omega)
         if not numpy.isfinite(values).all():
             raise ValueError(f"H has a pole at the frequency {omega[~numpy.isfinite(values)][0]:g}: expected others")
-    return control.FrequencyResponseData(values, omega)
+    return control.FrequencyResponseData(values, omega, dt=0, name=name)
 
 
 # ------------------------------------------------------------------------------------------------ common
@@ -641,14 +658,10 @@ def _finite(x, y):
 
 def _short(value: float) -> str:
     """Three digits, without a power of ten where none is needed."""
-    if value == 0 or not math.isfinite(value):
-        return f"{value:g}"
-    digits = 2 - math.floor(math.log10(abs(value)))
-    return (
-        f"{value:.{max(digits, 0)}f}".rstrip("0").rstrip(".")
-        if -5 < digits < 6 and "." in f"{value:.{max(digits, 0)}f}"
-        else f"{value:.3g}"
-    )
+    if not math.isfinite(value) or not 1e-4 <= abs(value) < 1e5:
+        return f"{value:.3g}"
+    rounded = float(f"{value:.3g}")
+    return f"{rounded:g}" if abs(value) < 1e3 else f"{value:.0f}"
 
 
 def _phase_words(margins, unit) -> str:
