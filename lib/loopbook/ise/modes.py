@@ -31,10 +31,12 @@ class Modes:
 
     Attributes:
         poles, residues: arrays, of each pair the upper pole.
+        mirrored: the values E(-pole) of the error that they are modes of.
     """
 
     poles: numpy.ndarray
     residues: numpy.ndarray
+    mirrored: numpy.ndarray | None = None
 
     @property
     def weights(self) -> numpy.ndarray:
@@ -214,6 +216,8 @@ def _zeros(function, a, b, at_a, at_b):
 def slow_modes(fraction: ErrorFraction, rate: float) -> Modes | None:
     """The modes of all poles of an error with real parts above -rate, as many as the argument principle counts.
 
+    The time is counted from when the error begins.
+
     None if there are too many, or they are not found: multiple ones, or some on the line itself.
     """
     import numpy
@@ -244,7 +248,7 @@ def slow_modes(fraction: ErrorFraction, rate: float) -> Modes | None:
     exact = [_exact(fraction, p * unit) for p in poles]
     if any(e is None for e in exact):
         return None
-    return Modes(numpy.array([p for p, _ in exact]), numpy.array([c for _, c in exact]))
+    return Modes(*numpy.array(exact, dtype=complex).reshape(-1, 3).T)
 
 
 def _undelayed(delays) -> int:
@@ -306,8 +310,8 @@ def _roots_right_of_line(below, delays, top: float, count: int):
     return None
 
 
-def _exact(fraction: ErrorFraction, pole: complex) -> tuple[complex, complex] | None:
-    """A pole, from one that is nearly that, and its residue, each with all digits of floating point."""
+def _exact(fraction: ErrorFraction, pole: complex) -> tuple[complex, complex, complex] | None:
+    """A pole p, from one that is nearly that, its residue and E(-p), each with all digits of floating point."""
     import mpmath
 
     def value(parts, p, k):
@@ -330,5 +334,5 @@ def _exact(fraction: ErrorFraction, pole: complex) -> tuple[complex, complex] | 
         if abs(p - mpmath.mpmathify(pole)) > 1e-5 * abs(p) or not p.real < 0:
             return None
         residue = value(fraction.N, p, 0) / value(fraction.D, p, 1) / p**fraction.pole
-        late = mpmath.mpf(fraction.earliest.numerator) / fraction.earliest.denominator
-        return complex(p), complex(residue * mpmath.exp(-late * p))
+        mirrored = value(fraction.N, -p, 0) / value(fraction.D, -p, 0) / (-p) ** fraction.pole
+        return complex(p), complex(residue), complex(mirrored)

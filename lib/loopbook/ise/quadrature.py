@@ -1,66 +1,155 @@
-"""Parseval's integral in numbers, for any dead times, with what E is for large s taken out."""
+"""Parseval's integral in numbers, for any dead times, with what E is for large s and near the axis taken out."""
+
+from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
-from loopbook.ise.error import NotApplicableError
+from loopbook.ise.error import ErrorFraction, NotApplicableError
+from loopbook.ise.modes import slow_modes
 
-ERROR = 1e-9
-
-
-def by_quadrature(fraction):
-    """Parseval's integral, after what E is for large s has been taken out and integrated by a formula."""
+if TYPE_CHECKING:
     import numpy
 
+    from loopbook.ise.modes import Modes
+
+ERROR = 1e-9
+NARROW = 1e-5  # intervals beside a pole, as a share of the speed, that are too short for floating point
+WIDER = 1e3  # how many times as far as the nearest pole the poles are taken out
+
+
+def by_quadrature(fraction: ErrorFraction) -> float:
+    """Parseval's integral, after what E is for large s has been taken out and integrated by a formula.
+
+    Poles very near to the axis are taken out, too. With m(t) the sum of their modes, the integral of e^2 is that of
+    (e - m)^2, and twice that of e m, which is the sum of residue times E(-pole), less that of m^2.
+    """
     fraction.need_retarded()
-    speed = fraction.speed
-    above, above_delays, below, below_delays = fraction.arrays(speed)
-    longest = below_delays.max()
-    size, powers = abs(below), numpy.arange(below.shape[1])
+    problem = _Problem(fraction)
+    try:
+        return problem.integral(None, 0.0)
+    except _NearPoleError as near:
+        rate = WIDER * near.radius
+    for _ in range(4):
+        modes = slow_modes(fraction, rate * problem.speed)
+        if modes is not None:
+            try:
+                return problem.integral(modes, rate)
+            except _NearPoleError:
+                rate *= 10
+        else:
+            rate /= 4
+    raise NotApplicableError("a pole lies too near to the imaginary axis")
 
-    def D(w):
-        return _sum(below, below_delays, w)
 
-    expansion, rest = _for_large_s(above, above_delays, below, below_delays, fraction.pole)
+class _NearPoleError(Exception):
+    """A pole is so near to the axis that it has to be taken out."""
 
-    def integrand(w):
-        asymptotic = sum(c * (1j * w + 1) ** -k * numpy.exp(-1j * w * delay) for (delay, k), c in expansion.items())
-        E = _sum(above, above_delays, w) / D(w) / (1j * w) ** fraction.pole
-        return abs(E) ** 2 - abs(asymptotic) ** 2
+    def __init__(self, radius: float):
+        super().__init__(radius)
+        self.radius = radius
 
-    def near(center, radius):  # whether a pole may lie within two radii
-        far = center + 2 * radius
-        growth = numpy.exp(2 * radius[:, None] * below_delays)
-        terms = size[:, 1:] * powers[1:]
+
+class _Problem:
+    """E in a unit of time in which the speed is 1, and its integral."""
+
+    def __init__(self, fraction: ErrorFraction):
+        import numpy
+
+        self.speed, self.pole = fraction.speed, fraction.pole
+        self.above, self.above_delays, self.below, self.below_delays = fraction.arrays(self.speed)
+        self.powers = numpy.arange(self.below.shape[1])
+        self.levels = _for_large_s(self.above, self.above_delays, self.below, self.below_delays, fraction.pole)
+
+    def E(self, w: numpy.ndarray) -> numpy.ndarray:
+        below = _sum(self.below, self.below_delays, w) * (1j * w) ** self.pole
+        return _sum(self.above, self.above_delays, w) / below
+
+    def near(self, center: numpy.ndarray, radius: numpy.ndarray) -> numpy.ndarray:
+        """Whether a pole may lie within two radii."""
+        import numpy
+
+        far, size = center + 2 * radius, abs(self.below)
+        growth = numpy.exp(2 * radius[:, None] * self.below_delays)
+        terms = size[:, 1:] * self.powers[1:]
         slope = numpy.stack([numpy.polyval(row[::-1], far) for row in terms], axis=1)
-        slope = slope + below_delays * numpy.stack([numpy.polyval(row[::-1], far) for row in size], axis=1)
-        return (abs(D(center)) <= 2 * radius * (growth * slope).sum(axis=1)) | (2 * radius > numpy.hypot(center, 1))
+        slope = slope + self.below_delays * numpy.stack([numpy.polyval(row[::-1], far) for row in size], axis=1)
+        reach = 2 * radius * (growth * slope).sum(axis=1)
+        return (abs(_sum(self.below, self.below_delays, center)) <= reach) | (2 * radius > numpy.hypot(center, 1))
 
-    nodes, weights = numpy.polynomial.legendre.leggauss(16)
-    fewer, their_weights = numpy.polynomial.legendre.leggauss(12)
-    # of a unit of time in which the speed is 1; the integrand turns with twice the longest dead time
-    longest = max(longest, above_delays.max())
-    total, error, begin, end = _square_of_expansion(expansion), 0.0, 0.0, 8.0
-    for _ in range(12):
-        ends = numpy.linspace(begin, end, 1 + math.ceil((end - begin) * max(longest, 1)))
-        a, b = ends[:-1], ends[1:]
-        while len(a):
+    def integral(self, modes: Modes | None, rate: float) -> float:
+        """The integral, with the modes taken out; they are all to the right of -rate."""
+        import numpy
+
+        poles = residues = numpy.zeros(0, dtype=complex)
+        total = 0.0
+        if modes is not None:
+            pairs = modes.poles.imag > 0
+            poles, residues, mirrored = (
+                numpy.concatenate([each, each[pairs].conj()])
+                for each in (modes.poles / self.speed, modes.residues / self.speed, modes.mirrored)
+            )
+            total = float((2 * residues * mirrored).sum().real)
+            total += float((residues[:, None] * residues / (poles[:, None] + poles)).sum().real)
+        levels = [dict(level) for level in self.levels]
+        for k, level in enumerate(levels[1:]):
+            level[0.0] = level.get(0.0, 0.0) - float((residues * (poles + 1) ** k).sum().real)
+        expansion = {(delay, k): c for k, level in enumerate(levels[:-1]) for delay, c in level.items() if c}
+        sizes = [sum(map(abs, level.values())) for level in levels]
+        total += _square_of_expansion(expansion)
+
+        def integrand(w):
+            asymptotic = sum(c * (1j * w + 1) ** -k * numpy.exp(-1j * w * delay) for (delay, k), c in expansion.items())
+            E = self.E(w) - sum(c / (1j * w - p) for c, p in zip(residues, poles, strict=True))
+            return abs(E) ** 2 - abs(asymptotic) ** 2
+
+        nodes, weights = numpy.polynomial.legendre.leggauss(16)
+        fewer, their_weights = numpy.polynomial.legendre.leggauss(12)
+        # the integrand turns with twice the longest dead time
+        longest = max(self.below_delays.max(), self.above_delays.max())
+        error, begin, end = 0.0, 0.0, 8.0
+        narrowest = math.inf
+        for _ in range(12):
+            ends = numpy.linspace(begin, end, 1 + math.ceil((end - begin) * max(longest, 1)))
+            a, b = ends[:-1], ends[1:]
+            while len(a):
+                center, radius = (a + b) / 2, (b - a) / 2
+                split = self.near(center, radius) & (2 * radius > rate)
+                c, r = center[~split, None], radius[~split, None]
+                one, other = (integrand(c + r * x) @ w * r[:, 0] for x, w in ((nodes, weights), (fewer, their_weights)))
+                total += float(one.sum()) / math.pi
+                error += float(abs(one - other).sum()) / math.pi
+                a, b = numpy.concatenate([a[split], center[split]]), numpy.concatenate([center[split], b[split]])
+                if len(a):
+                    narrowest = min(narrowest, float(radius[split].min()) / 2)
+                    if modes is None and narrowest < NARROW:
+                        # as far as the intervals were to be halved, to see how near the pole is
+                        raise _NearPoleError(self._distance(center[split], radius[split]))
+            if not math.isfinite(total) or error > ERROR * abs(total) / 20:
+                raise _NearPoleError(max(narrowest if narrowest < math.inf else 1e-3, 1e-16))
+            leading = sum(size / end**k for k, size in enumerate(sizes[:-1]) if k)
+            left = 4 * leading * sizes[-1] * end**-TERMS / TERMS / math.pi
+            if error + left <= ERROR * abs(total) / 10:
+                return float(total) * self.speed
+            begin, end = end, 2 * end
+        raise NotApplicableError(f"an error of {(error + left) / abs(total):.0e} was left")
+
+    def _distance(self, center: numpy.ndarray, radius: numpy.ndarray) -> float:
+        """About how near the nearest pole is."""
+        import numpy
+
+        for _ in range(60):
+            a, b = center - radius, center + radius
+            a, b = numpy.concatenate([a, center]), numpy.concatenate([center, b])
             center, radius = (a + b) / 2, (b - a) / 2
-            split = near(center, radius)
-            if split.any() and radius[split].min() < 1e-13 * end:
-                raise NotApplicableError("a pole lies too near to the imaginary axis")
-            c, r = center[~split, None], radius[~split, None]
-            one, other = (integrand(c + r * x) @ w * r[:, 0] for x, w in ((nodes, weights), (fewer, their_weights)))
-            total += one.sum() / math.pi
-            error += abs(one - other).sum() / math.pi
-            a, b = numpy.concatenate([a[split], center[split]]), numpy.concatenate([center[split], b[split]])
-        left = rest(end) / math.pi
-        if error + left <= ERROR * abs(total) / 10:
-            return float(total) * speed
-        begin, end = end, 2 * end
-    raise NotApplicableError(f"an error of {(error + left) / abs(total):.0e} was left")
+            still = self.near(center, radius)
+            if not still.any():
+                break
+            center, radius = center[still], radius[still]
+        return float(radius.min())
 
 
-def _sum(coefficients, delays, w):
+def _sum(coefficients: numpy.ndarray, delays: numpy.ndarray, w: numpy.ndarray) -> numpy.ndarray:
     """The value of a sum of polynomials with dead times at s = j w."""
     import numpy
 
@@ -74,7 +163,7 @@ TERMS = 3  # of the expansion for large s
 
 
 def _for_large_s(above, above_delays, below, below_delays, pole):
-    """E for large s as the sum of c exp(-delay*s)/(s + 1)^k, {(delay, k): c}, and a bound of what that leaves out."""
+    """E for large s as the sum of c exp(-delay*s)/(s + 1)^k: for k = 0, 1 ... {delay: c}, the last one for the rest."""
     import numpy
 
     def in_powers(row, order):  # the polynomial divided by (s + 1)^order, in powers of u = 1/(s + 1)
@@ -102,13 +191,7 @@ def _for_large_s(above, above_delays, below, below_delays, pole):
                     later = round(delay + earlier, 12)
                     level[later] = level.get(later, 0.0) - row[q] * c
         levels.append({delay: c for delay, c in level.items() if c})
-    sizes = [sum(map(abs, level.values())) for level in levels]
-
-    def rest(w):
-        asymptotic = sum(size / w**k for k, size in enumerate(sizes[:-1]) if k)
-        return 4 * asymptotic * sizes[-1] * w**-TERMS / TERMS
-
-    return {(delay, k): c for k, level in enumerate(levels[:-1]) for delay, c in level.items()}, rest
+    return levels
 
 
 def _square_of_expansion(expansion):

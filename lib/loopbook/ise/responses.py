@@ -220,6 +220,7 @@ def _beyond(
     modes = slow_modes(fraction, rate)
     if modes is None:
         return None, "the modes that last longer were not found"
+    modes = modes.later(-float(fraction.earliest))
     late = response.edges[:-1] >= 0.9 * response.edges[-1]
     late[-1] = True
     times = response.quadrature()[0][late]
