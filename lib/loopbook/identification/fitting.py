@@ -120,7 +120,8 @@ class Fit:
         from scipy.special import stdtrit
 
         reach = self.errors[name] * float(stdtrit(self._residuals.freedom, 0.975))
-        return not max(abs(abs(end - self.parameters[name]) - reach) for end in ends) <= AGREE * reach
+        off = max(abs(abs(end - self.parameters[name]) - reach) for end in ends)
+        return not (math.isfinite(reach) and off <= AGREE * reach)
 
 
 def fit(
