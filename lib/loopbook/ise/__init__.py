@@ -8,11 +8,12 @@ can always be integrated numerically. All of this holds for stable loops only, a
 
 from loopbook.ise.closed_form import pi_first_order, symbolic_pi_first_order
 from loopbook.ise.error import UnstableLoopError
+from loopbook.ise.family import ise_family
 from loopbook.ise.loops import integral_of_square, ise
 from loopbook.ise.residue_method import ResidueMethod, residue_method
 from loopbook.ise.responses import Criteria, criteria
 
 __all__ = [
-    "Criteria", "ResidueMethod", "UnstableLoopError", "criteria", "integral_of_square", "ise", "pi_first_order",
-    "residue_method", "symbolic_pi_first_order",
+    "Criteria", "ResidueMethod", "UnstableLoopError", "criteria", "integral_of_square", "ise", "ise_family",
+    "pi_first_order", "residue_method", "symbolic_pi_first_order",
 ]  # fmt: skip

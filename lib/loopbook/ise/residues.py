@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from loopbook.ise.error import ErrorFraction, NotApplicableError
-from loopbook.ise.one_delay import OneDelay, size, squared, value
+from loopbook.ise.one_delay import ROUNDING, OneDelay, size, squared, value
 from loopbook.ise.residue_method import both_residues
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def _in_floating_point(one_delay: OneDelay, *parts: Sequence[int]) -> float | No
             # what polynomials lose where their terms cancel is seen from the sizes of the terms
             terms = size(A, abs(p)) + size(C, abs(p)) * abs(z)
             near = terms * (1 + abs(p) * delay) / abs(below)
-            sensitivity = radius / abs(x) / 4e-16
+            sensitivity = radius / abs(x) / (4 * len(zeros) ** 2 * ROUNDING)
             lost += 4e-16 * abs(share) * ((1 + sensitivity) ** 2 + near * (1 + sensitivity))
     except (OverflowError, ZeroDivisionError):
         return None
