@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 __all__ = ["DEGREE", "Quasipolynomials"]
 
 DEGREE = 4  # of the expansions in the frequency
+FEW = 20_000  # values, up to which they are computed in one piece
 
 
 class Quasipolynomials:
@@ -111,10 +112,7 @@ class Quasipolynomials:
 
     def derivative(self) -> Quasipolynomials:
         """The derivative with respect to s."""
-        import numpy
-
-        lowered = numpy.roll(numpy.arange(self.order + 1)[:, None] * self.coefficients, -1, axis=1)
-        return Quasipolynomials(lowered - self.delays[:, None] * self.coefficients, self.delays)
+        return Quasipolynomials(_derivative(self.coefficients) - self.delays[:, None] * self.coefficients, self.delays)
 
     def slower(self, unit: numpy.ndarray, power: int | None = None) -> Quasipolynomials:
         """The sums divided by unit**power, with time in a unit in which the frequency `unit` is 1."""
@@ -133,15 +131,21 @@ class Quasipolynomials:
         """The coefficients of the powers 0, 1 ... of h in the sums at s = j (w + h): array [power, frequency]."""
         import numpy
 
-        matrices = self._expansion
         if self.count == 1:
             powers, total = _powers(w, self.order + 1), 0
             for matrix, delay in zip(self._turned, self.delays[:, 0].tolist(), strict=True):
                 value = matrix[: degree + 1] @ powers
                 total = total + (value * numpy.exp(-1j * (w * delay)) if delay else value)
             return total
+        if len(w) * (degree + 1) * (self.order + 1) <= FEW:
+            powers = 1j ** _degrees(self.order)[:, None] * _powers(w, self.order + 1)
+            total = 0
+            for matrix, delay in zip(self._expansion, self.delays, strict=True):
+                value = (matrix[: degree + 1, :, which] * powers).sum(axis=1)
+                total = total + (value * numpy.exp(-1j * (w * delay[which])) if delay.any() else value)
+            return total * 1j ** _degrees(degree)[:, None]
         total, square = numpy.zeros((degree + 1, len(w)), dtype=complex), -w * w
-        for matrix, delay in zip(matrices, self.delays, strict=True):
+        for matrix, delay in zip(self._expansion, self.delays, strict=True):
             value = numpy.empty((degree + 1, len(w)), dtype=complex)
             for k in range(degree + 1):
                 # in powers of w alone, which is quicker: the even powers are real, the odd ones imaginary
@@ -160,6 +164,8 @@ class Quasipolynomials:
         sizes = self._sizes[: degree + 2]
         if self.count == 1:
             return sizes[..., 0] @ _powers(w, self.order + 1)
+        if len(w) * (degree + 2) * (self.order + 1) <= FEW:
+            return (sizes[..., which] * _powers(w, self.order + 1)).sum(axis=1)
         return numpy.stack([_polynomial(each, which, w) + 0 * w for each in sizes])
 
     @functools.cached_property
@@ -167,7 +173,7 @@ class Quasipolynomials:
         """Array [part, k, power, point]: polynomials that, times exp(-delay*s), are the derivatives over k!."""
         import numpy
 
-        return numpy.stack(self._expanded(self.coefficients, -self.delays, DEGREE), axis=1)
+        return numpy.array(self._expanded(self.coefficients, -self.delays, DEGREE)).swapaxes(0, 1)
 
     @functools.cached_property
     def _turned(self):
@@ -182,35 +188,42 @@ class Quasipolynomials:
         import numpy
 
         expanded = self._expanded(abs(self.coefficients), abs(self.delays), DEGREE + 1)
-        return numpy.stack([each.sum(axis=0) for each in expanded])
+        return numpy.array([each.sum(axis=0) for each in expanded])
 
     def _expanded(self, coefficients, rates, degree):
-        import numpy
+        derivatives = [coefficients]
+        for i in range(1, min(degree, self.order) + 1):
+            derivatives.append(_derivative(derivatives[-1]) / i)
+        if not rates.any():
+            nothing = 0 * coefficients
+            return [*derivatives, *[nothing] * (degree + 1 - len(derivatives))]
+        late = [(rates**k / math.factorial(k))[:, None] for k in range(degree + 1)]
+        expanded = []
+        for k in range(degree + 1):
+            total = derivatives[0] * late[k]
+            for i in range(1, min(k, len(derivatives) - 1) + 1):
+                total = total + derivatives[i] * late[k - i]
+            expanded.append(total)
+        return expanded
 
-        count = self.order + 1
-        derivatives = []
-        for i in range(min(degree, self.order) + 1):
-            part = numpy.zeros_like(coefficients)
-            factors = numpy.array([math.comb(n + i, i) for n in range(count - i)], dtype=float)
-            part[:, : count - i] = factors[:, None] * coefficients[:, i:]
-            derivatives.append(part)
-        return [
-            sum(
-                part * (rates ** (k - i) / math.factorial(k - i))[:, None] if k > i else part
-                for i, part in enumerate(derivatives[: k + 1])
-            )
-            for k in range(degree + 1)
-        ]
+
+@functools.cache
+def _degrees(last):
+    import numpy
+
+    return numpy.arange(last + 1)
+
+
+def _derivative(coefficients):
+    import numpy
+
+    lower = numpy.zeros_like(coefficients)
+    lower[:, :-1] = coefficients[:, 1:] * _degrees(coefficients.shape[1] - 1)[1:, None]
+    return lower
 
 
 def _powers(w, count):
-    import numpy
-
-    powers = numpy.empty((count, len(w)))
-    powers[0] = 1
-    for n in range(1, count):
-        numpy.multiply(powers[n - 1], w, out=powers[n])
-    return powers
+    return w ** _degrees(count - 1)[:, None] if count > 1 else (0 * w + 1)[None]
 
 
 def _polynomial(rows, which, x):

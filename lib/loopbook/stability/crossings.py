@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from loopbook.stability.loops import Loops
 
 LARGEST_GAIN = 1e12  # times 1, or times that which brings abs(L) to 1 about the fastest pole: larger ones are infinite
-DOUBTFUL = 1e-12  # the share of rounding in A or B above which crossings are computed with more digits
 
 
 class View:
@@ -198,8 +197,7 @@ class Real(Question):
         middle = product.terms[0]
         distance = numpy.where(middle.real < 0, abs(middle.imag), abs(middle))
         away = small | large | (distance > product.spread)
-        imag = product.imag
-        monotone = ~away & imag.is_monotone
+        monotone = ~away & product.imag.is_monotone
         candidates = numpy.flatnonzero(monotone)
         if len(candidates):
             (A_a, B_a), (A_b, B_b) = view.ends
@@ -207,7 +205,7 @@ class Real(Question):
             new = candidates[signs[0] != signs[1]]
             new = new[~self.is_known(which[new], view.a[new], view.b[new])]
             if len(new):
-                points, w = which[new], solved(self.loops, which[new], view.a[new], view.b[new], _imaginary)
+                points, w = which[new], solved(self.loops, which[new], view.a[new], view.b[new], imaginary)
                 gain = gains_at(self.loops, points, w)
                 seen = (gain > 0) & numpy.isfinite(gain)
                 self.add(points[seen], gain[seen], w[seen])
@@ -264,56 +262,61 @@ class Positive(Question):
 # ---- zeros
 
 
-def _imaginary(A, B):
-    """Im A conj(B) and its derivative."""
-    return (A[0] * B[0].conj()).imag, (A[1] * B[0].conj() + A[0] * B[1].conj()).imag
+def imaginary(A, B):
+    """Im A conj(B) and its first two derivatives."""
+    A0, A1, A2 = A
+    B0, B1, B2 = (x.conj() for x in B)
+    return (A0 * B0).imag, (A1 * B0 + A0 * B1).imag, 2 * (A2 * B0 + A1 * B1 + A0 * B2).imag
 
 
-def _difference(A, B):
-    """abs(B)**2 - abs(A)**2 and its derivative."""
-    value = (abs(B[0]) - abs(A[0])) * (abs(B[0]) + abs(A[0]))
-    return value, 2 * (B[1] * B[0].conj() - A[1] * A[0].conj()).real
+def difference(A, B):
+    """abs(B)**2 - abs(A)**2 and its first two derivatives."""
+    (A0, A1, A2), (B0, B1, B2) = A, B
+    size_A, size_B = abs(A0), abs(B0)
+    first = 2 * (B1 * B0.conj() - A1 * A0.conj()).real
+    second = 4 * (B2 * B0.conj() - A2 * A0.conj()).real + 2 * (abs(B1) ** 2 - abs(A1) ** 2)
+    return (size_B - size_A) * (size_B + size_A), first, second
 
 
 def solved(loops: Loops, which, a, b, function) -> numpy.ndarray:
-    """The zeros between a and b of monotone functions: Newton's steps, halves where they lead out.
-
-    With more digits where rounding has a share in A or B.
-    """
-    w = _newton(loops, which, a, b, function, False)
+    """The zeros between a and b of monotone functions, with more digits where rounding has a share in A or B."""
+    w = _solved(loops, which, a, b, function, False)
     if loops.exact is not None and len(w):
         import numpy
 
-        doubtful = numpy.zeros(len(w), dtype=bool)
-        for sums in (loops.A, loops.B):
-            around = enclosed(sums, which, w, 0 * w)
-            doubtful |= around.noise > DOUBTFUL * around.sizes[0]
-        if (again := numpy.flatnonzero(doubtful)).size:
-            w[again] = _newton(loops, which[again], a[again], b[again], function, True, w[again])
+        if (again := numpy.flatnonzero(loops.doubtful(which, w))).size:
+            w[again] = _solved(loops, which[again], a[again], b[again], function, True, w[again])
     return w
 
 
-def _newton(loops, which, a, b, function, precise, start=None):
+def _solved(loops, which, a, b, function, precise, start=None):
+    """Halley's steps, and halves where they lead out."""
     import numpy
 
     a, b, moving = a.copy(), b.copy(), numpy.arange(len(which))
-    w = (a + b) / 2 if start is None else start.copy()
-    at_a, at_b = (function(*loops.values(which, x, 1, precise))[0] for x in (a, b))
+    enough = 3e-6 * (b - a)
+    at_a, at_b = (function(*loops.values(which, x, 2, precise))[0] for x in (a, b))
     rising = at_b > at_a
+    w = (
+        a + (b - a) * numpy.clip(at_a / numpy.where(at_a == at_b, 1, at_a - at_b), 0.02, 0.98)
+        if start is None
+        else start
+    )
     for _ in range(100):
         if not len(moving):
             break
-        value, slope = function(*loops.values(which[moving], w[moving], 1, precise))
+        value, slope, bend = function(*loops.values(which[moving], w[moving], 2, precise))
         before = (value < 0) == rising[moving]
         a[moving] = numpy.where(before, w[moving], a[moving])
         b[moving] = numpy.where(before, b[moving], w[moving])
         with numpy.errstate(divide="ignore", invalid="ignore"):
-            better = w[moving] - value / slope
+            better = w[moving] - 2 * value * slope / (2 * slope * slope - value * bend)
         outside = ~((better >= a[moving]) & (better <= b[moving]))
         better[outside] = ((a + b) / 2)[moving][outside]
         change = abs(better - w[moving])
         w[moving] = better
-        moving = moving[(change > 4e-16 * better) & (value != 0)]
+        # the next change would be about the cube of this one
+        moving = moving[(change > numpy.maximum(enough[moving] * ~outside, 4e-16 * better)) & (value != 0)]
     return w
 
 
@@ -321,12 +324,7 @@ def gains_at(loops: Loops, which, w) -> numpy.ndarray:
     """The gains -B/A where L is real."""
     import numpy
 
-    A, B = (x[0] for x in loops.values(which, w))
-    if loops.exact is not None and len(w):
-        noise = [enclosed(sums, which, w, 0 * w) for sums in (loops.A, loops.B)]
-        doubtful = numpy.any([x.noise > DOUBTFUL * x.sizes[0] for x in noise], axis=0)
-        if (again := numpy.flatnonzero(doubtful)).size:
-            A[again], B[again] = (x[0] for x in loops.values(which[again], w[again], precise=True))
+    A, B = loops.precise_values(which, w)
     with numpy.errstate(divide="ignore", invalid="ignore"):
         return -(B / A).real
 

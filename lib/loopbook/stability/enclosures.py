@@ -325,7 +325,7 @@ def origin(sums: Quasipolynomials, degree: int, exact: Exact | None = None):
     if exact is None:
         series[small] = 0
     else:
-        for n in numpy.flatnonzero((abs(series) <= 1e-9 * bounds)[:, 0]):
+        for n in numpy.flatnonzero(((abs(series) <= 1e-9 * bounds) & (bounds > 0))[:, 0]):
             series[n, 0] = exact_coefficient(exact, int(n))
     return series[:-1], bounds[-1]
 

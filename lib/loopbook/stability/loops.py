@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from loopbook.quasipolynomials.arrays import DEGREE, Quasipolynomials
 from loopbook.stability.difference import at_endless_frequency, power_of_two, prevailing
-from loopbook.stability.enclosures import EPSILON, Enclosure, Exact, enclosed, origin
+from loopbook.stability.enclosures import EPSILON, Enclosure, Exact, enclosed, exact_coefficient_fraction, origin
 
 if TYPE_CHECKING:
     import numpy
@@ -40,7 +40,6 @@ class Loops:
         order = B.order
         self.A, self.B = A.slower(self.unit), B.slower(self.unit)
         self.early = self.A.delayed(-self.A.delays.min(axis=0))
-        self.C = self.B + self.A
         self.count, self.exact, self.fraction = B.count, None, fraction
         if fraction is not None:
             divisor, scale = fraction.denominator[Fraction(0)][-1], float(self.unit[0])
@@ -50,7 +49,7 @@ class Loops:
 
     def __getitem__(self, points: object) -> Loops:
         chosen = object.__new__(Loops)
-        for name in ("A", "B", "C", "early", "unit", "endless_least"):
+        for name in ("A", "B", "early", "unit", "endless_least"):
             setattr(chosen, name, getattr(self, name)[points])
         chosen.count, chosen.exact, chosen.fraction = chosen.B.count, None, None
         return chosen
@@ -68,12 +67,23 @@ class Loops:
             return tuple(each.taylor(w, degree) for each in self.exact)
         return self.A.taylor(which, w, degree), self.B.taylor(which, w, degree)
 
-    def is_doubtful(self, which: numpy.ndarray, w: numpy.ndarray) -> bool:
-        """Whether rounding has a share in A or B at some frequencies, and more digits are at hand."""
-        if self.exact is None or not len(w):
-            return False
-        around = [enclosed(sums, which, w, 0 * w) for sums in (self.A, self.B)]
-        return any((x.noise > DOUBTFUL * x.sizes[0]).any() for x in around)
+    def doubtful(self, which: numpy.ndarray, w: numpy.ndarray) -> numpy.ndarray:
+        """Where rounding has a share in A or B."""
+        doubt = False
+        for sums in (self.A, self.B):
+            noise = EPSILON * (2 * sums.order + 8 + 2 * w * sums.longest[which]) * sums.sizes(which, w, -1)[0]
+            doubt = doubt | (noise > DOUBTFUL * abs(sums.value(which, w)))
+        return doubt
+
+    def precise_values(self, which: numpy.ndarray, w: numpy.ndarray) -> list[numpy.ndarray]:
+        """A and B at frequencies, with more digits where rounding has a share in them."""
+        import numpy
+
+        values = [x[0] for x in self.values(which, w)]
+        if self.exact is not None and len(w) and (again := numpy.flatnonzero(self.doubtful(which, w))).size:
+            for mine, x in zip(values, self.values(which[again], w[again], precise=True), strict=True):
+                mine[again] = x[0]
+        return values
 
     # ---- at zero
 
@@ -151,25 +161,26 @@ class Loops:
         return start
 
     def _exactly(self, series, size, parity):
-        """Terms that may be zero but for rounding, set to what they are."""
-
-        from loopbook.stability.enclosures import exact_coefficient_fraction as coefficient
-
+        """The lowest term that is not zero, which rounding may hide, as it is."""
         removed = int(self.at_zero[4][0])
-        count = len(self.at_zero[0])
-        close = [n for n in range(parity, count, 2) if abs(series[n, 0]) <= 1e-8 * size[n, 0] and size[n, 0]]
-        if not close:
-            return
-        A, B = ([coefficient(each, n + removed) for n in range(max(close) + 1)] for each in self.exact)
-        pairs = [(A, B)] if parity else [(B, B), (A, A)]
-        for n in close:
+        rows = [[], []]
+        for n in range(parity, len(self.at_zero[0]), 2):
+            if abs(series[n, 0]) > 1e-8 * size[n, 0]:
+                return
+            if not size[n, 0]:
+                continue
+            for row, each in zip(rows, self.exact, strict=True):
+                row += [exact_coefficient_fraction(each, k + removed) for k in range(len(row), n + 1)]
+            A, B = rows
             value = Fraction(0)
-            for sign, (one, other) in zip((1, -1), pairs, strict=False):
+            for sign, one, other in ((1, A, B),) if parity else ((1, B, B), (-1, A, A)):
                 for i in range(n + 1):
                     # j**i times the conjugate of j**(n - i)
                     turn = 1j**i * (-1j) ** (n - i)
                     value += sign * int(turn.imag if parity else turn.real) * one[i] * other[n - i]
             series[n, 0] = float(value)
+            if value:
+                return
 
     def static_gains(self) -> numpy.ndarray:
         """The gain with which there is a pole at zero; nan without one."""

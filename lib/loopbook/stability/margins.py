@@ -16,7 +16,7 @@ from loopbook.stability.crossings import (
     Positive,
     Real,
     SizeOne,
-    _difference,
+    difference,
     asked,
     below,
     phase_left,
@@ -26,7 +26,8 @@ from loopbook.stability.crossings import (
 from loopbook.stability.endless import Far
 from loopbook.stability.loops import ENOUGH, Loops
 
-MOST_TURNS = 4000.0  # of the phase by dead time, in radians, in which a gain margin is looked for
+MOST_TURNS = 4000.0  # of the phase by dead time, in radians, after which it is given up that has no end in sight
+FURTHEST = 1e15  # times the frequency of the fastest pole, beyond which nothing is looked for
 
 
 class Margins(NamedTuple):
@@ -146,13 +147,13 @@ class Survey:
             self.peak.see(one, zero, numpy.zeros(1))
             self.peak.see(one, numpy.array([far.sensitivity]), numpy.full(1, math.inf))
 
-    def _end(self, question) -> float:
+    def _end(self, question, done: float) -> float:
         """A frequency beyond which a question is decided; nan where none is known yet."""
         far = self.far
         if question is self.real:
             low, high = float(question.lowest[0]), float(question.highest[0])
             end = far.no_crossing_beyond(low, high)
-            if math.isnan(end) or high == question.endless[0]:
+            if not end <= done and (math.isnan(end) or high == question.endless[0]):
                 end = min(end if end == end else math.inf, self.loops.real_beyond)
             return end
         if question is self.size:
@@ -166,21 +167,28 @@ class Survey:
         if self.size and self.far.size == 0:
             raise ValueError("whether the loop's gain at ever higher frequencies stays away from 1 is not decided")
         done = below(loops, questions)
+        longest = float(loops.longest[0])
+        end = self._first_window(float(done[0]))
+        left = questions
         while True:
-            ends = [self._end(question) for question in questions]
-            ends = [math.inf if math.isnan(end) else end for end in ends]
-            left = [question for question, end in zip(questions, ends, strict=True) if end > done[0]]
+            asked(loops, left, *steps(done, numpy.array([end])))
+            done = numpy.array([end])
+            ends = {id(question): self._end(question, end) for question in questions}
+            left = [question for question in questions if not ends[id(question)] <= end]
             if not left:
                 return
-            longest = float(loops.longest[0])
-            if done[0] * longest > MOST_TURNS and math.inf in ends:
-                raise ValueError(f"{left[0].name} is not decided beyond the frequency {done[0] * loops.unit[0]:.6g}")
-            window = max(4 * float(done[0]), 2.0 if done[0] < 1 else 0.0)
-            if longest and window > 1:
-                window = max(window, float(done[0]) + 20 / longest)
-            end = numpy.array([min(max(ends), window)])
-            asked(loops, left, *steps(done, end))
-            done = end
+            furthest = max(math.inf if math.isnan(each) else each for each in ends.values())
+            if furthest == math.inf and (end * longest > MOST_TURNS or end > FURTHEST) or end > 1e3 * FURTHEST:
+                raise ValueError(f"{left[0].name} is not decided beyond the frequency {end * loops.unit[0]:.6g}")
+            window = max(4 * end, end + 20 / longest if longest else 0)
+            end = min(furthest, window)
+
+    def _first_window(self, start):
+        """An end of the first window."""
+        import numpy
+
+        end = float(self.loops.beyond(numpy.full(1, 2.0))[0])
+        return max(end if end < 64 else 4.0, 4 * start)
 
     # ---- what was found
 
@@ -210,8 +218,8 @@ class Survey:
         if not self.size.brackets:
             return numpy.zeros(0), numpy.zeros(0)
         which, a, b = (numpy.concatenate(x) for x in zip(*self.size.brackets, strict=True))
-        w = solved(loops, which, a, b, _difference)
-        A, B = (x[0] for x in loops.values(which, w, precise=loops.is_doubtful(which, w)))
+        w = solved(loops, which, a, b, difference)
+        A, B = loops.precise_values(which, w)
         return w * float(loops.unit[0]), phase_left(A, B)
 
     def phase_margins(self):
