@@ -258,7 +258,7 @@ def nyquist_plot(
 
     Arguments:
         L: as for `bode_plot`.
-        omega: as for `bode_plot`; by itself the curve begins far below all corners.
+        omega: as for `bode_plot`; by itself it reaches far beyond the corners.
         margins: those of the closed loop, from `stability.margins`: the gain margin is marked on the negative real
             axis, the phase margin as an arc, and Ms by the circle around -1 that the curve touches.
         title: stands above the plot.
@@ -284,9 +284,11 @@ def nyquist_plot(
     fractions = _fractions(L)
     _of_one(margins, fractions)
     low, high = _range(fractions, omega, margins)
+    if omega is None:  # no axis shows the frequency, and the curve is to end near zero
+        low, high = low / 100, 3 * high
     curves = {}
     for label, fraction in fractions.items():
-        curves[label] = frequency_curve(fraction, low if omega is not None else low / 100, high, _coarse)
+        curves[label] = frequency_curve(fraction, low, high, _coarse)
     window = _window(curves.values(), margins, mirror, xlim, ylim)
     (left, right), (bottom, top) = window
     with matplotlib.rc_context(STYLE):
@@ -364,7 +366,7 @@ def _window(curves, margins, mirror, xlim, ylim):
 
 
 def _arrow(axes, curve, colour) -> None:
-    """An arrow towards higher frequencies, in the middle of the longest part that is seen."""
+    """An arrow towards higher frequencies, on the longest part that is seen."""
     import numpy
 
     values = curve.values
@@ -377,7 +379,7 @@ def _arrow(axes, curve, colour) -> None:
         return
     a, b = max(ends, key=lambda run: lengths[run[0] : run[1]].sum())
     way = numpy.cumsum(lengths[a:b])
-    k = a + int(numpy.searchsorted(way, 0.4 * way[-1]))
+    k = a + int(numpy.searchsorted(way, 0.25 * way[-1]))
     start, tip = values[k], values[k + 1]
     if start == tip:
         return
