@@ -24,6 +24,10 @@ TIMES = np.linspace(0, 30, 61)
 LAGS = st.floats(0.2, 5).map(lambda x: sympy.Rational(f"{x:.3g}"))
 
 
+DAMPING = st.floats(0.05, 1.5).map(lambda x: sympy.Rational(f"{x:.3g}"))
+ZEROS = st.floats(-2, 2).map(lambda x: sympy.Rational(f"{x:.3g}"))
+
+
 def overshoot_of(loop):
     return loop.servo.step_info().overshoot
 
@@ -52,7 +56,7 @@ def test_a_system_is_called_powered_and_compared():
     assert H**2 == H * H
     assert (1 + H) ** -1 == closed_loop(1, H)
     with pytest.raises(ValueError, match="improper"):
-        H**-1
+        System(1 / (s + 1)) ** -1
     assert System(H) == H == System(H.expr)
 
 
@@ -100,18 +104,18 @@ def test_static_gains_are_exact():
 # ------------------------------------------------------------------------------------------------ step information
 
 
-@settings(deadline=None, max_examples=25)
-@given(LAGS, st.floats(0.05, 1.5).map(lambda x: sympy.Rational(f"{x:.3g}")), st.floats(-2, 2), st.booleans())
+@settings(deadline=None, max_examples=15)
+@given(LAGS, DAMPING, ZEROS, st.booleans())
 def test_step_information_is_that_of_python_control_without_dead_time(T, zeta, zero, negative):
     K = -2 if negative else 3
-    H = K * (sympy.Rational(f"{zero:.3g}") * s + 1) / (T**2 * s**2 + 2 * zeta * T * s + 1)
+    H = K * (zero * s + 1) / (T**2 * s**2 + 2 * zeta * T * s + 1)
     found = System(H).step_info()
-    times = np.linspace(0, 2 * found.settling_time + 10 * float(T), 40_001)
+    times = np.linspace(0, 2 * found.settling_time + 10 * float(T), 4_001)
     y = System(H).step(times) / K
     step = times[1]
     expected = control.step_info(control.tf([float(K * zero), float(K)], [float(T**2), float(2 * zeta * T), 1]), times)
-    assert found.overshoot == pytest.approx(expected["Overshoot"] / 100, abs=2e-4)
-    assert found.undershoot == pytest.approx(expected["Undershoot"] / 100, abs=2e-4)
+    assert found.overshoot == pytest.approx(expected["Overshoot"] / 100, abs=2e-3)
+    assert found.undershoot == pytest.approx(expected["Undershoot"] / 100, abs=2e-3)
     assert found.rise_time == pytest.approx(times[(y >= 0.9).argmax()] - times[(y >= 0.1).argmax()], abs=2 * step)
     assert found.settling_time == pytest.approx(times[np.flatnonzero(abs(y - 1) > 0.02)[-1]], abs=2 * step)
     assert found.final_value == K

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     import numpy
     from numpy.typing import ArrayLike
 
+    from loopbook.figures import Picture, PlanePlot, TimePlot
+
 __all__ = ["MODES", "Loop", "LoopResponse"]
 
 MODES = ("servo", "regulator")
@@ -195,6 +197,46 @@ class Loop:
         1.5708
         """
         return margins(self)
+
+    # ---- pictures
+
+    def bode(self, omega: ArrayLike | None = None, **options: object) -> Picture:
+        """Plot magnitude and phase of the open loop, with the margins marked if the loop is stable.
+
+        Arguments:
+            omega: the lowest and the highest frequency; by themselves a decade around the corner frequencies.
+            options: title, unit of time, decibels, as `pictures.bode_plot` takes them.
+
+        >>> Loop(sympy.exp(-s) / s, sympy.Rational(1, 2)).bode()
+        <magnitude and phase [deg] against omega [rad/s]; gain margin 3.14, phase margin 61.4°>
+        """
+        from loopbook.deadtime.pictures import bode_plot
+
+        return bode_plot(self, omega, self.margins() if self.is_stable else None, **options)
+
+    def nyquist(self, omega: ArrayLike | None = None, **options: object) -> PlanePlot:
+        """Plot the open loop in the complex plane, as `pictures.nyquist_plot` does, with the margins as in `bode`.
+
+        >>> Loop(sympy.exp(-s) / s, sympy.Rational(1, 2)).nyquist()
+        <imaginary part against real part; gain margin 3.14, phase margin 61.4°, Ms 1.59>
+        """
+        from loopbook.deadtime.pictures import nyquist_plot
+
+        return nyquist_plot(self, omega, self.margins() if self.is_stable else None, **options)
+
+    def plot_step(self, end: float | None = None, **options: object) -> TimePlot:
+        """Plot y and u after a unit step of the setpoint, with the step information of y if the loop is stable.
+
+        Arguments:
+            end: the last time; by itself late enough for the response to settle.
+            options: title, unit of time, as `pictures.step_plot` takes them.
+
+        >>> Loop(sympy.exp(-s) / s, sympy.Rational(1, 2)).plot_step()
+        <setpoint, y(t); u(t) against t [s]; overshoot 4.05 %, rise time 1.91 s, settling time 6.06 s>
+        """
+        from loopbook.deadtime.pictures import step_plot
+
+        return step_plot(self, end, self.servo.step_info() if self.is_stable else None, **options)
 
     # ---- signals
 

@@ -19,11 +19,14 @@ from loopbook.laplace import transform
 from loopbook.quasipolynomials import DelayFraction, read
 from loopbook.quasipolynomials.fraction import Sum, plus
 from loopbook.stability import is_stable
+from loopbook.stability import margins as margins_of
 
 if TYPE_CHECKING:
     import control
     import numpy
     from numpy.typing import ArrayLike
+
+    from loopbook.figures import Picture, PlanePlot, TimePlot
 
 __all__ = ["System", "closed_loop"]
 
@@ -233,6 +236,48 @@ class System(DelayFraction):
         slow = min((ratio for ratio in lags if ratio), default=0)
         return float(sum(self.delays)) * 2 + (4 / float(slow) if slow else 1.0), float(self.static_gain)
 
+    # ---- pictures
+
+    def bode(self, omega: ArrayLike | None = None, margins: bool = False, **options: object) -> Picture:
+        """Plot magnitude and phase against frequency, as `pictures.bode_plot` does.
+
+        Arguments:
+            omega: the lowest and the highest frequency; by themselves a decade around the corner frequencies.
+            margins: mark the margins of the closed loop around this system as the open one.
+            options: title, unit of time, decibels, as `pictures.bode_plot` takes them.
+
+        >>> System(sympy.exp(-s) / (2 * s)).bode(margins=True)
+        <magnitude and phase [deg] against omega [rad/s]; gain margin 3.14, phase margin 61.4°>
+        """
+        from loopbook.deadtime.pictures import bode_plot
+
+        return bode_plot(self, omega, margins_of(self) if margins else None, **options)
+
+    def nyquist(self, omega: ArrayLike | None = None, margins: bool = False, **options: object) -> PlanePlot:
+        """Plot H(j omega) in the complex plane, as `pictures.nyquist_plot` does; `margins` as for `bode`.
+
+        >>> System(sympy.exp(-s) / (2 * s)).nyquist(margins=True)
+        <imaginary part against real part; gain margin 3.14, phase margin 61.4°, Ms 1.59>
+        """
+        from loopbook.deadtime.pictures import nyquist_plot
+
+        return nyquist_plot(self, omega, margins_of(self) if margins else None, **options)
+
+    def plot_step(self, end: float | None = None, info: bool = True, **options: object) -> TimePlot:
+        """Plot the unit step response, as `pictures.step_plot` does.
+
+        Arguments:
+            end: the last time; by itself late enough for the response to settle.
+            info: mark what `step_info` says, of a system that is stable.
+            options: title, unit of time, as `pictures.step_plot` takes them.
+
+        >>> System(1 / (s**2 + s + 1)).plot_step()
+        <y(t) against t [s]; overshoot 16.3 %, rise time 1.64 s, settling time 8.08 s>
+        """
+        from loopbook.deadtime.pictures import step_plot
+
+        return step_plot(self, end, self.step_info() if info and self.is_stable else None, **options)
+
     # ---- other forms
 
     def state_space(self) -> ChannelModel:
@@ -280,20 +325,33 @@ class System(DelayFraction):
             C1, C2 = C1 * scale, C2 * scale
         return ChannelModel(A, B1, B2, C1, C2, D11, D12, D21, D22, [*below, *above])
 
-    def to_control(self, order: int) -> control.StateSpace:
-        """Return a state-space system of python-control, with a Pade approximation in place of each dead time.
+    def to_control(
+        self, order: int | None = None, omega: ArrayLike | None = None
+    ) -> control.StateSpace | control.FrequencyResponseData:
+        """Return the system as one of python-control: its exact frequency response, or an approximation by states.
 
         Arguments:
-            order: of the approximations, at least 1; there is no default, because it decides what the result is worth.
+            order: of a Pade approximation in place of each dead time, at least 1: the result is a state-space system.
+                There is no default, because it decides what that is worth. Without an order the result is the data of
+                the frequency response, exact, which python-control's Bode, Nyquist and Nichols plots accept.
+            omega: the frequencies of these data, positive and increasing; by themselves as many as a picture needs.
         Raises:
-            ValueError: for another order.
+            ValueError: for another order, or frequencies beside an order.
 
         >>> System(sympy.exp(-s) / (s + 1)).to_control(order=4).nstates
         5
+        >>> System(sympy.exp(-s) / (s + 1)).to_control(omega=[0.5, 1]).magnitude.round(4)
+        array([0.8944, 0.7071])
         """
         import control
         import numpy
 
+        if order is None:
+            from loopbook.deadtime.pictures import frequency_data
+
+            return frequency_data(self, omega)
+        if omega is not None:
+            raise ValueError(f"order is {order!r} and omega is given: expected one of the two")
         if isinstance(order, bool) or not isinstance(order, numbers.Integral) or order < 1:
             raise ValueError(f"the order of the Pade approximation is {order!r}: expected 1, 2, 3 ...")
         A, B1, B2, C1, C2, D11, D12, D21, D22, delays = self.state_space()
