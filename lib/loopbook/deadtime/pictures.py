@@ -379,7 +379,7 @@ def _arrow(axes, curve, colour) -> None:
         return
     a, b = max(ends, key=lambda run: lengths[run[0] : run[1]].sum())
     way = numpy.cumsum(lengths[a:b])
-    k = a + int(numpy.searchsorted(way, 0.25 * way[-1]))
+    k = a + int(numpy.searchsorted(way, 0.32 * way[-1]))
     start, tip = values[k], values[k + 1]
     if start == tip:
         return
