@@ -26,6 +26,7 @@ LAGS = 7  # how many of each are tried at first
 FEWEST, MOST = 16, 110  # dead times that are tried at first
 POINTS = 3_000_000  # samples times sets of lags and dead times, computed for the grid
 BEST = 6  # of these, from which the search begins
+PATIENCE = 300  # steps of the last search
 DIGITS = 10  # of the model's numbers
 CLOSE = 1e-5  # a dead time of so few steps is none
 CLEAR = 6  # so many standard errors away, a parameter is told well
@@ -237,5 +238,7 @@ def _search(residuals):
     floors = numpy.array([x for x in (floor - 1, floor, floor + 1) if 0 <= x < longest], dtype=float)
     lows, highs = (numpy.repeat(x[:, None], len(floors), axis=1) for x in (low, high))
     lows[-1], highs[-1] = floors, numpy.minimum(floors + 1, longest)
-    found, pieces = least_squares(residuals.at, numpy.repeat(best[:, None], len(floors), axis=1), lows, highs)
+    found, pieces = least_squares(
+        residuals.at, numpy.repeat(best[:, None], len(floors), axis=1), lows, highs, rounds=PATIENCE
+    )
     return found[:, pieces.argmin()] if pieces.min() <= sums.min() else best

@@ -56,7 +56,7 @@ class Residuals:
         self.chain, self.target, self.start, self.leveled, self.units = chain, target, start, leveled, units
         self.longest_lag = LONGEST * len(target)
         lags = chain.lags
-        self.low = numpy.array([[], [math.log(SHORTEST)], [math.log(SHORTEST), 0.0]][lags] + [0.0])
+        self.low = numpy.array([[], [math.log(SHORTEST)], [math.log(SHORTEST * 1e-3), 0.0]][lags] + [0.0])
         self.high = numpy.array(
             [[], [math.log(self.longest_lag)], [math.log(2 * self.longest_lag), 1.0]][lags] + [longest]
         )
@@ -144,7 +144,7 @@ class Residuals:
             ahead, behind = p.copy(), p.copy()
             ahead[k], behind[k] = min(p[k] + width, self.high[k]), max(p[k] - width, self.low[k])
             if len(T) == 2 and k == 1 and T[1] < 1:  # so short that it is hardly seen: as if it were longer
-                behind[k], ahead[k] = p[k], min(p[k] + 2 / T.sum(), 1.0)
+                behind[k], ahead[k] = min(p[k], 1 - width), min(p[k] + 2 / T.sum(), 1.0)
             changes.append((response(ahead, linear)[0] - response(behind, linear)[0]) @ linear / (ahead[k] - behind[k]))
         jacobian = numpy.column_stack([columns[:, :1], *changes, columns[:, 1:]])
         names = ["K", *self.names, "delay"]
