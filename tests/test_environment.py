@@ -101,6 +101,7 @@ def test_importing_the_library_is_quick():
 
 # The order in which a reader meets the modules; the groups on one line do not know each other.
 ORDER = [
+    ["types"],
     ["inputs"],
     ["expressions"],
     ["laplace"],

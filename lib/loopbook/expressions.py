@@ -3,13 +3,18 @@
 The library has one Laplace variable `s` and one time `t` (zero or later, as the Laplace transform wants it).
 """
 
+from __future__ import annotations
+
 import ast
 import random
+from collections.abc import Mapping
 
 import mpmath
 import sympy
 from sympy.core.function import AppliedUndef
 from sympy.core.parameters import distribute
+
+from loopbook.types import Number
 
 s = sympy.Symbol("s")
 t = sympy.Symbol("t", nonnegative=True)
@@ -34,7 +39,7 @@ _OPERATORS = {
 }
 
 
-def parse(text):
+def parse(text: str) -> sympy.Expr:
     """Return the SymPy expression that `text` spells, with every decimal number exact.
 
     Known are the operators ``+ - * / **``, brackets, the elementary functions, `pi`, `oo`, `I`, and the library's
@@ -136,7 +141,7 @@ def _digits(expression):
     return max(abs(expression.p).bit_length(), expression.q.bit_length()) * 0.3
 
 
-def agreement(one, other):
+def agreement(one: Number, other: Number) -> str:
     """Say whether two expressions are equal: ``"proved"``, ``"probed"`` or ``"different"``.
 
     Random exact points of all magnitudes come first, because a single one refutes an equality for good. What survives
@@ -256,7 +261,7 @@ def _random_value(symbol, scale, dice):
     return value() * dice.choice((-1, 1)) + sympy.I * value() * dice.choice((-1, 1))
 
 
-def exact(value):
+def exact(value: Number | complex) -> sympy.Expr:
     """Return `value` as a SymPy expression whose decimal numbers are exact, as they are meant.
 
     0.1 is one tenth and 1/3 is one third: a fraction with a denominator up to 1000 where the decimal is one but for
@@ -293,7 +298,7 @@ def _meant(decimal):
     return simple if abs(simple - digits) <= sympy.Rational(2, 10**15) * abs(digits) else digits
 
 
-def function_of(variable, value):
+def function_of(variable: sympy.Symbol, value: Number | complex) -> sympy.Expr:
     """Return `value`, exact, as a function of `variable`, which is `s` or `t`; other letters may stand in it.
 
     Raises ValueError where it contains the other of the two, or a symbol that is only named like one of them. With
@@ -316,7 +321,7 @@ def function_of(variable, value):
     return expression
 
 
-def written(value):
+def written(value: sympy.Expr) -> str:
     """Return a value as text, a fraction with a long denominator as a decimal of six digits.
 
     >>> written(sympy.Rational(2, 3)), written(sympy.Rational(299855, 100001))
@@ -325,7 +330,7 @@ def written(value):
     return f"{float(value):.6g}" if _is_long(value) else str(value)
 
 
-def equalities(values):
+def equalities(values: Mapping[str, sympy.Expr]) -> str:
     r"""Return named values as LaTeX between dollar signs, for the display of settings and models.
 
     Arguments:

@@ -1,9 +1,19 @@
 """What functions ask of single inputs, in one sentence that names the value and what was expected."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Callable, Collection
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy
+    from numpy.typing import ArrayLike
 
 
-def number(name, value, expected="a finite number", holds=lambda x: True):
+def number(
+    name: str, value: object, expected: str = "a finite number", holds: Callable[[float], bool] = lambda x: True
+) -> float:
     """Return a value as a finite float.
 
     Arguments:
@@ -27,17 +37,17 @@ def number(name, value, expected="a finite number", holds=lambda x: True):
     return x
 
 
-def positive(name, value):
+def positive(name: str, value: object) -> float:
     """Return a value as a positive finite float, or raise ValueError."""
     return number(name, value, "a positive number", lambda x: x > 0)
 
 
-def not_negative(name, value):
+def not_negative(name: str, value: object) -> float:
     """Return a value as a finite float that is not negative, or raise ValueError."""
     return number(name, value, "a number that is not negative", lambda x: x >= 0)
 
 
-def one_of(name, word, words):
+def one_of(name: str, word: str, words: Collection[str]) -> str:
     """Return a word that is one of several, or raise ValueError.
 
     >>> one_of("kind", "PD", ("P", "PI", "PID"))
@@ -49,7 +59,7 @@ def one_of(name, word, words):
     return word
 
 
-def real_numbers(name, values):
+def real_numbers(name: str, values: ArrayLike) -> numpy.ndarray:
     """Return values as an array of floats, or raise ValueError for what is not real and finite.
 
     >>> real_numbers("times", [0, 1])
@@ -68,7 +78,7 @@ def real_numbers(name, values):
     return array
 
 
-def times_from_zero(values):
+def times_from_zero(values: ArrayLike) -> numpy.ndarray:
     """Return times as an array of floats, or raise ValueError where one is negative."""
     times = real_numbers("times", values)
     if (times < 0).any():

@@ -4,13 +4,22 @@ SymPy's own inverse transform leaves many control engineering cases unsolved or 
 times needs no more than its poles.
 """
 
+from __future__ import annotations
+
 import functools
 import itertools
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, overload
 
 import sympy
 from sympy.core.function import AppliedUndef
 
 from loopbook.expressions import exact, function_of, s, t
+from loopbook.types import Number
+
+if TYPE_CHECKING:
+    import numpy
+    from numpy.typing import ArrayLike
 
 __all__ = [
     "definition", "evaluate", "final_value", "initial_value", "inverse", "partial_fractions", "s", "solve_ode", "t",
@@ -21,7 +30,7 @@ __all__ = [
 # ------------------------------------------------------------------------------------------------ from t to s
 
 
-def definition(f):
+def definition(f: Number) -> sympy.Integral:
     """Return the integral that defines the Laplace transform of `f`, not yet worked out (Haugen, equation 4.1).
 
     >>> definition(sympy.Integer(1))
@@ -30,7 +39,11 @@ def definition(f):
     return sympy.Integral(function_of(t, f) * sympy.exp(-s * t), (t, 0, sympy.oo))
 
 
-def transform(f):
+@overload
+def transform(f: Number) -> sympy.Expr: ...
+@overload
+def transform(f: sympy.Equality) -> sympy.Equality: ...
+def transform(f: Number | sympy.Equality) -> sympy.Expr | sympy.Equality:
     """Return the Laplace transform F(s) of a time function f(t), worked out from the defining integral.
 
     Every term is integrated where its integral converges, to the right of its pole. A step that comes late,
@@ -188,7 +201,7 @@ def _power_integral(n):
 # ------------------------------------------------------------------------------------------------ from s to t
 
 
-def by_delay(F):
+def by_delay(F: Number) -> dict[sympy.Expr, sympy.Expr]:
     """Split F(s) into its dead times: return {delay: rational part}, F being the sum of part * exp(-delay*s).
 
     Raises ValueError where F is no such sum: with a dead time in the denominator, a response has no end of terms.
@@ -215,7 +228,7 @@ def by_delay(F):
     return {delay: part for delay, part in sorted(parts.items(), key=sympy.default_sort_key) if part != 0}
 
 
-def without_delays(F):
+def without_delays(F: sympy.Expr) -> tuple[sympy.Expr, dict[sympy.Symbol, sympy.Expr]]:
     """Return F(s) with a letter for each exp(-delay*s), which makes it rational, and the dictionary {letter: delay}.
 
     Raises ValueError where F is not a rational function of s and dead times.
@@ -246,7 +259,7 @@ def _factored(F):
     return sympy.Add(*(sympy.factor(sympy.cancel(part)) * sympy.exp(-delay * s) for delay, part in parts.items()))
 
 
-def partial_fractions(F):
+def partial_fractions(F: Number) -> sympy.Expr:
     """Return F(s) as a sum of partial fractions, one group for each dead time.
 
     >>> partial_fractions(1 / (s * (s + 2)))
@@ -261,7 +274,7 @@ def _fractions(rational):
     return sympy.Add.make_args(sympy.apart(sympy.cancel(rational), s))
 
 
-def inverse(F):
+def inverse(F: Number) -> sympy.Expr:
     """Return the time function f(t), t >= 0, whose Laplace transform is F(s): partial fractions, then one pair each.
 
     Poles may be real, complex, repeated, numbers or letters, and a dead time ``exp(-tau*s)`` may stand on any term.
@@ -356,7 +369,15 @@ def _inverse_numerically(numerator, base, n):
 # ------------------------------------------------------------------------------------------------ what they serve
 
 
-def solve_ode(equations, initial=None):
+@overload
+def solve_ode(equations: sympy.Equality, initial: Mapping[sympy.Expr, Number] | None = None) -> sympy.Expr: ...
+@overload
+def solve_ode(
+    equations: Sequence[sympy.Equality], initial: Mapping[sympy.Expr, Number] | None = None
+) -> dict[sympy.Expr, sympy.Expr]: ...
+def solve_ode(
+    equations: sympy.Equality | Sequence[sympy.Equality], initial: Mapping[sympy.Expr, Number] | None = None
+) -> sympy.Expr | dict[sympy.Expr, sympy.Expr]:
     """Solve linear differential equations with constant coefficients by the Laplace transform.
 
     Arguments:
@@ -395,7 +416,7 @@ def solve_ode(equations, initial=None):
     return responses if several else responses[unknowns[0]]
 
 
-def transformed(equations):
+def transformed(equations: Iterable[sympy.Equality]) -> list[sympy.Expr]:
     """Return the transforms of several equations, each as left side minus right side.
 
     Raises ValueError for what is no equation.
@@ -410,7 +431,7 @@ def transformed(equations):
     return [transform(equation.lhs) - transform(equation.rhs) for equation in equations]
 
 
-def solve_transformed(equations, unknowns):
+def solve_transformed(equations: Iterable[sympy.Equality], unknowns: Sequence[sympy.Expr]) -> list[sympy.Expr]:
     """Return the transforms of the unknown functions of t, solved from the transformed equations.
 
     Raises ValueError if the equations are not linear in the unknown functions, or do not determine them.
@@ -430,7 +451,7 @@ def solve_transformed(equations, unknowns):
     return [sympy.factor(Y) for Y in matrix.LUsolve(right)]
 
 
-def initial_value(F):
+def initial_value(F: Number) -> sympy.Expr:
     """Return f(0+), the limit of s F(s) for s to infinity (the Initial Value Theorem).
 
     >>> initial_value(4 / (s + 2))
@@ -439,7 +460,7 @@ def initial_value(F):
     return sympy.limit(s * function_of(s, F), s, sympy.oo)
 
 
-def final_value(F):
+def final_value(F: Number) -> sympy.Expr:
     """Return what f(t) tends to as t grows, the limit of s F(s) for s to zero (the Final Value Theorem).
 
     The theorem holds only where f(t) settles: every pole of s F(s) must lie strictly left of the imaginary axis. The
@@ -489,7 +510,7 @@ def _is_stable(polynomial):
     raise ValueError(f"cannot tell whether f(t) settles: the signs of the roots of {polynomial} are not known")
 
 
-def roots(polynomial):
+def roots(polynomial: Number) -> list[sympy.Expr]:
     """Return the roots of a polynomial in `s` as a sorted list, each as often as it occurs.
 
     Exact where linear and quadratic factors are enough; numbers to 15 digits where they are not.
@@ -517,7 +538,7 @@ def roots(polynomial):
     return sorted(found, key=lambda root: tuple(float(x) for x in root.as_real_imag()))
 
 
-def evaluate(f, times):
+def evaluate(f: Number, times: ArrayLike) -> numpy.ndarray:
     """Return the values of f(t) at the given times as a NumPy array; a step has its new value at the step itself.
 
     Raises ValueError where f is no function of time alone: another letter is left, or an impulse, which has no value;
@@ -544,7 +565,7 @@ def evaluate(f, times):
     return values
 
 
-def between_steps(f):
+def between_steps(f: sympy.Expr) -> Iterator[tuple[float, float, sympy.Expr]]:
     """Split f(t) at its steps: (start, end, f without steps) for each stretch of time between them.
 
     What comes late is left out before its time, when a factor such as exp(1000 - t) would be beyond all numbers.

@@ -1,12 +1,16 @@
 """Oscillation: what damping and natural period say about a step response and about a pair of poles."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import sympy
 
 from loopbook.expressions import exact, s
 from loopbook.laplace import by_delay
 from loopbook.transfer import transfer_function
+from loopbook.types import Number, TransferFunctionLike
 
 __all__ = ["Oscillation", "oscillation", "oscillation_of_pole"]
 
@@ -30,7 +34,11 @@ class Oscillation:
     T: sympy.Expr
     zeta: sympy.Expr
 
-    def __post_init__(self):
+    if TYPE_CHECKING:  # numbers of any kind are given, and kept as exact ones
+
+        def __init__(self, T: Number, zeta: Number): ...
+
+    def __post_init__(self) -> None:
         for name in ("T", "zeta"):
             object.__setattr__(self, name, exact(getattr(self, name)))
         if self.T.is_positive is False:
@@ -39,22 +47,22 @@ class Oscillation:
             raise ValueError(f"zeta is {self.zeta}: expected a finite real number")
 
     @property
-    def peak_time(self):
+    def peak_time(self) -> sympy.Expr:
         """The time from the step to the first peak, for a system without zeros. (5-50)"""
         return sympy.pi * self.T / self._root
 
     @property
-    def overshoot(self):
+    def overshoot(self) -> sympy.Expr:
         """The share of the step by which its first peak exceeds the final value, without zeros. (5-51)"""
         return sympy.exp(-sympy.pi * self.zeta / self._root)
 
     @property
-    def decay_ratio(self):
+    def decay_ratio(self) -> sympy.Expr:
         """The size of an oscillation divided by that of the one before. (5-52)"""
         return self.overshoot**2
 
     @property
-    def period(self):
+    def period(self) -> sympy.Expr:
         """The time between two peaks. (5-53)"""
         return 2 * sympy.pi * self.T / self._root
 
@@ -64,11 +72,11 @@ class Oscillation:
             raise ValueError(f"zeta is {self.zeta}: expected one between -1 and 1, because others do not oscillate")
         return sympy.sqrt(1 - self.zeta**2)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"Oscillation(T={self.T}, zeta={self.zeta})"
 
 
-def oscillation(H):
+def oscillation(H: TransferFunctionLike) -> Oscillation:
     """Return the `Oscillation` of a transfer function of second order, whatever its numerator.
 
     Arguments:
@@ -92,7 +100,7 @@ def oscillation(H):
     return Oscillation(T, sympy.simplify(double / (2 * T)))
 
 
-def oscillation_of_pole(pole):
+def oscillation_of_pole(pole: Number | complex) -> Oscillation:
     """Return the `Oscillation` of a pole and its conjugate.
 
     >>> oscillation_of_pole(complex(-0.6, 0.8))

@@ -1,9 +1,13 @@
 """The PID controller: its settings and their forms, and the practical digital controller of Haugen, Section 7.4."""
 
+from __future__ import annotations
+
 import copy
 import math
 import numbers
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Self
 
 import sympy
 
@@ -11,6 +15,7 @@ from loopbook.expressions import equalities, exact, s, written
 from loopbook.inputs import number, positive
 from loopbook.scaling import PERCENT, Scaling
 from loopbook.transfer import transfer_function
+from loopbook.types import Number
 
 __all__ = ["PID", "Controller", "LowpassFilter"]
 
@@ -43,7 +48,13 @@ class PID:
     Tf: sympy.Expr = sympy.S.Zero
     form: str = "parallel"
 
-    def __post_init__(self):
+    if TYPE_CHECKING:  # numbers of any kind are given, and kept as exact ones
+
+        def __init__(
+            self, Kp: Number, Ti: Number = sympy.oo, Td: Number = 0, Tf: Number = 0, form: str = "parallel"
+        ): ...
+
+    def __post_init__(self) -> None:
         for name in ("Kp", "Ti", "Td", "Tf"):
             try:
                 value = exact(getattr(self, name))
@@ -60,7 +71,7 @@ class PID:
             raise ValueError(f"form is {self.form!r}: expected {' or '.join(FORMS)}")
 
     @property
-    def expr(self):
+    def expr(self) -> sympy.Expr:
         """The transfer function from control error to control signal, an expression in `s`.
 
         >>> Kp, Ti = sympy.symbols("Kp Ti", positive=True)
@@ -72,7 +83,7 @@ class PID:
             return self.Kp * (1 + integral + self.Td * s / (self.Tf * s + 1))
         return self.Kp * (1 + integral) * (self.Td * s + 1) / (self.Tf * s + 1)
 
-    def parallel(self):
+    def parallel(self) -> PID:
         """Return the same controller in parallel form. (Haugen, equations 10.24 to 10.26, here with the filter)
 
         Raises ValueError where there is none, because the filter is slower than the derivative action.
@@ -91,7 +102,7 @@ class PID:
             raise ValueError(f"{self} has no parallel form: its filter is slower than its derivative action")
         return PID(Kp, Ti, Td, self.Tf)
 
-    def serial(self):
+    def serial(self) -> PID:
         """Return the same controller in serial form.
 
         Raises ValueError where there is none, because the zeros of the controller are complex (Ti < 4 Td if there is
@@ -112,7 +123,7 @@ class PID:
         Ti = (total + sympy.sqrt(discriminant)) / 2
         return PID(self.Kp * Ti / self.Ti, Ti, total - Ti, self.Tf, form="serial")
 
-    def with_filter(self, N=10):
+    def with_filter(self, N: Number = 10) -> PID:
         """Return the same settings with the filter Tf = Td/N for the derivative term. (Haugen, Section 7.4.1)
 
         >>> PID(6, Ti=3, Td=0.75).with_filter()
@@ -123,7 +134,7 @@ class PID:
         return PID(self.Kp, self.Ti, self.Td, self.Td / N, self.form)
 
     @property
-    def proportional_band(self):
+    def proportional_band(self) -> sympy.Expr:
         """The proportional band P_B in percent, for a gain without unit. (Haugen, equation 7.12)
 
         >>> PID(0.2).proportional_band
@@ -131,7 +142,7 @@ class PID:
         """
         return 100 / self.Kp
 
-    def repeats_per_minute(self, minute=60):
+    def repeats_per_minute(self, minute: Number = 60) -> sympy.Expr:
         """Return how often in a minute the integral term repeats the proportional one. (Haugen, Section 7.3)
 
         Arguments:
@@ -143,7 +154,14 @@ class PID:
         return exact(minute) / self.Ti
 
     @classmethod
-    def from_panel(cls, proportional_band, repeats_per_minute=0, Td=0, Tf=0, minute=60):
+    def from_panel(
+        cls,
+        proportional_band: Number,
+        repeats_per_minute: Number = 0,
+        Td: Number = 0,
+        Tf: Number = 0,
+        minute: Number = 60,
+    ) -> Self:
         """Return the settings of a controller whose panel shows proportional band [%] and repeats per minute.
 
         Arguments:
@@ -180,7 +198,7 @@ class PID:
         # without derivative term and filter both forms are one
         return shown if self.form == "parallel" or self.Td == self.Tf == 0 else f"{shown} (serial form)"
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         parts = [f"{name}={written(value)}" for name, value in self._shown().items()]
         return f"PID({', '.join(parts + ([] if self.form == 'parallel' else ['form=' + repr(self.form)]))})"
 
@@ -198,14 +216,19 @@ class LowpassFilter:
     [0.0, 0.2131, 0.5227, 0.7105]
     """
 
-    def __init__(self, T, step):
+    T: float
+    step: float
+    input: float | None
+    output: float | None
+
+    def __init__(self, T: Number, step: Number):
         T, self.step = number("T", T), positive("step", step)
         if T < 0:
             raise ValueError(f"T is {T:g}: expected a lag that is not negative")
         self.T, self.remains = T, math.exp(-self.step / T) if T else 0.0
         self.output = self.input = None
 
-    def update(self, x):
+    def update(self, x: float) -> float:
         """Take the input of this sample and return the output of this sample; at the first one it is at rest."""
         if self.output is None:
             self.input = self.output = x
@@ -254,23 +277,31 @@ class Controller:
     [60.0, 61.0, 62.0]
     """
 
+    settings: PID
+    limits: tuple[float, float]
+    pid_limits: tuple[float, float]
+    blocked: int
+    setpoint: float | None
+    u: float | None
+    terms: tuple[float, float, float]
+
     def __init__(
         self,
-        settings,
-        step,
+        settings: PID,
+        step: Number,
         *,
-        u0=0,
-        action="reverse",
-        limits=None,
-        pid_limits=None,
-        w_p=1,
-        w_d=1,
-        ramp=math.inf,
-        T_filter=0,
-        anti_windup=True,
-        bumpless=True,
-        measurement_range=None,
-        control_range=None,
+        u0: Number = 0,
+        action: str = "reverse",
+        limits: Sequence[Number] | None = None,
+        pid_limits: Sequence[Number] | None = None,
+        w_p: Number = 1,
+        w_d: Number = 1,
+        ramp: Number = math.inf,
+        T_filter: Number = 0,
+        anti_windup: bool = True,
+        bumpless: bool = True,
+        measurement_range: Sequence[Number] | None = None,
+        control_range: Sequence[Number] | None = None,
     ):
         self.step, self.u0 = positive("step", step), number("u0", u0)
         if action not in ("reverse", "direct"):
@@ -309,7 +340,7 @@ class Controller:
         self.lag_remains = math.exp(-self.step / self.Tf) if self.Tf else 0.0
         self.settings = settings
 
-    def change(self, settings):
+    def change(self, settings: PID) -> None:
         """Go on with other settings from the next sample, as a gain schedule does; a loop at rest feels no bump.
 
         >>> controller = Controller(PID(2, Ti=10), step=1, u0=50)
@@ -323,11 +354,13 @@ class Controller:
         self.take_over(before)
 
     @property
-    def filtered(self):
+    def filtered(self) -> float | None:
         """The measurement behind the filter at the last sample, in the unit of the measurement."""
         return self.filter.output
 
-    def update(self, setpoint, measurement, feedforward=0.0, manual=None):
+    def update(
+        self, setpoint: Number, measurement: Number, feedforward: Number = 0.0, manual: Number | None = None
+    ) -> float:
         """Take the signals of this sample and return the control signal, which is held until the next one.
 
         Before the first sample the loop was at rest: the setpoint equal to the measurement, the control signal u0.
@@ -380,7 +413,7 @@ class Controller:
         self.integral += growth
         return self.from_percent(self.u) if self.from_percent else self.u
 
-    def take_over(self, other):
+    def take_over(self, other: Controller) -> None:
         """Continue where another controller stopped, as after a change of settings; a loop at rest feels no bump."""
         self.setpoint, self.u, self.integral, self.in_manual = other.setpoint, other.u, other.integral, other.in_manual
         self.filter.input, self.filter.output, self.lagging = other.filter.input, other.filter.output, other.lagging
@@ -389,7 +422,7 @@ class Controller:
             self.integral += other.u0 - self.u0 + (other.Kp * (other.w_p - 1) - self.Kp * (self.w_p - 1)) * y_SP
             self.lagging += (self.w_d - other.w_d) * y_SP
 
-    def start_from(self, u):
+    def start_from(self, u: Number) -> None:
         """Begin as after manual mode with a control signal such as `update` returns."""
         u = number("u", u)
         self.u, self.in_manual = self.back_to_percent(u) if self.back_to_percent else u, True
@@ -408,7 +441,7 @@ class Controller:
         signals = ((u_PID, self.pid_limits), (u, self.limits))
         return any((growth > 0 and x > high) or (growth < 0 and x < low) for x, (low, high) in signals)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"Controller({self.settings}, step={self.step:g})"
 
 

@@ -1,8 +1,17 @@
 """Scaling: the linear functions between engineering units, electrical signals and percent."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
 import sympy
 
 from loopbook.expressions import exact
+from loopbook.types import Number
+
+if TYPE_CHECKING:
+    import numpy
 
 __all__ = ["PERCENT", "Scaling"]
 
@@ -29,23 +38,28 @@ class Scaling:
     25
     """
 
-    def __init__(self, x_range, z_range):
+    x_range: tuple[sympy.Expr, sympy.Expr]
+    z_range: tuple[sympy.Expr, sympy.Expr]
+    a: sympy.Expr
+    b: sympy.Expr
+
+    def __init__(self, x_range: Sequence[Number], z_range: Sequence[Number]):
         (x_min, x_max), (z_min, z_max) = self.x_range, self.z_range = _ends(x_range), _ends(z_range)
         self.a = (z_max - z_min) / (x_max - x_min)
         self.b = z_min - self.a * x_min
 
-    def __call__(self, x):
+    def __call__(self, x: Number | numpy.ndarray) -> Any:
         """Return a x + b for a number, an expression or an array."""
         if hasattr(x, "dtype") or isinstance(x, float):
             return float(self.a) * x + float(self.b)
         return self.a * exact(x) + self.b
 
     @property
-    def inverse(self):
+    def inverse(self) -> Scaling:
         """The scaling back from z to x."""
         return Scaling(self.z_range, self.x_range)
 
-    def then(self, following):
+    def then(self, following: Scaling) -> Scaling:
         """Return the combined scaling of this one and a following one. (f_3 of Haugen, Figure 7.1)
 
         >>> sensor, percent = Scaling((0, 15), (4, 20)), Scaling((4, 20), PERCENT)
@@ -54,7 +68,7 @@ class Scaling:
         """
         return Scaling(self.x_range, tuple(following(z) for z in self.z_range))
 
-    def of_differences(self):
+    def of_differences(self) -> Scaling:
         """Return the scaling without its offset, for differences such as the control error. (f_6 of Figure 7.1)
 
         >>> Scaling(PERCENT, (4, 20)).of_differences()(50)
@@ -62,7 +76,7 @@ class Scaling:
         """
         return Scaling((0, self.x_range[1] - self.x_range[0]), (0, self.z_range[1] - self.z_range[0]))
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"Scaling({self.x_range}, {self.z_range})"
 
     def _repr_latex_(self):

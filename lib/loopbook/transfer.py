@@ -4,6 +4,10 @@ The standard models of process control, what characterises a transfer function (
 written forms), the rules for combining blocks, and the responses to known inputs.
 """
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+
 import sympy
 from sympy.core.function import AppliedUndef
 
@@ -19,6 +23,7 @@ from loopbook.laplace import (
     transformed,
     without_delays,
 )
+from loopbook.types import Number, TransferFunctionLike
 
 __all__ = [
     "characteristic_polynomial", "dead_time", "double_integrator", "feedback", "first_order", "impulse_response",
@@ -31,7 +36,7 @@ __all__ = [
 # ------------------------------------------------------------------------------------------------ standard models
 
 
-def dead_time(delay):
+def dead_time(delay: Number) -> sympy.Expr:
     """Return the transfer function of a pure dead time, exp(-delay*s). (Haugen, equation 6.32)
 
     Raises ValueError for a negative delay.
@@ -42,7 +47,7 @@ def dead_time(delay):
     return sympy.exp(-_at_least_zero("delay", delay) * s)
 
 
-def integrator(K, delay=0):
+def integrator(K: Number, delay: Number = 0) -> sympy.Expr:
     """Return K/s, with the dead time `delay` if there is one. (Haugen, equation 6.4)
 
     >>> integrator(2)
@@ -51,7 +56,7 @@ def integrator(K, delay=0):
     return exact(K) / s * dead_time(delay)
 
 
-def first_order(K, T, delay=0):
+def first_order(K: Number, T: Number, delay: Number = 0) -> sympy.Expr:
     """Return K/(T*s + 1), a lag (time-constant system) with gain K and dead time `delay`. (Haugen, equation 6.13)
 
     Arguments:
@@ -66,7 +71,7 @@ def first_order(K, T, delay=0):
     return exact(K) / (_at_least_zero("T", T) * s + 1) * dead_time(delay)
 
 
-def second_order(K, T1, T2, delay=0):
+def second_order(K: Number, T1: Number, T2: Number, delay: Number = 0) -> sympy.Expr:
     """Return K/((T1*s + 1)*(T2*s + 1)), two lags in series. (Haugen, equation 6.33)
 
     >>> second_order(1, 3, 2)
@@ -75,7 +80,7 @@ def second_order(K, T1, T2, delay=0):
     return first_order(K, T1, delay) / (_at_least_zero("T2", T2) * s + 1)
 
 
-def integrator_with_lag(K, T, delay=0):
+def integrator_with_lag(K: Number, T: Number, delay: Number = 0) -> sympy.Expr:
     """Return K/(s*(T*s + 1)), an integrator behind a lag.
 
     >>> integrator_with_lag(1, 4)
@@ -84,7 +89,7 @@ def integrator_with_lag(K, T, delay=0):
     return first_order(K, T, delay) / s
 
 
-def double_integrator(K, delay=0):
+def double_integrator(K: Number, delay: Number = 0) -> sympy.Expr:
     """Return K/s**2.
 
     >>> double_integrator(3)
@@ -100,7 +105,9 @@ def _at_least_zero(name, value):
     return value
 
 
-def transfer_functions(equations, output, inputs):
+def transfer_functions(
+    equations: sympy.Equality | Sequence[sympy.Equality], output: sympy.Expr, inputs: sympy.Expr | Sequence[sympy.Expr]
+) -> tuple[sympy.Expr, ...]:
     """Derive the transfer functions from the inputs to an output out of linear differential equations.
 
     The equations are transformed and solved for the output. Each input's transfer function is what it is multiplied
@@ -143,7 +150,7 @@ def _listed(signals):
     return ", ".join(sorted(map(str, signals)))
 
 
-def transfer_function(value):
+def transfer_function(value: TransferFunctionLike) -> sympy.Expr:
     """Return the transfer function of whatever stands for a block, an expression in `s` with exact numbers.
 
     Arguments:
@@ -195,7 +202,7 @@ def _from_control(system):
 # ------------------------------------------------------------------------------------------------ blocks
 
 
-def simplified(H):
+def simplified(H: TransferFunctionLike) -> sympy.Expr:
     """Return H with common factors cancelled and the rest factored.
 
     >>> simplified((s + 1) / (s**2 + 3 * s + 2))
@@ -216,7 +223,7 @@ def simplified(H):
     return sympy.Add(*(sympy.factor(sympy.cancel(part)) * sympy.exp(-delay * s) for delay, part in parts.items()))
 
 
-def series(*blocks):
+def series(*blocks: TransferFunctionLike) -> sympy.Expr:
     """Return the transfer function of blocks in series: their product. (Haugen, Section 5.4 and Figure 5.2)
 
     >>> series(2 / (s + 1), 3 / s)
@@ -225,7 +232,7 @@ def series(*blocks):
     return simplified(sympy.Mul(*map(transfer_function, blocks)))
 
 
-def parallel(*blocks):
+def parallel(*blocks: TransferFunctionLike) -> sympy.Expr:
     """Return the transfer function of blocks with one input and added outputs: their sum. (Haugen, Figure 5.2)
 
     >>> parallel(1, 1 / s)
@@ -234,7 +241,7 @@ def parallel(*blocks):
     return simplified(sympy.Add(*map(transfer_function, blocks)))
 
 
-def feedback(forward, back=1, sign=-1):
+def feedback(forward: TransferFunctionLike, back: TransferFunctionLike = 1, sign: int = -1) -> sympy.Expr:
     """Return the transfer function of a loop: `forward`, with its output fed back through `back`. (Haugen, Figure 5.2)
 
     Arguments:
@@ -266,7 +273,7 @@ def _fraction(H):
     return sympy.cancel(next(iter(parts.values()), sympy.S.Zero)).as_numer_denom()
 
 
-def polynomials(H):
+def polynomials(H: TransferFunctionLike) -> tuple[sympy.Poly, sympy.Poly, sympy.Expr]:
     """Return numerator, denominator and dead time of a strictly proper transfer function with numbers.
 
     Arguments:
@@ -298,7 +305,7 @@ def polynomials(H):
     return numerator.set_domain(sympy.QQ), denominator.set_domain(sympy.QQ), delay
 
 
-def poles(H):
+def poles(H: TransferFunctionLike) -> list[sympy.Expr]:
     """Return the poles of H, each as often as it occurs, sorted. A dead time has none.
 
     Raises ValueError where a dead time stands in a denominator, as in a loop around one, or where letters prevent
@@ -311,7 +318,7 @@ def poles(H):
     return roots(_fraction(H)[1])
 
 
-def zeros(H):
+def zeros(H: TransferFunctionLike) -> list[sympy.Expr]:
     """Return the zeros of H, each as often as it occurs, sorted. (Haugen, equation 5.12)
 
     >>> zeros((4 * s - 4) / (s**2 + 5 * s + 6))
@@ -320,7 +327,7 @@ def zeros(H):
     return roots(_fraction(H)[0])
 
 
-def characteristic_polynomial(H):
+def characteristic_polynomial(H: TransferFunctionLike) -> sympy.Expr:
     """Return the denominator of H, scaled so that its highest power of `s` has the coefficient 1. (Haugen, 5.14)
 
     >>> characteristic_polynomial(3 / (2 * s + 1))
@@ -329,7 +336,7 @@ def characteristic_polynomial(H):
     return sympy.Poly(_fraction(H)[1], s).monic().as_expr()
 
 
-def order(H):
+def order(H: TransferFunctionLike) -> int:
     """Return the order of H: the degree of its characteristic polynomial.
 
     >>> order((4 * s - 4) / (s**2 + 5 * s + 6))
@@ -338,7 +345,7 @@ def order(H):
     return int(sympy.degree(_fraction(H)[1], s))
 
 
-def static_gain(H):
+def static_gain(H: TransferFunctionLike) -> sympy.Expr:
     """Return H(0): what a constant input is multiplied with in the end, if the output settles. (Haugen, 5.23)
 
     It is infinite for an integrator.
@@ -349,7 +356,7 @@ def static_gain(H):
     return sympy.limit(transfer_function(H), s, 0)
 
 
-def initial_gain(H):
+def initial_gain(H: TransferFunctionLike) -> sympy.Expr:
     """Return H at infinite `s`: the immediate jump of the output for a unit step at the input.
 
     It is zero where the denominator has the higher degree, and before a dead time is over.
@@ -360,7 +367,7 @@ def initial_gain(H):
     return sympy.limit(transfer_function(H), s, sympy.oo)
 
 
-def initial_slope(H):
+def initial_slope(H: TransferFunctionLike) -> sympy.Expr:
     """Return the slope of the unit step response right after the step: the limit of s*(H(s) - H(oo)) for infinite `s`.
 
     It is zero before a dead time is over, and where H has two poles more than zeros.
@@ -379,7 +386,7 @@ def initial_slope(H):
     return sympy.limit(sympy.cancel(s * (at_once - initial_gain(at_once))), s, sympy.oo)
 
 
-def zero_pole_gain(H):
+def zero_pole_gain(H: TransferFunctionLike) -> sympy.Expr:
     """Return the gain K of the zero-pole form, the ratio of the leading coefficients. It is not the static gain.
 
     >>> zero_pole_gain((4 * s - 4) / (s**2 + 5 * s + 6))
@@ -389,7 +396,7 @@ def zero_pole_gain(H):
     return sympy.LC(numerator, s) / sympy.LC(denominator, s)
 
 
-def zero_pole_form(H):
+def zero_pole_form(H: TransferFunctionLike) -> sympy.Expr:
     """Return H as K*(s - z1)*(s - z2).../((s - p1)*(s - p2)...). (Haugen, equation 5.12)
 
     Complex pairs of roots stay together, and so do two roots of which letters leave open whether they are real.
@@ -400,7 +407,7 @@ def zero_pole_form(H):
     return _rebuilt(H, zero_pole_gain(H), scale=lambda factor: 1)
 
 
-def time_constant_form(H):
+def time_constant_form(H: TransferFunctionLike) -> sympy.Expr:
     """Return H as K*(T1*s + 1).../((T2*s + 1)...), with factors `s` for poles and zeros at the origin.
 
     Factors are quadratic for complex pairs of roots, and where letters leave open whether the roots are real.
@@ -415,7 +422,9 @@ def time_constant_form(H):
 def _rebuilt(H, gain, scale):
     """The product of gain, the scaled factors of numerator and denominator, and the dead time of H."""
     above, below = ([sympy.expand(f / scale(f)) for f in _real_factors(polynomial)] for polynomial in _fraction(H))
-    return sympy.Mul(gain, *above, *(1 / factor for factor in below), *(dead_time(delay) for delay in by_delay(transfer_function(H))))
+    return sympy.Mul(
+        gain, *above, *(1 / factor for factor in below), *(dead_time(delay) for delay in by_delay(transfer_function(H)))
+    )
 
 
 def _real_factors(polynomial):
@@ -437,7 +446,7 @@ def _real_factors(polynomial):
 # ------------------------------------------------------------------------------------------------ responses
 
 
-def response(H, u):
+def response(H: TransferFunctionLike, u: Number) -> sympy.Expr:
     """Return the output y(t) of H, initially at rest, for the input u(t), an expression in `t`.
 
     Raises ValueError where H or u has no known transform.
@@ -449,7 +458,7 @@ def response(H, u):
     return inverse(transfer_function(H) * transform(u))
 
 
-def step_response(H, U=1):
+def step_response(H: TransferFunctionLike, U: Number = 1) -> sympy.Expr:
     """Return the output for a step of height U at t = 0. (Haugen, Example 5.1)
 
     >>> step_response(3 / (s + sympy.Rational(1, 2)), U=2)
@@ -458,7 +467,7 @@ def step_response(H, U=1):
     return inverse(transfer_function(H) * exact(U) / s)
 
 
-def impulse_response(H, area=1):
+def impulse_response(H: TransferFunctionLike, area: Number = 1) -> sympy.Expr:
     """Return the output for an impulse of the given area at t = 0.
 
     >>> impulse_response(first_order(2, 4))
@@ -470,7 +479,7 @@ def impulse_response(H, area=1):
 _ONE_LAG = 1 - sympy.exp(-1)
 
 
-def response_time(H, share=_ONE_LAG):
+def response_time(H: TransferFunctionLike, share: Number = _ONE_LAG) -> float:
     """Return the time at which the unit step response of H first reaches a share of its final value.
 
     The default share, 1 - 1/e or 63 %, makes it equal to the lag of a first-order system. The response is the exact

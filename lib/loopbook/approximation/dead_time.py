@@ -1,5 +1,7 @@
 """Dead time as a fraction of polynomials: Taylor, Pade, and the repeated Pade approximation of first order."""
 
+from __future__ import annotations
+
 import operator
 
 import sympy
@@ -7,9 +9,10 @@ import sympy
 from loopbook.expressions import s
 from loopbook.laplace import without_delays
 from loopbook.transfer import transfer_function
+from loopbook.types import TransferFunctionLike
 
 
-def taylor(H, order=1, inverted=False):
+def taylor(H: TransferFunctionLike, order: int = 1, inverted: bool = False) -> sympy.Expr:
     """Return H with each dead time replaced by its Taylor polynomial: exp(-delay*s) becomes 1 - delay*s + ...
 
     Arguments:
@@ -31,7 +34,7 @@ def taylor(H, order=1, inverted=False):
     return _without_dead_time(H, polynomial)
 
 
-def pade(H, order=1):
+def pade(H: TransferFunctionLike, order: int = 1) -> sympy.Expr:
     """Return H with each dead time replaced by its Pade approximation, both polynomials of the same degree.
 
     It agrees with the Taylor series of the dead time up to the power 2*order of `s`.
@@ -55,7 +58,7 @@ def pade(H, order=1):
     return _without_dead_time(H, fraction)
 
 
-def repeated_pade(H, order):
+def repeated_pade(H: TransferFunctionLike, order: int) -> sympy.Expr:
     """Return H with each dead time cut into equal parts and each part replaced by its first-order Pade approximation.
 
     It is exp(-delay*s) = ((1 - delay*s/(2*n))/(1 + delay*s/(2*n)))**n, which agrees with the Taylor series up to the
@@ -90,7 +93,7 @@ def _shortest(part, delays):
     return sympy.Min(*(sympy.Add(*(n * d for n, d in zip(term, delays.values(), strict=True))) for term in powers))
 
 
-def whole(order):
+def whole(order: int) -> int:
     """An order as an integer."""
     try:
         number = operator.index(order)

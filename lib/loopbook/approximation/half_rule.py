@@ -1,6 +1,9 @@
 """Skogestad's half rule, and his rules for zeros: from a process with many lags to a simple model."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import sympy
@@ -9,6 +12,7 @@ from loopbook.approximation.dead_time import whole
 from loopbook.approximation.model import Model, factors, sort_lags
 from loopbook.expressions import exact, s
 from loopbook.transfer import dead_time
+from loopbook.types import Number, TransferFunctionLike
 
 
 class Step(NamedTuple):
@@ -19,7 +23,9 @@ class Step(NamedTuple):
     after: sympy.Expr
 
 
-def half_rule(H, order=1, Tc=None, largest_first=None):
+def half_rule(
+    H: TransferFunctionLike, order: int = 1, Tc: Number | None = None, largest_first: Sequence[Number] | None = None
+) -> Model:
     """Return the `Model` that Skogestad's half rule finds for a process with many lags.
 
     Half of the largest neglected lag goes to the smallest lag that is kept, the other half to the dead time. All
@@ -84,7 +90,7 @@ def half_rule(H, order=1, Tc=None, largest_first=None):
     return _halved(process.K * sympy.Mul(*(gain for _, _, _, gain, _ in applied)), lags, delay, order, steps)
 
 
-def zero_rule(T0, lag, Tc):
+def zero_rule(T0: Number, lag: Number, Tc: Number) -> Step:
     """Return what Skogestad's rules T1, T1a, T1b, T2 and T3 put in place of (T0*s + 1)/(lag*s + 1).
 
     Arguments:

@@ -1,14 +1,21 @@
 """The simple model that tuning rules start from: a gain, one or two lags, and a dead time."""
 
+from __future__ import annotations
+
 import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import sympy
 
 from loopbook.expressions import equalities, exact, s, written
 from loopbook.laplace import by_delay, roots
 from loopbook.transfer import dead_time, transfer_function
+from loopbook.types import Number, TransferFunctionLike
+
+if TYPE_CHECKING:
+    from loopbook.approximation.half_rule import Step
 
 
 @dataclass(frozen=True)
@@ -36,9 +43,20 @@ class Model:
     T1: sympy.Expr = sympy.S.Zero
     T2: sympy.Expr = sympy.S.Zero
     delay: sympy.Expr = sympy.S.Zero
-    steps: tuple = field(default=(), compare=False, repr=False)
+    steps: tuple[Step, ...] = field(default=(), compare=False, repr=False)
 
-    def __post_init__(self):
+    if TYPE_CHECKING:  # numbers of any kind are given, and kept as exact ones
+
+        def __init__(
+            self,
+            K: Number,
+            T1: Number = 0,
+            T2: Number = 0,
+            delay: Number = 0,
+            steps: tuple[Step, ...] = (),
+        ): ...
+
+    def __post_init__(self) -> None:
         for name in ("K", "T1", "T2", "delay"):
             value = exact(getattr(self, name))
             object.__setattr__(self, name, value)
@@ -54,13 +72,13 @@ class Model:
             raise ValueError(f"T1 is {self.T1} and T2 is {self.T2}: expected the larger lag first")
 
     @property
-    def expr(self):
+    def expr(self) -> sympy.Expr:
         """The transfer function, an expression in `s` with exact dead time."""
         lags = sympy.Mul(*(1 / s if sympy.oo == T else 1 / (T * s + 1) for T in (self.T1, self.T2)))
         return self.K * lags * dead_time(self.delay)
 
     @property
-    def is_integrating(self):
+    def is_integrating(self) -> bool:
         """Whether the model has an integrator."""
         return sympy.oo == self.T1
 
@@ -72,11 +90,11 @@ class Model:
         symbols = {"K": "K", "T1": "T_1", "T2": "T_2", "delay": r"\mathrm{delay}"}
         return equalities({symbols[name]: value for name, value in self._shown().items()})
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"Model({', '.join(f'{name}={written(value)}' for name, value in self._shown().items())})"
 
 
-def model_of(H, largest_first=None):
+def model_of(H: TransferFunctionLike, largest_first: Sequence[Number] | None = None) -> Model:
     """Return the `Model` that H is, in whatever form it is written.
 
     Arguments:
@@ -101,11 +119,11 @@ class TimeConstants(NamedTuple):
     """The gain, and the time constants T of the factors T*s + 1 below and above the fraction bar; oo for `s` itself."""
 
     K: sympy.Expr
-    lags: list
-    zeros: list
+    lags: list[sympy.Expr]
+    zeros: list[sympy.Expr]
 
 
-def factors(H):
+def factors(H: TransferFunctionLike) -> tuple[sympy.Expr, sympy.Expr, TimeConstants]:
     """A transfer function as an expression, its dead time, and its factors, which must be of first order."""
     H = transfer_function(H)
     parts = by_delay(H)
@@ -125,7 +143,7 @@ def factors(H):
     return H, delay, TimeConstants(sympy.cancel(lowest[0] / lowest[1]), *times)
 
 
-def sort_lags(times, given):
+def sort_lags(times: Sequence[sympy.Expr], given: Sequence[Number] | None) -> list[sympy.Expr]:
     """Times sorted, the largest first, by comparing them or as they are given."""
     if given is not None:
         given = [exact(T) for T in given]

@@ -1,15 +1,19 @@
 """Direct synthesis: the controller that gives a loop the response that is wanted, if there is one."""
 
+from __future__ import annotations
+
 from collections import Counter
+from collections.abc import Iterator
 
 import sympy
 
 from loopbook.expressions import s
 from loopbook.laplace import by_delay, roots, without_delays
 from loopbook.transfer import simplified, transfer_function
+from loopbook.types import TransferFunctionLike
 
 
-def direct_synthesis(model, desired):
+def direct_synthesis(model: TransferFunctionLike, desired: TransferFunctionLike) -> sympy.Expr:
     """Return the controller that gives the loop with `model` the setpoint response `desired`.
 
     It is desired/(1 - desired)/model. Dead time stays exact: a desired response with dead time gives a controller that
@@ -82,7 +86,7 @@ def _zeros_at(p, f, most):
     return most
 
 
-def known_roots(polynomial):
+def known_roots(polynomial: sympy.Expr | sympy.Poly) -> Iterator[sympy.Expr]:
     """The roots of the factors whose roots are known: letters may stand in a factor of high degree."""
     for factor, n in sympy.Poly(polynomial, s).factor_list()[1]:
         if factor.degree() == 1:

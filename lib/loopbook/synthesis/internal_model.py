@@ -1,15 +1,23 @@
 """Internal model control: a model is split and inverted, and the controller read as a PID controller."""
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple, TypeAlias
 
 import sympy
 
 from loopbook.approximation import pade, taylor
 from loopbook.expressions import exact, s
 from loopbook.laplace import by_delay, without_delays
+from loopbook.pid import PID
 from loopbook.synthesis.direct import known_roots
 from loopbook.synthesis.settings import Match, as_pid
 from loopbook.transfer import first_order, integrator, integrator_with_lag, second_order, transfer_function
+from loopbook.types import Number, TransferFunctionLike
+
+#: What makes a rational transfer function of one with dead time, as `taylor` and `pade`.
+Approximation: TypeAlias = Callable[[TransferFunctionLike], sympy.Expr]
 
 
 class Design(NamedTuple):
@@ -39,7 +47,7 @@ class Design(NamedTuple):
         return f"<table>{''.join(rows)}</table>"
 
 
-def imc(model, Tc, approximation=taylor):
+def imc(model: TransferFunctionLike, Tc: Number, approximation: Approximation = taylor) -> PID:
     """Return the PID settings of internal model control: `imc_design` without its steps.
 
     Source: Seborg et al., Table 12.1 (Chien and Fruehauf), all of whose rows A to O come out.
@@ -52,7 +60,7 @@ def imc(model, Tc, approximation=taylor):
     return imc_design(model, Tc, approximation).match.settings
 
 
-def imc_design(model, Tc, approximation=taylor):
+def imc_design(model: TransferFunctionLike, Tc: Number, approximation: Approximation = taylor) -> Design:
     """Design a controller by internal model control, and read it as a PID controller.
 
     The dead time is approximated, and the model is split: zeros in the right half-plane remain, the rest is inverted.
@@ -161,4 +169,4 @@ def _imc_table():
 
 
 # The choices behind each row of the table of Chien and Fruehauf: the model, and what stands for its dead time.
-IMC_TABLE = _imc_table()
+IMC_TABLE: dict[str, tuple[sympy.Expr, Approximation | None]] = _imc_table()

@@ -1,5 +1,7 @@
 """PID settings of a controller: exact where it is a PID controller, and otherwise the first terms of its series."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import sympy
@@ -9,6 +11,7 @@ from loopbook.expressions import s
 from loopbook.laplace import without_delays
 from loopbook.pid import PID
 from loopbook.transfer import simplified, transfer_function
+from loopbook.types import TransferFunctionLike
 
 KINDS = ("P", "PI", "PID", "PID with filter")
 
@@ -32,12 +35,12 @@ class Match:
         return f"{self.settings._repr_latex_()}, {'exact' if self.exact else 'the first terms of a series'}"
 
     @property
-    def rest(self):
+    def rest(self) -> sympy.Expr:
         """What the PID controller lacks, an expression in `s`: 0 for an exact match."""
         return sympy.S.Zero if self.exact else simplified(self.controller - self.settings.expr)
 
 
-def as_pid(controller, kind=None):
+def as_pid(controller: TransferFunctionLike, kind: str | None = None) -> Match:
     """Read a controller as a PID controller, exactly if it is one, and otherwise by its series around s = 0.
 
     The series c[-1]/s + c[0] + c[1]*s + ... is that of Kp*(1 + 1/(Ti*s) + Td*s), for a PID with filter

@@ -1,5 +1,7 @@
 """Rules that start from an experiment in the closed loop: Good Gain, and the ultimate gain and period."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import sympy
@@ -10,9 +12,10 @@ from loopbook.expressions import exact, s
 from loopbook.inputs import one_of
 from loopbook.pid import PID
 from loopbook.tuning.checks import gain, positive, within
+from loopbook.types import Number
 
 
-def good_gain(KpGG, Tou, kind="PI"):
+def good_gain(KpGG: Number, Tou: Number, kind: str = "PI") -> PID:
     """Return the settings of the Good Gain method.
 
     Arguments:
@@ -33,7 +36,7 @@ def good_gain(KpGG, Tou, kind="PI"):
     return rules[one_of("kind", kind, rules)]
 
 
-def ziegler_nichols_ultimate(Ku, Pu, kind="PID"):
+def ziegler_nichols_ultimate(Ku: Number, Pu: Number, kind: str = "PID") -> PID:
     """Return the settings of Ziegler and Nichols from the ultimate gain and period.
 
     Arguments:
@@ -56,7 +59,7 @@ def ziegler_nichols_ultimate(Ku, Pu, kind="PID"):
     return rules[one_of("kind", kind, rules)]
 
 
-def modified_ziegler_nichols(Ku, Pu, overshoot="some"):
+def modified_ziegler_nichols(Ku: Number, Pu: Number, overshoot: str = "some") -> PID:
     """Return PID settings from the ultimate gain and period, for less overshoot than Ziegler and Nichols' own.
 
     Arguments:
@@ -74,7 +77,7 @@ def modified_ziegler_nichols(Ku, Pu, overshoot="some"):
     return rules[one_of("overshoot", overshoot, rules)]
 
 
-def tyreus_luyben(Ku, Pu, kind="PI"):
+def tyreus_luyben(Ku: Number, Pu: Number, kind: str = "PI") -> PID:
     """Return the settings of Tyreus and Luyben, calmer than those of Ziegler and Nichols.
 
     Arguments:
@@ -107,12 +110,12 @@ class WeightedPID(NamedTuple):
     w_p: sympy.Expr
 
     @property
-    def from_setpoint(self):
+    def from_setpoint(self) -> sympy.Expr:
         """The transfer function from the setpoint to the control signal, the third argument of `Loop`."""
         return self.settings.Kp * (self.w_p + 1 / (self.settings.Ti * s))
 
 
-def hang(K, Ku, Pu, extrapolate=False):
+def hang(K: Number, Ku: Number, Pu: Number, extrapolate: bool = False) -> WeightedPID:
     """Return PID settings by the refinement of Ziegler and Nichols' that weights the setpoint, as a `WeightedPID`.
 
     With k = K*Ku. From 2.25 to 15 the settings are Ziegler and Nichols', and w_p = (15 - k)/(15 + k). From 1.5 to 2.25

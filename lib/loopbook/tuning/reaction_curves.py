@@ -1,14 +1,17 @@
 """Rules for a lag with dead time, by formulas that were fitted: Ziegler and Nichols, Cohen and Coon, ITAE."""
 
+from __future__ import annotations
+
 from sympy import Rational as Q
 
 from loopbook.approximation import model_of
 from loopbook.inputs import one_of
 from loopbook.pid import PID
 from loopbook.tuning.checks import steepest_slope, within
+from loopbook.types import TransferFunctionLike
 
 
-def ziegler_nichols_reaction(model, kind="PID"):
+def ziegler_nichols_reaction(model: TransferFunctionLike, kind: str = "PID") -> PID:
     """Return the settings of Ziegler and Nichols from the reaction curve, a step response without control.
 
     Only the steepest slope of the response and the dead time count, so that a lag and an integrator with the same slope
@@ -36,7 +39,7 @@ def ziegler_nichols_reaction(model, kind="PID"):
     return rules[one_of("kind", kind, rules)]
 
 
-def cohen_coon(model, kind="PID"):
+def cohen_coon(model: TransferFunctionLike, kind: str = "PID") -> PID:
     """Return the settings of Cohen and Coon, which aim at quarter decay and a small area of the error.
 
     With r = delay/T, which is zero for an integrator. The rule was derived, and fitted, for dead times from about 0.1
@@ -77,7 +80,7 @@ _ITAE = {
 }
 
 
-def itae(model, kind="PI", mode="regulator", extrapolate=False):
+def itae(model: TransferFunctionLike, kind: str = "PI", mode: str = "regulator", extrapolate: bool = False) -> PID:
     """Return settings that nearly minimise the integral of t*abs(e), fitted for dead times of 0.1 to 1 lag.
 
     Each is A*r**B with r = delay/T, and for T/Ti after a setpoint step A + B*r. Servo settings do not suit a load, and

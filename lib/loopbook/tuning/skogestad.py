@@ -1,5 +1,7 @@
 """Skogestad's rules, derived from a model and a desired closed loop, and what follows for a process that changes."""
 
+from __future__ import annotations
+
 import sympy
 from sympy import Max, Min
 from sympy import Rational as Q
@@ -8,9 +10,10 @@ from loopbook.approximation import model_of
 from loopbook.inputs import one_of
 from loopbook.pid import PID
 from loopbook.tuning.checks import endless_time, finite_time, positive, steepest_slope
+from loopbook.types import Number, TransferFunctionLike
 
 
-def simc(model, Tc=None, c=4):
+def simc(model: TransferFunctionLike, Tc: Number | None = None, c: Number = 4) -> PID:
     """Return Skogestad's settings, of a PI or PID controller in serial form.
 
     A lag T1 and an integrator are one case, since an integrator is an endless lag with a finite slope K/T1: the rows
@@ -44,7 +47,7 @@ def simc(model, Tc=None, c=4):
     return PID(1 / (slope * total), Min(model.T1, c * total), model.T2, form="serial")
 
 
-def skogestad_integral_time(T1, Tc, delay, c=4):
+def skogestad_integral_time(T1: Number, Tc: Number, delay: Number, c: Number = 4) -> sympy.Expr:
     """Return Skogestad's integral time: the lag, but no more than c times the closed loop's time and the dead time.
 
     Arguments:
@@ -64,7 +67,7 @@ def skogestad_integral_time(T1, Tc, delay, c=4):
     return Min(T1, positive("c", c) * total)
 
 
-def closed_loop_time(model, guideline="skogestad"):
+def closed_loop_time(model: TransferFunctionLike, guideline: str = "skogestad") -> sympy.Expr | sympy.Interval:
     """Return the desired time constant Tc of the closed loop by one of three guidelines for IMC.
 
     Arguments:
@@ -95,7 +98,9 @@ def closed_loop_time(model, guideline="skogestad"):
     return sympy.Interval.open(model.delay, model.T1)
 
 
-def adjusted(settings, before, after, Tc=None, c=4):
+def adjusted(
+    settings: PID, before: TransferFunctionLike, after: TransferFunctionLike, Tc: Number | None = None, c: Number = 4
+) -> PID:
     """Return settings for a process that has changed, from those that suited it before.
 
     Each is multiplied by the ratio of Skogestad's settings after and before, in the form (serial or parallel) that the

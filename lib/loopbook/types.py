@@ -1,0 +1,69 @@
+"""Names for what many functions take, as their type hints write it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING, Protocol, TypeAlias
+
+import sympy
+
+if TYPE_CHECKING:
+    import control
+    import numpy
+
+__all__ = [
+    "Block", "HasTransferFunction", "ManualStretches", "Number", "SampledController", "Signal", "TransferFunctionLike",
+]  # fmt: skip
+
+#: A number of any kind; an expression where letters may stand.
+Number: TypeAlias = float | int | Fraction | sympy.Expr
+
+#: A signal in time: a number, an expression in `t`, or an array with a value for each sample.
+Signal: TypeAlias = "Number | Sequence[float] | numpy.ndarray"
+
+#: What `transfer_function` reads: an expression in `s`, a number, a `PID`, a `Model`, a `System`, or of python-control.
+TransferFunctionLike: TypeAlias = "Number | HasTransferFunction | control.TransferFunction | control.StateSpace"
+
+#: Stretches of time in manual mode: (beginning, end, control signal), None for the last control signal.
+ManualStretches: TypeAlias = Sequence[tuple[Number, Number, Number | None]]
+
+
+class HasTransferFunction(Protocol):
+    """What has a transfer function, an expression in `s`, as its attribute `expr`."""
+
+    @property
+    def expr(self) -> sympy.Expr:
+        """The transfer function."""
+
+
+class SampledController(Protocol):
+    """What can stand for a `pid.Controller`: it runs once a sample."""
+
+    @property
+    def step(self) -> float:
+        """The time between two samples."""
+
+    def update(
+        self, setpoint: float, measurement: float, feedforward: float = 0.0, manual: float | None = None
+    ) -> float:
+        """Take the signals of a sample and return the control signal; in manual mode `manual` is the operator's."""
+
+
+class Block(Protocol):
+    """A block of a control structure: a loop, a calculation, a split range, a chart."""
+
+    tag: str
+    reads: tuple[str, ...]
+    writes: tuple[str, ...]
+
+    @property
+    def step(self) -> Number | None:
+        """The time between two runs; None for every sample."""
+
+    @property
+    def recorded(self) -> Mapping[str, float]:
+        """Further signals of the last sample."""
+
+    def update(self, values: Mapping[str, float], time: float) -> dict[str, float]:
+        """Run once on the signals of a moment and return what it writes."""
