@@ -4,8 +4,11 @@ The letters of the textbook's Table A.1 are marked so; the others are of the sta
 diagram of the collection needs a letter that is explained nowhere.
 """
 
+from __future__ import annotations
+
 import html
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 __all__ = ["LETTERS", "Letter", "Tag", "decode", "letter_table", "loops"]
@@ -34,13 +37,13 @@ class Letter:
     noun: str = ""
     adjective: str = ""
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         plain = self.meaning.partition(" (")[0]
         object.__setattr__(self, "noun", self.noun or plain)
         object.__setattr__(self, "adjective", self.adjective or self.noun)
 
     @property
-    def column(self):
+    def column(self) -> str:
         """Its column in the textbook's table: a modifier stands with the first letters, as it belongs to them."""
         return "as first letter" if self.place in (FIRST, MODIFIER) else "as subsequent letter"
 
@@ -102,37 +105,37 @@ class Tag:
     """
 
     text: str
-    parts: tuple
+    parts: tuple[Letter, ...]
     loop: int | None
     suffix: str = ""
 
-    def at(self, place):
+    def at(self, place: str) -> tuple[Letter, ...]:
         """The parts at one kind of place."""
         return tuple(part for part in self.parts if part.place == place)
 
     @property
-    def measured(self):
+    def measured(self) -> str:
         """What is measured or what starts the action, as "flow"."""
         return self.at(FIRST)[0].meaning
 
     @property
-    def modifier(self):
+    def modifier(self) -> str:
         """What is made of the measured variable before, as "difference" or "fraction"; empty where nothing is."""
         return "".join(part.noun for part in self.at(MODIFIER))
 
     @property
-    def functions(self):
+    def functions(self) -> tuple[str, ...]:
         """What is done with it, as ("controller",) or ("indicator", "controller")."""
         return tuple(part.noun for part in self.at(FUNCTION))
 
     @property
-    def limit(self):
+    def limit(self) -> str:
         """At which limit it reacts, as "high" or "low-low"; empty where it reacts at none."""
         sides = [[part.noun for part in self.at(LIMIT) if part.letter == letter] for letter in "HL"]
         return " and ".join("-".join(side) for side in sides if side)
 
     @property
-    def words(self):
+    def words(self) -> str:
         """The tag in words.
 
         >>> decode("PDT4").words
@@ -144,7 +147,7 @@ class Tag:
         phrase = [self.limit, self.at(FIRST)[0].noun, self.modifier, *adjectives, last.noun, self.suffix]
         return " ".join(word for word in phrase if word) + ("" if self.loop is None else f" of loop {self.loop}")
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"{self.text}: {self.words}"
 
     def _repr_html_(self):
@@ -154,7 +157,7 @@ class Tag:
         return _table(("", "place", "meaning", "source"), rows, f"{self.text}: {self.words}")
 
 
-def decode(tag):
+def decode(tag: str) -> Tag:
     """Read the tag of an instrument.
 
     Arguments:
@@ -225,7 +228,7 @@ def _at(place):
     return ", ".join(entry.letter for entry in LETTERS if entry.place == place)
 
 
-def loops(tags):
+def loops(tags: Iterable[str]) -> dict[int, tuple[Tag, ...]]:
     """Sort tags by their loops: the number of a loop is the same in the tags of all its instruments.
 
     Arguments:
@@ -253,11 +256,11 @@ class LetterTable:
 
     head = ("letter", "as first letter", "as subsequent letter")
 
-    def __init__(self, entries):
+    def __init__(self, entries: Iterable[Letter]):
         self.entries = tuple(entries)
 
     @property
-    def rows(self):
+    def rows(self) -> list[tuple[str, ...]]:
         """A row for each letter: the letter and its meanings in the two columns."""
         letters = sorted({entry.letter for entry in self.entries})
         return [(letter, *(self._cell(letter, column) for column in self.head[1:])) for letter in letters]
@@ -271,7 +274,7 @@ class LetterTable:
         added = " *" if entry.source != "Table A.1" and len({entry.source for entry in self.entries}) > 1 else ""
         return place + entry.meaning + added
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         rows = [self.head, *self.rows]
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
         lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
@@ -281,7 +284,7 @@ class LetterTable:
         return _table(self.head, self.rows)
 
 
-def letter_table(source=None):
+def letter_table(source: str | None = None) -> LetterTable:
     """Return the table of the letters, to be shown as the value of a cell.
 
     Arguments:

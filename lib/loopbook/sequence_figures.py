@@ -1,6 +1,15 @@
 """Figures of a run under sequential control: analogue signals, what is on and off, and the active steps."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 from loopbook.figures import DOTS_PER_INCH, ROLES, STYLE, WIDTH, TimePlot, plain_words
+
+if TYPE_CHECKING:
+    from loopbook.sequence import Chart
+    from loopbook.simulation import Run
 
 __all__ = ["sequence_trends"]
 
@@ -8,7 +17,14 @@ ROW = 0.24  # inches, of a signal that is on or off and of a step
 BAR = 0.62  # height of a bar in its row
 
 
-def sequence_trends(run, chart, signals, on_off=None, title=None, minutes=False):
+def sequence_trends(
+    run: Run,
+    chart: Chart,
+    signals: Sequence[str | tuple[str, str]],
+    on_off: Sequence[str] | None = None,
+    title: str | None = None,
+    minutes: bool = False,
+) -> TimePlot:
     """Plot a run as the screen of a batch plant shows it: trends above, below them bars for what is on and active.
 
     Arguments:

@@ -3,21 +3,30 @@
 A signal in time is a number, an expression in `t`, or an array with a value for each sample, held until the next one.
 """
 
+from __future__ import annotations
+
 import bisect
 import math
 import numbers
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import sympy
 
 from loopbook.expressions import exact, t
 from loopbook.laplace import between_steps, evaluate
+from loopbook.types import ManualStretches, Number, Signal
+
+if TYPE_CHECKING:
+    import numpy
+    from numpy.typing import ArrayLike
 
 __all__ = ["noise", "pulse_width_modulation", "stepwise"]
 
 CLOSE = 1e-9  # two moments that are this share of a step apart are one, but for rounding
 
 
-def stepwise(start, changes):
+def stepwise(start: Number, changes: Mapping[Any, Number]) -> sympy.Expr:
     """Return a signal that is constant between steps, an expression in `t`.
 
     Arguments:
@@ -42,7 +51,7 @@ def stepwise(start, changes):
     return total
 
 
-def noise(times, deviation, seed):
+def noise(times: ArrayLike, deviation: Number, seed: int | tuple[int, ...]) -> numpy.ndarray:
     """Return normally distributed random values, one for each time, the same for the same seed.
 
     Arguments:
@@ -68,7 +77,7 @@ def noise(times, deviation, seed):
     return numpy.random.default_rng(seed).normal(0, 1, len(times)) * float(deviation)
 
 
-def pulse_width_modulation(duty, times, period):
+def pulse_width_modulation(duty: ArrayLike, times: ArrayLike, period: Number) -> numpy.ndarray:
     """Return an on/off signal, 1 or 0, that is on for the given share of each cycle. (Haugen, Section 9.1)
 
     The duty cycle of a cycle is the value of `duty` at its beginning. The signal is known at the given times only, so
@@ -110,7 +119,7 @@ def pulse_width_modulation(duty, times, period):
 # ---------------------------------------------------------------------------------------- for the simulation
 
 
-def is_number(value):
+def is_number(value: object) -> bool:
     """Whether a value is one finite real number, and no text or truth value."""
     try:
         return not isinstance(value, (bool, str)) and math.isfinite(float(value))
@@ -118,7 +127,7 @@ def is_number(value):
         return False
 
 
-def samples(name, signal, times):
+def samples(name: str, signal: Signal, times: ArrayLike) -> list[float]:
     """Return the values of a signal in time at the given times, a list.
 
     Raises ValueError, which calls the signal by its name, for a wrong length or a value that is no finite number.
@@ -147,7 +156,7 @@ def samples(name, signal, times):
     return values.tolist()
 
 
-def in_time(name, signal, times):
+def in_time(name: str, signal: Signal, times: numpy.ndarray) -> Stretches:
     """Return a signal in time as an object that knows its value at any moment."""
     import numpy
 
@@ -169,22 +178,23 @@ class Stretches:
     Before the first moment it is what its past says, another signal.
     """
 
-    past = None
+    past: Stretches | None = None
+    values: list[Any]  # numbers, and functions of time
 
-    def __init__(self, times, values, step):
+    def __init__(self, times: Iterable[float], values: list[Any], step: float):
         self.times, self.values, self.step = list(times), values, step
 
-    def around(self, time):
+    def around(self, time: float) -> float | Callable[[float], float]:
         """A number, or a function of time, that is the signal all around a moment at which it does not jump."""
         n = last_not_after(time, self.times, self.step)
         return self.past.around(time) if n < 0 else self.values[min(n, len(self.values) - 1)]
 
-    def at(self, time):
+    def at(self, time: float) -> float:
         """The value at a moment; a step has its new value."""
         value = self.around(time)
         return value(time) if callable(value) else value
 
-    def jumps(self):
+    def jumps(self) -> list[float]:
         """The moments at which the signal may jump."""
         return (self.past.jumps() if self.past else []) + self.times
 
@@ -202,7 +212,7 @@ def _changing(name, formula):
     return value
 
 
-def by_hand(manual, times):
+def by_hand(manual: ManualStretches, times: Sequence[float] | numpy.ndarray) -> list[float | None]:
     """For each sample None in automatic mode, else the operator's control signal, NaN for the last one."""
     found = [None] * len(times)
     if not isinstance(manual, (list, tuple)):
@@ -220,6 +230,6 @@ def by_hand(manual, times):
     return found
 
 
-def last_not_after(time, times, step):
+def last_not_after(time: float, times: Sequence[float], step: float) -> int:
     """The index of the last of the increasing times that is not after `time`, but for rounding; -1 if there is none."""
     return bisect.bisect_right(times, time + CLOSE * step + 1e-15 * abs(time)) - 1

@@ -5,12 +5,16 @@ by the Dormand-Prince method of order 5 (SciPy) to a relative tolerance of 1e-9.
 on any grid: the moments at which a held signal arrives late are among the discontinuities.
 """
 
+from __future__ import annotations
+
 import copy
 import inspect
 import math
 import warnings
 import weakref
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import sympy
 from sympy.core.function import AppliedUndef
@@ -19,6 +23,10 @@ from loopbook.expressions import t
 from loopbook.plants import Plant, name_of
 from loopbook.signals import CLOSE, Stretches, by_hand, in_time, is_number, last_not_after, noise, samples
 from loopbook.structures import Structure
+from loopbook.types import Block, ManualStretches, Number, SampledController, Signal
+
+if TYPE_CHECKING:
+    import numpy
 
 __all__ = ["Run", "simulate"]
 
@@ -40,20 +48,20 @@ class Run:
         measured: the name of the controlled signal, the plant's output if not said.
     """
 
-    times: object
-    signals: dict
-    plant: object
+    times: numpy.ndarray
+    signals: dict[str, numpy.ndarray]
+    plant: Plant
     manipulated: str
-    held: set
-    measured: object = None
-    _past: object = None  # what a later run needs in order to go on
+    held: set[str]
+    measured: str | None = None
+    _past: _Past | None = None  # what a later run needs in order to go on
 
     @property
-    def output(self):
+    def output(self) -> str:
         """The name of the controlled signal."""
         return self.measured or name_of(self.plant.output)
 
-    def unit(self, name):
+    def unit(self, name: str) -> str:
         """The unit of a signal of the plant, or of a setpoint, as that of the measurement; "1" for a number."""
         structure, of_plant = self._past.loop if self._past else None, {name_of(x) for x in self.plant.quantities}
         if isinstance(structure, Structure):
@@ -64,7 +72,7 @@ class Run:
                 return "%" if name in structure.split else "1"
         return self.plant.quantities[self.plant.signal(name)].unit or "1"
 
-    def loop(self, tag):
+    def loop(self, tag: str) -> Run:
         """Return the run as one loop of a control structure sees it, for `figures.trends` and the like.
 
         Raises ValueError for a tag that no loop has.
@@ -76,12 +84,12 @@ class Run:
         measured, output = loops[tag].measurement, loops[tag].output
         return replace(self, signals=self.signals | own, manipulated=output, measured=measured)
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> numpy.ndarray:
         if name not in self.signals:
             raise ValueError(f"the run has no signal {name!r}: it has {', '.join(self.signals)}")
         return self.signals[name]
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return (
             f"<run of {len(self.times)} samples, t = {self.times[0]:g} to {self.times[-1]:g}: "
             f"{', '.join(self.signals)}>"
@@ -89,9 +97,21 @@ class Run:
 
 
 def simulate(
-    plant, controller=None, *, until, step=None, setpoint=None, noise=0, seed=1, feedforward=0, scheduling=None,
-    manual=(), after=None, manipulated=None, **inputs,
-):  # fmt: skip
+    plant: Plant,
+    controller: SampledController | Sequence[Block] | None = None,
+    *,
+    until: Number,
+    step: Number | None = None,
+    setpoint: Signal | None = None,
+    noise: Signal | Mapping[str, Signal] = 0,
+    seed: int = 1,
+    feedforward: Signal = 0,
+    scheduling: Signal | None = None,
+    manual: ManualStretches | Mapping[str, ManualStretches] = (),
+    after: Run | None = None,
+    manipulated: str | sympy.Expr | None = None,
+    **inputs: Signal,
+) -> Run:
     """Simulate a plant, alone or under control.
 
     A signal in time is a number, an expression in `t` (steps as `signals.stepwise` writes them), or an array with a

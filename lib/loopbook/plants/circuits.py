@@ -1,14 +1,17 @@
 """Electrical circuits: components, resistors together, and a lowpass filter."""
 
+from __future__ import annotations
+
 import sympy
 
 from loopbook.expressions import exact, t
 from loopbook.plants.plant import Plant, parameters, signals
+from loopbook.types import Number
 
 __all__ = ["RCCircuit", "capacitor", "inductor", "resistor", "resistors_in_parallel", "resistors_in_series"]
 
 
-def resistor(v, i, R):
+def resistor(v: sympy.Expr, i: sympy.Expr, R: Number) -> sympy.Equality:
     """Ohm's law for a resistor of R [ohm]: voltage v [V], current i [A]. (Haugen, equation 3.38)
 
     >>> v, i = signals("v i")
@@ -18,7 +21,7 @@ def resistor(v, i, R):
     return sympy.Eq(v, exact(R) * i)
 
 
-def capacitor(v, i, C):
+def capacitor(v: sympy.Expr, i: sympy.Expr, C: Number) -> sympy.Equality:
     """The current into a capacitor of C [F] changes its voltage. (Haugen, equation 3.39)
 
     >>> v, i = signals("v i")
@@ -28,7 +31,7 @@ def capacitor(v, i, C):
     return sympy.Eq(i, exact(C) * sympy.diff(v, t))
 
 
-def inductor(v, i, L):
+def inductor(v: sympy.Expr, i: sympy.Expr, L: Number) -> sympy.Equality:
     """The voltage over an inductor of L [H] changes its current. (Haugen, equation 3.40)
 
     >>> v, i = signals("v i")
@@ -38,7 +41,7 @@ def inductor(v, i, L):
     return sympy.Eq(v, exact(L) * sympy.diff(i, t))
 
 
-def resistors_in_series(*resistances):
+def resistors_in_series(*resistances: Number) -> sympy.Expr:
     """The resistance of resistors in series: their sum. (Haugen, equation 3.36)
 
     >>> resistors_in_series(100, 300)
@@ -47,7 +50,7 @@ def resistors_in_series(*resistances):
     return sympy.Add(*map(exact, resistances))
 
 
-def resistors_in_parallel(*resistances):
+def resistors_in_parallel(*resistances: Number) -> sympy.Expr:
     """The resistance of resistors in parallel: their conductances add up. (Haugen, equation 3.37)
 
     >>> resistors_in_parallel(100, 300)

@@ -1,6 +1,9 @@
 """A plant: its equations and its quantities stated once, everything else derived from them."""
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 import sympy
 from sympy.core.function import AppliedUndef
@@ -9,6 +12,7 @@ from sympy.polys.matrices import DomainMatrix
 
 from loopbook.expressions import exact, s, t
 from loopbook.transfer import simplified
+from loopbook.types import Number
 
 __all__ = ["Plant", "Quantity", "name_of", "parameters", "signals"]
 
@@ -19,17 +23,17 @@ class Quantity(NamedTuple):
     A measured signal has None for a value, which follows from the others.
     """
 
-    value: object
+    value: Number | None
     unit: str
     meaning: str
 
 
-def signals(names):
+def signals(names: str) -> tuple[AppliedUndef, ...]:
     """The functions of time with these names, as ``T(t)``."""
     return tuple(sympy.Function(name)(t) for name in names.split())
 
 
-def parameters(names):
+def parameters(names: str) -> tuple[sympy.Symbol, ...]:
     """The letters with these names; parameters are positive."""
     return tuple(sympy.Symbol(name, positive=True) for name in names.split())
 
@@ -56,18 +60,21 @@ class Plant:
             state outside its limits.
     """
 
-    model = ()
-    output = manipulated = None
-    quantities = {}
-    limits = {}
-    balances = {}
+    # a class states its model and its quantities in short, and has them in full afterwards
+    model: tuple[sympy.Equality, ...] | Any = ()
+    output: sympy.Expr | Any = None
+    manipulated: sympy.Expr | Any = None
+    quantities: Mapping[sympy.Expr, Quantity | Any] = {}
+    limits: Mapping[sympy.Expr, tuple[Number, Number]] = {}
+    balances: Mapping[str, tuple[sympy.Expr, sympy.Expr]] = {}
+    values: dict[sympy.Expr, sympy.Expr]
 
-    def __init_subclass__(cls):
+    def __init_subclass__(cls) -> None:
         super().__init_subclass__()
         cls.model = (cls.model,) if isinstance(cls.model, sympy.Equality) else tuple(cls.model)
         cls.quantities = {letter: Quantity(*row) for letter, row in cls.quantities.items()}
 
-    def __init__(self, **values):
+    def __init__(self, **values: Number):
         known = {name_of(letter): letter for letter in self.quantities}
         measured = {name_of(x): f for x, f in self.measured.items()}
         for name in values:
@@ -101,7 +108,7 @@ class Plant:
             raise ValueError(f"{name} is {value}: expected a parameter that is not negative")
         return value
 
-    def __setattr__(self, name, value):
+    def __setattr__(self, name: str, value: object) -> None:
         if name in {name_of(letter) for letter in self.quantities}:
             given = f"{type(self).__name__}({name}={value})"
             raise ValueError(f"{name} cannot be changed: make another plant, {given}")
@@ -110,7 +117,7 @@ class Plant:
     # -------------------------------------------------------------------------------------------- what it consists of
 
     @property
-    def states(self):
+    def states(self) -> list[sympy.Expr]:
         """The signals whose derivatives the balance laws give; of a second derivative, the first is a state too."""
         orders = {}
         for derivative in sympy.Tuple(*self.model).atoms(sympy.Derivative):
@@ -118,23 +125,23 @@ class Plant:
         return [x.diff(t, n) for x in self.quantities if x in orders for n in range(orders[x])]
 
     @property
-    def inputs(self):
+    def inputs(self) -> list[sympy.Expr]:
         """The signals that drive the plant, in the order of its table."""
         inside = {x.subs(x.args[0], t) for x in sympy.Tuple(*self.model).atoms(AppliedUndef)}
         followed = {*self.states, *self.measured}
         return [x for x in self.quantities if x in inside and x not in followed]
 
     @property
-    def parameters(self):
+    def parameters(self) -> list[sympy.Symbol]:
         """The letters of the plant, in the order of its table."""
         return [letter for letter in self.quantities if letter.is_Symbol]
 
     @property
-    def measured(self):
+    def measured(self) -> dict[sympy.Expr, sympy.Expr]:
         """What the equations without derivatives say: ``{measured signal: formula}``."""
         return {equation.lhs: equation.rhs for equation in self.model if not equation.has(sympy.Derivative)}
 
-    def signal(self, name):
+    def signal(self, name: str | sympy.Expr) -> sympy.Expr:
         """Return the signal with this name, as ``T(t)`` for "T"; a signal itself is returned as it is.
 
         Raises ValueError for a name that is no signal of the plant.
@@ -148,7 +155,7 @@ class Plant:
 
     # ---------------------------------------------------------------------------------------- what follows from it
 
-    def state_equations(self):
+    def state_equations(self) -> dict[sympy.Expr, sympy.Expr]:
         """Return ``{state: its derivative}``, the state-space model. (Haugen, equations 2.5 and 2.6)
 
         >>> from loopbook.plants import MassSpringDamper
@@ -168,7 +175,7 @@ class Plant:
             raise ValueError(f"the equations of {type(self).__name__} do not determine {highest}")
         return {x: solved[0].get(x.diff(t), x.diff(t)) for x in states}
 
-    def static_response(self, *unknowns):
+    def static_response(self, *unknowns: str | sympy.Expr) -> dict[sympy.Symbol, sympy.Expr]:
         """Return the steady state: the balance laws with all derivatives set to zero, solved. (Haugen, Section 2.5)
 
         Arguments:
@@ -197,7 +204,7 @@ class Plant:
             )
         return solved[0]
 
-    def linear_model(self):
+    def linear_model(self) -> tuple[sympy.Matrix, sympy.Matrix, sympy.Matrix, sympy.Matrix]:
         """Return the matrices A, B, C, D of the model linearised at a steady state, in letters.
 
         With small changes dx of the states, du of the inputs and dy of the output, dx' = A dx + B du and
@@ -218,7 +225,9 @@ class Plant:
             for among in (states, self.inputs)
         )
 
-    def transfer_function(self, source=None, output=None, numbers=False):
+    def transfer_function(
+        self, source: str | sympy.Expr | None = None, output: str | sympy.Expr | None = None, numbers: bool = False
+    ) -> sympy.Expr:
         """Derive the transfer function from an input to the output, at a steady state for a plant that is not linear.
 
         Arguments:
@@ -283,7 +292,7 @@ class Plant:
             before, after = more_before, more_after
         return before & after
 
-    def numbers(self, *expressions):
+    def numbers(self, *expressions: Number | sympy.Equality | sympy.MatrixBase) -> Any:
         """Put the plant's values in for its letters: parameters, and signals at the operating point (T, but not T(t)).
 
         Arguments:
@@ -310,7 +319,7 @@ class Plant:
 
     # ----------------------------------------------------------------------------------------------- how it is shown
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         values = ", ".join(f"{name_of(letter)}={_short(value)}" for letter, value in self.values.items())
         return f"{type(self).__name__}({values})"
 
@@ -324,7 +333,7 @@ class Plant:
         return f"<table><caption>{title}</caption>{''.join(rows)}</table>"
 
 
-def name_of(x):
+def name_of(x: sympy.Expr) -> str:
     """How a quantity is called in Python: T for T(t)."""
     if x.is_Derivative:
         return f"{name_of(x.expr)}_{'dot' * x.derivative_count}"

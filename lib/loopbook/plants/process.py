@@ -1,10 +1,13 @@
 """A plant with any transfer function."""
 
+from __future__ import annotations
+
 import sympy
 
 from loopbook.expressions import t
 from loopbook.plants.plant import Plant, Quantity, signals
 from loopbook.transfer import polynomials
+from loopbook.types import TransferFunctionLike
 
 __all__ = ["Process"]
 
@@ -22,7 +25,7 @@ class Process(Plant):
     3*exp(-2*s)/(4*s + 1)
     """
 
-    def __init__(self, H):
+    def __init__(self, H: TransferFunctionLike):
         above, below, delay = polynomials(H)
         above, below = ([c / below.LC() for c in polynomial.all_coeffs()] for polynomial in (above, below))
         order = len(below) - 1

@@ -21,12 +21,17 @@ one source and one target (several sources are alternatives), and parallel state
 such as SNAKES have every convergence, but clear one transition at a time, without scan and priority.
 """
 
+from __future__ import annotations
+
 import copy
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 from loopbook.inputs import number, positive
 from loopbook.sequence import checks
 from loopbook.sequence.formulas import Formula
 from loopbook.sequence.transitions import Transition
+from loopbook.types import Number
 
 __all__ = ["Chart", "Scans", "scan_by_scan"]
 
@@ -65,7 +70,22 @@ class Chart:
     {'light': 1.0} ('Bright',)
     """
 
-    def __init__(self, inputs, outputs, steps, initial, transitions, final=(), tag="SFC", step=None):
+    reads: tuple[str, ...]
+    writes: tuple[str, ...]
+    active: tuple[str, ...]
+    markings: checks.Markings
+
+    def __init__(
+        self,
+        inputs: str | Iterable[str],
+        outputs: Mapping[str, Number],
+        steps: Mapping[str, Mapping[str, Number | str]],
+        initial: str | Sequence[str],
+        transitions: Iterable[Transition | Sequence[Any]],
+        final: str | Iterable[str] = (),
+        tag: str = "SFC",
+        step: Number | None = None,
+    ):
         inputs = checks.several("the inputs", inputs, "names of signals")
         checks.kinds(outputs, steps, tag, step)
         checks.names(inputs, outputs, steps)
@@ -93,7 +113,7 @@ class Chart:
         self.active, self._stored = (), {name: float(x) for name, x in self.outputs.items()}
         self._since, self._lasted = {}, {}  # when a step was activated, and its time when it became passive
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<chart {self.tag}: {len(self.steps)} steps, {len(self.transitions)} transitions>"
 
     def _known(self, formula):
@@ -123,11 +143,11 @@ class Chart:
         return found
 
     @property
-    def recorded(self):
+    def recorded(self) -> dict[str, float]:
         """Which steps are active, as 1 and 0, by their names in a run."""
         return {f"{self.tag}.{step}": float(step in self.active) for step in self.steps}
 
-    def take_over(self, earlier):
+    def take_over(self, earlier: Chart) -> None:
         """Go on where the same chart, maybe with other conditions, has stopped in an earlier run.
 
         Raises:
@@ -138,7 +158,7 @@ class Chart:
         self.active, self._since, self._lasted = earlier.active, dict(earlier._since), dict(earlier._lasted)
         self._stored |= {name: value for name, value in earlier._stored.items() if name in self._stored}
 
-    def update(self, values, time):
+    def update(self, values: Mapping[str, float], time: float) -> dict[str, float]:
         """Run one scan and return the outputs.
 
         Arguments:
@@ -193,10 +213,10 @@ class Scans:
         active: the names of the active steps after each scan.
     """
 
-    def __init__(self, heads, rows, active):
+    def __init__(self, heads: tuple[str, ...], rows: list[tuple[str, ...]], active: list[tuple[str, ...]]):
         self.heads, self.rows, self.active = heads, rows, active
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         table = [self.heads, *self.rows]
         widths = [max(len(row[n]) for row in table) for n in range(len(self.heads))]
         return "\n".join("  ".join(f"{x:<{n}}" for x, n in zip(row, widths, strict=True)).rstrip() for row in table)
@@ -207,7 +227,9 @@ class Scans:
         return f"<table><tr>{head}</tr>{body}</table>"
 
 
-def scan_by_scan(chart, step=1, scans=None, **inputs):
+def scan_by_scan(
+    chart: Chart, step: Number = 1, scans: int | None = None, **inputs: Number | Sequence[Number]
+) -> Scans:
     """Run a chart by itself, with given inputs, and show each scan.
 
     Arguments:

@@ -5,17 +5,29 @@ taken as free. Where every situation in which single transitions are cleared one
 clearing several at once, because these have no step in common.
 """
 
+from __future__ import annotations
+
 import keyword
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from loopbook.inputs import positive
+from loopbook.types import Number
+
+if TYPE_CHECKING:
+    from loopbook.sequence.chart import Chart
+    from loopbook.sequence.transitions import Transition
 
 __all__ = ["MOST_MARKINGS", "reachable_markings"]
+
+Marking: TypeAlias = frozenset[str]
+Markings: TypeAlias = "dict[Marking, list[tuple[Transition, Marking]]]"
 
 MOST_MARKINGS = 20_000
 RESERVED = {"AND", "OR", "NOT", "XOR", "MOD", "TRUE", "FALSE"}
 
 
-def kinds(outputs, steps, tag, step):
+def kinds(outputs: Mapping[str, Any], steps: Mapping[str, Any], tag: str, step: Number | None) -> None:
     """Check what kinds of things a chart is made of."""
     if not isinstance(outputs, dict):
         raise ValueError(f"the outputs are {outputs!r}: expected {{name: value before the start}}")
@@ -29,7 +41,7 @@ def kinds(outputs, steps, tag, step):
         positive("the step of the scans", step)
 
 
-def several(what, values, expected):
+def several(what: str, values: str | Iterable[Any], expected: str) -> tuple[Any, ...]:
     """The values as a tuple; a text is one with blanks between names."""
     try:
         return tuple(values.split() if isinstance(values, str) else values)
@@ -37,7 +49,7 @@ def several(what, values, expected):
         raise ValueError(f"{what} are {values!r}: expected {expected}") from None
 
 
-def names(inputs, outputs, steps):
+def names(inputs: Sequence[str], outputs: Mapping[str, Any], steps: Mapping[str, Any]) -> None:
     """Check the names of signals and steps, and that none is used for two things."""
     for what, group in (("input", inputs), ("output", outputs), ("step", steps)):
         for name in group:
@@ -54,7 +66,7 @@ def names(inputs, outputs, steps):
         raise ValueError(f"{both[0]} is a signal and a step of the chart: expected two names")
 
 
-def initial_step(initial, steps):
+def initial_step(initial: str | Sequence[str], steps: Mapping[str, Any]) -> str:
     """The one initial step."""
     found = tuple(initial) if isinstance(initial, (list, tuple, set)) else (initial,) if initial is not None else ()
     if not found:
@@ -66,7 +78,7 @@ def initial_step(initial, steps):
     return found[0]
 
 
-def connections(chart):
+def connections(chart: Chart) -> None:
     """Check that every step can be left and come into, as far as single transitions show it."""
     for transition in chart.transitions:
         for step in (*transition.sources, *transition.targets):
@@ -93,7 +105,7 @@ def connections(chart):
         earlier.append((transition, condition))
 
 
-def reachable_markings(chart):
+def reachable_markings(chart: Chart) -> Markings:
     """Find all sets of steps that can be active together, with the conditions taken as free.
 
     Arguments:
@@ -128,7 +140,7 @@ def reachable_markings(chart):
     return found
 
 
-def situations(chart):
+def situations(chart: Chart) -> Markings:
     """Check that every step and transition can have its turn, and that the chart stops in final steps alone."""
     markings = reachable_markings(chart)
     enabled = {transition for ways in markings.values() for transition, _ in ways}
@@ -152,7 +164,7 @@ def situations(chart):
     return markings
 
 
-def closing(markings):
+def closing(markings: Markings) -> list[list[Marking]]:
     """The groups of markings that a chart never leaves: one in which it stops, or several through which it goes on."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
@@ -170,7 +182,7 @@ def closing(markings):
     return list(found.values())
 
 
-def listed(names, last=","):
+def listed(names: Iterable[str], last: str = ",") -> str:
     """Names as they are read: A, B and C."""
     *others, final = names
     if not others:

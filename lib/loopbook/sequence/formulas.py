@@ -4,10 +4,13 @@
 kinds of nodes that stand in this module: nothing else can be written, and nothing is ever given to `eval`.
 """
 
+from __future__ import annotations
+
 import ast
 import numbers
 import operator
 import re
+from collections.abc import Mapping
 
 __all__ = ["Formula"]
 
@@ -45,7 +48,11 @@ class Formula:
     (('h', 'stop'), True)
     """
 
-    def __init__(self, text, owner="the formula"):
+    text: str
+    names: tuple[str, ...]
+    kind: str
+
+    def __init__(self, text: str | bool, owner: str = "the formula"):
         self.owner = owner
         if isinstance(text, bool):
             text = str(text).upper()
@@ -65,28 +72,28 @@ class Formula:
             raise ValueError(f"{owner} is {self.text!r}: expected a formula such as {EXAMPLE}") from None
         self.names = tuple(dict.fromkeys(found))
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"Formula({self.text!r})"
 
     @property
-    def constant(self):
+    def constant(self) -> bool | float | None:
         """The value of a formula without names, else None."""
         return None if self.names else self.value({})
 
-    def condition(self):
+    def condition(self) -> Formula:
         """Return the formula if it is TRUE or FALSE, else raise ValueError."""
         if self.kind == "number":
             raise ValueError(f"{self.owner} is {self.text!r}, a number: expected a condition such as {EXAMPLE}")
         return self
 
-    def value(self, values):
+    def value(self, values: Mapping[str, float]) -> bool | float:
         """Return the value, True or False for a condition, for values of the names in it."""
         try:
             return self._function(values)
         except ZeroDivisionError:
             raise ValueError(f"{self.owner} is {self.text!r}, which divides by zero here") from None
 
-    def true(self, values):
+    def true(self, values: Mapping[str, float]) -> bool:
         """Tell whether a condition holds."""
         return self._truth((self.kind, self._function))(values)
 

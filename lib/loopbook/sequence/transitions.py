@@ -1,6 +1,10 @@
 """A transition: the steps before it, the steps after it, and the condition on which it is cleared."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 __all__ = ["Transition"]
 
@@ -20,11 +24,17 @@ class Transition:
     'T_Heat_Dose_Discharge'
     """
 
-    sources: tuple
-    targets: tuple
+    sources: tuple[str, ...]
+    targets: tuple[str, ...]
     condition: str = "TRUE"
 
-    def __post_init__(self):
+    if TYPE_CHECKING:  # what is given, where what is kept is of one kind
+
+        def __init__(
+            self, sources: str | Sequence[str], targets: str | Sequence[str], condition: str | bool = "TRUE"
+        ): ...
+
+    def __post_init__(self) -> None:
         for side in ("sources", "targets"):
             steps = getattr(self, side)
             steps = tuple(steps) if isinstance(steps, (list, tuple)) else (steps,)
@@ -37,9 +47,9 @@ class Transition:
             object.__setattr__(self, "condition", str(self.condition).upper())
 
     @property
-    def name(self):
+    def name(self) -> str:
         """How the book names it: T_Step1_Step2."""
         return "_".join(["T", *self.sources, *self.targets])
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"{self.name}: {self.condition}"

@@ -1,15 +1,18 @@
 """The action of a controller, from the process that it controls."""
 
+from __future__ import annotations
+
 import sympy
 
 from loopbook.expressions import function_of, s
 from loopbook.laplace import by_delay
 from loopbook.transfer import poles, simplified
+from loopbook.types import Number
 
 __all__ = ["controller_action"]
 
 
-def controller_action(process):
+def controller_action(process: Number) -> str:
     """Return the action that a controller needs for a process: "reverse" or "direct". (Haugen, Section 7.3.3)
 
     The sign of the process gain decides, the limit of s**n H(s) at s = 0 with the number n of integrators: where the

@@ -4,7 +4,11 @@ A block has a tag, the names that it reads and writes, a step (None: every sampl
 returns {name: number}; `recorded` holds further signals of the last sample.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, ClassVar
 
 import sympy
 from sympy.core.function import AppliedUndef
@@ -14,6 +18,11 @@ from loopbook.inputs import number
 from loopbook.pid import Controller
 from loopbook.scaling import Scaling
 from loopbook.signals import is_number
+from loopbook.types import Number, SampledController
+
+if TYPE_CHECKING:
+    import numpy
+    from numpy.typing import ArrayLike
 
 __all__ = ["Calculation", "ControlLoop", "SplitRange"]
 
@@ -41,9 +50,25 @@ class ControlLoop:
     <LC1: h at 1.5 by u>
     """
 
+    reads: tuple[str, ...]
+    writes: tuple[str, ...]
+    recorded: dict[str, float]
+    inner: ControlLoop | None
+    operator: float | None
+    following: tuple[str, ...]
+
     def __init__(
-        self, tag, controller, setpoint, measurement, output, feedforward=None, scheduling=None, mode=None, manual=None
-    ):  # fmt: skip
+        self,
+        tag: str,
+        controller: SampledController,
+        setpoint: str | Number,
+        measurement: str,
+        output: str,
+        feedforward: str | None = None,
+        scheduling: str | None = None,
+        mode: str | None = None,
+        manual: Number | None = None,
+    ):
         if not (hasattr(controller, "update") and is_number(getattr(controller, "step", None))):
             raise ValueError(f"the controller is {controller!r}: expected one such as Controller(PID(2, 10), step=1)")
         self.tag, self.controller, self.step = _name("tag", tag), controller, controller.step
@@ -59,7 +84,7 @@ class ControlLoop:
         self.inner, self.operator, self.recorded = None, None, {}
         self.following = ()  # what an outer loop must know of this one in order to follow it
 
-    def in_manual(self, values):
+    def in_manual(self, values: Mapping[str, float]) -> float | None:
         """The output that is prescribed in this sample, None in automatic mode.
 
         An outer loop follows the inner one's measurement while that does not listen, so that nothing jumps when it
@@ -73,7 +98,7 @@ class ControlLoop:
             return self.manual
         return None
 
-    def update(self, values, time):
+    def update(self, values: Mapping[str, float], time: float) -> dict[str, float]:
         """Run the controller once and return ``{output: value}``."""
         manual = self.in_manual(values)
         if self.inner is not None:  # do not integrate beyond what the inner loop can do
@@ -89,7 +114,7 @@ class ControlLoop:
             self.recorded |= {f"{self.tag}.{name}": value for name, value in terms.items()}
         return {self.output: u}
 
-    def stuck(self):
+    def stuck(self) -> int:
         """Which way the setpoint has no effect any more, +1 up or -1 down, because the output is at a limit; else 0."""
         controller = self.controller
         if not isinstance(controller, Controller) or controller.u is None:
@@ -100,7 +125,7 @@ class ControlLoop:
             direction = self.inner.stuck()
         return int(math.copysign(direction, direction * controller.Kp)) if direction else 0
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<{self.tag}: {self.measurement} at {self.setpoint} by {self.output}>"
 
 
@@ -118,9 +143,12 @@ class Calculation:
     {'F_BSP': 6.0}
     """
 
-    step, recorded = None, {}
+    reads: tuple[str, ...]
+    writes: tuple[str, ...]
+    step: ClassVar[None] = None
+    recorded: ClassVar[dict[str, float]] = {}
 
-    def __init__(self, output, formula):
+    def __init__(self, output: str, formula: Number):
         self.tag = self.output = _name("output", output)
         self.formula = exact(formula)
         of_plant = self.formula.atoms(AppliedUndef)
@@ -132,16 +160,16 @@ class Calculation:
         self.reads, self.writes = tuple(map(str, letters)), (self.output,)
         self.function = sympy.lambdify(letters, self.formula, "math")
 
-    def __deepcopy__(self, memory):
+    def __deepcopy__(self, memory: dict) -> Calculation:
         return self  # it remembers nothing
 
-    def update(self, values, time):
+    def update(self, values: Mapping[str, float], time: float) -> dict[str, float]:
         try:
             return {self.output: float(self.function(*(values[name] for name in self.reads)))}
         except (ArithmeticError, ValueError, TypeError, NameError):  # the last two: complex, or not for numbers
             raise ValueError(f"{self.output} = {self.formula} has no value at t = {time:g}") from None
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<{self.output} = {self.formula}>"
 
 
@@ -160,9 +188,12 @@ class SplitRange:
     {'u_cold': 0.0, 'u_hot': 20.0}
     """
 
-    step, recorded = None, {}
+    reads: tuple[str, ...]
+    writes: tuple[str, ...]
+    step: ClassVar[None] = None
+    recorded: ClassVar[dict[str, float]] = {}
 
-    def __init__(self, signal, actuators):
+    def __init__(self, signal: str, actuators: Mapping[str, tuple[Sequence[Number], Sequence[Number]]]):
         self.tag = "split range of " + _name("signal", signal)
         if not isinstance(actuators, dict) or not actuators:
             raise ValueError(f"the actuators are {actuators!r}: expected {{input: (range, openings)}}")
@@ -176,18 +207,18 @@ class SplitRange:
             self.lines[_name("actuator", name)] = float(line.a), float(line.b), sorted(map(float, openings))
         self.reads, self.writes = (signal,), tuple(actuators)
 
-    def openings(self, u):
+    def openings(self, u: ArrayLike) -> dict[str, float | numpy.ndarray]:
         """The openings for a control signal, a number or an array: ``{input: opening}``."""
         import numpy
 
         found = {name: numpy.clip(a * numpy.asarray(u) + b, *ends) for name, (a, b, ends) in self.lines.items()}
         return {name: x if x.ndim else float(x) for name, x in found.items()}
 
-    def update(self, values, time):
+    def update(self, values: Mapping[str, float], time: float) -> dict[str, float]:
         u = values[self.signal]
         return {name: min(max(a * u + b, low), high) for name, (a, b, (low, high)) in self.lines.items()}
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<{self.tag}: {', '.join(self.writes)}>"
 
 

@@ -1,9 +1,17 @@
 """A control structure while it runs: the order of its blocks, their signals, and what they remember."""
 
+from __future__ import annotations
+
 import copy
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
 
 from loopbook.signals import by_hand, is_number, noise, samples
 from loopbook.structures.blocks import ControlLoop, SplitRange
+from loopbook.types import Block, ManualStretches, Signal
+
+if TYPE_CHECKING:
+    import numpy
 
 __all__ = ["Structure"]
 
@@ -19,7 +27,12 @@ class Structure:
         ValueError: for two blocks with the same tag or the same output, or one that would write what the plant says.
     """
 
-    def __init__(self, blocks, of_plant, inputs):
+    loops: dict[str, ControlLoop]
+    driven: list[str]
+    external: list[str]
+    record: dict[str, list[float]]
+
+    def __init__(self, blocks: Iterable[Block], of_plant: Iterable[str], inputs: Iterable[str]):
         self.blocks, self.of_plant, self.inputs = copy.deepcopy(list(blocks)), list(of_plant), list(inputs)
         writer = {}
         for block in self.blocks:
@@ -56,21 +69,28 @@ class Structure:
         return external
 
     @property
-    def measurement_of(self):
+    def measurement_of(self) -> dict[str, str]:
         """``{setpoint: measurement}``, for the names that are setpoints."""
         return {loop.setpoint: loop.measurement for loop in self.loops.values() if not is_number(loop.setpoint)}
 
     @property
-    def split(self):
+    def split(self) -> list[str]:
         """The names of the signals that are shared out among actuators."""
         return [block.signal for block in self.blocks if isinstance(block, SplitRange)]
 
     @property
-    def step(self):
+    def step(self) -> float | None:
         """The shortest step of its blocks, None if none has one."""
         return min((float(block.step) for block in self.blocks if block.step is not None), default=None)
 
-    def prepare(self, times, signals, added_noise, seed, manual):
+    def prepare(
+        self,
+        times: numpy.ndarray,
+        signals: Mapping[str, Signal],
+        added_noise: Signal | Mapping[str, Signal],
+        seed: int,
+        manual: ManualStretches | Mapping[str, ManualStretches],
+    ) -> None:
         """Take the external signals, the noise and the stretches in manual mode for the moments of a run."""
         for name in signals:
             if name not in self.external:
@@ -115,7 +135,7 @@ class Structure:
             raise ValueError(f"{block.tag} runs every {block.step:g}: expected a whole multiple of the step {step:g}")
         return every
 
-    def continue_after(self, earlier, last):
+    def continue_after(self, earlier: object, last: Mapping[str, float]) -> None:
         """Take over the memory of an earlier run's blocks; without one, loops begin from the last control signals."""
         before = earlier.before_last if isinstance(earlier, Structure) else {}
         for block in self.blocks:
@@ -133,11 +153,11 @@ class Structure:
             self.k0, self.values = round(earlier.phase * earlier.interval / self.interval), dict(earlier.values)
 
     @property
-    def phase(self):
+    def phase(self) -> int:
         """How many samples have passed at the beginning of the last one."""
         return self.k0 + self.k - 1
 
-    def sample(self, readings):
+    def sample(self, readings: dict[str, float]) -> dict[str, float]:
         """Run the blocks once on the plant's signals of this moment, and return ``{input: value}``."""
         k, self.k = self.k, self.k + 1
         time = self.times[k]
