@@ -1,11 +1,19 @@
 """An adaptive controller: its settings follow from a model that is estimated while it works. (Haugen, Figure 10.18)"""
 
+from __future__ import annotations
+
 from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 from loopbook.identification.recursive import RecursiveLeastSquares, first_order_of
 from loopbook.inputs import not_negative, positive
 from loopbook.pid import Controller
 from loopbook.tuning import simc
+from loopbook.types import Number
+
+if TYPE_CHECKING:
+    from loopbook.approximation import Model
+    from loopbook.pid import PID
 
 
 class AdaptiveController(Controller):
@@ -36,9 +44,22 @@ class AdaptiveController(Controller):
     True
     """
 
+    model: Model | None
+    estimator: RecursiveLeastSquares
+
     recorded = ("Kp", "Ti")  # what a simulation notes besides the signals
 
-    def __init__(self, settings, step, delay, Tc=None, c=4, forgetting=0.99, wait=20, **options):
+    def __init__(
+        self,
+        settings: PID,
+        step: Number,
+        delay: Number,
+        Tc: Number | None = None,
+        c: Number = 4,
+        forgetting: Number = 0.99,
+        wait: int = 20,
+        **options: Any,
+    ):
         super().__init__(settings, step, **options)
         self.whole_delay = round(not_negative("the dead time", delay) / self.step)
         self.Tc = None if Tc is None else not_negative("the time constant Tc", Tc)
@@ -48,7 +69,9 @@ class AdaptiveController(Controller):
         self.estimator, self.scale = RecursiveLeastSquares(3, forgetting), abs(self.Kp) or 1.0
         self.model, self.last, self.inputs = None, None, []
 
-    def update(self, setpoint, measurement, feedforward=0.0, manual=None):
+    def update(
+        self, setpoint: Number, measurement: Number, feedforward: Number = 0.0, manual: Number | None = None
+    ) -> float:
         """Take the signals of this sample, learn from them, and return the control signal."""
         # in units of the control signal, so that a, b and c are learnt alike in all units of the measurement
         y, known = self.scale * self._in_percent(float(measurement)), self.inputs
@@ -69,7 +92,7 @@ class AdaptiveController(Controller):
             settings = simc(self.model, self.Tc, self.c)
             self.change(replace(settings, Kp=-settings.Kp) if self.action == "direct" else settings)
 
-    def take_over(self, other):
+    def take_over(self, other: Controller) -> None:
         super().take_over(other)
         if isinstance(other, AdaptiveController):
             self.estimator, self.scale, self.model = other.estimator, other.scale, other.model

@@ -1,13 +1,22 @@
 """The Good Gain experiment: a P controller whose step response has an undershoot that is barely observable."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from loopbook.deadtime import Loop
 from loopbook.identification.records import record
 from loopbook.inputs import number, positive
 from loopbook.pid import PID
 from loopbook.stability import ultimate
+from loopbook.types import Number, TransferFunctionLike
+
+if TYPE_CHECKING:
+    import numpy
+    from numpy.typing import ArrayLike
 
 BARELY = 0.05  # the undershoot that is barely observable, as a share of the change of the measurement
 PERIODS = 8  # of the loop on the limit of stability, for which a response is followed
@@ -28,17 +37,17 @@ class GoodGain:
     Tou: float
     overshoot: float
     undershoot: float
-    times: object
-    y: object
+    times: numpy.ndarray
+    y: numpy.ndarray
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return (
             f"<Good Gain: KpGG = {self.KpGG:.4g}, Tou = {self.Tou:.4g}, "
             f"overshoot {self.overshoot:.1%}, undershoot {self.undershoot:.1%}>"
         )
 
 
-def swing(times, y, final=None):
+def swing(times: ArrayLike, y: ArrayLike, final: Number | None = None) -> tuple[float, float, float]:
     """Return overshoot, undershoot and the time between the two, of the response to a step.
 
     Both are counted from the final value, as shares of the whole change. The undershoot is the lowest point after the
@@ -78,7 +87,11 @@ def swing(times, y, final=None):
     return float(share[top] - 1), float(1 - share[bottom]), float(times[bottom] - times[top])
 
 
-def good_gain_experiment(process, undershoot=BARELY, highest=None):
+def good_gain_experiment(
+    process: TransferFunctionLike | Callable[[float], Sequence[Any]],
+    undershoot: Number = BARELY,
+    highest: Number | None = None,
+) -> GoodGain:
     """Find the gain of a P controller with which the step response has a barely observable undershoot.
 
     Barely observable means here: the undershoot after the first overshoot is 5 % of the change of the measurement, so

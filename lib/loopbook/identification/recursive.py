@@ -4,12 +4,19 @@ The estimator itself is four lines, and there is none in SciPy or python-control
 (padasip) have one for signals; they know neither the covariance nor the way back to a continuous model.
 """
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
 from loopbook.approximation import Model
-from loopbook.inputs import real_numbers
 from loopbook.expressions import exact
-from loopbook.inputs import number, positive
+from loopbook.inputs import number, positive, real_numbers
+from loopbook.types import Number
+
+if TYPE_CHECKING:
+    import numpy
+    from numpy.typing import ArrayLike
 
 
 class RecursiveLeastSquares:
@@ -39,7 +46,17 @@ class RecursiveLeastSquares:
     array([3., 5.])
     """
 
-    def __init__(self, count, forgetting=1.0, initial=None, uncertainty=1e6, largest=None):
+    parameters: numpy.ndarray
+    covariance: numpy.ndarray
+
+    def __init__(
+        self,
+        count: int,
+        forgetting: Number = 1.0,
+        initial: ArrayLike | None = None,
+        uncertainty: Number = 1e6,
+        largest: Number | None = None,
+    ):
         import numpy
 
         count = int(number("the number of parameters", count, "1, 2, 3 ...", lambda x: x >= 1 and x == int(x)))
@@ -52,7 +69,7 @@ class RecursiveLeastSquares:
         self.covariance = positive("the uncertainty", uncertainty) * numpy.eye(count)
         self.largest = self.covariance.trace() if largest is None else positive("the largest uncertainty", largest)
 
-    def update(self, regressors, y):
+    def update(self, regressors: ArrayLike, y: Number) -> float:
         """Take a sample and return its error, what the estimate so far did not explain."""
         import numpy
 
@@ -68,11 +85,11 @@ class RecursiveLeastSquares:
         self.covariance = covariance if covariance.trace() > self.largest else covariance / self.forgetting
         return float(error)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"RecursiveLeastSquares(parameters={self.parameters.round(6).tolist()}, forgetting={self.forgetting:g})"
 
 
-def first_order_of(a, b, step, whole_delay=0):
+def first_order_of(a: Number, b: ArrayLike, step: Number, whole_delay: int = 0) -> Model:
     """Return the lag with dead time whose samples obey y[k+1] = a y[k] + b0 u[k-n] + b1 u[k-n-1].
 
     This is the exact relation for a control signal that is held between samples, if the dead time is n steps and a

@@ -4,14 +4,22 @@ Between two switches the control signal is constant, so that the output of a lin
 responses, shifted to the moments of the switches. The moments are found as roots of that sum.
 """
 
+from __future__ import annotations
+
 import itertools
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from loopbook.deadtime import System
 from loopbook.identification.records import record
 from loopbook.inputs import not_negative, number, positive
 from loopbook.stability import ultimate
+from loopbook.types import Number, TransferFunctionLike
+
+if TYPE_CHECKING:
+    import numpy
+    from numpy.typing import ArrayLike
 
 SAME = 1e-9  # two half periods in a row that differ by no larger share belong to a limit cycle
 MOST_SWITCHES = 400
@@ -36,16 +44,18 @@ class LimitCycle:
     Pu: float
     amplitude: float
     phase: float
-    times: object
-    u: object
-    y: object
-    switches: object
+    times: numpy.ndarray
+    u: numpy.ndarray
+    y: numpy.ndarray
+    switches: numpy.ndarray
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<limit cycle: Ku = {self.Ku:.4g}, Pu = {self.Pu:.4g}, amplitude {self.amplitude:.4g}>"
 
 
-def relay_experiment(process, amplitude=1, hysteresis=0, periods=6):
+def relay_experiment(
+    process: TransferFunctionLike, amplitude: Number = 1, hysteresis: Number = 0, periods: Number = 6
+) -> LimitCycle:
     """Return the limit cycle of a process under relay control, exact, with the record of how it begins.
 
     The relay puts out +d while the control error -y is positive, and -d while it is negative; with a hysteresis h it
@@ -216,12 +226,14 @@ class Relay:
     [55.0, 55.0, 45.0, 45.0, 55.0]
     """
 
-    def __init__(self, amplitude, step, hysteresis=0, u0=0):
+    def __init__(self, amplitude: Number, step: Number, hysteresis: Number = 0, u0: Number = 0):
         self.amplitude, self.step = positive("the amplitude", amplitude), positive("the step", step)
         self.hysteresis, self.u0 = not_negative("the hysteresis", hysteresis), number("the signal u0", u0)
         self.on, self.u = True, self.u0
 
-    def update(self, setpoint, measurement, feedforward=0.0, manual=None):
+    def update(
+        self, setpoint: Number, measurement: Number, feedforward: Number = 0.0, manual: Number | None = None
+    ) -> float:
         """Take the signals of this sample and return the control signal, in manual mode the operator's (NaN: the last).
 
         >>> relay = Relay(amplitude=5, step=1, u0=50)
@@ -238,7 +250,7 @@ class Relay:
         return self.u
 
 
-def limit_cycle(times, u, y, hysteresis=0):
+def limit_cycle(times: ArrayLike, u: ArrayLike, y: ArrayLike, hysteresis: Number = 0) -> LimitCycle:
     """Return amplitude and period of an oscillation under relay control from a record, which may be noisy.
 
     The mean over the last five periods counts: the period is that between the relay's switches upwards, and the

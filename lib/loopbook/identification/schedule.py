@@ -1,14 +1,19 @@
 """A gain schedule: controller settings as a function of a measured variable. (Haugen, Section 10.5.3)"""
 
+from __future__ import annotations
+
 import bisect
 import copy
 import itertools
+from collections.abc import Mapping
+from typing import Any
 
 import sympy
 
 from loopbook.expressions import exact
 from loopbook.inputs import number, one_of
 from loopbook.pid import PID, Controller
+from loopbook.types import Number
 
 WAYS = ("constant", "linear")
 
@@ -39,7 +44,7 @@ class GainSchedule:
     PID(Kp=61/10, Ti=49/10)
     """
 
-    def __init__(self, table, way="constant", hysteresis=0, safe="low"):
+    def __init__(self, table: Mapping[Any, PID], way: str = "constant", hysteresis: Number = 0, safe: str = "low"):
         if not isinstance(table, dict) or len(table) < 2 or not all(isinstance(x, PID) for x in table.values()):
             raise ValueError(f"the table is {table!r}: expected {{GS: PID}} with two rows or more")
         if len({settings.form for settings in table.values()}) > 1:
@@ -58,7 +63,7 @@ class GainSchedule:
         self.way, self.safe, self.hysteresis = way, safe, exact(hysteresis)
         self.row = None  # that of the last settings
 
-    def settings(self, GS):
+    def settings(self, GS: Number) -> PID:
         """Return the settings for a value of GS, a number; with a hysteresis they depend on the values before.
 
         Raises ValueError for a value that is no number.
@@ -66,7 +71,7 @@ class GainSchedule:
         GS = _finite(GS)
         return self._linear(GS) if self.way == "linear" else self.table[self._row(GS)]
 
-    def reset(self):
+    def reset(self) -> None:
         """Forget the values before."""
         self.row = None
 
@@ -97,7 +102,7 @@ class GainSchedule:
                    getattr(other, x) else getattr(one, x) for x in ("Kp", "Ti", "Td", "Tf"))  # fmt: skip
         return PID(*between, form=one.form)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         rows = ", ".join(f"{GS}: {settings}" for GS, settings in self.table.items())
         return f"GainSchedule({{{rows}}}, {self.way!r})"
 
@@ -127,14 +132,21 @@ class ScheduledController(Controller):
 
     recorded = ("Kp", "Ti")  # what a simulation notes besides the signals
 
-    def __init__(self, schedule, step, **options):
+    def __init__(self, schedule: GainSchedule, step: Number, **options: Any):
         if not isinstance(schedule, GainSchedule):
             raise ValueError(f"the schedule is {schedule!r}: expected a GainSchedule")
         self.schedule = copy.copy(schedule)
         self.schedule.reset()
         super().__init__(next(iter(schedule.table.values())), step, **options)
 
-    def update(self, setpoint, measurement, feedforward=0.0, manual=None, scheduling=None):
+    def update(
+        self,
+        setpoint: Number,
+        measurement: Number,
+        feedforward: Number = 0.0,
+        manual: Number | None = None,
+        scheduling: Number | None = None,
+    ) -> float:
         """Take the signals of this sample, and the value of GS, and return the control signal."""
         if scheduling is None:
             raise ValueError("the value of GS is missing: expected a number for the schedule")
@@ -143,7 +155,7 @@ class ScheduledController(Controller):
             self.change(settings)
         return super().update(setpoint, measurement, feedforward, manual)
 
-    def take_over(self, other):
+    def take_over(self, other: Controller) -> None:
         super().take_over(other)
         if isinstance(other, ScheduledController):
             self.schedule.row = other.schedule.row
