@@ -1,0 +1,166 @@
+"""Type hints: every public function and method has them, they name what there is, and the package says so."""
+
+import ast
+import builtins
+import functools
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+LIBRARY = ROOT / "lib" / "loopbook"
+
+#: Modules and packages that are still without some of their hints.
+NOT_YET = {
+    "__main__", "deadtime", "diagrams", "exercises", "figures", "grading", "identification", "ise", "ledger",
+    "notebooks", "quasipolynomials", "stability",
+}  # fmt: skip
+
+PATHS = sorted(LIBRARY.rglob("*.py"))
+
+
+def top(path):
+    """The module or package of the library that a file belongs to."""
+    return path.relative_to(LIBRARY).parts[0].removesuffix(".py")
+
+
+def spelled(path):
+    return path.relative_to(LIBRARY).as_posix()
+
+
+@functools.cache
+def parsed(path):
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+def is_public(name):
+    """Whether a user may call it; the methods behind the operators count."""
+    return not name.startswith("_") or (name.startswith("__") and name.endswith("__"))
+
+
+def functions(body, inside=""):
+    """The public functions and methods of a module, by their names, as the source has them."""
+    for node in body:
+        if isinstance(node, ast.ClassDef) and is_public(node.name):
+            yield from functions(node.body, f"{inside}{node.name}.")
+        elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and is_public(node.name):
+            yield f"{inside}{node.name}", node
+
+
+def without_hints(name, node):
+    """What of a function has no hint: its parameters but for self and cls, and its result."""
+    spec = node.args
+    parameters = [*spec.posonlyargs, *spec.args, *spec.kwonlyargs, spec.vararg, spec.kwarg]
+    static = any(isinstance(word, ast.Name) and word.id == "staticmethod" for word in node.decorator_list)
+    if "." in name and not static:
+        parameters = parameters[1:]
+    found = [parameter.arg for parameter in parameters if parameter is not None and parameter.annotation is None]
+    return found + ["the result"] * (node.returns is None and node.name != "__init__")
+
+
+def annotations(tree):
+    """All annotations of a module."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.arg | ast.AnnAssign) and node.annotation is not None:
+            yield node.annotation
+        elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and node.returns is not None:
+            yield node.returns
+
+
+def names(annotation):
+    """The names in an annotation, also in a text in it that is one; those of literal values are none."""
+    if isinstance(annotation, ast.Subscript) and isinstance(annotation.value, ast.Name):
+        if annotation.value.id == "Literal":
+            return {"Literal"}
+        if annotation.value.id == "Annotated":  # what follows the type is no type
+            return {"Annotated"} | names(annotation.slice.elts[0])
+    if isinstance(annotation, ast.Constant) and isinstance(annotation.value, str):
+        return names(ast.parse(annotation.value, mode="eval").body)
+    if isinstance(annotation, ast.Name):
+        return {annotation.id}
+    return set().union(*map(names, ast.iter_child_nodes(annotation)))
+
+
+def defined(body):
+    """The names that the statements of a module give to something, also those that only a type checker sees."""
+    for node in body:
+        match node:
+            case ast.Import(aliases) | ast.ImportFrom(names=aliases):
+                yield from (alias.asname or alias.name.split(".")[0] for alias in aliases)
+            case ast.FunctionDef(name) | ast.ClassDef(name):
+                yield name
+            case ast.Assign() | ast.AnnAssign() | ast.For() | ast.With():
+                yield from (part.id for part in ast.walk(node) if isinstance(part, ast.Name))
+            case ast.If(body=inner, orelse=other):
+                yield from defined([*inner, *other])
+
+
+def missing_in_library(tree):
+    """What a module imports, perhaps for a type checker alone, out of modules of the library that do not have it."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "loopbook":
+            place = LIBRARY.parent.joinpath(*node.module.split("."))
+            source = place / "__init__.py" if place.is_dir() else place.with_suffix(".py")
+            there = set(defined(parsed(source).body)) if source.exists() else set()
+            for alias in node.names:
+                if alias.name not in there and not list(place.glob(f"{alias.name}*")):
+                    yield f"{node.module}.{alias.name}"
+
+
+@pytest.mark.parametrize("path", [path for path in PATHS if top(path) not in NOT_YET], ids=spelled)
+def test_what_is_public_has_type_hints(path):
+    found = {name: without_hints(name, node) for name, node in functions(parsed(path).body)}
+    assert {name: missing for name, missing in found.items() if missing} == {}
+
+
+@pytest.mark.parametrize("path", PATHS, ids=spelled)
+def test_type_hints_name_what_there_is(path):
+    tree = parsed(path)
+    known = {*defined(tree.body), *vars(builtins)}
+    assert set().union(*map(names, annotations(tree))) - known == set()
+    assert list(missing_in_library(tree)) == []
+
+
+def test_only_modules_that_exist_are_left_out():
+    assert set(map(top, PATHS)) >= NOT_YET
+
+
+def test_type_checkers_find_the_hints():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    wheel = project["tool"]["hatch"]["build"]["targets"]["wheel"]
+    assert "lib/loopbook" in wheel["packages"]
+    assert not {"exclude", "only-include", "include"} & wheel.keys()
+    assert (LIBRARY / "py.typed").is_file()
+
+
+@pytest.mark.parametrize(
+    ("source", "missing"),
+    [
+        ("def f(x: int) -> int: ...", {}),
+        ("def f(x, *, y: int = 0, **more) -> int: ...", {"f": ["x", "more"]}),
+        ("def f(*x: int): ...", {"f": ["the result"]}),
+        ("def _f(x): ...", {}),
+        ("class A:\n def __init__(self, x: int): ...\n def _f(self, x): ...", {}),
+        ("class A:\n @property\n def x(self): ...\n def __add__(self, other): ...",
+         {"A.x": ["the result"], "A.__add__": ["other", "the result"]}),
+        ("class A:\n @staticmethod\n def f(x) -> int: ...", {"A.f": ["x"]}),
+    ],
+)  # fmt: skip
+def test_a_missing_hint_is_found(source, missing):
+    found = {name: without_hints(name, node) for name, node in functions(ast.parse(source).body)}
+    assert {name: words for name, words in found.items() if words} == missing
+
+
+@pytest.mark.parametrize(
+    ("annotation", "found"),
+    [
+        ("numpy.ndarray | None", {"numpy"}),
+        ("'list[Part]'", {"list", "Part"}),
+        ("Callable[[float], Sequence[int]]", {"Callable", "float", "Sequence", "int"}),
+        ("Literal['P', 'PI']", {"Literal"}),
+        ("Annotated[int, Option('how many')]", {"Annotated", "int"}),
+    ],
+)
+def test_the_names_of_an_annotation_are_found(annotation, found):
+    assert names(ast.parse(annotation, mode="eval").body) == found
