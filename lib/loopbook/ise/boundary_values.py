@@ -1,16 +1,18 @@
 """Dead times that are multiples of one: the autocorrelation from a boundary value problem."""
 
+from __future__ import annotations
+
 import math
 from fractions import Fraction
 
-from loopbook.ise.error import NotApplicableError
+from loopbook.ise.error import ErrorFraction, NotApplicableError
 
 MOST_STATES = 48  # of a boundary value problem; beyond, quadrature is faster
 MOST_DIGITS_LOST = 2e-11  # how far solutions in different units of time may lie apart
 CERTAIN = 1e-12  # how near two of them lie where no third is needed
 
 
-def by_boundary_values(fraction):
+def by_boundary_values(fraction: ErrorFraction) -> float:
     """Dead times h, 2h ... m h: the autocorrelation of the response of 1/D from a boundary value problem.
 
     R(theta), the integral of x(t) x(t + theta) where D x = delta, is even, and D R = 0 for theta > 0, because x is zero
@@ -34,7 +36,7 @@ def by_boundary_values(fraction):
     return one
 
 
-def _from_autocorrelation(fraction, speed):
+def _from_autocorrelation(fraction: ErrorFraction, speed: float) -> float:
     """The integral from the boundary value problem, solved with 1/speed as the unit of time."""
     import numpy
     from scipy.linalg import expm

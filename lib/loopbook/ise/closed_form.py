@@ -1,13 +1,20 @@
 """The closed form for a PI loop around a lag with dead time, with letters and in fast, accurate numbers."""
 
+from __future__ import annotations
+
 import functools
 import math
+from typing import TYPE_CHECKING
 
 import sympy
 
 from loopbook.expressions import s
 from loopbook.ise.error import UnstableLoopError, checked_mode
 from loopbook.ise.residue_method import residue_method
+
+if TYPE_CHECKING:
+    import numpy
+    from numpy.typing import ArrayLike
 
 LARGEST = 2**53  # a whole number that is a float without loss
 SETTINGS = ("K", "T", "delay", "Kp", "Ti")
@@ -16,7 +23,7 @@ __all__ = ["pi_first_order", "symbolic_pi_first_order"]
 
 
 @functools.cache
-def symbolic_pi_first_order(mode="servo"):
+def symbolic_pi_first_order(mode: str = "servo") -> sympy.Expr:
     """Return the integral of the squared error of a PI loop around a lag with dead time, as an expression.
 
     The process is K/(T*s + 1)*exp(-delay*s), the controller Kp*(1 + 1/(Ti*s)), the setpoint or the load a unit step. It
@@ -41,7 +48,15 @@ def symbolic_pi_first_order(mode="servo"):
     return residue_method(forward / (1 + controller * process) / s).expr
 
 
-def pi_first_order(K, T, delay, Kp, Ti, mode="servo", unstable=None):
+def pi_first_order(
+    K: ArrayLike,
+    T: ArrayLike,
+    delay: ArrayLike,
+    Kp: ArrayLike,
+    Ti: ArrayLike,
+    mode: str = "servo",
+    unstable: float | None = None,
+) -> float | numpy.ndarray:
     """Return the integral of the squared error of a PI loop around a lag with dead time, by its closed formula.
 
     The process is K/(T*s + 1)*exp(-delay*s), the controller Kp*(1 + 1/(Ti*s)), the setpoint or the load a unit step.

@@ -1,5 +1,7 @@
 """The integral of the squared error of any stable loop, by the first method that applies."""
 
+from __future__ import annotations
+
 from loopbook.ise.boundary_values import by_boundary_values
 from loopbook.ise.error import ErrorFraction, NotApplicableError, error_of
 from loopbook.ise.quadrature import by_quadrature
@@ -16,7 +18,13 @@ METHODS = {
 }
 
 
-def ise(process, controller=None, mode="servo", from_setpoint=None, method=None):
+def ise(
+    process: object,
+    controller: object = None,
+    mode: str = "servo",
+    from_setpoint: object = None,
+    method: str | None = None,
+) -> float:
     """Return the integral of the squared control error after a unit step, with exact dead time.
 
     Arguments:
@@ -39,20 +47,20 @@ def ise(process, controller=None, mode="servo", from_setpoint=None, method=None)
     return integral_of_square(error_of(process, controller, mode, from_setpoint), method)
 
 
-def integral_of_square(E, method=None):
+def integral_of_square(E: object, method: str | None = None) -> float:
     """Return the integral of e(t)^2 from zero to infinity, for the transform E(s) of e(t).
 
     The methods, of which the first that can be applied is taken unless one is named:
 
     - "residues": one dead time, or none; the formula of `residue_method` in floating point, with a bound of the digits
-      that it loses where zeros lie close together.
+      that it loses where zeros lie close together, or the loop near its limit: then again with 120 digits.
     - "boundary value": all dead times multiples of one. The autocorrelation of the response of 1/D, D being the
       denominator, fulfils linear differential equations with conditions at both ends. They are solved in three units
       of time, and the results have to agree to 2e-11.
     - "quadrature": any dead times. Parseval's integral along the frequencies, in intervals in which no pole is near;
-      relative error below 1e-9.
-    - "response": from the exact step response, followed until its later half adds no more than 1e-12 of the integral;
-      relative error about 1e-10. A tail that is below 1e-6 of the error and 1e4 times slower may be overlooked.
+      poles very near to the axis are taken out, and integrated by a formula. Relative error below 1e-9.
+    - "response": from the exact step response, followed until its slowest modes are left, as in `criteria`; relative
+      error about 1e-11.
 
     The second and the third need a retarded system, in which the highest derivative has no dead time.
 

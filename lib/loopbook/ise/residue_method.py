@@ -1,11 +1,13 @@
 """The residue method for one dead time, step by step and with letters."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import sympy
 
-from loopbook.deadtime import normal_form
 from loopbook.expressions import s
+from loopbook.quasipolynomials import normal_form
 
 __all__ = ["ResidueMethod", "residue_method"]
 
@@ -30,33 +32,33 @@ class ResidueMethod:
     delay: sympy.Expr
 
     @property
-    def E(self):
+    def E(self) -> sympy.Expr:
         """The transform of the error, beginning where e(t) does if that leaves one dead time instead of two."""
         z = sympy.exp(-self.delay * s)
         return (self.B + self.D * z) / (self.A + self.C * z)
 
     @property
-    def Delta(self):
+    def Delta(self) -> sympy.Expr:
         """A(s) A(-s) - C(s) C(-s), a polynomial in s^2."""
         return sympy.expand(self.A * _mirrored(self.A) - self.C * _mirrored(self.C))
 
     @property
-    def G(self):
+    def G(self) -> sympy.Expr:
         """The rational function that E(-s) equals at the poles of E(s)."""
         return sympy.expand(self.A * _mirrored(self.B) - self.C * _mirrored(self.D)) / self.Delta
 
     @property
-    def integrand(self):
+    def integrand(self) -> sympy.Expr:
         """E(s) G(s)."""
         return self.E * self.G
 
     @property
-    def poles(self):
+    def poles(self) -> list[sympy.Expr]:
         """The zeros of Delta, a list in which each one is followed by its negative."""
         return [sign * sympy.sqrt(x) for x, _ in _squares(self.Delta) for sign in (1, -1)]
 
     @property
-    def expr(self):
+    def expr(self) -> sympy.Expr:
         """The integral of e(t)^2 as an expression, if the loop is stable, which is not examined.
 
         A zero p of Delta in the right half-plane is taken together with -p: the two residues have the sum F(p), in
@@ -67,7 +69,7 @@ class ResidueMethod:
         return formula.subs(zeros)
 
     @property
-    def formula(self):
+    def formula(self) -> tuple[sympy.Expr, dict[sympy.Symbol, sympy.Expr]]:
         """The same with letters for the zeros of Delta, and what they stand for: an expression and a dictionary.
 
         The letters are sigma for a pair on the real axis and omega for one on the imaginary axis, numbered if there are
@@ -169,7 +171,7 @@ def _sign(value):
     return 1 if value.is_positive else -1 if value.is_negative else None
 
 
-def residue_method(E):
+def residue_method(E: sympy.Expr) -> ResidueMethod:
     """Return the pieces of the residue method for an error with one dead time, letters allowed.
 
     Arguments:

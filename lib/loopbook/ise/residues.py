@@ -119,7 +119,7 @@ def _zeros(polynomial: list[mpmath.mpf]) -> list[mpmath.mpc]:
     ]
     x = [p if p else mpmath.mpf("1e-9") * (k + 1) for k, p in enumerate(x)]
     row, slopes = polynomial[::-1], [k * c for k, c in enumerate(polynomial)][:0:-1]
-    end = mpmath.mpf(10) ** (10 - DIGITS)
+    end = mpmath.mpf(10) ** (50 - DIGITS)  # zeros that nearly coincide are not sharper
     for _ in range(MOST_STEPS):
         moved = False
         for k, p in enumerate(x):
