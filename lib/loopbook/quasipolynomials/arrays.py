@@ -51,7 +51,7 @@ class Quasipolynomials:
         """
         import numpy
 
-        parts = parts or {0: ()}
+        parts = dict(sorted(parts.items())) or {0: ()}  # the undelayed part first
         rows = [[*(c / divisor for c in part), *[0.0] * (order + 1 - len(part))] for part in parts.values()]
         return cls(numpy.array(rows, dtype=float)[:, :, None], numpy.array([[float(delay)] for delay in parts]))
 
