@@ -1,0 +1,412 @@
+"""The step response of a state-space model with delay channels, segment by segment, by implicit collocation.
+
+In each segment all signals are polynomials of degree 19, known at Radau's nodes, and the equations hold there (Radau
+IIA with 20 stages: of order 39, and what has died out stays dead, however long the segment). What comes out of a
+channel is the polynomial of an earlier segment, or of this one, for a delay may be shorter than the segment. For a
+length the whole step is a matrix, from the state and what comes out of the channels to the signals.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from loopbook.deadtime.echoes import MOST_ECHOES, UNSEEN, Echoes
+
+if TYPE_CHECKING:
+    import numpy
+
+    from loopbook.deadtime.response import ChannelModel
+
+NODES = 20  # where a segment is known, so that it is a polynomial of degree 19
+GOAL = 1e-13  # the share of a signal that its last two coefficients may have
+RESOLVED = 1e-12  # the same where rounding does not allow more
+MOST_SEGMENTS = 60_000
+MOST_NUMBERS = 30_000_000  # that are kept of the signals
+MOST_MATRICES = 200  # that are kept
+AHEAD = 8  # how many segments before a breakpoint they are made equal
+PATIENCE = 8  # segments before a longer one is tried again
+WORTH = 12  # segments that a matrix for another length costs
+
+
+def follow(model: ChannelModel, end: float) -> tuple[numpy.ndarray, numpy.ndarray]:
+    """Return the edges of the segments, and the Legendre coefficients of the output, a row for each segment."""
+    import numpy
+
+    if any(delay <= 0 for delay in model.delays):
+        raise ValueError(f"the delays of the channels are {', '.join(map(str, model.delays))}: expected positive ones")
+    with numpy.errstate(over="ignore", invalid="ignore", divide="ignore"):  # said in words below
+        return _Follower(_merged(model), end).run()
+
+
+def _merged(model):
+    """The model with one channel for those of the same delay that carry the same signal but for a factor."""
+    import numpy
+
+    delays = list(model.delays)
+    for k in range(len(delays) - 1, 0, -1):
+        for j in range(k):
+            if delays[j] != delays[k]:
+                continue
+            one, other = (numpy.r_[model.C2[i], model.D21[i], model.D22[i]] for i in (j, k))
+            place = abs(one).argmax()
+            factor = other[place] / one[place] if one[place] else 0.0
+            if factor and (abs(other - factor * one) <= 4e-16 * abs(other)).all():
+                B2, D12, D22 = model.B2.copy(), model.D12.copy(), model.D22.copy()
+                for into in (B2, D12, D22):
+                    into[:, j] += factor * into[:, k]
+                rest = [i for i in range(len(delays)) if i != k]
+                delays.pop(k)
+                model = model._replace(
+                    B2=B2[:, rest], D12=D12[:, rest], C2=model.C2[rest], D21=model.D21[rest],
+                    D22=D22[numpy.ix_(rest, rest)], delays=delays,
+                )  # fmt: skip
+                break
+    return model
+
+
+class _Follower:
+    def __init__(self, model, end):
+        import numpy
+
+        self.model, self.end = model, end
+        self.n, self.q = len(model.A), len(model.delays)
+        # time in whole ticks, so that sums of delays are exact
+        exact_end = Fraction(end)
+        per = math.lcm(*(delay.denominator for delay in model.delays))
+        smallest = min([*model.delays, *([exact_end] if end else [])], default=Fraction(1))
+        size = math.log2(per) + math.log2(smallest.numerator) - math.log2(smallest.denominator)
+        self.per = per = per << max(0, 90 - math.floor(size))
+        self.delays = [delay.numerator * (per // delay.denominator) for delay in model.delays]
+        self.last = last = round(exact_end * per)
+        try:
+            ticks = float(per)
+        except OverflowError:
+            raise ValueError(
+                f"the dead times {', '.join(map(str, model.delays))} have too many digits: expected fewer"
+            ) from None
+        self.echoes = Echoes(model, end or float(sum(model.delays)) or 1.0, ticks, self.delays, last + (last >> 48))
+        self.steps = Steps(model)
+        self.edges = [0]
+        self.lengths = []
+        self.signals = numpy.zeros((32, self.q + 1, NODES))
+        self.pointers = [0] * self.q
+        self._looks = {}
+
+    def run(self):
+        import numpy
+
+        maximum, absolute = numpy.maximum.reduce, numpy.absolute
+        echoes, steps, edges, lengths, per, last = (
+            self.echoes,
+            self.steps,
+            self.edges,
+            self.lengths,
+            self.per,
+            self.last,
+        )
+        moments, n, q, delays = echoes.moments, self.n, self.q, self.delays
+        shape = (q + 1, NODES)
+        high = radau().high
+        scale = numpy.zeros(q + 1)
+        values = numpy.zeros(1 + n + q * NODES)
+        values[0] = 1.0
+        longest = echoes.longest
+        wish = min(echoes.start, moments[0][2] if moments else longest) or 1
+        shortest = wish >> 40
+        position, index, waiting, patience, length = 0, 0, 0, PATIENCE, 0
+        finished = last - (last >> 48)
+        count = 0
+        while True:
+            # what lies ahead
+            before, length, forced = length, wish, 0
+            echoes.listen(position + AHEAD * wish, wish, UNSEEN * scale[:, None])
+            while index < len(moments) and moments[index][0] <= position:
+                index += 1
+            k = index
+            while k < len(moments):
+                tick, allowed, _ = moments[k]
+                gap = tick - position
+                if gap >= length and (allowed >= length or gap > AHEAD * length):
+                    break
+                if allowed <= gap:
+                    forced = gap
+                    break
+                length = min(length, allowed)
+                k += 1
+            rest = last - position
+            if not forced and position < finished:
+                if length != before and rest < WORTH * before and before <= length and before <= wish:
+                    length = before  # a new matrix would not pay
+                if length != before and rest < AHEAD * length:
+                    forced = rest
+            if forced:
+                length = -(-forced // -(-forced // length))
+            # one segment
+            h = length / per
+            step = steps.step(h, length, delays)
+            if q:
+                self._inputs(values, position, length)
+            result = step @ values
+            signals = result[n:].reshape(shape)
+            largest = numpy.maximum(scale, maximum(absolute(signals), axis=1))
+            left = absolute(signals @ high)
+            tail = maximum(left[:, 8:], axis=1)
+            if False in (tail <= GOAL * largest).tolist():
+                if not numpy.isfinite(largest).all():
+                    raise ValueError(f"the response grows beyond all numbers before t = {self.end:g}")
+                # where it does not fall any more it is rounding
+                flat = tail >= 0.1 * left[:, :8].max(axis=1)
+                if not ((tail <= GOAL * largest) | (flat & (tail <= RESOLVED * largest))).all():
+                    wish = length >> 1
+                    waiting, patience = patience, min(2 * patience, 8 * PATIENCE)
+                    if wish <= shortest:
+                        worst = (tail / largest).max()
+                        raise ValueError(
+                            f"the response up to t = {self.end:g} is not resolved: {worst:.0e} of it is left"
+                        )
+                    continue
+            scale = largest
+            values[1 : n + 1] = result[:n]
+            if count == len(self.signals):
+                self._grow(count)
+            self.signals[count] = signals
+            count += 1
+            position += length
+            edges.append(position)
+            lengths.append(h)
+            waiting -= 1
+            free = waiting <= 0 and 4 * length > 3 * wish < 3 * longest and last - position > WORTH * wish
+            if free and False not in (maximum(left, axis=1) <= GOAL * scale).tolist():
+                wish = min(2 * wish, longest)
+            if waiting < -PATIENCE:
+                patience = PATIENCE
+            if forced and k < len(moments) and abs(moments[k][0] - position) <= position >> 48:
+                wish = min(wish, moments[k][2])
+                if position <= last + (last >> 48):
+                    continue
+            if position >= finished:
+                return self._done()
+
+    def _grow(self, count):
+        import numpy
+
+        if count >= MOST_SEGMENTS or count * (self.q + 1) * NODES > MOST_NUMBERS:
+            speed = self.echoes.speed
+            raise ValueError(
+                f"the response up to t = {self.end:g} needs more than {count} segments: its fastest lag, about "
+                f"{1 / speed if speed else math.inf:.2g}, is too short beside the end"
+            )
+        self.signals = numpy.concatenate([self.signals, numpy.zeros_like(self.signals)])
+
+    def _too_many(self):
+        return (
+            f"the dead times {', '.join(map(str, self.model.delays))} have more than {MOST_ECHOES} sums before "
+            f"t = {self.end:g} at which the response is not smooth: expected an earlier end, or dead times that are "
+            f"multiples of one"
+        )
+
+    def _inputs(self, values, position, length):
+        """What comes out of the channels, at the nodes of a segment, as far as it went in before its beginning."""
+        edges, lengths, signals = self.edges, self.lengths, self.signals
+        nodes = radau().nodes_list
+        place = 1 + self.n
+        count = len(lengths)
+        for channel, delay in enumerate(self.delays):
+            start = position - delay
+            into = values[place : place + NODES]
+            place += NODES
+            if start + length <= 0 or count == 0:
+                into[:] = 0.0
+                continue
+            source = self.pointers[channel]
+            while source < count - 1 and edges[source + 1] <= start:
+                source += 1
+            while source and edges[source] > start:
+                source -= 1
+            self.pointers[channel] = source
+            slack = length >> 44
+            offset = edges[source] - start
+            if -slack <= offset <= slack and abs(edges[source + 1] - edges[source] - length) <= slack:
+                into[:] = signals[source, channel]
+                continue
+            if edges[source + 1] - start <= slack and source < count - 1:
+                source += 1
+            into[:] = 0.0
+            first = 0
+            if start < 0:  # before the beginning there was nothing
+                edge = -2 * start / length - 1 + 1e-13
+                while first < NODES and nodes[first] <= edge:
+                    first += 1
+            while first < NODES and source < count:
+                stop = 2 * (edges[source + 1] - start) / length - 1 + 1e-13
+                after = first
+                while after < NODES and nodes[after] <= stop:
+                    after += 1
+                if after > first:
+                    own = edges[source + 1] - edges[source]
+                    look = self._look(length / own, 2 * (start - edges[source]) / own, first, after)
+                    into[first:after] = look @ signals[source, channel]
+                first, source = after, source + 1
+
+    def _look(self, ratio, offset, first, after):
+        """The matrix from the values of an earlier segment to those at some nodes of this one."""
+        key = round(ratio, 13), round(offset, 13), first, after
+        look = self._looks.get(key)
+        if look is None:
+            if len(self._looks) > MOST_MATRICES:
+                self._looks.clear()
+            places = offset - 1 + ratio * (radau().nodes[first:after] + 1)
+            look = self._looks[key] = interpolation(places)
+        return look
+
+    def _done(self):
+        import numpy
+
+        per = self.per
+        count = len(self.lengths)
+        ends = numpy.array([edge / per for edge in self.edges])
+        coefficients = self.signals[:count, -1] @ radau().to_coefficients.T
+        return ends, coefficients
+
+
+class Steps:
+    """The matrices of steps: from 1, the state and what comes out of the channels to the state and the signals."""
+
+    def __init__(self, model: ChannelModel):
+        self.model = model
+        self._known: dict = {}
+
+    def step(self, h: float, length: int, delays: list[int]) -> numpy.ndarray:
+        """The matrix for the length h; lengths and delays also in ticks."""
+        mantissa, exponent = math.frexp(h)
+        key = round(mantissa * 2**44), exponent
+        step = self._known.get(key)
+        if step is None:
+            if len(self._known) >= MOST_MATRICES:
+                self._known.clear()
+            overlaps = [(k, delay / length) for k, delay in enumerate(delays) if delay < length - (length >> 44)]
+            step = self._known[key] = step_matrix(self.model, h, overlaps)
+        return step
+
+
+def step_matrix(model: ChannelModel, h: float, overlaps: list[tuple[int, float]]) -> numpy.ndarray:
+    """The matrix of one step of length h.
+
+    Arguments:
+        overlaps: the channels whose delay is shorter than h, and the delay as a share of h.
+    """
+    import numpy
+
+    A, B1, B2, C1, C2, D11, D12, D21, D22, _ = model
+    n, q = len(A), B2.shape[1]
+    rule = radau()
+    half = h / 2
+    inner = len(overlaps)
+    size, columns = NODES * (n + inner), 1 + n + NODES * q
+    # unknown are the states at the nodes, a row for each node, and what the overlapping channels give, one by one
+    right = numpy.zeros((size, columns))
+    place = NODES * n
+    if n:
+        states = right[:place].reshape(NODES, n, columns)
+        states[:, :, 0] = half * numpy.outer(rule.nodes + 1, B1[:, 0])
+        states[:, :, 1 : n + 1] = numpy.eye(n)
+        states[:, :, n + 1 :].reshape(NODES, n, q, NODES)[...] = (
+            half * B2[None, :, :, None] * rule.integration[:, None, None, :]
+        )
+    left = numpy.eye(size)
+    if n:
+        left[:place, :place].reshape(NODES, n, NODES, n)[...] -= (
+            half * rule.integration[:, None, :, None] * A[None, :, None, :]
+        )
+    if inner:
+        to = [k for k, _ in overlaps]
+        for number, (k, share) in enumerate(overlaps):
+            rows = slice(place + number * NODES, place + (number + 1) * NODES)
+            late = numpy.zeros((NODES, NODES))
+            inside = rule.nodes > 2 * share - 1 + 1e-13
+            late[inside] = interpolation(rule.nodes[inside] - 2 * share)
+            # w_k = past + late z_k,  z_k = C2 x + D21 + D22 w
+            right[rows, n + 1 + k * NODES : n + 1 + (k + 1) * NODES] += numpy.eye(NODES)
+            right[rows, 0] += late.sum(axis=1) * D21[k, 0]
+            if n:
+                left[rows, :place] -= numpy.kron(late, C2[k : k + 1])
+            for other in range(q):
+                if not D22[k, other]:
+                    continue
+                if other in to:
+                    spot = place + to.index(other) * NODES
+                    left[rows, spot : spot + NODES] -= late * D22[k, other]
+                else:
+                    right[rows, n + 1 + other * NODES : n + 1 + (other + 1) * NODES] += late * D22[k, other]
+        if n:
+            for number, k in enumerate(to):
+                spot = place + number * NODES
+                # the states take all of the channel, also what is of this segment
+                left[:place, spot : spot + NODES] -= half * numpy.kron(rule.integration, B2[:, k : k + 1])
+                right[:place, n + 1 + k * NODES : n + 1 + (k + 1) * NODES] = 0.0
+    solved = numpy.linalg.solve(left, right)
+    step = numpy.empty((n + NODES * (q + 1), columns))
+    step[:n] = solved[place - n : place]
+    from_state, direct_input, direct = numpy.vstack([C2, C1]), numpy.vstack([D21, D11])[:, 0], numpy.vstack([D22, D12])
+    signals = step[n:].reshape(q + 1, NODES, columns)
+    if n:
+        signals[...] = (from_state @ solved[:place].reshape(NODES, n, columns)).transpose(1, 0, 2)
+    else:
+        signals[...] = 0.0
+    signals[:, :, 0] += direct_input[:, None]
+    channels = dict.fromkeys(range(q))
+    for number, (k, _) in enumerate(overlaps):
+        channels[k] = solved[place + number * NODES : place + (number + 1) * NODES]
+    for k, given in channels.items():
+        if given is None:
+            diagonal = signals[:, numpy.arange(NODES), n + 1 + k * NODES + numpy.arange(NODES)]
+            signals[:, numpy.arange(NODES), n + 1 + k * NODES + numpy.arange(NODES)] = diagonal + direct[:, k : k + 1]
+        elif direct[:, k].any():
+            signals += direct[:, k, None, None] * given
+    return step
+
+
+class _Radau:
+    """Nodes between -1 and 1, the last at 1; matrices to Legendre coefficients, and of integrals from the beginning."""
+
+    def __init__(self, count):
+        import numpy
+        from numpy.polynomial import legendre
+
+        series = numpy.zeros(count + 1)
+        series[-2:] = 1, -1
+        nodes = numpy.sort(legendre.legroots(series).real)
+        for _ in range(3):
+            nodes = nodes - legendre.legval(nodes, series) / legendre.legval(nodes, legendre.legder(series))
+        nodes[-1] = 1.0
+        values = legendre.legvander(nodes, count)
+        degree = numpy.arange(count)
+        self.nodes, self.nodes_list = nodes, nodes.tolist()
+        self.to_coefficients = numpy.linalg.inv(values[:, :count])  # more exact than by the weights
+        self.high = self.to_coefficients[count // 2 :].T.copy()
+        # the integral of P_m from -1 is (P_{m+1} - P_{m-1})/(2m + 1)
+        integrals = numpy.empty((count, count))
+        integrals[:, 0] = nodes + 1
+        integrals[:, 1:] = (values[:, 2:] - values[:, :-2]) / (2 * degree[1:] + 1)
+        self.integration = integrals @ self.to_coefficients
+        differences = nodes[:, None] - nodes + numpy.eye(count)
+        self.barycentric = 1 / (2 * differences).prod(axis=1)  # a factor 2, near the capacity
+
+
+@functools.cache
+def radau(count: int = NODES) -> _Radau:
+    return _Radau(count)
+
+
+def interpolation(places: numpy.ndarray, count: int = NODES) -> numpy.ndarray:
+    """The matrix from values at the nodes to those at some places."""
+    import numpy
+
+    rule = radau(count)
+    differences = numpy.asarray(places)[:, None] - rule.nodes
+    differences[differences == 0] = 1e-200
+    weights = rule.barycentric / differences
+    return weights / weights.sum(axis=1, keepdims=True)

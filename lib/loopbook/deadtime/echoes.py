@@ -1,0 +1,153 @@
+"""Where the signals of a model with delay channels are not smooth, and up to which frequencies that can be seen.
+
+A step at the input comes back from each channel one delay later, smoother after each integration on its way, and so on.
+What comes back at a moment is known by its transform on a grid of frequencies. A polynomial of degree 19 over a segment
+of length h is blind to what lies above the frequency 40/h: where less than the last digit is left there, the moment is
+smooth for such a segment, and where nothing is left above the lowest of these frequencies it is forgotten.
+"""
+
+from __future__ import annotations
+
+import heapq
+import math
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy
+
+    from loopbook.deadtime.response import ChannelModel
+
+BLIND = 40.0  # frequency times length above which a polynomial of degree 19 does not see a signal
+UNSEEN = 1e-14  # the share of a signal that is nothing
+STEP = 1.6  # from one frequency of the grid to the next
+SLANT = 0.01  # how far right of the imaginary axis, so that a resonance is not infinite
+REACH = 4.0  # how many times the fastest lag a segment may be long
+LONGEST = 12.0  # the same for the fastest motion that may grow unseen
+ROUNDED = Fraction(1, 2**48)  # by how much, as a share of them, two moments that are meant to be one may differ
+MOST_ECHOES = 30_000
+
+
+class Echoes:
+    """The moments at which something comes back from the channels, in the order of time, as far as they are asked for.
+
+    Arguments:
+        model: a `ChannelModel`.
+        end: of the response.
+        per: ticks for one unit of time.
+        delays, last: of the channels, and the end, in whole ticks.
+    Attributes:
+        moments: (tick, length, start): a segment may reach across the moment if it is not longer than `length`, and one
+            that begins there may not be longer than `start`; all in ticks.
+        longest: of the segments, in ticks.
+        start: the length of a segment in which the fastest motion is seen, in ticks.
+    """
+
+    def __init__(self, model: ChannelModel, end: float, per: float, delays: list[int], last: int):
+        import numpy
+
+        self.delays, self.last = delays, last
+        self.moments: list[tuple[int, int, int]] = []
+        speeds, growing = _speeds(model)
+        self.speed = fastest = max(speeds, default=0.0)
+        top = 1e3 * max(fastest, 1 / end)
+        count = math.ceil(math.log(top * end * 10) / math.log(STEP))
+        grid = numpy.sort(numpy.r_[top * STEP ** -numpy.arange(count + 1.0), speeds])
+        grid = grid[numpy.searchsorted(grid, 0.1 / end) :]
+        from_input, channels = _transfer(model, grid)
+        q = len(delays)
+        loud = numpy.flatnonzero(_radius(abs(channels[:q])) >= 1)
+        if len(loud) and loud[-1] == len(grid) - 1:  # what comes back is never smooth
+            longest = REACH / fastest if fastest else math.inf
+        else:
+            growing = max(growing, grid[loud[-1]] if len(loud) else 0.0)
+            longest = LONGEST / growing if growing else math.inf
+        longest = min(longest, end)
+        self.longest = int(longest * per)
+        self.start = int(min(REACH / fastest if fastest else math.inf, longest) * per)
+        seen = min(int(numpy.searchsorted(grid, BLIND / longest)), len(grid) - 1)
+        grid = grid[seen:]
+        self.from_channels = numpy.ascontiguousarray(channels[..., seen:])
+        self._empty = numpy.zeros((q, len(grid)), complex)
+        self._lengths = (BLIND * per / grid).tolist()
+        self._lengths[-1] = 0.0  # what is seen at the end of the grid, is always
+        self._starts = (REACH * per / numpy.minimum(STEP * grid, fastest or REACH / end)).tolist()
+        self.count = 1
+        self._heap: list[int] = []
+        self._pending: dict[int, numpy.ndarray] = {}
+        self._heard(0, from_input[:, seen:], 0.0)
+
+    def _heard(self, tick: int, content: numpy.ndarray, threshold: numpy.ndarray | float) -> bool:
+        """Whether something is heard that is new at this moment; then also what comes back from it."""
+        signals, places = (abs(content) > threshold).nonzero()
+        if not len(places):
+            return False
+        top = int(places.max())
+        self.moments.append((tick, int(self._lengths[top]), max(1, int(self._starts[top]))))
+        for channel in set(signals.tolist()):
+            if channel == len(self.delays):
+                continue
+            later = tick + self.delays[channel]
+            if later <= self.last:
+                entry = self._pending.get(later)
+                if entry is None:
+                    self._pending[later] = entry = self._empty.copy()
+                    heapq.heappush(self._heap, later)
+                    self.count += 1
+                entry[channel] += content[channel]
+        return True
+
+    def listen(self, ahead: int, length: int, threshold: numpy.ndarray) -> None:
+        """Find the moments up to the tick `ahead`, or up to the first that a segment of the length cannot cross."""
+        heap, pending = self._heap, self._pending
+        while heap and heap[0] <= ahead:
+            now = heapq.heappop(heap)
+            content = pending.pop(now)
+            near = now + (now >> 48)
+            while heap and heap[0] <= near:  # one but for rounding, as sums of irrational dead times
+                content += pending.pop(heapq.heappop(heap))
+            if self.count > MOST_ECHOES:
+                raise OverflowError
+            new = self._heard(now, (self.from_channels * content).sum(axis=1), threshold)
+            if new and self.moments[-1][1] < length:
+                return
+
+
+def _speeds(model):
+    """How fast the signals can change, in 1/time: without the channels, and with each closed either way."""
+    import numpy
+
+    if not len(model.A):
+        return [], 0.0
+    # independent of the unit of time
+    changes = model.B2.T[:, :, None] * model.C2[:, None, :]
+    values = numpy.linalg.eigvals(model.A + numpy.concatenate([0 * model.A[None], changes, -changes]))
+    growing = max((abs(value) for value in values[0].tolist() if value.real > 0), default=0.0)
+    return abs(values).ravel().tolist(), growing
+
+
+def _transfer(model, grid):
+    """From the input and from the channels to the channels and the output, on the grid of frequencies."""
+    import numpy
+
+    A, B1, B2, C1, C2, D11, D12, D21, D22, _ = model
+    direct_input, direct = numpy.vstack([D21, D11]), numpy.vstack([D22, D12])
+    if not len(A):
+        ones = numpy.ones(len(grid))
+        return direct_input * ones + 0j, direct[..., None] * ones + 0j
+    moments = (SLANT + 1j) * grid
+    states = numpy.linalg.solve(moments[:, None, None] * numpy.eye(len(A)) - A, numpy.hstack([B1, B2])[None] + 0j)
+    values = numpy.vstack([C2, C1]) @ states + numpy.hstack([direct_input, direct])
+    values = numpy.moveaxis(values, 0, -1)
+    return numpy.ascontiguousarray(values[:, 0]), values[:, 1:]
+
+
+def _radius(matrices):
+    """The spectral radii of matrices without negative elements, along the last axis."""
+    import numpy
+
+    if len(matrices) == 0:
+        return numpy.zeros(matrices.shape[-1])
+    if len(matrices) == 1:
+        return matrices[0, 0]
+    return abs(numpy.linalg.eigvals(numpy.moveaxis(matrices, -1, 0))).max(axis=1)
