@@ -9,8 +9,6 @@ import control
 import numpy as np
 import pytest
 import sympy
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 import loopbook as lb
 from loopbook import s, transfer
@@ -21,11 +19,6 @@ from loopbook.transfer import first_order
 DELAY = sympy.exp(-s)
 LOOP = Loop(first_order(2, 5, delay=4), PID(0.4, Ti=5, Td=1, Tf=0.1))
 TIMES = np.linspace(0, 30, 61)
-LAGS = st.floats(0.2, 5).map(lambda x: sympy.Rational(f"{x:.3g}"))
-
-
-DAMPING = st.floats(0.05, 1.5).map(lambda x: sympy.Rational(f"{x:.3g}"))
-ZEROS = st.floats(-2, 2).map(lambda x: sympy.Rational(f"{x:.3g}"))
 
 
 def overshoot_of(loop):
@@ -54,7 +47,7 @@ def test_a_system_is_called_powered_and_compared():
     H = System(first_order(2, 5, delay=4))
     assert H(0.3j) == pytest.approx(H.frequency(0.3)) == pytest.approx(2 * np.exp(-1.2j) / (1 + 1.5j))
     assert H**2 == H * H
-    assert (1 + H) ** -1 == closed_loop(1, H)
+    assert closed_loop(1, H) == (1 + H) ** -1
     with pytest.raises(ValueError, match="improper"):
         System(1 / (s + 1)) ** -1
     assert System(H) == H == System(H.expr)
@@ -68,7 +61,7 @@ def test_the_four_sensitivities_are_what_their_names_say():
     assert LOOP.T.frequency(w) == pytest.approx(at["L"] / (1 + at["L"]))
     assert LOOP.PS.frequency(w) == pytest.approx(at["P"] / (1 + at["L"]))
     assert LOOP.CS.frequency(w) == pytest.approx(at["C"] / (1 + at["L"]))
-    assert LOOP.S + LOOP.T == System(1)
+    assert System(1) == LOOP.S + LOOP.T
     assert (LOOP.servo, LOOP.regulator, LOOP.setpoint_to_control, LOOP.load_to_control) == (
         LOOP.T,
         LOOP.PS,
@@ -104,23 +97,23 @@ def test_static_gains_are_exact():
 # ------------------------------------------------------------------------------------------------ step information
 
 
-@settings(deadline=None, max_examples=15)
-@given(LAGS, DAMPING, ZEROS, st.booleans())
-def test_step_information_is_that_of_python_control_without_dead_time(T, zeta, zero, negative):
-    K = -2 if negative else 3
+@pytest.mark.parametrize("seed", range(6))
+def test_step_information_is_that_of_python_control_without_dead_time(seed):
+    draw = np.random.default_rng(seed)
+    T, zeta, zero = (sympy.Rational(f"{draw.uniform(*span):.3g}") for span in ((0.2, 5), (0.05, 1.5), (-2, 2)))
+    K = (-2, 3)[seed % 2]
     H = K * (zero * s + 1) / (T**2 * s**2 + 2 * zeta * T * s + 1)
     found = System(H).step_info()
-    times = np.linspace(0, 2 * found.settling_time + 10 * float(T), 4_001)
-    y = System(H).step(times) / K
-    step = times[1]
+    times = np.linspace(0, 2 * found.settling_time, 4_001)
+    y, step = System(H).step(times) / K, times[1]
     expected = control.step_info(control.tf([float(K * zero), float(K)], [float(T**2), float(2 * zeta * T), 1]), times)
-    assert found.overshoot == pytest.approx(expected["Overshoot"] / 100, abs=2e-3)
-    assert found.undershoot == pytest.approx(expected["Undershoot"] / 100, abs=2e-3)
+    assert found.overshoot == pytest.approx(expected["Overshoot"] / 100, abs=1e-4)
+    assert found.undershoot == pytest.approx(expected["Undershoot"] / 100, abs=1e-4)
     assert found.rise_time == pytest.approx(times[(y >= 0.9).argmax()] - times[(y >= 0.1).argmax()], abs=2 * step)
     assert found.settling_time == pytest.approx(times[np.flatnonzero(abs(y - 1) > 0.02)[-1]], abs=2 * step)
     assert found.final_value == K
     if found.overshoot > 1e-3:
-        assert abs(found.peak) == pytest.approx(abs(K) * y.max(), rel=1e-5)
+        assert abs(found.peak) == pytest.approx(abs(K) * y.max(), rel=1e-4)
         assert found.peak_time == pytest.approx(times[y.argmax()], abs=2 * step)
 
 
