@@ -187,18 +187,19 @@ def _tables(n: int):
 def _followed(fraction: ErrorFraction, tolerance: float, sizes: bool) -> numpy.ndarray:
     """Integrals over the response, followed twice as far until what comes later is known or does not matter."""
     e = System(fraction.fraction * DIFFERENTIATOR)
-    end = 4 * float(sum(fraction.fraction.delays)) + 16 / fraction.speed
+    delays = fraction.fraction.delays
+    end, enough = 2 * float(max(delays, default=0)) + 8 / fraction.speed, 4 * float(sum(delays)) + 16 / fraction.speed
     number, reason = 0, ""
     while True:
         response = e.step_until(end)
         table = _four_integrals(response, sizes)
         total, later = table.sum(axis=0), table[response.edges[1:] > end / 2].sum(axis=0)
         negligible = bool((later <= tolerance * total).all())
-        if negligible or number >= 2 or len(response.edges) > EARLY:
+        if negligible or number or len(response.edges) > EARLY:
             rest, reason = _beyond(fraction, response, total, tolerance, sizes)
             if rest is not None:
                 return total + rest
-        if negligible:
+        if negligible and end >= enough:
             return total
         if 2 * len(response.edges) > MOST_SEGMENTS:
             left = max(b / a for a, b in zip(total, later, strict=True) if a)
