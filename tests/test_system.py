@@ -69,7 +69,7 @@ def test_the_four_sensitivities_are_what_their_names_say():
         -LOOP.T,
     )
     with pytest.raises(ValueError, match="improper"):
-        Loop(first_order(1, 1) / s, PID(1, 5, 1)).CS
+        Loop(first_order(1, 1) / s, PID(1, 5, 1)).CS  # noqa: B018
 
 
 def test_stability_of_a_loop_is_internal():

@@ -69,7 +69,7 @@ def step_info(
         raise ValueError(f"the rise is from {low:g} to {high:g}: expected increasing shares")
     response = settled_response(response_until, horizon, final, settling)
     (top, top_time), (bottom, bottom_time) = _extreme(response, 1), _extreme(response, -1)
-    peak, peak_time = (top, top_time) if top >= -bottom else (-bottom, bottom_time)
+    peak, peak_time = (top, top_time) if top >= bottom else (-bottom, bottom_time)
     band = settling * (abs(final) or abs(peak))
     if final and abs(peak) <= abs(final) * (1 + ROUNDING):
         peak, peak_time = final, math.inf
@@ -136,7 +136,7 @@ def first_time_at(response: Response, level: float) -> float:
     rows = sign * response.coefficients.copy()
     rows[:, 0] -= abs(level)
     for k in numpy.flatnonzero(rows[:, 0] + abs(rows[:, 1:]).sum(axis=1) >= 0):
-        if legendre.legval(-1.0, rows[k]) >= 0:
+        if legendre.legval(-1.0, rows[k]) >= -ROUNDING * abs(rows[k]).max():
             return float(response.edges[k])
         if len(found := _roots(rows[k])):
             return _moment(response, k, found.min())
