@@ -83,7 +83,7 @@ RECORDS = 6
 
 
 def test_intervals_hold_the_true_values_as_often_as_they_say():
-    """Over several hundred records of each kind it was 94 to 97 %; a test has time for some."""
+    """Over 237 records of second order it was 92 % for the gain and 96 % for lags and dead time; here are some."""
     told, outside, linear = (dict.fromkeys(("K", "T1", "T2", "delay"), 0) for _ in range(3))
     for kind, lags, delay, noise in CASES.values():
         names = ["T2"] if kind == "integrator with lag" else ["T1", "T2"][: len(lags)]

@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
 from loopbook.quasipolynomials import DelayFraction
-from loopbook.quasipolynomials.fraction import Sum
+from loopbook.quasipolynomials.fraction import Sum, lowest_term
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -137,7 +137,7 @@ class _OnAxis:
         shortest = min(parts)
         parts = {delay - shortest: part for delay, part in parts.items()}
         self.delay, self.delays = float(shortest), [float(delay) for delay in parts]
-        self.power, lowest = _lowest_term(parts)
+        self.power, lowest = lowest_term(parts)
         self.sign, self.lowest = (1 if lowest > 0 else -1), abs(float(lowest / scale))
         self.real = [numpy.array([c / scale for c in part]) for part in parts.values()]
         self.derivatives = [[part * 1j ** (numpy.arange(len(part)) % 4) for part in self.real]]
@@ -196,20 +196,6 @@ class _OnAxis:
         s = 1j * (a + b) / 2 + (b - a) / 2 * numpy.exp(1j * numpy.linspace(-math.pi / 2, math.pi / 2, 129))
         parts = zip(self.delays, self.real, strict=True)
         return sum(polynomial.polyval(s, part) * numpy.exp(-delay * s) for delay, part in parts)
-
-
-def _lowest_term(parts: Sum) -> tuple[int, Fraction]:
-    """The lowest power of `s` in the Taylor series of a sum, and its coefficient, exact."""
-    k = 0
-    while True:
-        coefficient = sum(
-            c * (-delay) ** (k - i) / Fraction(math.factorial(k - i))
-            for delay, part in parts.items()
-            for i, c in enumerate(part[: k + 1])
-        )
-        if coefficient:
-            return k, coefficient
-        k += 1
 
 
 def _followed(sides: list[_OnAxis], grid: numpy.ndarray) -> tuple[numpy.ndarray, numpy.ndarray]:

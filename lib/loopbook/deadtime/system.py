@@ -17,7 +17,7 @@ from loopbook.expressions import function_of, s, t
 from loopbook.inputs import number, real_numbers, times_from_zero
 from loopbook.laplace import transform
 from loopbook.quasipolynomials import DelayFraction, read
-from loopbook.quasipolynomials.fraction import Sum, plus
+from loopbook.quasipolynomials.fraction import Sum, lowest_term, plus
 from loopbook.stability import is_stable
 from loopbook.stability import margins as margins_of
 
@@ -87,7 +87,7 @@ class System(DelayFraction):
         """
         if not self.numerator:
             return sympy.S.Zero
-        (zeros, above), (poles, below) = map(_lowest_term, (self.numerator, self.denominator))
+        (zeros, above), (poles, below) = map(lowest_term, (self.numerator, self.denominator))
         if zeros != poles:
             return sympy.S.Zero if zeros > poles else sympy.oo * sympy.sign(above / below)
         return sympy.Rational(above.numerator * below.denominator, above.denominator * below.numerator)
@@ -362,20 +362,6 @@ class System(DelayFraction):
             return model
         channels = control.append(*(control.ss(control.tf(*control.pade(float(delay), order))) for delay in delays))
         return model.lft(channels)
-
-
-def _lowest_term(parts: Sum) -> tuple[int, Fraction]:
-    """The lowest power of `s` in the Taylor series of a sum, and its coefficient, exact."""
-    k = 0
-    while True:
-        coefficient = sum(
-            c * (-delay) ** (k - i) / math.factorial(k - i)
-            for delay, part in parts.items()
-            for i, c in enumerate(part[: k + 1])
-        )
-        if coefficient:
-            return k, Fraction(coefficient)
-        k += 1
 
 
 def closed_loop(G: object, H: object = 1) -> System:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import numpy
     from numpy.typing import ArrayLike
 
-__all__ = ["DelayFraction", "Sum", "plus", "read", "times"]
+__all__ = ["DelayFraction", "Sum", "lowest_term", "plus", "read", "taylor_coefficient", "times"]
 
 
 Sum = dict[Fraction, tuple[int, ...]]
@@ -67,6 +67,31 @@ def times(one: Sum, other: Sum) -> Sum:
                         product[i + j] += a * b
             total = plus(total, {delay + later: tuple(product)})
     return total
+
+
+def taylor_coefficient(parts: Sum, k: int) -> Fraction:
+    """Return the coefficient of s**k in the Taylor series of a sum at zero, exact.
+
+    >>> taylor_coefficient({Fraction(0): (1,), Fraction(2): (-1,)}, 1)    # of 1 - exp(-2*s)
+    Fraction(2, 1)
+    """
+    return sum(
+        (
+            c * (-Fraction(delay)) ** (k - i) / math.factorial(k - i)
+            for delay, part in parts.items()
+            for i, c in enumerate(part[: k + 1])
+            if c
+        ),
+        ZERO,
+    )
+
+
+def lowest_term(parts: Sum) -> tuple[int, Fraction]:
+    """Return the lowest power of `s` in the Taylor series of a sum that is not zero, and its coefficient, exact."""
+    k = 0
+    while not (coefficient := taylor_coefficient(parts, k)):
+        k += 1
+    return k, coefficient
 
 
 def _scaled(parts: Sum, factor: int) -> Sum:
