@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import numpy
 
 DIGITS = 40
-MOST_MODES = 24
+MOST_MODES = 80
 MOST_SAMPLES = 15_000_000  # of a sum of several modes, before one of them is left
 CHUNK = 8192
 STEP = 0.4  # between samples, as a share of the fastest mode's time
