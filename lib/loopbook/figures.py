@@ -4,20 +4,37 @@ A signal has the same colour and the same kind of line in every figure. The colo
 stay apart without colour vision; the dashes stay apart on a grey printout.
 """
 
+from __future__ import annotations
+
 import base64
 import io
 import math
 import numbers
 import re
 import struct
+from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO, Protocol, Self, TypeAlias
 
 import sympy
 
 from loopbook.laplace import evaluate, t
 
+if TYPE_CHECKING:
+    import numpy
+    from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+    from matplotlib.text import Text
+    from numpy.typing import ArrayLike
+    from PIL import Image
+
+    from loopbook.types import Number, Signal
+
 __all__ = ["Picture", "PlanePlot", "TimePlot", "level_plot", "map_plot", "plane_plot", "time_plot", "trends"]
 
-STYLE = {
+STYLE: dict[str, Any] = {
     # One typeface for words and mathematics; it comes with matplotlib, so that every machine draws the same picture.
     "font.family": "STIXGeneral",
     "mathtext.fontset": "stix",
@@ -46,7 +63,7 @@ STYLE = {
     "savefig.facecolor": "white",
 }
 
-ROLES = {
+ROLES: dict[str, dict[str, Any]] = {
     "setpoint": {"color": "#000000", "linestyle": (0, (4, 3)), "linewidth": 1.2, "zorder": 3},
     "measurement": {"color": "#0072B2", "linestyle": "-", "linewidth": 2.0},
     "control signal": {"color": "#D55E00", "linestyle": (0, (16, 2)), "linewidth": 1.6},
@@ -63,6 +80,46 @@ BELOW = "below"  # the name of a legend that lies under its axes
 DOTS_PER_INCH = 144  # half as many again as a browser calls an inch: sharp in print, and light in a notebook
 
 
+#: A signal in a plot; in a pair with its role, or with the number of a response, where it has its look.
+Drawn: TypeAlias = "Signal | tuple[Signal, str | int]"
+
+#: Numbers in a row, such as the moments of a plot.
+Values: TypeAlias = "Sequence[Number] | numpy.ndarray"
+
+#: The lowest and the highest value of an axis.
+Limits: TypeAlias = "tuple[Number, Number]"
+
+
+class Recorded(Protocol):
+    """What `trends` draws: a `simulation.Run`, a `deadtime.LoopResponse`, or what has their signals."""
+
+    @property
+    def times(self) -> numpy.ndarray:
+        """The moments."""
+
+    @property
+    def signals(self) -> Mapping[str, numpy.ndarray]:
+        """The signals by name, a value for each moment."""
+
+    @property
+    def output(self) -> str:
+        """The name of the controlled signal."""
+
+    @property
+    def manipulated(self) -> str:
+        """The name of the control signal."""
+
+    @property
+    def held(self) -> Collection[str]:
+        """The names of the signals that are constant from one sample to the next."""
+
+    def __getitem__(self, name: str, /) -> numpy.ndarray:
+        """A signal by its name."""
+
+    def unit(self, name: str, /) -> str:
+        """The unit of a signal."""
+
+
 class Picture:
     """A finished figure that a notebook shows once, as the value of a cell, with a description for who cannot see it.
 
@@ -71,14 +128,14 @@ class Picture:
         alt: the description in words; also what `print` and a plain-text display show.
     """
 
-    def __init__(self, figure, alt):
+    def __init__(self, figure: Figure, alt: str):
         self.figure = figure
         self.alt = " ".join(alt.split())
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<{self.alt}>"
 
-    def save(self, file, **options):
+    def save(self, file: str | Path | BinaryIO, **options: Any) -> None:
         """Write the figure to a file (a name ending in .png, .pdf or .svg, or an open file).
 
         Arguments:
@@ -90,7 +147,7 @@ class Picture:
         with matplotlib.rc_context(STYLE):
             self.figure.savefig(file, **{"dpi": DOTS_PER_INCH, "bbox_inches": "tight", "pad_inches": 0.06} | options)
 
-    def png(self):
+    def png(self) -> bytes:
         """Return the figure as the bytes of a PNG file, the same for the same versions of matplotlib and Pillow.
 
         >>> from loopbook.laplace import t
@@ -113,7 +170,7 @@ class Picture:
         return data, {"image/png": {"alt": self.alt, "width": width, "height": height}}
 
 
-def with_few_colours(image, shades=3):
+def with_few_colours(image: Image.Image, shades: int = 3) -> Image.Image:
     """A line drawing with the colours of its lines and areas, in a few shades towards white: a quarter as large.
 
     Arguments:
@@ -145,11 +202,11 @@ def with_few_colours(image, shades=3):
 class TimePlot(Picture):
     """What `time_plot` returns: a picture of signals against time, on which points and levels can be marked."""
 
-    def __init__(self, figure, alt, lines):
+    def __init__(self, figure: Figure, alt: str, lines: dict[str, Line2D]):
         super().__init__(figure, alt)
         self.lines = lines  # {label: matplotlib line}
 
-    def mark(self, time, label, signal=None):
+    def mark(self, time: Number, label: str, signal: str | None = None) -> Self:
         """Mark the point where a curve is at `time`: a dot, dashed guides to both axes, and a label.
 
         Arguments:
@@ -194,7 +251,7 @@ class TimePlot(Picture):
         self.alt += f"; marked: {plain_words(label)}"
         return self
 
-    def level(self, value, label, signal=None):
+    def level(self, value: Number, label: str, signal: str | None = None) -> Self:
         """Draw a horizontal dashed line, as for a steady state, with a label at its right end, out of the curve's way.
 
         Arguments:
@@ -226,7 +283,13 @@ class TimePlot(Picture):
         self.alt += f"; level: {plain_words(label)}"
         return self
 
-    def points(self, times, values, label, signal=None):
+    def points(
+        self,
+        times: Values,
+        values: Values,
+        label: str,
+        signal: str | None = None,
+    ) -> Self:
         """Add single points, such as data between which a curve interpolates.
 
         Arguments:
@@ -266,7 +329,16 @@ class TimePlot(Picture):
         return matplotlib.rc_context(STYLE)
 
 
-def time_plot(signals, times, title=None, xlabel="$t$ [s]", ylabel=None, ylim=None, before=0, low=False):
+def time_plot(
+    signals: Mapping[str, Drawn] | Sequence[Mapping[str, Drawn]],
+    times: Values,
+    title: str | None = None,
+    xlabel: str = "$t$ [s]",
+    ylabel: str | Sequence[str | None] | None = None,
+    ylim: Limits | list[Limits | None] | None = None,
+    before: float = 0,
+    low: bool = False,
+) -> TimePlot:
     """Plot signals against time, in one panel or in several above one another with a common time axis.
 
     Arguments:
@@ -344,7 +416,15 @@ def time_plot(signals, times, title=None, xlabel="$t$ [s]", ylabel=None, ylim=No
     return TimePlot(figure, f"{plain_words(title) + ': ' if title else ''}{shown} against {plain_words(xlabel)}", lines)
 
 
-def trends(runs, title=None, disturbances=(), measured=False, minutes=False, limits=None, control_limits=None):
+def trends(
+    runs: Recorded | Mapping[str, Recorded],
+    title: str | None = None,
+    disturbances: Sequence[str] = (),
+    measured: bool = False,
+    minutes: bool = False,
+    limits: Limits | None = None,
+    control_limits: Limits | None = None,
+) -> TimePlot:
     """Plot loops as an operator sees them: setpoint and measurement above, control signal below.
 
     Arguments:
@@ -409,11 +489,11 @@ def trends(runs, title=None, disturbances=(), measured=False, minutes=False, lim
 class PlanePlot(Picture):
     """What `plane_plot`, `map_plot` and `level_plot` return, to which areas, points and words can be added."""
 
-    def __init__(self, figure, alt):
+    def __init__(self, figure: Figure, alt: str):
         super().__init__(figure, alt)
         self.axes = figure.axes[0]
 
-    def area(self, x, y, label):
+    def area(self, x: Values, y: Values, label: str) -> Self:
         """Shade the polygon with these corners; the legend calls it by its label. Returns the plot itself.
 
         >>> plane_plot({"limit": ([1, 2], [2, 1])}, "$x$", "$y$").area([0, 1, 1], [0, 0, 1], "window")
@@ -424,7 +504,7 @@ class PlanePlot(Picture):
         patch.set_hatch_linewidth(0.4)
         return self._explained(f"; area: {plain_words(label)}")
 
-    def line(self, x, y, label, role=0):
+    def line(self, x: Values, y: Values, label: str, role: str | int = 0) -> Self:
         """Add a curve, as a limit of stability over a map; look as in `plane_plot`. Returns the plot itself.
 
         >>> plane_plot({"limit": ([1, 2], [2, 1])}, "$x$", "$y$").line([1, 2], [1, 2], "diagonal", role=1)
@@ -434,7 +514,7 @@ class PlanePlot(Picture):
         self.axes.plot(x, y, label=label, scalex=False, scaley=False, **look)
         return self._explained(f"; line: {plain_words(label)}")
 
-    def points(self, x, y, label, mark="o"):
+    def points(self, x: Number | Values, y: Number | Values, label: str, mark: str = "o") -> Self:
         """Add single points, by the name that the legend gives them. Returns the plot itself.
 
         Arguments:
@@ -449,7 +529,7 @@ class PlanePlot(Picture):
         self.axes.plot(x, y, mark, label=label, linestyle="", scalex=False, scaley=False, **look)
         return self._explained(f"; points: {plain_words(label)}")
 
-    def text(self, x, y, words):
+    def text(self, x: float, y: float, words: str) -> Self:
         """Write words around a point of the plane. Returns the plot itself.
 
         >>> plane_plot({"limit": ([1, 2], [2, 1])}, "$x$", "$y$").text(1.5, 1.8, "unstable")
@@ -472,7 +552,16 @@ class PlanePlot(Picture):
         return self
 
 
-def plane_plot(curves, xlabel, ylabel, title=None, xlim=None, ylim=None, log=False, equal=False):
+def plane_plot(
+    curves: Mapping[str, tuple[Values, Values] | tuple[Values, Values, str | int]],
+    xlabel: str,
+    ylabel: str,
+    title: str | None = None,
+    xlim: tuple[float, float] | None = None,
+    ylim: tuple[float, float] | None = None,
+    log: bool = False,
+    equal: bool = False,
+) -> PlanePlot:
     """Plot curves in a plane: limits of stability, frequency responses in the complex plane.
 
     Arguments:
@@ -520,7 +609,16 @@ def plane_plot(curves, xlabel, ylabel, title=None, xlim=None, ylim=None, log=Fal
     return PlanePlot(figure, f"{plain_words(title) + ': ' if title else ''}{words}")
 
 
-def map_plot(x, y, numbers, xlabel, ylabel, label, title=None, log=False):
+def map_plot(
+    x: Values,
+    y: Values,
+    numbers: ArrayLike,
+    xlabel: str,
+    ylabel: str,
+    label: str,
+    title: str | None = None,
+    log: bool = False,
+) -> PlanePlot:
     """Plot whole numbers on a grid as shades of grey, white for 0, with a scale: a map of unstable poles, for example.
 
     Arguments:
@@ -566,7 +664,17 @@ def map_plot(x, y, numbers, xlabel, ylabel, label, title=None, log=False):
     return PlanePlot(figure, f"{plain_words(title) + ': ' if title else ''}{words}")
 
 
-def level_plot(x, y, values, levels, xlabel, ylabel, label, title=None, log=False):
+def level_plot(
+    x: Values,
+    y: Values,
+    values: ArrayLike,
+    levels: Sequence[float] | numpy.ndarray,
+    xlabel: str,
+    ylabel: str,
+    label: str,
+    title: str | None = None,
+    log: bool = False,
+) -> PlanePlot:
     """Plot lines of equal value over a plane, with the value written on each: a criterion over two settings.
 
     Arguments:
@@ -634,7 +742,7 @@ def _logarithmic(axes):
         axis.set_minor_formatter(NullFormatter())
 
 
-def add_legend(axes, may_grow, columns=1):
+def add_legend(axes: Axes, may_grow: bool, columns: int = 1) -> None:
     """A legend where it hides no curve; if there is no such place, a flat one above them, for which the panel grows."""
     if axes.get_legend() and axes.get_legend().get_gid() == BELOW:
         legend_below(axes)
@@ -657,7 +765,7 @@ def add_legend(axes, may_grow, columns=1):
         axes.set_ylim(scale.inverted().transform([low, high]))
 
 
-def legend_below(axes, columns=2):
+def legend_below(axes: Axes, columns: int = 2) -> None:
     """A legend under the axes, where a picture has no empty corner; what is added later is explained there, too."""
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=columns).set_gid(BELOW)
 
@@ -668,7 +776,7 @@ def _legend_box(axes, **options):
     return legend.get_window_extent()
 
 
-def decades(axis, low, high):
+def decades(axis: Axis, low: float, high: float) -> None:
     """Ordinary numbers on a logarithmic axis from `low` to `high`: powers of ten, or 1, 2 and 5 where it is short."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
@@ -693,7 +801,9 @@ PLACES = {
 }
 
 
-def free_place(axes, words, point, preferred=(), color="#000000"):
+def free_place(
+    axes: Axes, words: str, point: tuple[float, float], preferred: Sequence[str] = (), color: str = "#000000"
+) -> Text:
     """Write words beside a point, at the first place where they hide no curve and no other words.
 
     Arguments:
@@ -735,7 +845,7 @@ def free_place(axes, words, point, preferred=(), color="#000000"):
     return best[1]
 
 
-def response_look(number):
+def response_look(number: int) -> dict[str, Any]:
     """Return colour, kind and width of the line for response `number` (0, 1, 2 ...) that has no role of its own.
 
     >>> response_look(0)["color"], response_look(1)["linestyle"]
@@ -745,7 +855,7 @@ def response_look(number):
     return {"color": colour, "linestyle": RESPONSE_LINES[number % len(RESPONSE_LINES)], "linewidth": 1.8}
 
 
-def plain_words(text):
+def plain_words(text: str) -> str:
     r"""Return a label without its LaTeX commands, for a description in words.
 
     >>> plain_words(r"$F_{\mathrm{in}}(t)$ after $\tau$")

@@ -5,7 +5,11 @@ A word is the name of a signal, a SymPy expression is a block, and `parallel_pat
 itself from a point onward, so parts can stand within parts.
 """
 
+from __future__ import annotations
+
 import numbers
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, TypeAlias
 
 import sympy
 from sympy.printing.latex import LatexPrinter
@@ -13,13 +17,23 @@ from sympy.printing.latex import LatexPrinter
 from loopbook.diagrams.sheet import FONT_SIZE, RADIUS, Sheet, mathematics, signal_name, text_size, wording
 from loopbook.expressions import s
 
+if TYPE_CHECKING:
+    from loopbook.figures import Picture
+    from loopbook.types import Number
+
 WIRE = 1.0  # shortest distance between two blocks
 GAP = 0.45  # between two paths above one another
 SYMBOL = 1.4 * FONT_SIZE  # of an elementary block
 STUB = 0.6  # the arrow of a value that enters a block from above or below
 
+#: What stands in a block diagram: a signal's name, an expression, or what `block` and the other functions here return.
+Item: TypeAlias = "str | Number | _Block | _Entry | _Paths | _Loop"
 
-def block_diagram(*items, title=None):
+#: A path of a diagram: a single item, or several in the order in which the signal runs.
+Items: TypeAlias = "Item | Sequence[Item]"
+
+
+def block_diagram(*items: Item, title: str | None = None) -> Picture:
     """Draw a block diagram.
 
     Arguments:
@@ -42,7 +56,9 @@ def block_diagram(*items, title=None):
     return sheet.picture(title, f"block diagram: {chain}")
 
 
-def equivalent_diagrams(rules, title=None):
+def equivalent_diagrams(
+    rules: Mapping[str, tuple[Sequence[Item], Sequence[Item]]], title: str | None = None
+) -> Picture:
     """Draw pairs of block diagrams that mean the same, one pair a row, with an arrow between the two.
 
     Arguments:
@@ -73,7 +89,14 @@ def equivalent_diagrams(rules, title=None):
     return sheet.picture(title, "; ".join(words))
 
 
-def overall_diagram(name, inputs=(), disturbances=(), parameters=(), outputs=(), title=None):
+def overall_diagram(
+    name: str,
+    inputs: Sequence[str] = (),
+    disturbances: Sequence[str] = (),
+    parameters: Sequence[str] = (),
+    outputs: Sequence[str] = (),
+    title: str | None = None,
+) -> Picture:
     r"""Draw a model as one block with everything that enters and leaves it.
 
     Arguments:
@@ -105,7 +128,7 @@ def overall_diagram(name, inputs=(), disturbances=(), parameters=(), outputs=(),
     return sheet.picture(title, f"overall block diagram: {words}")
 
 
-def elementary_blocks(title=None):
+def elementary_blocks(title: str | None = None) -> Picture:
     """Draw the table of the blocks from which the diagram of a differential equation is built.
 
     Arguments:
@@ -136,7 +159,7 @@ def elementary_blocks(title=None):
     return sheet.picture(title, "; ".join(words))
 
 
-def block(label, above=(), below=()):
+def block(label: str, above: Sequence[str] = (), below: Sequence[str] = ()) -> _Block:
     r"""Return a block with a label of your own where a SymPy expression would not be written as you want it.
 
     Arguments:
@@ -154,7 +177,7 @@ def block(label, above=(), below=()):
     return _Block(wording(label), label, _names(above), _names(below))
 
 
-def integrator(initial=None, limits=()):
+def integrator(initial: str | None = None, limits: Sequence[str] = ()) -> _Block:
     """Return an integrator, as a block with the integral sign.
 
     Arguments:
@@ -171,7 +194,7 @@ def integrator(initial=None, limits=()):
     return _Block(r"$\int$", "integral", [initial] if initial else [], limits, SYMBOL)
 
 
-def multiplication(factor, side="below"):
+def multiplication(factor: str, side: str = "below") -> _Block:
     """Return a block that multiplies the signal by another one, which enters from `side`, "above" or "below".
 
     >>> block_diagram("u", multiplication("K"), "y")
@@ -180,7 +203,7 @@ def multiplication(factor, side="below"):
     return _Block(r"$\times$", "×", size=SYMBOL, **{_side(side): [factor]})
 
 
-def division(divisor, side="below"):
+def division(divisor: str, side: str = "below") -> _Block:
     """Return a block that divides the signal by another one, which enters from `side`, "above" or "below".
 
     >>> block_diagram("u", division("A"), "y")
@@ -189,7 +212,7 @@ def division(divisor, side="below"):
     return _Block(r"$\div$", "÷", size=SYMBOL, **{_side(side): [divisor]})
 
 
-def gain(factor):
+def gain(factor: str) -> _Block:
     """Return a constant gain, as a triangle.
 
     >>> block_diagram("u", gain("K"), "y")
@@ -198,7 +221,7 @@ def gain(factor):
     return _Gain(wording(factor), f"gain {factor}")
 
 
-def delay(time=r"\tau"):
+def delay(time: str = r"\tau") -> _Block:
     """Return a block that passes the signal on some time later.
 
     >>> block_diagram("u", delay("3"), "y")
@@ -207,7 +230,7 @@ def delay(time=r"\tau"):
     return _Block(f"Delay\n{mathematics(time)}", f"delay {time}")
 
 
-def switch(upper="auto", lower="manual"):
+def switch(upper: str = "auto", lower: str = "manual") -> _Block:
     """Return a switch that lets one of two signals through, the upper one as it is drawn; for `grid_diagram`.
 
     >>> switch()
@@ -216,7 +239,7 @@ def switch(upper="auto", lower="manual"):
     return _Switch(upper, lower)
 
 
-def disturbance(name, *path, sign="+", side="above"):
+def disturbance(name: str, *path: Item, sign: str = "+", side: str = "above") -> _Entry:
     """Return a signal that enters a diagram in its middle, through a summing junction.
 
     Arguments:
@@ -234,7 +257,7 @@ def disturbance(name, *path, sign="+", side="above"):
     return _Entry(name, path, sign, side)
 
 
-def parallel_paths(*paths, signs=None):
+def parallel_paths(*paths: Items, signs: str | None = None) -> _Paths:
     """Return the part of a diagram in which a signal branches into two or three paths that are summed again.
 
     Arguments:
@@ -250,7 +273,7 @@ def parallel_paths(*paths, signs=None):
     return _Paths(paths, signs, branch=True)
 
 
-def sum_of(*paths, signs=None):
+def sum_of(*paths: Sequence[Item], signs: str | None = None) -> _Paths:
     """Return the part of a diagram in which two or three separate signals are summed; it stands first in a diagram.
 
     Arguments:
@@ -266,7 +289,7 @@ def sum_of(*paths, signs=None):
     return _Paths(paths, signs, branch=False)
 
 
-def feedback_loop(forward, back=None, sign="-"):
+def feedback_loop(forward: Items, back: Items | None = None, sign: str = "-") -> _Loop:
     """Return a feedback loop as part of a diagram.
 
     Arguments:

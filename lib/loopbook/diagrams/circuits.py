@@ -1,11 +1,17 @@
 """Circuits of resistors, capacitors and inductors, with their currents and voltages."""
 
+from __future__ import annotations
+
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 from loopbook.diagrams.sheet import Sheet, mathematics, text_size
 
+if TYPE_CHECKING:
+    from loopbook.figures import Picture
 
-def rc_circuit(resistor="R", capacitor="C", title=None):
+
+def rc_circuit(resistor: str = "R", capacitor: str = "C", title: str | None = None) -> Picture:
     """Draw an RC circuit, from the voltage v_in at its left to the voltage v_out at its right.
 
     Arguments:
@@ -33,7 +39,7 @@ def rc_circuit(resistor="R", capacitor="C", title=None):
     return sheet.picture(title, words)
 
 
-def two_terminal_components(title=None):
+def two_terminal_components(title: str | None = None) -> Picture:
     """Draw a resistor, a capacitor and an inductor, each with its current, its voltage and the law between them.
 
     >>> two_terminal_components(title="Figure 3.18").alt
@@ -48,7 +54,7 @@ def two_terminal_components(title=None):
     return sheet.picture(title, "resistor R: v = R i; capacitor C: i = C dv/dt; inductor L: v = L di/dt")
 
 
-def resistor_combinations(title=None):
+def resistor_combinations(title: str | None = None) -> Picture:
     """Draw two resistors in series and in parallel, and the one resistor that does the same.
 
     >>> resistor_combinations(title="Figure 3.17").alt[:54]
@@ -72,7 +78,7 @@ def resistor_combinations(title=None):
     return sheet.picture(title, "R_1 and R_2 in series equal R_1 + R_2; in parallel they equal R_1 R_2/(R_1 + R_2)")
 
 
-def kirchhoff_laws(title=None):
+def kirchhoff_laws(title: str | None = None) -> Picture:
     """Draw a junction of currents and a loop of voltages, with the law for each.
 
     >>> kirchhoff_laws(title="Figure 3.16").alt[:58]

@@ -1,11 +1,18 @@
 """Pipes, ducts, shafts and the lines of signals, each with the marks that tell its kind."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 from loopbook.diagrams.equipment import THICK, THIN, Equipment, one_of
 from loopbook.diagrams.grid import direction
 from loopbook.diagrams.sheet import LINE
+
+if TYPE_CHECKING:
+    from loopbook.diagrams.sheet import XY, Sheet
 
 DASHES = "--"
 DUCT = 0.5  # half the width of an air duct
@@ -31,7 +38,7 @@ CONDUCTORS = ("pipe", "crossing", "junction", "duct", "shaft", "measuring line",
               *(kind for kind in SIGNALS if kind != "measuring line"))  # fmt: skip
 
 
-def conductor(kind="pipe"):
+def conductor(kind: str = "pipe") -> Conductor:
     """Return a piece of a pipe or of a signal's line, for a table of symbols or a legend.
 
     Arguments:
@@ -47,11 +54,11 @@ def conductor(kind="pipe"):
     return Conductor(one_of("the conductor", kind, CONDUCTORS))
 
 
-def draw_pipe(sheet, points, arrow=False):
+def draw_pipe(sheet: Sheet, points: Sequence[XY], arrow: bool = False) -> None:
     sheet.wire(*points, arrow="->" if arrow else None, width=THICK)
 
 
-def draw_duct(sheet, points, arrow=False):
+def draw_duct(sheet: Sheet, points: Sequence[XY], arrow: bool = False) -> None:
     (x0, y), (x1, _) = points[0], points[-1]
     for side in (-DUCT, DUCT):
         sheet.wire((x0, y + side), (x1, y + side), width=THICK)
@@ -59,14 +66,14 @@ def draw_duct(sheet, points, arrow=False):
         sheet.wire((x1 - 0.6, y), (x1, y), arrow="->")
 
 
-def draw_shaft(sheet, points, arrow=False):
+def draw_shaft(sheet: Sheet, points: Sequence[XY], arrow: bool = False) -> None:
     for start, end in pairwise(points):
         dx, dy = (0, SHAFT) if start[1] == end[1] else (SHAFT, 0)
         for side in (-1, 1):
             sheet.wire(*[(x + side * dx, y + side * dy) for x, y in (start, end)])
 
 
-def draw_signal(sheet, points, kind, arrow=False):
+def draw_signal(sheet: Sheet, points: Sequence[XY], kind: str, arrow: bool = False) -> None:
     """A signal's line through the points, with its marks and, on a piece of its own, its arrow head."""
     if kind == "measuring line":
         sheet.wire(*points, width=THIN)
@@ -101,13 +108,13 @@ def _mark(sheet, start, end, kind, spared):
 class Conductor(Equipment):
     width, height, openings = 2.7, 0.6, ()
 
-    def __init__(self, kind):
+    def __init__(self, kind: str):
         super().__init__("", kind)
         self.kind = kind
         if kind in ("crossing", "junction", "duct"):
             self.height = 1.1
 
-    def draw(self, sheet):
+    def draw(self, sheet: Sheet) -> None:
         line, upright = [(self.x0, self.y), (self.x1, self.y)], [(self.x, self.y0), (self.x, self.y1)]
         match self.kind:
             case "pipe":

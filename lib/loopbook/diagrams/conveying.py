@@ -1,9 +1,16 @@
 """What moves solid material: a feed screw and a conveyor belt."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from loopbook.diagrams.equipment import THIN, Equipment
 
+if TYPE_CHECKING:
+    from loopbook.diagrams.sheet import XY, Sheet
 
-def feed_screw(tag=""):
+
+def feed_screw(tag: str = "") -> Screw:
     """Return a feed screw; it takes up all the places that its name has in the layout.
 
     >>> feed_screw()
@@ -12,7 +19,7 @@ def feed_screw(tag=""):
     return Screw(tag, "feed screw")
 
 
-def conveyor(tag=""):
+def conveyor(tag: str = "") -> Conveyor:
     """Return a conveyor belt; it takes up all the places that its name has in the layout.
 
     >>> conveyor()
@@ -24,7 +31,7 @@ def conveyor(tag=""):
 class Screw(Equipment):
     width, height, room = 2.4, 0.7, (0.2, 0.5)
 
-    def draw(self, sheet):
+    def draw(self, sheet: Sheet) -> None:
         sheet.area([(self.x0, self.y0), (self.x0, self.y1), (self.x1, self.y1), (self.x1, self.y0)], fill="white")
         sheet.wire((self.x0, self.y), (self.x1, self.y), width=THIN)
         turns = max(3, round((self.x1 - self.x0) / 0.45))
@@ -38,7 +45,7 @@ class Screw(Equipment):
 class Conveyor(Equipment):
     width, height, room = 3.0, 0.5, (0.4, 0.5)
 
-    def draw(self, sheet):
+    def draw(self, sheet: Sheet) -> None:
         r = 0.22
         for y in (self.y - r, self.y + r):
             sheet.wire((self.x0 + r, y), (self.x1 - r, y))
@@ -48,5 +55,5 @@ class Conveyor(Equipment):
         sheet.wire((self.x - 0.5, self.y), (self.x + 0.5, self.y), arrow="->", width=THIN)
         self.draw_tag(sheet)
 
-    def edge(self, dx, dy, x, y):
+    def edge(self, dx: int, dy: int, x: float, y: float) -> XY:
         return (self.x1 if dx > 0 else self.x0, y) if dx else (x, self.y + 0.24 * dy)

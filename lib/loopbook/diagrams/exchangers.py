@@ -1,8 +1,15 @@
 """Heat exchangers and heaters."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from loopbook.diagrams.conductors import DUCT
 from loopbook.diagrams.equipment import ABOVE, BELOW, HALF_CIRCLE, LEFT, RIGHT, THICK, THIN, Equipment, named, one_of
 from loopbook.diagrams.sheet import LIQUID
+
+if TYPE_CHECKING:
+    from loopbook.diagrams.sheet import XY, Sheet
 
 EXCHANGERS = ("general", "shell and tube", "plate", "cooler", "air cooler", "condenser", "reboiler")
 HEATERS = ("duct", "electric", "steam", "fired")
@@ -10,7 +17,7 @@ SIZES = {"shell and tube": (2.2, 0.9), "plate": (1.0, 1.2), "air cooler": (1.5, 
          "reboiler": (2.2, 1.1), "electric": (1.6, 0.8)}  # fmt: skip
 
 
-def heat_exchanger(tag="", kind="general"):
+def heat_exchanger(tag: str = "", kind: str = "general") -> Equipment:
     """Return a heat exchanger, which one stream passes along and the other one across; its tag stands beside it.
 
     Arguments:
@@ -28,7 +35,7 @@ def heat_exchanger(tag="", kind="general"):
     return Circled(tag, words, kind) if kind in ("general", "cooler") else Boxed(tag, words, kind)
 
 
-def heater(tag="", kind="duct"):
+def heater(tag: str = "", kind: str = "duct") -> Equipment:
     """Return a heater; its tag stands below it.
 
     Arguments:
@@ -49,13 +56,13 @@ class Circled(Equipment):
 
     radius = 0.45
 
-    def __init__(self, tag, words, kind):
+    def __init__(self, tag: str, words: str, kind: str):
         super().__init__(tag, words)
         self.kind = kind
         if kind == "general":
             self.openings = (LEFT, RIGHT, ABOVE, BELOW)
 
-    def draw(self, sheet):
+    def draw(self, sheet: Sheet) -> None:
         sheet.circle(self.x, self.y, self.radius)
         if self.kind == "general":
             bends = ((0, 0.45), (0, 0.25), (0.25, 0.12), (-0.25, -0.12), (0, -0.25), (0, -0.45))
@@ -69,7 +76,7 @@ class Circled(Equipment):
 class Boxed(Equipment):
     """What has tubes, plates or wires in a box or a shell."""
 
-    def __init__(self, tag, words, kind):
+    def __init__(self, tag: str, words: str, kind: str):
         super().__init__(tag, words)
         self.kind, (self.width, self.height) = kind, SIZES[kind]
         if kind in ("shell and tube", "plate"):
@@ -77,7 +84,7 @@ class Boxed(Equipment):
         if kind in ("condenser", "reboiler"):
             self.openings = (ABOVE, BELOW)
 
-    def draw(self, sheet):
+    def draw(self, sheet: Sheet) -> None:
         corners = [(self.x0, self.y0), (self.x0, self.y1), (self.x1, self.y1), (self.x1, self.y0)]
         sheet.area(corners, fill="white")
         {"shell and tube": self._tubes, "plate": self._plates, "air cooler": self._air, "condenser": self._bath,
@@ -125,17 +132,17 @@ class Furnace(Equipment):
 
     width, height, room = 1.6, 1.9, (0.6, 0.5)
 
-    def __init__(self, tag, words, kind):
+    def __init__(self, tag: str, words: str, kind: str):
         super().__init__(tag, words)
 
-    def edge(self, dx, dy, x, y):
+    def edge(self, dx: int, dy: int, x: float, y: float) -> XY:
         """Up to the shoulders, and above them to the chimney."""
         return super().edge(dx, dy, x, min(y, self.shoulder()))
 
-    def shoulder(self):
+    def shoulder(self) -> float:
         return self.y1 - 0.75
 
-    def draw(self, sheet):
+    def draw(self, sheet: Sheet) -> None:
         half, top = 0.16, self.shoulder()
         left = [(self.x0, self.y0), (self.x0, top), (self.x - half, top + 0.35), (self.x - half, self.y1)]
         sheet.area([*left, *[(2 * self.x - x, y) for x, y in reversed(left)]], fill="white")
@@ -152,10 +159,10 @@ class DuctHeater(Equipment):
 
     width, height, room, openings = 1.4, 2 * DUCT, (0.2, 0.5), ()
 
-    def __init__(self, tag, words, kind):
+    def __init__(self, tag: str, words: str, kind: str):
         super().__init__(tag, words)
 
-    def draw(self, sheet):
+    def draw(self, sheet: Sheet) -> None:
         for y in (self.y0, self.y1):
             sheet.wire((self.x0, y), (self.x1, y), width=THICK)
         for x in (self.x - 0.5, self.x, self.x + 0.5):

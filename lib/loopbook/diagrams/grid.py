@@ -4,15 +4,30 @@ The table is the diagram in miniature. A name that fills several places next to 
 number is a point without a name, and a dot is an empty place. Columns and rows are as wide and as high as they must be.
 """
 
+from __future__ import annotations
+
 import copy
 import re
+from collections.abc import Callable, Iterable, Mapping
 from itertools import pairwise
+from typing import TYPE_CHECKING, TypeAlias
 
 from loopbook.diagrams.blocks import _Block, _part, block
 from loopbook.diagrams.sheet import RADIUS, Sheet, signal_name, text_size
 
+if TYPE_CHECKING:
+    from loopbook.diagrams.sheet import XY, Way
+    from loopbook.figures import Picture
+    from loopbook.types import Number
 
-def grid_diagram(layout, wires, blocks=None, names=None, title=None):
+
+def grid_diagram(
+    layout: str,
+    wires: str,
+    blocks: Mapping[str, str | Number | _Block] | None = None,
+    names: Mapping[str, str] | None = None,
+    title: str | None = None,
+) -> Picture:
     r"""Draw a block diagram whose blocks and signals are placed on a grid.
 
     Arguments:
@@ -67,12 +82,12 @@ def grid_diagram(layout, wires, blocks=None, names=None, title=None):
     return sheet.picture(title, f"block diagram: {grid.words(wires)}")
 
 
-def direction(here, there):
+def direction(here: XY, there: XY) -> Way:
     """Which way a wire goes from one of its points to the next, as (dx, dy) of -1, 0 and 1."""
     return tuple(int(b > a + 1e-9) - int(b < a - 1e-9) for a, b in zip(here, there, strict=True))
 
 
-def read_paths(text):
+def read_paths(text: str) -> list[list[tuple[str, str]]]:
     """The paths of a text, each a list of (name, sign with which the path enters it)."""
     if not isinstance(text, str):
         raise ValueError(f"paths are one text, as in 'a b c, d b', not {text!r}")
@@ -92,7 +107,7 @@ def read_paths(text):
     return found
 
 
-def connections(text):
+def connections(text: str) -> Edges:
     """The pieces of the paths in a text, from one name to the next: ``{(start, end): sign}``."""
     edges = {}
     for steps in read_paths(text):
@@ -101,7 +116,7 @@ def connections(text):
     return edges
 
 
-def neighbours(edges):
+def neighbours(edges: Iterable[tuple[str, str]]) -> tuple[dict[str, list[str]], dict[str, list[str]]]:
     """What enters and what leaves each name: two dictionaries of lists."""
     entering, leaving = {}, {}
     for start, end in edges:
@@ -115,32 +130,38 @@ def neighbours(edges):
 # (x, y) that goes away in the direction (dx, dy) leaves it.
 
 
+#: The pieces of paths, from one name to the next, each with its sign, which may be empty.
+Edges: TypeAlias = "dict[tuple[str, str], str]"
+
+
 class Node:
-    width = height = 0
-    radius = None  # of what is round, or is met at its middle from all sides
-    room = (0.3, 0.3)  # what is left free around it, both sides together
+    width: float = 0
+    height: float = 0
+    radius: float | None = None  # of what is round, or is met at its middle from all sides
+    room: tuple[float, float] = (0.3, 0.3)  # what is left free around it, both sides together
     arrow_in, inline, words = True, False, ""
-    heading = (1, 0)
+    heading: Way = (1, 0)
+    levels: list[float]  # of the rows that it takes up, as far down as the layout goes
     leaves = "sideways"
 
-    def place(self, x, y, width, height):
+    def place(self, x: float, y: float, width: float, height: float) -> None:
         """Stand in the middle; what fills several places takes up all of their room."""
         self.x, self.y = x, y
         self.x0, self.x1, self.y0, self.y1 = x - width / 2, x + width / 2, y - height / 2, y + height / 2
 
-    def edge(self, dx, dy, x, y):
+    def edge(self, dx: int, dy: int, x: float, y: float) -> XY:
         if self.radius:
             return self.x + dx * self.radius, self.y + dy * self.radius
         return (self.x1 if dx > 0 else self.x0, y) if dx else (x, self.y1 if dy > 0 else self.y0)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<{self.words}>"
 
-    def tap(self, dx, dy, x, y):
+    def tap(self, dx: int, dy: int, x: float, y: float) -> XY:
         """The same for a signal's line."""
         return self.edge(dx, dy, x, y)
 
-    def draw(self, sheet):
+    def draw(self, sheet: Sheet) -> None:
         pass
 
 
@@ -149,10 +170,10 @@ class Point(Node):
 
     arrow_in, leaves = False, "up or down"
 
-    def __init__(self, dot=False):
+    def __init__(self, dot: bool = False):
         self.dot = dot
 
-    def draw(self, sheet):
+    def draw(self, sheet: Sheet) -> None:
         if self.dot:
             sheet.dot(self.x, self.y)
 
@@ -162,26 +183,26 @@ class Junction(Node):
     radius = RADIUS
     room = (1.1, 0.9)
 
-    def draw(self, sheet):
+    def draw(self, sheet: Sheet) -> None:
         sheet.circle(self.x, self.y, RADIUS)
 
 
 class Label(Node):
     """A signal's name: above its wire, beside a wire that goes up or down, or at the end of that."""
 
-    def __init__(self, name, through=False):
+    def __init__(self, name: str, through: bool = False):
         self.words, self.label, self.through = name, signal_name(name), through
         self.width, self.height = text_size(self.label)
         self.room, self.arrow_in = (0.5 if through else 0.6, 0.6), not through
         self.sideways = self.upright = False
 
-    def edge(self, dx, dy, x, y):
+    def edge(self, dx: int, dy: int, x: float, y: float) -> XY:
         self.sideways, self.upright = self.sideways or bool(dx), self.upright or bool(dy)
         if self.through:
             return self.x, self.y
         return (x - dx * (self.width / 2 + 0.25), y) if dx else (x, y + dy * (self.height / 2 + 0.1))
 
-    def draw(self, sheet):
+    def draw(self, sheet: Sheet) -> None:
         if self.sideways:
             sheet.text(self.x, self.y + 0.13, self.label, valign="bottom")
         elif self.upright and self.through:
@@ -193,27 +214,27 @@ class Label(Node):
 class BlockNode(Node):
     room = (0.8, 0.5)
 
-    def __init__(self, part):
+    def __init__(self, part: _Block):
         if not isinstance(part, _Block):
             raise ValueError(f"a grid takes single blocks, not {part}")
         self.part, self.words = copy.copy(part), str(part)
         self.width, self.height = part.width, 2 * max(part.above, part.below)
 
-    def place(self, x, y, width, height):
+    def place(self, x: float, y: float, width: float, height: float) -> None:
         self.part.width = width
         if len(self.levels) > 1:
             self.part.half = height / 2
             self.part.levels = [level - y for level in self.levels]
         super().place(x, y, width, 2 * self.part.half)
 
-    def draw(self, sheet):
+    def draw(self, sheet: Sheet) -> None:
         self.part.draw(sheet, self.x0, self.y)
 
 
 class Grid:
     """The names of a layout, each with what stands there; `node` makes that from the name."""
 
-    def __init__(self, layout, node):
+    def __init__(self, layout: str, node: Callable[[str], Node]):
         if not isinstance(layout, str):
             raise ValueError(f"a layout is one text with a line for each row, not {layout!r}")
         rows = [line.split() for line in layout.strip().splitlines()]
@@ -246,10 +267,10 @@ class Grid:
                 node.height if top == bottom else height - node.room[1],
             )
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> Node:
         return self.nodes[name]
 
-    def words(self, text):
+    def words(self, text: str) -> str:
         """The paths of a text in words; a corner is no part of them, a branch point is."""
 
         def word(name, sign):
@@ -261,7 +282,7 @@ class Grid:
         told = [[word(*step) for step in steps if step[0] not in corners] for steps in read_paths(text)]
         return "; ".join(" → ".join(steps) for steps in told)
 
-    def expect(self, names):
+    def expect(self, names: Iterable[str]) -> None:
         for name in names:
             if name not in self.nodes:
                 raise ValueError(f"{name} is not in the layout, which has {', '.join(self.nodes)}")
@@ -275,7 +296,7 @@ class Grid:
             sizes[first : last + 1] = _filled(sizes[first : last + 1], need)
         return [sum(sizes[:n]) for n in range(count + 1)]
 
-    def route(self, start, end, at="edge"):
+    def route(self, start: str, end: str, at: str = "edge") -> list[XY]:
         """The points of a wire between the rims of two nodes; it may not run through a third."""
         points = self._way(self.nodes[start], self.nodes[end], at)
         for name, node in self.nodes.items():

@@ -1,11 +1,17 @@
 """Instruments: a circle with the letters of the tag; a line across it says where the instrument is."""
 
+from __future__ import annotations
+
 import re
+from typing import TYPE_CHECKING
 
 from loopbook.diagrams.conductors import DASHES
 from loopbook.diagrams.equipment import Equipment, one_of
 from loopbook.diagrams.sheet import text_size
 from loopbook.instruments import decode
+
+if TYPE_CHECKING:
+    from loopbook.diagrams.sheet import Sheet
 
 PLACES = ("field", "panel", "behind", "local panel")
 DEVICES = ("discrete", "shared", "computer")
@@ -13,7 +19,7 @@ HEXAGON = ((0.56, 0), (0.28, 0.5), (-0.28, 0.5), (-0.56, 0), (-0.28, -0.5), (0.2
 SQUARE = ((0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5), (0.5, -0.5))
 
 
-def instrument(letters, place="field", device="discrete"):
+def instrument(letters: str, place: str = "field", device: str = "discrete") -> Instrument:
     """Return an instrument: a circle with its letters, and a number below them where there is one.
 
     Arguments:
@@ -34,15 +40,16 @@ def instrument(letters, place="field", device="discrete"):
 
 class Instrument(Equipment):
     width = height = 1.0
+    radius: float | None
     radius, room, inline, openings = 0.5, (0.6, 0.4), True, ()
 
-    def __init__(self, letters, place, device):
+    def __init__(self, letters: str, place: str, device: str):
         super().__init__("", letters)
         self.place_in_plant, self.device = place, device
         if device == "computer":
             self.radius, self.width = None, 2 * HEXAGON[0][0]
 
-    def draw(self, sheet):
+    def draw(self, sheet: Sheet) -> None:
         letters, number = re.fullmatch(r"([A-Z]*)-?(.*)", self.words).groups()
         if self.device == "computer":
             sheet.area(self.around(*HEXAGON), fill="white", zorder=3)

@@ -4,8 +4,12 @@ A name of two to four capitals, with a number behind it or without, is the tag o
 to be drawn stands in `equipment`; every other name is a text, such as that of a stream.
 """
 
+from __future__ import annotations
+
 import copy
 import re
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 from loopbook.diagrams.blocks import block
 from loopbook.diagrams.conductors import SIGNALS, draw_duct, draw_pipe, draw_shaft, draw_signal
@@ -14,12 +18,23 @@ from loopbook.diagrams.grid import BlockNode, Grid, Junction, Label, Node, Point
 from loopbook.diagrams.instrument_symbols import Instrument, instrument
 from loopbook.diagrams.sheet import Sheet
 
+if TYPE_CHECKING:
+    from loopbook.figures import Picture
+
 TAG = re.compile(r"[A-Z]{2,4}(\d+[A-Z]?)?")
 
 
 def instrumentation_diagram(
-    layout, pipes="", signals="", equipment=None, names=None, ducts="", shafts="", title=None, lines=None
-):
+    layout: str,
+    pipes: str = "",
+    signals: str = "",
+    equipment: Mapping[str, str | Node] | None = None,
+    names: Mapping[str, str] | None = None,
+    ducts: str = "",
+    shafts: str = "",
+    title: str | None = None,
+    lines: Mapping[str, str] | None = None,
+) -> Picture:
     """Draw a plant with its pipes, instruments and signals.
 
     Arguments:

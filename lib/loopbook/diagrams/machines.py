@@ -1,11 +1,19 @@
 """Machines as a textbook draws them: a conveyor belt, a mass on a spring, a motor that moves a load."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
 from loopbook.diagrams.sheet import LIQUID, Sheet, mathematics
 
+if TYPE_CHECKING:
+    from loopbook.figures import Picture
 
-def conveyor_belt(inflow=r"F_{\mathrm{in}}", outflow=r"F_{\mathrm{out}}", delay=r"\tau", title=None):
+
+def conveyor_belt(
+    inflow: str = r"F_{\mathrm{in}}", outflow: str = r"F_{\mathrm{out}}", delay: str = r"\tau", title: str | None = None
+) -> Picture:
     r"""Draw a conveyor belt, which turns an inflow into the same outflow some time later.
 
     Arguments:
@@ -44,7 +52,14 @@ def conveyor_belt(inflow=r"F_{\mathrm{in}}", outflow=r"F_{\mathrm{out}}", delay=
     return sheet.picture(title, words)
 
 
-def mass_spring_damper(mass="m", spring="K", damper="D", force="F", position="y", title=None):
+def mass_spring_damper(
+    mass: str = "m",
+    spring: str = "K",
+    damper: str = "D",
+    force: str = "F",
+    position: str = "y",
+    title: str | None = None,
+) -> Picture:
     """Draw a mass that a spring and a damper hold to a wall, and a force that pulls it.
 
     Arguments:
@@ -79,9 +94,17 @@ def mass_spring_damper(mass="m", spring="K", damper="D", force="F", position="y"
 
 
 def motor_with_load(
-    current="i_m", torque="T_1", inertia=r"J", angle=r"\theta", radius="r", force="F_1", mass="m", load="F_L",
-    position="y", title=None,
-):  # fmt: skip
+    current: str = "i_m",
+    torque: str = "T_1",
+    inertia: str = r"J",
+    angle: str = r"\theta",
+    radius: str = "r",
+    force: str = "F_1",
+    mass: str = "m",
+    load: str = "F_L",
+    position: str = "y",
+    title: str | None = None,
+) -> Picture:
     r"""Draw a motor that moves a load along a line, by a gear and a rod.
 
     Arguments:

@@ -1,8 +1,14 @@
 """Pumps, fans, compressors, turbines and motors."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
 from loopbook.diagrams.equipment import HALF_CIRCLE, TAG_SIZE, Equipment, named, one_of
+
+if TYPE_CHECKING:
+    from loopbook.diagrams.sheet import XY, Sheet
 
 PUMPS = ("general", "centrifugal", "displacement", "gear", "screw", "diaphragm")
 FANS = ("axial", "radial")
@@ -10,7 +16,7 @@ COMPRESSORS = ("turbo", "general", "piston", "screw")
 ROUND = 0.45  # radius
 
 
-def pump(tag="", kind="general"):
+def pump(tag: str = "", kind: str = "general") -> Pump:
     """Return a pump, which points the way of the flow; its tag stands below it.
 
     Arguments:
@@ -25,7 +31,7 @@ def pump(tag="", kind="general"):
     return Pump(tag, named(one_of("the pump", kind, PUMPS), "pump"), kind)
 
 
-def fan(tag="", kind="axial"):
+def fan(tag: str = "", kind: str = "axial") -> Fan:
     """Return a fan, in a duct or by itself; its tag stands below it.
 
     Arguments:
@@ -40,7 +46,7 @@ def fan(tag="", kind="axial"):
     return Fan(tag, "fan" if one_of("the fan", kind, FANS) == "axial" else "radial fan", kind)
 
 
-def compressor(tag="", kind="turbo"):
+def compressor(tag: str = "", kind: str = "turbo") -> Equipment:
     """Return a compressor, which narrows in the direction of the flow.
 
     Arguments:
@@ -57,7 +63,7 @@ def compressor(tag="", kind="turbo"):
     return Compressor(tag, f"{kind} compressor", kind)
 
 
-def turbine(tag=""):
+def turbine(tag: str = "") -> Turbo:
     """Return a turbine, which widens in the direction of the flow; its tag stands in it.
 
     >>> turbine("T1")
@@ -66,7 +72,7 @@ def turbine(tag=""):
     return Turbo(tag, "turbine", (0.5, 1))
 
 
-def motor(letters="M"):
+def motor(letters: str = "M") -> Motor:
     """Return a circle with a letter: "M" a motor, "G" a generator.
 
     >>> motor("G")
@@ -80,30 +86,30 @@ class Round(Equipment):
 
     radius = ROUND
 
-    def __init__(self, tag, words, kind):
+    def __init__(self, tag: str, words: str, kind: str):
         super().__init__(tag, words)
         self.kind = kind
 
-    def draw(self, sheet):
+    def draw(self, sheet: Sheet) -> None:
         sheet.circle(self.x, self.y, self.radius)
         self.inside(sheet)
         self.draw_tag(sheet)
 
-    def line(self, sheet, *points):
+    def line(self, sheet: Sheet, *points: XY) -> None:
         sheet.wire(*self.turned(*points), zorder=3)
 
-    def piston(self, sheet, x=0.0):
+    def piston(self, sheet: Sheet, x: float = 0.0) -> None:
         self.line(sheet, (x - 0.16, -0.15), (x - 0.16, 0.15), (x + 0.06, 0.15), (x + 0.06, -0.15), (x - 0.16, -0.15))
         self.line(sheet, (x - 0.05, -0.15), (x - 0.05, 0.15))
 
-    def screw(self, sheet, x=0.0):
+    def screw(self, sheet: Sheet, x: float = 0.0) -> None:
         self.line(sheet, (x - 0.2, 0), (x + 0.15, 0))
         for n in range(3):
             self.line(sheet, (x - 0.2 + 0.12 * n, -0.13), (x - 0.12 + 0.12 * n, 0.13))
 
 
 class Pump(Round):
-    def inside(self, sheet):
+    def inside(self, sheet: Sheet) -> None:
         self.line(sheet, (-0.22, 0.38), (0.45, 0), (-0.22, -0.38))
         match self.kind:
             case "centrifugal":
@@ -120,7 +126,7 @@ class Pump(Round):
 
 
 class Compressor(Round):
-    def inside(self, sheet):
+    def inside(self, sheet: Sheet) -> None:
         for side in (-1, 1):
             self.line(sheet, (-0.25, 0.374 * side), (0.41, 0.185 * side))
         if self.kind == "piston":
@@ -130,11 +136,11 @@ class Compressor(Round):
 
 
 class Fan(Round):
-    def edge(self, dx, dy, x, y):
+    def edge(self, dx: int, dy: int, x: float, y: float) -> XY:
         """The walls of a duct go around it."""
         return (self.x, y) if dx and self.in_duct else super().edge(dx, dy, x, y)
 
-    def inside(self, sheet):
+    def inside(self, sheet: Sheet) -> None:
         if self.kind == "radial":
             sheet.circle(self.x, self.y, 0.2)
             for n in range(10):
@@ -149,11 +155,11 @@ class Fan(Round):
 class Motor(Equipment):
     radius, room, openings = 0.42, (0.3, 0.4), ()
 
-    def __init__(self, letters):
+    def __init__(self, letters: str):
         super().__init__("", {"M": "motor", "G": "generator"}.get(letters, letters))
         self.letters = letters
 
-    def draw(self, sheet):
+    def draw(self, sheet: Sheet) -> None:
         sheet.circle(self.x, self.y, self.radius)
         sheet.text(self.x, self.y - 0.02, self.letters)
 
@@ -161,12 +167,12 @@ class Motor(Equipment):
 class Turbo(Equipment):
     width, height = 1.2, 1.2
 
-    def __init__(self, tag, words, ends):
+    def __init__(self, tag: str, words: str, ends: tuple[float, float]):
         super().__init__("", words)
         self.inside, self.ends = tag, ends
         self.words = f"{words} {tag}".strip()
 
-    def edge(self, dx, dy, x, y):
+    def edge(self, dx: int, dy: int, x: float, y: float) -> XY:
         x, y = super().edge(dx, dy, x, y)
         ahead, aside = self.heading
         if (dx and ahead) or (dy and aside):
@@ -175,12 +181,12 @@ class Turbo(Equipment):
         reach = self.reach((x - self.x) * ahead + (y - self.y) * aside)
         return (self.x + dx * reach, y) if dx else (x, self.y + dy * reach)
 
-    def reach(self, along):
+    def reach(self, along: float) -> float:
         """Half of its width at a place along the flow."""
         back, front = self.ends
         return 0.5 * self.height * (back + (front - back) * (along / self.width + 0.5))
 
-    def draw(self, sheet):
+    def draw(self, sheet: Sheet) -> None:
         half = self.width / 2
         back, front = self.reach(-half), self.reach(half)
         sheet.area(self.turned((-half, -back), (-half, back), (half, front), (half, -front)), fill="white")

@@ -1,10 +1,17 @@
 """Sequential function charts, laid out from the data that run."""
 
+from __future__ import annotations
+
 import re
 import textwrap
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from loopbook.diagrams.sheet import FONT_SIZE, INCHES, LINE, Sheet, text_size
+
+if TYPE_CHECKING:
+    from loopbook.figures import Picture
+    from loopbook.sequence import Chart, Formula
 
 LEAD = 0.35  # length of a line into a step, in drawing units
 BAR = 0.42  # half the width of a transition's bar
@@ -17,7 +24,7 @@ WIDEST = 26  # letters in a line of a condition
 TIE = "\N{NO-BREAK SPACE}"
 
 
-def sequential_function_chart(chart, title=None, names=False):
+def sequential_function_chart(chart: Chart, title: str | None = None, names: bool = False) -> Picture:
     """Draw a chart as IEC 61131-3 shows it. (Haugen, Figures 12.1 and 12.3)
 
     A step is a box with its actions in the box beside it, double-lined where it is the initial one. A short bar is a
@@ -54,12 +61,12 @@ def sequential_function_chart(chart, title=None, names=False):
     return sheet.picture(title, f"sequential function chart: {in_words(chart)}")
 
 
-def check_chart(chart):
+def check_chart(chart: object) -> None:
     if not hasattr(chart, "markings"):
         raise ValueError(f"the chart is {chart!r}: expected a sequence.Chart")
 
 
-def in_words(chart):
+def in_words(chart: Chart) -> str:
     """The transitions and actions of a chart as a sentence."""
     ways = [
         f"from {' and '.join(step + ' (initial)' * (step == chart.initial) for step in x.sources)} "
@@ -70,12 +77,12 @@ def in_words(chart):
                                if chart.actions[step])])  # fmt: skip
 
 
-def action_lines(chart, step):
+def action_lines(chart: Chart, step: str) -> list[str]:
     """The actions of a step, one line each."""
     return [f"{output} := {formula.text}" for output, formula in chart.actions[step]]
 
 
-def condition_lines(condition, name=None):
+def condition_lines(condition: Formula, name: str | None = None) -> list[str]:
     """A condition in lines of a readable length, which begin with AND and OR."""
     text = f"{name}: {condition.text}" if name else condition.text
     tied = re.sub(r"(?<!:) (?!(AND|OR)\b)", TIE, text)

@@ -1,7 +1,11 @@
 """The sheet that every diagram is drawn on, and how its labels are written."""
 
+from __future__ import annotations
+
 import math
 import re
+from collections.abc import Sequence
+from typing import TypeAlias
 
 from loopbook.figures import STYLE, Picture, plain_words
 
@@ -15,12 +19,19 @@ RADIUS = 0.22  # of a summing junction
 LIQUID = "#d9d9d9"
 
 
-def mathematics(text):
+#: A place in a drawing, in drawing units.
+XY: TypeAlias = "tuple[float, float]"
+
+#: A direction: to the right (1, 0), up (0, 1), or to a corner (-1, -1).
+Way: TypeAlias = "tuple[int, int]"
+
+
+def mathematics(text: str) -> str:
     """Text for matplotlib: mathematics unless it has dollar signs of its own, with fractions in full size."""
     return re.sub(r"\\frac\b", r"\\dfrac", text if "$" in text else f"${text}$")
 
 
-def wording(text):
+def wording(text: str) -> str:
     """Text for matplotlib: plain words as they are, anything else mathematics, with all of a name's index lowered.
 
     >>> wording("Process"), wording("K_p"), wording("F_fd"), wording("P controller")
@@ -31,7 +42,7 @@ def wording(text):
     return signal_name(text) if re.fullmatch(r"[A-Za-z]+_\w+", text) else mathematics(text)
 
 
-def signal_name(text):
+def signal_name(text: str) -> str:
     """Text for matplotlib: a signal's name, with everything behind the underscore in its index.
 
     >>> signal_name("y_SP"), signal_name("T_{in}")
@@ -42,7 +53,7 @@ def signal_name(text):
     return mathematics(text if "$" in text else re.sub(r"_(\w{2,})", r"_{\1}", text))
 
 
-def text_size(label, size=FONT_SIZE):
+def text_size(label: str, size: float = FONT_SIZE) -> tuple[float, float]:
     """Width and height of a label in drawing units."""
     from matplotlib.font_manager import FontProperties
     from matplotlib.textpath import TextPath
@@ -56,7 +67,7 @@ def text_size(label, size=FONT_SIZE):
 class Sheet:
     """What the parts of a diagram draw on: schemdraw's segments at given places."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         import schemdraw
         from schemdraw import segments
 
@@ -72,11 +83,13 @@ class Sheet:
         element.segments.append(segment)
         self.drawing.add(element)
 
-    def wire(self, *points, arrow=None, width=LINE, style="-", zorder=None):
+    def wire(
+        self, *points: XY, arrow: str | None = None, width: float = LINE, style: str = "-", zorder: int | None = None
+    ) -> None:
         """A line through the points; `arrow` is "->" or "<->"."""
         self._add(self.segments.Segment(points, arrow=arrow, lw=width, ls=style, zorder=zorder, **HEAD))
 
-    def zigzag(self, start, end, teeth=6, height=0.2):
+    def zigzag(self, start: XY, end: XY, teeth: int = 6, height: float = 0.2) -> None:
         """A line that goes to and fro on its way, as a spring or a heating element does."""
         (x0, y0), (x1, y1) = start, end
         length = math.hypot(x1 - x0, y1 - y0)
@@ -87,42 +100,46 @@ class Sheet:
             points.append((x0 + way * along[0] + off * across[0], y0 + way * along[1] + off * across[1]))
         self.wire(*points, end)
 
-    def box(self, x, y, width, height, label, size=FONT_SIZE):
+    def box(self, x: float, y: float, width: float, height: float, label: str, size: float = FONT_SIZE) -> None:
         """A box with the middle of its left side at (x, y)."""
         corners = [(x, y - height / 2), (x, y + height / 2), (x + width, y + height / 2), (x + width, y - height / 2)]
         self.area(corners, fill="white")
         self.text(x + width / 2, y, label, size=size)
 
-    def area(self, corners, fill, outline=LINE, zorder=None):
+    def area(self, corners: Sequence[XY], fill: str, outline: float = LINE, zorder: int | None = None) -> None:
         color = "black" if outline else fill
         self._add(self.segments.SegmentPoly(corners, fill=fill, lw=outline, color=color, zorder=zorder))
 
-    def circle(self, x, y, radius, fill="white", zorder=3):
+    def circle(self, x: float, y: float, radius: float, fill: str = "white", zorder: int = 3) -> None:
         self._add(self.segments.SegmentCircle((x, y), radius, fill=fill, zorder=zorder))
 
-    def arc(self, x, y, width, height, start, end, arrow=None):
+    def arc(
+        self, x: float, y: float, width: float, height: float, start: float, end: float, arrow: str | None = None
+    ) -> None:
         """A part of an ellipse around (x, y), between two angles in degrees; `arrow` is "cw" or "ccw"."""
         self._add(self.segments.SegmentArc((x, y), width, height, theta1=start, theta2=end, arrow=arrow))
 
-    def dot(self, x, y):
+    def dot(self, x: float, y: float) -> None:
         self.circle(x, y, 0.08, fill="black")
 
-    def text(self, x, y, label, halign="center", valign="center", size=FONT_SIZE):
+    def text(
+        self, x: float, y: float, label: str, halign: str = "center", valign: str = "center", size: float = FONT_SIZE
+    ) -> None:
         self._add(self.segments.SegmentText((x, y), label, align=(halign, valign), fontsize=size, zorder=4))
 
-    def into_junction(self, x, y, side, sign):
+    def into_junction(self, x: float, y: float, side: XY, sign: str) -> None:
         """The last piece of a path into the summing junction at (x, y), and its sign; `side` is where it comes from."""
         if side[1]:
             self.wire((x, y + side[1]), (x, y + math.copysign(RADIUS, side[1])), arrow="->")
         self.sign(x, y, side, sign)
 
-    def sign(self, x, y, side, sign):
+    def sign(self, x: float, y: float, side: XY, sign: str) -> None:
         """The sign stands over a path from the side, and on the left of a path from above or below."""
         away = math.copysign(RADIUS + 0.34, side[0] or side[1])
         dx, dy = (away, 0.25) if side[0] else (-0.3, away)
         self.text(x + dx, y + dy, {"+": "$+$", "-": "$-$"}[sign])
 
-    def picture(self, title, words):
+    def picture(self, title: str | None, words: str) -> Picture:
         import matplotlib
         from matplotlib.figure import Figure
 

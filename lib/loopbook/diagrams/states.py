@@ -1,16 +1,23 @@
 """State diagrams, laid out from the chart that runs."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
 from loopbook.diagrams.sequences import PITCH, SMALL, action_lines, check_chart, condition_lines
 from loopbook.diagrams.sheet import FONT_SIZE, Sheet, text_size
+
+if TYPE_CHECKING:
+    from loopbook.figures import Picture
+    from loopbook.sequence import Chart
 
 MOST_STATES = 30
 PORT = 0.4  # between two arrows at the side of a state
 CORNER = 0.28
 
 
-def state_diagram(chart, title=None):
+def state_diagram(chart: Chart, title: str | None = None) -> Picture:
     """Draw the states that a chart can be in, and the ways between them. (Haugen, Chapter 12)
 
     A state is a set of steps that are active together, a single step where nothing is simultaneous. Each arrow is one

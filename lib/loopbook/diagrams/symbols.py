@@ -1,10 +1,18 @@
 """Tables of symbols, each with its name below it."""
 
+from __future__ import annotations
+
 import copy
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from loopbook.diagrams.conductors import draw_pipe
 from loopbook.diagrams.equipment import Equipment
 from loopbook.diagrams.sheet import INCHES, WIDEST, Sheet, text_size
+
+if TYPE_CHECKING:
+    from loopbook.diagrams.equipment import Equipment
+    from loopbook.figures import Picture
 
 PIECE, UPRIGHT = 0.5, 0.25  # of pipe, at the sides and above or below
 SIZE = 10  # of the names
@@ -12,7 +20,9 @@ LINE = 0.4  # from one line of a name to the next
 GAP = 0.3
 
 
-def symbol_table(symbols, title=None, columns=4):
+def symbol_table(
+    symbols: Mapping[str, Equipment] | Sequence[Equipment], title: str | None = None, columns: int = 4
+) -> Picture:
     """Draw a table of symbols, each with its name below it.
 
     Arguments:

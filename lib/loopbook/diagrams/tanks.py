@@ -1,10 +1,16 @@
 """Tanks, vessels, reactors and columns."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
 from loopbook.diagrams.conductors import DASHES, draw_shaft
 from loopbook.diagrams.equipment import HALF_CIRCLE, THICK, THIN, Equipment, one_of
 from loopbook.diagrams.sheet import FONT_SIZE, LIQUID, signal_name, wording
+
+if TYPE_CHECKING:
+    from loopbook.diagrams.sheet import XY, Sheet
 
 BOW = 0.35  # height of the round end of a vessel
 JACKET = 0.3
@@ -13,7 +19,15 @@ DRIVE = 0.5  # height of a stirrer's motor above a vessel
 ROOFS = ("open", "flat", "cone", "dome", "floating")
 
 
-def tank(text="", level="", stirrer=False, heater=False, jacket=False, filled=0.65, roof="open"):
+def tank(
+    text: str = "",
+    level: str = "",
+    stirrer: bool = False,
+    heater: bool = False,
+    jacket: bool = False,
+    filled: float = 0.65,
+    roof: str = "open",
+) -> Tank:
     """Return a tank with liquid; it takes up all the places that its name has in the layout.
 
     Arguments:
@@ -34,7 +48,16 @@ def tank(text="", level="", stirrer=False, heater=False, jacket=False, filled=0.
     return Tank(text, level, stirrer, heater, jacket, filled, one_of("the roof", roof, ROOFS))
 
 
-def vessel(text="", filled=0, trays=0, lying=False, packings=0, stirrer=False, jacket=False, coil=False):
+def vessel(
+    text: str = "",
+    filled: float = 0,
+    trays: int = 0,
+    lying: bool = False,
+    packings: int = 0,
+    stirrer: bool = False,
+    jacket: bool = False,
+    coil: bool = False,
+) -> Vessel:
     """Return a closed vessel, as a drum, a reactor, a separator or a column.
 
     Arguments:
@@ -62,7 +85,7 @@ def vessel(text="", filled=0, trays=0, lying=False, packings=0, stirrer=False, j
     return Vessel(text, filled, trays, lying, packings, stirrer, jacket, coil)
 
 
-def cyclone(tag=""):
+def cyclone(tag: str = "") -> Funnel:
     """Return a cyclone, which separates a solid from a gas; its tag stands in it.
 
     >>> cyclone("C1")
@@ -71,7 +94,7 @@ def cyclone(tag=""):
     return Funnel(tag, "cyclone")
 
 
-def silo(tag=""):
+def silo(tag: str = "") -> Funnel:
     """Return a silo for solid material; its tag stands in it.
 
     >>> silo("S1")
@@ -84,19 +107,19 @@ class Container(Equipment):
     """What fills all places of its name, with what may be in it."""
 
     room, leaves, openings = (0.7, 0.4), "up or down", ()
-    tops = ()  # where pipes come from above
+    tops: tuple[float, ...] = ()  # where pipes come from above
 
-    def stirrer_place(self, middle, width):
+    def stirrer_place(self, middle: float, width: float) -> float:
         """In the middle, or a little aside where a pipe comes from above; under the shaft where there is one."""
         if self.on_shaft and self.tops:
             return min(self.tops, key=lambda x: abs(x - middle))
         return middle + (0.27 * width if any(abs(x - middle) < 0.35 for x in self.tops) else 0)
 
-    def met_above(self, x):
+    def met_above(self, x: float) -> None:
         self.tops = (*self.tops, x)
 
 
-def draw_stirrer(sheet, x, top, blade, half=0.41, on_shaft=False):
+def draw_stirrer(sheet: Sheet, x: float, top: float, blade: float, half: float = 0.41, on_shaft: bool = False) -> None:
     if on_shaft:
         draw_shaft(sheet, [(x, top), (x, blade)])
     else:
@@ -109,7 +132,7 @@ def draw_stirrer(sheet, x, top, blade, half=0.41, on_shaft=False):
 class Tank(Container):
     height = 2.4
 
-    def __init__(self, text, level, stirrer, heater, jacket, filled, roof):
+    def __init__(self, text: str, level: str, stirrer: bool, heater: bool, jacket: bool, filled: float, roof: str):
         self.text, self.level, self.filled, self.roof = text, level, filled, roof
         self.stirrer, self.heater, self.jacket = stirrer, heater, JACKET if jacket else 0
         parts = [f"level {level}"] * bool(level) + ["stirrer"] * stirrer + ["heater"] * heater + ["jacket"] * jacket
@@ -117,18 +140,18 @@ class Tank(Container):
         self.words = "tank" + (f" {text}" if text else "") + (f" with {', '.join(parts)}" if parts else "")
         self.width = 3.0 if stirrer else 2.4
 
-    def inside(self):
+    def inside(self) -> tuple[float, float, float, float]:
         lid = LID if self.roof in ("cone", "dome") else 0
         return self.x0 + self.jacket, self.x1 - self.jacket, self.y0 + self.jacket, self.y1 - lid
 
-    def jacket_top(self):
+    def jacket_top(self) -> float:
         return self.y0 + 0.72 * (self.y1 - self.y0)
 
-    def surface(self):
+    def surface(self) -> float:
         _, _, y0, y1 = self.inside()
         return y0 + self.filled * (y1 - y0)
 
-    def edge(self, dx, dy, x, y):
+    def edge(self, dx: int, dy: int, x: float, y: float) -> XY:
         x0, x1, _, y1 = self.inside()
         if dx:
             return ((x1 if dx > 0 else x0), min(y, y1)) if y > self.jacket_top() else super().edge(dx, dy, x, y)
@@ -137,7 +160,7 @@ class Tank(Container):
         self.met_above(x)
         return x, self.roof_at(x)
 
-    def roof_at(self, x):
+    def roof_at(self, x: float) -> float:
         """Where what comes from above ends: within an open tank, and on a roof."""
         x0, x1, _, y1 = self.inside()
         part = min(1, abs(2 * x - x0 - x1) / (x1 - x0))  # from the middle to the wall
@@ -150,7 +173,7 @@ class Tank(Container):
                 return y1 + LID * math.sqrt(1 - part**2)
         return y1 - 0.2
 
-    def draw(self, sheet):
+    def draw(self, sheet: Sheet) -> None:
         x0, x1, y0, y1 = self.inside()
         surface, middle = self.surface(), (x0 + x1) / 2
         if self.jacket:
@@ -178,7 +201,7 @@ class Tank(Container):
             up = 0.75 if self.stirrer or self.heater else 0.3 if self.level else 0.5
             sheet.text(x0 + left * (x1 - x0), y0 + up * (surface - y0), wording(self.text))
 
-    def draw_roof(self, sheet):
+    def draw_roof(self, sheet: Sheet) -> None:
         x0, x1, *_ = self.inside()
         if self.roof == "floating":
             height = self.surface() + 0.1
@@ -191,7 +214,9 @@ class Tank(Container):
 class Vessel(Container):
     width, height, room = 1.5, 2.0, (0.6, 0.5)
 
-    def __init__(self, text, filled, trays, lying, packings, stirrer, jacket, coil):
+    def __init__(
+        self, text: str, filled: float, trays: int, lying: bool, packings: int, stirrer: bool, jacket: bool, coil: bool
+    ):
         self.text, self.filled, self.trays, self.lying = text, filled, trays, lying
         self.packings, self.stirrer, self.coil, self.jacket = packings, stirrer, coil, JACKET if jacket else 0
         if lying:
@@ -204,14 +229,14 @@ class Vessel(Container):
         parts += ["stirrer"] * stirrer + ["jacket"] * jacket + ["coil"] * coil
         self.words = f"{'lying ' * lying}vessel {text}".strip() + (f" with {', '.join(parts)}" if parts else "")
 
-    def shell(self):
+    def shell(self) -> tuple[float, float, float, float]:
         j = self.jacket
         return self.x0 + j, self.x1 - j, self.y0 + j, self.y1 - DRIVE * self.stirrer
 
-    def jacket_top(self):
+    def jacket_top(self) -> float:
         return self.shell()[3] - BOW - 0.15
 
-    def edge(self, dx, dy, x, y):
+    def edge(self, dx: int, dy: int, x: float, y: float) -> XY:
         """On the round ends it is further in; around a jacket it is further out."""
         if dy > 0:
             self.met_above(x)
@@ -227,7 +252,7 @@ class Vessel(Container):
             return (x1 if dx > 0 else x0) - dx * inward, min(y, y1)
         return x, (y1 if dy > 0 else y0)
 
-    def draw(self, sheet):
+    def draw(self, sheet: Sheet) -> None:
         x0, x1, y0, y1 = self.shell()
         outline, surface = self._outline(x0, x1, y0, y1), y0 + self.filled * (y1 - y0)
         if self.jacket:
@@ -283,13 +308,13 @@ class Funnel(Container):
 
     width, height, mouth = 1.3, 2.0, 0.12
 
-    def __init__(self, tag, kind):
+    def __init__(self, tag: str, kind: str):
         self.kind, self.text, self.words = kind, tag, f"{kind} {tag}".strip()
 
-    def knee(self):
+    def knee(self) -> float:
         return self.y0 + 0.5 * (self.y1 - self.y0)
 
-    def edge(self, dx, dy, x, y):
+    def edge(self, dx: int, dy: int, x: float, y: float) -> XY:
         half, way = (self.x1 - self.x0) / 2, self.knee() - self.y0
         if dx and y < self.knee():
             return self.x + dx * (self.mouth + (half - self.mouth) * (y - self.y0) / way), y
@@ -297,7 +322,7 @@ class Funnel(Container):
             return x, self.y0 + way * max(0, abs(x - self.x) - self.mouth) / (half - self.mouth)
         return super().edge(dx, dy, x, y)
 
-    def draw(self, sheet):
+    def draw(self, sheet: Sheet) -> None:
         knee = self.knee()
         left = [(self.x - self.mouth, self.y0), (self.x0, knee), (self.x0, self.y1)]
         sheet.area([*left, *[(2 * self.x - x, y) for x, y in reversed(left)]], fill="white", outline=THICK)

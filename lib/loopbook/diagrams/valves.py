@@ -1,7 +1,15 @@
 """Valves: a body that tells the kind, and what moves it on top."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 from loopbook.diagrams.equipment import ABOVE, HALF_CIRCLE, LEFT, RIGHT, TAG_SIZE, THIN, Equipment, named, one_of
 from loopbook.diagrams.sheet import text_size
+
+if TYPE_CHECKING:
+    from loopbook.diagrams.sheet import XY, Sheet, Way
 
 BODIES = ("general", "gate", "globe", "ball", "needle", "diaphragm", "butterfly", "angle", "three-way")
 VALVES = (*BODIES, "check", "hand", "safety", "reducing")
@@ -10,7 +18,7 @@ REACH, TOP, WHEEL = 0.42, 0.72, 0.52  # from the middle to a pipe, to where a si
 HALF = 0.26  # of the body's height
 
 
-def valve(tag="", kind="general"):
+def valve(tag: str = "", kind: str = "general") -> Valve:
     """Return a valve without an actuator; its tag, such as "V1", stands beside it.
 
     Arguments:
@@ -29,7 +37,7 @@ def valve(tag="", kind="general"):
     return Valve(tag, named(kind, "valve"), "general" if top else kind, top)
 
 
-def control_valve(tag="", actuator="diaphragm", kind="general"):
+def control_valve(tag: str = "", actuator: str = "diaphragm", kind: str = "general") -> Valve:
     """Return a valve with an actuator, at which a signal ends; its tag stands beside it.
 
     Arguments:
@@ -52,11 +60,11 @@ def control_valve(tag="", actuator="diaphragm", kind="general"):
 class Valve(Equipment):
     inline, radius, height = True, REACH, 0.6
 
-    def __init__(self, tag, words, kind, top):
+    def __init__(self, tag: str, words: str, kind: str, top: str):
         super().__init__(tag, words)
         self.kind, self.top = kind, top
 
-    def met(self, sides, taps, heading):
+    def met(self, sides: Sequence[Way], taps: Sequence[Way], heading: Way) -> None:
         """As for all equipment; what is on top points to where the signal comes from."""
         super().met(sides, taps, heading)
         reaches = dict.fromkeys(self.ports(), REACH)
@@ -71,11 +79,11 @@ class Valve(Equipment):
             self.room = max(self.room[0], across if dx else wider), max(self.room[1], up if dy else 0)
 
     @property
-    def openings(self):
+    def openings(self) -> tuple[Way, ...]:
         """Where its pipes are joined."""
         return self.ports()
 
-    def ports(self):
+    def ports(self) -> tuple[Way, ...]:
         """The sides at which pipes are joined: along the flow or, where the valve turns or divides it, as they come."""
         (dx, dy), count = self.heading, 3 if self.kind == "three-way" else 2
         if len(self.sides) == count and (count == 3 or self.sides[0] != _opposite(self.sides[1])):
@@ -83,7 +91,7 @@ class Valve(Equipment):
         third = _opposite(self._top_side())
         return ((-dx, -dy), third) if self.kind == "angle" else ((-dx, -dy), (dx, dy), third)[:count]
 
-    def side(self):
+    def side(self) -> Way:
         """Where its top is: where a signal comes from, or where no pipe is."""
         ports = self.ports()
         free = [way for way in (*self.taps, self._top_side(), ABOVE, RIGHT, (0, -1), LEFT) if way not in ports]
@@ -93,16 +101,16 @@ class Valve(Equipment):
         across = [way for way in self.taps if way not in (self.heading, _opposite(self.heading))]
         return across[0] if across else ABOVE if self.heading[0] else RIGHT
 
-    def tag_side(self):
+    def tag_side(self) -> Way:
         """Opposite to the top; at a corner where something else is there."""
         dx, dy = _opposite(self.side())
         return (dx, dy) if (dx, dy) not in (*self.ports(), *self.sides, *self.taps) else (dx or 1, dy or 1)
 
-    def tap(self, dx, dy, x, y):
+    def tap(self, dx: int, dy: int, x: float, y: float) -> XY:
         end = {"": REACH, "hand": WHEEL}.get(self.top, TOP)
         return self.x + end * dx, self.y + end * dy
 
-    def draw(self, sheet):
+    def draw(self, sheet: Sheet) -> None:
         if self.top:
             getattr(self, f"_{self.top}")(sheet)
         if self.kind in ("butterfly", "check"):
@@ -114,7 +122,7 @@ class Valve(Equipment):
         self._inside(sheet)
         self.draw_tag(sheet)
 
-    def draw_tag(self, sheet):
+    def draw_tag(self, sheet: Sheet) -> None:
         if self.tag:
             dx, dy = self.tag_side()
             halign, valign = _align(dx, "right", "left"), _align(dy, "top", "bottom")
