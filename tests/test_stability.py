@@ -512,7 +512,9 @@ def test_the_boundary_without_filter():
         assert counts[0] == 0
         assert counts[1] == (math.inf if d >= 0.7 else 2)
     assert boundary_pid(process, [[1], [2]], [0, 0.5, 1], 0.1).shape == (2, 3)
-    assert boundary_pid(process, [[1], [2]], [0, 0.5, 1], 0.1)[1, 1] == boundary_pid(process, 2, 0.5, 0.1)
+    assert boundary_pid(process, [[1], [2]], [0, 0.5, 1], 0.1)[1, 1] == pytest.approx(
+        boundary_pid(process, 2, 0.5, 0.1), rel=1e-14
+    )
 
 
 @pytest.mark.parametrize(("T", "delay", "K"), [(0.7, 1.4, 2), (1, 0.2, 1), (3, 1, 0.5)])

@@ -12,6 +12,8 @@ from loopbook.stability.counting import ENDLESS, ON_LIMIT, count_roots
 from loopbook.stability.enclosures import Exact
 
 if TYPE_CHECKING:
+    import numpy
+
     from loopbook.stability.loops import Loops
 
 SHARES = (1e-6, 1e-5, 1e-4, 1e-3)  # of a limit, by which the two sides differ from it, the first that decides
@@ -114,3 +116,27 @@ def _exactly(loops, factor, delay):
         return ENDLESS
     sums = Quasipolynomials.exact(parts, order, divisor)
     return int(count_roots(sums, Exact(parts, order, divisor, 1.0), int(loops.at_zero[4][0]))[0])
+
+
+def confirm_gains(loops: Loops, gains: numpy.ndarray, frequencies: numpy.ndarray) -> None:
+    """Count the unstable poles of many loops on both sides of the ultimate gain of each, if that is finite.
+
+    Raises ArithmeticError where the numbers contradict it.
+    """
+    import numpy
+
+    left = numpy.flatnonzero(numpy.isfinite(gains))
+    for inside in (True, False):
+        points = left if not inside else left[numpy.isfinite(frequencies[left])]
+        for share in SHARES:
+            if not len(points):
+                break
+            changed = gains[points] * (1 - share if inside else 1 + share)
+            near = frequencies[points] / loops.unit[points]
+            counts = count_roots(loops.B[points] + changed * loops.A[points], near=near)
+            if (wrong := numpy.flatnonzero(((counts == 0) != inside) & (counts != ON_LIMIT))).size:
+                raise ArithmeticError(
+                    f"the ultimate gain {gains[points[wrong[0]]]:.12g} is not confirmed: just "
+                    f"{'inside' if inside else 'outside'} of it there are {counts[wrong[0]]:g} unstable poles"
+                )
+            points = points[counts == ON_LIMIT]

@@ -14,6 +14,7 @@ import math
 from typing import TYPE_CHECKING
 
 from loopbook.stability.enclosures import Enclosure, divided, enclosed, geometric, walk
+from loopbook.stability.loops import FEW
 from loopbook.stability.sensitivity import to_the_top, with_peaks
 
 if TYPE_CHECKING:
@@ -155,6 +156,7 @@ class Real(Question):
         import numpy
 
         self.loops, self.all_gains = loops, all_gains
+        _ = loops.start  # which finds the loops that are always real
         every, one = numpy.arange(loops.count), numpy.ones(loops.count)
         A, B = (abs(x[0]) for x in loops.values(every, one))
         with numpy.errstate(divide="ignore"):
@@ -196,7 +198,7 @@ class Real(Question):
         product = view.across
         middle = product.terms[0]
         distance = numpy.where(middle.real < 0, abs(middle.imag), abs(middle))
-        away = small | large | (distance > product.spread)
+        away = small | large | (distance > product.spread) | self.loops.is_real[which]
         monotone = ~away & product.imag.is_monotone
         candidates = numpy.flatnonzero(monotone)
         if len(candidates):
@@ -281,7 +283,7 @@ def difference(A, B):
 def solved(loops: Loops, which, a, b, function) -> numpy.ndarray:
     """The zeros between a and b of monotone functions, with more digits where rounding has a share in A or B."""
     w = _solved(loops, which, a, b, function, False)
-    if loops.exact is not None and len(w):
+    if loops.exact is not None and 0 < len(w) < FEW:
         import numpy
 
         if (again := numpy.flatnonzero(loops.doubtful(which, w))).size:

@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from loopbook.stability.difference import common_unit, prevailing
-from loopbook.stability.loops import Loops, _positive_beyond
+from loopbook.stability.loops import Loops, _positive_beyond, _square
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -55,10 +55,13 @@ class Far:
 
     def _limits(self):
         """The limiting gains next to 1."""
-        gains = [gain for gain in self._gains() if gain > 0]
-        return float(max((k for k in gains if k < 1), default=0.0)), float(
-            min((k for k in gains if k > 1), default=math.inf)
-        )
+        below, above = ([k for k in self.gains if (k > 1) == high] for high in (False, True))
+        return max(below, default=0.0), min(above, default=math.inf)
+
+    @functools.cached_property
+    def gains(self) -> list[float]:
+        """All positive gains at which the highest powers may get roots in the right half-plane, or lose them."""
+        return sorted(float(gain) for gain in self._gains() if gain > 0)
 
     def _gains(self):
 
@@ -73,7 +76,7 @@ class Far:
                 if slope := a1 - sign * a0:
                     gains.append((sign * b0 - b1) / slope)
         elif later and self.unit:
-            gains += self._on_circle()
+            gains += [gain for gain, _ in self._on_circle]
         elif later:
             if _related(self.delays[1:]):
                 raise ValueError("whether the loop has an end of unstable poles is not decided: its highest powers have "
@@ -88,8 +91,9 @@ class Far:
                         gains.append(gain)
         return gains
 
-    def _on_circle(self):
-        """The gains for which b + k a has a root on the unit circle of z = exp(-unit*s)."""
+    @functools.cached_property
+    def _on_circle(self) -> list[tuple[float, float]]:
+        """The gains for which b + k a has a root on the unit circle of z = exp(-unit*s), and its angle."""
         import numpy
 
         size = max(self.powers)
@@ -104,18 +108,31 @@ class Far:
         above, below = numpy.polyval(p[::-1], z), numpy.polyval(q[::-1], z)
         with numpy.errstate(divide="ignore", invalid="ignore"):
             gains = -(below / above)
-        return [k.real for k in gains if numpy.isfinite(k) and abs(k.imag) < 1e-6 * abs(k)]
+        return [
+            (float(k.real), -float(angle))
+            for k, angle in zip(gains, angles, strict=True)
+            if numpy.isfinite(k) and abs(k.imag) < 1e-6 * abs(k)
+        ]
 
     # ---- how far the highest powers are from what is asked
 
-    def _least(self, size: Callable, steep: float) -> float:
-        """A lower bound, at least half the minimum, of a function of the angle with a bounded slope; zero without."""
+    def _least(self, size: Callable, steep: float, without=()) -> float:
+        """A lower bound, at least half the minimum, of a function of the angle with a bounded slope; zero without.
+
+        Angles that are as near to some as is said do not count.
+        """
         import numpy
 
         count = 64 * max(1, int(max(self.powers)))
         middle, half = (numpy.arange(count) + 0.5) * (math.pi / count), math.pi / (2 * count)
         least = math.inf
         for _ in range(40):
+            for angle, near in without:
+                for mirrored in (angle, -angle):
+                    apart = abs((middle - mirrored + math.pi) % (2 * math.pi) - math.pi)
+                    middle = middle[apart + half > near]
+            if not len(middle):
+                return least / 2 if least < math.inf else 0.0
             values = size(numpy.exp(-1j * numpy.multiply.outer(self.powers, middle)))
             low = values - steep * half
             least = min(least, float(values.min()))
@@ -127,7 +144,7 @@ class Far:
             middle, half = numpy.concatenate([middle[open_] - half / 2, middle[open_] + half / 2]), half / 2
         return 0.0
 
-    def _distance(self, low: float, high: float) -> float:
+    def _distance(self, low: float, high: float, without=()) -> float:
         """How far 0 is, at least, from b + k a with k from low to high."""
         a, b = self.a, self.b
         if len(a) == 1 or not self.unit:
@@ -139,7 +156,7 @@ class Far:
             start, end = (b + low * a) @ turns, (b + high * a) @ turns
             return _to_segment(start, end - start)
 
-        return self._least(size, max(abs(b + k * a) @ self.powers for k in (low, high)))
+        return self._least(size, max(abs(b + k * a) @ self.powers for k in (low, high)), without)
 
     def no_crossing_beyond(self, low: float, high: float) -> float:
         """A frequency beyond which L is not -1/k for any k from low to high; nan where none is known."""
@@ -149,11 +166,57 @@ class Far:
         simple = float(loops.beyond(numpy.array([high]))[0])
         if self.vanishes and simple == simple:
             return simple
-        if high >= self.highest and not math.isnan(limit := loops.beyond_limit()):
-            simple = numpy.fmin(simple, limit)
-        distance = self._distance(low, high)
+        limiting = any(abs(gain / high - 1) < 1e-12 for gain in self.gains)
+        if limiting and not math.isnan(limit := float(loops.beyond_limit()[0])):
+            simple = float(numpy.fmin(simple, limit))
         lower = self._lower(1.0, high)
-        return float(numpy.fmin(simple, self._end(lower, distance)))
+        if limiting and not lower.any():
+            return 0.0
+        end = self._end(lower, self._distance(low, high))
+        if math.isnan(end) and limiting and self.unit and len(self.a) > 1:
+            end = self._beyond_circle(low, high)
+        return float(numpy.fmin(simple, end))
+
+    # ---- close to a limiting gain
+
+    def _beyond_circle(self, low: float, high: float) -> float:
+        """A frequency beyond which L is not -1/k for any k from `low` to the limiting gain `high`; nan where none is known.
+
+        With v = 1/w, the gain k = -B/A is an analytic function of v and of the angle w*unit. Where it is real, near an
+        angle at which it is the limiting gain for v = 0, its expansion tells whether it is larger for small v.
+        """
+
+        angles = [angle for gain, angle in self._on_circle if abs(gain / high - 1) < 1e-9]
+        series = self._series()
+        if series is None or not angles:
+            return math.nan
+        apart = 1 / (4 * max(self.powers))
+        for halvings in range(12):
+            near = apart / 2**halvings
+            largest = [_larger_than_limit(series, self.powers, angle, near) for angle in angles]
+            if min(largest) > 0:
+                distance = self._distance(low, high, [(angle, near) for angle in angles])
+                end = self._end(self._lower(1.0, high), distance)
+                if not math.isnan(end):
+                    return max(end, 1 / min(largest))
+        return math.nan
+
+    def _series(self):
+        """Coefficients of A and B by powers of v = 1/w and multiples of the unit; None where others have dead times."""
+        import numpy
+
+        unit, order = self.unit[0], self.loops.B.order
+        both = []
+        scaled = unit * float(self.loops.unit[0])
+        for sums in (self.loops.A, self.loops.B):
+            rows: dict[int, numpy.ndarray] = {}
+            for part, delay in zip(sums.coefficients[..., 0], sums.delays[:, 0], strict=True):
+                multiple = round(delay / scaled)
+                if abs(multiple * scaled - delay) > 1e-13 * delay:
+                    return None
+                rows[multiple] = rows.get(multiple, 0) + part[::-1] * (-1j) ** numpy.arange(order + 1)
+            both.append(rows)
+        return both
 
     def _lower(self, of_B, of_A):
         A, B = (abs(x.coefficients[:, :, 0]).sum(axis=0)[:-1] for x in (self.loops.A, self.loops.B))
@@ -199,8 +262,9 @@ class Far:
         end = self._end(self._lower(1.0, 1.0), reserve)
         if math.isnan(end) and self.loops._squares is not None:
             a, b = self.loops._squares
-            rows = [sign * (y - x) for x, y in zip(a, b, strict=True)]
-            end = _positive_beyond(rows) if abs(rows[-1]) > 1e-12 else math.nan
+            rows = sign * (b - a)
+            if abs(rows[-1, 0]) > 1e-12:
+                end = float(_positive_beyond(rows)[0])
         return end
 
     def size_end(self) -> float:
@@ -242,9 +306,12 @@ class Far:
             return simple
         a, b = self.a, self.b
         if len(a) == 2 and not a[0] and not b[1] and math.isnan(simple) and most >= self.sensitivity:
-            simple = self.loops.beyond_limit()
+            simple = float(self.loops.beyond_limit()[0])
         if len(a) == 1:
             reserve = most * abs(a[0] + b[0]) - abs(b[0])
+            if self.loops.longest[0] == 0 and self.loops._squares is not None:
+                C = _square((self.loops.A.coefficients + self.loops.B.coefficients)[0])
+                simple = float(numpy.fmin(simple, _positive_beyond(most**2 * C - self.loops._squares[1])[0]))
         elif not self.unit:
             reserve = 0.0
         else:
@@ -273,3 +340,76 @@ def _related(delays: numpy.ndarray) -> bool:
         any(mix) and abs(sum(n * delay for n, delay in zip(mix, delays, strict=True))) < 1e-9 * delays.max()
         for mix in itertools.product(factors, repeat=len(delays))
     )
+
+
+def _larger_than_limit(series, powers, angle: float, near: float) -> float:
+    """The largest v up to which k = -B/A, where it is real and the angle near, is at least what it is at v = 0.
+
+    The terms up to the second order decide, and Cauchy's estimate bounds those of higher order; zero if they do not.
+    """
+    import numpy
+
+    values, bounds = [], []
+    for rows in series:
+        terms = numpy.zeros((3, 3), dtype=complex)
+        for multiple, row in rows.items():
+            turn = numpy.exp(-1j * multiple * angle)
+            for i in range(3):
+                for j in range(min(3, len(row))):
+                    terms[i, j] += row[j] * turn * (-1j * multiple) ** i / math.factorial(i)
+        values.append(terms)
+    # a polydisc in which A does not vanish
+    wide, tall = 2 * near, 1.0
+    for _ in range(60):
+        bounds = [
+            sum(
+                abs(row[0]) * (math.exp(abs(multiple) * wide) - 1)
+                + math.exp(abs(multiple) * wide) * sum(abs(c) * tall**n for n, c in enumerate(row[1:], 1))
+                for multiple, row in rows.items()
+            )
+            for rows in series
+        ]
+        size = abs(values[0][0, 0])
+        if bounds[0] < size / 2:
+            break
+        if max(abs(m) for m in series[0]) * wide > 0.2:
+            wide /= 2
+        tall /= 2
+    else:
+        return 0.0
+    if wide < 2 * near:
+        return 0.0
+    largest = (abs(values[1][0, 0]) + bounds[1]) / (size - bounds[0])
+    # k = -B/A by division of power series in the angle (first index) and v
+    k = numpy.zeros((3, 3), dtype=complex)
+    A, B = values
+    for i in range(3):
+        for j in range(3 - i):
+            lower = sum(A[i - p, j - q] * k[p, q] for p in range(i + 1) for q in range(j + 1) if (p, q) != (i, j))
+            k[i, j] = (-B[i, j] - lower) / A[0, 0]
+    across = k[1, 0].imag
+    if abs(across) < 1e-9 * abs(k[1, 0]) or not across:
+        return 0.0
+    symmetric = abs(math.sin(angle)) < 1e-9
+    v = tall / 8
+    for _ in range(60):
+        # the angle differs by -c*v, but for what the terms of higher order make
+        x, y = near / wide, v / tall
+        rest = {n: largest * sum(x**i * y ** (n - i) for i in range(n + 1)) / ((1 - x) * (1 - y)) for n in (2, 3, 4)}
+        c = k[0, 1].imag / across
+        steep, error = (rest[3] if symmetric else rest[2]) / abs(across), None
+        # the angles that are possible shrink with v
+        reach = abs(c) * v + steep
+        x = min(x, reach / wide)
+        rest = {n: largest * sum(x**i * y ** (n - i) for i in range(n + 1)) / ((1 - x) * (1 - y)) for n in (2, 3, 4)}
+        error = (rest[3] if symmetric else rest[2]) / abs(across)
+        if symmetric:
+            rise = v * v * (k[2, 0] * c * c - k[1, 1] * c + k[0, 2]).real
+            doubt = rest[4] + abs(k[2, 0]) * error * (2 * abs(c) * v + error) + abs(k[1, 1]) * error * v
+        else:
+            rise = v * (k[0, 1].real - k[1, 0].real * c)
+            doubt = rest[2] + abs(k[1, 0].real) * error
+        if rise > doubt and abs(c) * v + error < near:
+            return v
+        v /= 2
+    return 0.0

@@ -1,14 +1,30 @@
 """The limit of stability: the gain with which a loop oscillates for ever, alone and over the times of a controller."""
 
+from __future__ import annotations
+
+import itertools
 import math
+from typing import TYPE_CHECKING
 
 from loopbook.inputs import real_numbers
-from loopbook.stability.counting import count_roots, open_loop
-from loopbook.stability.former import limiting_gains
-from loopbook.stability.sums import Sums, fraction_sums
+from loopbook.quasipolynomials.arrays import Quasipolynomials
+from loopbook.stability.confirmation import confirm, confirm_gains
+from loopbook.stability.counting import count_roots, fraction_sums, open_loop
+from loopbook.stability.crossings import Real, asked
+from loopbook.stability.enclosures import geometric
+from loopbook.stability.endless import Far
+from loopbook.stability.loops import Loops
+
+if TYPE_CHECKING:
+    import numpy
+    from numpy.typing import ArrayLike
+
+LARGEST = 1e100
+FURTHEST = 1e15  # times the frequency of the fastest pole, beyond which nothing is looked for
+MOST_TURNS = 400.0  # of the phase by dead time, in radians, in which a stable range begins or none is found
 
 
-def ultimate(process):
+def ultimate(process: object) -> tuple[float, float]:
     """Return the ultimate gain Ku and the ultimate period Pu: with the gain Ku the loop oscillates with that period.
 
     Arguments:
@@ -27,16 +43,18 @@ def ultimate(process):
     (1.5708, 4.0)
     """
     L = open_loop(process)
-    A, B = fraction_sums(L)
-    gain, frequency = (float(found[0]) for found in _stable_range(A, B))
+    loops = Loops(*fraction_sums(L), L)
+    gain, frequency = (float(found[0]) for found in _stable_range(loops))
     if math.isnan(gain):
-        other = _stable_range(-1 * A, B)[0][0]
+        opposite = -L
+        other = _stable_range(Loops(*fraction_sums(opposite), opposite))[0][0]
         hint = "" if math.isnan(other) else ", but a negative one does"
         raise ValueError(f"no positive gain makes the closed loop of {L.expr} stable{hint}")
+    confirm(loops, {"gain_margin": gain, "omega_180": frequency})
     return gain, 2 * math.pi / frequency if frequency else math.inf
 
 
-def boundary_pi(process, Ti):
+def boundary_pi(process: object, Ti: ArrayLike) -> numpy.ndarray | float:
     """Return the gain Kp on the limit of stability for PI control, Kp*(1 + 1/(Ti*s)), of any process.
 
     Of a first-order lag with dead time, the limit solves equations (4) and (5) of the source, here without their
@@ -60,7 +78,7 @@ def boundary_pi(process, Ti):
     return boundary_pid(process, Ti, 0)
 
 
-def boundary_pid(process, Ti, Td, Tf=0):
+def boundary_pid(process: object, Ti: ArrayLike, Td: ArrayLike, Tf: ArrayLike = 0) -> numpy.ndarray | float:
     """Return the gain Kp on the limit of stability for PID control, Kp*(1 + 1/(Ti*s) + Td*s/(Tf*s + 1)).
 
     Arguments:
@@ -101,8 +119,8 @@ def boundary_pid(process, Ti, Td, Tf=0):
         order = numpy.flatnonzero(below.coefficients.any(axis=(0, 2)))[-1]
         if above.coefficients[:, order + 1 :].any():
             raise ValueError(f"PID control of {L.expr} without filter is improper: expected a lag Tf that is positive")
-        above, below = (Sums(x.coefficients[:, : order + 1], x.delays) for x in (above, below))
-        found[points] = _stable_range(above, below)[0]
+        above, below = (Quasipolynomials(x.coefficients[:, : order + 1], x.delays) for x in (above, below))
+        found[points] = _confirmed(Loops(above, below))
     found = found.reshape(Ti.shape)
     return found if found.ndim else float(found)
 
@@ -113,54 +131,131 @@ def _pid(i, d, f):
 
     nothing = numpy.zeros((1, len(i)))
     return (
-        Sums(numpy.array([[i, 1 + i * f, f + d]]), nothing),
-        Sums(numpy.array([[0 * i, 1 + 0 * i, f]]), nothing),
+        Quasipolynomials(numpy.array([[i, 1 + i * f, f + d]]), nothing),
+        Quasipolynomials(numpy.array([[0 * i, 1 + 0 * i, f]]), nothing),
     )
 
 
-def _stable_range(A, B):
-    """The upper end of the lowest range of gains for which loops are stable, and its frequency; nan without such."""
+def _confirmed(loops: Loops) -> numpy.ndarray:
+    """The upper ends of the lowest ranges of gains for which loops are stable."""
+    gains, frequencies = _stable_range(loops)
+    confirm_gains(loops, gains, frequencies)
+    return gains
+
+
+def _stable_range(loops: Loops) -> tuple[numpy.ndarray, numpy.ndarray]:
+    """The upper end of the lowest range of gains for which loops are stable, and its frequency; nan without such.
+
+    The gains with poles on the axis are found in ever wider windows of frequency. One after the other, from the lowest
+    on, is it asked whether the loop is stable up to there, as soon as none that is lower can lie beyond the window.
+    """
     import numpy
 
-    found, frequency, lower = numpy.full(A.count, math.nan), numpy.full(A.count, math.nan), numpy.zeros(A.count)
-    searched = numpy.ones(A.count, dtype=bool)
-
-    def stable(which, gain):
-        return count_roots(B[which] + gain * A[which]) == 0
-
-    for points, gains, frequencies, top, endless in limiting_gains(A, B):
-        # one after the other in each loop: is it stable between this gain and the one before?
-        new = searched[points] & (gains > lower[points]) & (gains < top[points])
-        points, gains, frequencies = (x[new] for x in (points, gains, frequencies))
-        order = numpy.lexsort((gains, points))
-        points, gains, frequencies = (x[order] for x in (points, gains, frequencies))
-        while len(points):
-            which, first = numpy.unique(points, return_index=True)
-            good = stable(which, (lower[which] + gains[first]) / 2)
-            found[which[good]], frequency[which[good]] = gains[first][good], frequencies[first][good]
-            searched[which[good]] = False
-            lower[which] = gains[first]
-            left = searched[points]
-            left[first] = False
-            points, gains, frequencies = (x[left] for x in (points, gains, frequencies))
-        last = numpy.flatnonzero(searched & (top == endless))
-        if len(last):
-            beyond = numpy.where(endless < math.inf, (lower + endless) / 2, 2 * lower + 1)
-            good = last[stable(last, beyond[last])]
-            found[good], frequency[good] = endless[good], math.inf
-            searched[last] = False
+    count, unit = loops.count, loops.unit
+    far = Far(loops) if loops.exact is not None else None
+    endless = _endless_gains(loops, far)
+    real = Real(loops, all_gains=True)
+    real.highest = numpy.minimum(real.highest, endless)
+    found, place, lower = numpy.full(count, math.nan), numpy.full(count, math.nan), numpy.zeros(count)
+    searched = numpy.ones(count, dtype=bool)
+    static = loops.static_gains()
+    some = numpy.flatnonzero(static > 0)
+    real.add(some, static[some], 0 * static[some])
+    done, end = loops.start, numpy.fmin(numpy.nan_to_num(loops.beyond(2 * numpy.ones(count)), nan=4.0), 64.0)
+    while True:
+        mine = numpy.flatnonzero(searched & (end > done))
+        which, a, b = geometric(done[mine], end[mine])
+        inner = a >= done[mine[which]]
+        asked(loops, [real], mine[which[inner]], a[inner], b[inner])
+        done = numpy.where(searched, numpy.maximum(done, end), done)
+        while searched.any():
+            # the lowest gain on the limit that is left, or the end of all
+            next_gain, next_place = numpy.minimum(endless, LARGEST), numpy.full(count, math.inf)
+            new = numpy.flatnonzero(real.gains > lower[real.points] * (1 + 1e-12))
+            order = new[numpy.argsort(-real.gains[new])]
+            better = order[real.gains[order] < next_gain[real.points[order]]]
+            next_gain[real.points[better]], next_place[real.points[better]] = (
+                real.gains[better],
+                real.frequencies[better],
+            )
+            need = _complete_beyond(loops, far, lower, next_gain, next_gain >= endless, next_gain >= LARGEST)
+            ready = searched & (need <= done)
+            if not ready.any():
+                break
+            points = numpy.flatnonzero(ready)
+            unlimited = next_gain[points] >= LARGEST
+            middle = numpy.where(unlimited, 2 * lower[points] + 1, (lower[points] + next_gain[points]) / 2)
+            good = count_roots(loops.B[points] + middle * loops.A[points]) == 0
+            stable = points[good]
+            found[stable] = numpy.where(unlimited[good], math.inf, next_gain[stable])
+            place[stable] = numpy.where(unlimited[good], math.inf, next_place[stable] * unit[stable])
+            lower[points] = next_gain[points]
+            searched[points[good | (next_gain[points] >= numpy.minimum(endless[points], LARGEST))]] = False
         if not searched.any():
-            return found, frequency
-    last = numpy.flatnonzero(searched)
-    highest = numpy.maximum(top, lower)
-    if (last := last[stable(last, (lower + highest)[last] / 2)]).size:
-        raise ValueError(
-            f"no gain on the limit of stability was found up to {highest[last[0]]:.3g}, where the loop is still stable"
-        )
-    return found, frequency
+            return found, place
+        longest = loops.longest
+        far_out = numpy.flatnonzero(searched & ((done * longest > MOST_TURNS) | (done > FURTHEST)))
+        if len(far_out):
+            least = numpy.maximum(lower, _least_gain(loops, done))[far_out]
+            still = count_roots(loops.B[far_out] + (lower[far_out] + least) / 2 * loops.A[far_out]) == 0
+            if still.any():
+                k = far_out[still][0]
+                raise ValueError(
+                    f"no gain on the limit of stability was found up to {least[still][0]:.3g}, where the loop is still "
+                    f"stable, and what is beyond the frequency {done[k] * unit[k]:.6g} is not decided"
+                )
+            searched[far_out] = False
+        with numpy.errstate(divide="ignore"):
+            window = numpy.maximum(4 * done, done + numpy.where(longest > 0, 20 / longest, 0))
+        end = numpy.where(searched, numpy.fmin(need, window), done)
 
 
-def boundary_pi_approximate(T, delay, Ti, K=1):
+def _complete_beyond(loops, far, lower, gain, is_endless, is_largest):
+    """The frequency beyond which no lower gain brings poles to the axis."""
+    import numpy
+
+    need = loops.beyond(numpy.minimum(gain, 1e100))
+    need = numpy.where(is_endless & ~is_largest, numpy.fmin(need, loops.beyond_limit()), need)
+    if far is not None and math.isnan(need[0]) and not far.vanishes:
+        need = numpy.array([far.no_crossing_beyond(float(lower[0]), float(gain[0]))])
+    if is_largest.any():
+        last = numpy.array([loops.real_beyond]) if far is not None else loops.real_beyond_all()
+        need = numpy.where(is_largest, numpy.fmin(need, last), need)
+    return numpy.nan_to_num(need, nan=math.inf)
+
+
+def _least_gain(loops, w):
+    """A gain that is too small for poles on the axis beyond a frequency."""
+    import numpy
+
+    A, B = loops._term_sizes
+    powers = numpy.maximum(w, 1.0) ** numpy.arange(len(A))[:, None]
+    least = loops._endless_reserve * powers[-1] - (B[:-1] * powers[:-1]).sum(axis=0)
+    return numpy.maximum(least, 0) / (A * powers).sum(axis=0)
+
+
+def _endless_gains(loops, far):
+    """The lowest gain with which the highest powers alone have unstable roots; infinite without one."""
+    import numpy
+
+    if far is not None:
+        return numpy.array([far.gains[0] if far.gains else math.inf])
+    a, b = (loops.A + 0.0 * loops.B).coefficients[:, -1], (0.0 * loops.A + loops.B).coefficients[:, -1]
+    lowest = numpy.full(loops.count, math.inf)
+    if not a.any():
+        return lowest
+    if len(a) > 3:
+        raise ValueError("the boundary of a loop with several dead times in its highest power is not known")
+    for signs in itertools.product((-1, 1), repeat=len(a) - 1):
+        # a sum of sizes is the largest of all sums with signs
+        signs = numpy.array([1, *signs])[:, None]
+        falling = -(signs * a).sum(axis=0)
+        with numpy.errstate(divide="ignore", invalid="ignore"):
+            lowest = numpy.where(falling > 0, numpy.minimum(lowest, (signs * b).sum(axis=0) / falling), lowest)
+    return lowest
+
+
+def boundary_pi_approximate(T: float, delay: float, Ti: ArrayLike, K: float = 1) -> numpy.ndarray | float:
     """Return the gain Kp on the limit of stability for PI control of a lag with dead time, as the source approximates.
 
     The difference of two arc tangents in equation (5) is one, of x = w*(Ti - T)/(1 + w**2*T*Ti). Where abs(x) <= 1 it

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from loopbook.quasipolynomials.arrays import DEGREE, Quasipolynomials
 from loopbook.stability.difference import at_endless_frequency, power_of_two, prevailing
-from loopbook.stability.enclosures import EPSILON, Enclosure, Exact, enclosed, exact_coefficient_fraction, origin
+from loopbook.stability.enclosures import EPSILON, Enclosure, Exact, exact_coefficient_fraction, origin
 
 if TYPE_CHECKING:
     import numpy
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from loopbook.quasipolynomials import DelayFraction
 
 DOUBTFUL = 1e-12  # the share of rounding in A or B above which crossings are computed with more digits
+FEW = 100  # crossings that are computed with more digits if need be
 ENOUGH = 1e-9  # two gains that differ by this share need not be told from each other
 
 
@@ -31,7 +32,10 @@ class Loops:
     def __init__(self, A: Quasipolynomials, B: Quasipolynomials, fraction: DelayFraction | None = None):
         import numpy
 
-        self.endless_least = numpy.array([_least_at_endless(B, k) for k in range(B.count)])
+        if B.coefficients[1:, -1].any():
+            self.endless_least = numpy.array([_least_at_endless(B, k) for k in range(B.count)])
+        else:
+            self.endless_least = abs(B.coefficients[0, -1])
         if not (self.endless_least > 0).all():
             raise ValueError(
                 "the highest power of the open loop's denominator returns so strongly that nothing is decided"
@@ -80,7 +84,7 @@ class Loops:
         import numpy
 
         values = [x[0] for x in self.values(which, w)]
-        if self.exact is not None and len(w) and (again := numpy.flatnonzero(self.doubtful(which, w))).size:
+        if self.exact is not None and 0 < len(w) < FEW and (again := numpy.flatnonzero(self.doubtful(which, w))).size:
             for mine, x in zip(values, self.values(which[again], w[again], precise=True), strict=True):
                 mine[again] = x[0]
         return values
@@ -142,6 +146,8 @@ class Loops:
                 self._exactly(series, size, parity)
             lowest = numpy.argmax(series[:count] != 0, axis=0)
             some = series[:count].any(axis=0)
+            if parity:
+                self.is_real = ~some
             for _ in range(400):
                 powers = start ** (numpy.arange(len(series))[:, None] - lowest)
                 terms = abs(series) * powers
@@ -197,47 +203,58 @@ class Loops:
         """A frequency beyond which abs(L)*factor is below 1; nan where none is known."""
         import numpy
 
-        A, B = abs(self.A.coefficients).sum(axis=0), abs(self.B.coefficients).sum(axis=0)
+        A, B = self._term_sizes
         sizes = B + factor * A
-        reserve = numpy.maximum(2 * abs(self.B.coefficients[0, -1]) - B[-1], self.endless_least) - factor * A[-1]
+        reserve = self._endless_reserve - factor * A[-1]
         sizes[-1] = numpy.where(reserve > 0, reserve, math.nan)
         end = prevailing(sizes[None])
-        if self._squares is not None and not end[0] < 8:
-            better = _positive_beyond([b - factor[0] ** 2 * a for a, b in zip(*self._squares, strict=True)])
-            end = numpy.fmin(end, better)
+        if self._squares is not None and not (end < 8).all():
+            squares = self._squares
+            end = numpy.fmin(end, _positive_beyond(squares[1] - factor**2 * squares[0]))
         return end
 
     @functools.cached_property
-    def _squares(self):
-        """abs(A)**2 and abs(B)**2 of a single loop with one dead time, polynomials in the square of the frequency."""
-        if self.exact is None or len(self.exact[0].parts) != 1 or len(self.exact[1].parts) != 1:
-            return None
-        squares = []
-        for exact in self.exact:
-            ((_, part),) = exact.parts.items()
-            part = [*part, *[0] * (exact.order + 1 - len(part))]
-            scale = Fraction(exact.unit)
-            row = []
-            for n in range(exact.order + 1):
-                total = sum(
-                    (-1) ** abs(n - i) * part[i] * part[2 * n - i]
-                    for i in range(max(0, 2 * n - exact.order), min(2 * n, exact.order) + 1)
-                )
-                row.append(float(Fraction(total, exact.divisor**2) * scale ** (2 * n - 2 * exact.order)))
-            squares.append(row)
-        return squares
+    def _term_sizes(self):
+        return abs(self.A.coefficients).sum(axis=0), abs(self.B.coefficients).sum(axis=0)
 
-    def beyond_limit(self) -> float:
-        """A frequency beyond which abs(L) is not above what it is at endless frequency, of one with one dead time."""
+    @functools.cached_property
+    def _endless_reserve(self):
+        import numpy
+
+        return numpy.maximum(2 * abs(self.B.coefficients[0, -1]) - self._term_sizes[1][-1], self.endless_least)
+
+    @functools.cached_property
+    def _squares(self):
+        """abs(A)**2 and abs(B)**2 of loops with one dead time, polynomials in the square of the frequency."""
+        if len(self.A.coefficients) != 1 or len(self.B.coefficients) != 1:
+            return None
+        if self.exact is None:
+            return [_square(x.coefficients[0]) for x in (self.A, self.B)]
+        import numpy
+
+        return [numpy.array([[float(c)] for c in _exact_square(each)]) for each in self.exact]
+
+    def beyond_limit(self) -> numpy.ndarray:
+        """A frequency beyond which abs(L) is not above what it is at endless frequency, with one dead time; or nan."""
+        import numpy
+
         if self._squares is None:
-            return math.nan
-        a, b = (_exact_square(exact) for exact in self.exact)
-        limit = b[-1] / a[-1]
-        scale = Fraction(self.exact[0].unit)
-        rows = [float((y - limit * x) * scale ** (2 * n)) for n, (x, y) in enumerate(zip(a, b, strict=True))]
-        while rows and not rows[-1]:
-            rows.pop()
-        return _positive_beyond(rows) if rows else 1.0
+            return numpy.full(self.count, math.nan)
+        if self.exact is not None:
+            a, b = (_exact_square(each) for each in self.exact)
+            if not a[-1]:
+                return numpy.full(1, math.nan)
+            rows = numpy.array([[float(y - b[-1] / a[-1] * x)] for x, y in zip(a, b, strict=True)])
+            sizes = abs(self._squares[1])
+        else:
+            a, b = self._squares
+            with numpy.errstate(divide="ignore", invalid="ignore"):
+                rows = b - b[-1] / a[-1] * a
+                sizes = abs(b) + b[-1] / a[-1] * abs(a)
+            rows[-1] = 0
+        # less than that could make no difference to a gain that could be told
+        rows[abs(rows) <= 1e-11 * sizes.max(axis=0)] = 0
+        return numpy.where(rows.any(axis=0), _positive_beyond(rows), numpy.where(rows[-1] == 0, 1.0, math.nan))
 
     @functools.cached_property
     def real_beyond(self) -> float:
@@ -274,31 +291,72 @@ class Loops:
         end = float(prevailing(coefficients[:, :, None])[0])
         return end if coefficients[0, -1] else math.nan
 
+    def real_beyond_all(self) -> numpy.ndarray:
+        """The same for many loops, in numbers."""
+        import numpy
+
+        mirrored = [
+            Quasipolynomials((-1.0) ** numpy.arange(x.order + 1)[:, None] * x.coefficients, -x.delays)
+            for x in (self.A, self.B)
+        ]
+        odd = self.A * mirrored[1] + -1 * (mirrored[0] * self.B)
+        sizes = abs(self.A.coefficients).sum(axis=0).max(axis=0) * abs(self.B.coefficients).sum(axis=0).max(axis=0)
+        coefficients = numpy.where(abs(odd.coefficients) <= 1e-13 * sizes, 0, odd.coefficients)
+        end = numpy.zeros(self.count)
+        for point in range(self.count):
+            one = coefficients[:, :, point]
+            if one.any():
+                last = numpy.flatnonzero(one.any(axis=0))[-1]
+                end[point] = prevailing(one[:, : last + 1, None])[0] if one[0, last] else math.nan
+        return end
+
 
 def _exact_square(exact):
+    """The square of the size of an exact sum with one part, time in its unit."""
     ((_, part),) = exact.parts.items()
-    part = [*part, *[0] * (exact.order + 1 - len(part))]
-    return [
-        Fraction(
-            sum(
-                (-1) ** abs(n - i) * part[i] * part[2 * n - i]
-                for i in range(max(0, 2 * n - exact.order), min(2 * n, exact.order) + 1)
-            )
-        )
-        for n in range(exact.order + 1)
+    order, scale = exact.order, Fraction(exact.unit) ** 2
+    part = [*part, *[0] * (order + 1 - len(part))]
+    terms = [
+        sum((-1) ** abs(n - i) * part[i] * part[2 * n - i] for i in range(max(0, 2 * n - order), min(2 * n, order) + 1))
+        for n in range(order + 1)
     ]
+    return [Fraction(c, exact.divisor**2) * scale ** (n - order) for n, c in enumerate(terms)]
 
 
-def _positive_beyond(rows: list[float]) -> float:
-    """The root of a number beyond which a polynomial, lowest power first, is positive; nan without one."""
-    found = math.inf
-    for n in range(len(rows) - 1, -1, -1):
-        if rows[n] < 0:
+def _square(part):
+    import numpy
+
+    order = len(part) - 1
+    return numpy.array(
+        [
+            sum(
+                (-1.0) ** (n - i) * part[i] * part[2 * n - i]
+                for i in range(max(0, 2 * n - order), min(2 * n, order) + 1)
+            )
+            for n in range(order + 1)
+        ]
+    )
+
+
+def _positive_beyond(rows: numpy.ndarray) -> numpy.ndarray:
+    """The roots of numbers beyond which polynomials [power, point] are positive; nan without one."""
+    import numpy
+
+    count = len(rows)
+    found = numpy.full(rows.shape[1], math.inf)
+    possible = numpy.ones(rows.shape[1], dtype=bool)
+    for n in range(count - 1, -1, -1):
+        lead = rows[n]
+        possible = possible & (lead >= 0)
+        if not possible.any():
             break
-        if rows[n] > 0:
-            below = [(abs(c), n - i) for i, c in enumerate(rows[:n]) if c < 0]
-            found = min(found, max((2 * (c * len(below) / rows[n]) ** (1 / gap) for c, gap in below), default=1e-3))
-    return math.sqrt(found) if found < math.inf else math.nan
+        lower = numpy.maximum(-rows[:n], 0)
+        number = (lower > 0).sum(axis=0)
+        with numpy.errstate(divide="ignore", invalid="ignore"):
+            ends = (lower * number / lead) ** (1 / numpy.arange(n, 0, -1)[:, None])
+        end = numpy.nan_to_num(ends, nan=math.inf).max(axis=0, initial=1e-6)
+        found = numpy.where(possible & (lead > 0), numpy.minimum(found, end), found)
+    return numpy.where(found < math.inf, numpy.sqrt(found), math.nan)
 
 
 def _conjugate_product(x, y):

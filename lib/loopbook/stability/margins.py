@@ -16,9 +16,9 @@ from loopbook.stability.crossings import (
     Positive,
     Real,
     SizeOne,
-    difference,
     asked,
     below,
+    difference,
     phase_left,
     solved,
     steps,
@@ -178,7 +178,7 @@ class Survey:
             if not left:
                 return
             furthest = max(math.inf if math.isnan(each) else each for each in ends.values())
-            if furthest == math.inf and (end * longest > MOST_TURNS or end > FURTHEST) or end > 1e3 * FURTHEST:
+            if (furthest == math.inf and (end * longest > MOST_TURNS or end > FURTHEST)) or end > 1e3 * FURTHEST:
                 raise ValueError(f"{left[0].name} is not decided beyond the frequency {end * loops.unit[0]:.6g}")
             window = max(4 * end, end + 20 / longest if longest else 0)
             end = min(furthest, window)
