@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Protocol, TypeAlias, Union
 
 import sympy
 
@@ -20,10 +20,10 @@ __all__ = [
 Number: TypeAlias = float | int | Fraction | sympy.Expr
 
 #: A signal in time: a number, an expression in `t`, or an array with a value for each sample.
-Signal: TypeAlias = "Number | Sequence[float] | numpy.ndarray"
+Signal: TypeAlias = Union[Number, Sequence[float], "numpy.ndarray"]
 
 #: What `transfer_function` reads: an expression in `s`, a number, a `PID`, a `Model`, a `System`, or of python-control.
-TransferFunctionLike: TypeAlias = "Number | HasTransferFunction | control.TransferFunction | control.StateSpace"
+TransferFunctionLike: TypeAlias = Union[Number, "HasTransferFunction", "control.TransferFunction", "control.StateSpace"]
 
 #: Stretches of time in manual mode: (beginning, end, control signal), None for the last control signal.
 ManualStretches: TypeAlias = Sequence[tuple[Number, Number, Number | None]]

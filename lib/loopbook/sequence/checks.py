@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["MOST_MARKINGS", "reachable_markings"]
 
 Marking: TypeAlias = frozenset[str]
-Markings: TypeAlias = "dict[Marking, list[tuple[Transition, Marking]]]"
+Markings: TypeAlias = dict[Marking, list[tuple["Transition", Marking]]]
 
 MOST_MARKINGS = 20_000
 RESERVED = {"AND", "OR", "NOT", "XOR", "MOD", "TRUE", "FALSE"}
