@@ -13,7 +13,7 @@ import pytest
 import sympy
 
 from loopbook import approximation, s, stability, tuning
-from loopbook.deadtime import Loop, System, feedback
+from loopbook.deadtime import Loop, System, closed_loop
 from loopbook.identification import good_gain_experiment
 from loopbook.pid import PID
 from loopbook.transfer import first_order
@@ -112,13 +112,13 @@ def test_the_short_formula_of_the_predictor_is_the_predictor(delay, gain, Tc):
     delay, gain, Tc = map(sympy.Rational, (delay, gain, Tc))
     model = first_order(smith.K * gain, smith.T)
     inner = PID(smith.T / (smith.K * gain * Tc), Ti=smith.T).expr
-    controller = feedback(inner, model - model * sympy.exp(-smith.DELAY * delay * s))
+    controller = closed_loop(inner, model - model * sympy.exp(-smith.DELAY * delay * s))
     loop = Loop(first_order(smith.K, smith.T, smith.DELAY), controller)
     servo, regulator = smith.predictor(delay, gain, Tc)
     omega = numpy.logspace(-2, 1, 40)
     assert servo.frequency(omega) == pytest.approx(loop.servo.frequency(omega), rel=1e-9)
     assert regulator.frequency(omega) == pytest.approx(loop.regulator.frequency(omega), rel=1e-9)
-    assert smith.is_stable(servo) == stability.is_stable(loop.open)
+    assert servo.is_stable == stability.is_closed_loop_stable(loop.open)
 
 
 def test_with_the_right_model_the_predictor_does_what_was_wanted():
