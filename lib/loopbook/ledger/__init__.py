@@ -13,6 +13,8 @@ equation  result  book  computed  verdict
 6.14      T       2     2         reproduced
 """
 
+from __future__ import annotations
+
 import functools
 import importlib.resources
 
@@ -22,7 +24,7 @@ from loopbook.ledger.source import Entry, Given, Result, Source
 __all__ = ["Disagreement", "Entry", "Given", "LedgerError", "Result", "Source", "sources"]
 
 
-def sources():
+def sources() -> dict[str, Source]:
     """Return all sources of the ledger, by name.
 
     >>> "haugen" in sources()
@@ -44,7 +46,7 @@ def _load(name):
     return Source.read(name, file.read_bytes())
 
 
-def __getattr__(name):
+def __getattr__(name: str) -> Source:
     if name.startswith("_"):
         raise AttributeError(name)
     return _load(name)

@@ -1,5 +1,7 @@
 """Whether a computed value is what the book prints: numbers by their digits, formulas by proof, claims by the word."""
 
+from __future__ import annotations
+
 import decimal
 import difflib
 import fractions
@@ -7,6 +9,8 @@ import keyword
 import math
 import numbers
 import re
+from collections.abc import Sequence
+from typing import TypeAlias
 
 import sympy
 
@@ -17,10 +21,14 @@ INFINITE = {"oo": math.inf, "-oo": -math.inf}
 KINDS = ("number", "formula", "claim")
 
 
+#: A formula that a book prints: an expression, or an equation.
+Formula: TypeAlias = sympy.Expr | sympy.Equality
+
+
 class LedgerError(Exception):
     """A wrong use of the ledger, or a malformed entry: one sentence that names the entry and what was expected."""
 
-    def __init__(self, message):
+    def __init__(self, message: str):
         super().__init__(in_one_line(message))
 
     def _render_traceback_(self):
@@ -32,12 +40,12 @@ class Disagreement(LedgerError):  # noqa: N818 - it reads as what it is: "Disagr
     """A computed value that the ledger does not confirm."""
 
 
-def in_one_line(text):
+def in_one_line(text: str) -> str:
     """The same text in one line."""
     return " ".join(text.split())
 
 
-def suggestion(word, known):
+def suggestion(word: object, known: Sequence[str]) -> str:
     """A clause that names the closest known word, or all of them.
 
     >>> suggestion("Kpp", ["Ti", "Kp"])
@@ -47,7 +55,7 @@ def suggestion(word, known):
     return f"did you mean {close[0]!r}?" if close else f"expected one of {', '.join(known) or 'none'}"
 
 
-def half_unit(printed):
+def half_unit(printed: str) -> fractions.Fraction:
     """Half a unit of the last printed digit, which is how far a value may lie from the print, as an exact fraction.
 
     >>> half_unit("1.50"), half_unit("2e-3"), half_unit("1500")
@@ -56,7 +64,7 @@ def half_unit(printed):
     return fractions.Fraction(1, 2) * fractions.Fraction(10) ** decimal.Decimal(printed).as_tuple().exponent
 
 
-def number(value):
+def number(value: object) -> fractions.Fraction | float:
     """Return a real number of any usual type as an exact fraction, or as a float where it is infinite.
 
     Raises TypeError, saying what the value is instead, for anything that is not one real number.
@@ -112,7 +120,7 @@ def _shortened(value, length=60):
     return text if len(text) <= length else text[: length - 3] + "..."
 
 
-def number_agrees(value, printed):
+def number_agrees(value: object, printed: str) -> bool:
     """Whether a value lies within half a unit of the last printed digit. Nothing is rounded on the way.
 
     >>> number_agrees(0.6321, "0.63"), number_agrees(0.636, "0.63")
@@ -124,7 +132,7 @@ def number_agrees(value, printed):
     return abs(value - fractions.Fraction(printed)) <= half_unit(printed)
 
 
-def formula(value):
+def formula(value: object) -> Formula:
     """Return a computed formula as a SymPy expression or equation, in the letters of `loopbook.expressions.parse`.
 
     A letter is known by its name alone. What a computation assumed about it is dropped, except that it is an integer:
@@ -160,7 +168,7 @@ def _letter(symbol):
     return letter if letter.is_Symbol else symbol
 
 
-def parse_formula(text):
+def parse_formula(text: str) -> Formula:
     """Read a formula, or an equation ``left = right``, as `loopbook.expressions.parse` does.
 
     Raises ValueError where the text is neither, and for an equation that says nothing, as ``x = x``.
@@ -174,7 +182,7 @@ def parse_formula(text):
     return sympy.Eq(left, right, evaluate=False)
 
 
-def formula_agrees(value, printed):
+def formula_agrees(value: object, printed: str) -> str:
     """Say how a formula agrees with the printed one: ``"proved"``, ``"probed"``, or ``""`` where it does not.
 
     A letter is known by its name. An equation may have its terms on either side, but it may not be multiplied:
@@ -200,7 +208,7 @@ def formula_agrees(value, printed):
     return "" if how == "different" else how
 
 
-def claim(value):
+def claim(value: object) -> str:
     """Return a claim, a word or a few, in one line. Raises TypeError for anything else."""
     if not isinstance(value, str):
         raise TypeError(f"{_shortened(value)} of type {type(value).__name__}")
@@ -212,7 +220,7 @@ def claim(value):
 READ = {"number": number, "formula": formula, "claim": claim}
 
 
-def agrees(kind, value, printed):
+def agrees(kind: str, value: object, printed: str) -> str:
     """Say how a value agrees with the print: ``"digits"``, ``"proved"``, ``"probed"``, ``"word"``, or ``""`` if not.
 
     Raises TypeError, saying what the value is, where it is not of the kind.
@@ -226,7 +234,7 @@ def agrees(kind, value, printed):
             return "word" if claim(value).casefold() == claim(printed).casefold() else ""
 
 
-def spelled(kind, value, *printed):
+def spelled(kind: str, value: object, *printed: str) -> str:
     """Return the computed value as text; a number four digits beyond the finest print, without trailing zeros.
 
     >>> spelled("number", 1 - math.exp(-1), "0.63")

@@ -1,6 +1,14 @@
 """What the ledger says as a whole: its totals by status, and the books' errors as a page."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
 from loopbook.ledger.source import STATUSES
+
+if TYPE_CHECKING:
+    from loopbook.ledger.source import Source
 
 INTRODUCTION = """\
 # Errata
@@ -11,7 +19,7 @@ the print.
 """
 
 
-def totals(sources):
+def totals(sources: Mapping[str, Source]) -> dict[str, dict[str, int]]:
     """Count the results of each source by status: {source name: {status: number}}.
 
     >>> from loopbook.ledger import sources
@@ -24,7 +32,7 @@ def totals(sources):
     }
 
 
-def page(sources):
+def page(sources: Mapping[str, Source]) -> str:
     """Return the text of ERRATA.md: what is corrected, and what could not be reproduced, source by source."""
     lines = [INTRODUCTION]
     for source in sources.values():

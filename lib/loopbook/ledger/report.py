@@ -1,11 +1,17 @@
 """Verdicts, and how a reader sees them: as plain text, as HTML, and as data for the tests."""
 
+from __future__ import annotations
+
 import html
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import sympy
 
 from loopbook.ledger.compare import NUMBER, parse_formula
+
+if TYPE_CHECKING:
+    from loopbook.ledger.source import Entry, Result
 
 #: The MIME type under which a stored notebook carries the verdicts as data.
 MIME_TYPE = "application/vnd.loopbook.check+json"
@@ -21,20 +27,20 @@ _HEAD = ("equation", "result", "book", "computed", "verdict")
 class Verdict:
     """What became of one result: the computed value as text, whether it holds, and how that was found."""
 
-    result: object
+    result: Result
     computed: str
     holds: bool
     how: str
 
     @property
-    def word(self):
+    def word(self) -> str:
         """The verdict in a word or two."""
         if not self.holds:
             return "does not hold"
         return self.result.status + (" (at random points)" if self.how == "probed" else "")
 
     @property
-    def mark(self):
+    def mark(self) -> tuple[str, str]:
         """A sign and its colour: whether it holds, and whether book and computation agree in the end."""
         if not self.holds:
             return "✗", "#b33c00"
@@ -43,7 +49,7 @@ class Verdict:
         return ("≠", "#8a5a00") if self.result.status == "unreproduced" else ("✓", "#00664d")
 
     @property
-    def note(self):
+    def note(self) -> str:
         """What the reader must know besides: the reason, or the assumption. Empty where there is none."""
         row = self.result
         if row.status == "reconstructed":
@@ -51,7 +57,7 @@ class Verdict:
         return f"{row.status}: {row.because}" if row.because else ""
 
     @property
-    def complaint(self):
+    def complaint(self) -> str:
         """A sentence on what does not hold."""
         row = self.result
         start = f"{row.name} = {self.computed}"
@@ -63,7 +69,7 @@ class Verdict:
         return f"{start} must agree with {stored} and not with the printed {row.printed} to be {row.status}"
 
     @property
-    def data(self):
+    def data(self) -> dict[str, str | bool]:
         """The verdict as JSON data."""
         return {
             "name": self.result.name,
@@ -79,16 +85,16 @@ class Verdict:
 class Report:
     """The verdicts on one entry of the ledger."""
 
-    entry: object
-    verdicts: tuple
+    entry: Entry
+    verdicts: tuple[Verdict, ...]
 
     @property
-    def failures(self):
+    def failures(self) -> tuple[Verdict, ...]:
         """The verdicts that do not hold."""
         return tuple(verdict for verdict in self.verdicts if not verdict.holds)
 
     @property
-    def notes(self):
+    def notes(self) -> list[str]:
         """The notes on the verdicts, each once, with the names that it is about."""
         about = {}
         for verdict in self.verdicts:
@@ -97,11 +103,11 @@ class Report:
         return [f"{', '.join(names)} {'are' if names[1:] else 'is'} {note}" for note, names in about.items()]
 
     @property
-    def data(self):
+    def data(self) -> dict[str, Any]:
         """The verdicts as JSON data."""
         return {"source": self.entry.source, "entry": self.entry.name, "verdicts": [v.data for v in self.verdicts]}
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         rows = []
         for verdict in self.verdicts:
             row = verdict.result
@@ -135,7 +141,7 @@ class Report:
         return {"text/plain": repr(self), "text/html": self._repr_html_(), MIME_TYPE: self.data}
 
 
-def described(entry, as_html=False):
+def described(entry: Entry, as_html: bool = False) -> str:
     """An entry with its givens, as text or HTML."""
     if as_html:
         return _table(entry, [(_name(name), _given(given)) for name, given in entry.inputs.items()])

@@ -1,13 +1,17 @@
 """The sources as data: a TOML file each, read strictly, so that a slip of the pen is an error and not a hole."""
 
+from __future__ import annotations
+
 import decimal
 import keyword
 import re
 import sys
 import tomllib
+from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from fractions import Fraction
 from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Self
 
 import sympy
 
@@ -26,6 +30,9 @@ from loopbook.ledger.compare import (
     suggestion,
 )
 from loopbook.ledger.report import Report, Verdict, described
+
+if TYPE_CHECKING:
+    from loopbook.ledger.compare import Formula
 
 #: What each status needs beside the printed value.
 STATUSES = {
@@ -55,7 +62,7 @@ class Result:
     computed: str = ""
 
     @classmethod
-    def read(cls, where, data):
+    def read(cls, where: str, data: object) -> Self:
         """Make a result of a TOML table, or raise LedgerError."""
         known = [f.name for f in fields(cls)]
         if not isinstance(data, dict):
@@ -106,11 +113,11 @@ class Result:
                 raise LedgerError(f"{where}: {error}") from None
 
     @property
-    def is_checked(self):
+    def is_checked(self) -> bool:
         """Whether there is something to compute: not for laboratory data, nor where what it takes is not printed."""
         return self.status != "measured" and (self.status != "unreproduced" or bool(self.computed))
 
-    def margin(self, where=""):
+    def margin(self, where: str = "") -> Fraction:
         """How far a reconstructed number may lie from the print: `within`, absolute or in percent of the print."""
         amount, percent = re.fullmatch(r"(.*?)(\s*%)?", self.within).groups()
         if self.kind != "number" or not NUMBER.fullmatch(self.printed):
@@ -123,7 +130,7 @@ class Result:
             raise LedgerError(f"{where}: within is {self.within!r} of 0, expected a positive number")
         return Fraction(amount) / 100 * abs(Fraction(self.printed)) if percent else Fraction(amount)
 
-    def judge(self, value):
+    def judge(self, value: object) -> Verdict:
         """Return the verdict on a computed value.
 
         Raises TypeError, saying what the value is instead, where it is not of the result's kind.
@@ -155,12 +162,12 @@ def _coarser(text, printed):
 class Given:
     """An input of an example: its exact value, its unit, and both as the ledger writes them."""
 
-    value: object
+    value: Formula
     unit: str
     text: str
 
     @classmethod
-    def read(cls, where, text):
+    def read(cls, where: str, text: object) -> Self:
         """Read a number with its unit, an expression or an equation, or raise LedgerError."""
         if not isinstance(text, str) or not text.strip():
             raise LedgerError(f'{where} is {text!r}, expected text in quotes, as "1.5 s" or "K/(T*s + 1)"')
@@ -181,11 +188,11 @@ class Entry:
     name: str
     title: str
     chapter: str
-    inputs: MappingProxyType
-    results: tuple
+    inputs: MappingProxyType[str, Given]
+    results: tuple[Result, ...]
 
     @classmethod
-    def read(cls, source, name, data):
+    def read(cls, source: str, name: str, data: object) -> Self:
         """Make an entry of a TOML table, or raise LedgerError."""
         where = f"{source}, {name}"
         if not isinstance(data, dict):
@@ -208,7 +215,7 @@ class Entry:
         title, chapter = in_one_line(data["title"]), data["chapter"]
         return cls(source, in_one_line(name), title, chapter, MappingProxyType(inputs), results)
 
-    def given(self, *names):
+    def given(self, *names: str) -> Any:
         """Return inputs of the example as exact numbers or expressions: one for one name, a tuple for several.
 
         Raises LedgerError for a name that the example does not give.
@@ -224,7 +231,7 @@ class Entry:
         values = tuple(self.inputs[name].value for name in names)
         return values[0] if len(values) == 1 else values
 
-    def measured(self, *names):
+    def measured(self, *names: str) -> Any:
         """Return laboratory data of the example as exact numbers: one for one name, a tuple for several.
 
         Raises LedgerError for a name that is no result with the status "measured" and a number.
@@ -238,11 +245,11 @@ class Entry:
         return values[0] if len(values) == 1 else values
 
     @property
-    def givens(self):
+    def givens(self) -> dict[str, Formula]:
         """All inputs of the example by name: exact numbers, expressions and equations."""
         return {name: given.value for name, given in self.inputs.items()}
 
-    def compare(self, /, **values):
+    def compare(self, /, **values: object) -> Report:
         """Return a Report on computed values, one for each result that can be computed.
 
         Raises LedgerError for a result that is missing or unknown, and for a value that cannot be judged.
@@ -273,7 +280,7 @@ class Entry:
                 raise LedgerError(f"{where}, {row.name}: expected a {row.kind}, got {what}") from error
         return Report(self, tuple(verdicts))
 
-    def check(self, /, **values):
+    def check(self, /, **values: object) -> None:
         """Show how computed values compare with the book's, and raise Disagreement where one does not hold."""
         report = self.compare(**values)
         _show(report)
@@ -281,7 +288,7 @@ class Entry:
             more = f" (and {len(failures) - 1} more)" if failures[1:] else ""
             raise Disagreement(f"{self.source}, {self.name}: {failures[0].complaint}{more}")
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return described(self)
 
     def _repr_html_(self):
@@ -294,10 +301,10 @@ class Source:
 
     name: str
     citation: str
-    entries: MappingProxyType
+    entries: MappingProxyType[str, Entry]
 
     @classmethod
-    def read(cls, name, content):
+    def read(cls, name: str, content: bytes) -> Self:
         """Read a source from the content of its TOML file, or raise LedgerError."""
         try:
             data = tomllib.loads(content.decode())
@@ -309,21 +316,21 @@ class Source:
         entries = {key: Entry.read(name, key, entry) for key, entry in data.items()}
         return cls(name, in_one_line(head["citation"]), MappingProxyType(entries))
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> Entry:
         if not isinstance(name, str) or name not in self.entries:
             raise LedgerError(f"{self.name} has no entry {name!r}, {suggestion(name, list(self.entries))}")
         return self.entries[name]
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[Entry]:
         return iter(self.entries.values())
 
-    def __contains__(self, name):
+    def __contains__(self, name: object) -> bool:
         return name in self.entries
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.entries)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"{self.name}: {self.citation} ({len(self.entries)} entries)"
 
 
