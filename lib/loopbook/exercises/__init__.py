@@ -5,10 +5,16 @@
 True
 """
 
+from __future__ import annotations
+
 import difflib
+from typing import TYPE_CHECKING
 
 from loopbook.exercises import bank
 from loopbook.exercises.records import Progress
+
+if TYPE_CHECKING:
+    from loopbook.exercises.question import Question
 
 __all__ = ["ExerciseError", "exercise", "progress"]
 
@@ -21,7 +27,7 @@ class ExerciseError(Exception):
         return [f"{type(self).__name__}: {self}"]
 
 
-def exercise(number, student=None):
+def exercise(number: str, student: str | None = None) -> Question:
     """Return an exercise as a question: shown, it is the statement; `.check(...)` responds to answers.
 
     Arguments:
@@ -41,7 +47,7 @@ def exercise(number, student=None):
         raise ExerciseError(str(error)) from None
 
 
-def progress(chapter, student=None):
+def progress(chapter: str | int, student: str | None = None) -> Progress:
     """Return which exercises of a chapter are right so far, as "10"; a file beside the notebook keeps it."""
     return Progress.of(bank.exercises(_chapter(str(chapter))).values(), student)
 

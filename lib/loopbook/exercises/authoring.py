@@ -15,10 +15,14 @@ So an exercise looks::
         return {"Ti": min(T, 8 * delay)}
 """
 
+from __future__ import annotations
+
 import functools
 import inspect
 import textwrap
 import unicodedata
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import sympy
 
@@ -40,6 +44,9 @@ from loopbook.exercises.kinds import (
 from loopbook.exercises.parameters import Parameter, between, call, choice, written
 from loopbook.exercises.question import Question
 
+if TYPE_CHECKING:
+    from loopbook.exercises.parameters import Value
+
 __all__ = [
     "Exercise", "answers", "between", "choice", "criterion", "design", "exercise", "expression", "largest_sensitivity",
     "number", "numbers", "pi_controller", "poles", "settings", "stable", "time_function", "transfer_function", "word",
@@ -53,7 +60,7 @@ word, words, criterion, design = Word, Words, Criterion, Design
 MOST_DRAWS = 1000
 
 
-def answers(**kinds):
+def answers(**kinds: Kind | float | sympy.Expr) -> dict[str, Kind]:
     """Return the key of an exercise: a kind for each asked quantity; a bare number is one without unit.
 
     >>> answers(K=2, Ti=number(12, "s", "the integral time"))["K"].key
@@ -64,7 +71,9 @@ def answers(**kinds):
     return {name: kind if isinstance(kind, Kind) else Number(kind, what=name) for name, kind in kinds.items()}
 
 
-def exercise(number, title, points=1, where=lambda: True):
+def exercise(
+    number: str, title: str, points: float = 1, where: Callable[..., object] = lambda: True
+) -> Callable[[Callable[..., dict[str, Kind]]], Exercise]:
     """Make an exercise of a function that returns its key.
 
     Arguments:
@@ -76,6 +85,9 @@ def exercise(number, title, points=1, where=lambda: True):
     return functools.partial(Exercise, number, title, points, where)
 
 
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+
 class Exercise:
     """An exercise, with all its variants.
 
@@ -84,12 +96,16 @@ class Exercise:
         parameters: {name: `Parameter`}.
     """
 
-    def __init__(self, number, title, points, where, key):
+    def __init__(
+        self, number: str, title: str, points: float, where: Callable[..., object], key: Callable[..., dict[str, Kind]]
+    ):
         self.number, self.title, self.points, self.where, self.key = number, title, points, where, key
         self.statement = textwrap.dedent(" " * 4 + (key.__doc__ or "")).strip()
-        self.parameters = {name: item.default for name, item in inspect.signature(key).parameters.items()}
-        self.mistakes = []
-        self.shown = lambda: {}
+        self.parameters: dict[str, Parameter] = {
+            name: item.default for name, item in inspect.signature(key).parameters.items()
+        }
+        self.mistakes: list[tuple[str, Callable[..., dict[str, Any] | None]]] = []
+        self.shown: Callable[..., dict[str, Any]] = lambda: {}
         for name, parameter in self.parameters.items():
             if not isinstance(parameter, Parameter):
                 raise ValueError(f"{name} of exercise {number} is {parameter!r}: expected between(...) or choice(...)")
@@ -97,11 +113,11 @@ class Exercise:
             raise ValueError(f"exercise {number} has no statement: expected one as the docstring of its function")
 
     @property
-    def heading(self):
+    def heading(self) -> str:
         """Number and title."""
         return f"Exercise {self.number} · {self.title}"
 
-    def mistake(self, sentence):
+    def mistake(self, sentence: str) -> Callable[[_Function], _Function]:
         """Declare a known mistake: a function of parameters that it names, returning {name: wrong value}."""
 
         def declared(function):
@@ -110,13 +126,13 @@ class Exercise:
 
         return declared
 
-    def shows(self, function):
+    def shows(self, function: _Function) -> _Function:
         """Declare what else the statement shows: {name: expression, equation or text}."""
         self.shown = function
         return function
 
     @functools.lru_cache(maxsize=64)  # noqa: B019 - the exercises live as long as the program
-    def question(self, student=None):
+    def question(self, student: str | None = None) -> Question:
         """Return the variant of a student, or the reference variant.
 
         Raises ValueError where the condition does not hold for the reference, or hardly ever.
@@ -137,14 +153,14 @@ class Exercise:
                 return Question(self, student, values)
         raise ValueError(f"the condition of exercise {self.number} holds in none of {MOST_DRAWS} draws: widen it")
 
-    def places(self, values):
+    def places(self, values: Mapping[str, Value]) -> dict[str, str]:
         """Return what stands in the places of a text: the values of the parameters, and what else is shown."""
         places = {name: written(value, self.parameters[name].unit) for name, value in values.items()}
         for name, value in call(self.shown, values).items():
             places[name] = value if isinstance(value, str) else f"${sympy.latex(_in_decimals(value), full_prec=False)}$"
         return places
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return self.heading
 
 

@@ -1,12 +1,23 @@
 """Criteria that many designs of controllers share."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from loopbook.exercises.formulas import Formula
 from loopbook.exercises.kinds import Criterion
 
+if TYPE_CHECKING:
+    import sympy
 
-def pi_controller():
+    from loopbook.pid import PID
+    from loopbook.types import Number
+
+
+def pi_controller() -> Criterion:
     """Return the criterion that a controller is a PI controller."""
     return Criterion(
         "it is a PI controller",
@@ -15,7 +26,7 @@ def pi_controller():
     )
 
 
-def stable(process=None, by=None):
+def stable(process: sympy.Expr | None = None, by: Callable[[PID], bool] | None = None) -> Criterion:
     """Return the criterion that a loop is stable.
 
     Arguments:
@@ -35,7 +46,7 @@ def stable(process=None, by=None):
     )
 
 
-def largest_sensitivity(process, until, below):
+def largest_sensitivity(process: sympy.Expr, until: Number, below: Number) -> Criterion:
     """Return the criterion that the largest sensitivity of a stable loop is at most a limit.
 
     Arguments:

@@ -4,13 +4,20 @@ A formula is worked out over arrays of decimal numbers, operation by operation. 
 no formula, however large or nested, can take long or fill the memory.
 """
 
+from __future__ import annotations
+
 import ast
 import math
 import random
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from loopbook.exercises.reading import CONSTANTS, Unreadable, parsed, shortened, spelled
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 #: The part of the points at which an answer must have a value: some forms leave the range of decimal numbers early.
 FEWEST = 0.3
@@ -58,7 +65,7 @@ class Formula:
     array(2.+0.j)
     """
 
-    def __init__(self, given, letters=()):
+    def __init__(self, given: object, letters: str | Iterable[str] = ()):
         self.letters = letters.split() if isinstance(letters, str) else list(letters)
         self.text = spelled(given)
         self.tree = parsed(self.text, self.letters)
@@ -67,7 +74,7 @@ class Formula:
         numbers = [node for node in nodes if isinstance(node, ast.Constant) and type(node.value) is not bool]
         self.literals = [id(node) for node in numbers if node.value != 1 and id(node) not in exponents]
 
-    def __call__(self, changed=None, by=1.0, /, **values):
+    def __call__(self, changed: int | None = None, by: float = 1.0, /, **values: ArrayLike) -> np.ndarray:
         """Return the values of the formula where its letters have these values, complex; NaN where it has none.
 
         A point at which any part of the formula is beyond the range of decimal numbers has no value.
@@ -126,7 +133,7 @@ class Formula:
             raise Unreadable(f"{shortened(self.text)} has no value: expected another expression") from None
 
 
-def called(name, parts):
+def called(name: str, parts: Sequence[np.ndarray]) -> np.ndarray:
     """The value of a function of several parts; steps and limiters look at real parts."""
     if name in _FUNCTIONS:
         return _FUNCTIONS[name](*parts)
@@ -140,7 +147,7 @@ def called(name, parts):
     return result
 
 
-def agree(key, given, points, within):
+def agree(key: Formula, given: Formula, points: Mapping[str, np.ndarray], within: float) -> bool:
     """Whether a formula has the values of the key, as far as its numbers may be rounded.
 
     At each point the difference may be the fraction `within`, or what the key changes when each of its numbers is
@@ -163,7 +170,7 @@ def agree(key, given, points, within):
     return near_everywhere(expected, found, allowed + EXACT * np.abs(expected))
 
 
-def near_everywhere(expected, found, allowed):
+def near_everywhere(expected: np.ndarray, found: np.ndarray, allowed: np.ndarray) -> bool:
     """Whether values differ by no more than is allowed wherever both have one, and they have one at many points."""
     known = np.isfinite(expected) & np.isfinite(allowed)
     judged = known & np.isfinite(found)
@@ -171,13 +178,19 @@ def near_everywhere(expected, found, allowed):
     return bool(enough and np.all(np.abs(found[judged] - expected[judged]) <= allowed[judged]))
 
 
-def rounding(key, expected, points, within, seen=np.asarray):
+def rounding(
+    key: Formula,
+    expected: np.ndarray,
+    points: Mapping[str, np.ndarray],
+    within: float,
+    seen: Callable[[np.ndarray], np.ndarray] = np.asarray,
+) -> np.ndarray:
     """Return by how much what is seen of the key may change when each of its numbers is wrong by that fraction."""
     changes = [np.abs(seen(key(literal, 1 + within, **points) - expected)) for literal in key.literals]
     return np.sum(changes, axis=0) if changes else np.zeros(np.shape(expected))
 
 
-def points_for(letters):
+def points_for(letters: str | Iterable[str]) -> dict[str, np.ndarray]:
     """Return values of letters at which formulas are compared: {letter: array}, the same every time.
 
     The letter s takes complex values of nine orders of magnitude in the right half-plane; others are positive numbers,

@@ -1,10 +1,17 @@
 """Judging an answer: right, a mistake with a name, wrong, or nothing that can be judged."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from loopbook.exercises.kinds import NOT_ANSWERED
 from loopbook.exercises.limits import limited
 from loopbook.exercises.reading import Unreadable, shortened
+
+if TYPE_CHECKING:
+    from loopbook.exercises.kinds import Kind
 
 RIGHT, MISTAKE, WRONG, UNJUDGED, OPEN = "right", "mistake", "wrong", "not judged", "open"
 #: Reading and comparing may take so many seconds: an answer may be a function, or an object with methods of its own.
@@ -20,12 +27,12 @@ class Verdict:
     says: str
 
     @property
-    def is_right(self):
+    def is_right(self) -> bool:
         """Whether the answer counts."""
         return self.status == RIGHT
 
 
-def judge(name, kind, given, mistakes=()):
+def judge(name: str, kind: Kind, given: object, mistakes: Iterable[tuple[str, Any]] = ()) -> Verdict:
     """Return the `Verdict` on an answer. Whatever the answer is, this raises nothing.
 
     Arguments:
@@ -61,7 +68,7 @@ def _judged(kind, given, mistakes):
     return WRONG, kind.hint(answer) or f"not right; asked: {kind.asked}"
 
 
-def harmless(text):
+def harmless(text: str) -> str:
     """A sentence that may quote a reader: not long, in one line, without formulas, in signs that can be printed."""
     line = " ".join(text.replace("$", "").split())
     return shortened(line.encode("utf-8", "backslashreplace").decode(), 400)

@@ -1,14 +1,20 @@
 """A limit for the time that a computation may take, on every system and in every thread."""
 
+from __future__ import annotations
+
 import ctypes
 import threading
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+_Found = TypeVar("_Found")
 
 
 class TooSlow(BaseException):
     """The computation took longer than it may."""
 
 
-def limited(seconds, function, *arguments):
+def limited(seconds: float, function: Callable[..., _Found], *arguments: Any) -> _Found:
     """Return `function(*arguments)`, which may take that many seconds.
 
     The computation runs in a thread of its own, which is stopped at its next step in Python when the time is over.

@@ -1,30 +1,41 @@
 """The parameters of an exercise: their ranges, and the values that a variant draws from them."""
 
+from __future__ import annotations
+
 import hashlib
 import inspect
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import sympy
 
 from loopbook.exercises import units
 from loopbook.expressions import exact
 
+if TYPE_CHECKING:
+    from loopbook.types import Number
+
 FEWEST, MOST = 8, 40
 #: What a person would write between 1 and 10, for ranges over more than a decade and a half.
 _PLEASANT = [Fraction(n, 10) for n in (10, 12, 15, 20, 25, 30, 40, 50, 60, 80)]
+
+
+#: A value of a parameter: an exact number, or a word.
+Value: TypeAlias = sympy.Expr | str
 
 
 @dataclass(frozen=True)
 class Parameter:
     """Values that a variant may draw, their unit, and the value of the reference variant."""
 
-    values: tuple
+    values: tuple[Value, ...]
     unit: str
-    reference: object
+    reference: Value
 
-    def draw(self, text):
+    def draw(self, text: str) -> Value:
         """Return one of the values, the same for the same text on every machine and Python.
 
         >>> between(1, 4, "s").draw("any text") in between(1, 4, "s").values
@@ -34,7 +45,9 @@ class Parameter:
         return self.values[int.from_bytes(digest[:8], "big") % len(self.values)]
 
 
-def between(low, high, unit="", reference=None, step=None):
+def between(
+    low: Number, high: Number, unit: str = "", reference: Number | None = None, step: Number | None = None
+) -> Parameter:
     """Return a parameter between two numbers, both included, that takes values such as a person would choose.
 
     Arguments:
@@ -64,7 +77,7 @@ def between(low, high, unit="", reference=None, step=None):
     return _parameter(values, unit, reference)
 
 
-def choice(*values, unit="", reference=None):
+def choice(*values: Number | str, unit: str = "", reference: Number | str | None = None) -> Parameter:
     """Return a parameter that takes one of several values, words or numbers; the first one is the reference.
 
     >>> choice("heating", "cooling").values
@@ -109,7 +122,7 @@ def _over_decades(low, high):
     return [value for value in values if low <= value <= high]
 
 
-def written(value, unit=""):
+def written(value: Number | str, unit: str = "") -> str:
     """Return a value with its unit, as it stands in a sentence.
 
     >>> written(sympy.Rational(5, 2), "kg/min")
@@ -123,7 +136,7 @@ def written(value, unit=""):
     return f"{text}\N{NO-BREAK SPACE}{unit}" if unit else text
 
 
-def call(function, values):
+def call(function: Callable[..., Any], values: Mapping[str, Any]) -> Any:
     """Call a function with those of the values that it names; raises ValueError for a name that there is not."""
     names = list(inspect.signature(function).parameters)
     unknown = [name for name in names if name not in values]

@@ -1,14 +1,21 @@
 """A question: one variant of an exercise, as a reader sees and answers it."""
 
+from __future__ import annotations
+
 import difflib
 import functools
 import re
+from typing import TYPE_CHECKING, Any
 
 from loopbook.exercises import records
 from loopbook.exercises.judging import OPEN, Verdict, harmless, judge
 from loopbook.exercises.kinds import NOT_ANSWERED, Kind
 from loopbook.exercises.parameters import call
 from loopbook.exercises.response import Response
+
+if TYPE_CHECKING:
+    from loopbook.exercises.authoring import Exercise
+    from loopbook.exercises.parameters import Value
 
 _PLACE = re.compile(r"\{\{(\w+)\}\}|\{(\w+)\}")
 
@@ -20,10 +27,10 @@ class Question:
         values: {name: value} of the parameters, exact numbers or words.
     """
 
-    def __init__(self, exercise, student, values):
+    def __init__(self, exercise: Exercise, student: str | None, values: dict[str, Value]):
         self.exercise, self.student, self.values = exercise, student, values
 
-    def given(self, *names):
+    def given(self, *names: str) -> Any:
         """Return values of parameters, exact, and of what else the statement shows; a single one alone.
 
         Raises ValueError for a name that is none of them.
@@ -44,7 +51,7 @@ class Question:
         return found[0] if len(found) == 1 else found
 
     @functools.cached_property
-    def key(self):
+    def key(self) -> dict[str, Kind]:
         """The asked quantities with their keys: {name: kind}."""
         key = self._called(self.exercise.key, "the key")
         if not (isinstance(key, dict) and key and all(isinstance(kind, Kind) for kind in key.values())):
@@ -52,9 +59,9 @@ class Question:
         return key
 
     @functools.cached_property
-    def mistakes(self):
+    def mistakes(self) -> dict[str, list[tuple[str, Any]]]:
         """The known mistakes of the exercise in this variant: {name of a quantity: pairs of sentence and value}."""
-        found = {name: [] for name in self.key}
+        found: dict[str, list[tuple[str, Any]]] = {name: [] for name in self.key}
         for sentence, function in self.exercise.mistakes:
             for name, value in (self._called(function, "a mistake") or {}).items():
                 if name not in found:
@@ -76,7 +83,7 @@ class Question:
     def _places(self):
         return self.exercise.places(self.values)
 
-    def filled_in(self, text):
+    def filled_in(self, text: str) -> str:
         """Return a text with the values of this variant in the places of their names; ``{{K}}`` is the letter K."""
 
         def fill(match):
@@ -85,7 +92,7 @@ class Question:
 
         return _PLACE.sub(fill, text)
 
-    def check(self, /, *alone, **given):
+    def check(self, /, *alone: object, **given: object) -> Response:
         """Respond to answers, whatever they are: `check(Kp=2, Ti="3 min")`; a single quantity needs no name.
 
         Raises nothing: what cannot be judged is said in the response.
@@ -112,7 +119,7 @@ class Question:
         return response
 
     @property
-    def statement(self):
+    def statement(self) -> str:
         """The statement in Markdown, with the values of this variant and a list of what is asked."""
         points = f"{self.exercise.points} point{'' if self.exercise.points == 1 else 's'}"
         lines = [f"**{self.exercise.heading}** ({points})", ""]
@@ -139,7 +146,7 @@ class Question:
     def _repr_mimebundle_(self, include=None, exclude=None):
         return {"text/plain": repr(self), "text/markdown": self.statement}
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return self.statement
 
 

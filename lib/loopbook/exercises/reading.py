@@ -4,11 +4,14 @@ Python's grammar reads the text, and what is no arithmetic is refused. SymPy's e
 and of python-control, are read from what they spell.
 """
 
+from __future__ import annotations
+
 import ast
 import difflib
 import math
 import re
 import unicodedata
+from collections.abc import Collection, Iterable
 
 import numpy as np
 import scipy.signal
@@ -40,7 +43,7 @@ class Unreadable(ValueError):  # noqa: N818 - it is what became of the answer
     """An answer that cannot be judged; the sentence says why and what is expected."""
 
 
-def plain(text):
+def plain(text: str) -> str:
     """Return a text in one line, with Python's signs, and without a name and = before it.
 
     Raises Unreadable for a long one.
@@ -65,7 +68,7 @@ def _in_python(text, letters):
     return re.sub(r"\b(\d+\.?\d*)i\b", r"\1j", text).replace("^", "**")
 
 
-def parsed(text, letters):
+def parsed(text: str, letters: Collection[str]) -> ast.expr:
     """Return the syntax tree of a formula in some letters: arithmetic, known functions, and nothing else.
 
     Raises Unreadable in a sentence.
@@ -112,7 +115,7 @@ def parsed(text, letters):
     return tree
 
 
-def letters_in(given):
+def letters_in(given: object) -> list[str]:
     """Return the letters of a formula, whichever they are, in their order; of what is no formula, none.
 
     Raises Unreadable where nothing spells it.
@@ -186,7 +189,7 @@ def _check_call(node, source):
         raise Unreadable(f"{node.func.id} has no arguments: expected at least one")
 
 
-def spelled(given):
+def spelled(given: object) -> str:
     """Return the text of a formula that was given as text, number, expression or system; raises Unreadable."""
     if isinstance(given, str):
         return given
@@ -240,12 +243,12 @@ def _of_system(given):
     return above / below
 
 
-def shortened(text, length=60):
+def shortened(text: str, length: int = 60) -> str:
     """The text, or its beginning."""
     return text if len(text) <= length else text[: length - 3] + "..."
 
 
-def listed(names):
+def listed(names: Iterable[str]) -> str:
     """Names in a sentence.
 
     >>> listed(["K", "T", "s"])

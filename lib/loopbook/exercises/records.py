@@ -1,12 +1,19 @@
 """Which exercises are right so far: a small file beside the notebook."""
 
+from __future__ import annotations
+
 import contextlib
 import html
 import json
 import os
 import warnings
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Self
+
+if TYPE_CHECKING:
+    from loopbook.exercises.authoring import Exercise
 
 FILE = Path(".loopbook-progress.json")
 #: A larger file is none that was written here.
@@ -15,7 +22,7 @@ LARGEST = 10**6
 SWITCH = "LOOPBOOK_PROGRESS"
 
 
-def note(number, student, is_right):
+def note(number: str, student: str | None, is_right: bool) -> None:
     """Note that an exercise was answered, and whether all of it was right; what was right once stays so."""
     if os.environ.get(SWITCH) == "off":
         return
@@ -26,7 +33,7 @@ def note(number, student, is_right):
     _store(known | {key: bool(is_right)})
 
 
-def load():
+def load() -> dict[str, bool]:
     """Return what the file says: {exercise: whether it was right}. A damaged file is ignored, with a warning."""
     if os.environ.get(SWITCH) == "off" or not os.path.lexists(FILE):
         return {}
@@ -63,20 +70,20 @@ def _key(number, student):
 class Progress:
     """The exercises of a chapter: pairs of a heading and True, False or, where not answered yet, None."""
 
-    rows: tuple
+    rows: tuple[tuple[str, bool | None], ...]
 
     @classmethod
-    def of(cls, exercises, student=None):
+    def of(cls, exercises: Iterable[Exercise], student: str | None = None) -> Self:
         """The progress in these exercises."""
         known = load()
         return cls(tuple((one.heading, known.get(_key(one.number, student))) for one in exercises))
 
     @property
-    def right(self):
+    def right(self) -> int:
         """How many are right."""
         return sum(right is True for _, right in self.rows)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return "\n".join([f"{self.right} of {len(self.rows)} right", *(f"  {_mark(r)} {h}" for h, r in self.rows)])
 
     def _repr_html_(self):

@@ -1,9 +1,15 @@
 """The response to the answers of an exercise, as a small coloured box or as text."""
 
+from __future__ import annotations
+
 import html
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
+
+if TYPE_CHECKING:
+    from loopbook.exercises.judging import Verdict
 
 #: The MIME type under which a stored notebook carries the response as data.
 MIME_TYPE = "application/vnd.loopbook.response+json"
@@ -30,17 +36,17 @@ class Response:
     """
 
     heading: str
-    verdicts: tuple
-    points: int
-    notes: tuple = ()
+    verdicts: tuple[Verdict, ...]
+    points: float
+    notes: tuple[str, ...] = ()
 
     @property
-    def is_right(self):
+    def is_right(self) -> bool:
         """Whether all of it is right."""
         return all(verdict.is_right for verdict in self.verdicts)
 
     @property
-    def earned(self):
+    def earned(self) -> float:
         """The points earned."""
         return self.points * sum(verdict.is_right for verdict in self.verdicts) / len(self.verdicts)
 
@@ -65,12 +71,12 @@ class Response:
         return f"{right} of {len(self.verdicts)} right" if len(self.verdicts) > 1 else "not right yet"
 
     @property
-    def data(self):
+    def data(self) -> dict[str, Any]:
         """The response as JSON data."""
         verdicts = [{"name": v.name, "status": v.status, "says": v.says} for v in self.verdicts]
         return {"exercise": self.heading, "right": self.is_right, "verdicts": verdicts}
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         lines = [f"{MARKS[self._status][0]} {self._heading} {self._sum}"]
         lines += [f"  {MARKS[v.status][0]} {v.name}: {v.says}" for v in self.verdicts]
         return "\n".join([*lines, *(f"  {note}" for note in self.notes)])

@@ -1,7 +1,14 @@
 """Units: what an answer means in the unit that is asked, and in which other unit it may have been meant."""
 
+from __future__ import annotations
+
 import functools
 import re
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from loopbook.types import Number
 
 #: Units that are taken for one another.
 FAMILIES = (
@@ -27,7 +34,7 @@ _CELSIUS = re.compile(r"\s*(°\s?C|º\s?C|℃|C|deg(rees?)?\s?C|[Cc]elsius)\s*")
 _LONGEST = 40
 
 
-def is_unit(text):
+def is_unit(text: str) -> bool:
     """Whether a text is a unit, as "m³/s", "%/K", "1/min" or "kJ/(kg K)"; nothing is one of them.
 
     >>> [is_unit(text) for text in ("kg/min", "°C", "%", "", "apples", "s^99")]
@@ -40,7 +47,7 @@ def is_unit(text):
     return True
 
 
-def convert(value, unit, to):
+def convert(value: Number, unit: str, to: str) -> float:
     """Return a value in another unit.
 
     A turn is not forgotten: 1 Hz is 2 pi rad/s. A ratio in dB is one of amplitudes. Where a temperature stands alone
@@ -66,7 +73,7 @@ def convert(value, unit, to):
         raise ValueError(f"{unit or 'a number without unit'} is no unit of the same quantity as {to or 1}") from None
 
 
-def neighbours(unit):
+def neighbours(unit: str) -> dict[str, Callable[[Number], float]]:
     """Return the units in which a value may have been meant: {unit: what 1 of the asked unit is in it, or a function}.
 
     One part of the unit is exchanged for another of its family; percent and fraction, °C and K, Hz and rad/s, too.
@@ -97,7 +104,7 @@ def _compatible(unit, other):
     return unit != other
 
 
-def spelled(unit):
+def spelled(unit: str) -> str:
     """Return °C for its other spellings, and other units as they are."""
     return "°C" if isinstance(unit, str) and _CELSIUS.fullmatch(unit) else unit
 

@@ -1,26 +1,29 @@
 """The exercises of the chapters, a module each, loaded when one of them is asked for."""
 
+from __future__ import annotations
+
 import functools
 import importlib
 import pkgutil
+from types import ModuleType
 
 from loopbook.exercises.authoring import Exercise
 
 
 @functools.cache
-def chapters():
+def chapters() -> dict[str, str]:
     """Return the names of the modules by their chapters, in order: {"1": "ch01_introduction", ...}."""
     names = sorted(module.name for module in pkgutil.iter_modules(__path__) if module.name.startswith("ch"))
     return {name[2:].split("_")[0].lstrip("0"): name for name in names}
 
 
 @functools.cache
-def exercises(chapter):
+def exercises(chapter: str) -> dict[str, Exercise]:
     """Return the exercises of a chapter in their order: {number: `Exercise`}. Raises KeyError for no chapter."""
     return collected(importlib.import_module(f"{__name__}.{chapters()[chapter]}"))
 
 
-def collected(module):
+def collected(module: ModuleType) -> dict[str, Exercise]:
     """Return the exercises that a module defines: {number: `Exercise`}. Raises ValueError where two have a number."""
     found = {}
     for one in vars(module).values():

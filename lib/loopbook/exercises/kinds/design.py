@@ -1,12 +1,19 @@
 """Designs: whatever meets the criteria is right."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from loopbook.exercises.kinds.kind import Kind
 from loopbook.exercises.kinds.numeric import in_unit
 from loopbook.exercises.limits import limited
 from loopbook.exercises.reading import Unreadable
+
+if TYPE_CHECKING:
+    from loopbook.types import Number
 
 SECONDS = 1.5
 #: A design at its limit is met by rounded numbers, too.
@@ -26,23 +33,23 @@ class Criterion:
     """
 
     what: str
-    measure: object
-    below: float | None = None
-    above: float | None = None
+    measure: Callable[[Any], Any]
+    below: Number | None = None
+    above: Number | None = None
     unit: str = ""
     otherwise: str = ""
 
     @property
-    def demand(self):
+    def demand(self) -> str:
         """The criterion in words."""
         limits = [f"at {word} {_written(limit, self.unit)}" for word, limit in self.limits()]
         return f"{self.what} is {' and '.join(limits)}" if limits else self.what
 
-    def limits(self):
+    def limits(self) -> list[tuple[str, Number]]:
         """The limits that there are, each with its word."""
         return [pair for pair in (("least", self.above), ("most", self.below)) if pair[1] is not None]
 
-    def complaint(self, answer):
+    def complaint(self, answer: Any) -> str:
         """Return a sentence on what an answer does not achieve; empty where it does."""
         value = self.measure(answer)
         if not self.limits():
@@ -74,47 +81,47 @@ class Design(Kind):
     (True, 'the offset is 0.5; asked is at most 0.4')
     """
 
-    def __init__(self, example, *criteria):
+    def __init__(self, example: Kind, *criteria: Criterion):
         if not criteria:
             raise ValueError("there are no criteria: expected at least one for a design")
         self.example, self.criteria = example, criteria
         self.unit, self.what, self.within, self.key = example.unit, example.what, example.within, example.key
 
-    def like(self, value):
+    def like(self, value: Any) -> Design:
         """A design by the same criteria."""
         return Design(self.example.like(value), *self.criteria)
 
     @property
-    def asked(self):
+    def asked(self) -> str:
         """The quantity with its criteria."""
         return f"{self.example.asked}, such that {'; '.join(one.demand for one in self.criteria)}"
 
     @property
-    def expected(self):
+    def expected(self) -> str:
         """As the quantity's kind."""
         return self.example.expected
 
     accuracy = ""
 
     @property
-    def asking(self):
+    def asking(self) -> str:
         """As of the quantity's kind: the criteria stay here."""
         return self.example.asking
 
-    def read(self, given):
+    def read(self, given: object) -> tuple[Any, str]:
         """Return the answer as the quantity's kind reads it."""
         return self.example.read(given)
 
-    def written(self, answer):
+    def written(self, answer: Any) -> str:
         """As the quantity's kind."""
         return self.example.written(answer)
 
     @property
-    def solution(self):
+    def solution(self) -> str:
         """One of the designs that meet the criteria."""
         return f"for example {self.example.solution}"
 
-    def complaints(self, answer):
+    def complaints(self, answer: Any) -> list[str]:
         """Return what an answer does not achieve, in sentences; a condition that fails stands alone."""
 
         def judge():
@@ -134,15 +141,15 @@ class Design(Kind):
         except TimeoutError:
             raise Unreadable("judging this design takes too long: expected one nearer to what is usual") from None
 
-    def agrees(self, answer):
+    def agrees(self, answer: Any) -> bool:
         """Whether the design meets all criteria."""
         return not self.complaints(answer)
 
-    def is_value(self, answer, wrong):
+    def is_value(self, answer: Any, wrong: Any) -> bool:
         """Whether an answer is the value of a mistake."""
         return self.example.is_value(answer, wrong)
 
-    def hint(self, answer):
+    def hint(self, answer: Any) -> str:
         """Say which criteria are not met, and how far it is; or in which other unit it would meet them."""
         for unit, meant in self.example.in_other_units(answer):
             if not self.complaints(meant):

@@ -1,6 +1,10 @@
 """Expressions, transfer functions, and functions of time."""
 
+from __future__ import annotations
+
 import random
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 import sympy
@@ -12,6 +16,9 @@ from loopbook.exercises.kinds.numeric import in_unit
 from loopbook.exercises.kinds.settings import Settings
 from loopbook.exercises.reading import Unreadable, letters_in, listed
 from loopbook.expressions import exact, s, t
+
+if TYPE_CHECKING:
+    from loopbook.types import Number
 
 
 class Expression(Kind):
@@ -28,7 +35,9 @@ class Expression(Kind):
     True
     """
 
-    def __init__(self, key, what="the expression", letters="", within=0.01, unit=""):
+    def __init__(
+        self, key: Number, what: str = "the expression", letters: str = "", within: float = 0.01, unit: str = ""
+    ):
         self.expr = exact(key)
         names, self._told = {symbol.name for symbol in self.expr.free_symbols}, letters
         self.letters = sorted(self.always.union(letters.split() or names))
@@ -36,13 +45,14 @@ class Expression(Kind):
             raise ValueError(f"the key has the letter {beyond[0]}: expected only {listed(self.letters)}")
         super().__init__(self.expr, unit, what, within)
 
-    always = frozenset()
+    expr: sympy.Expr | None
+    always: frozenset[str] = frozenset()
     #: Without a key, any letter may occur.
-    letters = None
+    letters: Sequence[str] | None = None
     _told = ""
 
     @classmethod
-    def without_key(cls, *parts, letters="", **named):
+    def without_key(cls, *parts: Any, letters: str = "", **named: Any) -> Self:
         """Return a kind that reads answers; in the letters that the author has told, or in any."""
         kind = super().without_key(*parts, **named)
         if letters:
@@ -50,24 +60,24 @@ class Expression(Kind):
         return kind
 
     @property
-    def asking(self):
+    def asking(self) -> str:
         """The call that makes a kind of this form, with the letters that the author has told."""
         call = super().asking[:-1]
         told = f"{'' if call.endswith('(') else ', '}letters={literal(self._told)}" if self._told else ""
         return f"{call}{told})"
 
-    def like(self, value):
+    def like(self, value: Any) -> Self:
         """The same quantity with another key."""
         other = super().like(value)
         other.expr = None if isinstance(value, Formula) else exact(value)
         return other
 
     @property
-    def expected(self):
+    def expected(self) -> str:
         """An expression in its letters."""
         return f"an expression in {', '.join(self.letters)}" if self.letters else "an expression"
 
-    def read(self, given):
+    def read(self, given: object) -> tuple[Formula, str]:
         """Return the `Formula`; without a key, also a remark on its letters."""
         given = answered(given)
         if isinstance(given, Formula):
@@ -80,19 +90,19 @@ class Expression(Kind):
         self._demand_values(formula)
         return formula, f"an expression in {listed(used)}" if used else ""
 
-    def written(self, answer):
+    def written(self, answer: Any) -> str:
         """The expression with its unit."""
         return with_unit(answer.text, self.unit)
 
     @property
-    def solution(self):
+    def solution(self) -> str:
         """The key with its unit; fractions of many digits are decimals."""
         if self.expr is None:
             return super().solution
         long = [number for number in self.expr.atoms(sympy.Rational) if number.q > 1000]
         return with_unit(str(self.expr.xreplace({number: sympy.Float(number, 8) for number in long})), self.unit)
 
-    def points(self):
+    def points(self) -> dict[str, np.ndarray]:
         """The values of the letters at which formulas are compared."""
         return formulas.points_for(self.letters)
 
@@ -101,11 +111,11 @@ class Expression(Kind):
         if not np.isfinite(formula(**points)).any():
             raise Unreadable(f"this has no finite value: expected {self.expected}")
 
-    def agrees(self, answer):
+    def agrees(self, answer: Any) -> bool:
         """Whether both have the same values."""
         return formulas.agree(self.key, answer, self.points(), self.within)
 
-    def mistakes(self):
+    def mistakes(self) -> Iterator[tuple[str, Any]]:
         """Wrong sign, the inverse."""
         yield "that is right but for its sign", -self.expr
         if self.expr != 0:
@@ -129,10 +139,12 @@ class TransferFunction(Expression):
 
     always = frozenset({"s"})
 
-    def __init__(self, key, what="the transfer function", letters="", within=0.01, unit=""):
+    def __init__(
+        self, key: Number, what: str = "the transfer function", letters: str = "", within: float = 0.01, unit: str = ""
+    ):
         super().__init__(key, what, letters, within, unit)
 
-    def mistakes(self):
+    def mistakes(self) -> Iterator[tuple[str, Any]]:
         """Those of an expression, a forgotten dead time, its sign, and an s too many or too few."""
         yield from super().mistakes()
         if self.expr.has(sympy.exp):
@@ -177,37 +189,39 @@ class TimeFunction(Expression):
 
     always = frozenset({"t"})
     letters = ("t",)
-    until = None
+    until: float | None = None
 
-    def __init__(self, key, until, unit="", what="the function of time", within=0.01):
+    def __init__(
+        self, key: Number, until: Number, unit: str = "", what: str = "the function of time", within: float = 0.01
+    ):
         self.until = float(until)
         super().__init__(key, what, "", within, unit)
 
     @property
-    def expected(self):
+    def expected(self) -> str:
         """An expression in t; where there is no key, there are no times at which a function could be called."""
         other = "" if self.until is None else ", or a function of an array of times"
         return f"an expression in t{other}" + (f", in {self.unit}" if self.unit else "")
 
-    def read(self, given):
+    def read(self, given: object) -> tuple[Any, str]:
         """Return the `Formula`, or of a function its values at the times of the grid."""
         is_function = callable(answered(given)) and not isinstance(given, sympy.Basic | Formula)
         if self.until is not None and is_function and not hasattr(given, "expr"):
             return self._of_function(given), ""
         return super().read(given)
 
-    def written(self, answer):
+    def written(self, answer: Any) -> str:
         """The expression with its unit, or that it is a function."""
         return "a function of an array of times" if isinstance(answer, np.ndarray) else super().written(answer)
 
     @property
-    def times(self):
+    def times(self) -> np.ndarray:
         """The grid, finer in the beginning and uneven: no simple number, at which a step might stand, is on it."""
         dice = random.Random(7)
         early = [10 ** dice.uniform(-4, -2) for _ in range(20)]
         return self.until * np.array(early + [(k + dice.random()) / 120 for k in range(120)])
 
-    def points(self):
+    def points(self) -> dict[str, np.ndarray]:
         """The times; without a key, any."""
         return super().points() if self.until is None else {"t": self.times}
 
@@ -230,13 +244,13 @@ class TimeFunction(Expression):
             pass
         return np.array([complex(given(float(time))) for time in self.times])
 
-    def mistakes(self):
+    def mistakes(self) -> Iterator[tuple[str, Any]]:
         """Wrong sign."""
         yield "that is right but for its sign", -self.expr
         yield from self._in_other_units()
         yield from _in_other_time(self.expr, t)
 
-    def agrees(self, answer):
+    def agrees(self, answer: Any) -> bool:
         """Whether the values, and their changes, differ by no more than a fraction of the largest one.
 
         Numbers of the key that are wrong by that fraction may explain a larger difference. The changes are those from

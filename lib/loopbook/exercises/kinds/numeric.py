@@ -1,7 +1,11 @@
 """Numbers, rows and tables of numbers, and poles in any order."""
 
+from __future__ import annotations
+
 import math
 import re
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import sympy
@@ -27,24 +31,24 @@ class Number(Kind):
     """
 
     @property
-    def expected(self):
+    def expected(self) -> str:
         """A number in its unit."""
         return f"a number, in {self.unit}" if self.unit else "a number"
 
-    def read(self, given):
+    def read(self, given: object) -> tuple[float, str]:
         """Return the number in the asked unit, as a float, and a remark where it came in another one."""
         value, remark = one_number(answered(given), self.unit, self.expected)
         return _real(value, self.expected), remark
 
-    def written(self, answer):
+    def written(self, answer: float) -> str:
         """The number with its unit."""
         return with_unit(in_digits(answer), self.unit)
 
-    def agrees(self, answer):
+    def agrees(self, answer: float) -> bool:
         """Whether the number is within the tolerance."""
         return near(answer, self.key, self.within)
 
-    def mistakes(self):
+    def mistakes(self) -> Iterator[tuple[str, float]]:
         """Wrong sign, another unit, the inverse."""
         yield "the size is right, the sign is not", -self.key
         for unit, converted in units.neighbours(self.unit).items():
@@ -52,19 +56,19 @@ class Number(Kind):
         if self.key:
             yield "that is the inverse: one divided by what is asked", 1 / self.key
 
-    def is_value(self, answer, wrong):
+    def is_value(self, answer: float, wrong: Any) -> bool:
         """Whether an answer is the value of a mistake, which a reader may have rounded."""
         wrong = self.like(wrong).key
         if wrong == 0:
             return abs(answer) <= self.within * abs(self.key)
         return near(answer, wrong, max(self.within, ROUNDED))
 
-    def in_other_units(self, answer):
+    def in_other_units(self, answer: float) -> Iterator[tuple[str, float]]:
         """What an answer would be if it had been given in another unit: pairs of the unit and the value."""
         for unit in units.neighbours(self.unit):
             yield unit, units.convert(answer, unit, to=self.unit)
 
-    def hint(self, answer):
+    def hint(self, answer: float) -> str:
         """Say that the number is nearly right."""
         if near(answer, self.key, NEARLY * self.within):
             return f"that is close, and asked is an accuracy of {self.accuracy}: keep more digits on the way"
@@ -80,13 +84,13 @@ class Numbers(Kind):
     """
 
     @property
-    def expected(self):
+    def expected(self) -> str:
         """A row or a table of numbers."""
         unit = f", in {self.unit}" if self.unit else ""
         table = getattr(getattr(self, "key", None), "ndim", 1) > 1
         return f"a list of numbers such as {'[[1, 2], [3, 4]]' if table else '[1, 2]'}{unit}"
 
-    def read(self, given):
+    def read(self, given: object) -> tuple[np.ndarray, str]:
         """Return an array of floats, and a remark where a number came in another unit."""
         rows = _rows(answered(given))
         if rows is None:
@@ -105,12 +109,12 @@ class Numbers(Kind):
             return np.array([[number(value) for value in row] for row in inner], float), max(remarks, default="")
         return np.array([number(value) for value in rows], float), max(remarks, default="")
 
-    def written(self, answer):
+    def written(self, answer: np.ndarray) -> str:
         """The list, or the list of rows, with its unit."""
         rows = [f"[{', '.join(map(in_digits, row))}]" for row in np.atleast_2d(answer)]
         return with_unit(rows[0] if answer.ndim == 1 else f"[{', '.join(rows)}]", self.unit)
 
-    def agrees(self, answer):
+    def agrees(self, answer: np.ndarray) -> bool:
         """Whether the shape is the same and each number within the tolerance; a column is a row."""
         answer, key = _flat(answer), _flat(self.key)
         return answer.shape == key.shape and bool(np.all(self._near(answer, key)))
@@ -118,7 +122,7 @@ class Numbers(Kind):
     def _near(self, answer, key):
         return np.abs(answer - key) <= _allowed(key, self.within, 1e-12)
 
-    def mistakes(self):
+    def mistakes(self) -> Iterator[tuple[str, np.ndarray]]:
         """Wrong sign, another unit, rows for columns, the order turned."""
         yield "the sizes are right, the signs are not", -self.key
         for unit, converted in units.neighbours(self.unit).items():
@@ -129,7 +133,7 @@ class Numbers(Kind):
         else:
             yield "the values are right, in the opposite order", self.key[::-1]
 
-    def hint(self, answer):
+    def hint(self, answer: np.ndarray) -> str:
         """Say how many are right. Raises Unreadable for another shape."""
         answer, key = _flat(answer), _flat(self.key)
         if answer.shape != key.shape:
@@ -146,15 +150,15 @@ class Poles(Kind):
     True
     """
 
-    def __init__(self, key, unit="rad/s", what="the poles", within=0.01):
+    def __init__(self, key: object, unit: str = "rad/s", what: str = "the poles", within: float = 0.01):
         super().__init__(key, unit, what, within)
 
     @property
-    def expected(self):
+    def expected(self) -> str:
         """A list of numbers."""
         return "a list of numbers such as [-1, -2 + 3j]"
 
-    def read(self, given):
+    def read(self, given: object) -> tuple[np.ndarray, str]:
         """Return an array of complex numbers; a dictionary says how often each one occurs."""
         if isinstance(answered(given), dict) and alone(given) is given:
             given = [pole for pole, times in given.items() for _ in range(self._times(times))]
@@ -173,11 +177,11 @@ class Poles(Kind):
             raise Unreadable(f"a pole cannot occur {times:g} times: expected {self.expected}")
         return int(times)
 
-    def written(self, answer):
+    def written(self, answer: np.ndarray) -> str:
         """The list with its unit."""
         return with_unit(f"[{', '.join(map(in_digits, answer))}]", self.unit)
 
-    def agrees(self, answer):
+    def agrees(self, answer: np.ndarray) -> bool:
         """Whether each pole has its counterpart."""
         return len(answer) == len(self.key) == self._matched(answer, self.within)
 
@@ -192,7 +196,7 @@ class Poles(Kind):
                     del left[k]
         return len(self.key) - len(left)
 
-    def mistakes(self):
+    def mistakes(self) -> Iterator[tuple[str, np.ndarray]]:
         """All signs turned, times instead of poles, another unit."""
         yield "the sizes are right, the signs are not", -self.key
         if np.all(self.key != 0):
@@ -203,7 +207,7 @@ class Poles(Kind):
         for unit, converted in units.neighbours(self.unit).items():
             yield f"those would be the values {in_unit(unit)}; asked: {self.asked}", self.key * converted(1)
 
-    def hint(self, answer):
+    def hint(self, answer: np.ndarray) -> str:
         """Say how many there should be, and how many are right."""
         if len(answer) != len(self.key):
             return f"{len(answer)} is not their number: count a multiple one several times, and both of a complex pair"
@@ -213,12 +217,12 @@ class Poles(Kind):
         return f"{right} of {len(self.key)} are right" if right else ""
 
 
-def near(answer, key, within):
+def near(answer: float, key: float, within: float) -> bool:
     """Whether a number is within a fraction of the key; of a key of 0, within as much absolutely."""
     return math.isfinite(answer) and abs(answer - key) <= within * (abs(key) or 1) + 1e-12 * abs(key)
 
 
-def in_digits(value):
+def in_digits(value: complex | sympy.Expr) -> str:
     """Return a number as text, to eight digits.
 
     >>> in_digits(8 / 3), in_digits(-1 - 2.5j), in_digits(2 + 0j)
@@ -230,7 +234,7 @@ def in_digits(value):
     return f"{value.real:.8g} {'-' if value.imag < 0 else '+'} {abs(value.imag):.8g}j"
 
 
-def one_number(given, unit, expected):
+def one_number(given: object, unit: str, expected: str) -> tuple[complex, str]:
     """Return a finite number, real or complex, in a unit, and a remark where it was given in another one."""
     given = alone(given)
     if isinstance(given, str):
@@ -307,7 +311,7 @@ def _real(value, expected):
     return value.real
 
 
-def in_unit(unit):
+def in_unit(unit: str) -> str:
     """A unit in a sentence."""
     return {"": "as a fraction", "%": "in percent"}.get(unit, f"in {unit}")
 

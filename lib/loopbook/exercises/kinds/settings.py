@@ -1,6 +1,10 @@
 """Settings of a PID controller."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Iterator
+from typing import Any
 
 import sympy
 
@@ -28,7 +32,15 @@ class Settings(Kind):
 
     FORM = ("gain", "time", "form")
 
-    def __init__(self, key, gain="", time="s", what="the settings", form="any", within=0.01):
+    def __init__(
+        self,
+        key: PID,
+        gain: str = "",
+        time: str = "s",
+        what: str = "the settings",
+        form: str = "any",
+        within: float = 0.01,
+    ):
         if form not in ("any", "parallel", "serial"):
             raise ValueError(f"form is {form!r}: expected 'any', 'parallel' or 'serial'")
         if not (units.is_unit(gain) and units.is_unit(time)):
@@ -37,18 +49,18 @@ class Settings(Kind):
         super().__init__(key, "", what, within)
 
     @property
-    def asked(self):
+    def asked(self) -> str:
         """The settings with their units and form."""
         gain = f"Kp in {self.gain}, " if self.gain else ""
         form = "" if self.form == "any" else f", in {self.form} form"
         return f"{self.what}: {gain}times in {self.time}{form}"
 
     @property
-    def expected(self):
+    def expected(self) -> str:
         """A controller."""
         return f"a controller such as PID(1, Ti=10), or its numbers as [1, 10], with times in {self.time}"
 
-    def read(self, given):
+    def read(self, given: object) -> tuple[PID, str]:
         """Return a `PID` of exact numbers; from a PID, a dictionary of its settings, or a list Kp, Ti, Td, Tf.
 
         A dictionary may say the form too, {"Kp": 2, "Ti": 8, "Td": 2, "form": "serial"}.
@@ -91,7 +103,7 @@ class Settings(Kind):
         except ValueError as error:
             raise Unreadable(str(error)) from None
 
-    def written(self, answer):
+    def written(self, answer: PID) -> str:
         """The settings with their units, and the form where there are two."""
         usual = {"Ti": sympy.oo, "Td": 0, "Tf": 0}
         parts = [
@@ -101,20 +113,20 @@ class Settings(Kind):
         ]
         return ", ".join(parts) + ("" if answer.Td == answer.Tf == 0 else f", {answer.form} form")
 
-    def agrees(self, answer):
+    def agrees(self, answer: PID) -> bool:
         """Whether all settings agree, in the asked form or, where both are right, after conversion."""
         if self.form != "any":
             return answer.form == self._asked_form(answer) and self._near(answer, self.key)
         return self._same_controller(answer)
 
-    def is_value(self, answer, wrong):
+    def is_value(self, answer: PID, wrong: Any) -> bool:
         """Whether an answer is the controller of a mistake; where one form is asked, in the form of the mistake."""
         other = self.like(wrong)
         if self.form == "any":
             return other._same_controller(answer)
         return answer.form == other.key.form and self._near(answer, other.key)
 
-    def in_other_units(self, answer):
+    def in_other_units(self, answer: PID) -> Iterator[tuple[str, PID]]:
         """The controller if its times had been given in another unit."""
         for unit in units.neighbours(self.time):
             factor = units.convert(1, unit, to=self.time)
@@ -138,7 +150,7 @@ class Settings(Kind):
     def _parts_near(self, answer, key):
         return {name: _near(getattr(answer, name), getattr(key, name), self.within) for name in NAMES}
 
-    def mistakes(self):
+    def mistakes(self) -> Iterator[tuple[str, PID]]:
         """Sign of the gain, the forms exchanged, other units, Kp/Ti for Ti, a proportional band for a gain."""
         key = self.key
         numbers = {name: getattr(key, name) for name in NAMES}
@@ -168,7 +180,7 @@ class Settings(Kind):
             wrong.append((f"the times are those in {unit}; asked are times in {self.time}", changed(**times)))
         yield from ((sentence, value) for sentence, value in wrong if value is not None)
 
-    def hint(self, answer):
+    def hint(self, answer: PID) -> str:
         """Say which of the settings are right."""
         key = self.key
         if answer.form != key.form:

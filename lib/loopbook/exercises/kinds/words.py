@@ -1,7 +1,10 @@
 """Words from a list, one or several."""
 
+from __future__ import annotations
+
 import re
 from collections import Counter
+from collections.abc import Iterable, Iterator
 
 import sympy
 from sympy.logic.boolalg import BooleanAtom
@@ -21,32 +24,32 @@ class Word(Kind):
     True
     """
 
-    def __init__(self, key, among, what="the word"):
+    def __init__(self, key: object, among: Iterable[str], what: str = "the word"):
         self.among = tuple(among)
         super().__init__(key, "", what, 0)
 
     @property
-    def asked(self):
+    def asked(self) -> str:
         """The quantity with its words."""
         return f"{self.what}: {_either(self.among)}"
 
     @property
-    def expected(self):
+    def expected(self) -> str:
         """The words."""
         return _either(self.among)
 
     accuracy = ""
     FORM = ("among",)
 
-    def read(self, given):
+    def read(self, given: object) -> tuple[str, str]:
         """Return the word as it stands in the list."""
         return _word(answered(given), self.among, self.expected), ""
 
-    def written(self, answer):
+    def written(self, answer: str) -> str:
         """The word."""
         return answer
 
-    def agrees(self, answer):
+    def agrees(self, answer: str) -> bool:
         """Whether it is the word."""
         return answer == self.key
 
@@ -59,25 +62,25 @@ class Words(Kind):
     True
     """
 
-    def __init__(self, key, among, what="the words", ordered=False):
+    def __init__(self, key: Iterable[object], among: Iterable[str], what: str = "the words", ordered: bool = False):
         self.among, self.ordered = tuple(among), ordered
         super().__init__(list(key), "", what, 0)
 
     @property
-    def asked(self):
+    def asked(self) -> str:
         """The quantity with its words."""
         order = "in their order, out of" if self.ordered else "those of"
         return f"{self.what}, {order} {', '.join(self.among)}"
 
     @property
-    def expected(self):
+    def expected(self) -> str:
         """A list of words."""
         return f"a list of words out of {', '.join(self.among)}"
 
     accuracy = ""
     FORM = ("among", "ordered")
 
-    def read(self, given):
+    def read(self, given: object) -> tuple[list[str], str]:
         """Return the words as they stand in the list."""
         if isinstance(answered(given), str):
             given = [part for part in self._parts(given.strip(" []{}")) if part.strip()]
@@ -90,7 +93,7 @@ class Words(Kind):
         words = [_word(word, self.among, self.expected) for word in row]
         return words if self.ordered else sorted(set(words), key=self.among.index), ""
 
-    def written(self, answer):
+    def written(self, answer: list[str]) -> str:
         """The words, or that there are none."""
         return ", ".join(answer) or "none of them"
 
@@ -102,16 +105,16 @@ class Words(Kind):
             return text
         return [text] if any(" " in word for word in self.among) else text.split()
 
-    def agrees(self, answer):
+    def agrees(self, answer: list[str]) -> bool:
         """Whether they are the words."""
         return answer == self.key
 
-    def mistakes(self):
+    def mistakes(self) -> Iterator[tuple[str, list[str]]]:
         """The opposite order."""
         if self.ordered and len(self.key) > 1:
             yield "the words are right, in the opposite order", self.key[::-1]
 
-    def hint(self, answer):
+    def hint(self, answer: list[str]) -> str:
         """Say how many are right."""
         if not answer:
             return "the list is empty"
