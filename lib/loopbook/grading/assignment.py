@@ -3,6 +3,8 @@
 Its docstring is the title and, below it, an introduction in Markdown; `SECRET` is what the variants are drawn from.
 """
 
+from __future__ import annotations
+
 import contextlib
 import hashlib
 import hmac
@@ -16,10 +18,14 @@ import traceback
 import types
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Self
 
 from loopbook.exercises.authoring import Exercise
 from loopbook.exercises.bank import collected
 from loopbook.grading import GradingError
+
+if TYPE_CHECKING:
+    from loopbook.exercises.question import Question
 
 SHORTEST_SECRET = 16
 _NUMBER = re.compile(r"\w[\w.-]{0,19}")
@@ -42,12 +48,12 @@ class Assignment:
     title: str
     introduction: str
     secret: str
-    exercises: dict
+    exercises: dict[str, Exercise]
     source: str
     path: Path | None = None
 
     @classmethod
-    def of(cls, source, name, path=None):
+    def of(cls, source: str, name: str, path: Path | None = None) -> Self:
         """Return the assignment that the text of a module is. The text is run: it is the instructor's.
 
         Arguments:
@@ -82,17 +88,17 @@ class Assignment:
         return cls(name, title.strip(), introduction.strip(), secret, exercises, source, path)
 
     @property
-    def points(self):
+    def points(self) -> float:
         """The points of all exercises together."""
         return sum(exercise.points for exercise in self.exercises.values())
 
     @property
-    def fingerprint(self):
+    def fingerprint(self) -> str:
         """A text that changes with the module and with loopbook's version; modules beside it are not part of it."""
         version = importlib.metadata.version("loopbook")
         return hashlib.sha256(f"{version}\n{self.source}".encode("utf-8", "surrogatepass")).hexdigest()
 
-    def question(self, student_id, number):
+    def question(self, student_id: str, number: str) -> Question:
         """Return a student's variant of an exercise, a `Question`, the same every time.
 
         Raises GradingError for an exercise that there is not, and where the author's functions fail.
@@ -106,7 +112,7 @@ class Assignment:
             raise GradingError(f"exercise {number} of {self.name} for student {student_id}: {problem}") from problem
 
 
-def load(path):
+def load(path: str | Path) -> Assignment:
     """Return the assignment in a file. Raises GradingError in a sentence, with the line where the module fails."""
     path = Path(path)
     if path.suffix != ".py":
@@ -171,7 +177,7 @@ def _check(exercise, name):
         raise GradingError(f"{name}.py: exercise {exercise.number} has {points!r} points: expected a positive number")
 
 
-def check_names(question):
+def check_names(question: Question) -> None:
     """Raise GradingError unless each asked quantity has a name that can be written in Python."""
     for name in question.key:
         if not name.isidentifier() or keyword.iskeyword(name):

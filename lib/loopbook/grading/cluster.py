@@ -1,12 +1,16 @@
 """A Dask cluster that is there already, as the place where submissions are graded."""
 
+from __future__ import annotations
+
 import contextlib
+from collections.abc import Iterator
+from concurrent.futures import Executor
 
 from loopbook.grading import GradingError
 
 
 @contextlib.contextmanager
-def connected(address):
+def connected(address: str) -> Iterator[tuple[Executor, int]]:
     """Yield an executor of the cluster's workers, and how many tasks they take at a time.
 
     Raises GradingError where distributed is not installed, nobody answers, or no worker is there.

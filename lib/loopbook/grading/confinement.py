@@ -4,9 +4,12 @@ The walls are the kernel's: namespaces (`man 7 user_namespaces`), resource limit
 calls by libseccomp. Each step that fails raises OSError, and nothing is run.
 """
 
+from __future__ import annotations
+
 import ctypes
 import errno
 import os
+from collections.abc import Iterable, Mapping
 
 NOBODY = 65534
 #: Who a submission is inside, and the only place where it can write.
@@ -62,7 +65,7 @@ def _demand(result, what):
         raise OSError(number, f"{what}: {os.strerror(number)}")
 
 
-def drop_root(needed):
+def drop_root(needed: Iterable[str]) -> None:
     """Make a process of root one of nobody, with the groups of nobody; another one stays what it is.
 
     Raises PermissionError where nobody cannot read one of the folders that are needed: root itself runs nothing.
@@ -81,7 +84,7 @@ def drop_root(needed):
     _demand(_libc().prctl(_PR_SET_DUMPABLE, 1, 0, 0, 0), "dumpable")
 
 
-def confine(disk):
+def confine(disk: int) -> None:
     """Move into new namespaces; the next child is the first process of its own.
 
     Arguments:
@@ -101,7 +104,7 @@ def confine(disk):
     _demand(libc.mount(b"devpts", b"/dev/pts", b"devpts", _NOSUID_NODEV & ~4, options), "terminals of its own")
 
 
-def address_space():
+def address_space() -> int | None:
     """Return the size of this process's address space (bytes); None where the system does not tell."""
     try:
         with open("/proc/self/statm") as file:
@@ -110,7 +113,7 @@ def address_space():
         return None
 
 
-def limit(limits, size, jailed):
+def limit(limits: Mapping[str, int], size: int | None, jailed: bool) -> None:
     """Limit this process, and what it will make.
 
     Arguments:
@@ -136,7 +139,7 @@ def limit(limits, size, jailed):
         resource.setrlimit(which, (bound, bound))
 
 
-def call_filter():
+def call_filter() -> tuple[ctypes.CDLL, int]:
     """Return a filter of system calls that is ready to be loaded, with its library.
 
     Raises OSError where libseccomp is not installed.
@@ -169,7 +172,7 @@ def call_filter():
     return library, made
 
 
-def surrender(call_filter):
+def surrender(call_filter: tuple[ctypes.CDLL, int]) -> None:
     """Give up every capability for good, and load the filter."""
     libc = _libc()
     for capability in range(64):

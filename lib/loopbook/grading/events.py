@@ -4,11 +4,14 @@ A line is a JSON object with one entry, as `shell.run` tells them. What is somet
 Nothing here decides on marks: an answer is a claim of the student's, and whose it is was known before.
 """
 
+from __future__ import annotations
+
 import json
 import math
 import signal
 from dataclasses import dataclass, field
 from time import monotonic
+from typing import Any, BinaryIO
 
 from loopbook.exercises.judging import harmless
 from loopbook.grading.plain import DEEPEST, MOST_DIGITS
@@ -32,9 +35,9 @@ class Outcome:
         odd: how many lines could not be read.
     """
 
-    answers: dict = field(default_factory=dict)
-    errors: tuple = ()
-    named: tuple = ()
+    answers: dict[str, dict[str, Any]] = field(default_factory=dict)
+    errors: tuple[tuple[int, str], ...] = ()
+    named: tuple[str, ...] = ()
     stopped: str = ""
     refused: str = ""
     odd: int = 0
@@ -51,14 +54,16 @@ class Story:
         too_long: a sentence where it told more than it may.
     """
 
-    def __init__(self, longest, most):
+    def __init__(self, longest: int, most: int):
         self.longest, self.most = longest, most
-        self.answers, self.errors, self.named = {}, [], {}
+        self.answers: dict[str, dict[str, Any]] = {}
+        self.errors: list[tuple[int, str]] = []
+        self.named: dict[str, bool] = {}
         self.refused, self.ended, self.odd, self.cell = "", False, 0, 0
         self.cell_began, self.too_long = monotonic(), ""
         self._left, self._taken, self._skipping = b"", 0, False
 
-    def read(self, events):
+    def read(self, events: BinaryIO) -> bool:
         """Take what has come; returns whether more may come."""
         chunk = events.read(65536)
         if not chunk:
@@ -118,7 +123,7 @@ class Story:
     def _end(self, value):
         self.ended = True
 
-    def outcome(self, why, exit_code):
+    def outcome(self, why: str, exit_code: int) -> Outcome:
         """Return the `Outcome`.
 
         Arguments:

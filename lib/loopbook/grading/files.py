@@ -1,12 +1,18 @@
 """Files that are whole at any moment: an interruption leaves the old one or the new one."""
 
+from __future__ import annotations
+
 import contextlib
 import os
+from typing import TYPE_CHECKING
 
 from loopbook.grading import GradingError
 
+if TYPE_CHECKING:
+    from pathlib import Path
 
-def write(path, text):
+
+def write(path: Path, text: str) -> bool:
     """Make a text the content of a file, in one step; the folders on the way are made.
 
     Returns whether that changed the file: the same bytes are not written again. Raises GradingError where the file

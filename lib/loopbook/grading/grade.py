@@ -4,10 +4,16 @@ Each submission is one task, which knows nothing of the others. It runs on a thr
 a Dask cluster; on both, the student's code is in a child, behind the jail's walls.
 """
 
+from __future__ import annotations
+
 import contextlib
 import threading
-from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from collections.abc import Callable, Collection, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, ThreadPoolExecutor, wait
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from loopbook.grading import GradingError, NoJail
 from loopbook.grading.events import Outcome
@@ -16,6 +22,10 @@ from loopbook.grading.judge import Judge
 from loopbook.grading.reports import write_all
 from loopbook.grading.results import Results, fingerprint, result
 from loopbook.grading.submissions import collect
+
+if TYPE_CHECKING:
+    from loopbook.grading.assignment import Assignment
+    from loopbook.grading.roster import Student
 
 #: Tasks that wait for each worker: none is idle, and the notebooks of a large class are not all in memory.
 WAITING = 2
@@ -40,11 +50,13 @@ class Task:
 class Desk:
     """What a worker keeps between two submissions of one assignment: a jail and a judge, started when first needed."""
 
-    def __init__(self, task):
+    jail: Jail | None
+
+    def __init__(self, task: Task):
         self.jailed, self.limits = task.jailed, task.limits
         self.judge, self.jail = Judge(task.name, task.source, task.path), None
 
-    def graded(self, task):
+    def graded(self, task: Task) -> dict[str, Any]:
         """Return the result of a task. Raises GradingError where it has none, through no fault of the student."""
         outcome = Outcome(refused=task.problem)
         if task.label and not task.problem:
@@ -53,7 +65,7 @@ class Desk:
         exercises = self.judge.judge(task.student, outcome.answers)
         return result(task.name, task.student, task.label, task.fingerprint, task.jailed, outcome, exercises)
 
-    def close(self):
+    def close(self) -> None:
         """End both processes."""
         self.judge.close()
         if self.jail:
@@ -64,7 +76,7 @@ _desks = threading.local()
 _all_desks = []
 
 
-def graded(task):
+def graded(task: Task) -> dict[str, Any] | str:
     """Grade a task on this thread's desk; returns the result, or a sentence where there is none."""
     wanted = (task.name, task.source, task.path, task.jailed, task.limits)
     try:
@@ -95,15 +107,25 @@ class Summary:
     graded: int
     kept: int
     missing: int
-    outdated: tuple
-    complaints: tuple
-    failures: tuple
+    outdated: tuple[str, ...]
+    complaints: tuple[str, ...]
+    failures: tuple[tuple[str, str], ...]
 
 
 def grade(
-    assignment, students, submissions, folder, *, place=None, only=(), regrade=False, jailed=True, reveal=False,
-    limits=USUAL, follow=lambda total, done: None,
-):  # fmt: skip
+    assignment: Assignment,
+    students: Sequence[Student],
+    submissions: Path,
+    folder: Path,
+    *,
+    place: AbstractContextManager[tuple[Executor, int]] | None = None,
+    only: Collection[str] = (),
+    regrade: bool = False,
+    jailed: bool = True,
+    reveal: bool = False,
+    limits: Limits = USUAL,
+    follow: Callable[[int, int], object] = lambda total, done: None,
+) -> Summary:
     """Grade the submissions of a class, and write the reports.
 
     Arguments:
@@ -210,7 +232,7 @@ def _done(running):
 
 
 @contextlib.contextmanager
-def here(workers):
+def here(workers: int) -> Iterator[tuple[Executor, int]]:
     """Yield an executor of threads on this machine, and how many tasks they take at a time; their desks end with it."""
     executor, others = ThreadPoolExecutor(workers), list(_all_desks)
     try:

@@ -5,6 +5,8 @@ library, all read-only. There is no network, no environment, no descriptor but o
 the machine.
 """
 
+from __future__ import annotations
+
 import json
 import os
 import shutil
@@ -18,11 +20,15 @@ from dataclasses import asdict, dataclass
 from multiprocessing.connection import wait
 from pathlib import Path
 from time import monotonic
+from typing import TYPE_CHECKING, Self
 
 from loopbook.grading import GradingError, NoJail
 from loopbook.grading.confinement import HOME
 from loopbook.grading.events import Story
 from loopbook.grading.warm import KILL
+
+if TYPE_CHECKING:
+    from loopbook.grading.events import Outcome
 
 MEGA = 2**20
 #: What libraries may take to be imported (s).
@@ -74,7 +80,7 @@ class Limits:
 USUAL = Limits()
 
 
-def visible():
+def visible() -> list[str]:
     """Return the folders and files that a submission can read: the system's, Python's, its packages', this library."""
     python = [sys.base_prefix, sys.prefix]
     if site.ENABLE_USER_SITE and site.getusersitepackages() in sys.path:
@@ -84,7 +90,7 @@ def visible():
     return [path for path in within if not any(Path(path) != Path(o) and Path(path).is_relative_to(o) for o in within)]
 
 
-def demand_hidden(*paths):
+def demand_hidden(*paths: str | Path) -> None:
     """Raise GradingError where one of the paths is visible inside."""
     for path in paths:
         for seen in visible():
@@ -92,7 +98,7 @@ def demand_hidden(*paths):
                 raise GradingError(f"{path} is in {seen}, which every submission can read: move it elsewhere")
 
 
-def command():
+def command() -> list[str]:
     """Return the command that starts the warm process in bubblewrap. Raises NoJail where there is none."""
     program = shutil.which("bwrap")
     if sys.platform != "linux" or program is None:
@@ -127,9 +133,9 @@ class Jail:
         NoJail: where no jail can be had, or the libraries cannot be imported in it.
     """
 
-    def __init__(self, jailed=True, limits=USUAL):
+    def __init__(self, jailed: bool = True, limits: Limits = USUAL):
         self.jailed, self.limits = jailed, limits
-        self.process = None
+        self.process: subprocess.Popen[bytes] | None = None
         self._start()
 
     def _start(self):
@@ -164,20 +170,20 @@ class Jail:
         except (OSError, ValueError):
             return {}
 
-    def close(self):
+    def close(self) -> None:
         """End the warm process, and whatever runs in its walls."""
         self._control.close()
         if self.process.poll() is None:
             self.process.kill()
         self.process.wait()
 
-    def __enter__(self):
+    def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *problem):
+    def __exit__(self, *problem: object) -> None:
         self.close()
 
-    def run(self, content):
+    def run(self, content: bytes) -> Outcome:
         """Run a notebook, given as the bytes of its file; returns the `Outcome`. Raises NoJail as the start.
 
         Where the warm process ends under it, which no submission in a jail can bring about, it runs once more.

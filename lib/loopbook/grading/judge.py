@@ -4,16 +4,23 @@
 takes the process down, is not judged, and the judge begins again behind it.
 """
 
+from __future__ import annotations
+
 import contextlib
 import json
 import os
 import subprocess
 import sys
+from collections.abc import Callable, Collection, Mapping
 from multiprocessing.connection import wait
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
 
 from loopbook.exercises.judging import SECONDS, UNJUDGED
 from loopbook.grading import GradingError
+
+if TYPE_CHECKING:
+    from loopbook.exercises.question import Question
 
 MEMORY = 2 * 2**30
 #: What comparing one answer may take (s). The comparison itself has a limit; this one is for what does not heed it.
@@ -29,9 +36,9 @@ class Judge:
         name, source, path: of the `Assignment`, which this process need not load; no path is an empty text.
     """
 
-    def __init__(self, name, source, path=""):
+    def __init__(self, name: str, source: str, path: str = ""):
         self.assignment = {"name": name, "source": source, "path": path}
-        self.process = None
+        self.process: subprocess.Popen[bytes] | None = None
 
     def _start(self):
         self.process = subprocess.Popen(
@@ -58,7 +65,7 @@ class Judge:
         line, self._left = self._left.split(b"\n", 1)
         return json.loads(line)
 
-    def judge(self, student, given):
+    def judge(self, student: str, given: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
         """Judge answers; returns the part "exercises" of a result.
 
         Arguments:
@@ -86,21 +93,26 @@ class Judge:
                 raise GradingError(f"the judge ends without a word for student {student}")
             hopeless.append(at)
 
-    def close(self):
+    def close(self) -> None:
         """End the process."""
         if self.process is not None:
             self.process.kill()
             self.process.communicate()
             self.process = None
 
-    def __enter__(self):
+    def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *problem):
+    def __exit__(self, *problem: object) -> None:
         self.close()
 
 
-def judged(question, given, hopeless=(), at=lambda name: None):
+def judged(
+    question: Question,
+    given: Mapping[str, Any],
+    hopeless: Collection[str] = (),
+    at: Callable[[str], object] = lambda name: None,
+) -> dict[str, Any]:
     """Return the result of one exercise, as JSON data.
 
     Arguments:
@@ -136,7 +148,7 @@ def judged(question, given, hopeless=(), at=lambda name: None):
     }
 
 
-def main():
+def main() -> None:
     """Read an assignment from standard input, and then answers; write what is judged to standard output."""
     import resource
 

@@ -8,8 +8,12 @@ Source of the schema and of the marks in the cells: jupyter/nbgrader, nbgrader/n
 preprocessors clearsolutions.py and clearhiddentests.py, version 0.9.6.
 """
 
+from __future__ import annotations
+
 import inspect
 import json
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 from nbformat import v4
 
@@ -20,11 +24,17 @@ from loopbook.expressions import parse
 from loopbook.grading.plain import plain, unreadable
 from loopbook.grading.release import answer_call, asked, bare, checked, set_up, wrapped
 
+if TYPE_CHECKING:
+    from nbformat import NotebookNode
+
+    from loopbook.exercises.kinds import Kind
+    from loopbook.grading.assignment import Assignment
+
 SCHEMA = 3
 _HOW_TO_ANSWER = "Assign your answers to the names that are listed, in the place of the comment, and run the cell."
 
 
-def source(assignment, student_id=None):
+def source(assignment: Assignment, student_id: str | None = None) -> NotebookNode:
     """Return the source notebook of an assignment, for `nbgrader generate_assignment`.
 
     An exercise is a locked statement, a cell with the solution between nbgrader's marks, and a locked cell whose
@@ -49,7 +59,7 @@ def source(assignment, student_id=None):
     return made
 
 
-def earned(taken, points, **key):
+def earned(taken: Mapping[str, Any], points: float, **key: Kind) -> float:
     """Return the points that answers earn, and print what became of each; the hidden tests end in this call.
 
     Arguments:
@@ -132,7 +142,7 @@ def _hidden_tests(number, calls, points):
     return "\n".join([*lines, wrapped(f"earned({', '.join(arguments)})"), "### END HIDDEN TESTS"])
 
 
-def spelled_out(kind):
+def spelled_out(kind: Kind) -> str:
     """Return the call that makes a kind with its key, as code; an empty text where there is none.
 
     >>> from loopbook.exercises.authoring import number

@@ -15,9 +15,16 @@ grading worksheet; an underscore in the name becomes a space, and of an anonymou
 What a student chooses, the file's own name, stands last in all of these and cannot stand for somebody else.
 """
 
+from __future__ import annotations
+
 import re
 import unicodedata
 from collections import defaultdict
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from loopbook.grading.roster import Student
 
 _CANVAS = re.compile(r"(?=_([0-9]+)_[0-9]+_)")
 _CANVAS_ANONYMOUS = re.compile(r"(?:LATE_)?anon_[0-9A-Za-z]+_[0-9]+_")
@@ -35,7 +42,7 @@ class Owners:
     (None, 'is named after no student of the roster')
     """
 
-    def __init__(self, students):
+    def __init__(self, students: Iterable[Student]):
         """Take the students of the roster."""
         self._by_id, self._by_canvas, self._by_moodle = defaultdict(list), defaultdict(list), defaultdict(list)
         self._by_name = defaultdict(list)
@@ -48,7 +55,7 @@ class Owners:
         for known in (self._by_canvas, self._by_moodle, self._by_name):
             known.pop("", None)  # what is not known of a student finds nobody
 
-    def of(self, name):
+    def of(self, name: str) -> tuple[Student | None, str]:
         """The student whose submission has this name at the top, and a reason: a student and "", or None and why."""
         students = [*self._by_id.get(name, ()), *self._by_id.get(stem(name), ())]
         reason = "is named after no student of the roster"
@@ -92,7 +99,7 @@ class Owners:
         return students, "has a name and a number of Moodle that the roster does not have"
 
 
-def stem(name):
+def stem(name: str) -> str:
     """The name of a notebook without its ending, any other name as it is.
 
     >>> stem("s1001.ipynb"), stem("s.1001")
@@ -101,7 +108,7 @@ def stem(name):
     return name[: -len(".ipynb")] if is_notebook(name) else name
 
 
-def is_notebook(name):
+def is_notebook(name: str) -> bool:
     """Whether a file of this name is a notebook.
 
     >>> is_notebook("heater.ipynb"), is_notebook("heater.ipynb.txt")
@@ -110,7 +117,7 @@ def is_notebook(name):
     return name.lower().endswith(".ipynb")
 
 
-def letters(name):
+def letters(name: str) -> str:
     """Letters and digits of a name, without accents, as small letters: what no system leaves out or changes.
 
     >>> letters("Müller-Lüdenscheidt, Anne")

@@ -1,14 +1,21 @@
 """Places where submissions lie: a folder, or a zip file that nobody unpacks; no link is followed."""
 
+from __future__ import annotations
+
 import functools
 import os
 import stat
 import struct
 import zipfile
 import zlib
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from loopbook.grading import GradingError
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 #: The most files and folders that are looked at: in a zip file, in a folder, and below each folder in it.
 MOST = 20_000
@@ -24,17 +31,17 @@ class Entry:
     """A file, or whatever else lies there; `parts` are its names from the top, `fault` is why it is none of ours."""
 
     label: str
-    parts: tuple
+    parts: tuple[str, ...]
     fault: str = ""
     size: int = 0
-    source: object = None
+    source: _File | _Member | None = None
 
 
 class _TooManyError(Exception):
     """More than MOST files and folders."""
 
 
-def entries(path, assignment_name, ids):
+def entries(path: Path, assignment_name: str, ids: Iterable[str]) -> list[Entry]:
     """All that lies in a folder or in a zip file, as entries; unusable ones have a fault.
 
     Names that begin with a dot and __MACOSX are passed over. Where all lies in one folder that is named like the folder
@@ -56,13 +63,13 @@ def _passed_over(parts):
     return any((part.startswith(".") and part != "..") or part == "__MACOSX" for part in parts)
 
 
-def shown(text):
+def shown(text: str) -> str:
     """Text that any terminal and any file takes: what cannot be shown is spelled out, a long text is shortened."""
     text = text if len(text) <= 300 else f"{text[:200]} ... {text[-80:]}"
     return "".join(sign if sign.isprintable() else sign.encode("unicode_escape").decode() for sign in text)
 
 
-def why(problem):
+def why(problem: BaseException) -> str:
     """The reason that a failure gives, without a path."""
     return shown(getattr(problem, "strerror", None) or str(problem) or type(problem).__name__)
 

@@ -4,6 +4,8 @@ A judge reads the data as it would read the answer itself: numbers are numbers, 
 that spells them, and what has no such form is a sentence that says so.
 """
 
+from __future__ import annotations
+
 import functools
 import inspect
 import itertools
@@ -11,6 +13,7 @@ import json
 import math
 import numbers
 from collections.abc import Iterator, Mapping, MappingView
+from typing import TypeAlias
 
 import numpy as np
 import sympy
@@ -27,7 +30,11 @@ LARGEST_DENOMINATOR = 10**6
 _UNREADABLE = "unreadable"
 
 
-def plain(answer):
+#: What JSON can hold.
+Plain: TypeAlias = "bool | int | float | str | list[Plain] | dict[str, Plain] | None"
+
+
+def plain(answer: object) -> Plain:
     """Return an answer as JSON data: None, truth values, numbers, texts, lists, and dictionaries with texts as keys.
 
     Numbers that JSON does not know are texts, as "(1+2j)", "1/3" or "nan". What has no plain form becomes
@@ -48,7 +55,7 @@ def plain(answer):
         return {_UNREADABLE: f"this fails when it is read, with {harmless(type(problem).__name__)}"}
 
 
-def unreadable(data):
+def unreadable(data: object) -> str:
     """Return the sentence of plain data that stands for what has no plain form; an empty one for all other data.
 
     >>> unreadable(plain(object())), unreadable(plain(2))

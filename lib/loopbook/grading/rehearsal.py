@@ -1,10 +1,12 @@
 """A first use of what notebooks use: what libraries do once only, they then have done before any submission."""
 
+from __future__ import annotations
+
 import contextlib
 import io
 
 
-def rehearse():
+def rehearse() -> None:
     """Import the libraries, and do with each of them something of what a student does."""
     import control
     import ipywidgets  # noqa: F401 - the import is what takes time

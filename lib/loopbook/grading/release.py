@@ -1,5 +1,7 @@
 """Releasing an assignment: a notebook a student, with the student's own numbers and nothing of the key."""
 
+from __future__ import annotations
+
 import hashlib
 import html
 import io
@@ -7,7 +9,9 @@ import itertools
 import json
 import re
 import tokenize
+from collections.abc import Callable, Collection, Iterable, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from nbformat import v4
 
@@ -15,6 +19,13 @@ from loopbook import notebooks
 from loopbook.exercises.kinds.kind import literal
 from loopbook.grading import GradingError, files
 from loopbook.grading.assignment import check_names
+
+if TYPE_CHECKING:
+    from nbformat import NotebookNode
+
+    from loopbook.exercises.question import Question
+    from loopbook.grading.assignment import Assignment
+    from loopbook.grading.roster import Student
 
 MOST_LINES, MOST_COLUMNS = 12, 88
 #: Formulas and code, in which braces have a meaning of their own.
@@ -28,7 +39,7 @@ _HOW_TO_ANSWER = (
 )
 
 
-def release(assignment, students, folder):
+def release(assignment: Assignment, students: Iterable[Student], folder: str | Path) -> list[Path]:
     """Write the notebooks of the students, ``folder/<student's id>/<assignment's name>.ipynb``; return their paths.
 
     The same call writes the same bytes. All notebooks are made before the first one is written.
@@ -50,7 +61,7 @@ def release(assignment, students, folder):
     return list(texts)
 
 
-def notebook(assignment, student):
+def notebook(assignment: Assignment, student: Student) -> NotebookNode:
     """Return the notebook of a student. Raises GradingError where a variant fails."""
     questions = {number: asked(assignment, student.id, number) for number in assignment.exercises}
     person = f"**{as_markdown(student.name or student.id)}** (`{student.id}`)"
@@ -70,13 +81,13 @@ def notebook(assignment, student):
     return made
 
 
-def asked(assignment, student_id, number):
+def asked(assignment: Assignment, student_id: str, number: str) -> Question:
     """Return a student's question, with all that will be needed of it. Raises GradingError where that fails."""
     label = f"exercise {number} of {assignment.name} for student {student_id}"
     return checked(lambda: assignment.question(student_id, number), label)
 
 
-def checked(make, label):
+def checked(make: Callable[[], Question], label: str) -> Question:
     """Return the question that a function makes, with all that will be needed of it.
 
     Raises GradingError, in a sentence that begins with the label, where a function of the author fails.
@@ -124,7 +135,7 @@ def _check_key(question):
                 raise GradingError(f"{says}: {problem}") from problem
 
 
-def bare(cells):
+def bare(cells: list[NotebookNode]) -> NotebookNode:
     """Return the notebook of some cells, in the form in which notebooks are stored, of which nothing was run."""
     made = notebooks.normalised(v4.new_notebook(cells=cells))
     for cell in made.cells:
@@ -133,7 +144,7 @@ def bare(cells):
     return made
 
 
-def set_up(title, student_id, questions):
+def set_up(title: str, student_id: str, questions: Mapping[str, Question]) -> list[str]:
     """Return the sources of the cells that make the sheet and say what it asks: forms, and nothing of the keys."""
     makers = {kind.asking.partition("(")[0] for question in questions.values() for kind in question.key.values()}
     sheet = wrapped(f"sheet = Sheet({literal(title)}, student={literal(student_id)})")
@@ -149,19 +160,19 @@ def set_up(title, student_id, questions):
     return sources
 
 
-def imported(module, names):
+def imported(module: str, names: Collection[str]) -> str:
     """Return the import of several names, as code."""
     names = ", ".join(sorted(names))
     line = f"from {module} import {names}"
     return line if len(line) <= MOST_COLUMNS else wrapped(f"from {module} import ({names})")
 
 
-def answer_call(number, values):
+def answer_call(number: str, values: Mapping[str, str]) -> str:
     """Return the call that gives answers, as code: {quantity: code of its value}."""
     return wrapped(f"sheet.answer({', '.join([literal(number), *(f'{n}={v}' for n, v in values.items())])})")
 
 
-def wrapped(code):
+def wrapped(code: str) -> str:
     """Return a line of code with a bracket as lines that are not too long, broken after commas, outer ones first.
 
     >>> print(wrapped(f"sheet.asks({', '.join(['1', *(f'angle_{k}=number()' for k in range(5))])})"))
@@ -208,7 +219,7 @@ def _pieces(start, places, end):
     return list(itertools.pairwise([start, *places, end]))
 
 
-def as_markdown(text):
+def as_markdown(text: str) -> str:
     r"""Return a text as Markdown in which it is nothing but that text: no markup, no link, no formula.
 
     >>> print(as_markdown("*Zoë* O'Brien-Lee <b> $x$"))

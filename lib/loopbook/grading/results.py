@@ -3,27 +3,46 @@
 Each is a file of its own, which is there whole or not at all. It carries a fingerprint of all that it depends on.
 """
 
+from __future__ import annotations
+
 import hashlib
 import json
 import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
 
 from loopbook.exercises.judging import harmless
 from loopbook.grading import GradingError
 from loopbook.grading.files import write
 
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from loopbook.grading.assignment import Assignment
+    from loopbook.grading.events import Outcome
+    from loopbook.grading.jail import Limits
+
 #: An address of memory, in an error's text, differs from run to run.
 ADDRESS = re.compile(r"\b0x[0-9a-fA-F]{6,}\b")
 
 
-def fingerprint(assignment, content, label, problem, jailed, limits):
+def fingerprint(assignment: Assignment, content: bytes, label: str, problem: str, jailed: bool, limits: Limits) -> str:
     """Return a text that differs where a result might: by the assignment, the submission, the jail, or its limits."""
     amounts = {name: float(amount) for name, amount in asdict(limits).items()}  # 60 s are 60.0 s
     parts = [assignment.fingerprint, hashlib.sha256(content).hexdigest(), label, problem, jailed, amounts]
     return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
 
 
-def result(assignment, student, label, mark, jailed, outcome, exercises):
+def result(
+    assignment: str,
+    student: str,
+    label: str,
+    mark: str,
+    jailed: bool,
+    outcome: Outcome,
+    exercises: Sequence[Mapping[str, Any]],
+) -> dict[str, Any]:
     """Return the result of a submission, as JSON data.
 
     Arguments:
@@ -51,7 +70,7 @@ def result(assignment, student, label, mark, jailed, outcome, exercises):
     }
 
 
-def looks(student, outcome, exercises):
+def looks(student: str, outcome: Outcome, exercises: Sequence[Mapping[str, Any]]) -> list[str]:
     """Return why an instructor should look at a submission, in sentences."""
     found = []
     others = [name for name in outcome.named if name != student]
@@ -75,13 +94,13 @@ def _same_each_time(says):
 class Results:
     """The results in a folder, a file a student."""
 
-    def __init__(self, folder):
+    def __init__(self, folder: Path):
         self.folder = folder
 
     def _path(self, student):
         return self.folder / f"{student}.json"
 
-    def of(self, student):
+    def of(self, student: str) -> dict[str, Any] | None:
         """Return the result of a student; None where there is none that is whole."""
         try:
             stored = json.loads(self._path(student).read_text(encoding="utf-8"))
@@ -91,7 +110,7 @@ class Results:
             raise GradingError(f"{self._path(student)} cannot be read ({problem}): remove it") from None
         return stored
 
-    def demand_of(self, assignment, students):
+    def demand_of(self, assignment: str, students: Iterable[str]) -> None:
         """Raise GradingError where a student's result is that of another assignment, which would be lost."""
         for student in students:
             other = (self.of(student) or {}).get("assignment", assignment)
@@ -101,6 +120,6 @@ class Results:
                     f"{assignment!r}"
                 )
 
-    def keep(self, found):
+    def keep(self, found: Mapping[str, Any]) -> None:
         """Store a result."""
         write(self._path(found["student"]), json.dumps(found, indent=1, sort_keys=True) + "\n")

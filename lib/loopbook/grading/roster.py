@@ -9,6 +9,8 @@ https://github.com/moodle/moodle). Moodle's grades and participants: First name,
 Username, Email address, Groups (grade/export/txt/grade_export_txt.php in the same).
 """
 
+from __future__ import annotations
+
 import csv
 import io
 import re
@@ -68,7 +70,7 @@ class _Format:
     ids: dict
 
 
-def read_roster(path):
+def read_roster(path: str | Path) -> tuple[Student, ...]:
     """The students of a roster, in its order: a file of comma-, semicolon- or tab-separated values in UTF-8.
 
     It is one of your own with the columns id and name, and any of email, login, section, sis_id, canvas_id, moodle_id,

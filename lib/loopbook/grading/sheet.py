@@ -4,16 +4,23 @@ It knows the form of an answer, its unit or its words, and neither a key nor a t
 cannot be read, and nothing about right or wrong. `loopbook.grading.release` writes the notebooks.
 """
 
+from __future__ import annotations
+
 import contextlib
 import difflib
 import html
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from loopbook.exercises import kinds
 from loopbook.exercises.judging import harmless
 from loopbook.exercises.kinds import NOT_ANSWERED
 from loopbook.exercises.reading import Unreadable, shortened
-from loopbook.grading.plain import plain, unreadable
+from loopbook.grading.plain import Plain, plain, unreadable
+
+if TYPE_CHECKING:
+    from loopbook.exercises.kinds import Kind
 
 __all__ = [
     "Sheet", "expression", "number", "numbers", "poles", "settings", "time_function", "transfer_function", "word",
@@ -26,7 +33,7 @@ time_function, settings = kinds.TimeFunction.without_key, kinds.Settings.without
 word, words = kinds.Word.without_key, kinds.Words.without_key
 
 #: Where answers go when the notebook is graded: a function of student, exercise and {name: plain data}.
-deliver = None
+deliver: Callable[[str, str, dict[str, Plain]], object] | None = None
 
 READ, UNREAD, OPEN = "·", "?", "…"
 _COLOUR = "#5a5a5a"
@@ -49,15 +56,15 @@ class Sheet:
       Taken down. This says nothing about right or wrong.
     """
 
-    def __init__(self, title="", student=""):
+    def __init__(self, title: str = "", student: str = ""):
         self.title, self.student = title, student
         self._forms, self._taken = {}, {}
 
-    def asks(self, exercise, /, **forms):
+    def asks(self, exercise: object, /, **forms: Kind) -> None:
         """Say what an exercise asks: a form for each quantity. Several calls add up."""
         self._forms.setdefault(str(exercise), {}).update(forms)
 
-    def answer(self, exercise=None, /, *alone, **given):
+    def answer(self, exercise: object = None, /, *alone: object, **given: object) -> Box:
         """Take answers down, by the names of the quantities, and show how each one is read.
 
         The last answer to a quantity counts; the dots, and None, are none. Whatever is given, this raises nothing.
@@ -72,7 +79,7 @@ class Sheet:
         rows = [self._row(name, quantity) for quantity in dict.fromkeys([*self._forms.get(name, ()), *given])]
         return Box(f"Exercise {name}" if name else "Which exercise?", tuple(rows), self._notes(name, alone, data))
 
-    def taken(self, exercise):
+    def taken(self, exercise: object) -> dict[str, Plain]:
         """Return what is taken down of an exercise: {quantity: plain data}."""
         return dict(self._taken.get(str(exercise), {}))
 
@@ -124,7 +131,7 @@ class Sheet:
         note = ", ".join(notes) or "An answer to all that is asked."
         return Box(f"{self.title} · {self.student}".strip(" ·") or "Answers", tuple(rows), (note,) if rows else ())
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return repr(self._overview())
 
     def _repr_html_(self):
@@ -136,15 +143,15 @@ class Box:
     """What a sheet shows: a heading, rows of a mark, a name and a sentence, and notes."""
 
     heading: str
-    rows: tuple
-    notes: tuple = ()
+    rows: tuple[tuple[str, str, str], ...]
+    notes: tuple[str, ...] = ()
 
     @property
     def _mark(self):
         marks = {mark for mark, _, _ in self.rows}
         return next((mark for mark in (UNREAD, OPEN) if mark in marks), READ)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         rows = [f"  {mark} {name}: {says}" for mark, name, says in self.rows]
         return "\n".join([f"{self._mark} {self.heading}", *rows, *(f"  {note}" for note in self.notes)])
 

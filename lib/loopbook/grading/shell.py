@@ -3,10 +3,14 @@
 What happens is told as events, one after another; nothing is kept for later, so that what came before a crash counts.
 """
 
+from __future__ import annotations
+
 import asyncio
 import json
 import random
 import signal
+from collections.abc import Callable
+from typing import Any
 
 import nbformat
 import numpy as np
@@ -60,7 +64,7 @@ class OutOfTime(BaseException):
     """A cell took longer than it may; no ``except Exception`` of the cell stops this one."""
 
 
-def shell():
+def shell() -> InteractiveShell:
     """Return a shell without history, in which `sheet` is a sheet that takes every answer."""
     settings = Config()
     settings.HistoryManager.enabled = False
@@ -70,7 +74,7 @@ def shell():
     return made
 
 
-def cells(content):
+def cells(content: bytes) -> tuple[list[str], dict[str, Any]]:
     """Return the sources of the code cells of a notebook, and its metadata.
 
     Arguments:
@@ -94,7 +98,7 @@ def cells(content):
     return sources, metadata
 
 
-def run(content, warm, tell, seconds):
+def run(content: bytes, warm: InteractiveShell, tell: Callable[[dict[str, Any]], object], seconds: float) -> None:
     """Run a notebook, cell after cell; after an error the next cell follows.
 
     Arguments:

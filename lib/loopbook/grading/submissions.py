@@ -3,10 +3,14 @@
 What is not clearly one student's one notebook is left alone and said.
 """
 
+from __future__ import annotations
+
 import functools
 from collections import defaultdict
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from loopbook.grading import GradingError
 from loopbook.grading.owners import Owners, is_notebook
@@ -38,9 +42,9 @@ class Submission:
     student: Student
     label: str
     problem: str = ""
-    _source: object = field(default=None, repr=False)
+    _source: Any = field(default=None, repr=False)
 
-    def read(self):
+    def read(self) -> bytes:
         """The content, at most LARGEST bytes, whatever was announced.
 
         Raises GradingError where there is a problem, and where it can no longer be read.
@@ -66,11 +70,11 @@ class Collection:
         complaints: sentences on what was left alone, each with the name of the file.
     """
 
-    submissions: tuple
-    complaints: tuple
+    submissions: tuple[Submission, ...]
+    complaints: tuple[str, ...]
 
 
-def collect(path, students, assignment_name):
+def collect(path: str | Path, students: Sequence[Student], assignment_name: str) -> Collection:
     """The submissions of the students in a folder or a zip file, and complaints about what is none.
 
     A student's notebook lies in the folder named by the id, or is named by it, or has the name that Canvas or Moodle

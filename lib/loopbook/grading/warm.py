@@ -8,6 +8,8 @@ right, and only then reads the notebook. When that process ends, everything it s
 Without a jail the same happens without the namespaces.
 """
 
+from __future__ import annotations
+
 import contextlib
 import gc
 import json
@@ -30,7 +32,7 @@ CROWD = 4
 KILL = b"kill\n"
 
 
-def main(jailed):
+def main(jailed: bool) -> None:
     """Answer the grader at the socket that is standard input, until it goes.
 
     A job is a line of JSON with the limits, and two descriptors: the notebook's and the events'. While a submission

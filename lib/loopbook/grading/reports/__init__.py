@@ -3,7 +3,11 @@
 Each output is a text made of results alone, so that it is the same whenever and wherever it is made.
 """
 
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from loopbook.grading import files
 from loopbook.grading.reports.feedback import feedback_html, feedback_markdown
@@ -11,12 +15,22 @@ from loopbook.grading.reports.grades import grades_csv
 from loopbook.grading.reports.gradescope import results_json
 from loopbook.grading.reports.summary import summary_html, summary_markdown
 
+if TYPE_CHECKING:
+    from loopbook.grading.roster import Student
+
 __all__ = [
     "feedback_html", "feedback_markdown", "grades_csv", "results_json", "summary_html", "summary_markdown", "write_all",
 ]  # fmt: skip
 
 
-def write_all(folder, title, students, results, complaints=(), reveal=False):
+def write_all(
+    folder: str | Path,
+    title: str,
+    students: Sequence[Student],
+    results: Iterable[Mapping[str, Any]],
+    complaints: Sequence[str] = (),
+    reveal: bool = False,
+) -> None:
     """Write all outputs into a folder; nothing is deleted, and what is the same already is not written again.
 
     The files are `grades.csv`, `summary.html` and `summary.md`, and in `feedback/<id>/` for each student

@@ -1,10 +1,17 @@
 """Equal answers of students whose numbers differ: a sign that one was copied, and no proof."""
 
+from __future__ import annotations
+
 import re
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from loopbook.exercises.judging import MISTAKE, RIGHT, WRONG
 from loopbook.grading.reports.wording import answer_in_words
+
+if TYPE_CHECKING:
+    from loopbook.grading.plain import Plain
 
 #: Equal wrong answers are a coincidence when they have fewer significant digits.
 DIGITS = 3
@@ -26,11 +33,11 @@ class EqualAnswers:
     number: str
     name: str
     answer: str
-    right: tuple
-    others: tuple
+    right: tuple[str, ...]
+    others: tuple[str, ...]
 
 
-def equal_answers(results):
+def equal_answers(results: Iterable[Mapping[str, Any]]) -> list[EqualAnswers]:
     """Return the equal answers that are worth a look, in the order of the exercises.
 
     They are those that are right for one student and not for another, whose key differs; and those that are wrong with
@@ -61,7 +68,7 @@ def equal_answers(results):
     return sorted(found, key=lambda one: (order[one.number, one.name], one.answer))
 
 
-def significant_digits(answer):
+def significant_digits(answer: Plain) -> int:
     """Return how many significant digits the longest number in an answer has; none where it is a word or a choice.
 
     >>> significant_digits(0.02340), significant_digits("2*exp(-3.25*s)"), significant_digits(["S2", "S4"])

@@ -1,5 +1,10 @@
 """A page for each student: the points, what became of each answer, and what failed in the notebook."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
 from loopbook.exercises.response import MARKS
 from loopbook.grading.reports import page
 from loopbook.grading.reports.wording import (
@@ -16,8 +21,11 @@ from loopbook.grading.reports.wording import (
     without_jail,
 )
 
+if TYPE_CHECKING:
+    from loopbook.grading.roster import Student
 
-def feedback_html(title, student, result, reveal=False):
+
+def feedback_html(title: str, student: Student, result: Mapping[str, Any], reveal: bool = False) -> str:
     """Return a student's page as HTML that needs nothing but itself.
 
     Arguments:
@@ -54,7 +62,7 @@ def _line(verdict, reveal):
     return line
 
 
-def feedback_markdown(title, student, result, reveal=False):
+def feedback_markdown(title: str, student: Student, result: Mapping[str, Any], reveal: bool = False) -> str:
     """Return a student's page as Markdown.
 
     Arguments:

@@ -1,13 +1,20 @@
 """What the results of a class say: sums, hard exercises, common mistakes, submissions that need a look."""
 
+from __future__ import annotations
+
 import re
 import statistics
 from collections import Counter
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from loopbook.exercises.judging import MISTAKE, RIGHT, UNJUDGED
 from loopbook.grading.reports.equal_answers import equal_answers
 from loopbook.grading.reports.wording import STATUSES, answer_in_words, explained, remarks, without_jail
+
+if TYPE_CHECKING:
+    from loopbook.grading.roster import Student
 
 #: So many of the named mistakes are told.
 MOST_MISTAKES = 15
@@ -23,10 +30,10 @@ class Asked:
 
     number: str
     name: str
-    counts: Counter
+    counts: Counter[str]
 
     @property
-    def fraction(self):
+    def fraction(self) -> float:
         """The fraction of right answers."""
         return self.counts[RIGHT] / self.counts.total()
 
@@ -39,10 +46,10 @@ class Exercise:
     title: str
     points: float
     mean: float
-    asked: tuple
+    asked: tuple[Asked, ...]
 
     @property
-    def fraction(self):
+    def fraction(self) -> float:
         """The mean as a fraction of the points."""
         return self.mean / self.points if self.points else 0.0
 
@@ -64,38 +71,42 @@ class Findings:
         unjudged: number of exercise, quantity, id, answer in words and sentence of each answer that was not judged.
     """
 
-    def __init__(self, students, results, complaints=()):
+    def __init__(
+        self, students: Sequence[Student], results: Collection[Mapping[str, Any]], complaints: Iterable[object] = ()
+    ):
         self.names = {student.id: student.name for student in students}
         self.complaints = tuple(map(str, complaints))
         self.no_jail = without_jail(results)
         self.handed_in = [result for result in results if result["status"] != "missing"]
-        self.missing = [result["student"] for result in results if result["status"] == "missing"]
+        self.missing: list[str] = [result["student"] for result in results if result["status"] == "missing"]
         graded = {result["student"] for result in results}
         self.ungraded = [student.id for student in students if student.id not in graded]
-        self.points = max((result["points"] for result in results), default=0)
-        self.sums = [result["earned"] for result in self.handed_in]
-        self.looks = [(result["student"], reasons) for result in self.handed_in if (reasons := _reasons(result))]
-        self.exercises = _exercises(self.handed_in)
-        self.mistakes = _mistakes(self.handed_in)
+        self.points: float = max((result["points"] for result in results), default=0)
+        self.sums: list[float] = [result["earned"] for result in self.handed_in]
+        self.looks: list[tuple[str, list[str]]] = [
+            (result["student"], reasons) for result in self.handed_in if (reasons := _reasons(result))
+        ]
+        self.exercises: list[Exercise] = _exercises(self.handed_in)
+        self.mistakes: list[tuple[str, str, str, int]] = _mistakes(self.handed_in)
         self.equal = equal_answers(self.handed_in)
-        self.unjudged = _unjudged(self.handed_in)
+        self.unjudged: list[tuple[str, str, str, str, str]] = _unjudged(self.handed_in)
 
-    def name(self, student):
+    def name(self, student: str) -> str:
         """The name of a student, by the id."""
         return self.names.get(student, student)
 
     @property
-    def mean(self):
+    def mean(self) -> float:
         """The mean of the sums."""
         return statistics.fmean(self.sums)
 
     @property
-    def median(self):
+    def median(self) -> float:
         """The median of the sums."""
         return statistics.median(self.sums)
 
     @property
-    def steps(self):
+    def steps(self) -> list[tuple[float, float, int]]:
         """The distribution: triples of lower end, upper end and how many sums are from the one up to below the other.
 
         The last step holds the full points too.

@@ -1,17 +1,24 @@
 """The table of grades, as learning management systems import it."""
 
+from __future__ import annotations
+
 import csv
 import io
 import re
+from collections.abc import Collection, Iterable, Mapping
+from typing import TYPE_CHECKING, Any
 
 from loopbook.grading.reports.wording import number, visible, without_jail
+
+if TYPE_CHECKING:
+    from loopbook.grading.roster import Student
 
 COLUMNS = ("Student", "ID", "SIS User ID", "SIS Login ID", "Section")
 #: What a spreadsheet takes for the beginning of a formula; a semicolon begins a cell where the comma is decimal.
 _FORMULA = re.compile(r"((?:^|;)\s*)(?=[=+\-@＝＋－＠])")
 
 
-def grades_csv(title, students, results):
+def grades_csv(title: str, students: Iterable[Student], results: Collection[Mapping[str, Any]]) -> str:
     """Return the grades as CSV: a row for each student with a result, in the roster's order.
 
     Canvas imports it as it is: the header begins with Student and ID, then the SIS columns and Section, and what

@@ -1,6 +1,10 @@
 """The result of a submission in the format of Gradescope's autograders."""
 
+from __future__ import annotations
+
 import json
+from collections.abc import Mapping
+from typing import Any
 
 from loopbook.exercises.judging import RIGHT
 from loopbook.exercises.response import MARKS
@@ -16,7 +20,7 @@ from loopbook.grading.reports.wording import (
 )
 
 
-def results_json(result, reveal=False):
+def results_json(result: Mapping[str, Any], reveal: bool = False) -> str:
     """Return a submission's `results.json`: the sum, and a test for each exercise.
 
     The format is https://gradescope-autograders.readthedocs.io/en/latest/specs/. All formats are said to be text,

@@ -1,7 +1,10 @@
 """The distribution of the sums: a drawing, and the same in words and in text."""
 
+from __future__ import annotations
+
 import io
 import re
+from collections.abc import Sequence
 
 from loopbook.figures import STYLE, WIDTH, Picture
 from loopbook.grading.reports.wording import counted, number
@@ -12,7 +15,7 @@ _INK = "#010203"
 _LONGEST_BAR = 40
 
 
-def histogram_svg(steps, label):
+def histogram_svg(steps: Sequence[tuple[float, float, int]], label: str) -> str:
     """Return the distribution as SVG for a page: text in the page's colour, on its ground; the same bytes every time.
 
     Arguments:
@@ -55,7 +58,7 @@ def histogram_svg(steps, label):
     return drawing.replace("<svg ", f'<svg role="img" aria-label="{label}" ', 1)
 
 
-def histogram_words(steps):
+def histogram_words(steps: Sequence[tuple[float, float, int]]) -> str:
     """Return the distribution in words.
 
     >>> histogram_words([(0, 1, 2), (1, 2, 0), (2, 3, 1)])
@@ -65,7 +68,7 @@ def histogram_words(steps):
     return "Distribution of the points: " + "; ".join(told)
 
 
-def histogram_text(steps):
+def histogram_text(steps: Sequence[tuple[float, float, int]]) -> list[str]:
     """Return the distribution as lines of text.
 
     >>> print("\\n".join(histogram_text([(0, 1, 2), (1, 2, 0), (2, 3, 1)])))

@@ -1,8 +1,11 @@
 """The frame of an HTML page that needs nothing but itself: style, texts of students, formulas as MathML."""
 
+from __future__ import annotations
+
 import functools
 import html
 import xml.etree.ElementTree as ElementTree
+from collections.abc import Iterable, Sequence
 
 from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
 from loopbook.exercises.response import MARKS
@@ -53,7 +56,7 @@ svg { max-width: 100%; height: auto; }
 """
 
 
-def page(title, body):
+def page(title: str, body: Iterable[str]) -> str:
     """Return a whole page; it asks the browser to run nothing and to fetch nothing.
 
     Arguments:
@@ -91,7 +94,7 @@ def _class(status):
     return status.replace(" ", "-")
 
 
-def marked(status, between=""):
+def marked(status: str, between: str = "") -> str:
     """Return a status as HTML: its sign, and its word, which says the same.
 
     Arguments:
@@ -102,13 +105,13 @@ def marked(status, between=""):
     return f'<span class="{kind}" aria-hidden="true">{sign}</span> {between}<span class="{kind}">{status}</span>'
 
 
-def listed(verdicts):
+def listed(verdicts: Iterable[tuple[str, str]]) -> list[str]:
     """Return a list of pairs of a status and its line of HTML."""
     items = (f'<li class="{_class(status)}">{line}</li>' for status, line in verdicts)
     return ['<ul class="verdicts">', *items, "</ul>"]
 
 
-def table(caption, head, rows, counts=()):
+def table(caption: str, head: Iterable[str], rows: Iterable[Sequence[str]], counts: Iterable[int] = ()) -> list[str]:
     """Return a table; its cells are HTML.
 
     Arguments:
@@ -127,7 +130,7 @@ def table(caption, head, rows, counts=()):
     return [*lines, "</tbody>", "</table>", "</div>"]
 
 
-def escaped(text):
+def escaped(text: str) -> str:
     """Return a text as HTML shows it as it is.
 
     >>> escaped("<b>&amp;")
@@ -136,12 +139,12 @@ def escaped(text):
     return html.escape(visible(text))
 
 
-def of_student(text):
+def of_student(text: str) -> str:
     """Return a text of a student, which may run from right to left, apart from what stands around it."""
     return f"<bdi>{escaped(text)}</bdi>"
 
 
-def sentence(text):
+def sentence(text: str) -> str:
     """Return a sentence as HTML, with its formulas between dollar signs as MathML.
 
     >>> sentence("here $c$ is < 4")

@@ -1,5 +1,10 @@
 """The summary for the instructor, as HTML and as Markdown."""
 
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
 from loopbook.grading.reports import page
 from loopbook.grading.reports.findings import Findings
 from loopbook.grading.reports.histogram import histogram_svg, histogram_text, histogram_words
@@ -15,6 +20,9 @@ from loopbook.grading.reports.wording import (
     sentence_in_markdown,
 )
 
+if TYPE_CHECKING:
+    from loopbook.grading.roster import Student
+
 _EQUAL = "The numbers of these students differ, so that their answers should. That is a reason to look, and no proof."
 _LEFT_ALONE = "Files that were left alone"
 _UNJUDGED = "Not judged"
@@ -24,7 +32,9 @@ MOST_UNJUDGED = 100
 _NONE = "Nothing."
 
 
-def summary_html(title, students, results, complaints=()):
+def summary_html(
+    title: str, students: Sequence[Student], results: Collection[Mapping[str, Any]], complaints: Iterable[object] = ()
+) -> str:
     """Return the summary as a page that needs nothing but itself.
 
     Arguments:
@@ -110,7 +120,9 @@ def summary_html(title, students, results, complaints=()):
     return page.page(f"{in_text(title)}: summary", body)
 
 
-def summary_markdown(title, students, results, complaints=()):
+def summary_markdown(
+    title: str, students: Sequence[Student], results: Collection[Mapping[str, Any]], complaints: Iterable[object] = ()
+) -> str:
     """Return the summary as Markdown, with the distribution in text.
 
     Arguments:

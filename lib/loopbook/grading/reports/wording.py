@@ -1,11 +1,18 @@
 """Words and numbers of the outputs, and texts of students made harmless for text and for Markdown."""
 
+from __future__ import annotations
+
 import re
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
+from typing import TYPE_CHECKING, Any
 
 from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
 from loopbook.exercises.reading import shortened
 from loopbook.figures import plain_words
+
+if TYPE_CHECKING:
+    from loopbook.grading.plain import Plain
 
 #: The line that every output carries where student code ran with nothing around it.
 NO_JAIL = "Graded without a jail: nothing kept the code of the notebook from the grader, and results can be forged."
@@ -23,7 +30,7 @@ _FRACTION = re.compile(r"-?[0-9]{1,300}/[1-9][0-9]{0,6}")
 _MARKDOWN = re.compile(r"[\\`*_{}\[\]<>#|~$&^@]|:(?=//)|(?<=www)\.|^[-+=]|(?<=^\d)[.)]|(?<=^\d\d)[.)]")
 
 
-def visible(text):
+def visible(text: str) -> str:
     r"""Return a text in one line, with all that cannot be seen or cannot be stored written as an escape.
 
     >>> visible("two\nlines \x1b[31m \u202e \ud800")
@@ -39,7 +46,7 @@ def _escaped(character):
     return character.encode("ascii", "backslashreplace").decode() if character > "\x7f" else f"\\x{ord(character):02x}"
 
 
-def number(value):
+def number(value: float) -> str:
     """Return a number with at most two decimals.
 
     >>> number(8 / 3), number(4), number(2.5)
@@ -48,7 +55,7 @@ def number(value):
     return f"{value:.2f}".rstrip("0").rstrip(".")
 
 
-def of_points(earned, points):
+def of_points(earned: float, points: float) -> str:
     """Return the points earned of those possible, in words.
 
     >>> of_points(8 / 3, 4), of_points(0, 1)
@@ -57,7 +64,7 @@ def of_points(earned, points):
     return f"{number(earned)} of {number(points)} point{'' if points == 1 else 's'}"
 
 
-def percent(fraction):
+def percent(fraction: float) -> str:
     """Return a fraction in percent.
 
     >>> percent(2 / 3)
@@ -66,7 +73,7 @@ def percent(fraction):
     return f"{100 * fraction:.0f} %"
 
 
-def counted(count, noun):
+def counted(count: int, noun: str) -> str:
     """Return a number of things.
 
     >>> counted(1, "submission"), counted(0, "student")
@@ -75,7 +82,7 @@ def counted(count, noun):
     return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
-def answer_in_words(answer):
+def answer_in_words(answer: Plain) -> str:
     """Return an answer that came as plain data, on one line and not long; empty for none and for an unreadable one.
 
     >>> answer_in_words([2.5, "3 min", {"-1": 2}]), answer_in_words({"unreadable": "a function"})
@@ -113,7 +120,7 @@ def _in_decimals(value):
     return f"{float(Fraction(value)):.8g}" if is_fraction else _in_words(value)
 
 
-def remarks(result):
+def remarks(result: Mapping[str, Any]) -> list[str]:
     """Return what became of a notebook besides its answers, as sentences of which students may have written parts."""
     if result["status"] == "missing":
         return [result["says"] or "no notebook was handed in"]
@@ -125,7 +132,7 @@ def remarks(result):
     return [shortened(visible(text), LONGEST_REMARK) for text in found[:MOST_REMARKS]] + more
 
 
-def explained(verdict):
+def explained(verdict: Mapping[str, Any]) -> str:
     """Return the sentence of a verdict without the word that its status says already.
 
     One on an answer that could not be judged may quote it: it holds no formulas.
@@ -139,7 +146,7 @@ def explained(verdict):
     return says.removeprefix("right").removeprefix(", ") if verdict["status"] == RIGHT else says
 
 
-def parts(sentence):
+def parts(sentence: str) -> list[str]:
     """Return the pieces of a sentence, by turns text and formula; a dollar sign without another one is text.
 
     >>> parts("here $c = 4$ is asked"), parts("5 $ each")
@@ -149,7 +156,7 @@ def parts(sentence):
     return pieces if len(pieces) % 2 else ["$".join(pieces)]
 
 
-def in_text(sentence):
+def in_text(sentence: str) -> str:
     r"""Return a sentence without signs of formulas.
 
     >>> in_text(r"here $T_c = \tau$ is asked")
@@ -158,7 +165,7 @@ def in_text(sentence):
     return "".join(plain_words(piece) if place % 2 else piece for place, piece in enumerate(parts(sentence)))
 
 
-def in_markdown(text):
+def in_markdown(text: str) -> str:
     r"""Return a text that Markdown shows as it is, whatever is in it.
 
     >>> print(in_markdown("<b>*x*</b> | $y$"))
@@ -171,7 +178,7 @@ def _with_backslashes(line):
     return _MARKDOWN.sub(r"\\\g<0>", line)
 
 
-def sentence_in_markdown(sentence):
+def sentence_in_markdown(sentence: str) -> str:
     r"""Return a sentence for Markdown in which formulas stay formulas.
 
     >>> print(sentence_in_markdown("here $K < 4$ is *asked*"))
@@ -183,7 +190,7 @@ def sentence_in_markdown(sentence):
     return "$".join(pieces)
 
 
-def code_in_markdown(text):
+def code_in_markdown(text: str) -> str:
     """Return a text as code for Markdown.
 
     >>> code_in_markdown("a`b"), code_in_markdown("`")
@@ -195,6 +202,6 @@ def code_in_markdown(text):
     return f"{fence}{room}{line}{room}{fence}"
 
 
-def without_jail(results):
+def without_jail(results: Iterable[Mapping[str, Any]]) -> bool:
     """Whether a submission of these ran without a jail."""
     return any(not result["jailed"] for result in results)
