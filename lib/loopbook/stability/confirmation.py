@@ -106,7 +106,7 @@ def _counts(loops, changes, near):
 
 def _exactly(loops, factor, delay):
     """The number of unstable poles with more digits."""
-    A, B = loops.exact
+    A, B = loops.exact[:2]
     factor, delay = Fraction(factor), Fraction(delay)
     above = {d + delay: tuple(factor.numerator * c for c in part) for d, part in A.parts.items()}
     below = {d: tuple(factor.denominator * c for c in part) for d, part in B.parts.items()}

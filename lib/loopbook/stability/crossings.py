@@ -49,6 +49,8 @@ class View:
 
     @functools.cached_property
     def C(self) -> Enclosure:
+        if self.precise:
+            return enclosed(self.loops.C, self.which, self.c, self.r, self.loops.exact[2])
         return self.B + self.A
 
     @functools.cached_property
@@ -146,16 +148,16 @@ class SizeOne(Question):
 class Real(Question):
     """Where L is real and negative, with a gain in between `lowest` and `highest`, each an array over the loops.
 
-    With `all_gains` it is not the question which is nearest to 1. Otherwise the crossings nearest to the gain 1 are wanted, on either side, and those
-    found draw the limits together.
+    The crossings nearest to the gain `pivot` are wanted, on either side, and those that are found draw the limits
+    together; with `all_gains` all are wanted, and they do not.
     """
 
     name = "whether poles cross the imaginary axis"
 
-    def __init__(self, loops: Loops, all_gains: bool = False):
+    def __init__(self, loops: Loops, all_gains: bool = False, pivot: float = 1.0):
         import numpy
 
-        self.loops, self.all_gains = loops, all_gains
+        self.loops, self.all_gains, self.pivot = loops, all_gains, pivot
         _ = loops.start  # which finds the loops that are always real
         every, one = numpy.arange(loops.count), numpy.ones(loops.count)
         A, B = (abs(x[0]) for x in loops.values(every, one))
@@ -172,7 +174,7 @@ class Real(Question):
         self.gains = numpy.concatenate([self.gains, gains])
         self.frequencies = numpy.concatenate([self.frequencies, frequencies])
         if not self.all_gains:
-            above, below = gains > 1, gains < 1
+            above, below = gains > self.pivot, gains < self.pivot
             numpy.minimum.at(self.highest, points[above], gains[above])
             numpy.maximum.at(self.lowest, points[below], gains[below])
 

@@ -13,33 +13,40 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     import numpy
 
-HIGHEST_MULTIPLE = 200  # of one dead time, up to which others count as multiples of it
+HIGHEST_MULTIPLE = 5000  # of one dead time, up to which others count as multiples of it
 CLOSE = 1e-9
 
 
 class Endless(NamedTuple):
-    """What the highest powers say: a lower bound of their size, and their roots in z = exp(-unit*s).
+    """What the highest powers say: a lower bound of their size in the right half-plane, and their phase on its boundary.
 
-    `least` is zero on the limit, negative where there are roots in the right half-plane. The roots are None where the sum
-    of sizes is below 1, so that the phase is that of the undelayed term within a quarter turn.
+    `least` is zero on the limit, negative where there are roots in the right half-plane. Without `angles` the phase is
+    that of the undelayed term, within a quarter turn; otherwise it is known at those of exp(-unit*s).
     """
 
     least: float
     unit: float = 0.0
-    roots: numpy.ndarray | None = None
+    angles: numpy.ndarray | None = None
+    phases: numpy.ndarray | None = None
+    values: numpy.ndarray | None = None
+    terms: tuple | None = None
 
     def phase(self, w: float) -> float:
         """The phase at s = j w, continued from the far right, where it is zero."""
         import numpy
 
-        if self.roots is None:
+        if self.angles is None:
             return 0.0
-        return float(numpy.angle(1 - numpy.exp(-1j * self.unit * w) / self.roots).sum())
+        angle = (self.unit * w) % (2 * math.pi)
+        near = int(abs(self.angles - angle).argmin())
+        later, powers = self.terms
+        value = 1 + later @ numpy.exp(-1j * powers * angle)
+        return float(self.phases[near] + numpy.angle(value / self.values[near]))
 
 
 def common_unit(delays: list[float]) -> tuple[float, list[int]] | None:
     """The dead time of which all are whole multiples, and these; None where they are none of up to some hundred."""
-    ratios = [Fraction(delay / delays[0]).limit_denominator(1000) for delay in delays]
+    ratios = [Fraction(delay / delays[0]).limit_denominator(HIGHEST_MULTIPLE) for delay in delays]
     if any(abs(r * delays[0] / delay - 1) > 1e-13 for r, delay in zip(ratios, delays, strict=True)):
         return None
     share = Fraction(math.gcd(*(r.numerator for r in ratios)), math.lcm(*(r.denominator for r in ratios)))
@@ -53,7 +60,6 @@ def at_endless_frequency(later: numpy.ndarray, delays: numpy.ndarray) -> Endless
     Raises ValueError where that is not decided: where the sizes add up to 1 or more and the dead times are no multiples
     of one.
     """
-    import numpy
 
     some = later != 0
     later, delays = later[some], delays[some]
@@ -70,25 +76,40 @@ def at_endless_frequency(later: numpy.ndarray, delays: numpy.ndarray) -> Endless
         return Endless(-1.0)  # one outweighs the undelayed one and all others
     unit = common_unit(delays.tolist())
     if unit:
-        base, powers = unit
-        polynomial = numpy.zeros(max(powers) + 1)
-        polynomial[0] = 1
-        numpy.add.at(polynomial, powers, later)
-        roots = numpy.roots(polynomial[::-1])  # in z = exp(-base*s), so that the right half-plane is the unit disc
-        if abs(roots).min() < 1 - CLOSE:
-            return Endless(-1.0)
-        if abs(roots).min() > 1 + CLOSE:
-            steep = float(numpy.abs(later) @ powers)
-            for count in (512, 8192, 2**17):
-                z = numpy.exp(-1j * math.pi * (numpy.arange(count) + 0.5) / count)
-                least = abs(numpy.polyval(polynomial[::-1], z)).min() - steep * math.pi / (2 * count)
-                if least > 0:
-                    return Endless(float(least), base, roots)
+        found = _on_circle(later, *unit)
+        if found is not None:
+            return found
     raise ValueError(
         f"whether there is an end of unstable roots is not decided: the highest power returns with the coefficients "
         f"{', '.join(f'{c:g}' for c in later)}, whose sizes add up to 1 or more, and with the dead times "
         f"{', '.join(f'{delay:g}' for delay in delays)}"
     )
+
+
+def _on_circle(later, unit, powers):
+    """The same for dead times that are multiples of one; None where it is too close to the limit."""
+    import numpy
+
+    powers = numpy.array(powers, dtype=float)
+    steep = float(abs(later) @ powers)
+    count = 16 * int(max(powers))
+    edges = numpy.linspace(0, 2 * math.pi, count + 1)
+    for _ in range(30):
+        values = 1 + later @ numpy.exp(-1j * numpy.multiply.outer(powers, edges))
+        middle, half = (edges[1:] + edges[:-1]) / 2, (edges[1:] - edges[:-1]) / 2
+        # from both ends, no value on an interval is farther than half of it allows
+        low = numpy.minimum(abs(values[1:]), abs(values[:-1])) - steep * half
+        if (open_ := low <= 0).any():
+            if half.min() < CLOSE or len(edges) > 2_000_000:
+                return None
+            edges = numpy.sort(numpy.concatenate([edges, middle[open_]]))
+            continue
+        turns = numpy.angle(values[1:] / values[:-1])
+        if round(turns.sum() / (2 * math.pi)):
+            return Endless(-1.0)  # exp(-unit*s) runs through the disc in which there are roots
+        phases = numpy.concatenate([[0.0], numpy.cumsum(turns)])
+        return Endless(float(low.min()), unit, edges, phases, values, (later, powers))
+    return None
 
 
 def prevailing(coefficients: numpy.ndarray, least: numpy.ndarray | None = None) -> numpy.ndarray:

@@ -1,7 +1,9 @@
-"""An open loop L = A/B at endless frequency, where the highest powers alone count: sums of numbers with dead times.
+"""An open loop L = A/B at endless frequency, where the highest powers alone count: a/b, sums of numbers with dead times.
 
-As the gain k grows, B + k A gets an endless row of unstable roots where its highest powers alone have one: at a limiting
-gain. Below that, they have a certain distance from zero, and beyond a certain frequency the lower powers are smaller.
+As the gain k grows, B + k A gets an endless row of unstable roots where b + k a has one: at a limiting gain. Below that,
+b + k a has a certain distance from zero, and beyond a certain frequency the lower powers are smaller. Close to the
+limiting gain that frequency would be too high. There L is expanded in v = 1/w and in the angle of the dead times, of
+which it is an analytic function, and Cauchy's estimates bound the rest.
 """
 
 from __future__ import annotations
@@ -10,10 +12,12 @@ import functools
 import itertools
 import math
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
+from loopbook.quasipolynomials.arrays import Quasipolynomials
+from loopbook.stability.crossings import Positive, Real, View, asked, steps
 from loopbook.stability.difference import common_unit, prevailing
-from loopbook.stability.loops import Loops, _positive_beyond, _square
+from loopbook.stability.loops import ENOUGH, Loops, positive_beyond, square
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,16 +30,19 @@ MOST_ANGLES = 200_000
 class Far:
     """The highest powers of a single loop: b + k a, sums of exp(-delay*s) with `delays` (the first one zero).
 
+    Arguments:
+        loops: a single loop, with more digits.
+        pivot: the gain next to which limiting gains are wanted, 1 for margins and 0 for an ultimate gain.
     Attributes:
-        highest, lowest: the gains next to 1 at which the highest powers get roots in the right half-plane or lose their
-            undelayed part; infinite and zero without one.
+        highest, lowest: the gains next to the pivot at which the highest powers get roots in the right half-plane or
+            lose their undelayed part; infinite and zero without one.
     """
 
-    def __init__(self, loops: Loops):
+    def __init__(self, loops: Loops, pivot: float = 1.0):
         import numpy
 
-        A, B = loops.exact
-        self.loops = loops
+        A, B = loops.exact[:2]
+        self.loops, self.pivot = loops, pivot
         rows: dict[Fraction, list[Fraction]] = {Fraction(0): [Fraction(0), Fraction(0)]}
         for k, exact in enumerate((A, B)):
             for delay, part in exact.parts.items():
@@ -44,75 +51,94 @@ class Far:
         self.rows = dict(sorted(rows.items()))
         self.a, self.b = (numpy.array([float(row[k]) for row in self.rows.values()]) for k in range(2))
         self.delays = numpy.array([float(delay) for delay in self.rows])
-        self.unit = common_unit(self.delays[1:].tolist()) if len(self.delays) > 1 else (1.0, [])
-        self.powers = numpy.array([0, *(self.unit[1] if self.unit else ())])
-        self.lowest, self.highest = self._limits()
+        self.vanishes = not self.a.any()
+        self.lowest, self.highest = 0.0, math.inf
+        if not self.vanishes:
+            gains = self.gains
+            self.lowest = max((k for k in gains if k < pivot), default=0.0)
+            self.highest = min((k for k in gains if k > pivot), default=math.inf)
+
+    @functools.cached_property
+    def unit(self) -> tuple[float, list[int]] | None:
+        """The dead time of which all are multiples, and these; None where they are none of one."""
+        return common_unit(self.delays[1:].tolist()) if len(self.delays) > 1 else (1.0, [])
+
+    @functools.cached_property
+    def powers(self) -> numpy.ndarray:
+        import numpy
+
+        return numpy.array([0, *(self.unit[1] if self.unit else ())])
 
     @property
-    def vanishes(self) -> bool:
-        """Whether L vanishes at endless frequency."""
-        return not self.a.any()
+    def is_one_delayed(self) -> bool:
+        """Whether L is a/b*exp(-delay*s) there, so that its size does not depend on the frequency."""
+        return len(self.a) == 1 or (len(self.a) == 2 and not self.a[0] and not self.b[1])
 
-    def _limits(self):
-        """The limiting gains next to 1."""
-        below, above = ([k for k in self.gains if (k > 1) == high] for high in (False, True))
-        return max(below, default=0.0), min(above, default=math.inf)
+    # ---- limiting gains
 
     @functools.cached_property
     def gains(self) -> list[float]:
-        """All positive gains at which the highest powers may get roots in the right half-plane, or lose them."""
-        return sorted(float(gain) for gain in self._gains() if gain > 0)
-
-    def _gains(self):
-
-        rows = list(self.rows.values())
-        (a0, b0), later = rows[0], rows[1:]
+        """Positive gains at which the highest powers get roots in the right half-plane, or lose their undelayed part."""
+        (a0, b0), *later = self.rows.values()
         gains = [] if not a0 else [-b0 / a0]
-        if self.vanishes:
-            return gains
         if len(later) == 1:
             ((a1, b1),) = later
             for sign in (1, -1):
                 if slope := a1 - sign * a0:
                     gains.append((sign * b0 - b1) / slope)
         elif later and self.unit:
-            gains += [gain for gain, _ in self._on_circle]
+            gains += [gain for gain, _ in self.on_circle]
         elif later:
-            if _related(self.delays[1:]):
-                raise ValueError("whether the loop has an end of unstable poles is not decided: its highest powers have "
-                                 "dead times of which one is the sum or difference of others")  # fmt: skip
-            # a sum of sizes is the largest of all sums with signs
-            for signs in itertools.product((-1, 1), repeat=len(later)):
-                rise = a0 + sum(sign * a for sign, (a, _) in zip(signs, later, strict=True))
-                if rise:
-                    gain = -(b0 + sum(sign * b for sign, (_, b) in zip(signs, later, strict=True))) / rise
-                    least = abs(b0 + gain * a0) - sum(abs(b + gain * a) for a, b in later)
-                    if least == 0:
-                        gains.append(gain)
-        return gains
+            gains += self._of_independent(a0, b0, later)
+        return sorted(float(gain) for gain in gains if gain > 0)
+
+    def _of_independent(self, a0, b0, later):
+        if _related(self.delays[1:]):
+            raise ValueError(
+                "whether there is an end of unstable poles is not decided: the highest powers have dead times of which "
+                "one is the sum or difference of others"
+            )
+        # a sum of sizes is the largest of all sums with signs
+        for signs in itertools.product((-1, 1), repeat=len(later)):
+            rise = a0 + sum(sign * a for sign, (a, _) in zip(signs, later, strict=True))
+            if rise:
+                gain = -(b0 + sum(sign * b for sign, (_, b) in zip(signs, later, strict=True))) / rise
+                if abs(b0 + gain * a0) == sum(abs(b + gain * a) for a, b in later):
+                    yield gain
 
     @functools.cached_property
-    def _on_circle(self) -> list[tuple[float, float]]:
-        """The gains for which b + k a has a root on the unit circle of z = exp(-unit*s), and its angle."""
+    def on_circle(self) -> list[tuple[float, float]]:
+        """The gains for which b + k a vanishes at an angle of exp(-unit*s), and these angles, from 0 to pi."""
         import numpy
 
-        size = max(self.powers)
-        p, q = numpy.zeros(size + 1), numpy.zeros(size + 1)
-        p[self.powers], q[self.powers] = self.a, self.b
-        # Im a(z) b(1/z) = 0 on the circle, times a power of z
-        both = numpy.convolve(p, q[::-1])
-        odd = both - both[::-1]
-        roots = numpy.roots(odd[::-1]) if odd.any() else numpy.zeros(0)
-        angles = numpy.concatenate([[0, math.pi], numpy.angle(roots[abs(abs(roots) - 1) < 1e-5])])
-        z = numpy.exp(1j * angles)
-        above, below = numpy.polyval(p[::-1], z), numpy.polyval(q[::-1], z)
-        with numpy.errstate(divide="ignore", invalid="ignore"):
-            gains = -(below / above)
-        return [
-            (float(k.real), -float(angle))
-            for k, angle in zip(gains, angles, strict=True)
-            if numpy.isfinite(k) and abs(k.imag) < 1e-6 * abs(k)
-        ]
+        real = Real(self._highest_powers, pivot=self.pivot)
+        self._ask(real)
+        turns = numpy.exp(-1j * numpy.multiply.outer(self.powers, [0.0, math.pi]))
+        found = [*zip(real.gains.tolist(), real.frequencies.tolist(), strict=True)]
+        for angle, above, below in zip((0.0, math.pi), (self.a @ turns).real, (self.b @ turns).real, strict=True):
+            if abs(above) > 1e-15 * abs(self.a).sum() and -below / above > 0:
+                found.append((float(-below / above), angle))
+        return found
+
+    @functools.cached_property
+    def _highest_powers(self) -> Loops:
+        """The highest powers as loops of their own, time in the unit of the dead times."""
+        multiples = self.powers[:, None].astype(float)
+        return Loops(*(Quasipolynomials(row[:, None, None], multiples) for row in (self.a, self.b)))
+
+    def _ask(self, question):
+        import numpy
+
+        loops, one = self._highest_powers, numpy.zeros(1, dtype=int)
+        start = numpy.full(1, 0.1)
+        while True:
+            view = View(loops, one, -start, start)
+            if not question.judge(view)[0].any():
+                break
+            start = start / 2
+            if start[0] < 1e-12:
+                raise ValueError(f"{question.name} is not decided at endless frequency")
+        asked(loops, [question], *steps(start, numpy.full(1, math.pi + 1e-3)))
 
     # ---- how far the highest powers are from what is asked
 
@@ -134,9 +160,8 @@ class Far:
             if not len(middle):
                 return least / 2 if least < math.inf else 0.0
             values = size(numpy.exp(-1j * numpy.multiply.outer(self.powers, middle)))
-            low = values - steep * half
             least = min(least, float(values.min()))
-            open_ = low < least / 2
+            open_ = values - steep * half < least / 2
             if least <= 0 or open_.sum() > MOST_ANGLES:
                 return 0.0
             if not open_.any():
@@ -158,79 +183,84 @@ class Far:
 
         return self._least(size, max(abs(b + k * a) @ self.powers for k in (low, high)), without)
 
-    def no_crossing_beyond(self, low: float, high: float) -> float:
-        """A frequency beyond which L is not -1/k for any k from low to high; nan where none is known."""
-        import numpy
-
-        loops = self.loops
-        simple = float(loops.beyond(numpy.array([high]))[0])
-        if self.vanishes and simple == simple:
-            return simple
-        limiting = any(abs(gain / high - 1) < 1e-12 for gain in self.gains)
-        if limiting and not math.isnan(limit := float(loops.beyond_limit()[0])):
-            simple = float(numpy.fmin(simple, limit))
-        lower = self._lower(1.0, high)
-        if limiting and not lower.any():
-            return 0.0
-        end = self._end(lower, self._distance(low, high))
-        if math.isnan(end) and limiting and self.unit and len(self.a) > 1:
-            end = self._beyond_circle(low, high)
-        return float(numpy.fmin(simple, end))
-
-    # ---- close to a limiting gain
-
-    def _beyond_circle(self, low: float, high: float) -> float:
-        """A frequency beyond which L is not -1/k for any k from `low` to the limiting gain `high`; nan where none is known.
-
-        With v = 1/w, the gain k = -B/A is an analytic function of v and of the angle w*unit. Where it is real, near an
-        angle at which it is the limiting gain for v = 0, its expansion tells whether it is larger for small v.
-        """
-
-        angles = [angle for gain, angle in self._on_circle if abs(gain / high - 1) < 1e-9]
-        series = self._series()
-        if series is None or not angles:
-            return math.nan
-        apart = 1 / (4 * max(self.powers))
-        for halvings in range(12):
-            near = apart / 2**halvings
-            largest = [_larger_than_limit(series, self.powers, angle, near) for angle in angles]
-            if min(largest) > 0:
-                distance = self._distance(low, high, [(angle, near) for angle in angles])
-                end = self._end(self._lower(1.0, high), distance)
-                if not math.isnan(end):
-                    return max(end, 1 / min(largest))
-        return math.nan
-
-    def _series(self):
-        """Coefficients of A and B by powers of v = 1/w and multiples of the unit; None where others have dead times."""
-        import numpy
-
-        unit, order = self.unit[0], self.loops.B.order
-        both = []
-        scaled = unit * float(self.loops.unit[0])
-        for sums in (self.loops.A, self.loops.B):
-            rows: dict[int, numpy.ndarray] = {}
-            for part, delay in zip(sums.coefficients[..., 0], sums.delays[:, 0], strict=True):
-                multiple = round(delay / scaled)
-                if abs(multiple * scaled - delay) > 1e-13 * delay:
-                    return None
-                rows[multiple] = rows.get(multiple, 0) + part[::-1] * (-1j) ** numpy.arange(order + 1)
-            both.append(rows)
-        return both
-
     def _lower(self, of_B, of_A):
         A, B = (abs(x.coefficients[:, :, 0]).sum(axis=0)[:-1] for x in (self.loops.A, self.loops.B))
         return of_B * B + of_A * A
 
     def _end(self, lower, reserve):
+        """A frequency beyond which the lower powers are smaller than the highest one with that factor."""
         import numpy
 
         if reserve <= 0:
             return math.nan
-        if not len(lower):
+        if not lower.any():
             return 0.0
-        sizes = numpy.concatenate([lower, [reserve]])
-        return float(prevailing(sizes[None, :, None])[0])
+        return float(prevailing(numpy.concatenate([lower, [reserve]])[None, :, None])[0])
+
+    # ---- gains
+
+    def no_crossing_beyond(self, low: float, high: float) -> float:
+        """A frequency beyond which L is not -1/k for any k from low to high; nan where none is known.
+
+        A limiting gain itself is no such k.
+        """
+        import numpy
+
+        simple = float(self.loops.beyond(numpy.array([high]))[0])
+        if self.vanishes and not math.isnan(simple):
+            return simple
+        limiting = abs(high / self.highest - 1) < 1e-12 if self.highest < math.inf else False
+        if limiting and not math.isnan(limit := float(self.loops.beyond_limit()[0])):
+            simple = float(numpy.fmin(simple, limit))
+        lower = self._lower(1.0, high)
+        if limiting and not lower.any():
+            return 0.0
+        end = self._end(lower, self._distance(low, high))
+        # the next power may make it better by far
+        if not min(end if end == end else math.inf, simple if simple == simple else math.inf) < 30:
+            end = float(numpy.fmin(end, self._beyond_circle(low, high)))
+        return float(numpy.fmin(simple, end))
+
+    def _beyond_circle(self, low: float, high: float) -> float:
+        """The same, by expansions about the angles at which the highest powers alone have such a gain."""
+        import numpy
+
+        if not self.unit or len(self.a) == 1 or self._series is None:
+            return math.nan
+        A, B = self._series
+        best = math.nan
+        angles = [(k, angle) for k, angle in self.on_circle if low / 2 < k < 2 * high]
+        for halvings in range(0, 16, 2):
+            near = 0.25 / max(self.powers) / 2**halvings
+            largest = []
+            for _, angle in angles:
+                gains = Expansion.of(B, A, angle, 4 * near, -1.0)
+                largest.append(_no_gain_between(gains, low, high * (1 - ENOUGH), near, angle) if gains else 0.0)
+            if min(largest, default=1.0) > 0:
+                distance = self._distance(low, high, [(angle, near) for _, angle in angles])
+                end = self._end(self._lower(1.0, high), distance)
+                if not math.isnan(end):
+                    best = numpy.fmin(best, max(end, 1 / min(largest, default=math.inf)))
+        return float(best)
+
+    @functools.cached_property
+    def _series(self):
+        """Coefficients of A and B by multiples of the unit and powers of v; None with dead times that are none."""
+        import numpy
+
+        scaled, order = self.unit[0] * float(self.loops.unit[0]), self.loops.B.order
+        both = []
+        for sums in (self.loops.A, self.loops.B):
+            rows: dict[int, numpy.ndarray] = {}
+            for part, delay in zip(sums.coefficients[..., 0], sums.delays[:, 0], strict=True):
+                multiple = round(delay / scaled)
+                if abs(multiple * scaled - delay) > 1e-12 * delay:
+                    return None
+                rows[multiple] = rows.get(multiple, 0) + part[::-1] * (-1j) ** numpy.arange(order + 1)
+            both.append(rows)
+        return both
+
+    # ---- the size of L
 
     @functools.cached_property
     def size(self) -> int:
@@ -238,9 +268,7 @@ class Far:
 
         Where it is 1, the next power decides.
         """
-        if self.vanishes:
-            return -1
-        if not math.isnan(self._size_end(1)):
+        if self.vanishes or not math.isnan(self._size_end(1)):
             return -1
         return 1 if not math.isnan(self._size_end(-1)) else 0
 
@@ -251,20 +279,18 @@ class Far:
         if sign > 0 and (end := float(self.loops.beyond(numpy.ones(1))[0])) == end:
             return end
         a, b = self.a, self.b
-        if len(a) == 1 or not self.unit:
-            reserve = sign * (abs(b[0]) - abs(a[0])) - abs(a[1:]).sum() - abs(b[1:]).sum()
-            if len(a) == 2 and not a[0] and not b[1]:
-                reserve = sign * (abs(b[0]) - abs(a[1]))
-        else:
+        if self.is_one_delayed:
+            reserve = sign * (abs(b[0]) - abs(a).max())
+        elif self.unit:
             reserve = self._least(
                 lambda turns: sign * (abs(b @ turns) - abs(a @ turns)), (abs(a) + abs(b)) @ self.powers
             )
+        else:
+            reserve = abs(b[0]) - abs(b[1:]).sum() - abs(a).sum() if sign > 0 else 0.0
         end = self._end(self._lower(1.0, 1.0), reserve)
-        if math.isnan(end) and self.loops._squares is not None:
-            a, b = self.loops._squares
-            rows = sign * (b - a)
-            if abs(rows[-1, 0]) > 1e-12:
-                end = float(_positive_beyond(rows)[0])
+        if math.isnan(end) and self.loops.squares is not None:
+            a, b = self.loops.squares
+            end = float(positive_beyond(sign * (b - a))[0])
         return end
 
     def size_end(self) -> float:
@@ -272,54 +298,113 @@ class Far:
         return self._size_end(-self.size) if self.size else math.nan
 
     @functools.cached_property
-    def sensitivity(self) -> float:
-        """The largest abs(b/(a + b))."""
+    def exceeds_one(self) -> bool:
+        """Whether abs(L) is certainly above 1 at ever higher frequencies, if not at all of them."""
         import numpy
 
+        if self.vanishes or self.size:
+            return not self.vanishes and self.size > 0
+        if not self.unit:
+            return abs(self.b).sum() < abs(self.a).max() * 2 - abs(self.a).sum()
+        angles = numpy.linspace(0, math.pi, 16 * int(max(self.powers)) + 1)
+        turns = numpy.exp(-1j * numpy.multiply.outer(self.powers, angles))
+        return bool((abs(self.a @ turns) > abs(self.b @ turns) * (1 + 1e-9)).any())
+
+    # ---- the sensitivity
+
+    @functools.cached_property
+    def sensitivity(self) -> float:
+        """The largest abs(b/(a + b))."""
+        a, b = self.a, self.b
         if self.vanishes:
             return 1.0
-        a, b = self.a, self.b
         if len(a) == 1:
-            return abs(b[0] / (a[0] + b[0]))
-        if len(a) == 2 and not a[0] and not b[1]:
-            return float(abs(b[0]) / (abs(b[0]) - abs(a[1])))
+            return float(abs(b[0] / (a[0] + b[0])))
+        if not b[1:].any() and (len(a) == 2 or not self.unit):
+            return float(abs(b[0]) / (abs(a[0] + b[0]) - abs(a[1:]).sum()))
         if not self.unit:
-            raise ValueError("the largest sensitivity at ever higher frequencies is not decided: the highest powers have "
-                             "dead times that are no multiples of one")  # fmt: skip
-        angles = numpy.linspace(0, math.pi, 4096 * int(max(self.powers)) + 1)
-        for _ in range(3):
-            turns = numpy.exp(-1j * numpy.multiply.outer(self.powers, angles))
-            values = abs((b @ turns) / ((a + b) @ turns))
-            best, step = angles[values.argmax()], angles[1] - angles[0]
-            angles = numpy.linspace(max(0, best - step), min(math.pi, best + step), 2001)
-        return float(values.max())
+            raise ValueError(
+                "the largest sensitivity at ever higher frequencies is not decided: the highest powers have dead times "
+                "that are no multiples of one"
+            )
+        return self._peaks[0][0]
+
+    @functools.cached_property
+    def _peaks(self) -> list[tuple[float, float]]:
+        """The highest abs(b/(a + b)), and the angles where it may be about as high."""
+        import numpy
+
+        if len(self.a) == 2 and not self.b[1]:
+            sign = (self.a[0] + self.b[0]) * self.a[1]
+            return [(self.sensitivity, math.pi if sign > 0 else 0.0)]
+        loops = self._highest_powers
+        peak = Positive(loops)
+        for angle in (0.0, math.pi):
+            turns = numpy.exp(-1j * self.powers * angle)
+            value = abs(self.b @ turns) / abs((self.a + self.b) @ turns)
+            peak.see(numpy.zeros(1, dtype=int), numpy.array([value]), numpy.array([angle]))
+        self._ask(peak)
+        return [(float(peak.most[0]), float(peak.place[0]))]
 
     def no_peak_beyond(self, most: float) -> float:
         """A frequency beyond which abs(B/C) is below `most`."""
         import numpy
 
-        if most <= 1:
-            return math.nan
-        factor = most / (most - 1)
-        simple = float(self.loops.beyond(numpy.array([factor]))[0])
+        loops, a, b = self.loops, self.a, self.b
+        simple = float(loops.beyond(numpy.array([most / (most - 1)]))[0]) if most > 1 else math.nan
         if self.vanishes:
+            if math.isnan(simple) and loops.longest[0] == 0 and loops.squares is not None:
+                simple = self._undelayed_peak_end(most)
             return simple
-        a, b = self.a, self.b
-        if len(a) == 2 and not a[0] and not b[1] and math.isnan(simple) and most >= self.sensitivity:
-            simple = float(self.loops.beyond_limit()[0])
+        if len(a) == 2 and self.is_one_delayed and math.isnan(simple) and most >= self.sensitivity:
+            simple = float(loops.beyond_limit()[0])
+        reserve = 0.0
         if len(a) == 1:
             reserve = most * abs(a[0] + b[0]) - abs(b[0])
-            if self.loops.longest[0] == 0 and self.loops._squares is not None:
-                C = _square((self.loops.A.coefficients + self.loops.B.coefficients)[0])
-                simple = float(numpy.fmin(simple, _positive_beyond(most**2 * C - self.loops._squares[1])[0]))
-        elif not self.unit:
-            reserve = 0.0
-        else:
-            reserve = self._least(
-                lambda turns: most * abs((a + b) @ turns) - abs(b @ turns),
-                (most * abs(a + b) + abs(b)) @ self.powers,
-            )
-        return float(numpy.fmin(simple, self._end(self._lower(most + 1, most), reserve)))
+            if loops.longest[0] == 0 and loops.squares is not None:
+                simple = float(numpy.fmin(simple, self._undelayed_peak_end(most)))
+        elif self.unit:
+            steep = (most * abs(a + b) + abs(b)) @ self.powers
+            reserve = self._least(lambda turns: most * abs((a + b) @ turns) - abs(b @ turns), steep)
+        elif not b[1:].any():
+            reserve = most * (abs(a[0] + b[0]) - abs(a[1:]).sum()) - abs(b[0])
+        end = self._end(self._lower(most + 1, most), reserve)
+        if not min(end if end == end else math.inf, simple if simple == simple else math.inf) < 30:
+            end = float(numpy.fmin(end, self._beyond_peak(most)))
+        return float(numpy.fmin(simple, end))
+
+    def _undelayed_peak_end(self, most):
+        loops = self.loops
+        C = square((loops.A.coefficients + loops.B.coefficients)[0])
+        return float(positive_beyond(most**2 * C - loops.squares[1])[0])
+
+    def _beyond_peak(self, most):
+        """The same, by an expansion about the angle at which the highest powers alone have their largest value."""
+        import numpy
+
+        if not self.unit or len(self.a) == 1 or self._series is None:
+            return math.nan
+        A, B = self._series
+        C = {m: A.get(m, 0) + B.get(m, 0) for m in {*A, *B}}
+        a, b = self.a, self.b
+        steep = (most * abs(a + b) + abs(b)) @ self.powers
+        best = math.nan
+        for halvings in range(0, 16, 2):
+            near = 0.25 / max(self.powers) / 2**halvings
+            largest = []
+            for _, angle in self._peaks:
+                ratio = Expansion.of(B, C, angle, 4 * near, 1.0)
+                largest.append(_not_above(ratio, most, near, angle) if ratio else 0.0)
+            if min(largest) > 0:
+                reserve = self._least(
+                    lambda turns: most * abs((a + b) @ turns) - abs(b @ turns),
+                    steep,
+                    [(angle, near) for _, angle in self._peaks],
+                )
+                end = self._end(self._lower(most + 1, most), reserve)
+                if not math.isnan(end):
+                    best = numpy.fmin(best, max(end, 1 / min(largest)))
+        return float(best)
 
 
 def _to_segment(start, step):
@@ -335,81 +420,143 @@ def _related(delays: numpy.ndarray) -> bool:
     """Whether dead times, no multiples of one, may have a common multiple in sums with small whole factors."""
     if len(delays) < 3:
         return False
-    factors = range(-3, 4)
     return any(
         any(mix) and abs(sum(n * delay for n, delay in zip(mix, delays, strict=True))) < 1e-9 * delays.max()
-        for mix in itertools.product(factors, repeat=len(delays))
+        for mix in itertools.product(range(-3, 4), repeat=len(delays))
     )
 
 
-def _larger_than_limit(series, powers, angle: float, near: float) -> float:
-    """The largest v up to which k = -B/A, where it is real and the angle near, is at least what it is at v = 0.
+# ---- expansions
 
-    The terms up to the second order decide, and Cauchy's estimate bounds those of higher order; zero if they do not.
+
+class Expansion(NamedTuple):
+    """A quotient of two sums as a power series in the angle from some angle on and in v = 1/w.
+
+    Attributes:
+        terms: coefficients [power of the angle, power of v], up to the second order.
+        wide, tall: radii of a polydisc in which it is analytic.
+        largest: a bound of its size there.
     """
+
+    terms: numpy.ndarray
+    wide: float
+    tall: float
+    largest: float
+
+    @classmethod
+    def of(cls, above, below, angle: float, wide: float, sign: float) -> Expansion | None:
+        import numpy
+
+        numbers = []
+        for rows in (above, below):
+            terms = numpy.zeros((3, 3), dtype=complex)
+            for multiple, row in rows.items():
+                turn = numpy.exp(-1j * multiple * angle)
+                for i in range(3):
+                    for j in range(min(3, len(row))):
+                        terms[i, j] += row[j] * turn * (-1j * multiple) ** i / math.factorial(i)
+            numbers.append(terms)
+        N, D = numbers
+        if not D[0, 0]:
+            return None
+        tall, size = 1.0, abs(D[0, 0])
+        for _ in range(80):
+            change = [_change(rows, wide, tall) for rows in (above, below)]
+            if change[1] < size / 2:
+                break
+            if _change(below, wide, 0.0) > size / 4:
+                wide /= 2
+            else:
+                tall /= 2
+        else:
+            return None
+        largest = (abs(N[0, 0]) + change[0]) / (size - change[1])
+        quotient = numpy.zeros((3, 3), dtype=complex)
+        for i in range(3):
+            for j in range(3 - i):
+                known = sum(
+                    D[i - p, j - q] * quotient[p, q] for p in range(i + 1) for q in range(j + 1) if (p, q) != (i, j)
+                )
+                quotient[i, j] = (N[i, j] - known) / D[0, 0]
+        return cls(sign * quotient, wide, tall, float(largest))
+
+    def rest(self, order: int, x: float, v: float, factor: float = 1.0) -> float:
+        """A bound of the terms of at least some order, for angles up to x and v."""
+        x, y = x / self.wide, v / self.tall
+        if x > 0.7 or y > 0.7:
+            return math.inf
+        return factor * sum(x**i * y ** (order - i) for i in range(order + 1)) / ((1 - x) * (1 - y))
+
+
+def _change(rows, wide, tall):
+    """How far a sum is, at most, in a polydisc from its value in the middle."""
+    total = 0.0
+    for multiple, row in rows.items():
+        turn = math.exp(min(50.0, abs(multiple) * wide))
+        total += abs(row[0]) * (turn - 1) + turn * sum(abs(c) * tall**n for n, c in enumerate(row[1:], 1))
+    return total
+
+
+def _no_gain_between(gains: Expansion, low: float, high: float, near: float, angle: float) -> float:
+    """A number up to which, with v, no real gain at near angles is between two; zero without one."""
+    k, symmetric = gains.terms, abs(math.sin(angle)) < 1e-9
+    across, v = k[1, 0].imag, gains.tall / 4
+    if abs(across) <= 1e-9 * abs(k[1, 0]):
+        return 0.0
+    c, base = k[0, 1].imag / across, k[0, 0].real
+    # the even and odd terms are real and imaginary at the angles 0 and pi, because all coefficients are real
+    order = 3 if symmetric else 2
+    for _ in range(60):
+        reach = abs(c) * v + gains.rest(order, near, v, gains.largest) / abs(across)
+        if reach < near:
+            error = gains.rest(order, reach, v, gains.largest) / abs(across)
+            if symmetric:
+                rise = v * v * (k[2, 0] * c * c - k[1, 1] * c + k[0, 2]).real
+                doubt = gains.rest(4, reach, v, gains.largest)
+                doubt += abs(k[2, 0]) * error * (2 * abs(c) * v + error) + abs(k[1, 1]) * error * v
+            else:
+                rise = v * (k[0, 1].real - k[1, 0].real * c)
+                doubt = gains.rest(2, reach, v, gains.largest) + abs(k[1, 0].real) * error
+            above = base >= high and (rise >= doubt or base + min(0.0, rise) - doubt >= high)
+            below = base <= low and (-rise >= doubt or base + max(0.0, rise) + doubt <= low)
+            if above or below:
+                return v
+        v /= 2
+    return 0.0
+
+
+def _not_above(ratio: Expansion, most: float, near: float, angle: float) -> float:
+    """A number up to which, with v, the size of a quotient at near angles is not above a bound; zero without one."""
     import numpy
 
-    values, bounds = [], []
-    for rows in series:
-        terms = numpy.zeros((3, 3), dtype=complex)
-        for multiple, row in rows.items():
-            turn = numpy.exp(-1j * multiple * angle)
-            for i in range(3):
-                for j in range(min(3, len(row))):
-                    terms[i, j] += row[j] * turn * (-1j * multiple) ** i / math.factorial(i)
-        values.append(terms)
-    # a polydisc in which A does not vanish
-    wide, tall = 2 * near, 1.0
-    for _ in range(60):
-        bounds = [
-            sum(
-                abs(row[0]) * (math.exp(abs(multiple) * wide) - 1)
-                + math.exp(abs(multiple) * wide) * sum(abs(c) * tall**n for n, c in enumerate(row[1:], 1))
-                for multiple, row in rows.items()
-            )
-            for rows in series
-        ]
-        size = abs(values[0][0, 0])
-        if bounds[0] < size / 2:
-            break
-        if max(abs(m) for m in series[0]) * wide > 0.2:
-            wide /= 2
-        tall /= 2
-    else:
-        return 0.0
-    if wide < 2 * near:
-        return 0.0
-    largest = (abs(values[1][0, 0]) + bounds[1]) / (size - bounds[0])
-    # k = -B/A by division of power series in the angle (first index) and v
-    k = numpy.zeros((3, 3), dtype=complex)
-    A, B = values
+    u, symmetric, v = ratio.terms, abs(math.sin(angle)) < 1e-9, ratio.tall / 4
+    # the square of the size for real angles and v: the product with the conjugate series
+    f = numpy.zeros((3, 3))
     for i in range(3):
         for j in range(3 - i):
-            lower = sum(A[i - p, j - q] * k[p, q] for p in range(i + 1) for q in range(j + 1) if (p, q) != (i, j))
-            k[i, j] = (-B[i, j] - lower) / A[0, 0]
-    across = k[1, 0].imag
-    if abs(across) < 1e-9 * abs(k[1, 0]) or not across:
+            f[i, j] = sum((u[p, q] * u[i - p, j - q].conj()).real for p in range(i + 1) for q in range(j + 1))
+    largest = ratio.largest**2
+    base, bend = f[0, 0], f[2, 0]
+    if not bend < 0:
         return 0.0
-    symmetric = abs(math.sin(angle)) < 1e-9
-    v = tall / 8
+    x = near / ratio.wide
+    if x > 0.5:
+        return 0.0
+    numbers = numpy.arange(64)
+    order = 4 if symmetric else 3
+    high = numpy.add.outer(numbers, numbers) >= order
+    squared = (numbers >= 2)[:, None] & high
     for _ in range(60):
-        # the angle differs by -c*v, but for what the terms of higher order make
-        x, y = near / wide, v / tall
-        rest = {n: largest * sum(x**i * y ** (n - i) for i in range(n + 1)) / ((1 - x) * (1 - y)) for n in (2, 3, 4)}
-        c = k[0, 1].imag / across
-        steep, error = (rest[3] if symmetric else rest[2]) / abs(across), None
-        # the angles that are possible shrink with v
-        reach = abs(c) * v + steep
-        x = min(x, reach / wide)
-        rest = {n: largest * sum(x**i * y ** (n - i) for i in range(n + 1)) / ((1 - x) * (1 - y)) for n in (2, 3, 4)}
-        error = (rest[3] if symmetric else rest[2]) / abs(across)
-        if symmetric:
-            rise = v * v * (k[2, 0] * c * c - k[1, 1] * c + k[0, 2]).real
-            doubt = rest[4] + abs(k[2, 0]) * error * (2 * abs(c) * v + error) + abs(k[1, 1]) * error * v
-        else:
-            rise = v * (k[0, 1].real - k[1, 0].real * c)
-            doubt = rest[2] + abs(k[1, 0].real) * error
-        if rise > doubt and abs(c) * v + error < near:
-            return v
+        if (y := v / ratio.tall) <= 0.5:
+            # bounds of the terms of the square; those with the angle squared make the bend weaker
+            terms = 1.001 * largest * numpy.outer((numbers + 1) * x**numbers, (numbers + 1) * y**numbers)
+            weaker = bend + terms[squared].sum() / near**2
+            if weaker < 0:
+                slope, first = (0.0, 0.0) if symmetric else (abs(f[1, 0]), f[0, 1] * v)
+                second = f[0, 2] * v * v + (abs(f[1, 1]) * v + slope) ** 2 / (-4 * weaker)
+                rest = terms[high & ~squared].sum()
+                rise = first + second + rest
+                if base + (0.0 if rise <= 0 else max(0.0, first) + max(0.0, second) + rest) <= most * most:
+                    return v
         v /= 2
     return 0.0

@@ -152,7 +152,7 @@ def _stable_range(loops: Loops) -> tuple[numpy.ndarray, numpy.ndarray]:
     import numpy
 
     count, unit = loops.count, loops.unit
-    far = Far(loops) if loops.exact is not None else None
+    far = Far(loops, pivot=0.0) if loops.exact is not None else None
     endless = _endless_gains(loops, far)
     real = Real(loops, all_gains=True)
     real.highest = numpy.minimum(real.highest, endless)
@@ -216,8 +216,8 @@ def _complete_beyond(loops, far, lower, gain, is_endless, is_largest):
 
     need = loops.beyond(numpy.minimum(gain, 1e100))
     need = numpy.where(is_endless & ~is_largest, numpy.fmin(need, loops.beyond_limit()), need)
-    if far is not None and math.isnan(need[0]) and not far.vanishes:
-        need = numpy.array([far.no_crossing_beyond(float(lower[0]), float(gain[0]))])
+    if far is not None and not need[0] < 30 and not far.vanishes:
+        need = numpy.fmin(need, far.no_crossing_beyond(float(lower[0]), float(gain[0])))
     if is_largest.any():
         last = numpy.array([loops.real_beyond]) if far is not None else loops.real_beyond_all()
         need = numpy.where(is_largest, numpy.fmin(need, last), need)
@@ -239,7 +239,7 @@ def _endless_gains(loops, far):
     import numpy
 
     if far is not None:
-        return numpy.array([far.gains[0] if far.gains else math.inf])
+        return numpy.array([far.highest])
     a, b = (loops.A + 0.0 * loops.B).coefficients[:, -1], (0.0 * loops.A + loops.B).coefficients[:, -1]
     lowest = numpy.full(loops.count, math.inf)
     if not a.any():

@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from loopbook.quasipolynomials.arrays import DEGREE, Quasipolynomials
+from loopbook.quasipolynomials.fraction import plus
 from loopbook.stability.difference import at_endless_frequency, power_of_two, prevailing
 from loopbook.stability.enclosures import EPSILON, Enclosure, Exact, exact_coefficient_fraction, origin
 
@@ -47,9 +48,8 @@ class Loops:
         self.count, self.exact, self.fraction = B.count, None, fraction
         if fraction is not None:
             divisor, scale = fraction.denominator[Fraction(0)][-1], float(self.unit[0])
-            self.exact = (
-                Exact(fraction.numerator, order, divisor, scale), Exact(fraction.denominator, order, divisor, scale)
-            )  # fmt: skip
+            above, below = fraction.numerator, fraction.denominator
+            self.exact = tuple(Exact(parts, order, divisor, scale) for parts in (above, below, plus(below, above)))
 
     def __getitem__(self, points: object) -> Loops:
         chosen = object.__new__(Loops)
@@ -57,6 +57,11 @@ class Loops:
             setattr(chosen, name, getattr(self, name)[points])
         chosen.count, chosen.exact, chosen.fraction = chosen.B.count, None, None
         return chosen
+
+    @functools.cached_property
+    def C(self) -> Quasipolynomials:
+        """A + B, whose roots are the poles of the closed loop."""
+        return self.B + self.A
 
     @functools.cached_property
     def longest(self) -> numpy.ndarray:
@@ -68,7 +73,7 @@ class Loops:
     def values(self, which: numpy.ndarray, w: numpy.ndarray, degree: int = 0, precise: bool = False):
         """The expansions of A and B at frequencies."""
         if precise:
-            return tuple(each.taylor(w, degree) for each in self.exact)
+            return tuple(each.taylor(w, degree) for each in self.exact[:2])
         return self.A.taylor(which, w, degree), self.B.taylor(which, w, degree)
 
     def doubtful(self, which: numpy.ndarray, w: numpy.ndarray) -> numpy.ndarray:
@@ -97,7 +102,7 @@ class Loops:
         import numpy
 
         degree = 2 * self.B.order + 6
-        exact = self.exact or (None, None)
+        exact = self.exact[:2] if self.exact else (None, None)
         (a, more_a), (b, more_b) = (origin(x, degree, e) for x, e in zip((self.A, self.B), exact, strict=True))
         removed = numpy.argmax((a != 0) | (b != 0), axis=0)
         more_a, more_b = 2 * more_a, 2 * more_b  # for all terms, where the frequency times each delay is below 1/2
@@ -175,7 +180,7 @@ class Loops:
                 return
             if not size[n, 0]:
                 continue
-            for row, each in zip(rows, self.exact, strict=True):
+            for row, each in zip(rows, self.exact[:2], strict=True):
                 row += [exact_coefficient_fraction(each, k + removed) for k in range(len(row), n + 1)]
             A, B = rows
             value = Fraction(0)
@@ -208,9 +213,9 @@ class Loops:
         reserve = self._endless_reserve - factor * A[-1]
         sizes[-1] = numpy.where(reserve > 0, reserve, math.nan)
         end = prevailing(sizes[None])
-        if self._squares is not None and not (end < 8).all():
-            squares = self._squares
-            end = numpy.fmin(end, _positive_beyond(squares[1] - factor**2 * squares[0]))
+        if self.squares is not None and not (end < 8).all():
+            squares = self.squares
+            end = numpy.fmin(end, positive_beyond(squares[1] - factor**2 * squares[0]))
         return end
 
     @functools.cached_property
@@ -224,37 +229,37 @@ class Loops:
         return numpy.maximum(2 * abs(self.B.coefficients[0, -1]) - self._term_sizes[1][-1], self.endless_least)
 
     @functools.cached_property
-    def _squares(self):
+    def squares(self):
         """abs(A)**2 and abs(B)**2 of loops with one dead time, polynomials in the square of the frequency."""
         if len(self.A.coefficients) != 1 or len(self.B.coefficients) != 1:
             return None
         if self.exact is None:
-            return [_square(x.coefficients[0]) for x in (self.A, self.B)]
+            return [square(x.coefficients[0]) for x in (self.A, self.B)]
         import numpy
 
-        return [numpy.array([[float(c)] for c in _exact_square(each)]) for each in self.exact]
+        return [numpy.array([[float(c)] for c in _exact_square(each)]) for each in self.exact[:2]]
 
     def beyond_limit(self) -> numpy.ndarray:
         """A frequency beyond which abs(L) is not above what it is at endless frequency, with one dead time; or nan."""
         import numpy
 
-        if self._squares is None:
+        if self.squares is None:
             return numpy.full(self.count, math.nan)
         if self.exact is not None:
-            a, b = (_exact_square(each) for each in self.exact)
+            a, b = (_exact_square(each) for each in self.exact[:2])
             if not a[-1]:
                 return numpy.full(1, math.nan)
             rows = numpy.array([[float(y - b[-1] / a[-1] * x)] for x, y in zip(a, b, strict=True)])
-            sizes = abs(self._squares[1])
+            sizes = abs(self.squares[1])
         else:
-            a, b = self._squares
+            a, b = self.squares
             with numpy.errstate(divide="ignore", invalid="ignore"):
                 rows = b - b[-1] / a[-1] * a
                 sizes = abs(b) + b[-1] / a[-1] * abs(a)
             rows[-1] = 0
         # less than that could make no difference to a gain that could be told
         rows[abs(rows) <= 1e-11 * sizes.max(axis=0)] = 0
-        return numpy.where(rows.any(axis=0), _positive_beyond(rows), numpy.where(rows[-1] == 0, 1.0, math.nan))
+        return numpy.where(rows.any(axis=0), positive_beyond(rows), numpy.where(rows[-1] == 0, 1.0, math.nan))
 
     @functools.cached_property
     def real_beyond(self) -> float:
@@ -262,7 +267,7 @@ class Loops:
         import numpy
 
         parts: dict[Fraction, list[Fraction]] = {}
-        A, B = self.exact
+        A, B = self.exact[:2]
         for early, p in A.parts.items():
             for late, q in B.parts.items():
                 # p(s) q(-s) exp((late - early)*s), and the same with -s, subtracted
@@ -323,7 +328,8 @@ def _exact_square(exact):
     return [Fraction(c, exact.divisor**2) * scale ** (n - order) for n, c in enumerate(terms)]
 
 
-def _square(part):
+def square(part: numpy.ndarray) -> numpy.ndarray:
+    """The square of the size of polynomials [power, point] on the imaginary axis, in powers of that of the frequency."""
     import numpy
 
     order = len(part) - 1
@@ -338,7 +344,7 @@ def _square(part):
     )
 
 
-def _positive_beyond(rows: numpy.ndarray) -> numpy.ndarray:
+def positive_beyond(rows: numpy.ndarray) -> numpy.ndarray:
     """The roots of numbers beyond which polynomials [power, point] are positive; nan without one."""
     import numpy
 
