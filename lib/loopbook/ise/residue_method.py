@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import sympy
 
@@ -115,11 +116,11 @@ class ResidueMethod:
         return sympy.factor(above) / sympy.factor(sympy.expand(below * slope / sympy.I))
 
 
-def both_residues(A, B, C, D, B_mirrored, D_mirrored, z):
+def both_residues(A: Any, B: Any, C: Any, D: Any, B_mirrored: Any, D_mirrored: Any, z: Any) -> Any:
     """Delta' times (A + C z) times the sum of the residues of E G at p and -p, all functions taken at p.
 
     At -p take that of E (E* - G) instead, which is (B + D z)(A* D* - B* C*)/((A* z + C*) Delta): the same but for its
-    sign, and its denominator has no zero there if the loop is stable.
+    sign, and its denominator has no zero there if the loop is stable. They are expressions or arrays.
     """
     return (B * B_mirrored + D * D_mirrored) * (A - C * z) + 2 * (A * D * B_mirrored * z - B * C * D_mirrored)
 

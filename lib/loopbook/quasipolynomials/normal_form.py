@@ -13,7 +13,7 @@ from loopbook.transfer import transfer_function
 __all__ = ["normal_form"]
 
 
-def normal_form(H):
+def normal_form(H: object) -> tuple[dict[sympy.Expr, sympy.Poly], dict[sympy.Expr, sympy.Poly]]:
     """Return numerator and denominator of a transfer function, each a sum of polynomials with dead times.
 
     Common factors are cancelled, also those that contain dead times, if these are multiples of one, up to 60 times it.
