@@ -109,7 +109,7 @@ def is_api(path):
     return top(path) not in NOT_YET and not spelled(path).startswith("exercises/bank/ch")
 
 
-@pytest.mark.parametrize("path", filter(is_api, PATHS), ids=spelled)
+@pytest.mark.parametrize("path", [*filter(is_api, PATHS)], ids=spelled)
 def test_what_is_public_has_type_hints(path):
     found = {name: without_hints(name, node) for name, node in functions(parsed(path).body)}
     assert {name: missing for name, missing in found.items() if missing} == {}
