@@ -11,17 +11,22 @@ workers = $(shell $(python) -c "import os; print(1 + (os.cpu_count() or 1))")
 
 # A backend meant for other programs would keep the figures out of the notebooks.
 unexport MPLBACKEND
+# Each of the fifty kernels of the tests would compile the library again.
+unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help lab test bench book pictures grade execute
+.PHONY: help lab test test-all bench book pictures grade execute
 
 help: ## list the commands
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' Makefile
 
 lab: .venv/ready ## open the collection in JupyterLab
 	$(python) -m jupyterlab $(root) --LabApp.default_url=/lab/tree/chapters
 
 test: .venv/ready ## prove everything: the library, the ledger and every cell of every notebook
 	$(python) -m pytest -n $(workers)
+
+test-all: .venv/ready ## the same with all variants of the exercises, as once a week
+	LOOPBOOK_ALL=1 $(python) -m pytest -n $(workers)
 
 bench: .venv/ready ## measure what the collection costs beside what it stands on
 	$(python) tests/bench.py

@@ -18,6 +18,8 @@ ROOT = Path(__file__).parents[1]
 SCREENSHOTS = ROOT / "build" / "screenshots"
 DESKTOP = {"width": 1280, "height": 900}
 PHONE = {"width": 390, "height": 844}
+#: Milliseconds that anything may take on a machine that has other things to do. Nothing waits longer than it must.
+PATIENCE = 240_000
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 MISSING = "no browser: nothing was proved in a browser; install Chromium, for example with: apt-get install chromium"
@@ -33,11 +35,11 @@ def opened() -> Iterator:
     """A running Chromium, steered by Playwright."""
     from playwright.sync_api import expect, sync_playwright
 
-    expect.set_options(timeout=30_000)  # milliseconds, for a machine that has other things to do
+    expect.set_options(timeout=PATIENCE)
     # a container has no user namespaces to build the browser's own sandbox of, and often little shared memory
     arguments = ["--no-sandbox", "--disable-dev-shm-usage"]
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium(), args=arguments)
+        browser = playwright.chromium.launch(executable_path=chromium(), args=arguments, timeout=PATIENCE)
         yield browser
         browser.close()
 
@@ -75,6 +77,12 @@ class Complaints(list):
             self.append(f"{kind}: {text}")
 
 
+class Patient(http.server.ThreadingHTTPServer):
+    """A server that turns nobody away while it is busy."""
+
+    request_queue_size = 128
+
+
 class Silent(http.server.SimpleHTTPRequestHandler):
     """A server of files that does not tell what it serves."""
 
@@ -86,7 +94,7 @@ class Silent(http.server.SimpleHTTPRequestHandler):
 def served(folder: Path, prefix: str = "some/prefix") -> Iterator[str]:
     """The address under which a local server shows a folder, below a prefix as on a site for many projects."""
     handler = functools.partial(Silent, directory=str(folder))
-    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+    with Patient(("127.0.0.1", 0), handler) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         yield f"http://127.0.0.1:{server.server_port}/"
         server.shutdown()

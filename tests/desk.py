@@ -10,19 +10,21 @@ import socket
 import subprocess
 import time
 import urllib.request
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import matplotlib
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import TimeoutError, expect
 
-from browser import SCREENSHOTS, Complaints
+from browser import PATIENCE, SCREENSHOTS, Complaints
 from recipes import recipe
 
 ROOT = Path(__file__).parents[1]
 #: What JupyterLab and its packages write on the console by themselves.
-NOISE = ()
+NOISE = (r"^Plugin \S+ .*(took [\d.]+ms|is taking too long) to activate",)  # on a slow machine
+#: Dialogs that come before the chapter is at rest, and not because of it.
+PASSING = {"Server Connection Error", "Select Kernel"}
 
 
 class Desk:
@@ -30,21 +32,44 @@ class Desk:
 
     def __init__(self, page, file):
         self.page, self.file, self.complaints = page, file, Complaints(page, NOISE)
-        page.set_default_timeout(60_000)
+        page.set_default_timeout(PATIENCE)
+        page.add_locator_handler(page.locator("dialog.jp-Dialog"), self.dismiss)
+
+    def dismiss(self, dialog):
+        """Put away a dialog that stands before what is to be clicked. One that tells of a fault is a complaint."""
+        title = dialog.locator(".jp-Dialog-header").inner_text().strip()
+        if title not in PASSING:
+            self.complaints.append(f"dialog: {dialog.inner_text()}")
+        dialog.locator(".jp-Dialog-button").last.click()  # JupyterLab's own choice, as the return key would
 
     def open(self, address):
         self.page.goto(address)
+        # its session may begin late, and until then a click on Run asks which kernel is meant
+        expect(self.page.locator(".jp-NotebookPanel .jp-Toolbar-kernelName")).to_contain_text("Python 3")
         self.rest()
         self.code = self.page.locator(".jp-NotebookPanel .jp-CodeCell")
 
     def rest(self):
         """Wait until nothing is computed."""
-        self.page.locator(".jp-Notebook-ExecutionIndicator[data-status=idle]").wait_for()
+        expect(self.page.locator(".jp-Notebook-ExecutionIndicator")).to_have_attribute("data-status", "idle")
 
     def choose(self, *names):
-        """Choose from the menu, as ``choose("Run", "Run All Cells")``."""
-        for name in names:
-            self.page.locator(".lm-MenuBar-itemLabel, .lm-Menu-itemLabel").get_by_text(name, exact=True).click()
+        """Choose from the menu, as ``choose("Run", "Run All Cells")``; again where a dialog has closed the menu."""
+        labels = self.page.locator(".lm-MenuBar-itemLabel, .lm-Menu-itemLabel")
+        *menus, command = [labels.get_by_text(name, exact=True) for name in names]
+        for menu, entry in zip(menus, [*menus[1:], command], strict=True):
+            until(lambda menu=menu, entry=entry: self.opens(menu, entry))
+        command.click()
+
+    @staticmethod
+    def opens(menu, entry):
+        """Click on a menu, and tell whether an entry of it is seen."""
+        menu.click()
+        try:
+            entry.wait_for(timeout=10_000)
+        except TimeoutError:
+            return False
+        return True
 
     def run_all(self):
         """Run all cells from the menu, after the stored outputs have been cleared, and wait for the last one."""
@@ -52,7 +77,21 @@ class Desk:
         self.choose("Edit", "Clear Outputs of All Cells")
         expect(last).to_have_text("[ ]:")
         self.choose("Run", "Run All Cells")
-        expect(last).to_have_text(f"[{len(self.stored())}]:", timeout=120_000)  # the page still grows: count the file
+        expect(last).to_have_text(f"[{len(self.stored())}]:")  # the page still grows: count the file
+        self.rest()
+
+    def save(self):
+        """Save from the menu, and wait until the file is written to its end."""
+        before = self.file.stat().st_mtime_ns
+        self.choose("File", "Save Notebook")
+        until(lambda: self.file.stat().st_mtime_ns != before and self.is_whole())
+
+    def is_whole(self):
+        """Tell whether the file is not just being written."""
+        try:
+            return bool(self.stored())
+        except ValueError:
+            return False
 
     def cell(self, text):
         """The code cell whose source begins with a text."""
@@ -63,16 +102,18 @@ class Desk:
         """Put an answer into the cell of an exercise and run it: what the response says."""
         cell = self.cell(f'exercise("{number}").check(')
         cell.scroll_into_view_if_needed()
-        before = cell.locator(".jp-InputPrompt").inner_text()
-        cell.locator(".cm-content").click()
+        cell.evaluate("cell => cell.querySelectorAll('.jp-OutputArea-output').forEach(old => old.dataset.old = '')")
+        editor, prompt = cell.locator(".cm-content"), cell.locator(".jp-InputPrompt")
+        before = prompt.inner_text()
+        editor.click()
+        expect(editor).to_be_focused()
         self.page.keyboard.press("Control+a")
         self.page.keyboard.insert_text(f'exercise("{number}").check({words})')
+        expect(editor).to_have_text(f'exercise("{number}").check({words})')
         self.page.keyboard.press("Shift+Enter")
-        self.page.wait_for_function(
-            "([cell, before]) => /\\d/.test(cell.innerText) && cell.innerText != before",
-            arg=[cell.locator(".jp-InputPrompt").element_handle(), before],
-        )
-        return cell.locator(".jp-OutputArea-output").inner_text()
+        expect(prompt).not_to_have_text(before)
+        expect(prompt).to_have_text(re.compile(r"\d"))
+        return cell.locator(".jp-OutputArea-output:not([data-old])").inner_text()
 
     def stored(self):
         """The code cells of the file."""
@@ -114,10 +155,18 @@ def jupyterlab(folder: Path, notebook: str) -> Iterator[str]:
         finally:
             shut_down(port, token)
             try:
-                server.wait(timeout=20)
+                server.wait(timeout=60)
             except subprocess.TimeoutExpired:
                 server.kill()
                 server.wait()
+
+
+def until(condition: Callable[[], bool], seconds: float = PATIENCE / 1000) -> None:
+    """Wait for what no page shows."""
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, f"it does not come within {seconds:g} s"
+        time.sleep(0.1)
 
 
 def free_port() -> int:
@@ -126,7 +175,7 @@ def free_port() -> int:
         return free.getsockname()[1]
 
 
-def wait_for(address: str, server: subprocess.Popen, log: Path, seconds: float = 120) -> None:
+def wait_for(address: str, server: subprocess.Popen, log: Path, seconds: float = PATIENCE / 1000) -> None:
     end = time.monotonic() + seconds
     while time.monotonic() < end and server.poll() is None:
         with contextlib.suppress(OSError), urllib.request.urlopen(address, timeout=5):
@@ -141,4 +190,4 @@ def shut_down(port: int, token: str) -> None:
         f"http://127.0.0.1:{port}/api/shutdown", method="POST", headers={"Authorization": f"token {token}"}
     )
     with contextlib.suppress(OSError):
-        urllib.request.urlopen(request, timeout=10).close()
+        urllib.request.urlopen(request, timeout=60).close()

@@ -5,7 +5,7 @@ import hashlib
 import pytest
 
 from browser import DESKTOP, PHONE, ROOT
-from desk import Desk, jupyterlab
+from desk import Desk, jupyterlab, until
 
 #: A quick one that has sliders, and exercises whose responses can say a lot.
 CHAPTER = "05_transfer_functions.ipynb"
@@ -20,8 +20,7 @@ def desk(chromium, tmp_path_factory):
         desk.open(address)
         desk.screenshot("opened")
         desk.run_all()
-        desk.choose("File", "Save Notebook")
-        desk.page.get_by_text("Saving completed").wait_for()
+        desk.save()
         desk.screenshot("run")
         yield desk
         desk.page.close()
@@ -55,6 +54,7 @@ class TestJupyterLab:
         slider.scroll_into_view_if_needed()
         before, value = desk.picture(cell), slider.get_attribute("aria-valuenow")
         if way == "by mouse":
+            slider.hover()  # waits until it has come to rest
             box = slider.bounding_box()
             x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
             desk.page.mouse.move(x, y)
@@ -88,8 +88,8 @@ class TestJupyterLab:
         desk.page.keyboard.press("Control+b")
         response = desk.cell('exercise("5.1").check(').locator(".jp-OutputArea-output")
         response.scroll_into_view_if_needed()
+        until(lambda: response.bounding_box()["width"] > 0.5 * PHONE["width"])
         desk.screenshot("phone")
-        assert response.bounding_box()["width"] > 0.5 * PHONE["width"]
         assert response.evaluate("part => part.scrollWidth <= part.clientWidth"), "the response is cut"
         desk.page.keyboard.press("Control+b")
         desk.page.set_viewport_size(DESKTOP)

@@ -3,7 +3,7 @@
 import pytest
 from playwright.sync_api import expect
 
-from browser import DESKTOP, PHONE, SCREENSHOTS, Complaints, serious, served
+from browser import DESKTOP, PATIENCE, PHONE, SCREENSHOTS, Complaints, serious, served
 
 #: A page of each kind. Of the ledger a few results of each status: the others look alike, and axe takes its time.
 KINDS = {
@@ -30,6 +30,7 @@ class Reader:
     def __init__(self, chromium, address, **habits):
         self.address = address
         self.page = chromium.new_page(viewport=DESKTOP, **habits)
+        self.page.set_default_timeout(PATIENCE)
         self.complaints = Complaints(self.page)
 
     def go(self, page):
@@ -130,13 +131,13 @@ class TestSite:
                 for knob in lesson.locator("input[type=range], select").all():
                     move(knob, "mouse" if way == "http" else "keyboard")
                     moved += 1
-                    if (after := drawn(lesson)) == before:
+                    if (after := drawn(lesson, other_than=before)) == before:
                         idle.append(f"{name}: {knob.get_attribute('id')}")
                     before = after
                 if way == "http":
                     lesson.screenshot(path=SCREENSHOTS / f"site_lesson_{name}.png")
                 lesson.get_by_role("button", name="Back to the start").click()
-                if drawn(lesson) != start:
+                if drawn(lesson, until=start) != start:
                     idle.append(f"{name}: back to the start")
         reader.page.close()
         assert moved >= 12, "there are six lessons, most with two knobs or more"
@@ -161,14 +162,18 @@ class TestSite:
         assert not found, "\n".join(found)
 
 
-def drawn(lesson):
-    """What the plots of a lesson show, once they have been drawn."""
-    return lesson.evaluate(
-        """async part => {
-            await new Promise(done => requestAnimationFrame(() => setTimeout(done, 30)));
-            return [...part.querySelectorAll("canvas")].map(plot => plot.toDataURL());
-        }"""
-    )
+def drawn(lesson, other_than=None, until=None, frames=200):
+    """What the plots of a lesson show, once they have been drawn; after some frames also what is not as expected."""
+    for _ in range(frames):
+        shown = lesson.evaluate(
+            """async part => {
+                await new Promise(done => requestAnimationFrame(() => setTimeout(done, 30)));
+                return [...part.querySelectorAll("canvas")].map(plot => plot.toDataURL());
+            }"""
+        )
+        if shown != other_than and until in (None, shown):
+            break
+    return shown
 
 
 def move(knob, way):
