@@ -43,6 +43,7 @@ def confirm(loops: Loops, found: dict[str, float]) -> None:
         found: the limits by their names among those of `Margins`, and the frequencies at which they are.
     Raises:
         ArithmeticError: where the numbers contradict a limit.
+        ValueError: where poles are too close to the axis on one side of it to be counted.
     """
     changes = []
     for name, omega, outwards in (
@@ -67,6 +68,11 @@ def confirm(loops: Loops, found: dict[str, float]) -> None:
                 count = _exactly(loops, *change.at(share)[:2])
             if count == ON_LIMIT:
                 left.append(change)
+            elif (count == 0) != change.inside and share > SHARES[0]:
+                raise ValueError(
+                    f"the {change.name.replace('_', ' ')} is not decided: about {change.limit:.12g} poles stay so close "
+                    f"to the axis that counting does not tell on which side they are"
+                )
             elif (count == 0) != change.inside:
                 side = "inside" if change.inside else "outside"
                 raise ArithmeticError(

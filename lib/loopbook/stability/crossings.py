@@ -253,14 +253,15 @@ class Positive(Question):
 
         which = view.which
         before = self.most.copy()
+        known = slice(None) if view.precise else ~view.C.is_noisy
         with numpy.errstate(divide="ignore", invalid="ignore"):
-            self.see(which, abs(view.B.terms[0] / view.C.terms[0]), view.c)
+            self.see(which[known], abs(view.B.terms[0] / view.C.terms[0])[known], view.c[known])
         if (self.most > before * (1 + 1e-12)).any():
             to_the_top(self.loops, self)
         most = self.most[which] * (1 + self.share)
         above = (most * most) * (view.C @ view.C).real - view.square_of_B
         away = (most * (view.B.least - view.early.most) > view.B.most) | above.is_positive
-        return ~away, above.is_noisy
+        return ~away, above.is_noisy | view.C.is_noisy | (view.C.noise > 1e-11 * view.C.sizes[0])
 
 
 # ---- zeros
@@ -370,7 +371,7 @@ def asked(loops: Loops, questions: list[Question], which, a, b) -> None:
             numpy.concatenate(x) for x in zip(others, with_peaks(*(x[about] for x in (which, a, b)), peak.place))
         )
 
-    walk(judge, which, a, b, questions[0].name, loops.unit, loops.exact is not None, divide)
+    walk(judge, which, a, b, " and ".join(q.name for q in questions), loops.unit, loops.exact is not None, divide)
 
 
 def below(loops: Loops, questions: list[Question]) -> numpy.ndarray:

@@ -25,7 +25,7 @@ MOST_INTERVALS = 1_000_000  # in one walk, and for each point of many
 MORE_INTERVALS = 2_000
 MOST_AT_ONCE = 2**15
 MOST_EXACT = 3_000  # intervals that are looked at with more digits
-NARROWEST = 1e-13  # the half width, as a share of the frequency, at which an interval is left undecided
+NARROWEST = 1e-14  # the half width, as a share of the frequency, at which an interval is left undecided
 NOISY = 16  # times the rounding, below which a value is looked at with more digits
 
 

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     import numpy
 
 MOST_ANGLES = 200_000
+MOST_EXPANSIONS = 50
 
 
 class Far:
@@ -149,7 +150,7 @@ class Far:
         """
         import numpy
 
-        count = 64 * max(1, int(max(self.powers)))
+        count = 16 * max(4, int(max(self.powers)))
         middle, half = (numpy.arange(count) + 0.5) * (math.pi / count), math.pi / (2 * count)
         least = math.inf
         for _ in range(40):
@@ -199,6 +200,7 @@ class Far:
 
     # ---- gains
 
+    @functools.cache  # noqa: B019
     def no_crossing_beyond(self, low: float, high: float) -> float:
         """A frequency beyond which L is not -1/k for any k from low to high; nan where none is known.
 
@@ -230,7 +232,9 @@ class Far:
         A, B = self._series
         best = math.nan
         angles = [(k, angle) for k, angle in self.on_circle if low / 2 < k < 2 * high]
-        for halvings in range(0, 16, 2):
+        if len(angles) > MOST_EXPANSIONS:
+            return math.nan
+        for halvings in range(0, 12, 3):
             near = 0.25 / max(self.powers) / 2**halvings
             largest = []
             for _, angle in angles:
@@ -346,6 +350,7 @@ class Far:
         self._ask(peak)
         return [(float(peak.most[0]), float(peak.place[0]))]
 
+    @functools.cache  # noqa: B019
     def no_peak_beyond(self, most: float) -> float:
         """A frequency beyond which abs(B/C) is below `most`."""
         import numpy
@@ -389,7 +394,7 @@ class Far:
         a, b = self.a, self.b
         steep = (most * abs(a + b) + abs(b)) @ self.powers
         best = math.nan
-        for halvings in range(0, 16, 2):
+        for halvings in range(0, 12, 3):
             near = 0.25 / max(self.powers) / 2**halvings
             largest = []
             for _, angle in self._peaks:

@@ -84,6 +84,12 @@ class Loops:
             doubt = doubt | (noise > DOUBTFUL * abs(sums.value(which, w)))
         return doubt
 
+    def doubtful_sum(self, which: numpy.ndarray, w: numpy.ndarray) -> numpy.ndarray:
+        """Where rounding has a share in A + B."""
+        sums = self.C
+        noise = EPSILON * (2 * sums.order + 8 + 2 * w * sums.longest[which]) * sums.sizes(which, w, -1)[0]
+        return noise > 1e-11 * abs(sums.value(which, w))
+
     def precise_values(self, which: numpy.ndarray, w: numpy.ndarray) -> list[numpy.ndarray]:
         """A and B at frequencies, with more digits where rounding has a share in them."""
         import numpy

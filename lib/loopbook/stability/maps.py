@@ -1,5 +1,7 @@
 """Maps of stability: the number of unstable poles over a plane of two letters."""
 
+from __future__ import annotations
+
 import time
 
 import sympy
@@ -7,8 +9,8 @@ import sympy
 from loopbook.expressions import s
 from loopbook.inputs import real_numbers
 from loopbook.quasipolynomials import normal_form
+from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.stability.counting import count_roots
-from loopbook.stability.sums import Sums
 from loopbook.transfer import transfer_function
 
 CHUNK = 2000  # points at once
@@ -67,7 +69,7 @@ def stability_map(loop, progress=None, **values):
         if (lost := numpy.flatnonzero(coefficients[0, -1] == 0)).size:
             where = ", ".join(f"{name} = {x[lost[0]]:g}" for name, x in zip(values, here, strict=True))
             raise ValueError(f"the closed loop of {L} loses its highest power at {where}: expected other values")
-        counts[chunk] = count_roots(Sums(coefficients, delays))
+        counts[chunk] = count_roots(Quasipolynomials(coefficients, delays))
     return counts.reshape(len(grids[1]), len(grids[0]))
 
 

@@ -26,7 +26,7 @@ from loopbook.stability.crossings import (
 from loopbook.stability.endless import Far
 from loopbook.stability.loops import ENOUGH, Loops
 
-MOST_TURNS = 4000.0  # of the phase by dead time, in radians, after which it is given up that has no end in sight
+MOST_TURNS = 2000.0  # of the phase by dead time, in radians, after which it is given up that has no end in sight
 FURTHEST = 1e15  # times the frequency of the fastest pole, beyond which nothing is looked for
 
 
@@ -181,7 +181,8 @@ class Survey:
                 return
             furthest = max(math.inf if math.isnan(each) else each for each in ends.values())
             if (furthest == math.inf and (end * longest > MOST_TURNS or end > FURTHEST)) or end > 1e3 * FURTHEST:
-                raise ValueError(f"{left[0].name} is not decided beyond the frequency {end * loops.unit[0]:.6g}")
+                names = " and ".join(question.name for question in left)
+                raise ValueError(f"{names} is not decided beyond the frequency {end * loops.unit[0]:.6g}")
             window = max(4 * end, end + 20 / longest if longest else 0)
             end = min(furthest, window)
 

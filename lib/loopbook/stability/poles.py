@@ -8,7 +8,7 @@ import sympy
 from loopbook.expressions import s
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.stability.counting import ENDLESS, ON_LIMIT, characteristic, count_roots, open_loop
-from loopbook.stability.sums import prevailing
+from loopbook.stability.difference import prevailing
 
 
 def dominant_poles(loop, count=2):

@@ -1,15 +1,23 @@
 """Robustness plots: how long the dead time of a process may become, when its gain has changed as well."""
 
+from __future__ import annotations
+
 import itertools
 import math
-from typing import NamedTuple
+from fractions import Fraction
+from typing import TYPE_CHECKING, NamedTuple
 
 from loopbook.inputs import real_numbers
-from loopbook.laplace import by_delay
-from loopbook.stability.counting import count_roots, open_loop
-from loopbook.stability.former import equal_sizes, phase_left
-from loopbook.stability.sums import Sums, axis_zeros, fraction_sums
-from loopbook.transfer import transfer_function
+from loopbook.quasipolynomials import DelayFraction
+from loopbook.quasipolynomials.arrays import Quasipolynomials
+from loopbook.stability.counting import count_roots, fraction_sums, open_loop
+from loopbook.stability.crossings import SizeOne, asked, difference, phase_left, solved
+from loopbook.stability.enclosures import geometric
+from loopbook.stability.loops import Loops
+
+if TYPE_CHECKING:
+    import numpy
+    from numpy.typing import ArrayLike
 
 
 class DelayRatios(NamedTuple):
@@ -22,12 +30,12 @@ class DelayRatios(NamedTuple):
         regions: for each gain ratio the list of all regions, as (lower, upper).
     """
 
-    lower: object
-    upper: object
+    lower: numpy.ndarray | float
+    upper: numpy.ndarray | float
     regions: list
 
 
-def robustness(process, controller, gain_ratio):
+def robustness(process: object, controller: object, gain_ratio: ArrayLike) -> DelayRatios:
     """Return how long the dead time of the process may become, for a process whose gain has changed as well.
 
     The controller stays as it is, with the dead times that it may contain itself, as a Smith predictor does. At the
@@ -102,13 +110,13 @@ def _gain_ratios(gain_ratio):
 def open_loop_without_dead_time(process, controller):
     """Numerator and denominator of a loop without the one dead time of its process, and that dead time."""
     P = open_loop(process)
-    parts = by_delay(P.expr)
-    if len(parts) != 1 or 0 in parts:
+    delay = min(P.numerator)
+    if len(P.numerator) != 1 or not delay or len(P.denominator) != 1:
         raise ValueError(
             f"the process is {P.expr}: expected a fraction of polynomials with one dead time exp(-delay*s)"
         )
-    ((delay, rational),) = parts.items()
-    return *fraction_sums(open_loop(transfer_function(controller) * rational)), float(delay)
+    rational = DelayFraction({Fraction(0): P.numerator[delay]}, P.denominator)
+    return *fraction_sums(open_loop(controller) * rational), float(delay)
 
 
 def _distance_from_1(region):
@@ -116,29 +124,41 @@ def _distance_from_1(region):
     return 0 if low <= 1 <= high else math.log(low) if low > 1 else -math.log(high)
 
 
-def _stable_delays(A, B):
+def _stable_delays(A: Quasipolynomials, B: Quasipolynomials) -> list[list[tuple[float, float]]]:
     """For each loop with one more dead time in it, the regions of that dead time in which it is stable."""
     import numpy
 
-    equal, end, fading = equal_sizes(A, B)
+    loops = Loops(A, Quasipolynomials(B.coefficients, numpy.broadcast_to(B.delays, (len(B.delays), A.count))))
+    end = loops.beyond(numpy.ones(A.count))
     # where the gain at ever higher frequencies is 1 or more, no dead time is small enough
-    decided = numpy.flatnonzero(fading)
+    decided = numpy.flatnonzero(~numpy.isnan(end))
     regions = [[] for _ in end]
     if not len(decided):
         return regions
-    A, B, equal, end = A[decided], (B + 0 * A)[decided], equal[decided], end[decided]
-    which, w = axis_zeros(equal, 1, 0 * end, end)
-    rise = (1j * equal.derivative().value(which, w)).real
-    first, period = phase_left(A, B, which, w) / w, 2 * math.pi / w
+    loops, end = loops[decided], end[decided]
+    size = SizeOne()
+    which, a, b = geometric(loops.start, end)
+    some = a >= loops.start[which]
+    asked(loops, [size], which[some], a[some], b[some])
+    which, a, b = (
+        (numpy.concatenate(x) for x in zip(*size.brackets, strict=True)) if size.brackets else (which[:0],) * 3
+    )
+    w = solved(loops, which, a, b, difference)
+    values = loops.values(which, w, 2)
+    rise = difference(*values)[1]
+    first, period = phase_left(values[0][0], values[1][0]) / w, 2 * math.pi / w
     direction = 2 * numpy.sign(rise).astype(int)
     # counted before the first crossing, because poles may lie on the axis without any dead time
     earliest = numpy.full(len(decided), math.inf)
     numpy.minimum.at(earliest, which, numpy.where(first > 0, first, period))
     earliest = numpy.where(earliest < math.inf, earliest, 1.0)
-    begun = count_roots(B + Sums(A.coefficients, A.delays + earliest / 2))
+    begun = count_roots(loops.B + loops.A.delayed(earliest / 2))
     for k, point in enumerate(decided):
-        mine = which == k
-        regions[point] = _regions(int(begun[k]), first[mine], period[mine], direction[mine])
+        mine, unit = which == k, float(loops.unit[k])
+        regions[point] = [
+            (low / unit, high / unit)
+            for low, high in _regions(int(begun[k]), first[mine], period[mine], direction[mine])
+        ]
     return regions
 
 

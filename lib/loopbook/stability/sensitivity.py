@@ -18,15 +18,28 @@ def to_the_top(loops: Loops, question: Positive) -> None:
     every = numpy.flatnonzero((question.place > 0) & numpy.isfinite(question.place))
     if not len(every):
         return
-    w = question.place[every]
-    best = -numpy.ones(len(every))
-    places = w.copy()
-    for _ in range(30):
+
+    def at(w):
         A, B = loops.values(every, w, 2)
-        C = A + B
+        return B, A + B
+
+    question.see(every, *_climbed(at, question.place[every], 30))
+    if loops.exact is not None and len(every) and loops.doubtful_sum(every, question.place[every])[0]:
+        # rounding made what was seen, also if that is higher than what is there
+        place = question.place[every]
+        question.most[0] = 0.0
+        question.see(every, *_climbed(lambda w: [each.taylor(w, 2) for each in loops.exact[1:]], place, 8))
+
+
+def _climbed(at, w, most):
+    """The largest abs(B/C) that Newton's steps find, and where."""
+    import numpy
+
+    best, places = -numpy.ones(len(w)), w.copy()
+    for _ in range(most):
         (up, up1, up2), (down, down1, down2) = (
             (abs(x[0]) ** 2, 2 * (x[1] * x[0].conj()).real, 2 * abs(x[1]) ** 2 + 4 * (x[2] * x[0].conj()).real)
-            for x in (B, C)
+            for x in at(w)
         )
         with numpy.errstate(divide="ignore", invalid="ignore"):
             height = numpy.sqrt(up / down)
@@ -37,11 +50,11 @@ def to_the_top(loops: Loops, question: Positive) -> None:
         better = height > best
         done = ~better | (abs(step) <= 1e-9 * w)
         best[better], places[better] = height[better], w[better]
-        # what did not rise is tried again with half the step
-        w = numpy.where(better, w + step, (w + places) / 2)
         if done.all() and (abs(w - places) <= 1e-8 * places).all():
             break
-    question.see(every, best, places)
+        # what did not rise is tried again with half the step
+        w = numpy.where(better, w + step, (w + places) / 2)
+    return best, places
 
 
 def with_peaks(which, a, b, peaks: numpy.ndarray):

@@ -1,13 +1,21 @@
 """Shinskey's window: the changes of gain and dead time that a robust loop has to bear."""
 
+from __future__ import annotations
+
 import itertools
 import math
+from typing import TYPE_CHECKING
 
+from loopbook.stability.crossings import View
+from loopbook.stability.enclosures import UndecidedError, geometric, walk
+from loopbook.stability.loops import Loops
 from loopbook.stability.robustness import open_loop_without_dead_time, robustness
-from loopbook.stability.sums import prevailing, refined
+
+if TYPE_CHECKING:
+    import numpy
 
 
-def shinskey_window(points=25):
+def shinskey_window(points: int = 25) -> tuple[numpy.ndarray, numpy.ndarray]:
     """Return the outline of Shinskey's window in the plane of gain ratio and delay ratio, for a robustness plot.
 
     In the window the product of the two ratios lies between 0.5 and 2, and so does their quotient. (The source prints
@@ -34,12 +42,12 @@ def shinskey_window(points=25):
     return gains, delays
 
 
-def robust_in_window(process, controller):
+def robust_in_window(process: object, controller: object) -> bool:
     """Say whether a loop is stable in all of Shinskey's window, so that the controller counts as robust.
 
     The limit of stability is a curve with the frequency as its parameter: abs(L) = 1 gives the gain ratio, the phase
     the delay ratio. Bounds prove for each range of frequencies that it does not meet the window, or a point of it is
-    found in there.
+    found in there. A curve that touches the window, as far as numbers can tell, meets it.
 
     Arguments:
         process, controller: as for `robustness`.
@@ -64,12 +72,10 @@ def _misses_window(A, B, delay):
     """Whether the limit of stability, a curve over the frequency, stays out of Shinskey's window."""
     import numpy
 
-    end = prevailing(numpy.concatenate([B.coefficients, 2 * A.coefficients]))
-    if numpy.isnan(end).any():  # with twice the gain there is no end of unstable poles
+    loops = Loops(A, B)
+    end, delay = loops.beyond(numpy.full(1, 2.0)), delay * float(loops.unit[0])
+    if math.isnan(end[0]):  # with twice the gain there is no end of unstable poles
         return False
-
-    def values(which, w):
-        return numpy.array([A.value(which, w), B.value(which, w)])
 
     def meets(low, high, w_low, w_high, angle, more):
         """Whether a gain ratio between low and high has a delay ratio in the window, for these phases."""
@@ -80,22 +86,24 @@ def _misses_window(A, B, delay):
 
     misses = True
 
-    def undecided(intervals):
+    def undecided(which, a, b, precise):
         nonlocal misses
-        which, a, b, _, at_b = intervals
-        angle, (A_b, B_b) = numpy.angle(-at_b[0] / at_b[1]), abs(at_b)
-        if meets(B_b / A_b, B_b / A_b, b, b, angle, 0).any() or (b - a < 1e-13 * end).any():
-            misses = False
-            return numpy.zeros(len(which), dtype=bool)
-        change_A, change_B = ((b - a) * f.bounds(which, b)[1] for f in (A, B))
+        view = View(loops, which, a, b)
+        A, B = view.A, view.B
+        size_A, size_B, angle = A.sizes[0], B.sizes[0], numpy.angle(-A.terms[0] / B.terms[0])
         with numpy.errstate(divide="ignore", invalid="ignore"):
-            low = numpy.maximum(B_b - change_B, 0) / (A_b + change_A)
-            high = numpy.where(change_A < A_b, (B_b + change_B) / (A_b - change_A), math.inf)
+            if meets(size_B / size_A, size_B / size_A, view.c, view.c, angle, 0).any():
+                misses = False
+                return numpy.zeros(len(which), dtype=bool), False, loops.longest[which]
+            low = numpy.maximum(B.least, 0) / A.most
+            high = numpy.where(A.least > 0, B.most / numpy.maximum(A.least, 0), math.inf)
             turn = sum(
-                numpy.where(change < size, numpy.arcsin(numpy.minimum(change / size, 1)), math.pi)
-                for change, size in ((change_A, A_b), (change_B, B_b))
+                numpy.where(x.least > 0, numpy.arcsin(numpy.minimum(x.spread / x.sizes[0], 1)), math.pi) for x in (A, B)
             )
-        return meets(low, high, a, b, angle, turn)
+        return meets(low, high, a, b, angle, turn), False, loops.longest[which] + delay
 
-    refined(values, numpy.zeros(1, dtype=int), numpy.zeros(1), end, undecided)
+    try:
+        walk(undecided, *geometric(numpy.minimum(loops.start, end / 2), end), "the limit of stability", loops.unit)
+    except UndecidedError:
+        return False
     return misses
