@@ -175,7 +175,8 @@ class Survey:
         while True:
             asked(loops, left, *steps(done, numpy.array([end])))
             done = numpy.array([end])
-            ends = {id(question): self._end(question, end) for question in questions}
+            # a little beyond, because such a bound may itself be the last crossing
+            ends = {id(question): 1.001 * self._end(question, end) for question in questions}
             left = [question for question in questions if not ends[id(question)] <= end]
             if not left:
                 return
