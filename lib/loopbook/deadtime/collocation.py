@@ -28,6 +28,7 @@ MOST_NUMBERS = 30_000_000  # that are kept of the signals
 MOST_MATRICES = 200  # that are kept
 AHEAD = 8  # how many segments before a breakpoint they are made equal
 PATIENCE = 8  # segments before a longer one is tried again
+RANGE = 1e3  # times the largest value so far, up to which a signal may grow in a segment
 WORTH = 12  # segments that a matrix for another length costs
 
 
@@ -113,8 +114,8 @@ class _Follower:
         scale = numpy.zeros(q + 1)
         values = numpy.zeros(1 + n + q * NODES)
         values[0] = 1.0
-        longest = echoes.longest
-        wish = min(echoes.start, moments[0][2] if moments else longest) or 1
+        longest, start = echoes.longest, echoes.start
+        wish = min(start, moments[0][2] if moments else longest) or 1
         shortest = wish >> 40
         position, index, waiting, patience, length = 0, 0, 0, PATIENCE, 0
         finished = last - (last >> 48)
@@ -122,13 +123,16 @@ class _Follower:
         while True:
             # what lies ahead
             before, length, forced = length, wish, 0
-            echoes.listen(position + AHEAD * wish, wish, UNSEEN * scale[:, None])
+            threshold = UNSEEN * scale[:, None]
             while index < len(moments) and moments[index][0] <= position:
                 index += 1
             k = index
-            while k < len(moments):
+            while k < len(moments) or echoes.listen(position + AHEAD * length, length, threshold):
                 tick, allowed, _ = moments[k]
                 gap = tick - position
+                if gap <= 0:
+                    k += 1
+                    continue
                 if gap >= length and (allowed >= length or gap > AHEAD * length):
                     break
                 if allowed <= gap:
@@ -137,7 +141,9 @@ class _Follower:
                 length = min(length, allowed)
                 k += 1
             rest = last - position
-            if not forced and position < finished:
+            if position >= finished:  # only for the value after a jump at the end
+                length = min(length, before or length)
+            elif not forced:
                 if length != before and rest < WORTH * before and before <= length and before <= wish:
                     length = before  # a new matrix would not pay
                 if length != before and rest < AHEAD * length:
@@ -154,6 +160,9 @@ class _Follower:
             largest = numpy.maximum(scale, maximum(absolute(signals), axis=1))
             left = absolute(signals @ high)
             tail = maximum(left[:, 8:], axis=1)
+            if length > start and True in ((largest > RANGE * scale) & (scale > 0)).tolist():
+                wish, waiting = max(length >> 1, start), 1
+                continue
             if False in (tail <= GOAL * largest).tolist():
                 if not numpy.isfinite(largest).all():
                     raise ValueError(f"the response grows beyond all numbers before t = {self.end:g}")

@@ -64,7 +64,9 @@ class Echoes:
             longest = LONGEST / growing if growing else math.inf
         longest = min(longest, end)
         self.longest = int(longest * per)
-        self.start = int(min(REACH / fastest if fastest else math.inf, longest) * per)
+        start = min(REACH / fastest if fastest else math.inf, longest)
+        # slow motion is of all sizes at first, as of a chain of integrators
+        self.start = int(start * per) if start < end or len(model.A) < 2 else int(end / 16 * per)
         seen = min(int(numpy.searchsorted(grid, BLIND / longest)), len(grid) - 1)
         grid = grid[seen:]
         self.from_channels = numpy.ascontiguousarray(channels[..., seen:])
@@ -97,8 +99,12 @@ class Echoes:
                 entry[channel] += content[channel]
         return True
 
-    def listen(self, ahead: int, length: int, threshold: numpy.ndarray) -> None:
-        """Find the moments up to the tick `ahead`, or up to the first that a segment of the length cannot cross."""
+    def listen(self, ahead: int, length: int, threshold: numpy.ndarray) -> bool:
+        """Find moments up to the tick `ahead`, or up to the first that a segment of the length cannot cross.
+
+        Returns whether there are new ones.
+        """
+        before = len(self.moments)
         heap, pending = self._heap, self._pending
         while heap and heap[0] <= ahead:
             now = heapq.heappop(heap)
@@ -110,7 +116,8 @@ class Echoes:
                 raise OverflowError
             new = self._heard(now, (self.from_channels * content).sum(axis=1), threshold)
             if new and self.moments[-1][1] < length:
-                return
+                break
+        return len(self.moments) > before
 
 
 def _speeds(model):

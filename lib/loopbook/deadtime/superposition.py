@@ -1,0 +1,349 @@
+"""The response to a record of samples as a sum of step responses, in a time that grows with the number of samples.
+
+The record is cut into blocks, these into halves, and so on. Where the step response is one polynomial over all the
+differences in time between two blocks, a few numbers of one block, its moments, say what it does to the other; only
+where the step response is not smooth, and at the bottom, are its values summed one by one.
+"""
+
+from __future__ import annotations
+
+import functools
+from typing import TYPE_CHECKING
+
+from loopbook.deadtime.collocation import NODES, interpolation, radau
+
+if TYPE_CHECKING:
+    import numpy
+
+    from loopbook.deadtime.response import Response
+
+SMOOTH = (1e-13, 1e-12)  # shares of the largest value so far by which the step response may differ from a polynomial
+FEW = 8  # samples in a block at the bottom, or less
+DEEPEST = 16  # times as many blocks as samples
+MOST_WORK = 10_000_000  # pairs of samples that are taken one by one, or pairs of blocks, about two seconds
+CHUNK = 500_000
+MANY = 64  # kernels of one level, above which they are applied by Fourier transform
+LEAF = 256  # samples that are taken directly
+TOUCHED = 40  # segments of the step response that one polynomial may replace
+SHARES = (0.0, 0.02, 0.1, 0.25, 0.45, 0.65, 0.85, 0.97, 1.0)  # where in a segment it is compared
+
+
+def superpose(response: Response, times: numpy.ndarray, u: numpy.ndarray, lines: bool, late: float) -> numpy.ndarray:
+    """Return the values at the times of the response to samples.
+
+    Arguments:
+        response: the step response, up to the last of the times.
+        times: increasing from 0.
+        u: the samples; the first is a step from 0.
+        lines: whether they are joined by straight lines, or kept until the next.
+        late: how far a difference of times may be from a jump that is meant.
+    """
+    import numpy
+
+    count, end = len(times), times[-1]
+    even = numpy.linspace(0.0, end, count)
+    if abs(times - even).max() <= late:
+        return _evenly(response, even, u, lines, late)
+    changes = numpy.diff(u, prepend=0.0)
+    # no boundary where a sample or a jump is meant to be
+    begin, span = -0.00614 * end, 1.0137 * end
+    for smooth in SMOOTH:
+        kernel = _Kernel(response, span, smooth)
+        level, undecided, applied = 0, numpy.zeros(0, int), []
+        work = 0.0
+        while True:
+            kernels, undecided = kernel.split(undecided, level)
+            applied.append(kernels)
+            work += 2.0**level * min(len(kernels[0]), MANY)
+            if 2**level * FEW >= count:
+                blocks = ((times - begin) * (2**level / span)).astype(int)
+                held = numpy.bincount(blocks, minlength=2**level).astype(float)
+                pairs = sum(float(held[m:] @ held[: 2**level - m]) for m in undecided.tolist())
+                deeper = 2.0 ** (level + 1) * min(2 * len(undecided), MANY)
+                if pairs < 2 * deeper or 2**level > DEEPEST * count or max(work, deeper, pairs / 4) > MOST_WORK:
+                    break
+            level += 1
+        if max(work, pairs) <= MOST_WORK:
+            break
+    else:
+        raise ValueError(
+            f"the step response is at so many times not smooth, or the {count} samples are so uneven, that {pairs:.0e} "
+            f"pairs of samples had to be taken one by one: expected even distances, or a shorter record"
+        )
+    points, weights, slopes = times, changes, None
+    if lines:  # each line in one block
+        points = numpy.union1d(times, begin + span * numpy.arange(1, 2**level) / 2**level)
+        points = points[(points >= 0) & (points <= end)]
+        slopes = (changes[1:] / numpy.diff(times))[numpy.searchsorted(times, points[:-1], side="right") - 1]
+        weights = numpy.r_[u[0], numpy.zeros(len(points) - 1)]
+    far = _far(applied, times, points, weights, slopes, begin, span, level)
+    near = _near(response, undecided, times, points, weights, slopes, begin, span, level, late)
+    return far + near
+
+
+def _evenly(response, times, u, lines, late):
+    """The values at times of one distance, by what a pulse of one sample does."""
+    import numpy
+    from numpy.polynomial import legendre
+
+    piece = _Piece(response, 0.0, times[-1], late, integrate=False)
+    step = piece.values(times)
+    if not lines:
+        return _causal(numpy.diff(step, prepend=0.0), u)
+    # a straight line is a step for each of its moments: means of the step response between samples
+    width = times[-1] / (len(times) - 1)
+    inside = response.edges[(response.edges > late) & (response.edges < times[-1] - late)] / width
+    inside = inside[abs(inside - numpy.round(inside)) > late / width]
+    points = numpy.union1d(numpy.arange(len(times)), inside)  # in samples, so that most pieces are exactly one
+    nodes, weights = legendre.leggauss(NODES // 2)
+    lengths = numpy.diff(points)
+    places = (points[:-1, None] + lengths[:, None] * (nodes + 1) / 2) * width
+    integrals = (piece.values(places.ravel()).reshape(places.shape) @ weights) * lengths / 2
+    means = numpy.bincount(points[:-1].astype(int), integrals, len(times) - 1)
+    pulses = numpy.diff(means, prepend=0.0)
+    return u[0] * (step - numpy.r_[0.0, means]) + numpy.r_[0.0, _causal(pulses, u[1:])]
+
+
+def _causal(kernel, u):
+    """The convolution of two arrays from their beginnings, each value as exact as those up to it are large."""
+    import numpy
+    from scipy import linalg, signal
+
+    count, result = len(u), numpy.zeros(len(u))
+    size = min(LEAF, count)
+    corner = linalg.toeplitz(kernel[:size], numpy.zeros(size))
+    for begins in range(0, count, size):
+        number = begins // size
+        ends = min(count, begins + size)
+        if number:
+            reach = size * (number & -number)  # of what came before, as much as fits into a power of two
+            ends_there = min(count, begins + reach)
+            there = signal.fftconvolve(u[begins - reach : begins], kernel[: reach + ends_there - begins])
+            result[begins:ends_there] += there[reach : reach + ends_there - begins]
+        length = ends - begins
+        result[begins:ends] += corner[:length, :length] @ u[begins:ends]
+    return result
+
+
+class _Kernel:
+    """The step response on windows: where it is one polynomial, and the matrices between blocks there."""
+
+    def __init__(self, response, span, smooth):
+        import numpy
+        from numpy.polynomial import legendre
+
+        self.response, self.span, self.smooth = response, span, smooth
+        shares = numpy.array(SHARES)
+        edges = response.edges
+        values = legendre.legval(2 * shares - 1, response.coefficients.T)
+        self.places = (edges[:-1, None] + numpy.diff(edges)[:, None] * shares).ravel()
+        self.values = values.ravel()
+        largest = numpy.maximum.accumulate(abs(self.values))
+        self.largest = numpy.maximum(largest, 1e-4 * largest[-1])
+
+    def split(self, undecided, level):
+        """The distances between blocks, in blocks, where there is one polynomial, with its matrices; and the others.
+
+        Arguments:
+            undecided: the distances between blocks twice as long for which there is none.
+        Returns:
+            (distances, matrices, which), and distances. Where a distance comes of two longer ones and only one is
+            undecided, `which` is 0 or 1 and says which blocks are concerned, those of an even or an odd number; else 2.
+        """
+        import numpy
+
+        rule = radau()
+        width = self.span / 2**level
+        last = self.response.edges[-1]
+        if level:
+            windows = numpy.unique((2 * undecided[:, None] + [-1, 0, 1]).ravel())
+            windows = windows[(windows >= 0) & (windows < 2**level)]
+            decided = numpy.ones(2 ** (level - 1) + 1, bool)
+            decided[undecided], decided[-1] = False, False  # blocks are never as far from each other as the last
+            below, above = (~decided[(windows + side) // 2] for side in (-1, 1))
+            which = numpy.where((windows % 2 == 0) | (below & above), 2, numpy.where(below, 1, 0))
+        else:
+            windows, which = numpy.array([0]), numpy.array([2])
+        low, high = (windows - 1) * width, (windows + 1) * width
+        first, after = numpy.searchsorted(self.places, low), numpy.searchsorted(self.places, high, side="right")
+        inherited = which < 2
+        possible = (windows > 0) & (high <= last) & (after - first <= TOUCHED * len(SHARES)) | inherited
+        places = windows[:, None] * width + width * rule.nodes
+        values = numpy.zeros(places.shape)
+        values[possible] = self.response(numpy.minimum(places[possible], last))
+        smooth = possible.copy()
+        for number in numpy.flatnonzero(possible & ~inherited):
+            here = slice(first[number], after[number])
+            limit = self.smooth * self.largest[min(after[number], len(self.largest) - 1)]
+            smooth[number] = abs(rule.to_coefficients[-2:] @ values[number]).max() <= limit
+            if smooth[number] and after[number] > first[number]:
+                difference = interpolation(self.places[here] / width - windows[number]) @ values[number]
+                smooth[number] = abs(difference - self.values[here]).max() <= limit
+        matrices = (_between() @ values[smooth].T).T.reshape(-1, NODES, NODES)
+        return (windows[smooth], matrices, which[smooth]), windows[~smooth]
+
+
+@functools.cache
+def _between():
+    """From values on a window to those at the differences of the nodes of two blocks."""
+    nodes = radau().nodes
+    return interpolation(((nodes[:, None] - nodes) / 2).ravel())
+
+
+def _far(applied, times, points, weights, slopes, begin, span, depth):
+    """What comes by moments."""
+    import numpy
+    from numpy.polynomial import legendre
+
+    rule = radau()
+    halves = [interpolation((rule.nodes + side) / 2) for side in (-1, 1)]
+    # moments of the Legendre polynomials at the bottom
+    width = span / 2**depth
+
+    def local(moments, block=None):
+        place = (moments - begin) / width
+        block = place.astype(int) if block is None else block
+        return block, 2 * (place - block) - 1
+
+    block, where = local(points)
+    moments = numpy.zeros((2**depth, NODES))
+    used = weights != 0
+    numpy.add.at(moments, block[used], legendre.legvander(where[used], NODES - 1) * weights[used, None])
+    if slopes is not None:
+        middle, _ = local((points[:-1] + points[1:]) / 2)
+        integral = numpy.zeros((len(middle), NODES))
+        for ends, sign in ((points[1:], 1), (points[:-1], -1)):
+            values = legendre.legvander(local(ends, middle)[1], NODES)
+            integral[:, 0] += sign * values[:, 1]
+            integral[:, 1:] += sign * (values[:, 2:] - values[:, :-2]) / (2 * numpy.arange(1, NODES) + 1)
+        numpy.add.at(moments, middle, integral * (slopes * width / 2)[:, None])
+    levels = [moments @ rule.to_coefficients]
+    for _ in range(depth):
+        levels.append(levels[-1][0::2] @ halves[0] + levels[-1][1::2] @ halves[1])
+    levels.reverse()
+    total = numpy.zeros((1, NODES))
+    for level, (windows, matrices, which) in enumerate(applied):
+        if level:
+            total = numpy.stack([total @ halves[0].T, total @ halves[1].T], axis=1).reshape(-1, NODES)
+        sources = levels[level]
+        if (which == 2).sum() > MANY:
+            total += _convolved(windows[which == 2], matrices[which == 2], sources)
+            windows, matrices, which = windows[which < 2], matrices[which < 2], which[which < 2]
+        for m, matrix, parity in zip(windows.tolist(), matrices, which.tolist(), strict=True):
+            begins, step = (m, 1) if parity == 2 else (m + (m + parity) % 2, 2)
+            heard = total[begins::step]
+            heard += sources[begins - m :: step][: len(heard)] @ matrix.T
+    block, where = local(times)
+    return (legendre.legvander(where, NODES - 1) * (total @ rule.to_coefficients.T)[block]).sum(axis=1)
+
+
+def _convolved(windows, matrices, sources):
+    import numpy
+    from scipy import fft
+
+    count = len(sources)
+    size = fft.next_fast_len(2 * count, real=True)
+    heard = fft.rfft(sources, size, axis=0)
+    result = numpy.empty((count, NODES))
+    kernel = numpy.zeros((count, NODES))
+    for row in range(NODES):
+        kernel[windows] = matrices[:, row]
+        result[:, row] = fft.irfft((fft.rfft(kernel, size, axis=0) * heard).sum(axis=1), size)[:count]
+    return result
+
+
+def _near(response, windows, times, points, weights, slopes, begin, span, depth, late):
+    """What comes one by one: from blocks at those distances at which the step response is not smooth."""
+    import numpy
+
+    count = 2**depth
+    blocks = ((times - begin) * (count / span)).astype(int)
+    middles = points if slopes is None else (points[:-1] + points[1:]) / 2
+    sources = numpy.searchsorted(((middles - begin) * (count / span)).astype(int), numpy.arange(count + 1))
+    total = numpy.zeros(len(times))
+    runs = numpy.split(windows, numpy.flatnonzero(numpy.diff(windows) > 1) + 1) if len(windows) else []
+    width = span / count
+    for run in runs:
+        near, distant = int(run[0]), int(run[-1])
+        first = sources[numpy.clip(blocks - distant, 0, count)]
+        after = sources[numpy.clip(blocks - near + 1, 0, count)]
+        piece = _Piece(response, max(0.0, (near - 1.0) * width), (distant + 1.0) * width, late, slopes is not None)
+        lengths = after - first + (0 if slopes is None else (after > first))
+        steps = numpy.cumsum(lengths)
+        begins = 0
+        while begins < len(times):
+            done = steps[begins - 1] if begins else 0
+            ends = max(begins + 1, int(numpy.searchsorted(steps, done + CHUNK, side="right")))
+            here = slice(begins, ends)
+            size = lengths[here]
+            offsets = numpy.r_[0, numpy.cumsum(size)[:-1]]
+            target = numpy.repeat(numpy.arange(len(size)), size)
+            number = numpy.arange(len(target)) - offsets[target] + first[here][target]
+            ago = times[here][target] - points[number]
+            if slopes is None:
+                value = piece.values(ago) * weights[number]
+            else:
+                # the slope before a point, and the one after it, as far as they are of these blocks
+                one = numpy.where(number < after[here][target], slopes[numpy.minimum(number, len(slopes) - 1)], 0.0)
+                other = numpy.where(number > first[here][target], slopes[numpy.maximum(number - 1, 0)], 0.0)
+                value = piece.integrals(ago) * (one - other)
+            total[here] += numpy.bincount(target, value, len(size))
+            begins = ends
+    if slopes is not None and weights[0] != 0:  # the step at the beginning
+        block = blocks[0]
+        here = numpy.isin(blocks - block, windows)
+        total[here] += weights[0] * response(times[here])
+    return total
+
+
+class _Piece:
+    """The step response between two moments, and its integral from the first of them."""
+
+    def __init__(self, response, low, high, late, integrate):
+        import numpy
+        from numpy.polynomial import legendre
+
+        edges = response.edges
+        first = max(0, int(numpy.searchsorted(edges, low, side="right")) - 1)
+        after = min(len(edges) - 1, int(numpy.searchsorted(edges, high)) + 1)
+        self.edges = edges[first : after + 1]
+        self.coefficients = response.coefficients[first:after].T
+        self.late, self.scale = late, 2 / numpy.diff(self.edges)
+        largest = abs(self.coefficients).max()
+        if integrate:
+            rows = legendre.legint(self.coefficients, lbnd=-1) / self.scale
+            self.integral = rows
+            self.integral[0] += numpy.r_[0.0, numpy.cumsum(rows.sum(axis=0))[:-1]]
+        seen = numpy.flatnonzero((abs(self.coefficients) > 1e-17 * largest).any(axis=1))
+        self.coefficients = self.coefficients[: seen.max(initial=0) + 1]
+
+    def _at(self, series, ago):
+        import numpy
+
+        index = numpy.searchsorted(self.edges, ago + self.late, side="right") - 1
+        before = index < 0
+        index = numpy.clip(index, 0, len(self.edges) - 2)
+        place = (ago - self.edges[index]) * self.scale[index] - 1
+        # Clenshaw's recursion
+        last = len(series) - 1
+        if last == 0:
+            return series[0][index], before
+        high, low = numpy.zeros(len(ago)), series[last][index]
+        for degree in range(last - 1, -1, -1):
+            high, low = (
+                low,
+                series[degree][index]
+                + (2 * degree + 1) / (degree + 1) * place * low
+                - (degree + 1) / (degree + 2) * high,
+            )
+        return low, before
+
+    def values(self, ago):
+        value, before = self._at(self.coefficients, ago)
+        value[before] = 0.0
+        return value
+
+    def integrals(self, ago):
+        value, before = self._at(self.integral, ago)
+        value[before] = 0.0
+        return value
