@@ -172,20 +172,31 @@ def test_any_input_with_a_transform(u):
     assert System(H).response(TIMES, u) == pytest.approx(expected, abs=1e-12)
 
 
-def test_samples_are_joined_by_straight_lines():
+def test_samples_that_are_joined_by_straight_lines():
     loop = Loop(first_order(2, 3, delay=1), PID(1, Ti=2)).servo
     corners = [0, 1.5, 2.25, 7]
     u = t - sympy.Heaviside(t - 1.5) * 3 * (t - 1.5) + sympy.Heaviside(t - 2.25) * 2 * (t - 2.25)
     times = np.union1d(TIMES, corners)
-    by_samples = loop.response(times, evaluate(u, times))
+    by_samples = loop.response(times, evaluate(u, times), hold="first order")
     assert by_samples == pytest.approx(loop.response(times, u), abs=1e-10)
     many = np.linspace(0, 20, 3000) ** 1.01  # none of the differences occurs twice
-    by_samples = System(1 / (s + 1)).response(many, np.sin(many))
+    by_samples = System(1 / (s + 1)).response(many, np.sin(many), hold="first order")
     assert by_samples == pytest.approx(System(1 / (s + 1)).response(many, sympy.sin(t)), abs=1e-5)
     start = 1 - np.minimum(times, 1)  # begins with a jump
-    assert loop.response(times, start) == pytest.approx(
+    assert loop.response(times, start, hold="first order") == pytest.approx(
         loop.response(times, 1 - t + sympy.Heaviside(t - 1) * (t - 1)), abs=1e-10
     )
+
+
+def test_samples_that_are_held():
+    loop = Loop(first_order(2, 3, delay=1), PID(1, Ti=2)).servo
+    times = np.array([0, 0.5, 1.25, 3, 3.1, 7, 8])
+    u = np.array([1.0, -2, 0.5, 4, 4, 0, 9])
+    steps = [(change, at) for change, at in zip(np.diff(u, prepend=0), times, strict=True)]
+    expected = sum(change * np.where(times >= at, loop.step(np.maximum(times - at, 0)), 0) for change, at in steps)
+    assert loop.response(times, u) == pytest.approx(expected, abs=1e-11)
+    later = loop.response(times + 5, u)  # at rest before the first sample, whenever that is
+    assert later == pytest.approx(expected, abs=1e-11)
 
 
 def test_an_impulse():
@@ -376,10 +387,12 @@ def test_times_that_are_none(times):
 
 
 def test_samples_that_do_not_fit():
-    flat = ([0, 1], [1, 2, 3]), ([1, 2], [1, 1]), ([0, 2, 1], [0, 0, 0]), (1.0, [0, 1]), ([], [])
+    flat = ([0, 1], [1, 2, 3]), ([1, 1], [1, 1]), ([0, 2, 1], [0, 0, 0]), (1.0, [0, 1]), ([], [])
     for times, u in (*flat, ([[0, 1], [2, 3]], [[0, 1], [2, 3]])):
-        with pytest.raises(ValueError, match="expected one each for times that increase from 0"):
+        with pytest.raises(ValueError, match="expected one each for times that increase"):
             System(1 / s).response(times, u)
+    with pytest.raises(ValueError, match="the hold is 'spline'"):
+        System(1 / s).response([0, 1], [0, 1], hold="spline")
 
 
 def test_complex_numbers_are_not_cut_down():
@@ -403,12 +416,17 @@ def test_ends_and_moments_that_are_none():
     assert "t = 3 to 3" in repr(loop.run(3))
 
 
-def test_responses_that_cannot_be_followed():
+def test_dead_times_and_lags_that_are_short_beside_the_end():
     tiny = sympy.Rational(1, 10**6)
-    with pytest.raises(ValueError, match="sums before t = 1000"):
-        System(1 / (s + sympy.exp(-tiny * s))).step([1000])
-    with pytest.raises(ValueError, match="is too short beside the end"):
-        System(1 / (tiny * s + 1)).step([1000])
+    times = np.array([1.0, 5, 1000])
+    # y' = -y(t - tiny) + 1 is a lag of 1 - tiny but for what is smaller still
+    loop = System(1 / (s + sympy.exp(-tiny * s)))
+    pole = -(1 + 1e-6 + 1.5e-12)
+    assert loop.step(times) == pytest.approx(1 - np.exp(pole * times), abs=3e-6)
+    assert System(1 / (tiny * s + 1)).step([1e-6, 1000]) == pytest.approx([1 - math.exp(-1), 1], abs=1e-12)
+
+
+def test_responses_that_cannot_be_followed():
     with pytest.raises(ValueError, match=r"later than .*, the end of the response"):
         System(1 / s).step_until(2)([3])
     with pytest.raises(ValueError, match="grows beyond all numbers"):

@@ -240,11 +240,11 @@ class Loop:
 
     # ---- signals
 
-    def run(self, times: ArrayLike, setpoint: object = 1, load: object = 0) -> LoopResponse:
+    def run(self, times: ArrayLike | None = None, setpoint: object = 1, load: object = 0) -> LoopResponse:
         """Return the signals of the loop for a setpoint and a load that change in time, the loop at rest before.
 
         Arguments:
-            times: an array of times, not negative.
+            times: an array of times, not negative; by itself 501 of them up to `System.horizon` of the servo response.
             setpoint, load: expressions in `t`, as `signals.stepwise` writes steps, or numbers.
         Returns:
             A `LoopResponse`, which `figures.trends` draws.
@@ -253,7 +253,9 @@ class Loop:
         >>> Loop(sympy.exp(-s) / s, PID(0.5)).run([2, 3])["y"].round(6)
         array([0.5  , 0.875])
         """
-        times = times_from_zero(times)
+        import numpy
+
+        times = numpy.linspace(0, self.servo.horizon(), 501) if times is None else times_from_zero(times)
         y_SP, d = (evaluate(function_of(t, signal), times) for signal in (setpoint, load))
         paths = {"y": (self.servo, self.regulator), "u": (self.setpoint_to_control, self.load_to_control)}
         signals = {"setpoint": y_SP, "d": d}

@@ -461,7 +461,7 @@ def step_plot(
     if any(loops) and not all(loops):
         raise ValueError("a plot shows loops or systems: expected no systems beside loops")
     outputs = {label: _system(x.servo if any(loops) else x) for label, x in systems.items()}
-    end = positive("the end", end) if end is not None else max(_horizon(x, info) for x in outputs.values())
+    end = positive("the end", end) if end is not None else max(x.horizon(info) for x in outputs.values())
     controls = {label: x.setpoint_to_control for label, x in systems.items()} if any(loops) else {}
     shown = [*outputs.values(), *controls.values()]
     responses = [system.step_until(end) for system in shown]
@@ -543,25 +543,6 @@ def _system(value):
     from loopbook.deadtime.system import System
 
     return value if isinstance(value, System) else System(value)
-
-
-def _horizon(system, info) -> float:
-    """A time by which a response has settled, or is seen not to."""
-    slowest, delays = natural_range([system])[0] * 10, 2 * float(sum(system.delays))
-    longest = 60 / slowest + 5 * delays
-    if info is None and system.is_stable:
-        info = system.step_info()
-    if info is None or not math.isfinite(info.settling_time):
-        return _round_end(5 / slowest + delays)
-    last = max(info.settling_time, info.peak_time if math.isfinite(info.peak_time) else 0)
-    return _round_end(min(1.35 * last, longest) or 5 / slowest)
-
-
-def _round_end(value: float) -> float:
-    decade = 10.0 ** math.floor(math.log10(value))
-    return float(
-        f"{next(x for x in (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10) if x * decade >= value * 0.999) * decade:g}"
-    )
 
 
 def _times(responses, end):

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Self
 
 import sympy
 
-from loopbook.deadtime.response import ChannelModel, Response
+from loopbook.deadtime.curves import natural_range
+from loopbook.deadtime.response import ChannelModel, Response, response_to_samples
 from loopbook.deadtime.step_info import StepInfo, first_time_at, settled_response, step_info
 from loopbook.expressions import function_of, s, t
 from loopbook.inputs import number, real_numbers, times_from_zero
@@ -128,7 +129,7 @@ class System(DelayFraction):
         Arguments:
             times: an array of times, not negative, in the unit of the lags.
         Returns:
-            An array; without times the response itself, as `step_until` returns it.
+            An array; without times the response itself up to `horizon`, as `step_until` returns it.
         Raises:
             ValueError: for negative times, or where so many combinations of the dead times are points of discontinuity
                 that the response cannot be followed.
@@ -141,13 +142,32 @@ class System(DelayFraction):
         times = times_from_zero(times)
         return self.step_until(times.max(initial=0.0))(times)
 
-    def step_until(self, end: float) -> Response:
+    def step_until(self, end: float | None = None) -> Response:
         """Return the step response up to the time `end` as a `Response`, a function of time with its integrals.
+
+        Without an end it is followed up to `horizon`.
 
         >>> System(1 / (s + 1)).step_until(5)(1.0).round(6)
         np.float64(0.632121)
         """
-        return Response(self.state_space(), end)
+        return Response(self.state_space(), self.horizon() if end is None else end)
+
+    def horizon(self, info: StepInfo | None = None) -> float:
+        """Return a round time by which the step response has settled, or is seen not to.
+
+        Arguments:
+            info: what `step_info` says, if it is known.
+
+        >>> System(sympy.exp(-s) / (2 * s + 1)).horizon(), System(1 / s).horizon()
+        (12.0, 5.0)
+        """
+        slowest, delays = 10 * natural_range([self])[0], 2 * float(sum(self.delays))
+        if info is None and self.is_stable:
+            info = self.step_info()
+        if info is None or not math.isfinite(info.settling_time):
+            return _round_time(5 / slowest + delays)
+        last = max(info.settling_time, info.peak_time if math.isfinite(info.peak_time) else 0)
+        return _round_time(min(1.35 * last, 60 / slowest + 5 * delays) or 5 / slowest)
 
     def impulse(self, times: ArrayLike) -> numpy.ndarray:
         """Return the output for a unit impulse at t = 0: the step response of ``s*H``, with the accuracy of `step`.
@@ -161,43 +181,32 @@ class System(DelayFraction):
             raise ValueError(f"{self.expr} is not strictly proper: its response to an impulse contains impulses")
         return (self * DIFFERENTIATOR).step(times)
 
-    def response(self, times: ArrayLike, u: object) -> numpy.ndarray:
+    def response(self, times: ArrayLike, u: object, hold: str = "zero order") -> numpy.ndarray:
         """Return the output for an input u(t) that begins at t = 0, the system being at rest before.
 
         Arguments:
             times: an array of times, not negative.
             u: an expression in `t` that has a rational Laplace transform apart from dead times (steps, ramps,
                 polynomials, exponentials, sines, also later ones); or an array with a value for each of the times,
-                increasing and beginning with 0, which are joined by straight lines.
+                increasing; the first one is a step from 0.
+            hold: what samples are between their times: "zero order", kept until the next one, as a digital controller
+                does and as `identification.fit` reads them; or "first order", joined by straight lines.
         Returns:
-            An array, exact in the sense of `step` for both kinds of input.
+            An array, exact in the sense of `step` for all kinds of input.
         Raises:
             ValueError: for a signal without a transform, an input with impulses where the output would have impulses,
                 or arrays that do not fit.
 
         >>> System(2 / s).response([3, 4], sympy.Heaviside(t - 2)).round(6)
         array([2., 4.])
+        >>> System(1 / s).response([0, 1, 2], [0, 1, 3], hold="first order").round(6)
+        array([0. , 0.5, 2.5])
         """
         times = times_from_zero(times)
         if hasattr(u, "__len__") and not isinstance(u, str):
-            return self._response_to_samples(times, real_numbers("values of u", u))
+            return response_to_samples(self.state_space(), times, u, hold)
         forced = DelayFraction(self.numerator, self.denominator) * read(transform(function_of(t, u)))
         return System(forced).impulse(times)
-
-    def _response_to_samples(self, times, u):
-        import numpy
-
-        fit = u.shape == times.shape and times.ndim == 1 and len(times) > 1
-        if not (fit and times[0] == 0 and (numpy.diff(times) > 0).all()):
-            raise ValueError(
-                f"{u.size} values of u for {times.size} times: expected one each for times that increase from 0"
-            )
-        slopes = numpy.diff(u) / numpy.diff(times)
-        ramp = System(self.expr / s).step_until(times[-1])
-        # each change of slope begins a ramp of its own, at those times that are later
-        changes = numpy.diff(slopes, prepend=0)
-        after = [changes[:k] @ ramp(times[k] - times[:k]) for k in range(len(times))]
-        return u[0] * self.step(times) + after
 
     def step_info(self, settling: float = 0.02, rise: tuple[float, float] = (0.1, 0.9)) -> StepInfo:
         """Return rise time, settling time, overshoot, undershoot and peak of the unit step response, as `StepInfo`.
@@ -362,6 +371,12 @@ class System(DelayFraction):
             return model
         channels = control.append(*(control.ss(control.tf(*control.pade(float(delay), order))) for delay in delays))
         return model.lft(channels)
+
+
+def _round_time(value: float) -> float:
+    decade = 10.0 ** math.floor(math.log10(value))
+    steps = (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10)
+    return float(f"{next(x for x in steps if x * decade >= value * 0.999) * decade:g}")
 
 
 def closed_loop(G: object, H: object = 1) -> System:
