@@ -75,6 +75,7 @@ class Response:
         if not 0 <= end < math.inf:
             raise ValueError(f"the end is {end}: expected a finite time, zero or later")
         self.edges, self._coefficients = follow(model, end)
+        self.edges[-1] = max(self.edges[-1], end)  # which may differ by rounding
 
     def __call__(self, times: ArrayLike) -> numpy.ndarray:
         """Return the values at the given times, at a jump the one after it."""
