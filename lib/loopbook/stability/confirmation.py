@@ -70,8 +70,8 @@ def confirm(loops: Loops, found: dict[str, float]) -> None:
                 left.append(change)
             elif (count == 0) != change.inside and share > SHARES[0]:
                 raise ValueError(
-                    f"the {change.name.replace('_', ' ')} is not decided: about {change.limit:.12g} poles stay so close "
-                    f"to the axis that counting does not tell on which side they are"
+                    f"the {change.name.replace('_', ' ')} is not decided: about {change.limit:.12g} there are poles so "
+                    f"close to the axis that counting does not tell on which side they are"
                 )
             elif (count == 0) != change.inside:
                 side = "inside" if change.inside else "outside"

@@ -136,10 +136,10 @@ def unstable_closed_loop_poles(loop: object) -> float:
 def unstable_roots(denominator: Mapping) -> float:
     """Return the number of roots in the right half-plane of a sum of polynomials with dead times.
 
-    The argument principle counts them, by the phase of the sum along the imaginary axis. On an interval of frequency the
-    phase is believed only where an expansion with a bound of its rest proves that the sum has no zero there; otherwise
-    the interval is divided, and computed with more digits where rounding is the reason. Beyond a certain frequency the
-    highest power prevails, also by a bound. No more than a million intervals are looked at.
+    The argument principle counts them, by the phase of the sum along the imaginary axis. On an interval of frequency
+    the phase is believed only where an expansion with a bound of its rest proves that the sum has no zero there;
+    otherwise the interval is divided, and computed with more digits where rounding is the reason. Beyond a certain
+    frequency the highest power prevails, also by a bound. No more than a million intervals are looked at.
 
     Arguments:
         denominator: ``{delay: coefficients}``, the lowest power first, as `System.denominator` is; or with polynomials
@@ -169,6 +169,14 @@ def unstable_roots(denominator: Mapping) -> float:
 
 def _is_loop(x: object) -> bool:
     return hasattr(x, "open_fraction")
+
+
+def cancels(loop: object) -> bool:
+    """Whether controller and process of a `Loop` cancel a pole in the open loop."""
+    if not _is_loop(loop):
+        return False
+    below = times(loop.controller_fraction.denominator, loop.process_fraction.denominator)
+    return _degree(below) > _degree(loop.open_fraction.denominator) or len(below) > len(loop.open_fraction.denominator)
 
 
 def open_loop(loop: object, zero: bool = False) -> DelayFraction:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from loopbook.stability.enclosures import Enclosure, divided, enclosed, geometric, walk
 from loopbook.stability.loops import FEW
-from loopbook.stability.sensitivity import to_the_top, with_peaks
+from loopbook.stability.peaks import to_the_top, with_peaks
 
 if TYPE_CHECKING:
     import numpy
@@ -43,7 +43,7 @@ class View:
     @functools.cached_property
     def early(self) -> Enclosure:
         """A without its common dead time, which does not change its size."""
-        if self.precise or self.loops.early is self.loops.A:
+        if self.precise or float((self.r * self.loops.lag[self.which]).max(initial=0.0)) < 0.3:
             return self.A
         return enclosed(self.loops.early, self.which, self.c, self.r)
 
@@ -52,14 +52,6 @@ class View:
         if self.precise:
             return enclosed(self.loops.C, self.which, self.c, self.r, self.loops.exact[2])
         return self.B + self.A
-
-    @functools.cached_property
-    def across(self) -> Enclosure:
-        return self.A @ self.B
-
-    @functools.cached_property
-    def square_of_B(self) -> Enclosure:
-        return (self.B @ self.B).real
 
     @functools.cached_property
     def ends(self):
@@ -129,11 +121,16 @@ class SizeOne(Question):
         if isinstance(view, NearZero):  # `Loops.start` has taken care of that
             self.crossing = numpy.zeros(len(view.which), dtype=bool)
             return self.crossing, self.crossing
-        square = (view.early @ view.early).real
-        self.rest = view.square_of_B - square
-        away = (self.rest.least > 0) | self.rest.is_positive | (-1 * self.rest).is_positive
-        self.crossing = ~away & self.rest.is_monotone
-        return ~away & ~self.crossing, self.rest.is_noisy
+        A, B = view.early, view.B
+        undecided = (B.least <= A.most) & (A.least <= B.most)
+        self.crossing, noisy = numpy.zeros((2, len(view.which)), dtype=bool)
+        if (some := numpy.flatnonzero(undecided)).size:
+            A, B = A[some], B[some]
+            rest = (B @ B).real - (A @ A).real
+            away = (rest.least > 0) | rest.is_positive | (-1 * rest).is_positive
+            crossing = ~away & rest.is_monotone
+            self.crossing[some], noisy[some], undecided[some] = crossing, rest.is_noisy, ~away & ~crossing
+        return undecided, noisy
 
     def take(self, view, chosen):
         import numpy
@@ -194,38 +191,53 @@ class Real(Question):
         if isinstance(view, NearZero):  # `Loops.start` has taken care of that
             nothing = numpy.zeros(len(which), dtype=bool)
             return nothing, nothing
-        low, high = self.lowest[which], self.highest[which]
-        small = high * view.early.most < view.B.least
-        large = low * view.early.least > view.B.most
-        product = view.across
+        undecided = ~self.loops.is_real[which]
+        undecided &= (self.highest[which] * view.early.most >= view.B.least) & (
+            self.lowest[which] * view.early.least <= view.B.most
+        )
+        noisy = numpy.zeros(len(which), dtype=bool)
+        some = numpy.flatnonzero(undecided)
+        if not len(some):
+            return undecided, noisy
+        A, B = view.A[some], view.B[some]
+        product = A @ B
         middle = product.terms[0]
-        distance = numpy.where(middle.real < 0, abs(middle.imag), abs(middle))
-        away = small | large | (distance > product.spread) | self.loops.is_real[which]
+        away = numpy.where(middle.real < 0, abs(middle.imag), abs(middle)) > product.spread
         monotone = ~away & product.imag.is_monotone
-        candidates = numpy.flatnonzero(monotone)
-        if len(candidates):
-            (A_a, B_a), (A_b, B_b) = view.ends
-            signs = [(A[candidates] * B[candidates].conj()).imag > 0 for A, B in ((A_a, B_a), (A_b, B_b))]
-            new = candidates[signs[0] != signs[1]]
-            new = new[~self.is_known(which[new], view.a[new], view.b[new])]
-            if len(new):
-                points, w = which[new], solved(self.loops, which[new], view.a[new], view.b[new], imaginary)
-                gain = gains_at(self.loops, points, w)
-                seen = (gain > 0) & numpy.isfinite(gain)
-                self.add(points[seen], gain[seen], w[seen])
-        open_ = ~away & ~monotone
-        if open_.any() and not self.all_gains:
-            # 0 is farther from all B + k A, for k from lowest to highest, than these differ from those in the middle
-            low, high = self.lowest[which], self.highest[which]
-            some = numpy.flatnonzero(open_)
-            A, B = view.A[some], view.B[some]
-            first, last = (B + k[some] * A for k in (low, high))
-            start, step = first.terms[0], last.terms[0] - first.terms[0]
-            with numpy.errstate(divide="ignore", invalid="ignore"):
-                along = numpy.clip(numpy.nan_to_num((-start * step.conj()).real / abs(step) ** 2), 0, 1)
-            far = abs(start + along * step) > numpy.maximum(first.spread, last.spread)
-            open_[some[far]] = False
-        return open_, product.is_noisy | (abs(middle.imag) < 16 * product.noise)
+        if len(candidates := some[monotone]):
+            self._solve(view, candidates)
+        left = ~away & ~monotone
+        if not self.all_gains:
+            left &= ~_misses(A, B, self.lowest[which[some]], self.highest[which[some]])
+        undecided[some] = left
+        noisy[some] = product.is_noisy | (abs(middle.imag) < 16 * product.noise)
+        return undecided, noisy
+
+    def _solve(self, view, candidates):
+        """Find the crossings in intervals on which Im A conj(B) is monotone."""
+        import numpy
+
+        points, a, b = (x[candidates] for x in (view.which, view.a, view.b))
+        signs = [
+            (A * B.conj()).imag > 0 for A, B in (self.loops.values(points, end, 0, view.precise) for end in (a, b))
+        ]
+        new = numpy.flatnonzero((signs[0] != signs[1])[0] & ~self.is_known(points, a, b))
+        if len(new):
+            points, w = points[new], solved(self.loops, points[new], a[new], b[new], imaginary)
+            gain = gains_at(self.loops, points, w)
+            seen = (gain > 0) & numpy.isfinite(gain)
+            self.add(points[seen], gain[seen], w[seen])
+
+
+def _misses(A: Enclosure, B: Enclosure, low, high):
+    """Whether 0 is farther from all B + k A, with k from low to high, than these differ from those in the middle."""
+    import numpy
+
+    first, last = B + low * A, B + high * A
+    start, step = first.terms[0], last.terms[0] - first.terms[0]
+    with numpy.errstate(divide="ignore", invalid="ignore"):
+        along = numpy.clip(numpy.nan_to_num((-start * step.conj()).real / abs(step) ** 2), 0, 1)
+    return abs(start + along * step) > numpy.maximum(first.spread, last.spread)
 
 
 class Positive(Question):
@@ -253,15 +265,21 @@ class Positive(Question):
 
         which = view.which
         before = self.most.copy()
-        known = slice(None) if view.precise else ~view.C.is_noisy
+        B, C, early = view.B, view.C, view.early
+        known = slice(None) if view.precise else ~C.is_noisy
         with numpy.errstate(divide="ignore", invalid="ignore"):
-            self.see(which[known], abs(view.B.terms[0] / view.C.terms[0])[known], view.c[known])
+            self.see(which[known], (B.sizes[0] / C.sizes[0])[known], view.c[known])
         if (self.most > before * (1 + 1e-12)).any():
             to_the_top(self.loops, self)
         most = self.most[which] * (1 + self.share)
-        above = (most * most) * (view.C @ view.C).real - view.square_of_B
-        away = (most * (view.B.least - view.early.most) > view.B.most) | above.is_positive
-        return ~away, above.is_noisy | view.C.is_noisy | (view.C.noise > 1e-11 * view.C.sizes[0])
+        undecided = (most * (B.least - early.most) <= B.most) & (most * C.least <= B.most)
+        noisy = numpy.zeros(len(which), dtype=bool)
+        if (some := numpy.flatnonzero(undecided)).size:
+            B, C, most = B[some], C[some], most[some]
+            above = (most * most) * (C @ C).real - (B @ B).real
+            undecided[some] = ~above.is_positive
+            noisy[some] = above.is_noisy | C.is_noisy | (C.noise > 1e-11 * C.sizes[0])
+        return undecided, noisy
 
 
 # ---- zeros
@@ -368,7 +386,8 @@ def asked(loops: Loops, questions: list[Question], which, a, b) -> None:
         about = (a < peak.place[which]) & (peak.place[which] < b)
         others = divided(*(x[~about] for x in (which, a, b, pieces)))
         return tuple(
-            numpy.concatenate(x) for x in zip(others, with_peaks(*(x[about] for x in (which, a, b)), peak.place))
+            numpy.concatenate(x)
+            for x in zip(others, with_peaks(*(x[about] for x in (which, a, b)), peak.place), strict=True)
         )
 
     walk(judge, which, a, b, " and ".join(q.name for q in questions), loops.unit, loops.exact is not None, divide)

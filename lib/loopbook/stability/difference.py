@@ -1,7 +1,7 @@
 """The highest powers of a sum, which alone count at endless frequency: 1 + c1*exp(-delay1*s) + c2*exp(-delay2*s) ...
 
-Where that has roots in the right half-plane, so has the sum, an endless row of them. Where its size has a lower bound in
-all of the right half-plane, the sum has none beyond a certain frequency.
+Where that has roots in the right half-plane, so has the sum, an endless row of them. Where its size has a lower bound
+in all of the right half-plane, the sum has none beyond a certain frequency.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ CLOSE = 1e-9
 
 
 class Endless(NamedTuple):
-    """What the highest powers say: a lower bound of their size in the right half-plane, and their phase on its boundary.
+    """What the highest powers are in the right half-plane: a lower bound of the size, and the phase on the boundary.
 
     `least` is zero on the limit, negative where there are roots in the right half-plane. Without `angles` the phase is
     that of the undelayed term, within a quarter turn; otherwise it is known at those of exp(-unit*s).

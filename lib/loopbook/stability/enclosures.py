@@ -1,8 +1,8 @@
 """Enclosures of sums with dead times on intervals of frequency, and the walk that halves intervals until all is known.
 
 On an interval from c - r to c + r a sum is its expansion in the frequency around c, a polynomial, and a rest that is
-bounded: by the next derivative of the sum of all terms' sizes, and by the rounding of these terms. So an interval may be
-as wide as the nearest zero is far away, and few intervals lead to a sharp resonance.
+bounded: by the next derivative of the sum of all terms' sizes, and by the rounding of these terms. So an interval may
+be as wide as the nearest zero is far away, and few intervals lead to a sharp resonance.
 """
 
 from __future__ import annotations
@@ -175,7 +175,7 @@ def _DEGREES():
 
 
 class Exact:
-    """One sum with more digits: a sum ``{delay: coefficients}`` over divisor*unit**order, as a function of w = W/unit."""
+    """One sum with more digits: ``{delay: coefficients}`` over divisor*unit**order, in time for which `unit` is 1."""
 
     def __init__(self, parts: dict[Fraction, tuple[int, ...]], order: int, divisor: int, unit: float):
         self.parts, self.order, self.divisor, self.unit = parts, order, divisor, unit
@@ -315,7 +315,8 @@ def origin(sums: Quasipolynomials, degree: int, exact: Exact | None = None):
     degrees = numpy.arange(degree + 2)
     factorials = numpy.array([math.factorial(n) for n in degrees], dtype=float)
     late = sums.delays[:, None, :] ** degrees[:, None] / factorials[:, None]
-    series, bounds = numpy.zeros((degree + 2, sums.count)), numpy.zeros((degree + 2, sums.count))
+    bounds = numpy.zeros((degree + 2, sums.count))
+    series = numpy.zeros_like(bounds, dtype=sums.coefficients.dtype)
     signs = (-1.0) ** degrees[:, None]
     for n in range(min(sums.order, degree + 1) + 1):
         part = sums.coefficients[:, n, None]

@@ -1,9 +1,9 @@
-"""An open loop L = A/B at endless frequency, where the highest powers alone count: a/b, sums of numbers with dead times.
+"""An open loop L = A/B at endless frequency, where the highest powers alone count: a/b, numbers with dead times.
 
-As the gain k grows, B + k A gets an endless row of unstable roots where b + k a has one: at a limiting gain. Below that,
-b + k a has a certain distance from zero, and beyond a certain frequency the lower powers are smaller. Close to the
-limiting gain that frequency would be too high. There L is expanded in v = 1/w and in the angle of the dead times, of
-which it is an analytic function, and Cauchy's estimates bound the rest.
+As the gain k grows, B + k A gets an endless row of unstable roots where b + k a has one: at a limiting gain. Below
+that, b + k a has a certain distance from zero, and beyond a certain frequency the lower powers are smaller. Close to
+the limiting gain that frequency would be too high. There L is expanded in v = 1/w and in the angle of the dead times,
+of which it is an analytic function, and Cauchy's estimates bound the rest.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ class Far:
 
     @functools.cached_property
     def gains(self) -> list[float]:
-        """Positive gains at which the highest powers get roots in the right half-plane, or lose their undelayed part."""
+        """Positive gains with which the highest powers get roots in the right half-plane, or no undelayed part."""
         (a0, b0), *later = self.rows.values()
         gains = [] if not a0 else [-b0 / a0]
         if len(later) == 1:

@@ -1,4 +1,4 @@
-"""Open loops L = A/B in numbers, many at once: enclosures on intervals, what they are at zero and beyond all intervals."""
+"""Open loops L = A/B in numbers, many at once: their values, what they are at zero, and beyond all intervals."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Loops:
         self.unit = power_of_two(prevailing(B.coefficients, self.endless_least))
         order = B.order
         self.A, self.B = A.slower(self.unit), B.slower(self.unit)
-        self.early = self.A.delayed(-self.A.delays.min(axis=0))
+        self.lag = self.A.delays.min(axis=0)
         self.count, self.exact, self.fraction = B.count, None, fraction
         if fraction is not None:
             divisor, scale = fraction.denominator[Fraction(0)][-1], float(self.unit[0])
@@ -53,10 +53,15 @@ class Loops:
 
     def __getitem__(self, points: object) -> Loops:
         chosen = object.__new__(Loops)
-        for name in ("A", "B", "early", "unit", "endless_least"):
+        for name in ("A", "B", "lag", "unit", "endless_least"):
             setattr(chosen, name, getattr(self, name)[points])
         chosen.count, chosen.exact, chosen.fraction = chosen.B.count, None, None
         return chosen
+
+    @functools.cached_property
+    def early(self) -> Quasipolynomials:
+        """A without its common dead time."""
+        return self.A.delayed(-self.lag)
 
     @functools.cached_property
     def C(self) -> Quasipolynomials:
@@ -335,7 +340,7 @@ def _exact_square(exact):
 
 
 def square(part: numpy.ndarray) -> numpy.ndarray:
-    """The square of the size of polynomials [power, point] on the imaginary axis, in powers of that of the frequency."""
+    """The squares of the sizes of polynomials [power, point] on the imaginary axis, in powers of w*w."""
     import numpy
 
     order = len(part) - 1

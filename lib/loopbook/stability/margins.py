@@ -8,8 +8,10 @@ from typing import NamedTuple
 
 from loopbook.stability.confirmation import confirm
 from loopbook.stability.counting import (
+    cancels,
     fraction_sums,
     is_closed_loop_stable,
+    is_stable,
     open_loop,
 )
 from loopbook.stability.crossings import (
@@ -116,6 +118,10 @@ def margins(loop: object) -> Margins:
 def _stable_loop(loop: object) -> Loops | None:
     """A loop that is stable; None for none."""
     L = open_loop(loop, zero=True)
+    if cancels(loop) and not is_stable(loop):
+        raise ValueError(
+            f"{loop} is not stable, because controller and process cancel an unstable pole: it has no margin"
+        )
     if not is_closed_loop_stable(L):
         raise ValueError(f"the closed loop of {L.expr} is not stable: it has no margin")
     return Loops(*fraction_sums(L), L) if L.numerator else None

@@ -2,68 +2,106 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
+
+from loopbook.quasipolynomials.arrays import Quasipolynomials
+from loopbook.stability.counting import count_roots
+from loopbook.stability.crossings import Positive, asked, below
+from loopbook.stability.enclosures import UndecidedError, geometric
+from loopbook.stability.loops import ENOUGH, Loops, positive_beyond, square
 
 if TYPE_CHECKING:
     import numpy
 
-    from loopbook.stability.crossings import Positive
-    from loopbook.stability.loops import Loops
+MOST_TURNS = 2000.0  # of the phase by dead time, in radians, after which it is given up that has no end in sight
 
 
-def to_the_top(loops: Loops, question: Positive) -> None:
-    """Move the highest values that were seen to the tops of their peaks."""
+def largest_sensitivities(A: Quasipolynomials, B: Quasipolynomials) -> numpy.ndarray:
+    """Return Ms for many loops L = A/B at once, certified as `margins` does; nan for those that are not stable.
+
+    Arguments:
+        A, B: numerators and denominators, with as many powers, as `Quasipolynomials`; B may be a single one.
+    Raises:
+        ValueError: where it is not decided, with the frequencies between which it is not.
+
+    >>> import numpy
+    >>> B = Quasipolynomials(numpy.array([[[0.0], [1.0]]]), numpy.zeros((1, 1)))    # s
+    >>> A = Quasipolynomials(numpy.array([[[0.3, 0.5, 2.0], [0.0] * 3]]), numpy.ones((1, 1)))    # K exp(-s)
+    >>> largest_sensitivities(A, B).round(3).tolist()
+    [1.393, 1.955, nan]
+    """
     import numpy
 
-    every = numpy.flatnonzero((question.place > 0) & numpy.isfinite(question.place))
-    if not len(every):
-        return
-
-    def at(w):
-        A, B = loops.values(every, w, 2)
-        return B, A + B
-
-    question.see(every, *_climbed(at, question.place[every], 30))
-    if loops.exact is not None and len(every) and loops.doubtful_sum(every, question.place[every])[0]:
-        # rounding made what was seen, also if that is higher than what is there
-        place = question.place[every]
-        question.most[0] = 0.0
-        question.see(every, *_climbed(lambda w: [each.taylor(w, 2) for each in loops.exact[1:]], place, 8))
-
-
-def _climbed(at, w, most):
-    """The largest abs(B/C) that Newton's steps find, and where."""
-    import numpy
-
-    best, places = -numpy.ones(len(w)), w.copy()
-    for _ in range(most):
-        (up, up1, up2), (down, down1, down2) = (
-            (abs(x[0]) ** 2, 2 * (x[1] * x[0].conj()).real, 2 * abs(x[1]) ** 2 + 4 * (x[2] * x[0].conj()).real)
-            for x in at(w)
+    count = max(A.count, B.count)
+    A, B = (
+        Quasipolynomials(
+            numpy.broadcast_to(x.coefficients, (*x.coefficients.shape[:2], count)),
+            numpy.broadcast_to(x.delays, (len(x.delays), count)),
         )
-        with numpy.errstate(divide="ignore", invalid="ignore"):
-            height = numpy.sqrt(up / down)
-            slope = up1 / up - down1 / down
-            bend = up2 / up - (up1 / up) ** 2 - down2 / down + (down1 / down) ** 2
-            step = numpy.where(bend < 0, -slope / bend, numpy.sign(slope) * 0.1 * w)
-        step = numpy.clip(numpy.nan_to_num(step), -0.3 * w, 0.3 * w)
-        better = height > best
-        done = ~better | (abs(step) <= 1e-9 * w)
-        best[better], places[better] = height[better], w[better]
-        if done.all() and (abs(w - places) <= 1e-8 * places).all():
-            break
-        # what did not rise is tried again with half the step
-        w = numpy.where(better, w + step, (w + places) / 2)
-    return best, places
+        for x in (A, B)
+    )
+    found = numpy.full(count, math.nan)
+    stable = numpy.flatnonzero(count_roots(B + A) == 0)
+    for start in range(0, len(stable), AT_ONCE):
+        points = stable[start : start + AT_ONCE]
+        found[points] = _largest(Loops(A[points], B[points]))
+    return found
 
 
-def with_peaks(which, a, b, peaks: numpy.ndarray):
-    """Intervals that hold the peaks of their loops, in three pieces, of which one has the peak in its middle."""
+AT_ONCE = 2000
+
+
+def _largest(loops):
     import numpy
 
-    p = peaks[which]
-    r = numpy.minimum(numpy.minimum(p - a, b - p), (b - a) / 8)
-    edges = (a, p - r, p + r, b)
-    which, a, b = numpy.tile(which, 3), numpy.concatenate(edges[:3]), numpy.concatenate(edges[1:])
-    some = b > a
-    return which[some], a[some], b[some]
+    every = numpy.arange(loops.count)
+    peak = Positive(loops)
+    near_A, near_B = loops.near_zero(every, numpy.full(loops.count, 1e-300))
+    peak.see(every, abs(near_B.terms[0] / (near_A.terms[0] + near_B.terms[0])), numpy.zeros(loops.count))
+    peak.see(every, _at_endless_frequency(loops), numpy.full(loops.count, math.inf))
+    done = below(loops, [peak])
+    end = numpy.maximum(
+        numpy.clip(numpy.nan_to_num(loops.beyond(numpy.full(loops.count, 2.0)), nan=4.0), 0, 64), 4 * done
+    )
+    while True:
+        mine = numpy.flatnonzero(end > done)
+        which, a, b = geometric(done[mine], end[mine])
+        inner = a >= done[mine[which]]
+        asked(loops, [peak], mine[which[inner]], a[inner], b[inner])
+        done = numpy.maximum(done, end)
+        need = numpy.nan_to_num(_no_peak_beyond(loops, peak.most * (1 + ENOUGH)), nan=math.inf)
+        if (need <= done).all():
+            return peak.most
+        far_out = (need == math.inf) & ((done * loops.longest > MOST_TURNS) | (done > 1e15))
+        if (lost := numpy.flatnonzero(far_out)).size:
+            raise UndecidedError(peak.name, float(done[lost[0]]), math.inf, float(loops.unit[lost[0]]))
+        with numpy.errstate(divide="ignore"):
+            window = numpy.maximum(4 * done, done + numpy.where(loops.longest > 0, 20 / loops.longest, 0))
+        end = numpy.where(need > done, numpy.minimum(need, window), done)
+
+
+def _at_endless_frequency(loops):
+    """The largest abs(B/C) of the highest powers."""
+
+    a, b = loops.A.coefficients[:, -1], loops.B.coefficients[:, -1]
+    if b[1:].any():
+        raise ValueError("the highest power of a denominator returns with a dead time: expected loops without that")
+    undelayed = loops.A.delays == 0
+    at_once, later = (a * undelayed).sum(axis=0), abs(a * ~undelayed).sum(axis=0)
+    return abs(b[0]) / (abs(b[0] + at_once) - later)
+
+
+def _no_peak_beyond(loops, most):
+    """A frequency beyond which abs(B/C) is below `most`."""
+    import numpy
+
+    with numpy.errstate(divide="ignore", invalid="ignore"):
+        end = loops.beyond(numpy.where(most > 1, most / (most - 1), math.nan))
+    if loops.squares is None:
+        return end
+    end = numpy.fmin(end, numpy.where(most >= _at_endless_frequency(loops), loops.beyond_limit(), math.nan))
+    if not loops.longest.any():
+        C = square((loops.A.coefficients + loops.B.coefficients)[0])
+        end = numpy.fmin(end, positive_beyond(most**2 * C - loops.squares[1]))
+    return end

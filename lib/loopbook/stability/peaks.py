@@ -1,0 +1,69 @@
+"""Peaks of the sensitivity: their tops, and intervals of frequency around them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy
+
+    from loopbook.stability.crossings import Positive
+    from loopbook.stability.loops import Loops
+
+
+def to_the_top(loops: Loops, question: Positive) -> None:
+    """Move the highest values that were seen to the tops of their peaks."""
+    import numpy
+
+    every = numpy.flatnonzero((question.place > 0) & numpy.isfinite(question.place))
+    if not len(every):
+        return
+
+    def at(w):
+        A, B = loops.values(every, w, 2)
+        return B, A + B
+
+    question.see(every, *_climbed(at, question.place[every], 30))
+    if loops.exact is not None and len(every) and loops.doubtful_sum(every, question.place[every])[0]:
+        # rounding made what was seen, also if that is higher than what is there
+        place = question.place[every]
+        question.most[0] = 0.0
+        question.see(every, *_climbed(lambda w: [each.taylor(w, 2) for each in loops.exact[1:]], place, 8))
+
+
+def _climbed(at, w, most):
+    """The largest abs(B/C) that Newton's steps find, and where."""
+    import numpy
+
+    best, places = -numpy.ones(len(w)), w.copy()
+    for _ in range(most):
+        (up, up1, up2), (down, down1, down2) = (
+            (abs(x[0]) ** 2, 2 * (x[1] * x[0].conj()).real, 2 * abs(x[1]) ** 2 + 4 * (x[2] * x[0].conj()).real)
+            for x in at(w)
+        )
+        with numpy.errstate(divide="ignore", invalid="ignore"):
+            height = numpy.sqrt(up / down)
+            slope = up1 / up - down1 / down
+            bend = up2 / up - (up1 / up) ** 2 - down2 / down + (down1 / down) ** 2
+            step = numpy.where(bend < 0, -slope / bend, numpy.sign(slope) * 0.1 * w)
+        step = numpy.clip(numpy.nan_to_num(step), -0.3 * w, 0.3 * w)
+        better = height > best
+        done = ~better | (abs(step) <= 1e-9 * w)
+        best[better], places[better] = height[better], w[better]
+        if done.all() and (abs(w - places) <= 1e-8 * places).all():
+            break
+        # what did not rise is tried again with half the step
+        w = numpy.where(better, w + step, (w + places) / 2)
+    return best, places
+
+
+def with_peaks(which, a, b, peaks: numpy.ndarray):
+    """Intervals that hold the peaks of their loops, in three pieces, of which one has the peak in its middle."""
+    import numpy
+
+    p = peaks[which]
+    r = numpy.minimum(numpy.minimum(p - a, b - p), (b - a) / 8)
+    edges = (a, p - r, p + r, b)
+    which, a, b = numpy.tile(which, 3), numpy.concatenate(edges[:3]), numpy.concatenate(edges[1:])
+    some = b > a
+    return which[some], a[some], b[some]
