@@ -179,7 +179,7 @@ def _stable_range(loops: Loops) -> tuple[numpy.ndarray, numpy.ndarray]:
                 real.frequencies[better],
             )
             need = _complete_beyond(loops, far, lower, next_gain, next_gain >= endless, next_gain >= LARGEST)
-            ready = searched & (need <= done)
+            ready = searched & ((need <= done) | (next_gain <= _least_gain(loops, done)))
             if not ready.any():
                 break
             points = numpy.flatnonzero(ready)
