@@ -1,4 +1,4 @@
-"""Many sums of polynomials with dead times at once, as arrays of numbers, and their expansions on the imaginary axis."""
+"""Many sums of polynomials with dead times at once, as arrays of numbers, and expansions on the imaginary axis."""
 
 from __future__ import annotations
 
@@ -132,13 +132,13 @@ class Quasipolynomials:
         import numpy
 
         if self.count == 1:
-            powers, total = _powers(w, self.order + 1), 0
-            for matrix, delay in zip(self._turned, self.delays[:, 0].tolist(), strict=True):
+            powers, total = powers_of(w, self.order + 1), 0
+            for matrix, delay in zip(self.turned, self.delays[:, 0].tolist(), strict=True):
                 value = matrix[: degree + 1] @ powers
                 total = total + (value * numpy.exp(-1j * (w * delay)) if delay else value)
             return total
         if len(w) * (degree + 1) * (self.order + 1) <= FEW:
-            powers = 1j ** _degrees(self.order)[:, None] * _powers(w, self.order + 1)
+            powers = 1j ** _degrees(self.order)[:, None] * powers_of(w, self.order + 1)
             total = 0
             for matrix, delay in zip(self._expansion, self.delays, strict=True):
                 value = (matrix[: degree + 1, :, which] * powers).sum(axis=1)
@@ -163,9 +163,9 @@ class Quasipolynomials:
 
         sizes = self._sizes[: degree + 2]
         if self.count == 1:
-            return sizes[..., 0] @ _powers(w, self.order + 1)
+            return sizes[..., 0] @ powers_of(w, self.order + 1)
         if len(w) * (degree + 2) * (self.order + 1) <= FEW:
-            return (sizes[..., which] * _powers(w, self.order + 1)).sum(axis=1)
+            return (sizes[..., which] * powers_of(w, self.order + 1)).sum(axis=1)
         return numpy.stack([_polynomial(each, which, w) + 0 * w for each in sizes])
 
     @functools.cached_property
@@ -176,8 +176,8 @@ class Quasipolynomials:
         return numpy.array(self._expanded(self.coefficients, -self.delays, DEGREE)).swapaxes(0, 1)
 
     @functools.cached_property
-    def _turned(self):
-        """The same for a single sum, in powers of the frequency."""
+    def turned(self) -> numpy.ndarray:
+        """What a single sum is expanded with: arrays [part, k, power], in powers of the frequency."""
         import numpy
 
         turns = 1j ** (numpy.arange(DEGREE + 1)[:, None] + numpy.arange(self.order + 1))
@@ -222,7 +222,8 @@ def _derivative(coefficients):
     return lower
 
 
-def _powers(w, count):
+def powers_of(w: numpy.ndarray, count: int) -> numpy.ndarray:
+    """The powers 0, 1 ... of numbers: array [power, number]."""
     return w ** _degrees(count - 1)[:, None] if count > 1 else (0 * w + 1)[None]
 
 

@@ -36,16 +36,17 @@ class Change(NamedTuple):
         return (1.0, value, 0.0) if self.name == "delay_margin" else (1.0, 0.0, math.radians(value))
 
 
-def confirm(loops: Loops, found: dict[str, float]) -> None:
-    """Count the unstable poles on both sides of each limit of a stable loop.
+def confirm(loops: Loops, found: dict[str, float], itself: bool = True) -> None:
+    """Count the unstable poles on both sides of each limit of a loop.
 
     Arguments:
         found: the limits by their names among those of `Margins`, and the frequencies at which they are.
+        itself: whether the loop is to be stable as it is.
     Raises:
         ArithmeticError: where the numbers contradict a limit.
         ValueError: where poles are too close to the axis on one side of it to be counted.
     """
-    changes = []
+    changes = [Change("gain_margin", 1.0, True, 0.0, math.nan)] if itself else []
     for name, omega, outwards in (
         ("gain_margin", "omega_180", 1.0),
         ("gain_reduction", "omega_reduction", -1.0),

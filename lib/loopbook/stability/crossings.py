@@ -53,11 +53,6 @@ class View:
             return enclosed(self.loops.C, self.which, self.c, self.r, self.loops.exact[2])
         return self.B + self.A
 
-    @functools.cached_property
-    def ends(self):
-        """A and B at both ends."""
-        return [[x[0] for x in self.loops.values(self.which, end, precise=self.precise)] for end in (self.a, self.b)]
-
 
 class NearZero(View):
     """The intervals from -b to b, without zeros at zero that A and B have in common."""
@@ -137,9 +132,23 @@ class SizeOne(Question):
 
         some = numpy.flatnonzero(self.crossing & chosen)
         if len(some):
-            low, high = (abs(B[some]) > abs(A[some]) for A, B in view.ends)
-            some = some[low != high]
-            self.brackets.append((view.which[some], view.a[some], view.b[some]))
+            which, a, b = (x[some] for x in (view.which, view.a, view.b))
+            low, high = (
+                abs(B[0]) ** 2 - abs(A[0]) ** 2
+                for A, B in (view.loops.values(which, end, 0, view.precise) for end in (a, b))
+            )
+            some = (low > 0) != (high > 0)
+            self.brackets.append([x[some] for x in (which, a, b, low, high)])
+
+    def solved(self, loops: Loops):
+        """The points and frequencies, and A and B there."""
+        import numpy
+
+        if not self.brackets:
+            nothing = numpy.zeros(0)
+            return nothing.astype(int), nothing, nothing, nothing
+        which, a, b, low, high = (numpy.concatenate(x) for x in zip(*self.brackets, strict=True))
+        return which, *solved(loops, which, a, b, difference, low, high)
 
 
 class Real(Question):
@@ -218,13 +227,15 @@ class Real(Question):
         import numpy
 
         points, a, b = (x[candidates] for x in (view.which, view.a, view.b))
-        signs = [
-            (A * B.conj()).imag > 0 for A, B in (self.loops.values(points, end, 0, view.precise) for end in (a, b))
-        ]
-        new = numpy.flatnonzero((signs[0] != signs[1])[0] & ~self.is_known(points, a, b))
+        at_a, at_b = (
+            (A[0] * B[0].conj()).imag for A, B in (self.loops.values(points, end, 0, view.precise) for end in (a, b))
+        )
+        new = numpy.flatnonzero(((at_a > 0) != (at_b > 0)) & ~self.is_known(points, a, b))
         if len(new):
-            points, w = points[new], solved(self.loops, points[new], a[new], b[new], imaginary)
-            gain = gains_at(self.loops, points, w)
+            points, a, b, at_a, at_b = (x[new] for x in (points, a, b, at_a, at_b))
+            w, A, B = solved(self.loops, points, a, b, imaginary, at_a, at_b)
+            with numpy.errstate(divide="ignore", invalid="ignore"):
+                gain = -(B / A).real
             seen = (gain > 0) & numpy.isfinite(gain)
             self.add(points[seen], gain[seen], w[seen])
 
@@ -301,30 +312,32 @@ def difference(A, B):
     return (size_B - size_A) * (size_B + size_A), first, second
 
 
-def solved(loops: Loops, which, a, b, function) -> numpy.ndarray:
-    """The zeros between a and b of monotone functions, with more digits where rounding has a share in A or B."""
-    w = _solved(loops, which, a, b, function, False)
+def solved(loops: Loops, which, a, b, function, at_a, at_b):
+    """The zeros between a and b of monotone functions, and A and B there, from the values at both ends.
+
+    With more digits where rounding has a share in A or B.
+    """
+    import numpy
+
+    # where a straight line has its zero, not too close to the ends
+    w = a + (b - a) * numpy.clip(at_a / numpy.where(at_a == at_b, 1, at_a - at_b), 0.02, 0.98)
+    w = _solved(loops, which, a, b, function, at_a < at_b, w, False)
+    A, B = (x[0] for x in loops.values(which, w))
     if loops.exact is not None and 0 < len(w) < FEW:
-        import numpy
+        again = numpy.flatnonzero(loops.doubtful(which, w, A, B))
+        if len(again):
+            some = which[again]
+            w[again] = _solved(loops, some, a[again], b[again], function, (at_a < at_b)[again], w[again], True)
+            A[again], B[again] = (x[0] for x in loops.values(some, w[again], precise=True))
+    return w, A, B
 
-        if (again := numpy.flatnonzero(loops.doubtful(which, w))).size:
-            w[again] = _solved(loops, which[again], a[again], b[again], function, True, w[again])
-    return w
 
-
-def _solved(loops, which, a, b, function, precise, start=None):
+def _solved(loops, which, a, b, function, rising, w, precise):
     """Halley's steps, and halves where they lead out."""
     import numpy
 
     a, b, moving = a.copy(), b.copy(), numpy.arange(len(which))
     enough = 3e-6 * (b - a)
-    at_a, at_b = (function(*loops.values(which, x, 2, precise))[0] for x in (a, b))
-    rising = at_b > at_a
-    w = (
-        a + (b - a) * numpy.clip(at_a / numpy.where(at_a == at_b, 1, at_a - at_b), 0.02, 0.98)
-        if start is None
-        else start
-    )
     for _ in range(100):
         if not len(moving):
             break
@@ -341,15 +354,6 @@ def _solved(loops, which, a, b, function, precise, start=None):
         # the next change would be about the cube of this one
         moving = moving[(change > numpy.maximum(enough[moving] * ~outside, 4e-16 * better)) & (value != 0)]
     return w
-
-
-def gains_at(loops: Loops, which, w) -> numpy.ndarray:
-    """The gains -B/A where L is real."""
-    import numpy
-
-    A, B = loops.precise_values(which, w)
-    with numpy.errstate(divide="ignore", invalid="ignore"):
-        return -(B / A).real
 
 
 def phase_left(A, B) -> numpy.ndarray:

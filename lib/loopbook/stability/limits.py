@@ -50,7 +50,7 @@ def ultimate(process: object) -> tuple[float, float]:
         other = _stable_range(Loops(*fraction_sums(opposite), opposite))[0][0]
         hint = "" if math.isnan(other) else ", but a negative one does"
         raise ValueError(f"no positive gain makes the closed loop of {L.expr} stable{hint}")
-    confirm(loops, {"gain_margin": gain, "omega_180": frequency})
+    confirm(loops, {"gain_margin": gain, "omega_180": frequency}, itself=False)
     return gain, 2 * math.pi / frequency if frequency else math.inf
 
 

@@ -7,7 +7,7 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from loopbook.quasipolynomials.arrays import DEGREE, Quasipolynomials
+from loopbook.quasipolynomials.arrays import DEGREE, Quasipolynomials, powers_of
 from loopbook.quasipolynomials.fraction import plus
 from loopbook.stability.difference import at_endless_frequency, power_of_two, prevailing
 from loopbook.stability.enclosures import EPSILON, Enclosure, Exact, exact_coefficient_fraction, origin
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from loopbook.quasipolynomials import DelayFraction
 
-DOUBTFUL = 1e-12  # the share of rounding in A or B above which crossings are computed with more digits
+DOUBTFUL = 1e-12  # the share of rounding in a value above which crossings and peaks are computed with more digits
 FEW = 100  # crossings that are computed with more digits if need be
 ENOUGH = 1e-9  # two gains that differ by this share need not be told from each other
 
@@ -77,33 +77,35 @@ class Loops:
 
     def values(self, which: numpy.ndarray, w: numpy.ndarray, degree: int = 0, precise: bool = False):
         """The expansions of A and B at frequencies."""
-        if precise:
-            return tuple(each.taylor(w, degree) for each in self.exact[:2])
-        return self.A.taylor(which, w, degree), self.B.taylor(which, w, degree)
-
-    def doubtful(self, which: numpy.ndarray, w: numpy.ndarray) -> numpy.ndarray:
-        """Where rounding has a share in A or B."""
-        doubt = False
-        for sums in (self.A, self.B):
-            noise = EPSILON * (2 * sums.order + 8 + 2 * w * sums.longest[which]) * sums.sizes(which, w, -1)[0]
-            doubt = doubt | (noise > DOUBTFUL * abs(sums.value(which, w)))
-        return doubt
-
-    def doubtful_sum(self, which: numpy.ndarray, w: numpy.ndarray) -> numpy.ndarray:
-        """Where rounding has a share in A + B."""
-        sums = self.C
-        noise = EPSILON * (2 * sums.order + 8 + 2 * w * sums.longest[which]) * sums.sizes(which, w, -1)[0]
-        return noise > 1e-11 * abs(sums.value(which, w))
-
-    def precise_values(self, which: numpy.ndarray, w: numpy.ndarray) -> list[numpy.ndarray]:
-        """A and B at frequencies, with more digits where rounding has a share in them."""
         import numpy
 
-        values = [x[0] for x in self.values(which, w)]
-        if self.exact is not None and 0 < len(w) < FEW and (again := numpy.flatnonzero(self.doubtful(which, w))).size:
-            for mine, x in zip(values, self.values(which[again], w[again], precise=True), strict=True):
-                mine[again] = x[0]
-        return values
+        if precise:
+            return tuple(each.taylor(w, degree) for each in self.exact[:2])
+        if self.count > 1:
+            return self.A.taylor(which, w, degree), self.B.taylor(which, w, degree)
+        matrices, late, parts = self._stacked
+        values = matrices[:, : degree + 1] @ powers_of(w, self.B.order + 1)
+        for part, delay in late:
+            values[part] *= numpy.exp(-1j * (w * delay))
+        A, B = values[:parts], values[parts:]
+        return A[0] if parts == 1 else A.sum(axis=0), B[0] if len(B) == 1 else B.sum(axis=0)
+
+    @functools.cached_property
+    def _stacked(self):
+        """What the expansions of A and B take, in one piece."""
+        import numpy
+
+        matrices = numpy.concatenate([self.A.turned, self.B.turned])
+        delays = [*self.A.delays[:, 0].tolist(), *self.B.delays[:, 0].tolist()]
+        return matrices, [(k, delay) for k, delay in enumerate(delays) if delay], len(self.A.delays)
+
+    def doubtful(self, which: numpy.ndarray, w: numpy.ndarray, *values: numpy.ndarray) -> numpy.ndarray:
+        """Where rounding has a share in A or B, whose values are given, or in A + B if one value is."""
+        doubt = False
+        for sums, value in zip((self.A, self.B) if len(values) == 2 else (self.C,), values, strict=True):
+            noise = EPSILON * (2 * sums.order + 8 + 2 * w * sums.longest[which]) * sums.sizes(which, w, -1)[0]
+            doubt = doubt | (noise > DOUBTFUL * abs(value))
+        return doubt
 
     # ---- at zero
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import math
 from typing import NamedTuple
@@ -9,6 +10,7 @@ from typing import NamedTuple
 from loopbook.stability.confirmation import confirm
 from loopbook.stability.counting import (
     cancels,
+    characteristic,
     fraction_sums,
     is_closed_loop_stable,
     is_stable,
@@ -20,9 +22,7 @@ from loopbook.stability.crossings import (
     SizeOne,
     asked,
     below,
-    difference,
     phase_left,
-    solved,
     steps,
 )
 from loopbook.stability.endless import Far
@@ -74,12 +74,13 @@ def delay_margin(loop: object) -> float:
     >>> round(delay_margin(sympy.exp(-s) / s), 4)    # pi/2 in all
     0.5708
     """
-    loops = _stable_loop(loop)
+    loops = _read(loop)
     if loops is None:
         return math.inf
-    survey = Survey(loops, [SizeOne()])
-    found = survey.delay_margins()
-    confirm(loops, found)
+    with _or_unstable(loop):
+        survey = Survey(loops, [SizeOne()])
+        found = survey.delay_margins()
+        confirm(loops, found)
     return found["delay_margin"]
 
 
@@ -101,13 +102,14 @@ def margins(loop: object) -> Margins:
     >>> round(found.gain_margin, 4), round(found.phase_margin, 4), round(found.delay_margin, 4)
     (3.1416, 61.3521, 2.1416)
     """
-    loops = _stable_loop(loop)
+    loops = _read(loop)
     if loops is None:
         return NOTHING
-    real, size, peak = Real(loops), SizeOne(), Positive(loops)
-    survey = Survey(loops, [real, size, peak])
-    found = survey.gain_margins() | survey.phase_margins() | survey.delay_margins()
-    confirm(loops, found)
+    with _or_unstable(loop):
+        real, size, peak = Real(loops), SizeOne(), Positive(loops)
+        survey = Survey(loops, [real, size, peak])
+        found = survey.gain_margins() | survey.phase_margins() | survey.delay_margins()
+        confirm(loops, found)
     Ms, omega_ms = float(peak.most[0]), float(peak.place[0] * loops.unit[0])
     return Margins(
         found["gain_margin"], found["gain_reduction"], found["phase_margin"], found["delay_margin"], Ms,
@@ -115,16 +117,29 @@ def margins(loop: object) -> Margins:
     )  # fmt: skip
 
 
-def _stable_loop(loop: object) -> Loops | None:
-    """A loop that is stable; None for none."""
+def _read(loop: object) -> Loops | None:
+    """A loop in numbers; None for none."""
     L = open_loop(loop, zero=True)
     if cancels(loop) and not is_stable(loop):
-        raise ValueError(
-            f"{loop} is not stable, because controller and process cancel an unstable pole: it has no margin"
-        )
-    if not is_closed_loop_stable(L):
-        raise ValueError(f"the closed loop of {L.expr} is not stable: it has no margin")
-    return Loops(*fraction_sums(L), L) if L.numerator else None
+        raise ValueError(f"{loop} is not stable: controller and process cancel an unstable pole; it has no margin")
+    if L.numerator:
+        characteristic(L)  # raises for what is no loop
+        return Loops(*fraction_sums(L), L)
+    if not is_stable(L):
+        raise ValueError(f"{L.expr} is not stable: it has no margin")
+    return None
+
+
+@contextlib.contextmanager
+def _or_unstable(loop: object):
+    """Say of a loop for which something fails that it is not stable, if that is so; its own poles are counted, too."""
+    try:
+        yield
+    except (ValueError, ArithmeticError):
+        L = open_loop(loop)
+        if not is_closed_loop_stable(L):
+            raise ValueError(f"the closed loop of {L.expr} is not stable: it has no margin") from None
+        raise
 
 
 class Survey:
@@ -222,15 +237,8 @@ class Survey:
     @functools.cached_property
     def _crossings(self):
         """The frequencies where abs(L) is 1, and how far the phase may still fall there."""
-        import numpy
-
-        loops = self.loops
-        if not self.size.brackets:
-            return numpy.zeros(0), numpy.zeros(0)
-        which, a, b = (numpy.concatenate(x) for x in zip(*self.size.brackets, strict=True))
-        w = solved(loops, which, a, b, difference)
-        A, B = loops.precise_values(which, w)
-        return w * float(loops.unit[0]), phase_left(A, B)
+        _, w, A, B = self.size.solved(self.loops)
+        return w * float(self.loops.unit[0]), phase_left(A, B)
 
     def phase_margins(self):
         """How far the phase may turn, either way, and the frequency; infinite where abs(L) is never 1."""

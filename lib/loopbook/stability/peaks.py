@@ -24,9 +24,9 @@ def to_the_top(loops: Loops, question: Positive) -> None:
         return B, A + B
 
     question.see(every, *_climbed(at, question.place[every], 30))
-    if loops.exact is not None and len(every) and loops.doubtful_sum(every, question.place[every])[0]:
+    place = question.place[every]
+    if loops.exact is not None and loops.doubtful(every, place, loops.C.value(every, place))[0]:
         # rounding made what was seen, also if that is higher than what is there
-        place = question.place[every]
         question.most[0] = 0.0
         question.see(every, *_climbed(lambda w: [each.taylor(w, 2) for each in loops.exact[1:]], place, 8))
 

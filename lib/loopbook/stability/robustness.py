@@ -11,7 +11,7 @@ from loopbook.inputs import real_numbers
 from loopbook.quasipolynomials import DelayFraction
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.stability.counting import count_roots, fraction_sums, open_loop
-from loopbook.stability.crossings import SizeOne, asked, difference, phase_left, solved
+from loopbook.stability.crossings import SizeOne, asked, difference, phase_left
 from loopbook.stability.enclosures import geometric
 from loopbook.stability.loops import Loops
 
@@ -140,13 +140,9 @@ def _stable_delays(A: Quasipolynomials, B: Quasipolynomials) -> list[list[tuple[
     which, a, b = geometric(loops.start, end)
     some = a >= loops.start[which]
     asked(loops, [size], which[some], a[some], b[some])
-    which, a, b = (
-        (numpy.concatenate(x) for x in zip(*size.brackets, strict=True)) if size.brackets else (which[:0],) * 3
-    )
-    w = solved(loops, which, a, b, difference)
-    values = loops.values(which, w, 2)
-    rise = difference(*values)[1]
-    first, period = phase_left(values[0][0], values[1][0]) / w, 2 * math.pi / w
+    which, w, A, B = size.solved(loops)
+    rise = difference(*loops.values(which, w, 2))[1]
+    first, period = phase_left(A, B) / w, 2 * math.pi / w
     direction = 2 * numpy.sign(rise).astype(int)
     # counted before the first crossing, because poles may lie on the axis without any dead time
     earliest = numpy.full(len(decided), math.inf)
