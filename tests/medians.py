@@ -2,19 +2,19 @@
 
 from collections.abc import Callable
 from statistics import median
-from time import perf_counter
+from time import perf_counter, process_time
 
 from rich.table import Table
 
 
-def medians(runs: int, **tasks: Callable[[], object]) -> dict[str, float]:
+def medians(runs: int, clock: Callable[[], float] = perf_counter, **tasks: Callable[[], object]) -> dict[str, float]:
     """The median time (s) of each task over several rounds in which the tasks take turns."""
     times: dict[str, list[float]] = {name: [] for name in tasks}
     for _ in range(runs):
         for name, task in tasks.items():
-            start = perf_counter()
+            start = clock()
             task()
-            times[name].append(perf_counter() - start)
+            times[name].append(clock() - start)
     return {name: median(values) for name, values in times.items()}
 
 
@@ -24,8 +24,11 @@ def seconds(value: float) -> str:
 
 
 def compared(table: Table, runs: int, tasks: dict[str, Callable[[], object]], notes: dict[str, object]) -> None:
-    """Add a row for each task: its name, its time, how many times that of the first, and what else is said of it."""
-    times = medians(runs, **tasks)
+    """Add a row for each task: its name, its time, how many times that of the first, and what else is said of it.
+
+    The time is the processor's, which tasks of milliseconds do not share with what else the machine does.
+    """
+    times = medians(runs, process_time, **tasks)
     first = next(iter(times.values()))
     for name, time in times.items():
         note = notes.get(name, "")
