@@ -329,7 +329,7 @@ def the_conditioning() -> Table:
     rounding, is the error of SciPy's solver. Balanced states, one line more, are the remedy.
     """
     title = "Integral of the squared error of exp(-delay s) k/s, relative errors; ! where SciPy warned"
-    table = Table("delay k", "order", "largest entry", "companion", "balanced", "sections", "exact", title=title)
+    table = Table("delay/lag", "k", "order", "largest entry", "companion", "balanced", "sections", "exact", title=title)
     near = [(float(sympy.pi / 2 * (1 - sympy.Float(x))), 10) for x in (1e-3, 1e-5, 1e-7)]
     for product, order in [*itertools.product((0.0025, 0.05, 0.25, 1.25), (4, 8, 10, 14)), *near]:
         k = 0.25 if product < 1.5 else 1.0  # the lag is one, and the controller cancels it
@@ -347,7 +347,9 @@ def the_conditioning() -> Table:
                 warnings.simplefilter("always")
                 texts.append(error(peers.integral_of_square(form, balanced)) + " !" * bool(warned))
         own = error(ise(first_order(1, 1, delay=sympy.Rational(settings[2])), PID(k, 1)))
-        table.add_row(f"{product:.9g}", f"{order}", shown(abs(loop.A).max()), *texts, own, end_section=order == 14)
+        table.add_row(
+            f"{settings[2]:.9g}", f"{k:g}", f"{order}", shown(abs(loop.A).max()), *texts, own, end_section=order == 14
+        )
     return table
 
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 import functools
 import itertools
 import math
+import warnings
 from collections.abc import Callable, Iterable
 from types import SimpleNamespace
 from typing import NamedTuple
@@ -193,8 +194,11 @@ def compiled_pi_step(
         equations.set_integration_parameters(rtol=tolerance, atol=tolerance, first_step=delay / 100, max_step=delay / 2)
         values = np.zeros(len(times))
         for k in np.flatnonzero(times > delay):  # with steps of its own it would not see the kinks of the first delays
-            early = times[k] <= 6 * delay
-            state = equations.integrate_blindly(times[k], delay / 100) if early else equations.integrate(times[k])
+            with warnings.catch_warnings(
+                action="ignore"
+            ):  # times between two steps are interpolated, as they should be
+                early = times[k] <= 6 * delay
+                state = equations.integrate_blindly(times[k], delay / 100) if early else equations.integrate(times[k])
             values[k] = state[0]
         return values
 
