@@ -23,8 +23,10 @@ if TYPE_CHECKING:
 NODES = 20  # where a segment is known, so that it is a polynomial of degree 19
 GOAL = 1e-13  # the share of a signal that its last two coefficients may have
 RESOLVED = 1e-12  # the same where rounding does not allow more
-MOST_SEGMENTS = 60_000
-MOST_NUMBERS = 30_000_000  # that are kept of the signals
+MOST_SECONDS = 1.6  # about, by the sizes of what is to be done and not by the clock
+SECONDS, SECONDS_CHANNEL, SECONDS_ECHO = 1.6e-5, 1e-5, 1.5e-5  # of a segment, of each channel in it, of an echo
+OFTEN = 256  # segments after which that is looked at
+MOST_NUMBERS = 20_000_000  # that are kept of the signals
 MOST_MATRICES = 200  # that are kept
 AHEAD = 8  # how many segments before a breakpoint they are made equal
 PATIENCE = 8  # segments before a longer one is tried again
@@ -39,7 +41,11 @@ def follow(model: ChannelModel, end: float) -> tuple[numpy.ndarray, numpy.ndarra
     if any(delay <= 0 for delay in model.delays):
         raise ValueError(f"the delays of the channels are {', '.join(map(str, model.delays))}: expected positive ones")
     with numpy.errstate(over="ignore", invalid="ignore", divide="ignore"):  # said in words below
-        return _Follower(_merged(model), end).run()
+        follower = _Follower(_merged(model), end)
+        try:
+            return follower.run()
+        except OverflowError:
+            raise ValueError(follower.too_many()) from None
 
 
 def _merged(model):
@@ -179,7 +185,7 @@ class _Follower:
                     continue
             scale = largest
             values[1 : n + 1] = result[:n]
-            if count == len(self.signals):
+            if count == len(self.signals) or not count % OFTEN:
                 self._grow(count)
             self.signals[count] = signals
             count += 1
@@ -187,9 +193,11 @@ class _Follower:
             edges.append(position)
             lengths.append(h)
             waiting -= 1
-            free = waiting <= 0 and 4 * length > 3 * wish < 3 * longest and last - position > WORTH * wish
-            if free and False not in (maximum(left, axis=1) <= GOAL * scale).tolist():
-                wish = min(2 * wish, longest)
+            if waiting <= 0 and 4 * length > 3 * wish < 3 * longest and last - position > WORTH * wish:
+                rest = maximum(left, axis=1)
+                # half of the coefficients are not needed, or rounding
+                if not (rest > numpy.where(tail > 0.1 * rest, RESOLVED, GOAL) * scale).any():
+                    wish = min(2 * wish, longest)
             if waiting < -PATIENCE:
                 patience = PATIENCE
             if forced and k < len(moments) and abs(moments[k][0] - position) <= position >> 48:
@@ -202,19 +210,23 @@ class _Follower:
     def _grow(self, count):
         import numpy
 
-        if count >= MOST_SEGMENTS or count * (self.q + 1) * NODES > MOST_NUMBERS:
+        seconds = count * (SECONDS + SECONDS_CHANNEL * self.q) + self.steps.seconds
+        seconds += SECONDS_ECHO * self.echoes.count
+        if seconds > MOST_SECONDS or count * (self.q + 1) * NODES > MOST_NUMBERS:
             speed = self.echoes.speed
             raise ValueError(
-                f"the response up to t = {self.end:g} needs more than {count} segments: its fastest lag, about "
-                f"{1 / speed if speed else math.inf:.2g}, is too short beside the end"
+                f"the response up to t = {self.end:g} needs too many segments, more than {count} up to "
+                f"t = {self.edges[-1] / self.per:g}: its fastest lag, about {1 / speed if speed else math.inf:.2g}, is "
+                f"too short beside the end, or its jumps are too many"
             )
-        self.signals = numpy.concatenate([self.signals, numpy.zeros_like(self.signals)])
+        if count == len(self.signals):
+            self.signals = numpy.concatenate([self.signals, numpy.zeros_like(self.signals)])
 
-    def _too_many(self):
+    def too_many(self):
+        late = ", ".join(f"{float(delay):g}" for delay in self.model.delays)
         return (
-            f"the dead times {', '.join(map(str, self.model.delays))} have more than {MOST_ECHOES} sums before "
-            f"t = {self.end:g} at which the response is not smooth: expected an earlier end, or dead times that are "
-            f"multiples of one"
+            f"the dead times {late} have more than {MOST_ECHOES} sums before t = {self.end:g} at which the response is "
+            f"not smooth: expected an earlier end, or dead times that are multiples of one"
         )
 
     def _inputs(self, values, position, length):
@@ -286,6 +298,7 @@ class Steps:
 
     def __init__(self, model: ChannelModel):
         self.model = model
+        self.seconds = 0.0  # about, that they took
         self._known: dict = {}
 
     def step(self, h: float, length: int, delays: list[int]) -> numpy.ndarray:
@@ -296,6 +309,7 @@ class Steps:
         if step is None:
             if len(self._known) >= MOST_MATRICES:
                 self._known.clear()
+            self.seconds += 2e-4 + 1e-9 * (NODES * len(self.model.A)) ** 3
             overlaps = [(k, delay / length) for k, delay in enumerate(delays) if delay < length - (length >> 44)]
             step = self._known[key] = step_matrix(self.model, h, overlaps)
         return step

@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
 from loopbook.deadtime.collocation import NODES, follow
-from loopbook.deadtime.echoes import ROUNDED
+from loopbook.deadtime.echoes import ROUNDED, fastest
+from loopbook.deadtime.family import shared_cells
 from loopbook.deadtime.superposition import superpose
 from loopbook.inputs import one_of, real_numbers, times_from_zero
 
 if TYPE_CHECKING:
-    from fractions import Fraction
-
     import numpy
     from numpy.typing import ArrayLike
 
-__all__ = ["ChannelModel", "Response", "response_to_samples"]
+__all__ = ["ChannelModel", "Response", "default_horizon", "response_to_samples", "step_family"]
 
 HOLDS = ("zero order", "first order")
+BAND = 0.01  # of the largest value, in which a response has settled
+GROWN = 20.0  # times as large in the later half: one that grows without end
+LONG = 3000  # segments up to which a response is followed that does not settle
+SWINGS = 24  # turns that are shown of one that does not
+SINGULAR = 1e12  # the condition of a system of equations that has no solution
+MOST_DOUBLINGS = 60
+WORTH = 12  # models of the same dead times that are taken together
 
 
 class ChannelModel(NamedTuple):
@@ -54,8 +61,9 @@ class Response:
     Attributes:
         edges: the ends of the segments, an array; the last one is at `end` or later.
     Raises:
-        ValueError: for an end that is none; where the response needs more than 60,000 segments, where its dead times
-            have more than 30,000 sums at which it is not smooth, or where it grows beyond all numbers.
+        ValueError: for an end that is none; where the response would take about two seconds (60,000 segments with one
+            dead time), where its dead times have more than 30,000 sums at which it is not smooth, or where it
+            grows beyond all numbers.
 
     >>> import numpy
     >>> one = numpy.ones((1, 1))
@@ -75,7 +83,6 @@ class Response:
         if not 0 <= end < math.inf:
             raise ValueError(f"the end is {end}: expected a finite time, zero or later")
         self.edges, self._coefficients = follow(model, end)
-        self.edges[-1] = max(self.edges[-1], end)  # which may differ by rounding
 
     def __call__(self, times: ArrayLike) -> numpy.ndarray:
         """Return the values at the given times, at a jump the one after it."""
@@ -129,10 +136,10 @@ def response_to_samples(model: ChannelModel, times: ArrayLike, u: ArrayLike, hol
     >>> one = numpy.ones((1, 1))
     >>> none = numpy.zeros((1, 0))
     >>> integrator = ChannelModel(0 * one, one, none, one, none.T, 0 * one, none, none.T, none.T @ none, [])
-    >>> response_to_samples(integrator, [0, 1, 3], [1, 2, 0]).round(6)
-    array([0., 1., 5.])
-    >>> response_to_samples(integrator, [0, 1, 3], [1, 2, 0], hold="first order").round(6)
-    array([0. , 1.5, 3.5])
+    >>> response_to_samples(integrator, [0, 1, 3], [1, 2, 0])[1:].round(6)
+    array([1., 5.])
+    >>> response_to_samples(integrator, [0, 1, 3], [1, 2, 0], hold="first order")[1:].round(6)
+    array([1.5, 3.5])
     """
     import numpy
 
@@ -146,3 +153,141 @@ def response_to_samples(model: ChannelModel, times: ArrayLike, u: ArrayLike, hol
         return u * response(since)
     late = float(ROUNDED) * 8 * abs(times).max()
     return superpose(response, since, u, hold == "first order", late)
+
+
+def step_family(models: ChannelModel, times: ArrayLike) -> numpy.ndarray:
+    """Return the step responses of many models of the same shape at the same times.
+
+    Arguments:
+        models: a `ChannelModel` whose arrays have one more axis, the first, for the models; its `delays` is an array of
+            numbers, a row for each model.
+        times: an array of times, not negative.
+    Returns:
+        An array with a row for each model, in it a value for each of the times, at a jump the one after it. The error
+        is below 1e-10 of the largest value up to then. Models with the same dead times are taken together, what is too
+        stiff or too long for that, one by one.
+    Raises:
+        ValueError: for arrays that do not fit, or as `Response`.
+
+    >>> import numpy
+    >>> gains = numpy.array([1.0, 2.0]).reshape(2, 1, 1)
+    >>> one, none, zero = numpy.ones((2, 1, 1)), numpy.zeros((2, 1, 0)), numpy.zeros((2, 1, 1))
+    >>> loops = ChannelModel(zero, one, -gains, gains, one, zero, zero, zero, zero, numpy.ones((2, 1)))
+    >>> step_family(loops, [0.5, 1.5]).round(6)   # of gain/(s + gain*exp(-s))
+    array([[0.5  , 1.375],
+           [1.   , 2.5  ]])
+    """
+    import numpy
+
+    times = times_from_zero(times)
+    delays = real_numbers("delays", models.delays)
+    parts = zip(ChannelModel._fields, models[:-1], strict=False)
+    models = ChannelModel(*(real_numbers(name, part) for name, part in parts), delays)
+    shape = _family_shape(models)
+    count = shape[0]
+    flat = times.ravel()
+    values = numpy.empty((count, flat.size))
+    rows, member = numpy.unique(delays, axis=0, return_inverse=True)
+    member = member.ravel()
+    end = flat.max(initial=0.0)
+    for number, row in enumerate(rows):
+        exact = [Fraction(repr(delay)) for delay in row.tolist()]  # as it is written
+        if any(delay <= 0 for delay in exact):
+            raise ValueError(f"the delays of the channels are {row.tolist()}: expected positive ones")
+        here = numpy.flatnonzero(member == number)
+        group = ChannelModel(*(array[here] for array in models[:-1]), exact)
+        found = numpy.full((len(here), flat.size), math.nan)
+        if len(here) >= WORTH:
+            found = shared_cells(group, exact, flat)
+        for k in numpy.flatnonzero(numpy.isnan(found).any(axis=1)):
+            found[k] = Response(ChannelModel(*(array[k] for array in group[:-1]), exact), end)(flat)
+        values[here] = found
+    return values.reshape(count, *times.shape)
+
+
+def _family_shape(models):
+    """The numbers of models, states and channels, or ValueError where arrays do not fit."""
+    shapes = [part.shape for part in models]
+    if models.A.ndim == 3 and models.delays.ndim == 2:
+        (count, n, _), q = models.A.shape, models.delays.shape[1]
+        expected = [(n, n), (n, 1), (n, q), (1, n), (q, n), (1, 1), (1, q), (q, 1), (q, q), (q,)]
+        if shapes == [(count, *shape) for shape in expected]:
+            return count, n, q
+    raise ValueError(f"the arrays of the models have the shapes {shapes}: expected an axis of models before the others")
+
+
+def default_horizon(model: ChannelModel) -> float:
+    """Return a time up to which a step response shows what there is to see.
+
+    The response is followed twice as far until its later two thirds stay within 1 % of its range around its end; the
+    horizon is half as long again as it takes to settle there. A response that grows for ever, as of an integrator or an
+    unstable system, is shown until it is many times as large as at first; one that swings for ever, for some periods.
+
+    Arguments:
+        model: a `ChannelModel`.
+
+    >>> import numpy
+    >>> one = numpy.ones((1, 1))
+    >>> none = numpy.zeros((1, 0))
+    >>> lag = ChannelModel(-one, one, none, one, none.T, 0 * one, none, none.T, none.T @ none, [])
+    >>> default_horizon(lag)
+    7.0
+    """
+    import numpy
+    from numpy.polynomial import legendre
+
+    final = _static_gain(model)
+    start = end = max(2 * float(sum(model.delays)), 4 / speed if (speed := fastest(model)) else 0.0) or 1.0
+    before, growth = None, None
+    for _ in range(MOST_DOUBLINGS):
+        try:
+            response = Response(model, end)
+        except ValueError:  # too many segments, or beyond all numbers: what was followed so far has to do
+            return _rounded_up(end / 2)
+        shares = numpy.linspace(0, 1, NODES)
+        values = legendre.legval(2 * shares - 1, response.coefficients.T)
+        times = response.edges[:-1, None] + numpy.diff(response.edges)[:, None] * shares
+        times, values = times.ravel(), values.ravel()
+        last = final if math.isfinite(final) else values[-1]
+        band = BAND * max(abs(values).max(), abs(last))
+        outside = times[abs(values - last) > band]
+        settled = outside.max(initial=0.0)
+        if settled <= end / 3:
+            return _rounded_up(1.5 * settled or start)
+        early = abs(values[times <= end / 2]).max()
+        before, growth = growth, abs(values).max() / early if early else math.inf
+        if before and growth > max(GROWN, before**1.3):  # not as a power of the time, as while it rises from zero
+            return _rounded_up(end)
+        if before and not math.isfinite(final) and growth > 1.8 and abs(growth / before - 1) < 0.1:
+            return _rounded_up(end)
+        if len(response.edges) > LONG:
+            middle = (values[times > end / 2].max() + values[times > end / 2].min()) / 2
+            turns = times[1:][numpy.diff(numpy.sign(values - middle)) != 0]
+            return _rounded_up(turns[min(len(turns) - 1, SWINGS)] if len(turns) else end)
+        end *= 2
+    return _rounded_up(end)
+
+
+def _static_gain(model):
+    """What a step settles at, if it does; infinite where there are integrators."""
+    import numpy
+
+    A, B1, B2, C1, C2, D11, D12, D21, D22, delays = model
+    whole = numpy.block([[A, B2], [C2, D22 - numpy.eye(len(delays))]])
+    if len(whole):
+        rows, columns = numpy.ones(len(whole)), numpy.ones(len(whole))
+        for _ in range(8):  # independent of the units of the states
+            scaled = abs(whole) * rows[:, None] * columns
+            if not (scaled.any(axis=0).all() and scaled.any(axis=1).all()):
+                return math.inf
+            rows /= numpy.sqrt(scaled.max(axis=1))
+            columns /= numpy.sqrt(scaled.max(axis=0))
+        if numpy.linalg.cond(whole * rows[:, None] * columns) > SINGULAR:
+            return math.inf
+    still = -numpy.linalg.solve(whole, numpy.vstack([B1, D21])[:, 0])
+    return float(D11[0, 0] + numpy.hstack([C1, D12])[0] @ still)
+
+
+def _rounded_up(time):
+    unit = 10.0 ** (math.floor(math.log10(time)) - 1)
+    return float(f"{math.ceil(time / unit * (1 - 1e-9)) * unit:.12g}")
