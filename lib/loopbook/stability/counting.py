@@ -364,7 +364,7 @@ class Turns:
 
         sums = self.sums
         one, points = numpy.ones(sums.count), numpy.arange(sums.count)
-        which, a, b = geometric(_lowest(sums), one)
+        which, a, b = geometric(_lowest(sums), one, near)
         if self.removable:
             start, turn = _above_origin(sums, self.removable, self.exact)
             self.phase += turn
@@ -375,8 +375,6 @@ class Turns:
             size, at_zero = sums.sizes(points, 0 * one)[0], sums.coefficients[:, 0].sum(axis=0)
             vanishes = abs(at_zero) <= 1e-15 * size if self.exact is None else not exact_coefficient(self.exact, 0)
             self.limit |= vanishes
-        if near is not None:
-            which, a, b = closer(which, a, b, near)
         some = ~self.limit[which]
         walk(self.judge, which[some], a[some], b[some], self.name, self.unit, self.exact is not None)
         ends = sums.value(points, one) * (-1j) ** sums.order
@@ -453,21 +451,3 @@ def _above_origin(sums, removable, exact):
         start = numpy.where(high, start / 2, start)
     value = sums.value(numpy.arange(sums.count), start) if exact is None else exact.taylor(start, 0)[0]
     return start, numpy.angle(value / (1j**removable * series[removable]))
-
-
-def closer(which, a, b, near, closest=1e-8):
-    """The intervals, those about a frequency of each point in ever smaller steps towards it."""
-    import numpy
-
-    steps = closest * 4.0 ** numpy.arange(math.ceil(math.log(0.5 / closest, 4)) + 1)
-    offsets = numpy.concatenate([-steps[::-1], steps])
-    parts = []
-    for point, w in enumerate(near.tolist()):
-        mine = which == point
-        edges = [a[mine], b[mine]]
-        if math.isfinite(w) and w > 0:
-            more = w * (1 + offsets)
-            edges.append(more[(more > a[mine].min()) & (more < b[mine].max())])
-        edges = numpy.unique(numpy.concatenate(edges))
-        parts.append((numpy.full(len(edges) - 1, point), edges[:-1], edges[1:]))
-    return tuple(numpy.concatenate(x) for x in zip(*parts, strict=True))

@@ -224,12 +224,16 @@ class Real(Question):
 
     def _solve(self, view, candidates):
         """Find the crossings in intervals on which Im A conj(B) is monotone."""
-        import numpy
-
         points, a, b = (x[candidates] for x in (view.which, view.a, view.b))
         at_a, at_b = (
             (A[0] * B[0].conj()).imag for A, B in (self.loops.values(points, end, 0, view.precise) for end in (a, b))
         )
+        self.solve(points, a, b, at_a, at_b)
+
+    def solve(self, points, a, b, at_a, at_b):
+        """Find the crossings in intervals with values of Im A conj(B) at the ends, if these have different signs."""
+        import numpy
+
         new = numpy.flatnonzero(((at_a > 0) != (at_b > 0)) & ~self.is_known(points, a, b))
         if len(new):
             points, a, b, at_a, at_b = (x[new] for x in (points, a, b, at_a, at_b))
@@ -261,6 +265,7 @@ class Positive(Question):
 
         self.loops, self.share = loops, share
         self.most, self.place = numpy.zeros(loops.count), numpy.zeros(loops.count)
+        self.width = 0.0  # of the last one whose top was found
 
     def see(self, points, sizes, frequencies):
         import numpy

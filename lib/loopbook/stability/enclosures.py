@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     import numpy
 
 EPSILON = 2.0**-52
+RATIO = 1.45  # of the frequencies at the ends of an interval, at first
+CLOSEST = 1e-8  # the smallest step, as a share, towards a frequency near which there is a root
 MOST_INTERVALS = 1_000_000  # in one walk, and for each point of many
 MORE_INTERVALS = 2_000
 MOST_AT_ONCE = 2**15
@@ -224,20 +226,35 @@ class UndecidedError(ValueError):
         super().__init__(f"{what} is not decided between the frequencies {self.low:.12g} and {self.high:.12g}")
 
 
-def geometric(start: numpy.ndarray, end: numpy.ndarray, ratio: float = 1.45):
-    """Intervals from zero, and from `start` to `end` in geometric steps: points, and both ends of each."""
+def geometric(start: numpy.ndarray, end: numpy.ndarray, near: numpy.ndarray | None = None):
+    """Intervals from zero, and from `start` to `end` in geometric steps: points, and both ends of each.
+
+    About a frequency `near` of each point, if it is not nan, the steps become ever smaller.
+    """
     import numpy
 
-    points = numpy.arange(len(start))
     reach = math.log(max(1.0, (end / start).max())) if len(start) else 0.0
-    steps = max(1, math.ceil(reach / math.log(ratio)))
-    edges = start * (end / start) ** (numpy.arange(steps + 1)[:, None] / steps)
-    edges = numpy.vstack([0 * start, edges])
+    steps = max(1, math.ceil(reach / math.log(RATIO)))
+    edges = numpy.empty((steps + 2, len(start)))
+    edges[0] = 0
+    edges[1:] = start * (end / start) ** (numpy.arange(steps + 1)[:, None] / steps)
     edges[-1] = end
-    which = numpy.broadcast_to(points, (steps + 1, len(points)))
-    a, b = edges[:-1].ravel(), edges[1:].ravel()
+    if near is not None:
+        closer = near * _OFFSETS()[:, None]
+        closer = numpy.where((closer > 0) & (closer < end), closer, end)
+        edges = numpy.sort(numpy.concatenate([edges, closer]), axis=0)
+    which = numpy.broadcast_to(numpy.arange(len(start)), edges[1:].shape)
+    a, b = edges[:-1], edges[1:]
     some = b > a
-    return which.ravel()[some], a[some], b[some]
+    return which[some], a[some], b[some]
+
+
+@functools.cache
+def _OFFSETS():
+    import numpy
+
+    steps = CLOSEST * 4.0 ** numpy.arange(math.ceil(math.log(0.5 / CLOSEST, 4)) + 1)
+    return 1 + numpy.concatenate([-steps[::-1], steps])
 
 
 def walk(

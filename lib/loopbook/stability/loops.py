@@ -166,6 +166,14 @@ class Loops:
             some = series[:count].any(axis=0)
             if parity:
                 self.is_real = ~some
+            # where the next powers are still below the lowest one; then in halves, until all others are, too
+            known = abs(numpy.take_along_axis(series, lowest[None], axis=0)[0])
+            gaps = numpy.arange(count)[:, None] - lowest
+            with numpy.errstate(divide="ignore", invalid="ignore"):
+                ratios = numpy.where(
+                    gaps > 0, (known / (4 * abs(series[:count]))) ** (1 / numpy.maximum(gaps, 1)), math.inf
+                )
+            start = numpy.where(some, numpy.fmin(start, ratios.min(axis=0)), start)
             for _ in range(400):
                 powers = start ** (numpy.arange(len(series))[:, None] - lowest)
                 terms = abs(series) * powers
@@ -375,15 +383,18 @@ def positive_beyond(rows: numpy.ndarray) -> numpy.ndarray:
             ends = (lower * number / lead) ** (1 / numpy.arange(n, 0, -1)[:, None])
         end = numpy.nan_to_num(ends, nan=math.inf).max(axis=0, initial=1e-6)
         found = numpy.where(possible & (lead > 0), numpy.minimum(found, end), found)
-    return numpy.where(found < math.inf, numpy.sqrt(found), math.nan)
+    # a little beyond, because such a bound may itself be a zero
+    return numpy.where(found < math.inf, 1.001 * numpy.sqrt(found), math.nan)
 
 
 def _conjugate_product(x, y):
     """The power series in w of one times the other's conjugate."""
     import numpy
 
-    product = numpy.zeros((len(x) + len(y) - 1, x.shape[1]), dtype=x.dtype)
     other = y.conj()
+    if x.shape[1] == 1:
+        return numpy.convolve(x[:, 0], other[:, 0])[:, None]
+    product = numpy.zeros((len(x) + len(y) - 1, x.shape[1]), dtype=x.dtype)
     for i, row in enumerate(x):
         product[i : i + len(y)] += row * other
     return product

@@ -27,6 +27,7 @@ from loopbook.stability.crossings import (
 )
 from loopbook.stability.endless import Far
 from loopbook.stability.loops import ENOUGH, Loops
+from loopbook.stability.peaks import to_the_top
 
 MOST_TURNS = 2000.0  # of the phase by dead time, in radians, after which it is given up that has no end in sight
 FURTHEST = 1e15  # times the frequency of the fastest pole, beyond which nothing is looked for
@@ -191,13 +192,11 @@ class Survey:
             raise ValueError("whether the loop's gain at ever higher frequencies stays away from 1 is not decided")
         done = below(loops, questions)
         longest = float(loops.longest[0])
-        end = self._first_window(float(done[0]))
-        left = questions
+        end, left = self._scout(float(done[0]), questions), questions
         while True:
-            asked(loops, left, *steps(done, numpy.array([end])))
+            asked(loops, left, *self._intervals(float(done[0]), end))
             done = numpy.array([end])
-            # a little beyond, because such a bound may itself be the last crossing
-            ends = {id(question): 1.001 * self._end(question, end) for question in questions}
+            ends = {id(question): self._end(question, end) for question in questions}
             left = [question for question in questions if not ends[id(question)] <= end]
             if not left:
                 return
@@ -208,12 +207,43 @@ class Survey:
             window = max(4 * end, end + 20 / longest if longest else 0)
             end = min(furthest, window)
 
-    def _first_window(self, start):
-        """An end of the first window."""
+    def _scout(self, start, questions):
+        """See from values alone where the answers may be, so that they are soon proved; an end of the first window."""
         import numpy
 
-        end = float(self.loops.beyond(numpy.full(1, 2.0))[0])
-        return max(end if end < 64 else 4.0, 4 * start)
+        loops = self.loops
+        end = float(loops.beyond(numpy.full(1, 2.0))[0])
+        end = max(end if end < 64 else 4.0, 4 * start)
+        w = numpy.geomspace(start, 2 * end, 80)
+        which = numpy.zeros(len(w), dtype=int)
+        A, B = (x[0] for x in loops.values(which, w))
+        if self.peak:
+            C = A + B
+            highest = abs(B * C).argmax() if not C.all() else (abs(B) / abs(C)).argmax()
+            self.peak.see(which[:1], (abs(B) / abs(C))[[highest]], w[[highest]])
+            to_the_top(loops, self.peak)
+        if self.real:
+            product = A * B.conj()
+            imag, negative = product.imag, product.real < 0
+            some = numpy.flatnonzero(((imag[1:] > 0) != (imag[:-1] > 0)) & negative[1:] & negative[:-1])[:8]
+            if len(some):
+                self.real.solve(which[some], w[some], w[some + 1], imag[some], imag[some + 1])
+        ends = [self._end(question, end) for question in questions if question is not self.size]
+        return max([end, *(each for each in ends if each < 8 * end)])
+
+    def _intervals(self, start, end):
+        """Geometric steps, and the peak in the middle of one of them."""
+        import numpy
+
+        which, a, b = steps(numpy.full(1, start), numpy.full(1, end))
+        if self.peak and start < self.peak.place[0] < end:
+            p, width = float(self.peak.place[0]), self.peak.width
+            edges = numpy.append(a, b[-1])
+            near = p + width * numpy.array([-9.0, -3.0, -1.0, 1.0, 3.0, 9.0]) / 4
+            edges = edges[abs(edges - p) > width / 4]
+            edges = numpy.unique(numpy.concatenate([edges, near[(near > start) & (near < end)]]))
+            return numpy.zeros(len(edges) - 1, dtype=int), edges[:-1], edges[1:]
+        return which, a, b
 
     # ---- what was found
 

@@ -23,19 +23,22 @@ def to_the_top(loops: Loops, question: Positive) -> None:
         A, B = loops.values(every, w, 2)
         return B, A + B
 
-    question.see(every, *_climbed(at, question.place[every], 30))
+    best, places, bend = _climbed(at, question.place[every], 30)
+    question.see(every, best, places)
+    with numpy.errstate(divide="ignore", invalid="ignore"):
+        question.width = float(numpy.clip((-2 / bend[0]) ** 0.5, 1e-7 * places[0], places[0] / 4))
     place = question.place[every]
     if loops.exact is not None and loops.doubtful(every, place, loops.C.value(every, place))[0]:
         # rounding made what was seen, also if that is higher than what is there
         question.most[0] = 0.0
-        question.see(every, *_climbed(lambda w: [each.taylor(w, 2) for each in loops.exact[1:]], place, 8))
+        question.see(every, *_climbed(lambda w: [each.taylor(w, 2) for each in loops.exact[1:]], place, 8)[:2])
 
 
 def _climbed(at, w, most):
-    """The largest abs(B/C) that Newton's steps find, and where."""
+    """The largest abs(B/C) that Newton's steps find, where, and the second derivative of twice its logarithm there."""
     import numpy
 
-    best, places = -numpy.ones(len(w)), w.copy()
+    best, places, settled = -numpy.ones(len(w)), w.copy(), numpy.zeros(len(w), dtype=bool)
     for _ in range(most):
         (up, up1, up2), (down, down1, down2) = (
             (abs(x[0]) ** 2, 2 * (x[1] * x[0].conj()).real, 2 * abs(x[1]) ** 2 + 4 * (x[2] * x[0].conj()).real)
@@ -46,15 +49,17 @@ def _climbed(at, w, most):
             slope = up1 / up - down1 / down
             bend = up2 / up - (up1 / up) ** 2 - down2 / down + (down1 / down) ** 2
             step = numpy.where(bend < 0, -slope / bend, numpy.sign(slope) * 0.1 * w)
+            # the next step would be about the square of this one, as a share of the peak's width
+            small = (bend < 0) & (abs(step) <= numpy.maximum(1e-5 * numpy.sqrt(-2 / bend), 4e-16 * w))
         step = numpy.clip(numpy.nan_to_num(step), -0.3 * w, 0.3 * w)
         better = height > best
-        done = ~better | (abs(step) <= 1e-9 * w)
-        best[better], places[better] = height[better], w[better]
-        if done.all() and (abs(w - places) <= 1e-8 * places).all():
+        best, places = numpy.where(better, height, best), numpy.where(better, w, places)
+        if settled.all():
             break
         # what did not rise is tried again with half the step
+        settled = settled | small | (~better & (abs(w - places) <= 1e-8 * places))
         w = numpy.where(better, w + step, (w + places) / 2)
-    return best, places
+    return best, places, bend
 
 
 def with_peaks(which, a, b, peaks: numpy.ndarray):

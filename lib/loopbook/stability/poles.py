@@ -1,7 +1,10 @@
-"""The dominant poles of a closed loop with dead time: those with the largest real parts, of infinitely many."""
+"""The dominant poles, of a system or a closed loop: those with the largest real parts, of perhaps infinitely many."""
+
+from __future__ import annotations
 
 import math
 import operator
+from typing import TYPE_CHECKING
 
 import sympy
 
@@ -10,44 +13,76 @@ from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.stability.counting import ENDLESS, ON_LIMIT, characteristic, count_roots, open_loop
 from loopbook.stability.difference import prevailing
 
+if TYPE_CHECKING:
+    from loopbook.quasipolynomials.fraction import Sum
 
-def dominant_poles(loop, count=2):
+MOST_POINTS = 16_000  # from which Newton's method begins at once
+MOST_TRIES = 2  # of a line left of the poles that are wanted
+
+
+def dominant_poles(loop: object, count: int = 2) -> list[complex]:
     """Return the poles of the closed loop with the largest real parts, for negative feedback around a loop.
 
     Newton's method finds them, from many points at once. That none is missing is proved: the argument principle counts
     the poles to the right of a line, and the search goes on until it has as many.
 
     Arguments:
-        loop: the open loop, as for `unstable_poles`.
+        loop: the open loop, as for `unstable_closed_loop_poles`.
         count: how many poles; a loop without dead time may have fewer, and a complex pair is never divided.
     Returns:
         Complex numbers, sorted: the largest real part first, and of a pair the positive imaginary part first. A pole
         stands there as often as it occurs.
     Raises:
-        ValueError: as `unstable_poles`; for a count that is no positive integer; or where the loop's gain at high
-            frequencies returns with a dead time, so that an endless row of poles comes before the last one wanted.
+        ValueError: as `unstable_closed_loop_poles`; for a count that is no positive integer; where the loop's gain at
+            high frequencies returns with a dead time, so that an endless row of poles comes before the last one
+            wanted; or where the poles are not found, with how many are known to be where.
 
     >>> import sympy
     >>> from loopbook import s
     >>> [complex(round(p.real, 4), round(p.imag, 4)) for p in dominant_poles(sympy.exp(-s) / s)]
     [(-0.3181+1.3372j), (-0.3181-1.3372j)]
     """
+    L = open_loop(loop)
+    return dominant_roots(characteristic(L), count, f"the closed loop of {L.expr}")
+
+
+def dominant_roots(parts: Sum, count: int | None, name: str) -> list[complex]:
+    """Return the roots of a sum with the largest real parts, as `dominant_poles` does.
+
+    Arguments:
+        parts: ``{delay: coefficients}``, the lowest power first, with a part without dead time.
+        count: how many; None means all of a polynomial, and two where there are infinitely many.
+        name: of what has the roots as its poles, for errors.
+    """
     import numpy
 
-    if not hasattr(count, "__index__") or isinstance(count, bool) or operator.index(count) < 1:
+    if count is not None and (not hasattr(count, "__index__") or isinstance(count, bool) or operator.index(count) < 1):
         raise ValueError(f"count is {count!r}: expected a positive integer")
-    L = open_loop(loop)
-    parts = characteristic(L)
     if len(parts) == 1:
         found = _of_polynomial(sympy.Poly(parts[0][::-1], s))
+        count = len(found) if count is None else count
     else:
+        count = 2 if count is None else count
         sums = Quasipolynomials.exact(parts, len(parts[0]) - 1, parts[0][-1])
-        right, left, most = _strip(sums, 1 / float(sums.delays.max()), count, L.expr)
-        found = _inside(sums, left, right, most)
+        found = _of_sum(sums, count, name)
     upper = [p for p in found if p.imag >= 0]
     poles = [q for p in sorted(upper, key=lambda p: (-p.real, p.imag)) for q in ([p, p.conjugate()] if p.imag else [p])]
     end = count + 1 if len(poles) > count and poles[count - 1].imag > 0 else count
     return [complex(numpy.complex128(p)) for p in poles[:end]]
+
+
+def _of_sum(sums, count, name):
+    """The roots right of a line that has at least `count` of them on its right."""
+    right, left, most = _strip(sums, 1 / float(sums.delays.max()), count, name)
+    for attempt in range(1, MOST_TRIES + 1):
+        found = _inside(sums, left, right, most)
+        number = sum(2 if p.imag else 1 for p in found)
+        if number == most:
+            return found
+        if attempt < MOST_TRIES:  # the line may pass too close to some of them
+            left -= 0.07 * attempt * (right - left)
+            most = _right_of(sums, left)
+    raise ValueError(f"{most} poles of {name} are known to lie right of {left:.6g}, but {number} were found")
 
 
 def _of_polynomial(polynomial):
@@ -62,7 +97,7 @@ def _of_polynomial(polynomial):
     ]
 
 
-def _strip(sums, unit, count, L):
+def _strip(sums, unit, count, name):
     """Real parts right and left of the poles that are wanted, and how many lie between them."""
     right, left = 0.37 * unit, -0.63 * unit
     while _right_of(sums, right):
@@ -81,7 +116,7 @@ def _strip(sums, unit, count, L):
         else:
             left, most = middle, between
     if most == ENDLESS:
-        raise ValueError(f"an endless row of poles of the closed loop of {L} comes before the {count} that are wanted")
+        raise ValueError(f"an endless row of poles of {name} comes before the {count} that are wanted")
     return right, left, most
 
 
@@ -106,17 +141,21 @@ def _shifted(sums, real_part):
 
 
 def _inside(sums, left, right, most):
-    """The `most` roots with real parts from left to right, by Newton's method from a grid that becomes finer."""
+    """Roots with real parts from left to right, by Newton's method, from ever finer grids until `most` are found."""
     import numpy
 
     top = float(prevailing(_shifted(sums, left).coefficients)[0])
+    if not math.isfinite(top):
+        raise ValueError(f"how far the poles right of {left:.6g} reach is not known: expected fewer to be wanted")
     derivative = sums.derivative()
     for refinement in (1, 4, 16):
         rows = refinement * (20 + int(top * float(sums.delays.max()) + 8 * sums.order))
-        x, y = numpy.meshgrid(numpy.linspace(left, right, 6 * refinement), numpy.linspace(0, top, min(rows, 20_000)))
+        columns = 6 * refinement
+        rows = min(rows, MOST_POINTS // columns)
+        x, y = numpy.meshgrid(numpy.linspace(left, right, columns), numpy.linspace(0, top, rows))
         points, rest = _newton(sums, derivative, (x + 1j * y).ravel())
         inside = (points.real > left) & (points.real < right) & (points.imag > -1e-9 * top)
-        points, rest, size = points[inside], rest[inside], numpy.maximum(abs(points[inside]), 1e-3 * top)
+        points, rest, size = points[inside], rest[inside], numpy.maximum(abs(points[inside]), right - left)
         there = rest <= 1e-5 * numpy.minimum(size, right - left)
         for close, flat in ((1e-6, 1e-8), (1e-3, 1e-3)):  # rounding scatters what leads to a triple root
             distinct = []
@@ -125,9 +164,9 @@ def _inside(sums, left, right, most):
                 if there[k] and all(abs(p - q) > close * size[k] for q in distinct):
                     distinct.append(complex(p.real, 0.0 if abs(p.imag) < flat * size[k] else p.imag))
             found = [p for p in distinct for _ in range(_multiplicity(sums, derivative, p, distinct, top))]
-            if (number := sum(2 if p.imag else 1 for p in found)) == most:
+            if sum(2 if p.imag else 1 for p in found) == most:
                 return found
-    raise ValueError(f"{most} poles are known to lie right of {left:g}, but {number} were found")
+    return found
 
 
 def _newton(sums, derivative, points):
