@@ -117,6 +117,7 @@ ORDER = [
     ["stability"],
     ["deadtime"],
     ["ise"],
+    ["families"],
     ["identification"],
     ["plants"],
     ["signals"],

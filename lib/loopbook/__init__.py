@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from loopbook.deadtime import Loop as Loop
     from loopbook.deadtime import System as System
     from loopbook.deadtime import closed_loop as closed_loop
+    from loopbook.families import Family as Family
     from loopbook.identification import fit as fit
     from loopbook.ise import criteria as criteria
     from loopbook.pid import PID as PID
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     from loopbook.tuning import simc as simc
 
 HOMES = {
-    "Loop": "deadtime", "PID": "pid", "System": "deadtime", "closed_loop": "deadtime",
+    "Family": "families", "Loop": "deadtime", "PID": "pid", "System": "deadtime", "closed_loop": "deadtime",
     "criteria": "ise", "dead_time": "transfer", "delay_margin": "stability", "first_order": "transfer",
     "fit": "identification", "half_rule": "approximation", "integrator": "transfer",
     "integrator_with_lag": "transfer", "is_stable": "stability", "margins": "stability",

@@ -13,7 +13,7 @@ from loopbook.expressions import function_of, s, t
 from loopbook.inputs import one_of, times_from_zero
 from loopbook.laplace import evaluate
 from loopbook.quasipolynomials import DelayFraction, read
-from loopbook.stability import Margins, is_stable, margins
+from loopbook.stability import Margins, dominant_poles, is_stable, margins
 from loopbook.transfer import transfer_function
 
 if TYPE_CHECKING:
@@ -188,6 +188,14 @@ class Loop:
         False
         """
         return is_stable(self)
+
+    def poles(self, count: int = 2) -> list[complex]:
+        """Return the dominant poles of the closed loop, as `stability.dominant_poles` does.
+
+        >>> Loop(1 / s, 2).poles()
+        [(-2+0j)]
+        """
+        return dominant_poles(self, count)
 
     def margins(self) -> Margins:
         """Return gain margin, phase margin, delay margin and Ms, as `stability.margins` does for the open loop.

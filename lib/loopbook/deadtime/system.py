@@ -21,6 +21,7 @@ from loopbook.quasipolynomials import DelayFraction, read
 from loopbook.quasipolynomials.fraction import Sum, lowest_term, plus
 from loopbook.stability import is_stable
 from loopbook.stability import margins as margins_of
+from loopbook.stability.poles import dominant_roots
 
 if TYPE_CHECKING:
     import control
@@ -101,6 +102,24 @@ class System(DelayFraction):
         (True, False)
         """
         return is_stable(self)
+
+    def poles(self, count: int | None = None) -> list[complex]:
+        """Return the poles with the largest real parts; that none of them is missing is proved.
+
+        Arguments:
+            count: how many; by itself all of a system without dead time in its denominator, and the two dominant ones
+                of another, which has infinitely many. A complex pair is never divided.
+        Returns:
+            Complex numbers, sorted, the largest real part first; a pole stands there as often as it occurs.
+        Raises:
+            ValueError: as `stability.dominant_poles`.
+
+        >>> System(1 / (s**2 + 3 * s + 2)).poles()
+        [(-1+0j), (-2+0j)]
+        >>> [complex(round(p.real, 4), round(p.imag, 4)) for p in closed_loop(sympy.exp(-s) / s).poles()]
+        [(-0.3181+1.3372j), (-0.3181-1.3372j)]
+        """
+        return dominant_roots(self.denominator, count, f"{self.expr}")
 
     # ---- frequency
 

@@ -155,7 +155,7 @@ def _inside(sums, left, right, most):
         x, y = numpy.meshgrid(numpy.linspace(left, right, columns), numpy.linspace(0, top, rows))
         points, rest = _newton(sums, derivative, (x + 1j * y).ravel())
         inside = (points.real > left) & (points.real < right) & (points.imag > -1e-9 * top)
-        points, rest, size = points[inside], rest[inside], numpy.maximum(abs(points[inside]), right - left)
+        points, rest, size = points[inside], rest[inside], numpy.maximum(abs(points[inside]), 1e-9 * top)
         there = rest <= 1e-5 * numpy.minimum(size, right - left)
         for close, flat in ((1e-6, 1e-8), (1e-3, 1e-3)):  # rounding scatters what leads to a triple root
             distinct = []
