@@ -294,7 +294,7 @@ class Positive(Question):
             B, C, most = B[some], C[some], most[some]
             above = (most * most) * (C @ C).real - (B @ B).real
             undecided[some] = ~above.is_positive
-            noisy[some] = above.is_noisy | C.is_noisy | (C.noise > 1e-11 * C.sizes[0])
+            noisy[some] = above.is_noisy | C.is_noisy | (C.noise > 1e-10 * C.sizes[0])
         return undecided, noisy
 
 

@@ -27,6 +27,7 @@ MOST_INTERVALS = 1_000_000  # in one walk, and for each point of many
 MORE_INTERVALS = 2_000
 MOST_AT_ONCE = 2**15
 MOST_EXACT = 3_000  # intervals that are looked at with more digits
+BITS = 256  # behind the binary point, of these
 NARROWEST = 1e-14  # the half width, as a share of the frequency, at which an interval is left undecided
 NOISY = 16  # times the rounding, below which a value is looked at with more digits
 
@@ -182,37 +183,60 @@ class Exact:
     def __init__(self, parts: dict[Fraction, tuple[int, ...]], order: int, divisor: int, unit: float):
         self.parts, self.order, self.divisor, self.unit = parts, order, divisor, unit
 
+    @functools.cached_property
+    def _matrices(self):
+        """For each part its dead time and the polynomials that, times exp(-delay*s), are the derivatives over k!.
+
+        The numbers are whole multiples of 2**-BITS.
+        """
+        from fractions import Fraction
+
+        unit = Fraction(self.unit)
+        scale = 2**BITS / (Fraction(self.divisor) * unit**self.order)
+        found = []
+        for delay, part in self.parts.items():
+            late = [(-delay) ** k / math.factorial(k) for k in range(DEGREE + 1)]
+            rows = []
+            for k in range(DEGREE + 1):
+                row = []
+                for n in range(len(part)):
+                    terms = (
+                        math.comb(n + i, i) * part[n + i] * late[k - i] for i in range(min(k, len(part) - 1 - n) + 1)
+                    )
+                    row.append(round(sum(terms) * scale * unit ** (n + k)))
+                rows.append(row)
+            found.append((delay * unit, rows))
+        return found
+
     def taylor(self, w: numpy.ndarray, degree: int = DEGREE) -> numpy.ndarray:
         """The coefficients of the powers of h in the sum at j (w + h)*unit: array [power, frequency]."""
-        import mpmath
         import numpy
 
-        columns = []
-        context = mpmath.mp
-        with context.workprec(220):
-            unit = context.mpf(self.unit)
-            divisor = context.mpf(self.divisor) * unit**self.order
-            for frequency in w.tolist():
-                point = context.mpf(frequency) * unit
-                total = [context.mpc(0)] * (degree + 1)
-                for delay, part in self.parts.items():
-                    late = context.mpf(delay.numerator) / delay.denominator
-                    derivatives = [context.mpc(0)] * (degree + 1)
-                    s = context.mpc(0, point)
-                    for c in reversed(part):
-                        for i in range(degree, 0, -1):
-                            derivatives[i] = derivatives[i] * s + derivatives[i - 1]
-                        derivatives[0] = derivatives[0] * s + c
-                    turn = context.expj(-point * late) if delay else context.mpf(1)
-                    for k in range(degree + 1):
-                        total[k] += turn * sum(
-                            (derivatives[i] * (-late) ** (k - i) / math.factorial(k - i) for i in range(k + 1)),
-                            context.mpc(0),
-                        )
-                columns.append(
-                    [complex(value * context.mpc(0, 1) ** k * unit**k / divisor) for k, value in enumerate(total)]
-                )
+        columns = [self._column(frequency, degree) for frequency in w.tolist()]
         return numpy.array(columns, dtype=complex).T.reshape(degree + 1, len(columns))
+
+    def _column(self, frequency, degree):
+        from mpmath import libmp
+
+        mantissa, below = frequency.as_integer_ratio()
+        w = (mantissa << BITS) // below
+        square = -(w * w >> BITS)
+        totals = [[0, 0] for _ in range(degree + 1)]
+        for delay, rows in self._matrices:
+            cos, sin = 1 << BITS, 0
+            if delay:
+                angle = libmp.from_rational(mantissa * delay.numerator, below * delay.denominator, 2 * BITS)
+                cos, sin = (libmp.to_fixed(x, BITS) for x in libmp.mpf_cos_sin(angle, BITS + 16))
+            for total, row in zip(totals, rows, strict=False):
+                even = odd = 0
+                for c in row[(len(row) - 1) // 2 * 2 :: -2]:
+                    even = (even * square >> BITS) + c
+                for c in row[(len(row) // 2 * 2 - 1) :: -2] if len(row) > 1 else ():
+                    odd = (odd * square >> BITS) + c
+                odd = odd * w >> BITS
+                total[0] += even * cos + odd * sin >> BITS
+                total[1] += odd * cos - even * sin >> BITS
+        return [complex(real / (1 << BITS), imag / (1 << BITS)) * 1j**k for k, (real, imag) in enumerate(totals)]
 
 
 # ---- the walk

@@ -240,8 +240,9 @@ class Survey:
             p, width = float(self.peak.place[0]), self.peak.width
             edges = numpy.append(a, b[-1])
             near = p + width * numpy.array([-9.0, -3.0, -1.0, 1.0, 3.0, 9.0]) / 4
-            edges = edges[abs(edges - p) > width / 4]
-            edges = numpy.unique(numpy.concatenate([edges, near[(near > start) & (near < end)]]))
+            inner = edges[1:-1][abs(edges[1:-1] - p) > width / 4]
+            near = near[(near > start) & (near < end)]
+            edges = numpy.unique(numpy.concatenate([edges[[0, -1]], inner, near]))
             return numpy.zeros(len(edges) - 1, dtype=int), edges[:-1], edges[1:]
         return which, a, b
 
