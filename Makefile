@@ -30,6 +30,7 @@ test-all: .venv/ready ## the same with all variants of the exercises, as once a 
 
 bench: .venv/ready ## measure what the collection costs beside what it stands on
 	$(python) tests/bench.py
+	$(python) tests/bench_deadtime.py
 	$(python) tests/bench_grading.py
 	$(python) tests/bench_book.py
 
