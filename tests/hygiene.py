@@ -103,15 +103,19 @@ def sections(notebook: NotebookNode) -> list[list[tuple[str, NotebookNode]]]:
 
 def tree(cell: NotebookNode) -> ast.Module:
     """The syntax tree of a cell, empty where it is no Python (`plain_python` complains about that)."""
-    return ast.parse(cell.source) if is_python(cell) else ast.Module([], [])
+    return parsed(cell.source) or ast.Module([], [])
 
 
 def is_python(cell: NotebookNode) -> bool:
+    return parsed(cell.source) is not None
+
+
+@cache
+def parsed(source: str) -> ast.Module | None:
     try:
-        ast.parse(cell.source)
+        return ast.parse(source)
     except SyntaxError:
-        return False
-    return True
+        return None
 
 
 def names(node: ast.AST) -> set[str]:

@@ -1,5 +1,6 @@
 """Every stored notebook obeys every rule, every rule can be broken, and notebooks are stored as promised."""
 
+import functools
 import subprocess
 import sys
 import time
@@ -17,10 +18,13 @@ from loopbook.__main__ import app
 STORED = [path for folder in ("chapters", "solutions") for path in sorted((ROOT / folder).glob("*.ipynb"))]
 
 
+read = functools.cache(Stored.at)
+
+
 @pytest.mark.parametrize("check", CHECKS, ids=lambda check: check.__name__)
 @pytest.mark.parametrize("path", STORED, ids=lambda path: f"{path.parent.name}/{path.stem}")
 def test_the_stored_notebooks(path, check):
-    found = check(Stored.at(path))
+    found = check(read(path))
     assert not found, "\n" + "\n".join(found)
 
 
