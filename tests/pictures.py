@@ -27,7 +27,8 @@ def written(picture):
 
 def drawn(figure):
     found = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text().strip()]
-    return [text for text in found if text.axes is None or text.axes.axison or text not in of_axes(text.axes)]
+    hidden = {id(text) for axes in figure.axes if not axes.axison for text in of_axes(axes)}
+    return [text for text in found if id(text) not in hidden]
 
 
 def of_axes(axes):
@@ -46,7 +47,11 @@ def overlapping_texts(picture):
     >>> overlapping_texts(block_diagram("u", block("P"), "y"))
     []
     """
-    pairs = itertools.combinations(written(picture), 2)
+    return overlapping(written(picture))
+
+
+def overlapping(texts):
+    pairs = itertools.combinations(texts, 2)
     return [(one.text, other.text) for one, other in pairs if overlap(one.box, other.box)]
 
 
@@ -58,7 +63,16 @@ def overlap(one, other):
 
 def crossed_texts(picture):
     """The texts that a line of the picture runs through."""
-    figure, texts = picture.figure, written(picture)
+    return crossed(picture.figure, written(picture))
+
+
+def misplaced_texts(picture):
+    """What `overlapping_texts` and `crossed_texts` find, for what lays the picture out once."""
+    texts = written(picture)
+    return overlapping(texts) + crossed(picture.figure, texts)
+
+
+def crossed(figure, texts):
     found = []
     for line in (line for axes in figure.axes for line in axes.lines):
         points = figure.dpi_scale_trans.inverted().transform(line.get_transform().transform(line.get_xydata()))

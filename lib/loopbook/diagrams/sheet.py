@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import TypeAlias
 
 from loopbook.figures import STYLE, Picture, plain_words
@@ -53,6 +54,7 @@ def signal_name(text: str) -> str:
     return mathematics(text if "$" in text else re.sub(r"_(\w{2,})", r"_{\1}", text))
 
 
+@lru_cache(maxsize=1000)
 def text_size(label: str, size: float = FONT_SIZE) -> tuple[float, float]:
     """Width and height of a label in drawing units."""
     from matplotlib.font_manager import FontProperties
