@@ -157,7 +157,7 @@ class Picture:
         from PIL import Image
 
         full, small = io.BytesIO(), io.BytesIO()
-        self.save(full, format="png", metadata={"Software": None})
+        self.save(full, format="png", metadata={"Software": None}, pil_kwargs={"compress_level": 1})
         with_few_colours(Image.open(full).convert("RGB")).save(small, "PNG", optimize=True)
         return small.getvalue()
 
