@@ -28,7 +28,7 @@ class Change(NamedTuple):
     outwards: float
     near: float
 
-    def at(self, share: float):
+    def at(self, share: float) -> tuple[float, float, float]:
         """Factor, dead time and angle."""
         value = self.limit * (1 + (-self.outwards if self.inside else self.outwards) * share)
         if self.name in ("gain_margin", "gain_reduction"):
@@ -62,7 +62,7 @@ def confirm(loops: Loops, found: dict[str, float], itself: bool = True) -> None:
     for share in SHARES:
         if not changes:
             return
-        counts = _counts(loops, [change.at(share) for change in changes], [change.near for change in changes])
+        counts = _counted(loops, [change.at(share) for change in changes], [change.near for change in changes])
         left = []
         for change, count in zip(changes, counts, strict=True):
             if count == ON_LIMIT and change.name != "phase_margin":
@@ -81,6 +81,16 @@ def confirm(loops: Loops, found: dict[str, float], itself: bool = True) -> None:
                     f"there are {count:g} unstable poles"
                 )
         changes = left
+
+
+def _counted(loops, changes, near):
+    """As `_counts`, but on the limit for those that are not decided."""
+    try:
+        return _counts(loops, changes, near)
+    except ValueError:
+        if len(changes) == 1:
+            return [ON_LIMIT]
+    return [count for change, w in zip(changes, near, strict=True) for count in _counted(loops, [change], [w])]
 
 
 def _counts(loops, changes, near):

@@ -139,7 +139,7 @@ def unstable_roots(denominator: Mapping) -> float:
     The argument principle counts them, by the phase of the sum along the imaginary axis. On an interval of frequency
     the phase is believed only where an expansion with a bound of its rest proves that the sum has no zero there;
     otherwise the interval is divided, and computed with more digits where rounding is the reason. Beyond a certain
-    frequency the highest power prevails, also by a bound. No more than a million intervals are looked at.
+    frequency the highest power prevails, also by a bound. No more than a quarter of a million intervals are looked at.
 
     Arguments:
         denominator: ``{delay: coefficients}``, the lowest power first, as `System.denominator` is; or with polynomials
@@ -349,7 +349,14 @@ class Turns:
 
     name = "the number of unstable poles"
 
-    def __init__(self, sums, unit, far: list[Endless | None], exact: Exact | None, removable: int):
+    def __init__(
+        self,
+        sums: Quasipolynomials,
+        unit: numpy.ndarray,
+        far: list[Endless | None],
+        exact: Exact | None,
+        removable: int,
+    ):
         import numpy
 
         self.sums, self.unit, self.far, self.exact, self.removable = sums, unit, far, exact, removable
@@ -360,6 +367,7 @@ class Turns:
             self.rest = Quasipolynomials(sums.coefficients[1:], sums.delays[1:])
 
     def count(self, near: numpy.ndarray | None) -> numpy.ndarray:
+        """The numbers of roots in the right half-plane."""
         import numpy
 
         sums = self.sums
@@ -392,7 +400,8 @@ class Turns:
     def _value(self, which, w, precise):
         return self.exact.taylor(w, 0)[0] if precise else self.sums.value(which, w)
 
-    def judge(self, which, a, b, precise):
+    def judge(self, which: numpy.ndarray, a: numpy.ndarray, b: numpy.ndarray, precise: bool) -> tuple:
+        """Add the turns on intervals where they are known, and mark sums with roots on the axis."""
         import numpy
 
         sums, c, r = self.sums, (a + b) / 2, (b - a) / 2
@@ -426,9 +435,10 @@ def _lowest(sums):
 
     series = abs(sums._expansion[:, :, 0].sum(axis=0))
     with numpy.errstate(divide="ignore", invalid="ignore"):
-        ratios = [(series[0] / series[k]) ** (1 / k) for k in range(1, len(series))]
-    lowest = numpy.fmin.reduce([numpy.where(ratio > 0, ratio, numpy.nan) for ratio in ratios])
-    return numpy.clip(numpy.nan_to_num(0.3 * lowest, nan=1e-3), 1e-30, 0.5)
+        ratios = (series[0] / series[1:]) ** (1 / numpy.arange(1, len(series)))[:, None]
+    ratios[~(ratios > 0)] = math.inf
+    lowest = ratios.min(axis=0)
+    return numpy.clip(numpy.where(lowest < math.inf, 0.3 * lowest, 1e-3), 1e-30, 0.5)
 
 
 def _above_origin(sums, removable, exact):

@@ -18,6 +18,8 @@ from loopbook.stability.loops import FEW
 from loopbook.stability.peaks import to_the_top, with_peaks
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
     import numpy
 
     from loopbook.stability.loops import Loops
@@ -95,7 +97,7 @@ class Question:
 
     name = ""
 
-    def judge(self, view: View):
+    def judge(self, view: View) -> tuple[numpy.ndarray, numpy.ndarray]:
         raise NotImplementedError
 
     def take(self, view: View, chosen: numpy.ndarray) -> None:
@@ -110,7 +112,7 @@ class SizeOne(Question):
     def __init__(self):
         self.brackets = []
 
-    def judge(self, view):
+    def judge(self, view: View) -> tuple[numpy.ndarray, numpy.ndarray]:
         import numpy
 
         if isinstance(view, NearZero):  # `Loops.start` has taken care of that
@@ -127,7 +129,7 @@ class SizeOne(Question):
             self.crossing[some], noisy[some], undecided[some] = crossing, rest.is_noisy, ~away & ~crossing
         return undecided, noisy
 
-    def take(self, view, chosen):
+    def take(self, view: View, chosen: numpy.ndarray) -> None:
         import numpy
 
         some = numpy.flatnonzero(self.crossing & chosen)
@@ -140,7 +142,7 @@ class SizeOne(Question):
             some = (low > 0) != (high > 0)
             self.brackets.append([x[some] for x in (which, a, b, low, high)])
 
-    def solved(self, loops: Loops):
+    def solved(self, loops: Loops) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray, numpy.ndarray]:
         """The points and frequencies, and A and B there."""
         import numpy
 
@@ -172,7 +174,7 @@ class Real(Question):
         self.lowest, self.highest = numpy.zeros(loops.count), self.endless.copy()
         self.points, self.gains, self.frequencies = numpy.zeros(0, dtype=int), numpy.zeros(0), numpy.zeros(0)
 
-    def add(self, points, gains, frequencies):
+    def add(self, points: numpy.ndarray, gains: numpy.ndarray, frequencies: numpy.ndarray) -> None:
         """Remember crossings."""
         import numpy
 
@@ -184,7 +186,7 @@ class Real(Question):
             numpy.minimum.at(self.highest, points[above], gains[above])
             numpy.maximum.at(self.lowest, points[below], gains[below])
 
-    def is_known(self, points, a, b):
+    def is_known(self, points: numpy.ndarray, a: numpy.ndarray, b: numpy.ndarray) -> numpy.ndarray:
         """Whether a crossing was found in an interval before."""
         import numpy
 
@@ -193,7 +195,7 @@ class Real(Question):
         w = self.frequencies
         return ((self.points == points[:, None]) & (w >= a[:, None]) & (w <= b[:, None])).any(axis=1)
 
-    def judge(self, view):
+    def judge(self, view: View) -> tuple[numpy.ndarray, numpy.ndarray]:
         import numpy
 
         which = view.which
@@ -225,12 +227,18 @@ class Real(Question):
     def _solve(self, view, candidates):
         """Find the crossings in intervals on which Im A conj(B) is monotone."""
         points, a, b = (x[candidates] for x in (view.which, view.a, view.b))
+        if len(new := (~self.is_known(points, a, b)).nonzero()[0]) < len(points):
+            points, a, b = points[new], a[new], b[new]
+        if not len(new):
+            return
         at_a, at_b = (
             (A[0] * B[0].conj()).imag for A, B in (self.loops.values(points, end, 0, view.precise) for end in (a, b))
         )
         self.solve(points, a, b, at_a, at_b)
 
-    def solve(self, points, a, b, at_a, at_b):
+    def solve(
+        self, points: numpy.ndarray, a: numpy.ndarray, b: numpy.ndarray, at_a: numpy.ndarray, at_b: numpy.ndarray
+    ) -> None:
         """Find the crossings in intervals with values of Im A conj(B) at the ends, if these have different signs."""
         import numpy
 
@@ -267,7 +275,8 @@ class Positive(Question):
         self.most, self.place = numpy.zeros(loops.count), numpy.zeros(loops.count)
         self.width = 0.0  # of the last one whose top was found
 
-    def see(self, points, sizes, frequencies):
+    def see(self, points: numpy.ndarray, sizes: numpy.ndarray, frequencies: numpy.ndarray) -> None:
+        """Remember values, where they are higher than what was seen."""
         import numpy
 
         order = numpy.argsort(sizes)
@@ -276,7 +285,7 @@ class Positive(Question):
         self.most[points[higher]] = sizes[higher]
         self.place[points[higher]] = frequencies[higher]
 
-    def judge(self, view):
+    def judge(self, view: View) -> tuple[numpy.ndarray, numpy.ndarray]:
         import numpy
 
         which = view.which
@@ -301,23 +310,31 @@ class Positive(Question):
 # ---- zeros
 
 
-def imaginary(A, B):
+def imaginary(A: Sequence, B: Sequence) -> tuple:
     """Im A conj(B) and its first two derivatives."""
     A0, A1, A2 = A
-    B0, B1, B2 = (x.conj() for x in B)
+    B0, B1, B2 = (x.conjugate() for x in B)
     return (A0 * B0).imag, (A1 * B0 + A0 * B1).imag, 2 * (A2 * B0 + A1 * B1 + A0 * B2).imag
 
 
-def difference(A, B):
+def difference(A: Sequence, B: Sequence) -> tuple:
     """abs(B)**2 - abs(A)**2 and its first two derivatives."""
     (A0, A1, A2), (B0, B1, B2) = A, B
     size_A, size_B = abs(A0), abs(B0)
-    first = 2 * (B1 * B0.conj() - A1 * A0.conj()).real
-    second = 4 * (B2 * B0.conj() - A2 * A0.conj()).real + 2 * (abs(B1) ** 2 - abs(A1) ** 2)
+    first = 2 * (B1 * B0.conjugate() - A1 * A0.conjugate()).real
+    second = 4 * (B2 * B0.conjugate() - A2 * A0.conjugate()).real + 2 * (abs(B1) ** 2 - abs(A1) ** 2)
     return (size_B - size_A) * (size_B + size_A), first, second
 
 
-def solved(loops: Loops, which, a, b, function, at_a, at_b):
+def solved(
+    loops: Loops,
+    which: numpy.ndarray,
+    a: numpy.ndarray,
+    b: numpy.ndarray,
+    function: Callable,
+    at_a: numpy.ndarray,
+    at_b: numpy.ndarray,
+) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray]:
     """The zeros between a and b of monotone functions, and A and B there, from the values at both ends.
 
     With more digits where rounding has a share in A or B.
@@ -326,7 +343,10 @@ def solved(loops: Loops, which, a, b, function, at_a, at_b):
 
     # where a straight line has its zero, not too close to the ends
     w = a + (b - a) * numpy.clip(at_a / numpy.where(at_a == at_b, 1, at_a - at_b), 0.02, 0.98)
-    w = _solved(loops, which, a, b, function, at_a < at_b, w, False)
+    if len(w) == 1:
+        w = _solved_one(loops, which, float(a[0]), float(b[0]), function, bool(at_a[0] < at_b[0]), float(w[0]))
+    else:
+        w = _solved(loops, which, a, b, function, at_a < at_b, w, False)
     A, B = (x[0] for x in loops.values(which, w))
     if loops.exact is not None and 0 < len(w) < FEW:
         again = numpy.flatnonzero(loops.doubtful(which, w, A, B))
@@ -335,6 +355,31 @@ def solved(loops: Loops, which, a, b, function, at_a, at_b):
             w[again] = _solved(loops, some, a[again], b[again], function, (at_a < at_b)[again], w[again], True)
             A[again], B[again] = (x[0] for x in loops.values(some, w[again], precise=True))
     return w, A, B
+
+
+def _solved_one(loops, which, a, b, function, rising, w):
+    """The same for one, with less ado."""
+    import numpy
+
+    enough = 3e-6 * (b - a)
+    for _ in range(100):
+        A, B = (x[:, 0].tolist() for x in loops.values(which, numpy.array([w]), 2))
+        value, slope, bend = function(A, B)
+        if not value:
+            break
+        if (value < 0) == rising:
+            a = w
+        else:
+            b = w
+        below = 2 * slope * slope - value * bend
+        better = w - 2 * value * slope / below if below else math.nan
+        inside = a <= better <= b
+        better = better if inside else (a + b) / 2
+        change, w = abs(better - w), better
+        # the next change would be about the cube of this one
+        if change <= max(enough if inside else 0.0, 4e-16 * w):
+            break
+    return numpy.array([w])
 
 
 def _solved(loops, which, a, b, function, rising, w, precise):
@@ -361,7 +406,7 @@ def _solved(loops, which, a, b, function, rising, w, precise):
     return w
 
 
-def phase_left(A, B) -> numpy.ndarray:
+def phase_left(A: numpy.ndarray, B: numpy.ndarray) -> numpy.ndarray:
     """How much more the phase of L = A/B may fall until L is negative, between 0 and 2 pi."""
     import numpy
 
@@ -372,8 +417,15 @@ def phase_left(A, B) -> numpy.ndarray:
 # ---- asking
 
 
-def asked(loops: Loops, questions: list[Question], which, a, b) -> None:
-    """Ask questions about all intervals, dividing them until all are decided."""
+def asked(
+    loops: Loops,
+    questions: list[Question],
+    which: numpy.ndarray,
+    a: numpy.ndarray,
+    b: numpy.ndarray,
+    most: int | None = None,
+) -> int:
+    """Ask questions about all intervals, dividing them until all are decided; return how many there were."""
     import numpy
 
     def judge(which, a, b, precise):
@@ -399,7 +451,8 @@ def asked(loops: Loops, questions: list[Question], which, a, b) -> None:
             for x in zip(others, with_peaks(*(x[about] for x in (which, a, b)), peak.place), strict=True)
         )
 
-    walk(judge, which, a, b, " and ".join(q.name for q in questions), loops.unit, loops.exact is not None, divide)
+    names = " and ".join(question.name for question in questions)
+    return walk(judge, which, a, b, names, loops.unit, loops.exact is not None, divide, most)
 
 
 def below(loops: Loops, questions: list[Question]) -> numpy.ndarray:
@@ -420,7 +473,7 @@ def below(loops: Loops, questions: list[Question]) -> numpy.ndarray:
     raise ValueError(f"{questions[0].name} is not decided at the frequency zero")
 
 
-def steps(start, end):
+def steps(start: numpy.ndarray, end: numpy.ndarray) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray]:
     """Intervals from start to end, in geometric steps."""
     which, a, b = geometric(start, end)
     some = a >= start[which]

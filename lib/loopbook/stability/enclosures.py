@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 EPSILON = 2.0**-52
 RATIO = 1.45  # of the frequencies at the ends of an interval, at first
-CLOSEST = 1e-8  # the smallest step, as a share, towards a frequency near which there is a root
-MOST_INTERVALS = 1_000_000  # in one walk, and for each point of many
+CLOSEST = 1e-7  # the smallest step, as a share, towards a frequency near which there is a root
+MOST_INTERVALS = 250_000  # in one walk, and for each point of many
 MORE_INTERVALS = 2_000
 MOST_AT_ONCE = 2**15
 MOST_EXACT = 3_000  # intervals that are looked at with more digits
@@ -250,7 +250,9 @@ class UndecidedError(ValueError):
         super().__init__(f"{what} is not decided between the frequencies {self.low:.12g} and {self.high:.12g}")
 
 
-def geometric(start: numpy.ndarray, end: numpy.ndarray, near: numpy.ndarray | None = None):
+def geometric(
+    start: numpy.ndarray, end: numpy.ndarray, near: numpy.ndarray | None = None
+) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray]:
     """Intervals from zero, and from `start` to `end` in geometric steps: points, and both ends of each.
 
     About a frequency `near` of each point, if it is not nan, the steps become ever smaller.
@@ -277,7 +279,7 @@ def geometric(start: numpy.ndarray, end: numpy.ndarray, near: numpy.ndarray | No
 def _OFFSETS():
     import numpy
 
-    steps = CLOSEST * 4.0 ** numpy.arange(math.ceil(math.log(0.5 / CLOSEST, 4)) + 1)
+    steps = CLOSEST * 5.0 ** numpy.arange(math.ceil(math.log(0.5 / CLOSEST, 5)) + 1)
     return 1 + numpy.concatenate([-steps[::-1], steps])
 
 
@@ -290,7 +292,8 @@ def walk(
     unit: numpy.ndarray,
     exact: bool = False,
     divide: Callable | None = None,
-) -> None:
+    most: int | None = None,
+) -> int:
     """Divide intervals until `judge` has decided about all.
 
     Arguments:
@@ -300,12 +303,16 @@ def walk(
         what: is asked, for the message.
         exact: whether more digits are at hand.
         divide: another function than `divided`.
+        most: how many intervals may be looked at; a quarter of a million, and some more for each point, if not given.
+    Returns:
+        How many were looked at.
     Raises:
         UndecidedError: for an interval that is so narrow that it cannot be divided any more, or too many intervals.
     """
     import numpy
 
-    left, digits_left = MOST_INTERVALS + MORE_INTERVALS * len(unit), MOST_EXACT
+    most = MOST_INTERVALS + MORE_INTERVALS * len(unit) if most is None else most
+    left, digits_left = most, MOST_EXACT
     pending = [(which, a, b)]
     while pending:
         which, a, b = pending.pop()
@@ -329,9 +336,12 @@ def walk(
         which, a, b, delay = (x[undecided] for x in (which, a, b, delay))
         pieces = numpy.clip(numpy.ceil((b - a) * delay / 0.8), 4, 64).astype(int)
         pending.append((divide or divided)(which, a, b, pieces))
+    return most - left
 
 
-def divided(which, a, b, pieces):
+def divided(
+    which: numpy.ndarray, a: numpy.ndarray, b: numpy.ndarray, pieces: numpy.ndarray
+) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray]:
     """Intervals in equal pieces."""
     import numpy
 
@@ -346,7 +356,7 @@ def divided(which, a, b, pieces):
 # ---- at zero
 
 
-def origin(sums: Quasipolynomials, degree: int, exact: Exact | None = None):
+def origin(sums: Quasipolynomials, degree: int, exact: Exact | None = None) -> tuple[numpy.ndarray, numpy.ndarray]:
     """The power series in s at zero: coefficients [power, point] up to a degree, and what bounds the next ones.
 
     Coefficients that are zero but for rounding are zero; those of an exact sum are zero where they are.

@@ -449,7 +449,7 @@ class Expansion(NamedTuple):
     largest: float
 
     @classmethod
-    def of(cls, above, below, angle: float, wide: float, sign: float) -> Expansion | None:
+    def of(cls, above: dict, below: dict, angle: float, wide: float, sign: float) -> Expansion | None:
         import numpy
 
         numbers = []

@@ -75,7 +75,9 @@ class Loops:
 
         return numpy.maximum(self.A.longest, self.B.longest)
 
-    def values(self, which: numpy.ndarray, w: numpy.ndarray, degree: int = 0, precise: bool = False):
+    def values(
+        self, which: numpy.ndarray, w: numpy.ndarray, degree: int = 0, precise: bool = False
+    ) -> tuple[numpy.ndarray, numpy.ndarray]:
         """The expansions of A and B at frequencies."""
         import numpy
 
@@ -110,7 +112,7 @@ class Loops:
     # ---- at zero
 
     @functools.cached_property
-    def at_zero(self):
+    def at_zero(self) -> tuple:
         """The power series of A and B at zero in j w, zeros that both have removed; and bounds of the next terms."""
         import numpy
 
@@ -151,46 +153,57 @@ class Loops:
         import numpy
 
         a, b, more_a, more_b, removed = self.at_zero
-        count = len(a)
-        start = 0.25 / numpy.maximum(self.longest, 1.0)
-        product, sizes = _conjugate_product(a, b), _conjugate_product(abs(a), abs(b))
-        squares = _conjugate_product(b, b).real - _conjugate_product(a, a).real
-        square_sizes = _conjugate_product(abs(b), abs(b)) + _conjugate_product(abs(a), abs(a))
-        # time as it is in the sums, so that this is about the scale of their terms
-        for series, size, parity in ((product.imag, sizes, 1), (squares, square_sizes, 0)):
-            series = series.copy()
-            series[(abs(series) <= 1e-12 * size) | (numpy.arange(len(series)) % 2 != parity)[:, None]] = 0
-            if self.exact is not None:
-                self._exactly(series, size, parity)
-            lowest = numpy.argmax(series[:count] != 0, axis=0)
-            some = series[:count].any(axis=0)
-            if parity:
-                self.is_real = ~some
-            # where the next powers are still below the lowest one; then in halves, until all others are, too
-            known = abs(numpy.take_along_axis(series, lowest[None], axis=0)[0])
-            gaps = numpy.arange(count)[:, None] - lowest
-            with numpy.errstate(divide="ignore", invalid="ignore"):
-                ratios = numpy.where(
-                    gaps > 0, (known / (4 * abs(series[:count]))) ** (1 / numpy.maximum(gaps, 1)), math.inf
-                )
-            start = numpy.where(some, numpy.fmin(start, ratios.min(axis=0)), start)
-            for _ in range(400):
-                powers = start ** (numpy.arange(len(series))[:, None] - lowest)
-                terms = abs(series) * powers
-                known = numpy.take_along_axis(terms, lowest[None], axis=0)[0]
-                beyond = (size[count:] * powers[count:]).sum(axis=0)
-                tails = [more * start ** (count - removed) for more in (more_a, more_b)]
-                sums = [(abs(x) * start ** numpy.arange(count)[:, None]).sum(axis=0) for x in (a, b)]
-                if parity:
-                    tail = sums[0] * tails[1] + sums[1] * tails[0] + tails[0] * tails[1]
-                else:
-                    tail = sum(2 * size * tail + tail**2 for size, tail in zip(sums, tails, strict=True))
-                tail = tail * start ** (-1.0 * lowest)
-                high = some & (terms[:count].sum(axis=0) - known + beyond + tail > known / 2)
-                if not high.any():
-                    break
-                start = numpy.where(high, start / 2, start)
-        return start
+        count, points = len(a), self.count
+        size_a, size_b = abs(a), abs(b)
+        # Im A conj(B), an odd function of the frequency, and abs(B)**2 - abs(A)**2, an even one, side by side
+        series = numpy.concatenate(
+            [_conjugate_product(a, b).imag, (_conjugate_product(b, b) - _conjugate_product(a, a)).real], axis=1
+        )
+        sizes = numpy.concatenate(
+            [
+                _conjugate_product(size_a, size_b),
+                _conjugate_product(size_b, size_b) + _conjugate_product(size_a, size_a),
+            ],
+            axis=1,
+        )
+        series[abs(series) <= 1e-12 * sizes] = 0
+        series[::2, :points], series[1::2, points:] = 0, 0
+        if self.exact is not None:
+            for parity in (1, 0):
+                mine = slice(1 - parity, 2 - parity)
+                self._exactly(series[:, mine], sizes[:, mine], parity)
+        some, sides = series[:count].any(axis=0), numpy.arange(2 * points)
+        lowest = numpy.argmax(series[:count] != 0, axis=0)
+        self.is_real = ~some[:points]
+        # where the next powers are still below the lowest one; then in halves, until all others are, too
+        known, series = abs(series[lowest, sides]), abs(series)
+        gaps = numpy.arange(len(series))[:, None] - lowest
+        with numpy.errstate(divide="ignore", invalid="ignore"):
+            ratios = (known / (4 * series)) ** (1 / numpy.maximum(gaps, 1))
+        ratios[gaps <= 0] = math.inf
+        start = numpy.tile(0.25 / numpy.maximum(self.longest, 1.0), 2)
+        start = numpy.where(some, numpy.fmin(start, ratios[:count].min(axis=0)), start)
+        series[lowest, sides] = 0
+        series[count:] = sizes[count:]
+        degrees = _degrees(count)
+        for _ in range(400):
+            others = (series * start**gaps).sum(axis=0)
+            wider = numpy.maximum(start[:points], start[points:])
+            sum_a, sum_b = ((x * wider**degrees).sum(axis=0) for x in (size_a, size_b))
+            for half, (first, second) in enumerate(
+                (((sum_a, more_a), (sum_b, more_b)), ((sum_a, more_a), (sum_a, more_a)))
+            ):
+                mine = slice(half * points, (half + 1) * points)
+                beyond = start[mine] ** (count - removed)
+                tail = first[0] * second[1] + second[0] * first[1] + first[1] * second[1] * beyond
+                if half:
+                    tail = tail + 2 * sum_b * more_b + more_b**2 * beyond
+                others[mine] += tail * beyond * start[mine] ** (-1.0 * lowest[mine])
+            high = some & (others > known / 2)
+            if not high.any():
+                break
+            start = numpy.where(high, start / 2, start)
+        return numpy.minimum(start[:points], start[points:])
 
     def _exactly(self, series, size, parity):
         """The lowest term that is not zero, which rounding may hide, as it is."""
@@ -250,7 +263,7 @@ class Loops:
         return numpy.maximum(2 * abs(self.B.coefficients[0, -1]) - self._term_sizes[1][-1], self.endless_least)
 
     @functools.cached_property
-    def squares(self):
+    def squares(self) -> list[numpy.ndarray] | None:
         """abs(A)**2 and abs(B)**2 of loops with one dead time, polynomials in the square of the frequency."""
         if len(self.A.coefficients) != 1 or len(self.B.coefficients) != 1:
             return None
@@ -385,6 +398,13 @@ def positive_beyond(rows: numpy.ndarray) -> numpy.ndarray:
         found = numpy.where(possible & (lead > 0), numpy.minimum(found, end), found)
     # a little beyond, because such a bound may itself be a zero
     return numpy.where(found < math.inf, 1.001 * numpy.sqrt(found), math.nan)
+
+
+@functools.cache
+def _degrees(count):
+    import numpy
+
+    return numpy.arange(count)[:, None]
 
 
 def _conjugate_product(x, y):

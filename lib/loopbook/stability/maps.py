@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from typing import TYPE_CHECKING
 
 import sympy
 
@@ -13,10 +14,14 @@ from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.stability.counting import count_roots
 from loopbook.transfer import transfer_function
 
+if TYPE_CHECKING:
+    import numpy
+    from numpy.typing import ArrayLike
+
 CHUNK = 2000  # points at once
 
 
-def stability_map(loop, progress=None, **values):
+def stability_map(loop: object, progress: bool | None = None, **values: ArrayLike) -> numpy.ndarray:
     """Return the number of unstable closed-loop poles for many values of two letters.
 
     Arguments:

@@ -25,6 +25,7 @@ from loopbook.stability.crossings import (
     phase_left,
     steps,
 )
+from loopbook.stability.enclosures import MOST_INTERVALS
 from loopbook.stability.endless import Far
 from loopbook.stability.loops import ENOUGH, Loops
 from loopbook.stability.peaks import to_the_top
@@ -95,7 +96,7 @@ def margins(loop: object) -> Margins:
         loop: the open loop L(s), as for `unstable_closed_loop_poles`.
     Raises:
         ValueError: if the closed loop is not stable, as `unstable_closed_loop_poles`, or where something is not decided
-            with a million intervals of frequency; the message says what, and where.
+            with a quarter of a million intervals of frequency; the message says what, and where.
 
     >>> import sympy
     >>> from loopbook import s
@@ -192,9 +193,9 @@ class Survey:
             raise ValueError("whether the loop's gain at ever higher frequencies stays away from 1 is not decided")
         done = below(loops, questions)
         longest = float(loops.longest[0])
-        end, left = self._scout(float(done[0]), questions), questions
+        end, left, most = self._scout(float(done[0]), questions), questions, MOST_INTERVALS
         while True:
-            asked(loops, left, *self._intervals(float(done[0]), end))
+            most -= asked(loops, left, *self._intervals(float(done[0]), end), most)
             done = numpy.array([end])
             ends = {id(question): self._end(question, end) for question in questions}
             left = [question for question in questions if not ends[id(question)] <= end]
@@ -202,10 +203,24 @@ class Survey:
                 return
             furthest = max(math.inf if math.isnan(each) else each for each in ends.values())
             if (furthest == math.inf and (end * longest > MOST_TURNS or end > FURTHEST)) or end > 1e3 * FURTHEST:
-                names = " and ".join(question.name for question in left)
-                raise ValueError(f"{names} is not decided beyond the frequency {end * loops.unit[0]:.6g}")
+                raise ValueError(self._undecided(left, end))
             window = max(4 * end, end + 20 / longest if longest else 0)
             end = min(furthest, window)
+            if (end - float(done[0])) * longest > most:
+                raise ValueError(self._undecided(left, float(done[0])))
+
+    def _undecided(self, questions, end):
+        """What is not decided beyond a frequency, and what is known about it."""
+        text = " and ".join(question.name for question in questions)
+        text += f", beyond the frequency {end * self.loops.unit[0]:.6g}, is not decided"
+        if self.real in questions:
+            low, high = float(self.real.lowest[0]), float(self.real.highest[0])
+            sure = (1 + (high - 1) * (1 - 0.5**n) for n in range(12, 0, -1))
+            known = next((k for k in sure if self.far.no_crossing_beyond(low, k) <= end), 1.0)
+            text += f"; the gain margin is between {known:.8g} and {high:.8g}"
+        if self.peak in questions:
+            text += f"; Ms is {self.peak.most[0]:.8g} or more"
+        return text
 
     def _scout(self, start, questions):
         """See from values alone where the answers may be, so that they are soon proved; an end of the first window."""
@@ -248,7 +263,7 @@ class Survey:
 
     # ---- what was found
 
-    def gain_margins(self):
+    def gain_margins(self) -> dict[str, float]:
         """How far the gain may grow and fall, and the frequencies of both."""
         import numpy
 
@@ -271,7 +286,7 @@ class Survey:
         _, w, A, B = self.size.solved(self.loops)
         return w * float(self.loops.unit[0]), phase_left(A, B)
 
-    def phase_margins(self):
+    def phase_margins(self) -> dict[str, float]:
         """How far the phase may turn, either way, and the frequency; infinite where abs(L) is never 1."""
         import numpy
 
@@ -282,7 +297,7 @@ class Survey:
         nearest = either_way.argmin()
         return {"phase_margin": math.degrees(either_way[nearest]), "omega_c": float(w[nearest])}
 
-    def delay_margins(self):
+    def delay_margins(self) -> dict[str, float]:
         """How much more dead time there may be; none where the gain at ever higher frequencies is 1 or more."""
         w, left = self._crossings
         if self.far.size >= 0:

@@ -71,7 +71,9 @@ def robustness(process: object, controller: object, gain_ratio: ArrayLike) -> De
     return DelayRatios(lower, upper, regions) if gains.ndim else DelayRatios(float(lower), float(upper), regions[0])
 
 
-def robustness_pi_first_order(K, T, delay, Kp, Ti, gain_ratio):
+def robustness_pi_first_order(
+    K: float, T: float, delay: float, Kp: float, Ti: float, gain_ratio: ArrayLike
+) -> numpy.ndarray | float:
     """Return the delay ratio on the limit of stability for PI control of a lag with dead time, in closed form.
 
     Arguments:
@@ -107,7 +109,9 @@ def _gain_ratios(gain_ratio):
     return gains
 
 
-def open_loop_without_dead_time(process, controller):
+def open_loop_without_dead_time(
+    process: object, controller: object
+) -> tuple[Quasipolynomials, Quasipolynomials, float]:
     """Numerator and denominator of a loop without the one dead time of its process, and that dead time."""
     P = open_loop(process)
     delay = min(P.numerator)
