@@ -80,11 +80,11 @@ def test_loops_around_loops_cancel_to_what_is_derived_by_hand():
     assert servo == read(2 * sympy.exp(-4 * s) / (5 * s + 2))
     S, T = 1 / (1 + C * process), C * process / (1 + C * process)
     assert S + T == 1 + 0 * S
-    assert T / S == C * process
+    assert C * process == T / S
     assert (1 - read(sympy.exp(-6 * s))) / (1 - read(sympy.exp(-2 * s))) == read(
         1 + sympy.exp(-2 * s) + sympy.exp(-4 * s)
     )
-    assert (1 - S) / T == read(1)
+    assert read(1) == (1 - S) / T
 
 
 def test_irrational_dead_times_keep_their_sums():
@@ -105,7 +105,7 @@ def test_they_can_be_sent_copied_and_compared():
     assert H.expr == read(H.expr).expr
     assert H * H == H**2
     assert H**-2 * H**3 == H
-    assert H**0 == read(1)
+    assert read(1) == H**0
 
 
 def test_what_it_is():
