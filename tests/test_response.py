@@ -260,6 +260,16 @@ def test_a_derivative_that_returns():
     assert_close(Response(system, 60)(times), by_taylor(system, times))
 
 
+@pytest.mark.parametrize("share", [0.4, 0.9, -0.9])
+def test_what_goes_round_in_a_short_dead_time_is_not_forgotten(share):
+    # the jumps die out, and something smooth that no state knows of goes on
+    system = model([[-2]], [[1]], [[0.01]], [[1]], [[2]], D22=[[share]], delays=["1/64"])
+    times = [float(x) for x in moments(20)]
+    response = Response(system, 20)
+    assert_close(response(times), by_taylor(system, times))
+    assert len(response.edges) < 800
+
+
 def test_a_jump_at_a_time_that_is_an_edge_but_for_rounding():
     late = model(D12=[[1]], D21=[[1]], delays=["3/10"])
     for moment in (0.3, 0.1 + 0.1 + 0.1, np.nextafter(0.3, 0)):

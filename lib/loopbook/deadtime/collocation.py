@@ -30,6 +30,7 @@ MOST_NUMBERS = 20_000_000  # that are kept of the signals
 MOST_MATRICES = 200  # that are kept
 AHEAD = 8  # how many segments before a breakpoint they are made equal
 PATIENCE = 8  # segments before a longer one is tried again
+ROUNDING = 2e-15  # of what a signal is the sum of
 RANGE = 1e3  # times the largest value so far, up to which a signal may grow in a segment
 WORTH = 12  # segments that a matrix for another length costs
 
@@ -123,6 +124,10 @@ class _Follower:
         longest, start = echoes.longest, echoes.start
         wish = min(start, moments[0][2] if moments else longest) or 1
         shortest = wish >> 40
+        model = self.model
+        from_channels = numpy.repeat(numpy.vstack([model.D22, model.D12]), NODES, axis=1)
+        from_states = numpy.vstack([model.C2, model.C1])
+        sizes = absolute(numpy.hstack([numpy.vstack([model.D21, model.D11]), from_states, from_states, from_channels]))
         position, index, waiting, patience, length = 0, 0, 0, PATIENCE, 0
         finished = last - (last >> 48)
         count = 0
@@ -172,9 +177,10 @@ class _Follower:
             if False in (tail <= GOAL * largest).tolist():
                 if not numpy.isfinite(largest).all():
                     raise ValueError(f"the response grows beyond all numbers before t = {self.end:g}")
-                # where it does not fall any more it is rounding
+                # where it does not fall any more it is rounding, as where large states make a small signal
                 flat = tail >= 0.1 * left[:, :8].max(axis=1)
-                if not ((tail <= GOAL * largest) | (flat & (tail <= RESOLVED * largest))).all():
+                rounding = ROUNDING * (sizes @ absolute(numpy.r_[values[: n + 1], result[:n], values[n + 1 :]]))
+                if not ((tail <= GOAL * largest) | (tail <= rounding) | flat & (tail <= RESOLVED * largest)).all():
                     wish = length >> 1
                     waiting, patience = patience, min(2 * patience, 8 * PATIENCE)
                     if wish <= shortest:

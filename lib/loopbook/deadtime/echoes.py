@@ -25,6 +25,8 @@ SLANT = 0.01  # how far right of the imaginary axis, so that a resonance is not 
 REACH = 4.0  # how many times the fastest lag a segment may be long
 LONGEST = 12.0  # the same for the fastest motion that may grow unseen
 ROUNDED = Fraction(1, 2**48)  # by how much, as a share of them, two moments that are meant to be one may differ
+ROUNDS = 50.0  # delays that a segment may be long, so that two of its nodes look back before its beginning
+KEPT = 0.5  # of what goes round in channels alone: less is gone before such a segment ends
 MOST_ECHOES = 30_000
 
 
@@ -62,7 +64,7 @@ class Echoes:
         else:
             growing = max(growing, grid[loud[-1]] if len(loud) else 0.0)
             longest = LONGEST / growing if growing else math.inf
-        longest = min(longest, end)
+        longest = min(longest, end, _memory(model))
         self.longest = int(longest * per)
         start = min(REACH / fastest if fastest else math.inf, longest)
         # slow motion is of all sizes at first, as of a chain of integrators
@@ -136,6 +138,22 @@ def _speeds(model):
     values = numpy.linalg.eigvals(model.A + numpy.concatenate([0 * model.A[None], changes, -changes]))
     growing = max((abs(value) for value in values[0].tolist() if value.real > 0), default=0.0)
     return abs(values).ravel().tolist(), growing
+
+
+def _memory(model):
+    """How long a segment may be so that it is tied to what is still in the channels that feed each other directly.
+
+    Where the jumps have died out, something smooth may still go round there, of which the states know nothing. Only if
+    that is gone after a few rounds, too, a segment need not look back.
+    """
+    import numpy
+
+    round_trip = abs(model.D22)
+    for _ in range(len(round_trip).bit_length()):
+        round_trip = round_trip + round_trip @ round_trip
+    inside = [float(delay) for k, delay in enumerate(model.delays) if round_trip[k, k]]
+    kept = max(abs(numpy.linalg.eigvals(abs(model.D22)))) if inside else 0.0
+    return ROUNDS * min(inside) if kept > KEPT else math.inf
 
 
 def _transfer(model, grid):

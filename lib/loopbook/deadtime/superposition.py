@@ -25,7 +25,8 @@ CHUNK = 500_000
 MANY = 64  # kernels of one level, above which they are applied by Fourier transform
 LEAF = 256  # samples that are taken directly
 TOUCHED = 40  # segments of the step response that one polynomial may replace
-SHARES = (0.0, 0.02, 0.1, 0.25, 0.45, 0.65, 0.85, 0.97, 1.0)  # where in a segment it is compared
+SHARES = (0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99)  # where in each of them it is compared
+FAINT = 1e-4  # of the largest value of all: a smaller one is not resolved for its own sake
 
 
 def superpose(response: Response, times: numpy.ndarray, u: numpy.ndarray, lines: bool, late: float) -> numpy.ndarray:
@@ -130,16 +131,10 @@ class _Kernel:
 
     def __init__(self, response, span, smooth):
         import numpy
-        from numpy.polynomial import legendre
 
         self.response, self.span, self.smooth = response, span, smooth
-        shares = numpy.array(SHARES)
-        edges = response.edges
-        values = legendre.legval(2 * shares - 1, response.coefficients.T)
-        self.places = (edges[:-1, None] + numpy.diff(edges)[:, None] * shares).ravel()
-        self.values = values.ravel()
-        largest = numpy.maximum.accumulate(abs(self.values))
-        self.largest = numpy.maximum(largest, 1e-4 * largest[-1])
+        largest = numpy.maximum.accumulate(abs(response.coefficients).max(axis=1))
+        self.largest = numpy.maximum(largest, FAINT * largest[-1])
 
     def split(self, undecided, level):
         """The distances between blocks, in blocks, where there is one polynomial, with its matrices; and the others.
@@ -165,20 +160,21 @@ class _Kernel:
         else:
             windows, which = numpy.array([0]), numpy.array([2])
         low, high = (windows - 1) * width, (windows + 1) * width
-        first, after = numpy.searchsorted(self.places, low), numpy.searchsorted(self.places, high, side="right")
+        edges = self.response.edges
+        first, after = numpy.searchsorted(edges, low, side="right"), numpy.searchsorted(edges, high)
         inherited = which < 2
-        possible = (windows > 0) & (high <= last) & (after - first <= TOUCHED * len(SHARES)) | inherited
+        smooth = (windows > 0) & (high <= last) & (after - first <= TOUCHED) | inherited
         places = windows[:, None] * width + width * rule.nodes
         values = numpy.zeros(places.shape)
-        values[possible] = self.response(numpy.minimum(places[possible], last))
-        smooth = possible.copy()
-        for number in numpy.flatnonzero(possible & ~inherited):
-            here = slice(first[number], after[number])
-            limit = self.smooth * self.largest[min(after[number], len(self.largest) - 1)]
-            smooth[number] = abs(rule.to_coefficients[-2:] @ values[number]).max() <= limit
-            if smooth[number] and after[number] > first[number]:
-                difference = interpolation(self.places[here] / width - windows[number]) @ values[number]
-                smooth[number] = abs(difference - self.values[here]).max() <= limit
+        values[smooth] = self.response(numpy.minimum(places[smooth], last))
+        limit = self.smooth * self.largest[numpy.minimum(after, len(edges) - 1) - 1]
+        steep = abs(values @ rule.to_coefficients[-2:].T).max(axis=1) > limit
+        smooth &= inherited | ~steep
+        for number in numpy.flatnonzero(smooth & ~inherited & (after > first)):
+            ends = numpy.r_[low[number], edges[first[number] : after[number]], high[number]]
+            inner = (ends[:-1, None] + numpy.diff(ends)[:, None] * SHARES).ravel()
+            found = interpolation(inner / width - windows[number]) @ values[number]
+            smooth[number] = abs(found - self.response(inner)).max() <= limit[number]
         matrices = (_between() @ values[smooth].T).T.reshape(-1, NODES, NODES)
         return (windows[smooth], matrices, which[smooth]), windows[~smooth]
 
