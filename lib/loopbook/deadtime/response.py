@@ -82,7 +82,22 @@ class Response:
             raise ValueError(f"the end is {end!r}: expected a number") from None
         if not 0 <= end < math.inf:
             raise ValueError(f"the end is {end}: expected a finite time, zero or later")
+        model = model._replace(delays=[Fraction(delay) for delay in model.delays])
         self.edges, self._coefficients = follow(model, end)
+        self._cut(end)
+
+    def _cut(self, end: float) -> None:
+        """Let the last segment end where it was asked for, unless it begins there, as after a jump."""
+        from numpy.polynomial import legendre
+
+        begin, last = self.edges[-2:]
+        if last > end > begin * (1 + float(ROUNDED)):
+            count = self._coefficients.shape[1]
+            nodes, weights = legendre.leggauss(count)
+            values = legendre.legval((end - begin) / (last - begin) * (nodes + 1) - 1, self._coefficients[-1])
+            degrees = range(1, 2 * count, 2)
+            self._coefficients[-1] = legendre.legvander(nodes, count - 1).T @ (weights * values) * degrees / 2
+            self.edges[-1] = end
         self.edges[-1] = max(self.edges[-1], end)  # which may differ by rounding
 
     def __call__(self, times: ArrayLike) -> numpy.ndarray:
@@ -100,17 +115,33 @@ class Response:
         length = edges[index + 1] - edges[index]
         return legendre.legval(2 * (times - edges[index]) / length - 1, self._coefficients.T[:, index], tensor=False)
 
-    def quadrature(self) -> tuple[numpy.ndarray, numpy.ndarray]:
-        """Return times and weights, two arrays with a row for each segment, for integrals over the response.
+    def quadrature(self, longest: float = math.inf) -> tuple[numpy.ndarray, numpy.ndarray]:
+        """Return times and weights, two arrays with a row for each interval, for integrals over the response.
 
         The sum of weight * response(time)**2 is the integral of the square, exact for these polynomials. It goes to the
-        last of the edges, which may lie beyond the end that was asked for.
+        last of the edges, which lies beyond the end that was asked for only where a segment begins there.
+
+        Arguments:
+            longest: no interval is longer; by itself each is a segment. For integrals of what is not smooth, as of the
+                size of an error, short ones are more exact.
+
+        >>> import numpy
+        >>> one = numpy.ones((1, 1))
+        >>> none = numpy.zeros((1, 0))
+        >>> lag = ChannelModel(-one, one, none, one, none.T, 0 * one, none, none.T, none.T @ none, [])
+        >>> times, weights = Response(lag, 5).quadrature(longest=0.5)
+        >>> times.shape, round(float(weights.sum()), 12)
+        ((10, 20), 5.0)
         """
         import numpy
 
+        pieces = numpy.ceil(numpy.diff(self.edges) / longest).astype(int).clip(1)
+        parts = zip(self.edges[:-1], self.edges[1:], pieces, strict=True)
+        inner = [numpy.linspace(a, b, n, endpoint=False) for a, b, n in parts]
+        edges = numpy.concatenate([*inner, self.edges[-1:]])
         nodes, weights = numpy.polynomial.legendre.leggauss(NODES)
-        half = numpy.diff(self.edges)[:, None] / 2
-        return self.edges[:-1, None] + half * (nodes + 1), half * weights
+        half = numpy.diff(edges)[:, None] / 2
+        return edges[:-1, None] + half * (nodes + 1), half * weights
 
     @property
     def coefficients(self) -> numpy.ndarray:
