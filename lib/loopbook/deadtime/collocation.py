@@ -30,7 +30,7 @@ MOST_NUMBERS = 20_000_000  # that are kept of the signals
 MOST_MATRICES = 200  # that are kept
 AHEAD = 8  # how many segments before a breakpoint they are made equal
 PATIENCE = 8  # segments before a longer one is tried again
-ROUNDING = 2e-15  # of what a signal is the sum of
+ROUNDING = 4e-15  # of what a signal is the sum of
 RANGE = 1e3  # times the largest value so far, up to which a signal may grow in a segment
 WORTH = 12  # segments that a matrix for another length costs
 
@@ -58,7 +58,7 @@ def _merged(model):
         for j in range(k):
             if delays[j] != delays[k]:
                 continue
-            one, other = (numpy.r_[model.C2[i], model.D21[i], model.D22[i]] for i in (j, k))
+            one, other = (numpy.concatenate([model.C2[i], model.D21[i], model.D22[i]]) for i in (j, k))
             place = abs(one).argmax()
             factor = other[place] / one[place] if one[place] else 0.0
             if factor and (abs(other - factor * one) <= 4e-16 * abs(other)).all():
@@ -124,10 +124,6 @@ class _Follower:
         longest, start = echoes.longest, echoes.start
         wish = min(start, moments[0][2] if moments else longest) or 1
         shortest = wish >> 40
-        model = self.model
-        from_channels = numpy.repeat(numpy.vstack([model.D22, model.D12]), NODES, axis=1)
-        from_states = numpy.vstack([model.C2, model.C1])
-        sizes = absolute(numpy.hstack([numpy.vstack([model.D21, model.D11]), from_states, from_states, from_channels]))
         position, index, waiting, patience, length = 0, 0, 0, PATIENCE, 0
         finished = last - (last >> 48)
         count = 0
@@ -179,7 +175,7 @@ class _Follower:
                     raise ValueError(f"the response grows beyond all numbers before t = {self.end:g}")
                 # where it does not fall any more it is rounding, as where large states make a small signal
                 flat = tail >= 0.1 * left[:, :8].max(axis=1)
-                rounding = ROUNDING * (sizes @ absolute(numpy.r_[values[: n + 1], result[:n], values[n + 1 :]]))
+                rounding = ROUNDING * self._size(values, result)
                 if not ((tail <= GOAL * largest) | (tail <= rounding) | flat & (tail <= RESOLVED * largest)).all():
                     wish = length >> 1
                     waiting, patience = patience, min(2 * patience, 8 * PATIENCE)
@@ -212,6 +208,16 @@ class _Follower:
                     continue
             if position >= finished:
                 return self._done()
+
+    def _size(self, values, result):
+        """The sum of the sizes of what the signals are made of."""
+        import numpy
+
+        _, _, _, C1, C2, D11, D12, D21, D22, _ = self.model
+        into = abs(values[self.n + 1 :]).reshape(self.q, NODES).max(axis=1, initial=0.0)
+        states = numpy.maximum(abs(values[1 : self.n + 1]), abs(result[: self.n]))
+        direct, to, through = numpy.vstack([D21, D11])[:, 0], numpy.vstack([C2, C1]), numpy.vstack([D22, D12])
+        return abs(direct) + abs(to) @ states + abs(through) @ into
 
     def _grow(self, count):
         import numpy
@@ -292,11 +298,15 @@ class _Follower:
     def _done(self):
         import numpy
 
-        per = self.per
-        count = len(self.lengths)
-        ends = numpy.array([edge / per for edge in self.edges])
-        coefficients = self.signals[:count, -1] @ radau().to_coefficients.T
-        return ends, coefficients
+        per, edges = self.per, self.edges
+        rule, signal = radau(), self.signals[: len(self.lengths), -1]
+        ends = numpy.array([edge / per for edge in edges])
+        if edges[-1] > self.last > edges[-2] + (edges[-2] >> 48):  # the last segment ends where it was asked for
+            share = (self.last - edges[-2]) / (edges[-1] - edges[-2])
+            signal[-1] = interpolation(share * (rule.nodes + 1) - 1) @ signal[-1]
+            ends[-1] = self.end
+        ends[-1] = max(ends[-1], self.end)  # which may differ by rounding
+        return ends, signal @ rule.to_coefficients.T
 
 
 class Steps:

@@ -148,6 +148,8 @@ def _memory(model):
     """
     import numpy
 
+    if not model.D22.any():
+        return math.inf
     round_trip = abs(model.D22)
     for _ in range(len(round_trip).bit_length()):
         round_trip = round_trip + round_trip @ round_trip

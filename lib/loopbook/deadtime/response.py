@@ -59,7 +59,7 @@ class Response:
         model: a `ChannelModel`; its input is a unit step.
         end: the time up to which the response is wanted.
     Attributes:
-        edges: the ends of the segments, an array; the last one is at `end` or later.
+        edges: the ends of the segments, an array; the last one is at `end`, or later if a segment begins there.
     Raises:
         ValueError: for an end that is none; where the response would take about two seconds (60,000 segments with one
             dead time), where its dead times have more than 30,000 sums at which it is not smooth, or where it
@@ -84,21 +84,6 @@ class Response:
             raise ValueError(f"the end is {end}: expected a finite time, zero or later")
         model = model._replace(delays=[Fraction(delay) for delay in model.delays])
         self.edges, self._coefficients = follow(model, end)
-        self._cut(end)
-
-    def _cut(self, end: float) -> None:
-        """Let the last segment end where it was asked for, unless it begins there, as after a jump."""
-        from numpy.polynomial import legendre
-
-        begin, last = self.edges[-2:]
-        if last > end > begin * (1 + float(ROUNDED)):
-            count = self._coefficients.shape[1]
-            nodes, weights = legendre.leggauss(count)
-            values = legendre.legval((end - begin) / (last - begin) * (nodes + 1) - 1, self._coefficients[-1])
-            degrees = range(1, 2 * count, 2)
-            self._coefficients[-1] = legendre.legvander(nodes, count - 1).T @ (weights * values) * degrees / 2
-            self.edges[-1] = end
-        self.edges[-1] = max(self.edges[-1], end)  # which may differ by rounding
 
     def __call__(self, times: ArrayLike) -> numpy.ndarray:
         """Return the values at the given times, at a jump the one after it."""
