@@ -238,7 +238,7 @@ class Far:
             near = 0.25 / max(self.powers) / 2**halvings
             largest = []
             for _, angle in angles:
-                gains = Expansion.of(B, A, angle, 4 * near, -1.0)
+                gains = Expansion.of(B, A, angle, 1 / max(self.powers), -1.0)
                 largest.append(_no_gain_between(gains, low, high * (1 - ENOUGH), near, angle) if gains else 0.0)
             if min(largest, default=1.0) > 0:
                 distance = self._distance(low, high, [(angle, near) for _, angle in angles])
@@ -384,7 +384,7 @@ class Far:
         return float(positive_beyond(most**2 * C - loops.squares[1])[0])
 
     def _beyond_peak(self, most):
-        """The same, by an expansion about the angle at which the highest powers alone have their largest value."""
+        """The same, by expansions about the angle at which the highest powers alone have their largest value."""
         import numpy
 
         if not self.unit or len(self.a) == 1 or self._series is None:
@@ -392,23 +392,25 @@ class Far:
         A, B = self._series
         C = {m: A.get(m, 0) + B.get(m, 0) for m in {*A, *B}}
         a, b = self.a, self.b
-        steep = (most * abs(a + b) + abs(b)) @ self.powers
+        steep, wide = (most * abs(a + b) + abs(b)) @ self.powers, 1 / max(self.powers)
+        around = [(angle, wide / 2) for _, angle in self._peaks]
+        reserve = self._least(lambda turns: most * abs((a + b) @ turns) - abs(b @ turns), steep, around)
+        end = self._end(self._lower(most + 1, most), reserve)
         best = math.nan
-        for halvings in range(0, 12, 3):
-            near = 0.25 / max(self.powers) / 2**halvings
+        for near in (wide / 20, wide / 60, wide / 200) if not math.isnan(end) else ():
             largest = []
             for _, angle in self._peaks:
-                ratio = Expansion.of(B, C, angle, 4 * near, 1.0)
+                ratio = Expansion.of(A, C, angle, wide, -1.0, 1.0)
                 largest.append(_not_above(ratio, most, near, angle) if ratio else 0.0)
+                # from there to where the others' distance is enough
+                apart = near
+                while apart < wide / 2 and largest[-1]:
+                    for beside in (angle + 1.1 * apart, angle - 1.1 * apart):
+                        ratio = Expansion.of(A, C, beside, wide, -1.0, 1.0)
+                        largest.append(_not_above_beside(ratio, most, 0.1 * apart) if ratio else 0.0)
+                    apart *= 1.2
             if min(largest) > 0:
-                reserve = self._least(
-                    lambda turns: most * abs((a + b) @ turns) - abs(b @ turns),
-                    steep,
-                    [(angle, near) for _, angle in self._peaks],
-                )
-                end = self._end(self._lower(most + 1, most), reserve)
-                if not math.isnan(end):
-                    best = numpy.fmin(best, max(end, 1 / min(largest)))
+                best = numpy.fmin(best, max(end, 1 / min(largest)))
         return float(best)
 
 
@@ -440,7 +442,7 @@ class Expansion(NamedTuple):
     Attributes:
         terms: coefficients [power of the angle, power of v], up to the second order.
         wide, tall: radii of a polydisc in which it is analytic.
-        largest: a bound of its size there.
+        largest: a bound there of how far it is from its value in the middle, and so of all terms but the first.
     """
 
     terms: numpy.ndarray
@@ -449,7 +451,9 @@ class Expansion(NamedTuple):
     largest: float
 
     @classmethod
-    def of(cls, above: dict, below: dict, angle: float, wide: float, sign: float) -> Expansion | None:
+    def of(
+        cls, above: dict, below: dict, angle: float, wide: float, sign: float, more: float = 0.0
+    ) -> Expansion | None:
         import numpy
 
         numbers = []
@@ -475,7 +479,7 @@ class Expansion(NamedTuple):
                 tall /= 2
         else:
             return None
-        largest = (abs(N[0, 0]) + change[0]) / (size - change[1])
+        largest = (change[0] * size + change[1] * abs(N[0, 0])) / ((size - change[1]) * size)
         quotient = numpy.zeros((3, 3), dtype=complex)
         for i in range(3):
             for j in range(3 - i):
@@ -483,7 +487,9 @@ class Expansion(NamedTuple):
                     D[i - p, j - q] * quotient[p, q] for p in range(i + 1) for q in range(j + 1) if (p, q) != (i, j)
                 )
                 quotient[i, j] = (N[i, j] - known) / D[0, 0]
-        return cls(sign * quotient, wide, tall, float(largest))
+        quotient *= sign
+        quotient[0, 0] += more
+        return cls(quotient, wide, tall, float(largest))
 
     def rest(self, order: int, x: float, v: float, factor: float = 1.0) -> float:
         """A bound of the terms of at least some order, for angles up to x and v."""
@@ -530,31 +536,67 @@ def _no_gain_between(gains: Expansion, low: float, high: float, near: float, ang
     return 0.0
 
 
-def _not_above(ratio: Expansion, most: float, near: float, angle: float) -> float:
-    """A number up to which, with v, the size of a quotient at near angles is not above a bound; zero without one."""
+def _square(ratio):
+    """The terms of the square of a quotient's size for real angles and v: the product with the conjugate series."""
     import numpy
 
-    u, symmetric, v = ratio.terms, abs(math.sin(angle)) < 1e-9, ratio.tall / 4
-    # the square of the size for real angles and v: the product with the conjugate series
-    f = numpy.zeros((3, 3))
+    u, f = ratio.terms, numpy.zeros((3, 3))
     for i in range(3):
         for j in range(3 - i):
             f[i, j] = sum((u[p, q] * u[i - p, j - q].conj()).real for p in range(i + 1) for q in range(j + 1))
-    largest = ratio.largest**2
+    return f
+
+
+def _bounds(ratio, x, y):
+    """Bounds of the terms of that square, for shares x and y of the radii."""
+    import numpy
+
+    numbers, middle = numpy.arange(64), abs(ratio.terms[0, 0])
+    both = numpy.outer((numbers + 1) * x**numbers, (numbers + 1) * y**numbers)
+    return 1.001 * ratio.largest * (2 * middle * numpy.outer(x**numbers, y**numbers) + ratio.largest * both)
+
+
+def _orders():
+    import numpy
+
+    return numpy.add.outer(numpy.arange(64), numpy.arange(64))
+
+
+def _not_above_beside(ratio: Expansion, most: float, near: float) -> float:
+    """A number up to which, with v, the size of a quotient at near angles is not above a bound; zero without one."""
+    f, v, x = _square(ratio), ratio.tall / 4, near / ratio.wide
+    if x > 0.5:
+        return 0.0
+    there = f[0, 0] + abs(f[1, 0]) * near + abs(f[2, 0]) * near**2
+    for _ in range(60):
+        if there > most * most:
+            return 0.0
+        more = max(0.0, f[0, 1]) * v + abs(f[1, 1]) * near * v + abs(f[0, 2]) * v * v
+        y = v / ratio.tall
+        if y <= 0.5 and there + more + _bounds(ratio, x, y)[_orders() >= 3].sum() <= most * most:
+            return v
+        v /= 2
+    return 0.0
+
+
+def _not_above(ratio: Expansion, most: float, near: float, angle: float) -> float:
+    """The same about an angle at which it is largest for v = 0, by the terms of the second order."""
+    import numpy
+
+    symmetric, v = abs(math.sin(angle)) < 1e-9, ratio.tall / 4
+    f = _square(ratio)
     base, bend = f[0, 0], f[2, 0]
     if not bend < 0:
         return 0.0
     x = near / ratio.wide
     if x > 0.5:
         return 0.0
-    numbers = numpy.arange(64)
-    order = 4 if symmetric else 3
-    high = numpy.add.outer(numbers, numbers) >= order
-    squared = (numbers >= 2)[:, None] & high
+    high = _orders() >= (4 if symmetric else 3)
+    squared = (numpy.arange(64) >= 2)[:, None] & high
     for _ in range(60):
         if (y := v / ratio.tall) <= 0.5:
             # bounds of the terms of the square; those with the angle squared make the bend weaker
-            terms = 1.001 * largest * numpy.outer((numbers + 1) * x**numbers, (numbers + 1) * y**numbers)
+            terms = _bounds(ratio, x, y)
             weaker = bend + terms[squared].sum() / near**2
             if weaker < 0:
                 slope, first = (0.0, 0.0) if symmetric else (abs(f[1, 0]), f[0, 1] * v)
