@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     import numpy
 
 ON_LIMIT, ENDLESS = -1, 10**9  # in place of a number of roots
+RATIO = 2.0  # of the frequencies at the ends of an interval, at first
 
 Sum = dict[Fraction, tuple[int, ...]]
 
@@ -139,7 +140,7 @@ def unstable_roots(denominator: Mapping) -> float:
     The argument principle counts them, by the phase of the sum along the imaginary axis. On an interval of frequency
     the phase is believed only where an expansion with a bound of its rest proves that the sum has no zero there;
     otherwise the interval is divided, and computed with more digits where rounding is the reason. Beyond a certain
-    frequency the highest power prevails, also by a bound. No more than a quarter of a million intervals are looked at.
+    frequency the highest power prevails, also by a bound. No more than 60,000 intervals are looked at.
 
     Arguments:
         denominator: ``{delay: coefficients}``, the lowest power first, as `System.denominator` is; or with polynomials
@@ -372,7 +373,7 @@ class Turns:
 
         sums = self.sums
         one, points = numpy.ones(sums.count), numpy.arange(sums.count)
-        which, a, b = geometric(_lowest(sums), one, near)
+        which, a, b = geometric(_lowest(sums), one, near, RATIO)
         if self.removable:
             start, turn = _above_origin(sums, self.removable, self.exact)
             self.phase += turn
@@ -395,7 +396,7 @@ class Turns:
             if (lost := numpy.flatnonzero(~self.limit & (abs(counts - whole) > 0.1))).size:
                 raise UndecidedError(self.name, 0.0, float(self.unit[lost[0]]))
             counts = whole
-        return numpy.where(self.limit, ON_LIMIT, counts)
+        return numpy.where(self.limit, ON_LIMIT, counts) + 0.0  # no negative zero
 
     def _value(self, which, w, precise):
         return self.exact.taylor(w, 0)[0] if precise else self.sums.value(which, w)

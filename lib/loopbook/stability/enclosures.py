@@ -22,8 +22,9 @@ if TYPE_CHECKING:
 
 EPSILON = 2.0**-52
 RATIO = 1.45  # of the frequencies at the ends of an interval, at first
+FEW = 50  # intervals, up to which products of all terms are added up by one matrix
 CLOSEST = 1e-7  # the smallest step, as a share, towards a frequency near which there is a root
-MOST_INTERVALS = 250_000  # in one walk, and for each point of many
+MOST_INTERVALS = 60_000  # in one walk, and for each point of many
 MORE_INTERVALS = 2_000
 MOST_AT_ONCE = 2**15
 MOST_EXACT = 3_000  # intervals that are looked at with more digits
@@ -65,9 +66,15 @@ class Enclosure:
 
     def __matmul__(self, other: Enclosure) -> Enclosure:
         """The product with the other's conjugate."""
-        terms = self.terms[:, None] * other.terms.conj()
-        count = len(self.terms)
-        terms = _diagonals(count) @ terms.reshape(count * count, -1)
+        import numpy
+
+        count, conjugate = len(self.terms), other.terms.conj()
+        if conjugate.shape[1] <= FEW:
+            terms = _diagonals(count) @ (self.terms[:, None] * conjugate).reshape(count * count, -1)
+        else:
+            terms = numpy.zeros((2 * count - 1, conjugate.shape[1]), dtype=complex)
+            for k in range(count):
+                terms[k : k + count] += self.terms[k] * conjugate
         noise = self.size * other.noise + other.size * self.noise + 4 * EPSILON * self.size * other.size
         rest = self.size * other.rest + other.size * self.rest + self.rest * other.rest
         steep, other_steep = self.steepness, other.steepness
@@ -251,7 +258,7 @@ class UndecidedError(ValueError):
 
 
 def geometric(
-    start: numpy.ndarray, end: numpy.ndarray, near: numpy.ndarray | None = None
+    start: numpy.ndarray, end: numpy.ndarray, near: numpy.ndarray | None = None, ratio: float = RATIO
 ) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray]:
     """Intervals from zero, and from `start` to `end` in geometric steps: points, and both ends of each.
 
@@ -260,7 +267,7 @@ def geometric(
     import numpy
 
     reach = math.log(max(1.0, (end / start).max())) if len(start) else 0.0
-    steps = max(1, math.ceil(reach / math.log(RATIO)))
+    steps = max(1, math.ceil(reach / math.log(ratio)))
     edges = numpy.empty((steps + 2, len(start)))
     edges[0] = 0
     edges[1:] = start * (end / start) ** (numpy.arange(steps + 1)[:, None] / steps)
@@ -303,7 +310,7 @@ def walk(
         what: is asked, for the message.
         exact: whether more digits are at hand.
         divide: another function than `divided`.
-        most: how many intervals may be looked at; a quarter of a million, and some more for each point, if not given.
+        most: how many intervals may be looked at; 60,000, and some more for each point, if not given.
     Returns:
         How many were looked at.
     Raises:

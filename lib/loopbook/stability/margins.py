@@ -83,6 +83,8 @@ def delay_margin(loop: object) -> float:
         survey = Survey(loops, [SizeOne()])
         found = survey.delay_margins()
         confirm(loops, found)
+        if not found["delay_margin"] and not is_closed_loop_stable(loop):  # nothing is beside it to be confirmed
+            raise ValueError
     return found["delay_margin"]
 
 
@@ -96,7 +98,7 @@ def margins(loop: object) -> Margins:
         loop: the open loop L(s), as for `unstable_closed_loop_poles`.
     Raises:
         ValueError: if the closed loop is not stable, as `unstable_closed_loop_poles`, or where something is not decided
-            with a quarter of a million intervals of frequency; the message says what, and where.
+            with 60,000 intervals of frequency; the message says what, and where.
 
     >>> import sympy
     >>> from loopbook import s
