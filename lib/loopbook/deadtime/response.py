@@ -146,7 +146,7 @@ def response_to_samples(model: ChannelModel, times: ArrayLike, u: ArrayLike, hol
     Returns:
         An array; the error is about 1e-13 of the largest value.
     Raises:
-        ValueError: for arrays that do not fit, another hold, as `Response`; or for uneven times where more than ten
+        ValueError: for arrays that do not fit, another hold, as `Response`; or for uneven times where more than eight
             million pairs of samples had to be taken one by one, as with a step response that jumps hundreds of times.
 
     >>> import numpy

@@ -8,6 +8,7 @@ where the step response is not smooth, and at the bottom, are its values summed 
 from __future__ import annotations
 
 import functools
+import math
 from typing import TYPE_CHECKING
 
 from loopbook.deadtime.collocation import NODES, interpolation, radau
@@ -20,10 +21,11 @@ if TYPE_CHECKING:
 SMOOTH = (1e-13, 1e-12)  # shares of the largest value so far by which the step response may differ from a polynomial
 FEW = 8  # samples in a block at the bottom, or less
 DEEPEST = 16  # times as many blocks as samples
-MOST_WORK = 10_000_000  # pairs of samples that are taken one by one, or pairs of blocks, about two seconds
-CHUNK = 500_000
+MOST_WORK = 8_000_000  # pairs of samples that are taken one by one, or pairs of blocks, about two seconds
+CHUNK = 30_000
 MANY = 64  # kernels of one level, above which they are applied by Fourier transform
 LEAF = 256  # samples that are taken directly
+TEST = 300.0  # pairs that take as long as to look whether a window is smooth
 TOUCHED = 40  # segments of the step response that one polynomial may replace
 SHARES = (0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99)  # where in each of them it is compared
 FAINT = 1e-4  # of the largest value of all: a smaller one is not resolved for its own sake
@@ -51,25 +53,28 @@ def superpose(response: Response, times: numpy.ndarray, u: numpy.ndarray, lines:
     for smooth in SMOOTH:
         kernel = _Kernel(response, span, smooth)
         level, undecided, applied = 0, numpy.zeros(0, int), []
-        work = 0.0
+        work, pairs = 0.0, math.inf
         while True:
             kernels, undecided = kernel.split(undecided, level)
             applied.append(kernels)
-            work += 2.0**level * min(len(kernels[0]), MANY)
+            work += 2.0**level * min(len(kernels[0]), MANY) + TEST * (len(kernels[0]) + len(undecided))
+            if work > MOST_WORK:
+                break
             if 2**level * FEW >= count:
                 blocks = ((times - begin) * (2**level / span)).astype(int)
                 held = numpy.bincount(blocks, minlength=2**level).astype(float)
                 pairs = sum(float(held[m:] @ held[: 2**level - m]) for m in undecided.tolist())
                 deeper = 2.0 ** (level + 1) * min(2 * len(undecided), MANY)
-                if pairs < 2 * deeper or 2**level > DEEPEST * count or max(work, deeper, pairs / 4) > MOST_WORK:
+                pairs *= 1.5 if lines else 1.0  # integrals take longer
+                if pairs < 2 * deeper or 2**level > DEEPEST * count or max(work, deeper) > MOST_WORK:
                     break
             level += 1
         if max(work, pairs) <= MOST_WORK:
             break
     else:
         raise ValueError(
-            f"the step response is at so many times not smooth, or the {count} samples are so uneven, that {pairs:.0e} "
-            f"pairs of samples had to be taken one by one: expected even distances, or a shorter record"
+            f"the step response is at so many times not smooth, or the {count} samples are so uneven, that most pairs "
+            f"of samples had to be taken one by one: expected even distances, or a shorter record"
         )
     points, weights, slopes = times, changes, None
     if lines:  # each line in one block
