@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     import numpy
 
 ON_LIMIT, ENDLESS = -1, 10**9  # in place of a number of roots
+MOST_INTERVALS, MORE_INTERVALS = 600_000, 2_000  # in all, and for each sum
 RATIO = 2.0  # of the frequencies at the ends of an interval, at first
 
 Sum = dict[Fraction, tuple[int, ...]]
@@ -385,7 +386,8 @@ class Turns:
             vanishes = abs(at_zero) <= 1e-15 * size if self.exact is None else not exact_coefficient(self.exact, 0)
             self.limit |= vanishes
         some = ~self.limit[which]
-        walk(self.judge, which[some], a[some], b[some], self.name, self.unit, self.exact is not None)
+        most = MOST_INTERVALS + MORE_INTERVALS * sums.count
+        walk(self.judge, which[some], a[some], b[some], self.name, self.unit, self.exact is not None, most=most)
         ends = sums.value(points, one) * (-1j) ** sums.order
         beyond = [each.phase(scale) if each else 0.0 for each, scale in zip(self.far, self.unit.tolist(), strict=True)]
         # of n roots on the left, each turns the phase by a quarter turn; the rest of it comes beyond the frequency 1

@@ -28,6 +28,19 @@ MOST_ANGLES = 200_000
 MOST_EXPANSIONS = 50
 
 
+def _remembered(method):
+    """A method whose last result is kept, because it is asked again in each window of frequency."""
+
+    @functools.wraps(method)
+    def kept(self, *values):
+        last = self.last.get(method.__name__)
+        if last is None or last[0] != values:
+            self.last[method.__name__] = last = values, method(self, *values)
+        return last[1]
+
+    return kept
+
+
 class Far:
     """The highest powers of a single loop: b + k a, sums of exp(-delay*s) with `delays` (the first one zero).
 
@@ -43,7 +56,7 @@ class Far:
         import numpy
 
         A, B = loops.exact[:2]
-        self.loops, self.pivot = loops, pivot
+        self.loops, self.pivot, self.last = loops, pivot, {}
         rows: dict[Fraction, list[Fraction]] = {Fraction(0): [Fraction(0), Fraction(0)]}
         for k, exact in enumerate((A, B)):
             for delay, part in exact.parts.items():
@@ -200,7 +213,7 @@ class Far:
 
     # ---- gains
 
-    @functools.cache  # noqa: B019
+    @_remembered
     def no_crossing_beyond(self, low: float, high: float) -> float:
         """A frequency beyond which L is not -1/k for any k from low to high; nan where none is known.
 
@@ -350,7 +363,7 @@ class Far:
         self._ask(peak)
         return [(float(peak.most[0]), float(peak.place[0]))]
 
-    @functools.cache  # noqa: B019
+    @_remembered
     def no_peak_beyond(self, most: float) -> float:
         """A frequency beyond which abs(B/C) is below `most`."""
         import numpy
