@@ -141,7 +141,7 @@ def unstable_roots(denominator: Mapping) -> float:
     The argument principle counts them, by the phase of the sum along the imaginary axis. On an interval of frequency
     the phase is believed only where an expansion with a bound of its rest proves that the sum has no zero there;
     otherwise the interval is divided, and computed with more digits where rounding is the reason. Beyond a certain
-    frequency the highest power prevails, also by a bound. No more than 60,000 intervals are looked at.
+    frequency the highest power prevails, also by a bound. No more than 600,000 intervals are looked at.
 
     Arguments:
         denominator: ``{delay: coefficients}``, the lowest power first, as `System.denominator` is; or with polynomials
