@@ -60,7 +60,7 @@ class LoopResponse:
 
 
 class Loop:
-    """A process under feedback control, with a load at its input.
+    """A process under feedback control, with a load at its input. ::
 
                               d (load)
                               |
