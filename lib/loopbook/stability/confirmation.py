@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from loopbook.stability.loops import Loops
 
+MOST_INTERVALS, MOST_ALONE = 150_000, 40_000  # for all counts beside limits, and for one if these are too few
 SHARES = (1e-6, 1e-5, 1e-4, 1e-3)  # of a limit, by which the two sides differ from it, the first that decides
 
 
@@ -83,17 +84,19 @@ def confirm(loops: Loops, found: dict[str, float], itself: bool = True) -> None:
         changes = left
 
 
-def _counted(loops, changes, near):
+def _counted(loops, changes, near, most=MOST_INTERVALS):
     """As `_counts`, but on the limit for those that are not decided."""
     try:
-        return _counts(loops, changes, near)
+        return _counts(loops, changes, near, most)
     except ValueError:
         if len(changes) == 1:
             return [ON_LIMIT]
-    return [count for change, w in zip(changes, near, strict=True) for count in _counted(loops, [change], [w])]
+    return [
+        count for change, w in zip(changes, near, strict=True) for count in _counted(loops, [change], [w], MOST_ALONE)
+    ]
 
 
-def _counts(loops, changes, near):
+def _counts(loops, changes, near, most):
     """The numbers of unstable poles of a loop with several changes; of those with another phase, of both conjugates."""
     import numpy
 
@@ -111,7 +114,10 @@ def _counts(loops, changes, near):
     )
     delays = numpy.concatenate([numpy.broadcast_to(B.delays, (len(B.delays), count)), A.delays + late])
     counts = count_roots(
-        Quasipolynomials(coefficients, delays), removable=int(loops.at_zero[4][0]), near=numpy.array(near) / unit
+        Quasipolynomials(coefficients, delays),
+        removable=int(loops.at_zero[4][0]),
+        near=numpy.array(near) / unit,
+        most=most,
     )
     turned = iter(counts[len(changes) :])
     found = []

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     import numpy
 
 ON_LIMIT, ENDLESS = -1, 10**9  # in place of a number of roots
-MOST_INTERVALS, MORE_INTERVALS = 600_000, 2_000  # in all, and for each sum
+MOST_INTERVALS, MORE_INTERVALS = 400_000, 2_000  # in all, and for each sum
 RATIO = 2.0  # of the frequencies at the ends of an interval, at first
 
 Sum = dict[Fraction, tuple[int, ...]]
@@ -141,7 +141,7 @@ def unstable_roots(denominator: Mapping) -> float:
     The argument principle counts them, by the phase of the sum along the imaginary axis. On an interval of frequency
     the phase is believed only where an expansion with a bound of its rest proves that the sum has no zero there;
     otherwise the interval is divided, and computed with more digits where rounding is the reason. Beyond a certain
-    frequency the highest power prevails, also by a bound. No more than 600,000 intervals are looked at.
+    frequency the highest power prevails, also by a bound. No more than 400,000 intervals are looked at.
 
     Arguments:
         denominator: ``{delay: coefficients}``, the lowest power first, as `System.denominator` is; or with polynomials
@@ -303,7 +303,11 @@ def _count_of(parts: Sum, removable: int, name: Callable[[], object]) -> float:
 
 
 def count_roots(
-    sums: Quasipolynomials, exact: Exact | None = None, removable: int = 0, near: numpy.ndarray | None = None
+    sums: Quasipolynomials,
+    exact: Exact | None = None,
+    removable: int = 0,
+    near: numpy.ndarray | None = None,
+    most: int | None = None,
 ) -> numpy.ndarray:
     """The number of roots in the right half-plane of many sums; ON_LIMIT with some on the axis, ENDLESS without end.
 
@@ -312,6 +316,7 @@ def count_roots(
         removable: how many roots at zero do not count.
         near: a frequency for each sum about which there are roots close to the axis; nan without one. It costs time
             not to know it.
+        most: how many intervals may be looked at; 400,000, and 2,000 for each sum, if not given.
     Returns:
         An array of floats. With complex coefficients it is half the number for a sum and the one with the conjugate
         coefficients together, of which the two have different shares.
@@ -342,7 +347,7 @@ def count_roots(
         if exact is not None:
             exact = Exact(exact.parts, exact.order, exact.divisor, float(unit[0]))
         hints = None if near is None else near[points] / unit
-        counts[points] = Turns(scaled, unit, [far.get(point) for point in points], exact, removable).count(hints)
+        counts[points] = Turns(scaled, unit, [far.get(point) for point in points], exact, removable).count(hints, most)
     return counts
 
 
@@ -368,7 +373,7 @@ class Turns:
             self.first = Quasipolynomials(sums.coefficients[:1], sums.delays[:1])
             self.rest = Quasipolynomials(sums.coefficients[1:], sums.delays[1:])
 
-    def count(self, near: numpy.ndarray | None) -> numpy.ndarray:
+    def count(self, near: numpy.ndarray | None, most: int | None = None) -> numpy.ndarray:
         """The numbers of roots in the right half-plane."""
         import numpy
 
@@ -386,7 +391,7 @@ class Turns:
             vanishes = abs(at_zero) <= 1e-15 * size if self.exact is None else not exact_coefficient(self.exact, 0)
             self.limit |= vanishes
         some = ~self.limit[which]
-        most = MOST_INTERVALS + MORE_INTERVALS * sums.count
+        most = most or MOST_INTERVALS + MORE_INTERVALS * sums.count
         walk(self.judge, which[some], a[some], b[some], self.name, self.unit, self.exact is not None, most=most)
         ends = sums.value(points, one) * (-1j) ** sums.order
         beyond = [each.phase(scale) if each else 0.0 for each, scale in zip(self.far, self.unit.tolist(), strict=True)]
