@@ -10,7 +10,7 @@ import sympy
 
 from loopbook.expressions import s
 from loopbook.quasipolynomials import DelayFraction, read
-from loopbook.quasipolynomials.arrays import Quasipolynomials
+from loopbook.quasipolynomials.arrays import DEGREE, Quasipolynomials
 from loopbook.quasipolynomials.fraction import plus, times
 from loopbook.stability.difference import Endless, at_endless_frequency, power_of_two, prevailing
 from loopbook.stability.enclosures import (
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
 ON_LIMIT, ENDLESS = -1, 10**9  # in place of a number of roots
 MOST_INTERVALS, MORE_INTERVALS = 400_000, 2_000  # in all, and for each sum
+FEW_TERMS = 1  # the degree of expansions for many sums
 RATIO = 2.0  # of the frequencies at the ends of an interval, at first
 
 Sum = dict[Fraction, tuple[int, ...]]
@@ -368,6 +369,8 @@ class Turns:
 
         self.sums, self.unit, self.far, self.exact, self.removable = sums, unit, far, exact, removable
         self.phase, self.limit = numpy.zeros(sums.count), numpy.zeros(sums.count, dtype=bool)
+        # many sums are quicker done with shorter expansions
+        self.degree = DEGREE if sums.count < 50 else FEW_TERMS
         self.first = self.rest = None
         if len(sums.coefficients) > 1 and sums.coefficients[1:].any():
             self.first = Quasipolynomials(sums.coefficients[:1], sums.delays[:1])
@@ -413,14 +416,14 @@ class Turns:
         import numpy
 
         sums, c, r = self.sums, (a + b) / 2, (b - a) / 2
-        around = enclosed(sums, which, c, r, self.exact if precise else None)
+        around = enclosed(sums, which, c, r, self.exact if precise else None, self.degree)
         proven = around.least > 3 * around.noise
         at_a, at_b = self._value(which, a, precise), self._value(which, b, precise)
         turns = numpy.angle(at_b * at_a.conj())
         if self.rest is not None and not proven.all():
             # where the undelayed part outweighs the others, the phase is its own, and less than a quarter turn more
             left = numpy.flatnonzero(~proven)
-            alone = enclosed(self.first, which[left], c[left], r[left])
+            alone = enclosed(self.first, which[left], c[left], r[left], degree=self.degree)
             outweighs = alone.least > self.rest.sizes(which[left], b[left])[0] + 3 * alone.noise
             of = left[outweighs]
             if len(of):

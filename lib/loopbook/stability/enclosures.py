@@ -156,22 +156,27 @@ def _diagonals(count):
     return matrix.reshape(2 * count - 1, count * count)
 
 
-def enclosed(sums: Quasipolynomials, which: numpy.ndarray, c: numpy.ndarray, r: numpy.ndarray,
-             exact: Exact | None = None) -> Enclosure:  # fmt: skip
+def enclosed(
+    sums: Quasipolynomials,
+    which: numpy.ndarray,
+    c: numpy.ndarray,
+    r: numpy.ndarray,
+    exact: Exact | None = None,
+    degree: int = DEGREE,
+) -> Enclosure:
     """The sums on the intervals from c - r to c + r; with more digits where there is an exact one."""
-
-    end = c + r
-    scale = r ** _DEGREES()[:, None]
-    sizes = sums.sizes(which, end) * scale
+    end, degrees = c + r, _DEGREES()[: degree + 2]
+    scale = r ** degrees[:, None]
+    sizes = sums.sizes(which, end, degree) * scale
     if exact is None:
-        terms = sums.taylor(which, c) * scale[:-1]
+        terms = sums.taylor(which, c, degree) * scale[:-1]
         share = EPSILON * (2 * sums.order + 8 + 2 * end * sums.longest[which])
-        noise, steep = share * sizes[:-1].sum(axis=0), share * (_DEGREES()[:-1] @ sizes[:-1])
+        noise, steep = share * sizes[:-1].sum(axis=0), share * (degrees[:-1] @ sizes[:-1])
     else:
-        terms = exact.taylor(c) * scale[:-1]
+        terms = exact.taylor(c, degree) * scale[:-1]
         noise = 8 * EPSILON * abs(terms).sum(axis=0) + 2.0**-140 * sizes[0]
-        steep = DEGREE * noise
-    return Enclosure(terms, noise, noise + sizes[-1], steep + (DEGREE + 1) * sizes[-1])
+        steep = degree * noise
+    return Enclosure(terms, noise, noise + sizes[-1], steep + (degree + 1) * sizes[-1])
 
 
 @functools.cache
