@@ -11,14 +11,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 LIBRARY = ROOT / "lib" / "loopbook"
 
-NOT_YET = {"stability"}  # modules that are still without some of their hints
-
 PATHS = sorted(LIBRARY.rglob("*.py"))
-
-
-def top(path):
-    """The module or package of the library that a file belongs to."""
-    return path.relative_to(LIBRARY).parts[0].removesuffix(".py")
 
 
 def spelled(path):
@@ -106,7 +99,7 @@ def missing_in_library(tree):
 
 def is_api(path):
     """Whether a file has functions to call; the exercises of the bank are declarations."""
-    return top(path) not in NOT_YET and not spelled(path).startswith("exercises/bank/ch")
+    return not spelled(path).startswith("exercises/bank/ch")
 
 
 @pytest.mark.parametrize("path", [*filter(is_api, PATHS)], ids=spelled)
@@ -121,10 +114,6 @@ def test_type_hints_name_what_there_is(path):
     known = {*defined(tree.body), *vars(builtins)}
     assert set().union(*map(names, annotations(tree))) - known == set()
     assert list(missing_in_library(tree)) == []
-
-
-def test_only_modules_that_exist_are_left_out():
-    assert set(map(top, PATHS)) >= NOT_YET
 
 
 def test_type_checkers_find_the_hints():

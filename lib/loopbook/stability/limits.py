@@ -34,7 +34,8 @@ def ultimate(process: object) -> tuple[float, float]:
         The floats ``(Ku, Pu)``, Pu in the unit of the lags. Ku is the upper end of the lowest range of gains for which
         the closed loop is stable; infinite, with Pu zero, where no gain makes it unstable.
     Raises:
-        ValueError: if no positive gain makes the closed loop stable, or as `unstable_poles`.
+        ValueError: if no positive gain makes the closed loop stable, looked for while the dead times turn the phase by
+            400 rad; or as `unstable_poles`.
 
     >>> import sympy
     >>> from loopbook import s
