@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 from loopbook.deadtime.response import (
     ChannelModel,
     Response,
-    default_horizon,
     response_to_samples,
     step_family,
 )
@@ -525,26 +524,3 @@ def test_families_that_do_not_fit():
 
 
 # ------------------------------------------------------------------------------------------------ horizons
-
-
-@pytest.mark.parametrize(
-    ("system", "least", "most"),
-    [
-        (feedback(0, 5, 1)._replace(C1=np.ones((1, 1))), 23, 60),  # a lag of 5
-        (model([[-1e4, 0], [1e-4, -1e-4]], [[1e4], [0]], C1=[[0, 1]]), 4.6e4, 1.2e5),
-        (model([[-1, 0], [0, -1e-3]], [[1], [1e-3]], C1=[[1, 1]]), 3000, 15_000),
-        (pi_loop(2, 5, 4, 0.5, 5), 20, 80),
-        (model([[0]], [[1]], C1=[[1]]), 0, math.inf),
-        (feedback(-3, 10, "1/2"), 1, 100),
-        (model([[0, 1], [-1, 0]], [[0], [1]], C1=[[1, 0]]), 20, 200),
-        (model(D12=[[1]], D21=[[1]], delays=[3]), 3, 20),
-        (model(D11=1.0), 0.1, 10),
-        (model([[-1]], [[1]], C1=[[-1]], D11=1.0), 4, 15),
-    ],
-)
-def test_horizons(system, least, most):
-    begin = time.process_time()
-    end = default_horizon(system)
-    assert time.process_time() - begin < 2
-    assert least <= end <= most
-    assert end == float(f"{end:.2g}")

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
 from loopbook.deadtime.collocation import NODES, follow
-from loopbook.deadtime.echoes import ROUNDED, fastest
+from loopbook.deadtime.echoes import ROUNDED
 from loopbook.deadtime.family import shared_cells
 from loopbook.deadtime.superposition import superpose
 from loopbook.inputs import one_of, real_numbers, times_from_zero
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import numpy
     from numpy.typing import ArrayLike
 
-__all__ = ["ChannelModel", "Response", "default_horizon", "response_to_samples", "step_family"]
+__all__ = ["ChannelModel", "Response", "response_to_samples", "step_family"]
 
 HOLDS = ("zero order", "first order")
 BAND = 0.01  # of the largest value, in which a response has settled
@@ -231,80 +231,3 @@ def _family_shape(models):
         if shapes == [(count, *shape) for shape in expected]:
             return count, n, q
     raise ValueError(f"the arrays of the models have the shapes {shapes}: expected an axis of models before the others")
-
-
-def default_horizon(model: ChannelModel) -> float:
-    """Return a time up to which a step response shows what there is to see.
-
-    The response is followed twice as far until its later two thirds stay within 1 % of its range around its end; the
-    horizon is half as long again as it takes to settle there. A response that grows for ever, as of an integrator or an
-    unstable system, is shown until it is many times as large as at first; one that swings for ever, for some periods.
-
-    Arguments:
-        model: a `ChannelModel`.
-
-    >>> import numpy
-    >>> one = numpy.ones((1, 1))
-    >>> none = numpy.zeros((1, 0))
-    >>> lag = ChannelModel(-one, one, none, one, none.T, 0 * one, none, none.T, none.T @ none, [])
-    >>> 5 < default_horizon(lag) < 10
-    True
-    """
-    import numpy
-    from numpy.polynomial import legendre
-
-    final = _static_gain(model)
-    start = end = max(2 * float(sum(model.delays)), 4 / speed if (speed := fastest(model)) else 0.0) or 1.0
-    before, growth = None, None
-    for _ in range(MOST_DOUBLINGS):
-        try:
-            response = Response(model, end)
-        except ValueError:  # too many segments, or beyond all numbers: what was followed so far has to do
-            return _rounded_up(end / 2)
-        shares = numpy.linspace(0, 1, NODES)
-        values = legendre.legval(2 * shares - 1, response.coefficients.T)
-        times = response.edges[:-1, None] + numpy.diff(response.edges)[:, None] * shares
-        times, values = times.ravel(), values.ravel()
-        last = final if math.isfinite(final) else values[-1]
-        band = BAND * max(abs(values).max(), abs(last))
-        outside = times[abs(values - last) > band]
-        settled = outside.max(initial=0.0)
-        if settled <= end / 3:
-            return _rounded_up(1.5 * settled or start)
-        early = abs(values[times <= end / 2]).max()
-        before, growth = growth, abs(values).max() / early if early else math.inf
-        if before and growth > max(GROWN, before**1.3):  # not as a power of the time, as while it rises from zero
-            return _rounded_up(end)
-        if before and not math.isfinite(final) and growth > 1.8 and abs(growth / before - 1) < 0.1:
-            return _rounded_up(end)
-        if len(response.edges) > LONG:
-            middle = (values[times > end / 2].max() + values[times > end / 2].min()) / 2
-            turns = times[1:][numpy.diff(numpy.sign(values - middle)) != 0]
-            return _rounded_up(turns[min(len(turns) - 1, SWINGS)] if len(turns) else end)
-        end *= 2
-    return _rounded_up(end)
-
-
-def _static_gain(model):
-    """What a step settles at, if it does; infinite where there are integrators."""
-    import numpy
-
-    A, B1, B2, C1, C2, D11, D12, D21, D22, delays = model
-    whole = numpy.block([[A, B2], [C2, D22 - numpy.eye(len(delays))]])
-    if len(whole):
-        rows, columns = numpy.ones(len(whole)), numpy.ones(len(whole))
-        for _ in range(8):  # independent of the units of the states
-            scaled = abs(whole) * rows[:, None] * columns
-            if not (scaled.any(axis=0).all() and scaled.any(axis=1).all()):
-                return math.inf
-            rows /= numpy.sqrt(scaled.max(axis=1))
-            columns /= numpy.sqrt(scaled.max(axis=0))
-        if numpy.linalg.cond(whole * rows[:, None] * columns) > SINGULAR:
-            return math.inf
-    still = -numpy.linalg.solve(whole, numpy.vstack([B1, D21])[:, 0])
-    return float(D11[0, 0] + numpy.hstack([C1, D12])[0] @ still)
-
-
-def _rounded_up(time):
-    unit = 10.0 ** (math.floor(math.log10(time)) - 1)
-    return float(f"{math.ceil(time / unit * (1 - 1e-9)) * unit:.12g}")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import math
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING
 from loopbook.deadtime import Loop
 from loopbook.ise.one_delay import OneDelay
 from loopbook.quasipolynomials import DelayFraction, read
-from loopbook.quasipolynomials.fraction import Sum, plus, times
+from loopbook.quasipolynomials.fraction import Sum, plus, taylor_coefficient, times
 from loopbook.stability import StabilityLimitError, unstable_roots
 
 if TYPE_CHECKING:
@@ -63,18 +62,6 @@ def error_of(process: object, controller: object, mode: str, from_setpoint: obje
     return DelayFraction(above, times(own, returned))
 
 
-def _taylor_coefficient(parts: Sum, k: int) -> Fraction:
-    """The coefficient of s^k of a sum of polynomials with dead times, exact."""
-    return sum(
-        (
-            c * (-delay) ** (k - i) / math.factorial(k - i)
-            for delay, part in parts.items()
-            for i, c in enumerate(part[: k + 1])
-        ),
-        ZERO,
-    )
-
-
 @dataclass(frozen=True)
 class ErrorFraction:
     """An error that has an integral: E = N/(s^pole D), all poles of 1/D in the left half-plane.
@@ -115,7 +102,7 @@ class ErrorFraction:
         if unstable:
             raise UnstableLoopError(f"{fraction.expr} is not stable: {unstable} poles in the right half-plane")
         for k in range(pole):
-            if _taylor_coefficient(N, k):
+            if taylor_coefficient(N, k):
                 raise ValueError(f"the error does not vanish: E(s) = {fraction.expr} has a pole at zero")
         return found
 
