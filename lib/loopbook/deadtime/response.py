@@ -19,12 +19,6 @@ if TYPE_CHECKING:
 __all__ = ["ChannelModel", "Response", "response_to_samples", "step_family"]
 
 HOLDS = ("zero order", "first order")
-BAND = 0.01  # of the largest value, in which a response has settled
-GROWN = 20.0  # times as large in the later half: one that grows without end
-LONG = 3000  # segments up to which a response is followed that does not settle
-SWINGS = 24  # turns that are shown of one that does not
-SINGULAR = 1e12  # the condition of a system of equations that has no solution
-MOST_DOUBLINGS = 60
 WORTH = 12  # models of the same dead times that are taken together
 
 
