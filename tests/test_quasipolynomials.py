@@ -9,6 +9,7 @@ import pytest
 import sympy
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from sympy.core.cache import clear_cache
 
 from loopbook import s
 from loopbook.pid import PID
@@ -179,3 +180,15 @@ def test_the_normal_form_with_numbers_is_the_fraction():
         p.as_expr() * sympy.exp(-d * s) for d, p in below.items()
     )
     assert read(ratio) == read(H)
+
+
+def test_a_symbol_that_is_equal_is_the_symbol():
+    # SymPy forgets symbols that were not used for long; the next `s`, from a pickle for one, is another object then.
+    stored = pickle.dumps(s)
+    clear_cache()
+    other = pickle.loads(stored)
+    try:
+        assert other is not s
+        assert read(sympy.exp(-2 * other) / (5 * other + 1)) == read(sympy.exp(-2 * s) / (5 * s + 1))
+    finally:
+        clear_cache()

@@ -446,7 +446,7 @@ class _NoFractionError(Exception):
 
 def _read(e: sympy.Expr) -> tuple[Sum, Sum]:
     """Numerator and denominator of an expression, common factors left in."""
-    if e is s:
+    if e == s:
         return {ZERO: (0, 1)}, ONE
     if e.is_Rational:
         return {ZERO: (int(e.p),)} if e.p else {}, {ZERO: (int(e.q),)}
