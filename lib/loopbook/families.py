@@ -11,13 +11,13 @@ import math
 from typing import TYPE_CHECKING
 
 from loopbook.deadtime.response import ChannelModel, step_family
-from loopbook.inputs import one_of, times_from_zero
 from loopbook.ise import ise_family
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.quasipolynomials.letters import broadcast_values, with_values
 from loopbook.stability.counting import count_roots
 from loopbook.stability.sensitivity import largest_sensitivities
 from loopbook.transfer import transfer_function
+from loopbook.validation import one_of, times_from_zero
 
 if TYPE_CHECKING:
     import numpy

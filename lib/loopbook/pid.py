@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Self
 import sympy
 
 from loopbook.expressions import equalities, exact, s, written
-from loopbook.inputs import number, positive
 from loopbook.scaling import PERCENT, Scaling
 from loopbook.transfer import transfer_function
 from loopbook.types import Number
+from loopbook.validation import number, positive
 
 __all__ = ["PID", "Controller", "LowpassFilter"]
 

@@ -10,11 +10,11 @@ import sympy
 
 from loopbook.deadtime.system import System, return_difference
 from loopbook.expressions import function_of, s, t
-from loopbook.inputs import one_of, times_from_zero
 from loopbook.laplace import evaluate
 from loopbook.quasipolynomials import DelayFraction, read
 from loopbook.stability import Margins, dominant_poles, is_stable, margins
 from loopbook.transfer import transfer_function
+from loopbook.validation import one_of, times_from_zero
 
 if TYPE_CHECKING:
     import numpy

@@ -24,8 +24,8 @@ from loopbook.figures import (
     response_look,
     time_plot,
 )
-from loopbook.inputs import positive, real_numbers
 from loopbook.quasipolynomials import DelayFraction, read
+from loopbook.validation import positive, real_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

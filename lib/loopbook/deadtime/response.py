@@ -10,7 +10,7 @@ from loopbook.deadtime.collocation import NODES, follow
 from loopbook.deadtime.echoes import ROUNDED
 from loopbook.deadtime.family import shared_cells
 from loopbook.deadtime.superposition import superpose
-from loopbook.inputs import one_of, real_numbers, times_from_zero
+from loopbook.validation import one_of, real_numbers, times_from_zero
 
 if TYPE_CHECKING:
     import numpy

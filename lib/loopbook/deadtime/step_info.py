@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from loopbook.deadtime.response import Response
-from loopbook.inputs import number
+from loopbook.validation import number
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

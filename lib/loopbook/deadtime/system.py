@@ -15,13 +15,13 @@ from loopbook.deadtime.curves import natural_range
 from loopbook.deadtime.response import ChannelModel, Response, response_to_samples
 from loopbook.deadtime.step_info import StepInfo, first_time_at, settled_response, step_info
 from loopbook.expressions import function_of, s, t
-from loopbook.inputs import number, real_numbers, times_from_zero
 from loopbook.laplace import transform
 from loopbook.quasipolynomials import DelayFraction, read
 from loopbook.quasipolynomials.fraction import Sum, lowest_term, plus
 from loopbook.stability import is_stable
 from loopbook.stability import margins as margins_of
 from loopbook.stability.poles import dominant_roots
+from loopbook.validation import number, real_numbers, times_from_zero
 
 if TYPE_CHECKING:
     import control

@@ -6,10 +6,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from loopbook.identification.recursive import RecursiveLeastSquares, first_order_of
-from loopbook.inputs import not_negative, positive
 from loopbook.pid import Controller
 from loopbook.tuning import simc
 from loopbook.types import Number
+from loopbook.validation import not_negative, positive
 
 if TYPE_CHECKING:
     from loopbook.approximation import Model

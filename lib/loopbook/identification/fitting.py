@@ -15,7 +15,7 @@ from loopbook.identification.held import HOLDS, KINDS, DrivenChain
 from loopbook.identification.profiles import Residuals, interval
 from loopbook.identification.records import even_step, record
 from loopbook.identification.search import least_squares
-from loopbook.inputs import number, one_of
+from loopbook.validation import number, one_of
 
 if TYPE_CHECKING:
     from numpy import ndarray

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 from loopbook.deadtime import Loop
 from loopbook.identification.records import record
-from loopbook.inputs import number, positive
 from loopbook.pid import PID
 from loopbook.stability import ultimate
 from loopbook.types import Number, TransferFunctionLike
+from loopbook.validation import number, positive
 
 if TYPE_CHECKING:
     import numpy

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from loopbook.inputs import real_numbers
+from loopbook.validation import real_numbers
 
 if TYPE_CHECKING:
     from numpy import ndarray

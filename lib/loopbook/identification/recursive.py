@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 from loopbook.approximation import Model
 from loopbook.expressions import exact
-from loopbook.inputs import number, positive, real_numbers
 from loopbook.types import Number
+from loopbook.validation import number, positive, real_numbers
 
 if TYPE_CHECKING:
     import numpy

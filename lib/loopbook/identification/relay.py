@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 
 from loopbook.deadtime import System
 from loopbook.identification.records import record
-from loopbook.inputs import not_negative, number, positive
 from loopbook.stability import ultimate
 from loopbook.types import Number, TransferFunctionLike
+from loopbook.validation import not_negative, number, positive
 
 if TYPE_CHECKING:
     import numpy

@@ -11,9 +11,9 @@ from typing import Any
 import sympy
 
 from loopbook.expressions import exact
-from loopbook.inputs import number, one_of
 from loopbook.pid import PID, Controller
 from loopbook.types import Number
+from loopbook.validation import number, one_of
 
 WAYS = ("constant", "linear")
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from loopbook.approximation import Model
 from loopbook.expressions import exact
 from loopbook.identification.records import record
-from loopbook.inputs import number, one_of
+from loopbook.validation import number, one_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import sympy
 
 from loopbook.expressions import s
-from loopbook.inputs import real_numbers
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.quasipolynomials.normal_form import normal_form
 from loopbook.transfer import transfer_function
+from loopbook.validation import real_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

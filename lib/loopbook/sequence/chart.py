@@ -27,11 +27,11 @@ import copy
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from loopbook.inputs import number, positive
 from loopbook.sequence import checks
 from loopbook.sequence.formulas import Formula
 from loopbook.sequence.transitions import Transition
 from loopbook.types import Number
+from loopbook.validation import number, positive
 
 __all__ = ["Chart", "Scans", "scan_by_scan"]
 

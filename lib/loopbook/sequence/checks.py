@@ -11,8 +11,8 @@ import keyword
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from loopbook.inputs import positive
 from loopbook.types import Number
+from loopbook.validation import positive
 
 if TYPE_CHECKING:
     from loopbook.sequence.chart import Chart

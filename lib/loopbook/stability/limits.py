@@ -6,7 +6,6 @@ import itertools
 import math
 from typing import TYPE_CHECKING
 
-from loopbook.inputs import real_numbers
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.stability.confirmation import confirm, confirm_gains
 from loopbook.stability.counting import count_roots, fraction_sums, open_loop
@@ -14,6 +13,7 @@ from loopbook.stability.crossings import Real, asked
 from loopbook.stability.enclosures import geometric
 from loopbook.stability.endless import Far
 from loopbook.stability.loops import Loops
+from loopbook.validation import real_numbers
 
 if TYPE_CHECKING:
     import numpy

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import sympy
 
 from loopbook.expressions import s
-from loopbook.inputs import real_numbers
 from loopbook.quasipolynomials import normal_form
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.stability.counting import count_roots
 from loopbook.transfer import transfer_function
+from loopbook.validation import real_numbers
 
 if TYPE_CHECKING:
     import numpy

@@ -7,13 +7,13 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
-from loopbook.inputs import real_numbers
 from loopbook.quasipolynomials import DelayFraction
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.stability.counting import count_roots, fraction_sums, open_loop
 from loopbook.stability.crossings import SizeOne, asked, difference, phase_left
 from loopbook.stability.enclosures import geometric
 from loopbook.stability.loops import Loops
+from loopbook.validation import real_numbers
 
 if TYPE_CHECKING:
     import numpy

@@ -14,11 +14,11 @@ import sympy
 from sympy.core.function import AppliedUndef
 
 from loopbook.expressions import exact, t
-from loopbook.inputs import number
 from loopbook.pid import Controller
 from loopbook.scaling import Scaling
 from loopbook.signals import is_number
 from loopbook.types import Number, SampledController
+from loopbook.validation import number
 
 if TYPE_CHECKING:
     import numpy

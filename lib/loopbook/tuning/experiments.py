@@ -9,10 +9,10 @@ from sympy import Min
 from sympy import Rational as Q
 
 from loopbook.expressions import exact, s
-from loopbook.inputs import one_of
 from loopbook.pid import PID
 from loopbook.tuning.checks import gain, positive, within
 from loopbook.types import Number
+from loopbook.validation import one_of
 
 
 def good_gain(KpGG: Number, Tou: Number, kind: str = "PI") -> PID:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from sympy import Rational as Q
 
 from loopbook.approximation import model_of
-from loopbook.inputs import one_of
 from loopbook.pid import PID
 from loopbook.tuning.checks import steepest_slope, within
 from loopbook.types import TransferFunctionLike
+from loopbook.validation import one_of
 
 
 def ziegler_nichols_reaction(model: TransferFunctionLike, kind: str = "PID") -> PID:

@@ -7,10 +7,10 @@ from sympy import Max, Min
 from sympy import Rational as Q
 
 from loopbook.approximation import model_of
-from loopbook.inputs import one_of
 from loopbook.pid import PID
 from loopbook.tuning.checks import endless_time, finite_time, positive, steepest_slope
 from loopbook.types import Number, TransferFunctionLike
+from loopbook.validation import one_of
 
 
 def simc(model: TransferFunctionLike, Tc: Number | None = None, c: Number = 4) -> PID:
