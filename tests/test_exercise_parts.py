@@ -24,7 +24,7 @@ from hypothesis import strategies as st
 
 from loopbook import exercises, s, t
 from loopbook.deadtime import System
-from loopbook.exercises import bank, formulas, judging, records, units
+from loopbook.exercises import bank, formulas, judging, units
 from loopbook.exercises.authoring import (
     Exercise,
     answers,
@@ -45,9 +45,10 @@ from loopbook.exercises.authoring import (
 )
 from loopbook.exercises.formulas import Formula
 from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG, Verdict, judge
-from loopbook.exercises.limits import limited
+from loopbook.exercises.progress import FILE
 from loopbook.exercises.reading import Unreadable
 from loopbook.exercises.response import Response
+from loopbook.exercises.timeout import limited
 from loopbook.pid import PID
 
 # Units.
@@ -925,7 +926,7 @@ def desk(tmp_path, monkeypatch):
     """A folder of one's own, where progress is kept."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("LOOPBOOK_PROGRESS", raising=False)
-    return tmp_path / records.FILE
+    return tmp_path / FILE
 
 
 def test_progress_survives_a_restart(desk):

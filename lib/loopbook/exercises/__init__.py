@@ -11,7 +11,7 @@ import difflib
 from typing import TYPE_CHECKING
 
 from loopbook.exercises import bank
-from loopbook.exercises.records import Progress
+from loopbook.exercises.progress import Progress
 
 if TYPE_CHECKING:
     from loopbook.exercises.question import Question

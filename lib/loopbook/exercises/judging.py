@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from loopbook.exercises.kinds import NOT_ANSWERED
-from loopbook.exercises.limits import limited
 from loopbook.exercises.reading import Unreadable, shortened
+from loopbook.exercises.timeout import limited
 
 if TYPE_CHECKING:
     from loopbook.exercises.kinds import Kind

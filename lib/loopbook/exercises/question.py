@@ -7,10 +7,10 @@ import functools
 import re
 from typing import TYPE_CHECKING, Any
 
-from loopbook.exercises import records
 from loopbook.exercises.judging import OPEN, Verdict, harmless, judge
 from loopbook.exercises.kinds import NOT_ANSWERED, Kind
 from loopbook.exercises.parameters import call
+from loopbook.exercises.progress import note
 from loopbook.exercises.response import Response
 
 if TYPE_CHECKING:
@@ -115,7 +115,7 @@ class Question:
         )
         response = Response(self.exercise.heading, verdicts, self.exercise.points, tuple(notes))
         if any(verdict.status != OPEN for verdict in verdicts):
-            records.note(self.exercise.number, self.student, response.is_right)
+            note(self.exercise.number, self.student, response.is_right)
         return response
 
     @property

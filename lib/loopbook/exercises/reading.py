@@ -14,7 +14,6 @@ import unicodedata
 from collections.abc import Collection, Iterable
 
 import numpy as np
-import scipy.signal
 import sympy
 from sympy.core.function import AppliedUndef
 
@@ -237,6 +236,8 @@ def _of_system(given):
     if hasattr(given, "num"):
         above, below = np.ravel(given.num), np.ravel(given.den)
     else:
+        import scipy.signal
+
         above, below = map(np.ravel, scipy.signal.ss2tf(given.A, given.B, given.C, given.D))
         above = np.where(np.abs(above) > 1e-12 * np.abs(below), above, 0)  # powers that are there by rounding alone
     above, below = (sympy.Poly([float(x) for x in part], sympy.Symbol("s")).as_expr() for part in (above, below))

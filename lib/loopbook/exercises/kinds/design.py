@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from loopbook.exercises.kinds.kind import Kind
 from loopbook.exercises.kinds.numeric import in_unit
-from loopbook.exercises.limits import limited
 from loopbook.exercises.reading import Unreadable
+from loopbook.exercises.timeout import limited
 
 if TYPE_CHECKING:
     from loopbook.types import Number
