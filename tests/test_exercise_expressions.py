@@ -1,0 +1,107 @@
+"""Answers that are formulas, transfer functions and functions of time."""
+
+import math
+
+import control
+import numpy as np
+import pytest
+import scipy.signal
+import sympy
+import sympy.physics.control
+from hypothesis import given
+from hypothesis import strategies as st
+
+from judged import assert_judged
+from loopbook import s, t
+from loopbook.deadtime import System
+from loopbook.exercises.authoring import expression, time_function, transfer_function
+from loopbook.exercises.judging import MISTAKE, RIGHT, UNJUDGED, WRONG, judge
+
+X = sympy.Symbol("x")
+H = transfer_function(3 * sympy.exp(-2 * s) / (5 * s + 1))
+Y = time_function(1 - sympy.exp(-t / 5), until=25, what="the response")
+METRES = time_function(2 * (1 - sympy.exp(-t / 5)), until=25, unit="m", what="the level")
+BOX = expression(sympy.sympify("pi*r**2*h"), "the volume", unit="m³")
+pi_r2_h = sympy.pi * sympy.Symbol("r") ** 2 * sympy.Function("h")(t)
+LONG = time_function(1 - sympy.exp(-t / 5) + sympy.exp(-50 * t) / 300, until=2500, what="the response")
+FORM = sympy.sympify("K*T/(K + 1)")
+GAIN_OF_K = expression(FORM, "the gain")
+LAG = transfer_function(3 / (5 * s + 1))
+OFFSET_Y = time_function(60 + 3 * (1 - sympy.exp(-t / 5)), until=25, unit="°C", what="the reading")
+
+JUDGED = [
+    (H, "0.6*exp(-2*s)/(s + 0.2)", RIGHT, "right"),
+    (H, 3 / (5 * s + 1), MISTAKE, "dead time is missing"),
+    (H, 3 * sympy.exp(2 * s) / (5 * s + 1), MISTAKE, "sign in the exponent"),
+    (H, 3 * (1 - s) / (1 + s) / (5 * s + 1), MISTAKE, "Pade"),
+    (H, 3 * sympy.exp(-2 * s) / (5 * s + 1) / s, MISTAKE, "factor s"),
+    (H, sympy.exp(2 * s) * (5 * s + 1) / 3, MISTAKE, "inverse"),
+    (H, "3/(tau*s + 1)", UNJUDGED, "'tau' is no letter"),
+    (H, System(3 * sympy.exp(-2 * s) / (5 * s + 1)), RIGHT, "right"),
+    (Y, "1 - exp(-0.2*t)", RIGHT, "right"),
+    (Y, lambda times: 1 - np.exp(-times / 5), RIGHT, "right"),
+    (Y, lambda time: 1 - math.exp(-time / 5), RIGHT, "right"),
+    (Y, sympy.exp(-t / 5) - 1, MISTAKE, "sign"),
+    (Y, "exp(-0.2*t)", WRONG, "the response"),
+    (Y, "1 - exp(-0.2*t) + exp(-2000*t)/1e6", RIGHT, "right"),
+    (LONG, "1 - exp(-t)*exp(0.8*t)", RIGHT, "right"),
+    (LONG, "0*t", WRONG, "the response"),
+    (Y, lambda times: "much", UNJUDGED, "no numbers"),
+    (BOX, pi_r2_h, RIGHT, "right"),
+    (BOX, "r^2*pi*h(t)", RIGHT, "right"),
+    (Y, "3-0,000625*t", UNJUDGED, "comma as a point"),
+    (Y, "4(1+t)", UNJUDGED, "every product needs one"),
+    (Y, "Piecewise((1 - exp(-t/5), t < 15))", UNJUDGED, "no value at some points"),
+    (Y, "1 - exp(-12*t)", MISTAKE, "unit of time"),
+    (METRES, "200*(1 - exp(-t/5))", MISTAKE, "the values in cm"),
+    (H, "3*exp(-120*s)/(300*s + 1)", MISTAKE, "unit of time"),
+    (H, 3 * s * sympy.exp(-2 * s) / (5 * s + 1), MISTAKE, "factor s too many"),
+    (Y, lambda times: np.where(times < 3, np.nan, 1 - np.exp(-times / 5)), UNJUDGED, "no finite value at some times"),
+    (expression(sympy.Symbol("q_2i") * sympy.Symbol("ζ")), "q_2i*ζ", RIGHT, "right"),
+    # formulas in other spellings and forms
+    *(
+        (GAIN_OF_K, text, RIGHT, "right")
+        for text in ("y = K*T/(K+1)", "y(t) = K·T/(1 + K)", "K*T÷(K+1)", "K*T/(K−1+2)")
+    ),
+    *((GAIN_OF_K, one, RIGHT, "right") for one in (sympy.Eq(X, FORM), {FORM}, {X: FORM}, np.array(FORM), iter([FORM]))),
+    (expression(sympy.sympify("theta*a**2/tau")), "θ*a²/τ", RIGHT, "right"),
+    (expression(sympy.log(10) * X), "2.302585*x", RIGHT, "right"),
+    (expression(sympy.log(X) / sympy.log(10)), "log10(x)", RIGHT, "right"),
+    (Y, "1 - np.exp(-t/5)", RIGHT, "right"),
+    (Y, sympy.Eq(sympy.Function("y")(t), 1 - sympy.exp(-t / 5)), RIGHT, "right"),
+    (LAG, control.ss([[-0.2]], [[1]], [[0.6]], [[0]]), RIGHT, "right"),
+    (LAG, scipy.signal.StateSpace([[-0.2]], [[1]], [[0.6]], [[0]]), RIGHT, "right"),
+    (LAG, scipy.signal.ZerosPolesGain([], [-0.2], 0.6), RIGHT, "right"),
+    (LAG, scipy.signal.TransferFunction([3], [5, 1]), RIGHT, "right"),
+    (LAG, sympy.physics.control.TransferFunction(3, 5 * s + 1, s), RIGHT, "right"),
+    (
+        transfer_function(7 / (3 * s + 1) ** 5),
+        control.ss(control.tf([7 / 3**5], np.poly([-1 / 3] * 5))),
+        RIGHT,
+        "right",
+    ),
+    (LAG, control.tf([3], [5, 1], 0.1), UNJUDGED, "neither an expression"),
+    (LAG, control.tf([[[3], [1]]], [[[5, 1], [5, 1]]]), UNJUDGED, "neither an expression"),
+    # what is nearly right beside something large
+    (expression(1000 + X), "1000", WRONG, "not right"),
+    (expression(1000 + X), "1000 - x", WRONG, "not right"),
+    (expression(X), "x + Max(x - 5, 0)", WRONG, "not right"),
+    (OFFSET_Y, "60 + 3*(1 - exp(-t/5))", RIGHT, "right"),
+    (OFFSET_Y, "60.5 + 3*(1 - exp(-t/5))", RIGHT, "right"),
+    (OFFSET_Y, "60 + 3*(1 - exp(-t/5.04))", RIGHT, "right"),
+    (OFFSET_Y, "60", WRONG, "the reading"),
+    (OFFSET_Y, "60 + 3.4*(1 - exp(-t/5))", WRONG, "the reading"),
+    (OFFSET_Y, "60 + 3*(1 - exp(-t/7))", WRONG, "the reading"),
+    (Y, "1 - exp(-t/5) + exp(-1000*t)/2", WRONG, "the response"),
+    (Y, "1 - exp(-t/5) + 0.5*sin(pi*(t*120/25 - 0.382))*Heaviside(t - 1)", WRONG, "the response"),
+]
+
+
+@pytest.mark.parametrize(("kind", "given", "status", "says"), JUDGED, ids=range(len(JUDGED)))
+def test_judging(kind, given, status, says):
+    assert_judged(kind, given, status, says)
+
+
+@given(st.text(alphabet="s0123456789.+-*/^()exp, K[]'=:<%_", max_size=40))
+def test_any_text_is_judged(text):
+    assert judge("H", H, text).says

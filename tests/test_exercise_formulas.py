@@ -1,0 +1,174 @@
+"""Formulas in an answer: read without running them, evaluated at points, and compared there."""
+
+import math
+
+import control
+import numpy as np
+import pytest
+import sympy
+
+from loopbook import s
+from loopbook.deadtime import System
+from loopbook.exercises import formulas
+from loopbook.exercises.formulas import Formula
+from loopbook.exercises.reading import Unreadable
+
+READABLE = {
+    "2*exp(-3*s)/(10*s + 1)": 2 * sympy.exp(-3 * s) / (10 * s + 1),
+    "e^(-2*s)/s^2": sympy.exp(-2 * s) / s**2,
+    "sqrt(s + 4)*pi": sympy.sqrt(s + 4) * sympy.pi,
+    "Piecewise((1, (s > 2) & (s < 5)), (s, True))": sympy.Piecewise((1, (s > 2) & (s < 5)), (s, True)),
+    "Heaviside(s - 1)*Max(s, 2)": sympy.Heaviside(s - 1) * sympy.Max(s, 2),
+    "-s**-1 + .5": -1 / s + sympy.Rational(1, 2),
+}
+
+
+@pytest.mark.parametrize("text", READABLE)
+def test_a_formula_has_the_values_of_the_expression(text):
+    points = np.array([0.3, 3.0, 7.0])
+    meant = [complex(READABLE[text].subs(s, point)) for point in points]
+    assert Formula(text, "s")(s=points) == pytest.approx(meant)
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        ("2s", "with * for every product"),
+        ("s(s + 1)", "a product needs its *"),
+        ("K/(T*s + 1)", "'K' is no letter of this answer"),
+        ("S", "did you mean s?"),
+        ("exb(s)", "did you mean exp?"),
+        ("", "empty"),
+        ("(", "cannot be read"),
+        ("0,5*s", "a decimal point"),
+        ("s" * 5000, "characters"),
+        ("+".join(["s"] * 1900), "very long"),
+        ("-" * 3000 + "s", "expected"),
+        ("(" * 3000, "expected"),
+        ("9" * 500, "out of range"),
+        ("1e999*s", "out of range"),
+        ("__import__('os').system('true')", "cannot be read"),
+        ("().__class__", "cannot be read"),
+        ("[s for s in (1,)]", "cannot be read"),
+        ("lambda: s", "cannot be read"),
+        ("s if s else s", "cannot be read"),
+        ("s := 2", "cannot be read"),
+        ("f'{s}'", "cannot be read"),
+        ("exp(s, s)", "2 arguments"),
+        ("exp(x=s)", "one function of a value"),
+        ("Heaviside()", "no arguments"),
+        ("'s'", "is no number"),
+        ("True", "is no number"),
+        (None, "neither"),
+        (..., "neither"),
+        ("1 < s < 3", "compares twice"),
+        ("Piecewise(s)", "pairs of a value and a condition"),
+        ("Piecewise((1, s, 2))", "comma"),
+        ("exp(*s)", "one function"),
+        (True, "truth value"),
+        (object(), "neither an expression"),
+        ([s], "neither an expression"),
+        (sympy.Matrix([s]), "neither an expression"),
+        (sympy.Function("f")(s), "'f' is no function"),
+        (sympy.Add(*(s**k for k in range(1500))), "very long"),
+    ],
+)
+def test_what_is_no_formula_is_said(given, says):
+    with pytest.raises(Unreadable) as caught:
+        Formula(given, "s")
+    assert says in str(caught.value)
+    assert len(str(caught.value)) < 250
+
+
+BOMBS = [
+    "2**2**2**2**2**9", "10**10**10**10", "(s**1000)**1000", "exp(exp(exp(exp(exp(s)))))", "9e300**9e300",
+    "*".join(["(1 + s)"] * 200), "+".join(["s**999"] * 200), "tan(" * 80 + "s" + ")" * 80, "1/0", "0**-1", "log(0)",
+    "exp(1e9*s)", "sqrt(-1)**1e300",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("text", BOMBS)
+def test_no_formula_hangs_or_fills_the_memory(text):
+    key = Formula("2/(10*s + 1)", "s")
+    assert not formulas.agree(key, Formula(text, "s"), formulas.points_for("s"), 0.01)
+
+
+KEY = Formula("2*exp(-10*s/3)/(10*s + 1)", "s")
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        "2*exp(-3.33*s)/(10*s + 1)",
+        "0.2*exp(-3.34*s)/(s + 0.1)",
+        "1/((5*s + 0.5)*exp(10*s/3))",
+        System(2 * sympy.exp(-10 * s / 3) / (10 * s + 1)),
+        sympy.sympify("2*exp(-10*s/3)/(10*s + 1)"),
+        "2.01*exp(-3.35*s)/(9.95*s + 1)",
+    ],
+)
+def test_rounded_numbers_and_other_forms_agree(given):
+    assert formulas.agree(KEY, Formula(given, "s"), formulas.points_for("s"), 0.01)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        "2/(10*s + 1)",
+        "2*exp(-3.5*s)/(10*s + 1)",
+        "2.1*exp(-10*s/3)/(10*s + 1)",
+        "2*exp(-10*s/3)/(10.5*s + 1)",
+        "2*exp(-10*s/3)/(10*s + 1.05)",
+        "2*exp(10*s/3)/(10*s + 1)",
+        "2*(1 - 5*s/3)/(1 + 5*s/3)/(10*s + 1)",
+        "2*exp(-10*s/3)/(10*s - 1)",
+        "2*exp(-10*s/3)/(10*s + 1)**2",
+        "0",
+        "2",
+        "1e300**2",
+    ],
+)
+def test_other_formulas_do_not(given):
+    assert not formulas.agree(KEY, Formula(given, "s"), formulas.points_for("s"), 0.01)
+
+
+def test_a_formula_must_have_values_at_many_points():
+    expected, found = np.ones(10), np.full(10, np.nan)
+    found[:2] = 1
+    assert not formulas.near_everywhere(expected, found, 0.1 * expected)
+    found[:4] = 1
+    assert formulas.near_everywhere(expected, found, 0.1 * expected)
+    nothing = np.full(10, np.nan)
+    assert not formulas.near_everywhere(expected, nothing, 0.1 * expected)
+    assert not formulas.near_everywhere(nothing, nothing, nothing)
+
+
+@pytest.mark.parametrize(
+    ("key", "given"),
+    [
+        ("exp(-3*s)", "exp(-s)*exp(-s)*exp(-s)"),
+        ("exp(-3*s) - exp(-4*s)", "exp(-3*s)*(1 - exp(-s))"),
+        ("s", "(s + 1) - 1"),
+    ],
+)
+def test_an_exact_answer_may_have_another_form(key, given):
+    points = formulas.points_for("s")
+    assert formulas.agree(Formula(key, "s"), Formula(given, "s"), points, within=0)
+    assert not formulas.agree(Formula(key, "s"), Formula(f"({given})*1.0000001", "s"), points, within=0)
+
+
+def test_a_piece_counts_only_where_it_holds():
+    piecewise = Formula("Piecewise((exp(1000*t), t < 0.1), (Min(t, 2), True))", "t")
+    assert piecewise(t=np.array([0.001, 1.0, 5.0])) == pytest.approx([math.e, 1, 2])
+    assert Formula("max(t, 2, 3)", "t")(t=np.array([1.0, 5.0])) == pytest.approx([3, 5])
+
+
+def test_a_system_of_python_control_is_a_formula():
+    key = Formula("2/(10*s + 1)", "s")
+    assert formulas.agree(key, Formula(control.tf([2], [10, 1]), "s"), formulas.points_for("s"), 0.01)
+
+
+def test_a_long_chain_of_functions_is_no_formula():
+    for text in ("lambda:" * 400 + "s", "s if " * 500 + "s", "not " * 500 + "s"):
+        with pytest.raises(Unreadable):
+            Formula(text, "s")

@@ -1,0 +1,141 @@
+"""Answers that are meant to break the judge: they fail, end the program, never end, or carry code."""
+
+import itertools
+import sys
+import time
+
+import pytest
+import sympy
+
+from loopbook import s, t
+from loopbook.exercises import judging
+from loopbook.exercises.authoring import (
+    criterion,
+    design,
+    expression,
+    number,
+    numbers,
+    poles,
+    settings,
+    time_function,
+    transfer_function,
+    word,
+    words,
+)
+from loopbook.exercises.judging import UNJUDGED, judge
+from loopbook.exercises.timeout import limited
+from loopbook.pid import PID
+
+#: One of each kind, and a number without a unit.
+TI = number(120, "s", "the integral time")
+Y = time_function(1 - sympy.exp(-t / 5), until=25, what="the response")
+ALL = (
+    TI,
+    Y,
+    number(0.25, "", "the gain"),
+    numbers([[0, 1], [-2, -3]], what="the matrix"),
+    poles([-1 + 2j, -1 - 2j, -3]),
+    expression(sympy.Symbol("K") * 2),
+    transfer_function(3 * sympy.exp(-2 * s) / (5 * s + 1)),
+    settings(PID(2, Ti=10), gain="%/K", what="the settings"),
+    word("reverse", ["reverse", "direct"], "the action"),
+    words(["S2", "S4"], ["S1", "S2", "S3", "S4"], "the active steps"),
+    design(number(2, what="a gain"), criterion("the offset", lambda K: 1 / (1 + K), below=0.4)),
+)
+each_kind = pytest.mark.parametrize("kind", ALL, ids=lambda kind: type(kind).__name__)
+
+
+class Liar:
+    """An answer whose methods all fail."""
+
+    def _fails(self, *_):
+        raise RuntimeError("no")
+
+    __eq__ = __float__ = __complex__ = __repr__ = __str__ = __iter__ = __len__ = __getattr__ = __array__ = _fails
+    __hash__ = None
+
+
+@each_kind
+def test_an_answer_that_fails_in_every_way_is_not_judged(kind):
+    assert judge("x", kind, Liar()).status == UNJUDGED
+
+
+class Interrupting:
+    """An answer whose methods end the program."""
+
+    def _ends(self, *_):
+        raise SystemExit
+
+    def _interrupts(self, *_):
+        raise KeyboardInterrupt
+
+    __complex__ = __float__ = _ends
+    __getattr__ = _interrupts
+
+
+@each_kind
+def test_an_answer_cannot_end_the_program(kind):
+    assert judge("x", kind, Interrupting()).status == UNJUDGED
+
+
+def test_a_function_cannot_end_the_program():
+    assert judge("y", Y, exit).status == UNJUDGED
+
+
+@pytest.mark.parametrize("make", [lambda: (time.sleep(0.001) for _ in itertools.count()), lambda: EndlessNumber()])
+def test_an_endless_answer_is_not_judged(make, monkeypatch):
+    monkeypatch.setattr(judging, "SECONDS", 0.1)
+    verdict = judge("x", TI, make())
+    assert verdict.status == UNJUDGED
+    assert "takes too long" in verdict.says
+
+
+class EndlessNumber:
+    """A number that never comes to an end."""
+
+    def __complex__(self):
+        while True:
+            time.sleep(0.001)
+
+
+def test_of_an_endless_list_the_beginning_is_read():
+    assert "there are 10000 values" in judge("x", TI, itertools.count()).says
+
+
+@pytest.mark.parametrize(
+    "given",
+    ["$\\href{javascript:alert(1)}{x}$", "\ud800", "two\nlines", sympy.Symbol("$x$"), sympy.Symbol("x" * 10**5)],
+)
+@each_kind
+def test_what_is_quoted_of_an_answer_is_harmless(kind, given):
+    says = judge("x", kind, given).says
+    assert "$" not in says
+    assert "\n" not in says
+    assert len(says) <= 400
+    assert says.encode("utf-8")
+
+
+def test_a_limited_computation_is_stopped():
+    seen = []
+
+    def endless():
+        while True:
+            try:
+                seen.append(len(seen))
+                time.sleep(0.001)
+            except Exception:  # it does not want to be stopped
+                pass
+
+    with pytest.raises(TimeoutError):
+        limited(0.05, endless)
+    time.sleep(0.2)
+    stopped_at = len(seen)
+    time.sleep(0.1)
+    assert len(seen) == stopped_at
+
+
+def test_a_limited_computation_raises_what_it_raises():
+    with pytest.raises(ZeroDivisionError):
+        limited(1, lambda: 1 / 0)
+    with pytest.raises(RuntimeError, match="stopped by SystemExit"):
+        limited(1, sys.exit)

@@ -1,0 +1,170 @@
+"""An exercise as an author writes it and a reader meets it: statement, variants, response."""
+
+import types
+
+import pytest
+import sympy
+
+from loopbook import exercises, s
+from loopbook.exercises import bank
+from loopbook.exercises.authoring import Exercise, answers, between, choice, exercise, number, transfer_function, word
+from loopbook.exercises.judging import MISTAKE, RIGHT, WRONG, Verdict
+from loopbook.exercises.response import Response
+
+
+@exercise("99.1", title="A tank", points=4, where=lambda A, q: q < A)
+def tank(A=between(2, 8, "m²", reference=4), q=between(1, 5, "m³/s", reference=2), kind=choice("open", "closed")):
+    r"""A tank that is {kind} has an area of {A}. An inflow of {q} begins; $\frac{{{q}}}{{{A}}}$ is {H}."""
+    return answers(rate=number(q / A, "m/s", "the rate of the level"), H=transfer_function(q / (A * s)))
+
+
+@tank.shows
+def _(A, q):
+    return {"H": q / (A * s)}
+
+
+@tank.mistake("Half of it is missing for an area of {A}.")
+def _(A, q):
+    return {"rate": q / A / 2}
+
+
+def test_a_question():
+    question = tank.question()
+    assert question.given("A") == 4
+    assert question.given("A", "q") == (4, 2)
+    assert question.statement.startswith("**Exercise 99.1 · A tank** (4 points)")
+    assert "an area of 4\N{NO-BREAK SPACE}m². An inflow of 2\N{NO-BREAK SPACE}m³/s" in question.statement
+    assert r"is $\frac{0.5}{s}$." in question.statement
+    assert "- `rate`: the rate of the level, in m/s" in question.statement
+    with pytest.raises(ValueError, match="gives no 'V': expected 'A', 'q', 'kind', 'H'"):
+        question.given("V")
+
+
+def accuracies(x=between(1, 9)):
+    """A statement about {x}."""
+    return answers(a=number(x, within=0), b=number(x), c=number(x), d=word("yes", ["yes", "no"]))
+
+
+def test_what_is_shown_has_decimals_where_few_digits_write_them():
+    one = Exercise("99.2", "Decimals", 1, lambda: True, key_of_one)
+    one.shows(lambda: {"x": sympy.Rational(5, 2) * s + sympy.Rational(1, 3)})
+    assert r"$2.5 s + \frac{1}{3}$" in one.question().statement
+
+
+def test_the_statement_says_the_accuracy():
+    statement = Exercise("99.2", "Accuracies", 1, lambda: True, accuracies).question().statement
+    assert statement.endswith("\n\n*Accuracy: 1\N{NO-BREAK SPACE}%; `a`: exact*")
+
+
+def test_a_response():
+    question = tank.question()
+    response = question.check(rate=0.25, H="0.5/s")
+    assert [verdict.status for verdict in response.verdicts] == [MISTAKE, RIGHT]
+    assert "an area of 4\N{NO-BREAK SPACE}m²" in response.verdicts[0].says
+    assert (response.earned, response.is_right) == (2, False)
+    assert repr(response).splitlines()[0] == "≈ Exercise 99.1 · A tank: 1 of 2 right"
+    assert 'role="status"' in response._repr_html_()
+    assert question.check(rate="0.5 m/s", H=1 / (2 * s)).is_right
+    assert repr(question.check()).startswith("… Exercise 99.1 · A tank: not answered yet")
+    assert "did you mean rate?" in repr(question.check(rat=3))
+    assert "by their names" in repr(question.check(3))
+
+
+def test_html_of_a_reader_is_shown_and_not_run():
+    text = tank.question().check(H="<script>alert(1)</script>")._repr_html_()
+    assert "<script>" not in text
+
+
+def test_signs_of_formulas_outside_of_formulas_are_none():
+    response = Response("1.1", (Verdict("x", WRONG, r"of $\zeta$ and \(x\)"),), 1)
+    assert r"of $\zeta$ and <span>\</span>(x<span>\</span>)" in response._repr_html_()
+    response = Response("1.1", (Verdict("x", WRONG, "costs 3 $"),), 1)
+    assert "costs 3 <span>$</span>" in response._repr_html_()
+
+
+def test_any_name_can_be_given():
+    response = tank.question().check(**{"self": 1, "alone": 2, "$x$": 3, "\ud800": 4})
+    assert "self is not asked" in repr(response)
+    assert "$" not in repr(response)
+    assert repr(response).encode()
+
+
+def test_a_student_has_one_name_in_any_spelling():
+    assert tank.question("Zoe\u0308").values == tank.question("Zo\u00eb").values
+    assert tank.question("\ud800").values
+    with pytest.raises(ValueError, match="empty text: expected"):
+        tank.question(" ")
+
+
+def key_of_numbers(x=between(1, 9)):
+    """A statement about {x}."""
+    return {"y": x}
+
+
+def key_of_apples(x=between(1, 9)):
+    """A statement about {x}."""
+    return answers(y="apples")
+
+
+def key_of_one(x=between(1, 9)):
+    """A statement about {x}."""
+    return answers(y=x)
+
+
+def test_a_key_that_is_no_answers():
+    with pytest.raises(ValueError, match=r"exercise 99\.2 returns .*: expected answers"):
+        Exercise("99.2", "A key", 1, lambda: True, key_of_numbers).question().check(y=3)
+
+
+def test_a_mistake_in_what_is_not_asked():
+    one = Exercise("99.2", "A mistake", 1, lambda: True, key_of_one)
+    one.mistake("Wrong.")(lambda x: {"z": x + 1})
+    with pytest.raises(ValueError, match=r"a mistake of exercise 99\.2 is in 'z': expected 'y'"):
+        one.question().check(y=3)
+
+
+def test_a_function_of_the_author_that_fails():
+    one = Exercise("99.2", "A mistake", 1, lambda: True, key_of_one)
+    one.mistake("Wrong.")(lambda T: {"y": T})
+    with pytest.raises(ValueError, match=r"a mistake of exercise 99\.2 fails for x = \d.*: 'T' is no parameter"):
+        one.question().check(y=3)
+    with pytest.raises(ValueError, match=r"the key of exercise 99\.2 fails for x = \d.*: 'apples' is a text"):
+        Exercise("99.2", "A key", 1, lambda: True, key_of_apples).question().check(y=3)
+
+
+def test_a_condition_on_what_is_no_parameter():
+    with pytest.raises(ValueError, match="'T' is no parameter of the exercise: expected x"):
+        Exercise("99.2", "A condition", 1, lambda T: T > 1, key_of_one).question()
+
+
+def test_variants_are_the_same_every_time_and_differ():
+    one, other = (tank.question(name).values for name in ("Ada", "Norbert"))
+    assert one == tank.question.__wrapped__(tank, "Ada").values
+    assert one != other
+    for k in range(100):
+        values = tank.question(f"{k}").values
+        assert values["q"] < values["A"]
+
+
+def test_two_exercises_of_one_number():
+    module = types.ModuleType("assignment")
+    module.one, module.other = tank, Exercise("99.1", "Another", 1, lambda: True, tank.key)
+    with pytest.raises(ValueError, match=r"two exercises 99\.1 in assignment"):
+        bank.collected(module)
+
+
+@pytest.mark.parametrize(
+    ("make", "says"),
+    [
+        (lambda: exercises.exercise("10.99"), "there is no exercise '10.99': expected one of 10.1"),
+        (lambda: exercises.exercise("99.1"), "there is no chapter '99'"),
+        (lambda: exercises.exercise(10.1), "the exercise is 10.1: expected chapter and place in it as text"),
+        (lambda: exercises.exercise("10.1", student=""), "empty text"),
+        (lambda: exercises.exercise("10.1", student=3), "student is 3"),
+        (lambda: exercises.progress("B"), "there is no chapter 'B'"),
+    ],
+)
+def test_a_reader_is_told_what_there_is(make, says):
+    with pytest.raises(exercises.ExerciseError) as caught:
+        make()
+    assert says in str(caught.value)
