@@ -45,7 +45,6 @@ MOST_LINES = 12
 MOST_IMPORTS = 13
 MOST_COLUMNS = 88  # what a notebook shows beside a file list without scrolling
 MOST_BYTES = 800_000
-MARKER = "# NBVAL_IGNORE_OUTPUT"
 
 # Functions that make a number of a literal, and names of constants: what consists of these alone is not computed.
 MAKERS = {"S", "sympify", "Rational", "Integer", "Float", "Fraction", "Decimal", "int", "float", "abs", "round"}
@@ -124,10 +123,6 @@ def names(node: ast.AST) -> set[str]:
     return {n.id for n in parts if isinstance(n, ast.Name)} | {n.attr for n in parts if isinstance(n, ast.Attribute)}
 
 
-def uses_interact(cell: NotebookNode) -> bool:
-    return bool(names(tree(cell)) & {"interact", "interactive", "interact_manual", "interactive_output"})
-
-
 # The file.
 
 
@@ -157,11 +152,6 @@ def light(stored: Stored) -> list[str]:
 
 
 # The outputs.
-
-
-def executed_once_in_order(stored: Stored) -> list[str]:
-    counts = [cell.execution_count for _, cell in code(stored.notebook)]
-    return [] if counts == [*range(1, len(counts) + 1)] else [f"execution counts {counts}: run `make execute`"]
 
 
 def fit_to_store(stored: Stored) -> list[str]:
@@ -225,13 +215,11 @@ def short_cells(stored: Stored) -> list[str]:
 def only_sliders_escape_comparison(stored: Stored) -> list[str]:
     found = []
     for label, cell in code(stored.notebook):
-        lines = cell.source.splitlines()
-        if uses_interact(cell) and lines[0] != MARKER:
-            found.append(f"{label}: interact without {MARKER!r} on the first line")
-        if re.search(r"NBVAL|PYTEST_VALIDATE", "\n".join(lines[1:] if uses_interact(cell) else lines)):
-            found.append(f"{label}: a marker that hides a cell from comparison")
-        if cell.metadata.get("tags"):
-            found.append(f"{label}: tags {cell.metadata.tags}")
+        expected = [notebooks.SLIDERS] if notebooks.has_sliders(cell.source) else []
+        if (tags := cell.metadata.get("tags", [])) != expected:
+            found.append(f"{label}: tags {tags} instead of {expected}")
+        if re.search(r"NBVAL|PYTEST_VALIDATE", cell.source):
+            found.append(f"{label}: a comment that hides a cell from comparison")
     return found
 
 
@@ -240,7 +228,7 @@ def sliders_follow_a_figure(stored: Stored) -> list[str]:
     for section in sections(stored.notebook):
         shown = False
         for label, cell in section:
-            if uses_interact(cell) and not shown:
+            if notebooks.has_sliders(cell.source) and not shown:
                 found.append(f"{label}: a slider without a figure before it in its section")
             shown = shown or any(mime.startswith("image/") for o in cell.outputs for mime in o.get("data", {}))
     return found
@@ -253,7 +241,7 @@ def sliders_keep_what_they_use(stored: Stored) -> list[str]:
     for n, (label, cell) in enumerate(cells):
         table = symtable.symtable(cell.source, label, "exec")
         functions |= {child.get_name(): globals_of(child) for child in table.get_children()}
-        if not uses_interact(cell):
+        if not notebooks.has_sliders(cell.source):
             continue
         used = set().union(*map(globals_of, table.get_children()))
         while more := set().union(*(functions[name] for name in used & set(functions))) - used:
@@ -430,7 +418,6 @@ CHECKS = (
     valid,
     in_normal_form,
     light,
-    executed_once_in_order,
     fit_to_store,
     plain_python,
     without_tricks,

@@ -1,13 +1,17 @@
 """Every stored notebook obeys every rule, every rule can be broken, and notebooks are stored as promised."""
 
+import copy
+import difflib
 import functools
+import re
+import shutil
 import subprocess
 import sys
 import time
 from pathlib import Path
 
 import pytest
-from nbformat import v4
+from nbformat import NotebookNode, v4
 from typer.testing import CliRunner
 
 import hygiene
@@ -51,7 +55,7 @@ IMPORTS = code("from loopbook.ledger import haugen\nfrom loopbook.tuning import 
 EXAMPLE = text("## Example 10.2 · a lag with dead time")
 GIVENS = code('example = haugen["Example 10.2"]\nK, T, tau = example.given("K", "T", "tau")')
 FIGURE = code("trends(loop)", shows(text_plain="<Figure>", image_png="iVBORw0KGgo/home/QAAUh0x7f3a5c0d1e50"))
-SLIDER = code("# NBVAL_IGNORE_OUTPUT\n@interact(T=(1, 3))\ndef slow(T): trends(loop(T))")
+SLIDER = code("@interact(T=(1, 3))\ndef slow(T): trends(loop(T))")
 GOOD = [text("# Tuning"), IMPORTS, EXAMPLE, GIVENS, FIGURE, SLIDER, code("example.check(Kp=settings.Kp, Ti=T + tau)")]
 
 
@@ -74,12 +78,12 @@ BROKEN = [
     (hygiene.named_as_designed, "none of the collection's names", stored(*GOOD, name="10_tuning_copy")),
     (hygiene.valid, "format 4.4", changed(lambda n: n.update(nbformat_minor=4))),
     (hygiene.valid, "not a valid notebook", changed(lambda n: n.cells[0].pop("source"))),
-    (hygiene.in_normal_form, "not as", changed(lambda n: n.cells[0].update(id="tuning"))),
+    (hygiene.in_normal_form, "not as", changed(lambda n: n.cells[1].update(execution_count=1))),
+    (hygiene.in_normal_form, "not as", changed(lambda n: n.cells[1].metadata.update(scrolled=True))),
+    (hygiene.in_normal_form, "not as", changed(lambda n: n.cells[0].metadata.update(tags=[notebooks.SLIDERS]))),
     (hygiene.in_normal_form, "not as", changed(lambda n: n.metadata.update(widgets={}))),
     (hygiene.in_normal_form, "not as", stored(*GOOD)._replace(text=stored(*GOOD).text.replace("\n", "\r\n"))),
     (hygiene.light, "bytes", stored(*GOOD, code("trends(loop)", shows(image_png="A" * hygiene.MOST_BYTES)))),
-    (hygiene.executed_once_in_order, "None", changed(lambda n: n.cells[1].update(execution_count=None))),
-    (hygiene.executed_once_in_order, "[1, 7", changed(lambda n: n.cells[3].update(execution_count=7))),
     (hygiene.fit_to_store, "stored error", stored(*GOOD, code("1/0", v4.new_output("error", ename="E", evalue="e")))),
     (hygiene.fit_to_store, "stderr", stored(*GOOD, code("poles(H)", prints("UserWarning", "stderr")))),
     (hygiene.fit_to_store, "address", stored(*GOOD, code("loop", shows(text_plain="<Loop at 0x7f3a5c0d1e50>")))),
@@ -101,15 +105,24 @@ BROKEN = [
     (hygiene.short_cells, "13 lines", with_code("\n".join(["K"] * 13))),
     (hygiene.short_cells, "89 columns", with_code("K" * 89)),
     (hygiene.short_cells, "median", with_code(*["K\nK\nK\nK"] * 9)),
-    (hygiene.only_sliders_escape_comparison, "without", with_code("@interact(T=(1, 3))\ndef slow(T): pass")),
-    (hygiene.only_sliders_escape_comparison, "without", with_code("widgets.interact(slow, T=(1, 3))")),
+    (hygiene.only_sliders_escape_comparison, "tags []", changed(lambda n: n.cells[5].metadata.pop("tags"))),
     (hygiene.only_sliders_escape_comparison, "hides", with_code("# NBVAL_IGNORE_OUTPUT\nexample.check(Kp=Kp)")),
+    (hygiene.only_sliders_escape_comparison, "hides", with_code("# NBVAL_IGNORE_OUTPUT\n" + SLIDER.source)),
     (hygiene.only_sliders_escape_comparison, "hides", with_code("K\n# NBVAL_SKIP")),
     (hygiene.only_sliders_escape_comparison, "hides", with_code(SLIDER.source + "\n# NBVAL_SKIP")),
-    (
-        hygiene.only_sliders_escape_comparison,
-        "tags",
-        changed(lambda n: n.cells[3].metadata.update(tags=["nbval-skip"])),
+    *(
+        (
+            hygiene.only_sliders_escape_comparison,
+            f"tags {tags}",
+            changed(lambda n, k=k, t=tags: n.cells[k].metadata.update(tags=t)),
+        )
+        for k, tags in [
+            (3, [notebooks.SLIDERS]),
+            (3, ["nbval-skip"]),
+            (5, ["nbval-skip"]),
+            (5, [notebooks.SLIDERS, "nbval-skip"]),
+            (6, ["raises-exception"]),
+        ]
     ),
     (hygiene.sliders_follow_a_figure, "without a figure", with_code(SLIDER.source, section=False)),
     (hygiene.sliders_keep_what_they_use, "uses K, which", with_code(SLIDER.source.replace("T))", "K))"), "K = 3")),
@@ -220,7 +233,7 @@ CHAPTER = [
     code("print('one')\nprint('two')"),
     code("1 / (2*s + 1)"),
     code("plt.plot([0, 1])\nplt.show()"),
-    code("# NBVAL_IGNORE_OUTPUT\n@interact(T=(1, 3))\ndef lag(T=2): print(T)"),
+    code("@interact(T=(1, 3))\ndef lag(T=2): print(T)"),
     code(""),
 ]
 
@@ -241,11 +254,20 @@ def test_execute_stores_the_same_bytes_again_and_nothing_unfit(tmp_path):
     good = folder / "04_laplace.ipynb"
     write(good, *CHAPTER)
     unfit = {
-        "failing": ([code("K = 1"), code("K / 0\n\nK")], "cell [2]: ZeroDivisionError: division by zero"),
-        "hidden": ([v4.new_code_cell("1 / 0", metadata={"tags": ["raises-exception"]})], "cell [1]: ZeroDivisionError"),
-        "address": ([code("object()")], "cell [1]: shows a memory address"),
-        "path": ([code("'/'.join(['', 'home', 'ada'])")], "cell [1]: shows a path of one machine, /home/ada"),
-        "warning": ([code("import warnings\nwarnings.warn('careful')")], "cell [1]: writes to stderr"),
+        "failing": ([code("K = 1"), code("K / 0\n\nK")], "cell [2] 'K / 0': ZeroDivisionError: division by zero"),
+        "hidden": (
+            [v4.new_code_cell("1 / 0", metadata={"tags": ["raises-exception"]})],
+            "cell [1] '1 / 0': ZeroDivisionError",
+        ),
+        "address": ([code("object()")], "cell [1] 'object()': shows a memory address"),
+        "path": (
+            [code("'/'.join(['', 'home', 'ada'])")],
+            "cell [1] \"'/'.join(['', 'home', 'ada'])\": shows a path of one machine, /home/ada",
+        ),
+        "warning": (
+            [code("import warnings\nwarnings.warn('careful')")],
+            "cell [1] 'import warnings': writes to stderr",
+        ),
         "slider": (
             [code("from ipywidgets import interact\n@interact(T=(1, 3))\ndef f(T): 1 / 0")],
             "a slider fails: Zero",
@@ -301,10 +323,106 @@ def test_an_interrupted_execution_leaves_the_file_as_it_was(tmp_path):
 
 
 def test_pytest_compares_every_output_of_a_stored_notebook(tmp_path):
-    """The settings of pyproject.toml run notebooks again, and a changed output fails."""
-    path = tmp_path / "04_laplace.ipynb"
-    write(path, code("1 + 1", v4.new_output("execute_result", data={"text/plain": "3"})))
-    command = [sys.executable, "-m", "pytest", "-c", ROOT / "pyproject.toml", "-p", "no:cacheprovider", path]
+    """The settings of the repository run notebooks again: an output that changed or was not stored fails."""
+    two, three = (v4.new_output("execute_result", data={"text/plain": number}) for number in "23")
+    importing = code("from ipywidgets import interact")
+    sliders = code("@interact(T=(1, 3))\ndef lag(T=2): print(T)", prints("not as it is"))
+    cells = {
+        "same": [code("1 + 1", two)],
+        "changed": [code("1 + 1", three)],
+        "missing": [code("1 + 1")],
+        "sliders": [importing, sliders],
+        "tagged": [
+            v4.new_code_cell("1 + 1", outputs=[three], metadata={"tags": ["nbval-ignore-output", "nbval-skip"]})
+        ],
+    }
+    for name, those in cells.items():
+        stored = notebooks.normalised(v4.new_notebook(cells=those))
+        assert {cell.execution_count for cell in stored.cells} == {None}
+        (tmp_path / f"{name}.ipynb").write_text(notebooks.as_text(stored), encoding="utf-8")
+    shutil.copy(ROOT / "conftest.py", tmp_path)
+    command = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-c",
+        ROOT / "pyproject.toml",
+        "-p",
+        "no:cacheprovider",
+        "-rfp",
+        tmp_path,
+    ]
     result = subprocess.run(command, capture_output=True, encoding="utf-8", cwd=tmp_path, check=False)
     assert result.returncode == 1
-    assert "1 failed" in result.stdout
+    outcomes = {name: set(re.findall(rf"^(PASSED|FAILED) \S*{name}\.ipynb", result.stdout, re.M)) for name in cells}
+    assert outcomes == {
+        "same": {"PASSED"},
+        "changed": {"FAILED"},
+        "missing": {"FAILED"},
+        "sliders": {"PASSED"},
+        "tagged": {"FAILED"},
+    }, result.stdout
+
+
+# What a diff shows.
+
+
+def test_a_cell_keeps_its_id_for_life():
+    before = notebooks.normalised(v4.new_notebook(cells=CHAPTER))
+    assert [cell.id for cell in before.cells] == [cell.id for cell in CHAPTER if cell.source]
+    kept = copy.deepcopy(before)
+    first, *others = kept.cells
+    kept.cells = [*reversed(others), code("added = 1"), first]
+    kept.cells[0].source += "  # changed"
+    after = notebooks.normalised(kept)
+    assert [cell.id for cell in after.cells] == [cell.id for cell in kept.cells]
+    assert notebooks.as_text(notebooks.normalised(after)) == notebooks.as_text(after)
+
+
+def test_a_cell_without_an_id_of_its_own_gets_one_from_its_content():
+    def without(source):
+        cell = code(source)
+        del cell["id"]
+        return cell
+
+    def named(*cells):
+        made = notebooks.normalised(NotebookNode(cells=list(cells)))  # v4.new_notebook would mend them at random
+        assert hygiene.valid(Stored(Path(), "", made)) == []
+        return [cell.id for cell in made.cells]
+
+    (alone,) = named(without("K = 1"))
+    assert named(text("# Lag"), without("K = 1"))[1] == alone
+    first, second = named(without("K = 1"), without("K = 1"))
+    assert first == alone != second
+    # neither a copy nor one with the same content takes the id of a cell that has one
+    assert named(without("K = 1"), v4.new_code_cell("K = 1", id=alone))[1] == alone
+    original, pasted = named(*(v4.new_code_cell(source, id="gain") for source in ("K = 1", "K = 2")))
+    assert original == "gain" != pasted
+    invalid = code("K = 1")
+    invalid.id = "no id"
+    assert re.fullmatch("[0-9a-f]{8}", *named(invalid))
+
+
+def test_a_file_with_a_missing_or_a_double_id_is_not_as_stored(tmp_path):
+    good = stored(*GOOD)
+    first, second = (f'   "id": "{cell.id}",\n' for cell in good.notebook.cells[:2])
+    path = tmp_path / "10_tuning.ipynb"
+    for wrong in ("", second):
+        path.write_text(good.text.replace(first, wrong), encoding="utf-8")
+        with pytest.warns(FutureWarning, match="id"):  # nbformat mends it as it reads, and says so
+            assert hygiene.in_normal_form(Stored.at(path))
+    path.write_text(good.text, encoding="utf-8")
+    assert hygiene.in_normal_form(Stored.at(path)) == []
+
+
+def test_added_cells_leave_the_others_as_they_were():
+    """Three new cells in a chapter of a hundred change the lines that they hold, and no other."""
+    path = ROOT / "chapters" / "05_transfer_functions.ipynb"
+    before = notebooks.read(path)
+    after = copy.deepcopy(before)
+    added = [text("Three times as slow:"), code("slower = 3 * T", prints("one")), code("slower", shows(text_plain="3"))]
+    after.cells[5:5] = added
+    old, new = (notebooks.as_text(notebooks.normalised(one)).splitlines() for one in (before, after))
+    changed = [line for line in difflib.ndiff(old, new) if line[0] in "+-"]
+    assert not [line for line in changed if line[0] == "-"]
+    assert len(changed) == len(new) - len(old) < 60

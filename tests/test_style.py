@@ -14,7 +14,7 @@ pytestmark = pytest.mark.skipif(os.environ.get("LOOPBOOK_UNPINNED") == "1", reas
 
 @pytest.mark.parametrize(
     "command",
-    [["check", "."], ["format", "--check", "lib", "tests", "docs", "examples", ".colab"]],
+    [["check", "."], ["format", "--check", "lib", "tests", "docs", "examples", ".colab", "conftest.py"]],
     ids=lambda words: words[0],
 )
 def test_ruff_has_nothing_to_say(command):

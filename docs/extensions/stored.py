@@ -21,7 +21,7 @@ from sphinx import addnodes
 DOCS = Path(__file__).parents[1]
 ROOT = DOCS.parent
 FOLDERS = ("chapters", "solutions")
-SLIDER = "# NBVAL_IGNORE_OUTPUT\n"
+SLIDERS = "nbval-ignore-output"
 CHECK = "application/vnd.loopbook.check+json"
 RESPONSE = "application/vnd.loopbook.response+json"
 SHOWN = ("image/png", "text/html", "text/latex", "text/markdown", "text/plain")  # the first of these that there is
@@ -87,7 +87,7 @@ def noted(cells):
     result = []
     for number, cell in enumerate(cells):
         result.append(cell)
-        if cell["cell_type"] == "code" and cell["source"].startswith(SLIDER):
+        if SLIDERS in cell["metadata"].get("tags", []):
             below = cells[number + 1 : number + 2]
             here = ", and one like it stands below" if below and "{lesson}" in below[0]["source"] else ""
             result.append(markdown(f"{{.slider-note}}\nIn JupyterLab this cell has sliders{here}."))
@@ -127,11 +127,10 @@ def in_code(cell, folder, name):
     response = any(RESPONSE in output.get("data", {}) for output in cell["outputs"])
     if folder == "chapters" and (response or cell["source"].startswith("progress(")):
         outputs = []  # of dots in the place of an answer there is nothing to say yet
-    source = cell["source"].removeprefix(SLIDER)
     metadata = {"mystnb": {"image": {"alt": alt}}} if (alt := alternative(outputs)) else {}
-    if all(line.startswith(("from ", "import ", " ", ")")) for line in source.splitlines()):
+    if all(line.startswith(("from ", "import ", " ", ")")) for line in cell["source"].splitlines()):
         metadata = {"tags": ["hide-input"], "mystnb": {"code_prompt_show": "Imports", "code_prompt_hide": "Imports"}}
-    code = nbformat.from_dict({**cell, "source": source, "metadata": metadata, "outputs": outputs})
+    code = nbformat.from_dict({**cell, "metadata": metadata, "outputs": outputs})
     return [code]
 
 

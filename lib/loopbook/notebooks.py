@@ -1,10 +1,12 @@
 """Run a notebook from top to bottom and store it so that the same outputs are the same bytes.
 
 A stored notebook is part of the proof: its outputs are compared cell by cell at each test, and its changes are read
-in a diff. So nothing is stored that differs from run to run or from machine to machine: no times, no widget models, no
-random cell names, no paths, no addresses. The library never imports this module; `python -m loopbook execute` does.
+in a diff. So nothing is stored that differs from run to run or from machine to machine, or with what stands before a
+cell: no times, no execution counts, no widget models, no paths, no addresses. A cell keeps its id for life. The library
+never imports this module; `python -m loopbook execute` does.
 """
 
+import ast
 import copy
 import json
 import math
@@ -12,6 +14,7 @@ import os
 import re
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from hashlib import sha256
 from pathlib import Path
 from queue import Empty
 from subprocess import DEVNULL
@@ -34,6 +37,11 @@ METADATA = {
 }
 WIDGET = "application/vnd.jupyter.widget-view+json"
 PICTURES = {"image/png", "image/jpeg"}  # base64 is no text, though it may happen to spell anything
+
+SLIDERS = "nbval-ignore-output"
+"""The tag of a cell with sliders: nbval runs it, and does not compare the widgets that it shows."""
+INTERACT = {"interact", "interactive", "interact_manual", "interactive_output"}
+ID = re.compile(r"[a-zA-Z0-9_-]{1,64}")  # what the format of notebooks allows
 
 PATH = re.compile(
     r"(?<![\w.~-])/(?:home|media|mnt|opt|private|root|srv|tmp|Users|usr|var|work)/[^\s\"'<>]*"
@@ -123,25 +131,27 @@ def read(path: Path) -> NotebookNode:
 def run(notebook: NotebookNode, folder: Path) -> NotebookNode:
     """A copy of `notebook` with the outputs of a fresh kernel that works in `folder`.
 
-    Raises NotebookError at the first cell that fails: its execution count and the first line of the error.
+    Raises NotebookError at the first cell that fails: its label and the first line of the error.
     """
     client = _Client(copy.deepcopy(notebook), kernel_name="python3", timeout=SECONDS_PER_CELL, record_timing=False)
     # Figures belong in the notebook, whatever backend the caller's own programs use.
     environment = {name: value for name, value in os.environ.items() if name != "MPLBACKEND"}
     # What the reader has answered so far stays as it is, and out of what is stored.
     environment["LOOPBOOK_PROGRESS"] = "off"
+    labels = [label for label, cell in labelled(notebook) if cell.cell_type == "code"]
     try:
         # What cells print to stderr arrives as an output; what the kernel itself says there is of no use to the reader.
         notebook = client.execute(cwd=str(folder), env=environment, stderr=DEVNULL)
     except CellExecutionError as error:
         problem = f"{error.ename}: {_first_line(error.evalue)}"
-        raise NotebookError(f"cell [{client.code_cells_executed}]: {problem}") from error
+        raise NotebookError(f"{labels[client.code_cells_executed - 1]}: {problem}") from error
     except CellTimeoutError as error:
-        raise NotebookError(f"cell [{client.code_cells_executed}]: not done after {SECONDS_PER_CELL} s") from error
+        label = labels[client.code_cells_executed - 1]
+        raise NotebookError(f"{label}: not done after {SECONDS_PER_CELL} s") from error
     except NoSuchKernel as error:
         raise NotebookError("no kernel named python3 here: install ipykernel") from error
     except DeadKernelError as error:
-        raise NotebookError(f"cell [{client.code_cells_executed}]: the kernel died") from error
+        raise NotebookError(f"{labels[client.code_cells_executed - 1]}: the kernel died") from error
     for output in _slider_outputs(notebook):
         if output["output_type"] == "error":
             raise NotebookError(f"a slider fails: {output['ename']}: {_first_line(output['evalue'])}")
@@ -186,40 +196,64 @@ def _first_line(text: str) -> str:
 def normalised(notebook: NotebookNode) -> NotebookNode:
     """The one form in which a notebook is stored; `normalised(normalised(n)) == normalised(n)`.
 
-    Cells are named and counted in their order, empty cells dropped, neighbouring pieces of printed text joined. Widget
-    views are dropped, because their models have random names and live in the kernel only; metadata says no more than
-    which kernel runs the notebook, so that no tag can hide a cell from the tests.
+    A cell keeps its id; one without an id, or with the id of a cell before it, gets one from its content. Empty cells
+    and execution counts are dropped, neighbouring pieces of printed text joined. Widget views are dropped, because
+    their models have random names and live in the kernel only. Metadata says no more than which kernel runs the
+    notebook and which cells have sliders, as follows from their code: no tag can hide a cell from the tests.
 
     >>> from nbformat import v4
-    >>> draft = v4.new_notebook(cells=[v4.new_markdown_cell("# Lag"), v4.new_code_cell("1 + 1"), v4.new_code_cell("")])
-    >>> [(cell.id, cell.get("execution_count")) for cell in normalised(draft).cells]
-    [('cell-001', None), ('cell-002', 1)]
+    >>> cells = [v4.new_code_cell("T = 5", id="lag", execution_count=7), v4.new_code_cell(""), v4.new_code_cell("T")]
+    >>> first, last = normalised(v4.new_notebook(cells=cells)).cells
+    >>> first.id, first.execution_count, last.id == cells[2].id
+    ('lag', None, True)
     """
-    cells, count = [], 0
+    cells: list[NotebookNode] = []
     for cell in notebook.cells:
         source = cell.source.replace("\r\n", "\n").rstrip()
         if not source:
             continue
-        kept = NotebookNode(
-            id=f"cell-{len(cells) + 1:03}", cell_type=cell.cell_type, source=source, metadata=NotebookNode()
-        )
+        kept = NotebookNode(id=cell.get("id", ""), cell_type=cell.cell_type, source=source, metadata=NotebookNode())
         if "attachments" in cell:
             kept.attachments = cell.attachments
         if cell.cell_type == "code":
-            count += 1
-            kept.execution_count = count
-            kept.outputs = _outputs(cell.outputs, count)
+            kept.execution_count = None
+            kept.outputs = _outputs(cell.outputs)
+            if has_sliders(source):
+                kept.metadata.tags = [SLIDERS]
         cells.append(kept)
+    for cell, own in zip(cells, _ids(cells), strict=True):
+        cell.id = own
     return nbformat.from_dict({"nbformat": 4, "nbformat_minor": 5, "metadata": METADATA, "cells": cells})
 
 
-def _outputs(outputs: list[NotebookNode], count: int) -> list[NotebookNode]:
+def _ids(cells: list[NotebookNode]) -> list[str]:
+    """The ids of cells: the own one of each, or one from its content where that is missing or an earlier cell's."""
+    theirs, ids = {cell.id for cell in cells}, []
+    for cell in cells:
+        own = cell.id
+        while own in ids or not ID.fullmatch(own) or (own != cell.id and own in theirs):
+            own = sha256(f"{own} {cell.cell_type} {cell.source}".encode()).hexdigest()[:8]
+        ids.append(own)
+    return ids
+
+
+def has_sliders(source: str) -> bool:
+    """Whether the code of a cell makes sliders, with ipywidgets' `interact` or one like it."""
+    try:
+        nodes = [*ast.walk(ast.parse(source))]
+    except SyntaxError:  # a magic of IPython
+        return False
+    names = {node.id for node in nodes if isinstance(node, ast.Name)}
+    return not INTERACT.isdisjoint(names.union(node.attr for node in nodes if isinstance(node, ast.Attribute)))
+
+
+def _outputs(outputs: list[NotebookNode]) -> list[NotebookNode]:
     kept: list[NotebookNode] = []
     for output in copy.deepcopy(outputs):
         if WIDGET in output.get("data", {}):
             continue
         if output.output_type == "execute_result":
-            output.execution_count = count
+            output.execution_count = None
         # How many pieces a printed text arrives in depends on how fast the machine is.
         if output.output_type == "stream" and kept and kept[-1].get("name") == output.name:
             kept[-1].text += output.text
@@ -234,7 +268,7 @@ def unfit(notebook: NotebookNode) -> list[str]:
     >>> from nbformat import v4
     >>> output = v4.new_output("stream", name="stdout", text="<Loop object at 0x7f3a5c0d1e50>")
     >>> unfit(v4.new_notebook(cells=[v4.new_code_cell("print(loop)", outputs=[output])]))
-    ['cell [1]: shows a memory address, 0x7f3a5c0d1e50']
+    ["cell [1] 'print(loop)': shows a memory address, 0x7f3a5c0d1e50"]
     """
     problems = []
     for label, cell in labelled(notebook):
@@ -255,14 +289,18 @@ def unfit(notebook: NotebookNode) -> list[str]:
 
 
 def labelled(notebook: NotebookNode) -> Iterator[tuple[str, NotebookNode]]:
-    """The cells with what a reader finds them by: `cell [7]` for the seventh code cell, else the cell's first line."""
+    """The cells with what a reader finds them by, their first line; the seventh code cell is `cell [7]` besides.
+
+    That is the number beside it after the notebook has been run.
+    """
     count = 0
     for cell in notebook.cells:
+        beginning = repr(_first_line(cell.source)[:40])
         if cell.cell_type == "code":
             count += 1
-            yield f"cell [{count}]", cell
+            yield f"cell [{count}] {beginning}", cell
         else:
-            yield f"text {_first_line(cell.source)[:40]!r}", cell
+            yield f"text {beginning}", cell
 
 
 def as_text(notebook: NotebookNode) -> str:

@@ -138,9 +138,8 @@ def _check_key(question):
 def bare(cells: list[NotebookNode]) -> NotebookNode:
     """Return the notebook of some cells, in the form in which notebooks are stored, of which nothing was run."""
     made = notebooks.normalised(v4.new_notebook(cells=cells))
-    for cell in made.cells:
-        if cell.cell_type == "code":
-            cell.execution_count = None
+    for number, cell in enumerate(made.cells, start=1):
+        cell.id = f"cell-{number:03}"  # a new cell has one at random
     return made
 
 
