@@ -4,7 +4,6 @@ asked := $(PYTHON)
 PYTHON ?= $(shell for python in python3 python3.14 python3.13 python3.12 python3.11; do \
 	$$python -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$python && break; done)
 python := .venv/bin/python
-root := $(if $(filter 0,$(shell id -u)),--allow-root)
 
 # One process more than there are cores, because some tests wait: for a browser, or for the end of a submission.
 workers = $(shell $(python) -c "import os; print(1 + (os.cpu_count() or 1))")
@@ -20,7 +19,7 @@ help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' Makefile
 
 lab: .venv/ready ## open the collection in JupyterLab
-	$(python) -m jupyterlab $(root) --LabApp.default_url=/lab/tree/chapters
+	$(python) -m jupyterlab
 
 test: .venv/ready ## prove everything: the library, the ledger and every cell of every notebook
 	$(python) -m pytest -n $(workers)
@@ -32,10 +31,10 @@ bench: .venv/ready ## measure what the collection costs beside what it stands on
 	$(python) tests/bench.py
 	$(python) tests/bench_deadtime.py
 	$(python) tests/bench_grading.py
-	$(python) tests/bench_book.py
+	$(python) tests/repository/bench_book.py
 
 book: .venv/ready ## make the site of the collection, build/book/index.html
-	$(python) -m sphinx -W --keep-going -q -j auto -b html docs build/book
+	$(python) docs build/book
 
 pictures: .venv/ready ## make the README's pictures again
 	$(python) docs/pictures.py

@@ -1,4 +1,4 @@
-"""How Sphinx makes the site: ``python -m sphinx -W -b html docs build/book``."""
+"""How Sphinx makes the site."""
 
 import sys
 from pathlib import Path

@@ -13,11 +13,10 @@ from PIL import Image
 
 DOCS = Path(__file__).parent
 ROOT = DOCS.parent
-sys.path.insert(0, str(ROOT / "tests"))
+sys.path.insert(0, str(ROOT / "tests" / "repository"))
 
-import browser  # noqa: E402 - tests/ has just become a place to import from
+import browser  # noqa: E402 - tests/repository/ has just become a place to import from
 from desk import Desk, jupyterlab  # noqa: E402
-from recipes import recipe  # noqa: E402
 
 CHAPTER = "10_tuning"
 LESSON, ITS_CHAPTER = "smith", "17_dead_time_compensation"
@@ -76,7 +75,7 @@ def of_the_site(chromium) -> None:
     """A live lesson, its model wrong by what a reader has set."""
     with tempfile.TemporaryDirectory() as folder:
         site = Path(folder) / "book"
-        subprocess.run([site if word == "build/book" else word for word in recipe("book")], cwd=ROOT, check=True)
+        subprocess.run([sys.executable, DOCS, site], cwd=ROOT, check=True)
         page = chromium.new_page(viewport={"width": 1280, "height": 1600}, device_scale_factor=SHARPNESS)
         page.goto((site / "chapters" / f"{ITS_CHAPTER}.html").as_uri())
         page.add_style_tag(content=".back-to-top { display: none !important }")  # it appears over what is scrolled to

@@ -17,7 +17,7 @@ import sympy
 from loopbook.ledger import sources
 from loopbook.ledger.source import STATUSES
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 MIME_TYPE = "application/vnd.loopbook.check+json"
 sys.path.insert(0, str(DOCS / "extensions"))

@@ -18,7 +18,7 @@ from loopbook.identification import good_gain_experiment
 from loopbook.pid import PID
 from loopbook.transfer import first_order
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "docs"))
 
 lessons = importlib.import_module("lessons")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 
 pytestmark = pytest.mark.skipif(os.environ.get("LOOPBOOK_UNPINNED") == "1", reason="a newer ruff may know more rules")
 

@@ -8,6 +8,7 @@ import secrets
 import shutil
 import socket
 import subprocess
+import sys
 import time
 import urllib.request
 from collections.abc import Callable, Iterator
@@ -18,9 +19,8 @@ import pytest
 from playwright.sync_api import TimeoutError, expect
 
 from browser import PATIENCE, SCREENSHOTS, Complaints
-from recipes import recipe
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 #: What JupyterLab and its packages write on the console by themselves.
 NOISE = (r"^Plugin \S+ .*(took [\d.]+ms|is taking too long) to activate",)  # on a slow machine
 #: Dialogs that come before the chapter is at rest, and not because of it.
@@ -132,6 +132,7 @@ def jupyterlab(folder: Path, notebook: str) -> Iterator[str]:
     """JupyterLab as ``make lab`` starts it, in a folder of its own with one chapter in it: the chapter's address."""
     (folder / "chapters").mkdir(parents=True)
     shutil.copy(ROOT / "chapters" / notebook, folder / "chapters")
+    shutil.copy(ROOT / "jupyter_lab_config.py", folder)
     settings = folder / "config" / "labconfig"
     settings.mkdir(parents=True)
     # the question about news would ask the network
@@ -144,11 +145,10 @@ def jupyterlab(folder: Path, notebook: str) -> Iterator[str]:
     environment = {**os.environ, **{name: str(folder / place) for name, place in own.items()}}
     environment["MPLCONFIGDIR"] = matplotlib.get_cachedir()  # a new list of fonts costs seconds
     environment.pop("LOOPBOOK_PROGRESS", None)
-    command = [*recipe("lab"), "--no-browser", f"--ServerApp.port={port}", "--ServerApp.port_retries=0"]
+    command = [sys.executable, "-m", "jupyterlab", "--no-browser", f"--IdentityProvider.token={token}"]
+    command += [f"--ServerApp.port={port}", "--ServerApp.port_retries=0"]
     with open(folder / "log", "w", encoding="utf-8") as log:
-        server = subprocess.Popen(
-            [*command, f"--IdentityProvider.token={token}"], cwd=folder, env=environment, stdout=log, stderr=log
-        )
+        server = subprocess.Popen(command, cwd=folder, env=environment, stdout=log, stderr=log)
         try:
             wait_for(f"http://127.0.0.1:{port}/api/status?token={token}", server, folder / "log")
             yield f"http://127.0.0.1:{port}/lab/tree/chapters/{notebook}?token={token}"

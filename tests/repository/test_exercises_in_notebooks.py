@@ -11,7 +11,7 @@ import hygiene
 from loopbook.exercises import bank
 from loopbook.exercises.judging import OPEN
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 MIME_TYPE = "application/vnd.loopbook.response+json"
 CHAPTERS = [pytest.param(chapter, name[2:], id=name[2:]) for chapter, name in bank.chapters().items()]
 each_chapter = pytest.mark.parametrize(("chapter", "name"), CHAPTERS)

@@ -21,7 +21,7 @@ from loopbook.synthesis import IMC_TABLE, imc
 from loopbook.transfer import first_order
 from loopbook.tuning import cohen_coon, itae, simc, ziegler_nichols_reaction
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "docs"))
 
 from sheet import contents, dynamics, layout, letters, rules, stated  # noqa: E402 - of docs/, from now on
