@@ -16,8 +16,7 @@ language = "en"
 
 extensions = [
     "myst_nb", "stored", "mathml", "readme", "lazy_figures", "library", "repository_pages", "command_options",
-    "ledger_page", "cheat_sheet", "front_page", "accessible",
-    "extensions.lessons",  # docs/lessons has the short name
+    "ledger_page", "cheat_sheet_page", "front_page", "lesson_directive", "accessible",
 ]  # fmt: skip
 exclude_patterns = ["lessons", "**/.ipynb_checkpoints"]
 

@@ -41,7 +41,7 @@ from loopbook.diagrams import (
     valve,
     vessel,
 )
-from loopbook.diagrams.sheet import Sheet
+from loopbook.diagrams.drawing import Drawing
 from loopbook.diagrams.valves import BODIES
 from pictures import crossed_texts, misplaced_texts, overlapping_texts, smallest_print, written
 
@@ -107,9 +107,9 @@ def drawn_alone(symbol, way, taps=()):
     node.met(((-dx, -dy), (dx, dy)), taps, way)
     node.levels = [0.0]
     node.place(0.0, 0.0, node.width, node.height)
-    sheet = Sheet()
-    node.draw(sheet)
-    return sheet.picture(None, ""), node.width + node.room[0], node.height + node.room[1]
+    drawing = Drawing()
+    node.draw(drawing)
+    return drawing.picture(None, ""), node.width + node.room[0], node.height + node.room[1]
 
 
 @pytest.mark.parametrize("way", WAYS)

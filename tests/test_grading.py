@@ -13,6 +13,7 @@ import nbformat
 import pytest
 from typer.testing import CliRunner
 
+from executors import lasting
 from loopbook.__main__ import app
 from loopbook.grading import GradingError, NoJail, jail
 from loopbook.grading.assignment import load
@@ -23,7 +24,6 @@ from loopbook.grading.release import release
 from loopbook.grading.results import Results
 from loopbook.grading.roster import read_roster
 from needs import needs_jail
-from places import lasting
 
 ASSIGNMENT = '''"""A lag
 

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from loopbook.grading import GradingError, places, submissions
+from loopbook.grading import GradingError, entries, submissions
 from loopbook.grading.owners import Owners
 from loopbook.grading.roster import POSSIBLE_ID, Student, read_roster
 from loopbook.grading.submissions import LARGEST, collect
@@ -328,8 +328,8 @@ def test_what_may_not_be_read_is_said(tmp_path, monkeypatch):
             raise PermissionError(13, "Permission denied", str(folder))
         return listing(folder)
 
-    monkeypatch.setattr(places.os, "access", lambda path, mode: False)
-    monkeypatch.setattr(places.os, "scandir", refuses)
+    monkeypatch.setattr(entries.os, "access", lambda path, mode: False)
+    monkeypatch.setattr(entries.os, "scandir", refuses)
     found = collect(tmp_path, CLASS, "a")
     assert found.submissions == ()
     assert found.complaints == (
@@ -383,7 +383,7 @@ def test_names_that_cannot_be_shown_are_spelled_out(tmp_path):
 
 
 def test_a_flood_of_files_harms_nobody_else(tmp_path, monkeypatch):
-    monkeypatch.setattr(places, "MOST", 40)
+    monkeypatch.setattr(entries, "MOST", 40)
     for number in range(30):
         lay(tmp_path, **{f"s1001__{number}": "", f"s1003__{number % 2}__{number}": ""})
         lay(tmp_path, **{f"s1003__{number % 2}__{number + 30}": ""})
@@ -424,7 +424,7 @@ def packed(tmp_path):
         return collect(path, CLASS, "heater")
 
     yield pack
-    places._archive.cache_clear()  # closes it
+    entries._archive.cache_clear()  # closes it
 
 
 def test_downloads_of_both_systems(packed):
@@ -565,11 +565,11 @@ def test_no_damage_does_more_than_say_so(tmp_path_factory, place, noise):
     found, problem = attempted(collect, path, CLASS, "a")
     for submission in found.submissions if found else ():
         problem += attempted(submission.read)[1]
-    places._archive.cache_clear()
+    entries._archive.cache_clear()
     assert "\n" not in problem
 
 
 def test_too_many_members(packed, monkeypatch):
-    monkeypatch.setattr(places, "MOST", 3)
+    monkeypatch.setattr(entries, "MOST", 3)
     with pytest.raises(GradingError, match="more than 3 files and folders: expected those of one class"):
         packed(*((f"{number}.ipynb", "") for number in range(4)))

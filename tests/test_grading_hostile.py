@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import hostile
+from executors import lasting
 from hostile import ATTACKS, Target, canary, notebook
 from loopbook.grading import GradingError, jail
 from loopbook.grading.assignment import load
@@ -19,7 +20,6 @@ from loopbook.grading.jail import Limits
 from loopbook.grading.results import Results
 from loopbook.grading.roster import Student
 from needs import needs_jail
-from places import lasting
 
 pytestmark = needs_jail
 

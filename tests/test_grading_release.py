@@ -38,7 +38,7 @@ from loopbook.exercises.authoring import (
 from loopbook.exercises.formulas import Formula
 from loopbook.exercises.judging import OPEN, RIGHT, UNJUDGED, judge
 from loopbook.exercises.reading import Unreadable
-from loopbook.grading import GradingError, nbgrader, sheet
+from loopbook.grading import GradingError, answer_sheet, nbgrader
 from loopbook.grading.assignment import Assignment, load
 from loopbook.grading.plain import LONGEST_TEXT, MOST_VALUES, plain, unreadable
 from loopbook.grading.release import as_markdown, checked, notebook, release, wrapped
@@ -189,7 +189,7 @@ def test_plain_data_is_judged_as_the_answer_itself(chapter):
         for student in (None, "Ada", "Norbert"):
             question = exercise.question(student)
             for name, kind in question.key.items():
-                form = eval(kind.asking, vars(sheet))
+                form = eval(kind.asking, vars(answer_sheet))
                 right = [bank_forms.key_as_given(kind), *bank_forms.other_forms(kind)]
                 wrong = [*bank_forms.wrong_answers(kind), *(value for _, value in question.mistakes[name])]
                 for answer in [*right, *wrong] if student is None else right:
@@ -285,7 +285,7 @@ EVERY_KIND = {
 def test_a_form_is_made_again_from_its_code_and_knows_no_key(code):
     kind = EVERY_KIND[code]
     assert kind.asking == code
-    form = eval(code, vars(sheet))
+    form = eval(code, vars(answer_sheet))
     assert form.key is None
     assert form.asking == code
     assert set(vars(form)) <= {"unit", "gain", "time", "form", "among", "ordered", "letters", "_told"}
@@ -295,7 +295,7 @@ def test_a_form_is_made_again_from_its_code_and_knows_no_key(code):
 def test_letters_that_the_author_tells_are_demanded_before_the_grader_does():
     told = transfer_function(K / (X * s + 1), letters="K x y")
     with pytest.raises(Unreadable, match="'k' is no letter of this answer: did you mean K"):
-        eval(told.asking, vars(sheet)).read("k/(x*s + 1)")
+        eval(told.asking, vars(answer_sheet)).read("k/(x*s + 1)")
     with pytest.raises(ValueError, match="the key has the letter x: expected only K and s"):
         transfer_function(K / (X * s + 1), letters="K")
 
@@ -324,7 +324,11 @@ def test_the_solution_is_a_text_for_people(kind, solution):
 
 
 def test_what_says_nothing_about_a_form():
-    for wrong in (lambda: sheet.number("s", 2), lambda: sheet.number(within=0.01), lambda: sheet.word(key="a")):
+    for wrong in (
+        lambda: answer_sheet.number("s", 2),
+        lambda: answer_sheet.number(within=0.01),
+        lambda: answer_sheet.word(key="a"),
+    ):
         with pytest.raises(ValueError, match="says nothing about a form"):
             wrong()
 
@@ -332,7 +336,7 @@ def test_what_says_nothing_about_a_form():
 @pytest.mark.parametrize("function", [lambda times: 0 * times, np.sin], ids=range(2))
 def test_without_a_key_a_function_of_time_is_not_called(function):
     with pytest.raises(Unreadable, match="neither an expression"):
-        sheet.time_function().read(function)
+        answer_sheet.time_function().read(function)
 
 
 # The sheet.
@@ -340,9 +344,9 @@ def test_without_a_key_a_function_of_time_is_not_called(function):
 
 @pytest.fixture
 def asked():
-    made = sheet.Sheet("Tuning", student="s1001")
-    made.asks("1", K=sheet.number("K/%"), T=sheet.number("s"), H=sheet.transfer_function())
-    made.asks("2", action=sheet.word(["direct", "reverse"]))
+    made = answer_sheet.AnswerSheet("Tuning", student="s1001")
+    made.asks("1", K=answer_sheet.number("K/%"), T=answer_sheet.number("s"), H=answer_sheet.transfer_function())
+    made.asks("2", action=answer_sheet.word(["direct", "reverse"]))
     return made
 
 
@@ -406,10 +410,10 @@ def test_answers_are_delivered_whatever_they_are_of(asked, monkeypatch):
         found.append(parts)
         raise RuntimeError("nobody is there")
 
-    monkeypatch.setattr(sheet, "deliver", deliver)
+    monkeypatch.setattr(answer_sheet, "deliver", deliver)
     asked.answer("1", K=sympy.Rational(1, 3), odd=Odd(), open=...)
     asked.answer("77", Z=1)
-    sheet.Sheet().answer("1", Z=1)
+    answer_sheet.AnswerSheet().answer("1", Z=1)
     assert found[0][:2] == ("s1001", "1")
     assert found[0][2] == {"K": "1/3", "odd": plain(Odd()), "open": None}
     assert found[1:] == [("s1001", "77", {"Z": 1}), ("", "1", {"Z": 1})]
@@ -419,7 +423,7 @@ def test_answers_are_delivered_whatever_they_are_of(asked, monkeypatch):
     "exercise", [None, ..., 10**5000, float("nan"), len, [], "x" * 10**6, "$<b>\n", -1], ids=range(9)
 )
 def test_no_answer_fails(asked, exercise):
-    for one in (asked, sheet.Sheet()):
+    for one in (asked, answer_sheet.AnswerSheet()):
         box = one.answer(exercise, 1, 2, **{"K": Odd(), "<i>\n$": 1, "a" * 10**5: CIRCLE})
         assert "Give each answer by its name" in repr(box)
         shown = box._repr_html_()
@@ -432,7 +436,7 @@ def test_no_answer_fails(asked, exercise):
 
 
 def test_an_edited_form_disturbs_nobody(asked):
-    asked.asks("3", a=sheet.number("apples"), b=7, c=sheet.word(None))
+    asked.asks("3", a=answer_sheet.number("apples"), b=7, c=answer_sheet.word(None))
     shown = repr(asked.answer("3", a="2 s", b=1, c="yes"))
     assert shown.count("? ") >= 3
 

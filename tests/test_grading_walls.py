@@ -218,7 +218,7 @@ def test_without_a_jail_other_programs_of_the_machine_are_not_counted():
     assert held
 
 
-def test_a_submission_runs_again_where_the_warm_process_ends(jail, monkeypatch):
+def test_a_submission_runs_again_where_the_fork_server_ends(jail, monkeypatch):
     run, tries = jail._run, []
 
     def gone_once(*arguments):
@@ -232,7 +232,7 @@ def test_a_submission_runs_again_where_the_warm_process_ends(jail, monkeypatch):
     assert told(jail, "sheet.answer('1', K=2)") == {"K": 2}
 
 
-def test_a_warm_process_that_is_ended_from_outside_is_no_end_of_a_submission(jail, monkeypatch):
+def test_a_fork_server_that_is_ended_from_outside_is_no_end_of_a_submission(jail, monkeypatch):
     starts = []
 
     def ends_too():

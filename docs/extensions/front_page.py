@@ -1,7 +1,7 @@
 """The directive ``lesson-links``: the live lessons by their titles, each with the way to its place in its chapter."""
 
 from docutils import nodes
-from lessons import load, places
+from lessons import PLACES, load
 from sphinx.util.docutils import SphinxDirective
 
 
@@ -10,7 +10,7 @@ class LessonLinks(SphinxDirective):
 
     def run(self):
         links = nodes.bullet_list(classes=["lesson-links"])
-        for name, place in places.PLACES.items():
+        for name, place in PLACES.items():
             title = load(name).title.removeprefix("Live: ")
             link = nodes.reference(
                 "", title[0].upper() + title[1:], refuri=f"chapters/{place.chapter}.html#lesson-{name}"

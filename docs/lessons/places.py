@@ -1,30 +1,12 @@
 """Where the lessons stand in the chapters: after the reader's own slider there."""
 
 import copy
-from typing import NamedTuple
 
 import nbformat
 
-from lessons.store import load
+from lessons.store import PLACES, load
 
 TRY_IT = "Try it"
-
-
-class Place(NamedTuple):
-    """The chapter of a lesson, and the beginning of the heading whose part "Try it" it follows."""
-
-    chapter: str
-    section: str
-
-
-PLACES = {
-    "pi": Place("07_feedback", "Example 7.5"),
-    "good_gain": Place("10_tuning", "Example 10.1"),
-    "half_rule": Place("14_model_approximation", "How good is a reduced model?"),
-    "smith": Place("17_dead_time_compensation", "Section 7.4"),
-    "windup": Place("07_feedback", "Example 7.4"),
-    "cascade": Place("11_control_structures", "Example 11.1"),
-}
 
 
 def headings(cell):

@@ -1,4 +1,4 @@
-"""The lessons by name, and what they have computed, kept until the code changes."""
+"""The lessons by name with their places, and what they have computed, kept until the code changes."""
 
 import concurrent.futures
 import hashlib
@@ -6,8 +6,25 @@ import importlib
 import json
 import os
 from pathlib import Path
+from typing import NamedTuple
 
-NAMES = ("pi", "good_gain", "half_rule", "smith", "windup", "cascade")
+
+class Place(NamedTuple):
+    """The chapter of a lesson, and the beginning of the heading whose part "Try it" it follows."""
+
+    chapter: str
+    section: str
+
+
+PLACES = {
+    "pi": Place("07_feedback", "Example 7.5"),
+    "good_gain": Place("10_tuning", "Example 10.1"),
+    "half_rule": Place("14_model_approximation", "How good is a reduced model?"),
+    "smith": Place("17_dead_time_compensation", "Section 7.4"),
+    "windup": Place("07_feedback", "Example 7.4"),
+    "cascade": Place("11_control_structures", "Example 11.1"),
+}
+NAMES = tuple(PLACES)
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]

@@ -55,7 +55,7 @@ class Target:
     outside: str = "/nowhere"
     port: int = 0
     socket: str = "/nowhere.sock"
-    setup: str = 'from loopbook.grading.sheet import Sheet\n\nsheet = Sheet("", student="")'
+    setup: str = 'from loopbook.grading.answer_sheet import AnswerSheet\n\nsheet = AnswerSheet("", student="")'
     megabytes: int = 4000
     processes: int = 1500
 

@@ -6,7 +6,7 @@ _FORGES = "forging the stream"
 
 #: Every way out of the process that an answer might take: the sheet's function, and all open descriptors.
 _SEND = r"""
-from loopbook.grading import sheet as sheets
+from loopbook.grading import answer_sheet
 
 
 def send(*lines):
@@ -21,7 +21,7 @@ def send(*lines):
 
 def deliver(*arguments):
     try:
-        sheets.deliver(*arguments)
+        answer_sheet.deliver(*arguments)
     except BaseException:
         pass
 

@@ -10,12 +10,12 @@ ATTACKS = (
         _REDEFINES,
         "check, answer and the sheet",
         """
-class Sheet:
+class AnswerSheet:
     def __getattr__(self, name):
         return lambda *given, **named: True
 
 
-sheet = Sheet()
+sheet = AnswerSheet()
 check = answer = lambda *given, **named: True
 """,
         expects=SPOILT,
@@ -150,7 +150,7 @@ give("anything")
         _REDEFINES,
         "the library's grading",
         """
-import loopbook.grading.sheet as module
+import loopbook.grading.answer_sheet as module
 
 for name in dir(module):
     if name[:2] != "__":

@@ -24,8 +24,8 @@ from loopbook.tuning import cohen_coon, itae, simc, ziegler_nichols_reaction
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "docs"))
 
-from sheet import contents, dynamics, layout, letters, rules, stated  # noqa: E402 - of docs/, from now on
-from sheet.formulas import latex  # noqa: E402
+from cheat_sheet import contents, dynamics, layout, letters, rules, stated  # noqa: E402 - of docs/, from now on
+from cheat_sheet.formulas import latex  # noqa: E402
 
 VALUES = {
     letters.K: 2, letters.T: 5, letters.T1: 7, letters.T2: 3, letters.T3: 1, letters.theta: 2, letters.Tc: 4,

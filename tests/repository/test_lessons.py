@@ -19,7 +19,7 @@ from loopbook.pid import PID
 from loopbook.transfer import first_order
 
 ROOT = Path(__file__).parents[2]
-sys.path.insert(0, str(ROOT / "docs"))
+sys.path[:0] = [str(ROOT / "docs"), str(ROOT / "docs" / "extensions")]
 
 lessons = importlib.import_module("lessons")
 lesson = importlib.import_module("lessons.lesson")
@@ -228,7 +228,7 @@ class Elements(HTMLParser):
 
 @pytest.mark.parametrize("name", lessons.NAMES)
 def test_every_input_has_a_label_and_every_picture_a_description(name):
-    desk = importlib.import_module("extensions.lessons").desk
+    desk = importlib.import_module("lesson_directive").desk
     small = at_the_start(name)
     data = small.data()
     page = Elements(desk(name, small, data))
@@ -245,9 +245,14 @@ def test_every_input_has_a_label_and_every_picture_a_description(name):
     assert {curve["light"] for curve in data["curves"]} <= set(lesson.IN_THE_DARK)
 
 
+def test_every_lesson_of_the_folder_has_its_place():
+    files = (ROOT / "docs" / "lessons").glob("*.py")
+    assert {file.stem for file in files if "\nLESSON = " in file.read_text(encoding="utf-8")} == set(lessons.NAMES)
+
+
 @pytest.mark.parametrize("name", lessons.NAMES)
 def test_the_lessons_stand_in_their_chapters_after_the_readers_own_slider(name):
-    chapter, _ = places.PLACES[name]
+    chapter, _ = lessons.PLACES[name]
     cells = nbformat.read(ROOT / "chapters" / f"{chapter}.ipynb", as_version=4).cells
     cells = places.with_lessons(cells, chapter)
     at = next(number for number, cell in enumerate(cells) if cell.get("id") == f"lesson-{name}")

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import sympy
 from sympy.printing.latex import LatexPrinter
 
-from loopbook.diagrams.sheet import FONT_SIZE, RADIUS, Sheet, mathematics, signal_name, text_size, wording
+from loopbook.diagrams.drawing import FONT_SIZE, RADIUS, Drawing, mathematics, signal_name, text_size, wording
 from loopbook.expressions import s
 
 if TYPE_CHECKING:
@@ -51,9 +51,9 @@ def block_diagram(*items: Item, title: str | None = None) -> Picture:
     <Figure 6.5: block diagram: u → [1/(T1*s + 1)] → y_1 → [1/(T2*s + 1)] → y_2>
     """
     chain = _Chain(items)
-    sheet = Sheet()
-    chain.draw(sheet, 0, 0)
-    return sheet.picture(title, f"block diagram: {chain}")
+    drawing = Drawing()
+    chain.draw(drawing, 0, 0)
+    return drawing.picture(title, f"block diagram: {chain}")
 
 
 def equivalent_diagrams(
@@ -77,16 +77,16 @@ def equivalent_diagrams(
         raise ValueError("rules must be {name: (left, right)}, each side a list of items")
     rows = {name: (_Chain(left), _Chain(right)) for name, (left, right) in rules.items()}
     middle = max(left.width for left, _ in rows.values()) + 0.9
-    sheet, y, words = Sheet(), 0, []
+    drawing, y, words = Drawing(), 0, []
     for name, (left, right) in rows.items():
-        sheet.text(-0.1, y, name, halign="left", valign="top")
+        drawing.text(-0.1, y, name, halign="left", valign="top")
         y -= 0.75 + max(left.above, right.above)
-        left.draw(sheet, 0, y)
-        sheet.text(middle, y, r"$\Leftrightarrow$", size=1.5 * FONT_SIZE)
-        right.draw(sheet, middle + 0.9, y)
+        left.draw(drawing, 0, y)
+        drawing.text(middle, y, r"$\Leftrightarrow$", size=1.5 * FONT_SIZE)
+        right.draw(drawing, middle + 0.9, y)
         y -= max(left.below, right.below) + 0.8
         words.append(f"{name}: {left} equals {right}")
-    return sheet.picture(title, "; ".join(words))
+    return drawing.picture(title, "; ".join(words))
 
 
 def overall_diagram(
@@ -117,15 +117,15 @@ def overall_diagram(
     _names(inputs), _names(outputs)
     part = block(name, above=disturbances, below=parameters)
     part.width, part.half = max(part.width, 3.2), max(part.half, 0.7, 0.4 * max(len(inputs), len(outputs)))
-    sheet = Sheet()
-    part.draw(sheet, 0, 0)
+    drawing = Drawing()
+    part.draw(drawing, 0, 0)
     for names, start in ((inputs, -1.6), (outputs, part.width)):
         for n, signal in enumerate(names):
             y = part.half * (1 - (2 * n + 1) / len(names))
-            sheet.wire((start, y), (start + 1.6, y), arrow="->")
-            sheet.text(start + 0.65, y + 0.1, signal_name(signal), valign="bottom")
+            drawing.wire((start, y), (start + 1.6, y), arrow="->")
+            drawing.text(start + 0.65, y + 0.1, signal_name(signal), valign="bottom")
     words = " → ".join(word for word in (", ".join(inputs), str(part), ", ".join(outputs)) if word)
-    return sheet.picture(title, f"overall block diagram: {words}")
+    return drawing.picture(title, f"overall block diagram: {words}")
 
 
 def elementary_blocks(title: str | None = None) -> Picture:
@@ -147,16 +147,16 @@ def elementary_blocks(title: str | None = None) -> Picture:
         "Gain": (["u", gain("K"), "y"], "y = K u"),
         "Time delay": (["u", delay(), "y"], r"y(t) = u(t - \tau)"),
     }
-    sheet, y, words = Sheet(), 0, []
+    drawing, y, words = Drawing(), 0, []
     for name, (items, formula) in rows.items():
         chain = _Chain(items)
         y -= chain.above
-        sheet.text(0, y, name, halign="left")
-        chain.draw(sheet, 3, y)
-        sheet.text(9, y, mathematics(formula), halign="left")
+        drawing.text(0, y, name, halign="left")
+        chain.draw(drawing, 3, y)
+        drawing.text(9, y, mathematics(formula), halign="left")
         y -= chain.below + 0.3
         words.append(f"{name}: {chain} means {formula}")
-    return sheet.picture(title, "; ".join(words))
+    return drawing.picture(title, "; ".join(words))
 
 
 def block(label: str, above: Sequence[str] = (), below: Sequence[str] = ()) -> _Block:
@@ -335,18 +335,18 @@ class _Block:
         sides = zip(("above", "below"), (names for names, _ in self.entries), strict=True)
         return f"[{'; '.join([self.words, *(f'from {where} ' + ', '.join(names) for where, names in sides if names)])}]"
 
-    def draw(self, sheet, x, y, way=1):
+    def draw(self, drawing, x, y, way=1):
         left = x if way > 0 else x - self.width
-        self.outline(sheet, left, y, way)
+        self.outline(drawing, left, y, way)
         for names, side in self.entries:
             for n, name in enumerate(names):
                 across, rim = left + self.width * (2 * n + 1) / (2 * len(names)), y + side * self.half
-                sheet.wire((across, rim + side * STUB), (across, rim), arrow="->")
+                drawing.wire((across, rim + side * STUB), (across, rim), arrow="->")
                 place = "bottom" if side > 0 else "top"
-                sheet.text(across, rim + side * (STUB + 0.1), signal_name(name), valign=place)
+                drawing.text(across, rim + side * (STUB + 0.1), signal_name(name), valign=place)
 
-    def outline(self, sheet, left, y, way):
-        sheet.box(left, y, self.width, 2 * self.half, self.label, self.size)
+    def outline(self, drawing, left, y, way):
+        drawing.box(left, y, self.width, 2 * self.half, self.label, self.size)
 
 
 class _Gain(_Block):
@@ -354,10 +354,10 @@ class _Gain(_Block):
         super().__init__(label, words)
         self.width, self.half = self.width + 0.2, max(0.65, self.half)
 
-    def outline(self, sheet, left, y, way):
+    def outline(self, drawing, left, y, way):
         back, tip = (left, left + self.width)[::way]
-        sheet.area([(back, y - self.half), (back, y + self.half), (tip, y)], fill="white")
-        sheet.text((2 * back + tip) / 3, y, self.label)
+        drawing.area([(back, y - self.half), (back, y + self.half), (tip, y)], fill="white")
+        drawing.text((2 * back + tip) / 3, y, self.label)
 
 
 class _Switch(_Block):
@@ -367,15 +367,15 @@ class _Switch(_Block):
         super().__init__("", f"switch between {upper} and {lower}")
         self.names, self.width, self.half, self.levels = (upper, lower), 1.9, 0.95, (0.5, -0.5)
 
-    def outline(self, sheet, left, y, way):
-        sheet.box(left, y, self.width, 2 * self.half, "")
+    def outline(self, drawing, left, y, way):
+        drawing.box(left, y, self.width, 2 * self.half, "")
         right, contact, pole = left + self.width, left + 0.45, left + self.width - 0.45
         for level, name, lift in zip(self.levels, self.names, (-0.12, 0.12), strict=True):
-            sheet.wire((left, y + level), (contact, y + level))
-            sheet.text((contact + right) / 2, y + level + lift, name, valign="top" if lift < 0 else "bottom", size=10)
-        sheet.wire((contact, y + self.levels[0]), (right, y + self.levels[0]))
+            drawing.wire((left, y + level), (contact, y + level))
+            drawing.text((contact + right) / 2, y + level + lift, name, valign="top" if lift < 0 else "bottom", size=10)
+        drawing.wire((contact, y + self.levels[0]), (right, y + self.levels[0]))
         for x, level in ((contact, self.levels[0]), (contact, self.levels[1]), (pole, self.levels[0])):
-            sheet.circle(x, y + level, 0.07)
+            drawing.circle(x, y + level, 0.07)
 
 
 class _Entry:
@@ -399,24 +399,24 @@ class _Entry:
         path = " → ".join([self.name, *map(str, self.blocks)] if self.name else map(str, self.blocks))
         return f"({self.sign} {path} from {self.side})"
 
-    def draw(self, sheet, x, y, way=1):
+    def draw(self, drawing, x, y, way=1):
         start, end = x, x + way * self.width
         x, up = (start + end) / 2, 1 if self.side == "above" else -1
         if not self.arrow_in:
-            sheet.wire((start, y), (x - way * RADIUS, y), arrow="->")
-            sheet.wire((x, y), (end, y))
+            drawing.wire((start, y), (x - way * RADIUS, y), arrow="->")
+            drawing.wire((x, y), (end, y))
         height, length = RADIUS, 0.9
         for part in reversed(self.blocks):
-            sheet.wire((x, y + up * (height + length)), (x, y + up * height), arrow="->")
+            drawing.wire((x, y + up * (height + length)), (x, y + up * height), arrow="->")
             height, length = height + length + 2 * part.half, STUB
-            part.draw(sheet, x - part.width / 2, y + up * (height - part.half))
-        sheet.wire((x, y + up * (height + length)), (x, y + up * height), arrow="->")
+            part.draw(drawing, x - part.width / 2, y + up * (height - part.half))
+        drawing.wire((x, y + up * (height + length)), (x, y + up * height), arrow="->")
         if self.name:
             top = y + up * (height + length + 0.1)
-            sheet.text(x, top, signal_name(self.name), valign="bottom" if up > 0 else "top")
-        sheet.sign(x, y, (0, up), self.sign)
-        sheet.sign(x, y, (-way, 0), "+")
-        sheet.circle(x, y, RADIUS)
+            drawing.text(x, top, signal_name(self.name), valign="bottom" if up > 0 else "top")
+        drawing.sign(x, y, (0, up), self.sign)
+        drawing.sign(x, y, (-way, 0), "+")
+        drawing.circle(x, y, RADIUS)
 
 
 class _Chain:
@@ -471,17 +471,17 @@ class _Chain:
             return self.at_end
         return self.parts[n].end_of_wire
 
-    def draw(self, sheet, x, y, way=1, arrow_out=True):
+    def draw(self, drawing, x, y, way=1, arrow_out=True):
         for n, length in enumerate(self.lengths):
             head = arrow_out if n == len(self.parts) else self.parts[n].arrow_in
             if length:
-                sheet.wire((x, y), (x + way * length, y), arrow="->" if head else None)
+                drawing.wire((x, y), (x + way * length, y), arrow="->" if head else None)
             if self.names[n]:
                 centre = x + way * (length - self._end_of_wire(n)) / 2
-                sheet.text(centre, y + 0.13, signal_name(self.names[n]), valign="bottom")
+                drawing.text(centre, y + 0.13, signal_name(self.names[n]), valign="bottom")
             x += way * length
             if n < len(self.parts):
-                self.parts[n].draw(sheet, x, y, way)
+                self.parts[n].draw(drawing, x, y, way)
                 x += way * self.parts[n].width
 
 
@@ -527,16 +527,16 @@ class _Paths:
     def __repr__(self):
         return f"({' '.join(f'{sign} {chain}' for sign, chain in zip(self.signs, self.chains, strict=True))})"
 
-    def draw(self, sheet, x, y, way=1):
+    def draw(self, drawing, x, y, way=1):
         end = x + way * self.span
         for chain, sign, height in zip(self.chains, self.signs, self.heights, strict=True):
             if self.branch and height:
-                sheet.wire((x, y), (x, y + height))
-            chain.draw(sheet, x, y + height, way, arrow_out=not height)
-            sheet.into_junction(end, y, (0, height) if height else (-way, 0), sign)
+                drawing.wire((x, y), (x, y + height))
+            chain.draw(drawing, x, y + height, way, arrow_out=not height)
+            drawing.into_junction(end, y, (0, height) if height else (-way, 0), sign)
         if self.branch:
-            sheet.dot(x, y)
-        sheet.circle(end, y, RADIUS)
+            drawing.dot(x, y)
+        drawing.circle(end, y, RADIUS)
 
 
 class _Loop:
@@ -556,15 +556,15 @@ class _Loop:
     def __repr__(self):
         return f"(loop {self.forward}, back {self.sign} {str(self.back) or '1'})"
 
-    def draw(self, sheet, x, y, way=1):
+    def draw(self, drawing, x, y, way=1):
         centre, out = x + way * RADIUS, x + way * self.width
-        self.forward.draw(sheet, centre + way * RADIUS, y, way, arrow_out=False)
-        sheet.wire((out, y), (out, y - self.drop))
-        self.back.draw(sheet, out, y - self.drop, -way, arrow_out=False)
-        sheet.into_junction(centre, y, (0, -self.drop), self.sign)
-        sheet.sign(centre, y, (-way, 0), "+")
-        sheet.circle(centre, y, RADIUS)
-        sheet.dot(out, y)
+        self.forward.draw(drawing, centre + way * RADIUS, y, way, arrow_out=False)
+        drawing.wire((out, y), (out, y - self.drop))
+        self.back.draw(drawing, out, y - self.drop, -way, arrow_out=False)
+        drawing.into_junction(centre, y, (0, -self.drop), self.sign)
+        drawing.sign(centre, y, (-way, 0), "+")
+        drawing.circle(centre, y, RADIUS)
+        drawing.dot(out, y)
 
 
 def _sign(sign):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from loopbook.diagrams.sheet import Sheet, mathematics, text_size
+from loopbook.diagrams.drawing import Drawing, mathematics, text_size
 
 if TYPE_CHECKING:
     from loopbook.figures import Picture
@@ -23,20 +23,20 @@ def rc_circuit(resistor: str = "R", capacitor: str = "C", title: str | None = No
     >>> rc_circuit(title="Figure 3.19")
     <Figure 3.19: RC circuit: v_in over the resistor R, with voltage v_R and current i, and the capacitor C; v_out over C>
     """  # noqa: E501
-    sheet = Sheet()
-    _component(sheet, "Resistor", (1, 2.6), (4.6, 2.6), resistor, "v_R", "i")
-    _component(sheet, "Capacitor", (5.6, 2.6), (5.6, 0), capacitor, current="i_C")
+    drawing = Drawing()
+    _component(drawing, "Resistor", (1, 2.6), (4.6, 2.6), resistor, "v_R", "i")
+    _component(drawing, "Capacitor", (5.6, 2.6), (5.6, 0), capacitor, current="i_C")
     for points in (((0, 2.6), (1, 2.6)), ((4.6, 2.6), (8, 2.6)), ((0, 0), (8, 0))):
-        sheet.wire(*points)
-    sheet.dot(5.6, 2.6)
-    sheet.dot(5.6, 0)
-    _terminals(sheet, 0, "v_{in}")
-    _terminals(sheet, 8, "v_{out}")
+        drawing.wire(*points)
+    drawing.dot(5.6, 2.6)
+    drawing.dot(5.6, 0)
+    _terminals(drawing, 0, "v_{in}")
+    _terminals(drawing, 8, "v_{out}")
     words = (
         f"RC circuit: v_in over the resistor {resistor}, with voltage v_R and current i, and the capacitor "
         f"{capacitor}; v_out over {capacitor}"
     )
-    return sheet.picture(title, words)
+    return drawing.picture(title, words)
 
 
 def two_terminal_components(title: str | None = None) -> Picture:
@@ -45,13 +45,13 @@ def two_terminal_components(title: str | None = None) -> Picture:
     >>> two_terminal_components(title="Figure 3.18").alt
     'Figure 3.18: resistor R: v = R i; capacitor C: i = C dv/dt; inductor L: v = L di/dt'
     """
-    sheet = Sheet()
+    drawing = Drawing()
     laws = {"Resistor": "v=Ri", "Capacitor": r"i=C\,\frac{dv}{dt}", "Inductor2": r"v=L\,\frac{di}{dt}"}
     for n, ((kind, law), letter) in enumerate(zip(laws.items(), "RCL", strict=True)):
         x = 4.6 * n
-        _component(sheet, kind, (x, 0), (x + 3.4, 0), letter, "v", "i")
-        sheet.text(x + 1.7, -1.7, mathematics(law))
-    return sheet.picture(title, "resistor R: v = R i; capacitor C: i = C dv/dt; inductor L: v = L di/dt")
+        _component(drawing, kind, (x, 0), (x + 3.4, 0), letter, "v", "i")
+        drawing.text(x + 1.7, -1.7, mathematics(law))
+    return drawing.picture(title, "resistor R: v = R i; capacitor C: i = C dv/dt; inductor L: v = L di/dt")
 
 
 def resistor_combinations(title: str | None = None) -> Picture:
@@ -60,22 +60,22 @@ def resistor_combinations(title: str | None = None) -> Picture:
     >>> resistor_combinations(title="Figure 3.17").alt[:54]
     'Figure 3.17: R_1 and R_2 in series equal R_1 + R_2; in'
     """
-    sheet = Sheet()
-    _component(sheet, "Resistor", (0, 0), (2.6, 0), "R_1")
-    _component(sheet, "Resistor", (2.6, 0), (5.2, 0), "R_2")
+    drawing = Drawing()
+    _component(drawing, "Resistor", (0, 0), (2.6, 0), "R_1")
+    _component(drawing, "Resistor", (2.6, 0), (5.2, 0), "R_2")
     for side, name in ((0.8, "R_1"), (-0.8, "R_2")):
-        sheet.wire((0.7, -3), (0.7, -3 + side))
-        _component(sheet, "Resistor", (0.7, -3 + side), (4.5, -3 + side), name)
-        sheet.wire((4.5, -3), (4.5, -3 + side))
+        drawing.wire((0.7, -3), (0.7, -3 + side))
+        _component(drawing, "Resistor", (0.7, -3 + side), (4.5, -3 + side), name)
+        drawing.wire((4.5, -3), (4.5, -3 + side))
     for x, out in ((0.7, 0), (4.5, 5.2)):
-        sheet.wire((x, -3), (out, -3))
-        sheet.dot(x, -3)
+        drawing.wire((x, -3), (out, -3))
+        drawing.dot(x, -3)
     for y, law in ((0, "R_{series}=R_1+R_2"), (-3, r"R_{parallel}=\frac{R_1R_2}{R_1+R_2}")):
-        sheet.text(6, y, r"$\Leftrightarrow$", size=18)
-        _component(sheet, "Resistor", (6.8, y), (10.6, y), law)
+        drawing.text(6, y, r"$\Leftrightarrow$", size=18)
+        _component(drawing, "Resistor", (6.8, y), (10.6, y), law)
         for x in (0, 5.2, 6.8, 10.6):
-            sheet.circle(x, y, 0.07)
-    return sheet.picture(title, "R_1 and R_2 in series equal R_1 + R_2; in parallel they equal R_1 R_2/(R_1 + R_2)")
+            drawing.circle(x, y, 0.07)
+    return drawing.picture(title, "R_1 and R_2 in series equal R_1 + R_2; in parallel they equal R_1 R_2/(R_1 + R_2)")
 
 
 def kirchhoff_laws(title: str | None = None) -> Picture:
@@ -84,59 +84,61 @@ def kirchhoff_laws(title: str | None = None) -> Picture:
     >>> kirchhoff_laws(title="Figure 3.16").alt[:58]
     'Figure 3.16: currents i_1, i_2, i_3 into a junction, with '
     """
-    sheet = Sheet()
+    drawing = Drawing()
     for n, (x, y) in enumerate(((-1.8, 0), (1.3, 1.3), (1.3, -1.3)), 1):
-        sheet.wire((x, y), (0, 0))
-        sheet.wire((x, y), (0.45 * x, 0.45 * y), arrow="->")
-        sheet.text(0.6 * x - (0 if n == 1 else 0.3), 0.6 * y + (0.15 if n < 3 else -0.15), f"$i_{n}$",
+        drawing.wire((x, y), (0, 0))
+        drawing.wire((x, y), (0.45 * x, 0.45 * y), arrow="->")
+        drawing.text(0.6 * x - (0 if n == 1 else 0.3), 0.6 * y + (0.15 if n < 3 else -0.15), f"$i_{n}$",
                    halign="center" if n == 1 else "right", valign="bottom" if n < 3 else "top")  # fmt: skip
-    sheet.dot(0, 0)
-    sheet.text(-0.2, -2.2, "$i_1+i_2+i_3=0$")
+    drawing.dot(0, 0)
+    drawing.text(-0.2, -2.2, "$i_1+i_2+i_3=0$")
     corners = [(4, -1.3), (4, 1.3), (8.4, 1.3), (8.4, -1.3)]
     for n, (start, end) in enumerate(pairwise(corners), 1):
-        _component(sheet, "ResistorIEC", start, end, "", f"v_{n}")
-    sheet.wire(corners[3], corners[0])
-    sheet.arc(6.2, 0, 1.2, 1.2, 130, 40, arrow="cw")
-    sheet.text(6.2, -2.2, "$v_1+v_2+v_3=0$")
+        _component(drawing, "ResistorIEC", start, end, "", f"v_{n}")
+    drawing.wire(corners[3], corners[0])
+    drawing.arc(6.2, 0, 1.2, 1.2, 130, 40, arrow="cw")
+    drawing.text(6.2, -2.2, "$v_1+v_2+v_3=0$")
     words = (
         "currents i_1, i_2, i_3 into a junction, with the sum 0; voltages v_1, v_2, v_3 around a loop, with the sum 0"
     )
-    return sheet.picture(title, words)
+    return drawing.picture(title, words)
 
 
-def _component(sheet, kind, start, end, label, voltage="", current=""):
+def _component(drawing, kind, start, end, label, voltage="", current=""):
     """A two-terminal component: its letter on one side, the voltage on the other, the current at its first wire."""
     from schemdraw import elements
 
-    sheet.drawing.add(getattr(elements, kind)().at(start).to(end))
+    drawing.schemdraw.add(getattr(elements, kind)().at(start).to(end))
     (x0, y0), (x1, y1) = start, end
     x, y = (x0 + x1) / 2, (y0 + y1) / 2
     if x0 == x1:
         if label:
-            sheet.text(x - 0.75, y, mathematics(label), halign="right")
+            drawing.text(x - 0.75, y, mathematics(label), halign="right")
         signs = [(x - 0.4, y + (0.9 if y1 < y0 else -0.9)), (x - 0.4, y - (0.9 if y1 < y0 else -0.9))]
         place, name = (x - 0.75 if not label else x + 0.75, y), {"halign": "right" if not label else "left"}
     else:
         if label:
-            sheet.text(x, y + 0.52 + text_size(mathematics(label))[1] / 2, mathematics(label))
+            drawing.text(x, y + 0.52 + text_size(mathematics(label))[1] / 2, mathematics(label))
         signs = [(x - 0.9, y - 0.4), (x + 0.9, y - 0.4)]
         place, name = (x, y - 0.4), {"valign": "top"}
     if voltage:
         for (across, up), sign in zip(signs, "+-", strict=True):
-            sheet.text(across, up, f"${sign}$")
-        sheet.text(*place, mathematics(voltage), **name)
+            drawing.text(across, up, f"${sign}$")
+        drawing.text(*place, mathematics(voltage), **name)
     if current:
         at = 0.12
-        sheet.wire(start, (x0 + at * (x1 - x0) + 0.15 * (x1 > x0), y0 + at * (y1 - y0) - 0.15 * (y1 < y0)), arrow="->")
+        drawing.wire(
+            start, (x0 + at * (x1 - x0) + 0.15 * (x1 > x0), y0 + at * (y1 - y0) - 0.15 * (y1 < y0)), arrow="->"
+        )
         if x0 == x1:
-            sheet.text(x0 + 0.15, y0 - 0.35, mathematics(current), halign="left")
+            drawing.text(x0 + 0.15, y0 - 0.35, mathematics(current), halign="left")
         else:
-            sheet.text(x0 + 0.3, y0 + 0.15, mathematics(current), valign="bottom")
+            drawing.text(x0 + 0.3, y0 + 0.15, mathematics(current), valign="bottom")
 
 
-def _terminals(sheet, x, voltage):
+def _terminals(drawing, x, voltage):
     for y in (2.6, 0):
-        sheet.circle(x, y, 0.08)
-    sheet.text(x, 2.2, "$+$")
-    sheet.text(x, 1.3, mathematics(voltage))
-    sheet.text(x, 0.4, "$-$")
+        drawing.circle(x, y, 0.08)
+    drawing.text(x, 2.2, "$+$")
+    drawing.text(x, 1.3, mathematics(voltage))
+    drawing.text(x, 0.4, "$-$")

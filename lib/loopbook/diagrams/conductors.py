@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from loopbook.diagrams.drawing import LINE
 from loopbook.diagrams.equipment import THICK, THIN, Equipment, one_of
 from loopbook.diagrams.grid import direction
-from loopbook.diagrams.sheet import LINE
 
 if TYPE_CHECKING:
-    from loopbook.diagrams.sheet import XY, Sheet
+    from loopbook.diagrams.drawing import XY, Drawing
 
 DASHES = "--"
 DUCT = 0.5  # half the width of an air duct
@@ -54,42 +54,42 @@ def conductor(kind: str = "pipe") -> Conductor:
     return Conductor(one_of("the conductor", kind, CONDUCTORS))
 
 
-def draw_pipe(sheet: Sheet, points: Sequence[XY], arrow: bool = False) -> None:
-    sheet.wire(*points, arrow="->" if arrow else None, width=THICK)
+def draw_pipe(drawing: Drawing, points: Sequence[XY], arrow: bool = False) -> None:
+    drawing.wire(*points, arrow="->" if arrow else None, width=THICK)
 
 
-def draw_duct(sheet: Sheet, points: Sequence[XY], arrow: bool = False) -> None:
+def draw_duct(drawing: Drawing, points: Sequence[XY], arrow: bool = False) -> None:
     (x0, y), (x1, _) = points[0], points[-1]
     for side in (-DUCT, DUCT):
-        sheet.wire((x0, y + side), (x1, y + side), width=THICK)
+        drawing.wire((x0, y + side), (x1, y + side), width=THICK)
     if arrow:
-        sheet.wire((x1 - 0.6, y), (x1, y), arrow="->")
+        drawing.wire((x1 - 0.6, y), (x1, y), arrow="->")
 
 
-def draw_shaft(sheet: Sheet, points: Sequence[XY], arrow: bool = False) -> None:
+def draw_shaft(drawing: Drawing, points: Sequence[XY], arrow: bool = False) -> None:
     for start, end in pairwise(points):
         dx, dy = (0, SHAFT) if start[1] == end[1] else (SHAFT, 0)
         for side in (-1, 1):
-            sheet.wire(*[(x + side * dx, y + side * dy) for x, y in (start, end)])
+            drawing.wire(*[(x + side * dx, y + side * dy) for x, y in (start, end)])
 
 
-def draw_signal(sheet: Sheet, points: Sequence[XY], kind: str, arrow: bool = False) -> None:
+def draw_signal(drawing: Drawing, points: Sequence[XY], kind: str, arrow: bool = False) -> None:
     """A signal's line through the points, with its marks and, on a piece of its own, its arrow head."""
     if kind == "measuring line":
-        sheet.wire(*points, width=THIN)
+        drawing.wire(*points, width=THIN)
         return
     if kind != "radio":  # which has no line
         dashed = kind == "electrical"
-        sheet.wire(*points, style=DASHES if dashed else "-", width=LINE if dashed else THIN)
+        drawing.wire(*points, style=DASHES if dashed else "-", width=LINE if dashed else THIN)
     pieces = list(pairwise(points))
     for n, (start, end) in enumerate(pieces):
-        _mark(sheet, start, end, kind, HEAD if arrow and n == len(pieces) - 1 else 0)
+        _mark(drawing, start, end, kind, HEAD if arrow and n == len(pieces) - 1 else 0)
     if arrow:  # on a piece of its own, as a dash may not reach it
         (x, y), (dx, dy) = points[-1], direction(*points[-2:])
-        sheet.wire((x - HEAD * dx, y - HEAD * dy), (x, y), arrow="->")
+        drawing.wire((x - HEAD * dx, y - HEAD * dy), (x, y), arrow="->")
 
 
-def _mark(sheet, start, end, kind, spared):
+def _mark(drawing, start, end, kind, spared):
     """The marks of one straight piece, evenly along it but for what the arrow head takes up."""
     (x0, y0), (dx, dy) = start, direction(start, end)
     length = abs(end[0] - x0) + abs(end[1] - y0) - spared
@@ -100,9 +100,9 @@ def _mark(sheet, start, end, kind, spared):
         way = length * (n + 0.5) / count
         x, y = x0 + way * dx, y0 + way * dy
         if kind == "data link":
-            sheet.circle(x, y, 0.08)
+            drawing.circle(x, y, 0.08)
         for mark in MARKS[kind]:
-            sheet.wire(*[(x + a * dx - b * dy, y + a * dy + b * dx) for a, b in mark], width=THIN)
+            drawing.wire(*[(x + a * dx - b * dy, y + a * dy + b * dx) for a, b in mark], width=THIN)
 
 
 class Conductor(Equipment):
@@ -114,21 +114,21 @@ class Conductor(Equipment):
         if kind in ("crossing", "junction", "duct"):
             self.height = 1.1
 
-    def draw(self, sheet: Sheet) -> None:
+    def draw(self, drawing: Drawing) -> None:
         line, upright = [(self.x0, self.y), (self.x1, self.y)], [(self.x, self.y0), (self.x, self.y1)]
         match self.kind:
             case "pipe":
-                draw_pipe(sheet, line, arrow=True)
+                draw_pipe(drawing, line, arrow=True)
             case "crossing":
-                draw_pipe(sheet, line)
-                draw_pipe(sheet, upright)
+                draw_pipe(drawing, line)
+                draw_pipe(drawing, upright)
             case "junction":
-                draw_pipe(sheet, line)
-                draw_pipe(sheet, upright)
-                sheet.dot(self.x, self.y)
+                draw_pipe(drawing, line)
+                draw_pipe(drawing, upright)
+                drawing.dot(self.x, self.y)
             case "duct":
-                draw_duct(sheet, line, arrow=True)
+                draw_duct(drawing, line, arrow=True)
             case "shaft":
-                draw_shaft(sheet, line)
+                draw_shaft(drawing, line)
             case _:
-                draw_signal(sheet, line, self.kind)
+                draw_signal(drawing, line, self.kind)

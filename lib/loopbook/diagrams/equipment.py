@@ -6,11 +6,11 @@ import math
 from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
+from loopbook.diagrams.drawing import text_size
 from loopbook.diagrams.grid import Node
-from loopbook.diagrams.sheet import text_size
 
 if TYPE_CHECKING:
-    from loopbook.diagrams.sheet import XY, Sheet, Way
+    from loopbook.diagrams.drawing import XY, Drawing, Way
 
 THICK = 1.7  # points: pipes and the walls of vessels
 THIN = 0.8
@@ -59,12 +59,12 @@ class Equipment(Node):
         free = [side for side in (BELOW, RIGHT, ABOVE, LEFT) if side not in (*self.sides, *self.taps)]
         return free[0] if free else (-1, -1)
 
-    def draw_tag(self, sheet: Sheet) -> None:
+    def draw_tag(self, drawing: Drawing) -> None:
         if self.tag:
             dx, dy = self.tag_side()
             x, y = (self.x0, self.y0) if dx and dy else self.edge(dx, dy, self.x, self.y)
             halign, valign = {1: "left", 0: "center", -1: "right"}[dx], {1: "bottom", 0: "center", -1: "top"}[dy]
-            sheet.text(x + self.gap * dx, y + self.gap * dy, self.tag, halign, valign, size=TAG_SIZE)
+            drawing.text(x + self.gap * dx, y + self.gap * dy, self.tag, halign, valign, size=TAG_SIZE)
 
     def turned(self, *points: XY) -> list[XY]:
         """Points around the centre, turned from a flow to the right into the flow's direction."""

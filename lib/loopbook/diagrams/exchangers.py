@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from loopbook.diagrams.conductors import DUCT
+from loopbook.diagrams.drawing import LIQUID
 from loopbook.diagrams.equipment import ABOVE, BELOW, HALF_CIRCLE, LEFT, RIGHT, THICK, THIN, Equipment, named, one_of
-from loopbook.diagrams.sheet import LIQUID
 
 if TYPE_CHECKING:
-    from loopbook.diagrams.sheet import XY, Sheet
+    from loopbook.diagrams.drawing import XY, Drawing
 
 EXCHANGERS = ("general", "shell and tube", "plate", "cooler", "air cooler", "condenser", "reboiler")
 HEATERS = ("duct", "electric", "steam", "fired")
@@ -62,15 +62,15 @@ class Circled(Equipment):
         if kind == "general":
             self.openings = (LEFT, RIGHT, ABOVE, BELOW)
 
-    def draw(self, sheet: Sheet) -> None:
-        sheet.circle(self.x, self.y, self.radius)
+    def draw(self, drawing: Drawing) -> None:
+        drawing.circle(self.x, self.y, self.radius)
         if self.kind == "general":
             bends = ((0, 0.45), (0, 0.25), (0.25, 0.12), (-0.25, -0.12), (0, -0.25), (0, -0.45))
-            sheet.wire(*self.around(*bends), zorder=3)
+            drawing.wire(*self.around(*bends), zorder=3)
         else:
             up = 1 if self.kind == "steam" else -1
-            sheet.wire(*self.around((-0.42, -0.42 * up), (0.44, 0.44 * up)), arrow="->", zorder=3)
-        self.draw_tag(sheet)
+            drawing.wire(*self.around((-0.42, -0.42 * up), (0.44, 0.44 * up)), arrow="->", zorder=3)
+        self.draw_tag(drawing)
 
 
 class Boxed(Equipment):
@@ -84,47 +84,47 @@ class Boxed(Equipment):
         if kind in ("condenser", "reboiler"):
             self.openings = (ABOVE, BELOW)
 
-    def draw(self, sheet: Sheet) -> None:
+    def draw(self, drawing: Drawing) -> None:
         corners = [(self.x0, self.y0), (self.x0, self.y1), (self.x1, self.y1), (self.x1, self.y0)]
-        sheet.area(corners, fill="white")
+        drawing.area(corners, fill="white")
         {"shell and tube": self._tubes, "plate": self._plates, "air cooler": self._air, "condenser": self._bath,
-         "reboiler": self._bath, "electric": self._wire}[self.kind](sheet)  # fmt: skip
-        self.draw_tag(sheet)
+         "reboiler": self._bath, "electric": self._wire}[self.kind](drawing)  # fmt: skip
+        self.draw_tag(drawing)
 
-    def _tubes(self, sheet):
+    def _tubes(self, drawing):
         for x in (self.x0 + 0.35, self.x1 - 0.35):
-            sheet.wire((x, self.y0), (x, self.y1))
+            drawing.wire((x, self.y0), (x, self.y1))
         for part in (0.2, 0.4, 0.6, 0.8):
             y = self.y0 + part * (self.y1 - self.y0)
-            sheet.wire((self.x0 + 0.35, y), (self.x1 - 0.35, y), width=THIN)
+            drawing.wire((self.x0 + 0.35, y), (self.x1 - 0.35, y), width=THIN)
 
-    def _plates(self, sheet):
+    def _plates(self, drawing):
         for n in range(1, 6):
             x = self.x0 + n * (self.x1 - self.x0) / 6
             low, high = (0.12, 0) if n % 2 else (0, 0.12)
-            sheet.wire((x, self.y0 + low), (x, self.y1 - high))
+            drawing.wire((x, self.y0 + low), (x, self.y1 - high))
 
-    def _air(self, sheet):
-        sheet.zigzag((self.x0, self.y + 0.2), (self.x1, self.y + 0.2), teeth=4, height=0.2)
+    def _air(self, drawing):
+        drawing.zigzag((self.x0, self.y + 0.2), (self.x1, self.y + 0.2), teeth=4, height=0.2)
         for side in (-1, 1):
             x, y = self.x, self.y0 + 0.22
             blade = [(x, y), (x + 0.2 * side, y + 0.11), (x + 0.4 * side, y), (x + 0.2 * side, y - 0.11)]
-            sheet.area(blade, fill="black")
+            drawing.area(blade, fill="black")
 
-    def _bath(self, sheet):
+    def _bath(self, drawing):
         """The tubes above the liquid that they make, or in the liquid that they boil."""
         condenser = self.kind == "condenser"
         surface = self.y0 + (0.3 if condenser else 0.65) * (self.y1 - self.y0)
         liquid = [(self.x0, self.y0), (self.x1, self.y0), (self.x1, surface), (self.x0, surface)]
-        sheet.area(liquid, fill=LIQUID)
+        drawing.area(liquid, fill=LIQUID)
         low, high = (0.45, 0.75) if condenser else (0.15, 0.45)
         low, high = (self.y0 + part * (self.y1 - self.y0) for part in (low, high))
         end = self.x1 - 0.45
         bend = [(end + (high - low) / 2 * y, (low + high) / 2 + (high - low) / 2 * x) for x, y in HALF_CIRCLE]
-        sheet.wire((self.x0, high), *bend, (self.x0, low))
+        drawing.wire((self.x0, high), *bend, (self.x0, low))
 
-    def _wire(self, sheet):
-        sheet.zigzag((self.x0, self.y), (self.x1, self.y), teeth=5, height=0.22)
+    def _wire(self, drawing):
+        drawing.zigzag((self.x0, self.y), (self.x1, self.y), teeth=5, height=0.22)
 
 
 class Furnace(Equipment):
@@ -142,16 +142,16 @@ class Furnace(Equipment):
     def shoulder(self) -> float:
         return self.y1 - 0.75
 
-    def draw(self, sheet: Sheet) -> None:
+    def draw(self, drawing: Drawing) -> None:
         half, top = 0.16, self.shoulder()
         left = [(self.x0, self.y0), (self.x0, top), (self.x - half, top + 0.35), (self.x - half, self.y1)]
-        sheet.area([*left, *[(2 * self.x - x, y) for x, y in reversed(left)]], fill="white")
-        sheet.zigzag((self.x0, self.y), (self.x1, self.y), teeth=4, height=0.15)
+        drawing.area([*left, *[(2 * self.x - x, y) for x, y in reversed(left)]], fill="white")
+        drawing.zigzag((self.x0, self.y), (self.x1, self.y), teeth=4, height=0.15)
         for side, height in ((-0.3, 0.3), (0, 0.42), (0.3, 0.3)):
             x = self.x + side
             flame = [(x - 0.1, self.y0 + 0.05), (x, self.y0 + 0.05 + height), (x + 0.1, self.y0 + 0.05)]
-            sheet.wire(*flame)
-        self.draw_tag(sheet)
+            drawing.wire(*flame)
+        self.draw_tag(drawing)
 
 
 class DuctHeater(Equipment):
@@ -162,9 +162,9 @@ class DuctHeater(Equipment):
     def __init__(self, tag: str, words: str, kind: str):
         super().__init__(tag, words)
 
-    def draw(self, sheet: Sheet) -> None:
+    def draw(self, drawing: Drawing) -> None:
         for y in (self.y0, self.y1):
-            sheet.wire((self.x0, y), (self.x1, y), width=THICK)
+            drawing.wire((self.x0, y), (self.x1, y), width=THICK)
         for x in (self.x - 0.5, self.x, self.x + 0.5):
-            sheet.zigzag((x, self.y0), (x, self.y1), teeth=3, height=0.15)
-        self.draw_tag(sheet)
+            drawing.zigzag((x, self.y0), (x, self.y1), teeth=3, height=0.15)
+        self.draw_tag(drawing)

@@ -13,10 +13,10 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, TypeAlias
 
 from loopbook.diagrams.blocks import _Block, _part, block
-from loopbook.diagrams.sheet import RADIUS, Sheet, signal_name, text_size
+from loopbook.diagrams.drawing import RADIUS, Drawing, signal_name, text_size
 
 if TYPE_CHECKING:
-    from loopbook.diagrams.sheet import XY, Way
+    from loopbook.diagrams.drawing import XY, Way
     from loopbook.figures import Picture
     from loopbook.types import Number
 
@@ -71,15 +71,15 @@ def grid_diagram(
 
     grid = Grid(layout, node)
     grid.expect([*blocks, *(names or {}), *entering, *leaving])
-    sheet = Sheet()
+    drawing = Drawing()
     for (start, end), sign in edges.items():
         points = grid.route(start, end)
-        sheet.wire(*points, arrow="->" if grid[end].arrow_in else None)
+        drawing.wire(*points, arrow="->" if grid[end].arrow_in else None)
         if isinstance(grid[end], Junction):
-            sheet.sign(grid[end].x, grid[end].y, direction(points[-1], points[-2]), sign or "+")
+            drawing.sign(grid[end].x, grid[end].y, direction(points[-1], points[-2]), sign or "+")
     for node in grid.nodes.values():
-        node.draw(sheet)
-    return sheet.picture(title, f"block diagram: {grid.words(wires)}")
+        node.draw(drawing)
+    return drawing.picture(title, f"block diagram: {grid.words(wires)}")
 
 
 def direction(here: XY, there: XY) -> Way:
@@ -161,7 +161,7 @@ class Node:
         """The same for a signal's line."""
         return self.edge(dx, dy, x, y)
 
-    def draw(self, sheet: Sheet) -> None:
+    def draw(self, drawing: Drawing) -> None:
         pass
 
 
@@ -173,9 +173,9 @@ class Point(Node):
     def __init__(self, dot: bool = False):
         self.dot = dot
 
-    def draw(self, sheet: Sheet) -> None:
+    def draw(self, drawing: Drawing) -> None:
         if self.dot:
-            sheet.dot(self.x, self.y)
+            drawing.dot(self.x, self.y)
 
 
 class Junction(Node):
@@ -183,8 +183,8 @@ class Junction(Node):
     radius = RADIUS
     room = (1.1, 0.9)
 
-    def draw(self, sheet: Sheet) -> None:
-        sheet.circle(self.x, self.y, RADIUS)
+    def draw(self, drawing: Drawing) -> None:
+        drawing.circle(self.x, self.y, RADIUS)
 
 
 class Label(Node):
@@ -202,13 +202,13 @@ class Label(Node):
             return self.x, self.y
         return (x - dx * (self.width / 2 + 0.25), y) if dx else (x, y + dy * (self.height / 2 + 0.1))
 
-    def draw(self, sheet: Sheet) -> None:
+    def draw(self, drawing: Drawing) -> None:
         if self.sideways:
-            sheet.text(self.x, self.y + 0.13, self.label, valign="bottom")
+            drawing.text(self.x, self.y + 0.13, self.label, valign="bottom")
         elif self.upright and self.through:
-            sheet.text(self.x + 0.15, self.y, self.label, halign="left")
+            drawing.text(self.x + 0.15, self.y, self.label, halign="left")
         else:
-            sheet.text(self.x, self.y, self.label)
+            drawing.text(self.x, self.y, self.label)
 
 
 class BlockNode(Node):
@@ -227,8 +227,8 @@ class BlockNode(Node):
             self.part.levels = [level - y for level in self.levels]
         super().place(x, y, width, 2 * self.part.half)
 
-    def draw(self, sheet: Sheet) -> None:
-        self.part.draw(sheet, self.x0, self.y)
+    def draw(self, drawing: Drawing) -> None:
+        self.part.draw(drawing, self.x0, self.y)
 
 
 class Grid:

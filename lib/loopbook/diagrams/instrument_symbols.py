@@ -6,12 +6,12 @@ import re
 from typing import TYPE_CHECKING
 
 from loopbook.diagrams.conductors import DASHES
+from loopbook.diagrams.drawing import text_size
 from loopbook.diagrams.equipment import Equipment, one_of
-from loopbook.diagrams.sheet import text_size
 from loopbook.instruments import decode
 
 if TYPE_CHECKING:
-    from loopbook.diagrams.sheet import Sheet
+    from loopbook.diagrams.drawing import Drawing
 
 PLACES = ("field", "panel", "behind", "local panel")
 DEVICES = ("discrete", "shared", "computer")
@@ -49,22 +49,22 @@ class Instrument(Equipment):
         if device == "computer":
             self.radius, self.width = None, 2 * HEXAGON[0][0]
 
-    def draw(self, sheet: Sheet) -> None:
+    def draw(self, drawing: Drawing) -> None:
         letters, number = re.fullmatch(r"([A-Z]*)-?(.*)", self.words).groups()
         if self.device == "computer":
-            sheet.area(self.around(*HEXAGON), fill="white", zorder=3)
+            drawing.area(self.around(*HEXAGON), fill="white", zorder=3)
         else:
             if self.device == "shared":
-                sheet.area(self.around(*SQUARE), fill="white", zorder=3)
-            sheet.circle(self.x, self.y, 0.5)
+                drawing.area(self.around(*SQUARE), fill="white", zorder=3)
+            drawing.circle(self.x, self.y, 0.5)
         lines = {"field": (), "panel": (0,), "behind": (0,), "local panel": (-0.04, 0.04)}[self.place_in_plant]
         half = self.width / 2
         for y in lines:
             style = DASHES if self.place_in_plant == "behind" else "-"
-            sheet.wire((self.x - half, self.y + y), (self.x + half, self.y + y), style=style, zorder=3)
+            drawing.wire((self.x - half, self.y + y), (self.x + half, self.y + y), style=style, zorder=3)
         lift = 0.2 if lines or number else 0
         size = 10 if lift else 11
         size *= min(1, 0.72 / text_size(letters, size)[0])  # four letters and more
-        sheet.text(self.x, self.y + lift - 0.03, letters, size=size)
+        drawing.text(self.x, self.y + lift - 0.03, letters, size=size)
         if number:
-            sheet.text(self.x, self.y - 0.22, number, size=9 * min(1, 0.66 / text_size(number, 9)[0]))
+            drawing.text(self.x, self.y - 0.22, number, size=9 * min(1, 0.66 / text_size(number, 9)[0]))

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 
 from loopbook.diagrams.blocks import block
 from loopbook.diagrams.conductors import SIGNALS, draw_duct, draw_pipe, draw_shaft, draw_signal
+from loopbook.diagrams.drawing import Drawing
 from loopbook.diagrams.equipment import Equipment, one_of
 from loopbook.diagrams.grid import BlockNode, Grid, Junction, Label, Node, Point, connections, direction, neighbours
 from loopbook.diagrams.instrument_symbols import Instrument, instrument
-from loopbook.diagrams.sheet import Sheet
 
 if TYPE_CHECKING:
     from loopbook.figures import Picture
@@ -71,10 +71,10 @@ def instrumentation_diagram(
     grid.expect([*plan.equipment, *plan.names, *plan.entering, *plan.leaving])
     meetings = plan.meetings(grid)
     grid = Grid(layout, lambda name: plan.node(name, meetings))
-    sheet = Sheet()
-    plan.draw(sheet, grid)
+    drawing = Drawing()
+    plan.draw(drawing, grid)
     words = "; ".join(f"{kind}: {grid.words(text)}" for kind, text in plan.kinds.items() if text.strip())
-    return sheet.picture(title, f"P&I diagram: {words}")
+    return drawing.picture(title, f"P&I diagram: {words}")
 
 
 class _Plan:
@@ -125,26 +125,26 @@ class _Plan:
             for name in {**sides, **taps}
         }  # fmt: skip
 
-    def draw(self, sheet, grid):
+    def draw(self, drawing, grid):
         for kind, draw in (("pipes", draw_pipe), ("ducts", draw_duct), ("shafts", draw_shaft)):
             for start, end in self.edges[kind]:
                 node = grid[end]
                 arrow = isinstance(node, Label) if kind == "ducts" else node.arrow_in and not node.inline
-                draw(sheet, grid.route(start, end), arrow)
+                draw(drawing, grid.route(start, end), arrow)
         for kind, edges in self.edges.items():
             if kind not in ("pipes", "ducts", "shafts"):
                 for (start, end), sign in edges.items():
-                    self._signal(sheet, grid, start, end, sign, "electrical" if kind == "signals" else kind)
+                    self._signal(drawing, grid, start, end, sign, "electrical" if kind == "signals" else kind)
         for node in grid.nodes.values():
-            node.draw(sheet)
+            node.draw(drawing)
 
-    def _signal(self, sheet, grid, start, end, sign, kind):
+    def _signal(self, drawing, grid, start, end, sign, kind):
         points, measures = grid.route(start, end, at="tap"), isinstance(grid[start], (Instrument, Label, BlockNode))
         if kind == "electrical" and start not in self.told and not measures:
             kind = "measuring line"
-        draw_signal(sheet, points, kind, grid[end].arrow_in)
+        draw_signal(drawing, points, kind, grid[end].arrow_in)
         if isinstance(grid[end], Junction):
-            sheet.sign(grid[end].x, grid[end].y, direction(points[-1], points[-2]), sign or "+")
+            drawing.sign(grid[end].x, grid[end].y, direction(points[-1], points[-2]), sign or "+")
 
 
 def _part(name, what):

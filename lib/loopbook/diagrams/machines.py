@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from loopbook.diagrams.sheet import LIQUID, Sheet, mathematics
+from loopbook.diagrams.drawing import LIQUID, Drawing, mathematics
 
 if TYPE_CHECKING:
     from loopbook.figures import Picture
@@ -25,31 +25,31 @@ def conveyor_belt(
     >>> conveyor_belt(title="Figure 6.3")
     <Figure 6.3: conveyor belt: F_in falls on one end, F_out leaves the other end tau later>
     """
-    sheet = Sheet()
+    drawing = Drawing()
     length, r = 8.4, 0.42
-    sheet.wire((0, r), (length, r))
-    sheet.wire((0, -r), (length, -r))
+    drawing.wire((0, r), (length, r))
+    drawing.wire((0, -r), (length, -r))
     for x in (0, length):
-        sheet.circle(x, 0, r)
-        sheet.dot(x, 0)
+        drawing.circle(x, 0, r)
+        drawing.dot(x, 0)
     # the layer of material, from where it falls to where it leaves, and the way that it goes
     end = [(length, r + 0.32), (length + 0.3, r + 0.18), (length + r, 0.1), (length, r)]
-    sheet.area([(0.15, r), (0.45, r + 0.32), *end], fill=LIQUID)
-    sheet.wire((length / 2 - 0.7, 0), (length / 2 + 0.7, 0), arrow="->")
+    drawing.area([(0.15, r), (0.45, r + 0.32), *end], fill=LIQUID)
+    drawing.wire((length / 2 - 0.7, 0), (length / 2 + 0.7, 0), arrow="->")
     # the chute
     for side in (-1, 1):
-        sheet.wire((0.45 + side * 0.75, 2.4), (0.45 + side * 0.25, 1.75), (0.45 + side * 0.25, 1.35))
-    sheet.wire((0.45, 3.1), (0.45, r + 0.4), arrow="->")
-    sheet.text(0.7, 3.0, mathematics(inflow), halign="left")
-    sheet.wire((length + r + 0.1, -0.1), (length + r + 0.1, -1.5), arrow="->")
-    sheet.text(length + r + 0.35, -1.1, mathematics(outflow), halign="left")
+        drawing.wire((0.45 + side * 0.75, 2.4), (0.45 + side * 0.25, 1.75), (0.45 + side * 0.25, 1.35))
+    drawing.wire((0.45, 3.1), (0.45, r + 0.4), arrow="->")
+    drawing.text(0.7, 3.0, mathematics(inflow), halign="left")
+    drawing.wire((length + r + 0.1, -0.1), (length + r + 0.1, -1.5), arrow="->")
+    drawing.text(length + r + 0.35, -1.1, mathematics(outflow), halign="left")
     # the time on the belt, as a dimension line
     for x in (0.45, length + r + 0.1):
-        sheet.wire((x, -1.75), (x, -2.25), width=0.8)
-    sheet.wire((0.45, -2), (length + r + 0.1, -2), arrow="<->", width=0.8)
-    sheet.text((0.55 + length + r) / 2, -1.9, mathematics(delay), valign="bottom")
+        drawing.wire((x, -1.75), (x, -2.25), width=0.8)
+    drawing.wire((0.45, -2), (length + r + 0.1, -2), arrow="<->", width=0.8)
+    drawing.text((0.55 + length + r) / 2, -1.9, mathematics(delay), valign="bottom")
     words = f"conveyor belt: {inflow} falls on one end, {outflow} leaves the other end {delay} later"
-    return sheet.picture(title, words)
+    return drawing.picture(title, words)
 
 
 def mass_spring_damper(
@@ -71,26 +71,26 @@ def mass_spring_damper(
     >>> mass_spring_damper(title="Figure 2.4")
     <Figure 2.4: mass m on a wall by a spring K and a damper D, moved by the force F to the position y>
     """
-    sheet, left, right = Sheet(), 4.2, 6.4
-    _wall(sheet, 0, -1.5, 1.5)
-    sheet.wire((0, 0.75), (0.7, 0.75))
-    sheet.zigzag((0.7, 0.75), (3.5, 0.75), teeth=7, height=0.28)
-    sheet.wire((3.5, 0.75), (left, 0.75))
-    sheet.text(2.1, 1.2, mathematics(spring), valign="bottom")
-    sheet.wire((0, -0.75), (1.6, -0.75))
-    sheet.wire((2.6, -0.4), (1.6, -0.4), (1.6, -1.1), (2.6, -1.1))
-    sheet.wire((2.2, -0.45), (2.2, -1.05), width=2.2)
-    sheet.wire((2.2, -0.75), (left, -0.75))
-    sheet.text(2.1, -1.25, mathematics(damper), valign="top")
-    sheet.box(left, 0, right - left, 2.6, mathematics(mass))
-    sheet.wire((right, 0), (right + 1.6, 0), arrow="->", width=1.7)
-    sheet.text(right + 1.2, 0.15, mathematics(force), valign="bottom")
-    _axis(sheet, left, -1.45, 2.4, position)
+    drawing, left, right = Drawing(), 4.2, 6.4
+    _wall(drawing, 0, -1.5, 1.5)
+    drawing.wire((0, 0.75), (0.7, 0.75))
+    drawing.zigzag((0.7, 0.75), (3.5, 0.75), teeth=7, height=0.28)
+    drawing.wire((3.5, 0.75), (left, 0.75))
+    drawing.text(2.1, 1.2, mathematics(spring), valign="bottom")
+    drawing.wire((0, -0.75), (1.6, -0.75))
+    drawing.wire((2.6, -0.4), (1.6, -0.4), (1.6, -1.1), (2.6, -1.1))
+    drawing.wire((2.2, -0.45), (2.2, -1.05), width=2.2)
+    drawing.wire((2.2, -0.75), (left, -0.75))
+    drawing.text(2.1, -1.25, mathematics(damper), valign="top")
+    drawing.box(left, 0, right - left, 2.6, mathematics(mass))
+    drawing.wire((right, 0), (right + 1.6, 0), arrow="->", width=1.7)
+    drawing.text(right + 1.2, 0.15, mathematics(force), valign="bottom")
+    _axis(drawing, left, -1.45, 2.4, position)
     words = (
         f"mass {mass} on a wall by a spring {spring} and a damper {damper}, "
         f"moved by the force {force} to the position {position}"
     )
-    return sheet.picture(title, words)
+    return drawing.picture(title, words)
 
 
 def motor_with_load(
@@ -118,51 +118,51 @@ def motor_with_load(
     >>> motor_with_load(title="Figure 3.14")
     <Figure 3.14: a motor with current i_m and inertia J turns a gear wheel of radius r, which moves a rod with load m against the force F_L to the position y>
     """  # noqa: E501
-    sheet, wheel, r = Sheet(), 4.6, 0.9
-    sheet.wire((-1.4, 1.2), (0, 1.2), arrow="->")
-    sheet.text(-0.8, 1.32, mathematics(current), valign="bottom")
-    sheet.box(0, 1.2, 2, 1.5, "Motor")
-    sheet.text(1, 2.05, mathematics(inertia), valign="bottom")
+    drawing, wheel, r = Drawing(), 4.6, 0.9
+    drawing.wire((-1.4, 1.2), (0, 1.2), arrow="->")
+    drawing.text(-0.8, 1.32, mathematics(current), valign="bottom")
+    drawing.box(0, 1.2, 2, 1.5, "Motor")
+    drawing.text(1, 2.05, mathematics(inertia), valign="bottom")
     for side in (-0.06, 0.06):
-        sheet.wire((2, 1.2 + side), (wheel, 1.2 + side))
+        drawing.wire((2, 1.2 + side), (wheel, 1.2 + side))
     # the load's torque acts against the turning
     for x, turning, name in ((2.4, "ccw", angle), (3.15, "cw", torque)):
-        sheet.arc(x, 1.2, 0.4, 1.1, -70, 70, arrow=turning)
-        sheet.text(x, 1.9, mathematics(name), valign="bottom")
+        drawing.arc(x, 1.2, 0.4, 1.1, -70, 70, arrow=turning)
+        drawing.text(x, 1.9, mathematics(name), valign="bottom")
     # the wheel, its teeth and the rack, which is the upper side of the rod
     corners = []
     for n in range(40):
         turn, reach = 2 * math.pi * (n + 0.5) / 40, r + (0.07 if n % 4 < 2 else -0.07)
         corners.append((wheel + reach * math.cos(turn), 1.2 + reach * math.sin(turn)))
-    sheet.area(corners, fill="white", zorder=3)
-    sheet.circle(wheel, 1.2, 0.08, fill="black", zorder=4)
-    sheet.wire((wheel, 1.2), (wheel + 0.62, 1.2 + 0.62), arrow="->", width=0.8, zorder=4)
-    sheet.text(wheel + 0.45, 1.22, mathematics(radius))
+    drawing.area(corners, fill="white", zorder=3)
+    drawing.circle(wheel, 1.2, 0.08, fill="black", zorder=4)
+    drawing.wire((wheel, 1.2), (wheel + 0.62, 1.2 + 0.62), arrow="->", width=0.8, zorder=4)
+    drawing.text(wheel + 0.45, 1.22, mathematics(radius))
     top = 1.2 - r - 0.07
-    sheet.area([(3.2, top - 0.35), (3.2, top), (8, top), (8, top - 0.35)], fill="white")
-    sheet.wire((wheel - 0.2, top - 0.6), (wheel + 1.2, top - 0.6), arrow="->")
-    sheet.text(wheel - 0.35, top - 0.6, mathematics(force), halign="right")
-    sheet.box(8, top - 0.18, 1.5, 1.5, mathematics(mass))
-    sheet.wire((11.1, top - 0.18), (9.5, top - 0.18), arrow="->", width=1.7)
-    sheet.text(10.5, top - 0.05, mathematics(load), valign="bottom")
-    _axis(sheet, 8, top - 1.1, 2.4, position)
+    drawing.area([(3.2, top - 0.35), (3.2, top), (8, top), (8, top - 0.35)], fill="white")
+    drawing.wire((wheel - 0.2, top - 0.6), (wheel + 1.2, top - 0.6), arrow="->")
+    drawing.text(wheel - 0.35, top - 0.6, mathematics(force), halign="right")
+    drawing.box(8, top - 0.18, 1.5, 1.5, mathematics(mass))
+    drawing.wire((11.1, top - 0.18), (9.5, top - 0.18), arrow="->", width=1.7)
+    drawing.text(10.5, top - 0.05, mathematics(load), valign="bottom")
+    _axis(drawing, 8, top - 1.1, 2.4, position)
     words = (
         f"a motor with current {current} and inertia {inertia} turns a gear wheel of radius {radius}, which moves a "
         f"rod with load {mass} against the force {load} to the position {position}"
     )
-    return sheet.picture(title, words)
+    return drawing.picture(title, words)
 
 
-def _wall(sheet, x, bottom, top):
-    sheet.wire((x, bottom), (x, top), width=1.7)
+def _wall(drawing, x, bottom, top):
+    drawing.wire((x, bottom), (x, top), width=1.7)
     for n in range(10):
         y = bottom + (top - bottom) * (n + 0.5) / 10
-        sheet.wire((x, y), (x - 0.3, y - 0.3), width=0.8)
+        drawing.wire((x, y), (x - 0.3, y - 0.3), width=0.8)
 
 
-def _axis(sheet, x, y, length, label):
+def _axis(drawing, x, y, length, label):
     """An arrow from zero in the direction in which a position is counted."""
-    sheet.wire((x, y - 0.15), (x, y - 0.75), width=0.8)
-    sheet.wire((x, y - 0.45), (x + length, y - 0.45), arrow="->", width=0.8)
-    sheet.text(x - 0.12, y - 0.5, "0", halign="right", size=10)
-    sheet.text(x + length + 0.15, y - 0.45, mathematics(label), halign="left")
+    drawing.wire((x, y - 0.15), (x, y - 0.75), width=0.8)
+    drawing.wire((x, y - 0.45), (x + length, y - 0.45), arrow="->", width=0.8)
+    drawing.text(x - 0.12, y - 0.5, "0", halign="right", size=10)
+    drawing.text(x + length + 0.15, y - 0.45, mathematics(label), halign="left")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from loopbook.diagrams.equipment import HALF_CIRCLE, TAG_SIZE, Equipment, named, one_of
 
 if TYPE_CHECKING:
-    from loopbook.diagrams.sheet import XY, Sheet
+    from loopbook.diagrams.drawing import XY, Drawing
 
 PUMPS = ("general", "centrifugal", "displacement", "gear", "screw", "diaphragm")
 FANS = ("axial", "radial")
@@ -90,49 +90,49 @@ class Round(Equipment):
         super().__init__(tag, words)
         self.kind = kind
 
-    def draw(self, sheet: Sheet) -> None:
-        sheet.circle(self.x, self.y, self.radius)
-        self.inside(sheet)
-        self.draw_tag(sheet)
+    def draw(self, drawing: Drawing) -> None:
+        drawing.circle(self.x, self.y, self.radius)
+        self.inside(drawing)
+        self.draw_tag(drawing)
 
-    def line(self, sheet: Sheet, *points: XY) -> None:
-        sheet.wire(*self.turned(*points), zorder=3)
+    def line(self, drawing: Drawing, *points: XY) -> None:
+        drawing.wire(*self.turned(*points), zorder=3)
 
-    def piston(self, sheet: Sheet, x: float = 0.0) -> None:
-        self.line(sheet, (x - 0.16, -0.15), (x - 0.16, 0.15), (x + 0.06, 0.15), (x + 0.06, -0.15), (x - 0.16, -0.15))
-        self.line(sheet, (x - 0.05, -0.15), (x - 0.05, 0.15))
+    def piston(self, drawing: Drawing, x: float = 0.0) -> None:
+        self.line(drawing, (x - 0.16, -0.15), (x - 0.16, 0.15), (x + 0.06, 0.15), (x + 0.06, -0.15), (x - 0.16, -0.15))
+        self.line(drawing, (x - 0.05, -0.15), (x - 0.05, 0.15))
 
-    def screw(self, sheet: Sheet, x: float = 0.0) -> None:
-        self.line(sheet, (x - 0.2, 0), (x + 0.15, 0))
+    def screw(self, drawing: Drawing, x: float = 0.0) -> None:
+        self.line(drawing, (x - 0.2, 0), (x + 0.15, 0))
         for n in range(3):
-            self.line(sheet, (x - 0.2 + 0.12 * n, -0.13), (x - 0.12 + 0.12 * n, 0.13))
+            self.line(drawing, (x - 0.2 + 0.12 * n, -0.13), (x - 0.12 + 0.12 * n, 0.13))
 
 
 class Pump(Round):
-    def inside(self, sheet: Sheet) -> None:
-        self.line(sheet, (-0.22, 0.38), (0.45, 0), (-0.22, -0.38))
+    def inside(self, drawing: Drawing) -> None:
+        self.line(drawing, (-0.22, 0.38), (0.45, 0), (-0.22, -0.38))
         match self.kind:
             case "centrifugal":
-                sheet.circle(self.x, self.y, 0.13, fill="black")
+                drawing.circle(self.x, self.y, 0.13, fill="black")
             case "displacement":
-                self.piston(sheet, -0.03)
+                self.piston(drawing, -0.03)
             case "gear":
                 for x, y in self.turned((-0.12, 0.13), (-0.12, -0.13)):
-                    sheet.circle(x, y, 0.13)
+                    drawing.circle(x, y, 0.13)
             case "screw":
-                self.screw(sheet, -0.05)
+                self.screw(drawing, -0.05)
             case "diaphragm":
-                self.line(sheet, *[(-0.22 + 0.22 * y, 0.26 * x) for x, y in HALF_CIRCLE])
+                self.line(drawing, *[(-0.22 + 0.22 * y, 0.26 * x) for x, y in HALF_CIRCLE])
 
 
 class Compressor(Round):
-    def inside(self, sheet: Sheet) -> None:
+    def inside(self, drawing: Drawing) -> None:
         for side in (-1, 1):
-            self.line(sheet, (-0.25, 0.374 * side), (0.41, 0.185 * side))
+            self.line(drawing, (-0.25, 0.374 * side), (0.41, 0.185 * side))
         if self.kind == "piston":
-            self.piston(sheet, 0.05)
+            self.piston(drawing, 0.05)
         if self.kind == "screw":
-            self.screw(sheet)
+            self.screw(drawing)
 
 
 class Fan(Round):
@@ -140,16 +140,16 @@ class Fan(Round):
         """The walls of a duct go around it."""
         return (self.x, y) if dx and self.in_duct else super().edge(dx, dy, x, y)
 
-    def inside(self, sheet: Sheet) -> None:
+    def inside(self, drawing: Drawing) -> None:
         if self.kind == "radial":
-            sheet.circle(self.x, self.y, 0.2)
+            drawing.circle(self.x, self.y, 0.2)
             for n in range(10):
                 a, b = 2 * math.pi * n / 10, 2 * math.pi * (n + 0.6) / 10
-                self.line(sheet, (0.2 * math.cos(a), 0.2 * math.sin(a)), (0.36 * math.cos(b), 0.36 * math.sin(b)))
+                self.line(drawing, (0.2 * math.cos(a), 0.2 * math.sin(a)), (0.36 * math.cos(b), 0.36 * math.sin(b)))
             return
         for side in (-1, 1):
             blade = ((0, 0), (-0.12, 0.2 * side), (0, 0.36 * side), (0.12, 0.2 * side))
-            sheet.area(self.turned(*blade), fill="black", zorder=3)
+            drawing.area(self.turned(*blade), fill="black", zorder=3)
 
 
 class Motor(Equipment):
@@ -159,9 +159,9 @@ class Motor(Equipment):
         super().__init__("", {"M": "motor", "G": "generator"}.get(letters, letters))
         self.letters = letters
 
-    def draw(self, sheet: Sheet) -> None:
-        sheet.circle(self.x, self.y, self.radius)
-        sheet.text(self.x, self.y - 0.02, self.letters)
+    def draw(self, drawing: Drawing) -> None:
+        drawing.circle(self.x, self.y, self.radius)
+        drawing.text(self.x, self.y - 0.02, self.letters)
 
 
 class Turbo(Equipment):
@@ -186,9 +186,9 @@ class Turbo(Equipment):
         back, front = self.ends
         return 0.5 * self.height * (back + (front - back) * (along / self.width + 0.5))
 
-    def draw(self, sheet: Sheet) -> None:
+    def draw(self, drawing: Drawing) -> None:
         half = self.width / 2
         back, front = self.reach(-half), self.reach(half)
-        sheet.area(self.turned((-half, -back), (-half, back), (half, front), (half, -front)), fill="white")
+        drawing.area(self.turned((-half, -back), (-half, back), (half, front), (half, -front)), fill="white")
         if self.inside:
-            sheet.text(self.x, self.y, self.inside, size=TAG_SIZE)
+            drawing.text(self.x, self.y, self.inside, size=TAG_SIZE)

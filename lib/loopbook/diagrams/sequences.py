@@ -7,7 +7,7 @@ import textwrap
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from loopbook.diagrams.sheet import FONT_SIZE, INCHES, LINE, Sheet, text_size
+from loopbook.diagrams.drawing import FONT_SIZE, INCHES, LINE, Drawing, text_size
 
 if TYPE_CHECKING:
     from loopbook.figures import Picture
@@ -48,17 +48,17 @@ def sequential_function_chart(chart: Chart, title: str | None = None, names: boo
     <Figure 12.1: sequential function chart: from Dark (initial) to Bright if on; from Bright to Dark if NOT on; Bright: light := TRUE>
     """  # noqa: E501
     check_chart(chart)
-    sheet = Sheet()
+    drawing = Drawing()
     for kind, points, extra in _Layout(chart, names).whole().marks:
         if kind == "text":
             label, halign, valign, size = extra
-            sheet.text(*points[0], label, halign=halign, valign=valign, size=size)
+            drawing.text(*points[0], label, halign=halign, valign=valign, size=size)
         elif kind == "box":
             (x0, y0), (x1, y1) = points
-            sheet.area([(x0, y0), (x0, y1), (x1, y1), (x1, y0)], fill="white")
+            drawing.area([(x0, y0), (x0, y1), (x1, y1), (x1, y0)], fill="white")
         else:
-            sheet.wire(*points, arrow="->" if kind == "arrow" else None, width=extra)
-    return sheet.picture(title, f"sequential function chart: {in_words(chart)}")
+            drawing.wire(*points, arrow="->" if kind == "arrow" else None, width=extra)
+    return drawing.picture(title, f"sequential function chart: {in_words(chart)}")
 
 
 def check_chart(chart: object) -> None:

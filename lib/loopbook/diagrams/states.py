@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from loopbook.diagrams.drawing import FONT_SIZE, Drawing, text_size
 from loopbook.diagrams.sequences import PITCH, SMALL, action_lines, check_chart, condition_lines
-from loopbook.diagrams.sheet import FONT_SIZE, Sheet, text_size
 
 if TYPE_CHECKING:
     from loopbook.figures import Picture
@@ -50,10 +50,10 @@ def state_diagram(chart: Chart, title: str | None = None) -> Picture:
     names = [" + ".join(step for step in chart.steps if step in state) for state in states]
     single = all(len(state) == 1 for state in states)
     actions = [action_lines(chart, *state) if single else [] for state in states]
-    sheet = Sheet()
-    _Drawing(sheet, names, actions, arrows).draw()
+    drawing = Drawing()
+    _StateGraph(drawing, names, actions, arrows).draw()
     ways = "; ".join(f"from {names[i]} to {names[j]} if {' '.join(text)}" for (i, j), text in arrows.items())
-    return sheet.picture(title, f"state diagram, beginning in {names[0]}: {ways}")
+    return drawing.picture(title, f"state diagram, beginning in {names[0]}: {ways}")
 
 
 def _in_order_of_the_flow(chart):
@@ -67,11 +67,11 @@ def _in_order_of_the_flow(chart):
     return order
 
 
-class _Drawing:
+class _StateGraph:
     """States in one column; what does not go to the next one runs in lanes, forward at the right, back at the left."""
 
-    def __init__(self, sheet, names, actions, arrows):
-        self.sheet, self.names, self.actions, self.arrows = sheet, names, actions, arrows
+    def __init__(self, drawing, names, actions, arrows):
+        self.drawing, self.names, self.actions, self.arrows = drawing, names, actions, arrows
         self.sides = {1: [], -1: []}
         for one, other in arrows:
             if other != one + 1:
@@ -114,21 +114,21 @@ class _Drawing:
         return found
 
     def draw(self):
-        sheet, half = self.sheet, self.half
+        drawing, half = self.drawing, self.half
         for name, lines, top, bottom in zip(self.names, self.actions, self.tops, self.bottoms, strict=True):
-            sheet.area(_rounded(half, top, bottom), fill="white")
+            drawing.area(_rounded(half, top, bottom), fill="white")
             middle = (top + bottom) / 2 + PITCH * len(lines) / 2
-            sheet.text(0, middle, name)
+            drawing.text(0, middle, name)
             if lines:
-                sheet.wire((-half, middle - 0.36), (half, middle - 0.36), width=0.8)
+                drawing.wire((-half, middle - 0.36), (half, middle - 0.36), width=0.8)
             for k, line in enumerate(lines):
-                sheet.text(0.2 - half, middle - 0.4 - PITCH * (k + 0.6), line, halign="left", size=SMALL)
-        sheet.circle(0, self.tops[0] + 0.8, 0.12, fill="black")
-        sheet.wire((0, self.tops[0] + 0.8), (0, self.tops[0]), arrow="->")
+                drawing.text(0.2 - half, middle - 0.4 - PITCH * (k + 0.6), line, halign="left", size=SMALL)
+        drawing.circle(0, self.tops[0] + 0.8, 0.12, fill="black")
+        drawing.wire((0, self.tops[0] + 0.8), (0, self.tops[0]), arrow="->")
         for (one, other), text in self.arrows.items():
             if other == one + 1:
                 begin, end = self.bottoms[one], self.tops[other]
-                sheet.wire((0, begin), (0, end), arrow="->")
+                drawing.wire((0, begin), (0, end), arrow="->")
                 self._label(0.15, (begin + end) / 2, text, "left")
         for side in self.sides:
             self._in_lanes(side)
@@ -149,14 +149,14 @@ class _Drawing:
         for way in self.sides[side]:
             (one, other), x = way, self.lanes[side][way]
             begin, end = places[way, "out"], places[way, "in"]
-            self.sheet.wire((side * self.half, begin), (x, begin), (x, end), (side * self.half, end), arrow="->")
+            self.drawing.wire((side * self.half, begin), (x, begin), (x, end), (side * self.half, end), arrow="->")
             gap = one if side > 0 else one - 1  # beside the upright line, where no arrow leaves or enters a state
             y = (begin + end) / 2 if one == other else (self.bottoms[gap] + self.tops[gap + 1]) / 2
             self._label(x + side * 0.12, y, self.arrows[way], "left" if side > 0 else "right")
 
     def _label(self, x, y, lines, halign):
         for k, line in enumerate(lines):
-            self.sheet.text(x, y + PITCH * ((len(lines) - 1) / 2 - k), line, halign=halign, size=SMALL)
+            self.drawing.text(x, y + PITCH * ((len(lines) - 1) / 2 - k), line, halign=halign, size=SMALL)
 
 
 def _rounded(half, top, bottom):

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from loopbook.diagrams.conductors import draw_pipe
+from loopbook.diagrams.drawing import INCHES, WIDEST, Drawing, text_size
 from loopbook.diagrams.equipment import Equipment
-from loopbook.diagrams.sheet import INCHES, WIDEST, Sheet, text_size
 
 if TYPE_CHECKING:
     from loopbook.diagrams.equipment import Equipment
@@ -50,7 +50,7 @@ def symbol_table(
             raise ValueError(f"{name} is {symbol!r}, which is no symbol of a plant")
     if not isinstance(columns, int) or columns < 1:
         raise ValueError(f"a table has one column or more, not {columns!r}")
-    sheet, top = Sheet(), 0.0
+    drawing, top = Drawing(), 0.0
     cells = [(_placed(symbol), name) for name, symbol in symbols.items()]
     width = _column_width(cells, columns)
     for n in range(0, len(cells), columns):
@@ -58,11 +58,11 @@ def symbol_table(
         high = max(node.height + node.room[1] for node, _ in row)
         names = [_wrapped(name, width - GAP) for _, name in row]
         for column, ((node, _), lines) in enumerate(zip(row, names, strict=True)):
-            _draw(sheet, node, (column + 0.5) * width, top - high / 2)
+            _draw(drawing, node, (column + 0.5) * width, top - high / 2)
             for k, line in enumerate(lines):
-                sheet.text((column + 0.5) * width, top - high - (k + 0.9) * LINE, line, valign="base", size=SIZE)
+                drawing.text((column + 0.5) * width, top - high - (k + 0.9) * LINE, line, valign="base", size=SIZE)
         top -= high + LINE * (max(map(len, names)) + 0.2) + GAP
-    return sheet.picture(title, f"symbols: {', '.join(symbols)}")
+    return drawing.picture(title, f"symbols: {', '.join(symbols)}")
 
 
 def _placed(symbol):
@@ -92,10 +92,10 @@ def _wrapped(name, width):
     return lines
 
 
-def _draw(sheet, node, x, y):
+def _draw(drawing, node, x, y):
     node.levels = [y]
     node.place(x, y, node.width, node.height)
     for dx, dy in node.openings:
         start, length = node.edge(dx, dy, x, y), PIECE if dx else UPRIGHT
-        draw_pipe(sheet, [start, (start[0] + length * dx, start[1] + length * dy)])
-    node.draw(sheet)
+        draw_pipe(drawing, [start, (start[0] + length * dx, start[1] + length * dy)])
+    node.draw(drawing)

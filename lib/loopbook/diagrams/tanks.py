@@ -6,11 +6,11 @@ import math
 from typing import TYPE_CHECKING
 
 from loopbook.diagrams.conductors import DASHES, draw_shaft
+from loopbook.diagrams.drawing import FONT_SIZE, LIQUID, signal_name, wording
 from loopbook.diagrams.equipment import HALF_CIRCLE, THICK, THIN, Equipment, one_of
-from loopbook.diagrams.sheet import FONT_SIZE, LIQUID, signal_name, wording
 
 if TYPE_CHECKING:
-    from loopbook.diagrams.sheet import XY, Sheet
+    from loopbook.diagrams.drawing import XY, Drawing
 
 BOW = 0.35  # height of the round end of a vessel
 JACKET = 0.3
@@ -119,14 +119,16 @@ class Container(Equipment):
         self.tops = (*self.tops, x)
 
 
-def draw_stirrer(sheet: Sheet, x: float, top: float, blade: float, half: float = 0.41, on_shaft: bool = False) -> None:
+def draw_stirrer(
+    drawing: Drawing, x: float, top: float, blade: float, half: float = 0.41, on_shaft: bool = False
+) -> None:
     if on_shaft:
-        draw_shaft(sheet, [(x, top), (x, blade)])
+        draw_shaft(drawing, [(x, top), (x, blade)])
     else:
-        sheet.wire((x, top), (x, blade))
+        drawing.wire((x, top), (x, blade))
     for side in (-half, half):
         tip = [(x + part * side, blade + lift) for part, lift in ((0.6, 0.1), (1, 0), (0.6, -0.1))]
-        sheet.area([(x, blade), *tip], fill="white")
+        drawing.area([(x, blade), *tip], fill="white")
 
 
 class Tank(Container):
@@ -173,42 +175,42 @@ class Tank(Container):
                 return y1 + LID * math.sqrt(1 - part**2)
         return y1 - 0.2
 
-    def draw(self, sheet: Sheet) -> None:
+    def draw(self, drawing: Drawing) -> None:
         x0, x1, y0, y1 = self.inside()
         surface, middle = self.surface(), (x0 + x1) / 2
         if self.jacket:
             top, slant = self.jacket_top(), self.jacket
-            sheet.wire((x0, top), (self.x0, top - slant), (self.x0, self.y0), (self.x1, self.y0),
+            drawing.wire((x0, top), (self.x0, top - slant), (self.x0, self.y0), (self.x1, self.y0),
                        (self.x1, top - slant), (x1, top), width=THICK)  # fmt: skip
         if self.filled:
-            sheet.area([(x0, y0), (x1, y0), (x1, surface), (x0, surface)], fill=LIQUID, outline=0)
-            sheet.wire((x0, surface), (x1, surface), width=THIN)
-        sheet.wire((x0, y1), (x0, y0), (x1, y0), (x1, y1), width=THICK)
-        self.draw_roof(sheet)
+            drawing.area([(x0, y0), (x1, y0), (x1, surface), (x0, surface)], fill=LIQUID, outline=0)
+            drawing.wire((x0, surface), (x1, surface), width=THIN)
+        drawing.wire((x0, y1), (x0, y0), (x1, y0), (x1, y1), width=THICK)
+        self.draw_roof(drawing)
         if self.stirrer:
             blade = y0 + (0.5 if self.heater else 0.3) * (surface - y0)
             x = self.stirrer_place(middle, x1 - x0)
-            draw_stirrer(sheet, x, self.roof_at(x) if self.on_shaft else self.y1 + 0.2, blade, on_shaft=self.on_shaft)
+            draw_stirrer(drawing, x, self.roof_at(x) if self.on_shaft else self.y1 + 0.2, blade, on_shaft=self.on_shaft)
         if self.heater:
             at = self.levels[-1] if len(self.levels) > 1 else y0 + 0.25 * (y1 - y0)
-            sheet.zigzag((x0, at), (x0 + 0.45 * (x1 - x0), at), teeth=4, height=0.16)
+            drawing.zigzag((x0, at), (x0 + 0.45 * (x1 - x0), at), teeth=4, height=0.16)
         if self.level:
             at = x1 - 0.3
-            sheet.wire((at, y0), (at, surface), arrow="<->", width=THIN)
-            sheet.text(at - 0.12, y0 + 0.68 * (surface - y0), signal_name(self.level), halign="right")
+            drawing.wire((at, y0), (at, surface), arrow="<->", width=THIN)
+            drawing.text(at - 0.12, y0 + 0.68 * (surface - y0), signal_name(self.level), halign="right")
         if self.text:
             left = 0.27 if self.stirrer else 0.43 if self.level else 0.5
             up = 0.75 if self.stirrer or self.heater else 0.3 if self.level else 0.5
-            sheet.text(x0 + left * (x1 - x0), y0 + up * (surface - y0), wording(self.text))
+            drawing.text(x0 + left * (x1 - x0), y0 + up * (surface - y0), wording(self.text))
 
-    def draw_roof(self, sheet: Sheet) -> None:
+    def draw_roof(self, drawing: Drawing) -> None:
         x0, x1, *_ = self.inside()
         if self.roof == "floating":
             height = self.surface() + 0.1
-            sheet.wire((x0 + 0.06, height), (x1 - 0.06, height), width=2 * THICK)
+            drawing.wire((x0 + 0.06, height), (x1 - 0.06, height), width=2 * THICK)
         elif self.roof != "open":
             xs = [(x0 + x1 + (x1 - x0) * x) / 2 for x, _ in HALF_CIRCLE]
-            sheet.wire(*[(x, self.roof_at(x)) for x in xs], width=THICK)
+            drawing.wire(*[(x, self.roof_at(x)) for x in xs], width=THICK)
 
 
 class Vessel(Container):
@@ -252,47 +254,47 @@ class Vessel(Container):
             return (x1 if dx > 0 else x0) - dx * inward, min(y, y1)
         return x, (y1 if dy > 0 else y0)
 
-    def draw(self, sheet: Sheet) -> None:
+    def draw(self, drawing: Drawing) -> None:
         x0, x1, y0, y1 = self.shell()
         outline, surface = self._outline(x0, x1, y0, y1), y0 + self.filled * (y1 - y0)
         if self.jacket:
             top, slant = self.jacket_top(), self.jacket
-            sheet.wire((x0, top), (self.x0, top - slant), (self.x0, self.y0), (self.x1, self.y0),
+            drawing.wire((x0, top), (self.x0, top - slant), (self.x0, self.y0), (self.x1, self.y0),
                        (self.x1, top - slant), (x1, top), width=THICK)  # fmt: skip
-        sheet.area(outline, fill="white", outline=THICK)
+        drawing.area(outline, fill="white", outline=THICK)
         if self.filled:
-            sheet.area([(x, min(y, surface)) for x, y in outline], fill=LIQUID, outline=THICK)
+            drawing.area([(x, min(y, surface)) for x, y in outline], fill=LIQUID, outline=THICK)
         bottom = max(surface, y0 + BOW)
         for n in range(self.trays):
             y = bottom + (y1 - BOW - bottom) * (n + 0.5) / self.trays
-            sheet.wire((x0, y), (x1, y), style=DASHES, width=THIN)
-        self._packings(sheet, x0, x1, bottom, y1 - BOW)
+            drawing.wire((x0, y), (x1, y), style=DASHES, width=THIN)
+        self._packings(drawing, x0, x1, bottom, y1 - BOW)
         if self.coil:
             at = self.levels[-1] if len(self.levels) > 1 else y0 + 0.35 * (y1 - y0)
-            sheet.zigzag((x0, at), (x1, at), teeth=4, height=0.14)
+            drawing.zigzag((x0, at), (x1, at), teeth=4, height=0.14)
         if self.stirrer:
-            self._stirrer(sheet, x0, x1, y0, y1)
+            self._stirrer(drawing, x0, x1, y0, y1)
         if self.text:
             column = self.trays or self.packings
             text = y1 - 0.6 * BOW if column else (surface + y1) / 2 if self.filled else (y0 + y1) / 2
             x = x0 + 0.25 * (x1 - x0) if self.stirrer else self.x
-            sheet.text(x, text, self.text, size=10 if column or self.stirrer else FONT_SIZE)
+            drawing.text(x, text, self.text, size=10 if column or self.stirrer else FONT_SIZE)
 
-    def _stirrer(self, sheet, x0, x1, y0, y1):
+    def _stirrer(self, drawing, x0, x1, y0, y1):
         x = self.stirrer_place(self.x, x1 - x0)
         blade = y0 + (0.55 if self.coil else 0.25) * (y1 - y0)
         if self.on_shaft:  # its motor is drawn elsewhere
-            draw_stirrer(sheet, x, y1, blade, half=0.33, on_shaft=True)
+            draw_stirrer(drawing, x, y1, blade, half=0.33, on_shaft=True)
             return
-        draw_stirrer(sheet, x, y1 + 0.1, blade, half=0.33)
-        sheet.circle(x, y1 + 0.28, 0.2)
-        sheet.text(x, y1 + 0.27, "M", size=8)
+        draw_stirrer(drawing, x, y1 + 0.1, blade, half=0.33)
+        drawing.circle(x, y1 + 0.28, 0.2)
+        drawing.text(x, y1 + 0.27, "M", size=8)
 
-    def _packings(self, sheet, x0, x1, low, high):
+    def _packings(self, drawing, x0, x1, low, high):
         for n in range(self.packings):
             pitch = (high - low) / self.packings
             bottom, top = (low + pitch * (n + part) for part in (0.12, 0.88))
-            sheet.wire((x0, bottom), (x1, bottom), (x0, top), (x1, top), (x0, bottom), width=THIN)
+            drawing.wire((x0, bottom), (x1, bottom), (x0, top), (x1, top), (x0, bottom), width=THIN)
 
     def _outline(self, x0, x1, y0, y1):
         half, middle, height = (y1 - y0 if self.lying else x1 - x0) / 2, (x0 + x1) / 2, (y0 + y1) / 2
@@ -322,16 +324,16 @@ class Funnel(Container):
             return x, self.y0 + way * max(0, abs(x - self.x) - self.mouth) / (half - self.mouth)
         return super().edge(dx, dy, x, y)
 
-    def draw(self, sheet: Sheet) -> None:
+    def draw(self, drawing: Drawing) -> None:
         knee = self.knee()
         left = [(self.x - self.mouth, self.y0), (self.x0, knee), (self.x0, self.y1)]
-        sheet.area([*left, *[(2 * self.x - x, y) for x, y in reversed(left)]], fill="white", outline=THICK)
+        drawing.area([*left, *[(2 * self.x - x, y) for x, y in reversed(left)]], fill="white", outline=THICK)
         if self.kind == "cyclone":  # the pipe in which the gas goes up
             for side in (-0.18, 0.18):
-                sheet.wire((self.x + side, self.y1), (self.x + side, knee + 0.35), width=THIN)
+                drawing.wire((self.x + side, self.y1), (self.x + side, knee + 0.35), width=THIN)
         else:
             heap = [(self.x0, knee + 0.15), (self.x, knee + 0.5), (self.x1, knee + 0.15)]
-            sheet.area([left[0], left[1], *heap, (self.x1, knee), (self.x + self.mouth, self.y0)], fill=LIQUID,
+            drawing.area([left[0], left[1], *heap, (self.x1, knee), (self.x + self.mouth, self.y0)], fill=LIQUID,
                        outline=THICK)  # fmt: skip
         if self.text:
-            sheet.text(self.x, knee - 0.1, self.text, size=10)
+            drawing.text(self.x, knee - 0.1, self.text, size=10)

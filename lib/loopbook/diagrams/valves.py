@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from loopbook.diagrams.drawing import text_size
 from loopbook.diagrams.equipment import ABOVE, HALF_CIRCLE, LEFT, RIGHT, TAG_SIZE, THIN, Equipment, named, one_of
-from loopbook.diagrams.sheet import text_size
 
 if TYPE_CHECKING:
-    from loopbook.diagrams.sheet import XY, Sheet, Way
+    from loopbook.diagrams.drawing import XY, Drawing, Way
 
 BODIES = ("general", "gate", "globe", "ball", "needle", "diaphragm", "butterfly", "angle", "three-way")
 VALVES = (*BODIES, "check", "hand", "safety", "reducing")
@@ -110,41 +110,41 @@ class Valve(Equipment):
         end = {"": REACH, "hand": WHEEL}.get(self.top, TOP)
         return self.x + end * dx, self.y + end * dy
 
-    def draw(self, sheet: Sheet) -> None:
+    def draw(self, drawing: Drawing) -> None:
         if self.top:
-            getattr(self, f"_{self.top}")(sheet)
+            getattr(self, f"_{self.top}")(drawing)
         if self.kind in ("butterfly", "check"):
             for x in (-REACH, REACH):
-                sheet.wire(*self.turned((x, -HALF), (x, HALF)))
+                drawing.wire(*self.turned((x, -HALF), (x, HALF)))
         else:
             for port in self.ports():
-                sheet.area(self.rotated(port, (0, 0), (REACH, HALF), (REACH, -HALF)), fill="white")
-        self._inside(sheet)
-        self.draw_tag(sheet)
+                drawing.area(self.rotated(port, (0, 0), (REACH, HALF), (REACH, -HALF)), fill="white")
+        self._inside(drawing)
+        self.draw_tag(drawing)
 
-    def draw_tag(self, sheet: Sheet) -> None:
+    def draw_tag(self, drawing: Drawing) -> None:
         if self.tag:
             dx, dy = self.tag_side()
             halign, valign = _align(dx, "right", "left"), _align(dy, "top", "bottom")
-            sheet.text(self.x + 0.36 * dx, self.y + 0.36 * dy, self.tag, halign, valign, size=TAG_SIZE)
+            drawing.text(self.x + 0.36 * dx, self.y + 0.36 * dy, self.tag, halign, valign, size=TAG_SIZE)
 
-    def _inside(self, sheet):
+    def _inside(self, drawing):
         match self.kind:
             case "gate":
-                sheet.wire(*self.turned((0, -HALF), (0, HALF)))
+                drawing.wire(*self.turned((0, -HALF), (0, HALF)))
             case "globe":
-                sheet.circle(self.x, self.y, 0.11, fill="black")
+                drawing.circle(self.x, self.y, 0.11, fill="black")
             case "ball":
-                sheet.circle(self.x, self.y, 0.15)
+                drawing.circle(self.x, self.y, 0.15)
             case "needle":
-                sheet.area(self.turned((0, -0.02), (-0.1, 0.26), (0.1, 0.26)), fill="black")
+                drawing.area(self.turned((0, -0.02), (-0.1, 0.26), (0.1, 0.26)), fill="black")
             case "diaphragm":
-                sheet.wire(*self.turned(*[(0.28 * x, 0.06 + 0.24 * y) for x, y in HALF_CIRCLE]))
+                drawing.wire(*self.turned(*[(0.28 * x, 0.06 + 0.24 * y) for x, y in HALF_CIRCLE]))
             case "butterfly":
-                sheet.wire(*self.turned((-REACH, HALF), (REACH, -HALF)))
-                sheet.circle(self.x, self.y, 0.08, fill="black")
+                drawing.wire(*self.turned((-REACH, HALF), (REACH, -HALF)))
+                drawing.circle(self.x, self.y, 0.08, fill="black")
             case "check":
-                sheet.wire(*self.turned((-REACH, HALF), (REACH, -HALF)), arrow="->")
+                drawing.wire(*self.turned((-REACH, HALF), (REACH, -HALF)), arrow="->")
 
     # What is on top, in a frame of the flow and of the top's side.
 
@@ -154,41 +154,41 @@ class Valve(Equipment):
             dx, dy = up_y, -up_x
         return [(self.x + a * dx + b * up_x, self.y + a * dy + b * up_y) for a, b in points]
 
-    def _stem(self, sheet, end):
-        sheet.wire(*self._at((0, 0), (0, end)))
+    def _stem(self, drawing, end):
+        drawing.wire(*self._at((0, 0), (0, end)))
 
-    def _diaphragm(self, sheet):
-        self._stem(sheet, 0.48)
-        sheet.area(self._at(*[(0.26 * x, 0.48 + 0.24 * y) for x, y in HALF_CIRCLE]), fill="white")
+    def _diaphragm(self, drawing):
+        self._stem(drawing, 0.48)
+        drawing.area(self._at(*[(0.26 * x, 0.48 + 0.24 * y) for x, y in HALF_CIRCLE]), fill="white")
 
-    def _piston(self, sheet):
-        self._stem(sheet, 0.54)
-        sheet.wire(*self._at((-0.24, 0.34), (-0.24, TOP), (0.24, TOP), (0.24, 0.34), (-0.24, 0.34)))
-        sheet.wire(*self._at((-0.24, 0.54), (0.24, 0.54)), width=2.2)
+    def _piston(self, drawing):
+        self._stem(drawing, 0.54)
+        drawing.wire(*self._at((-0.24, 0.34), (-0.24, TOP), (0.24, TOP), (0.24, 0.34), (-0.24, 0.34)))
+        drawing.wire(*self._at((-0.24, 0.54), (0.24, 0.54)), width=2.2)
 
-    def _motor(self, sheet):
+    def _motor(self, drawing):
         ((x, y),) = self._at((0, 0.5))
-        self._stem(sheet, 0.28)
-        sheet.circle(x, y, 0.22)
-        sheet.text(x, y - 0.01, "M", size=9)
+        self._stem(drawing, 0.28)
+        drawing.circle(x, y, 0.22)
+        drawing.text(x, y - 0.01, "M", size=9)
 
-    def _solenoid(self, sheet):
+    def _solenoid(self, drawing):
         ((x, y),) = self._at((0, 0.5))
-        self._stem(sheet, 0.28)
-        sheet.area(self._at((-0.22, 0.28), (-0.22, TOP), (0.22, TOP), (0.22, 0.28)), fill="white")
-        sheet.text(x, y - 0.01, "S", size=9)
+        self._stem(drawing, 0.28)
+        drawing.area(self._at((-0.22, 0.28), (-0.22, TOP), (0.22, TOP), (0.22, 0.28)), fill="white")
+        drawing.text(x, y - 0.01, "S", size=9)
 
-    def _hand(self, sheet):
-        self._stem(sheet, WHEEL)
-        sheet.wire(*self._at((-0.22, WHEEL), (0.22, WHEEL)))
+    def _hand(self, drawing):
+        self._stem(drawing, WHEEL)
+        drawing.wire(*self._at((-0.22, WHEEL), (0.22, WHEEL)))
 
-    def _safety(self, sheet):
-        self._stem(sheet, 0.3)
-        sheet.zigzag(*self._at((0, 0.28), (0, TOP - 0.02)), teeth=3, height=0.13)
+    def _safety(self, drawing):
+        self._stem(drawing, 0.3)
+        drawing.zigzag(*self._at((0, 0.28), (0, TOP - 0.02)), teeth=3, height=0.13)
 
-    def _reducing(self, sheet):
-        self._diaphragm(sheet)
-        sheet.wire(*self._at((0.26, 0.48), (0.56, 0.48), (0.56, 0)), width=THIN)
+    def _reducing(self, drawing):
+        self._diaphragm(drawing)
+        drawing.wire(*self._at((0.26, 0.48), (0.56, 0.48), (0.56, 0)), width=THIN)
 
 
 def _opposite(way):

@@ -164,7 +164,7 @@ def call_filter() -> tuple[ctypes.CDLL, int]:
     for family in set(range(max(_FAMILIES))) - {*_FAMILIES}:
         refuse("socket", errno.EAFNOSUPPORT, _Comparison(0, _EQUAL, family))
     refuse("socket", errno.EAFNOSUPPORT, _Comparison(0, _ABOVE, max(_FAMILIES)))
-    for size in (_SNDBUF, _RCVBUF):  # `warm.SOCKET` is what it is without
+    for size in (_SNDBUF, _RCVBUF):  # `fork_server.SOCKET` is what it is without
         refuse("setsockopt", errno.EPERM, _Comparison(1, _EQUAL, _SOL_SOCKET), _Comparison(2, _EQUAL, size))
     for command in _LOCKS:
         refuse("fcntl", errno.ENOLCK, _Comparison(1, _EQUAL, command))

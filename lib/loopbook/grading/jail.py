@@ -1,4 +1,4 @@
-"""A jail for submissions: bubblewrap around a warm process, and what a submission told before it ended.
+"""A jail for submissions: bubblewrap around a fork server, and what a submission told before it ended.
 
 The list of what is visible inside is `visible`: the system's programs and libraries, Python, its packages, and this
 library, all read-only. There is no network, no environment, no descriptor but one for the events, and nothing else of
@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, Self
 from loopbook.grading import GradingError, NoJail
 from loopbook.grading.confinement import HOME
 from loopbook.grading.events import Story
-from loopbook.grading.warm import KILL
+from loopbook.grading.fork_server import KILL
 
 if TYPE_CHECKING:
     from loopbook.grading.events import Outcome
@@ -60,7 +60,7 @@ class Limits:
     Attributes:
         cell, total: wall time of a cell, and of the notebook.
         cpu: processor time of each process.
-        memory: of all processes, beyond what they share with the warm one.
+        memory: of all processes, beyond what they share with the fork server.
         processes: processes and threads.
         file, disk: of one file, and of all.
         events: of what it tells, a line and all of it.
@@ -99,7 +99,7 @@ def demand_hidden(*paths: str | Path) -> None:
 
 
 def command() -> list[str]:
-    """Return the command that starts the warm process in bubblewrap. Raises NoJail where there is none."""
+    """Return the command that starts the fork server in bubblewrap. Raises NoJail where there is none."""
     program = shutil.which("bwrap")
     if sys.platform != "linux" or program is None:
         why = "bubblewrap is not installed" if sys.platform == "linux" else "a jail needs Linux"
@@ -109,7 +109,7 @@ def command() -> list[str]:
         )
     line = [program, "--die-with-parent", "--new-session", "--hostname", "jail"]
     line += ["--unshare-pid", "--unshare-ipc", "--unshare-net", "--unshare-uts", "--unshare-cgroup-try"]
-    if os.geteuid() == 0:  # the warm process itself becomes nobody; the walls are built with root's rights
+    if os.geteuid() == 0:  # the fork server itself becomes nobody; the walls are built with root's rights
         line += ["--cap-drop", "ALL", "--cap-add", "CAP_SETUID", "--cap-add", "CAP_SETGID"]
     folders = [str(folder) for path in visible() for folder in [*Path(path).parents][-2::-1]]
     for folder in dict.fromkeys(folders):  # for nobody to pass through
@@ -124,7 +124,7 @@ def command() -> list[str]:
 
 
 class Jail:
-    """A warm process that runs one submission after another, each in walls of its own.
+    """A fork server that runs one submission after another, each in walls of its own.
 
     Arguments:
         jailed: without a jail, submissions run with the rights of whoever grades.
@@ -141,7 +141,7 @@ class Jail:
     def _start(self):
         ours, theirs = socket.socketpair()
         home = {} if self.jailed else dict.fromkeys(("HOME", "TMPDIR"), tempfile.gettempdir())
-        line = [*(command() if self.jailed else ()), PYTHON, "-m", "loopbook.grading.warm"]
+        line = [*(command() if self.jailed else ()), PYTHON, "-m", "loopbook.grading.fork_server"]
         with theirs, tempfile.TemporaryFile() as complaints:
             self.process = subprocess.Popen(
                 [*line, *(["jailed"] if self.jailed else [])],
@@ -162,7 +162,7 @@ class Jail:
                 raise NoJail(f"the {'jail' if self.jailed else 'process'} for submissions does not start: {why}")
 
     def _reply(self, seconds):
-        """The next line of the warm process; empty where it is gone or silent."""
+        """The next line of the fork server; empty where it is gone or silent."""
         self._control.settimeout(seconds)
         try:
             line = self._control.recv(65536)
@@ -171,7 +171,7 @@ class Jail:
             return {}
 
     def close(self) -> None:
-        """End the warm process, and whatever runs in its walls."""
+        """End the fork server, and whatever runs in its walls."""
         self._control.close()
         if self.process.poll() is None:
             self.process.kill()
@@ -186,7 +186,7 @@ class Jail:
     def run(self, content: bytes) -> Outcome:
         """Run a notebook, given as the bytes of its file; returns the `Outcome`. Raises NoJail as the start.
 
-        Where the warm process ends under it, which no submission in a jail can bring about, it runs once more.
+        Where the fork server ends under it, which no submission in a jail can bring about, it runs once more.
         """
         for _ in range(2):
             if self.process.poll() is not None:
@@ -212,7 +212,7 @@ class Jail:
             return self._followed(events, story)
 
     def _followed(self, events, story):
-        """The outcome of the submission that tells these events. Raises ConnectionError where the warm process ends."""
+        """The outcome of the submission that tells these events. Raises ConnectionError where the fork server ends."""
         end, why = monotonic() + self.limits.total, ""
         watched, done = [events, self._control], False
         while not done:

@@ -63,7 +63,7 @@ def earned(taken: Mapping[str, Any], points: float, **key: Kind) -> float:
     """Return the points that answers earn, and print what became of each; the hidden tests end in this call.
 
     Arguments:
-        taken: {quantity: plain data}, from `Sheet.taken`.
+        taken: {quantity: plain data}, from `AnswerSheet.taken`.
         points: of these quantities together; each brings the same part.
         key: a kind with its key for each quantity.
 

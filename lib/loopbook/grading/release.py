@@ -146,8 +146,8 @@ def bare(cells: list[NotebookNode]) -> NotebookNode:
 def set_up(title: str, student_id: str, questions: Mapping[str, Question]) -> list[str]:
     """Return the sources of the cells that make the sheet and say what it asks: forms, and nothing of the keys."""
     makers = {kind.asking.partition("(")[0] for question in questions.values() for kind in question.key.values()}
-    sheet = wrapped(f"sheet = Sheet({literal(title)}, student={literal(student_id)})")
-    sources = [f"{imported('loopbook.grading.sheet', {'Sheet', *makers})}\n\n{sheet}"]
+    sheet = wrapped(f"sheet = AnswerSheet({literal(title)}, student={literal(student_id)})")
+    sources = [f"{imported('loopbook.grading.answer_sheet', {'AnswerSheet', *makers})}\n\n{sheet}"]
     for number, question in questions.items():
         forms = [f"{name}={kind.asking}" for name, kind in question.key.items()]
         call = wrapped(f"sheet.asks({', '.join([literal(number), *forms])})")

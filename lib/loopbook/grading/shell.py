@@ -20,7 +20,7 @@ from IPython.core.interactiveshell import InteractiveShell
 from traitlets.config import Config
 
 from loopbook.exercises.judging import harmless
-from loopbook.grading import sheet
+from loopbook.grading import answer_sheet
 
 
 class _Quiet(DisplayHook):
@@ -70,7 +70,7 @@ def shell() -> InteractiveShell:
     settings.HistoryManager.enabled = False
     settings.InteractiveShell.colors = "nocolor"
     made = _Shell.instance(config=settings)
-    made.user_ns["sheet"] = sheet.Sheet("", student="")
+    made.user_ns["sheet"] = answer_sheet.AnswerSheet("", student="")
     return made
 
 
@@ -98,12 +98,14 @@ def cells(content: bytes) -> tuple[list[str], dict[str, Any]]:
     return sources, metadata
 
 
-def run(content: bytes, warm: InteractiveShell, tell: Callable[[dict[str, Any]], object], seconds: float) -> None:
+def run(
+    content: bytes, interpreter: InteractiveShell, tell: Callable[[dict[str, Any]], object], seconds: float
+) -> None:
     """Run a notebook, cell after cell; after an error the next cell follows.
 
     Arguments:
         content: the file, as bytes.
-        warm: the shell.
+        interpreter: the shell.
         tell: a function that takes an event, a dictionary with one entry: "refused" with a sentence, "made for" with
             the student that the notebook names, "cell" with the number of a code cell that begins, "error" with the
             cell and a sentence, "answer" with student, exercise and what was given, "end".
@@ -117,7 +119,7 @@ def run(content: bytes, warm: InteractiveShell, tell: Callable[[dict[str, Any]],
     named = metadata.get("loopbook")
     if isinstance(named, dict) and isinstance(named.get("student"), str):
         tell({"made for": named["student"]})
-    sheet.deliver = lambda student, exercise, given: tell(
+    answer_sheet.deliver = lambda student, exercise, given: tell(
         {"answer": {"student": student, "exercise": exercise, "given": given}}
     )
     signal.signal(signal.SIGALRM, _out_of_time)
@@ -125,18 +127,18 @@ def run(content: bytes, warm: InteractiveShell, tell: Callable[[dict[str, Any]],
     random.seed(0), np.random.seed(0)  # the same numbers each time it is graded
     for number, source in enumerate(sources, start=1):
         tell({"cell": number})
-        says = _error(warm, source, seconds)
+        says = _error(interpreter, source, seconds)
         if says:
             tell({"error": {"cell": number, "says": says}})
     tell({"end": True})
 
 
-def _error(warm, source, seconds):
+def _error(interpreter, source, seconds):
     """Run a cell, and return the error that ended it, in a line; an empty text where there was none."""
     # again each second: the first one may meet an ``except:`` of the cell
     signal.setitimer(signal.ITIMER_REAL, seconds, 1)
     try:
-        result = warm.run_cell(source)
+        result = interpreter.run_cell(source)
         problem = result.error_before_exec or result.error_in_exec
         signal.setitimer(signal.ITIMER_REAL, 0)
     except BaseException as late:  # in the shell's own work, before or after the cell's

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from loopbook.grading import GradingError
+from loopbook.grading.entries import FAILURES, entries, shown, why
 from loopbook.grading.owners import Owners, is_notebook
-from loopbook.grading.places import FAILURES, entries, shown, why
 from loopbook.grading.roster import Student
 
 #: The largest notebook that is read, in bytes.

@@ -1,4 +1,4 @@
-"""The process that waits in the jail with all libraries imported, and forks for each submission.
+"""The fork server: it waits in the jail with all libraries imported, and forks for each submission.
 
 It never sees a notebook: it hands two descriptors on, one to read the notebook from and one to tell events to. For
 each submission it forks a guard, which moves into namespaces of its own (users, processes, files, network, IPC) and

@@ -6,8 +6,8 @@ of the integral of the squared error in the letters of `loopbook.ise.pi_first_or
 
 from sympy import atan, pi, sqrt, tan
 
+from cheat_sheet.letters import T0, A, L, P, Q, T, Ti, a, d, k, omega, q, rho, short, sigma, theta, x
 from loopbook import s
-from sheet.letters import T0, A, L, P, Q, T, Ti, a, d, k, omega, q, rho, short, sigma, theta, x
 
 ZERO_T3 = short / T / ((short - T0) * s + 1)
 RELAY = 4 * d / (pi * A)

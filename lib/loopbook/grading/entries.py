@@ -1,4 +1,4 @@
-"""Places where submissions lie: a folder, or a zip file that nobody unpacks; no link is followed."""
+"""What lies among the submissions, in a folder or in a zip file that nobody unpacks; no link is followed."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from loopbook.exercises.kinds import Kind
 
 __all__ = [
-    "Sheet", "expression", "number", "numbers", "poles", "settings", "time_function", "transfer_function", "word",
+    "AnswerSheet", "expression", "number", "numbers", "poles", "settings", "time_function", "transfer_function", "word",
     "words",
 ]  # fmt: skip
 
@@ -40,14 +40,14 @@ _COLOUR = "#5a5a5a"
 _NO_VERDICT = "This says nothing about right or wrong."
 
 
-class Sheet:
+class AnswerSheet:
     """The answers of one student to an assignment.
 
     Arguments:
         title: of the assignment.
         student: the student's id.
 
-    >>> sheet = Sheet("Tuning", student="s1001")
+    >>> sheet = AnswerSheet("Tuning", student="s1001")
     >>> sheet.asks("1", Kp=number("%/K"), Ti=number("s"))
     >>> sheet.answer("1", Kp=2, Ti="2 min")
     · Exercise 1

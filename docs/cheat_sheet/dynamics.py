@@ -5,26 +5,8 @@ import functools
 import sympy
 from sympy import cos, exp, sin, sqrt, symbols
 
-from loopbook import s, t
-from loopbook.approximation import half_rule, pade, taylor
-from loopbook.ise import residue_method
-from loopbook.laplace import transform
-from loopbook.oscillation import Oscillation
-from loopbook.pid import PID
-from loopbook.transfer import (
-    double_integrator,
-    feedback,
-    first_order,
-    integrator,
-    integrator_with_lag,
-    poles,
-    second_order,
-    simplified,
-    static_gain,
-    step_response,
-)
-from sheet.formulas import latex
-from sheet.letters import (
+from cheat_sheet.formulas import latex
+from cheat_sheet.letters import (
     G0,
     T0,
     T1,
@@ -45,8 +27,8 @@ from sheet.letters import (
     theta,
     zeta,
 )
-from sheet.section import Is, Section, joined, shown
-from sheet.stated import (
+from cheat_sheet.section import Is, Section, joined, shown
+from cheat_sheet.stated import (
     GAIN_MARGIN,
     ISE,
     MORE_DEAD_TIME,
@@ -59,6 +41,24 @@ from sheet.stated import (
     SIGMA,
     TWICE_X,
     ZERO_T3,
+)
+from loopbook import s, t
+from loopbook.approximation import half_rule, pade, taylor
+from loopbook.ise import residue_method
+from loopbook.laplace import transform
+from loopbook.oscillation import Oscillation
+from loopbook.pid import PID
+from loopbook.transfer import (
+    double_integrator,
+    feedback,
+    first_order,
+    integrator,
+    integrator_with_lag,
+    poles,
+    second_order,
+    simplified,
+    static_gain,
+    step_response,
 )
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import sympy
 
-from sheet.formulas import latex
+from cheat_sheet.formulas import latex
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""A place to grade several classes in, whose jails and judges are started once."""
+"""An executor to grade several classes with, whose jails and judges are started once."""
 
 import contextlib
 from concurrent.futures import ThreadPoolExecutor

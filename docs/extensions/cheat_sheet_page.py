@@ -4,9 +4,9 @@ import logging
 import re
 from pathlib import Path
 
+from cheat_sheet.contents import LETTERS, TITLE, sections
+from cheat_sheet.layout import draw
 from docutils import nodes
-from sheet.contents import LETTERS, TITLE, sections
-from sheet.layout import draw
 from slugs import slug
 from sphinx import addnodes
 from sphinx.util.docutils import SphinxDirective

@@ -5,23 +5,8 @@ import functools
 import sympy
 from sympy import symbols
 
-from loopbook.approximation import Model, pade
-from loopbook.synthesis import IMC_TABLE, imc
-from loopbook.transfer import (
-    first_order,
-)
-from loopbook.tuning import (
-    cohen_coon,
-    good_gain,
-    itae,
-    modified_ziegler_nichols,
-    simc,
-    tyreus_luyben,
-    ziegler_nichols_reaction,
-    ziegler_nichols_ultimate,
-)
-from sheet.formulas import latex
-from sheet.letters import (
+from cheat_sheet.formulas import latex
+from cheat_sheet.letters import (
     T1,
     T2,
     T3,
@@ -37,9 +22,24 @@ from sheet.letters import (
     tau,
     theta,
 )
-from sheet.section import Section
-from sheet.stated import (
+from cheat_sheet.section import Section
+from cheat_sheet.stated import (
     RELAY,
+)
+from loopbook.approximation import Model, pade
+from loopbook.synthesis import IMC_TABLE, imc
+from loopbook.transfer import (
+    first_order,
+)
+from loopbook.tuning import (
+    cohen_coon,
+    good_gain,
+    itae,
+    modified_ziegler_nichols,
+    simc,
+    tyreus_luyben,
+    ziegler_nichols_reaction,
+    ziegler_nichols_ultimate,
 )
 
 

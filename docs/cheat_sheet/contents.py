@@ -4,7 +4,7 @@ What no function derives with letters (a relay's ultimate gain, the margins of o
 tests/repository/test_cheat_sheet.py compares it with the numbers of the library.
 """
 
-from sheet import dynamics, rules
+from cheat_sheet import dynamics, rules
 
 TITLE = "Process control on one page"
 LETTERS = (

@@ -1,4 +1,4 @@
-"""The sheet that every diagram is drawn on, and how its labels are written."""
+"""What the parts of a diagram draw on, and how labels are written."""
 
 from __future__ import annotations
 
@@ -66,24 +66,24 @@ def text_size(label: str, size: float = FONT_SIZE) -> tuple[float, float]:
     return float(max(line.width for line in lines) / 72 / INCHES), float(height / 72 / INCHES)
 
 
-class Sheet:
-    """What the parts of a diagram draw on: schemdraw's segments at given places."""
+class Drawing:
+    """A drawing of schemdraw's segments at given places."""
 
     def __init__(self) -> None:
         import schemdraw
         from schemdraw import segments
 
         self.segments = segments
-        self.drawing = schemdraw.Drawing(show=False)
+        self.schemdraw = schemdraw.Drawing(show=False)
         font = {"font": STYLE["font.family"], "mathfont": STYLE["mathtext.fontset"], "fontsize": FONT_SIZE}
-        self.drawing.config(inches_per_unit=INCHES, lw=LINE, **font)
+        self.schemdraw.config(inches_per_unit=INCHES, lw=LINE, **font)
 
     def _add(self, segment):
         from schemdraw.elements import Element
 
         element = Element().at((0, 0)).theta(0)
         element.segments.append(segment)
-        self.drawing.add(element)
+        self.schemdraw.add(element)
 
     def wire(
         self, *points: XY, arrow: str | None = None, width: float = LINE, style: str = "-", zorder: int | None = None
@@ -148,7 +148,7 @@ class Sheet:
         with matplotlib.rc_context(STYLE):
             figure = Figure()
             axes = figure.add_axes((0, 0, 1, 1))
-            self.drawing.draw(show=False, canvas=axes)
+            self.schemdraw.draw(show=False, canvas=axes)
             axes.set_axis_off()
             axes.set_aspect("equal")
             left, right, bottom, top = self._extent(axes)
@@ -163,7 +163,7 @@ class Sheet:
     def _extent(self, axes, margin=0.1):
         """Left, right, bottom and top of the drawing: schemdraw guesses the width of mathematics from its source, so
         the lines and the labels as they are decide how wide the drawing is."""
-        box, lines = self.drawing.get_bbox(), axes.dataLim
+        box, lines = self.schemdraw.get_bbox(), axes.dataLim
         xs, ys = [lines.xmin - margin, lines.xmax + margin], [box.ymin - margin, box.ymax + margin]
         for text in axes.texts:
             (x, y), (width, height) = text.get_position(), text_size(text.get_text(), text.get_fontsize())
