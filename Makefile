@@ -19,7 +19,7 @@ help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' Makefile
 
 lab: .venv/ready ## open the collection in JupyterLab
-	$(python) -m jupyterlab
+	$(python) -m jupyterlab --config jupyter_lab_config.py
 
 test: .venv/ready ## prove everything: the library, the ledger and every cell of every notebook
 	$(python) -m pytest -n $(workers)

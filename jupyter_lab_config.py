@@ -1,4 +1,4 @@
-"""JupyterLab in this folder opens the chapters; `make lab` and the tests start it without more words."""
+"""How JupyterLab starts, for `make lab` and for the tests: it opens the folder of the chapters."""
 
 import os
 

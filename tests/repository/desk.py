@@ -132,7 +132,6 @@ def jupyterlab(folder: Path, notebook: str) -> Iterator[str]:
     """JupyterLab as ``make lab`` starts it, in a folder of its own with one chapter in it: the chapter's address."""
     (folder / "chapters").mkdir(parents=True)
     shutil.copy(ROOT / "chapters" / notebook, folder / "chapters")
-    shutil.copy(ROOT / "jupyter_lab_config.py", folder)
     settings = folder / "config" / "labconfig"
     settings.mkdir(parents=True)
     # the question about news would ask the network
@@ -145,8 +144,8 @@ def jupyterlab(folder: Path, notebook: str) -> Iterator[str]:
     environment = {**os.environ, **{name: str(folder / place) for name, place in own.items()}}
     environment["MPLCONFIGDIR"] = matplotlib.get_cachedir()  # a new list of fonts costs seconds
     environment.pop("LOOPBOOK_PROGRESS", None)
-    command = [sys.executable, "-m", "jupyterlab", "--no-browser", f"--IdentityProvider.token={token}"]
-    command += [f"--ServerApp.port={port}", "--ServerApp.port_retries=0"]
+    command = [sys.executable, "-m", "jupyterlab", "--config", ROOT / "jupyter_lab_config.py", "--no-browser"]
+    command += [f"--ServerApp.port={port}", "--ServerApp.port_retries=0", f"--IdentityProvider.token={token}"]
     with open(folder / "log", "w", encoding="utf-8") as log:
         server = subprocess.Popen(command, cwd=folder, env=environment, stdout=log, stderr=log)
         try:
