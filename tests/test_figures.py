@@ -11,18 +11,9 @@ import sympy
 from sympy import DiracDelta, Heaviside, exp
 
 from loopbook.deadtime import Loop
-from loopbook.figures import (
-    INPUTS,
-    ROLES,
-    STYLE,
-    level_plot,
-    map_plot,
-    plain_words,
-    plane_plot,
-    response_look,
-    time_plot,
-    trends,
-)
+from loopbook.figures import level_plot, map_plot, plane_plot, time_plot, trends
+from loopbook.figures.picture import plain_words
+from loopbook.figures.style import INPUTS, ROLES, STYLE, look
 from loopbook.laplace import s, t
 from loopbook.pid import PID, Controller
 from loopbook.plants import WoodChipTank
@@ -93,18 +84,18 @@ def test_role_decides_colour_wherever_it_stands(role):
 
 
 def test_no_two_looks_agree_in_colour_or_in_grey():
-    assert len({look["color"] for look in ROLES.values()}) == len(ROLES)
-    assert len({look["linestyle"] for look in ROLES.values()}) == len(ROLES)
-    looks = [response_look(n) for n in range(20)]
+    assert len({line["color"] for line in ROLES.values()}) == len(ROLES)
+    assert len({line["linestyle"] for line in ROLES.values()}) == len(ROLES)
+    looks = [look(n) for n in range(20)]
     assert len({(look["color"], look["linestyle"]) for look in looks}) == 20
-    assert not {look["color"] for look in looks} & {look["color"] for look in ROLES.values()}
+    assert not {line["color"] for line in looks} & {line["color"] for line in ROLES.values()}
     assert set(INPUTS) < set(ROLES)
 
 
 def test_responses_go_on_with_the_next_look_in_the_next_panel():
     plot = time_plot([{"a": 1, "u": (1, "control signal")}, {"b": 2}], TIMES)
-    assert plot.lines["a"].get_color() == response_look(0)["color"]
-    assert plot.lines["b"].get_color() == response_look(1)["color"]
+    assert plot.lines["a"].get_color() == look(0)["color"]
+    assert plot.lines["b"].get_color() == look(1)["color"]
 
 
 def test_mark_is_on_the_curve_with_guides_beyond_both_axes():
@@ -253,8 +244,8 @@ def test_bad_marks_are_told_in_one_sentence():
 
 def test_a_number_is_the_look_of_that_response():
     plot = time_plot([{"a": (1, 1), "b": 2}, {"c": (3, 1)}], TIMES)
-    assert plot.lines["a"].get_color() == plot.lines["c"].get_color() == response_look(1)["color"]
-    assert plot.lines["b"].get_color() == response_look(0)["color"]
+    assert plot.lines["a"].get_color() == plot.lines["c"].get_color() == look(1)["color"]
+    assert plot.lines["b"].get_color() == look(0)["color"]
 
 
 def test_points_are_added_and_stay_inside():

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from loopbook.figures import sequence_trends
 from loopbook.plants import BatchTank
 from loopbook.sequence import Chart, Transition
-from loopbook.sequence_figures import sequence_trends
 from loopbook.signals import stepwise
 from loopbook.simulation import simulate
 from pictures import crossed_texts, overlapping_texts, smallest_print

@@ -13,7 +13,8 @@ from loopbook.deadtime import Loop, System
 from loopbook.deadtime.curves import frequency_curve, natural_range
 from loopbook.deadtime.pictures import bode_plot, frequency_data, nyquist_plot, step_plot
 from loopbook.expressions import s
-from loopbook.figures import Picture, PlanePlot, TimePlot, response_look
+from loopbook.figures import Picture, PlanePlot, TimePlot
+from loopbook.figures.style import look
 from loopbook.pid import PID
 from loopbook.quasipolynomials import read
 from pictures import in_inches, overlap
@@ -262,7 +263,7 @@ def test_several_systems_have_a_legend_and_looks_of_their_own(plot):
     axes = picture.figure.axes[0]
     assert set(gains) <= set(labels(axes))
     for number, label in enumerate(gains):
-        assert labelled(axes, label).get_color() == response_look(number)["color"]
+        assert labelled(axes, label).get_color() == look(number)["color"]
     assert picture.alt.startswith("Gains: K_p = 0.5, K_p = 1, K_p = 2: ")
 
 

@@ -13,7 +13,7 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.lines import Line2D
 from matplotlib.mathtext import MathTextParser
 
-from loopbook.figures import ROLES, STYLE
+from loopbook.figures.style import GREY, ROLES, STYLE
 
 POINTS = 72
 PAGE = (841.89, 595.28)  # A4 on its side, in points
@@ -21,7 +21,7 @@ MARGIN, GUTTER, COLUMNS = 24, 16, 3
 SIZE, SMALL, HEADING, TITLE = 8, 7.2, 9, 15  # of the type, in points
 LEADING = 3.0  # between rows
 GAP = 4  # at least, between the columns of a table
-COLOUR, GREY, RULE = ROLES["measurement"]["color"], "#555555", "#bbbbbb"
+COLOUR, RULE = ROLES["measurement"]["color"], "#bbbbbb"
 WIDTH = (PAGE[0] - 2 * MARGIN - (COLUMNS - 1) * GUTTER) / COLUMNS
 PARSER = MathTextParser("path")
 # Fonts as TrueType, so that words can be searched for and copied.

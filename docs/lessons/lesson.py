@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy
 
-from loopbook.figures import RESPONSE_COLOURS, RESPONSE_LINES, ROLES
+from loopbook.figures.style import RESPONSE_COLOURS, RESPONSE_LINES, ROLES
 
 ALPHABET = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_"
 TOP = len(ALPHABET) ** 2 - 1  # a value is two letters: finer than a screen, and a third of what decimals would take
@@ -65,7 +65,7 @@ class Curve:
         name: of the signal in what the lesson's function returns.
         label: how the legend calls it, with HTML for letters.
         panel: number of the picture, from the top.
-        role: as in `loopbook.figures`: a role, or the number of a response.
+        role: as in `loopbook.figures.style`: a role, or the number of a response.
     """
 
     name: str

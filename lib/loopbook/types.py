@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     import numpy
 
 __all__ = [
-    "Block", "HasTransferFunction", "ManualStretches", "Number", "SampledController", "Signal", "TransferFunctionLike",
+    "Block", "HasTransferFunction", "Limits", "ManualStretches", "Number", "SampledController", "Signal",
+    "TransferFunctionLike", "Values",
 ]  # fmt: skip
 
 #: A number of any kind; an expression where letters may stand.
@@ -21,6 +22,12 @@ Number: TypeAlias = float | int | Fraction | sympy.Expr
 
 #: A signal in time: a number, an expression in `t`, or an array with a value for each sample.
 Signal: TypeAlias = Union[Number, Sequence[float], "numpy.ndarray"]
+
+#: Numbers in a row, such as the moments of a plot.
+Values: TypeAlias = Union[Sequence[Number], "numpy.ndarray"]
+
+#: The lowest and the highest value of an axis.
+Limits: TypeAlias = tuple[Number, Number]
 
 #: What `transfer_function` reads: an expression in `s`, a number, a `PID`, a `Model`, a `System`, or of python-control.
 TransferFunctionLike: TypeAlias = Union[Number, "HasTransferFunction", "control.TransferFunction", "control.StateSpace"]

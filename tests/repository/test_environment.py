@@ -125,7 +125,6 @@ ORDER = [
     ["simulation"],
     ["sequence"],
     ["instruments"],
-    ["sequence_figures"],
     ["diagrams"],
     ["ledger", "notebooks"],
     ["exercises"],

@@ -9,21 +9,10 @@ import math
 from typing import TYPE_CHECKING
 
 from loopbook.deadtime.curves import frequency_curve, natural_range
-from loopbook.figures import (
-    ROLES,
-    STYLE,
-    WIDTH,
-    Picture,
-    PlanePlot,
-    TimePlot,
-    add_legend,
-    decades,
-    free_place,
-    legend_below,
-    plain_words,
-    response_look,
-    time_plot,
-)
+from loopbook.figures import Picture, PlanePlot, TimePlot, time_plot
+from loopbook.figures.labels import add_legend, decades, free_place, legend_below
+from loopbook.figures.picture import plain_words, titled
+from loopbook.figures.style import GUIDE, LEVEL, WIDTH, ZERO, look, styled
 from loopbook.quasipolynomials import DelayFraction, read
 from loopbook.validation import positive, real_numbers
 
@@ -39,11 +28,8 @@ if TYPE_CHECKING:
 
 __all__ = ["bode_plot", "frequency_data", "nyquist_plot", "step_plot"]
 
-GREY = "#555555"
-OF_GAIN = ROLES["control signal"]["color"]
-OF_PHASE = ROLES["measurement"]["color"]
-REFERENCE = {"color": GREY, "linestyle": (0, (6, 3)), "linewidth": 1, "zorder": 1.5}
-GUIDE = {"color": GREY, "linestyle": (0, (2, 2)), "linewidth": 1, "zorder": 1.6}
+OF_GAIN = look("control signal")["color"]
+OF_PHASE = look("measurement")["color"]
 LOWEST = 1e-8  # of the magnitude at low frequencies: what is drawn at least
 WHOLE = 3.0  # magnitude up to which a Nyquist plot shows a whole curve
 FLATTEST = 0.6, 0.75  # the least and the greatest height of a Nyquist plot beside its width
@@ -85,7 +71,6 @@ def bode_plot(
     >>> bode_plot(L, margins=margins(L), title="An integrator")
     <An integrator: magnitude and phase [deg] against omega [rad/s]; gain margin 3.14, phase margin 61.4°>
     """
-    import matplotlib
     import numpy
     from matplotlib.figure import Figure
 
@@ -97,13 +82,13 @@ def bode_plot(
     def size(values):
         return 20 * numpy.log10(abs(values)) if db else abs(values)
 
-    with matplotlib.rc_context(STYLE):
+    with styled():
         figure = Figure(figsize=(WIDTH, 0.85 * WIDTH), layout="constrained")
         above, below = figure.subplots(2, sharex=True)
         for place, (label, curve) in enumerate(curves.items()):
             with numpy.errstate(divide="ignore"):
-                above.plot(curve.omega, size(curve.values), label=label, **response_look(place))
-            below.plot(curve.omega, curve.phase, label=label, **response_look(place))
+                above.plot(curve.omega, size(curve.values), label=label, **look(place))
+            below.plot(curve.omega, curve.phase, label=label, **look(place))
         above.set_xscale("log")
         above.set_xlim(low, high)
         bottom, top = _magnitudes(curves.values(), with_one=margins is not None)
@@ -141,7 +126,7 @@ def _bode_margins(above, below, H, curve, margins, size, unit) -> None:
     (left, right), bottom = above.get_xlim(), above.get_ylim()[0]
     top_of_phase = below.get_ylim()[1]
     one = float(size(1.0))
-    above.axhline(one, **REFERENCE)
+    above.axhline(one, **LEVEL)
     still = {"scalex": False, "scaley": False}
     bar = {"linewidth": 2.4, "marker": "_", "markersize": 9, "markeredgewidth": 2, "zorder": 4, **still}
     labels, half_turns = [], set()
@@ -153,8 +138,8 @@ def _bode_margins(above, below, H, curve, margins, size, unit) -> None:
             continue
         there, angle = float(size(H(1j * w))), phase_at(w)
         above.plot([w, w], [one, there], color=OF_GAIN, **bar)
-        above.plot([w, w], [min(one, there), bottom], **GUIDE, **still)
-        below.plot([w, w], [top_of_phase, angle], **GUIDE, **still)
+        above.plot([w, w], [min(one, there), bottom], **GUIDE)
+        below.plot([w, w], [top_of_phase, angle], **GUIDE)
         below.plot([w], [angle], "o", color=OF_GAIN, markersize=5, zorder=4, **still)
         half_turns.add(round(angle))
         words = f"{name} {_short(size(value))} dB" if size(10.0) == 20 else f"{name} {_short(value)}"
@@ -164,14 +149,14 @@ def _bode_margins(above, below, H, curve, margins, size, unit) -> None:
         angle = phase_at(w)
         half_turn = 360 * round((angle - 180) / 360) + 180
         below.plot([w, w], [half_turn, angle], color=OF_PHASE, **bar)
-        below.plot([w, w], [top_of_phase, max(angle, half_turn)], **GUIDE, **still)
-        above.plot([w, w], [one, bottom], **GUIDE, **still)
+        below.plot([w, w], [top_of_phase, max(angle, half_turn)], **GUIDE)
+        above.plot([w, w], [one, bottom], **GUIDE)
         above.plot([w], [one], "o", color=OF_PHASE, markersize=5, zorder=4, **still)
         half_turns.add(half_turn)
         words = _phase_words(margins, unit)
         labels.append((below, words, (w, half_turn), OF_PHASE, ("below left", "above left", "below right")))
     for angle in half_turns or {-180}:
-        below.axhline(angle, **REFERENCE)
+        below.axhline(angle, **LEVEL)
     above.figure.draw_without_rendering()
     for axes, words, point, colour, places in labels:
         free_place(axes, words, point, places, color=colour)
@@ -277,7 +262,6 @@ def nyquist_plot(
     >>> nyquist_plot(L, margins=margins(L))
     <imaginary part against real part; gain margin 3.14, phase margin 61.4°, Ms 1.59>
     """
-    import matplotlib
     import numpy
     from matplotlib.figure import Figure
 
@@ -291,27 +275,27 @@ def nyquist_plot(
         curves[label] = frequency_curve(fraction, low, high, _coarse)
     window = _window(curves.values(), margins, mirror, xlim, ylim)
     (left, right), (bottom, top) = window
-    with matplotlib.rc_context(STYLE):
+    with styled():
         rows = math.ceil((len(curves) + (3 if margins is None else 6)) / 2)
         tall = (WIDTH - 0.8) * (top - bottom) / (right - left) + 0.7 + 0.22 * rows + (0.2 if title else 0)
         figure = Figure(figsize=(WIDTH, tall), layout="constrained")
         axes = figure.subplots()
-        axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)
-        axes.axvline(0, color=GREY, linewidth=0.8, zorder=1)
+        axes.axhline(0, **ZERO)
+        axes.axvline(0, **ZERO)
         circle = numpy.exp(1j * numpy.linspace(0, 2 * math.pi, 361))
         axes.plot(circle.real, circle.imag, **(GUIDE | {"label": "unit circle"}))
         for place, (label, curve) in enumerate(curves.items()):
-            look = response_look(place)
+            line = look(place)
             x, y = curve.values.real, curve.values.imag
-            axes.plot(x, y, label=label or r"$L(j\omega)$", **look)
+            axes.plot(x, y, label=label or r"$L(j\omega)$", **line)
             if mirror:
                 thin = {"linewidth": 0.7, "linestyle": "-", "zorder": 1.8}
-                axes.plot(x, -y, label=r"$L(-j\omega)$" if len(curves) == 1 else None, **(look | thin))
+                axes.plot(x, -y, label=r"$L(-j\omega)$" if len(curves) == 1 else None, **(line | thin))
         axes.set_xlim(left, right)
         axes.set_ylim(bottom, top)
         axes.set_aspect("equal")
         for place, curve in enumerate(curves.values()):
-            _arrow(axes, curve, response_look(place)["color"])
+            _arrow(axes, curve, look(place)["color"])
         if margins is not None:
             (fraction,) = fractions.values()
             _nyquist_margins(axes, fraction, margins, unit)
@@ -408,17 +392,17 @@ def _nyquist_margins(axes, L, margins, unit) -> None:
         point = L(1j * margins.omega_c)
         angle = numpy.angle(point) % (2 * math.pi)
         arc = numpy.exp(1j * numpy.linspace(math.pi, angle, 90))
-        look = {"color": OF_PHASE, **still}
-        axes.plot(arc.real, arc.imag, linewidth=2.4, zorder=3.4, label=_phase_words(margins, unit), **look)
-        axes.plot([0, point.real], [0, point.imag], linewidth=1, linestyle=(0, (2, 2)), zorder=1.7, **look)
-        axes.plot([point.real], [point.imag], "o", markersize=6, zorder=4, **look)
+        of_phase = {"color": OF_PHASE, **still}
+        axes.plot(arc.real, arc.imag, linewidth=2.4, zorder=3.4, label=_phase_words(margins, unit), **of_phase)
+        axes.plot([0, point.real], [0, point.imag], linewidth=1, linestyle=(0, (2, 2)), zorder=1.7, **of_phase)
+        axes.plot([point.real], [point.imag], "o", markersize=6, zorder=4, **of_phase)
     if math.isfinite(margins.Ms) and margins.Ms > 0:
         circle = -1 + numpy.exp(1j * numpy.linspace(0, 2 * math.pi, 181)) / margins.Ms
-        look = {"color": "#CC79A7", "linewidth": 1.4, "linestyle": (0, (8, 2, 2, 2)), "zorder": 1.9}
-        axes.plot(circle.real, circle.imag, label=f"$M_s$ = {_short(margins.Ms)}", **look, **still)
+        thin = look("disturbance") | {"linewidth": 1.4, "zorder": 1.9}
+        axes.plot(circle.real, circle.imag, label=f"$M_s$ = {_short(margins.Ms)}", **thin, **still)
         if math.isfinite(margins.omega_ms):
             near = L(1j * margins.omega_ms)
-            axes.plot([-1, near.real], [0, near.imag], color="#CC79A7", linewidth=1.2, zorder=1.9, **still)
+            axes.plot([-1, near.real], [0, near.imag], color=thin["color"], linewidth=1.2, zorder=1.9, **still)
 
 
 # ------------------------------------------------------------------------------------------------ step responses
@@ -451,7 +435,6 @@ def step_plot(
     >>> step_plot(H, info=H.step_info(), title="Two poles")
     <Two poles: y(t) against t [s]; overshoot 16.3 %, rise time 1.64 s, settling time 8.08 s>
     """
-    import matplotlib
     import numpy
 
     systems = H if isinstance(H, dict) else {"": H}
@@ -488,7 +471,7 @@ def step_plot(
     names = ["$y$", "$u$"][: len(panels)] if controls or len(systems) > 1 else None
     plot = time_plot(panels, times, title=title, xlabel=f"$t$ [{unit}]", ylabel=names)
     if info is not None:
-        with matplotlib.rc_context(STYLE):
+        with styled():
             found = _mark_info(plot.figure.axes[0], plot.lines[next(iter(y))], info, settling, rise, unit)
         plot.alt += "".join(f"{'; ' if k == 0 else ', '}{words}" for k, words in enumerate(found))
     return plot
@@ -507,7 +490,7 @@ def _mark_info(axes, line, info, settling, rise, unit) -> list[str]:
     if 0 < info.overshoot < math.inf:  # room for its name
         bottom, top = (bottom, top + 0.08 * (top - bottom)) if sign > 0 else (bottom - 0.08 * (top - bottom), top)
     axes.set_ylim(bottom, top)
-    axes.axhline(final, **REFERENCE)
+    axes.axhline(final, **LEVEL)
     axes.axhspan(final - settling * size, final + settling * size, color="#eeeeee", zorder=0.4)
     bar = {"linewidth": 2.4, "marker": "_", "markersize": 9, "markeredgewidth": 2, "zorder": 4, **still}
     if info.overshoot > 0 and info.peak_time <= end:
@@ -521,7 +504,7 @@ def _mark_info(axes, line, info, settling, rise, unit) -> list[str]:
         floor = bottom if sign > 0 else top
         level = floor + 0.06 * (final - floor)
         for moment, share in ((start, rise[0]), (finish, rise[1])):
-            axes.plot([moment] * 2, [floor, share * final], **GUIDE, **still)
+            axes.plot([moment] * 2, [floor, share * final], **GUIDE)
             axes.plot([moment], [share * final], "o", color="#000000", markersize=4, zorder=4, **still)
         axes.plot([start, finish], [level, level], color="#000000", marker="|", markersize=7, linewidth=1.4, **still)
         labels.append((found[-1], (finish, level), ("right", "above right"), "#000000"))
@@ -529,7 +512,7 @@ def _mark_info(axes, line, info, settling, rise, unit) -> list[str]:
         found.append(f"settling time {_short(info.settling_time)} {unit}")
         there = numpy.interp(info.settling_time, times, values)
         floor = bottom if sign > 0 else top
-        axes.plot([info.settling_time] * 2, [floor, there], **GUIDE, **still)
+        axes.plot([info.settling_time] * 2, [floor, there], **GUIDE)
         axes.plot([info.settling_time], [there], "o", color="#000000", markersize=5, zorder=4, **still)
         middle = floor + 0.45 * (final - floor)
         labels.append((found[-1], (info.settling_time, middle), ("left", "right"), "#000000"))
@@ -665,4 +648,4 @@ def _alt(title, words, margins, with_sensitivity=False) -> str:
         if with_sensitivity:
             marks.append(f"Ms {_short(margins.Ms)}")
         words = f"{words}; {', '.join(marks)}"
-    return f"{plain_words(title)}: {words}" if title else words
+    return titled(title, words)

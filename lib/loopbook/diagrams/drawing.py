@@ -8,7 +8,9 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import TypeAlias
 
-from loopbook.figures import STYLE, Picture, plain_words
+from loopbook.figures import Picture
+from loopbook.figures.picture import plain_words
+from loopbook.figures.style import STYLE, styled
 
 # Lengths are in drawing units of half an inch, as schemdraw has them.
 INCHES = 0.5
@@ -142,10 +144,9 @@ class Drawing:
         self.text(x + dx, y + dy, {"+": "$+$", "-": "$-$"}[sign])
 
     def picture(self, title: str | None, words: str) -> Picture:
-        import matplotlib
         from matplotlib.figure import Figure
 
-        with matplotlib.rc_context(STYLE):
+        with styled():
             figure = Figure()
             axes = figure.add_axes((0, 0, 1, 1))
             self.schemdraw.draw(show=False, canvas=axes)

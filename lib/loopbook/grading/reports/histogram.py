@@ -6,7 +6,8 @@ import io
 import re
 from collections.abc import Sequence
 
-from loopbook.figures import STYLE, WIDTH, Picture
+from loopbook.figures import Picture
+from loopbook.figures.style import STYLE, WIDTH
 from loopbook.grading.reports.wording import counted, number
 
 _BAR = "#0072B2"

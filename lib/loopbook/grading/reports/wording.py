@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
 from loopbook.exercises.reading import shortened
-from loopbook.figures import plain_words
+from loopbook.figures.picture import plain_words
 
 if TYPE_CHECKING:
     from loopbook.grading.plain import Plain

@@ -2,24 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any, Protocol
 
-from loopbook.figures import DOTS_PER_INCH, ROLES, STYLE, WIDTH, TimePlot, plain_words
+import numpy as np
+import sympy
 
-if TYPE_CHECKING:
-    from loopbook.sequence import Chart
-    from loopbook.simulation import Run
-
-__all__ = ["sequence_trends"]
+from loopbook.figures.picture import titled
+from loopbook.figures.style import DOTS_PER_INCH, WIDTH, look, styled
+from loopbook.figures.time import Recorded, TimePlot
 
 ROW = 0.24  # inches, of a signal that is on or off and of a step
 BAR = 0.62  # height of a bar in its row
 
 
+class Charted(Protocol):
+    """The chart of a run, a `sequence.Chart` or what has its steps and outputs."""
+
+    @property
+    def tag(self) -> str:
+        """What the names of its steps in a run begin with."""
+
+    @property
+    def steps(self) -> Collection[str]:
+        """The names of the steps; the signal ``tag.step`` of a run is 1 while the step is active."""
+
+    @property
+    def outputs(self) -> Mapping[str, Any]:
+        """The signals that it sets by their names, with what they are at the beginning."""
+
+
 def sequence_trends(
-    run: Run,
-    chart: Chart,
+    run: Recorded,
+    chart: Charted,
     signals: Sequence[str | tuple[str, str]],
     on_off: Sequence[str] | None = None,
     title: str | None = None,
@@ -48,7 +63,6 @@ def sequence_trends(
     >>> sequence_trends(simulate(BatchTank(), [chart], until=240, step=2), chart, ["h"], title="Filling")
     <Filling: h; on and off: u_valve_in; active steps: Fill, Full against t [s]>
     """
-    import matplotlib
     from matplotlib.figure import Figure
 
     signals, on_off = _checked(run, chart, signals, on_off)
@@ -56,7 +70,7 @@ def sequence_trends(
     times = run.times / (60 if minutes else 1)
     heights = [1.05] * len(signals) + [ROW * len(group) + 0.2 for group in rows]
     lines = {}
-    with matplotlib.rc_context(STYLE):
+    with styled():
         figure = Figure(figsize=(WIDTH, 0.9 + sum(heights)), layout="constrained")
         grid = figure.subplots(len(heights), sharex=True, squeeze=False, height_ratios=heights)[:, 0]
         for axes, names in zip(grid, signals, strict=False):
@@ -64,7 +78,7 @@ def sequence_trends(
         for axes, group in zip(grid[len(signals) :], rows, strict=True):
             steps = group is not on_off
             active = [run[f"{chart.tag}.{name}"] if steps else run[name] for name in group]
-            _bars(axes, times, group, active, "black" if steps else ROLES["control signal"]["color"])
+            _bars(axes, times, group, active, "black" if steps else look("control signal")["color"])
             axes.set_ylabel("active step" if steps else "on")
         grid[-1].set_xlim(times[0], times[-1])
         grid[-1].set_xlabel("$t$ [min]" if minutes else "$t$ [s]")
@@ -72,15 +86,15 @@ def sequence_trends(
         figure.align_ylabels()
     shown = [", ".join(name for names in signals for name in names)] * bool(signals)
     shown += [f"on and off: {', '.join(on_off)}"] * bool(on_off) + [f"active steps: {', '.join(chart.steps)}"]
-    head = f"{plain_words(title)}: " if title else ""
-    return TimePlot(figure, f"{head}{'; '.join(shown)} against t [{'min' if minutes else 's'}]", lines)
+    words = f"{'; '.join(shown)} against t [{'min' if minutes else 's'}]"
+    return TimePlot(figure, titled(title, words), lines)
 
 
 def _checked(run, chart, signals, on_off):
     """The names in lists, if the run has them all."""
     if not hasattr(run, "signals"):
         raise ValueError(f"the run is {run!r}: expected what simulate returns")
-    if not hasattr(chart, "markings"):
+    if not hasattr(chart, "steps"):
         raise ValueError(f"the chart is {chart!r}: expected a sequence.Chart")
     for what, group in (("signals", signals), ("on_off", on_off)):
         if not isinstance(group, (list, tuple)) and not (what == "on_off" and group is None):
@@ -100,17 +114,16 @@ def _checked(run, chart, signals, on_off):
 
 def _trend(axes, run, times, names):
     """Draw a measurement, with its setpoint, or what a controller sets; the lines by their names."""
-    import matplotlib.ticker
-    import sympy
+    from matplotlib.ticker import MaxNLocator
 
     lines = {}
     letter = f"${sympy.latex(sympy.Symbol(names[0]))}$"
     for name, role in zip(names, ("measurement", "setpoint"), strict=False):
         held = name in run.held
         role = "control signal" if held and role == "measurement" else role
-        (lines[name],) = axes.plot(times, run[name], drawstyle="steps-post" if held else "default", **ROLES[role])
+        (lines[name],) = axes.plot(times, run[name], drawstyle="steps-post" if held else "default", **look(role))
     low, high = axes.get_ylim()
-    ticks = matplotlib.ticker.MaxNLocator(4, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
+    ticks = MaxNLocator(4, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
     axes.set_yticks([tick for tick in ticks if low <= tick <= high])
     axes.set_ylabel(f"{letter} [{run.unit(names[0])}]")
     if len(names) == 2:
@@ -120,13 +133,11 @@ def _trend(axes, run, times, names):
 
 def _bars(axes, times, names, values, colour):
     """A row for each name, from the top down, with a bar while its value is 1."""
-    import numpy
-
     thin = 3 * (times[-1] - times[0]) / (WIDTH * DOTS_PER_INCH)  # what lasts for a scan is seen, too
     for n, value in enumerate(values):
-        on = numpy.r_[0, value > 0, 0]
-        begins, ends = (numpy.flatnonzero(numpy.diff(on) == change) for change in (1, -1))
-        ends = times[numpy.minimum(ends, len(times) - 1)]
+        on = np.r_[0, value > 0, 0]
+        begins, ends = (np.flatnonzero(np.diff(on) == change) for change in (1, -1))
+        ends = times[np.minimum(ends, len(times) - 1)]
         spans = [(times[begin], max(end - times[begin], thin)) for begin, end in zip(begins, ends, strict=True)]
         axes.broken_barh(spans, (-n - BAR / 2, BAR), facecolors=colour, linewidth=0, zorder=2)
     axes.set_ylim(0.4 - len(names), 0.6)

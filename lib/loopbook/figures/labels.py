@@ -1,0 +1,119 @@
+"""Legends, words and numbers where they hide nothing."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from loopbook.figures.style import ON_WHITE
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
+    from matplotlib.text import Text
+
+BELOW = "below"  # the name of a legend that lies under its axes
+
+
+def add_legend(axes: Axes, may_grow: bool, columns: int = 1) -> None:
+    """A legend where it hides no curve; if there is no such place, a flat one above them, for which the panel grows."""
+    if axes.get_legend() and axes.get_legend().get_gid() == BELOW:
+        legend_below(axes)
+        return
+    if any(type(drawn).__name__ == "QuadMesh" for drawn in axes.collections):
+        axes.legend(loc="upper right")  # the search for a free place would go through every cell of a map
+        return
+    if not may_grow:
+        axes.legend(ncols=columns)
+        return
+    box = _legend_box(axes)
+    hides = any(line.get_path().transformed(axes.transData).intersects_bbox(box, filled=False) for line in axes.lines)
+    if hides:
+        columns = len(axes.lines)
+        while columns > 1 and _legend_box(axes, ncols=columns).width > 0.95 * axes.bbox.width:
+            columns -= 1
+        box, scale = _legend_box(axes, ncols=columns, loc="upper right"), axes.yaxis.get_transform()
+        low, high = scale.transform(axes.get_ylim())
+        high += 1.1 * (high - low) * box.height / (axes.bbox.height - box.height)
+        axes.set_ylim(scale.inverted().transform([low, high]))
+
+
+def legend_below(axes: Axes, columns: int = 2) -> None:
+    """A legend under the axes, where a picture has no empty corner; what is added later is explained there, too."""
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=columns).set_gid(BELOW)
+
+
+def _legend_box(axes, **options):
+    legend = axes.legend(**options)
+    axes.figure.draw_without_rendering()
+    return legend.get_window_extent()
+
+
+def decades(axis: Axis, low: float, high: float) -> None:
+    """Ordinary numbers on a logarithmic axis from `low` to `high`: powers of ten, or 1, 2 and 5 where it is short."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    long = high / low > 300
+    axis.set_major_locator(LogLocator(subs=(1,) if long else (1, 2, 5), numticks=9 if long else 12))
+    plain = low >= 0.9e-3 and high <= 1.1e4
+    name = (lambda x, _: f"{x:g}") if plain or not long else (lambda x, _: f"$10^{{{round(math.log10(x))}}}$")
+    axis.set_major_formatter(FuncFormatter(name))
+    axis.set_minor_formatter(NullFormatter())
+
+
+# in points from the point that is named, and how the words lie around there
+PLACES = {
+    "right": (7, 0, "left", "center"),
+    "left": (-7, 0, "right", "center"),
+    "above": (0, 6, "center", "bottom"),
+    "below": (0, -6, "center", "top"),
+    "above right": (6, 4, "left", "bottom"),
+    "above left": (-6, 4, "right", "bottom"),
+    "below right": (6, -4, "left", "top"),
+    "below left": (-6, -4, "right", "top"),
+}
+
+
+def free_place(
+    axes: Axes, words: str, point: tuple[float, float], preferred: Sequence[str] = (), color: str = "#000000"
+) -> Text:
+    """Write words beside a point, at the first place where they hide no curve and no other words.
+
+    Arguments:
+        axes: of a figure that is otherwise finished, and has been drawn, so that its axes lie where they remain.
+        words: the text.
+        point: what it names, in the units of the axes.
+        preferred: the names of places that are tried first, as "above right".
+        color: of the words.
+    Returns:
+        The text of matplotlib.
+    """
+    frame = axes.get_window_extent()
+    taken = [text.get_window_extent() for text in axes.texts if text.get_text()]
+    if axes.get_legend():
+        taken.append(axes.get_legend().get_window_extent())
+    curves = [line.get_path().transformed(line.get_transform()) for line in axes.lines]
+    best = None
+    for far in (1, 2.5, 5):
+        for name in dict.fromkeys([*preferred, *PLACES]):
+            x, y, ha, va = PLACES[name]
+            text = axes.annotate(
+                words, point, (far * x, far * y), textcoords="offset points", ha=ha, va=va, color=color, zorder=5,
+                bbox=ON_WHITE,
+            )  # fmt: skip
+            box = text.get_window_extent()
+            hidden = sum(path.intersects_bbox(box, filled=False) for path in curves)
+            hidden += 3 * sum(box.overlaps(other) for other in taken)
+            hidden += 10 * (box.x0 < frame.x0 or box.x1 > frame.x1 or box.y0 < frame.y0 or box.y1 > frame.y1)
+            if not hidden:
+                if best:
+                    best[1].remove()
+                return text
+            if best is None or hidden < best[0]:
+                if best:
+                    best[1].remove()
+                best = hidden, text
+            else:
+                text.remove()
+    return best[1]

@@ -1,0 +1,116 @@
+"""A finished figure, as a notebook shows and stores it: sharp, light, and described in words."""
+
+from __future__ import annotations
+
+import base64
+import io
+import re
+import struct
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+from loopbook.figures.style import DOTS_PER_INCH, RESPONSE_COLOURS, ROLES, styled
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from PIL import Image
+
+
+class Picture:
+    """A finished figure that a notebook shows once, as the value of a cell, with a description for who cannot see it.
+
+    Attributes:
+        figure: the matplotlib figure, for any change that this module does not offer.
+        alt: the description in words; also what `print` and a plain-text display show.
+    """
+
+    def __init__(self, figure: Figure, alt: str):
+        self.figure = figure
+        self.alt = " ".join(alt.split())
+
+    def __repr__(self) -> str:
+        return f"<{self.alt}>"
+
+    def save(self, file: str | Path | BinaryIO, **options: Any) -> None:
+        """Write the figure to a file (a name ending in .png, .pdf or .svg, or an open file).
+
+        Arguments:
+            file: name or open binary file.
+            options: what else matplotlib's ``savefig`` understands.
+        """
+        with styled():
+            self.figure.savefig(file, **{"dpi": DOTS_PER_INCH, "bbox_inches": "tight", "pad_inches": 0.06} | options)
+
+    def png(self) -> bytes:
+        """Return the figure as the bytes of a PNG file, the same for the same versions of matplotlib and Pillow.
+
+        >>> from loopbook.figures import time_plot
+        >>> from loopbook.laplace import t
+        >>> time_plot({"$y(t)$": 2 * t}, [0, 1, 2]).png()[:4]
+        b'\\x89PNG'
+        """
+        from PIL import Image
+
+        full, small = io.BytesIO(), io.BytesIO()
+        self.save(full, format="png", metadata={"Software": None}, pil_kwargs={"compress_level": 1})
+        with_few_colours(Image.open(full).convert("RGB")).save(small, "PNG", optimize=True)
+        return small.getvalue()
+
+    # The figure belongs to an object of our own because Jupyter would draw a matplotlib figure its own way, without
+    # the description, and only after pyplot has been imported.
+    def _repr_mimebundle_(self, include=None, exclude=None):
+        image = self.png()
+        width, height = (round(dots * 96 / DOTS_PER_INCH) for dots in struct.unpack(">II", image[16:24]))
+        data = {"image/png": base64.b64encode(image).decode(), "text/plain": repr(self)}
+        return data, {"image/png": {"alt": self.alt, "width": width, "height": height}}
+
+
+def with_few_colours(image: Image.Image, shades: int = 3) -> Image.Image:
+    """A line drawing with the colours of its lines and areas, in a few shades towards white: a quarter as large.
+
+    Arguments:
+        image: of Pillow, in RGB.
+        shades: of each colour, for soft edges.
+    Returns:
+        The image with a palette.
+    """
+    from PIL import Image, ImageColor
+
+    count = {colour: number for number, colour in image.getcolors(image.width * image.height)}
+    lines = [*(look["color"] for look in ROLES.values()), *RESPONSE_COLOURS, "#000000"]
+    of_lines = [colour for colour in map(ImageColor.getrgb, lines) if colour in count]
+    # what covers half a per cent or more is an area or a grid, but for the white ones
+    of_areas = [c for c, number in count.items() if number > 0.005 * image.width * image.height and min(c) < 245]
+    mixed = [
+        tuple(round(255 + (x - 255) * k / shades) for x in colour)
+        for colour in [*of_lines, *of_areas]
+        for k in range(1, shades + 1)
+    ]
+    if all(max(colour) == min(colour) for colour in [*of_lines, *of_areas]):  # black and white: two bits a dot
+        greys = [colour for colour in of_areas if colour != (0, 0, 0)] or [(170, 170, 170)]
+        mixed = [(0, 0, 0), (100, 100, 100), max(greys, key=lambda colour: count.get(colour, 0))]
+    palette = Image.new("P", (1, 1))
+    palette.putpalette([x for colour in dict.fromkeys([(255, 255, 255), *mixed]) for x in colour])
+    return image.quantize(palette=palette, dither=Image.Dither.NONE)
+
+
+def plain_words(text: str) -> str:
+    r"""Return a label without its LaTeX commands, for a description in words.
+
+    >>> plain_words(r"$F_{\mathrm{in}}(t)$ after $\tau$")
+    'F_in(t) after tau'
+    >>> plain_words(r"$\dot{h}_{SP}$, $\frac{1}{T s}$")
+    'dh_SP/dt, (1)/(T s)'
+    """
+    text = re.sub(r"\\d?frac\{([^{}]*)\}\{([^{}]*)\}", r"(\1)/(\2)", text)
+    text = re.sub(r"\\dot\{(\w+)\}(_\w+|_\{\w+\})?", r"d\1\2/dt", text)
+    return re.sub(r"\\(mathrm|mathit|left|right)\b|[$\\{}]", "", text)
+
+
+def titled(title: str | None, words: str) -> str:
+    """Return the description of a figure behind its title, where it has one.
+
+    >>> titled("A lag with $T$ = 2", "y(t) against t [s]")
+    'A lag with T = 2: y(t) against t [s]'
+    """
+    return f"{plain_words(title)}: {words}" if title else words

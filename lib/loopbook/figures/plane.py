@@ -1,0 +1,249 @@
+"""Curves, areas, maps and levels in a plane: limits of stability, the complex plane, a criterion over two settings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Self
+
+import numpy as np
+
+from loopbook.figures.labels import add_legend, decades
+from loopbook.figures.picture import Picture, plain_words, titled
+from loopbook.figures.style import GREY, ON_WHITE, RESPONSE_COLOURS, WIDTH, ZERO, look, styled
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike
+
+    from loopbook.types import Number, Values
+
+
+class PlanePlot(Picture):
+    """What `plane_plot`, `map_plot` and `level_plot` return, to which areas, points and words can be added."""
+
+    def __init__(self, figure: Figure, alt: str):
+        super().__init__(figure, alt)
+        self.axes = figure.axes[0]
+
+    def area(self, x: Values, y: Values, label: str) -> Self:
+        """Shade the polygon with these corners; the legend calls it by its label. Returns the plot itself.
+
+        >>> plane_plot({"limit": ([1, 2], [2, 1])}, "$x$", "$y$").area([0, 1, 1], [0, 0, 1], "window")
+        <limit: y against x; area: window>
+        """
+        (patch,) = self.axes.fill(x, y, facecolor="#eeeeee", edgecolor=GREY, linewidth=1, label=label, zorder=0.5)
+        patch.set_hatch("///")
+        patch.set_hatch_linewidth(0.4)
+        return self._explained(f"; area: {plain_words(label)}")
+
+    def line(self, x: Values, y: Values, label: str, role: str | int = 0) -> Self:
+        """Add a curve, as a limit of stability over a map; look as in `plane_plot`. Returns the plot itself.
+
+        >>> plane_plot({"limit": ([1, 2], [2, 1])}, "$x$", "$y$").line([1, 2], [1, 2], "diagonal", role=1)
+        <limit: y against x; line: diagonal>
+        """
+        self.axes.plot(x, y, label=label, scalex=False, scaley=False, **look(role))
+        return self._explained(f"; line: {plain_words(label)}")
+
+    def points(self, x: Number | Values, y: Number | Values, label: str, mark: str = "o") -> Self:
+        """Add single points, by the name that the legend gives them. Returns the plot itself.
+
+        Arguments:
+            x, y: one value or as many for each.
+            label: their name.
+            mark: "o" for dots, "x" for crosses, as for poles; or another sign of Matplotlib, as "s" and "^".
+
+        >>> plane_plot({"limit": ([1, 2], [2, 1])}, "$x$", "$y$").points([1], [1], "settings")
+        <limit: y against x; points: settings>
+        """
+        dots = {"color": "#000000", "markersize": 6 if mark == "o" else 8, "markeredgewidth": 1.6, "zorder": 4}
+        self.axes.plot(x, y, mark, label=label, linestyle="", scalex=False, scaley=False, **dots)
+        return self._explained(f"; points: {plain_words(label)}")
+
+    def text(self, x: float, y: float, words: str) -> Self:
+        """Write words around a point of the plane. Returns the plot itself.
+
+        >>> plane_plot({"limit": ([1, 2], [2, 1])}, "$x$", "$y$").text(1.5, 1.8, "unstable")
+        <limit: y against x; unstable>
+        """
+        with styled():
+            self.axes.text(x, y, words, ha="center", va="center", zorder=5, bbox=ON_WHITE | {"pad": 1.5})
+        self.alt += f"; {plain_words(words)}"
+        return self
+
+    def _explained(self, words):
+        with styled():
+            add_legend(self.axes, may_grow=False)
+        self.alt += words
+        return self
+
+
+def plane_plot(
+    curves: Mapping[str, tuple[Values, Values] | tuple[Values, Values, str | int]],
+    xlabel: str,
+    ylabel: str,
+    title: str | None = None,
+    xlim: tuple[float, float] | None = None,
+    ylim: tuple[float, float] | None = None,
+    log: bool = False,
+    equal: bool = False,
+) -> PlanePlot:
+    """Plot curves in a plane: limits of stability, frequency responses in the complex plane.
+
+    Arguments:
+        curves: ``{label: (x, y)}`` with arrays of equal length; a curve may turn back, and is broken at a NaN. A third
+            item, a role or a number as in `time_plot`, gives it that look; by itself, curve after curve has its own.
+        xlabel, ylabel: names of the axes with their units.
+        title: stands above the plot; begins with the name of the book's figure where there is one.
+        xlim, ylim: lowest and highest value of an axis.
+        log: logarithmic axes.
+        equal: one unit is as long on both axes, as for complex numbers; then both axes are drawn at zero.
+    Returns:
+        A `PlanePlot`, which a notebook shows as the value of a cell; `.area`, `.points` and `.text` add to it.
+    Raises:
+        ValueError: for no curve, or unequal lengths.
+
+    >>> plane_plot({"limit": ([1, 2, 3], [3, 2, 1])}, "gain ratio", "delay ratio", "Figure 2")
+    <Figure 2: limit: delay ratio against gain ratio>
+    """
+    from matplotlib.figure import Figure
+
+    if not isinstance(curves, dict) or not curves:
+        raise ValueError(f"the curves are {curves!r}: expected {{label: (x, y)}} with at least one")
+    with styled():
+        figure = Figure(figsize=(WIDTH, 0.68 * WIDTH if not equal else 0.8 * WIDTH), layout="constrained")
+        axes = figure.subplots()
+        for number, (label, (x, y, *role)) in enumerate(curves.items()):
+            x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+            if x.shape != y.shape:
+                raise ValueError(f"{label} has {x.size} values for x and {y.size} for y: expected as many")
+            axes.plot(x, y, label=label, **look(role[0] if role else number))
+        _finish(axes, xlabel, ylabel, title, xlim, ylim, log)
+        if equal:
+            axes.set_aspect("equal")
+            axes.axhline(0, **ZERO)
+            axes.axvline(0, **ZERO)
+        if len(curves) > 1:
+            add_legend(axes, may_grow=False)
+    shown = ", ".join(map(plain_words, curves))
+    words = f"{shown}: {plain_words(ylabel)} against {plain_words(xlabel)}"
+    return PlanePlot(figure, titled(title, words))
+
+
+def map_plot(
+    x: Values,
+    y: Values,
+    numbers: ArrayLike,
+    xlabel: str,
+    ylabel: str,
+    label: str,
+    title: str | None = None,
+    log: bool = False,
+) -> PlanePlot:
+    """Plot whole numbers on a grid as shades of grey, white for 0, with a scale: a map of unstable poles, for example.
+
+    Arguments:
+        x, y: the values along the two axes, increasing arrays.
+        numbers: an integer array with a row for each y and a column for each x; a negative one is drawn as 0.
+        xlabel, ylabel: names of the axes with their units.
+        label: what the numbers are.
+        title, log: as in `plane_plot`.
+    Returns:
+        A `PlanePlot`.
+    Raises:
+        ValueError: for an array of another shape.
+
+    >>> map_plot([1, 2], [1, 2, 3], [[0, 0], [0, 2], [2, 4]], "$K_p$", "$T_i$ [s]", "unstable poles")
+    <unstable poles (0 to 4): T_i [s] against K_p>
+    """
+    from matplotlib.colors import ListedColormap, to_hex
+    from matplotlib.figure import Figure
+
+    x, y, numbers = _on_grid(x, y, numbers)
+    levels = sorted({int(n) for n in np.unique(numbers)} | {0})
+    levels = [n for n in levels if n >= 0]
+    shade = np.searchsorted(levels, np.maximum(numbers, 0))
+    greys = [
+        "#ffffff",
+        *(to_hex(str(g)) for g in np.linspace(0.82, 0.35, max(len(levels) - 1, 1))),
+    ]
+    colours = ListedColormap(greys[: len(levels)])
+    with styled():
+        figure = Figure(figsize=(WIDTH, 0.68 * WIDTH), layout="constrained")
+        axes = figure.subplots()
+        mesh = axes.pcolormesh(
+            x, y, shade, cmap=colours, vmin=-0.5, vmax=len(levels) - 0.5, shading="nearest", rasterized=True
+        )
+        axes.grid(False)
+        scale = figure.colorbar(mesh, ax=axes, ticks=range(len(levels)), label=label)
+        scale.ax.set_yticklabels(levels)
+        _finish(axes, xlabel, ylabel, title, (x[0], x[-1]), (y[0], y[-1]), log)
+    words = f"{plain_words(label)} ({levels[0]} to {levels[-1]}): {plain_words(ylabel)} against {plain_words(xlabel)}"
+    return PlanePlot(figure, titled(title, words))
+
+
+def level_plot(
+    x: Values,
+    y: Values,
+    values: ArrayLike,
+    levels: Sequence[float] | np.ndarray,
+    xlabel: str,
+    ylabel: str,
+    label: str,
+    title: str | None = None,
+    log: bool = False,
+) -> PlanePlot:
+    """Plot lines of equal value over a plane, with the value written on each: a criterion over two settings.
+
+    Arguments:
+        x, y: the values along the two axes, increasing arrays.
+        values: an array with a row for each y and a column for each x; what is not finite is left out.
+        levels: increasing values, those of the lines.
+        xlabel, ylabel: names of the axes with their units.
+        label: what the values are.
+        title, log: as in `plane_plot`.
+    Returns:
+        A `PlanePlot`.
+    Raises:
+        ValueError: for an array of another shape.
+
+    >>> import numpy as np
+    >>> x = y = np.array([1.0, 2.0, 3.0])
+    >>> level_plot(x, y, np.outer(y, x), [2, 4, 6], "$K_p$", "$T_i$ [s]", "ISE")
+    <levels of ISE, 2 to 6: T_i [s] against K_p>
+    """
+    from matplotlib.figure import Figure
+
+    x, y, values = _on_grid(x, y, values)
+    with styled():
+        figure = Figure(figsize=(WIDTH, 0.68 * WIDTH), layout="constrained")
+        axes = figure.subplots()
+        finite = np.ma.masked_invalid(values)
+        lines = axes.contour(x, y, finite, levels, colors=RESPONSE_COLOURS[0], linewidths=1.3)
+        axes.clabel(lines, fmt="%g", fontsize=9, colors="#000000")
+        _finish(axes, xlabel, ylabel, title, (x[0], x[-1]), (y[0], y[-1]), log)
+    words = f"levels of {plain_words(label)}, {levels[0]:g} to {levels[-1]:g}"
+    words = f"{words}: {plain_words(ylabel)} against {plain_words(xlabel)}"
+    return PlanePlot(figure, titled(title, words))
+
+
+def _on_grid(x, y, values):
+    """The arrays of two axes and of the values over them, if they fit."""
+    x, y, values = (np.asarray(array, dtype=float) for array in (x, y, values))
+    if values.shape != (len(y), len(x)):
+        raise ValueError(f"the values have the shape {values.shape}: expected {(len(y), len(x))}, a row for each y")
+    return x, y, values
+
+
+def _finish(axes, xlabel, ylabel, title, xlim, ylim, log):
+    """Names, limits and numbers of the axes."""
+    axes.set_xlabel(xlabel)
+    axes.set_ylabel(ylabel)
+    axes.set_title(title or "")
+    if log:
+        axes.set(xscale="log", yscale="log")
+    axes.set_xlim(xlim or axes.get_xlim())
+    axes.set_ylim(ylim or axes.get_ylim())
+    if log:
+        decades(axes.xaxis, *axes.get_xlim())
+        decades(axes.yaxis, *axes.get_ylim())
