@@ -9,16 +9,23 @@ import re
 import time
 
 import pytest
+from typer.testing import CliRunner
 
+from loopbook.__main__ import app
 from loopbook.exercises.authoring import answers, between, choice, exercise, expression, number, word
 from loopbook.exercises.bank import exercises
 from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
 from loopbook.exercises.response import MARKS
 from loopbook.expressions import s
-from loopbook.grading import reports
+from loopbook.grading import GradingError, reports
 from loopbook.grading.reports import page
 from loopbook.grading.reports.equal_answers import equal_answers, significant_digits
 from loopbook.grading.reports.findings import Findings
+from loopbook.grading.reports.outputs import output, registered
+from loopbook.grading.reports.outputs.feedback import feedback_html, feedback_markdown
+from loopbook.grading.reports.outputs.grades import grades_csv
+from loopbook.grading.reports.outputs.gradescope import results_json
+from loopbook.grading.reports.outputs.summary import summary_html, summary_markdown
 from loopbook.grading.reports.wording import NO_JAIL, answer_in_words, in_markdown, sentence_in_markdown
 from loopbook.grading.roster import Student
 
@@ -133,37 +140,37 @@ def rows(text):
 
 
 def test_grades_have_the_columns_that_canvas_imports():
-    table = rows(reports.grades_csv(TITLE, CLASS, RESULTS))
+    table = rows(grades_csv(TITLE, CLASS, RESULTS))
     assert table[0] == ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", TITLE]
     assert table[1] == ["Ada Lovelace", "17", "900", "ada", "A", "5"]
 
 
 def test_grades_have_two_decimals_at_most():
-    assert rows(reports.grades_csv(TITLE, CLASS, RESULTS))[2][-1] == "3.67"
+    assert rows(grades_csv(TITLE, CLASS, RESULTS))[2][-1] == "3.67"
 
 
 def test_who_handed_in_nothing_has_no_grade():
-    assert rows(reports.grades_csv(TITLE, CLASS, RESULTS))[4][-1] == ""
+    assert rows(grades_csv(TITLE, CLASS, RESULTS))[4][-1] == ""
 
 
 def test_who_was_not_graded_has_no_row():
-    assert len(rows(reports.grades_csv(TITLE, CLASS, [NAMED]))) == 2
+    assert len(rows(grades_csv(TITLE, CLASS, [NAMED]))) == 2
 
 
 def test_a_roster_without_identifications_of_an_lms_is_known_by_its_own():
-    assert rows(reports.grades_csv(TITLE, CLASS, RESULTS))[2][:4] == ["Bob Bode", "", "s1002", ""]
+    assert rows(grades_csv(TITLE, CLASS, RESULTS))[2][:4] == ["Bob Bode", "", "s1002", ""]
 
 
 @pytest.mark.parametrize("name", ["=1+1", "+1", "-1", "@SUM(A1)", " =1", "\t=1", "\r\n=1", "Doe;=1", "＝1", "Doe; -1"])
 def test_no_name_is_a_formula(name):
-    cell = rows(reports.grades_csv(TITLE, [Student("s1", name)], [RIGHT_ALL | {"student": "s1"}]))[1][0]
+    cell = rows(grades_csv(TITLE, [Student("s1", name)], [RIGHT_ALL | {"student": "s1"}]))[1][0]
     assert all(not part.strip().startswith(("=", "+", "-", "@", "＝")) for part in cell.split(";"))
     assert "\n" not in cell
 
 
 @pytest.mark.parametrize("name", ["Anne-Marie O'Hara", "Doe, Jane", 'Jane "J" Doe', "李 小龙", "Ünal"])
 def test_other_names_stay_as_they_are(name):
-    text = reports.grades_csv(TITLE, [Student("s1", name)], [RIGHT_ALL | {"student": "s1"}])
+    text = grades_csv(TITLE, [Student("s1", name)], [RIGHT_ALL | {"student": "s1"}])
     assert rows(text)[1][0] == name
 
 
@@ -203,8 +210,8 @@ class Checker(html.parser.HTMLParser):
 
 def pages(results):
     by_id = {student.id: student for student in CLASS}
-    found = [reports.feedback_html(TITLE, by_id[result["student"]], result) for result in results]
-    return [*found, reports.summary_html(TITLE, CLASS, results, ["two notebooks: a.ipynb and <b>.ipynb; keep one"])]
+    found = [feedback_html(TITLE, by_id[result["student"]], result) for result in results]
+    return [*found, summary_html(TITLE, CLASS, results, ["two notebooks: a.ipynb and <b>.ipynb; keep one"])]
 
 
 @pytest.mark.parametrize("text", pages(RESULTS))
@@ -227,7 +234,7 @@ def test_identifiers_in_a_page_are_unique(text):
 
 
 def test_a_students_texts_are_shown_and_not_run():
-    text = reports.feedback_html(TITLE, Student("s1003", HOSTILE), STOPPED)
+    text = feedback_html(TITLE, Student("s1003", HOSTILE), STOPPED)
     assert "".join(Checker(text).text).count("<script>alert(1)</script>") >= 3
     assert "<script" not in text
     assert "\\x1b[31m" in text
@@ -235,7 +242,7 @@ def test_a_students_texts_are_shown_and_not_run():
 
 
 def test_the_page_says_what_became_of_each_answer():
-    text = "".join(Checker(reports.feedback_html(TITLE, BOB, NAMED)).text)
+    text = "".join(Checker(feedback_html(TITLE, BOB, NAMED)).text)
     assert "3.67 of 5 points" in text
     assert "2.67 of 4 points" in text
     assert "≈ K mistake: That is the gain itself" in text
@@ -243,33 +250,88 @@ def test_the_page_says_what_became_of_each_answer():
 
 
 def test_the_page_says_what_stopped_and_what_failed():
-    for text in (reports.feedback_html(TITLE, EVE, STOPPED), reports.feedback_markdown(TITLE, EVE, STOPPED)):
+    for text in (feedback_html(TITLE, EVE, STOPPED), feedback_markdown(TITLE, EVE, STOPPED)):
         assert "stopped in cell 4: it took longer than 60 s" in text
         assert "cell 3: NameError" in text
         assert "stream" not in text  # what makes the instructor look is for the instructor
 
 
+# Whatever is registered.
+
+each_output = pytest.mark.parametrize("one", registered(), ids=lambda one: one.file)
+
+
+def texts(one, results=RESULTS, students=CLASS, **more):
+    return [text for _, text in one.files(TITLE, students, results, **more)]
+
+
+@each_output
+def test_an_output_is_one_file_or_one_for_each_student(one):
+    assert len(texts(one)) == (len(RESULTS) if one.is_for_each_student else 1)
+    assert len(texts(one, [])) == (0 if one.is_for_each_student else 1)
+
+
+@each_output
 @pytest.mark.parametrize("reveal", [False, True])
-def test_keys_are_shown_only_where_they_are_revealed(reveal):
+def test_keys_are_shown_only_where_they_are_revealed(one, reveal):
+    """And to students alone: who grades the class has them."""
     result = result_of(ADA, {"1": {"K": 1.5}})
     for exercise_ in result["exercises"]:
         for verdict in exercise_["verdicts"]:
             verdict["key"] = f"KEY{verdict['name']}"
-    for output in (
-        reports.feedback_html(TITLE, ADA, result, reveal),
-        reports.feedback_markdown(TITLE, ADA, result, reveal),
-        reports.results_json(result, reveal),
-    ):
-        assert output.count("KEY") == (4 if reveal else 0)
+    (text,) = texts(one, [result], reveal=reveal)
+    assert text.count("KEY") == (4 if reveal and one.is_for_each_student else 0)
 
 
-def test_without_a_jail_every_output_says_so(tmp_path):
-    reports.write_all(tmp_path, TITLE, CLASS, [result | {"jailed": False} for result in RESULTS])
-    files = [path for path in tmp_path.rglob("*") if path.is_file()]
-    assert len(files) == 3 + 3 * 4
-    assert [path for path in files if "without a jail" not in path.read_text("utf-8")] == []
-    reports.write_all(tmp_path, TITLE, CLASS, RESULTS)
-    assert [path for path in files if "without a jail" in path.read_text("utf-8")] == []
+@each_output
+def test_without_a_jail_an_output_says_so(one):
+    assert all("without a jail" in text for text in texts(one, [result | {"jailed": False} for result in RESULTS]))
+    assert not any("without a jail" in text for text in texts(one))
+
+
+@each_output
+def test_what_a_student_writes_leaves_no_output_torn(one):
+    hostile = Student("s1003", HOSTILE)
+    for text in texts(one, [STOPPED], [hostile]):
+        text.encode()
+        assert re.search(r"[\x00-\x09\x0b-\x1f\x7f-\x9f\u202e]", text) is None
+
+
+def test_the_command_lists_every_output():
+    told = " ".join(CliRunner().invoke(app, ["grade", "--help"], env={"COLUMNS": "200"}).output.split())
+    for one in registered():
+        assert f"{one.file}: {one.what}" in told
+
+
+@pytest.mark.parametrize(
+    ("file", "what", "makes", "says"),
+    [
+        ("grades.csv", "the grades", lambda results: "", "two outputs have the file 'grades.csv'"),
+        ("", "the grades", lambda results: "", "an output has the file ''"),
+        ("/grades.csv", "the grades", lambda results: "", "expected a place in the folder of the grades"),
+        ("a/../../grades.csv", "the grades", lambda results: "", "expected a place in the folder of the grades"),
+        ("new.csv", "", lambda results: "", "it is not said what it is"),
+        ("new.csv", None, lambda results: "", "it is not said what it is"),
+        ("new.csv", "the grades", lambda course: "", "asks for 'course': expected some of title, students, results"),
+        ("new.csv", "the grades", lambda student: "", "asks for 'student': expected some of title, students, results"),
+        ("{student}.csv", "the grade", lambda results: "", "asks for 'results': expected some of title, student, res"),
+    ],
+)
+def test_what_an_output_lacks_is_said(file, what, makes, says):
+    with pytest.raises(GradingError, match=re.escape(says)):
+        output(file, what)(makes)
+
+
+def test_what_is_no_text_is_refused():
+    with pytest.raises(GradingError, match=r"the output 'new\.csv' returns None: expected a text"):
+        list(reports.Output("new.csv", "the grades", lambda results: None).files(TITLE, CLASS, RESULTS))
+
+
+def test_a_module_of_the_folder_that_registers_nothing_is_named(tmp_path, monkeypatch):
+    (tmp_path / "blackboard.py").write_text("def grades(results):\n    return ''\n")
+    monkeypatch.setattr(reports.outputs, "__path__", [*reports.outputs.__path__, str(tmp_path)])
+    with pytest.raises(GradingError, match="blackboard registers no output: expected a function with @output"):
+        registered()
 
 
 def luminance(colour):
@@ -377,17 +439,17 @@ def test_formulas_stay_formulas_in_markdown():
 
 
 def test_the_pages_in_markdown():
-    text = reports.feedback_markdown(TITLE, BOB, NAMED)
+    text = feedback_markdown(TITLE, BOB, NAMED)
     assert text.startswith(f"# {TITLE}\n\nBob Bode (s1002)\n\n**3.67 of 5 points**\n")
     assert r"- ≈ `K` **mistake**: That is the gain itself, $\frac{K}{1}$, not twice of it." in text
-    hostile = reports.feedback_markdown(TITLE, Student("s1003", HOSTILE), STOPPED)
+    hostile = feedback_markdown(TITLE, Student("s1003", HOSTILE), STOPPED)
     outside_code = re.sub(r"(?<!\\)(`+)(?!`).*?(?<!`)\1(?!`)", "", hostile)
     assert not re.search(r"(?<!\\)<", outside_code)
     hostile.encode()
 
 
 def test_the_tables_of_the_summary_in_markdown_have_equal_rows():
-    widths, text = set(), reports.summary_markdown(TITLE, CLASS, RESULTS)
+    widths, text = set(), summary_markdown(TITLE, CLASS, RESULTS)
     for block in re.findall(r"(?:^\|.*\n)+", text, re.MULTILINE):
         counts = {len(re.findall(r"(?<!\\)\|", line)) for line in block.splitlines()}
         assert len(counts) == 1
@@ -399,7 +461,7 @@ def test_the_tables_of_the_summary_in_markdown_have_equal_rows():
 
 
 def test_gradescope_reads_the_result():
-    data = json.loads(reports.results_json(NAMED))
+    data = json.loads(results_json(NAMED))
     assert data["score"] == 3.67
     assert data["output_format"] == data["test_output_format"] == data["test_name_format"] == "text"
     assert data["visibility"] == "visible"
@@ -411,12 +473,12 @@ def test_gradescope_reads_the_result():
 
 
 def test_gradescope_shows_keys_only_when_grades_are_published():
-    data = json.loads(reports.results_json(NAMED, reveal=True))
+    data = json.loads(results_json(NAMED, reveal=True))
     assert {data["visibility"], *(test["visibility"] for test in data["tests"])} == {"after_published"}
 
 
 def test_hostile_texts_leave_gradescopes_format_whole():
-    text = reports.results_json(STOPPED)
+    text = results_json(STOPPED)
     text.encode()
     assert "stopped in cell 4" in json.loads(text)["output"]
 
@@ -426,8 +488,8 @@ def test_hostile_texts_leave_gradescopes_format_whole():
 
 def test_the_summary_counts():
     for text in (
-        reports.summary_html(TITLE, CLASS, RESULTS),
-        reports.summary_markdown(TITLE, CLASS, RESULTS),
+        summary_html(TITLE, CLASS, RESULTS),
+        summary_markdown(TITLE, CLASS, RESULTS),
     ):
         assert "3 submissions, 1 missing." in text
         assert "Mean 2.89, median 3.67 of 5 points" in text
@@ -437,14 +499,14 @@ def test_the_summary_counts():
 
 def test_the_summary_of_nothing():
     for students, results in [((), []), (CLASS, []), (CLASS, [MISSING])]:
-        Checker(reports.summary_html(TITLE, students, results))
-        assert "0 submissions" in reports.summary_markdown(TITLE, students, results)
+        Checker(summary_html(TITLE, students, results))
+        assert "0 submissions" in summary_markdown(TITLE, students, results)
 
 
 def test_complaints_are_in_the_summary():
     complaint = "x_<y>.ipynb belongs to no student"
-    assert "x_&lt;y&gt;.ipynb belongs to no student" in reports.summary_html(TITLE, CLASS, [], [complaint])
-    assert r"- x\_\<y\>.ipynb belongs to no student" in reports.summary_markdown(TITLE, CLASS, [], [complaint])
+    assert "x_&lt;y&gt;.ipynb belongs to no student" in summary_html(TITLE, CLASS, [], [complaint])
+    assert r"- x\_\<y\>.ipynb belongs to no student" in summary_markdown(TITLE, CLASS, [], [complaint])
 
 
 def test_what_was_not_judged_is_in_the_summary():
@@ -454,12 +516,12 @@ def test_what_was_not_judged_is_in_the_summary():
         ("1", "H", "s1002", "K | $x$"),
         ("2", "action", "s1002", "rev"),
     ]
-    assert "## Not judged" not in reports.summary_markdown(TITLE, CLASS, [RIGHT_ALL])
-    for text in (reports.summary_html(TITLE, CLASS, results), reports.summary_markdown(TITLE, CLASS, results)):
+    assert "## Not judged" not in summary_markdown(TITLE, CLASS, [RIGHT_ALL])
+    for text in (summary_html(TITLE, CLASS, results), summary_markdown(TITLE, CLASS, results)):
         assert "You may see what was meant." in text
         assert "is none of the words: expected reverse or direct" in text
     many = [result_of(Student(f"s{k}", "A"), unreadable) for k in range(51)]
-    assert "There are 2 more, on the pages of the students." in reports.summary_markdown(TITLE, CLASS, many)
+    assert "There are 2 more, on the pages of the students." in summary_markdown(TITLE, CLASS, many)
 
 
 @pytest.mark.parametrize(
@@ -515,7 +577,7 @@ def test_every_sum_has_its_place_in_the_distribution(points):
 
 
 def test_the_distribution_has_the_colours_of_its_page():
-    drawing = re.search(r"<svg.*</svg>", reports.summary_html(TITLE, CLASS, RESULTS), re.DOTALL)[0]
+    drawing = re.search(r"<svg.*</svg>", summary_html(TITLE, CLASS, RESULTS), re.DOTALL)[0]
     colours = set(re.findall(r"(?:fill|stroke): (#\w+|\w+)", drawing))
     assert colours == {"#0072b2", "#888888", "currentColor", "none"}
     assert 'aria-label="Distribution of the points: 0 to 0.5: 1 submission;' in drawing
@@ -554,8 +616,8 @@ def test_equal_answers_that_mean_little_are_not_reported():
 
 def test_reactions_to_equal_answers_are_in_the_summary():
     results = [given(ADA, 123.4), given(BOB, "123.4")]
-    assert "123.4" in reports.summary_html(TITLE, CLASS, results)
-    assert "| 1 | `K` | `123.4` |  | Ada Lovelace (s1001), Bob Bode (s1002) |" in reports.summary_markdown(
+    assert "123.4" in summary_html(TITLE, CLASS, results)
+    assert "| 1 | `K` | `123.4` |  | Ada Lovelace (s1001), Bob Bode (s1002) |" in summary_markdown(
         TITLE, CLASS, results
     )
 
@@ -621,7 +683,7 @@ def test_the_outputs_of_the_bank_do_not_depend_on_order_or_place(tmp_path):
         }
         for name in "ab"
     )
-    assert len(one) == 3 + 3 * 12
+    assert len(one) == sum(len(students) if one.is_for_each_student else 1 for one in registered())
     assert one == other
     assert all(b"\r" not in content for content in one.values())
 

@@ -14,6 +14,8 @@ def described(name):
         word = parameter.opts[0] if parameter.param_type_name == "option" else parameter.name.upper()
         if word != "--help":
             lines.append(f"| `{word}` | {parameter.help}{_default(parameter)} |")
+    if isinstance(command, commands.Grade):
+        lines += ["", "What is written:", "", *(f"- {line}" for line in command.written())]
     return lines
 
 

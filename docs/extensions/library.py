@@ -9,6 +9,7 @@ import functools
 import importlib
 import inspect
 import json
+import pkgutil
 import re
 from pathlib import Path
 
@@ -155,7 +156,10 @@ def mend(app, what, name, obj, options, lines):
 
 
 class Library(SphinxDirective):
-    """`.. library:: loopbook.tuning` documents a module, and with `:parts:` modules within it, a section each."""
+    """`.. library:: loopbook.tuning` documents a module, and with `:parts:` modules within it, a section each.
+
+    A part that ends in `.*` is every module of a folder.
+    """
 
     required_arguments = 1
     option_spec = {"parts": directives.unchanged}  # noqa: RUF012 - as docutils has it
@@ -172,7 +176,7 @@ class Library(SphinxDirective):
             if len(homes) > 1 and home != name and hasattr(module, "__path__"):
                 lines += self.heading(home)
             lines += [line for key in keys for line in documented(module, key)]
-        for part in self.options.get("parts", "").split():
+        for part in listed(name, self.options.get("parts", "")):
             inner = importlib.import_module(f"{name}.{part}")
             lines += self.heading(inner.__name__, f"{name}.{part}")
             lines += [f".. py:module:: {inner.__name__}", ""]
@@ -185,6 +189,19 @@ class Library(SphinxDirective):
         self.env.note_dependency(part.__file__)
         title = title.removeprefix("loopbook.") or home.rpartition(".")[2].replace("_", " ")
         return [title, "-" * len(title), "", as_rst(inspect.getdoc(part), home), ""]
+
+
+def listed(name, parts):
+    """Return the names of the parts of a module, with those of folders spelled out."""
+    found = []
+    for part in parts.split():
+        folder = part.removesuffix(".*")
+        if folder == part:
+            found.append(part)
+        else:
+            inside = pkgutil.iter_modules(importlib.import_module(f"{name}.{folder}").__path__)
+            found += [f"{folder}.{module.name}" for module in inside]
+    return found
 
 
 def documented(module, name):

@@ -19,7 +19,7 @@ from loopbook.grading import GradingError, NoJail
 from loopbook.grading.events import Outcome
 from loopbook.grading.jail import USUAL, Jail, Limits, demand_hidden
 from loopbook.grading.judge import Judge
-from loopbook.grading.reports import write_all
+from loopbook.grading.reports import registered, write_all
 from loopbook.grading.results import Results, fingerprint, result
 from loopbook.grading.submissions import collect
 
@@ -146,6 +146,7 @@ def grade(
         GradingError: for submissions that cannot be read, ids that are on no roster, a folder that another grader
             works in, that lies among the submissions or holds another assignment, or where there is no jail.
     """
+    registered()  # what is wrong with one of them is said before an hour of grading, and not after it
     unknown = sorted(set(only) - {student.id for student in students})
     if unknown:
         raise GradingError(f"there is no student {unknown[0]!r} on the roster")

@@ -10,17 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from loopbook.grading import files
-from loopbook.grading.reports.feedback import feedback_html, feedback_markdown
-from loopbook.grading.reports.grades import grades_csv
-from loopbook.grading.reports.gradescope import results_json
-from loopbook.grading.reports.summary import summary_html, summary_markdown
+from loopbook.grading.reports.outputs import Output, output, registered
 
 if TYPE_CHECKING:
     from loopbook.grading.roster import Student
 
-__all__ = [
-    "feedback_html", "feedback_markdown", "grades_csv", "results_json", "summary_html", "summary_markdown", "write_all",
-]  # fmt: skip
+__all__ = ["Output", "output", "registered", "write_all"]
 
 
 def write_all(
@@ -31,10 +26,7 @@ def write_all(
     complaints: Sequence[str] = (),
     reveal: bool = False,
 ) -> None:
-    """Write all outputs into a folder; nothing is deleted, and what is the same already is not written again.
-
-    The files are `grades.csv`, `summary.html` and `summary.md`, and in `feedback/<id>/` for each student
-    `feedback.html`, `feedback.md` and `results.json`, Gradescope's format.
+    """Write all that is `registered` into a folder; nothing is deleted, and what is the same is not written again.
 
     Arguments:
         folder: where to write.
@@ -46,15 +38,8 @@ def write_all(
     Raises:
         GradingError: where a file cannot be written.
     """
-    folder = Path(folder)
     by_student = {result["student"]: result for result in results}
     results = [by_student[student.id] for student in students if student.id in by_student]
-    files.write(folder / "grades.csv", grades_csv(title, students, results))
-    files.write(folder / "summary.html", summary_html(title, students, results, complaints))
-    files.write(folder / "summary.md", summary_markdown(title, students, results, complaints))
-    for student in students:
-        if student.id in by_student:
-            result, own = by_student[student.id], folder / "feedback" / student.id
-            files.write(own / "feedback.html", feedback_html(title, student, result, reveal))
-            files.write(own / "feedback.md", feedback_markdown(title, student, result, reveal))
-            files.write(own / "results.json", results_json(result, reveal))
+    for one in registered():
+        for file, text in one.files(title, students, results, complaints, reveal):
+            files.write(Path(folder, file), text)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from loopbook.grading.reports import page
 from loopbook.grading.reports.findings import Findings
 from loopbook.grading.reports.histogram import histogram_svg, histogram_text, histogram_words
+from loopbook.grading.reports.outputs import output
 from loopbook.grading.reports.wording import (
     NO_JAIL,
     STATUSES,
@@ -32,6 +33,7 @@ MOST_UNJUDGED = 100
 _NONE = "Nothing."
 
 
+@output("summary.html", "the summary for the instructor")
 def summary_html(
     title: str, students: Sequence[Student], results: Collection[Mapping[str, Any]], complaints: Iterable[object] = ()
 ) -> str:
@@ -120,6 +122,7 @@ def summary_html(
     return page.page(f"{in_text(title)}: summary", body)
 
 
+@output("summary.md", "the same as Markdown")
 def summary_markdown(
     title: str, students: Sequence[Student], results: Collection[Mapping[str, Any]], complaints: Iterable[object] = ()
 ) -> str:

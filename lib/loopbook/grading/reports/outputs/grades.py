@@ -8,6 +8,7 @@ import re
 from collections.abc import Collection, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
+from loopbook.grading.reports.outputs import output
 from loopbook.grading.reports.wording import number, visible, without_jail
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ COLUMNS = ("Student", "ID", "SIS User ID", "SIS Login ID", "Section")
 _FORMULA = re.compile(r"((?:^|;)\s*)(?=[=+\-@＝＋－＠])")
 
 
+@output("grades.csv", "the grades, as Canvas and Moodle import them")
 def grades_csv(title: str, students: Iterable[Student], results: Collection[Mapping[str, Any]]) -> str:
     """Return the grades as CSV: a row for each student with a result, in the roster's order.
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from loopbook.exercises.response import MARKS
 from loopbook.grading.reports import page
+from loopbook.grading.reports.outputs import output
 from loopbook.grading.reports.wording import (
     NO_JAIL,
     answer_in_words,
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from loopbook.grading.roster import Student
 
 
+@output("feedback/{student}/feedback.html", "the page of a student")
 def feedback_html(title: str, student: Student, result: Mapping[str, Any], reveal: bool = False) -> str:
     """Return a student's page as HTML that needs nothing but itself.
 
@@ -62,6 +64,7 @@ def _line(verdict, reveal):
     return line
 
 
+@output("feedback/{student}/feedback.md", "the same as Markdown")
 def feedback_markdown(title: str, student: Student, result: Mapping[str, Any], reveal: bool = False) -> str:
     """Return a student's page as Markdown.
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from loopbook.exercises.judging import RIGHT
 from loopbook.exercises.response import MARKS
+from loopbook.grading.reports.outputs import output
 from loopbook.grading.reports.wording import (
     NO_JAIL,
     answer_in_words,
@@ -20,6 +21,7 @@ from loopbook.grading.reports.wording import (
 )
 
 
+@output("feedback/{student}/results.json", "the result of a student, as Gradescope takes it from an autograder")
 def results_json(result: Mapping[str, Any], reveal: bool = False) -> str:
     """Return a submission's `results.json`: the sum, and a test for each exercise.
 

@@ -1,0 +1,141 @@
+"""The files that grading leaves behind. Each module of this folder makes one, and registers it by `output`.
+
+A new learning management system is a new module here and nothing else: what is registered is written, is listed by
+`loopbook grade --help`, and is tested.
+"""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import pkgutil
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+from typing import TYPE_CHECKING, Any
+
+from loopbook.grading import GradingError
+
+if TYPE_CHECKING:
+    from loopbook.grading.roster import Student
+
+__all__ = ["Output", "output", "registered"]
+
+#: What stands in the name of a file that is made for each student.
+STUDENT = "{student}"
+#: What a function may ask for, by the names of its parameters.
+OF_CLASS = ("title", "students", "results", "complaints", "reveal")
+OF_STUDENT = ("title", "student", "result", "reveal")
+
+_REGISTERED: dict[str, Output] = {}
+
+
+@dataclass(frozen=True)
+class Output:
+    """A file that grading leaves behind, or one for each student.
+
+    Attributes:
+        file: its place in the folder of the grades; where it holds "{student}", there is one for each, named by the id.
+        what: it is, and for whom, in some words.
+        text: makes its content; what it takes it asks for by name.
+    """
+
+    file: str
+    what: str
+    text: Callable[..., str]
+
+    @property
+    def is_for_each_student(self) -> bool:
+        """Whether there is one for each student."""
+        return STUDENT in self.file
+
+    def files(
+        self,
+        title: str,
+        students: Sequence[Student],
+        results: Sequence[Mapping[str, Any]],
+        complaints: Iterable[object] = (),
+        reveal: bool = False,
+    ) -> Iterator[tuple[str, str]]:
+        """Yield the places of the files and their contents.
+
+        Arguments:
+            title: of the assignment.
+            students: the roster.
+            results: of submissions of these students, as data, in the order of the roster.
+            complaints: sentences on what was handed in and could not be assigned to a student.
+            reveal: whether students see the keys.
+        Raises:
+            GradingError: where what the function returns is no text.
+        """
+        known = {"title": title, "students": students, "results": results, "complaints": complaints, "reveal": reveal}
+        if not self.is_for_each_student:
+            yield self.file, self._made_of(known)
+            return
+        by_id = {student.id: student for student in students}
+        for result in results:
+            student = by_id[result["student"]]
+            yield self.file.replace(STUDENT, student.id), self._made_of(known | {"student": student, "result": result})
+
+    def _made_of(self, known):
+        text = self.text(**{name: known[name] for name in inspect.signature(self.text).parameters})
+        if not isinstance(text, str):
+            raise GradingError(f"the output {self.file!r} returns {text!r:.50}: expected a text")
+        return text
+
+
+def output(file: str, what: str) -> Callable[[Callable[..., str]], Callable[..., str]]:
+    """Register a function as what makes a file; it returns the text that the file holds.
+
+    The parameters of the function say what it takes: any of title, students, results, complaints and reveal; where a
+    file is made for each student, any of title, student, result and reveal. `Output.files` says what these are.
+
+    Arguments:
+        file: its place in the folder of the grades, with "{student}" in it for a file for each student.
+        what: it is, and for whom, for the list of `loopbook grade --help`.
+    Raises:
+        GradingError: for a file that is none of this folder or is made already, where it is not said what it is, and
+            for a function that asks for something else.
+
+    A module of this folder says::
+
+        @output("names.txt", "the names of the class, for the door")
+        def names(students: Sequence[Student]) -> str:
+            return "\\n".join(student.name for student in students)
+
+    >>> output("../names.txt", "the names of the class, for the door")
+    Traceback (most recent call last):
+    ...
+    loopbook.grading.GradingError: an output has the file '../names.txt': expected a place in the folder of the grades
+    """
+    if not isinstance(what, str) or not what.strip():
+        raise GradingError(f"of the output {file!r} it is not said what it is: expected some words")
+    parts = PurePosixPath(file).parts
+    if not parts or file != "/".join(parts) or file.startswith("/") or {".", ".."} & {*parts} or "\\" in file:
+        raise GradingError(f"an output has the file {file!r}: expected a place in the folder of the grades")
+    if file in _REGISTERED:
+        raise GradingError(f"two outputs have the file {file!r}: expected one")
+    may_ask = OF_STUDENT if STUDENT in file else OF_CLASS
+
+    def register(text):
+        if unknown := [name for name in inspect.signature(text).parameters if name not in may_ask]:
+            raise GradingError(f"the output {file!r} asks for {unknown[0]!r}: expected some of {', '.join(may_ask)}")
+        _REGISTERED[file] = Output(file, what, text)
+        return text
+
+    return register
+
+
+def registered() -> tuple[Output, ...]:
+    """Return what is registered, in the order of the files' names.
+
+    Raises GradingError for a module of this folder that registers nothing.
+
+    >>> next(one.what for one in registered() if one.file == "grades.csv")
+    'the grades, as Canvas and Moodle import them'
+    """
+    for module in pkgutil.iter_modules(__path__, f"{__name__}."):
+        importlib.import_module(module.name)
+        if not any(one.text.__module__ == module.name for one in _REGISTERED.values()):
+            raise GradingError(f"{module.name} registers no output: expected a function with @output(file, what)")
+    return tuple(sorted(_REGISTERED.values(), key=lambda one: one.file))
