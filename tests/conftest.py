@@ -1,13 +1,19 @@
 """What all tests share.
 
-Random examples are the same at every run, so that no reader's test fails by luck; each week new ones are tried. Linear
-algebra keeps to one thread: the tests themselves run in parallel, and many threads for small matrices only wait.
+Linear algebra keeps to one thread: the tests themselves run in parallel, and many threads for small matrices only wait.
 """
 
 import os
+import shutil
+import sys
+import tempfile
 from pathlib import Path
 
+import pytest
 from hypothesis import settings
+
+import forked_kernels
+from draws import NEW, THOROUGH, draws
 
 ROOT = Path(__file__).parents[1]
 
@@ -15,9 +21,18 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # what a reader has answered so far is no matter here, and stays as it is
 os.environ["LOOPBOOK_PROGRESS"] = "off"
 
-settings.register_profile("the same every time", derandomize=True, deadline=None)
-settings.register_profile("new ones", deadline=None)
-settings.load_profile("new ones" if os.environ.get("LOOPBOOK_UNPINNED") == "1" else "the same every time")
+settings.register_profile("loopbook", derandomize=not NEW, deadline=None, max_examples=draws(100))
+settings.load_profile("loopbook")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_configure(config):
+    """Let the kernels of a run with several processes begin with the libraries imported, where processes can fork."""
+    is_first = not hasattr(config, "workerinput") and config.getoption("numprocesses", None)
+    if is_first and sys.platform == "linux" and not THOROUGH:
+        folder = Path(tempfile.mkdtemp(prefix="loopbook-kernels-"))
+        server = forked_kernels.start(folder)
+        config.add_cleanup(lambda: (server.communicate(), shutil.rmtree(folder)))
 
 
 #: What takes long begins first, so that no process works alone at the end; before all, what builds the site for others.

@@ -10,6 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from sympy import Rational, exp, oo, sqrt, symbols
 
+from draws import draws
 from loopbook import s
 from loopbook.approximation import Model, half_rule, model_of, pade, repeated_pade, taylor, zero_rule
 from loopbook.deadtime import System
@@ -22,7 +23,7 @@ GAINS = st.fractions(-20, 20, max_denominator=20).filter(bool).map(Rational)
 LAGS = st.lists(TIMES, min_size=1, max_size=5)
 ORDERS = st.integers(1, 4)
 
-quick = settings(deadline=None, max_examples=25)
+quick = settings(deadline=None, max_examples=draws(25))
 
 
 def product(gain, lags=(), zeros=(), delay=0):

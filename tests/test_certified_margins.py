@@ -10,6 +10,7 @@ import sympy
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
+from draws import draws
 from loopbook import s
 from loopbook.deadtime import Loop, System
 from loopbook.pid import PID
@@ -77,7 +78,7 @@ def loops(draw):
 
 
 few = settings(
-    max_examples=25, deadline=None, suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow]
+    max_examples=draws(25), deadline=None, suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow]
 )
 
 

@@ -11,6 +11,7 @@ import sympy
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from draws import draws
 from loopbook import s, t
 from loopbook.deadtime import Loop, System, closed_loop, normal_form
 from loopbook.laplace import evaluate, inverse, transform
@@ -56,7 +57,7 @@ def test_a_loop_derived_by_hand():
     assert y[between] == pytest.approx(second[between], abs=1e-12)
 
 
-@settings(deadline=None, max_examples=6)
+@settings(deadline=None, max_examples=draws(6))
 @given(K=PARTS, T=LAGS, Ti=LAGS, delay=DEAD_TIMES)
 def test_a_pi_loop_follows_its_series(K, T, Ti, delay):
     assume(K != 0)
@@ -88,7 +89,7 @@ def test_a_neutral_loop_repeats_its_jumps():
     assert jumps.step([0.5, 1, 1.5, 2, 3, 4]) == pytest.approx([0, 0.5, 0.5, 0.25, 0.375, 0.3125])
 
 
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=draws(25))
 @given(st.lists(LAGS, min_size=1, max_size=4), PARTS, PARTS)
 def test_without_dead_time_it_is_the_response_of_transfer(lags, zero, K):
     H = sympy.Integer(K.q) * (zero * s + 1) / math.prod((T * s + 1 for T in lags), start=sympy.S.One)

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from matplotlib.patches import Polygon
 
+from draws import draws
 from loopbook.diagrams import sequential_function_chart, state_diagram
 from loopbook.sequence import Chart, Transition
 from test_diagrams import measured, within
@@ -205,7 +206,7 @@ def given_connections(chart):
     return sorted((tuple(sorted(x.sources)), tuple(sorted(x.targets))) for x in chart.transitions)
 
 
-@settings(deadline=None, max_examples=15, suppress_health_check=[HealthCheck.too_slow])
+@settings(deadline=None, max_examples=draws(15), suppress_health_check=[HealthCheck.too_slow])
 @given(structured())
 def test_the_lines_of_any_structured_chart_join_what_its_transitions_join(chart):
     assert connections(chart, sequential_function_chart(chart)) == given_connections(chart)
@@ -253,7 +254,7 @@ def test_a_state_diagram_shows_every_state_and_nothing_overlaps(name):
     assert len(heads) == len(ways) + 1
 
 
-@settings(deadline=None, max_examples=15, suppress_health_check=[HealthCheck.too_slow])
+@settings(deadline=None, max_examples=draws(15), suppress_health_check=[HealthCheck.too_slow])
 @given(structured())
 def test_any_structured_chart_is_drawn(chart):
     picture = sequential_function_chart(chart)
@@ -261,7 +262,7 @@ def test_any_structured_chart_is_drawn(chart):
     shows_all_of(chart, picture)
 
 
-@settings(deadline=None, max_examples=15, suppress_health_check=[HealthCheck.too_slow])
+@settings(deadline=None, max_examples=draws(15), suppress_health_check=[HealthCheck.too_slow])
 @given(structured())
 def test_any_small_chart_has_a_state_diagram(chart):
     if len(chart.markings) <= 30:

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import lambertw
 
+from draws import draws
 from loopbook import s
 from loopbook.deadtime import normal_form
 from loopbook.pid import PID
@@ -98,7 +99,7 @@ def test_at_the_ultimate_gain_they_lie_on_the_axis():
     assert first.imag == pytest.approx(2 * math.pi / Pu)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=draws(25), deadline=None)
 @given(
     K=st.floats(0.2, 3), T=st.floats(0.2, 20), delay=st.floats(0.1, 5),
     share=st.floats(0.1, 2), Ti=st.floats(0.3, 30),

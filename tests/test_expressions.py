@@ -36,12 +36,13 @@ from sympy import (
     together,
 )
 
+from draws import draws
 from loopbook.expressions import agreement, exact, function_of, parse, s, t
 
 K, T, T1, T2, a, x = symbols("K T T1 T2 a x", positive=True)
 n = symbols("n", integer=True, positive=True)
 y, u = Function("y"), Function("u")
-quick = settings(deadline=None, max_examples=40)
+quick = settings(deadline=None, max_examples=draws(40))
 
 
 # ------------------------------------------------------------------------------------------------ parse

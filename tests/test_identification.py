@@ -8,6 +8,7 @@ import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from draws import draws
 from loopbook import s
 from loopbook.approximation import Model
 from loopbook.deadtime import System
@@ -58,7 +59,7 @@ def test_a_lag_with_dead_time_is_read_off_its_step_response(K, T, delay, U, dela
 
 
 @given(st.floats(0.5, 50), st.floats(0, 10), st.floats(0.1, 9))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=draws(20), deadline=None)
 def test_an_integrator_with_dead_time_is_read_off_its_asymptote(K, delay, U):
     times = np.linspace(0, 40, 81)
     model = integrator_from_step(times, 7 + K * U * np.maximum(times - delay, 0), U=U)
@@ -138,7 +139,7 @@ def test_the_response_to_samples_is_that_of_the_exact_solver(hold, even):
 
 
 @given(st.floats(0.01, 1e4), st.floats(0, 1), st.floats(0, 5), st.sampled_from(HOLDS))
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=draws(50), deadline=None)
 def test_even_samples_and_nearly_equal_lags_need_no_way_of_their_own(T, alike, delay, hold):
     times, u = np.arange(60.0), np.random.default_rng(1).normal(size=60)
     lags, late = np.array([[T], [T * max(alike, 1e-3)]]), np.array([delay])
@@ -557,7 +558,7 @@ def test_a_loop_at_rest_does_not_make_the_uncertainty_grow_without_end():
 
 
 @given(st.floats(0.2, 9), st.floats(2, 60), st.floats(0, 6))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=draws(30), deadline=None)
 def test_the_difference_equation_gives_back_the_continuous_model(K, T, delay):
     whole, late = math.floor(delay), delay - math.floor(delay)
     a, newer = math.exp(-1 / T), -K * math.expm1(-(1 - late) / T)

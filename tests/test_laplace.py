@@ -37,6 +37,7 @@ from sympy import (
     symbols,
 )
 
+from draws import draws
 from loopbook.expressions import agreement, s, t
 from loopbook.laplace import (
     by_delay,
@@ -55,7 +56,7 @@ k, k_1, k_2, K, T, T_1, T_2, T_3, tau, w, zeta, a = symbols("k k_1 k_2 K T T_1 T
 n = symbols("n", integer=True, positive=True)
 f, g, y, x, u = (Function(name) for name in "fgyxu")
 F, G, Y = Function("F"), Function("G"), Function("Y")
-quick = settings(deadline=None, max_examples=15)
+quick = settings(deadline=None, max_examples=draws(15))
 
 
 def same(one, other):

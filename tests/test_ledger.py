@@ -18,6 +18,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 import loopbook.ledger
+from draws import draws
 from loopbook import s, t
 from loopbook.ledger import Disagreement, LedgerError, Source, haugen
 from loopbook.ledger.compare import number_agrees
@@ -103,7 +104,7 @@ TYPES = {
 
 
 @pytest.mark.parametrize("name", TYPES)
-@settings(max_examples=200, deadline=None, derandomize=True)
+@settings(max_examples=draws(200), deadline=None, derandomize=True)
 @given(printed=PRINTED, distance=DISTANCE)
 def test_a_number_passes_inside_half_a_unit_of_the_last_digit_and_never_outside(name, printed, distance):
     middle, half = reading(printed)
@@ -116,7 +117,7 @@ def test_a_number_passes_inside_half_a_unit_of_the_last_digit_and_never_outside(
     assert holds(value, printed) == inside(read(value), printed)
 
 
-@settings(max_examples=200, deadline=None, derandomize=True)
+@settings(max_examples=draws(200), deadline=None, derandomize=True)
 @given(printed=PRINTED, k=st.fractions(-2, 2, max_denominator=1000).filter(bool))
 def test_an_irrational_number_passes_inside_and_never_outside(printed, k):
     middle, half = (sympy.Rational(part.numerator, part.denominator) for part in reading(printed))
@@ -139,7 +140,7 @@ def test_at_the_edge_a_hair_decides(printed, edge):
         assert not holds(make(middle + edge * (half + hair)) + sympy.sqrt(2) / 10**32 * edge, printed)
 
 
-@settings(max_examples=300, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.filter_too_much])
+@settings(max_examples=draws(300), deadline=None, derandomize=True, suppress_health_check=[HealthCheck.filter_too_much])
 @given(printed=PRINTED, stored=PRINTED, near_stored=st.booleans(), distance=DISTANCE, percent=st.integers(1, 99))
 def test_every_status_asks_exactly_for_what_it_means(printed, stored, near_stored, distance, percent):
     middle, half = reading(stored if near_stored else printed)

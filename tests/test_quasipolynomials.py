@@ -11,6 +11,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from sympy.core.cache import clear_cache
 
+from draws import draws
 from loopbook import s
 from loopbook.pid import PID
 from loopbook.quasipolynomials import DelayFraction, normal_form, read
@@ -38,7 +39,7 @@ def value(expression, point):
     return complex(expression.evalf(30, subs={s: point}))
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=draws(60))
 @given(sums(), sums(), sums(), sums())
 def test_the_algebra_is_that_of_the_values(a, b, c, d):
     """Of a/b and c/d, with the values of the expressions at complex points as the judge."""
@@ -61,7 +62,7 @@ def test_the_algebra_is_that_of_the_values(a, b, c, d):
         assert found(POINTS) == pytest.approx(expected, rel=1e-9, abs=1e-9)
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=draws(40))
 @given(sums(), sums(), sums())
 def test_common_factors_cancel_also_those_with_dead_times(a, b, common):
     common = 1 + s * common

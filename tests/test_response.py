@@ -10,6 +10,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from draws import draws
 from loopbook.deadtime.response import (
     ChannelModel,
     Response,
@@ -302,7 +303,7 @@ def systems(draw):
     return ChannelModel(A, *parts, feed, [draw(DELAYS) for _ in range(q)])
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=draws(40))
 @given(systems(), st.integers(2, 12))
 def test_random_systems(system, end):
     times = [float(x) for x in moments(end, 40)]
@@ -315,7 +316,7 @@ def test_random_systems(system, end):
     assert (abs(found - expected) <= 1e-12 * later + 1e-300).all()
 
 
-@settings(deadline=None, max_examples=10)
+@settings(deadline=None, max_examples=draws(10))
 @given(systems(), st.sampled_from([1e-9, 3600.0]))
 def test_the_unit_of_time_does_not_matter(system, unit):
     scaled = system._replace(

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from draws import draws
 from loopbook.pid import PID, Controller
 from loopbook.plants import BatchTank
 from loopbook.sequence import Chart, Formula, Transition, reachable_markings, scan_by_scan
@@ -210,7 +211,7 @@ def token_game(chart, inputs):
     return seen
 
 
-@settings(deadline=None, max_examples=80, suppress_health_check=[HealthCheck.too_slow])
+@settings(deadline=None, max_examples=draws(80), suppress_health_check=[HealthCheck.too_slow])
 @given(structured(), st.lists(st.tuples(*[st.booleans()] * 4), min_size=2, max_size=25))
 def test_a_chart_runs_as_the_token_game_and_never_puts_two_tokens_in_a_step(chart, letters):
     inputs = [dict(zip(SIGNALS, row, strict=True)) for row in letters]
@@ -222,7 +223,7 @@ def test_a_chart_runs_as_the_token_game_and_never_puts_two_tokens_in_a_step(char
         assert frozenset(chart.active) in marked
 
 
-@settings(deadline=None, max_examples=40, suppress_health_check=[HealthCheck.too_slow])
+@settings(deadline=None, max_examples=draws(40), suppress_health_check=[HealthCheck.too_slow])
 @given(structured())
 def test_in_a_structured_chart_every_element_has_its_turn(chart):
     markings = reachable_markings(chart)

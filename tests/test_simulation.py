@@ -9,6 +9,7 @@ import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from draws import draws
 from loopbook import plants, s, t
 from loopbook.laplace import evaluate
 from loopbook.pid import PID, Controller
@@ -81,7 +82,7 @@ def test_a_step_response_is_the_analytic_one(plant, source, change):
     assert close(run[name] - float(getattr(plant, name)), evaluate(step_response(H, change), run.times))
 
 
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=draws(25))
 @given(st.fractions(1, 4, max_denominator=7), st.fractions(0, 3, max_denominator=9))
 def test_dead_time_needs_no_grid(ratio, moment):
     """Delays and steps between the samples are met exactly."""

@@ -10,6 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
+from draws import draws
 from loopbook import s
 from loopbook.deadtime import Loop, System, normal_form
 from loopbook.pid import PID, Controller
@@ -39,7 +40,7 @@ DELAY = sympy.exp(-s)
 COEFFICIENTS = st.fractions(-3, 3, max_denominator=4).map(sympy.Rational)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=draws(60))
 @given(st.lists(COEFFICIENTS, min_size=2, max_size=3), st.lists(COEFFICIENTS, min_size=1, max_size=2),
        st.fractions(0, 8, max_denominator=5).map(sympy.Rational))  # fmt: skip
 def test_poles_are_counted_as_the_argument_principle_does(below, above, delay):
@@ -207,7 +208,7 @@ def turns_around(D, radius=60.0):
 DELAYS = st.fractions(0, 5, max_denominator=5).map(sympy.Rational)
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=draws(40))
 @given(
     st.lists(COEFFICIENTS, min_size=1, max_size=3), st.lists(st.tuples(COEFFICIENTS, COEFFICIENTS, DELAYS), max_size=3)
 )
@@ -241,7 +242,7 @@ def test_two_dead_times_in_closed_form(factor, count):
     assert roots_of(s + a * late(1) + a * late(2)) == count
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=draws(40))
 @given(st.lists(st.tuples(COEFFICIENTS, DELAYS), min_size=1, max_size=4), st.booleans())
 def test_dead_times_that_cannot_matter(others, stable):
     # abs(s + a) on the axis is at least a, and that is more than all others together

@@ -6,6 +6,7 @@ import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from draws import draws
 from loopbook import s, t
 from loopbook.deadtime import System
 from loopbook.figures import trends
@@ -74,7 +75,7 @@ def test_where_no_sign_decides_it_is_said(H, why):
         controller_action(H)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=draws(15), deadline=None)
 @given(st.sampled_from(["F_in", "F_out"]), st.sampled_from(["reverse", "direct"]))
 def test_the_loop_is_stable_with_the_computed_action_and_with_no_other(name, chosen):
     tank = BufferTank(h_max=50, h=25)

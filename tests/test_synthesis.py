@@ -8,6 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from sympy import Rational, exp, oo, pi, sqrt, symbols
 
+from draws import draws
 from loopbook import s
 from loopbook.approximation import Model, pade, taylor
 from loopbook.deadtime import System
@@ -49,7 +50,7 @@ def test_the_controllers_of_the_slides():
 LAGS = st.lists(TIMES, min_size=1, max_size=3)
 
 
-@settings(deadline=None, max_examples=15)
+@settings(deadline=None, max_examples=draws(15))
 @given(GAINS, LAGS, TIMES, DELAYS, DELAYS, st.booleans())
 def test_the_loop_with_the_controller_is_the_desired_one(gain, lags, slow, late, later, inverse):
     zero = 1 - lags[0] * s if inverse else 1 + lags[0] * s / 3
@@ -62,7 +63,7 @@ def test_the_loop_with_the_controller_is_the_desired_one(gain, lags, slow, late,
         assert values[0] == pytest.approx(values[1], rel=1e-12)
 
 
-@settings(deadline=None, max_examples=30)
+@settings(deadline=None, max_examples=draws(30))
 @given(GAINS, TIMES, TIMES)
 def test_an_unstable_process_is_stabilised(gain, lag, slow):
     """The wish is 1 at the unstable pole, so that nothing unstable is cancelled."""
@@ -212,7 +213,7 @@ def test_any_pid_controller_is_read_back(Kp, Ti, Td, Tf, form):
     assert sympy.cancel(match.settings.expr - pid.expr) == 0
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=draws(40))
 @given(GAINS, TIMES, TIMES, TIMES, TIMES)
 def test_serial_and_parallel_settings_are_one_controller(Kp, T1, T2, Tf, lag):
     serial = as_pid(Kp * (T1 * s + 1) * (T2 * s + 1) / (s * (Tf * s + 1)))
@@ -305,7 +306,7 @@ def test_the_filter_of_a_series_agrees_in_one_term_more():
     assert difference.coeff_monomial(s**4) != 0
 
 
-@settings(deadline=None, max_examples=30)
+@settings(deadline=None, max_examples=draws(30))
 @given(GAINS, TIMES, TIMES, TIMES, TIMES)
 def test_the_rest_is_what_the_settings_lack(Kp, T1, T2, one, other):
     assume(one != other)
@@ -462,7 +463,7 @@ def test_units_of_time_and_gain(case):
 
 
 @pytest.mark.parametrize("case", BY_HAND)
-@settings(deadline=None, max_examples=6)
+@settings(deadline=None, max_examples=draws(6))
 @given(data=st.data())
 def test_numbers_agree_with_the_letters(case, data):
     model, approximation = IMC_TABLE[case]
@@ -477,7 +478,7 @@ def test_numbers_agree_with_the_letters(case, data):
     assert triple(pid) == tuple(sympy.cancel(value.subs(numbers)) for value in triple(by_letters))
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=draws(40))
 @given(GAINS, TIMES, TIMES, TIMES, DELAYS, TIMES)
 def test_a_zero_in_the_left_half_plane_is_cancelled_whatever_it_is(gain, T1, T2, T3, late, slow):
     """Also where row I of the table would have a negative derivative time."""
@@ -488,7 +489,7 @@ def test_a_zero_in_the_left_half_plane_is_cancelled_whatever_it_is(gain, T1, T2,
     assert all(value >= 0 for value in (match.settings.Ti, match.settings.Td, match.settings.Tf))
 
 
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=draws(25))
 @given(GAINS, TIMES, TIMES, DELAYS, TIMES)
 def test_the_settings_do_not_depend_on_how_the_model_is_written(gain, T1, T2, late, slow):
     numbers = imc(second_order(gain, T1, T2, late), slow)
@@ -505,7 +506,7 @@ def test_a_system_of_python_control():
     assert imc(control.tf([2], [10, 1]), 0.1) == PID(50, 10)
 
 
-@settings(deadline=None, max_examples=10)
+@settings(deadline=None, max_examples=draws(10))
 @given(GAINS, TIMES, DELAYS, TIMES, st.integers(1, 3))
 def test_higher_orders_of_pade_keep_the_promise(gain, T, late, slow, order):
     made = imc_design(first_order(gain, T, late), slow, lambda H: pade(H, order))

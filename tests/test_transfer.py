@@ -24,6 +24,7 @@ from sympy import (
     symbols,
 )
 
+from draws import draws
 from loopbook.expressions import agreement, exact, s, t
 from loopbook.laplace import evaluate, inverse
 from loopbook.transfer import (
@@ -55,7 +56,7 @@ from loopbook.transfer import (
 
 K, T, T_1, T_2, tau, a, U, w, zeta = symbols("K T T_1 T_2 tau a U omega zeta", positive=True)
 y, x, u, v = (Function(name) for name in "yxuv")
-quick = settings(deadline=None, max_examples=20)
+quick = settings(deadline=None, max_examples=draws(20))
 
 
 def same(one, other):

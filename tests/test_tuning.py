@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize
 from sympy import Max, Min, Rational, exp, oo, sqrt, symbols
 
+from draws import draws
 from loopbook import s, tuning
 from loopbook.approximation import Model, model_of
 from loopbook.ise import criteria
@@ -59,7 +60,7 @@ def same(one, other):
 
 
 @pytest.mark.parametrize("rule", OF_A_MODEL.values(), ids=OF_A_MODEL)
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=draws(20), deadline=None)
 @given(K=GAINS, T=POSITIVE, ratio=RATIOS, scale=GAINS, slower=POSITIVE)
 def test_units_of_a_rule_for_a_model(rule, K, T, ratio, scale, slower):
     before = rule(Model(K, T, delay=ratio * T))

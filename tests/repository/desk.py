@@ -143,7 +143,8 @@ def jupyterlab(folder: Path, notebook: str) -> Iterator[str]:
     own |= {"JUPYTERLAB_WORKSPACES_DIR": "desks"}
     environment = {**os.environ, **{name: str(folder / place) for name, place in own.items()}}
     environment["MPLCONFIGDIR"] = matplotlib.get_cachedir()  # a new list of fonts costs seconds
-    environment.pop("LOOPBOOK_PROGRESS", None)
+    for name in ("LOOPBOOK_PROGRESS", "JUPYTER_PATH"):  # a reader has neither, and no forked kernels
+        environment.pop(name, None)
     command = [sys.executable, "-m", "jupyterlab", "--config", ROOT / "jupyter_lab_config.py", "--no-browser"]
     command += [f"--ServerApp.port={port}", "--ServerApp.port_retries=0", f"--IdentityProvider.token={token}"]
     with open(folder / "log", "w", encoding="utf-8") as log:
