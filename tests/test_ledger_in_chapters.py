@@ -22,6 +22,7 @@ from decimal import Context, Decimal, InvalidOperation, localcontext
 from pathlib import Path
 from types import SimpleNamespace
 
+import mpmath
 import pytest
 import sympy
 from sympy.integrals.manualintegrate import manualintegrate
@@ -300,12 +301,14 @@ def same_formula(one, other, points=12, least=6):
             point[letter] = sympy.Rational(dice.randint(1, 10**6), 10 ** dice.randint(3, 8))
             if letter.name == "s":
                 point[letter] = point[letter] * sympy.I + dice.randint(-3, 3)
-        a, b = (side.evalf(60, subs=point) for side in sides)
-        if a.is_number and b.is_number and a.is_finite and b.is_finite:
-            limit = sympy.Float("1e-35") * (sympy.Float("1e-20") + abs(a) + abs(b))
-            alike.append(abs(a - b) <= limit)
-            # an equation may have its sides exchanged
-            opposite.append("=" in one and abs(a + b) <= limit)
+        values = [side.evalf(60, subs=point) for side in sides]
+        if all(value.is_number and value.is_finite for value in values):
+            with mpmath.workdps(60):
+                a, b = (mpmath.mpc(*value.as_real_imag()) for value in values)
+                limit = mpmath.mpf("1e-35") * (mpmath.mpf("1e-20") + abs(a) + abs(b))
+                alike.append(abs(a - b) <= limit)
+                # an equation may have its sides exchanged
+                opposite.append("=" in one and abs(a + b) <= limit)
     return len(alike) >= least and (all(alike) or all(opposite))
 
 
