@@ -12,7 +12,7 @@ from sympy import Rational, exp, oo, sqrt, symbols
 
 from draws import draws
 from loopbook import s
-from loopbook.approximation import Model, half_rule, model_of, pade, repeated_pade, taylor, zero_rule
+from loopbook.approximation import SOPDT, half_rule, model_of, pade, repeated_pade, taylor, zero_rule
 from loopbook.deadtime import System
 from loopbook.expressions import parse
 
@@ -94,7 +94,7 @@ def test_dead_times_are_replaced_wherever_they_stand():
     assert sympy.cancel(taylor(H) - (2 - s) / (s + 1 - 2 * s)) == 0
     assert taylor(1 / (s + 1)) == 1 / (s + 1)
     assert taylor(1 / exp(delay * s)) == taylor(exp(-delay * s)) == 1 - delay * s
-    assert sympy.cancel(pade(Model(2, T1=3, delay=4)) - 2 * (1 - 2 * s) / ((2 * s + 1) * (3 * s + 1))) == 0
+    assert sympy.cancel(pade(SOPDT(2, T1=3, delay=4)) - 2 * (1 - 2 * s) / ((2 * s + 1) * (3 * s + 1))) == 0
     assert pade(exp(-s) * exp(-2 * s)) == pade(exp(-3 * s))
 
 
@@ -120,7 +120,7 @@ def test_what_is_no_dead_time_is_refused(function, wrong):
 @quick
 @given(GAINS, LAGS.map(lambda lags: sorted(lags, reverse=True)[:2]), DELAYS)
 def test_any_written_form_gives_the_same_model(K, lags, delay):
-    expected = Model(K, *lags, delay=delay)
+    expected = SOPDT(K, *lags, delay=delay)
     forms = [expected, expected.expr, expanded(expected.expr), System(expected.expr)]
     if delay == 0:
         forms.append(control.tf(*control_polynomials(expected.expr)))
@@ -135,17 +135,17 @@ def control_polynomials(H):
 @pytest.mark.parametrize(
     ("H", "expected"),
     [
-        (5 * exp(-2 * s) / s, Model(5, T1=oo, delay=2)),
-        (6 / (4 * s + 8 * s**2), Model(Rational(3, 2), T1=oo, T2=2)),
-        (exp(-s) / (3 * s**2), Model(Rational(1, 3), T1=oo, T2=oo, delay=1)),
-        (7, Model(7)),
-        (exp(-3 * s), Model(1, delay=3)),
-        ((s + 1) / ((s + 1) * (2 * s + 1)), Model(1, T1=2)),
-        (-4 / (-2 * s - 1), Model(4, T1=2)),
-        (1 / (s**2 + 3 * s + 1), Model(1, T1=(3 + sqrt(5)) / 2, T2=(3 - sqrt(5)) / 2)),
-        (K * exp(-delay * s) / (T1 * s + T2), Model(K / T2, T1=T1 / T2, delay=delay)),
-        (K / (s * (T1 * s + 1)), Model(K, T1=oo, T2=T1)),
-        (K / ((T1 * s + 1) * ((T1 + T2) * s + 1)), Model(K, T1=T1 + T2, T2=T1)),
+        (5 * exp(-2 * s) / s, SOPDT(5, T1=oo, delay=2)),
+        (6 / (4 * s + 8 * s**2), SOPDT(Rational(3, 2), T1=oo, T2=2)),
+        (exp(-s) / (3 * s**2), SOPDT(Rational(1, 3), T1=oo, T2=oo, delay=1)),
+        (7, SOPDT(7)),
+        (exp(-3 * s), SOPDT(1, delay=3)),
+        ((s + 1) / ((s + 1) * (2 * s + 1)), SOPDT(1, T1=2)),
+        (-4 / (-2 * s - 1), SOPDT(4, T1=2)),
+        (1 / (s**2 + 3 * s + 1), SOPDT(1, T1=(3 + sqrt(5)) / 2, T2=(3 - sqrt(5)) / 2)),
+        (K * exp(-delay * s) / (T1 * s + T2), SOPDT(K / T2, T1=T1 / T2, delay=delay)),
+        (K / (s * (T1 * s + 1)), SOPDT(K, T1=oo, T2=T1)),
+        (K / ((T1 * s + 1) * ((T1 + T2) * s + 1)), SOPDT(K, T1=T1 + T2, T2=T1)),
     ],
 )
 def test_a_model_is_recognised(H, expected):
@@ -160,7 +160,7 @@ def test_a_model_is_recognised(H, expected):
 
 def test_letters_are_sorted_as_they_are_given():
     H = K * exp(-delay * s) / sympy.expand((T1 * s + 1) * (T2 * s + 1))
-    assert model_of(H, largest_first=[T2, T1]) == Model(K, T1=T2, T2=T1, delay=delay)
+    assert model_of(H, largest_first=[T2, T1]) == SOPDT(K, T1=T2, T2=T1, delay=delay)
     with pytest.raises(ValueError, match="which of the lags T1, T2 is the largest is not known"):
         model_of(H)
     with pytest.raises(ValueError, match="expected the lags"):
@@ -188,7 +188,7 @@ def test_what_is_no_simple_model_is_refused(wrong):
 )  # fmt: skip
 def test_a_model_that_cannot_be_is_refused(wrong):
     with pytest.raises(ValueError, match="expected"):
-        Model(**{"K": 1} | wrong)
+        SOPDT(**{"K": 1} | wrong)
 
 
 # The half rule.
@@ -220,7 +220,7 @@ def test_the_half_rule_is_its_authors(name):
     text, *models = PUBLISHED[name]
     H = parse(text)
     for order, values in enumerate(models, start=1):
-        expected = Model(*(parse(str(value)) for value in values))
+        expected = SOPDT(*(parse(str(value)) for value in values))
         assert half_rule(H, order) == half_rule(expanded(H), order) == half_rule(System(H), order) == expected
 
 
@@ -277,19 +277,19 @@ def test_what_has_several_answers_says_so():
     H = product(1, [10, 8, 1], [6, 3], Rational("0.3"))  # E12
     with pytest.raises(ValueError, match="3/10 and 4/5 agree with themselves; say Tc"):
         half_rule(H)
-    assert half_rule(H, Tc=0.3) == Model(Rational("0.225"), T1=1, delay=Rational("0.3"))  # as published
-    assert half_rule(H, Tc=0.8) == Model(Rational("0.3"), T1=1.5, delay=Rational("0.8"))
+    assert half_rule(H, Tc=0.3) == SOPDT(Rational("0.225"), T1=1, delay=Rational("0.3"))  # as published
+    assert half_rule(H, Tc=0.8) == SOPDT(Rational("0.3"), T1=1.5, delay=Rational("0.8"))
     E6 = product(1, [oo, 1, 1, Rational("0.028")], [Rational("0.17")] * 2)
-    assert half_rule(E6, order=2, Tc=0.358) == Model(1, T1=oo, T2=1.33, delay=Rational("0.358"))  # as published
+    assert half_rule(E6, order=2, Tc=0.358) == SOPDT(1, T1=oo, T2=1.33, delay=Rational("0.358"))  # as published
 
 
 def test_letters():
     H = K * (1 - T3 * s) * exp(-delay * s) / ((T1 * s + 1) * (T2 * s + 1))
     model = half_rule(H, largest_first=[T1, T2])
-    assert model == Model(K, T1=T1 + T2 / 2, delay=delay + T2 / 2 + T3)
+    assert model == SOPDT(K, T1=T1 + T2 / 2, delay=delay + T2 / 2 + T3)
     assert half_rule(expanded(H), largest_first=[T1, T2]) == model
-    assert half_rule(K / (s * (T1 * s + 1))) == Model(K, T1=oo, delay=T1 / 2)
-    assert half_rule(K / ((T1 * s + 1) * ((T1 + T2) * s + 1))) == Model(K, T1=T2 + 3 * T1 / 2, delay=T1 / 2)
+    assert half_rule(K / (s * (T1 * s + 1))) == SOPDT(K, T1=oo, delay=T1 / 2)
+    assert half_rule(K / ((T1 * s + 1) * ((T1 + T2) * s + 1))) == SOPDT(K, T1=T2 + 3 * T1 / 2, delay=T1 / 2)
 
 
 def test_the_limit_of_a_long_lag_is_the_model_of_an_integrator():
@@ -419,7 +419,7 @@ def test_the_largest_zero_comes_first():
     model = half_rule(product(1, [10, 8, 1], [3, 6]), Tc=2)
     rules = [(6 * s + 1) / (8 * s + 1), (3 * s + 1) / (2 * s + 1)]  # the first leaves a lag of 2
     assert [step.before for step in model.steps[:2]] == rules
-    assert model == Model(Rational(3, 2), T1=Rational(21, 2), delay=Rational(1, 2))
+    assert model == SOPDT(Rational(3, 2), T1=Rational(21, 2), delay=Rational(1, 2))
 
 
 def test_between_two_lags_that_are_equally_close_the_larger_one_counts():

@@ -13,7 +13,7 @@ from scipy.stats import binom
 from loopbook import s
 from loopbook.deadtime import System
 from loopbook.identification import first_order_from_step, fit
-from loopbook.identification.held import HOLDS, DrivenChain, responses
+from loopbook.identification.zero_order_hold import HOLDS, DrivenChain, responses
 
 
 def record(kind, lags, delay, noise, seed, *, count=60, hold="zero order", jitter=0.0, gain=2.0):

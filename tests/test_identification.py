@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from draws import draws
 from loopbook import s
-from loopbook.approximation import Model
+from loopbook.approximation import SOPDT
 from loopbook.deadtime import System
 from loopbook.identification import (
     AdaptiveController,
@@ -27,7 +27,7 @@ from loopbook.identification import (
     relay_experiment,
     swing,
 )
-from loopbook.identification.held import HOLDS, KINDS, DrivenChain, responses
+from loopbook.identification.zero_order_hold import HOLDS, KINDS, DrivenChain, responses
 from loopbook.pid import PID, Controller
 from loopbook.plants import Process
 from loopbook.signals import noise, stepwise
@@ -568,7 +568,7 @@ def test_the_difference_equation_gives_back_the_continuous_model(K, T, delay):
 
 
 def test_an_integrator_has_the_coefficient_one():
-    assert first_order_of(1, (0.3, 0.1), step=2, whole_delay=1) == Model(0.2, T1=sympy.oo, delay=2.5)
+    assert first_order_of(1, (0.3, 0.1), step=2, whole_delay=1) == SOPDT(0.2, T1=sympy.oo, delay=2.5)
 
 
 def test_an_estimator_refuses_what_makes_no_sense():

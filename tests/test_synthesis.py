@@ -10,7 +10,7 @@ from sympy import Rational, exp, oo, pi, sqrt, symbols
 
 from draws import draws
 from loopbook import s
-from loopbook.approximation import Model, pade, taylor
+from loopbook.approximation import SOPDT, pade, taylor
 from loopbook.deadtime import System
 from loopbook.expressions import agreement
 from loopbook.pid import PID
@@ -80,7 +80,7 @@ def test_whatever_stands_for_a_block_is_read():
     blocks = (
         (control.tf([1], [1, 1]), control.tf([1], [0.5, 1])),
         (control.tf2ss(control.tf([1], [1, 1])), 1 / (0.5 * s + 1)),
-        (Model(1, 1), System(1 / (0.5 * s + 1))),
+        (SOPDT(1, 1), System(1 / (0.5 * s + 1))),
         (10 / (10.0 * s + 10), 0.2 / (0.1 * s + 0.2)),
     )
     assert all(equal(direct_synthesis(*pair), 2 * (s + 1) / s) for pair in blocks)
@@ -494,7 +494,7 @@ def test_a_zero_in_the_left_half_plane_is_cancelled_whatever_it_is(gain, T1, T2,
 def test_the_settings_do_not_depend_on_how_the_model_is_written(gain, T1, T2, late, slow):
     numbers = imc(second_order(gain, T1, T2, late), slow)
     expanded = sympy.expand(1 / second_order(gain, T1, T2)) ** -1 * exp(-late * s)
-    slow_first = Model(gain, max(T1, T2), min(T1, T2), late)
+    slow_first = SOPDT(gain, max(T1, T2), min(T1, T2), late)
     assert numbers == imc(expanded, slow) == imc(slow_first, slow) == imc(System(expanded), slow)
     with_common_factor = second_order(gain, T1, T2, late) * (s + 3) / (s + 3)
     assert numbers == imc(with_common_factor, slow)

@@ -12,7 +12,7 @@ from sympy import Max, Min, Rational, exp, oo, sqrt, symbols
 
 from draws import draws
 from loopbook import s, tuning
-from loopbook.approximation import Model, model_of
+from loopbook.approximation import SOPDT, model_of
 from loopbook.ise import criteria
 from loopbook.oscillation import oscillation_of_pole
 from loopbook.pid import PID
@@ -63,8 +63,8 @@ def same(one, other):
 @settings(max_examples=draws(20), deadline=None)
 @given(K=GAINS, T=POSITIVE, ratio=RATIOS, scale=GAINS, slower=POSITIVE)
 def test_units_of_a_rule_for_a_model(rule, K, T, ratio, scale, slower):
-    before = rule(Model(K, T, delay=ratio * T))
-    after = rule(Model(scale * K, slower * T, delay=slower * ratio * T))
+    before = rule(SOPDT(K, T, delay=ratio * T))
+    after = rule(SOPDT(scale * K, slower * T, delay=slower * ratio * T))
     assert same([scale * after.Kp, *times(after)], [before.Kp, slower * before.Ti, slower * before.Td])
 
 
@@ -122,7 +122,7 @@ def test_a_root_would_leave_an_integrator_without_control(printed):
 
 @pytest.mark.parametrize("rule", [r for name, r in OF_A_MODEL.items() if "simc" not in name])
 def test_a_vanishing_dead_time_lets_the_gain_grow_without_end(rule):
-    sizes = [rule(Model(1, 1, delay=Rational(1, n))) for n in (10, 100, 1000)]
+    sizes = [rule(SOPDT(1, 1, delay=Rational(1, n))) for n in (10, 100, 1000)]
     assert sizes[0].Kp < sizes[1].Kp / 5 < sizes[2].Kp / 25
     assert sizes[0].Td >= sizes[1].Td >= sizes[2].Td
 
@@ -149,7 +149,7 @@ def test_skogestad_without_dead_time_is_the_limit():
         (integrator(K, delay), 1 / (K * (Tc + delay)), c * (Tc + delay), 0),
         (first_order(K, T, delay), T / (K * (Tc + delay)), Min(T, c * (Tc + delay)), 0),
         (integrator_with_lag(K, T, delay), 1 / (K * (Tc + delay)), c * (Tc + delay), T),
-        (Model(K, T1, T2, delay), T1 / (K * (Tc + delay)), Min(T1, c * (Tc + delay)), T2),
+        (SOPDT(K, T1, T2, delay), T1 / (K * (Tc + delay)), Min(T1, c * (Tc + delay)), T2),
         (double_integrator(K, delay), 1 / (4 * K * (Tc + delay) ** 2), 4 * (Tc + delay), 4 * (Tc + delay)),
     ],
 )
@@ -203,7 +203,7 @@ def test_cohen_and_coon():
 def test_the_rows_of_table_12_3(mode, kind, printed):
     """Three digits and a power law at three dead times; the integral mode of the servo is linear in the dead time."""
     for r in (0.1, 0.37, 1):
-        settings = tuning.itae(Model(3, 20, delay=20 * r), kind, mode)
+        settings = tuning.itae(SOPDT(3, 20, delay=20 * r), kind, mode)
         found = [float(3 * settings.Kp), 20 / float(settings.Ti), float(settings.Td) / 20]
         expected = [A * r**B for A, B in printed] + [0] * (3 - len(printed))
         if mode == "servo":
@@ -261,7 +261,7 @@ def test_hang_outside_of_its_range():
 
 @pytest.mark.parametrize("r", [0, Rational(1, 10), Rational(1, 2), 1])
 def test_cohen_and_coons_proportional_control_decays_to_a_quarter(r):
-    process = Model(1 / r, 1 / Rational(r), delay=1).expr if r else integrator(1, 1)
+    process = SOPDT(1 / r, 1 / Rational(r), delay=1).expr if r else integrator(1, 1)
     pair = dominant_poles(tuning.cohen_coon(process, "P").expr * process)[0]
     assert float(oscillation_of_pole(pair).decay_ratio) == pytest.approx(0.25, abs=0.03)
 
@@ -330,7 +330,7 @@ def test_guidelines_for_the_closed_loop():
 
 @given(T=POSITIVE, delay=POSITIVE)
 def test_skogestads_guideline_is_one_that_rivera_allows_unless_the_lag_is_long(T, delay):
-    allowed = delay in tuning.closed_loop_time(Model(1, T, delay=delay), "rivera")
+    allowed = delay in tuning.closed_loop_time(SOPDT(1, T, delay=delay), "rivera")
     assert bool(allowed) == (delay > T / 10)
 
 
@@ -360,7 +360,7 @@ def test_adjusting_skogestads_settings_gives_skogestads_settings(K, T1, T2, dela
 def test_a_slower_process_makes_every_time_longer(K, T, delay, slower):
     """Also for a PID controller of a process for which Skogestad's is PI."""
     settings = PID(3, Ti=4, Td=1, Tf=Rational(1, 10))
-    found = tuning.adjusted(settings, Model(K, T, delay=delay), Model(K, slower * T, delay=slower * delay))
+    found = tuning.adjusted(settings, SOPDT(K, T, delay=delay), SOPDT(K, slower * T, delay=slower * delay))
     assert found == PID(3, slower * 4, slower, slower / 10)
 
 

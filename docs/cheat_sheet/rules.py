@@ -26,7 +26,7 @@ from cheat_sheet.section import Section
 from cheat_sheet.stated import (
     RELAY,
 )
-from loopbook.approximation import Model, pade
+from loopbook.approximation import SOPDT, pade
 from loopbook.synthesis import IMC_TABLE, imc
 from loopbook.transfer import (
     first_order,
@@ -45,8 +45,8 @@ from loopbook.tuning import (
 
 def skogestad():
     models = (
-        Model(K, T1, delay=theta), Model(K, sympy.oo, delay=theta), Model(K, T1, T2, theta),
-        Model(K, sympy.oo, T2, theta), Model(K, sympy.oo, sympy.oo, theta),
+        SOPDT(K, T1, delay=theta), SOPDT(K, sympy.oo, delay=theta), SOPDT(K, T1, T2, theta),
+        SOPDT(K, sympy.oo, T2, theta), SOPDT(K, sympy.oo, sympy.oo, theta),
     )  # fmt: skip
     rows = []
     for model in models:

@@ -33,7 +33,7 @@ def process_of(ratio, zero):
 def shared_model(ratio, zero, share):
     """The model with one lag, with any share of the second lag as dead time; Skogestad's is one half."""
     T1, T2, *smaller = lags_of(ratio)
-    return approximation.Model(1, T1=T1 + (1 - share) * T2, delay=share * T2 + sum(smaller) + zero)
+    return approximation.SOPDT(1, T1=T1 + (1 - share) * T2, delay=share * T2 + sum(smaller) + zero)
 
 
 @functools.cache

@@ -149,7 +149,7 @@ class Family:
 
 
 def _padded(sums: Quasipolynomials, order: int) -> Quasipolynomials:
-    """The same sums with more powers."""
+    """The same quasipolynomials with more powers."""
     import numpy
 
     missing = ((0, 0), (0, order - sums.order), (0, 0))
@@ -157,7 +157,7 @@ def _padded(sums: Quasipolynomials, order: int) -> Quasipolynomials:
 
 
 def _shifted(rows):
-    """Coefficients of sums, times s."""
+    """Coefficients of quasipolynomials, times s."""
     import numpy
 
     return numpy.pad(rows, ((0, 0), (1, 0), (0, 0)))

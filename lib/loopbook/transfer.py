@@ -154,7 +154,7 @@ def transfer_function(value: TransferFunctionLike) -> sympy.Expr:
     """Return the transfer function of whatever stands for a block, an expression in `s` with exact numbers.
 
     Arguments:
-        value: an expression in `s` or a number; whatever has one as its attribute `expr`, as a `PID`, a `Model` and a
+        value: an expression in `s` or a number; whatever has one as its attribute `expr`, as a `PID`, an `SOPDT` and a
             `System`; or a continuous single-input single-output system of python-control.
     Raises:
         ValueError: for anything else.

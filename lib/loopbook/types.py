@@ -29,7 +29,7 @@ Values: TypeAlias = Union[Sequence[Number], "numpy.ndarray"]
 #: The lowest and the highest value of an axis.
 Limits: TypeAlias = tuple[Number, Number]
 
-#: What `transfer_function` reads: an expression in `s`, a number, a `PID`, a `Model`, a `System`, or of python-control.
+#: What `transfer_function` reads: an expression in `s`, a number, a `PID`, an `SOPDT`, a `System`, python-control's.
 TransferFunctionLike: TypeAlias = Union[Number, "HasTransferFunction", "control.TransferFunction", "control.StateSpace"]
 
 #: Stretches of time in manual mode: (beginning, end, control signal), None for the last control signal.

@@ -11,7 +11,7 @@ import pytest
 import sympy
 
 from loopbook import s, t
-from loopbook.approximation import Model, pade, taylor, zero_rule
+from loopbook.approximation import SOPDT, pade, taylor, zero_rule
 from loopbook.deadtime import System
 from loopbook.identification import relay_experiment
 from loopbook.ise import ise, pi_first_order
@@ -154,8 +154,8 @@ def test_zero_rules(T0, T, Tc, rule, row):
 
 
 def test_skogestad():
-    models = (Model(2, 7, delay=2), Model(2, sympy.oo, delay=2), Model(2, 7, 3, 2), Model(2, sympy.oo, 3, 2))
-    models = (*models, Model(2, sympy.oo, sympy.oo, 2))
+    models = (SOPDT(2, 7, delay=2), SOPDT(2, sympy.oo, delay=2), SOPDT(2, 7, 3, 2), SOPDT(2, sympy.oo, 3, 2))
+    models = (*models, SOPDT(2, sympy.oo, sympy.oo, 2))
     for (process, *shown), model in zip(section(rules.skogestad).rows, models, strict=True):
         settings = simc(model, 4, c=3)
         assert process.subs(VALUES).equals(model.expr.subs(sympy.exp(-2 * s), 1))

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import sympy
 
 from loopbook.approximation.dead_time import whole
-from loopbook.approximation.model import Model, factors, sort_lags
+from loopbook.approximation.model import SOPDT, factors, sort_lags
 from loopbook.expressions import exact, s
 from loopbook.transfer import dead_time
 from loopbook.types import Number, TransferFunctionLike
@@ -25,8 +25,8 @@ class Step(NamedTuple):
 
 def half_rule(
     H: TransferFunctionLike, order: int = 1, Tc: Number | None = None, largest_first: Sequence[Number] | None = None
-) -> Model:
-    """Return the `Model` that Skogestad's half rule finds for a process with many lags.
+) -> SOPDT:
+    """Return the `SOPDT` that Skogestad's half rule finds for a process with many lags.
 
     Half of the largest neglected lag goes to the smallest lag that is kept, the other half to the dead time. All
     smaller lags, and the time constants of zeros in the right half-plane, go to the dead time. Zeros in the left
@@ -48,9 +48,9 @@ def half_rule(
     Source: Skogestad, slides on the half rule and on the approximation of zeros.
 
     >>> half_rule(1 / ((s + 1) * (0.6 * s + 1)))
-    Model(K=1, T1=13/10, delay=3/10)
+    SOPDT(K=1, T1=13/10, delay=3/10)
     >>> half_rule(5 / (s * (3 * s + 1)))
-    Model(K=5, T1=oo, delay=3/2)
+    SOPDT(K=5, T1=oo, delay=3/2)
     """
     if (order := whole(order)) > 2:
         raise ValueError(f"order is {order}: expected 1 or 2")
@@ -200,4 +200,4 @@ def _halved(K, lags, delay, order, steps):
     steps = [*steps, *(Step("small lag", 1 / _factor(T), dead_time(T)) for T in small)]
     if order == 2 and len(kept) == 2 and kept[0] != sympy.oo and (kept[1] - kept[0]).is_positive:
         kept.reverse()  # the lag that grew may be the larger one now
-    return Model(K, *kept, delay=delay + half / 2 + sympy.Add(*small), steps=tuple(steps))
+    return SOPDT(K, *kept, delay=delay + half / 2 + sympy.Add(*small), steps=tuple(steps))

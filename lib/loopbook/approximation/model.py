@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Model:
-    """A gain with up to two lags and a dead time: K*exp(-delay*s)/((T1*s + 1)*(T2*s + 1)).
+class SOPDT:
+    """A second-order-plus-dead-time model, K*exp(-delay*s)/((T1*s + 1)*(T2*s + 1)).
 
-    An infinite lag is an integrator, and K is then the slope: K*exp(-delay*s)/(s*(T2*s + 1)) for T1 = oo, and
-    K*exp(-delay*s)/s**2 for two of them.
+    It is of first order, FOPDT, where T2 = 0. An infinite lag is an integrator, and K is then the slope:
+    K*exp(-delay*s)/(s*(T2*s + 1)) for T1 = oo, and K*exp(-delay*s)/s**2 for two of them.
 
     Arguments:
         K: gain, in units of the measurement for one unit of the control signal; of an integrator, that per time.
@@ -33,9 +33,9 @@ class Model:
     Raises:
         ValueError: for a gain that is zero, a time that is negative, or T2 larger than T1.
 
-    >>> Model(2, T1=10, delay=3).expr
+    >>> SOPDT(2, T1=10, delay=3).expr
     2*exp(-3*s)/(10*s + 1)
-    >>> Model(2, T1=sympy.oo, T2=4).expr
+    >>> SOPDT(2, T1=sympy.oo, T2=4).expr
     2/(s*(4*s + 1))
     """
 
@@ -91,28 +91,28 @@ class Model:
         return equalities({symbols[name]: value for name, value in self._shown().items()})
 
     def __repr__(self) -> str:
-        return f"Model({', '.join(f'{name}={written(value)}' for name, value in self._shown().items())})"
+        return f"SOPDT({', '.join(f'{name}={written(value)}' for name, value in self._shown().items())})"
 
 
-def model_of(H: TransferFunctionLike, largest_first: Sequence[Number] | None = None) -> Model:
-    """Return the `Model` that H is, in whatever form it is written.
+def model_of(H: TransferFunctionLike, largest_first: Sequence[Number] | None = None) -> SOPDT:
+    """Return the `SOPDT` that H is, in whatever form it is written.
 
     Arguments:
-        H: a `Model`; or a transfer function with at most two poles, both real, no zero and one dead time or none, or
+        H: an `SOPDT`; or a transfer function with at most two poles, both real, no zero and one dead time or none, or
             what `transfer_function` reads as one.
         largest_first: lags with letters, sorted, where the letters leave their order open.
     Raises:
         ValueError: for anything else, or lags of unknown order.
 
     >>> model_of(6 / (30 * s**2 + 33 * s + 3))
-    Model(K=2, T1=10, T2=1)
+    SOPDT(K=2, T1=10, T2=1)
     """
-    if isinstance(H, Model):
+    if isinstance(H, SOPDT):
         return H
     H, delay, process = factors(H)
     if process.zeros or len(process.lags) > 2 or any(T.is_negative for T in process.lags):
         raise ValueError(f"{H} is no simple model: expected at most two lags, no zeros; half_rule may find one")
-    return Model(process.K, *sort_lags(process.lags, largest_first), delay=delay)
+    return SOPDT(process.K, *sort_lags(process.lags, largest_first), delay=delay)
 
 
 class TimeConstants(NamedTuple):

@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
 from loopbook.quasipolynomials import DelayFraction
-from loopbook.quasipolynomials.fraction import Sum, lowest_term
+from loopbook.quasipolynomials.fraction import Quasipolynomial, lowest_term
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -128,9 +128,9 @@ def frequency_curve(
 
 
 class _OnAxis:
-    """A sum on the imaginary axis, q(w) = Q(jw), without its shortest dead time; its derivatives by w, their bounds."""
+    """A quasipolynomial q(w) = Q(jw) without its shortest dead time; its derivatives by w, their bounds."""
 
-    def __init__(self, parts: Sum, scale: int):
+    def __init__(self, parts: Quasipolynomial, scale: int):
         import numpy
         from numpy.polynomial import polynomial
 
@@ -165,7 +165,7 @@ class _OnAxis:
         return 4e-16 * max(map(len, self.real)) * self.bound(w)
 
     def has_begun(self, w: float) -> bool:
-        """Whether the sum stays near its lowest power from 0 to w."""
+        """Whether the quasipolynomial stays near its lowest power from 0 to w."""
         k = self.power + 1
         return self.bound(w, k) * w / math.factorial(k) <= CONE * self.lowest
 
@@ -178,7 +178,7 @@ class _OnAxis:
         return self(c), most
 
     def phases(self, grid: numpy.ndarray, values: numpy.ndarray, is_gap: numpy.ndarray) -> numpy.ndarray:
-        """The continuous phase of the sum, divided by its sign, at frequencies that follow each other closely."""
+        """The continuous phase of the quasipolynomial, divided by its sign, at frequencies close to each other."""
         import numpy
 
         turns = numpy.angle(values[1:] / values[:-1])
@@ -291,8 +291,8 @@ def _own_range(H: DelayFraction) -> tuple[float, float]:
     return low, high
 
 
-def _roots_without_delay(parts: Sum) -> list[complex]:
-    """The roots of a sum's first polynomial, and of all of them together, with either sign of what comes later."""
+def _roots_without_delay(parts: Quasipolynomial) -> list[complex]:
+    """The roots of a quasipolynomial's first part, and of all its parts, with either sign of what comes later."""
     import numpy
 
     if not parts:

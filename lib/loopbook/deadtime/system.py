@@ -17,7 +17,7 @@ from loopbook.deadtime.step_info import StepInfo, first_time_at, settled_respons
 from loopbook.expressions import function_of, s, t
 from loopbook.laplace import transform
 from loopbook.quasipolynomials import DelayFraction, read
-from loopbook.quasipolynomials.fraction import Sum, lowest_term, plus
+from loopbook.quasipolynomials.fraction import Quasipolynomial, lowest_term, plus
 from loopbook.stability import is_stable
 from loopbook.stability import margins as margins_of
 from loopbook.stability.poles import dominant_roots
@@ -73,7 +73,7 @@ class System(DelayFraction):
             )
 
     @classmethod
-    def _make(cls, above: Sum, below: Sum) -> Self:
+    def _make(cls, above: Quasipolynomial, below: Quasipolynomial) -> Self:
         return cls(DelayFraction(above, below))
 
     # ---- what it is

@@ -50,11 +50,17 @@ def _legend_box(axes, **options):
     return legend.get_window_extent()
 
 
-def decades(axis: Axis, low: float, high: float) -> None:
-    """Ordinary numbers on a logarithmic axis from `low` to `high`: powers of ten, or 1, 2 and 5 where it is short."""
+def decades(axis: Axis, low: float, high: float, short: float = 300) -> None:
+    """Ordinary numbers on a logarithmic axis from `low` to `high`: 1, 2 and 5, or powers of ten where it is long.
+
+    Arguments:
+        axis: of matplotlib.
+        low, high: its limits.
+        short: the largest quotient of the two for which there is room for all numbers.
+    """
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-    long = high / low > 300
+    long = high / low > short
     axis.set_major_locator(LogLocator(subs=(1,) if long else (1, 2, 5), numticks=9 if long else 12))
     plain = low >= 0.9e-3 and high <= 1.1e4
     name = (lambda x, _: f"{x:g}") if plain or not long else (lambda x, _: f"$10^{{{round(math.log10(x))}}}$")

@@ -245,5 +245,5 @@ def _finish(axes, xlabel, ylabel, title, xlim, ylim, log):
     axes.set_xlim(xlim or axes.get_xlim())
     axes.set_ylim(ylim or axes.get_ylim())
     if log:
-        decades(axes.xaxis, *axes.get_xlim())
-        decades(axes.yaxis, *axes.get_ylim())
+        decades(axes.xaxis, *axes.get_xlim(), short=3000)
+        decades(axes.yaxis, *axes.get_ylim(), short=3000)

@@ -12,7 +12,7 @@ from loopbook.types import Number
 from loopbook.validation import not_negative, positive
 
 if TYPE_CHECKING:
-    from loopbook.approximation import Model
+    from loopbook.approximation import SOPDT
     from loopbook.pid import PID
 
 
@@ -35,7 +35,7 @@ class AdaptiveController(Controller):
     Raises:
         ValueError: as `Controller`, and where neither the dead time nor Tc says how fast the loop should be.
     Attributes:
-        model: the last `Model` that makes sense, of signals in percent where they have ranges; None before the first.
+        model: the last `SOPDT` that makes sense, of signals in percent where they have ranges; None before the first.
         estimator: the `RecursiveLeastSquares`.
 
     >>> from loopbook.pid import PID
@@ -44,7 +44,7 @@ class AdaptiveController(Controller):
     True
     """
 
-    model: Model | None
+    model: SOPDT | None
     estimator: RecursiveLeastSquares
 
     recorded = ("Kp", "Ti")  # what a simulation notes besides the signals

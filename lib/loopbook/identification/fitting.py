@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 import sympy
 
-from loopbook.approximation import Model
+from loopbook.approximation import SOPDT
 from loopbook.expressions import exact
-from loopbook.identification.held import HOLDS, KINDS, DrivenChain
 from loopbook.identification.profiles import Residuals, interval
 from loopbook.identification.records import even_step, record
 from loopbook.identification.search import least_squares
+from loopbook.identification.zero_order_hold import HOLDS, KINDS, DrivenChain
 from loopbook.validation import number, one_of
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ class Fit:
     """A model that fits logged data: what `fit` returns.
 
     Attributes:
-        model: the `Model`.
+        model: the `SOPDT`.
         kind, hold: as given to `fit`.
         parameters: K, T1 or T1 and T2, and delay, floats by name.
         errors: the standard error of each of them, if what is left of the data is white noise, and if the response is
@@ -48,7 +48,7 @@ class Fit:
         times, y, fitted: the record, and what the model makes of the control signal; arrays.
     """
 
-    model: Model
+    model: SOPDT
     kind: str
     parameters: dict[str, float]
     errors: dict[str, float]
@@ -166,7 +166,7 @@ def fit(
     >>> u = numpy.where(times < 5, 0, 1)
     >>> y = 2 * (1 - numpy.exp(-numpy.maximum(times - 7.5, 0) / 10))
     >>> fit(times, u, y).model
-    Model(K=2, T1=10, delay=5/2)
+    SOPDT(K=2, T1=10, delay=5/2)
     """
     import numpy
 
@@ -205,7 +205,7 @@ def fit(
     parameters = {name: float(units[name] * value) for name, value in found.items()}
     errors = {name: float(units[name] * value) for name, value in errors.items()}
     rounded = {name: exact(float(f"{value:.{DIGITS}g}")) for name, value in parameters.items()}
-    model = Model(**({"T1": sympy.oo} if integrators else {}), **rounded)
+    model = SOPDT(**({"T1": sympy.oo} if integrators else {}), **rounded)
     fitted = rest + unit_y * fitted
     return Fit(model, kind, parameters, errors, float(residual * unit_y), times, y, fitted, hold, residuals)
 

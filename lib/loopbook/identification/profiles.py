@@ -11,8 +11,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from loopbook.identification.held import DrivenChain
 from loopbook.identification.search import least_squares
+from loopbook.identification.zero_order_hold import DrivenChain
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

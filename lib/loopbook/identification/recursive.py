@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from loopbook.approximation import Model
+from loopbook.approximation import SOPDT
 from loopbook.expressions import exact
 from loopbook.types import Number
 from loopbook.validation import number, positive, real_numbers
@@ -89,7 +89,7 @@ class RecursiveLeastSquares:
         return f"RecursiveLeastSquares(parameters={self.parameters.round(6).tolist()}, forgetting={self.forgetting:g})"
 
 
-def first_order_of(a: Number, b: ArrayLike, step: Number, whole_delay: int = 0) -> Model:
+def first_order_of(a: Number, b: ArrayLike, step: Number, whole_delay: int = 0) -> SOPDT:
     """Return the lag with dead time whose samples obey y[k+1] = a y[k] + b0 u[k-n] + b1 u[k-n-1].
 
     This is the exact relation for a control signal that is held between samples, if the dead time is n steps and a
@@ -102,12 +102,12 @@ def first_order_of(a: Number, b: ArrayLike, step: Number, whole_delay: int = 0) 
         step: time between two samples.
         whole_delay: n, how many whole steps the dead time has.
     Returns:
-        A `Model`.
+        An `SOPDT`.
     Raises:
         ValueError: for coefficients to which no such model belongs.
 
     >>> first_order_of(0.9048374180359595, (0.1903251639280810, 0), step=1, whole_delay=3)
-    Model(K=2, T1=10, delay=3)
+    SOPDT(K=2, T1=10, delay=3)
     """
     import sympy
 
@@ -127,4 +127,4 @@ def first_order_of(a: Number, b: ArrayLike, step: Number, whole_delay: int = 0) 
         T = -step / math.log(a)
         K, rest = (b0 + b1) / (1 - a), -T * math.log1p(-share * (1 - a))
     rounded = [x if x == sympy.oo else exact(float(f"{x:.10g}")) for x in (K, T, (whole_delay + 1) * step - rest)]
-    return Model(rounded[0], T1=rounded[1], delay=max(rounded[2], sympy.S.Zero))
+    return SOPDT(rounded[0], T1=rounded[1], delay=max(rounded[2], sympy.S.Zero))

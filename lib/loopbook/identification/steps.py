@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from loopbook.approximation import Model
+from loopbook.approximation import SOPDT
 from loopbook.expressions import exact
 from loopbook.identification.records import record
 from loopbook.validation import number, one_of
@@ -28,7 +28,7 @@ STRIDES = 8  # of windows, within their width
 
 def first_order_from_step(
     times: ArrayLike, y: ArrayLike, U: float = 1, at: float = 0, delay_by: str = "tangent"
-) -> Model:
+) -> SOPDT:
     """Return gain, lag and dead time of a lag with dead time, read off a step response.
 
     The gain is the final change of y divided by that of the control signal. The dead time is where the steepest slope
@@ -47,7 +47,7 @@ def first_order_from_step(
         at: the time of the step, not before the record begins.
         delay_by: "tangent", as in the figure, or "two points".
     Returns:
-        A `Model` with K, T1 and delay.
+        An `SOPDT` with K, T1 and delay.
     Raises:
         ValueError: for arrays that do not fit, a step of zero, a response that has not come to rest, or one that is not
             to be told from noise.
@@ -87,7 +87,7 @@ def first_order_from_step(
     return _model(change / U, t_63 - delay, delay)
 
 
-def integrator_from_step(times: ArrayLike, y: ArrayLike, U: float = 1, at: float = 0, part: float = 0.5) -> Model:
+def integrator_from_step(times: ArrayLike, y: ArrayLike, U: float = 1, at: float = 0, part: float = 0.5) -> SOPDT:
     """Return the gain and the dead time of an integrator with dead time, read off a step response.
 
     The response ends on a straight line, its asymptote. Its slope is K*U, and it leaves the initial level one dead time
@@ -97,7 +97,7 @@ def integrator_from_step(times: ArrayLike, y: ArrayLike, U: float = 1, at: float
         times, y, U, at: as for `first_order_from_step`; the record ends on the asymptote.
         part: the share of the response, its end, that lies on the asymptote.
     Returns:
-        A `Model` with K, T1 = oo and delay.
+        An `SOPDT` with K, T1 = oo and delay.
     Raises:
         ValueError: for arrays that do not fit, a step of zero, or a response without such an asymptote.
     Source: Haugen, Figure 10.8.
@@ -105,7 +105,7 @@ def integrator_from_step(times: ArrayLike, y: ArrayLike, U: float = 1, at: float
     >>> import numpy
     >>> times = numpy.linspace(0, 10, 101)
     >>> integrator_from_step(times, 5 + 3 * numpy.maximum(times - 4, 0), U=2)
-    Model(K=3/2, T1=oo, delay=4)
+    SOPDT(K=3/2, T1=oo, delay=4)
     """
     import sympy
 
@@ -210,4 +210,4 @@ def _model(K, T, delay):
 
     rounded = (x if x == sympy.oo else exact(float(f"{x:.10g}")) for x in (K, T, delay))
     K, T, delay = rounded
-    return Model(K, T1=T, delay=max(delay, sympy.S.Zero))
+    return SOPDT(K, T1=T, delay=max(delay, sympy.S.Zero))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from loopbook.deadtime import Loop
 from loopbook.ise.one_delay import OneDelay
 from loopbook.quasipolynomials import DelayFraction, read
-from loopbook.quasipolynomials.fraction import Sum, plus, taylor_coefficient, times
+from loopbook.quasipolynomials.fraction import Quasipolynomial, plus, taylor_coefficient, times
 from loopbook.stability import StabilityLimitError, unstable_roots
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ __all__ = ["ErrorFraction", "NotApplicableError", "UnstableLoopError", "checked_
 
 MODES = ("servo", "regulator")
 ZERO = Fraction(0)
-STEP: Sum = {ZERO: (0, 1)}  # what a transfer function is divided by for a step
+STEP: Quasipolynomial = {ZERO: (0, 1)}  # what a transfer function is divided by for a step
 
 
 class UnstableLoopError(ValueError):
@@ -71,8 +71,8 @@ class ErrorFraction:
     """
 
     fraction: DelayFraction
-    N: Sum  # begins without dead time: what it has at least of that is left out
-    D: Sum
+    N: Quasipolynomial  # begins without dead time: what it has at least of that is left out
+    D: Quasipolynomial
     pole: int
     earliest: Fraction  # when the error begins
 

@@ -12,7 +12,7 @@ from loopbook.ise.one_delay import CLEAR, ROUNDING
 from loopbook.ise.residue_method import both_residues
 from loopbook.ise.residues import MOST_DIGITS_LOST
 from loopbook.quasipolynomials import DelayFraction
-from loopbook.quasipolynomials.fraction import Sum, plus
+from loopbook.quasipolynomials.fraction import Quasipolynomial, plus
 
 if TYPE_CHECKING:
     import numpy
@@ -80,9 +80,9 @@ def _alone(above, above_delays, below, below_delays) -> float:
         return math.inf
 
 
-def _exact(rows, delays, scale: int) -> Sum:
+def _exact(rows, delays, scale: int) -> Quasipolynomial:
     """A sum times a scale that makes its coefficients whole numbers."""
-    total: Sum = {}
+    total: Quasipolynomial = {}
     for row, delay in zip(rows.tolist(), delays.tolist(), strict=True):
         whole = [int(Fraction(c) * scale) for c in row]
         while whole and not whole[-1]:

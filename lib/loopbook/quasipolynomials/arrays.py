@@ -45,7 +45,7 @@ class Quasipolynomials:
 
     @classmethod
     def exact(cls, parts: Mapping[Fraction, tuple[int, ...]], order: int, divisor: int) -> Self:
-        """One sum ``{delay: coefficients}`` over a divisor, as numbers; no part is one that is zero.
+        """One quasipolynomial ``{delay: coefficients}`` over a divisor, as numbers; no part is one that is zero.
 
         It is divided before, because exact numbers may be too large or too small for floating point.
         """
@@ -62,12 +62,12 @@ class Quasipolynomials:
 
     @property
     def count(self) -> int:
-        """The number of sums."""
+        """The number of quasipolynomials."""
         return self.coefficients.shape[-1]
 
     @functools.cached_property
     def longest(self) -> numpy.ndarray:
-        """The longest dead time of each sum."""
+        """The longest dead time of each quasipolynomial."""
         return self.delays.max(axis=0)
 
     # ---- algebra
@@ -107,7 +107,7 @@ class Quasipolynomials:
         return Quasipolynomials(numpy.stack(parts), numpy.stack(delays))
 
     def delayed(self, delay: numpy.ndarray) -> Quasipolynomials:
-        """The sums with an additional dead time, or one less."""
+        """The quasipolynomials with an additional dead time, or one less."""
         return Quasipolynomials(self.coefficients, self.delays + delay)
 
     def derivative(self) -> Quasipolynomials:
@@ -115,7 +115,7 @@ class Quasipolynomials:
         return Quasipolynomials(_derivative(self.coefficients) - self.delays[:, None] * self.coefficients, self.delays)
 
     def slower(self, unit: numpy.ndarray, power: int | None = None) -> Quasipolynomials:
-        """The sums divided by unit**power, with time in a unit in which the frequency `unit` is 1."""
+        """The quasipolynomials divided by unit**power, with time in a unit in which the frequency `unit` is 1."""
         import numpy
 
         powers = numpy.arange(self.order + 1) - (self.order if power is None else power)
@@ -124,11 +124,11 @@ class Quasipolynomials:
     # ---- on the imaginary axis
 
     def value(self, which: numpy.ndarray, w: numpy.ndarray) -> numpy.ndarray:
-        """The values of some sums at s = j w, one frequency for each."""
+        """The values of some quasipolynomials at s = j w, one frequency for each."""
         return self.taylor(which, w, 0)[0]
 
     def taylor(self, which: numpy.ndarray, w: numpy.ndarray, degree: int = DEGREE) -> numpy.ndarray:
-        """The coefficients of the powers 0, 1 ... of h in the sums at s = j (w + h): array [power, frequency]."""
+        """The coefficients of the powers of h in the quasipolynomials at s = j (w + h): array [power, frequency]."""
         import numpy
 
         if self.count == 1:
@@ -177,7 +177,7 @@ class Quasipolynomials:
 
     @functools.cached_property
     def turned(self) -> numpy.ndarray:
-        """What a single sum is expanded with: arrays [part, k, power], in powers of the frequency."""
+        """What a single quasipolynomial is expanded with: arrays [part, k, power], in powers of the frequency."""
         import numpy
 
         turns = 1j ** (numpy.arange(DEGREE + 1)[:, None] + numpy.arange(self.order + 1))

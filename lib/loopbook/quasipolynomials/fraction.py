@@ -24,21 +24,21 @@ if TYPE_CHECKING:
     import numpy
     from numpy.typing import ArrayLike
 
-__all__ = ["DelayFraction", "Sum", "lowest_term", "plus", "read", "taylor_coefficient", "times"]
+__all__ = ["DelayFraction", "Quasipolynomial", "lowest_term", "plus", "read", "taylor_coefficient", "times"]
 
-
-Sum = dict[Fraction, tuple[int, ...]]
+#: A sum of polynomials in `s`, each with a dead time: {delay: whole coefficients, the lowest power first}.
+Quasipolynomial = dict[Fraction, tuple[int, ...]]
 
 ZERO: Fraction = Fraction(0)
-ONE: Sum = {ZERO: (1,)}
+ONE: Quasipolynomial = {ZERO: (1,)}
 PRIME = 2**61 - 1  # by which polynomials without a common factor are told apart quickly
 MOST_MULTIPLES = 60  # of a common base, up to which delays are powers of one letter
 
 
-# ------------------------------------------------------------------------------------------------ sums
+# ------------------------------------------------------------------------------------------------ quasipolynomials
 
 
-def plus(one: Sum, other: Sum, factor: int = 1) -> Sum:
+def plus(one: Quasipolynomial, other: Quasipolynomial, factor: int = 1) -> Quasipolynomial:
     """Return one + factor*other."""
     total = dict(one)
     for delay, part in other.items():
@@ -55,9 +55,9 @@ def plus(one: Sum, other: Sum, factor: int = 1) -> Sum:
     return total
 
 
-def times(one: Sum, other: Sum) -> Sum:
+def times(one: Quasipolynomial, other: Quasipolynomial) -> Quasipolynomial:
     """Return one*other."""
-    total: Sum = {}
+    total: Quasipolynomial = {}
     for delay, p in one.items():
         for later, q in other.items():
             product = [0] * (len(p) + len(q) - 1)
@@ -69,8 +69,8 @@ def times(one: Sum, other: Sum) -> Sum:
     return total
 
 
-def taylor_coefficient(parts: Sum, k: int) -> Fraction:
-    """Return the coefficient of s**k in the Taylor series of a sum at zero, exact.
+def taylor_coefficient(parts: Quasipolynomial, k: int) -> Fraction:
+    """Return the coefficient of s**k in the Taylor series of a quasipolynomial at zero, exact.
 
     >>> taylor_coefficient({Fraction(0): (1,), Fraction(2): (-1,)}, 1)    # of 1 - exp(-2*s)
     Fraction(2, 1)
@@ -86,22 +86,22 @@ def taylor_coefficient(parts: Sum, k: int) -> Fraction:
     )
 
 
-def lowest_term(parts: Sum) -> tuple[int, Fraction]:
-    """Return the lowest power of `s` in the Taylor series of a sum that is not zero, and its coefficient, exact."""
+def lowest_term(parts: Quasipolynomial) -> tuple[int, Fraction]:
+    """Return the lowest power of `s` in the Taylor series of a quasipolynomial, not 0, and its exact coefficient."""
     k = 0
     while not (coefficient := taylor_coefficient(parts, k)):
         k += 1
     return k, coefficient
 
 
-def _scaled(parts: Sum, factor: int) -> Sum:
+def _scaled(parts: Quasipolynomial, factor: int) -> Quasipolynomial:
     return {delay: tuple(factor * c for c in part) for delay, part in parts.items()} if factor else {}
 
 
 # ------------------------------------------------------------------------------------------------ common factors
 
 
-def _cancelled(above: Sum, below: Sum) -> tuple[Sum, Sum]:
+def _cancelled(above: Quasipolynomial, below: Quasipolynomial) -> tuple[Quasipolynomial, Quasipolynomial]:
     """Both without common factors, the denominator with a part without dead time and a positive leading coefficient."""
     if not above:
         return {}, ONE
@@ -112,7 +112,7 @@ def _cancelled(above: Sum, below: Sum) -> tuple[Sum, Sum]:
         above, below = _without_common_polynomial(above, below)
         # only where both have several dead times can a common factor have one
         if len(above) > 1 and len(below) > 1:
-            above, below = _without_common_sum(above, below)
+            above, below = _without_common_quasipolynomial(above, below)
     content = math.gcd(*(c for parts in (above, below) for part in parts.values() for c in part))
     if below[ZERO][-1] < 0:
         content = -content
@@ -123,8 +123,10 @@ def _cancelled(above: Sum, below: Sum) -> tuple[Sum, Sum]:
     return dict(sorted(above.items())), dict(sorted(below.items()))
 
 
-def _without_common_polynomial(above: Sum, below: Sum) -> tuple[Sum, Sum]:
-    """Without the factor that all polynomials of both sums share."""
+def _without_common_polynomial(
+    above: Quasipolynomial, below: Quasipolynomial
+) -> tuple[Quasipolynomial, Quasipolynomial]:
+    """Without the factor that all polynomials of both quasipolynomials share."""
     parts = [[*reversed(part)] for part in (*above.values(), *below.values())]
     if min(map(len, parts)) == 1 or _surely_coprime(parts):
         return above, below
@@ -156,7 +158,9 @@ def _surely_coprime(parts: list[list[int]]) -> bool:
     return bool(mixed) and len(gf_gcd(first, mixed, sympy.ZZ(PRIME), sympy.ZZ)) == 1
 
 
-def _without_common_sum(above: Sum, below: Sum) -> tuple[Sum, Sum]:
+def _without_common_quasipolynomial(
+    above: Quasipolynomial, below: Quasipolynomial
+) -> tuple[Quasipolynomial, Quasipolynomial]:
     """Without common factors that contain dead times, these being powers of a few letters."""
     powers, units = _as_powers({*above, *below})
     ring = PolyRing(sympy.symbols(f"s z:{len(units)}"), sympy.ZZ)
@@ -169,7 +173,7 @@ def _without_common_sum(above: Sum, below: Sum) -> tuple[Sum, Sum]:
         return above, below
     sides = []
     for polynomial in (f, g):
-        side: Sum = {}
+        side: Quasipolynomial = {}
         for (k, *exponents), c in polynomial.terms():
             delay = sum((n * unit for n, unit in zip(exponents, units, strict=True)), ZERO)
             side = plus(side, {delay: (*[0] * k, int(c))})
@@ -240,7 +244,7 @@ class DelayFraction:
     (5*s + 1)/(5*s + 1 + exp(-2*s))
     """
 
-    def __init__(self, above: Sum, below: Sum = ONE):
+    def __init__(self, above: Quasipolynomial, below: Quasipolynomial = ONE):
         if not below:
             raise ValueError(f"{_expression(above)} is divided by 0: expected a denominator that is not zero")
         self.numerator, self.denominator = _cancelled(above, below)
@@ -249,12 +253,12 @@ class DelayFraction:
             raise ValueError(f"{self.expr} contains {shift}: a dead time cannot be negative")
 
     @classmethod
-    def _make(cls, above: Sum, below: Sum) -> Self:
+    def _make(cls, above: Quasipolynomial, below: Quasipolynomial) -> Self:
         return cls(above, below)
 
     @classmethod
-    def coprime(cls, above: Sum, below: Sum) -> DelayFraction:
-        """The fraction of two sums that are known to have no common factor, the denominator with a part at zero."""
+    def coprime(cls, above: Quasipolynomial, below: Quasipolynomial) -> DelayFraction:
+        """The fraction of two quasipolynomials that are known to be coprime, the denominator with a part at zero."""
         fraction = DelayFraction.__new__(DelayFraction)
         below = below if above else ONE
         sign = -1 if below[ZERO][-1] < 0 else 1
@@ -380,7 +384,7 @@ class DelayFraction:
         with numpy.errstate(divide="ignore", invalid="ignore", over="ignore"):
             return (self._value(self.numerator, point) / self._value(self.denominator, point))[()]
 
-    def _value(self, parts: Sum, point: numpy.ndarray) -> numpy.ndarray:
+    def _value(self, parts: Quasipolynomial, point: numpy.ndarray) -> numpy.ndarray:
         import numpy
 
         leading, total = self.denominator[ZERO][-1], numpy.zeros(point.shape, dtype=complex)
@@ -390,7 +394,7 @@ class DelayFraction:
         return total
 
 
-def _expression(parts: Sum) -> sympy.Expr:
+def _expression(parts: Quasipolynomial) -> sympy.Expr:
     return sympy.Add(
         *(
             sympy.Add(*(c * s**k for k, c in enumerate(part) if c))
@@ -444,7 +448,7 @@ class _NoFractionError(Exception):
     """An expression is no fraction of sums of polynomials with dead times."""
 
 
-def _read(e: sympy.Expr) -> tuple[Sum, Sum]:
+def _read(e: sympy.Expr) -> tuple[Quasipolynomial, Quasipolynomial]:
     """Numerator and denominator of an expression, common factors left in."""
     if e == s:
         return {ZERO: (0, 1)}, ONE
@@ -485,7 +489,7 @@ def _read(e: sympy.Expr) -> tuple[Sum, Sum]:
     raise _NoFractionError
 
 
-def _read_dead_time(e: sympy.Expr) -> tuple[Sum, Sum]:
+def _read_dead_time(e: sympy.Expr) -> tuple[Quasipolynomial, Quasipolynomial]:
     """exp(a - delay*s), as a shift of `s` makes it, with the number exp(a) as a factor."""
     constant, rest = sympy.expand(e.exp).as_independent(s, as_Add=True)
     delay = sympy.expand(-rest / s)

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
 from loopbook.quasipolynomials.arrays import Quasipolynomials
-from loopbook.quasipolynomials.fraction import Sum, plus
+from loopbook.quasipolynomials.fraction import Quasipolynomial, plus
 from loopbook.stability.counting import ENDLESS, ON_LIMIT, count_roots
 from loopbook.stability.enclosures import Exact
 
@@ -133,7 +133,7 @@ def _exactly(loops, factor, delay):
     factor, delay = Fraction(factor), Fraction(delay)
     above = {d + delay: tuple(factor.numerator * c for c in part) for d, part in A.parts.items()}
     below = {d: tuple(factor.denominator * c for c in part) for d, part in B.parts.items()}
-    parts: Sum = plus(below, above)
+    parts: Quasipolynomial = plus(below, above)
     order, divisor = len(parts[Fraction(0)]) - 1, parts[Fraction(0)][-1]
     if max(map(len, parts.values())) - 1 > order:
         return ENDLESS

@@ -11,7 +11,7 @@ import sympy
 from loopbook.expressions import s
 from loopbook.quasipolynomials import DelayFraction, read
 from loopbook.quasipolynomials.arrays import DEGREE, Quasipolynomials
-from loopbook.quasipolynomials.fraction import plus, times
+from loopbook.quasipolynomials.fraction import Quasipolynomial, plus, times
 from loopbook.stability.difference import Endless, at_endless_frequency, power_of_two, prevailing
 from loopbook.stability.enclosures import (
     NARROWEST,
@@ -31,11 +31,9 @@ if TYPE_CHECKING:
     import numpy
 
 ON_LIMIT, ENDLESS = -1, 10**9  # in place of a number of roots
-MOST_INTERVALS, MORE_INTERVALS = 400_000, 2_000  # in all, and for each sum
-FEW_TERMS = 1  # the degree of expansions for many sums
+MOST_INTERVALS, MORE_INTERVALS = 400_000, 2_000  # in all, and for each quasipolynomial
+FEW_TERMS = 1  # the degree of expansions for many quasipolynomials
 RATIO = 2.0  # of the frequencies at the ends of an interval, at first
-
-Sum = dict[Fraction, tuple[int, ...]]
 
 
 class StabilityLimitError(ValueError):
@@ -167,7 +165,7 @@ def unstable_roots(denominator: Mapping) -> float:
     return _count_of(parts, 0, lambda: _written(parts))
 
 
-# ---- from what is given to sums
+# ---- from what is given to quasipolynomials
 
 
 def _is_loop(x: object) -> bool:
@@ -198,8 +196,8 @@ def open_loop(loop: object, zero: bool = False) -> DelayFraction:
     return loop
 
 
-def _fraction(L: DelayFraction) -> tuple[Sum, Sum]:
-    """Numerator and denominator of L, sums with dead times, for a loop that is proper."""
+def _fraction(L: DelayFraction) -> tuple[Quasipolynomial, Quasipolynomial]:
+    """Numerator and denominator of L, quasipolynomials with dead times, for a loop that is proper."""
     above, below = L.numerator, L.denominator
     order = len(below[Fraction(0)]) - 1
     for part in (*above.values(), *below.values()):
@@ -217,8 +215,8 @@ def fraction_sums(L: DelayFraction) -> tuple[Quasipolynomials, Quasipolynomials]
     return Quasipolynomials.exact(above, order, divisor), Quasipolynomials.exact(below, order, divisor)
 
 
-def characteristic(L: DelayFraction) -> Sum:
-    """The sum A + B whose roots are the poles of the closed loop of L = A/B."""
+def characteristic(L: DelayFraction) -> Quasipolynomial:
+    """The quasipolynomial A + B whose roots are the poles of the closed loop of L = A/B."""
     above, below = _fraction(L)
     parts = plus(below, above)
     if len(parts.get(Fraction(0), ())) < len(below[Fraction(0)]):
@@ -226,8 +224,8 @@ def characteristic(L: DelayFraction) -> Sum:
     return parts
 
 
-def _whole(denominator: Mapping) -> Sum:
-    """A sum given with numbers of any kind, in whole ones."""
+def _whole(denominator: Mapping) -> Quasipolynomial:
+    """A quasipolynomial given with numbers of any kind, in whole ones."""
     parts = {}
     for delay, part in denominator.items():
         if isinstance(part, (sympy.Expr, sympy.Poly)):
@@ -251,17 +249,17 @@ def _fraction_of(number: object) -> Fraction:
     return Fraction(number)
 
 
-def _written(parts: Sum) -> str:
+def _written(parts: Quasipolynomial) -> str:
     terms = ((sum(c * s**n for n, c in enumerate(part)), sympy.Rational(str(delay))) for delay, part in parts.items())
     return str(sympy.Add(*(part * sympy.exp(-delay * s) for part, delay in terms)))
 
 
-def _degree(parts: Sum) -> int:
+def _degree(parts: Quasipolynomial) -> int:
     return max((len(part) for part in parts.values()), default=0)
 
 
-def _zeros_at_origin(parts: Sum) -> int:
-    """How often a sum is zero at s = 0."""
+def _zeros_at_origin(parts: Quasipolynomial) -> int:
+    """How often a quasipolynomial is zero at s = 0."""
     if not parts:
         return 0
     value, n = Exact(parts, 0, 1, 1.0), 0
@@ -283,8 +281,8 @@ def _of_prefilter(R: DelayFraction, C: DelayFraction, loop: object) -> float:
     return _count_of(own, _zeros_at_origin(rest.numerator), lambda: f"the block from the setpoint of {loop}")
 
 
-def _count_of(parts: Sum, removable: int, name: Callable[[], object]) -> float:
-    """The number of roots of an exact sum in the right half-plane, without so many at zero."""
+def _count_of(parts: Quasipolynomial, removable: int, name: Callable[[], object]) -> float:
+    """The number of roots of an exact quasipolynomial in the right half-plane, without so many at zero."""
     base = min(parts, default=Fraction(0))
     parts = {delay - base: part for delay, part in parts.items()}
     if not parts:
@@ -310,7 +308,9 @@ def count_roots(
     near: numpy.ndarray | None = None,
     most: int | None = None,
 ) -> numpy.ndarray:
-    """The number of roots in the right half-plane of many sums; ON_LIMIT with some on the axis, ENDLESS without end.
+    """The number of roots in the right half-plane of many quasipolynomials.
+
+    It is ON_LIMIT with some on the axis, and ENDLESS without end.
 
     Arguments:
         exact: the same as `sums`, if it is a single one and more digits are at hand.
@@ -353,7 +353,7 @@ def count_roots(
 
 
 class Turns:
-    """The turns of the phase of sums along the imaginary axis, from zero to 1, where the highest power prevails."""
+    """The turns of the phase of quasipolynomials on the imaginary axis, from 0 to 1, where the highest power rules."""
 
     name = "the number of unstable poles"
 
@@ -369,7 +369,7 @@ class Turns:
 
         self.sums, self.unit, self.far, self.exact, self.removable = sums, unit, far, exact, removable
         self.phase, self.limit = numpy.zeros(sums.count), numpy.zeros(sums.count, dtype=bool)
-        # many sums are quicker done with shorter expansions
+        # many quasipolynomials are quicker done with shorter expansions
         self.degree = DEGREE if sums.count < 50 else FEW_TERMS
         self.first = self.rest = None
         if len(sums.coefficients) > 1 and sums.coefficients[1:].any():
@@ -389,7 +389,7 @@ class Turns:
             some = b > start[which]
             which, a, b = which[some], numpy.maximum(a[some], start[which[some]]), b[some]
         else:
-            # a sum that vanishes at zero; of an exact one, only where it does
+            # a quasipolynomial that vanishes at zero; of an exact one, only where it does
             size, at_zero = sums.sizes(points, 0 * one)[0], sums.coefficients[:, 0].sum(axis=0)
             vanishes = abs(at_zero) <= 1e-15 * size if self.exact is None else not exact_coefficient(self.exact, 0)
             self.limit |= vanishes
@@ -412,7 +412,7 @@ class Turns:
         return self.exact.taylor(w, 0)[0] if precise else self.sums.value(which, w)
 
     def judge(self, which: numpy.ndarray, a: numpy.ndarray, b: numpy.ndarray, precise: bool) -> tuple:
-        """Add the turns on intervals where they are known, and mark sums with roots on the axis."""
+        """Add the turns on intervals where they are known, and mark quasipolynomials with roots on the axis."""
         import numpy
 
         sums, c, r = self.sums, (a + b) / 2, (b - a) / 2
@@ -453,7 +453,7 @@ def _lowest(sums):
 
 
 def _above_origin(sums, removable, exact):
-    """Frequencies up to which sums are about their lowest power, which is that of roots at zero, and their turns there.
+    """Frequencies up to which quasipolynomials are about their lowest power, that of roots at zero, and their turns.
 
     Raises StabilityLimitError for more roots at zero than are removable.
     """

@@ -164,7 +164,7 @@ def enclosed(
     exact: Exact | None = None,
     degree: int = DEGREE,
 ) -> Enclosure:
-    """The sums on the intervals from c - r to c + r; with more digits where there is an exact one."""
+    """The quasipolynomials on the intervals from c - r to c + r; with more digits where there is an exact one."""
     end, degrees = c + r, _DEGREES()[: degree + 2]
     scale = r ** degrees[:, None]
     sizes = sums.sizes(which, end, degree) * scale
@@ -190,7 +190,10 @@ def _DEGREES():
 
 
 class Exact:
-    """One sum with more digits: ``{delay: coefficients}`` over divisor*unit**order, in time for which `unit` is 1."""
+    """A quasipolynomial with more digits: ``{delay: coefficients}`` over divisor*unit**order.
+
+    Time is measured so that the frequency `unit` is 1.
+    """
 
     def __init__(self, parts: dict[Fraction, tuple[int, ...]], order: int, divisor: int, unit: float):
         self.parts, self.order, self.divisor, self.unit = parts, order, divisor, unit
@@ -221,7 +224,7 @@ class Exact:
         return found
 
     def taylor(self, w: numpy.ndarray, degree: int = DEGREE) -> numpy.ndarray:
-        """The coefficients of the powers of h in the sum at j (w + h)*unit: array [power, frequency]."""
+        """The coefficients of the powers of h in the quasipolynomial at j (w + h)*unit: array [power, frequency]."""
         import numpy
 
         columns = [self._column(frequency, degree) for frequency in w.tolist()]
@@ -395,7 +398,7 @@ def origin(sums: Quasipolynomials, degree: int, exact: Exact | None = None) -> t
 
 
 def exact_coefficient(exact: Exact, n: int) -> float:
-    """The coefficient of s**n in the power series of an exact sum at zero, time in its unit."""
+    """The coefficient of s**n in the power series of an exact quasipolynomial at zero, time in its unit."""
     if not n:
         total = sum(part[0] for part in exact.parts.values())
         return total / exact.divisor / exact.unit**exact.order

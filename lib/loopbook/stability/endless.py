@@ -450,7 +450,7 @@ def _related(delays: numpy.ndarray) -> bool:
 
 
 class Expansion(NamedTuple):
-    """A quotient of two sums as a power series in the angle from some angle on and in v = 1/w.
+    """A quotient of two quasipolynomials as a power series in the angle from some angle on and in v = 1/w.
 
     Attributes:
         terms: coefficients [power of the angle, power of v], up to the second order.

@@ -351,7 +351,7 @@ class Loops:
 
 
 def _exact_square(exact):
-    """The square of the size of an exact sum with one part, time in its unit."""
+    """The square of the size of an exact quasipolynomial with one part, time in its unit."""
     ((_, part),) = exact.parts.items()
     order, scale = exact.order, Fraction(exact.unit) ** 2
     part = [*part, *[0] * (order + 1 - len(part))]

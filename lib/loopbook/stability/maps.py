@@ -98,7 +98,7 @@ def _watched(chunks, progress):
 
 
 def _characteristic(L):
-    """The sum A + B whose roots are the poles of the closed loop of L = A/B, with letters."""
+    """The quasipolynomial A + B whose roots are the poles of the closed loop of L = A/B, with letters."""
     above, below = normal_form(L)
     order = below[0].degree()
     for part in (*above.values(), *below.values()):

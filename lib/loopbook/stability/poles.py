@@ -14,7 +14,7 @@ from loopbook.stability.counting import ENDLESS, ON_LIMIT, characteristic, count
 from loopbook.stability.difference import prevailing
 
 if TYPE_CHECKING:
-    from loopbook.quasipolynomials.fraction import Sum
+    from loopbook.quasipolynomials.fraction import Quasipolynomial
 
 MOST_POINTS = 16_000  # from which Newton's method begins at once
 MOST_TRIES = 2  # of a line left of the poles that are wanted
@@ -46,8 +46,8 @@ def dominant_poles(loop: object, count: int = 2) -> list[complex]:
     return dominant_roots(characteristic(L), count, f"the closed loop of {L.expr}")
 
 
-def dominant_roots(parts: Sum, count: int | None, name: str) -> list[complex]:
-    """Return the roots of a sum with the largest real parts, as `dominant_poles` does.
+def dominant_roots(parts: Quasipolynomial, count: int | None, name: str) -> list[complex]:
+    """Return the roots of a quasipolynomial with the largest real parts, as `dominant_poles` does.
 
     Arguments:
         parts: ``{delay: coefficients}``, the lowest power first, with a part without dead time.
@@ -131,7 +131,7 @@ def _right_of(sums, real_part):
 
 
 def _shifted(sums, real_part):
-    """The sums as functions of s - real_part."""
+    """The quasipolynomials as functions of s - real_part."""
     import numpy
 
     powers = range(sums.order + 1)

@@ -1,6 +1,6 @@
 """The published tuning rules, each a line of formulas beside its source.
 
-A rule takes a process as a `Model` or whatever `model_of` reads, or the result of an experiment, and returns `PID`
+A rule takes a process as an `SOPDT` or whatever `model_of` reads, or the result of an experiment, and returns `PID`
 settings; all of it numbers or letters. A negative gain of the process makes a negative Kp, and all times are positive.
 No rule names a filter for the derivative term: `PID.with_filter` adds one.
 """

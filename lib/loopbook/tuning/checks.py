@@ -10,10 +10,10 @@ from loopbook.expressions import exact
 from loopbook.types import Number
 
 if TYPE_CHECKING:
-    from loopbook.approximation import Model
+    from loopbook.approximation import SOPDT
 
 
-def steepest_slope(model: Model, rule: str) -> sympy.Expr:
+def steepest_slope(model: SOPDT, rule: str) -> sympy.Expr:
     """The steepest slope of the step response: the gain over the largest lag."""
     if model.T1 == 0:
         raise ValueError(f"{rule} needs a lag or an integrator, and {model} has none: give it a small lag")
