@@ -2,13 +2,14 @@
 
 import functools
 import inspect
+import types
 
 import numpy as np
 import pytest
 import sympy
 
-from loopbook import plants, t
-from loopbook.plants import Plant, name_of
+from loopbook import plants
+from loopbook.plants import Balance, Plant, name_of, signal
 from loopbook.simulation import simulate
 
 BALANCED = [cls for _, cls in inspect.getmembers(plants, inspect.isclass) if issubclass(cls, Plant) and cls.balances]
@@ -27,25 +28,27 @@ def rate_of_change(plant, content):
 
 @every
 def test_the_equations_say_so(cls, name):
-    content, inflow = cls.balances[name]
-    assert sympy.simplify(rate_of_change(cls(), content) - inflow) == 0
+    balance = cls.balances[name]
+    assert sympy.simplify(rate_of_change(cls(), balance.content) - balance.inflow) == 0
 
 
 def with_totals(cls):
     """The plant with one more state for each of its balances: what has flowed in since the beginning."""
-    body = {"model": cls.model, "quantities": dict(cls.quantities)}
-    for n, (_, inflow) in enumerate(cls.balances.values()):
-        total = sympy.Function(f"total_{n}")(t)
-        body["model"] = (*body["model"], sympy.Eq(total.diff(t), inflow))
-        body["quantities"][total] = (0, "1", "what has flowed in")
-    return type(cls.__name__, (cls,), body)
+
+    def body(declared):
+        for n, balance in enumerate(cls.balances.values()):
+            declared[f"total_{n}"] = signal(0, "1", "what has flowed in")
+            declared[f"sum_{n}"] = Balance(declared[f"total_{n}"], balance.inflow)
+
+    return types.new_class(cls.__name__, (cls,), exec_body=body)
 
 
 @functools.cache
 def contents(plant):
     """The names of the states, and for each balance the content as a program."""
-    states = [x for x in plant.states if not (x.is_Derivative or name_of(x).startswith("total"))]
-    programs = [sympy.lambdify(states, plant.numbers(content), "numpy") for content, _ in plant.balances.values()]
+    states = [x for x in plant.states if not name_of(x).startswith("total")]
+    balances = [balance for name, balance in plant.balances.items() if not name.startswith("sum ")]
+    programs = [sympy.lambdify(states, plant.numbers(balance.content), "numpy") for balance in balances]
     return [name_of(x) for x in states], programs
 
 
@@ -60,18 +63,10 @@ def imbalances(run):
     return [abs(held - held[0] - run[f"total_{n}"]).max() / abs(held).max() for n, held in enumerate(stored(run))]
 
 
-# Plants without any flow at their own operating point.
-FLOWS = {
-    plants.LiquidTank: {"q_i": 0.001, "q_o": 0.001},
-    plants.BufferTank: {"F_in": 3, "F_out": 3},
-    plants.BatchTank: {"h": 0.9, "u_valve_in": 1, "u_valve_out": 0.5, "u_heat": 50, "u_motor": 1},
-}
-
-
 @pytest.mark.parametrize("cls", BALANCED, ids=lambda cls: cls.__name__)
 def test_a_run_gains_and_loses_nothing(cls):
     """All inputs jump at random every 20 s."""
-    plant = with_totals(cls)(**FLOWS.get(cls, {}))
+    plant = with_totals(cls)(**{name_of(x): value for x, value in cls.at_work.items()})
     dice = np.random.default_rng(7)
     jumps = {
         name_of(x): float(plant.values[x]) * (1 + 0.1 * np.repeat(dice.uniform(-1, 1, 31), 4)[:121])

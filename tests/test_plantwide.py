@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import sympy
 
-from loopbook import s, t
+from loopbook import s
 from loopbook.approximation import half_rule
 from loopbook.laplace import evaluate
 from loopbook.pid import PID, Controller
-from loopbook.plants import AmmoniaEvaporator, FlashPlant, Plant, parameters, signals
+from loopbook.plants import AmmoniaEvaporator, Balance, FlashPlant, Plant, parameter, signal
 from loopbook.signals import stepwise
 from loopbook.simulation import simulate
 from loopbook.structures import Calculation, ControlLoop, controller_action
@@ -215,11 +215,12 @@ def test_the_controllers_of_the_evaporator_act_in_reverse():
 class Overflowing(Plant):
     """A vessel with a rim."""
 
-    m, F = signals("m F")
-    k, M = parameters("k M")
-    model = sympy.Eq(m.diff(t), F - k * sympy.Max(0, m - M))
+    k = parameter(0.5, "1/s", "overflow for each kilogram above the rim")
+    M = parameter(10, "kg", "mass up to the rim")
+    F = signal(0, "kg/s", "inflow")
+    m = signal(5, "kg", "mass")
+    mass = Balance(m, F - k * sympy.Max(0, m - M))
     output, manipulated = m, F
-    quantities = {k: (0.5, "1/s", ""), M: (10, "kg", ""), F: (0, "kg/s", ""), m: (5, "kg", "")}  # noqa: RUF012
 
 
 def test_a_limit_counts_where_the_plant_stands():
@@ -231,23 +232,30 @@ def test_a_limit_counts_where_the_plant_stands():
     assert abs(run["m"] - 12 - evaluate(step_response(1 / (s + sympy.Rational(1, 2))), run.times)).max() < 1e-6
 
 
-def test_a_balance_with_a_limit_is_solved_for_its_rate():
-    class Scaled(Overflowing):
-        model = sympy.Eq(2 * Overflowing.m.diff(t), Overflowing.F - sympy.Max(0, Overflowing.m))
+def test_balances_with_a_limit_are_solved_for_their_rates():
+    class Mixed(Plant):
+        F = signal(0, "kg/s", "inflow")
+        m, T = signal(5, "kg", "mass"), signal(20, "°C", "temperature")
+        out = sympy.Max(0, m - 4)
+        energy = Balance(2 * m * T, 3 * F - 2 * out * T)
+        mass = Balance(m, F - out)
+        output, manipulated = T, F
 
-    class Turned(Overflowing):
-        model = sympy.Eq(Overflowing.F - sympy.Max(0, Overflowing.m), Overflowing.m.diff(t))
+    m_rate, T_rate = Mixed().state_equations().values()
+    assert m_rate == Mixed.F - Mixed.out
+    assert sympy.simplify(T_rate - (3 * Mixed.F - 2 * Mixed.F * Mixed.T) / (2 * Mixed.m)) == 0
 
-    (rate,) = Scaled().state_equations().values()
-    assert sympy.simplify(rate - (Overflowing.F - sympy.Max(0, Overflowing.m)) / 2) == 0
-    with pytest.raises(ValueError, match="expected a rate with a factor on its left side"):
-        Turned().state_equations()
+    class Coupled(Mixed):
+        mass = Balance(Mixed.m + Mixed.T, Mixed.F - Mixed.out)
+
+    with pytest.raises(ValueError, match="expected one rate alone on its left side"):
+        Coupled().state_equations()
 
 
 def test_numbers_first_is_the_same_as_numbers_afterwards():
-    from loopbook.plants import HeatExchanger, JacketedTank, WoodChipTank
+    from loopbook.plants import HeatExchanger, JacketedTank, MassSpringDamper, WoodChipTank
 
-    for cls in (HeatExchanger, JacketedTank, WoodChipTank):
+    for cls in (HeatExchanger, JacketedTank, MassSpringDamper, WoodChipTank):
         plant = cls()
         for x in plant.inputs:
             afterwards = plant.numbers(plant.transfer_function(x))

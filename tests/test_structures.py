@@ -12,7 +12,17 @@ from loopbook.deadtime import System
 from loopbook.figures import trends
 from loopbook.identification import AdaptiveController, GainSchedule, Relay, ScheduledController
 from loopbook.pid import PID, Controller
-from loopbook.plants import BufferTank, HeatedTank, JacketedTank, LiquidTank, Plant, parameters, signals
+from loopbook.plants import (
+    Balance,
+    BufferTank,
+    HeatedTank,
+    JacketedTank,
+    Lag,
+    LiquidTank,
+    Plant,
+    parameter,
+    signal,
+)
 from loopbook.signals import stepwise
 from loopbook.simulation import simulate
 from loopbook.structures import Calculation, ControlLoop, SplitRange, controller_action
@@ -100,11 +110,12 @@ def test_one_loop_in_a_list_is_the_single_controller():
 class LagAndIntegrator(Plant):
     """The least plant for a cascade: a lag, whose output is measured, before an integrator."""
 
-    y_1, y_2, u, d = signals("y_1 y_2 u d")
-    (T,) = parameters("T")
-    model = (sympy.Eq(y_1.diff(t), y_2), sympy.Eq(T * y_2.diff(t), u + d - y_2))
+    T = parameter(2, "s", "lag")
+    u, d = signal(0, "1", "control signal"), signal(0, "1", "load")
+    y_1, y_2 = signal(0, "1", "what is controlled"), signal(0, "1", "what is between")
+    integrator = Balance(y_1, y_2)
+    lag = Lag(y_2, u + d, T)
     output, manipulated = y_1, u
-    quantities = dict.fromkeys((u, d, y_1, y_2), (0, "1", "signal")) | {T: (2, "s", "lag")}
 
 
 def test_a_cascade_is_the_algebra_of_its_two_loops():
@@ -194,15 +205,11 @@ def test_the_outer_loop_follows_while_the_inner_one_is_in_manual_mode():
 class ThreeLags(Plant):
     """Three lags, all measured, for a cascade of three loops."""
 
-    y_1, y_2, y_3, u, d = signals("y_1 y_2 y_3 u d")
-    (T,) = parameters("T")
-    model = (
-        sympy.Eq(10 * T * y_1.diff(t), y_2 - y_1),
-        sympy.Eq(3 * T * y_2.diff(t), y_3 - y_2),
-        sympy.Eq(T * y_3.diff(t), u + d - y_3),
-    )
+    T = parameter(1, "s", "lag")
+    u, d = signal(0, "1", "control signal"), signal(0, "1", "load")
+    y_1, y_2, y_3 = (signal(0, "1", word) for word in ("primary", "secondary", "innermost"))
+    outer, middle, inner = Lag(y_1, y_2, 10 * T), Lag(y_2, y_3, 3 * T), Lag(y_3, u + d, T)
     output, manipulated = y_1, u
-    quantities = dict.fromkeys((u, d, y_1, y_2, y_3), (0, "1", "signal")) | {T: (1, "s", "lag")}
 
 
 @pytest.mark.parametrize("how", ["by hand", "by its mode"])

@@ -233,3 +233,9 @@ def by_hand(manual: ManualStretches, times: Sequence[float] | numpy.ndarray) -> 
 def last_not_after(time: float, times: Sequence[float], step: float) -> int:
     """The index of the last of the increasing times that is not after `time`, but for rounding; -1 if there is none."""
     return bisect.bisect_right(times, time + CLOSE * step + 1e-15 * abs(time)) - 1
+
+
+def beyond_all_numbers(names: str, time: float) -> ValueError:
+    """The error of a run that cannot go on."""
+    reason = "the system is unstable or a signal infinite, end the run earlier"
+    return ValueError(f"{names} grows beyond all numbers before t = {time:g}: {reason}")

@@ -71,10 +71,18 @@ def names(annotation):
     return set().union(*map(names, ast.iter_child_nodes(annotation)))
 
 
+def home(module):
+    """The file of a module of the library."""
+    place = LIBRARY.parent.joinpath(*module.split("."))
+    return place / "__init__.py" if place.is_dir() else place.with_suffix(".py")
+
+
 def defined(body):
     """The names that the statements of a module give to something, also those that only a type checker sees."""
     for node in body:
         match node:
+            case ast.ImportFrom(module, [ast.alias("*")]):
+                yield from defined(parsed(home(module)).body)
             case ast.Import(aliases) | ast.ImportFrom(names=aliases):
                 yield from (alias.asname or alias.name.split(".")[0] for alias in aliases)
             case ast.FunctionDef(name) | ast.ClassDef(name):
@@ -89,9 +97,8 @@ def missing_in_library(tree):
     """What a module imports, perhaps for a type checker alone, out of modules of the library that do not have it."""
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "loopbook":
-            place = LIBRARY.parent.joinpath(*node.module.split("."))
-            source = place / "__init__.py" if place.is_dir() else place.with_suffix(".py")
-            there = set(defined(parsed(source).body)) if source.exists() else set()
+            place, source = LIBRARY.parent.joinpath(*node.module.split(".")), home(node.module)
+            there = {"*", *(defined(parsed(source).body) if source.exists() else ())}
             for alias in node.names:
                 if alias.name not in there and not list(place.glob(f"{alias.name}*")):
                     yield f"{node.module}.{alias.name}"

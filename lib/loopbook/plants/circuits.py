@@ -5,7 +5,8 @@ from __future__ import annotations
 import sympy
 
 from loopbook.expressions import exact, t
-from loopbook.plants.plant import Plant, parameters, signals
+from loopbook.plants.declarations import Balance, parameter, signal
+from loopbook.plants.plant import Plant
 from loopbook.types import Number
 
 __all__ = ["RCCircuit", "capacitor", "inductor", "resistor", "resistors_in_parallel", "resistors_in_series"]
@@ -14,6 +15,7 @@ __all__ = ["RCCircuit", "capacitor", "inductor", "resistor", "resistors_in_paral
 def resistor(v: sympy.Expr, i: sympy.Expr, R: Number) -> sympy.Equality:
     """Ohm's law for a resistor of R [ohm]: voltage v [V], current i [A]. (Haugen, equation 3.38)
 
+    >>> from loopbook.plants import signals
     >>> v, i = signals("v i")
     >>> resistor(v, i, 100)
     Eq(v(t), 100*i(t))
@@ -24,6 +26,7 @@ def resistor(v: sympy.Expr, i: sympy.Expr, R: Number) -> sympy.Equality:
 def capacitor(v: sympy.Expr, i: sympy.Expr, C: Number) -> sympy.Equality:
     """The current into a capacitor of C [F] changes its voltage. (Haugen, equation 3.39)
 
+    >>> from loopbook.plants import signals
     >>> v, i = signals("v i")
     >>> capacitor(v, i, sympy.Symbol("C"))
     Eq(i(t), C*Derivative(v(t), t))
@@ -34,6 +37,7 @@ def capacitor(v: sympy.Expr, i: sympy.Expr, C: Number) -> sympy.Equality:
 def inductor(v: sympy.Expr, i: sympy.Expr, L: Number) -> sympy.Equality:
     """The voltage over an inductor of L [H] changes its current. (Haugen, equation 3.40)
 
+    >>> from loopbook.plants import signals
     >>> v, i = signals("v i")
     >>> inductor(v, i, sympy.Symbol("L"))
     Eq(v(t), L*Derivative(i(t), t))
@@ -65,13 +69,11 @@ class RCCircuit(Plant):
     The book prints no values; these are ours.
     """
 
-    v_out, v_in = signals("v_out v_in")
-    R, C = parameters("R C")
-    model = sympy.Eq(R * C * v_out.diff(t), v_in - v_out)
+    R = parameter(1000, "ohm", "resistance")
+    C = parameter(0.001, "F", "capacitance")
+    v_in = signal(0, "V", "input voltage")
+    v_out = signal(0, "V", "output voltage")
+
+    charge = Balance(C * v_out, (v_in - v_out) / R)
     output, manipulated = v_out, v_in
-    quantities = {
-        R: (1000, "ohm", "resistance"),
-        C: (0.001, "F", "capacitance"),
-        v_in: (0, "V", "input voltage"),
-        v_out: (0, "V", "output voltage"),
-    }
+    at_work = {v_in: 5, v_out: 5}

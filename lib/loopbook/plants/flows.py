@@ -2,8 +2,8 @@
 
 import sympy
 
-from loopbook.expressions import t
-from loopbook.plants.plant import Plant, parameters, signals
+from loopbook.plants.declarations import Balance, Lag, measured, parameter, signal
+from loopbook.plants.plant import Plant
 
 __all__ = ["BlendingStation"]
 
@@ -16,30 +16,21 @@ class BlendingStation(Plant):
     values; these are ours, and the operating point is a steady state.
     """
 
-    x_1, x_2, c, F_1, F_2, u_1, u_2, p_1, p_2 = signals("x_1 x_2 c F_1 F_2 u_1 u_2 p_1 p_2")
-    T_v, C_1, C_2, m = parameters("T_v C_1 C_2 m")
+    T_v = parameter(2, "s", "lag of both valves")
+    C_1 = parameter(0.1, "(kg/s)/(% bar^0.5)", "capacity of the valve in the main stream")
+    C_2 = parameter(0.025, "(kg/s)/(% bar^0.5)", "capacity of the valve for the additive")
+    m = parameter(100, "kg", "mass in the mixing vessel")
+    u_1 = signal(50, "%", "control signal of the valve in the main stream")
+    u_2 = signal(50, "%", "control signal of the valve for the additive")
+    p_1 = signal(4, "bar", "pressure drop across the valve in the main stream")
+    p_2 = signal(4, "bar", "pressure drop across the valve for the additive")
+    x_1 = signal(50, "%", "opening of the valve in the main stream")
+    x_2 = signal(50, "%", "opening of the valve for the additive")
+    c = signal(0.2, "kg/kg", "share of the additive in the vessel and in the product")
     through_1, through_2 = C_1 * x_1 * sympy.sqrt(p_1), C_2 * x_2 * sympy.sqrt(p_2)
-    model = (
-        sympy.Eq(T_v * x_1.diff(t), u_1 - x_1),
-        sympy.Eq(T_v * x_2.diff(t), u_2 - x_2),
-        sympy.Eq(m * c.diff(t), through_2 - c * (through_1 + through_2)),
-        sympy.Eq(F_1, through_1),
-        sympy.Eq(F_2, through_2),
-    )
+    F_1 = measured(through_1, "kg/s", "main stream")
+    F_2 = measured(through_2, "kg/s", "stream of the additive")
+
+    valve_1, valve_2 = Lag(x_1, u_1, T_v), Lag(x_2, u_2, T_v)
+    additive = Balance(m * c, through_2 - c * (through_1 + through_2))
     output, manipulated = F_2, u_2
-    balances = {"additive": (m * c, through_2 - c * (through_1 + through_2))}
-    quantities = {
-        T_v: (2, "s", "lag of both valves"),
-        C_1: (0.1, "(kg/s)/(% bar^0.5)", "capacity of the valve in the main stream"),
-        C_2: (0.025, "(kg/s)/(% bar^0.5)", "capacity of the valve for the additive"),
-        m: (100, "kg", "mass in the mixing vessel"),
-        u_1: (50, "%", "control signal of the valve in the main stream"),
-        u_2: (50, "%", "control signal of the valve for the additive"),
-        p_1: (4, "bar", "pressure drop across the valve in the main stream"),
-        p_2: (4, "bar", "pressure drop across the valve for the additive"),
-        x_1: (50, "%", "opening of the valve in the main stream"),
-        x_2: (50, "%", "opening of the valve for the additive"),
-        c: (0.2, "kg/kg", "share of the additive in the vessel and in the product"),
-        F_1: (None, "kg/s", "main stream"),
-        F_2: (None, "kg/s", "stream of the additive"),
-    }

@@ -2,8 +2,8 @@
 
 import sympy
 
-from loopbook.expressions import t
-from loopbook.plants.plant import Plant, parameters, signals
+from loopbook.plants.declarations import Balance, Lag, delayed, measured, parameter, signal
+from loopbook.plants.plant import Plant
 
 __all__ = [
     "AirHeater", "AirHeaterWithFan", "HeatExchanger", "HeatedTank", "HeatedTankWithElement", "HeatedTankWithTransport",
@@ -18,21 +18,17 @@ class HeatedTank(Plant):
     is a steady state.
     """
 
-    T, P, F, T_i, T_e = signals("T P F T_i T_e")
-    c, m, U_h = parameters("c m U_h")
-    model = sympy.Eq(c * m * T.diff(t), P + c * F * (T_i - T) + U_h * (T_e - T))
+    c = parameter(4200, "J/(kg K)", "specific heat capacity")
+    m = parameter(100, "kg", "mass of the liquid")
+    U_h = parameter(160, "W/K", "heat transfer coefficient to the environment")
+    P = signal(10000, "W", "power of the heating element")
+    F = signal(0.2, "kg/s", "mass flow")
+    T_i = signal(20, "°C", "temperature of the inflow")
+    T_e = signal(20, "°C", "temperature of the environment")
+    T = signal(30, "°C", "temperature in the tank and of the outflow")
+
+    energy = Balance(c * m * T, P + c * F * (T_i - T) + U_h * (T_e - T))
     output, manipulated = T, P
-    balances = {"energy": (c * m * T, P + c * F * (T_i - T) + U_h * (T_e - T))}
-    quantities = {
-        c: (4200, "J/(kg K)", "specific heat capacity"),
-        m: (100, "kg", "mass of the liquid"),
-        U_h: (160, "W/K", "heat transfer coefficient to the environment"),
-        P: (10000, "W", "power of the heating element"),
-        F: (0.2, "kg/s", "mass flow"),
-        T_i: (20, "°C", "temperature of the inflow"),
-        T_e: (20, "°C", "temperature of the environment"),
-        T: (30, "°C", "temperature in the tank and of the outflow"),
-    }
 
 
 class HeatedTankWithElement(HeatedTank):
@@ -41,17 +37,11 @@ class HeatedTankWithElement(HeatedTank):
     Example 3.3 of Haugen neglects this lag; P is the power supplied, Q the power that the liquid receives.
     """
 
-    T, P, F, T_i, T_e, Q = signals("T P F T_i T_e Q")
-    c, m, U_h, T_h = parameters("c m U_h T_h")
-    model = (
-        sympy.Eq(c * m * T.diff(t), Q + c * F * (T_i - T) + U_h * (T_e - T)),
-        sympy.Eq(T_h * Q.diff(t), P - Q),
-    )
-    balances = {"energy": (c * m * T, Q + c * F * (T_i - T) + U_h * (T_e - T))}
-    quantities = HeatedTank.quantities | {
-        T_h: (60, "s", "lag of the heating element"),
-        Q: (10000, "W", "power that the liquid receives"),
-    }
+    T_h = parameter(60, "s", "lag of the heating element")
+    Q = signal(10000, "W", "power that the liquid receives")
+
+    energy = HeatedTank.energy.subs(HeatedTank.P, Q)
+    element = Lag(Q, HeatedTank.P, T_h)
 
 
 class HeatedTankWithTransport(Plant):
@@ -61,51 +51,41 @@ class HeatedTankWithTransport(Plant):
     24 kg/min. The other values are ours, and the operating point is a steady state.
     """
 
-    T, T_1, u, w, T_in = signals("T T_1 u w T_in")
-    c, rho, V, K_P, tau = parameters("c rho V K_P tau")
-    model = (
-        sympy.Eq(c * rho * V * T_1.diff(t), K_P * u + c * w * (T_in - T_1)),
-        sympy.Eq(T, T_1.subs(t, t - tau)),
-    )
+    c = parameter(4200, "J/(kg K)", "specific heat capacity")
+    rho = parameter(1000, "kg/m³", "density")
+    V = parameter(0.2, "m³", "volume of the liquid")
+    K_P = parameter(420, "W/%", "gain of the power amplifier")
+    tau = parameter(60, "s", "transport delay from the tank to the sensor")
+    u = signal(40, "%", "control signal")
+    w = signal(0.2, "kg/s", "mass flow")
+    T_in = signal(20, "°C", "temperature of the inflow")
+    T_1 = signal(40, "°C", "temperature in the tank")
+    T = measured(delayed(T_1, tau), "°C", "temperature at the sensor")
+
+    energy = Balance(c * rho * V * T_1, K_P * u + c * w * (T_in - T_1))
     output, manipulated = T, u
-    balances = {"energy": (c * rho * V * T_1, K_P * u + c * w * (T_in - T_1))}
-    quantities = {
-        c: (4200, "J/(kg K)", "specific heat capacity"),
-        rho: (1000, "kg/m³", "density"),
-        V: (0.2, "m³", "volume of the liquid"),
-        K_P: (420, "W/%", "gain of the power amplifier"),
-        tau: (60, "s", "transport delay from the tank to the sensor"),
-        u: (40, "%", "control signal"),
-        w: (0.2, "kg/s", "mass flow"),
-        T_in: (20, "°C", "temperature of the inflow"),
-        T_1: (40, "°C", "temperature in the tank"),
-        T: (None, "°C", "temperature at the sensor"),
-    }
 
 
 class AirHeater(Plant):
     """A heated air tube, as of the laboratory process of Haugen, Example 8.2.
 
     The book prints only the temperatures 20 to 70 °C of its scale. The model, a lag with dead time above the
-    temperature of the room, and its values are in the author's other public material.
+    temperature of the room, and its values are in the author's other public material. Heat is counted in degrees of the
+    air that flows through in a second.
     """
 
-    T, T_rise, u, T_env = signals("T T_rise u T_env")
-    K, theta, tau = parameters("K theta tau")
-    model = (
-        sympy.Eq(theta * T_rise.diff(t), K * u.subs(t, t - tau) - T_rise),
-        sympy.Eq(T, T_env + T_rise),
-    )
+    K = parameter(3.5, "K/V", "gain of the heater")
+    theta = parameter(23, "s", "lag of the heater")
+    tau = parameter(3, "s", "dead time of the air flow")
+    u = signal(0, "V", "control signal of the heater")
+    T_env = signal(21.5, "°C", "temperature of the room")
+    T_rise = signal(0, "K", "rise of the temperature")
+    T = measured(T_env + T_rise, "°C", "temperature at the outlet")
+
+    supplied = K * delayed(u, tau)
+    heat = Balance(theta * T_rise, supplied - T_rise)
     output, manipulated = T, u
-    quantities = {
-        K: (3.5, "K/V", "gain of the heater"),
-        theta: (23, "s", "lag of the heater"),
-        tau: (3, "s", "dead time of the air flow"),
-        u: (0, "V", "control signal of the heater"),
-        T_env: (21.5, "°C", "temperature of the room"),
-        T_rise: (0, "K", "rise of the temperature"),
-        T: (None, "°C", "temperature at the outlet"),
-    }
+    at_work = {u: 2, T_rise: 7}
 
 
 class AirHeaterWithFan(AirHeater):
@@ -116,20 +96,15 @@ class AirHeaterWithFan(AirHeater):
     more heat away.
     """
 
-    T, T_rise, u, T_env, d = signals("T T_rise u T_env d")
-    K, theta, tau, d_0 = parameters("K theta tau d_0")
+    K = parameter(0.5, "K/%", "gain of the heater")
+    d_0 = parameter(150, "%", "fan speed that doubles the pressure")
+    u = signal(37, "%", "control signal of the heater")
+    d = signal(0, "%", "fan speed")
+    T_rise = signal(18.5, "K", "rise of the temperature")
+
     flow = sympy.sqrt(1 + (d / d_0) ** 2)
-    model = (
-        sympy.Eq(theta * T_rise.diff(t), K * u.subs(t, t - tau) - flow * T_rise),
-        sympy.Eq(T, T_env + T_rise),
-    )
-    quantities = AirHeater.quantities | {
-        K: (0.5, "K/%", "gain of the heater"),
-        d_0: (150, "%", "fan speed that doubles the pressure"),
-        u: (37, "%", "control signal of the heater"),
-        d: (0, "%", "fan speed"),
-        T_rise: (18.5, "K", "rise of the temperature"),
-    }
+    heat = Balance(AirHeater.heat.content, AirHeater.supplied - flow * T_rise)
+    at_work = {}
 
 
 class JacketedTank(Plant):
@@ -139,42 +114,30 @@ class JacketedTank(Plant):
     operating point is a steady state.
     """
 
-    T_p, T_h, T_pm, T_hm, F_h, F_p, T_pin, T_hin, T_e = signals("T_p T_h T_pm T_hm F_h F_p T_pin T_hin T_e")
-    c_p, d_p, V_p, c_h, d_h, V_h, U_hp, U_eh, tau = parameters("c_p d_p V_p c_h d_h V_h U_hp U_eh tau")
-    model = (
-        sympy.Eq(c_p * d_p * V_p * T_p.diff(t), c_p * F_p * (T_pin - T_p) + U_hp * (T_h - T_p)),
-        sympy.Eq(c_h * d_h * V_h * T_h.diff(t), c_h * F_h * (T_hin - T_h) - U_hp * (T_h - T_p) + U_eh * (T_e - T_h)),
-        sympy.Eq(T_pm, T_p.subs(t, t - tau)),
-        sympy.Eq(T_hm, T_h.subs(t, t - tau)),
-    )
+    c_p = parameter(4200, "J/(kg K)", "specific heat capacity of the product")
+    d_p = parameter(1000, "kg/m³", "density of the product")
+    V_p = parameter(0.5, "m³", "volume of the tank")
+    c_h = parameter(4200, "J/(kg K)", "specific heat capacity of the heating liquid")
+    d_h = parameter(1000, "kg/m³", "density of the heating liquid")
+    V_h = parameter(0.1, "m³", "volume of the jacket")
+    U_hp = parameter(5600, "W/K", "heat transfer coefficient from jacket to tank")
+    U_eh = parameter(100, "W/K", "heat transfer coefficient from the environment to the jacket")
+    tau = parameter(10, "s", "dead time of both measurements")
+    F_p = signal(0.4, "kg/s", "flow of the product")
+    F_h = signal(sympy.Rational(181, 294), "kg/s", "flow of the heating liquid")
+    T_pin = signal(20, "°C", "inlet temperature of the product")
+    T_hin = signal(60, "°C", "inlet temperature of the heating liquid")
+    T_e = signal(20, "°C", "temperature of the environment")
+    T_p = signal(40, "°C", "temperature in the tank")
+    T_h = signal(46, "°C", "temperature in the jacket")
+    T_pm = measured(delayed(T_p, tau), "°C", "measured temperature of the tank")
+    T_hm = measured(delayed(T_h, tau), "°C", "measured temperature of the jacket")
+
+    exchanged = U_hp * (T_h - T_p)
+    energy_of_the_product = Balance(c_p * d_p * V_p * T_p, c_p * F_p * (T_pin - T_p) + exchanged)
+    energy_of_the_jacket = Balance(c_h * d_h * V_h * T_h, c_h * F_h * (T_hin - T_h) - exchanged + U_eh * (T_e - T_h))
+    energy = energy_of_the_product + energy_of_the_jacket
     output, manipulated = T_pm, F_h
-    balances = {
-        "energy of the product": (c_p * d_p * V_p * T_p, c_p * F_p * (T_pin - T_p) + U_hp * (T_h - T_p)),
-        "energy": (
-            c_p * d_p * V_p * T_p + c_h * d_h * V_h * T_h,
-            c_p * F_p * (T_pin - T_p) + c_h * F_h * (T_hin - T_h) + U_eh * (T_e - T_h),
-        ),
-    }
-    quantities = {
-        c_p: (4200, "J/(kg K)", "specific heat capacity of the product"),
-        d_p: (1000, "kg/m³", "density of the product"),
-        V_p: (0.5, "m³", "volume of the tank"),
-        c_h: (4200, "J/(kg K)", "specific heat capacity of the heating liquid"),
-        d_h: (1000, "kg/m³", "density of the heating liquid"),
-        V_h: (0.1, "m³", "volume of the jacket"),
-        U_hp: (5600, "W/K", "heat transfer coefficient from jacket to tank"),
-        U_eh: (100, "W/K", "heat transfer coefficient from the environment to the jacket"),
-        tau: (10, "s", "dead time of both measurements"),
-        F_p: (0.4, "kg/s", "flow of the product"),
-        F_h: (sympy.Rational(181, 294), "kg/s", "flow of the heating liquid"),
-        T_pin: (20, "°C", "inlet temperature of the product"),
-        T_hin: (60, "°C", "inlet temperature of the heating liquid"),
-        T_e: (20, "°C", "temperature of the environment"),
-        T_p: (40, "°C", "temperature in the tank"),
-        T_h: (46, "°C", "temperature in the jacket"),
-        T_pm: (None, "°C", "measured temperature of the tank"),
-        T_hm: (None, "°C", "measured temperature of the jacket"),
-    }
 
 
 class HeatExchanger(Plant):
@@ -186,33 +149,28 @@ class HeatExchanger(Plant):
     state.
     """
 
-    T_p, T_h, F_h, T_m, u, p, F_p, T_pin, T_hin = signals("T_p T_h F_h T_m u p F_p T_pin T_hin")
-    c, m_p, m_h, U, F_max, R, p_0, T_v, tau = parameters("c m_p m_h U F_max R p_0 T_v tau")
-    model = (
-        sympy.Eq(c * m_p * T_p.diff(t), c * F_p * (T_pin - T_p) + U * (T_h - T_p)),
-        sympy.Eq(c * m_h * T_h.diff(t), c * F_h * (T_hin - T_h) - U * (T_h - T_p)),
-        sympy.Eq(T_v * F_h.diff(t), F_max * R ** (u / 100 - 1) * sympy.sqrt(p / p_0) - F_h),
-        sympy.Eq(T_m, T_p.subs(t, t - tau)),
-    )
+    c = parameter(4200, "J/(kg K)", "specific heat capacity of water and product")
+    m_p = parameter(10, "kg", "mass of the product inside")
+    m_h = parameter(10, "kg", "mass of the hot water inside")
+    U = parameter(2100, "W/K", "heat transfer coefficient")
+    F_max = parameter(sympy.Rational(7, 2), "kg/s", "flow through the open valve at the nominal pressure")
+    R = parameter(49, "1", "rangeability of the valve, its largest flow over its smallest")
+    p_0 = parameter(2, "bar", "nominal supply pressure")
+    T_v = parameter(2, "s", "lag of the flow behind the valve")
+    tau = parameter(5, "s", "dead time of the temperature measurement")
+    u = signal(50, "%", "opening of the valve")
+    p = signal(2, "bar", "supply pressure of the hot water")
+    F_p = signal(0.5, "kg/s", "flow of the product")
+    T_pin = signal(20, "°C", "inlet temperature of the product")
+    T_hin = signal(80, "°C", "inlet temperature of the hot water")
+    T_p = signal(40, "°C", "outlet temperature of the product")
+    T_h = signal(60, "°C", "outlet temperature of the hot water")
+    F_h = signal(0.5, "kg/s", "flow of the hot water")
+    T_m = measured(delayed(T_p, tau), "°C", "measured temperature of the product")
+
+    exchanged = U * (T_h - T_p)
+    energy_of_the_product = Balance(c * m_p * T_p, c * F_p * (T_pin - T_p) + exchanged)
+    energy_of_the_water = Balance(c * m_h * T_h, c * F_h * (T_hin - T_h) - exchanged)
+    energy = energy_of_the_product + energy_of_the_water
+    valve = Lag(F_h, F_max * R ** (u / 100 - 1) * sympy.sqrt(p / p_0), T_v)
     output, manipulated = T_m, u
-    balances = {"energy": (c * m_p * T_p + c * m_h * T_h, c * F_p * (T_pin - T_p) + c * F_h * (T_hin - T_h))}
-    quantities = {
-        c: (4200, "J/(kg K)", "specific heat capacity of water and product"),
-        m_p: (10, "kg", "mass of the product inside"),
-        m_h: (10, "kg", "mass of the hot water inside"),
-        U: (2100, "W/K", "heat transfer coefficient"),
-        F_max: (sympy.Rational(7, 2), "kg/s", "flow through the open valve at the nominal pressure"),
-        R: (49, "1", "rangeability of the valve, its largest flow over its smallest"),
-        p_0: (2, "bar", "nominal supply pressure"),
-        T_v: (2, "s", "lag of the flow behind the valve"),
-        tau: (5, "s", "dead time of the temperature measurement"),
-        u: (50, "%", "opening of the valve"),
-        p: (2, "bar", "supply pressure of the hot water"),
-        F_p: (0.5, "kg/s", "flow of the product"),
-        T_pin: (20, "°C", "inlet temperature of the product"),
-        T_hin: (80, "°C", "inlet temperature of the hot water"),
-        T_p: (40, "°C", "outlet temperature of the product"),
-        T_h: (60, "°C", "outlet temperature of the hot water"),
-        F_h: (0.5, "kg/s", "flow of the hot water"),
-        T_m: (None, "°C", "measured temperature of the product"),
-    }

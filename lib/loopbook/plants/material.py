@@ -2,8 +2,8 @@
 
 import sympy
 
-from loopbook.expressions import t
-from loopbook.plants.plant import Plant, parameters, signals
+from loopbook.plants.declarations import Balance, Lag, delayed, parameter, signal
+from loopbook.plants.plant import Plant
 
 __all__ = ["BlendingTank", "BufferTank", "LiquidTank", "WoodChipTank", "WoodChipTankWithScale"]
 
@@ -14,20 +14,16 @@ class LiquidTank(Plant):
     The book prints no values; these are ours.
     """
 
-    h, q_i, q_o = signals("h q_i q_o")
-    A, h_min, h_max = parameters("A h_min h_max")
-    model = sympy.Eq(A * h.diff(t), q_i - q_o)
+    A = parameter(1, "m²", "cross-sectional area")
+    h_min = parameter(0, "m", "lowest level")
+    h_max = parameter(1, "m", "highest level")
+    q_i = signal(0, "m³/s", "volumetric inflow")
+    q_o = signal(0, "m³/s", "volumetric outflow")
+    h = signal(0.5, "m", "level", limits=(h_min, h_max))
+
+    volume = Balance(A * h, q_i - q_o)
     output, manipulated = h, q_i
-    limits = {h: (h_min, h_max)}
-    balances = {"volume": (A * h, q_i - q_o)}
-    quantities = {
-        A: (1, "m²", "cross-sectional area"),
-        h_min: (0, "m", "lowest level"),
-        h_max: (1, "m", "highest level"),
-        q_i: (0, "m³/s", "volumetric inflow"),
-        q_o: (0, "m³/s", "volumetric outflow"),
-        h: (0.5, "m", "level"),
-    }
+    at_work = {q_i: 0.001, q_o: 0.001}
 
 
 class BufferTank(Plant):
@@ -36,21 +32,17 @@ class BufferTank(Plant):
     The density and the area are those of Example 11.5; Example 8.1's area is not printed. The heights are ours.
     """
 
-    h, F_in, F_out = signals("h F_in F_out")
-    rho, A, h_min, h_max = parameters("rho A h_min h_max")
-    model = sympy.Eq(rho * A * h.diff(t), F_in - F_out)
+    rho = parameter(1000, "kg/m³", "density")
+    A = parameter(0.2, "m²", "cross-sectional area")
+    h_min = parameter(0, "m", "lowest level")
+    h_max = parameter(2, "m", "highest level")
+    F_in = signal(0, "kg/s", "mass inflow")
+    F_out = signal(0, "kg/s", "mass outflow")
+    h = signal(1, "m", "level", limits=(h_min, h_max))
+
+    mass = Balance(rho * A * h, F_in - F_out)
     output, manipulated = h, F_in
-    limits = {h: (h_min, h_max)}
-    balances = {"mass": (rho * A * h, F_in - F_out)}
-    quantities = {
-        rho: (1000, "kg/m³", "density"),
-        A: (0.2, "m²", "cross-sectional area"),
-        h_min: (0, "m", "lowest level"),
-        h_max: (2, "m", "highest level"),
-        F_in: (0, "kg/s", "mass inflow"),
-        F_out: (0, "kg/s", "mass outflow"),
-        h: (1, "m", "level"),
-    }
+    at_work = {F_in: 3, F_out: 3}
 
 
 class WoodChipTank(Plant):
@@ -60,23 +52,18 @@ class WoodChipTank(Plant):
     which the gain of the feed screw follows. The density is from the author's other public material. Flows are in kg/s.
     """
 
-    h, u, w_out = signals("h u w_out")
-    rho, A, K_s, tau, h_min, h_max = parameters("rho A K_s tau h_min h_max")
-    model = sympy.Eq(rho * A * h.diff(t), K_s * u.subs(t, t - tau) - w_out)
+    rho = parameter(145, "kg/m³", "density of the wood chip")
+    A = parameter(13.4, "m²", "cross-sectional area")
+    K_s = parameter(sympy.Rational(5, 9), "(kg/s)/%", "gain of the feed screw")
+    tau = parameter(250, "s", "time on the conveyor belt")
+    h_min = parameter(0, "m", "lowest level")
+    h_max = parameter(15, "m", "highest level")
+    u = signal(45, "%", "control signal of the feed screw")
+    w_out = signal(25, "kg/s", "outflow")
+    h = signal(10, "m", "level", limits=(h_min, h_max))
+
+    mass = Balance(rho * A * h, K_s * delayed(u, tau) - w_out)
     output, manipulated = h, u
-    limits = {h: (h_min, h_max)}
-    balances = {"mass": (rho * A * h, K_s * u.subs(t, t - tau) - w_out)}
-    quantities = {
-        rho: (145, "kg/m³", "density of the wood chip"),
-        A: (13.4, "m²", "cross-sectional area"),
-        K_s: (sympy.Rational(5, 9), "(kg/s)/%", "gain of the feed screw"),
-        tau: (250, "s", "time on the conveyor belt"),
-        h_min: (0, "m", "lowest level"),
-        h_max: (15, "m", "highest level"),
-        u: (45, "%", "control signal of the feed screw"),
-        w_out: (25, "kg/s", "outflow"),
-        h: (10, "m", "level"),
-    }
 
 
 class WoodChipTankWithScale(Plant):
@@ -87,30 +74,22 @@ class WoodChipTankWithScale(Plant):
     `WoodChipTank`; the book prints none for the scale, and those of it are ours. The level has no limits here.
     """
 
-    h, m_b, w_m, u, d, w_out = signals("h m_b w_m u d w_out")
-    rho, A, K_s, tau, tau_m, T_m = parameters("rho A K_s tau tau_m T_m")
+    rho, A, K_s, tau = WoodChipTank.declared("rho A K_s tau")
+    tau_m = parameter(10, "s", "time on the belt from the feed screw to the scale")
+    T_m = parameter(5, "s", "lag of the scale")
+    u = signal(45, "%", "control signal of the feed screw")
+    d = signal(0, "kg/s", "disturbance of the flow, as by lighter chips")
+    w_out = signal(25, "kg/s", "outflow")
+    h = signal(10, "m", "level")
+    m_b = signal(6250, "kg", "mass on the belt")
+    w_m = signal(25, "kg/s", "measured flow on the belt")
+
     w_in = K_s * u + d
-    model = (
-        sympy.Eq(rho * A * h.diff(t), w_in.subs(t, t - tau) - w_out),
-        sympy.Eq(m_b.diff(t), w_in - w_in.subs(t, t - tau)),
-        sympy.Eq(T_m * w_m.diff(t), w_in.subs(t, t - tau_m) - w_m),
-    )
+    mass_in_the_tank = Balance(rho * A * h, delayed(w_in, tau) - w_out)
+    mass_on_the_belt = Balance(m_b, w_in - delayed(w_in, tau))
+    mass = mass_in_the_tank + mass_on_the_belt
+    scale = Lag(w_m, delayed(w_in, tau_m), T_m)
     output, manipulated = h, u
-    balances = {
-        "mass in the tank": (rho * A * h, w_in.subs(t, t - tau) - w_out),
-        "mass": (rho * A * h + m_b, w_in - w_out),
-    }
-    quantities = {
-        **{letter: WoodChipTank.quantities[letter] for letter in (rho, A, K_s, tau)},
-        tau_m: (10, "s", "time on the belt from the feed screw to the scale"),
-        T_m: (5, "s", "lag of the scale"),
-        u: (45, "%", "control signal of the feed screw"),
-        d: (0, "kg/s", "disturbance of the flow, as by lighter chips"),
-        w_out: (25, "kg/s", "outflow"),
-        h: (10, "m", "level"),
-        m_b: (6250, "kg", "mass on the belt"),
-        w_m: (25, "kg/s", "measured flow on the belt"),
-    }
 
 
 class BlendingTank(Plant):
@@ -120,15 +99,10 @@ class BlendingTank(Plant):
     are ours, and the operating point is a steady state.
     """
 
-    c_A, w_A, q = signals("c_A w_A q")
-    V = sympy.Symbol("V", positive=True)
-    model = sympy.Eq(V * c_A.diff(t), w_A - c_A * q)
+    V = parameter(2, "m³", "volume of the liquid")
+    w_A = signal(0.02, "mol/s", "mole flow of material A")
+    q = signal(0.01, "m³/s", "volumetric flow of the raw material, and out of the tank")
+    c_A = signal(2, "mol/m³", "mole density of A in the tank", limits=(0, sympy.oo))
+
+    moles_of_A = Balance(V * c_A, w_A - c_A * q)
     output, manipulated = c_A, w_A
-    limits = {c_A: (0, sympy.oo)}
-    balances = {"moles of A": (V * c_A, w_A - c_A * q)}
-    quantities = {
-        V: (2, "m³", "volume of the liquid"),
-        w_A: (0.02, "mol/s", "mole flow of material A"),
-        q: (0.01, "m³/s", "volumetric flow of the raw material, and out of the tank"),
-        c_A: (2, "mol/m³", "mole density of A in the tank"),
-    }

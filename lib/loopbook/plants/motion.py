@@ -1,9 +1,8 @@
 """Bodies in motion: the momentum balance."""
 
-import sympy
-
 from loopbook.expressions import t
-from loopbook.plants.plant import Plant, parameters, signals
+from loopbook.plants.declarations import Balance, parameter, signal
+from loopbook.plants.plant import Plant
 
 __all__ = ["MassSpringDamper", "MotorWithLoad"]
 
@@ -14,17 +13,15 @@ class MassSpringDamper(Plant):
     The book prints K and F. The mass and the damping are ours.
     """
 
-    y, F = signals("y F")
-    m, D, K = parameters("m D K")
-    model = sympy.Eq(m * y.diff(t, 2), F - D * y.diff(t) - K * y)
+    m = parameter(20, "kg", "mass")
+    D = parameter(4, "N/(m/s)", "damping constant")
+    K = parameter(2, "N/m", "spring constant")
+    F = signal(0, "N", "applied force")
+    y = signal(0, "m", "position")
+
+    momentum = Balance(m * y.diff(t), F - D * y.diff(t) - K * y)
     output, manipulated = y, F
-    quantities = {
-        m: (20, "kg", "mass"),
-        D: (4, "N/(m/s)", "damping constant"),
-        K: (2, "N/m", "spring constant"),
-        F: (0, "N", "applied force"),
-        y: (0, "m", "position"),
-    }
+    at_work = {F: 2, y: 1}
 
 
 class MotorWithLoad(Plant):
@@ -33,16 +30,14 @@ class MotorWithLoad(Plant):
     The book prints no values; these are ours.
     """
 
-    y, i_m, F_L = signals("y i_m F_L")
-    m, J, r, K_T = parameters("m J r K_T")
-    model = sympy.Eq((m + J / r**2) * y.diff(t, 2), K_T / r * i_m - F_L)
+    m = parameter(10, "kg", "mass of rod and load")
+    J = parameter(0.004, "kg m²", "moment of inertia of motor and gear")
+    r = parameter(0.02, "m", "radius of the gear")
+    K_T = parameter(0.1, "N m/A", "torque constant of the motor")
+    i_m = signal(0, "A", "motor current")
+    F_L = signal(0, "N", "load force")
+    y = signal(0, "m", "position")
+
+    momentum = Balance((m + J / r**2) * y.diff(t), K_T / r * i_m - F_L)
     output, manipulated = y, i_m
-    quantities = {
-        m: (10, "kg", "mass of rod and load"),
-        J: (0.004, "kg m²", "moment of inertia of motor and gear"),
-        r: (0.02, "m", "radius of the gear"),
-        K_T: (0.1, "N m/A", "torque constant of the motor"),
-        i_m: (0, "A", "motor current"),
-        F_L: (0, "N", "load force"),
-        y: (0, "m", "position"),
-    }
+    at_work = {i_m: 1, F_L: 5}

@@ -1,9 +1,9 @@
-"""A plant: its equations and its quantities stated once, everything else derived from them."""
+"""A plant: its quantities and its laws stated once, everything else derived from them."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import sympy
 from sympy.core.function import AppliedUndef
@@ -11,45 +11,29 @@ from sympy.polys.domains import QQ, ZZ
 from sympy.polys.matrices import DomainMatrix
 
 from loopbook.expressions import exact, s, t
+from loopbook.plants.declarations import Balance, Body, Declared, Declaring, Lag, Quantity, name_of
+from loopbook.stability import is_stable
 from loopbook.transfer import simplified
 from loopbook.types import Number
 
-__all__ = ["Plant", "Quantity", "name_of", "parameters", "signals"]
+__all__ = ["Plant"]
 
 
-class Quantity(NamedTuple):
-    """A parameter or a signal of a plant: its value (of a signal: at the operating point), unit and meaning.
-
-    A measured signal has None for a value, which follows from the others.
-    """
-
-    value: Number | None
-    unit: str
-    meaning: str
-
-
-def signals(names: str) -> tuple[AppliedUndef, ...]:
-    """The functions of time with these names, as ``T(t)``."""
-    return tuple(sympy.Function(name)(t) for name in names.split())
-
-
-def parameters(names: str) -> tuple[sympy.Symbol, ...]:
-    """The letters with these names; parameters are positive."""
-    return tuple(sympy.Symbol(name, positive=True) for name in names.split())
-
-
-class Plant:
+class Plant(metaclass=Declaring):
     """A process with parameters, inputs, states and one measured output; a subclass states its physics.
 
-    Attributes of the class:
-        model: the equations, a tuple of SymPy equations. Each with a derivative is a balance law; one without says what
-            is measured. A signal may be delayed, as ``u(t - tau)``.
-        output: the signal that is measured and controlled.
-        manipulated: the input that a controller acts on.
-        quantities: ``{letter or signal: (value, unit, meaning)}``, all of them.
-        limits: ``{state: (lowest, highest)}``, numbers or letters, where the state cannot leave a range.
-        balances: ``{name: (content, net inflow)}``: the mass or the energy in the plant, of which the net inflow is the
-            rate of change; both in signals and letters.
+    What its body declares by `signal`, `parameter` and `measured` are the quantities; each `Balance` or `Lag` in it is
+    a law, but for a sum of balances, which follows from its parts. Besides it names the ``output``, the signal that is
+    measured and controlled, and the input ``manipulated`` that a controller acts on. Where nothing flows at the
+    operating point, ``at_work = {signal: value}`` says when something does.
+
+    Attributes:
+        quantities: ``{symbol or signal: (value, unit, meaning)}``, all of them.
+        laws: ``{name: Balance or Lag}``.
+        balances: those laws that are balances, and their sums, by their names in words.
+        measured: ``{measured signal: formula}``.
+        model: the equations, a tuple: the laws, and what is measured.
+        limits: ``{state: (lowest, highest)}``, numbers or parameters, where a state cannot leave a range.
 
     An instance has a number for each quantity, as an attribute of its name.
 
@@ -57,25 +41,39 @@ class Plant:
         values: numbers that replace the default values, by name, in the units of `quantities`.
     Raises:
         ValueError: for a name that the plant does not have, for a value that is no number, a negative parameter, or a
-            state outside its limits.
+            state outside its limits; and where a class is made, for what is missing in its body.
     """
 
-    # a class states its model and its quantities in short, and has them in full afterwards
-    model: tuple[sympy.Equality, ...] | Any = ()
     output: sympy.Expr | Any = None
     manipulated: sympy.Expr | Any = None
-    quantities: Mapping[sympy.Expr, Quantity | Any] = {}
+    at_work: Mapping[sympy.Expr, Number] = {}
+    quantities: Mapping[sympy.Expr, Quantity] = {}
+    laws: Mapping[str, Balance | Lag] = {}
+    balances: Mapping[str, Balance] = {}
+    measured: Mapping[sympy.Expr, sympy.Expr] = {}
+    model: tuple[sympy.Equality, ...] = ()
     limits: Mapping[sympy.Expr, tuple[Number, Number]] = {}
-    balances: Mapping[str, tuple[sympy.Expr, sympy.Expr]] = {}
     values: dict[sympy.Expr, sympy.Expr]
+    _declared: Body
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
-        cls.model = (cls.model,) if isinstance(cls.model, sympy.Equality) else tuple(cls.model)
-        cls.quantities = {letter: Quantity(*row) for letter, row in cls.quantities.items()}
+        said = cls._declared
+        cls.quantities = {**cls.quantities, **said.quantities}
+        cls.measured = {**cls.measured, **said.measured}
+        cls.limits, cls.laws = {**cls.limits, **said.limits}, {**cls.laws, **said.laws}
+        balances = {name: law for name, law in cls.laws.items() if isinstance(law, Balance)}
+        cls.balances = {name.replace("_", " "): balance for name, balance in balances.items()}
+        independent = [law for law in cls.laws.values() if not (isinstance(law, Balance) and law.parts)]
+        equations = [law.equation for law in independent]
+        cls.model = (*equations, *(sympy.Eq(x, f, evaluate=False) for x, f in cls.measured.items()))
+        if cls.quantities:
+            _check(cls, len(independent))
+            said_of_it = (cls.__doc__ or cls.__name__).rstrip()
+            cls.__doc__ = "\n".join([said_of_it, "", "    Attributes:", *_table(cls.quantities), "    "])
 
     def __init__(self, **values: Number):
-        known = {name_of(letter): letter for letter in self.quantities}
+        known = {name_of(symbol): symbol for symbol in self.quantities}
         measured = {name_of(x): f for x, f in self.measured.items()}
         for name in values:
             if name not in known:
@@ -83,9 +81,9 @@ class Plant:
             if name in measured:
                 raise ValueError(f"{name} is not given but measured: it is {measured[name]}")
         self.values = {}
-        for name, letter in known.items():
+        for name, symbol in known.items():
             if name not in measured:
-                self.values[letter] = self._checked(name, letter, values.get(name, self.quantities[letter].value))
+                self.values[symbol] = self._checked(name, symbol, values.get(name, self.quantities[symbol].value))
         for name, formula in measured.items():
             self.values[known[name]] = self.numbers(self._in_constants(formula))
         for state, limits in self.limits.items():
@@ -94,22 +92,31 @@ class Plant:
                 raise ValueError(
                     f"{name_of(state)} is {_short(self.values[state])}: expected a value from {low} to {high}"
                 )
-        self.__dict__.update({name_of(letter): value for letter, value in self.values.items()})
+        self.__dict__.update({name_of(symbol): value for symbol, value in self.values.items()})
+
+    @classmethod
+    def declared(cls, names: str) -> list[Any]:
+        """Return quantities of this plant, by their names, to be declared once more in the body of another class."""
+        known = {name_of(x): x for x in cls.quantities}
+        if unknown := [name for name in names.split() if name not in known]:
+            raise ValueError(f"{cls.__name__} has no {unknown[0]!r}: it has {', '.join(known)}")
+        chosen = [known[name] for name in names.split()]
+        return [Declared(cls.quantities[x], x.is_Symbol, cls.limits.get(x), cls.measured.get(x)) for x in chosen]
 
     @staticmethod
-    def _checked(name, letter, value):
+    def _checked(name, symbol, value):
         try:
             value = exact(value)
         except ValueError as error:
             raise ValueError(f"{name}: {error}") from None
         if not (value.is_number and value.is_finite and value.is_real):
             raise ValueError(f"{name} is {value}: expected a number")
-        if letter.is_Symbol and value < 0:
+        if symbol.is_Symbol and value < 0:
             raise ValueError(f"{name} is {value}: expected a parameter that is not negative")
         return value
 
     def __setattr__(self, name: str, value: object) -> None:
-        if name in {name_of(letter) for letter in self.quantities}:
+        if name in {name_of(symbol) for symbol in self.quantities}:
             given = f"{type(self).__name__}({name}={value})"
             raise ValueError(f"{name} cannot be changed: make another plant, {given}")
         super().__setattr__(name, value)
@@ -118,28 +125,18 @@ class Plant:
 
     @property
     def states(self) -> list[sympy.Expr]:
-        """The signals whose derivatives the balance laws give; of a second derivative, the first is a state too."""
-        orders = {}
-        for derivative in sympy.Tuple(*self.model).atoms(sympy.Derivative):
-            orders[derivative.expr] = max(orders.get(derivative.expr, 0), derivative.derivative_count)
-        return [x.diff(t, n) for x in self.quantities if x in orders for n in range(orders[x])]
+        """The signals whose derivatives the laws give; of a second derivative, the first is a state too."""
+        return _states(self)
 
     @property
     def inputs(self) -> list[sympy.Expr]:
         """The signals that drive the plant, in the order of its table."""
-        inside = {x.subs(x.args[0], t) for x in sympy.Tuple(*self.model).atoms(AppliedUndef)}
-        followed = {*self.states, *self.measured}
-        return [x for x in self.quantities if x in inside and x not in followed]
+        return _inputs(self)
 
     @property
     def parameters(self) -> list[sympy.Symbol]:
-        """The letters of the plant, in the order of its table."""
-        return [letter for letter in self.quantities if letter.is_Symbol]
-
-    @property
-    def measured(self) -> dict[sympy.Expr, sympy.Expr]:
-        """What the equations without derivatives say: ``{measured signal: formula}``."""
-        return {equation.lhs: equation.rhs for equation in self.model if not equation.has(sympy.Derivative)}
+        """The symbols of the plant, in the order of its table."""
+        return [symbol for symbol in self.quantities if symbol.is_Symbol]
 
     def signal(self, name: str | sympy.Expr) -> sympy.Expr:
         """Return the signal with this name, as ``T(t)`` for "T"; a signal itself is returned as it is.
@@ -164,16 +161,49 @@ class Plant:
         y(t) changes at the rate Derivative(y(t), t)
         Derivative(y(t), t) changes at the rate -D*Derivative(y(t), t)/m - K*y(t)/m + F(t)/m
         """
-        balances = [equation for equation in self.model if equation.has(sympy.Derivative)]
+        laws = [equation for equation in self.model if equation.has(sympy.Derivative)]
         states = self.states
         highest = [x.diff(t) for x in states if x.diff(t) not in states]
-        if any(equation.has(sympy.Max, sympy.Min) for equation in balances):
-            solved = [_solved_one_by_one(balances, highest)]  # `solve` would tell the cases apart, all of them
+        if any(law.has(sympy.Max, sympy.Min) for law in laws):
+            solved = [_solved_one_by_one(laws, highest)]  # `solve` would tell the cases apart, all of them
         else:
-            solved = sympy.solve(balances, highest, dict=True)
+            solved = sympy.solve(laws, highest, dict=True)
         if len(solved) != 1:
-            raise ValueError(f"the equations of {type(self).__name__} do not determine {highest}")
+            raise ValueError(f"the laws of {type(self).__name__} do not determine {highest}")
         return {x: solved[0].get(x.diff(t), x.diff(t)) for x in states}
+
+    def is_linear(self, source: str | sympy.Expr | None = None) -> bool:
+        """Whether the effects of changes of any size add up, in the states and in what is measured.
+
+        Arguments:
+            source: an input, a name or a signal, to ask only about its effect on the output while the other inputs
+                rest; all signals if not given.
+
+        >>> from loopbook.plants import BlendingTank, WoodChipTank
+        >>> WoodChipTank().is_linear(), BlendingTank().is_linear(), BlendingTank().is_linear("w_A")
+        (True, False, True)
+        """
+        equations, moving = self.state_equations(), {*self.states, *self.inputs}
+        formulas = [*equations.values(), *self.measured.values()]
+        if source is not None:
+            source, wanted = self.signal(source), self.measured.get(self.output, self.output)
+            moving = self._between(equations, source, wanted)
+            formulas = [*(equations[x] for x in moving), wanted]
+            moving = {source, *moving}
+        slopes = (_sensitivity(f, x) for f in formulas for x in moving)
+        return not any(_signals_in(slope) & moving for slope in slopes)
+
+    @property
+    def is_self_regulating(self) -> bool:
+        """Whether all states come to rest again when the inputs have moved a little and stay, as a level does not.
+
+        >>> from loopbook.plants import HeatedTank, WoodChipTank
+        >>> HeatedTank().is_self_regulating, WoodChipTank().is_self_regulating
+        (True, False)
+        """
+        rates = [self._active(rate) for rate in self.state_equations().values()]
+        A = sympy.Matrix([[self._gain(rate, x, numbers=True) for x in self.states] for rate in rates])
+        return is_stable(1 / (s * sympy.eye(len(rates)) - A).det(method="berkowitz"))
 
     def static_response(self, *unknowns: str | sympy.Expr) -> dict[sympy.Symbol, sympy.Expr]:
         """Return the steady state: the balance laws with all derivatives set to zero, solved. (Haugen, Section 2.5)
@@ -192,7 +222,7 @@ class Plant:
         {u: w_out/K_s}
         """
         wanted = unknowns or [x for x in self.states if not x.is_Derivative]
-        wanted = list(dict.fromkeys(_letter(self.signal(x)) for x in wanted))
+        wanted = list(dict.fromkeys(_symbol(self.signal(x)) for x in wanted))
         constant = self._in_constants(
             [equation.lhs - equation.rhs for equation in self.model if equation.has(sympy.Derivative)]
         )
@@ -205,10 +235,10 @@ class Plant:
         return solved[0]
 
     def linear_model(self) -> tuple[sympy.Matrix, sympy.Matrix, sympy.Matrix, sympy.Matrix]:
-        """Return the matrices A, B, C, D of the model linearised at a steady state, in letters.
+        """Return the matrices A, B, C, D of the model linearised at a steady state, in symbols.
 
         With small changes dx of the states, du of the inputs and dy of the output, dx' = A dx + B du and
-        dy = C dx + D du. The operating point appears as the signals' letters. Delayed inputs keep their delay, which
+        dy = C dx + D du. The operating point appears as the signals' symbols. Delayed inputs keep their delay, which
         the matrices do not show; `transfer_function` has it.
 
         >>> from loopbook.plants import BlendingTank
@@ -233,9 +263,9 @@ class Plant:
         Arguments:
             source: the input, a name or a signal; the manipulated one if not given.
             output: a state or the measured output; the output if not given.
-            numbers: True to put the plant's values in from the beginning, where letters would take too long.
+            numbers: True to put the plant's values in from the beginning, where symbols would take too long.
         Returns:
-            An expression in `s` and the letters; the method `numbers` puts the values in.
+            An expression in `s` and the symbols; the method `numbers` puts the values in.
         Raises:
             ValueError: for a name that is no input or output of the plant.
 
@@ -254,12 +284,8 @@ class Plant:
         if output in self.inputs:
             raise ValueError(f"{output} is an input: expected a state or {name_of(self.output)}")
 
-        def gains(f, x):  # what a small change of the signal x does to f, with its dead time
-            if numbers:  # for all but x beforehand, which leaves little to differentiate
-                f = f.xreplace({y: self.values[y.func(t)] for y in f.atoms(AppliedUndef) if y.func != x.func})
-                f = self.numbers(f)
-            found = self._in_constants(_sensitivity(f, x, with_delay=True))
-            return self.numbers(found) if numbers else found
+        def gains(f, x):
+            return self._gain(f, x, numbers)
 
         states = [x for x in equations if x in self._between(equations, source, wanted)]
         rates = [equations[x] for x in states]
@@ -268,6 +294,15 @@ class Plant:
         C = sympy.Matrix(1, len(states), [gains(wanted, x) for x in states])
         response = (C * _solved(s * sympy.eye(len(states)) - A, B))[0] if states else 0
         return simplified(response + gains(wanted, source))
+
+    def _gain(self, f, x, numbers):
+        """What a small change of the signal x does to f, with its dead time."""
+        if numbers:  # for all but x beforehand, which leaves little to differentiate
+            rates = {rate: sympy.Dummy() for rate in f.atoms(sympy.Derivative)}
+            others = {y: self.values[y.func(t)] for y in f.atoms(AppliedUndef) if y.func != x.func}
+            f = self.numbers(f.xreplace(others | rates)).xreplace({dummy: rate for rate, dummy in rates.items()})
+        found = self._in_constants(_sensitivity(f, x, with_delay=True))
+        return self.numbers(found) if numbers else found
 
     def _active(self, f):
         """The formula with, for each Max and Min, the one of its arguments that counts at the operating point."""
@@ -293,7 +328,7 @@ class Plant:
         return before & after
 
     def numbers(self, *expressions: Number | sympy.Equality | sympy.MatrixBase) -> Any:
-        """Put the plant's values in for its letters: parameters, and signals at the operating point (T, but not T(t)).
+        """Put the plant's values in for its symbols: parameters, and signals at the operating point (T, but not T(t)).
 
         Arguments:
             expressions: expressions, equations or matrices.
@@ -305,43 +340,98 @@ class Plant:
         >>> tank.numbers(tank.transfer_function("w_out"))
         -1/(1943*s)
         """
-        values = {_letter(letter): value for letter, value in self.values.items()}
+        values = {_symbol(symbol): value for symbol, value in self.values.items()}
         checked = (x if isinstance(x, (sympy.Equality, sympy.MatrixBase)) else exact(x) for x in expressions)
         found = tuple(x.xreplace(values) for x in checked)
         return found[0] if len(found) == 1 else found
 
     def _in_constants(self, expression):
-        """The expression at rest: derivatives are zero, and signals are constants, written as letters."""
+        """The expression at rest: derivatives are zero, and signals are constants, written as symbols."""
         if isinstance(expression, list):
             return [self._in_constants(part) for part in expression]
         still = sympy.sympify(expression).replace(lambda x: isinstance(x, sympy.Derivative), lambda x: sympy.S.Zero)
-        return still.xreplace({x: _letter(x.func(t)) for x in still.atoms(AppliedUndef)})
+        return still.xreplace({x: _symbol(x.func(t)) for x in still.atoms(AppliedUndef)})
 
     # ----------------------------------------------------------------------------------------------- how it is shown
 
     def __repr__(self) -> str:
-        values = ", ".join(f"{name_of(letter)}={_short(value)}" for letter, value in self.values.items())
+        values = ", ".join(f"{name_of(symbol)}={_short(value)}" for symbol, value in self.values.items())
         return f"{type(self).__name__}({values})"
 
     def _repr_html_(self):
         rows = [
-            f"<tr><td>${_latex(letter)}$</td><td>{_short(value)} {self.quantities[letter].unit}</td>"
-            f"<td style='text-align: left'>{self.quantities[letter].meaning}</td></tr>"
-            for letter, value in self.values.items()
+            f"<tr><td>${_latex(symbol)}$</td><td>{_short(value)} {self.quantities[symbol].unit}</td>"
+            f"<td style='text-align: left'>{self.quantities[symbol].meaning}</td></tr>"
+            for symbol, value in self.values.items()
         ]
         title = (type(self).__doc__ or type(self).__name__).strip().splitlines()[0]
         return f"<table><caption>{title}</caption>{''.join(rows)}</table>"
 
 
-def name_of(x: sympy.Expr) -> str:
-    """How a quantity is called in Python: T for T(t)."""
-    if x.is_Derivative:
-        return f"{name_of(x.expr)}_{'dot' * x.derivative_count}"
-    return str(x.func) if isinstance(x, AppliedUndef) else str(x)
+# ------------------------------------------------------------------------------------------------ what it consists of
 
 
-def _letter(x):
-    """The letter that stands for a signal at its operating point."""
+def _states(plant):
+    orders = {}
+    for derivative in sympy.Tuple(*plant.model).atoms(sympy.Derivative):
+        orders[derivative.expr] = max(orders.get(derivative.expr, 0), derivative.derivative_count)
+    return [x.diff(t, n) for x in plant.quantities if x in orders for n in range(orders[x])]
+
+
+def _inputs(plant):
+    inside = _signals_in(sympy.Tuple(*plant.model))
+    followed = {*_states(plant), *plant.measured}
+    return [x for x in plant.quantities if x in inside and x not in followed]
+
+
+def _check(cls, laws):
+    """Refuse a class in which something is missing, in one sentence."""
+    said = {
+        **{name: law.equation for name, law in cls.laws.items()},
+        **{name_of(x): f for x, f in cls.measured.items()},
+    }
+    said |= {f"the limits of {name_of(x)}": sympy.Tuple(*limits) for x, limits in cls.limits.items()}
+    used = {x for x in cls.measured}
+    for name, formula in said.items():
+        inside = {x for x in formula.free_symbols if x != t} | {x.func(t) for x in formula.atoms(AppliedUndef)}
+        for x in sorted(inside - set(cls.quantities), key=str):
+            how = f"{x} = parameter(...)" if x.is_Symbol else f"{name_of(x)} = signal(...)"
+            raise ValueError(f"{cls.__name__}: {name} contains {x}, which is not declared: expected {how}")
+        for x in sorted(inside & set(cls.measured), key=str):
+            raise ValueError(f"{cls.__name__}: {name} contains {x}, which is measured: expected {cls.measured[x]}")
+        if formula.has(sympy.Subs) or any(not x.expr.args == (t,) for x in formula.atoms(sympy.Derivative)):
+            raise ValueError(f"{cls.__name__}: {name} has a delayed rate of change: expected delayed signals alone")
+        used |= inside
+    for x in cls.quantities:
+        if x not in used:
+            raise ValueError(f"{cls.__name__} declares {name_of(x)}, which no law contains and which is not measured")
+    states, inputs = _states(cls), _inputs(cls)
+    highest = [name_of(x) for x in states if x.diff(t) not in states]
+    if len(highest) != laws:
+        raise ValueError(f"{cls.__name__} has {laws} laws for the states {', '.join(highest)}: expected one for each")
+    for word, chosen, among in (
+        ("output", cls.output, [*states, *cls.measured]),
+        ("manipulated", cls.manipulated, inputs),
+    ):
+        if chosen not in among:
+            one = ", ".join(map(name_of, among))
+            raise ValueError(f"{cls.__name__} has {chosen} for {word}: expected one of {one}")
+    for x in (*cls.limits, *cls.at_work):
+        if x not in (*states, *inputs) or (x in cls.limits and x not in states):
+            raise ValueError(f"{cls.__name__} has limits or a value at work for {x}: expected a state or an input")
+
+
+def _table(quantities):
+    """What the docstring says of the quantities, a line for each."""
+    for x, (value, unit, meaning) in quantities.items():
+        unit = "" if unit == "1" else f" {unit}"
+        yield f"        {name_of(x)}: {meaning}, " + (
+            f"measured in{unit}" if value is None else f"{_short(value)}{unit}"
+        )
+
+
+def _symbol(x):
+    """The symbol that stands for a signal at its operating point."""
     return x if x.is_Symbol else sympy.Symbol(name_of(x), real=True)
 
 
@@ -362,22 +452,27 @@ def _solved(A, B):
     return A.LUsolve(B)
 
 
-def _solved_one_by_one(balances, highest):
-    """The rates, where every balance law has one of them on its left side, perhaps with a factor, and nowhere else."""
-    found = {}
-    for law in balances:
-        rate = next((x for x in highest if law.lhs.has(x) and x not in found), None)
-        factor = law.lhs.coeff(rate) if rate else 0
-        if not factor or law.lhs != factor * rate or law.rhs.has(*highest):
-            raise ValueError(f"{law.lhs} = {law.rhs} has a Max or Min: expected a rate with a factor on its left side")
-        found[rate] = law.rhs / factor
+def _solved_one_by_one(laws, highest):
+    """The rates, where the laws can be put in an order in which each has one rate more than those before."""
+    found, left = {}, list(laws)
+    while left:
+        law = next((law for law in left if len(law.lhs.atoms(sympy.Derivative) & set(highest) - set(found)) == 1), None)
+        if law is None:
+            raise ValueError(
+                f"{left[0].lhs} = {left[0].rhs} has a Max or Min: expected one rate alone on its left side"
+            )
+        (rate,) = law.lhs.atoms(sympy.Derivative) & set(highest) - set(found)
+        factor, known = law.lhs.coeff(rate), (law.lhs - law.lhs.coeff(rate) * rate).expand()
+        # what is known cancels in the sum, multiplied out, as the warmth of what flows out of a tank
+        found[rate] = sympy.expand(law.rhs - known.xreplace(found)) / factor if known else law.rhs / factor
+        left.remove(law)
     return found
 
 
-def _latex(letter):
-    """A letter as LaTeX, with everything behind its first underscore in the index: u_{valve,in}."""
-    name, _, index = name_of(letter).partition("_")
-    return f"{name}_{{{index.replace('_', ',')}}}" if "_" in index else sympy.latex(_letter(letter))
+def _latex(symbol):
+    """A symbol as LaTeX, with everything behind its first underscore in the index: u_{valve,in}."""
+    name, _, index = name_of(symbol).partition("_")
+    return f"{name}_{{{index.replace('_', ',')}}}" if "_" in index else sympy.latex(_symbol(symbol))
 
 
 def _short(value):

@@ -2,8 +2,8 @@
 
 import sympy
 
-from loopbook.expressions import t
-from loopbook.plants.plant import Plant, parameters, signals
+from loopbook.plants.declarations import Balance, delayed, measured, parameter, signal
+from loopbook.plants.plant import Plant
 
 __all__ = ["JacketedReactor"]
 
@@ -16,32 +16,26 @@ class JacketedReactor(Plant):
     at which a little hot water is needed, is a steady state.
     """
 
-    T, T_j, T_m, u_cold, u_hot, Q, F, T_in, T_cold, T_hot = signals("T T_j T_m u_cold u_hot Q F T_in T_cold T_hot")
-    c, m, m_j, U, F_max, tau = parameters("c m m_j U F_max tau")
+    c = parameter(4200, "J/(kg K)", "specific heat capacity of water and of the contents")
+    m = parameter(1000, "kg", "mass in the reactor")
+    m_j = parameter(200, "kg", "mass of water in the jacket")
+    U = parameter(4000, "W/K", "heat transfer coefficient between jacket and reactor")
+    F_max = parameter(1.5, "kg/s", "flow through a valve that is open")
+    tau = parameter(60, "s", "dead time of the measurement")
+    u_cold = signal(0, "%", "opening of the valve for cold water")
+    u_hot = signal(sympy.Rational(4000, 147), "%", "opening of the valve for hot water")
+    Q = signal(9600, "W", "heat of reaction")
+    F = signal(0.2, "kg/s", "flow of the feed")
+    T_in = signal(20, "°C", "temperature of the feed")
+    T_cold = signal(10, "°C", "temperature of the cold water")
+    T_hot = signal(80, "°C", "temperature of the hot water")
+    T = signal(60, "°C", "temperature in the reactor")
+    T_j = signal(66, "°C", "temperature in the jacket")
+    T_m = measured(delayed(T, tau), "°C", "measured temperature of the reactor")
+
     cold, hot = F_max * u_cold / 100, F_max * u_hot / 100
-    water = c * cold * (T_cold - T_j) + c * hot * (T_hot - T_j)
-    model = (
-        sympy.Eq(c * m * T.diff(t), Q + c * F * (T_in - T) + U * (T_j - T)),
-        sympy.Eq(c * m_j * T_j.diff(t), water - U * (T_j - T)),
-        sympy.Eq(T_m, T.subs(t, t - tau)),
-    )
+    exchanged = U * (T_j - T)
+    energy_of_the_contents = Balance(c * m * T, Q + c * F * (T_in - T) + exchanged)
+    energy_of_the_jacket = Balance(c * m_j * T_j, c * cold * (T_cold - T_j) + c * hot * (T_hot - T_j) - exchanged)
+    energy = energy_of_the_contents + energy_of_the_jacket
     output, manipulated = T_m, u_hot
-    balances = {"energy": (c * m * T + c * m_j * T_j, Q + c * F * (T_in - T) + water)}
-    quantities = {
-        c: (4200, "J/(kg K)", "specific heat capacity of water and of the contents"),
-        m: (1000, "kg", "mass in the reactor"),
-        m_j: (200, "kg", "mass of water in the jacket"),
-        U: (4000, "W/K", "heat transfer coefficient between jacket and reactor"),
-        F_max: (1.5, "kg/s", "flow through a valve that is open"),
-        tau: (60, "s", "dead time of the measurement"),
-        u_cold: (0, "%", "opening of the valve for cold water"),
-        u_hot: (sympy.Rational(4000, 147), "%", "opening of the valve for hot water"),
-        Q: (9600, "W", "heat of reaction"),
-        F: (0.2, "kg/s", "flow of the feed"),
-        T_in: (20, "°C", "temperature of the feed"),
-        T_cold: (10, "°C", "temperature of the cold water"),
-        T_hot: (80, "°C", "temperature of the hot water"),
-        T: (60, "°C", "temperature in the reactor"),
-        T_j: (66, "°C", "temperature in the jacket"),
-        T_m: (None, "°C", "measured temperature of the reactor"),
-    }

@@ -106,12 +106,15 @@ class ControlLoop:
         setpoint = self.setpoint if is_number(self.setpoint) else values[self.setpoint]
         more = {name: values[x] for name in ("feedforward", "scheduling") if (x := getattr(self, name))}
         u = self.controller.update(setpoint, values[self.measurement], manual=manual, **more)
-        self.recorded = {f"{self.tag}.setpoint": setpoint, f"{self.tag}.measurement": values[self.measurement]}
-        if isinstance(self.controller, Controller):
-            terms = dict(zip(("u_p", "u_i", "u_d"), self.controller.terms, strict=True))
-            terms |= {"ramped": self.controller.setpoint, "filtered": self.controller.filtered}
-            terms |= {name: getattr(self.controller, name) for name in getattr(self.controller, "recorded", ())}
-            self.recorded |= {f"{self.tag}.{name}": value for name, value in terms.items()}
+        recorded = {"setpoint": setpoint, "measurement": values[self.measurement]}
+        if hasattr(self.controller, "terms"):
+            recorded["ramped"], recorded["filtered"] = self.controller.setpoint, self.controller.filtered
+            recorded["u_p"], recorded["u_i"], recorded["u_d"] = self.controller.terms
+        if self.scheduling:
+            recorded["scheduling"] = values[self.scheduling]
+        for name in getattr(self.controller, "recorded", ()):
+            recorded[name] = getattr(self.controller, name)
+        self.recorded = {f"{self.tag}.{name}": value for name, value in recorded.items()}
         return {self.output: u}
 
     def stuck(self) -> int:

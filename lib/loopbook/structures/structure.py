@@ -6,7 +6,7 @@ import copy
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
-from loopbook.signals import by_hand, is_number, noise, samples
+from loopbook.signals import beyond_all_numbers, by_hand, is_number, noise, samples
 from loopbook.structures.blocks import ControlLoop, SplitRange
 from loopbook.types import Block, ManualStretches, Signal
 
@@ -152,6 +152,10 @@ class Structure:
         if before:
             self.k0, self.values = round(earlier.phase * earlier.interval / self.interval), dict(earlier.values)
 
+    def seen_by(self, tag: str) -> dict[str, list[float]]:
+        """The record of one loop, its signals by their own names, "setpoint" and the like."""
+        return {name.removeprefix(f"{tag}."): x for name, x in self.record.items() if name.startswith(f"{tag}.")}
+
     @property
     def phase(self) -> int:
         """How many samples have passed at the beginning of the last one."""
@@ -177,8 +181,9 @@ class Structure:
             for name, value in block.recorded.items():
                 self.record.setdefault(name, []).append(value)
         self.values = {name: values[name] for block in self.blocks for name in block.writes}
-        for name in {*self.values, *self.external} - set(self.driven):
-            self.record.setdefault(name, []).append(values[name])
+        for name in (*self.values, *self.external):
+            if name not in self.driven:
+                self.record.setdefault(name, []).append(values[name])
         return {name: values[name] for name in self.driven}
 
     def _begin(self, loop, values):
@@ -193,5 +198,7 @@ class Structure:
     def _checked(block, written, time):
         for name, value in written.items():
             if not is_number(value) and not isinstance(value, bool):
+                if isinstance(value, float):
+                    raise beyond_all_numbers(name, time)
                 raise ValueError(f"{block.tag} gives {name} = {value!r} at t = {time:g}: expected a finite number")
         return {name: float(value) for name, value in written.items()}

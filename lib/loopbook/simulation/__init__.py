@@ -1,0 +1,13 @@
+"""Simulation: a continuous plant, controllers that run once a sample, and signals in time.
+
+Between two samples the control signal is held, and the plant's state is integrated from one discontinuity to the next
+by the Dormand-Prince method of order 5 (SciPy) to a relative tolerance of 1e-9. Dead time is a delayed signal, exact
+on any grid: the moments at which a held signal arrives late are among the discontinuities. Where a state acts late on
+the plant, as behind a recycle, `loopbook.simulation.recycle` keeps its history. A single controller is a control
+structure of one loop.
+"""
+
+from loopbook.simulation.driver import simulate
+from loopbook.simulation.run import Run
+
+__all__ = ["Run", "simulate"]

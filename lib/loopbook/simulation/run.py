@@ -1,0 +1,105 @@
+"""What a simulation returns: signals by their names, and what a later run needs in order to go on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple
+
+from loopbook.plants import Plant, name_of
+
+if TYPE_CHECKING:
+    import numpy
+
+    from loopbook.simulation.system import System
+    from loopbook.structures import Structure
+
+__all__ = ["Run"]
+
+OF_THE_LOOP = ("setpoint", "measurement", "ramped", "filtered")  # signals with the unit of the measurement
+
+
+class Past(NamedTuple):
+    """What a later run needs in order to go on: the plant with its history, and the blocks with their memory."""
+
+    system: System
+    structure: Structure | None
+
+
+@dataclass(frozen=True, repr=False)
+class Run:
+    """What `simulate` returns: named signals at the sampling times.
+
+    Attributes:
+        times: the moments, an array.
+        signals: ``{name: array}``, one value for each moment.
+        plant: the plant, which knows the units.
+        manipulated: the name of the input that the controller acts on.
+        held: the names of the signals that are constant from one sample to the next.
+        measured: the name of the controlled signal, the plant's output if not said.
+    """
+
+    times: numpy.ndarray
+    signals: dict[str, numpy.ndarray]
+    plant: Plant
+    manipulated: str
+    held: set[str]
+    measured: str | None = None
+    _past: Past | None = None
+
+    @property
+    def output(self) -> str:
+        """The name of the controlled signal."""
+        return self.measured or name_of(self.plant.output)
+
+    def unit(self, name: str) -> str:
+        """The unit of a signal of the plant, or of a setpoint, as that of the measurement; "1" for a number."""
+        structure, of_plant = self._past.structure if self._past else None, {name_of(x) for x in self.plant.quantities}
+        if structure:
+            name = self.output if name in OF_THE_LOOP and name not in of_plant else name
+            found = structure.measurement_of
+            while name in found and name not in of_plant:
+                name = found[name]
+            if name not in of_plant:
+                return "%" if name in structure.split else "1"
+        return self.plant.quantities[self.plant.signal(name)].unit or "1"
+
+    def loop(self, tag: str) -> Run:
+        """Return the run as one loop of a control structure sees it, for `figures.trends` and the like.
+
+        Raises ValueError for a tag that no loop has.
+        """
+        loops = self._past.structure.loops if self._past and self._past.structure else {}
+        if tag not in loops:
+            raise ValueError(f"the run has no loop {tag!r}: it has {', '.join(loops) or 'no list of blocks'}")
+        own = {name.removeprefix(f"{tag}."): name for name in self.signals if name.startswith(f"{tag}.")}
+        signals = self.signals | {name: self.signals[full] for name, full in own.items()}
+        held = self.held | {name for name, full in own.items() if full in self.held}
+        return replace(self, signals=signals, held=held, manipulated=loops[tag].output, measured=loops[tag].measurement)
+
+    def __getitem__(self, name: str) -> numpy.ndarray:
+        if name not in self.signals:
+            raise ValueError(f"the run has no signal {name!r}: it has {', '.join(self.signals)}")
+        return self.signals[name]
+
+    def __repr__(self) -> str:
+        return (
+            f"<run of {len(self.times)} samples, t = {self.times[0]:g} to {self.times[-1]:g}: "
+            f"{', '.join(self.signals)}>"
+        )
+
+
+def joined(earlier: Run, later: Run) -> Run:
+    """Two runs as one; what only one of them has is NaN in the other. The moment where they meet is the later one's."""
+    import numpy
+
+    def part(run, name, length):
+        return run.signals[name][:length] if name in run.signals else numpy.full(length, numpy.nan)
+
+    shorter, names = len(earlier.times) - 1, [*earlier.signals, *later.signals]
+    signals = {
+        name: numpy.concatenate([part(earlier, name, shorter), part(later, name, len(later.times))])
+        for name in dict.fromkeys(names)
+    }
+    times = numpy.concatenate([earlier.times[:-1], later.times])
+    held = later.held - (set(earlier.signals) - earlier.held)
+    return replace(later, times=times, signals=signals, held=held)
