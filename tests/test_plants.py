@@ -1,6 +1,7 @@
 """The plants: what is derived from a balance law is checked by a second derivation."""
 
 import inspect
+import types
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from sympy.core.function import AppliedUndef
 from loopbook import plants, s, t
 from loopbook.expressions import agreement
 from loopbook.plants import (
+    Balance,
     BlendingTank,
     HeatedTank,
     HeatedTankWithElement,
@@ -22,11 +24,15 @@ from loopbook.plants import (
     RCCircuit,
     WoodChipTank,
     capacitor,
+    delayed,
     inductor,
+    measured,
+    parameter,
     parameters,
     resistor,
     resistors_in_parallel,
     resistors_in_series,
+    signal,
     signals,
 )
 from loopbook.plants.plant import _symbol
@@ -224,6 +230,119 @@ def test_questions_that_a_plant_cannot_answer():
     for name in ("A", [1], None, LiquidTank.A):
         with pytest.raises(ValueError, match="is no signal of LiquidTank"):
             tank.signal(name)
+
+
+# What is forgotten in a class.
+
+
+def declared(**body):
+    """A class with these attributes, declared one after the other; functions are called with what is there."""
+
+    def fill(names):
+        for name, value in body.items():
+            names[name] = value(types.SimpleNamespace(**names)) if inspect.isfunction(value) else value
+
+    return types.new_class("Tank", (Plant,), exec_body=fill)
+
+
+TANK = {
+    "A": parameter(2, "m²", "area"),
+    "q": signal(0.1, "m³/s", "inflow"),
+    "h": signal(1, "m", "level"),
+    "volume": lambda tank: Balance(tank.A * tank.h, tank.q),
+    "output": lambda tank: tank.h,
+    "manipulated": lambda tank: tank.q,
+}
+FORGOTTEN = {
+    "nothing": ({}, None),
+    "a unit": ({"h": signal(1, "", "level")}, r"Tank.h has the unit '': expected one such as 'kg/s', or '1'"),
+    "a meaning": ({"h": signal(1, "m", None)}, r"Tank.h has the meaning None"),
+    "an operating point": ({"h": signal(None, "m", "level")}, r"Tank.h has no value: .* at the operating point"),
+    "a value that is none": ({"A": parameter("2", "m²", "area")}, "Tank.A: '2' is of type str"),
+    "a parameter": (
+        {"volume": lambda tank: Balance(tank.A * tank.h, sympy.Symbol("K") * tank.q)},
+        r"Tank: volume contains K, which is not declared: expected K = parameter\(...\)",
+    ),
+    "a signal": (
+        {"volume": lambda tank: Balance(tank.A * tank.h, tank.q - sympy.Function("q_o")(t))},
+        r"Tank: volume contains q_o\(t\), which is not declared: expected q_o = signal\(...\)",
+    ),
+    "what it is for": ({"B": parameter(1, "m", "width")}, "Tank declares B, which no law contains"),
+    "a law": (
+        {"c": signal(1, "1", "share"), "volume": lambda tank: Balance(tank.A * tank.h * tank.c, tank.q)},
+        "Tank has 1 laws for the states h, c: expected one for each",
+    ),
+    "that one law is enough": ({"mass": lambda tank: Balance(3 * tank.h, tank.q)}, "Tank has 2 laws for the states h"),
+    "that a name is taken": ({"model": parameter(1, "m", "")}, "every plant has a 'model', expected another name"),
+    "the output": ({"output": None}, "Tank has None for output: expected one of h"),
+    "what is manipulated": (
+        {"manipulated": lambda tank: tank.h},
+        r"Tank has h\(t\) for manipulated: expected one of q",
+    ),
+    "that a measured signal is none of the laws'": (
+        {
+            "L": lambda tank: measured(50 * tank.h, "%", "level"),
+            "volume": lambda tank: Balance(tank.A * tank.h, tank.q - tank.L),
+        },
+        r"Tank: volume contains L\(t\), which is measured: expected 50\*h\(t\)",
+    ),
+    "that a content is one of now": (
+        {"volume": lambda tank: Balance(tank.A * (tank.h + delayed(tank.h, 2)), tank.q)},
+        "Tank: volume has a delayed rate of change",
+    ),
+    "that a limit is one of a state": (
+        {"q": signal(0.1, "m³/s", "inflow", limits=(0, 1))},
+        r"Tank has limits or a value at work for q\(t\)",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", FORGOTTEN)
+def test_what_is_forgotten_is_said_in_one_sentence_at_once(what):
+    changes, message = FORGOTTEN[what]
+    body = {name: changes.pop(name, value) for name, value in TANK.items()}
+    names = list(body)
+    order = [*names[:3], *changes, *names[3:]]
+    body = {name: (body | changes)[name] for name in order}
+    if message is None:
+        assert declared(**body)().transfer_function() == 1 / (declared(**body).A * s)
+        return
+    with pytest.raises(ValueError, match=message) as caught:
+        declared(**body)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_name_is_declared_once():
+    with pytest.raises(ValueError, match=r"Twice\.A is declared twice"):
+
+        class Twice(Plant):
+            A = parameter(2, "m²", "area")
+            A = parameter(3, "m²", "area")
+
+
+def test_a_class_without_a_class_statement_is_refused():
+    with pytest.raises(ValueError, match=r"Tank is made by type\(\): expected a class statement"):
+        type("Tank", (Plant,), {})
+
+
+def test_a_class_may_declare_again_what_it_extends():
+    class Wide(LiquidTank):
+        A = parameter(7, "m²", "cross-sectional area")
+
+    assert list(Wide.quantities) == list(LiquidTank.quantities)
+    assert (Wide().A, Wide.volume, Wide().h_max) == (7, LiquidTank.volume, 1)
+    with pytest.raises(ValueError, match="WoodChipTank has no 'B': it has rho, A"):
+        WoodChipTank.declared("rho B")
+
+
+def test_a_sum_of_balances_is_no_law_of_its_own():
+    tank = plants.WoodChipTankWithScale
+    assert set(tank.balances) == {"mass", "mass in the tank", "mass on the belt"}
+    assert tank.mass.parts == (tank.mass_in_the_tank, tank.mass_on_the_belt)
+    assert len(tank.model) == 3
+    w_in = tank.K_s * tank.u + tank.d
+    assert sympy.expand(tank.mass.inflow - (w_in - tank.w_out)) == 0
+    assert plants.JacketedTank.energy.inflow.has(plants.JacketedTank.U_hp) is False
 
 
 # A given transfer function.

@@ -216,15 +216,21 @@ class Body(dict):
 
     def _named(self, name, declared):
         number, unit, meaning = declared.quantity
-        for word, text in (("unit", unit), ("meaning", meaning)):
-            if not isinstance(text, str) or not text:
-                raise ValueError(f"{self.plant}.{name} has the {word} {text!r}: expected words, as '1' for no unit")
+        if not isinstance(unit, str) or not unit:
+            raise ValueError(f"{self.plant}.{name} has the unit {unit!r}: expected one such as 'kg/s', or '1' for none")
+        if not isinstance(meaning, str) or not meaning:
+            raise ValueError(f"{self.plant}.{name} has the meaning {meaning!r}: expected a few words")
         symbol = _positive(name) if declared.is_parameter else _function(name)
         self.quantities[symbol] = declared.quantity
         if declared.formula is not None:
             self.measured[symbol] = declared.formula
         elif number is None:
             raise ValueError(f"{self.plant}.{name} has no value: expected a number, of a signal at the operating point")
+        else:
+            try:
+                exact(number)
+            except ValueError as error:
+                raise ValueError(f"{self.plant}.{name}: {error}") from None
         if declared.limits is not None:
             self.limits[symbol] = declared.limits
         return symbol
