@@ -74,7 +74,7 @@ def test_results_have_the_shape_of_the_values():
         (lambda: Family(sympy.exp(-delay * s) / s, 1, delay=[-1]).Ms(), "dead time -1"),
         (lambda: Family(1 / s, Kp, Kp=[1]).ise("load"), "the mode is 'load'"),
         (lambda: Family(1 / s, Kp, Kp=[1]).step([1], "L"), "the signal is 'L'"),
-        (lambda: Family(1 / s, Kp, Kp=[1]).step([-1]), "the times begin at -1"),
+        (lambda: Family(1 / s, Kp, Kp=[1]).step([-1]), "the times contain -1"),
         (lambda: Family(s, Kp, Kp=[1]).Ms(), "is improper"),
         (lambda: Family(1 / (s + 1), Kp, Kp=[1]).ise(), "does not vanish"),
     ],

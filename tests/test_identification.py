@@ -689,9 +689,9 @@ def test_a_schedule_that_makes_no_sense_is_refused():
         (lambda: GainSchedule(TABLE, "linear", hysteresis=1), "none for a linear"),
         (lambda: GainSchedule(TABLE, safe="left"), "safe end is 'left'"),
         (lambda: GainSchedule({0.1: PID(1), sympy.Rational(1, 10): PID(2)}), "different values of GS"),
-        (lambda: GainSchedule({1: PID(1), sympy.Symbol("a"): PID(2)}), "GS is a: expected a finite number"),
+        (lambda: GainSchedule({1: PID(1), sympy.Symbol("a"): PID(2)}), "GS is a: expected a finite real number"),
         (lambda: GainSchedule({1: PID(1), 2: PID(2, Ti=5)}, "linear"), "only some rows have an integral term"),
-        (lambda: GainSchedule(TABLE).settings("w"), "of type str"),
+        (lambda: GainSchedule(TABLE).settings("w"), "GS is .w.: expected a number"),
         (lambda: ScheduledController(TABLE, step=1), "expected a GainSchedule"),
         (lambda: ScheduledController(GainSchedule(TABLE), step=1).update(0, 0), "value of GS is missing"),
     ]:

@@ -69,7 +69,7 @@ def test_other_denominators_are_refused(H):
 
 
 def test_values_without_meaning_are_refused():
-    with pytest.raises(ValueError, match="T is -1: expected a positive time"):
+    with pytest.raises(ValueError, match="T is -1: expected a positive number"):
         Oscillation(-1, 0.5)
     with pytest.raises(ValueError, match="the pole is 0"):
         oscillation_of_pole(0)

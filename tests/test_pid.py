@@ -317,7 +317,7 @@ def test_signals_that_are_no_numbers(signals):
 def test_a_filter_slower_than_the_derivative_action_has_no_parallel_form():
     with pytest.raises(ValueError, match="no parallel form"):
         PID(1, 10, 0, 1, form="serial").parallel()
-    with pytest.raises(ValueError, match="proportional band is 0"):
+    with pytest.raises(ValueError, match="proportional_band is 0: expected a number other than zero"):
         PID.from_panel(0)
 
 

@@ -347,11 +347,8 @@ def test_edges_quadrature_and_coefficients():
 
 
 def test_ends_that_are_none():
-    for end in ("late", None, [1, 2]):
-        with pytest.raises(ValueError, match="expected a number"):
-            Response(feedback(1, 1, 1), end)
-    for end in (-1, math.inf, math.nan):
-        with pytest.raises(ValueError, match="expected a finite time"):
+    for end in ("late", None, [1, 2], -1, math.inf, math.nan):
+        with pytest.raises(ValueError, match="expected a number that is not negative"):
             Response(feedback(1, 1, 1), end)
     assert Response(model(D11=2.0), 0)([0.0]) == pytest.approx([2])
     with pytest.raises(ValueError, match="later than"):
@@ -520,7 +517,7 @@ def test_families_that_do_not_fit():
         step_family(members._replace(B1=members.B1[0]), [1])
     with pytest.raises(ValueError, match="expected positive ones"):
         step_family(members._replace(delays=-members.delays), [1])
-    with pytest.raises(ValueError, match="the times begin at -1"):
+    with pytest.raises(ValueError, match="the times contain -1: expected numbers that are not negative"):
         step_family(members, [-1])
 
 

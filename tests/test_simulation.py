@@ -464,7 +464,7 @@ REFUSED = {
     "a missing step": (lambda: simulate(TANK, until=100), "step is missing"),
     "a step of zero": (lambda: simulate(TANK, until=100, step=0), "step is 0"),
     "a step that is no number": (lambda: simulate(TANK, until=100, step="1"), "step is '1'"),
-    "an end that is no number": (lambda: simulate(TANK, until=math.nan, step=1), "end is nan"),
+    "an end that is no number": (lambda: simulate(TANK, until=math.nan, step=1), "until is nan"),
     "an end between two samples": (lambda: simulate(TANK, until=10.5, step=1), "whole number of steps"),
     "an end before the beginning": (lambda: simulate(TANK, until=-10, step=1), "whole number of steps"),
     "a dead time before its time": (lambda: simulate(Early(), until=10, step=1), "u acts 1 before its time"),

@@ -1,6 +1,7 @@
 """The tuning rules: printed tables as formulas, units, limits, and what is refused."""
 
-import itertools
+import functools
+import inspect
 
 import numpy as np
 import pytest
@@ -18,34 +19,37 @@ from loopbook.oscillation import oscillation_of_pole
 from loopbook.pid import PID
 from loopbook.stability import dominant_poles
 from loopbook.transfer import double_integrator, first_order, integrator, integrator_with_lag, second_order
+from loopbook.tuning.rules import DIMENSIONS, confirm
+from loopbook.validation import one_of
 
 K, T, T1, T2, delay, Tc, c, Ku, Pu, x = symbols("K T T1 T2 delay Tc c Ku Pu x", positive=True)
 
 POSITIVE = st.fractions(Rational(1, 20), 20, max_denominator=20).map(Rational)
 GAINS = st.fractions(-20, 20, max_denominator=20).filter(bool).map(Rational)
 RATIOS = st.fractions(Rational(1, 10), 1, max_denominator=40).map(Rational)  # of dead time and lag
+RANGE_OF_HANG = st.fractions(Rational(3, 2), 15, max_denominator=40).map(Rational)
 KINDS = ("P", "PI", "PID")
 
-# every rule of a model and every rule of an experiment, with its variants
-OF_A_MODEL = {
-    "simc": tuning.simc,
-    "simc, faster": lambda model: tuning.simc(model, c=1.44),
-    **{f"reaction {kind}": lambda m, kind=kind: tuning.ziegler_nichols_reaction(m, kind) for kind in KINDS},
-    **{f"Cohen-Coon {kind}": lambda m, kind=kind: tuning.cohen_coon(m, kind) for kind in KINDS},
-    **{
-        f"ITAE {kind} {mode}": lambda m, kind=kind, mode=mode: tuning.itae(m, kind, mode, extrapolate=True)
-        for kind, mode in itertools.product(("PI", "PID"), ("servo", "regulator"))
-    },
+# every rule in every variant, as the registry has them
+CASES = {
+    f"{name}: {words}": functools.partial(found.settings, **chosen)
+    for name, found in tuning.RULES.items()
+    for words, chosen in found.variants.items()
 }
-OF_A_CYCLE = {
-    **{f"ultimate {kind}": lambda Ku, Pu, kind=kind: tuning.ziegler_nichols_ultimate(Ku, Pu, kind) for kind in KINDS},
-    **{f"Good Gain {kind}": lambda Ku, Pu, kind=kind: tuning.good_gain(Ku, Pu, kind) for kind in KINDS},
-    "some overshoot": lambda Ku, Pu: tuning.modified_ziegler_nichols(Ku, Pu, "some"),
-    "no overshoot": lambda Ku, Pu: tuning.modified_ziegler_nichols(Ku, Pu, "none"),
-    "Tyreus-Luyben PI": tuning.tyreus_luyben,
-    "Tyreus-Luyben PID": lambda Ku, Pu: tuning.tyreus_luyben(Ku, Pu, "PID"),
-    "Hang": lambda Ku, Pu: tuning.hang(8 / Ku, Ku, Pu).settings,
-}
+CASES["simc: faster"] = functools.partial(tuning.RULES["simc"].settings, c=1.44)
+RULES = {name: tuning.RULES[name.partition(":")[0]] for name in CASES}
+of_all_rules = pytest.mark.parametrize("name", CASES)
+
+
+def settings_of(name, values):
+    """The settings of a rule in numbers, also where its range is left."""
+    free = {"extrapolate": True} if "extrapolate" in inspect.signature(RULES[name].function).parameters else {}
+    return CASES[name](values, **free)
+
+
+def rules_of(*needs):
+    """The rules, in every variant, that start from one of these."""
+    return pytest.mark.parametrize("rule", [name for name in CASES if RULES[name].needs in needs])
 
 
 def times(settings):
@@ -56,49 +60,116 @@ def same(one, other):
     return all(sympy.simplify(a - b) == 0 for a, b in zip(one, other, strict=True) if a != b)
 
 
+# The registry.
+
+
+@pytest.mark.parametrize("made", tuning.RULES.values(), ids=tuning.RULES)
+def test_a_rule_has_the_settings_that_it_names_and_no_others(made):
+    confirm(made)
+
+
+def test_every_public_function_that_returns_settings_is_a_rule():
+    others = {name for name in tuning.__all__ if str(getattr(tuning, name)).startswith("<function")} - {*tuning.RULES}
+    returned = {name: inspect.signature(getattr(tuning, name)).return_annotation for name in others}
+    assert {name for name, what in returned.items() if what in ("PID", "WeightedPID")} == {"adjusted"}
+
+
+SOURCED = "Half of it.\n\nSource: nobody (1900)."
+
+
+def half(Ku, Pu, kind="P") -> PID:
+    return {"P": PID(Ku / 2), "PI": PID(Ku / 2, Pu)}[one_of("kind", kind, ("P", "PI"))]
+
+
+def of_a_relay(amplitude, period) -> PID:
+    return PID(1 / amplitude, period)
+
+
+def without_hint(Ku, Pu):
+    return PID(Ku, Pu)
+
+
+@pytest.fixture
+def registered(monkeypatch):
+    """Registers a function as a rule, in a registry of the test's own."""
+    monkeypatch.setattr(tuning.rules, "RULES", dict(tuning.RULES))
+
+    def put(function, docstring=SOURCED, needs="the ultimate gain and period", **choices):
+        monkeypatch.setattr(function, "__doc__", docstring)
+        tuning.rule("Half", needs=needs, **choices)(function)
+        confirm(tuning.rules.RULES[function.__name__])
+
+    return put
+
+
+def test_a_complete_rule_is_registered(registered):
+    registered(half, kind=("P", "PI"))
+    assert list(tuning.rules.RULES["half"].variants) == ["Half P", "Half PI"]
+    assert tuning.rules.RULES["half"].source == "nobody (1900)."
+
+
+@pytest.mark.parametrize(
+    ("function", "given", "message"),
+    [
+        (half, {"docstring": "Half of it."}, "rule half has no source: expected 'Source: author"),
+        (half, {"needs": "ultimate gain"}, "half needs 'ultimate gain', .*: did you mean 'the ultimate gain and peri"),
+        (half, {"needs": "luck"}, "half needs 'luck', which is not known: expected one of one or two lags"),
+        (of_a_relay, {}, "of_a_relay begins with amplitude, period: expected Ku, Pu"),
+        (without_hint, {}, "without_hint has no hint .*: expected -> PID"),
+        (half, {}, r"half does not say what it takes: expected kind=\('P', ...\)"),
+        (half, {"kinds": ("P", "PI")}, "half has no parameter 'kinds': did you mean 'kind'?"),
+        (half, {"kind": ("PI",)}, "kind by itself, in the rule half, is 'P': expected 'PI'"),
+        (half, {"kind": ("P", "PI", "PID")}, "half has no settings for .*'PID'.: kind is 'PID': expected 'P', 'PI'"),
+        (half, {"kind": ("P",)}, "half has settings for 'PI' too"),
+        (tuning.tyreus_luyben, {"kind": ("PI",)}, "rule tyreus_luyben is there already"),
+    ],
+)
+def test_what_a_rule_forgets_is_said(registered, function, given, message):
+    with pytest.raises(ValueError, match=message):
+        registered(function, **given)
+
+
+def test_a_rule_gives_the_kind_of_controller_that_it_says(registered):
+    def integral(Ku, Pu, kind="P") -> PID:
+        one_of("kind", kind, ("P",))
+        return PID(Ku, Pu)
+
+    with pytest.raises(ValueError, match=r"integral gives .* for \{'kind': 'P'\}: expected a P controller"):
+        registered(integral, kind=("P",))
+
+
 # Units: a rule must not know in which unit gain and time are measured.
 
 
-@pytest.mark.parametrize("rule", OF_A_MODEL.values(), ids=OF_A_MODEL)
+@of_all_rules
 @settings(max_examples=draws(20), deadline=None)
-@given(K=GAINS, T=POSITIVE, ratio=RATIOS, scale=GAINS, slower=POSITIVE)
-def test_units_of_a_rule_for_a_model(rule, K, T, ratio, scale, slower):
-    before = rule(SOPDT(K, T, delay=ratio * T))
-    after = rule(SOPDT(scale * K, slower * T, delay=slower * ratio * T))
+@given(K=GAINS, T=POSITIVE, ratio=RATIOS, k=RANGE_OF_HANG, scale=GAINS, slower=POSITIVE)
+def test_units(name, K, T, ratio, k, scale, slower):
+    values = {"K": K, "T": T, "delay": ratio * T, "Ku": k / K, "Pu": T, "KpGG": k / K, "Tou": T}
+    scaled = {one: x * scale ** DIMENSIONS[one][0] * slower ** DIMENSIONS[one][1] for one, x in values.items()}
+    before, after = settings_of(name, values), settings_of(name, scaled)
     assert same([scale * after.Kp, *times(after)], [before.Kp, slower * before.Ti, slower * before.Td])
 
 
-@pytest.mark.parametrize("rule", OF_A_CYCLE.values(), ids=OF_A_CYCLE)
-@given(Ku=GAINS, Pu=POSITIVE, scale=GAINS, slower=POSITIVE)
-def test_units_of_a_rule_for_an_experiment(rule, Ku, Pu, scale, slower):
-    before, after = rule(Ku, Pu), rule(Ku / scale, slower * Pu)
-    assert (scale * after.Kp, *times(after)) == (before.Kp, slower * before.Ti, slower * before.Td)
-
-
-@pytest.mark.parametrize("rule", OF_A_MODEL.values(), ids=OF_A_MODEL)
-def test_letters_give_the_formula_that_numbers_fit(rule):
-    formula, numbers = rule(first_order(K, T, delay)), {K: -2, T: 10, delay: 3}
-    values = rule(first_order(*numbers.values()))
-    assert same([e.subs(numbers) for e in (formula.Kp, *times(formula))], [values.Kp, *times(values)])
-    assert values.Kp.is_negative
-    assert values.Ti.is_extended_positive
-
-
-@pytest.mark.parametrize("rule", OF_A_CYCLE.values(), ids=OF_A_CYCLE)
-def test_letters_of_an_experiment(rule):
-    formula, values = rule(Ku, Pu), rule(Rational("0.7"), 11)
-    numbers = {Ku: Rational("0.7"), Pu: 11}
-    assert same([e.subs(numbers) for e in (formula.Kp, *times(formula))], [values.Kp, *times(values)])
+@of_all_rules
+def test_symbols_give_the_formula_that_numbers_fit(name):
+    need = RULES[name].need
+    values = {"K": -2, "T": 10, "delay": 3, "Ku": -3, "Pu": 11, "KpGG": -2, "Tou": 11}
+    formula, found = CASES[name](), CASES[name](values)
+    numbers = {symbol: sympy.Integer(values[one]) for one, symbol in need.symbols.items()}
+    assert same([e.xreplace(numbers) for e in (formula.Kp, *times(formula))], [found.Kp, *times(found)])
+    assert found.Kp.is_negative
+    assert found.Ti.is_extended_positive
 
 
 # Limits.
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("rule", [tuning.ziegler_nichols_reaction, tuning.cohen_coon])
-def test_an_endless_lag_is_an_integrator(rule, kind):
+@rules_of("a lag or an integrator with dead time")
+def test_an_infinite_lag_is_an_integrator(rule):
     """With the slope K = gain/T fixed, the settings for a lag become those for an integrator."""
-    lag, endless = rule(first_order(K * T, T, delay), kind), rule(integrator(K, delay), kind)
+    function, chosen = CASES[rule].func.__self__.function, CASES[rule].keywords
+    lag, endless = function(first_order(K * T, T, delay), **chosen), function(integrator(K, delay), **chosen)
     limits = [sympy.limit(e, T, oo) for e in (lag.Kp, *times(lag))]
     assert same(limits, [endless.Kp, *times(endless)])
 
@@ -120,9 +191,9 @@ def test_a_root_would_leave_an_integrator_without_control(printed):
     assert sympy.limit(printed / (K * T), T, oo) == 0
 
 
-@pytest.mark.parametrize("rule", [r for name, r in OF_A_MODEL.items() if "simc" not in name])
+@rules_of("a lag or an integrator with dead time", "a lag with dead time")
 def test_a_vanishing_dead_time_lets_the_gain_grow_without_end(rule):
-    sizes = [rule(SOPDT(1, 1, delay=Rational(1, n))) for n in (10, 100, 1000)]
+    sizes = [settings_of(rule, {"K": 1, "T": 1, "delay": Rational(1, n)}) for n in (10, 100, 1000)]
     assert sizes[0].Kp < sizes[1].Kp / 5 < sizes[2].Kp / 25
     assert sizes[0].Td >= sizes[1].Td >= sizes[2].Td
 
@@ -242,7 +313,7 @@ def test_hang_joins_at_the_ends_of_its_ranges():
     assert tuning.hang(1, 15, 4).w_p == 0
 
 
-@given(st.fractions(Rational(3, 2), 15, max_denominator=40).map(Rational), POSITIVE)
+@given(RANGE_OF_HANG, POSITIVE)
 def test_hang_of_letters_is_that_of_numbers(k, gain):
     formula, found = tuning.hang(K, Ku, Pu), tuning.hang(gain, k / gain, 5)
     numbers = {K: gain, Ku: k / gain, Pu: 5}
@@ -387,7 +458,7 @@ LAG, LATE = first_order(1, 2), first_order(1, 2, 1)
         (lambda: tuning.skogestad_integral_time(-1, 1, 1), "T1 is -1"),
         (lambda: tuning.skogestad_integral_time(5, 1, oo), "delay is oo"),
         (lambda: tuning.skogestad_integral_time(5, 0, 0), "Tc . delay is 0: expected a positive number"),
-        (lambda: tuning.skogestad_integral_time(0, 1, 1), "T1 is 0: expected a lag"),
+        (lambda: tuning.skogestad_integral_time(0, 1, 1), "T1 is 0: expected a positive number"),
         (lambda: tuning.ziegler_nichols_reaction(LAG), "no dead time: .* infinite gain"),
         (lambda: tuning.ziegler_nichols_reaction(LATE, "PD"), "kind is 'PD': expected 'P', 'PI', 'PID'"),
         (lambda: tuning.ziegler_nichols_reaction(second_order(1, 5, 2, 1)), "one lag or integrator .* half_rule"),
@@ -399,7 +470,7 @@ LAG, LATE = first_order(1, 2), first_order(1, 2, 1)
         (lambda: tuning.itae(first_order(1, 1, 2)), "delay/T is 2.000: the rule is for 1/10 to 1; extrapolate"),
         (lambda: tuning.itae(first_order(1, 100, 2)), "delay/T is 0.02"),
         (lambda: tuning.itae(first_order(1, 1, 7), mode="servo", extrapolate=True), "no positive integral time"),
-        (lambda: tuning.ziegler_nichols_ultimate(0, 1), "Ku is 0: expected a finite gain"),
+        (lambda: tuning.ziegler_nichols_ultimate(0, 1), "Ku is 0: expected a number other than zero"),
         (lambda: tuning.ziegler_nichols_ultimate(float("inf"), 0), "Ku is oo"),
         (lambda: tuning.ziegler_nichols_ultimate(1, 0), "Pu is 0: expected a positive number"),
         (lambda: tuning.ziegler_nichols_ultimate(1, -2), "Pu is -2"),

@@ -22,7 +22,7 @@ def sections():
     parts = (
         (dynamics.laplace_pairs, dynamics.responses, dynamics.oscillations, dynamics.controllers, dynamics.loops),
         (dynamics.smith_predictor, dynamics.dead_times, dynamics.half_rules, dynamics.zero_rules, rules.skogestad),
-        (rules.internal_model, rules.experiments, rules.reaction_curves, rules.least_itae, dynamics.squared_error),
+        (rules.internal_model, rules.experiments, rules.reaction_curves, rules.lag_alone, dynamics.squared_error),
         (dynamics.limits,),
     )
     return [make() for part in parts for make in part]

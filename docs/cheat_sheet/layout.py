@@ -19,7 +19,7 @@ POINTS = 72
 PAGE = (841.89, 595.28)  # A4 on its side, in points
 MARGIN, GUTTER, COLUMNS = 24, 16, 3
 SIZE, SMALL, HEADING, TITLE = 8, 7.2, 9, 15  # of the type, in points
-LEADING = 3.0  # between rows
+LEADINGS = (3.0, 2.5, 2.0, 1.5)  # between rows: the first with which all sections fit on the page
 GAP = 4  # at least, between the columns of a table
 COLOUR, RULE = ROLES["measurement"]["color"], "#bbbbbb"
 WIDTH = (PAGE[0] - 2 * MARGIN - (COLUMNS - 1) * GUTTER) / COLUMNS
@@ -73,7 +73,7 @@ class Row:
 class Block:
     """A section, laid out: its heading and rows with their places from the top of the section down."""
 
-    def __init__(self, section):
+    def __init__(self, section, leading=LEADINGS[0]):
         self.section = section
         self.heading = Row([section.title], HEADING)
         self.head = [Row(section.header, SMALL, GREY)] if section.header else []
@@ -81,7 +81,7 @@ class Block:
         lines = wrapped(section.note, SMALL, WIDTH) if section.note else ()
         self.notes = [Row([line], SMALL, GREY) for line in lines]
         self.starts = self._columns()
-        self.height = sum(row.height + LEADING for row in (self.heading, *self.head, *self.body, *self.notes)) + 2
+        self.height = sum(row.height + leading for row in (self.heading, *self.head, *self.body, *self.notes)) + 2
 
     def _columns(self):
         """Where the columns of the table begin: what is left of the width stands between them."""
@@ -111,10 +111,21 @@ def columns(blocks, room):
     return parts
 
 
+def arranged(sections, room):
+    """The widest leading with which the sections fit, and the blocks of each column."""
+    for leading in LEADINGS:
+        try:
+            return leading, columns([Block(section, leading) for section in sections], room)
+        except ValueError as problem:
+            reason = problem
+    raise reason
+
+
 class Page:
     """An A4 page that is written on from the upper left corner, in points."""
 
-    def __init__(self):
+    def __init__(self, leading=LEADINGS[0]):
+        self.leading = leading
         self.figure = Figure(figsize=[x / POINTS for x in PAGE])
         FigureCanvasPdf(self.figure)
 
@@ -132,11 +143,11 @@ class Page:
         for start, cell in zip(starts, row.cells, strict=False):
             if cell:
                 self.text(x + start, y + row.above, cell, row.size, colour or row.colour, weight)
-        return y + row.height + LEADING
+        return y + row.height + self.leading
 
     def block(self, x, y, block):
         y = self.row(x, y, block.heading, colour=COLOUR, weight="bold")
-        self.rule(x, y - LEADING / 2, WIDTH)
+        self.rule(x, y - self.leading / 2, WIDTH)
         y += 2
         for row in (*block.head, *block.body):
             y = self.row(x, y, row, block.starts)
@@ -157,15 +168,15 @@ def draw(sections, title, letters, file):
         ValueError: for what does not fit on the page.
     """
     with matplotlib.rc_context(LOOK):
-        page = Page()
+        top = MARGIN + 25
+        room = PAGE[1] - MARGIN - top
+        leading, parts = arranged(sections, room)
+        page = Page(leading)
         page.text(MARGIN, MARGIN + 10, title, TITLE, weight="bold")
         for number, line in enumerate(letters):
             page.text(PAGE[0] - MARGIN, MARGIN - 5 + 9 * number, line, SMALL, GREY, ha="right")
-        top = MARGIN + 18
-        page.rule(MARGIN, top, PAGE[0] - 2 * MARGIN, "black", 0.8)
-        top += 7
-        room = PAGE[1] - MARGIN - top
-        for number, blocks in enumerate(columns([Block(section) for section in sections], room)):
+        page.rule(MARGIN, top - 7, PAGE[0] - 2 * MARGIN, "black", 0.8)
+        for number, blocks in enumerate(parts):
             space = (room - sum(block.height for block in blocks)) / max(len(blocks) - 1, 1)
             y = top
             for block in blocks:

@@ -28,19 +28,7 @@ from cheat_sheet.stated import (
 )
 from loopbook.approximation import SOPDT, pade
 from loopbook.synthesis import IMC_TABLE, imc
-from loopbook.transfer import (
-    first_order,
-)
-from loopbook.tuning import (
-    cohen_coon,
-    good_gain,
-    itae,
-    modified_ziegler_nichols,
-    simc,
-    tyreus_luyben,
-    ziegler_nichols_reaction,
-    ziegler_nichols_ultimate,
-)
+from loopbook.tuning import RULES, simc
 
 
 def skogestad():
@@ -50,8 +38,8 @@ def skogestad():
     )  # fmt: skip
     rows = []
     for model in models:
-        settings = simc(model, Tc, c)
-        rows.append((undelayed(model.expr), *(sympy.factor(x) for x in (settings.Kp, settings.Ti, settings.Td))))
+        pid = simc(model, Tc, c)
+        rows.append((undelayed(model.expr), *(sympy.factor(x) for x in (pid.Kp, pid.Ti, pid.Td))))
     note = r"$T_c = \theta$ if nothing else is known; $c = 4$, or less for loads to be forgotten sooner."
     header = (r"process, and $e^{-\theta s}$", "$K_p$", "$T_i$", "$T_d$")
     return Section("Skogestad's settings (SIMC), serial form", "10_tuning", tuple(rows), header, note)
@@ -65,14 +53,14 @@ def undelayed(H):
 def imc_row(name):
     """Model, integral time, K*Kp/Ti, Td*Ti and filter of a row of the IMC table, in the letters of the sheet."""
     model, approximation = IMC_TABLE[name]
-    settings = imc(model, Tc, **({"approximation": approximation} if approximation else {}))
+    pid = imc(model, Tc, **({"approximation": approximation} if approximation else {}))
     renamed = {symbols(old, positive=True): new for old, new in (("delay", theta), ("T1", T1), ("T2", T2), ("T3", T3))}
     # rows K and L have a zero: theirs are short in tau = T3*theta/(Tc + T3 + theta)
     long = {Tc: T3 * theta / tau - T3 - theta} if name in "KL" else {}
-    ratio = symbols("K", positive=True) * settings.Kp / settings.Ti
-    integral, product = (sympy.factor(x.subs(renamed).subs(long)) for x in (settings.Ti, settings.Td * settings.Ti))
+    ratio = symbols("K", positive=True) * pid.Kp / pid.Ti
+    integral, product = (sympy.factor(x.subs(renamed).subs(long)) for x in (pid.Ti, pid.Td * pid.Ti))
     gain = 1 / sympy.factor(ratio.subs(renamed))
-    return model.subs(renamed), sympy.expand(integral), gain, product, settings.Tf.subs(renamed)
+    return model.subs(renamed), sympy.expand(integral), gain, product, pid.Tf.subs(renamed)
 
 
 def internal_model():
@@ -89,41 +77,46 @@ def internal_model():
     return Section("Internal model control", "15_direct_synthesis", tuple(rows), header, note, small=True)
 
 
-def experiments():
-    def row(name, rule):
-        return (name, rule.Kp, "" if rule.Ti == sympy.oo else rule.Ti, "" if rule.Td == 0 else rule.Td)
+def settings(*needs):
+    """What the rules for some needs give in the symbols of the sheet, all variants: {name: `PID`}."""
+    values = {"K": K, "T": T, "delay": theta, "Ku": Ku, "Pu": Pu, "KpGG": KpGG, "Tou": Tou}
+    return {
+        name: rule.settings(values, **chosen)
+        for rule in RULES.values()
+        if rule.needs in needs
+        for name, chosen in rule.variants.items()
+    }
 
-    rows = (
-        *(row(f"Ziegler-Nichols {kind}", ziegler_nichols_ultimate(Ku, Pu, kind)) for kind in ("P", "PI", "PID")),
-        row("some overshoot", modified_ziegler_nichols(Ku, Pu, "some")),
-        row("no overshoot", modified_ziegler_nichols(Ku, Pu, "none")),
-        *(row(f"Tyreus-Luyben {kind}", tyreus_luyben(Ku, Pu, kind)) for kind in ("PI", "PID")),
-        *(row(f"Good Gain {kind}", good_gain(KpGG, Tou, kind)) for kind in ("PI", "PID")),
-    )
+
+def row(name, *values):
+    """A row of settings, without the terms that a controller does not have."""
+    return name, *("" if x in (sympy.oo, 0) else x for x in values)
+
+
+def experiments():
+    found = settings("the ultimate gain and period", "the Good Gain experiment")
+    rows = tuple(row(name, pid.Kp, pid.Ti, pid.Td) for name, pid in found.items())
     note = f"A relay of amplitude $d$ that makes the output swing by $\\pm A$ tells $K_u = {latex(RELAY, flat=True)}$."
     header = ("experiment in the loop", "$K_p$", "$T_i$", "$T_d$")
     return Section("Settings from experiments", "16_tuning_relations", rows, header, note)
 
 
-def in_r(settings):
-    """K*Kp, Ti/theta and Td/theta of a rule, in r."""
-    scaled = (sympy.expand(K * settings.Kp), settings.Ti / theta, settings.Td / theta)
-    return ["" if x in (sympy.oo, 0) else x.subs(theta, r * T) for x in scaled]
+def in_r(name, pid, unit):
+    """K*Kp, and the times in a unit, as functions of r."""
+    values = (sympy.expand(K * pid.Kp), pid.Ti / unit, pid.Td / unit)
+    return row(name, *(x.subs(theta, r * T) for x in values))
 
 
 def reaction_curves():
-    model = first_order(K, T, theta)
-    rules = (("Ziegler-Nichols", ziegler_nichols_reaction), ("Cohen-Coon", cohen_coon))
-    rows = tuple((f"{name} {kind}", *in_r(rule(model, kind))) for name, rule in rules for kind in ("P", "PI", "PID"))
+    found = settings("a lag or an integrator with dead time")
+    rows = tuple(in_r(name, pid, theta) for name, pid in found.items())
     header = (r"$0.1 \leq r \leq 1$", "$K K_p$", r"$T_i/\theta$", r"$T_d/\theta$")
     return Section("Settings from a step response", "16_tuning_relations", rows, header)
 
 
-def least_itae():
-    model, rows = first_order(K, T, theta), []
-    for name, mode in (("load", "regulator"), ("setpoint", "servo")):
-        for kind in ("PI", "PID"):
-            settings = itae(model, kind, mode)
-            scaled = (x.subs(theta, r * T) for x in (K * settings.Kp, settings.Ti / T, settings.Td / T))
-            rows.append((f"{name}, {kind}", *("" if x == 0 else x for x in scaled)))
-    return Section("Least ITAE", "16_tuning_relations", tuple(rows), ("", "$K K_p$", "$T_i/T$", "$T_d/T$"))
+def lag_alone():
+    found = settings("a lag with dead time")
+    rows = tuple(in_r(name, pid, T) for name, pid in found.items())
+    return Section(
+        "Settings for a lag with dead time", "16_tuning_relations", rows, ("", "$K K_p$", "$T_i/T$", "$T_d/T$")
+    )

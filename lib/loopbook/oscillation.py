@@ -11,6 +11,7 @@ from loopbook.expressions import exact, s
 from loopbook.laplace import by_delay
 from loopbook.transfer import transfer_function
 from loopbook.types import Number, TransferFunctionLike
+from loopbook.validation import exact_positive, exact_real
 
 __all__ = ["Oscillation", "oscillation", "oscillation_of_pole"]
 
@@ -39,12 +40,8 @@ class Oscillation:
         def __init__(self, T: Number, zeta: Number): ...
 
     def __post_init__(self) -> None:
-        for name in ("T", "zeta"):
-            object.__setattr__(self, name, exact(getattr(self, name)))
-        if self.T.is_positive is False:
-            raise ValueError(f"T is {self.T}: expected a positive time")
-        if self.zeta.is_real is False:
-            raise ValueError(f"zeta is {self.zeta}: expected a finite real number")
+        object.__setattr__(self, "T", exact_positive("T", self.T))
+        object.__setattr__(self, "zeta", exact_real("zeta", self.zeta))
 
     @property
     def peak_time(self) -> sympy.Expr:

@@ -15,7 +15,16 @@ from loopbook.expressions import equalities, exact, s, written
 from loopbook.scaling import PERCENT, Scaling
 from loopbook.transfer import transfer_function
 from loopbook.types import Number
-from loopbook.validation import number, positive
+from loopbook.validation import (
+    exact_nonzero,
+    exact_not_negative,
+    exact_positive,
+    exact_real,
+    not_negative,
+    number,
+    one_of,
+    positive,
+)
 
 __all__ = ["PID", "Controller", "LowpassFilter"]
 
@@ -56,19 +65,11 @@ class PID:
 
     def __post_init__(self) -> None:
         for name in ("Kp", "Ti", "Td", "Tf"):
-            try:
-                value = exact(getattr(self, name))
-            except ValueError as error:
-                raise ValueError(f"{name} is {error}") from None
-            object.__setattr__(self, name, value)
-            if (value.is_real is False and value != sympy.oo) or (name != "Ti" and value.is_infinite):
-                raise ValueError(f"{name} is {value}: expected a finite real number")
-            if name != "Kp" and value.is_negative:
-                raise ValueError(f"{name} is {value}: expected a time that is not negative")
+            check = exact_real if name == "Kp" else exact_not_negative
+            object.__setattr__(self, name, check(name, getattr(self, name), infinite=name == "Ti"))
         if self.Ti == 0:
             raise ValueError("Ti is 0: expected a positive integral time, or oo for a controller without integral term")
-        if self.form not in FORMS:
-            raise ValueError(f"form is {self.form!r}: expected {' or '.join(FORMS)}")
+        one_of("form", self.form, FORMS)
 
     @property
     def expr(self) -> sympy.Expr:
@@ -129,9 +130,7 @@ class PID:
         >>> PID(6, Ti=3, Td=0.75).with_filter()
         PID(Kp=6, Ti=3, Td=3/4, Tf=3/40)
         """
-        if (N := exact(N)).is_positive is False:
-            raise ValueError(f"N is {N}: expected a positive number")
-        return PID(self.Kp, self.Ti, self.Td, self.Td / N, self.form)
+        return PID(self.Kp, self.Ti, self.Td, self.Td / exact_positive("N", N), self.form)
 
     @property
     def proportional_band(self) -> sympy.Expr:
@@ -171,9 +170,7 @@ class PID:
         >>> PID.from_panel(50, repeats_per_minute=5)
         PID(Kp=2, Ti=12)
         """
-        band, repeats = exact(proportional_band), exact(repeats_per_minute)
-        if band == 0:
-            raise ValueError("the proportional band is 0: expected a number other than zero")
+        band, repeats = exact_nonzero("proportional_band", proportional_band), exact(repeats_per_minute)
         return cls(100 / band, sympy.oo if repeats == 0 else exact(minute) / repeats, Td, Tf)
 
     def __mul__(self, block: object) -> sympy.Expr:
@@ -222,9 +219,7 @@ class LowpassFilter:
     output: float | None
 
     def __init__(self, T: Number, step: Number):
-        T, self.step = number("T", T), positive("step", step)
-        if T < 0:
-            raise ValueError(f"T is {T:g}: expected a lag that is not negative")
+        T, self.step = not_negative("T", T), positive("step", step)
         self.T, self.remains = T, math.exp(-self.step / T) if T else 0.0
         self.output = self.input = None
 
@@ -304,9 +299,7 @@ class Controller:
         control_range: Sequence[Number] | None = None,
     ):
         self.step, self.u0 = positive("step", step), number("u0", u0)
-        if action not in ("reverse", "direct"):
-            raise ValueError(f"action is {action!r}: expected 'reverse' or 'direct'")
-        self.action = action
+        self.action = one_of("action", action, ("reverse", "direct"))
         self._use(settings)
         if limits is None and control_range is not None:
             limits = PERCENT

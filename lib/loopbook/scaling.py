@@ -9,6 +9,7 @@ import sympy
 
 from loopbook.expressions import exact
 from loopbook.types import Number
+from loopbook.validation import is_number
 
 if TYPE_CHECKING:
     import numpy
@@ -88,6 +89,6 @@ def _ends(given):
         low, high = map(exact, given)
     except (TypeError, ValueError):
         raise ValueError(f"the range is {given!r}: expected its lowest and highest number") from None
-    if low == high or not all(x.is_number and x.is_finite for x in (low, high)):
+    if low == high or not (is_number(low) and is_number(high)):
         raise ValueError(f"the range is {given!r}: expected two different finite numbers")
     return low, high

@@ -16,6 +16,7 @@ import sympy
 from loopbook.expressions import exact, t
 from loopbook.laplace import between_steps, evaluate
 from loopbook.types import ManualStretches, Number, Signal
+from loopbook.validation import is_number, not_negative, positive, whole
 
 if TYPE_CHECKING:
     import numpy
@@ -43,7 +44,7 @@ def stepwise(start: Number, changes: Mapping[Any, Number]) -> sympy.Expr:
     changes = {exact(time): exact(new) for time, new in changes.items()}
     value = total = exact(start)
     for time, new in changes.items():
-        if not all(x.is_number and x.is_real for x in (time, new)):
+        if not (is_number(time) and is_number(new)):
             raise ValueError(f"the signal changes to {new} at t = {time}: expected two numbers")
     for time, new in sorted(changes.items()):
         total += (new - value) * sympy.Heaviside(t - time)
@@ -66,15 +67,12 @@ def noise(times: ArrayLike, deviation: Number, seed: int | tuple[int, ...]) -> n
     """
     import numpy
 
-    if not is_number(deviation) or deviation < 0:
-        raise ValueError(f"the deviation is {deviation!r}: expected a number that is not negative")
-    seeds = seed if isinstance(seed, tuple) else (seed,)
-    for part in seeds:
-        if not isinstance(part, numbers.Integral) or part < 0:
-            raise ValueError(f"the seed is {part!r}: expected an integer that is not negative")
+    deviation = not_negative("deviation", deviation)
+    for part in seed if isinstance(seed, tuple) else (seed,):
+        whole("seed", part, least=0)
     if isinstance(times, str):
         raise ValueError(f"the times are {times!r}: expected an array")
-    return numpy.random.default_rng(seed).normal(0, 1, len(times)) * float(deviation)
+    return numpy.random.default_rng(seed).normal(0, 1, len(times)) * deviation
 
 
 def pulse_width_modulation(duty: ArrayLike, times: ArrayLike, period: Number) -> numpy.ndarray:
@@ -101,8 +99,7 @@ def pulse_width_modulation(duty: ArrayLike, times: ArrayLike, period: Number) ->
         raise ValueError("the duty cycle and the times are not numbers") from None
     if times.ndim != 1 or not len(times) or not (numpy.diff(times) > 0).all():
         raise ValueError("the times must be an array of increasing numbers")
-    if not is_number(period) or period <= 0:
-        raise ValueError(f"the period is {period!r}: expected a positive time")
+    positive("period", period)
     if duty.ndim and duty.shape != times.shape:
         raise ValueError(f"the duty cycle has {duty.size} values for {times.size} times")
     if not ((duty >= 0) & (duty <= 100)).all():
@@ -117,14 +114,6 @@ def pulse_width_modulation(duty: ArrayLike, times: ArrayLike, period: Number) ->
 
 
 # ---------------------------------------------------------------------------------------- for the simulation
-
-
-def is_number(value: object) -> bool:
-    """Whether a value is one finite real number, and no text or truth value."""
-    try:
-        return not isinstance(value, (bool, str)) and math.isfinite(float(value))
-    except (TypeError, ValueError):
-        return False
 
 
 def samples(name: str, signal: Signal, times: ArrayLike) -> list[float]:

@@ -24,6 +24,7 @@ from loopbook.laplace import (
     without_delays,
 )
 from loopbook.types import Number, TransferFunctionLike
+from loopbook.validation import exact_not_negative, number
 
 __all__ = [
     "characteristic_polynomial", "dead_time", "double_integrator", "feedback", "first_order", "impulse_response",
@@ -44,7 +45,7 @@ def dead_time(delay: Number) -> sympy.Expr:
     >>> dead_time(3)
     exp(-3*s)
     """
-    return sympy.exp(-_at_least_zero("delay", delay) * s)
+    return sympy.exp(-exact_not_negative("delay", delay) * s)
 
 
 def integrator(K: Number, delay: Number = 0) -> sympy.Expr:
@@ -68,7 +69,7 @@ def first_order(K: Number, T: Number, delay: Number = 0) -> sympy.Expr:
     >>> first_order(2, 5, delay=1)
     2*exp(-s)/(5*s + 1)
     """
-    return exact(K) / (_at_least_zero("T", T) * s + 1) * dead_time(delay)
+    return exact(K) / (exact_not_negative("T", T) * s + 1) * dead_time(delay)
 
 
 def second_order(K: Number, T1: Number, T2: Number, delay: Number = 0) -> sympy.Expr:
@@ -77,7 +78,7 @@ def second_order(K: Number, T1: Number, T2: Number, delay: Number = 0) -> sympy.
     >>> second_order(1, 3, 2)
     1/((2*s + 1)*(3*s + 1))
     """
-    return first_order(K, T1, delay) / (_at_least_zero("T2", T2) * s + 1)
+    return first_order(K, T1, delay) / (exact_not_negative("T2", T2) * s + 1)
 
 
 def integrator_with_lag(K: Number, T: Number, delay: Number = 0) -> sympy.Expr:
@@ -96,13 +97,6 @@ def double_integrator(K: Number, delay: Number = 0) -> sympy.Expr:
     3/s**2
     """
     return integrator(K, delay) / s
-
-
-def _at_least_zero(name, value):
-    value = exact(value)
-    if value.is_negative or value.is_real is False:
-        raise ValueError(f"{name} is {value}: expected a time that is not negative")
-    return value
 
 
 def transfer_functions(
@@ -500,9 +494,8 @@ def response_time(H: TransferFunctionLike, share: Number = _ONE_LAG) -> float:
     import numpy
     from scipy.optimize import brentq
 
+    number("share", share, "a number between 0 and 1", lambda x: 0 < x < 1)
     share = exact(share)
-    if not (share.is_number and 0 < share < 1):
-        raise ValueError(f"share is {share}: expected a number between 0 and 1")
     if hasattr(H, "response_time"):  # a `System`, whose dead times may stand anywhere
         return H.response_time(float(share))
     H = transfer_function(H)

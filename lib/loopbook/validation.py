@@ -1,62 +1,163 @@
-"""What functions ask of single inputs, in one sentence that names the value and what was expected."""
+"""What functions ask of single arguments: a sentence names the value and what was expected, one for each fault.
+
+Three kinds of arguments are checked. `number`, `positive`, `not_negative` and `whole` are for values to compute with in
+floats and integers; `exact_real`, `exact_positive`, `exact_not_negative` and `exact_nonzero` are for numbers or
+symbols, of which only what is known to be wrong is refused; `real_numbers` and `positive_numbers` are for arrays. Of
+words, `one_of` takes one out of several, and `did_you_mean` ends the sentence on a name that is not known.
+"""
 
 from __future__ import annotations
 
+import difflib
 import math
-from collections.abc import Callable, Collection
-from typing import TYPE_CHECKING
+import operator
+from collections.abc import Callable, Collection, Iterable
+from typing import TYPE_CHECKING, Any
+
+import sympy
+
+from loopbook.expressions import exact
 
 if TYPE_CHECKING:
     import numpy
     from numpy.typing import ArrayLike
 
+A_FINITE_NUMBER = "a finite real number"
+A_POSITIVE_NUMBER = "a positive number"
+NOT_NEGATIVE = "a number that is not negative"
+
+
+# -------------------------------------------------------------------------------------------------------- numbers
+
+
+def is_number(value: object) -> bool:
+    """Whether a value is one finite real number, and no text or truth value.
+
+    >>> [is_number(value) for value in (2, sympy.pi, "2", True, float("inf"), sympy.Symbol("K"))]
+    [True, True, False, False, False, False]
+    """
+    try:
+        return not isinstance(value, (bool, str)) and math.isfinite(float(value))
+    except (TypeError, ValueError, OverflowError):
+        return False
+
 
 def number(
-    name: str, value: object, expected: str = "a finite number", holds: Callable[[float], bool] = lambda x: True
+    name: str, value: Any, expected: str = A_FINITE_NUMBER, holds: Callable[[float], bool] = lambda x: True
 ) -> float:
     """Return a value as a finite float.
 
     Arguments:
-        name: of the input, as the sentence begins with it.
+        name: of the argument, as the sentence begins with it.
         value: a number of any kind: of Python, NumPy or SymPy.
         expected: what the sentence ends with.
         holds: a condition on the float.
     Raises:
-        ValueError: for letters, text, truth values and what is no finite real number, or where the condition fails.
+        ValueError: for symbols, text, truth values and what is no finite real number, or where the condition fails.
 
-    >>> number("step", -1, "a positive number", lambda x: x > 0)
+    >>> number("share", 3, "a number between 0 and 1", lambda x: 0 < x < 1)
     Traceback (most recent call last):
-    ValueError: step is -1: expected a positive number
+    ValueError: share is 3: expected a number between 0 and 1
+    """
+    if not (is_number(value) and holds(float(value))):
+        raise ValueError(f"{name} is {value!r}: expected {expected}")
+    return float(value)
+
+
+def positive(name: str, value: Any) -> float:
+    """Return a value as a positive finite float, or raise ValueError."""
+    return number(name, value, A_POSITIVE_NUMBER, lambda x: x > 0)
+
+
+def not_negative(name: str, value: Any) -> float:
+    """Return a value as a finite float that is not negative, or raise ValueError."""
+    return number(name, value, NOT_NEGATIVE, lambda x: x >= 0)
+
+
+def whole(name: str, value: Any, least: int = 1) -> int:
+    """Return a whole number of any kind as an integer, or raise ValueError; truth values are none.
+
+    >>> whole("order", 2.0)
+    Traceback (most recent call last):
+    ValueError: order is 2.0: expected a whole number, at least 1
     """
     try:
-        x = math.nan if isinstance(value, (bool, str)) else float(value)
-    except (TypeError, ValueError):
-        x = math.nan
-    if not (math.isfinite(x) and holds(x)):
-        raise ValueError(f"{name} is {value!r}: expected {expected}")
-    return x
+        found = operator.index(value)
+    except TypeError:
+        found = least - 1
+    if isinstance(value, bool) or found < least:
+        raise ValueError(f"{name} is {value!r}: expected a whole number, at least {least}")
+    return found
 
 
-def positive(name: str, value: object) -> float:
-    """Return a value as a positive finite float, or raise ValueError."""
-    return number(name, value, "a positive number", lambda x: x > 0)
+# --------------------------------------------------------------------------------------------- numbers or symbols
 
 
-def not_negative(name: str, value: object) -> float:
-    """Return a value as a finite float that is not negative, or raise ValueError."""
-    return number(name, value, "a number that is not negative", lambda x: x >= 0)
+def exact_real(name: str, value: Any, infinite: bool = False, symbols: bool = True) -> sympy.Expr:
+    """Return a number or an expression with symbols, exact (see `expressions.exact`).
 
+    Arguments:
+        name: of the argument, as the sentence begins with it.
+        value: a number of any kind, or an expression.
+        infinite: whether `oo` is one too, as for an integral time that is switched off.
+        symbols: whether symbols may stand in it.
+    Raises:
+        ValueError: for what is neither, or is known not to be real and finite.
 
-def one_of(name: str, word: str, words: Collection[str]) -> str:
-    """Return a word that is one of several, or raise ValueError.
-
-    >>> one_of("kind", "PD", ("P", "PI", "PID"))
+    >>> exact_real("K", 0.5), exact_real("K", sympy.Symbol("K"))
+    (1/2, K)
+    >>> exact_real("K", sympy.I)
     Traceback (most recent call last):
-    ValueError: kind is 'PD': expected 'P', 'PI', 'PID'
+    ValueError: K is I: expected a finite real number
     """
-    if not isinstance(word, str) or word not in words:
-        raise ValueError(f"{name} is {word!r}: expected {', '.join(map(repr, words))}")
-    return word
+    try:
+        found = exact(value)
+    except ValueError:
+        raise ValueError(f"{name} is {value!r}: expected a number{' or an expression' if symbols else ''}") from None
+    is_real = found.is_real is not False or (infinite and found == sympy.oo)
+    return _unless(not (is_real and (symbols or found.is_number)), name, found, A_FINITE_NUMBER)
+
+
+def exact_positive(name: str, value: Any, infinite: bool = False, symbols: bool = True) -> sympy.Expr:
+    """Return a number or an expression, exact, that is not known to be zero or less; arguments as `exact_real`.
+
+    >>> exact_positive("Pu", 0)
+    Traceback (most recent call last):
+    ValueError: Pu is 0: expected a positive number
+    """
+    found = exact_real(name, value, infinite, symbols)
+    return _unless(found.is_extended_positive is False, name, found, A_POSITIVE_NUMBER)
+
+
+def exact_not_negative(name: str, value: Any, infinite: bool = False, symbols: bool = True) -> sympy.Expr:
+    """Return a number or an expression, exact, that is not known to be negative; arguments as `exact_real`.
+
+    >>> exact_not_negative("Tc", -1)
+    Traceback (most recent call last):
+    ValueError: Tc is -1: expected a number that is not negative
+    """
+    found = exact_real(name, value, infinite, symbols)
+    return _unless(found.is_negative, name, found, NOT_NEGATIVE)
+
+
+def exact_nonzero(name: str, value: Any) -> sympy.Expr:
+    """Return a number or an expression, exact, that is not known to be zero, as a gain; raises ValueError.
+
+    >>> exact_nonzero("Ku", 0)
+    Traceback (most recent call last):
+    ValueError: Ku is 0: expected a number other than zero
+    """
+    found = exact_real(name, value)
+    return _unless(found.is_zero, name, found, "a number other than zero")
+
+
+def _unless(wrong, name, value, expected):
+    if wrong:
+        raise ValueError(f"{name} is {value}: expected {expected}")
+    return value
+
+
+# --------------------------------------------------------------------------------------------------------- arrays
 
 
 def real_numbers(name: str, values: ArrayLike) -> numpy.ndarray:
@@ -73,14 +174,63 @@ def real_numbers(name: str, values: ArrayLike) -> numpy.ndarray:
         array = numpy.asarray(values, dtype=float)
     except (TypeError, ValueError):
         raise ValueError(f"the {name} are {values!r}: expected real numbers") from None
-    if not numpy.isfinite(array).all():
-        raise ValueError(f"the {name} contain {array[~numpy.isfinite(array)][0]:g}: expected finite numbers")
-    return array
+    return _all(numpy.isfinite(array), name, array, "finite numbers")
+
+
+def positive_numbers(name: str, values: ArrayLike, zero: bool = False) -> numpy.ndarray:
+    """Return values as an array of positive floats, or with `zero` of those that are not negative; or raise ValueError.
+
+    >>> positive_numbers("gain ratios", [1, -2])
+    Traceback (most recent call last):
+    ValueError: the gain ratios contain -2: expected positive numbers
+    """
+    array = real_numbers(name, values)
+    if zero:
+        return _all(array >= 0, name, array, "numbers that are not negative")
+    return _all(array > 0, name, array, "positive numbers")
 
 
 def times_from_zero(values: ArrayLike) -> numpy.ndarray:
     """Return times as an array of floats, or raise ValueError where one is negative."""
-    times = real_numbers("times", values)
-    if (times < 0).any():
-        raise ValueError(f"the times begin at {times.min():g}: expected zero or later")
-    return times
+    return positive_numbers("times", values, zero=True)
+
+
+def _all(right, name, array, expected):
+    if not right.all():
+        raise ValueError(f"the {name} contain {array[~right][0]:g}: expected {expected}")
+    return array
+
+
+# ---------------------------------------------------------------------------------------------------------- words
+
+
+def one_of(name: str, word: str, words: Collection[str]) -> str:
+    """Return a word that is one of several, or raise ValueError, which lists them.
+
+    >>> one_of("kind", "PD", ("P", "PI", "PID"))
+    Traceback (most recent call last):
+    ValueError: kind is 'PD': expected 'P', 'PI', 'PID'
+    """
+    if not isinstance(word, str) or word not in words:
+        raise ValueError(f"{name} is {word!r}: expected {', '.join(map(repr, words))}")
+    return word
+
+
+def did_you_mean(name: object, known: Iterable[object], otherwise: str | None = None) -> str:
+    """Return the end of a sentence on a name that is not known: the one that is like it, or all that there are.
+
+    Arguments:
+        name: what was given; capitals and small letters are alike.
+        known: the names that there are.
+        otherwise: what is said where none is like it; the list of all, if not given.
+
+    >>> did_you_mean("setpont", ["setpoint", "load"])
+    "did you mean 'setpoint'?"
+    >>> did_you_mean("noise", ["setpoint", "load"])
+    'expected one of setpoint, load'
+    """
+    names = list(map(str, known))
+    alike = {one.casefold(): one for one in names}
+    if close := difflib.get_close_matches(str(name).casefold(), alike, n=1):
+        return f"did you mean {alike[close[0]]!r}?"
+    return f"expected one of {', '.join(names) or 'none'}" if otherwise is None else otherwise

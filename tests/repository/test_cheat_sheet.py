@@ -1,5 +1,6 @@
 """The cheat sheet is one A4 page, the same each time, and its formulas have the values that the library computes."""
 
+import dataclasses
 import functools
 import io
 import math
@@ -19,7 +20,7 @@ from loopbook.pid import PID
 from loopbook.stability import margins
 from loopbook.synthesis import IMC_TABLE, imc
 from loopbook.transfer import first_order
-from loopbook.tuning import cohen_coon, itae, simc, ziegler_nichols_reaction
+from loopbook.tuning import RULES, simc
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "docs"))
@@ -175,24 +176,38 @@ def test_internal_model_control(name):
     assert settings.Tf == (1 if name in "IJ" else 0)
 
 
-def test_rules_for_a_step_response():
-    model, found = first_order(2, 5, 2), {}
-    for name, gain, integral, derivative in section(rules.reaction_curves).rows:
-        found[name] = [value(gain) / 2, integral and value(integral) * 2, derivative and value(derivative) * 2]
-    for name, rule in (("Ziegler-Nichols", ziegler_nichols_reaction), ("Cohen-Coon", cohen_coon)):
-        for kind in ("P", "PI", "PID"):
-            settings = rule(model, kind)
-            expected = [settings.Kp, settings.Ti if "I" in kind else "", settings.Td if "D" in kind else ""]
-            expected = [x if x == "" else float(x) for x in expected]
-            assert found[f"{name} {kind}"] == [x if x == "" else pytest.approx(x) for x in expected]
+NUMBERS = {"K": 2, "T": 5, "delay": 2, "Ku": 3, "Pu": 6, "KpGG": 4, "Tou": 8}
+UNITS = {letters.Ku: 3, letters.Pu: 6, letters.KpGG: 4, letters.Tou: 8}
 
 
-def test_least_itae():
-    for name, gain, integral, derivative in section(rules.least_itae).rows:
-        mode, kind = name.split(", ")
-        settings = itae(first_order(2, 5, 2), kind, {"load": "regulator", "setpoint": "servo"}[mode])
-        found = [value(gain) / 2, value(integral) * 5, value(derivative or 0) * 5]
-        assert found == pytest.approx([float(x) for x in (settings.Kp, settings.Ti, settings.Td)])
+@pytest.mark.parametrize(
+    ("make", "needs", "gain", "time"),
+    [
+        (rules.experiments, {"the ultimate gain and period", "the Good Gain experiment"}, 1, 1),
+        (rules.reaction_curves, {"a lag or an integrator with dead time"}, 2, 2),
+        (rules.lag_alone, {"a lag with dead time"}, 2, 5),
+    ],
+)
+def test_all_rules_for_a_need(make, needs, gain, time):
+    rows = {name: settings for name, *settings in section(make).rows}
+    found = {
+        name: rule.settings(NUMBERS, **chosen)
+        for rule in RULES.values()
+        if rule.needs in needs
+        for name, chosen in rule.variants.items()
+    }
+    assert rows.keys() == found.keys()
+    for name, pid in found.items():
+        expected = [gain * pid.Kp, pid.Ti / time, pid.Td / time]
+        expected = ["" if x in (sympy.oo, 0) else pytest.approx(float(x)) for x in expected]
+        assert [x if x == "" else value(sympy.sympify(x).subs(UNITS)) for x in rows[name]] == expected
+
+
+@pytest.mark.parametrize("make", [rules.experiments, rules.reaction_curves, rules.lag_alone])
+def test_another_rule_of_three_kinds_fits_on_the_page(make):
+    part = section(make)
+    longer = dataclasses.replace(part, rows=part.rows + part.rows[-3:])
+    drawn([longer if one.title == part.title else one for one in sections()])
 
 
 def test_what_a_relay_tells():

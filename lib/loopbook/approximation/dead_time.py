@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import operator
-
 import sympy
 
 from loopbook.expressions import s
 from loopbook.laplace import without_delays
 from loopbook.transfer import transfer_function
 from loopbook.types import TransferFunctionLike
+from loopbook.validation import whole
 
 
 def taylor(H: TransferFunctionLike, order: int = 1, inverted: bool = False) -> sympy.Expr:
@@ -26,7 +25,7 @@ def taylor(H: TransferFunctionLike, order: int = 1, inverted: bool = False) -> s
     >>> taylor(sympy.exp(-3 * s)), taylor(sympy.exp(-3 * s), inverted=True)
     (1 - 3*s, 1/(3*s + 1))
     """
-    sign, n = 1 if inverted else -1, whole(order)
+    sign, n = 1 if inverted else -1, whole("order", order)
 
     def polynomial(delay):
         return sum((sign * delay * s) ** k / sympy.factorial(k) for k in range(n + 1)) ** -sign
@@ -48,7 +47,7 @@ def pade(H: TransferFunctionLike, order: int = 1) -> sympy.Expr:
     >>> pade(sympy.exp(-2 * s), order=2)
     (s**2/3 - s + 1)/(s**2/3 + s + 1)
     """
-    n = whole(order)
+    n = whole("order", order)
     share = [sympy.binomial(n, k) / sympy.ff(2 * n, k) for k in range(n + 1)]
 
     def fraction(delay):
@@ -74,7 +73,7 @@ def repeated_pade(H: TransferFunctionLike, order: int) -> sympy.Expr:
     >>> repeated_pade(sympy.exp(-2 * s), order=2)
     (1 - s/2)**2/(s/2 + 1)**2
     """
-    n = whole(order)
+    n = whole("order", order)
     return _without_dead_time(H, lambda delay: ((1 - delay * s / (2 * n)) / (1 + delay * s / (2 * n))) ** n)
 
 
@@ -91,14 +90,3 @@ def _shortest(part, delays):
     """The shortest dead time among the terms of a polynomial in letters that stand for dead times."""
     powers = sympy.Poly(part, *delays).monoms() if delays else [()]
     return sympy.Min(*(sympy.Add(*(n * d for n, d in zip(term, delays.values(), strict=True))) for term in powers))
-
-
-def whole(order: int) -> int:
-    """An order as an integer."""
-    try:
-        number = operator.index(order)
-    except TypeError:
-        number = 0
-    if number < 1 or isinstance(order, bool):
-        raise ValueError(f"order is {order!r}: expected a whole number of at least 1")
-    return number

@@ -8,11 +8,11 @@ from typing import NamedTuple
 
 import sympy
 
-from loopbook.approximation.dead_time import whole
 from loopbook.approximation.model import SOPDT, factors, sort_lags
-from loopbook.expressions import exact, s
+from loopbook.expressions import s
 from loopbook.transfer import dead_time
 from loopbook.types import Number, TransferFunctionLike
+from loopbook.validation import exact_not_negative, exact_positive, whole
 
 
 class Step(NamedTuple):
@@ -52,10 +52,10 @@ def half_rule(
     >>> half_rule(5 / (s * (3 * s + 1)))
     SOPDT(K=5, T1=oo, delay=3/2)
     """
-    if (order := whole(order)) > 2:
+    if (order := whole("order", order)) > 2:
         raise ValueError(f"order is {order}: expected 1 or 2")
     if Tc is not None:
-        Tc = _time("Tc", Tc)
+        Tc = exact_positive("Tc", Tc, symbols=False)
     H, delay, process = factors(H)
     if len(process.zeros) > len(process.lags):
         raise ValueError(f"{H} has more zeros than poles: expected at least as many poles")
@@ -106,17 +106,10 @@ def zero_rule(T0: Number, lag: Number, Tc: Number) -> Step:
     >>> zero_rule(15, 20, Tc=0.15)
     Step(rule='T2', before=(15*s + 1)/(20*s + 1), after=3/4)
     """
-    T0, lag, Tc = _time("T0", T0), _time("lag", lag, sympy.oo), _time("Tc", Tc, sympy.S.Zero)
+    T0, lag = exact_positive("T0", T0, symbols=False), exact_positive("lag", lag, infinite=True, symbols=False)
+    Tc = exact_not_negative("Tc", Tc, symbols=False)
     rule, gain, left = _rule(T0, lag, Tc)
     return Step(rule, (T0 * s + 1) / _factor(lag), gain / _factor(left))
-
-
-def _time(name, value, allowed=None):
-    """A positive finite number, or the one other that is allowed."""
-    value = exact(value)
-    if not value.is_number or (not value.is_positive and value != allowed):
-        raise ValueError(f"{name} is {value}: expected a positive number")
-    return value
 
 
 def _rule(T0, lag, Tc):

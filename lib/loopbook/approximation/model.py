@@ -13,6 +13,7 @@ from loopbook.expressions import equalities, exact, s, written
 from loopbook.laplace import by_delay, roots
 from loopbook.transfer import dead_time, transfer_function
 from loopbook.types import Number, TransferFunctionLike
+from loopbook.validation import exact_nonzero, exact_not_negative
 
 if TYPE_CHECKING:
     from loopbook.approximation.half_rule import Step
@@ -58,16 +59,11 @@ class SOPDT:
 
     def __post_init__(self) -> None:
         for name in ("K", "T1", "T2", "delay"):
-            value = exact(getattr(self, name))
+            value = getattr(self, name)
+            value = exact_nonzero(name, value) if name == "K" else exact_not_negative(name, value, name != "delay")
             object.__setattr__(self, name, value)
             if {"s", "t"} & {letter.name for letter in value.free_symbols}:
                 raise ValueError(f"{name} is {value}: expected a number or a letter other than s and t")
-            if (value.is_real is False and value != sympy.oo) or (value.is_infinite and name in ("K", "delay")):
-                raise ValueError(f"{name} is {value}: expected a finite real number")
-            if name != "K" and value.is_negative:
-                raise ValueError(f"{name} is {value}: expected a time that is not negative")
-        if self.K == 0:
-            raise ValueError("K is 0: expected a gain that is not zero")
         if sympy.oo != self.T1 and (self.T2 - self.T1).is_extended_positive:
             raise ValueError(f"T1 is {self.T1} and T2 is {self.T2}: expected the larger lag first")
 

@@ -10,7 +10,7 @@ from loopbook.deadtime.collocation import NODES, follow
 from loopbook.deadtime.echoes import ROUNDED
 from loopbook.deadtime.family import shared_cells
 from loopbook.deadtime.superposition import superpose
-from loopbook.validation import one_of, real_numbers, times_from_zero
+from loopbook.validation import not_negative, one_of, real_numbers, times_from_zero
 
 if TYPE_CHECKING:
     import numpy
@@ -70,12 +70,7 @@ class Response:
     edges: numpy.ndarray
 
     def __init__(self, model: ChannelModel, end: float):
-        try:
-            end = float(end)
-        except (TypeError, ValueError):
-            raise ValueError(f"the end is {end!r}: expected a number") from None
-        if not 0 <= end < math.inf:
-            raise ValueError(f"the end is {end}: expected a finite time, zero or later")
+        end = not_negative("end", end)
         model = model._replace(delays=[Fraction(delay) for delay in model.delays])
         self.edges, self._coefficients = follow(model, end)
 

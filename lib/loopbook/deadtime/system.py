@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import itertools
 import math
-import numbers
 from fractions import Fraction
 from typing import TYPE_CHECKING, Self
 
@@ -21,7 +20,7 @@ from loopbook.quasipolynomials.fraction import Quasipolynomial, lowest_term, plu
 from loopbook.stability import is_stable
 from loopbook.stability import margins as margins_of
 from loopbook.stability.poles import dominant_roots
-from loopbook.validation import number, real_numbers, times_from_zero
+from loopbook.validation import number, real_numbers, times_from_zero, whole
 
 if TYPE_CHECKING:
     import control
@@ -380,8 +379,7 @@ class System(DelayFraction):
             return frequency_data(self, omega)
         if omega is not None:
             raise ValueError(f"order is {order!r} and omega is given: expected one of the two")
-        if isinstance(order, bool) or not isinstance(order, numbers.Integral) or order < 1:
-            raise ValueError(f"the order of the Pade approximation is {order!r}: expected 1, 2, 3 ...")
+        order = whole("order", order)
         A, B1, B2, C1, C2, D11, D12, D21, D22, delays = self.state_space()
         B, C = numpy.hstack([B1, B2]), numpy.vstack([C1, C2])
         D = numpy.block([[D11, D12], [D21, D22]])

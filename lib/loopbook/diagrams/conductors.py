@@ -8,8 +8,9 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from loopbook.diagrams.drawing import LINE
-from loopbook.diagrams.equipment import THICK, THIN, Equipment, one_of
+from loopbook.diagrams.equipment import THICK, THIN, Equipment
 from loopbook.diagrams.grid import direction
+from loopbook.validation import one_of
 
 if TYPE_CHECKING:
     from loopbook.diagrams.drawing import XY, Drawing

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from loopbook.diagrams.drawing import text_size
@@ -17,13 +17,6 @@ THIN = 0.8
 TAG_SIZE = 10
 BELOW, RIGHT, ABOVE, LEFT = (0, -1), (1, 0), (0, 1), (-1, 0)
 HALF_CIRCLE = [(math.cos(math.pi * n / 24), math.sin(math.pi * n / 24)) for n in range(25)]
-
-
-def one_of(what: str, kind: str, kinds: Collection[str]) -> str:
-    """The kind, where it is one of the known ones."""
-    if kind not in kinds:
-        raise ValueError(f"{what} {kind!r} is not known: expected one of {', '.join(kinds)}")
-    return kind
 
 
 def named(kind: str, what: str) -> str:

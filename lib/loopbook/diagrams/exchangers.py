@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from loopbook.diagrams.conductors import DUCT
 from loopbook.diagrams.drawing import LIQUID
-from loopbook.diagrams.equipment import ABOVE, BELOW, HALF_CIRCLE, LEFT, RIGHT, THICK, THIN, Equipment, named, one_of
+from loopbook.diagrams.equipment import ABOVE, BELOW, HALF_CIRCLE, LEFT, RIGHT, THICK, THIN, Equipment, named
+from loopbook.validation import one_of
 
 if TYPE_CHECKING:
     from loopbook.diagrams.drawing import XY, Drawing

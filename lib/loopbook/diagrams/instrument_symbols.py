@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 from loopbook.diagrams.conductors import DASHES
 from loopbook.diagrams.drawing import text_size
-from loopbook.diagrams.equipment import Equipment, one_of
+from loopbook.diagrams.equipment import Equipment
 from loopbook.instruments import decode
+from loopbook.validation import one_of
 
 if TYPE_CHECKING:
     from loopbook.diagrams.drawing import Drawing

@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING
 from loopbook.diagrams.blocks import block
 from loopbook.diagrams.conductors import SIGNALS, draw_duct, draw_pipe, draw_shaft, draw_signal
 from loopbook.diagrams.drawing import Drawing
-from loopbook.diagrams.equipment import Equipment, one_of
+from loopbook.diagrams.equipment import Equipment
 from loopbook.diagrams.grid import BlockNode, Grid, Junction, Label, Node, Point, connections, direction, neighbours
 from loopbook.diagrams.instrument_symbols import Instrument, instrument
+from loopbook.validation import one_of
 
 if TYPE_CHECKING:
     from loopbook.figures import Picture

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from loopbook.diagrams.equipment import HALF_CIRCLE, TAG_SIZE, Equipment, named, one_of
+from loopbook.diagrams.equipment import HALF_CIRCLE, TAG_SIZE, Equipment, named
+from loopbook.validation import one_of
 
 if TYPE_CHECKING:
     from loopbook.diagrams.drawing import XY, Drawing

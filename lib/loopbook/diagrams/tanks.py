@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from loopbook.diagrams.conductors import DASHES, draw_shaft
 from loopbook.diagrams.drawing import FONT_SIZE, LIQUID, signal_name, wording
-from loopbook.diagrams.equipment import HALF_CIRCLE, THICK, THIN, Equipment, one_of
+from loopbook.diagrams.equipment import HALF_CIRCLE, THICK, THIN, Equipment
+from loopbook.validation import one_of
 
 if TYPE_CHECKING:
     from loopbook.diagrams.drawing import XY, Drawing

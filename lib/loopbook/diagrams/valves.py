@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from loopbook.diagrams.drawing import text_size
-from loopbook.diagrams.equipment import ABOVE, HALF_CIRCLE, LEFT, RIGHT, TAG_SIZE, THIN, Equipment, named, one_of
+from loopbook.diagrams.equipment import ABOVE, HALF_CIRCLE, LEFT, RIGHT, TAG_SIZE, THIN, Equipment, named
+from loopbook.validation import one_of
 
 if TYPE_CHECKING:
     from loopbook.diagrams.drawing import XY, Drawing, Way

@@ -13,7 +13,7 @@ import sympy
 from loopbook.expressions import exact
 from loopbook.pid import PID, Controller
 from loopbook.types import Number
-from loopbook.validation import number, one_of
+from loopbook.validation import exact_real, number, one_of
 
 WAYS = ("constant", "linear")
 
@@ -53,7 +53,7 @@ class GainSchedule:
         one_of("the safe end", safe, ("low", "high"))
         if way == "linear" and len({settings.Ti == sympy.oo for settings in table.values()}) > 1:
             raise ValueError("only some rows have an integral term: between these no straight line leads")
-        self.rows = sorted(map(_finite, table))
+        self.rows = sorted(exact_real("GS", GS, symbols=False) for GS in table)
         self.table = {exact(GS): settings for GS, settings in table.items()}
         smallest = min(high - low for low, high in itertools.pairwise(self.rows))
         if smallest == 0:
@@ -68,7 +68,7 @@ class GainSchedule:
 
         Raises ValueError for a value that is no number.
         """
-        GS = _finite(GS)
+        GS = exact_real("GS", GS, symbols=False)
         return self._linear(GS) if self.way == "linear" else self.table[self._row(GS)]
 
     def reset(self) -> None:
@@ -105,13 +105,6 @@ class GainSchedule:
     def __repr__(self) -> str:
         rows = ", ".join(f"{GS}: {settings}" for GS, settings in self.table.items())
         return f"GainSchedule({{{rows}}}, {self.way!r})"
-
-
-def _finite(GS):
-    GS = exact(GS)
-    if not (GS.is_number and GS.is_real and GS.is_finite):
-        raise ValueError(f"GS is {GS}: expected a finite number")
-    return GS
 
 
 class ScheduledController(Controller):

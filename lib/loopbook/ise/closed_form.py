@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import sympy
 
 from loopbook.expressions import s
-from loopbook.ise.error import UnstableLoopError, checked_mode
+from loopbook.ise.error import MODES, UnstableLoopError
 from loopbook.ise.residue_method import residue_method
+from loopbook.validation import one_of
 
 if TYPE_CHECKING:
     import numpy
@@ -44,7 +45,7 @@ def symbolic_pi_first_order(mode: str = "servo") -> sympy.Expr:
     """
     K, T, delay, Kp, Ti = sympy.symbols("K T delay Kp Ti", positive=True)
     process, controller = K * sympy.exp(-delay * s) / (T * s + 1), Kp * (1 + 1 / (Ti * s))
-    forward = 1 if checked_mode(mode) == "servo" else -process
+    forward = 1 if one_of("mode", mode, MODES) == "servo" else -process
     return residue_method(forward / (1 + controller * process) / s).expr
 
 
@@ -87,7 +88,7 @@ def pi_first_order(
     >>> pi_first_order(1, 1, 0.5, Kp=[1, 9], Ti=1, unstable=math.inf).round(6)
     array([0.842898,      inf])
     """
-    checked_mode(mode)
+    one_of("mode", mode, MODES)
     given = (K, T, delay, Kp, Ti)
     if all(isinstance(x, float) or (type(x) is int and abs(x) < LARGEST) for x in given):
         if not (0 < T < math.inf and 0 <= delay < math.inf and 0 < Ti < math.inf and math.isfinite(K * Kp)):

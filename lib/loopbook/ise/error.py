@@ -12,11 +12,12 @@ from loopbook.ise.one_delay import OneDelay
 from loopbook.quasipolynomials import DelayFraction, read
 from loopbook.quasipolynomials.fraction import Quasipolynomial, plus, taylor_coefficient, times
 from loopbook.stability import StabilityLimitError, unstable_roots
+from loopbook.validation import one_of
 
 if TYPE_CHECKING:
     import numpy
 
-__all__ = ["ErrorFraction", "NotApplicableError", "UnstableLoopError", "checked_mode", "error_of"]
+__all__ = ["ErrorFraction", "NotApplicableError", "UnstableLoopError", "error_of"]
 
 MODES = ("servo", "regulator")
 ZERO = Fraction(0)
@@ -31,12 +32,6 @@ class NotApplicableError(Exception):
     """Why a method is not the one for this error."""
 
 
-def checked_mode(mode: str) -> str:
-    if mode not in MODES:
-        raise ValueError(f"the mode is {mode!r}: expected 'servo' or 'regulator'")
-    return mode
-
-
 def error_of(process: object, controller: object, mode: str, from_setpoint: object) -> DelayFraction:
     """E(s) of a loop for a unit step, with common factors cancelled once."""
     if isinstance(process, Loop):
@@ -49,7 +44,7 @@ def error_of(process: object, controller: object, mode: str, from_setpoint: obje
         loop = Loop(process, controller, from_setpoint)
     P, R, L = loop.process_fraction, loop.setpoint_fraction, loop.open_fraction
     returned = times(STEP, plus(L.denominator, L.numerator))
-    if checked_mode(mode) == "regulator":
+    if one_of("mode", mode, MODES) == "regulator":
         above = {delay: tuple(-c for c in part) for delay, part in times(P.numerator, L.denominator).items()}
         return DelayFraction(above, times(P.denominator, returned))
     if loop.controller_fraction == R:

@@ -7,6 +7,7 @@ from loopbook.ise.error import ErrorFraction, NotApplicableError, error_of
 from loopbook.ise.quadrature import by_quadrature
 from loopbook.ise.residues import by_residues
 from loopbook.ise.responses import by_response
+from loopbook.validation import one_of
 
 __all__ = ["integral_of_square", "ise"]
 
@@ -81,8 +82,8 @@ def integral_of_square(E: object, method: str | None = None) -> float:
     >>> [round(integral_of_square(E, method), 8) for method in ("boundary value", "quadrature", "response")]
     [2.5688072, 2.5688072, 2.5688072]
     """
-    if method is not None and method not in tuple(METHODS):
-        raise ValueError(f"the method is {method!r}: expected one of {', '.join(METHODS)}")
+    if method is not None:
+        one_of("method", method, METHODS)
     fraction = ErrorFraction.of(E)
     if fraction is None:
         return 0.0

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import math
-import numbers
 from typing import TYPE_CHECKING, NamedTuple
 
 from loopbook.deadtime import System
@@ -12,6 +11,7 @@ from loopbook.expressions import s
 from loopbook.ise.error import ErrorFraction, NotApplicableError, error_of
 from loopbook.ise.modes import ManyModesError, slow_modes
 from loopbook.quasipolynomials import read
+from loopbook.validation import number
 
 if TYPE_CHECKING:
     import numpy
@@ -64,12 +64,12 @@ def criteria(
     >>> [round(value, 6) for value in criteria(1 / s, 1)]
     [0.5, 1.0, 1.0, 0.25]
     """
-    if not isinstance(tolerance, numbers.Real) or not SMALLEST_TOLERANCE <= tolerance < 1:
-        raise ValueError(f"the tolerance is {tolerance!r}: expected a number from {SMALLEST_TOLERANCE:g} to 1")
+    range_ = f"a number from {SMALLEST_TOLERANCE:g} to 1"
+    tolerance = number("tolerance", tolerance, range_, lambda x: SMALLEST_TOLERANCE <= x < 1)
     fraction = ErrorFraction.of(error_of(process, controller, mode, from_setpoint))
     if fraction is None:
         return Criteria(0.0, 0.0, 0.0, 0.0)
-    return Criteria(*map(float, _followed(fraction, float(tolerance), sizes=True)))
+    return Criteria(*map(float, _followed(fraction, tolerance, sizes=True)))
 
 
 def by_response(fraction: ErrorFraction) -> float:

@@ -10,13 +10,14 @@ from collections.abc import Mapping, Sequence
 import sympy
 
 from loopbook.plants import Plant, name_of
-from loopbook.signals import Stretches, in_time, is_number
+from loopbook.signals import Stretches, in_time
 from loopbook.signals import noise as normal_noise
 from loopbook.simulation.recycle import RecycleSystem
 from loopbook.simulation.run import Past, Run, joined
 from loopbook.simulation.system import System, programs_of
 from loopbook.structures import ControlLoop, Structure
 from loopbook.types import Block, ManualStretches, Number, SampledController, Signal
+from loopbook.validation import is_number, number, positive
 
 __all__ = ["simulate"]
 
@@ -200,11 +201,7 @@ def _grid(begin, until, step):
     """The moments of the samples, rounded so that 49 steps of 0.1 end at 4.9."""
     import numpy
 
-    for name, value in (("step", step), ("end", until)):
-        if not is_number(value):
-            raise ValueError(f"the {name} is {value!r}: expected a number")
-    if step <= 0:
-        raise ValueError(f"the step is {step}: expected a positive time")
+    positive("step", step), number("until", until)
     count = (float(until) - begin) / float(step)
     if count < 0.5 or abs(count - round(count)) > 1e-6:
         raise ValueError(f"the end {until} is not a whole number of steps of {step} after {begin:g}")

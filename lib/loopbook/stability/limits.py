@@ -13,7 +13,7 @@ from loopbook.stability.crossings import Real, asked
 from loopbook.stability.enclosures import geometric
 from loopbook.stability.endless import Far
 from loopbook.stability.loops import Loops
-from loopbook.validation import real_numbers
+from loopbook.validation import positive, positive_numbers
 
 if TYPE_CHECKING:
     import numpy
@@ -100,15 +100,15 @@ def boundary_pid(process: object, Ti: ArrayLike, Td: ArrayLike, Tf: ArrayLike = 
     """
     import numpy
 
-    given = [real_numbers(f"values of {name}", x) for name, x in (("Ti", Ti), ("Td", Td), ("Tf", Tf))]
+    given = [
+        positive_numbers("values of Ti", Ti),
+        *(positive_numbers(f"values of {name}", x, zero=True) for name, x in (("Td", Td), ("Tf", Tf))),
+    ]
     try:
         Ti, Td, Tf = numpy.broadcast_arrays(*given)
     except ValueError:
         shapes = ", ".join(str(x.shape) for x in given)
         raise ValueError(f"Ti, Td and Tf have the shapes {shapes}: expected numbers, or arrays that fit") from None
-    for name, times in (("Ti", Ti), ("Td", Td), ("Tf", Tf)):
-        if wrong := [x for x in times.flat if x < 0 or (x == 0 and name == "Ti")]:
-            raise ValueError(f"{name} is {wrong[0]:g}: expected a {'positive' if name == 'Ti' else 'finite'} time")
     L = open_loop(process)
     A, B = fraction_sums(L)
     i, d, f = 1 / Ti.ravel(), Td.ravel(), numpy.where(Td > 0, Tf, 0).ravel()
@@ -285,11 +285,8 @@ def boundary_pi_approximate(T: float, delay: float, Ti: ArrayLike, K: float = 1)
     """
     import numpy
 
-    Ti = real_numbers("values of Ti", Ti)
-    for name, value in (("T", T), ("delay", delay), ("K", K), ("Ti", Ti)):
-        if not (real_numbers(f"values of {name}", value) > 0).all():
-            raise ValueError(f"{name} is {value}: expected a positive number")
-    T, delay, K = float(T), float(delay), float(K)
+    T, delay, K = positive("T", T), positive("delay", delay), positive("K", K)
+    Ti = positive_numbers("values of Ti", Ti)
     found = numpy.full(Ti.size, math.nan)
     for number, I in enumerate(Ti.flat):
         cubic = [4 * delay * I * T / math.pi, -2 * I * T, (4 * delay - math.pi * I + math.pi * T) / math.pi, -2]

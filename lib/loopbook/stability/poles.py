@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import operator
 from typing import TYPE_CHECKING
 
 import sympy
@@ -12,6 +11,7 @@ from loopbook.expressions import s
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.stability.counting import ENDLESS, ON_LIMIT, characteristic, count_roots, open_loop
 from loopbook.stability.difference import prevailing
+from loopbook.validation import whole
 
 if TYPE_CHECKING:
     from loopbook.quasipolynomials.fraction import Quasipolynomial
@@ -56,8 +56,8 @@ def dominant_roots(parts: Quasipolynomial, count: int | None, name: str) -> list
     """
     import numpy
 
-    if count is not None and (not hasattr(count, "__index__") or isinstance(count, bool) or operator.index(count) < 1):
-        raise ValueError(f"count is {count!r}: expected a positive integer")
+    if count is not None:
+        whole("count", count)
     if len(parts) == 1:
         found = _of_polynomial(sympy.Poly(parts[0][::-1], s))
         count = len(found) if count is None else count

@@ -13,7 +13,7 @@ from loopbook.stability.counting import count_roots, fraction_sums, open_loop
 from loopbook.stability.crossings import SizeOne, asked, difference, phase_left
 from loopbook.stability.enclosures import geometric
 from loopbook.stability.loops import Loops
-from loopbook.validation import real_numbers
+from loopbook.validation import positive_numbers
 
 if TYPE_CHECKING:
     import numpy
@@ -103,10 +103,7 @@ def robustness_pi_first_order(
 
 
 def _gain_ratios(gain_ratio):
-    gains = real_numbers("gain ratios", gain_ratio)
-    if wrong := [x for x in gains.flat if x <= 0]:
-        raise ValueError(f"the gain ratio is {wrong[0]:g}: expected a positive number")
-    return gains
+    return positive_numbers("gain ratios", gain_ratio)
 
 
 def open_loop_without_dead_time(

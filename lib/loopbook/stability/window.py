@@ -10,6 +10,7 @@ from loopbook.stability.crossings import View
 from loopbook.stability.enclosures import UndecidedError, geometric, walk
 from loopbook.stability.loops import Loops
 from loopbook.stability.robustness import open_loop_without_dead_time, robustness
+from loopbook.validation import whole
 
 if TYPE_CHECKING:
     import numpy
@@ -33,8 +34,7 @@ def shinskey_window(points: int = 25) -> tuple[numpy.ndarray, numpy.ndarray]:
     """
     import numpy
 
-    if isinstance(points, bool) or not isinstance(points, int) or points < 2:
-        raise ValueError(f"points is {points!r}: expected a whole number, at least 2")
+    points = whole("points", points, least=2)
     corners = numpy.array([(1, 0), (0, 1), (-1, 0), (0, -1), (1, 0)], dtype=float)
     along = numpy.linspace(0, 1, points)[:-1, None]
     sides = [one + along * (other - one) for one, other in itertools.pairwise(corners)]

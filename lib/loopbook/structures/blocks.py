@@ -16,9 +16,8 @@ from sympy.core.function import AppliedUndef
 from loopbook.expressions import exact, t
 from loopbook.pid import Controller
 from loopbook.scaling import Scaling
-from loopbook.signals import is_number
 from loopbook.types import Number, SampledController
-from loopbook.validation import number
+from loopbook.validation import is_number, number
 
 if TYPE_CHECKING:
     import numpy

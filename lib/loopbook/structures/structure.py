@@ -6,9 +6,10 @@ import copy
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
-from loopbook.signals import beyond_all_numbers, by_hand, is_number, noise, samples
+from loopbook.signals import beyond_all_numbers, by_hand, noise, samples
 from loopbook.structures.blocks import ControlLoop, SplitRange
 from loopbook.types import Block, ManualStretches, Signal
+from loopbook.validation import is_number
 
 if TYPE_CHECKING:
     import numpy

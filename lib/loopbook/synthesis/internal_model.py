@@ -15,6 +15,7 @@ from loopbook.synthesis.direct import known_roots
 from loopbook.synthesis.settings import Match, as_pid
 from loopbook.transfer import first_order, integrator, integrator_with_lag, second_order, transfer_function
 from loopbook.types import Number, TransferFunctionLike
+from loopbook.validation import exact_positive
 
 #: What makes a rational transfer function of one with dead time, as `taylor` and `pade`.
 Approximation: TypeAlias = Callable[[TransferFunctionLike], sympy.Expr]
@@ -82,9 +83,7 @@ def imc_design(model: TransferFunctionLike, Tc: Number, approximation: Approxima
     >>> design.remaining, design.filter, design.match.settings
     (1 - 3*s, (5*s + 1)/(s + 1)**2, PID(Kp=5/32, Ti=5))
     """
-    G, Tc = transfer_function(model), exact(Tc)
-    if Tc.is_positive is False:
-        raise ValueError(f"Tc is {Tc}: expected a positive closed-loop time-constant")
+    G, Tc = transfer_function(model), exact_positive("Tc", Tc)
     if len(by_delay(G)) != 1:
         raise ValueError(
             f"{G} {'adds several dead times' if G != 0 else 'is zero'}: expected a model with one dead time"

@@ -12,6 +12,7 @@ from loopbook.laplace import without_delays
 from loopbook.pid import PID
 from loopbook.transfer import simplified, transfer_function
 from loopbook.types import TransferFunctionLike
+from loopbook.validation import one_of
 
 KINDS = ("P", "PI", "PID", "PID with filter")
 
@@ -64,8 +65,8 @@ def as_pid(controller: TransferFunctionLike, kind: str | None = None) -> Match:
     >>> match.settings, match.exact
     (PID(Kp=1/2, Ti=1), False)
     """
-    if kind not in (None, *KINDS):
-        raise ValueError(f"kind is {kind!r}: expected one of {', '.join(KINDS)}")
+    if kind is not None:
+        one_of("kind", kind, KINDS)
     C = transfer_function(controller)
     without_delays(C)  # refuses what is neither rational nor a dead time
     settings = _exactly(C)

@@ -10,11 +10,12 @@ from sympy import Rational as Q
 
 from loopbook.expressions import exact, s
 from loopbook.pid import PID
-from loopbook.tuning.checks import gain, positive, within
+from loopbook.tuning.rules import rule, within
 from loopbook.types import Number
-from loopbook.validation import one_of
+from loopbook.validation import exact_nonzero, exact_positive, one_of
 
 
+@rule("Good Gain", needs="the Good Gain experiment", kind=("P", "PI", "PID"))
 def good_gain(KpGG: Number, Tou: Number, kind: str = "PI") -> PID:
     """Return the settings of the Good Gain method.
 
@@ -30,12 +31,13 @@ def good_gain(KpGG: Number, Tou: Number, kind: str = "PI") -> PID:
     >>> good_gain(1.5, 12)
     PID(Kp=6/5, Ti=18)
     """
-    KpGG, Tou = gain("KpGG", KpGG), positive("Tou", Tou)
+    KpGG, Tou = exact_nonzero("KpGG", KpGG), exact_positive("Tou", Tou)
     Kp, Ti = Q("0.8") * KpGG, Q("1.5") * Tou
     rules = {"P": PID(KpGG), "PI": PID(Kp, Ti), "PID": PID(Kp, Ti, Ti / 4)}
     return rules[one_of("kind", kind, rules)]
 
 
+@rule("Ziegler-Nichols", needs="the ultimate gain and period", kind=("P", "PI", "PID"))
 def ziegler_nichols_ultimate(Ku: Number, Pu: Number, kind: str = "PID") -> PID:
     """Return the settings of Ziegler and Nichols from the ultimate gain and period.
 
@@ -50,7 +52,7 @@ def ziegler_nichols_ultimate(Ku: Number, Pu: Number, kind: str = "PID") -> PID:
     >>> ziegler_nichols_ultimate(10, 6)
     PID(Kp=6, Ti=3, Td=3/4)
     """
-    Ku, Pu = gain("Ku", Ku), positive("Pu", Pu)
+    Ku, Pu = exact_nonzero("Ku", Ku), exact_positive("Pu", Pu)
     rules = {
         "P": PID(Q("0.5") * Ku),
         "PI": PID(Q("0.45") * Ku, Pu / Q("1.2")),
@@ -59,6 +61,11 @@ def ziegler_nichols_ultimate(Ku: Number, Pu: Number, kind: str = "PID") -> PID:
     return rules[one_of("kind", kind, rules)]
 
 
+@rule(
+    "Ziegler-Nichols",
+    needs="the ultimate gain and period",
+    overshoot={"some": "some overshoot", "none": "no overshoot"},
+)
 def modified_ziegler_nichols(Ku: Number, Pu: Number, overshoot: str = "some") -> PID:
     """Return PID settings from the ultimate gain and period, for less overshoot than Ziegler and Nichols' own.
 
@@ -72,11 +79,12 @@ def modified_ziegler_nichols(Ku: Number, Pu: Number, overshoot: str = "some") ->
     >>> modified_ziegler_nichols(10, 6, overshoot="none")
     PID(Kp=2, Ti=2, Td=3)
     """
-    Ku, Pu = gain("Ku", Ku), positive("Pu", Pu)
+    Ku, Pu = exact_nonzero("Ku", Ku), exact_positive("Pu", Pu)
     rules = {"some": PID(Q("0.33") * Ku, Pu / 2, Pu / 3), "none": PID(Q("0.2") * Ku, Pu / 3, Pu / 2)}
     return rules[one_of("overshoot", overshoot, rules)]
 
 
+@rule("Tyreus-Luyben", needs="the ultimate gain and period", kind=("PI", "PID"))
 def tyreus_luyben(Ku: Number, Pu: Number, kind: str = "PI") -> PID:
     """Return the settings of Tyreus and Luyben, calmer than those of Ziegler and Nichols.
 
@@ -90,7 +98,7 @@ def tyreus_luyben(Ku: Number, Pu: Number, kind: str = "PI") -> PID:
     >>> tyreus_luyben(10, 5)
     PID(Kp=31/10, Ti=11)
     """
-    Ku, Pu = gain("Ku", Ku), positive("Pu", Pu)
+    Ku, Pu = exact_nonzero("Ku", Ku), exact_positive("Pu", Pu)
     rules = {
         "PI": PID(Q("0.31") * Ku, Q("2.2") * Pu),
         "PID": PID(Q("0.45") * Ku, Q("2.2") * Pu, Pu / Q("6.3")),
@@ -115,6 +123,7 @@ class WeightedPID(NamedTuple):
         return self.settings.Kp * (self.w_p + 1 / (self.settings.Ti * s))
 
 
+@rule("Hang", needs="the static gain, and the ultimate gain and period")
 def hang(K: Number, Ku: Number, Pu: Number, extrapolate: bool = False) -> WeightedPID:
     """Return PID settings by the refinement of Ziegler and Nichols' that weights the setpoint, as a `WeightedPID`.
 
@@ -133,7 +142,7 @@ def hang(K: Number, Ku: Number, Pu: Number, extrapolate: bool = False) -> Weight
     WeightedPID(settings=PID(Kp=3, Ti=3, Td=3/4), w_p=1/5)
     """
     Kp, Ti, Td = (getattr(ziegler_nichols_ultimate(Ku, Pu), name) for name in ("Kp", "Ti", "Td"))
-    k = gain("K", K) * exact(Ku)
+    k = exact_nonzero("K", K) * exact(Ku)
     within("K*Ku", k, Q("1.5"), 15, extrapolate)
     mu = Min(4 * k / 9, 1)
     w_p = sympy.Piecewise(((15 - k) / (15 + k), k >= Q("2.25")), (8 * (mu + 1) / 17, True))

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import sympy
 from sympy import Rational as Q
 
-from loopbook.approximation import model_of
+from loopbook.approximation import SOPDT, model_of
 from loopbook.pid import PID
-from loopbook.tuning.checks import steepest_slope, within
+from loopbook.tuning.rules import rule, within
 from loopbook.types import TransferFunctionLike
 from loopbook.validation import one_of
 
 
+@rule("Ziegler-Nichols", needs="a lag or an integrator with dead time", kind=("P", "PI", "PID"))
 def ziegler_nichols_reaction(model: TransferFunctionLike, kind: str = "PID") -> PID:
     """Return the settings of Ziegler and Nichols from the reaction curve, a step response without control.
 
@@ -39,6 +41,7 @@ def ziegler_nichols_reaction(model: TransferFunctionLike, kind: str = "PID") -> 
     return rules[one_of("kind", kind, rules)]
 
 
+@rule("Cohen-Coon", needs="a lag or an integrator with dead time", kind=("P", "PI", "PID"))
 def cohen_coon(model: TransferFunctionLike, kind: str = "PID") -> PID:
     """Return the settings of Cohen and Coon, which aim at quarter decay and a small area of the error.
 
@@ -80,6 +83,12 @@ _ITAE = {
 }
 
 
+@rule(
+    "ITAE",
+    needs="a lag with dead time",
+    kind=("PI", "PID"),
+    mode={"regulator": "load", "servo": "setpoint"},
+)
 def itae(model: TransferFunctionLike, kind: str = "PI", mode: str = "regulator", extrapolate: bool = False) -> PID:
     """Return settings that nearly minimise the integral of t*abs(e), fitted for dead times of 0.1 to 1 lag.
 
@@ -113,6 +122,13 @@ def itae(model: TransferFunctionLike, kind: str = "PI", mode: str = "regulator",
         raise ValueError(f"delay/T is {r}: the ITAE rule has no positive integral time there")
     Td = model.T1 * _power_law(*derivative[0], r) if derivative else 0
     return PID(_power_law(*proportional, r) / model.K, model.T1 / rate, Td)
+
+
+def steepest_slope(model: SOPDT, rule: str) -> sympy.Expr:
+    """The steepest slope of the step response: the gain over the largest lag."""
+    if model.T1 == 0:
+        raise ValueError(f"{rule} needs a lag or an integrator, and {model} has none: give it a small lag")
+    return model.K if model.is_integrating else model.K / model.T1
 
 
 def _power_law(A, B, r):

@@ -8,11 +8,13 @@ from sympy import Rational as Q
 
 from loopbook.approximation import model_of
 from loopbook.pid import PID
-from loopbook.tuning.checks import endless_time, finite_time, positive, steepest_slope
+from loopbook.tuning.reaction_curves import steepest_slope
+from loopbook.tuning.rules import rule
 from loopbook.types import Number, TransferFunctionLike
-from loopbook.validation import one_of
+from loopbook.validation import exact_not_negative, exact_positive, one_of
 
 
+@rule("Skogestad", needs="one or two lags or integrators")
 def simc(model: TransferFunctionLike, Tc: Number | None = None, c: Number = 4) -> PID:
     """Return Skogestad's settings, of a PI or PID controller in serial form.
 
@@ -35,10 +37,10 @@ def simc(model: TransferFunctionLike, Tc: Number | None = None, c: Number = 4) -
     >>> simc(2 * sympy.exp(-s) / ((10 * s + 1) * (3 * s + 1)))
     PID(Kp=5/2, Ti=8, Td=3, form='serial')
     """
-    model, c = model_of(model), positive("c", c)
+    model, c = model_of(model), exact_positive("c", c)
     if Tc is None and model.delay == 0:
         raise ValueError(f"{model} has no dead time to take Tc from: choose Tc, for example half of the largest lag")
-    total = model.delay + (model.delay if Tc is None else finite_time("Tc", Tc))
+    total = model.delay + (model.delay if Tc is None else exact_not_negative("Tc", Tc))
     if total == 0:
         raise ValueError("Tc and the dead time are both 0: expected a positive Tc")
     if model.T2.is_infinite:
@@ -60,11 +62,8 @@ def skogestad_integral_time(T1: Number, Tc: Number, delay: Number, c: Number = 4
     >>> skogestad_integral_time(100, Tc=1, delay=1)
     8
     """
-    total = positive("Tc + delay", finite_time("Tc", Tc) + finite_time("delay", delay))
-    T1 = endless_time("T1", T1)
-    if T1 == 0:
-        raise ValueError("T1 is 0: expected a lag")
-    return Min(T1, positive("c", c) * total)
+    total = exact_positive("Tc + delay", exact_not_negative("Tc", Tc) + exact_not_negative("delay", delay))
+    return Min(exact_positive("T1", T1, infinite=True), exact_positive("c", c) * total)
 
 
 def closed_loop_time(model: TransferFunctionLike, guideline: str = "skogestad") -> sympy.Expr | sympy.Interval:
