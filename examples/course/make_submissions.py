@@ -12,7 +12,6 @@ import shutil
 import sys
 from pathlib import Path
 
-from loopbook.exercises.kinds import Design, Expression, Poles, Settings, Word
 from loopbook.grading.assignment import load
 from loopbook.grading.release import answer_call, release
 from loopbook.grading.roster import read_roster
@@ -64,25 +63,9 @@ def insert(notebook, before, source):
 # Answers as code.
 
 
-def spelled(kind, value=None):
-    """An answer of a kind as code: the key, or another value of it."""
-    kind = kind.example if isinstance(kind, Design) else kind
-    kind = kind if value is None else kind.like(value)
-    match kind:
-        case Settings():
-            return f'{{"Kp": {float(kind.key.Kp):.5g}, "Ti": {float(kind.key.Ti):.5g}}}'
-        case Expression():
-            return f'"{kind.expr}"'
-        case Poles():
-            return f"[{', '.join(f'{pole:.5g}' if pole.imag else f'{pole.real:.5g}' for pole in kind.key)}]"
-        case Word():
-            return f'"{kind.key}"'
-    return f"{kind.key:.5g}"
-
-
 def right(question):
     """The right answers to a question, as code."""
-    return {name: spelled(kind) for name, kind in question.key.items()}
+    return {name: kind.as_code() for name, kind in question.key.items()}
 
 
 def mistaken(question):
@@ -90,7 +73,7 @@ def mistaken(question):
     found = {}
     for name, kind in question.key.items():
         values = [value for _, value in question.mistakes[name]]
-        found[name] = spelled(kind, values[0]) if values else f"{spelled(kind)} / 2"
+        found[name] = kind.as_code(kind.read(values[0])[0]) if values else f"{kind.as_code()} / 2"
     return found
 
 
@@ -152,7 +135,7 @@ def other_forms(notebook, ask, assignment):
     first, second, fourth = (ask(number).given for number in "124")
     _, T, tau = ask("1").key.values()
     rational = {name: f'Rational("{first(name)}")' for name in ("rise", "step")}
-    minutes, tau = f'"{T.key / 60:.6g} min"', f"np.float64({spelled(tau)})"
+    minutes, tau = f'"{T.key / 60:.6g} min"', f"np.float64({tau.as_code()})"
     fill(notebook, "1", {"K": f"{rational['rise']} / {rational['step']}", "T": minutes, "tau": tau})
     insert(notebook, "2", f"K, K_p = symbols('K K_p')\nlag = control.tf([{second('K')}], [{second('T')}, 1])")
     H = f'Rational("{second("K")}") / ({second("T")} * s + 1) * exp(-{second("delay")} * s)'

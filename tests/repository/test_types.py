@@ -3,6 +3,7 @@
 import ast
 import builtins
 import functools
+import importlib
 import tomllib
 from pathlib import Path
 
@@ -100,7 +101,9 @@ def missing_in_library(tree):
             place, source = LIBRARY.parent.joinpath(*node.module.split(".")), home(node.module)
             there = {"*", *(defined(parsed(source).body) if source.exists() else ())}
             for alias in node.names:
-                if alias.name not in there and not list(place.glob(f"{alias.name}*")):
+                is_there = alias.name in there or list(place.glob(f"{alias.name}*"))
+                # what a registry puts there
+                if not (is_there or hasattr(importlib.import_module(node.module), alias.name)):
                     yield f"{node.module}.{alias.name}"
 
 

@@ -14,7 +14,7 @@ from loopbook.laplace import evaluate
 from loopbook.quasipolynomials import DelayFraction, read
 from loopbook.stability import Margins, dominant_poles, is_stable, margins
 from loopbook.transfer import transfer_function
-from loopbook.validation import one_of, times_from_zero
+from loopbook.validation import did_you_mean, one_of, times_from_zero
 
 if TYPE_CHECKING:
     import numpy
@@ -44,7 +44,7 @@ class LoopResponse:
 
     def __getitem__(self, name: str) -> numpy.ndarray:
         if name not in self.signals:
-            raise ValueError(f"the response has no signal {name!r}: it has {', '.join(self.signals)}")
+            raise ValueError(f"the response has no signal {name!r}: {did_you_mean(name, self.signals)}")
         return self.signals[name]
 
     def unit(self, name: str) -> str:

@@ -7,11 +7,11 @@ True
 
 from __future__ import annotations
 
-import difflib
 from typing import TYPE_CHECKING
 
 from loopbook.exercises import bank
 from loopbook.exercises.progress import Progress
+from loopbook.validation import did_you_mean
 
 if TYPE_CHECKING:
     from loopbook.exercises.question import Question
@@ -40,7 +40,7 @@ def exercise(number: str, student: str | None = None) -> Question:
         raise ExerciseError(f"the exercise is {number!r}: expected chapter and place in it as text, such as '10.3'")
     known = bank.exercises(_chapter(number.partition(".")[0]))
     if number not in known:
-        raise ExerciseError(f"there is no exercise {number!r}: expected one of {', '.join(known)}")
+        raise ExerciseError(f"there is no exercise {number!r}: {did_you_mean(number, known)}")
     try:
         return known[number].question(student)
     except (TypeError, ValueError) as error:
@@ -55,7 +55,5 @@ def progress(chapter: str | int, student: str | None = None) -> Progress:
 def _chapter(name):
     name = name.lstrip("0")
     if name not in bank.chapters():
-        close = difflib.get_close_matches(name, bank.chapters(), n=1)
-        hint = f"did you mean {close[0]!r}?" if close else f"expected one of {', '.join(bank.chapters())}"
-        raise ExerciseError(f"there is no chapter {name!r} with exercises: {hint}")
+        raise ExerciseError(f"there is no chapter {name!r} with exercises: {did_you_mean(name, bank.chapters())}")
     return name

@@ -27,35 +27,33 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import sympy
 
 from loopbook.exercises.criteria import largest_sensitivity, pi_controller, stable
-from loopbook.exercises.kinds import (
-    Criterion,
-    Design,
-    Expression,
-    Kind,
-    Number,
-    Numbers,
-    Poles,
-    Settings,
-    TimeFunction,
-    TransferFunction,
-    Word,
-    Words,
-)  # fmt: skip
+from loopbook.exercises.kinds import MAKERS, Criterion, Kind, Number
 from loopbook.exercises.parameters import Parameter, between, call, choice, written
 from loopbook.exercises.question import Question
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # editors read no registry
+    from loopbook.exercises.kinds import Design as design  # noqa: F401, N813
+    from loopbook.exercises.kinds import Expression as expression  # noqa: F401, N813
+    from loopbook.exercises.kinds import Number as number  # noqa: F401, N813
+    from loopbook.exercises.kinds import Numbers as numbers  # noqa: F401, N813
+    from loopbook.exercises.kinds import Poles as poles  # noqa: F401, N813
+    from loopbook.exercises.kinds import Settings as settings  # noqa: F401, N813
+    from loopbook.exercises.kinds import TimeFunction as time_function  # noqa: F401, N813
+    from loopbook.exercises.kinds import TransferFunction as transfer_function  # noqa: F401, N813
+    from loopbook.exercises.kinds import Word as word  # noqa: F401, N813
+    from loopbook.exercises.kinds import Words as words  # noqa: F401, N813
     from loopbook.exercises.parameters import Value
 
 __all__ = [
-    "Exercise", "answers", "between", "choice", "criterion", "design", "exercise", "expression", "largest_sensitivity",
-    "number", "numbers", "pi_controller", "poles", "settings", "stable", "time_function", "transfer_function", "word",
-    "words",
+    "Exercise", "answers", "between", "choice", "criterion", "exercise", "largest_sensitivity", "pi_controller",
+    "stable", *MAKERS,
 ]  # fmt: skip
 
-number, numbers, poles, settings = Number, Numbers, Poles, Settings
-expression, transfer_function, time_function = Expression, TransferFunction, TimeFunction
-word, words, criterion, design = Word, Words, Criterion, Design
+if taken := MAKERS.keys() & {*__all__[: -len(MAKERS)]}:
+    raise ValueError(f"{min(taken)} is another function for authors: expected another name for this kind of answers")
+# the kinds of answers, under the names that read well in an exercise
+globals().update(MAKERS)
+criterion = Criterion
 
 MOST_DRAWS = 1000
 

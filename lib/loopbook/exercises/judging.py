@@ -32,6 +32,15 @@ class Verdict:
         return self.status == RIGHT
 
 
+def earned(points: float, right: int, asked: int) -> float:
+    """Return what some right answers bring of the points of an exercise, where each asked quantity brings the same.
+
+    >>> earned(4, right=2, asked=3)
+    2.6666666666666665
+    """
+    return points * right / asked
+
+
 def judge(name: str, kind: Kind, given: object, mistakes: Iterable[tuple[str, Any]] = ()) -> Verdict:
     """Return the `Verdict` on an answer. Whatever the answer is, this raises nothing.
 

@@ -14,6 +14,7 @@ import sympy
 
 from loopbook.exercises import units
 from loopbook.expressions import exact
+from loopbook.validation import did_you_mean, exact_positive
 
 if TYPE_CHECKING:
     from loopbook.types import Number
@@ -64,12 +65,11 @@ def between(
     low, high = exact(low), exact(high)
     if not (low.is_Rational and high.is_Rational and low < high):
         raise ValueError(f"the range is {low} to {high}: expected two numbers, the smaller one first")
-    if step is not None and not exact(step) > 0:
-        raise ValueError(f"the step is {step}: expected a positive number")
+    step = step if step is None else exact_positive("step", step, symbols=False)
     if step is None and low > 0 and high / low > 30:
         values = _over_decades(low, high)
     else:
-        step = exact(step) if step is not None else _pleasant_step(high - low)
+        step = _pleasant_step(high - low) if step is None else step
         first = low if low == 0 else sympy.ceiling(low / step) * step
         values = [first + k * step for k in range(int((high - first) / step) + 1)]
     if len(values) < 2:
@@ -141,5 +141,5 @@ def call(function: Callable[..., Any], values: Mapping[str, Any]) -> Any:
     names = list(inspect.signature(function).parameters)
     unknown = [name for name in names if name not in values]
     if unknown:
-        raise ValueError(f"{unknown[0]!r} is no parameter of the exercise: expected {', '.join(values)}")
+        raise ValueError(f"{unknown[0]!r} is no parameter of the exercise: {did_you_mean(unknown[0], values)}")
     return function(**{name: values[name] for name in names})

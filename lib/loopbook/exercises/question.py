@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import functools
 import re
 from typing import TYPE_CHECKING, Any
@@ -12,6 +11,7 @@ from loopbook.exercises.kinds import NOT_ANSWERED, Kind
 from loopbook.exercises.parameters import call
 from loopbook.exercises.progress import note
 from loopbook.exercises.response import Response
+from loopbook.validation import did_you_mean
 
 if TYPE_CHECKING:
     from loopbook.exercises.authoring import Exercise
@@ -104,11 +104,8 @@ class Question:
             notes.append(f"give the answers by their names: {_listed(names)}")
         for name in given:
             if name not in names:
-                close = difflib.get_close_matches(name, names, n=1)
-                notes.append(
-                    f"{harmless(name)} is not asked: "
-                    + (f"did you mean {close[0]}?" if close else f"asked is {_listed(names)}")
-                )
+                hint = did_you_mean(name, names, otherwise=f"asked is {_listed(names)}")
+                notes.append(f"{harmless(name)} is not asked: {hint}")
         verdicts = tuple(
             judge(name, kind, given[name], self.mistakes[name]) if name in given else Verdict(name, OPEN, NOT_ANSWERED)
             for name, kind in self.key.items()

@@ -7,7 +7,6 @@ and of python-control, are read from what they spell.
 from __future__ import annotations
 
 import ast
-import difflib
 import math
 import re
 import unicodedata
@@ -16,6 +15,8 @@ from collections.abc import Collection, Iterable
 import numpy as np
 import sympy
 from sympy.core.function import AppliedUndef
+
+from loopbook.validation import did_you_mean
 
 LONGEST, MOST_NODES = 4000, 2000
 
@@ -160,8 +161,7 @@ def _check_function(name, letters):
     if name in letters or name in CONSTANTS:
         raise Unreadable(f"{name} stands before a bracket: a product needs its *")
     if name not in known:
-        close = difflib.get_close_matches(name, known, n=1)
-        hint = f"did you mean {close[0]}?" if close else "expected exp, log, sqrt, sin ..."
+        hint = did_you_mean(name, known, otherwise="expected exp, log, sqrt, sin ...")
         raise Unreadable(f"{name!r} is no function that is known here: {hint}")
 
 
@@ -170,8 +170,7 @@ def _check_letter(name, letters):
         return
     if not letters:
         raise Unreadable(f"{name!r} stands for no number: expected a value without letters")
-    close = [letter for letter in letters if letter.casefold().replace("_", "") == name.casefold().replace("_", "")]
-    hint = f"did you mean {close[0]}?" if close else f"expected an expression in {listed(letters)}"
+    hint = did_you_mean(name, letters, otherwise=f"expected an expression in {listed(letters)}")
     raise Unreadable(f"{name!r} is no letter of this answer: {hint}")
 
 

@@ -6,7 +6,7 @@ import html
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
+from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG, earned
 
 if TYPE_CHECKING:
     from loopbook.exercises.judging import Verdict
@@ -48,7 +48,12 @@ class Response:
     @property
     def earned(self) -> float:
         """The points earned."""
-        return self.points * sum(verdict.is_right for verdict in self.verdicts) / len(self.verdicts)
+        return earned(self.points, self._right, len(self.verdicts))
+
+    @property
+    def _right(self):
+        """How many answers are right."""
+        return sum(verdict.is_right for verdict in self.verdicts)
 
     @property
     def _status(self):
@@ -63,12 +68,11 @@ class Response:
 
     @property
     def _sum(self):
-        right = sum(verdict.is_right for verdict in self.verdicts)
         if all(verdict.status == OPEN for verdict in self.verdicts):
             return "not answered yet"
         if self.is_right:
             return "right"
-        return f"{right} of {len(self.verdicts)} right" if len(self.verdicts) > 1 else "not right yet"
+        return f"{self._right} of {len(self.verdicts)} right" if len(self.verdicts) > 1 else "not right yet"
 
     @property
     def data(self) -> dict[str, Any]:

@@ -7,30 +7,25 @@ cannot be read, and nothing about right or wrong. `loopbook.grading.release` wri
 from __future__ import annotations
 
 import contextlib
-import difflib
 import html
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from loopbook.exercises import kinds
 from loopbook.exercises.judging import harmless
-from loopbook.exercises.kinds import NOT_ANSWERED
+from loopbook.exercises.kinds import MAKERS, NOT_ANSWERED
 from loopbook.exercises.reading import Unreadable, shortened
 from loopbook.grading.plain import Plain, plain, unreadable
+from loopbook.validation import did_you_mean
 
 if TYPE_CHECKING:
     from loopbook.exercises.kinds import Kind
 
-__all__ = [
-    "AnswerSheet", "expression", "number", "numbers", "poles", "settings", "time_function", "transfer_function", "word",
-    "words",
-]  # fmt: skip
+#: The forms of answers: each kind without a key, {name of its maker: maker}.
+FORMS: dict[str, Callable[..., Kind]] = {name: kind.without_key for name, kind in MAKERS.items()}
+globals().update(FORMS)
 
-number, numbers, poles = kinds.Number.without_key, kinds.Numbers.without_key, kinds.Poles.without_key
-expression, transfer_function = kinds.Expression.without_key, kinds.TransferFunction.without_key
-time_function, settings = kinds.TimeFunction.without_key, kinds.Settings.without_key
-word, words = kinds.Word.without_key, kinds.Words.without_key
+__all__ = ["AnswerSheet", *FORMS]
 
 #: Where answers go when the notebook is graded: a function of student, exercise and {name: plain data}.
 deliver: Callable[[str, str, dict[str, Plain]], object] | None = None
@@ -95,10 +90,7 @@ class AnswerSheet:
         if sentence := unreadable(data):
             return UNREAD, sentence
         if quantity not in forms:
-            names = {one.casefold(): one for one in forms}
-            close = difflib.get_close_matches(quantity.casefold(), names, n=1)
-            hint = f": did you mean {names[close[0]]}?" if close else ""
-            return UNREAD, f"this is not asked here{hint}" if self._forms else "taken down"
+            return UNREAD, f"this is not asked here: {did_you_mean(quantity, forms)}" if self._forms else "taken down"
         try:
             answer, remark = forms[quantity].read(data)
             says = shortened(harmless(forms[quantity].written(answer)), 200)
@@ -115,7 +107,7 @@ class AnswerSheet:
         if alone:
             notes.insert(0, "Give each answer by its name, as in sheet.answer('1', K=2); others are not taken down.")
         if not is_asked:
-            notes.insert(0, f"This exercise is not asked here: expected {', '.join(map(repr, self._forms))}.")
+            notes.insert(0, f"This exercise is not asked here: {did_you_mean(exercise, self._forms)}")
         return tuple(notes)
 
     def _overview(self):

@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Self
 from loopbook.exercises.authoring import Exercise
 from loopbook.exercises.bank import collected
 from loopbook.grading import GradingError
+from loopbook.validation import did_you_mean
 
 if TYPE_CHECKING:
     from loopbook.exercises.question import Question
@@ -104,7 +105,9 @@ class Assignment:
         Raises GradingError for an exercise that there is not, and where the author's functions fail.
         """
         if number not in self.exercises:
-            raise GradingError(f"there is no exercise {number!r} in {self.name}: expected {', '.join(self.exercises)}")
+            raise GradingError(
+                f"there is no exercise {number!r} in {self.name}: {did_you_mean(number, self.exercises)}"
+            )
         drawn_from = hmac.new(self.secret.encode(), str(student_id).encode(), hashlib.sha256).hexdigest()
         try:
             return self.exercises[number].question(drawn_from)

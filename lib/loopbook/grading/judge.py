@@ -16,7 +16,7 @@ from multiprocessing.connection import wait
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from loopbook.exercises.judging import SECONDS, UNJUDGED
+from loopbook.exercises.judging import RIGHT, SECONDS, UNJUDGED, earned
 from loopbook.grading import GradingError
 
 if TYPE_CHECKING:
@@ -138,12 +138,12 @@ def judged(
             {"name": name, "status": verdict.status, "says": verdict.says, "answer": answer, "key": kind.solution}
         )
     exercise = question.exercise
-    earned = exercise.points * sum(verdict["status"] == "right" for verdict in verdicts) / len(verdicts)
+    right = sum(verdict["status"] == RIGHT for verdict in verdicts)
     return {
         "number": exercise.number,
         "title": exercise.title,
         "points": exercise.points,
-        "earned": earned,
+        "earned": earned(exercise.points, right, len(verdicts)),
         "verdicts": verdicts,
     }
 

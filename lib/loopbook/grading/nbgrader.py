@@ -10,18 +10,14 @@ preprocessors clearsolutions.py and clearhiddentests.py, version 0.9.6.
 
 from __future__ import annotations
 
-import inspect
-import json
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from nbformat import v4
 
-from loopbook.exercises.judging import RIGHT, judge
-from loopbook.exercises.kinds import Design, Expression, Numbers, Poles, Settings
+from loopbook.exercises import judging
 from loopbook.exercises.kinds.kind import literal
-from loopbook.expressions import parse
-from loopbook.grading.plain import plain, unreadable
+from loopbook.grading.plain import unreadable
 from loopbook.grading.release import answer_call, asked, bare, checked, set_up, wrapped
 
 if TYPE_CHECKING:
@@ -73,10 +69,10 @@ def earned(taken: Mapping[str, Any], points: float, **key: Kind) -> float:
     Kp: 'much' is a text that is no number: expected a number
     2.0
     """
-    verdicts = [judge(name, kind, taken.get(name)) for name, kind in key.items()]
+    verdicts = [judging.judge(name, kind, taken.get(name)) for name, kind in key.items()]
     for one in verdicts:
         print(f"{one.name}: {unreadable(taken.get(one.name)) or one.says}")
-    return points * sum(verdict.status == RIGHT for verdict in verdicts) / len(verdicts)
+    return judging.earned(points, sum(verdict.is_right for verdict in verdicts), len(verdicts))
 
 
 def _question(assignment, student_id, number):
@@ -88,17 +84,17 @@ def _question(assignment, student_id, number):
 def _cells(grade_id, number, question):
     """The cells of an exercise, each with its marks."""
     yield v4.new_markdown_cell(question.statement), _locked(f"{grade_id}-statement")
-    calls = {name: spelled_out(kind) for name, kind in question.key.items()}
+    calls = {name: kind.making and f"authoring.{kind.making}" for name, kind in question.key.items()}
     judged = {name: kind for name, kind in question.key.items() if calls[name]}
     others = {name: kind for name, kind in question.key.items() if not calls[name]}
     points = question.exercise.points
     if judged:
-        part = points * len(judged) / len(question.key)
+        part = judging.earned(points, len(judged), len(question.key))
         yield v4.new_code_cell(_solved(number, judged)), _marks(grade_id, solution=True)
         test = v4.new_code_cell(_hidden_tests(number, {name: calls[name] for name in judged}, part))
         yield test, _marks(f"{grade_id}-test", grade=True, locked=True, points=part)
     if others:
-        part = points * len(others) / len(question.key)
+        part = judging.earned(points, len(others), len(question.key))
         by_hand = _marks(f"{grade_id}-by-hand", grade=True, solution=True, points=part)
         yield v4.new_code_cell(_solved(number, others)), by_hand
 
@@ -118,62 +114,15 @@ def _marks(grade_id, grade=False, solution=False, locked=False, points=None):
 def _solved(number, key):
     """The cell in which quantities are answered, with the solution between nbgrader's marks."""
     lines = [" = ".join([*key, "..."]), "### BEGIN SOLUTION"]
-    lines += [_assignment(name, kind) for name, kind in key.items()]
+    lines += [wrapped(f"{name} = {kind.as_code()}") for name, kind in key.items()]
     lines += ["### END SOLUTION", answer_call(number, {name: name for name in key})]
     return "\n".join(lines)
 
 
-def _assignment(name, kind):
-    """The line that gives a quantity the value of its key, as a student might write it."""
-    example = kind.example if isinstance(kind, Design) else kind
-    value = plain(example.expr if isinstance(example, Expression) else example.key)
-    return wrapped(f"{name} = {json.dumps(value, ensure_ascii=False)}")
-
-
 def _hidden_tests(number, calls, points):
-    code = " ".join(calls.values())
     lines = [f"# The answers to exercise {number} are judged here.", "### BEGIN HIDDEN TESTS"]
     # by its module: the student may have a number or poles of another meaning
     lines.append("from loopbook.exercises import authoring")
-    lines += ["from loopbook.expressions import parse"] * ("(parse(" in code)
     lines.append("from loopbook.grading.nbgrader import earned")
-    lines += ["from loopbook.pid import PID"] * ("(PID(" in code)
     arguments = [f"sheet.taken({literal(number)})", f"points={points!r}", *(f"{n}={call}" for n, call in calls.items())]
     return "\n".join([*lines, wrapped(f"earned({', '.join(arguments)})"), "### END HIDDEN TESTS"])
-
-
-def spelled_out(kind: Kind) -> str:
-    """Return the call that makes a kind with its key, as code; an empty text where there is none.
-
-    >>> from loopbook.exercises.authoring import number
-    >>> print(spelled_out(number(2.5, "s", "the integral time")))
-    authoring.number(2.5, unit="s", what="the integral time")
-    """
-    key = "" if isinstance(kind, Design) else _key(kind)
-    if not key:
-        return ""
-    _, *others = inspect.signature(type(kind)).parameters.values()
-    said = {one.name: getattr(kind, one.name) for one in others}
-    if isinstance(kind, Expression) and "letters" in said:
-        said["letters"] = " ".join(kind.letters)
-    named = [f"{one.name}={literal(said[one.name])}" for one in others if said[one.name] != one.default]
-    return f"authoring.{kind.maker}({', '.join([key, *named])})"
-
-
-def _key(kind):
-    """The key of a kind as code; an empty text for a formula that `parse` does not read."""
-    match kind:
-        case Expression():
-            text = str(kind.expr)
-            try:
-                is_read = kind.is_value(kind.key, parse(text))
-            except ValueError:
-                is_read = False
-            return f"parse({literal(text)})" if is_read else ""
-        case Settings():
-            parts = {part: getattr(kind.key, part) for part in ("Kp", "Ti", "Td", "Tf")}
-            numbers = [f"{part}={float(value)!r}" for part, value in parts.items() if value.is_finite]
-            return f"PID({', '.join([*numbers, f'form={literal(kind.key.form)}'])})"
-        case Poles() | Numbers():
-            return literal(kind.key.tolist())
-    return literal(kind.key)

@@ -20,6 +20,7 @@ import importlib.resources
 
 from loopbook.ledger.compare import Disagreement, LedgerError
 from loopbook.ledger.source import Entry, Given, Result, Source
+from loopbook.validation import did_you_mean
 
 __all__ = ["Disagreement", "Entry", "Given", "LedgerError", "Result", "Source", "sources"]
 
@@ -42,7 +43,7 @@ def _names():
 def _load(name):
     file = importlib.resources.files(__name__).joinpath(f"{name}.toml")
     if not file.is_file():
-        raise AttributeError(f"the ledger has no source {name!r}: expected one of {', '.join(_names())}")
+        raise AttributeError(f"the ledger has no source {name!r}: {did_you_mean(name, _names())}")
     return Source.read(name, file.read_bytes())
 
 

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import decimal
-import difflib
 import fractions
 import keyword
 import math
 import numbers
 import re
-from collections.abc import Sequence
 from typing import TypeAlias
 
 import sympy
@@ -43,16 +41,6 @@ class Disagreement(LedgerError):  # noqa: N818 - it reads as what it is: "Disagr
 def in_one_line(text: str) -> str:
     """The same text in one line."""
     return " ".join(text.split())
-
-
-def suggestion(word: object, known: Sequence[str]) -> str:
-    """A clause that names the closest known word, or all of them.
-
-    >>> suggestion("Kpp", ["Ti", "Kp"])
-    "did you mean 'Kp'?"
-    """
-    close = difflib.get_close_matches(str(word), known, n=1)
-    return f"did you mean {close[0]!r}?" if close else f"expected one of {', '.join(known) or 'none'}"
 
 
 def half_unit(printed: str) -> fractions.Fraction:

@@ -27,9 +27,9 @@ from loopbook.ledger.compare import (
     in_one_line,
     parse_formula,
     spelled,
-    suggestion,
 )
 from loopbook.ledger.report import Report, Verdict, described
+from loopbook.validation import did_you_mean
 
 if TYPE_CHECKING:
     from loopbook.ledger.compare import Formula
@@ -69,7 +69,7 @@ class Result:
             raise LedgerError(f"{where}: a result is {data!r}, expected a table like {{ name = ..., printed = ... }}")
         for key, value in data.items():
             if key not in known:
-                raise LedgerError(f"{where}: a result has the unknown key {key!r}, {suggestion(key, known)}")
+                raise LedgerError(f"{where}: a result has the unknown key {key!r}, {did_you_mean(key, known)}")
             if not isinstance(value, str) or not value.strip():
                 raise LedgerError(f"{where}: {key} is {value!r}, expected text in quotes (digits carry the tolerance)")
         for key in ("name", "printed"):
@@ -83,9 +83,9 @@ class Result:
         if not self.name.isidentifier() or keyword.iskeyword(self.name):
             raise LedgerError(f"{where}: expected a name that can be an argument in Python, as Kp or y_s")
         if self.kind not in KINDS:
-            raise LedgerError(f"{where}: the kind is {self.kind!r}, {suggestion(self.kind, KINDS)}")
+            raise LedgerError(f"{where}: the kind is {self.kind!r}, {did_you_mean(self.kind, KINDS)}")
         if self.status not in STATUSES:
-            raise LedgerError(f"{where}: the status is {self.status!r}, {suggestion(self.status, list(STATUSES))}")
+            raise LedgerError(f"{where}: the status is {self.status!r}, {did_you_mean(self.status, STATUSES)}")
         needed = set(STATUSES[self.status]) - ({"within"} if self.kind == "claim" else set())  # a word has no margin
         if self.status == "unreproduced" and not self.computed:  # what it takes is not printed: nothing to compare
             needed.remove("computed")
@@ -200,7 +200,7 @@ class Entry:
         known = ["title", "chapter", "given", "result"]
         for key in data:
             if key not in known:
-                raise LedgerError(f"{where}: the entry has the unknown key {key!r}, {suggestion(key, known)}")
+                raise LedgerError(f"{where}: the entry has the unknown key {key!r}, {did_you_mean(key, known)}")
         for key in ("title", "chapter"):
             if not isinstance(data.get(key), str) or not data[key].strip():
                 raise LedgerError(f"{where}: {key} is {data.get(key)!r}, expected text")
@@ -227,7 +227,7 @@ class Entry:
         for name in names:
             if not isinstance(name, str) or name not in self.inputs:
                 where = f"{self.source}, {self.name}"
-                raise LedgerError(f"{where}: {name!r} is not given, {suggestion(name, list(self.inputs))}")
+                raise LedgerError(f"{where}: {name!r} is not given, {did_you_mean(name, self.inputs)}")
         values = tuple(self.inputs[name].value for name in names)
         return values[0] if len(values) == 1 else values
 
@@ -240,7 +240,7 @@ class Entry:
         for name in names:
             if name not in rows:
                 where = f"{self.source}, {self.name}"
-                raise LedgerError(f"{where}: {name!r} is no measured number, {suggestion(name, list(rows))}")
+                raise LedgerError(f"{where}: {name!r} is no measured number, {did_you_mean(name, rows)}")
         values = tuple(sympy.Rational(rows[name]) for name in names)
         return values[0] if len(values) == 1 else values
 
@@ -260,7 +260,7 @@ class Entry:
             raise LedgerError(f"{where}: the book prints no result here, nothing to check")
         for name in values:
             if name not in expected:
-                raise LedgerError(f"{where}: {name!r} is not a result to check, {suggestion(name, expected)}")
+                raise LedgerError(f"{where}: {name!r} is not a result to check, {did_you_mean(name, expected)}")
         if missing := [name for name in expected if name not in values]:
             raise LedgerError(f"{where}: nothing was given for {', '.join(missing)}, expected {', '.join(expected)}")
         verdicts = []
@@ -318,7 +318,7 @@ class Source:
 
     def __getitem__(self, name: str) -> Entry:
         if not isinstance(name, str) or name not in self.entries:
-            raise LedgerError(f"{self.name} has no entry {name!r}, {suggestion(name, list(self.entries))}")
+            raise LedgerError(f"{self.name} has no entry {name!r}, {did_you_mean(name, self.entries)}")
         return self.entries[name]
 
     def __iter__(self) -> Iterator[Entry]:

@@ -1,13 +1,23 @@
-"""The kinds of asked quantities: how an answer is read, compared with the key, and responded to."""
+"""The kinds of asked quantities: how an answer is read, compared with the key, and responded to.
+
+A kind is a class in a module of this package and nothing else: `MAKERS` has all of them by the names that authors use.
+"""
+
+import importlib
+import pkgutil
 
 from loopbook.exercises.kinds.design import Criterion, Design
 from loopbook.exercises.kinds.formula import Expression, TimeFunction, TransferFunction
-from loopbook.exercises.kinds.kind import NOT_ANSWERED, Kind
+from loopbook.exercises.kinds.kind import MAKERS, NOT_ANSWERED, Kind
 from loopbook.exercises.kinds.numeric import Number, Numbers, Poles
 from loopbook.exercises.kinds.settings import Settings
 from loopbook.exercises.kinds.words import Word, Words
 
+for _module in pkgutil.iter_modules(__path__):  # a kind in a module of its own is found by itself
+    importlib.import_module(f"{__name__}.{_module.name}")
+globals().update({kind.__name__: kind for kind in MAKERS.values()})
+
 __all__ = [
-    "NOT_ANSWERED", "Criterion", "Design", "Expression", "Kind", "Number", "Numbers", "Poles", "Settings",
+    "MAKERS", "NOT_ANSWERED", "Criterion", "Design", "Expression", "Kind", "Number", "Numbers", "Poles", "Settings",
     "TimeFunction", "TransferFunction", "Word", "Words",
 ]  # fmt: skip

@@ -102,6 +102,8 @@ class Design(Kind):
         return self.example.expected
 
     accuracy = ""
+    FORM = ()
+    making = ""  # the criteria are functions
 
     @property
     def asking(self) -> str:
@@ -111,6 +113,10 @@ class Design(Kind):
     def read(self, given: object) -> tuple[Any, str]:
         """Return the answer as the quantity's kind reads it."""
         return self.example.read(given)
+
+    def as_code(self, answer: Any = None) -> str:
+        """As the quantity's kind."""
+        return self.example.as_code(answer)
 
     def written(self, answer: Any) -> str:
         """As the quantity's kind."""

@@ -15,7 +15,7 @@ from loopbook.exercises.kinds.kind import Kind, alone, answered, literal, with_u
 from loopbook.exercises.kinds.numeric import in_unit
 from loopbook.exercises.kinds.settings import Settings
 from loopbook.exercises.reading import Unreadable, letters_in, listed
-from loopbook.expressions import exact, s, t
+from loopbook.expressions import exact, parse, s, t
 
 if TYPE_CHECKING:
     from loopbook.types import Number
@@ -25,6 +25,7 @@ class Expression(Kind):
     """An expression in letters, equal in any form; its numbers may be rounded.
 
     Arguments:
+        key: an expression, or a text that spells one.
         letters: that an answer may have, all of the key's among them; a notebook that is handed out tells a wrong one.
             Those of the key, if not given: what letters there are is then a part of the answer.
     Raises:
@@ -36,9 +37,9 @@ class Expression(Kind):
     """
 
     def __init__(
-        self, key: Number, what: str = "the expression", letters: str = "", within: float = 0.01, unit: str = ""
+        self, key: Number | str, what: str = "the expression", letters: str = "", within: float = 0.01, unit: str = ""
     ):
-        self.expr = exact(key)
+        self.expr = _expression(key)
         names, self._told = {symbol.name for symbol in self.expr.free_symbols}, letters
         self.letters = sorted(self.always.union(letters.split() or names))
         if beyond := sorted(names.difference(self.letters)):
@@ -66,10 +67,29 @@ class Expression(Kind):
         told = f"{'' if call.endswith('(') else ', '}letters={literal(self._told)}" if self._told else ""
         return f"{call}{told})"
 
+    @property
+    def making(self) -> str:
+        """The call that makes this kind with its key, a text; empty for a formula that `parse` does not read."""
+        try:
+            is_read = self.is_value(self.key, str(self.expr))
+        except ValueError:
+            is_read = False
+        return super().making if is_read else ""
+
+    def _argument(self, name):
+        return " ".join(self.letters) if name == "letters" else super()._argument(name)
+
+    def as_code(self, answer: Any = None) -> str:
+        """The text of the formula. Raises ValueError for a function of the reader's."""
+        formula = self.key if answer is None else answer
+        if not isinstance(formula, Formula):
+            raise ValueError("the answer is a function of the reader's: expected an expression")
+        return literal(formula.text)
+
     def like(self, value: Any) -> Self:
         """The same quantity with another key."""
         other = super().like(value)
-        other.expr = None if isinstance(value, Formula) else exact(value)
+        other.expr = None if isinstance(value, Formula) else _expression(value)
         return other
 
     @property
@@ -129,6 +149,11 @@ class Expression(Kind):
                 yield f"those would be the values {in_unit(unit)}; asked: {self.asked}", self.expr * exact(converted(1))
 
 
+def _expression(key):
+    """The key in SymPy; of a text, what it spells."""
+    return parse(key) if isinstance(key, str) else exact(key)
+
+
 class TransferFunction(Expression):
     """A transfer function in s, with or without letters; dead time is exact.
 
@@ -140,7 +165,12 @@ class TransferFunction(Expression):
     always = frozenset({"s"})
 
     def __init__(
-        self, key: Number, what: str = "the transfer function", letters: str = "", within: float = 0.01, unit: str = ""
+        self,
+        key: Number | str,
+        what: str = "the transfer function",
+        letters: str = "",
+        within: float = 0.01,
+        unit: str = "",
     ):
         super().__init__(key, what, letters, within, unit)
 
@@ -192,7 +222,7 @@ class TimeFunction(Expression):
     until: float | None = None
 
     def __init__(
-        self, key: Number, until: Number, unit: str = "", what: str = "the function of time", within: float = 0.01
+        self, key: Number | str, until: Number, unit: str = "", what: str = "the function of time", within: float = 0.01
     ):
         self.until = float(until)
         super().__init__(key, what, "", within, unit)

@@ -7,22 +7,34 @@ import itertools
 import json
 import re
 from collections.abc import Iterable, Iterator, MappingView
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
+import numpy as np
 import sympy
 from sympy.core.function import AppliedUndef
 
 from loopbook.exercises import units
 from loopbook.exercises.reading import Unreadable
+from loopbook.validation import did_you_mean
 
 #: What is left of an answer cell that nobody has filled in.
 NOT_ANSWERED = "not answered yet"
+#: Smaller whole numbers are written without a decimal point.
+EXACT = 10**15
 #: Of what gives one value after another, so many are read.
 MOST_VALUES = 10_000
 
 
+#: The kinds of answers by the names with which authors make them: {"number": `Number`, ...}.
+MAKERS: dict[str, type[Kind]] = {}
+
+
 class Kind:
     """An asked quantity: its key, and how an answer is read, compared and responded to.
+
+    A class of its own is a kind of answers: it registers itself in `MAKERS`, from where authors, the answer sheet and
+    the exports have it. It reads answers, says whether one agrees with the key, and names in `FORM` what of its
+    arguments says how an answer looks.
 
     Arguments:
         key: the right answer.
@@ -31,6 +43,8 @@ class Kind:
         within: how far a number may be off, as a fraction of it.
     """
 
+    #: The name of the function for authors that makes such a kind, as "transfer_function".
+    maker: ClassVar[str]
     #: How an answer looks, for one that cannot be judged.
     expected: str = "an answer"
     #: The arguments that say how an answer looks. None of them comes from the key.
@@ -38,6 +52,22 @@ class Kind:
     key: Any
     within: float
     key, unit, what = None, "", "the value"
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        for name, does in (("read", "returns an answer as it is compared"), ("agrees", "says whether one is right")):
+            if getattr(cls, name) is getattr(Kind, name):
+                raise ValueError(f"the kind {cls.__name__} has no {name}: expected a method that {does}")
+        parameters = list(inspect.signature(cls).parameters)
+        for name in cls.FORM:
+            if name not in parameters[1:]:
+                known = did_you_mean(name, parameters[1:])
+                raise ValueError(f"FORM of the kind {cls.__name__} names {name!r}, which is no argument of it: {known}")
+        cls.maker = re.sub("(?<!^)(?=[A-Z])", "_", cls.__name__).lower()
+        if cls.maker in MAKERS:
+            other = MAKERS[cls.maker].__module__
+            raise ValueError(f"the kind {cls.__name__} is in {other} already: expected another name")
+        MAKERS[cls.maker] = cls
 
     def __init__(self, key: object, unit: str = "", what: str = "the value", within: float = 0.01):
         if not units.is_unit(unit):
@@ -58,7 +88,7 @@ class Kind:
         """
         given = dict(zip(cls.FORM, parts, strict=False)) | named
         if unknown := [name for name in named if name not in cls.FORM] or parts[len(cls.FORM) :]:
-            raise ValueError(f"{unknown[0]!r} says nothing about a form: expected {', '.join(cls.FORM)}")
+            raise ValueError(f"{unknown[0]!r} says nothing about a form: {did_you_mean(unknown[0], cls.FORM)}")
         kind = object.__new__(cls)
         kind.__dict__ |= cls._usual_form() | given
         return kind
@@ -67,11 +97,6 @@ class Kind:
     def _usual_form(cls):
         parameters = inspect.signature(cls).parameters
         return {name: parameters[name].default for name in cls.FORM}
-
-    @property
-    def maker(self) -> str:
-        """The name of the function for authors that makes such a kind, as "transfer_function"."""
-        return re.sub("(?<!^)(?=[A-Z])", "_", type(self).__name__).lower()
 
     @property
     def asking(self) -> str:
@@ -85,6 +110,34 @@ class Kind:
         said = {name: getattr(self, name) for name in self.FORM if getattr(self, name) != usual[name]}
         named = [f"{name}={literal(value)}" if name != self.FORM[0] else literal(value) for name, value in said.items()]
         return f"{self.maker}({', '.join(named)})"
+
+    @property
+    def making(self) -> str:
+        """The call, as code, that makes this kind with its key; empty where no code says it.
+
+        >>> from loopbook.exercises.kinds import Number
+        >>> Number(2.5, "s", "the integral time").making
+        'number(2.5, unit="s", what="the integral time")'
+        """
+        _, *others = inspect.signature(type(self)).parameters.values()
+        said = {one.name: self._argument(one.name) for one in others}
+        named = [f"{one.name}={literal(said[one.name])}" for one in others if said[one.name] != one.default]
+        return f"{self.maker}({', '.join([self.as_code(), *named])})"
+
+    def _argument(self, name):
+        """What the constructor was given under a name."""
+        return getattr(self, name)
+
+    def as_code(self, answer: Any = None) -> str:
+        """Return an answer, as it was read, or the key as code that a reader can type, and that reads back the same.
+
+        Raises ValueError for an answer that no code says.
+
+        >>> from loopbook.exercises.kinds import Poles
+        >>> Poles([-1, -2 + 3j]).as_code()
+        '[-1, (-2+3j)]'
+        """
+        return literal(self.key if answer is None else answer)
 
     def like(self, value: Any) -> Self:
         """The same quantity with another key, as a mistake has one."""
@@ -141,14 +194,25 @@ class Kind:
 
 
 def literal(value: object) -> str:
-    """Return plain data as code.
+    """Return plain data as code: a text, a number, a truth value, lists, arrays and dictionaries of them.
 
-    >>> literal(("heating", "cooling")), literal(True)
-    ('["heating", "cooling"]', 'True')
+    >>> literal(("heating", "cooling")), literal({"Kp": 2.0, "Ti": 0.1}), literal(True)
+    ('["heating", "cooling"]', '{"Kp": 2, "Ti": 0.1}', 'True')
     """
-    if isinstance(value, list | tuple):
-        return f"[{', '.join(map(literal, value))}]"
-    return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)
+    match value:
+        case np.ndarray() | np.generic():
+            return literal(value.tolist())
+        case list() | tuple():
+            return f"[{', '.join(map(literal, value))}]"
+        case dict():
+            return f"{{{', '.join(f'{literal(name)}: {literal(one)}' for name, one in value.items())}}}"
+        case str():
+            return json.dumps(value, ensure_ascii=False)
+        case complex(imag=0):
+            return literal(value.real)
+        case float() if value.is_integer() and abs(value) < EXACT:
+            return repr(int(value))
+    return repr(value)
 
 
 def with_unit(text: str, unit: str) -> str:

@@ -9,12 +9,14 @@ from typing import Any
 import sympy
 
 from loopbook.exercises import units
-from loopbook.exercises.kinds.kind import Kind, alone, answered, in_a_row, listed_in, with_unit
+from loopbook.exercises.kinds.kind import Kind, alone, answered, in_a_row, listed_in, literal, with_unit
 from loopbook.exercises.kinds.numeric import in_digits, near, one_number
 from loopbook.exercises.reading import Unreadable, listed
 from loopbook.pid import PID
+from loopbook.validation import one_of
 
 NAMES = ("Kp", "Ti", "Td", "Tf")
+_USUAL = {"Ti": sympy.oo, "Td": 0, "Tf": 0}  # what need not be said
 
 
 class Settings(Kind):
@@ -41,8 +43,7 @@ class Settings(Kind):
         form: str = "any",
         within: float = 0.01,
     ):
-        if form not in ("any", "parallel", "serial"):
-            raise ValueError(f"form is {form!r}: expected 'any', 'parallel' or 'serial'")
+        one_of("form", form, ("any", "parallel", "serial"))
         if not (units.is_unit(gain) and units.is_unit(time)):
             raise ValueError(f"the units are {gain!r} and {time!r}: expected such as '%/K' and 's'")
         self.gain, self.time, self.form = gain, time, form
@@ -71,7 +72,7 @@ class Settings(Kind):
             row = listed_in(given) if isinstance(given, str) else in_a_row(alone(given))
             if row is not None and 2 <= len(row) <= 4:
                 given = dict(zip(NAMES, row, strict=False))
-            form = "serial" if self.form == "serial" else "parallel"
+            form = self._understood
             if isinstance(given, dict) and "form" in given:
                 given = dict(given)
                 form = given.pop("form")
@@ -86,7 +87,7 @@ class Settings(Kind):
                     else "this is no controller"
                 )
                 raise Unreadable(f"{why}: expected {self.expected}")
-            parts = {"Ti": sympy.oo, "Td": 0, "Tf": 0} | given
+            parts = _USUAL | given
         remarks, numbers = set(), {}
         for name, value in parts.items():
             value = alone(value)
@@ -103,13 +104,17 @@ class Settings(Kind):
         except ValueError as error:
             raise Unreadable(str(error)) from None
 
+    def as_code(self, answer: PID | None = None) -> str:
+        """The settings in a dictionary, with the form where it is not understood."""
+        pid = self.key if answer is None else answer
+        form = {} if pid.form == self._understood else {"form": pid.form}
+        return literal({name: float(value) for name, value in _said(pid).items()} | form)
+
     def written(self, answer: PID) -> str:
         """The settings with their units, and the form where there are two."""
-        usual = {"Ti": sympy.oo, "Td": 0, "Tf": 0}
         parts = [
-            f"{name} = {with_unit(in_digits(getattr(answer, name)), self.gain if name == 'Kp' else self.time)}"
-            for name in NAMES
-            if getattr(answer, name) != usual.get(name)
+            f"{name} = {with_unit(in_digits(value), self.gain if name == 'Kp' else self.time)}"
+            for name, value in _said(answer).items()
         ]
         return ", ".join(parts) + ("" if answer.Td == answer.Tf == 0 else f", {answer.form} form")
 
@@ -131,6 +136,11 @@ class Settings(Kind):
         for unit in units.neighbours(self.time):
             factor = units.convert(1, unit, to=self.time)
             yield unit, PID(answer.Kp, factor * answer.Ti, factor * answer.Td, factor * answer.Tf, answer.form)
+
+    @property
+    def _understood(self):
+        """The form of settings that do not say it."""
+        return "serial" if self.form == "serial" else "parallel"
 
     def _asked_form(self, answer):
         # without a derivative term, both forms are one
@@ -192,6 +202,11 @@ class Settings(Kind):
         good = [name for name in NAMES if right[name] and getattr(key, name) not in (0, sympy.oo)]
         off = [name for name in NAMES if not right[name]]
         return f"{_are(good)} right, {_are(off)} not" if good else ""
+
+
+def _said(pid):
+    """The settings of a controller that are not what they are by themselves, {name: value}."""
+    return {name: value for name in NAMES if (value := getattr(pid, name)) != _USUAL.get(name)}
 
 
 def _near(value, key, within):
