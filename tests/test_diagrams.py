@@ -302,7 +302,7 @@ def test_the_table_of_elementary_blocks_names_each_with_its_formula():
         (1 / (T * s + 1), r"$\dfrac{1}{T s + 1}$"),
         (1 / (s**2 + 2 * a * s + 1), r"$\dfrac{1}{s^{2} + 2 a s + 1}$"),
         (1 / (1 + H1), r"$\dfrac{1}{1 + H_{1}{\left(s \right)}}$"),
-        (sympy.exp(-tau * s), r"$e^{- \tau s}$"),
+        (sympy.exp(-tau * s), r"$e^{-\tau s}$"),
         (2, "$2$"),
     ],
 )

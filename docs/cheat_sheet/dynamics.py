@@ -5,7 +5,6 @@ import functools
 import sympy
 from sympy import cos, exp, sin, sqrt, symbols
 
-from cheat_sheet.formulas import latex
 from cheat_sheet.letters import (
     G0,
     T0,
@@ -46,6 +45,7 @@ from loopbook import s, t
 from loopbook.approximation import half_rule, pade, taylor
 from loopbook.ise import residue_method
 from loopbook.laplace import transform
+from loopbook.latex import latex
 from loopbook.oscillation import Oscillation
 from loopbook.pid import PID
 from loopbook.transfer import (

@@ -5,7 +5,6 @@ import functools
 import sympy
 from sympy import symbols
 
-from cheat_sheet.formulas import latex
 from cheat_sheet.letters import (
     T1,
     T2,
@@ -27,6 +26,7 @@ from cheat_sheet.stated import (
     RELAY,
 )
 from loopbook.approximation import SOPDT, pade
+from loopbook.latex import latex
 from loopbook.synthesis import IMC_TABLE, imc
 from loopbook.tuning import RULES, simc
 

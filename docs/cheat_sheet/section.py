@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import sympy
 
-from cheat_sheet.formulas import latex
+from loopbook.latex import latex
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from loopbook.approximation import SOPDT, pade, taylor, zero_rule
 from loopbook.deadtime import System
 from loopbook.identification import relay_experiment
 from loopbook.ise import ise, pi_first_order
+from loopbook.latex import latex
 from loopbook.pid import PID
 from loopbook.stability import margins
 from loopbook.synthesis import IMC_TABLE, imc
@@ -26,7 +27,6 @@ ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "docs"))
 
 from cheat_sheet import contents, dynamics, layout, letters, rules, stated  # noqa: E402 - of docs/, from now on
-from cheat_sheet.formulas import latex  # noqa: E402
 
 VALUES = {
     letters.K: 2, letters.T: 5, letters.T1: 7, letters.T2: 3, letters.T3: 1, letters.theta: 2, letters.Tc: 4,

@@ -103,7 +103,7 @@ def test_importing_the_library_is_quick():
 ORDER = [
     ["types"],
     ["expressions"],
-    ["validation"],
+    ["latex", "validation"],
     ["laplace"],
     ["transfer"],
     ["oscillation"],

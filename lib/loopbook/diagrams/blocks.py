@@ -12,10 +12,9 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
 import sympy
-from sympy.printing.latex import LatexPrinter
 
 from loopbook.diagrams.drawing import FONT_SIZE, RADIUS, Drawing, mathematics, signal_name, text_size, wording
-from loopbook.expressions import s
+from loopbook.latex import latex
 
 if TYPE_CHECKING:
     from loopbook.figures import Picture
@@ -590,23 +589,5 @@ def _part(item):
         return item
     if isinstance(item, (sympy.Expr, numbers.Real)):
         item = sympy.sympify(item)
-        return _Block(mathematics(_AsBooksDo().doprint(item)), str(item))
+        return _Block(mathematics(latex(item)), str(item))
     raise ValueError(f"{item!r} is no part of a block diagram: expected a signal's name, an expression or a part")
-
-
-class _AsBooksDo(LatexPrinter):
-    """LaTeX in the order of the books: descending powers of s (s - a, not -a + s), numbers first among the rest
-    (1 + G, not G + 1), and s behind its coefficient (tau s, not s tau)."""
-
-    _last = sympy.Symbol("zz")  # stands for s, and comes after every other letter
-
-    def doprint(self, expr):
-        self._settings["symbol_names"] = {self._last: "s"}
-        return super().doprint(expr.xreplace({s: self._last}))
-
-    def _as_ordered_terms(self, expr, order=None):
-        terms = super()._as_ordered_terms(expr, order)
-        powers = {term: term.as_coeff_exponent(self._last)[1] for term in terms}
-        if not all(power.is_number for power in powers.values()):
-            return terms
-        return sorted(terms, key=lambda term: (-powers[term], not term.is_number))
