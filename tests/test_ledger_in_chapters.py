@@ -500,12 +500,11 @@ def test_the_command_prints_every_source_and_writes_errata(tmp_path):
     assert (done.returncode, done.stderr) == (0, "")
     totals = errata.totals(sources())
     head, *lines = [line.split() for line in done.stdout.splitlines() if line.split()]
-    assert head == [*totals, "all"]
+    assert head == ["source", *STATUSES, "all"]
     numbers = {line[0]: [int(number) for number in line[1:]] for line in lines if line[-1].isdigit()}
-    for status in STATUSES:
-        each = [count[status] for count in totals.values()]
-        assert numbers[status] == [*each, sum(each)]
-    assert numbers["all"] == [sum(column) for column in zip(*(numbers[status] for status in STATUSES), strict=True)]
+    for source, count in totals.items():
+        assert numbers[source] == [*count.values(), sum(count.values())]
+    assert numbers["all"] == [sum(column) for column in zip(*(numbers[source] for source in totals), strict=True)]
     assert (tmp_path / "ERRATA.md").read_bytes() == (ROOT / "ERRATA.md").read_bytes().replace(b"\r\n", b"\n")
 
 

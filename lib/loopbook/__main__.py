@@ -73,16 +73,15 @@ def ledger(
     except LedgerError as error:
         fail(str(error))
     counts = totals(books)
-    table = Table("", box=box.SIMPLE_HEAD, pad_edge=False)
-    for name in (*counts, "all"):
+    table = Table("source", box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
+    for name in (*STATUSES, "all"):
         table.add_column(name, justify="right")
-    for status in STATUSES:
-        row = [count[status] for count in counts.values()]
-        table.add_row(status, *map(str, row), str(sum(row)))
+    for name, count in counts.items():
+        table.add_row(name, *map(str, count.values()), str(sum(count.values())))
     table.add_section()
-    sums = [sum(count.values()) for count in counts.values()]
+    sums = [sum(count[status] for count in counts.values()) for status in STATUSES]
     table.add_row("all", *map(str, sums), str(sum(sums)))
-    console.print(table)
+    Console(highlight=False, width=1000).print(table)  # no name is cut where the terminal is narrow
     try:
         errata.write_text(page(books), encoding="utf-8", newline="\n")
     except OSError as error:
