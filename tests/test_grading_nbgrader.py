@@ -1,0 +1,59 @@
+"""The source notebook for nbgrader."""
+
+import ast
+
+import nbformat
+import pytest
+
+import assignments
+from loopbook.exercises import bank, kinds
+from loopbook.grading import nbgrader
+
+
+@pytest.fixture
+def tuning():
+    return assignments.tuning()
+
+
+def test_a_source_notebook_for_nbgrader(tuning):
+    made = nbgrader.source(tuning)
+    nbformat.validate(made)
+    marks = [cell.metadata.nbgrader for cell in made.cells]
+    assert len({one.grade_id for one in marks}) == len(marks)
+    for cell, one in zip(made.cells, marks, strict=True):
+        assert set(one) - {"points"} == {"schema_version", "grade", "solution", "locked", "task", "grade_id"}
+        assert ("points" in one) == one.grade
+        assert one.schema_version == 3
+        assert cell.cell_type == "code" or (one.locked and not one.grade and not one.solution)
+    assert sum(one.get("points", 0) for one in marks) == tuning.points
+    by_hand = [one for one in marks if one.grade and one.solution]
+    assert [(one.grade_id, one.points) for one in by_hand] == [("exercise-2-by-hand", 1)]
+
+
+def test_the_hidden_tests_give_all_points_to_the_solution_and_none_to_an_empty_sheet(tuning, capsys):
+    for solved in (True, False):
+        names, points = {}, 0
+        for cell in nbgrader.source(tuning, "s1001").cells:
+            marks = cell.metadata.nbgrader
+            source = cell.source
+            if marks.solution and not solved:
+                begin, end = source.index("### BEGIN"), source.index("### END")
+                source = source[:begin] + source[end:]
+            if cell.cell_type == "code":
+                *body, last = ast.parse(source).body
+                exec(compile(ast.Module(body, []), "cell", "exec"), names)
+                is_value = isinstance(last, ast.Expr)
+                value = eval(compile(ast.Expression(last.value), "cell", "eval"), names) if is_value else None
+                points += value if marks.grade and not marks.solution else 0
+        assert points == (6 if solved else 0)
+    assert "Kp: right" in capsys.readouterr().out
+
+
+def test_what_is_graded_by_hand_for_nbgrader():
+    by_hand = []
+    for chapter in bank.chapters():
+        for exercise in bank.exercises(chapter).values():
+            for name, kind in exercise.question().key.items():
+                if not kind.making and not isinstance(kind, kinds.Design):
+                    by_hand.append(f"{exercise.number} {name}")
+    assert by_hand == ["9.5 y"]  # it has pieces
