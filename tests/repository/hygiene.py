@@ -1,6 +1,7 @@
 """The rules for stored notebooks, one function each: it takes a stored notebook and returns its complaints."""
 
 import ast
+import builtins
 import re
 import statistics
 import symtable
@@ -28,24 +29,7 @@ MOST_BYTES = 800_000
 
 # Functions that make a number of a literal, and names of constants: what consists of these alone is not computed.
 MAKERS = {"S", "sympify", "Rational", "Integer", "Float", "Fraction", "Decimal", "int", "float", "abs", "round"}
-BUILTINS = {
-    "sum",
-    "min",
-    "max",
-    "str",
-    "len",
-    "range",
-    "list",
-    "tuple",
-    "set",
-    "dict",
-    "sorted",
-    "zip",
-    "map",
-    "next",
-    "iter",
-}
-CONSTANTS = MAKERS | BUILTINS | {"sympy", "sp", "np", "numpy", "math", "oo", "inf", "nan", "pi", "E", "I"}
+CONSTANTS = MAKERS | {*vars(builtins)} | {"sympy", "sp", "np", "numpy", "math", "oo", "inf", "nan", "pi", "E", "I"}
 
 
 class Stored(NamedTuple):
