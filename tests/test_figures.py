@@ -238,7 +238,7 @@ def test_bad_marks_are_told_in_one_sentence():
     plot = time_plot({"y": LAG}, TIMES)
     with pytest.raises(ValueError, match="cannot mark t = 30: the plot shows 0 to 25"):
         plot.mark(30, "late")
-    with pytest.raises(ValueError, match="no signal 'z' in this plot: it has y"):
+    with pytest.raises(ValueError, match="no signal 'z' in this plot: expected one of y"):
         plot.level(2, "$KU$", signal="z")
 
 

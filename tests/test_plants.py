@@ -193,7 +193,7 @@ def test_what_kind_of_plant_it_is_follows_from_its_laws():
         ({"A": float("nan")}, "nan"),
         ({"A": sympy.oo}, "A is oo"),
         ({"A": sympy.Symbol("x")}, "A is x"),
-        ({"A": "1"}, "A: '1'"),
+        ({"A": "1"}, "A is '1': expected a number"),
         ({"h": 5}, "h is 5: expected a value from 0 to 1"),
         ({"h_max": 0}, "h is 0.5: expected a value from 0 to 0"),
     ],
@@ -331,7 +331,7 @@ def test_a_class_may_declare_again_what_it_extends():
 
     assert list(Wide.quantities) == list(LiquidTank.quantities)
     assert (Wide().A, Wide.volume, Wide().h_max) == (7, LiquidTank.volume, 1)
-    with pytest.raises(ValueError, match="WoodChipTank has no 'B': it has rho, A"):
+    with pytest.raises(ValueError, match="WoodChipTank has no 'B': expected one of rho, A"):
         WoodChipTank.declared("rho B")
 
 

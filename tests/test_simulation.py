@@ -477,7 +477,7 @@ REFUSED = {
     "a setpoint for nobody": (lambda: simulate(TANK, until=100, step=1, setpoint=10), "no controller"),
     "a feedforward for nobody": (lambda: simulate(TANK, until=100, step=1, feedforward=1), "no controller"),
     "two hands on one valve": (lambda: simulate(TANK, LOOP, until=100, setpoint=10, u=5), "controller that sets it"),
-    "an unknown input": (lambda: simulate(TANK, until=100, step=1, q=5), "no input 'q': it has u, w_out"),
+    "an unknown input": (lambda: simulate(TANK, until=100, step=1, q=5), "no input 'q': expected one of u, w_out"),
     "a letter in a signal": (lambda: simulate(TANK, until=100, step=1, u=sympy.Symbol("K")), "u: .*number for K"),
     "a letter and time in a signal": (
         lambda: simulate(TANK, until=100, step=1, u=sympy.Symbol("K") * t),

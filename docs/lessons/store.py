@@ -8,6 +8,8 @@ import os
 from pathlib import Path
 from typing import NamedTuple
 
+from loopbook.validation import did_you_mean
+
 
 class Place(NamedTuple):
     """The chapter of a lesson, and the beginning of the heading whose part "Try it" it follows."""
@@ -37,7 +39,7 @@ def load(name):
     Raises ValueError for a name that no lesson has.
     """
     if name not in NAMES:
-        raise ValueError(f"there is no lesson {name!r}: expected one of {', '.join(NAMES)}")
+        raise ValueError(f"there is no lesson {name!r}: {did_you_mean(name, NAMES)}")
     return importlib.import_module(f"lessons.{name}").LESSON
 
 

@@ -9,6 +9,8 @@ from __future__ import annotations
 from contextlib import AbstractContextManager
 from typing import Any
 
+from loopbook.validation import did_you_mean
+
 GREY = "#555555"
 
 STYLE: dict[str, Any] = {
@@ -81,7 +83,7 @@ def look(role: str | int) -> dict[str, Any]:
     """
     if isinstance(role, str):
         if role not in ROLES:
-            raise ValueError(f"the role is {role!r}: expected one of {', '.join(ROLES)}")
+            raise ValueError(f"the role is {role!r}: {did_you_mean(role, ROLES)}")
         return ROLES[role]
     colour = RESPONSE_COLOURS[role % len(RESPONSE_COLOURS)]
     return {"color": colour, "linestyle": RESPONSE_LINES[role % len(RESPONSE_LINES)], "linewidth": 1.8}

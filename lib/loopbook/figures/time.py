@@ -13,6 +13,7 @@ from loopbook.figures.labels import add_legend
 from loopbook.figures.picture import Picture, plain_words, titled
 from loopbook.figures.style import GUIDE, INPUTS, LEVEL, ON_WHITE, ROLES, WIDTH, look, styled
 from loopbook.laplace import evaluate, t
+from loopbook.validation import did_you_mean
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -171,7 +172,7 @@ class TimePlot(Picture):
         if label is None:
             return next(iter(self.lines.values()))
         if label not in self.lines:
-            raise ValueError(f"no signal {label!r} in this plot: it has {', '.join(self.lines)}")
+            raise ValueError(f"no signal {label!r} in this plot: {did_you_mean(label, self.lines)}")
         return self.lines[label]
 
 

@@ -15,6 +15,7 @@ from loopbook.plants.declarations import Balance, Body, Declared, Declaring, Lag
 from loopbook.stability import is_stable
 from loopbook.transfer import simplified
 from loopbook.types import Number
+from loopbook.validation import did_you_mean, exact_not_negative, exact_real
 
 __all__ = ["Plant"]
 
@@ -77,7 +78,7 @@ class Plant(metaclass=Declaring):
         measured = {name_of(x): f for x, f in self.measured.items()}
         for name in values:
             if name not in known:
-                raise ValueError(f"{type(self).__name__} has no {name!r}: it has {', '.join(known)}")
+                raise ValueError(f"{type(self).__name__} has no {name!r}: {did_you_mean(name, known)}")
             if name in measured:
                 raise ValueError(f"{name} is not given but measured: it is {measured[name]}")
         self.values = {}
@@ -99,21 +100,14 @@ class Plant(metaclass=Declaring):
         """Return quantities of this plant, by their names, to be declared once more in the body of another class."""
         known = {name_of(x): x for x in cls.quantities}
         if unknown := [name for name in names.split() if name not in known]:
-            raise ValueError(f"{cls.__name__} has no {unknown[0]!r}: it has {', '.join(known)}")
+            raise ValueError(f"{cls.__name__} has no {unknown[0]!r}: {did_you_mean(unknown[0], known)}")
         chosen = [known[name] for name in names.split()]
         return [Declared(cls.quantities[x], x.is_Symbol, cls.limits.get(x), cls.measured.get(x)) for x in chosen]
 
     @staticmethod
     def _checked(name, symbol, value):
-        try:
-            value = exact(value)
-        except ValueError as error:
-            raise ValueError(f"{name}: {error}") from None
-        if not (value.is_number and value.is_finite and value.is_real):
-            raise ValueError(f"{name} is {value}: expected a number")
-        if symbol.is_Symbol and value < 0:
-            raise ValueError(f"{name} is {value}: expected a parameter that is not negative")
-        return value
+        check = exact_not_negative if symbol.is_Symbol else exact_real
+        return check(name, value, symbols=False)
 
     def __setattr__(self, name: str, value: object) -> None:
         if name in {name_of(symbol) for symbol in self.quantities}:
@@ -147,7 +141,7 @@ class Plant(metaclass=Declaring):
             return name
         found = {name_of(x): x for x in self.quantities if not x.is_Symbol}
         if not isinstance(name, str) or name not in found:
-            raise ValueError(f"{name!r} is no signal of {type(self).__name__}: it has {', '.join(found)}")
+            raise ValueError(f"{name!r} is no signal of {type(self).__name__}: {did_you_mean(name, found)}")
         return found[name]
 
     # ---------------------------------------------------------------------------------------- what follows from it
@@ -278,7 +272,7 @@ class Plant(metaclass=Declaring):
         source = self.signal(self.manipulated if source is None else source)
         output = self.signal(self.output if output is None else output)
         if source not in self.inputs:
-            raise ValueError(f"{source} is no input: expected one of {', '.join(map(name_of, self.inputs))}")
+            raise ValueError(f"{source} is no input: {did_you_mean(source, map(name_of, self.inputs))}")
         equations = {x: self._active(rate) for x, rate in self.state_equations().items()}
         wanted = self._active(self.measured.get(output, output))
         if output in self.inputs:

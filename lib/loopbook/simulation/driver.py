@@ -17,7 +17,7 @@ from loopbook.simulation.run import Past, Run, joined
 from loopbook.simulation.system import System, programs_of
 from loopbook.structures import ControlLoop, Structure
 from loopbook.types import Block, ManualStretches, Number, SampledController, Signal
-from loopbook.validation import is_number, number, positive
+from loopbook.validation import did_you_mean, is_number, number, positive
 
 __all__ = ["simulate"]
 
@@ -138,7 +138,7 @@ def _one_loop(plant, controller, step, acting_on, given, inputs):
     names = [name_of(x) for x in plant.inputs]
     for name in (acting_on, *inputs):
         if name not in names:
-            raise ValueError(f"{type(plant).__name__} has no input {name!r}: it has {', '.join(names)}")
+            raise ValueError(f"{type(plant).__name__} has no input {name!r}: {did_you_mean(name, names)}")
     if controller is None:
         for name, signal in given.items():
             if signal is not None and signal != () and not (is_number(signal) and signal == 0):

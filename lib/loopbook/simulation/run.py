@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from loopbook.plants import Plant, name_of
+from loopbook.validation import did_you_mean
 
 if TYPE_CHECKING:
     import numpy
@@ -70,7 +71,7 @@ class Run:
         """
         loops = self._past.structure.loops if self._past and self._past.structure else {}
         if tag not in loops:
-            raise ValueError(f"the run has no loop {tag!r}: it has {', '.join(loops) or 'no list of blocks'}")
+            raise ValueError(f"the run has no loop {tag!r}: {did_you_mean(tag, loops)}")
         own = {name.removeprefix(f"{tag}."): name for name in self.signals if name.startswith(f"{tag}.")}
         signals = self.signals | {name: self.signals[full] for name, full in own.items()}
         held = self.held | {name for name, full in own.items() if full in self.held}
@@ -78,7 +79,7 @@ class Run:
 
     def __getitem__(self, name: str) -> numpy.ndarray:
         if name not in self.signals:
-            raise ValueError(f"the run has no signal {name!r}: it has {', '.join(self.signals)}")
+            raise ValueError(f"the run has no signal {name!r}: {did_you_mean(name, self.signals)}")
         return self.signals[name]
 
     def __repr__(self) -> str:
