@@ -3,7 +3,7 @@
 import fractions
 import random
 
-import numpy
+import numpy as np
 import pytest
 import sympy
 from hypothesis import given, settings
@@ -268,9 +268,9 @@ def test_another_value_is_always_different(expression, digits):
         (-2 / 7, Rational(-2, 7)),
         (1 + 1e-9, Rational(10**9 + 1, 10**9)),
         (1e-20, Rational(1, 10**20)),
-        (numpy.float64(0.35), Rational(7, 20)),
-        (numpy.float32(0.1), Rational(1, 10)),
-        (numpy.int64(3), 3),
+        (np.float64(0.35), Rational(7, 20)),
+        (np.float32(0.1), Rational(1, 10)),
+        (np.int64(3), 3),
         (fractions.Fraction(22, 7), Rational(22, 7)),
         (sympy.Float("0.12345678901234567890", 20), Rational(12345678901234567890, 10**20)),
         (1.5 + 2j, Rational(3, 2) + 2 * I),

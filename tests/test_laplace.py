@@ -1,7 +1,7 @@
 """The Laplace transform there and back, what solves differential equations with it, and its limits."""
 
 import mpmath
-import numpy
+import numpy as np
 import pytest
 import sympy
 from hypothesis import given, settings
@@ -245,7 +245,7 @@ def test_inverse_is_that_of_sympy(image):
     tt = symbols("t", positive=True)
     expected = inverse_laplace_transform(image, s, tt).subs(tt, t)
     numbers = {K: 2, T: Rational(5, 3), w: Rational(7, 5), a: Rational(3, 2)}
-    times = numpy.linspace(0.1, 5, 40)
+    times = np.linspace(0.1, 5, 40)
     assert evaluate(inverse(image).subs(numbers), times) == pytest.approx(
         evaluate(expected.subs(numbers), times), rel=1e-9
     )
@@ -284,7 +284,7 @@ def test_inverse_and_transform_undo_each_other(image):
 def test_inverse_at_high_order_against_the_exact_sum_of_residues():
     poles = [Rational(-i * i - 1, 7) for i in range(12)]
     image = 1 / expand(prod([s - p for p in poles]))
-    times = numpy.linspace(0, 20, 21)
+    times = np.linspace(0, 20, 21)
     residues = [1 / prod([p - q for q in poles if q != p]) for p in poles]
     expected = [
         float(sympy.N(sum(r * exp(p * Rational(time)) for r, p in zip(residues, poles, strict=True)), 20))
@@ -427,7 +427,7 @@ MODELS = {
 def test_equations_of_first_to_third_order(model):
     equation, start = MODELS[model]
     response = solve_ode(equation, {at_start(y(t), i): value for i, value in enumerate(start)})
-    order, times = len(start), numpy.linspace(0, 3, 31)
+    order, times = len(start), np.linspace(0, 3, 31)
     (highest,) = sympy.solve(equation, y(t).diff(t, order))
     states = symbols(f"y:{order}")
     rates = highest.subs({y(t).diff(t, i): states[i] for i in reversed(range(order))})
@@ -456,9 +456,9 @@ def test_coupled_equations():
     assert set(responses) == {x(t), y(t)}
     for equation in equations:
         assert simplify((equation.lhs - equation.rhs).subs(responses).doit()) == 0
-    times = numpy.linspace(0, 4, 21)
+    times = np.linspace(0, 4, 21)
     solution = solve_ivp(
-        lambda time, z: [-z[0] + z[1], z[0] - 3 * z[1] + numpy.sin(time)],
+        lambda time, z: [-z[0] + z[1], z[0] - 3 * z[1] + np.sin(time)],
         (0, 4),
         [1, 0],
         t_eval=times,
@@ -582,7 +582,7 @@ def test_evaluate_steps_have_their_new_value_at_once():
 @pytest.mark.filterwarnings("error")
 def test_evaluate_leaves_out_what_comes_late():
     late = (1 - exp(5000 - 5 * t)) * Heaviside(t - 1000) + (2 - exp(2000 - t)) * Heaviside(t - 2000)
-    assert evaluate(late, [0, 999, 1000, 1001, 3000]) == pytest.approx([0, 0, 0, 1 - numpy.exp(-5), 3])
+    assert evaluate(late, [0, 999, 1000, 1001, 3000]) == pytest.approx([0, 0, 0, 1 - np.exp(-5), 3])
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,7 @@
 """Transfer functions: from equations, their forms and characteristics, block algebra and responses."""
 
 import control
-import numpy
+import numpy as np
 import pytest
 import scipy.signal
 import sympy
@@ -179,7 +179,7 @@ def test_standard_models():
     assert integrator(K, tau) == K * exp(-tau * s) / s
     assert integrator_with_lag(K, T) == K / (s * (T * s + 1))
     assert double_integrator(K) == K / s**2
-    assert first_order(numpy.float64(0.5), 0) == Rational(1, 2)
+    assert first_order(np.float64(0.5), 0) == Rational(1, 2)
     assert first_order(2, 0.1 + 0.2) == 2 / (3 * s / 10 + 1)
 
 
@@ -192,7 +192,7 @@ def test_a_time_is_not_negative(wrong):
             model()
 
 
-@pytest.mark.parametrize("wrong", ["K", None, [1], True, nan, numpy.array([1, 2])])
+@pytest.mark.parametrize("wrong", ["K", None, [1], True, nan, np.array([1, 2])])
 def test_a_parameter_is_a_number_or_an_expression(wrong):
     for use in (integrator, dead_time, poles, static_gain, lambda K: first_order(1, K), lambda H: series(H, 1 / s)):
         with pytest.raises(ValueError, match="expected a number or an expression"):
@@ -239,8 +239,8 @@ def test_equation_6_14():
 def test_poles_zeros_and_gains_are_those_of_python_control(name):
     H, reference = SYSTEMS[name], numeric(SYSTEMS[name])
     # a repeated root is the square or fourth root of the rounding that numerical roots suffer
-    assert numpy.allclose(sorted_roots(poles(H)), sorted_roots(reference.poles()), atol=2e-3)
-    assert numpy.allclose(sorted_roots(zeros(H)), sorted_roots(reference.zeros()), atol=1e-6)
+    assert np.allclose(sorted_roots(poles(H)), sorted_roots(reference.poles()), atol=2e-3)
+    assert np.allclose(sorted_roots(zeros(H)), sorted_roots(reference.zeros()), atol=1e-6)
     assert order(H) == len(reference.poles()) == sympy.degree(characteristic_polynomial(H), s)
     assert float(static_gain(H)) == pytest.approx(float(reference.dcgain()))
     assert float(initial_gain(H)) == pytest.approx(reference(1e12).real, abs=1e-9)
@@ -365,14 +365,14 @@ def test_equations_6_6_and_6_16():
 
 @by_name
 def test_step_responses_are_those_of_python_control(name):
-    times = numpy.linspace(0, 12, 61)
+    times = np.linspace(0, 12, 61)
     reference = control.step_response(numeric(SYSTEMS[name]), times).outputs
     assert evaluate(step_response(SYSTEMS[name]), times) == pytest.approx(reference, rel=1e-7, abs=1e-8)
 
 
 @by_name
 def test_impulse_responses_are_those_of_scipy(name):
-    H, times = SYSTEMS[name], numpy.linspace(0, 8, 33)
+    H, times = SYSTEMS[name], np.linspace(0, 8, 33)
     ours = impulse_response(H)
     direct = ours.coeff(DiracDelta(t))
     assert direct == initial_gain(H)
@@ -385,7 +385,7 @@ def test_impulse_responses_are_those_of_scipy(name):
     "signal", [t, sin(2 * t), exp(-0.3 * t), 5 * Heaviside(t - 1) - 3 * Heaviside(t - 4), t * Heaviside(t - 2)], ids=str
 )
 def test_responses_to_other_inputs(signal):
-    H, times = SYSTEMS["third order"], numpy.linspace(0, 10, 20001)
+    H, times = SYSTEMS["third order"], np.linspace(0, 10, 20001)
     expected = control.forced_response(numeric(H), times, evaluate(signal, times)).outputs
     assert evaluate(response(H, signal), times) == pytest.approx(
         expected, abs=1e-3
@@ -393,7 +393,7 @@ def test_responses_to_other_inputs(signal):
 
 
 def test_dead_time_makes_a_response_late():
-    times = numpy.linspace(0, 12, 121)
+    times = np.linspace(0, 12, 121)
     for H in (SYSTEMS["two lags"], SYSTEMS["oscillator"], SYSTEMS["third order"], SYSTEMS["direct"]):
         late = evaluate(step_response(H * dead_time(2.5)), times)
         assert not late[times < 2.5].any()
@@ -404,8 +404,8 @@ def test_dead_time_makes_a_response_late():
 
 def test_sums_of_delayed_terms():
     H = (1 - exp(-2 * s)) * first_order(3, 2, 0.5)
-    times = numpy.linspace(0, 9, 91)
-    lag = numpy.vectorize(lambda time: 3 * (1 - numpy.exp(-time / 2)) if time >= 0 else 0.0)
+    times = np.linspace(0, 9, 91)
+    lag = np.vectorize(lambda time: 3 * (1 - np.exp(-time / 2)) if time >= 0 else 0.0)
     assert evaluate(step_response(H), times) == pytest.approx(lag(times - 0.5) - lag(times - 2.5), abs=1e-12)
 
 
@@ -425,12 +425,12 @@ def test_equation_6_34_response_time_of_one_lag():
     for lag in (1e-6, 0.3, 5, 1e6):
         assert response_time(first_order(-3, lag)) == pytest.approx(lag, rel=1e-12)
     assert response_time(first_order(2, 5, 2)) == pytest.approx(7, rel=1e-12)
-    assert response_time(first_order(1, 1), share=0.99) == pytest.approx(numpy.log(100), rel=1e-12)
+    assert response_time(first_order(1, 1), share=0.99) == pytest.approx(np.log(100), rel=1e-12)
 
 
 def test_equation_6_36_response_time_of_two_lags():
     found = response_time(second_order(1, 1, 1))
-    assert (1 + found) * numpy.exp(-found) == pytest.approx(numpy.exp(-1), rel=1e-12)
+    assert (1 + found) * np.exp(-found) == pytest.approx(np.exp(-1), rel=1e-12)
     assert round(found) == 2
 
 

@@ -2,7 +2,7 @@
 
 import functools
 
-import numpy
+import numpy as np
 from sympy import Rational as Q
 
 from lessons.lesson import Answer, Curve, Lesson, Panel, Slider, figures
@@ -22,7 +22,7 @@ CHANGES = {
     "warmer product": ("T_pin", 20, 25),
     "a higher setpoint": ("T_SP", 40, 40.5),
 }
-TIMES = numpy.arange(0, UNTIL + 1, STEP * EVERY)
+TIMES = np.arange(0, UNTIL + 1, STEP * EVERY)
 
 
 def controller(settings, u0, **more):
@@ -63,7 +63,7 @@ def respond(change, strength):
     signals = {"setpoint": two["T_SP"][::EVERY]}
     for name, run in (("single", one), ("cascade", two)):
         signals |= {f"T {name}": run["T_p"][::EVERY], f"F {name}": run["F_h"][::EVERY]}
-    valve = abs(numpy.diff(two["F_h"])).sum(), abs(numpy.diff(one["F_h"])).sum()
+    valve = abs(np.diff(two["F_h"])).sum(), abs(np.diff(one["F_h"])).sum()
     results = {
         "area, cascade": figures(area(two), unit="K\u202fs"),
         "area, single loop": figures(area(one), unit="K\u202fs"),
@@ -72,9 +72,9 @@ def respond(change, strength):
     }
     ratio = area(one) / area(two)
     end = -200 // STEP
-    if abs(numpy.diff(two["F_h"][end:])).sum() > 1:
+    if abs(np.diff(two["F_h"][end:])).sum() > 1:
         verdict = "The inner loop swings and does not come to rest"
-    elif numpy.ptp(two["T_p"][end:]) > 0.1:
+    elif np.ptp(two["T_p"][end:]) > 0.1:
         verdict = "The inner loop is too slow: the outer one swings"
     elif ratio > 1.05:
         verdict = f"The single loop has {ratio:.1f} times the area of the cascade"

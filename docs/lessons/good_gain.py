@@ -2,7 +2,7 @@
 
 import math
 
-import numpy
+import numpy as np
 import sympy
 
 from lessons.lesson import Answer, Curve, Lesson, Panel, Slider, figures, percent, stepped
@@ -16,8 +16,8 @@ from loopbook.tuning import good_gain
 
 LAGS = 4, 2, 1
 LOAD_AT = 60
-TIMES = numpy.linspace(0, 120, 301)
-FINE = numpy.linspace(0, 120, 4801)  # on which the swing is read off
+TIMES = np.linspace(0, 120, 301)
+FINE = np.linspace(0, 120, 4801)  # on which the swing is read off
 GAINS = tuple(sympy.Rational(n, 10) for n in (*range(4, 20, 2), *range(20, 50, 3), 50, 55, 60, 70, 80))
 DELAYS = tuple(map(sympy.Integer, (0, 1, 2, 4)))
 TOU, KP, TI = "<i>T</i><sub>ou</sub>", "<i>K</i><sub>p</sub>", "<i>T</i><sub>i</sub>"
@@ -48,8 +48,8 @@ def respond(gain, delay):
     y, final = experiment.servo.step(FINE), float(gain / (1 + gain))
     signals = {
         "y": y[:: (len(FINE) - 1) // (len(TIMES) - 1)],
-        "final value": numpy.full_like(TIMES, final),
-        "setpoint": numpy.ones_like(TIMES),
+        "final value": np.full_like(TIMES, final),
+        "setpoint": np.ones_like(TIMES),
     }
     results = dict.fromkeys(("overshoot", "undershoot", TOU, KP, TI, MS), "–")
     if unstable_poles(experiment):

@@ -2,7 +2,7 @@
 
 import functools
 
-import numpy
+import numpy as np
 import sympy
 
 from lessons.lesson import Answer, Curve, Lesson, Panel, Slider, figures, overshoot, stepped
@@ -13,7 +13,7 @@ from loopbook.tuning import simc
 
 LARGEST = 8
 LOAD_AT = 100
-TIMES = numpy.linspace(0, 200, 251)
+TIMES = np.linspace(0, 200, 251)
 RATIOS = tuple(sympy.Rational(n, 10) for n in (2, 3, 5, 7, 10))
 ZEROS = (0, 2, 4)
 MS, DISTANCE = "<i>M</i><sub>s</sub> of the loop", "largest distances from the process"
@@ -51,7 +51,7 @@ def respond(ratio, zero, share):
     loop = Loop(process, simc(model))
     signals = {
         "process": exact, "first": System(model.expr).step(TIMES), "second": second,
-        "setpoint": numpy.ones_like(TIMES), "loop": stepped(TIMES, loop.servo, loop.regulator, LOAD_AT),
+        "setpoint": np.ones_like(TIMES), "loop": stepped(TIMES, loop.servo, loop.regulator, LOAD_AT),
     }  # fmt: skip
     results = {
         "model with one lag": f"lag {figures(model.T1, unit='s')}, dead time {figures(model.delay, unit='s')}",

@@ -4,7 +4,7 @@ import itertools
 import math
 from dataclasses import dataclass
 
-import numpy
+import numpy as np
 
 from loopbook.figures.style import RESPONSE_COLOURS, RESPONSE_LINES, ROLES
 
@@ -133,7 +133,7 @@ class Lesson:
     sliders: tuple
     panels: tuple
     curves: tuple
-    times: numpy.ndarray
+    times: np.ndarray
     respond: object
     clock: str = "time [s]"
 
@@ -182,16 +182,14 @@ class Lesson:
         if values is None:
             return ""
         height = panel.high - panel.low
-        share = (numpy.asarray(values, dtype=float) - panel.low + ROOM * height) / ((1 + 2 * ROOM) * height)
-        steps = numpy.rint(numpy.clip(share, 0, 1) * TOP).astype(int)
+        share = (np.asarray(values, dtype=float) - panel.low + ROOM * height) / ((1 + 2 * ROOM) * height)
+        steps = np.rint(np.clip(share, 0, 1) * TOP).astype(int)
         return "".join(ALPHABET[step // 64] + ALPHABET[step % 64] for step in steps)
 
 
 def decoded(text, panel):
     """Values of a curve from the letters of the page's data, as the page itself reads them."""
-    steps = numpy.array(
-        [64 * ALPHABET.index(a) + ALPHABET.index(b) for a, b in zip(text[::2], text[1::2], strict=True)]
-    )
+    steps = np.array([64 * ALPHABET.index(a) + ALPHABET.index(b) for a, b in zip(text[::2], text[1::2], strict=True)])
     height = panel.high - panel.low
     return panel.low - ROOM * height + steps / TOP * (1 + 2 * ROOM) * height
 
@@ -219,10 +217,10 @@ def figures(number, digits=3, unit=""):
 
 def overshoot(y, final=1.0):
     """How far a response goes beyond its final value, as a text."""
-    return percent(max(0.0, float(numpy.max(y)) / final - 1))
+    return percent(max(0.0, float(np.max(y)) / final - 1))
 
 
 def stepped(times, system_to_setpoint, system_to_load, load_at, load=1.0):
     """The response to a step of the setpoint at once, and of the load later: two systems with exact dead time."""
-    late = numpy.maximum(times - load_at, 0)
+    late = np.maximum(times - load_at, 0)
     return system_to_setpoint.step(times) + load * (times >= load_at) * system_to_load.step(late)

@@ -1,6 +1,6 @@
 """A PI controller on a lag with dead time: what its gain and its integral time do."""
 
-import numpy
+import numpy as np
 import sympy
 
 from lessons.lesson import Answer, Curve, Lesson, Panel, Slider, figures, overshoot, stepped
@@ -12,7 +12,7 @@ from loopbook.transfer import first_order
 
 K, T, DELAY = 1, 10, 4
 LOAD_AT = 60
-TIMES = numpy.linspace(0, 120, 241)
+TIMES = np.linspace(0, 120, 241)
 GAINS = tuple(sympy.Rational(n, 4) for n in (1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16))
 LABELS = (
     "overshoot", "gain margin", "phase margin", "<i>M</i><sub>s</sub>", "∫<i>e</i>²d<i>t</i> after the setpoint",
@@ -27,11 +27,11 @@ def respond(Kp, Ti):
     loop = Loop(process, controller)
     servo = loop.servo.step(TIMES)
     # what a load makes the controller do is, but for the sign, what a step of the setpoint makes of the output
-    later = (TIMES >= LOAD_AT) * numpy.interp(numpy.maximum(TIMES - LOAD_AT, 0), TIMES, servo)
+    later = (TIMES >= LOAD_AT) * np.interp(np.maximum(TIMES - LOAD_AT, 0), TIMES, servo)
     signals = {
         "y": stepped(TIMES, loop.servo, loop.regulator, LOAD_AT),
         "u": loop.setpoint_to_control.step(TIMES) - later,
-        "setpoint": numpy.ones_like(TIMES),
+        "setpoint": np.ones_like(TIMES),
     }
     results = dict.fromkeys(LABELS, "–")
     if unstable_poles(loop):

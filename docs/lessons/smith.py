@@ -2,7 +2,7 @@
 
 import functools
 
-import numpy
+import numpy as np
 from sympy import Rational as Q
 from sympy import exp
 
@@ -14,7 +14,7 @@ from loopbook.transfer import first_order
 
 K, T, DELAY = 1, 4, 4
 LOAD_AT = 60
-TIMES = numpy.linspace(0, 120, 241)
+TIMES = np.linspace(0, 120, 241)
 DELAYS = tuple(Q(n, 10) for n in (0, 5, 8, 9, 10, 11, 12, 15, 20))
 GAINS = (Q(6, 10), Q(8, 10), Q(1), Q(5, 4), Q(3, 2))
 WANTED = (Q(1, 2), Q(1), Q(2), Q(4))
@@ -50,15 +50,13 @@ def respond(delay, gain, Tc):
     results = {}
     for name, response, settled in (("predictor", y, stable), ("PI", beside, beside_stable)):
         results[f"{name}: overshoot"] = overshoot(response[before]) if settled else "unstable"
-        area = numpy.trapezoid(abs(1 - response), TIMES)
+        area = np.trapezoid(abs(1 - response), TIMES)
         results[f"{name}: ∫|<i>e</i>|d<i>t</i>"] = f"{area:.1f}\u202fs" if settled else "–"
     verdicts = {
         (True, True): "Both are stable", (True, False): "Only the predictor is stable",
         (False, True): "The predictor is unstable", (False, False): "Both are unstable",
     }  # fmt: skip
-    return Answer(
-        verdicts[stable, beside_stable], results, {"smith": y, "PI": beside, "setpoint": numpy.ones_like(TIMES)}
-    )
+    return Answer(verdicts[stable, beside_stable], results, {"smith": y, "PI": beside, "setpoint": np.ones_like(TIMES)})
 
 
 LESSON = Lesson(

@@ -2,7 +2,7 @@
 
 import functools
 
-import numpy
+import numpy as np
 from sympy import Rational as Q
 
 from lessons.lesson import Answer, Curve, Lesson, Panel, Slider
@@ -19,7 +19,7 @@ TANK = plants.HeatedTankWithTransport(T_in=WARM, w=Q(1, 3), V=Q(7, 50), K_P=686,
 NOMINAL = float(TANK.numbers(next(iter(TANK.static_response("u").values()))))
 COLD = (30, 26, 22, 18, 14, 10, 6, 2)
 LIMITS = (80, 90, 100, 120, 140)
-TIMES = numpy.arange(0, UNTIL + 1, STEP * EVERY) / 60
+TIMES = np.arange(0, UNTIL + 1, STEP * EVERY) / 60
 
 
 @functools.cache
@@ -39,7 +39,7 @@ def back_after(minutes, temperature):
 
 def respond(cold, limit):
     """Answer for one temperature of the cold inflow, and one upper limit of the control signal."""
-    signals, results = {"setpoint": numpy.full_like(TIMES, SETPOINT)}, {}
+    signals, results = {"setpoint": np.full_like(TIMES, SETPOINT)}, {}
     needed = NOMINAL * (SETPOINT - cold) / (SETPOINT - WARM)
     results["needed control signal"] = f"{needed:.0f}\u202f%"
     for way, halt in (("without", False), ("with", True)):

@@ -10,6 +10,8 @@ import functools
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from loopbook.deadtime.response import ChannelModel, step_family
 from loopbook.ise import ise_family
 from loopbook.quasipolynomials.arrays import Quasipolynomials
@@ -20,7 +22,6 @@ from loopbook.transfer import transfer_function
 from loopbook.validation import one_of, times_from_zero
 
 if TYPE_CHECKING:
-    import numpy
     from numpy.typing import ArrayLike
 
 __all__ = ["Family"]
@@ -92,18 +93,16 @@ class Family:
     # ---- questions
 
     @functools.cached_property
-    def is_stable(self) -> numpy.ndarray:
+    def is_stable(self) -> np.ndarray:
         """Whether each closed loop is stable; a pole that controller and process cancel is not seen."""
         return (count_roots(self._closed) == 0).reshape(self.shape)
 
-    def Ms(self) -> numpy.ndarray:
+    def Ms(self) -> np.ndarray:
         """Return the largest sensitivities, the largest values of abs(1/(1 + L)); infinite for unstable loops."""
-        import numpy
-
         found = largest_sensitivities(*self._open)
-        return numpy.where(numpy.isnan(found), math.inf, found).reshape(self.shape)
+        return np.where(np.isnan(found), math.inf, found).reshape(self.shape)
 
-    def ise(self, mode: str = "servo") -> numpy.ndarray:
+    def ise(self, mode: str = "servo") -> np.ndarray:
         """Return the integrals of the squared error after a unit step, infinite for unstable loops.
 
         Arguments:
@@ -119,7 +118,7 @@ class Family:
             below = Quasipolynomials(_shifted(below.coefficients), below.delays)
         return ise_family(above.coefficients, above.delays, below.coefficients, below.delays).reshape(self.shape)
 
-    def step(self, times: ArrayLike, signal: str = "T") -> numpy.ndarray:
+    def step(self, times: ArrayLike, signal: str = "T") -> np.ndarray:
         """Return the responses to a unit step, with an axis for the times behind those of the values.
 
         Arguments:
@@ -136,9 +135,7 @@ class Family:
         array([[0.5    , 0.71875],
                [1.     , 1.375  ]])
         """
-        import numpy
-
-        times = numpy.atleast_1d(times_from_zero(times))
+        times = np.atleast_1d(times_from_zero(times))
         if times.ndim != 1:
             raise ValueError(f"the times have the shape {times.shape}: expected one dimension")
         above, below = self._forward(one_of("the signal", signal, ("T", "S", "PS", "CS")))
@@ -150,17 +147,13 @@ class Family:
 
 def _padded(sums: Quasipolynomials, order: int) -> Quasipolynomials:
     """The same quasipolynomials with more powers."""
-    import numpy
-
     missing = ((0, 0), (0, order - sums.order), (0, 0))
-    return Quasipolynomials(numpy.pad(sums.coefficients, missing), sums.delays)
+    return Quasipolynomials(np.pad(sums.coefficients, missing), sums.delays)
 
 
 def _shifted(rows):
     """Coefficients of quasipolynomials, times s."""
-    import numpy
-
-    return numpy.pad(rows, ((0, 0), (1, 0), (0, 0)))
+    return np.pad(rows, ((0, 0), (1, 0), (0, 0)))
 
 
 def _state_space(above: Quasipolynomials, below: Quasipolynomials) -> ChannelModel:
@@ -168,35 +161,33 @@ def _state_space(above: Quasipolynomials, below: Quasipolynomials) -> ChannelMod
 
     Time is in a unit of each system's own for the states, so that their sizes are alike.
     """
-    import numpy
-
     n, count = below.order, max(above.count, below.count)
     above, below = (
-        [numpy.broadcast_to(x, (*x.shape[:-1], count)) for x in (sums.coefficients, sums.delays)]
+        [np.broadcast_to(x, (*x.shape[:-1], count)) for x in (sums.coefficients, sums.delays)]
         for sums in (above, below)
     )
     leading = below[0][0, -1]
     # a frequency at which the powers weigh about the same
     sizes = abs(below[0] / leading).sum(axis=0)
-    with numpy.errstate(divide="ignore"):
-        rates = (sizes[:-1] ** (1 / numpy.arange(n, 0, -1)[:, None])).max(axis=0, initial=0.0) if n else leading * 0
-    rate = numpy.where(rates > 0, rates, 1.0)
+    with np.errstate(divide="ignore"):
+        rates = (sizes[:-1] ** (1 / np.arange(n, 0, -1)[:, None])).max(axis=0, initial=0.0) if n else leading * 0
+    rate = np.where(rates > 0, rates, 1.0)
 
     def rows(coefficients):  # [system, part, power], of s/rate
-        scale = rate ** (numpy.arange(n + 1) - n)[:, None]
-        return numpy.moveaxis(coefficients * scale / leading, -1, 0)
+        scale = rate ** (np.arange(n + 1) - n)[:, None]
+        return np.moveaxis(coefficients * scale / leading, -1, 0)
 
     undelayed = (above[1] == 0).all(axis=1)
-    parts, late = rows(above[0]), numpy.moveaxis(above[1], -1, 0)
+    parts, late = rows(above[0]), np.moveaxis(above[1], -1, 0)
     direct, ahead = parts[:, undelayed].sum(axis=1, keepdims=True), parts[:, ~undelayed]
     denominator = rows(below[0])
     own, back = denominator[:, 0, :n], denominator[:, 1:]
-    channels = numpy.concatenate([back, ahead], axis=1)
-    delays = numpy.concatenate([numpy.moveaxis(below[1], -1, 0)[:, 1:], late[:, ~undelayed]], axis=1)
-    returns = numpy.r_[-numpy.ones(back.shape[1]), numpy.zeros(ahead.shape[1])]
-    to_output = numpy.r_[numpy.zeros(back.shape[1]), numpy.ones(ahead.shape[1])]
-    A = numpy.zeros((count, n, n))
-    B1, B2 = numpy.zeros((count, n, 1)), numpy.zeros((count, n, len(returns)))
+    channels = np.concatenate([back, ahead], axis=1)
+    delays = np.concatenate([np.moveaxis(below[1], -1, 0)[:, 1:], late[:, ~undelayed]], axis=1)
+    returns = np.r_[-np.ones(back.shape[1]), np.zeros(ahead.shape[1])]
+    to_output = np.r_[np.zeros(back.shape[1]), np.ones(ahead.shape[1])]
+    A = np.zeros((count, n, n))
+    B1, B2 = np.zeros((count, n, 1)), np.zeros((count, n, len(returns)))
     if n:
         A[:, range(n - 1), range(1, n)] = 1
         A[:, -1] = -own

@@ -11,6 +11,7 @@ import itertools
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, overload
 
+import numpy as np
 import sympy
 from sympy.core.function import AppliedUndef
 
@@ -18,7 +19,6 @@ from loopbook.expressions import exact, function_of, s, t
 from loopbook.types import Number
 
 if TYPE_CHECKING:
-    import numpy
     from numpy.typing import ArrayLike
 
 __all__ = [
@@ -538,7 +538,7 @@ def roots(polynomial: Number) -> list[sympy.Expr]:
     return sorted(found, key=lambda root: tuple(float(x) for x in root.as_real_imag()))
 
 
-def evaluate(f: Number, times: ArrayLike) -> numpy.ndarray:
+def evaluate(f: Number, times: ArrayLike) -> np.ndarray:
     """Return the values of f(t) at the given times as a NumPy array; a step has its new value at the step itself.
 
     Raises ValueError where f is no function of time alone: another letter is left, or an impulse, which has no value;
@@ -547,9 +547,7 @@ def evaluate(f: Number, times: ArrayLike) -> numpy.ndarray:
     >>> evaluate(sympy.exp(-t), [0, 1]).round(3)
     array([1.   , 0.368])
     """
-    import numpy
-
-    f, times = function_of(t, f), numpy.asarray(times, dtype=float)
+    f, times = function_of(t, f), np.asarray(times, dtype=float)
     letters = sorted(map(str, f.free_symbols - {t}))
     if letters:
         raise ValueError(f"cannot evaluate {f}: give a number for {', '.join(letters)}")
@@ -557,7 +555,7 @@ def evaluate(f: Number, times: ArrayLike) -> numpy.ndarray:
         raise ValueError(f"cannot evaluate {f}: an impulse has an area but no value")
     if f.has(sympy.oo, sympy.zoo):
         raise ValueError(f"cannot evaluate {f}: it is infinite")
-    values = numpy.full(times.shape, numpy.nan)
+    values = np.full(times.shape, np.nan)
     for start, end, between in between_steps(f):
         here = (start <= times) & (times < end)
         if here.any():
@@ -580,16 +578,14 @@ def between_steps(f: sympy.Expr) -> Iterator[tuple[float, float, sympy.Expr]]:
 
 def _values(f, times):
     """The real values of f(t), which has no steps, at an array of times."""
-    import numpy
-
     # NumPy divides floats: a fraction of integers that are too long for one becomes one here
     long = {q: sympy.Float(q, 17) for q in f.atoms(sympy.Rational) if max(abs(q.p), q.q) > 2**53}
     try:
-        with numpy.errstate(invalid="ignore"):
-            values = numpy.asarray(sympy.lambdify(t, f.xreplace(long), "numpy")(times))
-        values = values.astype(complex if numpy.iscomplexobj(values) else float)
+        with np.errstate(invalid="ignore"):
+            values = np.asarray(sympy.lambdify(t, f.xreplace(long), "numpy")(times))
+        values = values.astype(complex if np.iscomplexobj(values) else float)
     except (NameError, NotImplementedError, OverflowError, TypeError):
         raise ValueError(f"cannot evaluate {f}: NumPy has no such function or number") from None
-    if numpy.isnan(values).any() or numpy.any(abs(values.imag) > 1e-9 * (1 + abs(values))):
+    if np.isnan(values).any() or np.any(abs(values.imag) > 1e-9 * (1 + abs(values))):
         raise ValueError(f"cannot evaluate {f}: its values are not real numbers")
     return values.real

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import numpy as np
 import sympy
 
 from loopbook.expressions import exact
 from loopbook.types import Number
 from loopbook.validation import is_number
-
-if TYPE_CHECKING:
-    import numpy
 
 __all__ = ["PERCENT", "Scaling"]
 
@@ -49,7 +47,7 @@ class Scaling:
         self.a = (z_max - z_min) / (x_max - x_min)
         self.b = z_min - self.a * x_min
 
-    def __call__(self, x: Number | numpy.ndarray) -> Any:
+    def __call__(self, x: Number | np.ndarray) -> Any:
         """Return a x + b for a number, an expression or an array."""
         if hasattr(x, "dtype") or isinstance(x, float):
             return float(self.a) * x + float(self.b)

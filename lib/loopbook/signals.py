@@ -11,6 +11,7 @@ import numbers
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import sympy
 
 from loopbook.expressions import exact, t
@@ -19,7 +20,6 @@ from loopbook.types import ManualStretches, Number, Signal
 from loopbook.validation import is_number, not_negative, positive, whole
 
 if TYPE_CHECKING:
-    import numpy
     from numpy.typing import ArrayLike
 
 __all__ = ["noise", "pulse_width_modulation", "stepwise"]
@@ -52,7 +52,7 @@ def stepwise(start: Number, changes: Mapping[Any, Number]) -> sympy.Expr:
     return total
 
 
-def noise(times: ArrayLike, deviation: Number, seed: int | tuple[int, ...]) -> numpy.ndarray:
+def noise(times: ArrayLike, deviation: Number, seed: int | tuple[int, ...]) -> np.ndarray:
     """Return normally distributed random values, one for each time, the same for the same seed.
 
     Arguments:
@@ -65,17 +65,15 @@ def noise(times: ArrayLike, deviation: Number, seed: int | tuple[int, ...]) -> n
     >>> noise([0, 1, 2], deviation=1, seed=7).round(3)
     array([ 0.001,  0.299, -0.274])
     """
-    import numpy
-
     deviation = not_negative("deviation", deviation)
     for part in seed if isinstance(seed, tuple) else (seed,):
         whole("seed", part, least=0)
     if isinstance(times, str):
         raise ValueError(f"the times are {times!r}: expected an array")
-    return numpy.random.default_rng(seed).normal(0, 1, len(times)) * deviation
+    return np.random.default_rng(seed).normal(0, 1, len(times)) * deviation
 
 
-def pulse_width_modulation(duty: ArrayLike, times: ArrayLike, period: Number) -> numpy.ndarray:
+def pulse_width_modulation(duty: ArrayLike, times: ArrayLike, period: Number) -> np.ndarray:
     """Return an on/off signal, 1 or 0, that is on for the given share of each cycle. (Haugen, Section 9.1)
 
     The duty cycle of a cycle is the value of `duty` at its beginning. The signal is known at the given times only, so
@@ -91,13 +89,11 @@ def pulse_width_modulation(duty: ArrayLike, times: ArrayLike, period: Number) ->
     >>> pulse_width_modulation(60, [0, 1, 2, 3, 4, 5, 6], period=5)
     array([1, 1, 1, 0, 0, 1, 1])
     """
-    import numpy
-
     try:
-        times, duty = numpy.asarray(times, dtype=float), numpy.asarray(duty, dtype=float)
+        times, duty = np.asarray(times, dtype=float), np.asarray(duty, dtype=float)
     except (TypeError, ValueError):
         raise ValueError("the duty cycle and the times are not numbers") from None
-    if times.ndim != 1 or not len(times) or not (numpy.diff(times) > 0).all():
+    if times.ndim != 1 or not len(times) or not (np.diff(times) > 0).all():
         raise ValueError("the times must be an array of increasing numbers")
     positive("period", period)
     if duty.ndim and duty.shape != times.shape:
@@ -107,9 +103,9 @@ def pulse_width_modulation(duty: ArrayLike, times: ArrayLike, period: Number) ->
             f"the duty cycle is {duty[~((duty >= 0) & (duty <= 100))].ravel()[0]:g} %: expected 0 to 100 %"
         )
     # a moment that rounding puts just before a whole number of cycles begins the next one
-    cycle = numpy.floor((times - times[0]) / period + 1e-9)
+    cycle = np.floor((times - times[0]) / period + 1e-9)
     phase = (times - times[0]) / period - cycle
-    at_beginning = duty[numpy.searchsorted(cycle, cycle)] if duty.ndim else duty
+    at_beginning = duty[np.searchsorted(cycle, cycle)] if duty.ndim else duty
     return (phase < at_beginning / 100 - 1e-9).astype(int)
 
 
@@ -124,9 +120,7 @@ def samples(name: str, signal: Signal, times: ArrayLike) -> list[float]:
     >>> samples("setpoint", stepwise(10, {2: 11}), sympy.sympify("[0, 1, 2]"))
     [10.0, 10.0, 11.0]
     """
-    import numpy
-
-    times = numpy.asarray(times, dtype=float)
+    times = np.asarray(times, dtype=float)
     if isinstance(signal, (sympy.Expr, str, numbers.Number)):
         try:
             values = evaluate(exact(signal), times)
@@ -134,24 +128,22 @@ def samples(name: str, signal: Signal, times: ArrayLike) -> list[float]:
             raise ValueError(f"{name}: {error}") from None
     else:
         try:
-            values = numpy.asarray(list(signal), dtype=float)
+            values = np.asarray(list(signal), dtype=float)
         except (TypeError, ValueError):
             raise ValueError(f"{name} is {signal!r}: expected a number, an expression in t or an array") from None
     if values.shape != times.shape:
         raise ValueError(f"{name} has {values.size} values for {times.size} samples")
-    if not numpy.isfinite(values).all():
-        when = times[~numpy.isfinite(values)][0]
-        raise ValueError(f"{name} is {values[~numpy.isfinite(values)][0]} at t = {when:g}: expected finite numbers")
+    if not np.isfinite(values).all():
+        when = times[~np.isfinite(values)][0]
+        raise ValueError(f"{name} is {values[~np.isfinite(values)][0]} at t = {when:g}: expected finite numbers")
     return values.tolist()
 
 
-def in_time(name: str, signal: Signal, times: numpy.ndarray) -> Stretches:
+def in_time(name: str, signal: Signal, times: np.ndarray) -> Stretches:
     """Return a signal in time as an object that knows its value at any moment."""
-    import numpy
-
     step = times[1] - times[0]
     if isinstance(signal, sympy.Expr) and signal.has(t):
-        with numpy.errstate(all="ignore"):
+        with np.errstate(all="ignore"):
             samples(name, signal, times)  # says what is wrong with it
         stretches = [(max(start, times[0]), f) for start, end, f in between_steps(exact(signal)) if end > times[0]]
         values = [float(f) if f.is_number else _changing(name, f) for _, f in stretches]
@@ -201,7 +193,7 @@ def _changing(name, formula):
     return value
 
 
-def by_hand(manual: ManualStretches, times: Sequence[float] | numpy.ndarray) -> list[float | None]:
+def by_hand(manual: ManualStretches, times: Sequence[float] | np.ndarray) -> list[float | None]:
     """For each sample None in automatic mode, else the operator's control signal, NaN for the last one."""
     found = [None] * len(times)
     if not isinstance(manual, (list, tuple)):

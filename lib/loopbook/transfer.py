@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
 import sympy
 from sympy.core.function import AppliedUndef
 
@@ -166,7 +167,6 @@ def transfer_function(value: TransferFunctionLike) -> sympy.Expr:
 
 def _from_control(system):
     import control
-    import numpy
 
     if not isinstance(system, (control.TransferFunction, control.StateSpace)):
         raise ValueError(f"{system!r} is no transfer function and no state-space system of python-control")
@@ -177,7 +177,7 @@ def _from_control(system):
     names = ("num", "den") if isinstance(system, control.TransferFunction) else ("A", "B", "C", "D")
     for name in names:
         coefficients = getattr(system, name)
-        if numpy.iscomplexobj(coefficients[0][0] if name in ("num", "den") else coefficients):
+        if np.iscomplexobj(coefficients[0][0] if name in ("num", "den") else coefficients):
             raise ValueError(f"{name} of the system is complex: expected real coefficients")
     if isinstance(system, control.TransferFunction):
         above, below = (sympy.Poly([exact(float(c)) for c in x[0][0]], s) for x in (system.num, system.den))
@@ -491,7 +491,6 @@ def response_time(H: TransferFunctionLike, share: Number = _ONE_LAG) -> float:
     >>> round(response_time(second_order(1, 1, 1)), 4)
     2.1462
     """
-    import numpy
     from scipy.optimize import brentq
 
     number("share", share, "a number between 0 and 1", lambda x: 0 < x < 1)
@@ -514,7 +513,7 @@ def response_time(H: TransferFunctionLike, share: Number = _ONE_LAG) -> float:
     rates = [float(abs(p)) for part in parts.values() for p in poles(part)]
     start, end = 0.0, 1 / max(rates) if rates else float(max(parts)) or 1.0
     while still_missing(start) < 0:
-        times = numpy.linspace(start, end, int(min(max(2000, 10 * max(rates, default=0) * (end - start)), 1e6)) + 1)
+        times = np.linspace(start, end, int(min(max(2000, 10 * max(rates, default=0) * (end - start)), 1e6)) + 1)
         reached = evaluate(missing, times) >= 0
         if reached.any():
             before, after = times[reached.argmax() - 1], times[reached.argmax()]

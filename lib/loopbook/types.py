@@ -10,7 +10,7 @@ import sympy
 
 if TYPE_CHECKING:
     import control
-    import numpy
+    import numpy as np
 
 __all__ = [
     "Block", "HasTransferFunction", "Limits", "ManualStretches", "Number", "SampledController", "Signal",
@@ -21,10 +21,10 @@ __all__ = [
 Number: TypeAlias = float | int | Fraction | sympy.Expr
 
 #: A signal in time: a number, an expression in `t`, or an array with a value for each sample.
-Signal: TypeAlias = Union[Number, Sequence[float], "numpy.ndarray"]
+Signal: TypeAlias = Union[Number, Sequence[float], "np.ndarray"]
 
 #: Numbers in a row, such as the moments of a plot.
-Values: TypeAlias = Union[Sequence[Number], "numpy.ndarray"]
+Values: TypeAlias = Union[Sequence[Number], "np.ndarray"]
 
 #: The lowest and the highest value of an axis.
 Limits: TypeAlias = tuple[Number, Number]

@@ -14,12 +14,12 @@ import operator
 from collections.abc import Callable, Collection, Iterable
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import sympy
 
 from loopbook.expressions import exact
 
 if TYPE_CHECKING:
-    import numpy
     from numpy.typing import ArrayLike
 
 A_FINITE_NUMBER = "a finite real number"
@@ -160,24 +160,22 @@ def _unless(wrong, name, value, expected):
 # --------------------------------------------------------------------------------------------------------- arrays
 
 
-def real_numbers(name: str, values: ArrayLike) -> numpy.ndarray:
+def real_numbers(name: str, values: ArrayLike) -> np.ndarray:
     """Return values as an array of floats, or raise ValueError for what is not real and finite.
 
     >>> real_numbers("times", [0, 1])
     array([0., 1.])
     """
-    import numpy
-
     try:
-        if numpy.iscomplexobj(values):  # which NumPy would cut down to their real parts
+        if np.iscomplexobj(values):  # which NumPy would cut down to their real parts
             raise TypeError
-        array = numpy.asarray(values, dtype=float)
+        array = np.asarray(values, dtype=float)
     except (TypeError, ValueError):
         raise ValueError(f"the {name} are {values!r}: expected real numbers") from None
-    return _all(numpy.isfinite(array), name, array, "finite numbers")
+    return _all(np.isfinite(array), name, array, "finite numbers")
 
 
-def positive_numbers(name: str, values: ArrayLike, zero: bool = False) -> numpy.ndarray:
+def positive_numbers(name: str, values: ArrayLike, zero: bool = False) -> np.ndarray:
     """Return values as an array of positive floats, or with `zero` of those that are not negative; or raise ValueError.
 
     >>> positive_numbers("gain ratios", [1, -2])
@@ -190,7 +188,7 @@ def positive_numbers(name: str, values: ArrayLike, zero: bool = False) -> numpy.
     return _all(array > 0, name, array, "positive numbers")
 
 
-def times_from_zero(values: ArrayLike) -> numpy.ndarray:
+def times_from_zero(values: ArrayLike) -> np.ndarray:
     """Return times as an array of floats, or raise ValueError where one is negative."""
     return positive_numbers("times", values, zero=True)
 

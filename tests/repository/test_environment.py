@@ -93,7 +93,7 @@ def test_what_the_pinned_packages_need_is_pinned():
 
 def test_importing_the_library_is_quick():
     """What is slow to import waits until it is used."""
-    heavy = {"matplotlib", "control", "scipy", "pandas", "ipywidgets", "IPython", "nbformat", "schemdraw"}
+    heavy = {"numpy", "matplotlib", "control", "scipy", "pandas", "ipywidgets", "IPython", "nbformat", "schemdraw"}
     program = f"import sys, loopbook; print(sorted({heavy} & set(sys.modules)))"
     result = subprocess.run([sys.executable, "-c", program], capture_output=True, encoding="utf-8", check=True)
     assert result.stdout.strip() == "[]"

@@ -8,7 +8,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import nbformat
-import numpy
+import numpy as np
 import pytest
 import sympy
 
@@ -44,7 +44,7 @@ def by_small_steps(T, delay, controller, times, load_at, steps=200):
     """A lag with dead time under control, by Heun's method with `steps` steps to one unit of time."""
     h, late = 1 / steps, round(delay * steps)
     count = round(times[-1] * steps)
-    u, y = numpy.zeros(count + 1), numpy.zeros(count + 1)
+    u, y = np.zeros(count + 1), np.zeros(count + 1)
     remember = [0.0]
     for k in range(count):
         u[k] = controller(1 - y[k], remember, h)
@@ -102,8 +102,8 @@ def test_half_is_the_share_of_the_half_rule(ratio):
     lags = [float(T) for T in half_rule.lags_of(ratio)]
     y = 1.0
     for T in lags:
-        share = (1 + 2 / T) * T**3 / numpy.prod([T - other for other in lags if other != T])
-        y = y - share * numpy.exp(-half_rule.TIMES / T)
+        share = (1 + 2 / T) * T**3 / np.prod([T - other for other in lags if other != T])
+        y = y - share * np.exp(-half_rule.TIMES / T)
     assert half_rule.of_process(ratio, 2)[0] == pytest.approx(y, abs=1e-9)
 
 
@@ -115,7 +115,7 @@ def test_the_short_formula_of_the_predictor_is_the_predictor(delay, gain, Tc):
     controller = closed_loop(inner, model - model * sympy.exp(-smith.DELAY * delay * s))
     loop = Loop(first_order(smith.K, smith.T, smith.DELAY), controller)
     servo, regulator = smith.predictor(delay, gain, Tc)
-    omega = numpy.logspace(-2, 1, 40)
+    omega = np.logspace(-2, 1, 40)
     assert servo.frequency(omega) == pytest.approx(loop.servo.frequency(omega), rel=1e-9)
     assert regulator.frequency(omega) == pytest.approx(loop.regulator.frequency(omega), rel=1e-9)
     assert servo.is_stable == stability.is_closed_loop_stable(loop.open)
@@ -131,7 +131,7 @@ def test_with_the_right_model_the_predictor_does_what_was_wanted():
 @pytest.mark.parametrize(("cold", "limit"), [(2, 80), (30, 100)])
 def test_the_heater_that_winds_up_obeys_its_balance(cold, limit):
     answer = windup.respond(cold, limit)
-    at = numpy.searchsorted(windup.TIMES, windup.END / 60) - 1
+    at = np.searchsorted(windup.TIMES, windup.END / 60) - 1
     per_percent = (windup.SETPOINT - windup.WARM) / windup.NOMINAL
     balance = min(windup.SETPOINT, cold + limit * per_percent)
     for way in ("with", "without"):
@@ -170,8 +170,8 @@ def counting_lesson(**changes):
     sliders = lesson.Slider("a", "A", (0, 1, 2), 1), lesson.Slider("b", "B", (0, 1), 0, words=("no", "yes"))
     whole = lesson.Lesson(
         title="Counting", about="", questions=(), sliders=sliders, panels=(lesson.Panel("y", 0, 4),),
-        curves=(lesson.Curve("y", "y"), lesson.Curve("none", "none")), times=numpy.linspace(0, 1, 5),
-        respond=lambda a, b: lesson.Answer(f"{a} {b}", {"a": str(a)}, {"y": numpy.full(5, a)}),
+        curves=(lesson.Curve("y", "y"), lesson.Curve("none", "none")), times=np.linspace(0, 1, 5),
+        respond=lambda a, b: lesson.Answer(f"{a} {b}", {"a": str(a)}, {"y": np.full(5, a)}),
     )  # fmt: skip
     return dataclasses.replace(whole, **changes)
 
@@ -192,8 +192,8 @@ def test_what_is_far_outside_of_a_picture_stays_outside():
 
 
 def test_a_lesson_that_is_too_large_is_refused():
-    slow = counting_lesson(times=numpy.linspace(0, 1, 10**5), respond=lambda a, b: lesson.Answer(
-        "", {}, {"y": numpy.full(10**5, a + b)}))  # fmt: skip
+    slow = counting_lesson(times=np.linspace(0, 1, 10**5), respond=lambda a, b: lesson.Answer(
+        "", {}, {"y": np.full(10**5, a + b)}))  # fmt: skip
     with pytest.raises(ValueError, match="characters: expected 300000 at most"):
         slow.data()
 

@@ -13,11 +13,12 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.polynomial import legendre
+
 from loopbook.deadtime.echoes import MOST_ECHOES, UNSEEN, Echoes
 
 if TYPE_CHECKING:
-    import numpy
-
     from loopbook.deadtime.response import ChannelModel
 
 NODES = 20  # where a segment is known, so that it is a polynomial of degree 19
@@ -35,13 +36,11 @@ RANGE = 1e3  # times the largest value so far, up to which a signal may grow in 
 WORTH = 12  # segments that a matrix for another length costs
 
 
-def follow(model: ChannelModel, end: float) -> tuple[numpy.ndarray, numpy.ndarray]:
+def follow(model: ChannelModel, end: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the edges of the segments, and the Legendre coefficients of the output, a row for each segment."""
-    import numpy
-
     if any(delay <= 0 for delay in model.delays):
         raise ValueError(f"the delays of the channels are {', '.join(map(str, model.delays))}: expected positive ones")
-    with numpy.errstate(over="ignore", invalid="ignore", divide="ignore"):  # said in words below
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # said in words below
         follower = _Follower(_merged(model), end)
         try:
             return follower.run()
@@ -51,14 +50,12 @@ def follow(model: ChannelModel, end: float) -> tuple[numpy.ndarray, numpy.ndarra
 
 def _merged(model):
     """The model with one channel for those of the same delay that carry the same signal but for a factor."""
-    import numpy
-
     delays = list(model.delays)
     for k in range(len(delays) - 1, 0, -1):
         for j in range(k):
             if delays[j] != delays[k]:
                 continue
-            one, other = (numpy.concatenate([model.C2[i], model.D21[i], model.D22[i]]) for i in (j, k))
+            one, other = (np.concatenate([model.C2[i], model.D21[i], model.D22[i]]) for i in (j, k))
             place = abs(one).argmax()
             factor = other[place] / one[place] if one[place] else 0.0
             if factor and (abs(other - factor * one) <= 4e-16 * abs(other)).all():
@@ -69,7 +66,7 @@ def _merged(model):
                 delays.pop(k)
                 model = model._replace(
                     B2=B2[:, rest], D12=D12[:, rest], C2=model.C2[rest], D21=model.D21[rest],
-                    D22=D22[numpy.ix_(rest, rest)], delays=delays,
+                    D22=D22[np.ix_(rest, rest)], delays=delays,
                 )  # fmt: skip
                 break
     return model
@@ -77,8 +74,6 @@ def _merged(model):
 
 class _Follower:
     def __init__(self, model, end):
-        import numpy
-
         self.model, self.end = model, end
         self.n, self.q = len(model.A), len(model.delays)
         # time in whole ticks, so that sums of delays are exact
@@ -99,14 +94,12 @@ class _Follower:
         self.steps = Steps(model)
         self.edges = [0]
         self.lengths = []
-        self.signals = numpy.zeros((32, self.q + 1, NODES))
+        self.signals = np.zeros((32, self.q + 1, NODES))
         self.pointers = [0] * self.q
         self._looks = {}
 
     def run(self):
-        import numpy
-
-        maximum, absolute = numpy.maximum.reduce, numpy.absolute
+        maximum, absolute = np.maximum.reduce, np.absolute
         echoes, steps, edges, lengths, per, last = (
             self.echoes,
             self.steps,
@@ -118,8 +111,8 @@ class _Follower:
         moments, n, q, delays = echoes.moments, self.n, self.q, self.delays
         shape = (q + 1, NODES)
         high = radau().high
-        scale = numpy.zeros(q + 1)
-        values = numpy.zeros(1 + n + q * NODES)
+        scale = np.zeros(q + 1)
+        values = np.zeros(1 + n + q * NODES)
         values[0] = 1.0
         longest, start = echoes.longest, echoes.start
         wish = min(start, moments[0][2] if moments else longest) or 1
@@ -164,14 +157,14 @@ class _Follower:
                 self._inputs(values, position, length)
             result = step @ values
             signals = result[n:].reshape(shape)
-            largest = numpy.maximum(scale, maximum(absolute(signals), axis=1))
+            largest = np.maximum(scale, maximum(absolute(signals), axis=1))
             left = absolute(signals @ high)
             tail = maximum(left[:, 8:], axis=1)
             if length > start and True in ((largest > RANGE * scale) & (scale > 0)).tolist():
                 wish, waiting = max(length >> 1, start), 1
                 continue
             if False in (tail <= GOAL * largest).tolist():
-                if not numpy.isfinite(largest).all():
+                if not np.isfinite(largest).all():
                     raise ValueError(f"the response grows beyond all numbers before t = {self.end:g}")
                 # where it does not fall any more it is rounding, as where large states make a small signal
                 flat = tail >= 0.1 * left[:, :8].max(axis=1)
@@ -198,7 +191,7 @@ class _Follower:
             if waiting <= 0 and 4 * length > 3 * wish < 3 * longest and last - position > WORTH * wish:
                 rest = maximum(left, axis=1)
                 # half of the coefficients are not needed, or rounding
-                if not (rest > numpy.where(tail > 0.1 * rest, RESOLVED, GOAL) * scale).any():
+                if not (rest > np.where(tail > 0.1 * rest, RESOLVED, GOAL) * scale).any():
                     wish = min(2 * wish, longest)
             if waiting < -PATIENCE:
                 patience = PATIENCE
@@ -211,17 +204,13 @@ class _Follower:
 
     def _size(self, values, result):
         """The sum of the sizes of what the signals are made of."""
-        import numpy
-
         _, _, _, C1, C2, D11, D12, D21, D22, _ = self.model
         into = abs(values[self.n + 1 :]).reshape(self.q, NODES).max(axis=1, initial=0.0)
-        states = numpy.maximum(abs(values[1 : self.n + 1]), abs(result[: self.n]))
-        direct, to, through = numpy.vstack([D21, D11])[:, 0], numpy.vstack([C2, C1]), numpy.vstack([D22, D12])
+        states = np.maximum(abs(values[1 : self.n + 1]), abs(result[: self.n]))
+        direct, to, through = np.vstack([D21, D11])[:, 0], np.vstack([C2, C1]), np.vstack([D22, D12])
         return abs(direct) + abs(to) @ states + abs(through) @ into
 
     def _grow(self, count):
-        import numpy
-
         seconds = count * (SECONDS + SECONDS_CHANNEL * self.q) + self.steps.seconds
         seconds += SECONDS_ECHO * self.echoes.count
         if seconds > MOST_SECONDS or count * (self.q + 1) * NODES > MOST_NUMBERS:
@@ -232,7 +221,7 @@ class _Follower:
                 f"too short beside the end, or its jumps are too many"
             )
         if count == len(self.signals):
-            self.signals = numpy.concatenate([self.signals, numpy.zeros_like(self.signals)])
+            self.signals = np.concatenate([self.signals, np.zeros_like(self.signals)])
 
     def too_many(self):
         late = ", ".join(f"{float(delay):g}" for delay in self.model.delays)
@@ -296,11 +285,9 @@ class _Follower:
         return look
 
     def _done(self):
-        import numpy
-
         per, edges = self.per, self.edges
         rule, signal = radau(), self.signals[: len(self.lengths), -1]
-        ends = numpy.array([edge / per for edge in edges])
+        ends = np.array([edge / per for edge in edges])
         if edges[-1] > self.last > edges[-2] + (edges[-2] >> 48):  # the last segment ends where it was asked for
             share = (self.last - edges[-2]) / (edges[-1] - edges[-2])
             signal[-1] = interpolation(share * (rule.nodes + 1) - 1) @ signal[-1]
@@ -317,7 +304,7 @@ class Steps:
         self.seconds = 0.0  # about, that they took
         self._known: dict = {}
 
-    def step(self, h: float, length: int, delays: list[int]) -> numpy.ndarray:
+    def step(self, h: float, length: int, delays: list[int]) -> np.ndarray:
         """The matrix for the length h; lengths and delays also in ticks."""
         mantissa, exponent = math.frexp(h)
         key = round(mantissa * 2**44), exponent
@@ -331,14 +318,12 @@ class Steps:
         return step
 
 
-def step_matrix(model: ChannelModel, h: float, overlaps: list[tuple[int, float]]) -> numpy.ndarray:
+def step_matrix(model: ChannelModel, h: float, overlaps: list[tuple[int, float]]) -> np.ndarray:
     """The matrix of one step of length h.
 
     Arguments:
         overlaps: the channels whose delay is shorter than h, and the delay as a share of h.
     """
-    import numpy
-
     A, B1, B2, C1, C2, D11, D12, D21, D22, _ = model
     n, q = len(A), B2.shape[1]
     rule = radau()
@@ -346,16 +331,16 @@ def step_matrix(model: ChannelModel, h: float, overlaps: list[tuple[int, float]]
     inner = len(overlaps)
     size, columns = NODES * (n + inner), 1 + n + NODES * q
     # unknown are the states at the nodes, a row for each node, and what the overlapping channels give, one by one
-    right = numpy.zeros((size, columns))
+    right = np.zeros((size, columns))
     place = NODES * n
     if n:
         states = right[:place].reshape(NODES, n, columns)
-        states[:, :, 0] = half * numpy.outer(rule.nodes + 1, B1[:, 0])
-        states[:, :, 1 : n + 1] = numpy.eye(n)
+        states[:, :, 0] = half * np.outer(rule.nodes + 1, B1[:, 0])
+        states[:, :, 1 : n + 1] = np.eye(n)
         states[:, :, n + 1 :].reshape(NODES, n, q, NODES)[...] = (
             half * B2[None, :, :, None] * rule.integration[:, None, None, :]
         )
-    left = numpy.eye(size)
+    left = np.eye(size)
     if n:
         left[:place, :place].reshape(NODES, n, NODES, n)[...] -= (
             half * rule.integration[:, None, :, None] * A[None, :, None, :]
@@ -364,14 +349,14 @@ def step_matrix(model: ChannelModel, h: float, overlaps: list[tuple[int, float]]
         to = [k for k, _ in overlaps]
         for number, (k, share) in enumerate(overlaps):
             rows = slice(place + number * NODES, place + (number + 1) * NODES)
-            late = numpy.zeros((NODES, NODES))
+            late = np.zeros((NODES, NODES))
             inside = rule.nodes > 2 * share - 1 + 1e-13
             late[inside] = interpolation(rule.nodes[inside] - 2 * share)
             # w_k = past + late z_k,  z_k = C2 x + D21 + D22 w
-            right[rows, n + 1 + k * NODES : n + 1 + (k + 1) * NODES] += numpy.eye(NODES)
+            right[rows, n + 1 + k * NODES : n + 1 + (k + 1) * NODES] += np.eye(NODES)
             right[rows, 0] += late.sum(axis=1) * D21[k, 0]
             if n:
-                left[rows, :place] -= numpy.kron(late, C2[k : k + 1])
+                left[rows, :place] -= np.kron(late, C2[k : k + 1])
             for other in range(q):
                 if not D22[k, other]:
                     continue
@@ -384,12 +369,12 @@ def step_matrix(model: ChannelModel, h: float, overlaps: list[tuple[int, float]]
             for number, k in enumerate(to):
                 spot = place + number * NODES
                 # the states take all of the channel, also what is of this segment
-                left[:place, spot : spot + NODES] -= half * numpy.kron(rule.integration, B2[:, k : k + 1])
+                left[:place, spot : spot + NODES] -= half * np.kron(rule.integration, B2[:, k : k + 1])
                 right[:place, n + 1 + k * NODES : n + 1 + (k + 1) * NODES] = 0.0
-    solved = numpy.linalg.solve(left, right)
-    step = numpy.empty((n + NODES * (q + 1), columns))
+    solved = np.linalg.solve(left, right)
+    step = np.empty((n + NODES * (q + 1), columns))
     step[:n] = solved[place - n : place]
-    from_state, direct_input, direct = numpy.vstack([C2, C1]), numpy.vstack([D21, D11])[:, 0], numpy.vstack([D22, D12])
+    from_state, direct_input, direct = np.vstack([C2, C1]), np.vstack([D21, D11])[:, 0], np.vstack([D22, D12])
     signals = step[n:].reshape(q + 1, NODES, columns)
     if n:
         signals[...] = (from_state @ solved[:place].reshape(NODES, n, columns)).transpose(1, 0, 2)
@@ -401,8 +386,8 @@ def step_matrix(model: ChannelModel, h: float, overlaps: list[tuple[int, float]]
         channels[k] = solved[place + number * NODES : place + (number + 1) * NODES]
     for k, given in channels.items():
         if given is None:
-            diagonal = signals[:, numpy.arange(NODES), n + 1 + k * NODES + numpy.arange(NODES)]
-            signals[:, numpy.arange(NODES), n + 1 + k * NODES + numpy.arange(NODES)] = diagonal + direct[:, k : k + 1]
+            diagonal = signals[:, np.arange(NODES), n + 1 + k * NODES + np.arange(NODES)]
+            signals[:, np.arange(NODES), n + 1 + k * NODES + np.arange(NODES)] = diagonal + direct[:, k : k + 1]
         elif direct[:, k].any():
             signals += direct[:, k, None, None] * given
     return step
@@ -412,26 +397,23 @@ class _Radau:
     """Nodes between -1 and 1, the last at 1; matrices to Legendre coefficients, and of integrals from the beginning."""
 
     def __init__(self, count):
-        import numpy
-        from numpy.polynomial import legendre
-
-        series = numpy.zeros(count + 1)
+        series = np.zeros(count + 1)
         series[-2:] = 1, -1
-        nodes = numpy.sort(legendre.legroots(series).real)
+        nodes = np.sort(legendre.legroots(series).real)
         for _ in range(3):
             nodes = nodes - legendre.legval(nodes, series) / legendre.legval(nodes, legendre.legder(series))
         nodes[-1] = 1.0
         values = legendre.legvander(nodes, count)
-        degree = numpy.arange(count)
+        degree = np.arange(count)
         self.nodes, self.nodes_list = nodes, nodes.tolist()
-        self.to_coefficients = numpy.linalg.inv(values[:, :count])  # more exact than by the weights
+        self.to_coefficients = np.linalg.inv(values[:, :count])  # more exact than by the weights
         self.high = self.to_coefficients[count // 2 :].T.copy()
         # the integral of P_m from -1 is (P_{m+1} - P_{m-1})/(2m + 1)
-        integrals = numpy.empty((count, count))
+        integrals = np.empty((count, count))
         integrals[:, 0] = nodes + 1
         integrals[:, 1:] = (values[:, 2:] - values[:, :-2]) / (2 * degree[1:] + 1)
         self.integration = integrals @ self.to_coefficients
-        differences = nodes[:, None] - nodes + numpy.eye(count)
+        differences = nodes[:, None] - nodes + np.eye(count)
         self.barycentric = 1 / (2 * differences).prod(axis=1)  # a factor 2, near the capacity
 
 
@@ -440,12 +422,10 @@ def radau(count: int = NODES) -> _Radau:
     return _Radau(count)
 
 
-def interpolation(places: numpy.ndarray, count: int = NODES) -> numpy.ndarray:
+def interpolation(places: np.ndarray, count: int = NODES) -> np.ndarray:
     """The matrix from values at the nodes to those at some places."""
-    import numpy
-
     rule = radau(count)
-    differences = numpy.asarray(places)[:, None] - rule.nodes
+    differences = np.asarray(places)[:, None] - rule.nodes
     differences[differences == 0] = 1e-200
     weights = rule.barycentric / differences
     return weights / weights.sum(axis=1, keepdims=True)

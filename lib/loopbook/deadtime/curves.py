@@ -11,13 +11,14 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+from numpy.polynomial import polynomial
+
 from loopbook.quasipolynomials import DelayFraction
 from loopbook.quasipolynomials.fraction import Quasipolynomial, lowest_term
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
-
-    import numpy
 
 __all__ = ["FrequencyCurve", "frequency_curve", "natural_range"]
 
@@ -42,16 +43,16 @@ class FrequencyCurve(NamedTuple):
         phase: in degrees, continuous. Far below all corners, K*s**n has n times 90 degrees, less 180 if K is negative.
     """
 
-    omega: numpy.ndarray
-    values: numpy.ndarray
-    phase: numpy.ndarray
+    omega: np.ndarray
+    values: np.ndarray
+    phase: np.ndarray
 
 
 def frequency_curve(
     H: DelayFraction,
     low: float,
     high: float,
-    coarse: Callable[[numpy.ndarray, numpy.ndarray], numpy.ndarray] | None = None,
+    coarse: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None,
 ) -> FrequencyCurve:
     """Return the frequency response between two frequencies, dense enough for a picture, with a continuous phase.
 
@@ -73,8 +74,6 @@ def frequency_curve(
     >>> round(math.radians(curve.phase[-1]), 9)
     -100.0
     """
-    import numpy
-
     if not 0 < low < high < math.inf:
         raise ValueError(f"the frequencies go from {low:g} to {high:g}: expected positive ones that increase")
     if not H.numerator:
@@ -84,8 +83,8 @@ def frequency_curve(
     start = low
     while not all(side.has_begun(start) for side in sides):
         start /= 4
-    first = numpy.geomspace(start, low, 2 + int(16 * math.log10(low / start)))[:-1]
-    grid = numpy.r_[first, numpy.geomspace(low, high, 2 + int(64 * math.log10(high / low)))]
+    first = np.geomspace(start, low, 2 + int(16 * math.log10(low / start)))[:-1]
+    grid = np.r_[first, np.geomspace(low, high, 2 + int(64 * math.log10(high / low)))]
     grid, is_gap = _followed(sides, grid)
     values = [side(grid) for side in sides]
     phases = [side.phases(grid, at, is_gap) for side, at in zip(sides, values, strict=True)]
@@ -97,70 +96,62 @@ def frequency_curve(
     for _ in range(60):
         a, b = slice(None, -1), slice(1, None)
         turn = phases[0] - phases[1] - delay * grid
-        with numpy.errstate(divide="ignore"):
-            height = numpy.log10(abs(values[0])) - numpy.log10(abs(values[1]))
-        finite = height[numpy.isfinite(height)]
-        missing = abs(numpy.diff(turn)) > STEP
-        missing |= abs(numpy.diff(height)) > SHARE * max(numpy.ptp(finite), 1)
+        with np.errstate(divide="ignore"):
+            height = np.log10(abs(values[0])) - np.log10(abs(values[1]))
+        finite = height[np.isfinite(height)]
+        missing = abs(np.diff(turn)) > STEP
+        missing |= abs(np.diff(height)) > SHARE * max(np.ptp(finite), 1)
         for phase in phases:  # what turns in both would cancel in the quotient
-            missing |= abs(numpy.diff(phase)) > 3 * STEP
+            missing |= abs(np.diff(phase)) > 3 * STEP
         if coarse is not None:
-            H_there = values[0] / values[1] * numpy.exp(-1j * delay * grid)
+            H_there = values[0] / values[1] * np.exp(-1j * delay * grid)
             missing |= coarse(H_there[a], H_there[b])
-        missing &= ~is_gap & (numpy.diff(grid) > 4 * NARROWEST * grid[b])
-        where = numpy.flatnonzero(missing)
+        missing &= ~is_gap & (np.diff(grid) > 4 * NARROWEST * grid[b])
+        where = np.flatnonzero(missing)
         if not len(where) or len(grid) > MOST_POINTS:
             break
         middle = (grid[where] + grid[where + 1]) / 2
         there = [side(middle) for side in sides]
         between = [
-            phase[where] + numpy.angle(new / at[where]) for phase, at, new in zip(phases, values, there, strict=True)
+            phase[where] + np.angle(new / at[where]) for phase, at, new in zip(phases, values, there, strict=True)
         ]
-        grid, is_gap = numpy.insert(grid, where + 1, middle), numpy.insert(is_gap, where, False)
-        values = [numpy.insert(at, where + 1, new) for at, new in zip(values, there, strict=True)]
-        phases = [numpy.insert(phase, where + 1, new) for phase, new in zip(phases, between, strict=True)]
-    phase = numpy.degrees(phases[0] - phases[1] - delay * grid) - (180 if above.sign != below.sign else 0)
-    gaps = numpy.flatnonzero(is_gap)
-    omega = numpy.insert(grid, gaps + 1, (grid[gaps] + grid[gaps + 1]) / 2)
+        grid, is_gap = np.insert(grid, where + 1, middle), np.insert(is_gap, where, False)
+        values = [np.insert(at, where + 1, new) for at, new in zip(values, there, strict=True)]
+        phases = [np.insert(phase, where + 1, new) for phase, new in zip(phases, between, strict=True)]
+    phase = np.degrees(phases[0] - phases[1] - delay * grid) - (180 if above.sign != below.sign else 0)
+    gaps = np.flatnonzero(is_gap)
+    omega = np.insert(grid, gaps + 1, (grid[gaps] + grid[gaps + 1]) / 2)
     values = H(1j * omega)
-    values[gaps + 1 + numpy.arange(len(gaps))] = numpy.nan
-    return FrequencyCurve(omega, values, numpy.insert(phase, gaps + 1, numpy.nan))
+    values[gaps + 1 + np.arange(len(gaps))] = np.nan
+    return FrequencyCurve(omega, values, np.insert(phase, gaps + 1, np.nan))
 
 
 class _OnAxis:
     """A quasipolynomial q(w) = Q(jw) without its shortest dead time; its derivatives by w, their bounds."""
 
     def __init__(self, parts: Quasipolynomial, scale: int):
-        import numpy
-        from numpy.polynomial import polynomial
-
         shortest = min(parts)
         parts = {delay - shortest: part for delay, part in parts.items()}
         self.delay, self.delays = float(shortest), [float(delay) for delay in parts]
         self.power, lowest = lowest_term(parts)
         self.sign, self.lowest = (1 if lowest > 0 else -1), abs(float(lowest / scale))
-        self.real = [numpy.array([c / scale for c in part]) for part in parts.values()]
-        self.derivatives = [[part * 1j ** (numpy.arange(len(part)) % 4) for part in self.real]]
+        self.real = [np.array([c / scale for c in part]) for part in parts.values()]
+        self.derivatives = [[part * 1j ** (np.arange(len(part)) % 4) for part in self.real]]
         for _ in range(max(TERMS, self.power + 1)):
             latest = zip(self.delays, self.derivatives[-1], strict=True)
             self.derivatives.append(
                 [polynomial.polyadd(polynomial.polyder(part), -1j * delay * part) for delay, part in latest]
             )
 
-    def __call__(self, w: numpy.ndarray, order: int = 0) -> numpy.ndarray:
-        import numpy
-        from numpy.polynomial import polynomial
-
+    def __call__(self, w: np.ndarray, order: int = 0) -> np.ndarray:
         parts = zip(self.delays, self.derivatives[order], strict=True)
-        return sum(polynomial.polyval(w, part) * numpy.exp(-1j * delay * w) for delay, part in parts)
+        return sum(polynomial.polyval(w, part) * np.exp(-1j * delay * w) for delay, part in parts)
 
-    def bound(self, w: numpy.ndarray, order: int = 0) -> numpy.ndarray:
+    def bound(self, w: np.ndarray, order: int = 0) -> np.ndarray:
         """What a derivative does not exceed from 0 to w."""
-        from numpy.polynomial import polynomial
-
         return sum(polynomial.polyval(w, abs(part)) for part in self.derivatives[order])
 
-    def noise(self, w: numpy.ndarray) -> numpy.ndarray:
+    def noise(self, w: np.ndarray) -> np.ndarray:
         """A value below this may be nothing but rounding."""
         return 4e-16 * max(map(len, self.real)) * self.bound(w)
 
@@ -169,7 +160,7 @@ class _OnAxis:
         k = self.power + 1
         return self.bound(w, k) * w / math.factorial(k) <= CONE * self.lowest
 
-    def change(self, a: numpy.ndarray, b: numpy.ndarray) -> tuple[numpy.ndarray, numpy.ndarray]:
+    def change(self, a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The value in the middle of intervals, and how far others in it are away from that at most."""
         c, r = (a + b) / 2, (b - a) / 2
         most = self.bound(b, TERMS) * r**TERMS / math.factorial(TERMS)
@@ -177,36 +168,29 @@ class _OnAxis:
             most = most + abs(self(c, order)) * r**order / math.factorial(order)
         return self(c), most
 
-    def phases(self, grid: numpy.ndarray, values: numpy.ndarray, is_gap: numpy.ndarray) -> numpy.ndarray:
+    def phases(self, grid: np.ndarray, values: np.ndarray, is_gap: np.ndarray) -> np.ndarray:
         """The continuous phase of the quasipolynomial, divided by its sign, at frequencies close to each other."""
-        import numpy
+        turns = np.angle(values[1:] / values[:-1])
+        for k in np.flatnonzero(is_gap):
+            around = np.angle(self.beside(grid[k], grid[k + 1]))
+            turns[k] = np.sum((np.diff(around) + math.pi) % (2 * math.pi) - math.pi)
+        first = np.angle(values[0] * self.sign / 1j**self.power) + self.power * math.pi / 2
+        return first + np.r_[0, np.cumsum(turns)]
 
-        turns = numpy.angle(values[1:] / values[:-1])
-        for k in numpy.flatnonzero(is_gap):
-            around = numpy.angle(self.beside(grid[k], grid[k + 1]))
-            turns[k] = numpy.sum((numpy.diff(around) + math.pi) % (2 * math.pi) - math.pi)
-        first = numpy.angle(values[0] * self.sign / 1j**self.power) + self.power * math.pi / 2
-        return first + numpy.r_[0, numpy.cumsum(turns)]
-
-    def beside(self, a: float, b: float) -> numpy.ndarray:
+    def beside(self, a: float, b: float) -> np.ndarray:
         """The values on the way from ja to jb along a half circle in the right half-plane."""
-        import numpy
-        from numpy.polynomial import polynomial
-
-        s = 1j * (a + b) / 2 + (b - a) / 2 * numpy.exp(1j * numpy.linspace(-math.pi / 2, math.pi / 2, 129))
+        s = 1j * (a + b) / 2 + (b - a) / 2 * np.exp(1j * np.linspace(-math.pi / 2, math.pi / 2, 129))
         parts = zip(self.delays, self.real, strict=True)
-        return sum(polynomial.polyval(s, part) * numpy.exp(-delay * s) for delay, part in parts)
+        return sum(polynomial.polyval(s, part) * np.exp(-delay * s) for delay, part in parts)
 
 
-def _followed(sides: list[_OnAxis], grid: numpy.ndarray) -> tuple[numpy.ndarray, numpy.ndarray]:
+def _followed(sides: list[_OnAxis], grid: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The grid so fine that each side is followed from point to point, and which intervals are gaps with a zero."""
-    import numpy
-
     points, gaps = [grid], []
     a, b = grid[:-1], grid[1:]
     count = len(grid)
     while len(a):
-        open_, empty = numpy.zeros((2, len(a)), dtype=bool)
+        open_, empty = np.zeros((2, len(a)), dtype=bool)
         for side in sides:
             value, most = side.change(a, b)
             noise = side.noise(b)
@@ -219,18 +203,18 @@ def _followed(sides: list[_OnAxis], grid: numpy.ndarray) -> tuple[numpy.ndarray,
         a, b = a[open_], b[open_]
         c = (a + b) / 2
         points.append(c)
-        a, b = numpy.r_[a, c], numpy.r_[c, b]
+        a, b = np.r_[a, c], np.r_[c, b]
         count += len(c)
         if count > MOST_POINTS:
             raise ValueError(
                 f"the curve turns too often between {grid[0]:g} and {grid[-1]:g} rad per unit of time: "
                 f"expected a narrower range of frequencies"
             )
-    grid = numpy.unique(numpy.concatenate(points))
+    grid = np.unique(np.concatenate(points))
     gaps = _wide_enough(sides, gaps)
     for a, b in gaps:
-        grid = numpy.r_[grid[grid < a], a, b, grid[grid > b]]
-    return grid, numpy.isin(grid[:-1], [a for a, _ in gaps])
+        grid = np.r_[grid[grid < a], a, b, grid[grid > b]]
+    return grid, np.isin(grid[:-1], [a for a, _ in gaps])
 
 
 def _wide_enough(sides: list[_OnAxis], gaps: list[tuple[float, float]]) -> list[tuple[float, float]]:
@@ -293,8 +277,6 @@ def _own_range(H: DelayFraction) -> tuple[float, float]:
 
 def _roots_without_delay(parts: Quasipolynomial) -> list[complex]:
     """The roots of a quasipolynomial's first part, and of all its parts, with either sign of what comes later."""
-    import numpy
-
     if not parts:
         return []
     first, *later = (part for _, part in sorted(parts.items()))
@@ -312,7 +294,7 @@ def _roots_without_delay(parts: Quasipolynomial) -> list[complex]:
         while coefficients and not coefficients[0]:
             del coefficients[0]
         if len(coefficients) > 1:
-            found += numpy.roots([c / coefficients[-1] for c in reversed(coefficients)]).tolist()
+            found += np.roots([c / coefficients[-1] for c in reversed(coefficients)]).tolist()
     return found
 
 

@@ -13,9 +13,9 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    import numpy
+import numpy as np
 
+if TYPE_CHECKING:
     from loopbook.deadtime.response import ChannelModel
 
 BLIND = 40.0  # frequency times length above which a polynomial of degree 19 does not see a signal
@@ -46,19 +46,17 @@ class Echoes:
     """
 
     def __init__(self, model: ChannelModel, end: float, per: float, delays: list[int], last: int):
-        import numpy
-
         self.delays, self.last = delays, last
         self.moments: list[tuple[int, int, int]] = []
         speeds, growing = _speeds(model)
         self.speed = fastest = max(speeds, default=0.0)
         top = 1e3 * max(fastest, 1 / end)
         count = math.ceil(math.log(top * end * 10) / math.log(STEP))
-        grid = numpy.sort(numpy.r_[top * STEP ** -numpy.arange(count + 1.0), speeds])
-        grid = grid[numpy.searchsorted(grid, 0.1 / end) :]
+        grid = np.sort(np.r_[top * STEP ** -np.arange(count + 1.0), speeds])
+        grid = grid[np.searchsorted(grid, 0.1 / end) :]
         from_input, channels = _transfer(model, grid)
         q = len(delays)
-        loud = numpy.flatnonzero(_radius(abs(channels[:q])) >= 1)
+        loud = np.flatnonzero(_radius(abs(channels[:q])) >= 1)
         if len(loud) and loud[-1] == len(grid) - 1:  # what comes back is never smooth
             longest = REACH / fastest if fastest else math.inf
         else:
@@ -69,19 +67,19 @@ class Echoes:
         start = min(REACH / fastest if fastest else math.inf, longest)
         # slow motion is of all sizes at first, as of a chain of integrators
         self.start = int(start * per) if start < end or len(model.A) < 2 else int(end / 16 * per)
-        seen = min(int(numpy.searchsorted(grid, BLIND / longest)), len(grid) - 1)
+        seen = min(int(np.searchsorted(grid, BLIND / longest)), len(grid) - 1)
         grid = grid[seen:]
-        self.from_channels = numpy.ascontiguousarray(channels[..., seen:])
-        self._empty = numpy.zeros((q, len(grid)), complex)
+        self.from_channels = np.ascontiguousarray(channels[..., seen:])
+        self._empty = np.zeros((q, len(grid)), complex)
         self._lengths = (BLIND * per / grid).tolist()
         self._lengths[-1] = 0.0  # what is seen at the end of the grid, is always
-        self._starts = (REACH * per / numpy.minimum(STEP * grid, fastest or REACH / end)).tolist()
+        self._starts = (REACH * per / np.minimum(STEP * grid, fastest or REACH / end)).tolist()
         self.count = 1
         self._heap: list[int] = []
-        self._pending: dict[int, numpy.ndarray] = {}
+        self._pending: dict[int, np.ndarray] = {}
         self._heard(0, from_input[:, seen:], 0.0)
 
-    def _heard(self, tick: int, content: numpy.ndarray, threshold: numpy.ndarray | float) -> bool:
+    def _heard(self, tick: int, content: np.ndarray, threshold: np.ndarray | float) -> bool:
         """Whether something is heard that is new at this moment; then also what comes back from it."""
         signals, places = (abs(content) > threshold).nonzero()
         if not len(places):
@@ -101,7 +99,7 @@ class Echoes:
                 entry[channel] += content[channel]
         return True
 
-    def listen(self, ahead: int, length: int, threshold: numpy.ndarray) -> bool:
+    def listen(self, ahead: int, length: int, threshold: np.ndarray) -> bool:
         """Find moments up to the tick `ahead`, or up to the first that a segment of the length cannot cross.
 
         Returns whether there are new ones.
@@ -129,13 +127,11 @@ def fastest(model: ChannelModel) -> float:
 
 def _speeds(model):
     """How fast the signals can change, in 1/time: without the channels, and with each closed either way."""
-    import numpy
-
     if not len(model.A):
         return [], 0.0
     # independent of the unit of time
     changes = model.B2.T[:, :, None] * model.C2[:, None, :]
-    values = numpy.linalg.eigvals(model.A + numpy.concatenate([0 * model.A[None], changes, -changes]))
+    values = np.linalg.eigvals(model.A + np.concatenate([0 * model.A[None], changes, -changes]))
     growing = max((abs(value) for value in values[0].tolist() if value.real > 0), default=0.0)
     return abs(values).ravel().tolist(), growing
 
@@ -146,40 +142,34 @@ def _memory(model):
     Where the jumps have died out, something smooth may still go round there, of which the states know nothing. Only if
     that is gone after a few rounds, too, a segment need not look back.
     """
-    import numpy
-
     if not model.D22.any():
         return math.inf
     round_trip = abs(model.D22)
     for _ in range(len(round_trip).bit_length()):
         round_trip = round_trip + round_trip @ round_trip
     inside = [float(delay) for k, delay in enumerate(model.delays) if round_trip[k, k]]
-    kept = max(abs(numpy.linalg.eigvals(abs(model.D22)))) if inside else 0.0
+    kept = max(abs(np.linalg.eigvals(abs(model.D22)))) if inside else 0.0
     return ROUNDS * min(inside) if kept > KEPT else math.inf
 
 
 def _transfer(model, grid):
     """From the input and from the channels to the channels and the output, on the grid of frequencies."""
-    import numpy
-
     A, B1, B2, C1, C2, D11, D12, D21, D22, _ = model
-    direct_input, direct = numpy.vstack([D21, D11]), numpy.vstack([D22, D12])
+    direct_input, direct = np.vstack([D21, D11]), np.vstack([D22, D12])
     if not len(A):
-        ones = numpy.ones(len(grid))
+        ones = np.ones(len(grid))
         return direct_input * ones + 0j, direct[..., None] * ones + 0j
     moments = (SLANT + 1j) * grid
-    states = numpy.linalg.solve(moments[:, None, None] * numpy.eye(len(A)) - A, numpy.hstack([B1, B2])[None] + 0j)
-    values = numpy.vstack([C2, C1]) @ states + numpy.hstack([direct_input, direct])
-    values = numpy.moveaxis(values, 0, -1)
-    return numpy.ascontiguousarray(values[:, 0]), values[:, 1:]
+    states = np.linalg.solve(moments[:, None, None] * np.eye(len(A)) - A, np.hstack([B1, B2])[None] + 0j)
+    values = np.vstack([C2, C1]) @ states + np.hstack([direct_input, direct])
+    values = np.moveaxis(values, 0, -1)
+    return np.ascontiguousarray(values[:, 0]), values[:, 1:]
 
 
 def _radius(matrices):
     """The spectral radii of matrices without negative elements, along the last axis."""
-    import numpy
-
     if len(matrices) == 0:
-        return numpy.zeros(matrices.shape[-1])
+        return np.zeros(matrices.shape[-1])
     if len(matrices) == 1:
         return matrices[0, 0]
-    return abs(numpy.linalg.eigvals(numpy.moveaxis(matrices, -1, 0))).max(axis=1)
+    return abs(np.linalg.eigvals(np.moveaxis(matrices, -1, 0))).max(axis=1)

@@ -11,11 +11,11 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from loopbook.deadtime.echoes import ROUNDED
 
 if TYPE_CHECKING:
-    import numpy
-
     from loopbook.deadtime.response import ChannelModel
 
 SPAN = 3.5  # times the fastest lag that a cell may be long
@@ -27,41 +27,39 @@ MOST_TERMS = 40
 MOST_NUMBERS = 20_000_000
 
 
-def shared_cells(models: ChannelModel, delays: list[Fraction], times: numpy.ndarray) -> numpy.ndarray:
+def shared_cells(models: ChannelModel, delays: list[Fraction], times: np.ndarray) -> np.ndarray:
     """Return the step responses, a row for each model; a row that is not exact enough is nan.
 
     Arguments:
         models: arrays with an axis of models before the others.
         delays: of the channels, the same for all of the models.
     """
-    import numpy
-
     count = len(models.A)
     end = float(times.max(initial=0.0))
-    values = numpy.full((count, len(times)), math.nan)
-    with numpy.errstate(over="ignore", invalid="ignore", divide="ignore"):  # not exact enough
+    values = np.full((count, len(times)), math.nan)
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # not exact enough
         speeds = _speeds(models)
     cell = _common(delays) if delays else Fraction(end or 1.0)
-    todo = numpy.flatnonzero(numpy.isfinite(speeds))
+    todo = np.flatnonzero(np.isfinite(speeds))
     while len(todo):
         # those that can be taken with the same cells
         pieces = max(1, math.ceil(float(cell) * speeds[todo].min() / SPAN))
         pieces = 2 ** math.ceil(math.log2(pieces))
         length = cell / pieces
         here = todo[speeds[todo] * float(length) <= SPAN]
-        todo = numpy.setdiff1d(todo, here)
+        todo = np.setdiff1d(todo, here)
         cells = int(Fraction(end) / length) + 1
         back = max((int(delay / length) for delay in delays), default=1)
         numbers = min(back, cells) * len(delays) * MOST_TERMS * len(here)
         if cells > MOST_CELLS or numbers > MOST_NUMBERS:
             break
         members = type(models)(*(array[here] for array in models[:-1]), None)
-        with numpy.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             found, exact = _follow(members, [int(delay / length) for delay in delays], length, times)
         values[here[exact]] = found[exact]
         again = here[~exact]
         speeds[again] = 2.01 * SPAN / float(length)
-        todo = numpy.union1d(todo, again)
+        todo = np.union1d(todo, again)
     return values
 
 
@@ -73,12 +71,10 @@ def _common(delays):
 
 def _speeds(models):
     """How fast each model can change, in 1/time, not less than the largest of its eigenvalues."""
-    import numpy
-
     A, B2, C2 = models.A, models.B2, models.C2
     if not A.shape[1]:
-        return numpy.zeros(len(A))
-    speeds = numpy.zeros(len(A))
+        return np.zeros(len(A))
+    speeds = np.zeros(len(A))
     for channel in [None, *range(B2.shape[2])]:
         change = 0 if channel is None else B2[:, :, channel, None] * C2[:, None, channel, :]
         for sign in (1, -1) if channel is not None else (1,):
@@ -87,53 +83,49 @@ def _speeds(models):
             power = power / scale[:, None, None]
             for _ in range(3):
                 power = power @ power
-            size = numpy.sqrt((power**2).sum(axis=(1, 2))) ** (1 / 8)
-            speeds = numpy.maximum(speeds, size * scale)
+            size = np.sqrt((power**2).sum(axis=(1, 2))) ** (1 / 8)
+            speeds = np.maximum(speeds, size * scale)
     return speeds
 
 
 def _follow(models, back, length, times):
     """The values at the times, and for which of the models they are exact enough."""
-    import numpy
-
     h = float(length)
     # the axis of models is the last one
-    A, B1, B2, C1, C2, D11, D12, D21, D22 = (
-        numpy.ascontiguousarray(numpy.moveaxis(array, 0, -1)) for array in models[:-1]
-    )
+    A, B1, B2, C1, C2, D11, D12, D21, D22 = (np.ascontiguousarray(np.moveaxis(array, 0, -1)) for array in models[:-1])
     n, q, count = len(A), len(back), A.shape[-1]
     terms = next(m for m in range(4, MOST_TERMS + 1) if SPAN**m / math.factorial(m) < LEFT_OUT or m == MOST_TERMS)
     A, B1, B2 = A * h, B1[:, 0] * h, B2 * h
-    from_state = numpy.concatenate([C2, C1]).transpose(1, 0, 2)
-    from_channels = numpy.concatenate([D22, D12]).transpose(1, 0, 2)
-    direct = numpy.concatenate([D21, D11])[:, 0]
+    from_state = np.concatenate([C2, C1]).transpose(1, 0, 2)
+    from_channels = np.concatenate([D22, D12]).transpose(1, 0, 2)
+    direct = np.concatenate([D21, D11])[:, 0]
     through = [k for k in range(q) if from_channels[k].any()]
     into = [k for k in range(q) if B2[:, k].any()]
     known = times * (1 + float(ROUNDED)) / h
-    order = numpy.argsort(known, kind="stable")
+    order = np.argsort(known, kind="stable")
     sorted_cells = known[order].astype(int)
-    values = numpy.empty((len(times), count))
+    values = np.empty((len(times), count))
     ring = max(back, default=0)
-    past = numpy.zeros((max(ring, 1), q, terms, count))
-    state = numpy.zeros((n, count))
-    x = numpy.empty((terms, n, count))
-    signals = numpy.empty((terms, q + 1, count))
-    scale, left, lost = (numpy.zeros((q + 1, count)) for _ in range(3))
+    past = np.zeros((max(ring, 1), q, terms, count))
+    state = np.zeros((n, count))
+    x = np.empty((terms, n, count))
+    signals = np.empty((terms, q + 1, count))
+    scale, left, lost = (np.zeros((q + 1, count)) for _ in range(3))
     last = int(sorted_cells[-1]) if len(times) else 0
     for cell in range(last + 1):
         w = [past[(cell - steps) % ring, k] if cell >= steps else None for k, steps in enumerate(back)]
         x[0] = state
         for m in range(terms - 1):
-            change = numpy.einsum("ijk,jk->ik", A, x[m]) if n else x[m]
+            change = np.einsum("ijk,jk->ik", A, x[m]) if n else x[m]
             if m == 0:
                 change += B1
             for k in into:
                 if w[k] is not None:
                     change += B2[:, k] * w[k][m]
-            numpy.divide(change, m + 1, out=x[m + 1])
+            np.divide(change, m + 1, out=x[m + 1])
         if n:
             state = x.sum(axis=0)
-            numpy.einsum("jik,mjk->mik", from_state, x, out=signals)
+            np.einsum("jik,mjk->mik", from_state, x, out=signals)
         else:
             signals[:] = 0.0
         signals[0] += direct
@@ -143,14 +135,14 @@ def _follow(models, back, length, times):
         if ring:
             past[cell % ring] = signals[:, :q].transpose(1, 0, 2)
         sizes = abs(signals)
-        numpy.maximum(scale, abs(signals.sum(axis=0)), out=scale)
-        numpy.maximum(scale, sizes[0], out=scale)
-        here = numpy.maximum(scale, FAINT * scale.max(axis=0)) + 1e-300
-        numpy.maximum(left, sizes[-2:].max(axis=0) / here, out=left)
-        numpy.maximum(lost, sizes.max(axis=0) / here, out=lost)
-        begins, ends = numpy.searchsorted(sorted_cells, [cell, cell + 1])
+        np.maximum(scale, abs(signals.sum(axis=0)), out=scale)
+        np.maximum(scale, sizes[0], out=scale)
+        here = np.maximum(scale, FAINT * scale.max(axis=0)) + 1e-300
+        np.maximum(left, sizes[-2:].max(axis=0) / here, out=left)
+        np.maximum(lost, sizes.max(axis=0) / here, out=lost)
+        begins, ends = np.searchsorted(sorted_cells, [cell, cell + 1])
         if ends > begins:
             local = times[order[begins:ends]] / h - cell
-            values[order[begins:ends]] = numpy.vander(local, terms, increasing=True) @ signals[:, -1]
-    exact = ((left <= EXACT) & (lost * 1e-15 <= EXACT)).all(axis=0) & numpy.isfinite(values).all(axis=0)
+            values[order[begins:ends]] = np.vander(local, terms, increasing=True) @ signals[:, -1]
+    exact = ((left <= EXACT) & (lost * 1e-15 <= EXACT)).all(axis=0) & np.isfinite(values).all(axis=0)
     return values.T, exact

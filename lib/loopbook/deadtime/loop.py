@@ -6,6 +6,7 @@ import functools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
 import sympy
 
 from loopbook.deadtime.system import System, return_difference
@@ -17,7 +18,6 @@ from loopbook.transfer import transfer_function
 from loopbook.validation import did_you_mean, one_of, times_from_zero
 
 if TYPE_CHECKING:
-    import numpy
     from numpy.typing import ArrayLike
 
     from loopbook.figures import Picture, PlanePlot, TimePlot
@@ -36,13 +36,13 @@ class LoopResponse:
         signals: ``{"setpoint": ..., "d": ..., "y": ..., "u": ...}``, arrays with a value for each moment.
     """
 
-    times: numpy.ndarray
-    signals: dict[str, numpy.ndarray]
+    times: np.ndarray
+    signals: dict[str, np.ndarray]
     output: str = "y"
     manipulated: str = "u"
     held: frozenset[str] = frozenset({"setpoint", "d"})
 
-    def __getitem__(self, name: str) -> numpy.ndarray:
+    def __getitem__(self, name: str) -> np.ndarray:
         if name not in self.signals:
             raise ValueError(f"the response has no signal {name!r}: {did_you_mean(name, self.signals)}")
         return self.signals[name]
@@ -52,9 +52,7 @@ class LoopResponse:
         return "1"
 
     def __repr__(self) -> str:
-        import numpy
-
-        times = numpy.ravel(self.times)
+        times = np.ravel(self.times)
         span = f"t = {times[0]:g} to {times[-1]:g}" if times.size else "at no time"
         return f"<response of a loop, {span}: {', '.join(self.signals)}>"
 
@@ -261,9 +259,7 @@ class Loop:
         >>> Loop(sympy.exp(-s) / s, PID(0.5)).run([2, 3])["y"].round(6)
         array([0.5  , 0.875])
         """
-        import numpy
-
-        times = numpy.linspace(0, self.servo.horizon(), 501) if times is None else times_from_zero(times)
+        times = np.linspace(0, self.servo.horizon(), 501) if times is None else times_from_zero(times)
         y_SP, d = (evaluate(function_of(t, signal), times) for signal in (setpoint, load))
         paths = {"y": (self.servo, self.regulator), "u": (self.setpoint_to_control, self.load_to_control)}
         signals = {"setpoint": y_SP, "d": d}

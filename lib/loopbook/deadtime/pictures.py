@@ -8,6 +8,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from loopbook.deadtime.curves import frequency_curve, natural_range
 from loopbook.figures import Picture, PlanePlot, TimePlot, time_plot
 from loopbook.figures.labels import add_legend, decades, free_place, legend_below
@@ -71,7 +73,6 @@ def bode_plot(
     >>> bode_plot(L, margins=margins(L), title="An integrator")
     <An integrator: magnitude and phase [deg] against omega [rad/s]; gain margin 3.14, phase margin 61.4°>
     """
-    import numpy
     from matplotlib.figure import Figure
 
     fractions = _fractions(H)
@@ -80,13 +81,13 @@ def bode_plot(
     curves = {label: frequency_curve(fraction, low, high) for label, fraction in fractions.items()}
 
     def size(values):
-        return 20 * numpy.log10(abs(values)) if db else abs(values)
+        return 20 * np.log10(abs(values)) if db else abs(values)
 
     with styled():
         figure = Figure(figsize=(WIDTH, 0.85 * WIDTH), layout="constrained")
         above, below = figure.subplots(2, sharex=True)
         for place, (label, curve) in enumerate(curves.items()):
-            with numpy.errstate(divide="ignore"):
+            with np.errstate(divide="ignore"):
                 above.plot(curve.omega, size(curve.values), label=label, **look(place))
             below.plot(curve.omega, curve.phase, label=label, **look(place))
         above.set_xscale("log")
@@ -116,11 +117,9 @@ def bode_plot(
 
 
 def _bode_margins(above, below, H, curve, margins, size, unit) -> None:
-    import numpy
-
     def phase_at(w):
-        about = numpy.interp(math.log(w), *_finite(numpy.log(curve.omega), curve.phase))
-        angle = math.degrees(numpy.angle(H(1j * w)))
+        about = np.interp(math.log(w), *_finite(np.log(curve.omega), curve.phase))
+        angle = math.degrees(np.angle(H(1j * w)))
         return angle + 360 * round((about - angle) / 360)
 
     (left, right), bottom = above.get_xlim(), above.get_ylim()[0]
@@ -167,14 +166,13 @@ def _bode_margins(above, below, H, curve, margins, size, unit) -> None:
 
 def _crossing(H, curve, size) -> float | None:
     """The frequency at which the curve crosses the negative real axis at this distance from zero."""
-    import numpy
     from scipy.optimize import brentq
 
-    turns = numpy.floor((curve.phase + 180) / 360)
+    turns = np.floor((curve.phase + 180) / 360)
     nearest, found = 0.01 * size, None
-    for k in numpy.flatnonzero(numpy.diff(turns)):
+    for k in np.flatnonzero(np.diff(turns)):
         a, b = curve.omega[k : k + 2]
-        if numpy.isfinite(turns[k : k + 2]).all() and H(1j * a).imag * H(1j * b).imag < 0:
+        if np.isfinite(turns[k : k + 2]).all() and H(1j * a).imag * H(1j * b).imag < 0:
             w = brentq(lambda w: H(1j * w).imag, a, b, xtol=1e-15 * b)
             if abs(abs(H(1j * w)) - size) < nearest:
                 nearest, found = abs(abs(H(1j * w)) - size), float(w)
@@ -183,15 +181,13 @@ def _crossing(H, curve, size) -> float | None:
 
 def _magnitudes(curves, with_one) -> tuple[float, float]:
     """Limits of the magnitude; without the neighbourhood of zeros and poles on the axis."""
-    import numpy
-
     lows, highs = [], []
     for curve in curves:
         w, sizes = curve.omega, abs(curve.values)
-        shown = numpy.isfinite(sizes) & (sizes > 0)
-        for gap in w[numpy.isnan(curve.phase)]:
+        shown = np.isfinite(sizes) & (sizes > 0)
+        for gap in w[np.isnan(curve.phase)]:
             shown &= abs(w - gap) > 0.003 * gap
-        steady = numpy.interp(numpy.geomspace(w[0], w[-1], 60)[:20], w[shown], sizes[shown]).max()
+        steady = np.interp(np.geomspace(w[0], w[-1], 60)[:20], w[shown], sizes[shown]).max()
         highs.append(sizes[shown].max())
         lows.append(max(sizes[shown].min(), LOWEST * steady))
     low, high = min([*lows, *([0.5] if with_one else [])]), max([*highs, *([2.0] if with_one else [])])
@@ -202,9 +198,7 @@ def _magnitudes(curves, with_one) -> tuple[float, float]:
 
 
 def _phases(curves, with_half_turn) -> tuple[float, float]:
-    import numpy
-
-    phases = numpy.concatenate([curve.phase[numpy.isfinite(curve.phase)] for curve in curves])
+    phases = np.concatenate([curve.phase[np.isfinite(curve.phase)] for curve in curves])
     low, high = phases.min(), phases.max()
     if with_half_turn:
         low, high = min(low, -200.0), max(high, -160.0)
@@ -262,7 +256,6 @@ def nyquist_plot(
     >>> nyquist_plot(L, margins=margins(L))
     <imaginary part against real part; gain margin 3.14, phase margin 61.4°, Ms 1.59>
     """
-    import numpy
     from matplotlib.figure import Figure
 
     fractions = _fractions(L)
@@ -282,7 +275,7 @@ def nyquist_plot(
         axes = figure.subplots()
         axes.axhline(0, **ZERO)
         axes.axvline(0, **ZERO)
-        circle = numpy.exp(1j * numpy.linspace(0, 2 * math.pi, 361))
+        circle = np.exp(1j * np.linspace(0, 2 * math.pi, 361))
         axes.plot(circle.real, circle.imag, **(GUIDE | {"label": "unit circle"}))
         for place, (label, curve) in enumerate(curves.items()):
             line = look(place)
@@ -310,19 +303,15 @@ def nyquist_plot(
 
 
 def _coarse(a, b):
-    import numpy
-
-    with numpy.errstate(invalid="ignore"):
-        return (abs(b - a) > 0.02) & (numpy.minimum(abs(a), abs(b)) < 4)
+    with np.errstate(invalid="ignore"):
+        return (abs(b - a) > 0.02) & (np.minimum(abs(a), abs(b)) < 4)
 
 
 def _window(curves, margins, mirror, xlim, ylim):
     """Limits that hold the unit circle, and as much of the curves as does not dwarf it."""
-    import numpy
-
     x, y = [-1.15, 1.15], [-1.15, 1.15]
     for curve in curves:
-        values = curve.values[numpy.isfinite(curve.values)]
+        values = curve.values[np.isfinite(curve.values)]
         near = abs(values) <= NEAR
         if near.any() and abs(values[near.argmax() :]).max() <= WHOLE:  # it comes from far, as from an integrator
             values = values[near.argmax() :]
@@ -351,19 +340,17 @@ def _window(curves, margins, mirror, xlim, ylim):
 
 def _arrow(axes, curve, colour) -> None:
     """An arrow towards higher frequencies, on the longest part that is seen."""
-    import numpy
-
     values = curve.values
     (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
-    with numpy.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore"):
         seen = (left < values.real) & (values.real < right) & (bottom < values.imag) & (values.imag < top)
-    lengths = numpy.where(seen[1:] & seen[:-1], abs(numpy.diff(values)), 0.0)
-    ends = numpy.flatnonzero(numpy.diff(numpy.r_[False, lengths > 0, False].astype(int))).reshape(-1, 2)
+    lengths = np.where(seen[1:] & seen[:-1], abs(np.diff(values)), 0.0)
+    ends = np.flatnonzero(np.diff(np.r_[False, lengths > 0, False].astype(int))).reshape(-1, 2)
     if not len(ends):
         return
     a, b = max(ends, key=lambda run: lengths[run[0] : run[1]].sum())
-    way = numpy.cumsum(lengths[a:b])
-    k = a + int(numpy.searchsorted(way, 0.32 * way[-1]))
+    way = np.cumsum(lengths[a:b])
+    k = a + int(np.searchsorted(way, 0.32 * way[-1]))
     start, tip = values[k], values[k + 1]
     if start == tip:
         return
@@ -376,8 +363,6 @@ def _arrow(axes, curve, colour) -> None:
 
 
 def _nyquist_margins(axes, L, margins, unit) -> None:
-    import numpy
-
     still = {"scalex": False, "scaley": False}
     bar = {"color": OF_GAIN, "linewidth": 2.4, "zorder": 3.5, **still}
     if math.isfinite(margins.gain_margin):
@@ -390,14 +375,14 @@ def _nyquist_margins(axes, L, margins, unit) -> None:
         axes.plot([-1 / margins.gain_reduction], [0], "s", color=OF_GAIN, markersize=6, label=label, zorder=4, **still)
     if math.isfinite(margins.phase_margin):
         point = L(1j * margins.omega_c)
-        angle = numpy.angle(point) % (2 * math.pi)
-        arc = numpy.exp(1j * numpy.linspace(math.pi, angle, 90))
+        angle = np.angle(point) % (2 * math.pi)
+        arc = np.exp(1j * np.linspace(math.pi, angle, 90))
         of_phase = {"color": OF_PHASE, **still}
         axes.plot(arc.real, arc.imag, linewidth=2.4, zorder=3.4, label=_phase_words(margins, unit), **of_phase)
         axes.plot([0, point.real], [0, point.imag], linewidth=1, linestyle=(0, (2, 2)), zorder=1.7, **of_phase)
         axes.plot([point.real], [point.imag], "o", markersize=6, zorder=4, **of_phase)
     if math.isfinite(margins.Ms) and margins.Ms > 0:
-        circle = -1 + numpy.exp(1j * numpy.linspace(0, 2 * math.pi, 181)) / margins.Ms
+        circle = -1 + np.exp(1j * np.linspace(0, 2 * math.pi, 181)) / margins.Ms
         thin = look("disturbance") | {"linewidth": 1.4, "zorder": 1.9}
         axes.plot(circle.real, circle.imag, label=f"$M_s$ = {_short(margins.Ms)}", **thin, **still)
         if math.isfinite(margins.omega_ms):
@@ -435,8 +420,6 @@ def step_plot(
     >>> step_plot(H, info=H.step_info(), title="Two poles")
     <Two poles: y(t) against t [s]; overshoot 16.3 %, rise time 1.64 s, settling time 8.08 s>
     """
-    import numpy
-
     systems = H if isinstance(H, dict) else {"": H}
     _not_empty(systems)
     _of_one(info, systems)
@@ -459,7 +442,7 @@ def step_plot(
         }
 
     y = panel("y", values[: len(systems)], "measurement")
-    setpoint = {"setpoint": (numpy.ones(len(times)), "setpoint")} if controls else {}
+    setpoint = {"setpoint": (np.ones(len(times)), "setpoint")} if controls else {}
     panels = [setpoint | y]
     if controls:
         u = panel("u", values[len(systems) :], "control signal")
@@ -479,8 +462,6 @@ def step_plot(
 
 def _mark_info(axes, line, info, settling, rise, unit) -> list[str]:
     """Mark what characterises a step response, and return it in words."""
-    import numpy
-
     times, values = line.get_data()
     end, final = times[-1], info.final_value
     still = {"scalex": False, "scaley": False}
@@ -499,7 +480,7 @@ def _mark_info(axes, line, info, settling, rise, unit) -> list[str]:
         places = ("above right", "above", "right") if sign > 0 else ("below right", "below", "right")
         labels.append((found[-1], (info.peak_time, info.peak), places, OF_GAIN))
     if math.isfinite(info.rise_time):
-        start, finish = (times[numpy.argmax(sign * values >= share * abs(final))] for share in rise)
+        start, finish = (times[np.argmax(sign * values >= share * abs(final))] for share in rise)
         found.append(f"rise time {_short(info.rise_time)} {unit}")
         floor = bottom if sign > 0 else top
         level = floor + 0.06 * (final - floor)
@@ -510,7 +491,7 @@ def _mark_info(axes, line, info, settling, rise, unit) -> list[str]:
         labels.append((found[-1], (finish, level), ("right", "above right"), "#000000"))
     if 0 < info.settling_time <= end:
         found.append(f"settling time {_short(info.settling_time)} {unit}")
-        there = numpy.interp(info.settling_time, times, values)
+        there = np.interp(info.settling_time, times, values)
         floor = bottom if sign > 0 else top
         axes.plot([info.settling_time] * 2, [floor, there], **GUIDE)
         axes.plot([info.settling_time], [there], "o", color="#000000", markersize=5, zorder=4, **still)
@@ -530,9 +511,7 @@ def _system(value):
 
 def _times(responses, end):
     """Even times, and two at each jump, so that it is drawn upright."""
-    import numpy
-
-    times = [numpy.linspace(0, end, 1201)]
+    times = [np.linspace(0, end, 1201)]
     for response in responses:
         edges = response.edges[(response.edges > 0) & (response.edges < end)]
         if not len(edges) or len(edges) > 20_000:
@@ -541,7 +520,7 @@ def _times(responses, end):
         jump = abs(response(edges) - response(before))
         seen = jump > 1e-4 * max(abs(response(times[0])).max(), 1e-300)
         times += [edges[seen], before[seen]]
-    return numpy.unique(numpy.concatenate(times))
+    return np.unique(np.concatenate(times))
 
 
 # ------------------------------------------------------------------------------------------------ python-control
@@ -568,21 +547,20 @@ def frequency_data(H: object, omega: ArrayLike | None = None, name: str = "H") -
     array([0.8944, 0.7071])
     """
     import control
-    import numpy
 
     fractions = _fractions({"H": H})
     (fraction,) = fractions.values()
     if omega is None:
         curve = frequency_curve(fraction, *natural_range([fraction]))
-        known = numpy.isfinite(curve.phase)
+        known = np.isfinite(curve.phase)
         omega, values = curve.omega[known], curve.values[known]
     else:
-        omega = numpy.atleast_1d(real_numbers("frequencies", omega))
-        if omega.ndim != 1 or not len(omega) or (omega <= 0).any() or (numpy.diff(omega) <= 0).any():
+        omega = np.atleast_1d(real_numbers("frequencies", omega))
+        if omega.ndim != 1 or not len(omega) or (omega <= 0).any() or (np.diff(omega) <= 0).any():
             raise ValueError(f"the frequencies are {omega}: expected positive ones that increase")
         values = fraction(1j * omega)
-        if not numpy.isfinite(values).all():
-            raise ValueError(f"H has a pole at the frequency {omega[~numpy.isfinite(values)][0]:g}: expected others")
+        if not np.isfinite(values).all():
+            raise ValueError(f"H has a pole at the frequency {omega[~np.isfinite(values)][0]:g}: expected others")
     return control.FrequencyResponseData(values, omega, dt=0, name=name)
 
 
@@ -616,9 +594,7 @@ def _range(fractions, omega, margins) -> tuple[float, float]:
 
 
 def _finite(x, y):
-    import numpy
-
-    known = numpy.isfinite(y)
+    known = np.isfinite(y)
     return x[known], y[known]
 
 

@@ -6,6 +6,9 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+from numpy.polynomial import legendre
+
 from loopbook.deadtime.collocation import NODES, follow
 from loopbook.deadtime.echoes import ROUNDED
 from loopbook.deadtime.family import shared_cells
@@ -13,7 +16,6 @@ from loopbook.deadtime.superposition import superpose
 from loopbook.validation import not_negative, one_of, real_numbers, times_from_zero
 
 if TYPE_CHECKING:
-    import numpy
     from numpy.typing import ArrayLike
 
 __all__ = ["ChannelModel", "Response", "response_to_samples", "step_family"]
@@ -29,15 +31,15 @@ class ChannelModel(NamedTuple):
     The arrays are two-dimensional; `delays` is a list of fractions.
     """
 
-    A: numpy.ndarray
-    B1: numpy.ndarray
-    B2: numpy.ndarray
-    C1: numpy.ndarray
-    C2: numpy.ndarray
-    D11: numpy.ndarray
-    D12: numpy.ndarray
-    D21: numpy.ndarray
-    D22: numpy.ndarray
+    A: np.ndarray
+    B1: np.ndarray
+    B2: np.ndarray
+    C1: np.ndarray
+    C2: np.ndarray
+    D11: np.ndarray
+    D12: np.ndarray
+    D21: np.ndarray
+    D22: np.ndarray
     delays: list[Fraction]
 
 
@@ -59,37 +61,34 @@ class Response:
             dead time), where its dead times have more than 30,000 sums at which it is not smooth, or where it
             grows beyond all numbers.
 
-    >>> import numpy
-    >>> one = numpy.ones((1, 1))
-    >>> none = numpy.zeros((1, 0))
+    >>> import numpy as np
+    >>> one = np.ones((1, 1))
+    >>> none = np.zeros((1, 0))
     >>> lag = ChannelModel(-one, one, none, one, none.T, 0 * one, none, none.T, none.T @ none, [])
     >>> Response(lag, 5)([0.5, 1]).round(6)
     array([0.393469, 0.632121])
     """
 
-    edges: numpy.ndarray
+    edges: np.ndarray
 
     def __init__(self, model: ChannelModel, end: float):
         end = not_negative("end", end)
         model = model._replace(delays=[Fraction(delay) for delay in model.delays])
         self.edges, self._coefficients = follow(model, end)
 
-    def __call__(self, times: ArrayLike) -> numpy.ndarray:
+    def __call__(self, times: ArrayLike) -> np.ndarray:
         """Return the values at the given times, at a jump the one after it."""
-        import numpy
-        from numpy.polynomial import legendre
-
         times = times_from_zero(times)
         edges = self.edges
         if times.size and times.max() > edges[-1]:
             raise ValueError(f"t = {times.max():g} is later than {edges[-1]:g}, the end of the response")
         # a time that is an edge but for rounding belongs to the segment that begins there
-        index = numpy.searchsorted(edges, times * (1 + float(ROUNDED)), side="right") - 1
-        index = numpy.clip(index, 0, len(edges) - 2)
+        index = np.searchsorted(edges, times * (1 + float(ROUNDED)), side="right") - 1
+        index = np.clip(index, 0, len(edges) - 2)
         length = edges[index + 1] - edges[index]
         return legendre.legval(2 * (times - edges[index]) / length - 1, self._coefficients.T[:, index], tensor=False)
 
-    def quadrature(self, longest: float = math.inf) -> tuple[numpy.ndarray, numpy.ndarray]:
+    def quadrature(self, longest: float = math.inf) -> tuple[np.ndarray, np.ndarray]:
         """Return times and weights, two arrays with a row for each interval, for integrals over the response.
 
         The sum of weight * response(time)**2 is the integral of the square, exact for these polynomials. It goes to the
@@ -99,31 +98,29 @@ class Response:
             longest: no interval is longer; by itself each is a segment. For integrals of what is not smooth, as of the
                 size of an error, short ones are more exact.
 
-        >>> import numpy
-        >>> one = numpy.ones((1, 1))
-        >>> none = numpy.zeros((1, 0))
+        >>> import numpy as np
+        >>> one = np.ones((1, 1))
+        >>> none = np.zeros((1, 0))
         >>> lag = ChannelModel(-one, one, none, one, none.T, 0 * one, none, none.T, none.T @ none, [])
         >>> times, weights = Response(lag, 5).quadrature(longest=0.5)
         >>> times.shape, round(float(weights.sum()), 12)
         ((10, 20), 5.0)
         """
-        import numpy
-
-        pieces = numpy.ceil(numpy.diff(self.edges) / longest).astype(int).clip(1)
+        pieces = np.ceil(np.diff(self.edges) / longest).astype(int).clip(1)
         parts = zip(self.edges[:-1], self.edges[1:], pieces, strict=True)
-        inner = [numpy.linspace(a, b, n, endpoint=False) for a, b, n in parts]
-        edges = numpy.concatenate([*inner, self.edges[-1:]])
-        nodes, weights = numpy.polynomial.legendre.leggauss(NODES)
-        half = numpy.diff(edges)[:, None] / 2
+        inner = [np.linspace(a, b, n, endpoint=False) for a, b, n in parts]
+        edges = np.concatenate([*inner, self.edges[-1:]])
+        nodes, weights = np.polynomial.legendre.leggauss(NODES)
+        half = np.diff(edges)[:, None] / 2
         return edges[:-1, None] + half * (nodes + 1), half * weights
 
     @property
-    def coefficients(self) -> numpy.ndarray:
+    def coefficients(self) -> np.ndarray:
         """The coefficients of the Legendre polynomials, an array with a row for each segment."""
         return self._coefficients
 
 
-def response_to_samples(model: ChannelModel, times: ArrayLike, u: ArrayLike, hold: str = "zero order") -> numpy.ndarray:
+def response_to_samples(model: ChannelModel, times: ArrayLike, u: ArrayLike, hold: str = "zero order") -> np.ndarray:
     """Return the output at the times of samples of the input, in a time that grows with their number.
 
     Arguments:
@@ -138,20 +135,18 @@ def response_to_samples(model: ChannelModel, times: ArrayLike, u: ArrayLike, hol
         ValueError: for arrays that do not fit, another hold, as `Response`; or for uneven times where more than eight
             million pairs of samples had to be taken one by one, as with a step response that jumps hundreds of times.
 
-    >>> import numpy
-    >>> one = numpy.ones((1, 1))
-    >>> none = numpy.zeros((1, 0))
+    >>> import numpy as np
+    >>> one = np.ones((1, 1))
+    >>> none = np.zeros((1, 0))
     >>> integrator = ChannelModel(0 * one, one, none, one, none.T, 0 * one, none, none.T, none.T @ none, [])
     >>> response_to_samples(integrator, [0, 1, 3], [1, 2, 0])[1:].round(6)
     array([1., 5.])
     >>> response_to_samples(integrator, [0, 1, 3], [1, 2, 0], hold="first order")[1:].round(6)
     array([1.5, 3.5])
     """
-    import numpy
-
     one_of("the hold", hold, HOLDS)
     times, u = real_numbers("times", times), real_numbers("values of u", u)
-    if times.ndim != 1 or u.shape != times.shape or not len(times) or not (numpy.diff(times) > 0).all():
+    if times.ndim != 1 or u.shape != times.shape or not len(times) or not (np.diff(times) > 0).all():
         raise ValueError(f"{u.size} values of u for {times.size} times: expected one each for times that increase")
     since = times - times[0]
     response = Response(model, since[-1])
@@ -161,7 +156,7 @@ def response_to_samples(model: ChannelModel, times: ArrayLike, u: ArrayLike, hol
     return superpose(response, since, u, hold == "first order", late)
 
 
-def step_family(models: ChannelModel, times: ArrayLike) -> numpy.ndarray:
+def step_family(models: ChannelModel, times: ArrayLike) -> np.ndarray:
     """Return the step responses of many models of the same shape at the same times.
 
     Arguments:
@@ -175,16 +170,14 @@ def step_family(models: ChannelModel, times: ArrayLike) -> numpy.ndarray:
     Raises:
         ValueError: for arrays that do not fit, or as `Response`.
 
-    >>> import numpy
-    >>> gains = numpy.array([1.0, 2.0]).reshape(2, 1, 1)
-    >>> one, none, zero = numpy.ones((2, 1, 1)), numpy.zeros((2, 1, 0)), numpy.zeros((2, 1, 1))
-    >>> loops = ChannelModel(zero, one, -gains, gains, one, zero, zero, zero, zero, numpy.ones((2, 1)))
+    >>> import numpy as np
+    >>> gains = np.array([1.0, 2.0]).reshape(2, 1, 1)
+    >>> one, none, zero = np.ones((2, 1, 1)), np.zeros((2, 1, 0)), np.zeros((2, 1, 1))
+    >>> loops = ChannelModel(zero, one, -gains, gains, one, zero, zero, zero, zero, np.ones((2, 1)))
     >>> step_family(loops, [0.5, 1.5]).round(6)   # of gain/(s + gain*exp(-s))
     array([[0.5  , 1.375],
            [1.   , 2.5  ]])
     """
-    import numpy
-
     times = times_from_zero(times)
     delays = real_numbers("delays", models.delays)
     parts = zip(ChannelModel._fields, models[:-1], strict=False)
@@ -192,20 +185,20 @@ def step_family(models: ChannelModel, times: ArrayLike) -> numpy.ndarray:
     shape = _family_shape(models)
     count = shape[0]
     flat = times.ravel()
-    values = numpy.empty((count, flat.size))
-    rows, member = numpy.unique(delays, axis=0, return_inverse=True)
+    values = np.empty((count, flat.size))
+    rows, member = np.unique(delays, axis=0, return_inverse=True)
     member = member.ravel()
     end = flat.max(initial=0.0)
     for number, row in enumerate(rows):
         exact = [Fraction(repr(delay)) for delay in row.tolist()]  # as it is written
         if any(delay <= 0 for delay in exact):
             raise ValueError(f"the delays of the channels are {row.tolist()}: expected positive ones")
-        here = numpy.flatnonzero(member == number)
+        here = np.flatnonzero(member == number)
         group = ChannelModel(*(array[here] for array in models[:-1]), exact)
-        found = numpy.full((len(here), flat.size), math.nan)
+        found = np.full((len(here), flat.size), math.nan)
         if len(here) >= WORTH:
             found = shared_cells(group, exact, flat)
-        for k in numpy.flatnonzero(numpy.isnan(found).any(axis=1)):
+        for k in np.flatnonzero(np.isnan(found).any(axis=1)):
             found[k] = Response(ChannelModel(*(array[k] for array in group[:-1]), exact), end)(flat)
         values[here] = found
     return values.reshape(count, *times.shape)

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+from numpy.polynomial import legendre
+
 from loopbook.deadtime.response import Response
 from loopbook.validation import number
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
-
-    import numpy
 
 __all__ = ["StepInfo", "first_time_at", "settled_response", "step_info"]
 
@@ -108,16 +109,13 @@ def settled_response(
 
 def _extreme(response: Response, sign: int) -> tuple[float, float]:
     """The largest value of sign*response and when it is reached."""
-    import numpy
-    from numpy.polynomial import legendre
-
     rows = sign * response.coefficients
     bounds = rows[:, 0] + abs(rows[:, 1:]).sum(axis=1)
-    points = numpy.r_[-1.0, numpy.polynomial.legendre.leggauss(rows.shape[1])[0], 1.0]
+    points = np.r_[-1.0, np.polynomial.legendre.leggauss(rows.shape[1])[0], 1.0]
     values = legendre.legval(points, rows.T)
-    segment, point = numpy.unravel_index(values.argmax(), values.shape)
+    segment, point = np.unravel_index(values.argmax(), values.shape)
     best, place = values[segment, point], (segment, points[point])
-    for k in numpy.argsort(-bounds):
+    for k in np.argsort(-bounds):
         if bounds[k] <= best * (1 + 1e-15):
             break
         turning = _roots(legendre.legder(rows[k]))
@@ -129,13 +127,10 @@ def _extreme(response: Response, sign: int) -> tuple[float, float]:
 
 def first_time_at(response: Response, level: float) -> float:
     """When a response first reaches a level, from below a positive one, from above a negative one."""
-    import numpy
-    from numpy.polynomial import legendre
-
     sign = -1.0 if level < 0 else 1.0
     rows = sign * response.coefficients.copy()
     rows[:, 0] -= abs(level)
-    for k in numpy.flatnonzero(rows[:, 0] + abs(rows[:, 1:]).sum(axis=1) >= 0):
+    for k in np.flatnonzero(rows[:, 0] + abs(rows[:, 1:]).sum(axis=1) >= 0):
         if legendre.legval(-1.0, rows[k]) >= -ROUNDING * abs(rows[k]).max():
             return float(response.edges[k])
         if len(found := _roots(rows[k])):
@@ -145,11 +140,9 @@ def first_time_at(response: Response, level: float) -> float:
 
 def _last_time_outside(response: Response, final: float, band: float) -> float:
     """The last moment at which the distance from the final value is that of the band."""
-    import numpy
-
     rows = response.coefficients.copy()
     rows[:, 0] -= final
-    for k in numpy.flatnonzero(abs(rows).sum(axis=1) > band)[::-1]:
+    for k in np.flatnonzero(abs(rows).sum(axis=1) > band)[::-1]:
         crossings = []
         for side in (-1, 1):
             row = rows[k].copy()
@@ -162,13 +155,10 @@ def _last_time_outside(response: Response, final: float, band: float) -> float:
     return 0.0
 
 
-def _roots(row: numpy.ndarray) -> numpy.ndarray:
+def _roots(row: np.ndarray) -> np.ndarray:
     """The zeros of a Legendre series between -1 and 1."""
-    import numpy
-    from numpy.polynomial import legendre
-
-    row = numpy.trim_zeros(numpy.where(abs(row) > 1e-16 * abs(row).max(initial=0.0), row, 0.0), "b")
-    roots = legendre.legroots(row) if len(row) > 1 else numpy.zeros(0)
+    row = np.trim_zeros(np.where(abs(row) > 1e-16 * abs(row).max(initial=0.0), row, 0.0), "b")
+    roots = legendre.legroots(row) if len(row) > 1 else np.zeros(0)
     return roots.real[(abs(roots.imag) < REAL) & (abs(roots.real) <= 1)]
 
 

@@ -11,11 +11,12 @@ import functools
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.polynomial import legendre
+
 from loopbook.deadtime.collocation import NODES, interpolation, radau
 
 if TYPE_CHECKING:
-    import numpy
-
     from loopbook.deadtime.response import Response
 
 SMOOTH = (1e-13, 1e-12)  # shares of the largest value so far by which the step response may differ from a polynomial
@@ -31,7 +32,7 @@ SHARES = (0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99)  # where in each of them it is co
 FAINT = 1e-4  # of the largest value of all: a smaller one is not resolved for its own sake
 
 
-def superpose(response: Response, times: numpy.ndarray, u: numpy.ndarray, lines: bool, late: float) -> numpy.ndarray:
+def superpose(response: Response, times: np.ndarray, u: np.ndarray, lines: bool, late: float) -> np.ndarray:
     """Return the values at the times of the response to samples.
 
     Arguments:
@@ -41,18 +42,16 @@ def superpose(response: Response, times: numpy.ndarray, u: numpy.ndarray, lines:
         lines: whether they are joined by straight lines, or kept until the next.
         late: how far a difference of times may be from a jump that is meant.
     """
-    import numpy
-
     count, end = len(times), times[-1]
-    even = numpy.linspace(0.0, end, count)
+    even = np.linspace(0.0, end, count)
     if abs(times - even).max() <= late:
         return _evenly(response, even, u, lines, late)
-    changes = numpy.diff(u, prepend=0.0)
+    changes = np.diff(u, prepend=0.0)
     # no boundary where a sample or a jump is meant to be
     begin, span = -0.00614 * end, 1.0137 * end
     for smooth in SMOOTH:
         kernel = _Kernel(response, span, smooth)
-        level, undecided, applied = 0, numpy.zeros(0, int), []
+        level, undecided, applied = 0, np.zeros(0, int), []
         work, pairs = 0.0, math.inf
         while True:
             kernels, undecided = kernel.split(undecided, level)
@@ -62,7 +61,7 @@ def superpose(response: Response, times: numpy.ndarray, u: numpy.ndarray, lines:
                 break
             if 2**level * FEW >= count:
                 blocks = ((times - begin) * (2**level / span)).astype(int)
-                held = numpy.bincount(blocks, minlength=2**level).astype(float)
+                held = np.bincount(blocks, minlength=2**level).astype(float)
                 pairs = sum(float(held[m:] @ held[: 2**level - m]) for m in undecided.tolist())
                 deeper = 2.0 ** (level + 1) * min(2 * len(undecided), MANY)
                 pairs *= 1.5 if lines else 1.0  # integrals take longer
@@ -78,10 +77,10 @@ def superpose(response: Response, times: numpy.ndarray, u: numpy.ndarray, lines:
         )
     points, weights, slopes = times, changes, None
     if lines:  # each line in one block
-        points = numpy.union1d(times, begin + span * numpy.arange(1, 2**level) / 2**level)
+        points = np.union1d(times, begin + span * np.arange(1, 2**level) / 2**level)
         points = points[(points >= 0) & (points <= end)]
-        slopes = (changes[1:] / numpy.diff(times))[numpy.searchsorted(times, points[:-1], side="right") - 1]
-        weights = numpy.r_[u[0], numpy.zeros(len(points) - 1)]
+        slopes = (changes[1:] / np.diff(times))[np.searchsorted(times, points[:-1], side="right") - 1]
+        weights = np.r_[u[0], np.zeros(len(points) - 1)]
     far = _far(applied, times, points, weights, slopes, begin, span, level)
     near = _near(response, undecided, times, points, weights, slopes, begin, span, level, late)
     return far + near
@@ -89,35 +88,31 @@ def superpose(response: Response, times: numpy.ndarray, u: numpy.ndarray, lines:
 
 def _evenly(response, times, u, lines, late):
     """The values at times of one distance, by what a pulse of one sample does."""
-    import numpy
-    from numpy.polynomial import legendre
-
     piece = _Piece(response, 0.0, times[-1], late, integrate=False)
     step = piece.values(times)
     if not lines:
-        return _causal(numpy.diff(step, prepend=0.0), u)
+        return _causal(np.diff(step, prepend=0.0), u)
     # a straight line is a step for each of its moments: means of the step response between samples
     width = times[-1] / (len(times) - 1)
     inside = response.edges[(response.edges > late) & (response.edges < times[-1] - late)] / width
-    inside = inside[abs(inside - numpy.round(inside)) > late / width]
-    points = numpy.union1d(numpy.arange(len(times)), inside)  # in samples, so that most pieces are exactly one
+    inside = inside[abs(inside - np.round(inside)) > late / width]
+    points = np.union1d(np.arange(len(times)), inside)  # in samples, so that most pieces are exactly one
     nodes, weights = legendre.leggauss(NODES // 2)
-    lengths = numpy.diff(points)
+    lengths = np.diff(points)
     places = (points[:-1, None] + lengths[:, None] * (nodes + 1) / 2) * width
     integrals = (piece.values(places.ravel()).reshape(places.shape) @ weights) * lengths / 2
-    means = numpy.bincount(points[:-1].astype(int), integrals, len(times) - 1)
-    pulses = numpy.diff(means, prepend=0.0)
-    return u[0] * (step - numpy.r_[0.0, means]) + numpy.r_[0.0, _causal(pulses, u[1:])]
+    means = np.bincount(points[:-1].astype(int), integrals, len(times) - 1)
+    pulses = np.diff(means, prepend=0.0)
+    return u[0] * (step - np.r_[0.0, means]) + np.r_[0.0, _causal(pulses, u[1:])]
 
 
 def _causal(kernel, u):
     """The convolution of two arrays from their beginnings, each value as exact as those up to it are large."""
-    import numpy
     from scipy import linalg, signal
 
-    count, result = len(u), numpy.zeros(len(u))
+    count, result = len(u), np.zeros(len(u))
     size = min(LEAF, count)
-    corner = linalg.toeplitz(kernel[:size], numpy.zeros(size))
+    corner = linalg.toeplitz(kernel[:size], np.zeros(size))
     for begins in range(0, count, size):
         number = begins // size
         ends = min(count, begins + size)
@@ -135,11 +130,9 @@ class _Kernel:
     """The step response on windows: where it is one polynomial, and the matrices between blocks there."""
 
     def __init__(self, response, span, smooth):
-        import numpy
-
         self.response, self.span, self.smooth = response, span, smooth
-        largest = numpy.maximum.accumulate(abs(response.coefficients).max(axis=1))
-        self.largest = numpy.maximum(largest, FAINT * largest[-1])
+        largest = np.maximum.accumulate(abs(response.coefficients).max(axis=1))
+        self.largest = np.maximum(largest, FAINT * largest[-1])
 
     def split(self, undecided, level):
         """The distances between blocks, in blocks, where there is one polynomial, with its matrices; and the others.
@@ -150,34 +143,32 @@ class _Kernel:
             (distances, matrices, which), and distances. Where a distance comes of two longer ones and only one is
             undecided, `which` is 0 or 1 and says which blocks are concerned, those of an even or an odd number; else 2.
         """
-        import numpy
-
         rule = radau()
         width = self.span / 2**level
         last = self.response.edges[-1]
         if level:
-            windows = numpy.unique((2 * undecided[:, None] + [-1, 0, 1]).ravel())
+            windows = np.unique((2 * undecided[:, None] + [-1, 0, 1]).ravel())
             windows = windows[(windows >= 0) & (windows < 2**level)]
-            decided = numpy.ones(2 ** (level - 1) + 1, bool)
+            decided = np.ones(2 ** (level - 1) + 1, bool)
             decided[undecided], decided[-1] = False, False  # blocks are never as far from each other as the last
             below, above = (~decided[(windows + side) // 2] for side in (-1, 1))
-            which = numpy.where((windows % 2 == 0) | (below & above), 2, numpy.where(below, 1, 0))
+            which = np.where((windows % 2 == 0) | (below & above), 2, np.where(below, 1, 0))
         else:
-            windows, which = numpy.array([0]), numpy.array([2])
+            windows, which = np.array([0]), np.array([2])
         low, high = (windows - 1) * width, (windows + 1) * width
         edges = self.response.edges
-        first, after = numpy.searchsorted(edges, low, side="right"), numpy.searchsorted(edges, high)
+        first, after = np.searchsorted(edges, low, side="right"), np.searchsorted(edges, high)
         inherited = which < 2
         smooth = (windows > 0) & (high <= last) & (after - first <= TOUCHED) | inherited
         places = windows[:, None] * width + width * rule.nodes
-        values = numpy.zeros(places.shape)
-        values[smooth] = self.response(numpy.minimum(places[smooth], last))
-        limit = self.smooth * self.largest[numpy.minimum(after, len(edges) - 1) - 1]
+        values = np.zeros(places.shape)
+        values[smooth] = self.response(np.minimum(places[smooth], last))
+        limit = self.smooth * self.largest[np.minimum(after, len(edges) - 1) - 1]
         steep = abs(values @ rule.to_coefficients[-2:].T).max(axis=1) > limit
         smooth &= inherited | ~steep
-        for number in numpy.flatnonzero(smooth & ~inherited & (after > first)):
-            ends = numpy.r_[low[number], edges[first[number] : after[number]], high[number]]
-            inner = (ends[:-1, None] + numpy.diff(ends)[:, None] * SHARES).ravel()
+        for number in np.flatnonzero(smooth & ~inherited & (after > first)):
+            ends = np.r_[low[number], edges[first[number] : after[number]], high[number]]
+            inner = (ends[:-1, None] + np.diff(ends)[:, None] * SHARES).ravel()
             found = interpolation(inner / width - windows[number]) @ values[number]
             smooth[number] = abs(found - self.response(inner)).max() <= limit[number]
         matrices = (_between() @ values[smooth].T).T.reshape(-1, NODES, NODES)
@@ -193,9 +184,6 @@ def _between():
 
 def _far(applied, times, points, weights, slopes, begin, span, depth):
     """What comes by moments."""
-    import numpy
-    from numpy.polynomial import legendre
-
     rule = radau()
     halves = [interpolation((rule.nodes + side) / 2) for side in (-1, 1)]
     # moments of the Legendre polynomials at the bottom
@@ -207,25 +195,25 @@ def _far(applied, times, points, weights, slopes, begin, span, depth):
         return block, 2 * (place - block) - 1
 
     block, where = local(points)
-    moments = numpy.zeros((2**depth, NODES))
+    moments = np.zeros((2**depth, NODES))
     used = weights != 0
-    numpy.add.at(moments, block[used], legendre.legvander(where[used], NODES - 1) * weights[used, None])
+    np.add.at(moments, block[used], legendre.legvander(where[used], NODES - 1) * weights[used, None])
     if slopes is not None:
         middle, _ = local((points[:-1] + points[1:]) / 2)
-        integral = numpy.zeros((len(middle), NODES))
+        integral = np.zeros((len(middle), NODES))
         for ends, sign in ((points[1:], 1), (points[:-1], -1)):
             values = legendre.legvander(local(ends, middle)[1], NODES)
             integral[:, 0] += sign * values[:, 1]
-            integral[:, 1:] += sign * (values[:, 2:] - values[:, :-2]) / (2 * numpy.arange(1, NODES) + 1)
-        numpy.add.at(moments, middle, integral * (slopes * width / 2)[:, None])
+            integral[:, 1:] += sign * (values[:, 2:] - values[:, :-2]) / (2 * np.arange(1, NODES) + 1)
+        np.add.at(moments, middle, integral * (slopes * width / 2)[:, None])
     levels = [moments @ rule.to_coefficients]
     for _ in range(depth):
         levels.append(levels[-1][0::2] @ halves[0] + levels[-1][1::2] @ halves[1])
     levels.reverse()
-    total = numpy.zeros((1, NODES))
+    total = np.zeros((1, NODES))
     for level, (windows, matrices, which) in enumerate(applied):
         if level:
-            total = numpy.stack([total @ halves[0].T, total @ halves[1].T], axis=1).reshape(-1, NODES)
+            total = np.stack([total @ halves[0].T, total @ halves[1].T], axis=1).reshape(-1, NODES)
         sources = levels[level]
         if (which == 2).sum() > MANY:
             total += _convolved(windows[which == 2], matrices[which == 2], sources)
@@ -239,14 +227,13 @@ def _far(applied, times, points, weights, slopes, begin, span, depth):
 
 
 def _convolved(windows, matrices, sources):
-    import numpy
     from scipy import fft
 
     count = len(sources)
     size = fft.next_fast_len(2 * count, real=True)
     heard = fft.rfft(sources, size, axis=0)
-    result = numpy.empty((count, NODES))
-    kernel = numpy.zeros((count, NODES))
+    result = np.empty((count, NODES))
+    kernel = np.zeros((count, NODES))
     for row in range(NODES):
         kernel[windows] = matrices[:, row]
         result[:, row] = fft.irfft((fft.rfft(kernel, size, axis=0) * heard).sum(axis=1), size)[:count]
@@ -255,44 +242,42 @@ def _convolved(windows, matrices, sources):
 
 def _near(response, windows, times, points, weights, slopes, begin, span, depth, late):
     """What comes one by one: from blocks at those distances at which the step response is not smooth."""
-    import numpy
-
     count = 2**depth
     blocks = ((times - begin) * (count / span)).astype(int)
     middles = points if slopes is None else (points[:-1] + points[1:]) / 2
-    sources = numpy.searchsorted(((middles - begin) * (count / span)).astype(int), numpy.arange(count + 1))
-    total = numpy.zeros(len(times))
-    runs = numpy.split(windows, numpy.flatnonzero(numpy.diff(windows) > 1) + 1) if len(windows) else []
+    sources = np.searchsorted(((middles - begin) * (count / span)).astype(int), np.arange(count + 1))
+    total = np.zeros(len(times))
+    runs = np.split(windows, np.flatnonzero(np.diff(windows) > 1) + 1) if len(windows) else []
     width = span / count
     for run in runs:
         near, distant = int(run[0]), int(run[-1])
-        first = sources[numpy.clip(blocks - distant, 0, count)]
-        after = sources[numpy.clip(blocks - near + 1, 0, count)]
+        first = sources[np.clip(blocks - distant, 0, count)]
+        after = sources[np.clip(blocks - near + 1, 0, count)]
         piece = _Piece(response, max(0.0, (near - 1.0) * width), (distant + 1.0) * width, late, slopes is not None)
         lengths = after - first + (0 if slopes is None else (after > first))
-        steps = numpy.cumsum(lengths)
+        steps = np.cumsum(lengths)
         begins = 0
         while begins < len(times):
             done = steps[begins - 1] if begins else 0
-            ends = max(begins + 1, int(numpy.searchsorted(steps, done + CHUNK, side="right")))
+            ends = max(begins + 1, int(np.searchsorted(steps, done + CHUNK, side="right")))
             here = slice(begins, ends)
             size = lengths[here]
-            offsets = numpy.r_[0, numpy.cumsum(size)[:-1]]
-            target = numpy.repeat(numpy.arange(len(size)), size)
-            number = numpy.arange(len(target)) - offsets[target] + first[here][target]
+            offsets = np.r_[0, np.cumsum(size)[:-1]]
+            target = np.repeat(np.arange(len(size)), size)
+            number = np.arange(len(target)) - offsets[target] + first[here][target]
             ago = times[here][target] - points[number]
             if slopes is None:
                 value = piece.values(ago) * weights[number]
             else:
                 # the slope before a point, and the one after it, as far as they are of these blocks
-                one = numpy.where(number < after[here][target], slopes[numpy.minimum(number, len(slopes) - 1)], 0.0)
-                other = numpy.where(number > first[here][target], slopes[numpy.maximum(number - 1, 0)], 0.0)
+                one = np.where(number < after[here][target], slopes[np.minimum(number, len(slopes) - 1)], 0.0)
+                other = np.where(number > first[here][target], slopes[np.maximum(number - 1, 0)], 0.0)
                 value = piece.integrals(ago) * (one - other)
-            total[here] += numpy.bincount(target, value, len(size))
+            total[here] += np.bincount(target, value, len(size))
             begins = ends
     if slopes is not None and weights[0] != 0:  # the step at the beginning
         block = blocks[0]
-        here = numpy.isin(blocks - block, windows)
+        here = np.isin(blocks - block, windows)
         total[here] += weights[0] * response(times[here])
     return total
 
@@ -301,35 +286,30 @@ class _Piece:
     """The step response between two moments, and its integral from the first of them."""
 
     def __init__(self, response, low, high, late, integrate):
-        import numpy
-        from numpy.polynomial import legendre
-
         edges = response.edges
-        first = max(0, int(numpy.searchsorted(edges, low, side="right")) - 1)
-        after = min(len(edges) - 1, int(numpy.searchsorted(edges, high)) + 1)
+        first = max(0, int(np.searchsorted(edges, low, side="right")) - 1)
+        after = min(len(edges) - 1, int(np.searchsorted(edges, high)) + 1)
         self.edges = edges[first : after + 1]
         self.coefficients = response.coefficients[first:after].T
-        self.late, self.scale = late, 2 / numpy.diff(self.edges)
+        self.late, self.scale = late, 2 / np.diff(self.edges)
         largest = abs(self.coefficients).max()
         if integrate:
             rows = legendre.legint(self.coefficients, lbnd=-1) / self.scale
             self.integral = rows
-            self.integral[0] += numpy.r_[0.0, numpy.cumsum(rows.sum(axis=0))[:-1]]
-        seen = numpy.flatnonzero((abs(self.coefficients) > 1e-17 * largest).any(axis=1))
+            self.integral[0] += np.r_[0.0, np.cumsum(rows.sum(axis=0))[:-1]]
+        seen = np.flatnonzero((abs(self.coefficients) > 1e-17 * largest).any(axis=1))
         self.coefficients = self.coefficients[: seen.max(initial=0) + 1]
 
     def _at(self, series, ago):
-        import numpy
-
-        index = numpy.searchsorted(self.edges, ago + self.late, side="right") - 1
+        index = np.searchsorted(self.edges, ago + self.late, side="right") - 1
         before = index < 0
-        index = numpy.clip(index, 0, len(self.edges) - 2)
+        index = np.clip(index, 0, len(self.edges) - 2)
         place = (ago - self.edges[index]) * self.scale[index] - 1
         # Clenshaw's recursion
         last = len(series) - 1
         if last == 0:
             return series[0][index], before
-        high, low = numpy.zeros(len(ago)), series[last][index]
+        high, low = np.zeros(len(ago)), series[last][index]
         for degree in range(last - 1, -1, -1):
             high, low = (
                 low,

@@ -8,6 +8,7 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING, Self
 
+import numpy as np
 import sympy
 
 from loopbook.deadtime.curves import natural_range
@@ -24,7 +25,6 @@ from loopbook.validation import number, real_numbers, times_from_zero, whole
 
 if TYPE_CHECKING:
     import control
-    import numpy
     from numpy.typing import ArrayLike
 
     from loopbook.figures import Picture, PlanePlot, TimePlot
@@ -122,7 +122,7 @@ class System(DelayFraction):
 
     # ---- frequency
 
-    def frequency(self, omega: ArrayLike) -> numpy.ndarray:
+    def frequency(self, omega: ArrayLike) -> np.ndarray:
         """Return the frequency response H(j omega), exact but for rounding.
 
         Arguments:
@@ -138,7 +138,7 @@ class System(DelayFraction):
 
     # ---- responses in time
 
-    def step(self, times: ArrayLike | None = None) -> numpy.ndarray | Response:
+    def step(self, times: ArrayLike | None = None) -> np.ndarray | Response:
         """Return the output for a unit step at t = 0 of the input, the system being at rest before.
 
         At a jump it is the value after the jump. The error is about 1e-13 of the largest value up to then; of a high
@@ -187,7 +187,7 @@ class System(DelayFraction):
         last = max(info.settling_time, info.peak_time if math.isfinite(info.peak_time) else 0)
         return _round_time(min(1.35 * last, 60 / slowest + 5 * delays) or 5 / slowest)
 
-    def impulse(self, times: ArrayLike) -> numpy.ndarray:
+    def impulse(self, times: ArrayLike) -> np.ndarray:
         """Return the output for a unit impulse at t = 0: the step response of ``s*H``, with the accuracy of `step`.
 
         Raises ValueError if the system is not strictly proper, so that the output itself contains impulses.
@@ -199,7 +199,7 @@ class System(DelayFraction):
             raise ValueError(f"{self.expr} is not strictly proper: its response to an impulse contains impulses")
         return (self * DIFFERENTIATOR).step(times)
 
-    def response(self, times: ArrayLike, u: object, hold: str = "zero order") -> numpy.ndarray:
+    def response(self, times: ArrayLike, u: object, hold: str = "zero order") -> np.ndarray:
         """Return the output for an input u(t) that begins at t = 0, the system being at rest before.
 
         Arguments:
@@ -320,13 +320,12 @@ class System(DelayFraction):
 
     @functools.cached_property
     def _state_space(self) -> ChannelModel:
-        import numpy
         from scipy.linalg import matrix_balance
 
         n, leading = self.order, self.denominator[Fraction(0)][-1]
 
         def rows(parts):  # lowest power first
-            return numpy.array([[c / leading for c in part] + [0.0] * (n + 1 - len(part)) for part in parts]).reshape(
+            return np.array([[c / leading for c in part] + [0.0] * (n + 1 - len(part)) for part in parts]).reshape(
                 -1, n + 1
             )
 
@@ -334,19 +333,19 @@ class System(DelayFraction):
         above = {delay: part for delay, part in self.numerator.items() if delay}
         direct = rows([self.numerator.get(Fraction(0), ())])
         own, back, ahead = rows([self.denominator[Fraction(0)]])[0, :n], rows(below.values()), rows(above.values())
-        channels = numpy.vstack([back, ahead])
+        channels = np.vstack([back, ahead])
         # the last derivative is u - own x - (what comes back), and what it is multiplied with follows from that
-        A = numpy.diag(numpy.ones(max(n - 1, 0)), 1)[:n, :n]
-        B1, B2 = numpy.zeros((n, 1)), numpy.zeros((n, len(channels)))
-        returns = numpy.r_[-numpy.ones(len(back)), numpy.zeros(len(ahead))]
+        A = np.diag(np.ones(max(n - 1, 0)), 1)[:n, :n]
+        B1, B2 = np.zeros((n, 1)), np.zeros((n, len(channels)))
+        returns = np.r_[-np.ones(len(back)), np.zeros(len(ahead))]
         if n:
             A[-1], B1[-1], B2[-1] = -own, 1, returns
         C1, C2 = (c[:, :n] - c[:, n:] * own for c in (direct, channels))
         D11, D21 = direct[:, n:], channels[:, n:]
-        to_output = numpy.r_[numpy.zeros(len(back)), numpy.ones(len(ahead))]
+        to_output = np.r_[np.zeros(len(back)), np.ones(len(ahead))]
         D12, D22 = D11 * returns + to_output, D21 * returns
         if n:
-            with numpy.errstate(invalid="ignore"):  # SciPy makes integers of scales
+            with np.errstate(invalid="ignore"):  # SciPy makes integers of scales
                 _, (scale, _) = matrix_balance(A, permute=False, separate=True)
             A, B1, B2 = A * scale / scale[:, None], B1 / scale[:, None], B2 / scale[:, None]
             C1, C2 = C1 * scale, C2 * scale
@@ -371,7 +370,6 @@ class System(DelayFraction):
         array([0.8944, 0.7071])
         """
         import control
-        import numpy
 
         if order is None:
             from loopbook.deadtime.pictures import frequency_data
@@ -381,8 +379,8 @@ class System(DelayFraction):
             raise ValueError(f"order is {order!r} and omega is given: expected one of the two")
         order = whole("order", order)
         A, B1, B2, C1, C2, D11, D12, D21, D22, delays = self.state_space()
-        B, C = numpy.hstack([B1, B2]), numpy.vstack([C1, C2])
-        D = numpy.block([[D11, D12], [D21, D22]])
+        B, C = np.hstack([B1, B2]), np.vstack([C1, C2])
+        D = np.block([[D11, D12], [D21, D22]])
         model = control.ss(A, B, C, D)
         if not delays:
             return model

@@ -45,6 +45,7 @@ def block_diagram(*items: Item, title: str | None = None) -> Picture:
     Raises:
         ValueError: for two signal names in a row, or anything that is no part of a block diagram.
 
+    >>> from loopbook.expressions import s
     >>> T1, T2 = sympy.symbols("T1 T2")
     >>> block_diagram("u", 1 / (T1 * s + 1), "y_1", 1 / (T2 * s + 1), "y_2", title="Figure 6.5")
     <Figure 6.5: block diagram: u → [1/(T1*s + 1)] → y_1 → [1/(T2*s + 1)] → y_2>

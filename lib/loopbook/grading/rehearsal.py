@@ -5,13 +5,14 @@ from __future__ import annotations
 import contextlib
 import io
 
+import numpy as np
+
 
 def rehearse() -> None:
     """Import the libraries, and do with each of them something of what a student does."""
     import control
     import ipywidgets  # noqa: F401 - the import is what takes time
     import matplotlib
-    import numpy as np
     import scipy.integrate
     import scipy.optimize
     import scipy.signal

@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+import numpy as np
 import sympy
 
 from loopbook.approximation import SOPDT
@@ -18,7 +19,6 @@ from loopbook.identification.zero_order_hold import HOLDS, KINDS, DrivenChain
 from loopbook.validation import number, one_of
 
 if TYPE_CHECKING:
-    from numpy import ndarray
     from numpy.typing import ArrayLike
 
 STARTS = ("rest", "unknown")
@@ -53,9 +53,9 @@ class Fit:
     parameters: dict[str, float]
     errors: dict[str, float]
     residual: float
-    times: ndarray
-    y: ndarray
-    fitted: ndarray
+    times: np.ndarray
+    y: np.ndarray
+    fitted: np.ndarray
     hold: str = "zero order"
     _residuals: Residuals | None = field(default=None, compare=False)
     _known: dict = field(default_factory=dict, compare=False)
@@ -78,10 +78,10 @@ class Fit:
         Raises:
             ValueError: for another level, or a record of no more samples than the fit has numbers.
 
-        >>> import numpy
-        >>> times = numpy.arange(60.0)
-        >>> u, noise = numpy.where(times < 5, 0, 1), 0.1 * numpy.sin(times**2)
-        >>> y = 2 * (1 - numpy.exp(-numpy.maximum(times - 7.5, 0) / 10))
+        >>> import numpy as np
+        >>> times = np.arange(60.0)
+        >>> u, noise = np.where(times < 5, 0, 1), 0.1 * np.sin(times**2)
+        >>> y = 2 * (1 - np.exp(-np.maximum(times - 7.5, 0) / 10))
         >>> {name: [round(x, 1) for x in ends] for name, ends in fit(times, u, y + noise).intervals().items()}
         {'K': [2.0, 2.1], 'T1': [9.7, 11.7], 'delay': [1.7, 2.8]}
         """
@@ -161,15 +161,13 @@ def fit(
         ValueError: for arrays that do not fit, times that do not increase, another kind, hold or start, a signal that
             does not move, or a dead time as long as the longest one.
 
-    >>> import numpy
-    >>> times = numpy.arange(60.0)
-    >>> u = numpy.where(times < 5, 0, 1)
-    >>> y = 2 * (1 - numpy.exp(-numpy.maximum(times - 7.5, 0) / 10))
+    >>> import numpy as np
+    >>> times = np.arange(60.0)
+    >>> u = np.where(times < 5, 0, 1)
+    >>> y = 2 * (1 - np.exp(-np.maximum(times - 7.5, 0) / 10))
     >>> fit(times, u, y).model
     SOPDT(K=2, T1=10, delay=5/2)
     """
-    import numpy
-
     times, u, y = record(times, u=u, y=y)
     one_of("the kind", kind, KINDS)
     one_of("the hold", hold, HOLDS)
@@ -186,11 +184,11 @@ def fit(
     )
     _, integrators = KINDS[kind]
     # neither the search nor the standard errors may depend on units: time counts in steps, signals in their own spans
-    unit_u, unit_y = abs(u - u[0]).max(), numpy.ptp(y)
+    unit_u, unit_y = abs(u - u[0]).max(), np.ptp(y)
     rest = y[0] if level is None else number("the level", level)
     even = even_step(times) is not None
     chain = DrivenChain(
-        kind, numpy.arange(len(times)) * 1.0 if even else (times - times[0]) / step, (u - u[0]) / unit_u, hold,
+        kind, np.arange(len(times)) * 1.0 if even else (times - times[0]) / step, (u - u[0]) / unit_u, hold,
         1.0 if even else None,
     )  # fmt: skip
     units = {"K": unit_y / unit_u / step**integrators, "T1": step, "T2": step, "delay": step}
@@ -212,16 +210,14 @@ def fit(
 
 def _search(residuals):
     """The lags and the dead time, as `Residuals` counts them, with the least sum of squares."""
-    import numpy
-
     low, high = residuals.low, residuals.high
     count, longest = len(residuals.target), high[-1]
-    tried = numpy.geomspace(0.5, 2 * count, LAGS)
+    tried = np.geomspace(0.5, 2 * count, LAGS)
     sets = list(itertools.combinations_with_replacement(tried[::-1], residuals.chain.lags))
     many = min(MOST, math.ceil(longest), POINTS // (count * len(sets)))
-    delays = numpy.linspace(0, longest, max(FEWEST, many), endpoint=False)
-    sums = [(residuals.of(numpy.reshape(T, (-1, 1)), delays) ** 2).sum(axis=0) for T in sets]
-    order = numpy.argsort(numpy.ravel(sums), kind="stable")
+    delays = np.linspace(0, longest, max(FEWEST, many), endpoint=False)
+    sums = [(residuals.of(np.reshape(T, (-1, 1)), delays) ** 2).sum(axis=0) for T in sets]
+    order = np.argsort(np.ravel(sums), kind="stable")
     chosen = []  # no more than one for each dead time
     for k in order:
         T, delay = sets[k // len(delays)], delays[k % len(delays)]
@@ -229,16 +225,16 @@ def _search(residuals):
             chosen.append([*residuals.counted(T), delay])
         if len(chosen) == BEST:
             break
-    start = numpy.array(chosen).T
-    wide = numpy.ones_like(start)
+    start = np.array(chosen).T
+    wide = np.ones_like(start)
     found, sums = least_squares(residuals.at, start, low[:, None] * wide, high[:, None] * wide)
     best = found[:, sums.argmin()]
     # where a dead time is a number of samples, the sum of squares has a kink: the pieces beside it, each for itself
     floor = math.floor(best[-1])
-    floors = numpy.array([x for x in (floor - 1, floor, floor + 1) if 0 <= x < longest], dtype=float)
-    lows, highs = (numpy.repeat(x[:, None], len(floors), axis=1) for x in (low, high))
-    lows[-1], highs[-1] = floors, numpy.minimum(floors + 1, longest)
+    floors = np.array([x for x in (floor - 1, floor, floor + 1) if 0 <= x < longest], dtype=float)
+    lows, highs = (np.repeat(x[:, None], len(floors), axis=1) for x in (low, high))
+    lows[-1], highs[-1] = floors, np.minimum(floors + 1, longest)
     found, pieces = least_squares(
-        residuals.at, numpy.repeat(best[:, None], len(floors), axis=1), lows, highs, rounds=PATIENCE
+        residuals.at, np.repeat(best[:, None], len(floors), axis=1), lows, highs, rounds=PATIENCE
     )
     return found[:, pieces.argmin()] if pieces.min() <= sums.min() else best

@@ -7,6 +7,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from loopbook.deadtime import Loop
 from loopbook.identification.records import record
 from loopbook.pid import PID
@@ -15,7 +17,6 @@ from loopbook.types import Number, TransferFunctionLike
 from loopbook.validation import number, positive
 
 if TYPE_CHECKING:
-    import numpy
     from numpy.typing import ArrayLike
 
 BARELY = 0.05  # the undershoot that is barely observable, as a share of the change of the measurement
@@ -37,8 +38,8 @@ class GoodGain:
     Tou: float
     overshoot: float
     undershoot: float
-    times: numpy.ndarray
-    y: numpy.ndarray
+    times: np.ndarray
+    y: np.ndarray
 
     def __repr__(self) -> str:
         return (
@@ -61,13 +62,11 @@ def swing(times: ArrayLike, y: ArrayLike, final: Number | None = None) -> tuple[
     Raises:
         ValueError: for arrays that do not fit, or a response that does not move.
 
-    >>> import numpy
-    >>> t = numpy.linspace(0, 20, 2001)
-    >>> [round(float(x), 3) for x in swing(t, 1 - numpy.exp(-t / 2) * numpy.cos(t), final=1)]
+    >>> import numpy as np
+    >>> t = np.linspace(0, 20, 2001)
+    >>> [round(float(x), 3) for x in swing(t, 1 - np.exp(-t / 2) * np.cos(t), final=1)]
     [0.234, 0.049, 3.14]
     """
-    import numpy
-
     times, y = record(times, y=y)
     final = y[-1] if final is None else number("the final value", final)
     if final == y[0]:
@@ -77,11 +76,11 @@ def swing(times: ArrayLike, y: ArrayLike, final: Number | None = None) -> tuple[
     if share[top] <= 1 or top == len(share) - 1:
         return 0.0, 0.0, math.nan
     # from the overshoot to the next crossing of the final value, and on to the one after it
-    below = numpy.flatnonzero(share[top:] < 1)
+    below = np.flatnonzero(share[top:] < 1)
     if not len(below):
         return float(share[top] - 1), 0.0, math.nan
     first = top + int(below[0])
-    again = numpy.flatnonzero(share[first:] > 1)
+    again = np.flatnonzero(share[first:] > 1)
     end = first + int(again[0]) if len(again) else len(share)
     bottom = first + int(share[first:end].argmin())
     return float(share[top] - 1), float(1 - share[bottom]), float(times[bottom] - times[top])
@@ -156,9 +155,7 @@ def good_gain_experiment(
 
 def _response_of(process, Pu):
     """The experiment on a transfer function: the exact response of the loop with a P controller to a step."""
-    import numpy
-
-    times = numpy.linspace(0, PERIODS * Pu, 400 * PERIODS + 1)
+    times = np.linspace(0, PERIODS * Pu, 400 * PERIODS + 1)
 
     def respond(Kp):
         servo = Loop(process, PID(float(f"{Kp:.12g}"))).servo

@@ -11,13 +11,13 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from loopbook.identification.search import least_squares
 from loopbook.identification.zero_order_hold import DrivenChain
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    from numpy import ndarray
 
 SHORTEST = 1 / 20  # lag that is looked for, in steps
 LONGEST = 100  # lag that is looked for, in records
@@ -49,15 +49,13 @@ class Residuals:
     """
 
     def __init__(
-        self, chain: DrivenChain, target: ndarray, start: str, leveled: bool, longest: float, units: dict[str, float]
+        self, chain: DrivenChain, target: np.ndarray, start: str, leveled: bool, longest: float, units: dict[str, float]
     ) -> None:
-        import numpy
-
         self.chain, self.target, self.start, self.leveled, self.units = chain, target, start, leveled, units
         self.longest_lag = LONGEST * len(target)
         lags = chain.lags
-        self.low = numpy.array([[], [math.log(SHORTEST)], [math.log(SHORTEST * 1e-3), 0.0]][lags] + [0.0])
-        self.high = numpy.array(
+        self.low = np.array([[], [math.log(SHORTEST)], [math.log(SHORTEST * 1e-3), 0.0]][lags] + [0.0])
+        self.high = np.array(
             [[], [math.log(self.longest_lag)], [math.log(2 * self.longest_lag), 1.0]][lags] + [longest]
         )
         beside = 0 if leveled else 1
@@ -66,35 +64,29 @@ class Residuals:
         self.numbers = 1 + len(self.low) + beside
         self.freedom = len(target) - self.numbers
 
-    def lags(self, p: ndarray) -> ndarray:
+    def lags(self, p: np.ndarray) -> np.ndarray:
         """The lags, the longest first, of parameters as the search counts them, in columns."""
-        import numpy
-
         if self.chain.lags < 2:
-            return numpy.exp(p[:-1])
-        together, alike = numpy.exp(p[0]), p[1]
-        longer = together / 2 * (1 + numpy.sqrt(1 - alike))
-        shorter = together * alike / 2 / (1 + numpy.sqrt(1 - alike))
-        return SHORTEST + numpy.array([longer, shorter])
+            return np.exp(p[:-1])
+        together, alike = np.exp(p[0]), p[1]
+        longer = together / 2 * (1 + np.sqrt(1 - alike))
+        shorter = together * alike / 2 / (1 + np.sqrt(1 - alike))
+        return SHORTEST + np.array([longer, shorter])
 
-    def counted(self, lags: Sequence[float | ndarray]) -> list[float | ndarray]:
+    def counted(self, lags: Sequence[float | np.ndarray]) -> list[float | np.ndarray]:
         """The other way round: what the search counts instead of lags, numbers or arrays."""
-        import numpy
-
         if len(lags) < 2:
-            return [numpy.log(T) for T in lags]
+            return [np.log(T) for T in lags]
         longer, shorter = (T - SHORTEST for T in lags)
         together = longer + shorter
-        return [numpy.log(together), 4 * longer * shorter / together**2]
+        return [np.log(together), 4 * longer * shorter / together**2]
 
-    def at(self, p: ndarray, which: ndarray | None = None) -> ndarray:
+    def at(self, p: np.ndarray, which: np.ndarray | None = None) -> np.ndarray:
         """What is left, for parameters as the search counts them, in columns."""
         return self.of(self.lags(p), p[-1])
 
-    def of(self, lags: ndarray, delay: ndarray, K: ndarray | None = None) -> ndarray:
+    def of(self, lags: np.ndarray, delay: np.ndarray, K: np.ndarray | None = None) -> np.ndarray:
         """What is left, a column for each set of lags and dead time, and gain if it is given."""
-        import numpy
-
         target = self.target[:, None]
         basis, forced = self._free(lags), self.chain.forced(lags, delay)
         orthonormal = []
@@ -109,30 +101,27 @@ class Residuals:
                 if (rest > 0.1 * size).all():
                     break
             there = rest > DEPENDENT * size
-            orthonormal.append(column * (there / numpy.where(there, rest, 1.0)))
+            orthonormal.append(column * (there / np.where(there, rest, 1.0)))
         left = target
         for q in orthonormal:
             left = left - (q * left).sum(axis=0) * q
-        return numpy.broadcast_to(left, forced.shape)
+        return np.broadcast_to(left, forced.shape)
 
     def _free(self, lags):
         """The regressors beside the response to the control signal."""
-        import numpy
-
         if self.start == "rest":
-            return [] if self.leveled else [numpy.ones((len(self.target), 1))]
+            return [] if self.leveled else [np.ones((len(self.target), 1))]
         free = self.chain.free(lags)
         return [free[:, :, k] for k in range(free.shape[2] - self.leveled)]
 
-    def described(self, p: ndarray) -> tuple[dict[str, float], dict[str, float], float, ndarray]:
+    def described(self, p: np.ndarray) -> tuple[dict[str, float], dict[str, float], float, np.ndarray]:
         """Parameters and standard errors by name, the standard deviation of what is left, and the model's response."""
-        import numpy
 
         def response(p, linear=None):
             lags = self.lags(p[:, None])
-            columns = numpy.column_stack([self.chain.forced(lags, p[-1:]), *self._free(lags)])
+            columns = np.column_stack([self.chain.forced(lags, p[-1:]), *self._free(lags)])
             if linear is None:
-                linear = numpy.linalg.lstsq(columns, self.target, rcond=None)[0]
+                linear = np.linalg.lstsq(columns, self.target, rcond=None)[0]
             return columns, linear
 
         columns, linear = response(p)
@@ -146,10 +135,10 @@ class Residuals:
             if len(T) == 2 and k == 1 and T[1] < 1:  # so short that it is hardly seen: as if it were longer
                 behind[k], ahead[k] = min(p[k], 1 - width), min(p[k] + 2 / T.sum(), 1.0)
             changes.append((response(ahead, linear)[0] - response(behind, linear)[0]) @ linear / (ahead[k] - behind[k]))
-        jacobian = numpy.column_stack([columns[:, :1], *changes, columns[:, 1:]])
+        jacobian = np.column_stack([columns[:, :1], *changes, columns[:, 1:]])
         names = ["K", *self.names, "delay"]
         # how the named parameters depend on those of the search
-        named = numpy.eye(len(names), jacobian.shape[1])
+        named = np.eye(len(names), jacobian.shape[1])
         if len(T) == 1:
             named[1, 1] = T[0]
         elif len(T) == 2:
@@ -157,13 +146,13 @@ class Residuals:
             bend = math.exp(p[0]) / 4 / apart
             named[1, 1:3], named[2, 1:3] = [T[0] - SHORTEST, -bend], [T[1] - SHORTEST, bend]
         variance = ((self.target - fitted) ** 2).sum() / max(self.freedom, 1)
-        sizes = numpy.linalg.norm(jacobian, axis=0)
+        sizes = np.linalg.norm(jacobian, axis=0)
         seen = sizes > DEPENDENT * sizes.max()
-        errors = numpy.full(len(names), math.inf)
-        _, R = numpy.linalg.qr(jacobian[:, seen] / sizes[seen])
-        if abs(numpy.diag(R)).min() > DEPENDENT and self.freedom > 0:
-            shares = numpy.linalg.solve(R.T, (named[:, seen] / sizes[seen]).T)
-            errors = math.sqrt(variance) * numpy.linalg.norm(shares, axis=0)
+        errors = np.full(len(names), math.inf)
+        _, R = np.linalg.qr(jacobian[:, seen] / sizes[seen])
+        if abs(np.diag(R)).min() > DEPENDENT and self.freedom > 0:
+            shares = np.linalg.solve(R.T, (named[:, seen] / sizes[seen]).T)
+            errors = math.sqrt(variance) * np.linalg.norm(shares, axis=0)
             errors[(named[:, ~seen] != 0).any(axis=1) | (abs(named) > 0.1 / EQUAL * (1 + T.sum())).any(axis=1)] = (
                 math.inf
             )
@@ -177,9 +166,7 @@ class Residuals:
 
 
 def _norm(columns):
-    import numpy
-
-    return numpy.sqrt(numpy.einsum("nb,nb->b", columns, columns))
+    return np.sqrt(np.einsum("nb,nb->b", columns, columns))
 
 
 class _Profile:
@@ -187,8 +174,6 @@ class _Profile:
 
     def __init__(self, residuals, name, best):
         """The best parameters, by name, all in the units of the residuals."""
-        import numpy
-
         self.residuals, self.name = residuals, name
         self.best, self.longest_lag = best, residuals.longest_lag
         low, high = residuals.low, residuals.high
@@ -201,8 +186,8 @@ class _Profile:
             self.bottom, self.top = math.log(SHORTEST), math.log(self.longest_lag)
             low, high = low[-1:], high[-1:]
             if residuals.chain.lags == 2:  # T2 as a part of T1; or T1 by how many times it is longer
-                low = numpy.array([0.0, *low])
-                high = numpy.array([1.0 if name == "T1" else math.log(self.longest_lag / SHORTEST), *high])
+                low = np.array([0.0, *low])
+                high = np.array([1.0 if name == "T1" else math.log(self.longest_lag / SHORTEST), *high])
         self.low, self.high = low[:, None], high[:, None]
 
     def starts(self, values):
@@ -210,8 +195,6 @@ class _Profile:
 
         What a record tells first is how late the response is in all, the sum of dead time and lags.
         """
-        import numpy
-
         own = [self.best[n] for n in self.residuals.names]
         total, delay = self.best["delay"] + sum(own), self.best["delay"]
         places = [(own, delay)]
@@ -222,18 +205,16 @@ class _Profile:
             elif len(own) == 1:
                 places.append(([late], delay))
         elif len(own) == 2:
-            T = numpy.exp(values)
+            T = np.exp(values)
             pairs = [[T, share * T] if self.name == "T1" else [T / share, T] for share in SHARES]
             places += [(pair, total - sum(pair)) for pair in pairs]
         else:
-            places.append((own, total - numpy.exp(values)))
+            places.append((own, total - np.exp(values)))
         return [self._counted(lags, delay, values) for lags, delay in places]
 
     def _counted(self, lags, delay, values):
         """The parameters that are free, as the search counts them, from all of them."""
-        import numpy
-
-        lags = [numpy.maximum(T, 1.01 * SHORTEST) for T in lags]
+        lags = [np.maximum(T, 1.01 * SHORTEST) for T in lags]
         if self.name in ("K", "delay"):
             free = self.residuals.counted(lags)
         elif len(lags) == 1:
@@ -241,45 +222,41 @@ class _Profile:
         elif self.name == "T1":
             free = [(lags[1] - SHORTEST) / (lags[0] - SHORTEST)]
         else:
-            free = [numpy.log(lags[0] / numpy.exp(values))]
+            free = [np.log(lags[0] / np.exp(values))]
         free = free if self.name == "delay" else [*free, delay]
-        return numpy.array([x * numpy.ones_like(values) for x in free]).reshape(len(free), len(values))
+        return np.array([x * np.ones_like(values) for x in free]).reshape(len(free), len(values))
 
     def left(self, p, values):
-        import numpy
-
         of = self.residuals
         if self.name == "K":
             return of.of(of.lags(p), p[-1], K=values)
         if self.name == "delay":
-            return of.of(of.lags(numpy.vstack([p, values])), values)
-        T = numpy.exp(values)
+            return of.of(of.lags(np.vstack([p, values])), values)
+        T = np.exp(values)
         if of.chain.lags == 1:
             return of.of(T[None], p[-1])
         if self.name == "T1":
-            return of.of(numpy.array([T, SHORTEST + p[0] * (T - SHORTEST)]), p[-1])
-        return of.of(numpy.array([numpy.minimum(T * numpy.exp(p[0]), self.longest_lag), T]), p[-1])
+            return of.of(np.array([T, SHORTEST + p[0] * (T - SHORTEST)]), p[-1])
+        return of.of(np.array([np.minimum(T * np.exp(p[0]), self.longest_lag), T]), p[-1])
 
     def sums(self, values, near=None, everywhere=True):
         """The least sums for these values, and where they are; from several starts each, the better one."""
-        import numpy
-
         starts = [*(self.starts(values) if everywhere else []), *([] if near is None else [near])]
-        columns, count = numpy.arange(len(values)), len(starts)
+        columns, count = np.arange(len(values)), len(starts)
 
         def search(start, taken):
-            wide = numpy.ones((1, len(taken)))
+            wide = np.ones((1, len(taken)))
             return least_squares(
                 lambda p, which: self.left(p, taken[which]), start, self.low * wide, self.high * wide, rounds=ROUNDS,
                 enough=ENOUGH,
             )  # fmt: skip
 
-        found, sums = search(numpy.concatenate(starts, axis=1), numpy.tile(values, count))
+        found, sums = search(np.concatenate(starts, axis=1), np.tile(values, count))
         best = sums.reshape(count, -1).argmin(axis=0) * len(values) + columns
         found, sums = found[:, best], sums[best]
         if len(found):  # a neighbour may have found a better place
-            shifted = numpy.clip([columns - 1, columns + 1], 0, len(values) - 1).ravel()
-            both = numpy.tile(columns, 2)
+            shifted = np.clip([columns - 1, columns + 1], 0, len(values) - 1).ravel()
+            both = np.tile(columns, 2)
             promising = (self.left(found[:, shifted], values[both]) ** 2).sum(axis=0) < sums[both] * (1 - ENOUGH)
             if promising.any():
                 others, theirs = search(found[:, shifted[promising]], values[both[promising]])
@@ -300,13 +277,12 @@ def interval(
         parameters, errors: the best ones and their standard errors, by name.
         level: the probability that the interval holds the true value.
     """
-    import numpy
     from scipy.special import stdtrit  # scipy.stats takes a second to import
 
     units = residuals.units
     best = {key: value / units[key] for key, value in parameters.items()}
-    T = numpy.array([[best[n]] for n in residuals.names]).reshape(-1, 1)
-    least = (residuals.of(T, numpy.array([best["delay"]])) ** 2).sum()
+    T = np.array([[best[n]] for n in residuals.names]).reshape(-1, 1)
+    least = (residuals.of(T, np.array([best["delay"]])) ** 2).sum()
     limit = least * (1 + stdtrit(residuals.freedom, (1 + level) / 2) ** 2 / residuals.freedom)
     if not least > 0:
         return parameters[name], parameters[name]
@@ -330,20 +306,19 @@ def interval(
 
 def _end(profile, centre, error, bound, least, limit):
     """Where, on one side, the profile last exceeds the limit; or the bound."""
-    import numpy
 
     def looked_at(values, near, everywhere):
         sums, places = profile.sums(values, near, everywhere)
-        excess = numpy.sqrt(numpy.maximum(sums - least, 0) / (limit - least)) - 1  # -1 at the best, 0 at the limit
-        fits = numpy.flatnonzero(excess < 0)
+        excess = np.sqrt(np.maximum(sums - least, 0) / (limit - least)) - 1  # -1 at the best, 0 at the limit
+        fits = np.flatnonzero(excess < 0)
         return excess, places, fits[-1] if len(fits) else -1
 
-    inner, inner_excess, inner_place = centre, -1.0, profile.starts(numpy.array([centre]))[0][:, 0]
-    steps = numpy.array(MARCH)
+    inner, inner_excess, inner_place = centre, -1.0, profile.starts(np.array([centre]))[0][:, 0]
+    steps = np.array(MARCH)
     while True:
-        values = numpy.clip(centre + steps * error, min(bound, centre), max(bound, centre))
-        values = numpy.unique(values)[:: 1 if error > 0 else -1]
-        excess, places, last = looked_at(values, numpy.repeat(inner_place[:, None], len(values), axis=1), True)
+        values = np.clip(centre + steps * error, min(bound, centre), max(bound, centre))
+        values = np.unique(values)[:: 1 if error > 0 else -1]
+        excess, places, last = looked_at(values, np.repeat(inner_place[:, None], len(values), axis=1), True)
         if last >= 0:
             inner, inner_excess, inner_place = values[last], excess[last], places[:, last]
         if last + 1 < len(values):
@@ -351,9 +326,9 @@ def _end(profile, centre, error, bound, least, limit):
             break
         if inner == bound or steps[-1] > FURTHER**MOST_STEPS:
             return bound
-        steps = steps[-1] * FURTHER ** numpy.arange(1, MORE + 1)
+        steps = steps[-1] * FURTHER ** np.arange(1, MORE + 1)
     for _ in range(ZOOMS):
-        share = (numpy.arange(INSIDE) + 1) / (INSIDE + 1)
+        share = (np.arange(INSIDE) + 1) / (INSIDE + 1)
         values = inner + share * (outer - inner)
         excess, places, last = looked_at(
             values, inner_place[:, None] + share * (outer_place - inner_place)[:, None], False

@@ -4,25 +4,24 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from loopbook.validation import real_numbers
 
 if TYPE_CHECKING:
-    from numpy import ndarray
     from numpy.typing import ArrayLike
 
 EVEN = 1e-9  # by how much of a step samples that come evenly may be early or late
 
 
-def record(times: ArrayLike, **signals: ArrayLike) -> tuple[ndarray, ...]:
+def record(times: ArrayLike, **signals: ArrayLike) -> tuple[np.ndarray, ...]:
     """Return times and signals as arrays of floats of one length, or raise ValueError.
 
     >>> record([0, 1, 2, 3], y=[0, 0, 1, 1])
     (array([0., 1., 2., 3.]), array([0., 0., 1., 1.]))
     """
-    import numpy
-
     times = real_numbers("times", times)
-    if times.ndim != 1 or len(times) < 4 or not (numpy.diff(times) > 0).all():
+    if times.ndim != 1 or len(times) < 4 or not (np.diff(times) > 0).all():
         raise ValueError("the times must be an array of at least four increasing numbers")
     found = [real_numbers(f"values of {name}", signal) for name, signal in signals.items()]
     for name, signal in zip(signals, found, strict=True):
@@ -31,16 +30,14 @@ def record(times: ArrayLike, **signals: ArrayLike) -> tuple[ndarray, ...]:
     return times, *found
 
 
-def even_step(times: ndarray) -> float | None:
+def even_step(times: np.ndarray) -> float | None:
     """Return the time between two samples; or None where they do not come evenly, apart from rounding.
 
-    >>> import numpy
-    >>> even_step(numpy.array([1.0, 1.5, 2.0])), even_step(numpy.array([1.0, 1.5, 2.1]))
+    >>> import numpy as np
+    >>> even_step(np.array([1.0, 1.5, 2.0])), even_step(np.array([1.0, 1.5, 2.1]))
     (0.5, None)
     """
-    import numpy
-
     step = (times[-1] - times[0]) / (len(times) - 1)
-    rounding = 2 * numpy.spacing(abs(times).max())  # as of seconds since 1970
-    even = times[0] + step * numpy.arange(len(times))
+    rounding = 2 * np.spacing(abs(times).max())  # as of seconds since 1970
+    even = times[0] + step * np.arange(len(times))
     return float(step) if abs(times - even).max() <= EVEN * step + rounding else None

@@ -9,13 +9,14 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from loopbook.approximation import SOPDT
 from loopbook.expressions import exact
 from loopbook.types import Number
 from loopbook.validation import number, positive, real_numbers
 
 if TYPE_CHECKING:
-    import numpy
     from numpy.typing import ArrayLike
 
 
@@ -46,8 +47,8 @@ class RecursiveLeastSquares:
     array([3., 5.])
     """
 
-    parameters: numpy.ndarray
-    covariance: numpy.ndarray
+    parameters: np.ndarray
+    covariance: np.ndarray
 
     def __init__(
         self,
@@ -57,22 +58,18 @@ class RecursiveLeastSquares:
         uncertainty: Number = 1e6,
         largest: Number | None = None,
     ):
-        import numpy
-
         count = int(number("the number of parameters", count, "1, 2, 3 ...", lambda x: x >= 1 and x == int(x)))
         self.forgetting = number(
             "the forgetting factor", forgetting, "a number above 0 and at most 1", lambda x: 0 < x <= 1
         )
-        self.parameters = numpy.zeros(count) if initial is None else real_numbers("parameters", initial).copy()
+        self.parameters = np.zeros(count) if initial is None else real_numbers("parameters", initial).copy()
         if self.parameters.shape != (count,):
             raise ValueError(f"{self.parameters.size} initial parameters for a count of {count}")
-        self.covariance = positive("the uncertainty", uncertainty) * numpy.eye(count)
+        self.covariance = positive("the uncertainty", uncertainty) * np.eye(count)
         self.largest = self.covariance.trace() if largest is None else positive("the largest uncertainty", largest)
 
     def update(self, regressors: ArrayLike, y: Number) -> float:
         """Take a sample and return its error, what the estimate so far did not explain."""
-        import numpy
-
         x = real_numbers("regressors", regressors)
         if x.shape != self.parameters.shape:
             raise ValueError(f"{x.size} regressors for {self.parameters.size} parameters")
@@ -80,7 +77,7 @@ class RecursiveLeastSquares:
         spread = self.covariance @ x
         weight = self.forgetting + x @ spread
         self.parameters = self.parameters + spread / weight * error
-        covariance = self.covariance - numpy.outer(spread, spread) / weight
+        covariance = self.covariance - np.outer(spread, spread) / weight
         covariance = (covariance + covariance.T) / 2  # rounding must not make it less than symmetric
         self.covariance = covariance if covariance.trace() > self.largest else covariance / self.forgetting
         return float(error)

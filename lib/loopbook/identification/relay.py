@@ -11,6 +11,8 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from loopbook.deadtime import System
 from loopbook.identification.records import record
 from loopbook.stability import ultimate
@@ -18,7 +20,6 @@ from loopbook.types import Number, TransferFunctionLike
 from loopbook.validation import not_negative, number, positive
 
 if TYPE_CHECKING:
-    import numpy
     from numpy.typing import ArrayLike
 
 SAME = 1e-9  # two half periods in a row that differ by no larger share belong to a limit cycle
@@ -44,10 +45,10 @@ class LimitCycle:
     Pu: float
     amplitude: float
     phase: float
-    times: numpy.ndarray
-    u: numpy.ndarray
-    y: numpy.ndarray
-    switches: numpy.ndarray
+    times: np.ndarray
+    u: np.ndarray
+    y: np.ndarray
+    switches: np.ndarray
 
     def __repr__(self) -> str:
         return f"<limit cycle: Ku = {self.Ku:.4g}, Pu = {self.Pu:.4g}, amplitude {self.amplitude:.4g}>"
@@ -80,8 +81,6 @@ def relay_experiment(
     >>> round(cycle.amplitude, 6), round(cycle.Pu, 6), round(cycle.Ku, 4)
     (1.0, 4.0, 1.2732)
     """
-    import numpy
-
     d, h = positive("the amplitude of the relay", amplitude), not_negative("the hysteresis", hysteresis)
     system, periods = System(process), positive("the number of periods", periods)
     period = _expected_period(system, d, h)
@@ -89,7 +88,7 @@ def relay_experiment(
     signs, switches = [1.0], [0.0]  # the relay's output changes to sign*d at these moments
 
     def output(t):
-        y = numpy.zeros(numpy.shape(t))
+        y = np.zeros(np.shape(t))
         for n, (sign, moment) in enumerate(zip(signs, switches, strict=True)):
             y += sign * (1 if n == 0 else 2) * d * steps.since(t, moment)
         return y
@@ -109,17 +108,17 @@ def relay_experiment(
         switches.append(switches[-2] + Pu)
         signs.append(-signs[-1])
     corners = [moment + float(delay) for moment in switches for delay in [0, *system.delays]]
-    times = numpy.unique(numpy.concatenate([numpy.linspace(0, switches[-1], 60 * len(switches)), switches, corners]))
+    times = np.unique(np.concatenate([np.linspace(0, switches[-1], 60 * len(switches)), switches, corners]))
     times = times[times <= switches[-1]]
     y = output(times)
     last = times >= switches[-3]
     a = (_peak(output, times[last], y[last]) + _peak(lambda t: -output(t), times[last], -y[last])) / 2
     if h > a * (1 + 1e-9):
         raise ValueError(f"the hysteresis {h:g} is larger than the amplitude {a:g}")
-    u = d * numpy.array(signs)[numpy.searchsorted(switches, times, side="right") - 1]
+    u = d * np.array(signs)[np.searchsorted(switches, times, side="right") - 1]
     a = float(a)
     Ku, phase = 4 * d / (math.pi * a), -180 + math.degrees(math.asin(min(h / a, 1)))
-    return LimitCycle(Ku, Pu, a, phase, times, u, y, numpy.array(switches[1:]))
+    return LimitCycle(Ku, Pu, a, phase, times, u, y, np.array(switches[1:]))
 
 
 def _expected_period(system, d, h):
@@ -153,13 +152,11 @@ class _Steps:
 
     def since(self, t, moment):
         """The response to a unit step at a moment."""
-        import numpy
-
-        elapsed = numpy.asarray(t, dtype=float) - moment
+        elapsed = np.asarray(t, dtype=float) - moment
         if elapsed.size and elapsed.max() > self.end:
             self.end = 2 * float(elapsed.max())
             self.response = self.system.step_until(self.end)
-        return numpy.where(elapsed >= 0, self.response(numpy.maximum(elapsed, 0)), 0.0)
+        return np.where(elapsed >= 0, self.response(np.maximum(elapsed, 0)), 0.0)
 
 
 def _settled(switches):
@@ -173,11 +170,10 @@ def _settled(switches):
 
 def _next_switch(distance, since, period):
     """The first moment after a switch at which the distance to the next one becomes positive."""
-    import numpy
     from scipy.optimize import brentq
 
     for stretch in itertools.count():
-        t = since + period * (stretch + numpy.linspace(0, 1, POINTS + 1))
+        t = since + period * (stretch + np.linspace(0, 1, POINTS + 1))
         beyond = distance(t) > 0
         if stretch == 0:
             # just after a switch y is still on the side from where it came
@@ -268,16 +264,14 @@ def limit_cycle(times: ArrayLike, u: ArrayLike, y: ArrayLike, hysteresis: Number
         ValueError: for a record with fewer than two whole periods, or with periods of very different lengths, as where
             noise switches the relay; or arrays that do not fit.
     """
-    import numpy
-
     times, u, y = record(times, u=u, y=y)
     h = not_negative("the hysteresis", hysteresis)
     low, high = u.min(), u.max()
-    up = numpy.flatnonzero((u[1:] > u[:-1]) & (u[1:] > (low + high) / 2)) + 1
+    up = np.flatnonzero((u[1:] > u[:-1]) & (u[1:] > (low + high) / 2)) + 1
     if len(up) < 3:
         raise ValueError(f"the relay switched on {len(up)} times: expected a record with two whole periods at least")
     up = up[-1 - PERIODS :]
-    shortest, *_, longest = sorted(numpy.diff(times[up]))
+    shortest, *_, longest = sorted(np.diff(times[up]))
     if longest > 2 * shortest:
         raise ValueError(
             f"the last periods are from {shortest:.3g} to {longest:.3g} long: expected a steady oscillation; "
@@ -286,11 +280,11 @@ def limit_cycle(times: ArrayLike, u: ArrayLike, y: ArrayLike, hysteresis: Number
     Pu = (times[up[-1]] - times[up[0]]) / (len(up) - 1)
     # one mean period, on as many points as a period has samples
     count = max(4, round(len(times) * Pu / (times[-1] - times[0])))
-    phase = numpy.arange(count) / count
-    periods = [numpy.interp(a + phase * (b - a), times, y) for a, b in itertools.pairwise(times[up])]
-    mean = numpy.mean(periods, axis=0)
+    phase = np.arange(count) / count
+    periods = [np.interp(a + phase * (b - a), times, y) for a, b in itertools.pairwise(times[up])]
+    mean = np.mean(periods, axis=0)
     a, d = float(mean.max() - mean.min()) / 2, float(high - low) / 2
     if a == 0:
         raise ValueError(f"the measurement is {y[0]:g} all the time: expected one that oscillates")
     angle = -180 + math.degrees(math.asin(min(h / a, 1)))
-    return LimitCycle(4 * d / (math.pi * a), float(Pu), a, angle, times, u, y, times[1:][numpy.diff(u) != 0])
+    return LimitCycle(4 * d / (math.pi * a), float(Pu), a, angle, times, u, y, times[1:][np.diff(u) != 0])

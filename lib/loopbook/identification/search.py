@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-    from numpy import ndarray
 
 WIDTH = 1e-7  # of a difference for a derivative
 DAMPED, FREE, STUCK = 1e-2, 1e-12, 1e10  # the damping: at first, the least, and when nothing helps
@@ -19,14 +19,14 @@ ARRIVED = 1e-11  # a step so short, as a part of a lag or of a sample, is none
 
 
 def least_squares(
-    left: Callable[[ndarray, ndarray], ndarray],
-    start: ndarray,
-    low: ndarray,
-    high: ndarray,
+    left: Callable[[np.ndarray, np.ndarray], np.ndarray],
+    start: np.ndarray,
+    low: np.ndarray,
+    high: np.ndarray,
     *,
     rounds: int = 60,
     enough: float = 1e-15,
-) -> tuple[ndarray, ndarray]:
+) -> tuple[np.ndarray, np.ndarray]:
     """Return where each column's sum of squares is least, near its starting point, and these sums.
 
     Arguments:
@@ -37,44 +37,42 @@ def least_squares(
         rounds: the most steps that are tried.
         enough: a column has arrived when a step lessens its sum by no more than this part.
 
-    >>> import numpy
-    >>> data = numpy.array([[1.0], [2.0]])
-    >>> left = lambda p, which: data - numpy.exp(p)
-    >>> zero = numpy.zeros((1, 2))
-    >>> found, sums = least_squares(left, zero, zero - 1, numpy.array([[1.0, 0.2]]))
-    >>> numpy.exp(found).round(4), sums.round(4)
+    >>> import numpy as np
+    >>> data = np.array([[1.0], [2.0]])
+    >>> left = lambda p, which: data - np.exp(p)
+    >>> zero = np.zeros((1, 2))
+    >>> found, sums = least_squares(left, zero, zero - 1, np.array([[1.0, 0.2]]))
+    >>> np.exp(found).round(4), sums.round(4)
     (array([[1.5   , 1.2214]]), array([0.5   , 0.6552]))
     """
-    import numpy
-
-    p = numpy.clip(start, low, high)
+    p = np.clip(start, low, high)
     count, columns = p.shape
     if count == 0:
-        return p, (left(p, numpy.arange(columns)) ** 2).sum(axis=0)
-    at_work = numpy.arange(columns)
+        return p, (left(p, np.arange(columns)) ** 2).sum(axis=0)
+    at_work = np.arange(columns)
     sums, slopes, squares = _described(left, p, at_work, low, high)
-    damping, best = numpy.full(columns, DAMPED), p
-    diagonal = numpy.arange(count)
+    damping, best = np.full(columns, DAMPED), p
+    diagonal = np.arange(count)
     for _ in range(rounds):
         # a parameter at a bound that would have to leave stays there
         held = ((best <= low) & (slopes.T > 0)) | ((best >= high) & (slopes.T < 0))
-        gradient = numpy.where(held.T, 0.0, slopes)
-        matrix = numpy.where(held.T[:, :, None] | held.T[:, None, :], 0.0, squares)
+        gradient = np.where(held.T, 0.0, slopes)
+        matrix = np.where(held.T[:, :, None] | held.T[:, None, :], 0.0, squares)
         size = matrix[:, diagonal, diagonal]
         size = size + 1e-14 * size.max(axis=1, keepdims=True)
-        matrix[:, diagonal, diagonal] = numpy.where(held.T | (size == 0), 1.0, size * (1 + damping[:, None]))
-        step = -numpy.linalg.solve(matrix, gradient[:, :, None])[:, :, 0].T
-        tried = numpy.clip(best + step, low, high)
+        matrix[:, diagonal, diagonal] = np.where(held.T | (size == 0), 1.0, size * (1 + damping[:, None]))
+        step = -np.linalg.solve(matrix, gradient[:, :, None])[:, :, 0].T
+        tried = np.clip(best + step, low, high)
         step = tried - best
         new, new_slopes, new_squares = _described(left, tried, at_work, low, high)
         better = new < sums
-        gain = numpy.where(better, sums - new, 0.0)
+        gain = np.where(better, sums - new, 0.0)
         arrived = (abs(step) < ARRIVED).all(axis=0) | (better & (gain <= enough * sums)) | (damping > STUCK)
-        best = numpy.where(better, tried, best)
-        sums = numpy.where(better, new, sums)
-        slopes = numpy.where(better[:, None], new_slopes, slopes)
-        squares = numpy.where(better[:, None, None], new_squares, squares)
-        damping = numpy.where(better, numpy.maximum(damping / 8, FREE), damping * 6)
+        best = np.where(better, tried, best)
+        sums = np.where(better, new, sums)
+        slopes = np.where(better[:, None], new_slopes, slopes)
+        squares = np.where(better[:, None, None], new_squares, squares)
+        damping = np.where(better, np.maximum(damping / 8, FREE), damping * 6)
         if arrived.any():
             p[:, at_work[arrived]] = best[:, arrived]
             on = ~arrived
@@ -83,19 +81,17 @@ def least_squares(
             if not on.any():
                 break
     p[:, at_work] = best
-    return p, (left(p, numpy.arange(columns)) ** 2).sum(axis=0)
+    return p, (left(p, np.arange(columns)) ** 2).sum(axis=0)
 
 
 def _described(left, p, which, low, high):
     """The sums of squares, half their slopes, and the products of the residuals' derivatives, one after another."""
-    import numpy
-
     count, columns = p.shape
-    forward = numpy.where(p + WIDTH > high, -WIDTH, WIDTH)
-    points = numpy.concatenate([p] + [p + forward * (numpy.arange(count) == k)[:, None] for k in range(count)], axis=1)
-    r = left(points, numpy.tile(which, count + 1)).reshape(-1, count + 1, columns)
+    forward = np.where(p + WIDTH > high, -WIDTH, WIDTH)
+    points = np.concatenate([p] + [p + forward * (np.arange(count) == k)[:, None] for k in range(count)], axis=1)
+    r = left(points, np.tile(which, count + 1)).reshape(-1, count + 1, columns)
     here = r[:, 0]
     derivatives = (r[:, 1:] - here[:, None]) / forward
-    slopes = numpy.einsum("nkc,nc->ck", derivatives, here)
-    squares = numpy.einsum("nkc,nmc->ckm", derivatives, derivatives)
+    slopes = np.einsum("nkc,nc->ck", derivatives, here)
+    squares = np.einsum("nkc,nmc->ckm", derivatives, derivatives)
     return (here**2).sum(axis=0), slopes, squares

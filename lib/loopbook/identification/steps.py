@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+
 from loopbook.approximation import SOPDT
 from loopbook.expressions import exact
 from loopbook.identification.records import record
@@ -53,10 +56,11 @@ def first_order_from_step(
             to be told from noise.
     Source: Haugen, Figure 10.9.
 
-    >>> import numpy, sympy
+    >>> import numpy as np
+    >>> import sympy
     >>> from loopbook import s
     >>> from loopbook.deadtime import System
-    >>> times = numpy.linspace(0, 60, 601)
+    >>> times = np.linspace(0, 60, 601)
     >>> y = System(2 * sympy.exp(-3 * s) / (8 * s + 1)).step(times)
     >>> model = first_order_from_step(times, y)
     >>> [round(float(x), 2) for x in (model.K, model.T1, model.delay)]
@@ -102,9 +106,9 @@ def integrator_from_step(times: ArrayLike, y: ArrayLike, U: float = 1, at: float
         ValueError: for arrays that do not fit, a step of zero, or a response without such an asymptote.
     Source: Haugen, Figure 10.8.
 
-    >>> import numpy
-    >>> times = numpy.linspace(0, 10, 101)
-    >>> integrator_from_step(times, 5 + 3 * numpy.maximum(times - 4, 0), U=2)
+    >>> import numpy as np
+    >>> times = np.linspace(0, 10, 101)
+    >>> integrator_from_step(times, 5 + 3 * np.maximum(times - 4, 0), U=2)
     SOPDT(K=3/2, T1=oo, delay=4)
     """
     import sympy
@@ -138,23 +142,19 @@ def _noise(times, y):
 
     At the end, where the response is at rest, and in the middle of all of them; and what rounding to steps makes.
     """
-    import numpy
-
     share = (times[1:-1] - times[:-2]) / (times[2:] - times[:-2])
-    off = (y[1:-1] - (1 - share) * y[:-2] - share * y[2:]) / numpy.sqrt(1 + share**2 + (1 - share) ** 2)
+    off = (y[1:-1] - (1 - share) * y[:-2] - share * y[2:]) / np.sqrt(1 + share**2 + (1 - share) ** 2)
     at_rest = off[-max(2, len(off) // 5) :]
-    values = numpy.unique(y)
-    rounding = numpy.diff(values).min() / math.sqrt(12) if len(values) >= LEVELS else 0.0
-    return max(math.sqrt((at_rest**2).mean()), 1.48 * float(numpy.median(abs(off))), rounding)
+    values = np.unique(y)
+    rounding = np.diff(values).min() / math.sqrt(12) if len(values) >= LEVELS else 0.0
+    return max(math.sqrt((at_rest**2).mean()), 1.48 * float(np.median(abs(off))), rounding)
 
 
 def _window(times, rise, noise):
     """How many samples are looked at together, so that what noise does to a slope and what the window does balance."""
-    import numpy
-
     step = times[-1] / (len(times) - 1)
     # where most samples before are below and most after are above, whatever noise does to single ones
-    t_63, t_28 = (times[numpy.cumsum(rise - share).argmin()] for share in (RISE, EARLY_RISE))
+    t_63, t_28 = (times[np.cumsum(rise - share).argmin()] for share in (RISE, EARLY_RISE))
     T = max(1.5 * (t_63 - t_28), step)
     if step > T / COARSE:
         return 1
@@ -164,8 +164,6 @@ def _window(times, rise, noise):
 
 def _windows(times, rise, count):
     """Times, their mean, and values in windows of some samples, not all of them where there are many."""
-    from numpy.lib.stride_tricks import sliding_window_view
-
     stride = max(1, count // STRIDES)
     t, x = (sliding_window_view(signal, count)[::stride] for signal in (times, rise))
     mean = t.mean(axis=1)
@@ -174,18 +172,16 @@ def _windows(times, rise, count):
 
 def _smoothed(times, rise, count):
     """The response by parabolas through windows, at their middles; or as it is."""
-    import numpy
-
     count += 1 if count == FEWEST else 0  # a parabola meets three samples
     if count < FEWEST:
         return times, rise
     t, mean, x = _windows(times, rise, count)
-    width = numpy.ptp(t, axis=1)
-    powers = numpy.stack([numpy.ones_like(t), t / width[:, None], (t / width[:, None]) ** 2], axis=2)
+    width = np.ptp(t, axis=1)
+    powers = np.stack([np.ones_like(t), t / width[:, None], (t / width[:, None]) ** 2], axis=2)
     turned = powers.transpose(0, 2, 1)
-    parabolas = numpy.linalg.solve(turned @ powers, turned @ x[:, :, None])[:, :, 0]
+    parabolas = np.linalg.solve(turned @ powers, turned @ x[:, :, None])[:, :, 0]
     first = powers[0, 0] @ parabolas[0]
-    return numpy.append(times[0], mean), numpy.append(first, parabolas[:, 0])
+    return np.append(times[0], mean), np.append(first, parabolas[:, 0])
 
 
 def _tangent(times, rise, count, before):

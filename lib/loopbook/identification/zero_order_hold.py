@@ -11,10 +11,10 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    from numpy import ndarray
 
 KINDS = {  # how many lags, and how many integrators
     "first order": (1, 0),
@@ -36,66 +36,58 @@ class DrivenChain:
             lines.
         step: the time between two samples, if they come evenly, which is quicker.
 
-    >>> import numpy
-    >>> chain = DrivenChain("integrator", numpy.arange(5.0), numpy.array([0, 1, 1, 0, 0]), "zero order")
-    >>> chain.forced(numpy.empty((0, 1)), numpy.array([0.5])).ravel()
+    >>> import numpy as np
+    >>> chain = DrivenChain("integrator", np.arange(5.0), np.array([0, 1, 1, 0, 0]), "zero order")
+    >>> chain.forced(np.empty((0, 1)), np.array([0.5])).ravel()
     array([0. , 0. , 0.5, 1.5, 2. ])
     """
 
-    def __init__(self, kind: str, times: ndarray, u: ndarray, hold: str, step: float | None = None) -> None:
-        import numpy
-
+    def __init__(self, kind: str, times: np.ndarray, u: np.ndarray, hold: str, step: float | None = None) -> None:
         self.kind, self.step = kind, step
         self.lags, self.integrators = KINDS[kind]
         self.times = times - times[0]
         self.u = u[:, None].astype(float)
         self.slopes = None
         if hold == "first order":
-            self.slopes = numpy.append(numpy.diff(u) / numpy.diff(times), 0.0)[:, None]
-        self.between = numpy.diff(self.times)[:, None] if step is None else numpy.array([[step]])
+            self.slopes = np.append(np.diff(u) / np.diff(times), 0.0)[:, None]
+        self.between = np.diff(self.times)[:, None] if step is None else np.array([[step]])
 
-    def forced(self, lags: ndarray, delay: ndarray) -> ndarray:
+    def forced(self, lags: np.ndarray, delay: np.ndarray) -> np.ndarray:
         """Return the responses, a column for each set of lags and dead time.
 
         Arguments:
             lags: a row for each lag, the longest first.
             delay: as many dead times as there are columns in `lags`; or more, if that is one column.
         """
-        import numpy
-
         before, elapsed = self._places(delay)
         signals = [*self._states(lags), self.u, self.slopes]
         shares = self._shares(lags, elapsed)[-1]
         if self.step is None:
             return _sum(shares, [None if x is None else _at(x, before) for x in signals])
         late = _sum(shares, signals)  # by less than a sample, alike for all samples
-        return _at(numpy.concatenate([numpy.zeros((1, late.shape[1])), late]), before)
+        return _at(np.concatenate([np.zeros((1, late.shape[1])), late]), before)
 
-    def free(self, lags: ndarray) -> ndarray:
+    def free(self, lags: np.ndarray) -> np.ndarray:
         """Return what the chain does without the control signal, an array of samples, sets of lags, and ways to move.
 
         One way for each state that is 1 at the first sample, and the last one for a constant input of 1.
         """
-        import numpy
-
         shares = self._shares(lags, self.times[:, None])[-1]
         shape = (len(self.times), lags.shape[1])
-        return numpy.stack([numpy.broadcast_to(share, shape) for share in shares[:-1]], axis=2)
+        return np.stack([np.broadcast_to(share, shape) for share in shares[:-1]], axis=2)
 
     def _places(self, delay):
         """For each sample and dead time: the sample before the moment that is seen, and the time from there.
 
         Of samples that come evenly these are counted from one, zero being any before the record, and the time is one.
         """
-        import numpy
-
         if self.step is not None:
-            whole = numpy.ceil(delay / self.step)
-            before = numpy.arange(1, len(self.times) + 1)[:, None] - whole.astype(int)
-            return numpy.maximum(before, 0), (whole * self.step - delay)[None]
+            whole = np.ceil(delay / self.step)
+            before = np.arange(1, len(self.times) + 1)[:, None] - whole.astype(int)
+            return np.maximum(before, 0), (whole * self.step - delay)[None]
         seen = self.times[:, None] - delay
-        before = numpy.maximum(numpy.searchsorted(self.times, seen, side="right") - 1, 0)
-        return before, numpy.maximum(seen - self.times[before], 0.0)
+        before = np.maximum(np.searchsorted(self.times, seen, side="right") - 1, 0)
+        return before, np.maximum(seen - self.times[before], 0.0)
 
     def _states(self, lags):
         """The states at the samples, from rest."""
@@ -110,11 +102,9 @@ class DrivenChain:
 
         In the order of the chain, for an input that begins at u and rises with a slope.
         """
-        import numpy
-
         found = []
         for k in range(self.lags):
-            lost = -numpy.expm1(-elapsed / lags[k])
+            lost = -np.expm1(-elapsed / lags[k])
             line = lags[: k + 1].sum(axis=0)  # so far a state is behind a line
             if k == 0:
                 found.append([1 - lost, lost, elapsed - line * lost])
@@ -125,7 +115,7 @@ class DrivenChain:
                 rest = lost - follows
                 found.append([follows, 1 - lost, rest, elapsed - line * lost + follows * lags[0]])
         if self.integrators:
-            one = numpy.ones_like(elapsed)
+            one = np.ones_like(elapsed)
             if self.lags:
                 passed = lags[0] * first
                 late = elapsed - passed
@@ -136,8 +126,8 @@ class DrivenChain:
 
 
 def responses(
-    kind: str, lags: Sequence[float], delay: float, times: ndarray, u: ndarray, hold: str = "zero order"
-) -> tuple[ndarray, ndarray]:
+    kind: str, lags: Sequence[float], delay: float, times: np.ndarray, u: np.ndarray, hold: str = "zero order"
+) -> tuple[np.ndarray, np.ndarray]:
     """Return the response to the input u, at rest before with u = 0, and the free ones.
 
     Arguments:
@@ -148,16 +138,14 @@ def responses(
         An array with a value for each sample, and one with a column for each way to move without that input: one for
         each state that is 1 at the first sample, the last one for a constant input of 1.
 
-    >>> import numpy
-    >>> forced, free = responses("first order", [2.0], 0.5, numpy.array([0.0, 1.0, 2.5]), numpy.array([0.0, 1.0, 1.0]))
+    >>> import numpy as np
+    >>> forced, free = responses("first order", [2.0], 0.5, np.array([0.0, 1.0, 2.5]), np.array([0.0, 1.0, 1.0]))
     >>> forced.round(4)
     array([0.    , 0.    , 0.3935])
     """
-    import numpy
-
-    lags = numpy.array(sorted(lags, reverse=True), dtype=float)[:, None] if len(lags) else numpy.empty((0, 1))
+    lags = np.array(sorted(lags, reverse=True), dtype=float)[:, None] if len(lags) else np.empty((0, 1))
     chain = DrivenChain(kind, times, u, hold)
-    return chain.forced(lags, numpy.array([float(delay)]))[:, 0], chain.free(lags)[:, 0]
+    return chain.forced(lags, np.array([float(delay)]))[:, 0], chain.free(lags)[:, 0]
 
 
 def _sum(shares, signals):
@@ -171,18 +159,14 @@ def _sum(shares, signals):
 
 def _at(x, rows):
     """The values of each column, or of the only one, in rows of its own."""
-    import numpy
-
     columns = x.shape[1]
-    return x.ravel().take(rows * columns + (numpy.arange(columns) if columns > 1 else 0))
+    return x.ravel().take(rows * columns + (np.arange(columns) if columns > 1 else 0))
 
 
 def _share(x):
     """(1 - exp(-x))/x, for x not negative."""
-    import numpy
-
     small = x < 1e-8
-    return numpy.where(small, 1 - x / 2, -numpy.expm1(-x) / numpy.where(small, 1.0, x))
+    return np.where(small, 1 - x / 2, -np.expm1(-x) / np.where(small, 1.0, x))
 
 
 def _accumulated(decay, change):
@@ -190,29 +174,27 @@ def _accumulated(decay, change):
 
     In blocks of about the root of the length: all blocks go on at once, and then what each leaves to the next.
     """
-    import numpy
-
     count, columns = change.shape
-    x = numpy.zeros((count + 1, columns))
+    x = np.zeros((count + 1, columns))
     if decay is None:
-        numpy.cumsum(change, axis=0, out=x[1:])
+        np.cumsum(change, axis=0, out=x[1:])
         return x
     size = math.isqrt(count - 1) + 1
     blocks = -(-count // size)
-    inside = numpy.zeros((blocks * size, columns))
+    inside = np.zeros((blocks * size, columns))
     inside[:count] = change
     inside = inside.reshape(blocks, size, columns)
     if len(decay) == 1:
-        decays = numpy.broadcast_to(decay[None], (1, size, columns))
+        decays = np.broadcast_to(decay[None], (1, size, columns))
     else:
-        decays = numpy.ones((blocks * size, columns))
+        decays = np.ones((blocks * size, columns))
         decays[:count] = decay
         decays = decays.reshape(blocks, size, columns)
     for k in range(1, size):
         inside[:, k] += decays[:, k] * inside[:, k - 1]
-    products = numpy.cumprod(decays, axis=1)
-    whole, last = numpy.broadcast_to(products[:, -1], (blocks, columns)), inside[:, -1]
-    entering = numpy.zeros((blocks, columns))
+    products = np.cumprod(decays, axis=1)
+    whole, last = np.broadcast_to(products[:, -1], (blocks, columns)), inside[:, -1]
+    entering = np.zeros((blocks, columns))
     for k in range(1, blocks):
         entering[k] = whole[k - 1] * entering[k - 1] + last[k - 1]
     inside += products * entering[:, None]

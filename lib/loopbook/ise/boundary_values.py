@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 
+import numpy as np
+
 from loopbook.ise.error import ErrorFraction, NotApplicableError
 
 MOST_STATES = 48  # of a boundary value problem; beyond, quadrature is faster
@@ -38,7 +40,6 @@ def by_boundary_values(fraction: ErrorFraction) -> float:
 
 def _from_autocorrelation(fraction: ErrorFraction, speed: float) -> float:
     """The integral from the boundary value problem, solved with 1/speed as the unit of time."""
-    import numpy
     from scipy.linalg import expm
 
     delays = [d for d in (*fraction.N, *fraction.D) if d]
@@ -51,15 +52,15 @@ def _from_autocorrelation(fraction: ErrorFraction, speed: float) -> float:
         raise NotApplicableError(f"it has {states} states, more than {MOST_STATES}")
     h = float(unit) * speed
     above, above_delays, below, below_delays = fraction.arrays(speed)
-    N, D = numpy.zeros((m + 1, above.shape[1])), numpy.zeros((m + 1, order))
-    N[numpy.rint(above_delays / h).astype(int)] = above
-    D[numpy.rint(below_delays / h).astype(int), twice:] = below[:, :-1]
+    N, D = np.zeros((m + 1, above.shape[1])), np.zeros((m + 1, order))
+    N[np.rint(above_delays / h).astype(int)] = above
+    D[np.rint(below_delays / h).astype(int), twice:] = below[:, :-1]
 
     def place(j):  # of phi_j, and of psi_j m places later
         return slice(j * order, (j + 1) * order)
 
-    M = numpy.kron(numpy.eye(2 * m), numpy.diag(numpy.ones(order - 1), 1))
-    mirror = (-1.0) ** numpy.arange(order)
+    M = np.kron(np.eye(2 * m), np.diag(np.ones(order - 1), 1))
+    mirror = (-1.0) ** np.arange(order)
     for j in range(m):
         for i in range(m + 1):
             forward, back = (j - i, m + j - i) if i <= j else (m + i - j - 1, i - j - 1)
@@ -68,36 +69,36 @@ def _from_autocorrelation(fraction: ErrorFraction, speed: float) -> float:
 
     # the derivatives at zero, as rows that multiply the state
     highest = twice + 2 * fraction.order - 1
-    derivatives = [numpy.eye(1, states)]
+    derivatives = [np.eye(1, states)]
     for _ in range(highest):
         derivatives.append(derivatives[-1] @ M)
     at_zero = [*range(twice), *range(twice + 1, highest + 1, 2)]
-    start = numpy.vstack([derivatives[k] for k in at_zero])
-    value = numpy.zeros(states)
+    start = np.vstack([derivatives[k] for k in at_zero])
+    value = np.zeros(states)
     value[len(at_zero) - 1] = (-1) ** (fraction.pole + fraction.order) / 2
-    joined = numpy.zeros(((m - 1) * order, states))
+    joined = np.zeros(((m - 1) * order, states))
     for j in range(m - 1):
-        joined[place(j), place(m + j)] = numpy.diag(mirror)
-        joined[place(j), place(j + 1)] = -numpy.eye(order)
-    middle = numpy.hstack([numpy.eye(m * order), -numpy.kron(numpy.eye(m), numpy.diag(mirror))])
+        joined[place(j), place(m + j)] = np.diag(mirror)
+        joined[place(j), place(j + 1)] = -np.eye(order)
+    middle = np.hstack([np.eye(m * order), -np.kron(np.eye(m), np.diag(mirror))])
 
     # left @ Y(0) + right @ Y(h/2) = 0, from short steps, which are joined without forming a large exponential
     doublings = max(0, math.ceil(math.log2(abs(M).sum(axis=1).max() * h / 2)))
-    left, right = -expm(M * (h / 2 / 2**doublings)), numpy.eye(states)
+    left, right = -expm(M * (h / 2 / 2**doublings)), np.eye(states)
     for _ in range(doublings):
-        combination = numpy.linalg.qr(numpy.vstack([right, left]), mode="complete")[0][:, states:].T
+        combination = np.linalg.qr(np.vstack([right, left]), mode="complete")[0][:, states:].T
         left, right = combination[:, :states] @ left, combination[:, states:] @ right
-    nothing = numpy.zeros((m * order, states))
-    system = numpy.block([[numpy.vstack([start, joined]), nothing], [left, right], [nothing, middle]])
-    Y = numpy.linalg.solve(system, numpy.concatenate([value, numpy.zeros(states)]))[:states]
+    nothing = np.zeros((m * order, states))
+    system = np.block([[np.vstack([start, joined]), nothing], [left, right], [nothing, middle]])
+    Y = np.linalg.solve(system, np.concatenate([value, np.zeros(states)]))[:states]
 
-    mirrored, total = N * (-1.0) ** numpy.arange(N.shape[1]), 0.0
+    mirrored, total = N * (-1.0) ** np.arange(N.shape[1]), 0.0
     for shift in range(m + 1):
-        product = sum(numpy.convolve(N[q + shift], mirrored[q]) for q in range(m + 1 - shift))
+        product = sum(np.convolve(N[q + shift], mirrored[q]) for q in range(m + 1 - shift))
         if not product.any():
             continue
         # R at shift*h: the beginning of phi, or the one of the last psi, where the direction is the other one
-        row = numpy.zeros(states)
+        row = np.zeros(states)
         row[(shift if shift < m else 2 * m - 1) * order] = 1
         direction = -1.0 if shift < m else 1.0
         for k, c in enumerate(product):

@@ -6,6 +6,7 @@ import functools
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
 import sympy
 
 from loopbook.expressions import s
@@ -14,7 +15,6 @@ from loopbook.ise.residue_method import residue_method
 from loopbook.validation import one_of
 
 if TYPE_CHECKING:
-    import numpy
     from numpy.typing import ArrayLike
 
 LARGEST = 2**53  # a whole number that is a float without loss
@@ -57,7 +57,7 @@ def pi_first_order(
     Ti: ArrayLike,
     mode: str = "servo",
     unstable: float | None = None,
-) -> float | numpy.ndarray:
+) -> float | np.ndarray:
     """Return the integral of the squared error of a PI loop around a lag with dead time, by its closed formula.
 
     The process is K/(T*s + 1)*exp(-delay*s), the controller Kp*(1 + 1/(Ti*s)), the setpoint or the load a unit step.
@@ -101,45 +101,41 @@ def pi_first_order(
             raise _unstable(*given)
         return unstable
 
-    import numpy
-
     given = K, T, delay, Kp, Ti = _broadcast(given)
-    with numpy.errstate(over="ignore", invalid="ignore"):
-        right = (T > 0) & (delay >= 0) & (Ti > 0) & numpy.isfinite(K * Kp) & numpy.isfinite(T + delay + Ti)
+    with np.errstate(over="ignore", invalid="ignore"):
+        right = (T > 0) & (delay >= 0) & (Ti > 0) & np.isfinite(K * Kp) & np.isfinite(T + delay + Ti)
     if not right.all():
         raise _wrong(*(float(x[~right][0]) for x in given))
-    with numpy.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        x, value = _pi_first_order(numpy, numpy.where, *given, mode)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        x, value = _pi_first_order(np, np.where, *given, mode)
         stable = (x < math.pi / 2) & (K * Kp > 0)
     if not stable.all():
         if unstable is None:
             raise _unstable(*(float(x[~stable][0]) for x in given))
-        value = numpy.where(stable, value, unstable)
+        value = np.where(stable, value, unstable)
     return value[()]
 
 
 def _broadcast(given):
     """The settings as arrays of floats of one shape."""
-    import numpy
-
     arrays = []
     for name, value in zip(SETTINGS, given, strict=True):
         try:
-            array = numpy.asarray(value)
+            array = np.asarray(value)
             if array.dtype.kind not in "fiuO":  # no truth values, no text, and no complex numbers, which would be cut
                 raise TypeError
             arrays.append(array.astype(float))
         except (TypeError, ValueError, OverflowError):
             raise ValueError(f"{name} is {value!r}: expected a number, or an array of numbers") from None
     try:
-        return numpy.broadcast_arrays(*arrays)
+        return np.broadcast_arrays(*arrays)
     except ValueError:
         shapes = ", ".join(f"{name} {array.shape}" for name, array in zip(SETTINGS, arrays, strict=True))
         raise ValueError(f"the shapes of the settings are {shapes}: expected shapes that fit together") from None
 
 
 def _pi_first_order(m, where, K, T, delay, Kp, Ti, mode):
-    """The angle x and the integral; `m` is math or numpy."""
+    """The angle x and the integral; `m` is math or NumPy."""
     k = K * Kp
     # k^2 - 1 is small where k is about 1, and then the rounding of the product K Kp counts
     b = Ti * ((k - 1) + _rounded_off(K, Kp, k)) * (k + 1)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import functools
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from loopbook.deadtime import Loop
 from loopbook.ise.one_delay import OneDelay
@@ -13,9 +14,6 @@ from loopbook.quasipolynomials import DelayFraction, read
 from loopbook.quasipolynomials.fraction import Quasipolynomial, plus, taylor_coefficient, times
 from loopbook.stability import StabilityLimitError, unstable_roots
 from loopbook.validation import one_of
-
-if TYPE_CHECKING:
-    import numpy
 
 __all__ = ["ErrorFraction", "NotApplicableError", "UnstableLoopError", "error_of"]
 
@@ -144,17 +142,15 @@ class ErrorFraction:
         longest = float(max((*self.N, *self.D)))
         return 1 / longest if longest else 1.0
 
-    def arrays(self, speed: float) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray, numpy.ndarray]:
+    def arrays(self, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Coefficients of N and D in s/speed, a row for each dead time, and the dead times, as arrays of floats."""
-        import numpy
-
         leading, order = self.D[ZERO][-1], self.order + self.pole
 
         def rows(parts, columns, more):
-            table = numpy.zeros((len(parts), columns))
+            table = np.zeros((len(parts), columns))
             for row, part in zip(table, parts.values(), strict=True):
                 row[: len(part)] = [c / leading * speed ** (k + more - order) for k, c in enumerate(part)]
-            return table, numpy.array([float(delay) * speed for delay in parts])
+            return table, np.array([float(delay) * speed for delay in parts])
 
         return *rows(self.N, order, 0), *rows(self.D, self.order + 1, self.pole)
 

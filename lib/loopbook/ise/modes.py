@@ -5,14 +5,12 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from loopbook.ise.error import ErrorFraction
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.stability.counting import count_roots
-
-if TYPE_CHECKING:
-    import numpy
 
 DIGITS = 40
 MOST_MODES = 80
@@ -34,42 +32,34 @@ class Modes:
         mirrored: the values E(-pole) of the error that they are modes of.
     """
 
-    poles: numpy.ndarray
-    residues: numpy.ndarray
-    mirrored: numpy.ndarray | None = None
+    poles: np.ndarray
+    residues: np.ndarray
+    mirrored: np.ndarray | None = None
 
     @property
-    def weights(self) -> numpy.ndarray:
-        import numpy
+    def weights(self) -> np.ndarray:
+        return np.where(self.poles.imag > 0, 2.0, 1.0)
 
-        return numpy.where(self.poles.imag > 0, 2.0, 1.0)
-
-    def __call__(self, times: numpy.ndarray) -> numpy.ndarray:
-        import numpy
-
-        total = numpy.zeros(numpy.shape(times))
+    def __call__(self, times: np.ndarray) -> np.ndarray:
+        total = np.zeros(np.shape(times))
         for p, c, weight in zip(self.poles, self.residues, self.weights, strict=True):
-            total += weight * (c * numpy.exp(p * times)).real
+            total += weight * (c * np.exp(p * times)).real
         return total
 
     def later(self, time: float) -> Modes:
         """The same as a function of the time since then."""
-        import numpy
+        return Modes(self.poles, self.residues * np.exp(self.poles * time))
 
-        return Modes(self.poles, self.residues * numpy.exp(self.poles * time))
-
-    def bounds(self) -> tuple[numpy.ndarray, numpy.ndarray]:
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Of each mode, bounds of its integral from zero on, without and with the time as a weight."""
         sizes, rates = self.weights * abs(self.residues), -self.poles.real
         return sizes / rates, sizes / rates**2
 
     def squares(self) -> tuple[float, float]:
         """The integrals of the square from zero on, without and with the time as a weight."""
-        import numpy
-
         pairs = self.poles.imag > 0
-        p = numpy.concatenate([self.poles, self.poles[pairs].conj()])
-        c = numpy.concatenate([self.residues, self.residues[pairs].conj()])
+        p = np.concatenate([self.poles, self.poles[pairs].conj()])
+        c = np.concatenate([self.residues, self.residues[pairs].conj()])
         products, sums = c[:, None] * c, p[:, None] + p
         return float(-(products / sums).sum().real), float((products / sums**2).sum().real)
 
@@ -82,18 +72,16 @@ class Modes:
         Raises:
             ManyModesError: if several modes last so long together that their zeros would be too many.
         """
-        import numpy
-
         if not len(self.poles):
             return 0.0, 0.0
-        order = numpy.argsort(-self.poles.real)
-        modes, now, total, samples = Modes(self.poles[order], self.residues[order]), 0.0, numpy.zeros(2), 0
+        order = np.argsort(-self.poles.real)
+        modes, now, total, samples = Modes(self.poles[order], self.residues[order]), 0.0, np.zeros(2), 0
         grid = None
         while True:
             plain, weighted = modes.bounds()
             weighted = weighted + (begin + now) * plain
             # what is small enough is left out, the fastest first
-            rest = numpy.maximum(plain[::-1].cumsum() / allowed[0], weighted[::-1].cumsum() / allowed[1])[::-1]
+            rest = np.maximum(plain[::-1].cumsum() / allowed[0], weighted[::-1].cumsum() / allowed[1])[::-1]
             keep = max(1, int((rest > 1).sum()))
             if keep == 1:
                 return tuple(total + modes._alone(begin + now))
@@ -109,22 +97,18 @@ class Modes:
             total += modes._chunk(begin + now, grid)
             modes, now = modes.later(grid.times[-1]), now + float(grid.times[-1])
 
-    def _signed(self, begin: float) -> numpy.ndarray:
+    def _signed(self, begin: float) -> np.ndarray:
         """The integrals from zero on, without and with begin + t as a weight."""
-        import numpy
-
         c = self.weights * self.residues
         plain = -(c / self.poles).sum().real
-        return numpy.array([plain, begin * plain + (c / self.poles**2).sum().real])
+        return np.array([plain, begin * plain + (c / self.poles**2).sum().real])
 
-    def _alone(self, begin: float) -> numpy.ndarray:
+    def _alone(self, begin: float) -> np.ndarray:
         """The integrals of `sizes` for the first mode: of a pair, half periods that shrink by one factor."""
-        import numpy
-
         p, c = complex(self.poles[0]), complex(self.residues[0])
         rate, w = -p.real, p.imag
         if not w:
-            return numpy.array([abs(c) / rate, abs(c) * (begin / rate + 1 / rate**2)])
+            return np.array([abs(c) / rate, abs(c) * (begin / rate + 1 / rate**2)])
         amplitude, angle = 2 * abs(c), math.atan2(c.imag, c.real)
         # the first zero of cos(w t + angle)
         first = ((math.pi / 2 - angle) % math.pi) / w
@@ -135,55 +119,49 @@ class Modes:
         q, lost = math.exp(-rate * half), -math.expm1(-rate * half)
         plain = J / lost
         weighted = (begin + first) * plain + half * q * J / lost**2 + J_t / lost
-        return numpy.array([abs(head[0]) + start * plain, abs(head[1]) + start * weighted])
+        return np.array([abs(head[0]) + start * plain, abs(head[1]) + start * weighted])
 
-    def _chunk(self, begin: float, grid: _Grid) -> numpy.ndarray:
+    def _chunk(self, begin: float, grid: _Grid) -> np.ndarray:
         """The integrals of `sizes` over the times of a grid, between zeros that are sought between the samples."""
-        import numpy
-
         p, c = self.poles, self.weights * self.residues
         times, value, slope = grid.times, grid(c), grid(c * p)
 
         def at(times, k):
-            waves = numpy.exp(p[:, None] * times)
+            waves = np.exp(p[:, None] * times)
             return ((c * p**k) @ waves).real, ((c * p ** (k + 1)) @ waves).real
 
         # between two samples it may dip through zero and come back
         turns = (value[:-1] * slope[:-1] < 0) & (value[1:] * slope[1:] > 0) & (value[:-1] * value[1:] > 0)
-        if len(dips := numpy.flatnonzero(turns)):
+        if len(dips := np.flatnonzero(turns)):
             turning = _zeros(functools.partial(at, k=1), times[dips], times[dips + 1], slope[dips], slope[dips + 1])
-            times = numpy.insert(times, dips + 1, turning)
-            value = numpy.insert(value, dips + 1, at(turning, 0)[0])
+            times = np.insert(times, dips + 1, turning)
+            value = np.insert(value, dips + 1, at(turning, 0)[0])
         negative = value < 0
-        change = numpy.flatnonzero(negative[:-1] != negative[1:])
+        change = np.flatnonzero(negative[:-1] != negative[1:])
         zeros = _zeros(functools.partial(at, k=0), times[change], times[change + 1], value[change], value[change + 1])
-        knots = numpy.concatenate([times[:1], zeros, times[-1:]])
-        signs = numpy.where(numpy.concatenate([negative[change], negative[-1:]]), -1.0, 1.0)
-        waves = numpy.exp(p[:, None] * knots)
+        knots = np.concatenate([times[:1], zeros, times[-1:]])
+        signs = np.where(np.concatenate([negative[change], negative[-1:]]), -1.0, 1.0)
+        waves = np.exp(p[:, None] * knots)
         plain = ((c / p) @ waves).real
         weighted = (begin + knots) * plain - ((c / p**2) @ waves).real
-        return numpy.array([(signs * numpy.diff(plain)).sum(), (signs * numpy.diff(weighted)).sum()])
+        return np.array([(signs * np.diff(plain)).sum(), (signs * np.diff(weighted)).sum()])
 
 
 @dataclass(frozen=True)
 class _Grid:
     """Times, and the real and imaginary parts of exp(pole*t) there, which are the same for each chunk."""
 
-    times: numpy.ndarray
-    waves: numpy.ndarray
+    times: np.ndarray
+    waves: np.ndarray
 
     @classmethod
-    def of(cls, poles: numpy.ndarray) -> _Grid:
-        import numpy
+    def of(cls, poles: np.ndarray) -> _Grid:
+        times = STEP / abs(poles).max() * np.arange(CHUNK + 1)
+        waves = np.exp(poles[:, None] * times)
+        return cls(times, np.concatenate([waves.real, -waves.imag]))
 
-        times = STEP / abs(poles).max() * numpy.arange(CHUNK + 1)
-        waves = numpy.exp(poles[:, None] * times)
-        return cls(times, numpy.concatenate([waves.real, -waves.imag]))
-
-    def __call__(self, residues: numpy.ndarray) -> numpy.ndarray:
-        import numpy
-
-        return numpy.concatenate([residues.real, residues.imag]) @ self.waves
+    def __call__(self, residues: np.ndarray) -> np.ndarray:
+        return np.concatenate([residues.real, residues.imag]) @ self.waves
 
 
 def _integrals(p: complex, c: complex, a: float, b: float, begin: float) -> tuple[complex, complex]:
@@ -197,14 +175,12 @@ def _integrals(p: complex, c: complex, a: float, b: float, begin: float) -> tupl
 
 def _zeros(function, a, b, at_a, at_b):
     """The zeros between a and b, one in each interval, of functions that are nearly straight there."""
-    import numpy
-
-    with numpy.errstate(all="ignore"):
-        x = numpy.where(at_a == at_b, a, a + (b - a) * at_a / (at_a - at_b))
+    with np.errstate(all="ignore"):
+        x = np.where(at_a == at_b, a, a + (b - a) * at_a / (at_a - at_b))
         for _ in range(4):
             value, slope = function(x)
             step = value / slope
-            x = numpy.where(numpy.isfinite(step), numpy.clip(x - step, a, b), x)
+            x = np.where(np.isfinite(step), np.clip(x - step, a, b), x)
             if not len(x) or (abs(step) < 1e-9 * (b - a)).all():
                 break
     return x
@@ -220,20 +196,18 @@ def slow_modes(fraction: ErrorFraction, rate: float) -> Modes | None:
 
     None if there are too many, or they are not found: multiple ones, or some on the line itself.
     """
-    import numpy
-
     unit = rate
     _, _, below, delays = fraction.arrays(unit)
-    with numpy.errstate(over="ignore", invalid="ignore"):
+    with np.errstate(over="ignore", invalid="ignore"):
         shifted = _moved(below, delays)
-        if not numpy.isfinite(shifted).all():
+        if not np.isfinite(shifted).all():
             return None
         sizes = abs(shifted).sum(axis=0)
         reserve = 2 * abs(shifted[_undelayed(delays), -1]) - sizes[-1]
         if reserve <= 0:  # endless rows of poles come as far as that
             return None
         order = below.shape[1] - 1
-        top = max((2 * (sizes[:-1] / reserve) ** (1 / numpy.arange(order, 0, -1))).tolist(), default=0.0)
+        top = max((2 * (sizes[:-1] / reserve) ** (1 / np.arange(order, 0, -1))).tolist(), default=0.0)
     first = _undelayed(delays)
     arranged = [first, *(k for k in range(len(delays)) if k != first)]
     try:
@@ -248,7 +222,7 @@ def slow_modes(fraction: ErrorFraction, rate: float) -> Modes | None:
     exact = [_exact(fraction, p * unit) for p in poles]
     if any(e is None for e in exact):
         return None
-    return Modes(*numpy.array(exact, dtype=complex).reshape(-1, 3).T)
+    return Modes(*np.array(exact, dtype=complex).reshape(-1, 3).T)
 
 
 def _undelayed(delays) -> int:
@@ -257,38 +231,34 @@ def _undelayed(delays) -> int:
 
 def _moved(below, delays):
     """The coefficients as functions of s + 1."""
-    import numpy
-
     n = below.shape[1]
-    shift = numpy.array([[math.comb(k, j) * (-1.0) ** (k - j) if k >= j else 0.0 for k in range(n)] for j in range(n)])
-    return below @ shift.T * numpy.exp(delays)[:, None]
+    shift = np.array([[math.comb(k, j) * (-1.0) ** (k - j) if k >= j else 0.0 for k in range(n)] for j in range(n)])
+    return below @ shift.T * np.exp(delays)[:, None]
 
 
 def _roots_right_of_line(below, delays, top: float, count: int):
     """The upper ones of so many roots to the right of -1, by Newton's method; None if others are found."""
-    import numpy
-
     if not count:
         return []
-    powers = numpy.arange(1, below.shape[1])
+    powers = np.arange(1, below.shape[1])
     slopes = below[:, 1:] * powers
 
     def newton_step(x):
         value = derivative = 0
         for row, slope, delay in zip(below, slopes, delays, strict=True):
-            wave = numpy.exp(-delay * x)
-            polynomial = numpy.polynomial.polynomial.polyval(x, row)
-            lowered = numpy.polynomial.polynomial.polyval(x, slope) if len(slope) else 0.0
+            wave = np.exp(-delay * x)
+            polynomial = np.polynomial.polynomial.polyval(x, row)
+            lowered = np.polynomial.polynomial.polyval(x, slope) if len(slope) else 0.0
             value, derivative = value + polynomial * wave, derivative + (lowered - delay * polynomial) * wave
         return value / derivative
 
     for fineness in (1, 4):
         rows = int(min(fineness * (20 + 2 * top * delays.max()), 8000 * fineness))
-        heights = numpy.concatenate(
-            [[0.0], numpy.geomspace(1e-3, max(top, 1), fineness * 120), numpy.linspace(0, max(top, 1), rows)]
+        heights = np.concatenate(
+            [[0.0], np.geomspace(1e-3, max(top, 1), fineness * 120), np.linspace(0, max(top, 1), rows)]
         )
-        x = numpy.concatenate([-share + 1j * heights for share in (0.0, 0.4, 0.9)])
-        with numpy.errstate(all="ignore"):
+        x = np.concatenate([-share + 1j * heights for share in (0.0, 0.4, 0.9)])
+        with np.errstate(all="ignore"):
             for number in range(60):
                 change = newton_step(x)
                 x = x - change
@@ -299,10 +269,10 @@ def _roots_right_of_line(below, delays, top: float, count: int):
                 if there.all():
                     break
             rest = abs(newton_step(x))
-        inside = numpy.isfinite(x) & (x.real > -1) & (x.real < 0) & (x.imag > -1e-9 * abs(x)) & (rest < 1e-7 * abs(x))
+        inside = np.isfinite(x) & (x.real > -1) & (x.real < 0) & (x.imag > -1e-9 * abs(x)) & (rest < 1e-7 * abs(x))
         x, rest = x[inside], rest[inside]
         distinct: list[complex] = []
-        for k in numpy.argsort(rest):
+        for k in np.argsort(rest):
             if all(abs(x[k] - q) > 1e-7 * abs(q) for q in distinct):
                 distinct.append(complex(x[k].real, 0.0 if abs(x[k].imag) < 1e-7 * abs(x[k].real) else x[k].imag))
         if sum(2 if p.imag else 1 for p in distinct) == count:

@@ -8,6 +8,8 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -160,17 +162,15 @@ def _by_formula(Delta: list[int], highest: float) -> list[Zero]:
 
 def _by_eigenvalues(Delta: list[int], highest: float) -> list[Zero]:
     """The zeros of a polynomial, with radii of discs in which there is one (Smith 1970, after Gerschgorin)."""
-    import numpy
-
     n, lowest = len(Delta) - 1, Delta[0]
     unit = abs(lowest / Delta[-1]) ** (1 / n)  # where the product of the zeros is 1
-    scaled = numpy.array([c / lowest * unit**k for k, c in enumerate(Delta)])[::-1]
-    x = numpy.roots(scaled)
-    powers = abs(x)[:, None] ** numpy.arange(n, -1, -1)
-    with numpy.errstate(all="ignore"):
-        left = abs(numpy.polyval(scaled, x)) + 4 * n * ROUNDING * (powers @ abs(scaled))
+    scaled = np.array([c / lowest * unit**k for k, c in enumerate(Delta)])[::-1]
+    x = np.roots(scaled)
+    powers = abs(x)[:, None] ** np.arange(n, -1, -1)
+    with np.errstate(all="ignore"):
+        left = abs(np.polyval(scaled, x)) + 4 * n * ROUNDING * (powers @ abs(scaled))
         apart = x[:, None] - x
-        numpy.fill_diagonal(apart, 1)
+        np.fill_diagonal(apart, 1)
         slope = apart.prod(axis=1)
         radius = n * left / abs(scaled[0] * slope)
     slope = slope * (highest * unit ** (n - 1))

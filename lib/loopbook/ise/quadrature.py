@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from loopbook.ise.error import ErrorFraction, NotApplicableError
 from loopbook.ise.modes import slow_modes
 
 if TYPE_CHECKING:
-    import numpy
-
     from loopbook.ise.modes import Modes
 
 ERROR = 1e-9
@@ -54,39 +54,33 @@ class _Problem:
     """E in a unit of time in which the speed is 1, and its integral."""
 
     def __init__(self, fraction: ErrorFraction):
-        import numpy
-
         self.speed, self.pole = fraction.speed, fraction.pole
         self.above, self.above_delays, self.below, self.below_delays = fraction.arrays(self.speed)
-        self.powers = numpy.arange(self.below.shape[1])
+        self.powers = np.arange(self.below.shape[1])
         self.levels = _for_large_s(self.above, self.above_delays, self.below, self.below_delays, fraction.pole)
 
-    def E(self, w: numpy.ndarray) -> numpy.ndarray:
+    def E(self, w: np.ndarray) -> np.ndarray:
         below = _sum(self.below, self.below_delays, w) * (1j * w) ** self.pole
         return _sum(self.above, self.above_delays, w) / below
 
-    def near(self, center: numpy.ndarray, radius: numpy.ndarray) -> numpy.ndarray:
+    def near(self, center: np.ndarray, radius: np.ndarray) -> np.ndarray:
         """Whether a pole may lie within two radii."""
-        import numpy
-
         far, size = center + 2 * radius, abs(self.below)
-        growth = numpy.exp(2 * radius[:, None] * self.below_delays)
+        growth = np.exp(2 * radius[:, None] * self.below_delays)
         terms = size[:, 1:] * self.powers[1:]
-        slope = numpy.stack([numpy.polyval(row[::-1], far) for row in terms], axis=1)
-        slope = slope + self.below_delays * numpy.stack([numpy.polyval(row[::-1], far) for row in size], axis=1)
+        slope = np.stack([np.polyval(row[::-1], far) for row in terms], axis=1)
+        slope = slope + self.below_delays * np.stack([np.polyval(row[::-1], far) for row in size], axis=1)
         reach = 2 * radius * (growth * slope).sum(axis=1)
-        return (abs(_sum(self.below, self.below_delays, center)) <= reach) | (2 * radius > numpy.hypot(center, 1))
+        return (abs(_sum(self.below, self.below_delays, center)) <= reach) | (2 * radius > np.hypot(center, 1))
 
     def integral(self, modes: Modes | None, rate: float) -> float:
         """The integral, with the modes taken out; they are all to the right of -rate."""
-        import numpy
-
-        poles = residues = numpy.zeros(0, dtype=complex)
+        poles = residues = np.zeros(0, dtype=complex)
         total = 0.0
         if modes is not None:
             pairs = modes.poles.imag > 0
             poles, residues, mirrored = (
-                numpy.concatenate([each, each[pairs].conj()])
+                np.concatenate([each, each[pairs].conj()])
                 for each in (modes.poles / self.speed, modes.residues / self.speed, modes.mirrored)
             )
             total = float((2 * residues * mirrored).sum().real)
@@ -99,18 +93,18 @@ class _Problem:
         total += _square_of_expansion(expansion)
 
         def integrand(w):
-            asymptotic = sum(c * (1j * w + 1) ** -k * numpy.exp(-1j * w * delay) for (delay, k), c in expansion.items())
+            asymptotic = sum(c * (1j * w + 1) ** -k * np.exp(-1j * w * delay) for (delay, k), c in expansion.items())
             E = self.E(w) - sum(c / (1j * w - p) for c, p in zip(residues, poles, strict=True))
             return abs(E) ** 2 - abs(asymptotic) ** 2
 
-        nodes, weights = numpy.polynomial.legendre.leggauss(16)
-        fewer, their_weights = numpy.polynomial.legendre.leggauss(12)
+        nodes, weights = np.polynomial.legendre.leggauss(16)
+        fewer, their_weights = np.polynomial.legendre.leggauss(12)
         # the integrand turns with twice the longest dead time
         longest = max(self.below_delays.max(), self.above_delays.max())
         error, begin, end = 0.0, 0.0, 8.0
         narrowest = math.inf
         for _ in range(12):
-            ends = numpy.linspace(begin, end, 1 + math.ceil((end - begin) * max(longest, 1)))
+            ends = np.linspace(begin, end, 1 + math.ceil((end - begin) * max(longest, 1)))
             a, b = ends[:-1], ends[1:]
             while len(a):
                 center, radius = (a + b) / 2, (b - a) / 2
@@ -119,7 +113,7 @@ class _Problem:
                 one, other = (integrand(c + r * x) @ w * r[:, 0] for x, w in ((nodes, weights), (fewer, their_weights)))
                 total += float(one.sum()) / math.pi
                 error += float(abs(one - other).sum()) / math.pi
-                a, b = numpy.concatenate([a[split], center[split]]), numpy.concatenate([center[split], b[split]])
+                a, b = np.concatenate([a[split], center[split]]), np.concatenate([center[split], b[split]])
                 if len(a):
                     narrowest = min(narrowest, float(radius[split].min()) / 2)
                     if modes is None and narrowest < NARROW:
@@ -134,13 +128,11 @@ class _Problem:
             begin, end = end, 2 * end
         raise NotApplicableError(f"an error of {(error + left) / abs(total):.0e} was left")
 
-    def _distance(self, center: numpy.ndarray, radius: numpy.ndarray) -> float:
+    def _distance(self, center: np.ndarray, radius: np.ndarray) -> float:
         """About how near the nearest pole is."""
-        import numpy
-
         for _ in range(60):
             a, b = center - radius, center + radius
-            a, b = numpy.concatenate([a, center]), numpy.concatenate([center, b])
+            a, b = np.concatenate([a, center]), np.concatenate([center, b])
             center, radius = (a + b) / 2, (b - a) / 2
             still = self.near(center, radius)
             if not still.any():
@@ -149,12 +141,10 @@ class _Problem:
         return float(radius.min())
 
 
-def _sum(coefficients: numpy.ndarray, delays: numpy.ndarray, w: numpy.ndarray) -> numpy.ndarray:
+def _sum(coefficients: np.ndarray, delays: np.ndarray, w: np.ndarray) -> np.ndarray:
     """The value of a sum of polynomials with dead times at s = j w."""
-    import numpy
-
     return sum(
-        numpy.polyval(row[::-1] * 1j ** numpy.arange(len(row))[::-1], w) * numpy.exp(-1j * w * delay)
+        np.polyval(row[::-1] * 1j ** np.arange(len(row))[::-1], w) * np.exp(-1j * w * delay)
         for row, delay in zip(coefficients, delays, strict=True)
     )
 
@@ -164,18 +154,17 @@ TERMS = 3  # of the expansion for large s
 
 def _for_large_s(above, above_delays, below, below_delays, pole):
     """E for large s as the sum of c exp(-delay*s)/(s + 1)^k: for k = 0, 1 ... {delay: c}, the last one for the rest."""
-    import numpy
 
     def in_powers(row, order):  # the polynomial divided by (s + 1)^order, in powers of u = 1/(s + 1)
-        shifted = numpy.polynomial.Polynomial(row)(numpy.polynomial.Polynomial([-1, 1])).coef  # in powers of s + 1
-        found = numpy.zeros(TERMS + 2)
+        shifted = np.polynomial.Polynomial(row)(np.polynomial.Polynomial([-1, 1])).coef  # in powers of s + 1
+        found = np.zeros(TERMS + 2)
         for k, c in enumerate(shifted):
             if order - k < len(found):
                 found[order - k] += c
         return found
 
     order = below.shape[1] - 1 + pole
-    below = numpy.hstack([numpy.zeros((len(below), pole)), below])
+    below = np.hstack([np.zeros((len(below), pole)), below])
     numerator, denominator = (
         [(round(delay, 12), in_powers(row, order)) for delay, row in zip(delays, rows, strict=True)]
         for delays, rows in ((above_delays, above), (below_delays, below))

@@ -7,6 +7,8 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from loopbook.ise.error import ErrorFraction, NotApplicableError
 from loopbook.ise.one_delay import ROUNDING, OneDelay, size, squared, value
 from loopbook.ise.residue_method import both_residues
@@ -106,11 +108,10 @@ def _with_many_digits(parts: tuple[Sequence[int], ...], delay: Fraction, pole: i
 def _zeros(polynomial: list[mpmath.mpf]) -> list[mpmath.mpc]:
     """All zeros of a polynomial with simple ones, lowest power first, by the method of Ehrlich and Aberth."""
     import mpmath
-    import numpy
 
     n = len(polynomial) - 1
     largest = max(map(abs, polynomial))
-    starts = numpy.roots([float(c / largest) for c in reversed(polynomial)])
+    starts = np.roots([float(c / largest) for c in reversed(polynomial)])
     if len(starts) < n:
         raise NotApplicableError("Delta has a zero at infinity")
     x = [

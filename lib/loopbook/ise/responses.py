@@ -6,6 +6,9 @@ import functools
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+from numpy.polynomial import legendre
+
 from loopbook.deadtime import System
 from loopbook.expressions import s
 from loopbook.ise.error import ErrorFraction, NotApplicableError, error_of
@@ -14,8 +17,6 @@ from loopbook.quasipolynomials import read
 from loopbook.validation import number
 
 if TYPE_CHECKING:
-    import numpy
-
     from loopbook.deadtime import Response
 
 __all__ = ["Criteria", "criteria"]
@@ -82,26 +83,21 @@ def by_response(fraction: ErrorFraction) -> float:
 # ---- over the segments of a response
 
 
-def _four_integrals(response: Response, sizes: bool) -> numpy.ndarray:
+def _four_integrals(response: Response, sizes: bool) -> np.ndarray:
     """The integrals over each segment of e^2, abs(e), t abs(e) and t e^2, those of abs(e) only where wanted."""
-    import numpy
-
     times, weights = response.quadrature()
     squares = response(times) ** 2 * weights
-    plain = weighted = numpy.zeros(len(squares))
+    plain = weighted = np.zeros(len(squares))
     if sizes:
         plain, weighted = _of_sizes(response)
-    return numpy.stack([squares.sum(axis=1), plain, weighted, (times * squares).sum(axis=1)], axis=1)
+    return np.stack([squares.sum(axis=1), plain, weighted, (times * squares).sum(axis=1)], axis=1)
 
 
-def _of_sizes(response: Response) -> tuple[numpy.ndarray, numpy.ndarray]:
+def _of_sizes(response: Response) -> tuple[np.ndarray, np.ndarray]:
     """The integrals over each segment of abs(e) and t abs(e), between the zeros of the polynomials."""
-    import numpy
-    from numpy.polynomial import legendre
-
     coefficients, edges = response.coefficients, response.edges
     points, at_points, at_points_slope, slopes, moments = _tables(coefficients.shape[1])
-    half, middle = numpy.diff(edges)[:, None] / 2, (edges[1:] + edges[:-1])[:, None] / 2
+    half, middle = np.diff(edges)[:, None] / 2, (edges[1:] + edges[:-1])[:, None] / 2
     value, slope = coefficients @ at_points.T, coefficients @ at_points_slope.T
     derivatives = coefficients @ slopes.T
 
@@ -110,16 +106,16 @@ def _of_sizes(response: Response) -> tuple[numpy.ndarray, numpy.ndarray]:
 
     def zeros_of(rows, row_slopes, a, b):
         at_a, at_b = at(rows, a), at(rows, b)
-        x = numpy.where(at_a == at_b, a, a + (b - a) * at_a / numpy.where(at_a == at_b, 1, at_a - at_b))
+        x = np.where(at_a == at_b, a, a + (b - a) * at_a / np.where(at_a == at_b, 1, at_a - at_b))
         low, high = a, b
         for _ in range(60):
             here = at(rows, x)
             same = (here < 0) == (at_a < 0)
-            low, high = numpy.where(same, x, low), numpy.where(same, high, x)
-            with numpy.errstate(all="ignore"):
+            low, high = np.where(same, x, low), np.where(same, high, x)
+            with np.errstate(all="ignore"):
                 better = x - here / at(row_slopes, x)
             outside = ~((better >= low) & (better <= high))
-            better = numpy.where(outside, (low + high) / 2, better)
+            better = np.where(outside, (low + high) / 2, better)
             done = (abs(better - x) <= 1e-15).all()
             x = better
             if done:
@@ -127,13 +123,11 @@ def _of_sizes(response: Response) -> tuple[numpy.ndarray, numpy.ndarray]:
         return x
 
     # where it dips through zero and comes back between two points, the bottom of the dip is one more
-    dips = numpy.nonzero(
+    dips = np.nonzero(
         (value[:, :-1] * slope[:, :-1] < 0) & (value[:, 1:] * slope[:, 1:] > 0) & (value[:, :-1] * value[:, 1:] > 0)
     )
-    segments = [numpy.repeat(numpy.arange(len(value)), len(points) - 1)]
-    left, right = (
-        numpy.broadcast_to(part, (len(value), len(points) - 1)).ravel() for part in (points[:-1], points[1:])
-    )
+    segments = [np.repeat(np.arange(len(value)), len(points) - 1)]
+    left, right = (np.broadcast_to(part, (len(value), len(points) - 1)).ravel() for part in (points[:-1], points[1:]))
     at_left, at_right = value[:, :-1].ravel(), value[:, 1:].ravel()
     if len(dips[0]):
         rows = dips[0]
@@ -143,11 +137,11 @@ def _of_sizes(response: Response) -> tuple[numpy.ndarray, numpy.ndarray]:
         through = at_bottom * value[dips] < 0
         rows, bottom, at_bottom = rows[through], bottom[through], at_bottom[through]
         segments += [rows, rows]
-        left = numpy.concatenate([left, points[dips[1][through]], bottom])
-        right = numpy.concatenate([right, bottom, points[dips[1][through] + 1]])
-        at_left = numpy.concatenate([at_left, value[dips][through], at_bottom])
-        at_right = numpy.concatenate([at_right, at_bottom, value[dips[0][through], dips[1][through] + 1]])
-    rows = numpy.concatenate(segments)
+        left = np.concatenate([left, points[dips[1][through]], bottom])
+        right = np.concatenate([right, bottom, points[dips[1][through] + 1]])
+        at_left = np.concatenate([at_left, value[dips][through], at_bottom])
+        at_right = np.concatenate([at_right, at_bottom, value[dips[0][through], dips[1][through] + 1]])
+    rows = np.concatenate(segments)
     crossing = (at_left < 0) != (at_right < 0)
     rows, falling = rows[crossing], at_left[crossing] >= 0
     zeros = zeros_of(coefficients[rows], derivatives[rows], left[crossing], right[crossing])
@@ -155,9 +149,9 @@ def _of_sizes(response: Response) -> tuple[numpy.ndarray, numpy.ndarray]:
     total = []
     for table in moments:
         integral = coefficients @ table.T
-        ends = at(integral, numpy.ones(len(integral)))
-        found = numpy.where(value[:, -1] < 0, -ends, ends)
-        numpy.add.at(found, rows, numpy.where(falling, 2.0, -2.0) * at(integral[rows], zeros))
+        ends = at(integral, np.ones(len(integral)))
+        found = np.where(value[:, -1] < 0, -ends, ends)
+        np.add.at(found, rows, np.where(falling, 2.0, -2.0) * at(integral[rows], zeros))
         total.append(found)
     return total[0] * half[:, 0], (total[0] * middle[:, 0] + total[1] * half[:, 0]) * half[:, 0]
 
@@ -165,15 +159,12 @@ def _of_sizes(response: Response) -> tuple[numpy.ndarray, numpy.ndarray]:
 @functools.cache
 def _tables(n: int):
     """Points, the values and slopes of n Legendre polynomials there, and matrices of derivatives and of integrals."""
-    import numpy
-    from numpy.polynomial import legendre
-
-    points = -numpy.cos(numpy.linspace(0, math.pi, 3 * n))
-    slopes = numpy.zeros((n, n))
-    slopes[: n - 1] = legendre.legder(numpy.eye(n), axis=0)
-    moments = [legendre.legint(numpy.eye(n), lbnd=-1, axis=0)]
-    by_x = numpy.zeros((n + 1, n))
-    for k, row in enumerate(numpy.eye(n)):
+    points = -np.cos(np.linspace(0, math.pi, 3 * n))
+    slopes = np.zeros((n, n))
+    slopes[: n - 1] = legendre.legder(np.eye(n), axis=0)
+    moments = [legendre.legint(np.eye(n), lbnd=-1, axis=0)]
+    by_x = np.zeros((n + 1, n))
+    for k, row in enumerate(np.eye(n)):
         found = legendre.legmulx(row)
         by_x[: len(found), k] = found
     moments.append(legendre.legint(by_x, lbnd=-1, axis=0))
@@ -184,7 +175,7 @@ def _tables(n: int):
 # ---- and beyond
 
 
-def _followed(fraction: ErrorFraction, tolerance: float, sizes: bool) -> numpy.ndarray:
+def _followed(fraction: ErrorFraction, tolerance: float, sizes: bool) -> np.ndarray:
     """Integrals over the response, followed twice as far until what comes later is known or does not matter."""
     e = System(fraction.fraction * DIFFERENTIATOR)
     delays = fraction.fraction.delays
@@ -211,11 +202,9 @@ def _followed(fraction: ErrorFraction, tolerance: float, sizes: bool) -> numpy.n
 
 
 def _beyond(
-    fraction: ErrorFraction, response: Response, total: numpy.ndarray, tolerance: float, sizes: bool
-) -> tuple[numpy.ndarray | None, str]:
+    fraction: ErrorFraction, response: Response, total: np.ndarray, tolerance: float, sizes: bool
+) -> tuple[np.ndarray | None, str]:
     """The integrals from the end of a response on, or None and the reason why they are not known."""
-    import numpy
-
     end = float(response.edges[-1])
     rate = GONE / end
     modes = slow_modes(fraction, rate)
@@ -228,7 +217,7 @@ def _beyond(
     apart = float(abs(response(times) - modes(times)).max())
     rest_modes = modes.later(end)
     square, square_later = rest_modes.squares() if len(modes.poles) else (0.0, 0.0)
-    found = numpy.array([square, 0.0, 0.0, end * square + square_later])
+    found = np.array([square, 0.0, 0.0, end * square + square_later])
     if sizes:
         scale = total + found
         lead = max(rest_modes.bounds()[0].tolist(), default=0.0)
@@ -241,7 +230,7 @@ def _beyond(
     # what is no mode decays at that rate or faster
     size = float((rest_modes.weights * abs(rest_modes.residues)).sum())
     plain, weighted = apart / rate, apart * (end / rate + 1 / rate**2)
-    error = numpy.array([(2 * size + apart) * plain, plain, weighted, (2 * size + apart) * weighted])
+    error = np.array([(2 * size + apart) * plain, plain, weighted, (2 * size + apart) * weighted])
     if not sizes:
         error, found_total = error[[0]], (total + found)[[0]]
     else:

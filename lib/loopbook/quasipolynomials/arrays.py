@@ -6,11 +6,11 @@ import functools
 import math
 from typing import TYPE_CHECKING, Self
 
+import numpy as np
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from fractions import Fraction
-
-    import numpy
 
 __all__ = ["DEGREE", "Quasipolynomials"]
 
@@ -33,14 +33,12 @@ class Quasipolynomials:
 
     __array_ufunc__ = None  # so that an array of factors, one for each point, leaves its multiplication to this class
 
-    def __init__(self, coefficients: numpy.ndarray, delays: numpy.ndarray):
-        import numpy
-
+    def __init__(self, coefficients: np.ndarray, delays: np.ndarray):
         count = max(coefficients.shape[-1], delays.shape[-1])
         if coefficients.shape[-1] != count:
-            coefficients = numpy.broadcast_to(coefficients, (*coefficients.shape[:2], count))
+            coefficients = np.broadcast_to(coefficients, (*coefficients.shape[:2], count))
         if delays.shape[-1] != count:
-            delays = numpy.broadcast_to(delays, (len(delays), count))
+            delays = np.broadcast_to(delays, (len(delays), count))
         self.coefficients, self.delays = coefficients, delays
 
     @classmethod
@@ -49,11 +47,9 @@ class Quasipolynomials:
 
         It is divided before, because exact numbers may be too large or too small for floating point.
         """
-        import numpy
-
         parts = dict(sorted(parts.items())) or {0: ()}  # the undelayed part first
         rows = [[*(c / divisor for c in part), *[0.0] * (order + 1 - len(part))] for part in parts.values()]
-        return cls(numpy.array(rows, dtype=float)[:, :, None], numpy.array([[float(delay)] for delay in parts]))
+        return cls(np.array(rows, dtype=float)[:, :, None], np.array([[float(delay)] for delay in parts]))
 
     @property
     def order(self) -> int:
@@ -66,7 +62,7 @@ class Quasipolynomials:
         return self.coefficients.shape[-1]
 
     @functools.cached_property
-    def longest(self) -> numpy.ndarray:
+    def longest(self) -> np.ndarray:
         """The longest dead time of each quasipolynomial."""
         return self.delays.max(axis=0)
 
@@ -75,38 +71,34 @@ class Quasipolynomials:
     def __getitem__(self, points: object) -> Quasipolynomials:
         return Quasipolynomials(self.coefficients[..., points], self.delays[..., points])
 
-    def __rmul__(self, factor: float | numpy.ndarray) -> Quasipolynomials:
+    def __rmul__(self, factor: float | np.ndarray) -> Quasipolynomials:
         return Quasipolynomials(factor * self.coefficients, self.delays)
 
     def __add__(self, other: Quasipolynomials) -> Quasipolynomials:
         """What has the same dead times becomes one part, the undelayed one first, so that terms cancel."""
-        import numpy
-
         order, count = max(self.order, other.order), max(self.count, other.count)
-        parts = {numpy.zeros(count).tobytes(): (numpy.zeros(count), numpy.zeros((order + 1, count)))}
+        parts = {np.zeros(count).tobytes(): (np.zeros(count), np.zeros((order + 1, count)))}
         for sums in (self, other):
             for part, delay in zip(sums.coefficients, sums.delays, strict=True):
-                delay = numpy.broadcast_to(delay, count) + 0.0
-                total = parts.setdefault(delay.tobytes(), (delay, numpy.zeros((order + 1, count))))[1]
+                delay = np.broadcast_to(delay, count) + 0.0
+                total = parts.setdefault(delay.tobytes(), (delay, np.zeros((order + 1, count))))[1]
                 total[: len(part)] += part
         return Quasipolynomials(
-            numpy.stack([part for _, part in parts.values()]), numpy.stack([delay for delay, _ in parts.values()])
+            np.stack([part for _, part in parts.values()]), np.stack([delay for delay, _ in parts.values()])
         )
 
     def __mul__(self, other: Quasipolynomials) -> Quasipolynomials:
-        import numpy
-
         parts, delays = [], []
         for p, delay in zip(self.coefficients, self.delays, strict=True):
             for q, later in zip(other.coefficients, other.delays, strict=True):
-                part = numpy.zeros((len(p) + len(q) - 1, max(self.count, other.count)))
+                part = np.zeros((len(p) + len(q) - 1, max(self.count, other.count)))
                 for n, row in enumerate(p):
                     part[n : n + len(q)] += row * q
                 parts.append(part)
                 delays.append(delay + later)
-        return Quasipolynomials(numpy.stack(parts), numpy.stack(delays))
+        return Quasipolynomials(np.stack(parts), np.stack(delays))
 
-    def delayed(self, delay: numpy.ndarray) -> Quasipolynomials:
+    def delayed(self, delay: np.ndarray) -> Quasipolynomials:
         """The quasipolynomials with an additional dead time, or one less."""
         return Quasipolynomials(self.coefficients, self.delays + delay)
 
@@ -114,81 +106,69 @@ class Quasipolynomials:
         """The derivative with respect to s."""
         return Quasipolynomials(_derivative(self.coefficients) - self.delays[:, None] * self.coefficients, self.delays)
 
-    def slower(self, unit: numpy.ndarray, power: int | None = None) -> Quasipolynomials:
+    def slower(self, unit: np.ndarray, power: int | None = None) -> Quasipolynomials:
         """The quasipolynomials divided by unit**power, with time in a unit in which the frequency `unit` is 1."""
-        import numpy
-
-        powers = numpy.arange(self.order + 1) - (self.order if power is None else power)
+        powers = np.arange(self.order + 1) - (self.order if power is None else power)
         return Quasipolynomials(self.coefficients * unit ** powers[:, None].astype(float), self.delays * unit)
 
     # ---- on the imaginary axis
 
-    def value(self, which: numpy.ndarray, w: numpy.ndarray) -> numpy.ndarray:
+    def value(self, which: np.ndarray, w: np.ndarray) -> np.ndarray:
         """The values of some quasipolynomials at s = j w, one frequency for each."""
         return self.taylor(which, w, 0)[0]
 
-    def taylor(self, which: numpy.ndarray, w: numpy.ndarray, degree: int = DEGREE) -> numpy.ndarray:
+    def taylor(self, which: np.ndarray, w: np.ndarray, degree: int = DEGREE) -> np.ndarray:
         """The coefficients of the powers of h in the quasipolynomials at s = j (w + h): array [power, frequency]."""
-        import numpy
-
         if self.count == 1:
             powers, total = powers_of(w, self.order + 1), 0
             for matrix, delay in zip(self.turned, self.delays[:, 0].tolist(), strict=True):
                 value = matrix[: degree + 1] @ powers
-                total = total + (value * numpy.exp(-1j * (w * delay)) if delay else value)
+                total = total + (value * np.exp(-1j * (w * delay)) if delay else value)
             return total
         if len(w) * (degree + 1) * (self.order + 1) <= FEW:
             powers = 1j ** _degrees(self.order)[:, None] * powers_of(w, self.order + 1)
             total = 0
             for matrix, delay in zip(self._expansion, self.delays, strict=True):
                 value = (matrix[: degree + 1, :, which] * powers).sum(axis=1)
-                total = total + (value * numpy.exp(-1j * (w * delay[which])) if delay.any() else value)
+                total = total + (value * np.exp(-1j * (w * delay[which])) if delay.any() else value)
             return total * 1j ** _degrees(degree)[:, None]
-        total, square = numpy.zeros((degree + 1, len(w)), dtype=complex), -w * w
+        total, square = np.zeros((degree + 1, len(w)), dtype=complex), -w * w
         for matrix, delay in zip(self._expansion, self.delays, strict=True):
-            value = numpy.empty((degree + 1, len(w)), dtype=complex)
+            value = np.empty((degree + 1, len(w)), dtype=complex)
             for k in range(degree + 1):
                 # in powers of w alone, which is quicker: the even powers are real, the odd ones imaginary
                 even, odd = (_polynomial(matrix[k, first::2], which, square) for first in (0, 1))
                 value[k] = (even + 1j * (w * odd)) * 1j**k
-            total += value * numpy.exp(-1j * (w * delay[which])) if delay.any() else value
+            total += value * np.exp(-1j * (w * delay[which])) if delay.any() else value
         return total
 
-    def sizes(self, which: numpy.ndarray, w: numpy.ndarray, degree: int = DEGREE) -> numpy.ndarray:
+    def sizes(self, which: np.ndarray, w: np.ndarray, degree: int = DEGREE) -> np.ndarray:
         """Bounds of the coefficients of the powers 0 to degree + 1 in `taylor`, from zero to the frequency w.
 
         They are those of the sum of the sizes of all terms, and the last one bounds the remainder.
         """
-        import numpy
-
         sizes = self._sizes[: degree + 2]
         if self.count == 1:
             return sizes[..., 0] @ powers_of(w, self.order + 1)
         if len(w) * (degree + 2) * (self.order + 1) <= FEW:
             return (sizes[..., which] * powers_of(w, self.order + 1)).sum(axis=1)
-        return numpy.stack([_polynomial(each, which, w) + 0 * w for each in sizes])
+        return np.stack([_polynomial(each, which, w) + 0 * w for each in sizes])
 
     @functools.cached_property
     def _expansion(self):
         """Array [part, k, power, point]: polynomials that, times exp(-delay*s), are the derivatives over k!."""
-        import numpy
-
-        return numpy.array(self._expanded(self.coefficients, -self.delays, DEGREE)).swapaxes(0, 1)
+        return np.array(self._expanded(self.coefficients, -self.delays, DEGREE)).swapaxes(0, 1)
 
     @functools.cached_property
-    def turned(self) -> numpy.ndarray:
+    def turned(self) -> np.ndarray:
         """What a single quasipolynomial is expanded with: arrays [part, k, power], in powers of the frequency."""
-        import numpy
-
-        turns = 1j ** (numpy.arange(DEGREE + 1)[:, None] + numpy.arange(self.order + 1))
+        turns = 1j ** (np.arange(DEGREE + 1)[:, None] + np.arange(self.order + 1))
         return self._expansion[..., 0] * turns
 
     @functools.cached_property
     def _sizes(self):
-        import numpy
-
         expanded = self._expanded(abs(self.coefficients), abs(self.delays), DEGREE + 1)
-        return numpy.array([each.sum(axis=0) for each in expanded])
+        return np.array([each.sum(axis=0) for each in expanded])
 
     def _expanded(self, coefficients, rates, degree):
         derivatives = [coefficients]
@@ -209,20 +189,16 @@ class Quasipolynomials:
 
 @functools.cache
 def _degrees(last):
-    import numpy
-
-    return numpy.arange(last + 1)
+    return np.arange(last + 1)
 
 
 def _derivative(coefficients):
-    import numpy
-
-    lower = numpy.zeros_like(coefficients)
+    lower = np.zeros_like(coefficients)
     lower[:, :-1] = coefficients[:, 1:] * _degrees(coefficients.shape[1] - 1)[1:, None]
     return lower
 
 
-def powers_of(w: numpy.ndarray, count: int) -> numpy.ndarray:
+def powers_of(w: np.ndarray, count: int) -> np.ndarray:
     """The powers 0, 1 ... of numbers: array [power, number]."""
     return w ** _degrees(count - 1)[:, None] if count > 1 else (0 * w + 1)[None]
 

@@ -11,6 +11,7 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING, Self
 
+import numpy as np
 import sympy
 from sympy.polys.densearith import dup_exquo
 from sympy.polys.euclidtools import dup_gcd
@@ -21,7 +22,6 @@ from loopbook.expressions import s
 from loopbook.transfer import transfer_function
 
 if TYPE_CHECKING:
-    import numpy
     from numpy.typing import ArrayLike
 
 __all__ = ["DelayFraction", "Quasipolynomial", "lowest_term", "plus", "read", "taylor_coefficient", "times"]
@@ -372,25 +372,21 @@ class DelayFraction:
 
     # ---- values
 
-    def __call__(self, point: complex | ArrayLike) -> numpy.ndarray:
+    def __call__(self, point: complex | ArrayLike) -> np.ndarray:
         """Return the value H(s) at complex points, an array of their shape; not finite at a pole.
 
         >>> read(1 / (s + 1))(1j)
         np.complex128(0.5-0.5j)
         """
-        import numpy
-
-        point = numpy.asarray(point, dtype=complex)
-        with numpy.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        point = np.asarray(point, dtype=complex)
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             return (self._value(self.numerator, point) / self._value(self.denominator, point))[()]
 
-    def _value(self, parts: Quasipolynomial, point: numpy.ndarray) -> numpy.ndarray:
-        import numpy
-
-        leading, total = self.denominator[ZERO][-1], numpy.zeros(point.shape, dtype=complex)
+    def _value(self, parts: Quasipolynomial, point: np.ndarray) -> np.ndarray:
+        leading, total = self.denominator[ZERO][-1], np.zeros(point.shape, dtype=complex)
         for delay, part in parts.items():
-            value = numpy.polyval([c / leading for c in reversed(part)], point)
-            total = total + (value * numpy.exp(-float(delay) * point) if delay else value)
+            value = np.polyval([c / leading for c in reversed(part)], point)
+            total = total + (value * np.exp(-float(delay) * point) if delay else value)
         return total
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 from typing import TYPE_CHECKING
 
+import numpy as np
 import sympy
 
 from loopbook.expressions import s
@@ -16,29 +17,26 @@ from loopbook.validation import real_numbers
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    import numpy
     from numpy.typing import ArrayLike
 
 __all__ = ["broadcast_values", "with_values"]
 
 
-def broadcast_values(values: Mapping[str, ArrayLike]) -> tuple[dict[str, numpy.ndarray], tuple[int, ...]]:
+def broadcast_values(values: Mapping[str, ArrayLike]) -> tuple[dict[str, np.ndarray], tuple[int, ...]]:
     """Return the values of letters as arrays of one dimension and equal length, and the shape that they had together.
 
     Raises ValueError for what is not real and finite, or shapes that do not fit.
     """
-    import numpy
-
     arrays = {name: real_numbers(f"values of {name}", array) for name, array in values.items()}
     try:
-        shape = numpy.broadcast_shapes(*(array.shape for array in arrays.values()))
+        shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
     except ValueError:
         shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
         raise ValueError(f"the shapes of the values are {shapes}: expected shapes that fit together") from None
-    return {name: numpy.broadcast_to(array, shape).ravel() for name, array in arrays.items()}, shape
+    return {name: np.broadcast_to(array, shape).ravel() for name, array in arrays.items()}, shape
 
 
-def with_values(H: object, values: Mapping[str, numpy.ndarray]) -> tuple[Quasipolynomials, Quasipolynomials]:
+def with_values(H: object, values: Mapping[str, np.ndarray]) -> tuple[Quasipolynomials, Quasipolynomials]:
     """Return numerator and denominator of a transfer function for many values of its letters.
 
     Arguments:
@@ -47,9 +45,9 @@ def with_values(H: object, values: Mapping[str, numpy.ndarray]) -> tuple[Quasipo
     Raises:
         ValueError: for letters without values, a negative dead time, or what is no transfer function.
 
-    >>> import numpy
+    >>> import numpy as np
     >>> K = sympy.Symbol("K")
-    >>> above, below = with_values(K * sympy.exp(-s) / (2 * s + 1), {"K": numpy.array([1.0, 3.0])})
+    >>> above, below = with_values(K * sympy.exp(-s) / (2 * s + 1), {"K": np.array([1.0, 3.0])})
     >>> above.delays.tolist(), above.coefficients.tolist()
     ([[1.0, 1.0]], [[[1.0, 3.0]]])
     """
@@ -77,10 +75,8 @@ def _compiled(H, names):
 
 
 def _numbers(compiled, values, count):
-    import numpy
-
     function, parts, powers = compiled
-    table = numpy.array([row + numpy.zeros(count) for row in function(*values.values())])
+    table = np.array([row + np.zeros(count) for row in function(*values.values())])
     coefficients, delays = table[: parts * powers].reshape(parts, powers, count), table[parts * powers :]
     if (delays < 0).any():
         raise ValueError(f"the values make a dead time {delays.min():g}: expected one that is not negative")

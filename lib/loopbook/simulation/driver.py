@@ -7,6 +7,7 @@ import math
 import warnings
 from collections.abc import Mapping, Sequence
 
+import numpy as np
 import sympy
 
 from loopbook.plants import Plant, name_of
@@ -83,8 +84,6 @@ def simulate(
     >>> run["v_out"].round(6)
     array([0.      , 3.160603, 4.323324])
     """
-    import numpy
-
     if not isinstance(plant, Plant):
         raise ValueError(f"the plant is {plant!r}: expected one such as WoodChipTank()")
     if after is not None and not isinstance(after, Run):
@@ -126,7 +125,7 @@ def simulate(
             for name, value in structure.sample(system.readings(time, structure.driven)).items():
                 sources[name].values.append(value)
     record = structure.seen_by(SINGLE) if of_one_loop and blocks else structure.record
-    signals = {name: numpy.array(values) for name, values in (system.signals(times) | record).items()}
+    signals = {name: np.array(values) for name, values in (system.signals(times) | record).items()}
     held = {name for name, source in sources.items() if not any(map(callable, source.values))} | set(record)
     main = structure.driven[0] if structure.driven else acting_on
     run = Run(times, signals, plant, main, held, _past=Past(system, structure))
@@ -199,8 +198,6 @@ def _sources(plant, times, inputs, past):
 
 def _grid(begin, until, step):
     """The moments of the samples, rounded so that 49 steps of 0.1 end at 4.9."""
-    import numpy
-
     positive("step", step), number("until", until)
     count = (float(until) - begin) / float(step)
     if count < 0.5 or abs(count - round(count)) > 1e-6:
@@ -208,4 +205,4 @@ def _grid(begin, until, step):
     if count > MOST_SAMPLES:
         raise ValueError(f"the run would have {count:.0f} samples: expected at most {MOST_SAMPLES}")
     digits = 13 - math.ceil(math.log10(abs(float(until)) + begin))
-    return numpy.around(begin + float(step) * numpy.arange(round(count) + 1), digits)
+    return np.around(begin + float(step) * np.arange(round(count) + 1), digits)

@@ -11,6 +11,8 @@ from __future__ import annotations
 import bisect
 import math
 
+import numpy as np
+
 from loopbook.signals import CLOSE, beyond_all_numbers
 from loopbook.simulation.system import System
 
@@ -36,8 +38,6 @@ class RecycleSystem(System):
 
     def _discontinuities(self, times):
         """The samples, where an input jumps, and where such jumps come back; no two further apart than a dead time."""
-        import numpy
-
         inner = sorted({delay for _, delay in self.late_states})
         count = (times[-1] - self.begin) / inner[0]
         if count > MOST_STRETCHES:
@@ -45,20 +45,20 @@ class RecycleSystem(System):
                 f"the dead time {inner[0]:g} inside the plant makes {count:.0f} stretches of time: "
                 f"expected at most {MOST_STRETCHES}, in a shorter run"
             )
-        new = numpy.unique(numpy.concatenate([*self._jumps(), self._begins()]))
-        new = new[numpy.isfinite(new)]
+        new = np.unique(np.concatenate([*self._jumps(), self._begins()]))
+        new = new[np.isfinite(new)]
         found = [new]
         for _ in range(SMOOTH):
-            new = numpy.unique(numpy.concatenate([new[new < times[-1]] + delay for delay in inner]))
+            new = np.unique(np.concatenate([new[new < times[-1]] + delay for delay in inner]))
             found.append(new)
-        moments = numpy.concatenate(found)
+        moments = np.concatenate(found)
         moments = moments[(moments > self.begin) & (moments < times[-1])]
-        moments = numpy.unique(numpy.concatenate([times, moments[~self._at_samples(moments)]]))
-        moments = moments[numpy.diff(moments, prepend=-math.inf) > CLOSE * min(self.step, inner[0])]
+        moments = np.unique(np.concatenate([times, moments[~self._at_samples(moments)]]))
+        moments = moments[np.diff(moments, prepend=-math.inf) > CLOSE * min(self.step, inner[0])]
         moments[-1] = times[-1]
-        parts = numpy.ceil(numpy.diff(moments) / inner[0] * (1 - CLOSE)).astype(int)
-        cuts = [numpy.linspace(a, b, n + 1)[1:] for a, b, n in zip(moments[:-1], moments[1:], parts, strict=True)]
-        return numpy.concatenate(cuts).tolist()
+        parts = np.ceil(np.diff(moments) / inner[0] * (1 - CLOSE)).astype(int)
+        cuts = [np.linspace(a, b, n + 1)[1:] for a, b, n in zip(moments[:-1], moments[1:], parts, strict=True)]
+        return np.concatenate(cuts).tolist()
 
     def _around(self, name, moment):
         if name in self.names:

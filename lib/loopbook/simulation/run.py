@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from loopbook.plants import Plant, name_of
 from loopbook.validation import did_you_mean
 
 if TYPE_CHECKING:
-    import numpy
-
     from loopbook.simulation.system import System
     from loopbook.structures import Structure
 
@@ -39,8 +39,8 @@ class Run:
         measured: the name of the controlled signal, the plant's output if not said.
     """
 
-    times: numpy.ndarray
-    signals: dict[str, numpy.ndarray]
+    times: np.ndarray
+    signals: dict[str, np.ndarray]
     plant: Plant
     manipulated: str
     held: set[str]
@@ -77,7 +77,7 @@ class Run:
         held = self.held | {name for name, full in own.items() if full in self.held}
         return replace(self, signals=signals, held=held, manipulated=loops[tag].output, measured=loops[tag].measurement)
 
-    def __getitem__(self, name: str) -> numpy.ndarray:
+    def __getitem__(self, name: str) -> np.ndarray:
         if name not in self.signals:
             raise ValueError(f"the run has no signal {name!r}: {did_you_mean(name, self.signals)}")
         return self.signals[name]
@@ -91,16 +91,15 @@ class Run:
 
 def joined(earlier: Run, later: Run) -> Run:
     """Two runs as one; what only one of them has is NaN in the other. The moment where they meet is the later one's."""
-    import numpy
 
     def part(run, name, length):
-        return run.signals[name][:length] if name in run.signals else numpy.full(length, numpy.nan)
+        return run.signals[name][:length] if name in run.signals else np.full(length, np.nan)
 
     shorter, names = len(earlier.times) - 1, [*earlier.signals, *later.signals]
     signals = {
-        name: numpy.concatenate([part(earlier, name, shorter), part(later, name, len(later.times))])
+        name: np.concatenate([part(earlier, name, shorter), part(later, name, len(later.times))])
         for name in dict.fromkeys(names)
     }
-    times = numpy.concatenate([earlier.times[:-1], later.times])
+    times = np.concatenate([earlier.times[:-1], later.times])
     held = later.held - (set(earlier.signals) - earlier.held)
     return replace(later, times=times, signals=signals, held=held)

@@ -5,17 +5,14 @@ from __future__ import annotations
 import math
 import weakref
 from collections.abc import Collection, Iterable, Mapping
-from typing import TYPE_CHECKING
 
+import numpy as np
 import sympy
 from sympy.core.function import AppliedUndef
 
 from loopbook.expressions import t
 from loopbook.plants import Plant, name_of
 from loopbook.signals import CLOSE, Stretches, beyond_all_numbers, last_not_after
-
-if TYPE_CHECKING:
-    import numpy
 
 __all__ = ["System"]
 
@@ -70,9 +67,7 @@ class System:
         past: the system of an earlier run, which this one continues.
     """
 
-    def __init__(
-        self, plant: Plant, sources: Mapping[str, Stretches], times: numpy.ndarray, past: System | None = None
-    ):
+    def __init__(self, plant: Plant, sources: Mapping[str, Stretches], times: np.ndarray, past: System | None = None):
         self.plant, self.sources, self.past, self.rows = plant, sources, past, []
         self.begin, self.step = times[0], times[1] - times[0]
         programs = programs_of(plant)
@@ -113,25 +108,19 @@ class System:
 
     def _discontinuities(self, times):
         """The moments to stop at: the samples, and where a signal, maybe delayed, jumps between two of them."""
-        import numpy
-
-        moments = numpy.unique(numpy.concatenate([*self._jumps(), []]))
+        moments = np.unique(np.concatenate([*self._jumps(), []]))
         moments = moments[(moments > self.begin) & (moments < times[-1])]
-        return numpy.sort(numpy.concatenate([times[1:], moments[~self._at_samples(moments)]])).tolist()
+        return np.sort(np.concatenate([times[1:], moments[~self._at_samples(moments)]])).tolist()
 
     def _jumps(self):
         """For each input that drives the states the moments at which it may jump there, late as it is."""
-        import numpy
-
         inputs = [(name, delay) for name, delay in self.driving if name in self.sources]
-        return [numpy.array(self.sources[name].jumps()) + delay for name, delay in inputs]
+        return [np.array(self.sources[name].jumps()) + delay for name, delay in inputs]
 
     def _at_samples(self, moments):
         """Which of the moments are those of samples, but for rounding."""
-        import numpy
-
         steps = (moments - self.begin) / self.step
-        return abs(steps - numpy.round(steps)) <= CLOSE + 1e-15 * abs(moments) / self.step
+        return abs(steps - np.round(steps)) <= CLOSE + 1e-15 * abs(moments) / self.step
 
     def advance(self, time: float) -> None:
         """Integrate up to the sample at `time`, and measure there."""

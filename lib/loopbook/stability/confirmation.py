@@ -6,14 +6,14 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.quasipolynomials.fraction import Quasipolynomial, plus
 from loopbook.stability.counting import ENDLESS, ON_LIMIT, count_roots
 from loopbook.stability.enclosures import Exact
 
 if TYPE_CHECKING:
-    import numpy
-
     from loopbook.stability.loops import Loops
 
 MOST_INTERVALS, MOST_ALONE = 150_000, 40_000  # for all counts beside limits, and for one if these are too few
@@ -98,25 +98,23 @@ def _counted(loops, changes, near, most=MOST_INTERVALS):
 
 def _counts(loops, changes, near, most):
     """The numbers of unstable poles of a loop with several changes; of those with another phase, of both conjugates."""
-    import numpy
-
     both = [*changes, *((factor, delay, -angle) for factor, delay, angle in changes if angle)]
-    factors = numpy.array([factor * complex(math.cos(angle), math.sin(angle)) for factor, _, angle in both])
+    factors = np.array([factor * complex(math.cos(angle), math.sin(angle)) for factor, _, angle in both])
     if not factors.imag.any():
         factors = factors.real
     unit = float(loops.unit[0])
-    late = numpy.array([delay * unit for _, delay, _ in both])
+    late = np.array([delay * unit for _, delay, _ in both])
     near = [*near, *(w for w, (*_, angle) in zip(near, changes, strict=True) if angle)]
     A, B = loops.A, loops.B
     count = len(both)
-    coefficients = numpy.concatenate(
-        [numpy.broadcast_to(B.coefficients, (*B.coefficients.shape[:2], count)), factors * A.coefficients]
+    coefficients = np.concatenate(
+        [np.broadcast_to(B.coefficients, (*B.coefficients.shape[:2], count)), factors * A.coefficients]
     )
-    delays = numpy.concatenate([numpy.broadcast_to(B.delays, (len(B.delays), count)), A.delays + late])
+    delays = np.concatenate([np.broadcast_to(B.delays, (len(B.delays), count)), A.delays + late])
     counts = count_roots(
         Quasipolynomials(coefficients, delays),
         removable=int(loops.at_zero[4][0]),
-        near=numpy.array(near) / unit,
+        near=np.array(near) / unit,
         most=most,
     )
     turned = iter(counts[len(changes) :])
@@ -141,23 +139,21 @@ def _exactly(loops, factor, delay):
     return int(count_roots(sums, Exact(parts, order, divisor, 1.0), int(loops.at_zero[4][0]))[0])
 
 
-def confirm_gains(loops: Loops, gains: numpy.ndarray, frequencies: numpy.ndarray) -> None:
+def confirm_gains(loops: Loops, gains: np.ndarray, frequencies: np.ndarray) -> None:
     """Count the unstable poles of many loops on both sides of the ultimate gain of each, if that is finite.
 
     Raises ArithmeticError where the numbers contradict it.
     """
-    import numpy
-
-    left = numpy.flatnonzero(numpy.isfinite(gains))
+    left = np.flatnonzero(np.isfinite(gains))
     for inside in (True, False):
-        points = left if not inside else left[numpy.isfinite(frequencies[left])]
+        points = left if not inside else left[np.isfinite(frequencies[left])]
         for share in SHARES:
             if not len(points):
                 break
             changed = gains[points] * (1 - share if inside else 1 + share)
             near = frequencies[points] / loops.unit[points]
             counts = count_roots(loops.B[points] + changed * loops.A[points], near=near)
-            if (wrong := numpy.flatnonzero(((counts == 0) != inside) & (counts != ON_LIMIT))).size:
+            if (wrong := np.flatnonzero(((counts == 0) != inside) & (counts != ON_LIMIT))).size:
                 raise ArithmeticError(
                     f"the ultimate gain {gains[points[wrong[0]]]:.12g} is not confirmed: just "
                     f"{'inside' if inside else 'outside'} of it there are {counts[wrong[0]]:g} unstable poles"

@@ -6,6 +6,7 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+import numpy as np
 import sympy
 
 from loopbook.expressions import s
@@ -27,8 +28,6 @@ from loopbook.transfer import transfer_function
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
-
-    import numpy
 
 ON_LIMIT, ENDLESS = -1, 10**9  # in place of a number of roots
 MOST_INTERVALS, MORE_INTERVALS = 400_000, 2_000  # in all, and for each quasipolynomial
@@ -305,9 +304,9 @@ def count_roots(
     sums: Quasipolynomials,
     exact: Exact | None = None,
     removable: int = 0,
-    near: numpy.ndarray | None = None,
+    near: np.ndarray | None = None,
     most: int | None = None,
-) -> numpy.ndarray:
+) -> np.ndarray:
     """The number of roots in the right half-plane of many quasipolynomials.
 
     It is ON_LIMIT with some on the axis, and ENDLESS without end.
@@ -322,25 +321,23 @@ def count_roots(
         An array of floats. With complex coefficients it is half the number for a sum and the one with the conjugate
         coefficients together, of which the two have different shares.
     """
-    import numpy
-
     coefficients, delays = sums.coefficients, sums.delays
     if not delays[1:].all():
         coefficients = coefficients.copy()
         for part, delay in zip(coefficients[1:], delays[1:], strict=True):  # what has no dead time at some points
-            coefficients[0] += numpy.where(delay == 0, part, 0)
+            coefficients[0] += np.where(delay == 0, part, 0)
             part[:, delay == 0] = 0
-    counts = numpy.zeros(sums.count)
-    with numpy.errstate(divide="ignore", invalid="ignore"):
+    counts = np.zeros(sums.count)
+    with np.errstate(divide="ignore", invalid="ignore"):
         returning = coefficients[1:, -1] / coefficients[0, -1]
     counts[coefficients[0, -1] == 0] = ENDLESS
     least, far = 1 - abs(returning).sum(axis=0), {}
-    for point in numpy.flatnonzero(~(least > 0) & (counts == 0)):
+    for point in np.flatnonzero(~(least > 0) & (counts == 0)):
         far[point] = at_endless_frequency(returning[:, point], delays[1:, point])
         least[point] = far[point].least
         if least[point] <= 0:
             counts[point] = ENDLESS if least[point] < 0 else ON_LIMIT
-    points = numpy.flatnonzero(counts == 0)
+    points = np.flatnonzero(counts == 0)
     if len(points):
         coefficients = coefficients[:, :, points] / coefficients[0, -1, points]
         unit = power_of_two(prevailing(coefficients, least[points]))
@@ -360,15 +357,13 @@ class Turns:
     def __init__(
         self,
         sums: Quasipolynomials,
-        unit: numpy.ndarray,
+        unit: np.ndarray,
         far: list[Endless | None],
         exact: Exact | None,
         removable: int,
     ):
-        import numpy
-
         self.sums, self.unit, self.far, self.exact, self.removable = sums, unit, far, exact, removable
-        self.phase, self.limit = numpy.zeros(sums.count), numpy.zeros(sums.count, dtype=bool)
+        self.phase, self.limit = np.zeros(sums.count), np.zeros(sums.count, dtype=bool)
         # many quasipolynomials are quicker done with shorter expansions
         self.degree = DEGREE if sums.count < 50 else FEW_TERMS
         self.first = self.rest = None
@@ -376,18 +371,16 @@ class Turns:
             self.first = Quasipolynomials(sums.coefficients[:1], sums.delays[:1])
             self.rest = Quasipolynomials(sums.coefficients[1:], sums.delays[1:])
 
-    def count(self, near: numpy.ndarray | None, most: int | None = None) -> numpy.ndarray:
+    def count(self, near: np.ndarray | None, most: int | None = None) -> np.ndarray:
         """The numbers of roots in the right half-plane."""
-        import numpy
-
         sums = self.sums
-        one, points = numpy.ones(sums.count), numpy.arange(sums.count)
+        one, points = np.ones(sums.count), np.arange(sums.count)
         which, a, b = geometric(_lowest(sums), one, near, RATIO)
         if self.removable:
             start, turn = _above_origin(sums, self.removable, self.exact)
             self.phase += turn
             some = b > start[which]
-            which, a, b = which[some], numpy.maximum(a[some], start[which[some]]), b[some]
+            which, a, b = which[some], np.maximum(a[some], start[which[some]]), b[some]
         else:
             # a quasipolynomial that vanishes at zero; of an exact one, only where it does
             size, at_zero = sums.sizes(points, 0 * one)[0], sums.coefficients[:, 0].sum(axis=0)
@@ -399,39 +392,37 @@ class Turns:
         ends = sums.value(points, one) * (-1j) ** sums.order
         beyond = [each.phase(scale) if each else 0.0 for each, scale in zip(self.far, self.unit.tolist(), strict=True)]
         # of n roots on the left, each turns the phase by a quarter turn; the rest of it comes beyond the frequency 1
-        left = numpy.array(beyond) + numpy.angle(ends * numpy.exp(-1j * numpy.array(beyond)))
+        left = np.array(beyond) + np.angle(ends * np.exp(-1j * np.array(beyond)))
         counts = (sums.order - self.removable) / 2 - (self.phase - left) / math.pi
-        if not numpy.iscomplexobj(sums.coefficients):
-            whole = numpy.rint(counts)
-            if (lost := numpy.flatnonzero(~self.limit & (abs(counts - whole) > 0.1))).size:
+        if not np.iscomplexobj(sums.coefficients):
+            whole = np.rint(counts)
+            if (lost := np.flatnonzero(~self.limit & (abs(counts - whole) > 0.1))).size:
                 raise UndecidedError(self.name, 0.0, float(self.unit[lost[0]]))
             counts = whole
-        return numpy.where(self.limit, ON_LIMIT, counts) + 0.0  # no negative zero
+        return np.where(self.limit, ON_LIMIT, counts) + 0.0  # no negative zero
 
     def _value(self, which, w, precise):
         return self.exact.taylor(w, 0)[0] if precise else self.sums.value(which, w)
 
-    def judge(self, which: numpy.ndarray, a: numpy.ndarray, b: numpy.ndarray, precise: bool) -> tuple:
+    def judge(self, which: np.ndarray, a: np.ndarray, b: np.ndarray, precise: bool) -> tuple:
         """Add the turns on intervals where they are known, and mark quasipolynomials with roots on the axis."""
-        import numpy
-
         sums, c, r = self.sums, (a + b) / 2, (b - a) / 2
         around = enclosed(sums, which, c, r, self.exact if precise else None, self.degree)
         proven = around.least > 3 * around.noise
         at_a, at_b = self._value(which, a, precise), self._value(which, b, precise)
-        turns = numpy.angle(at_b * at_a.conj())
+        turns = np.angle(at_b * at_a.conj())
         if self.rest is not None and not proven.all():
             # where the undelayed part outweighs the others, the phase is its own, and less than a quarter turn more
-            left = numpy.flatnonzero(~proven)
+            left = np.flatnonzero(~proven)
             alone = enclosed(self.first, which[left], c[left], r[left], degree=self.degree)
             outweighs = alone.least > self.rest.sizes(which[left], b[left])[0] + 3 * alone.noise
             of = left[outweighs]
             if len(of):
                 proven[of] = True
                 alone_a, alone_b = self.first.value(which[of], a[of]), self.first.value(which[of], b[of])
-                turns[of] = numpy.angle(alone_b * alone_a.conj())
-                turns[of] += numpy.angle(at_b[of] / alone_b) - numpy.angle(at_a[of] / alone_a)
-        self.phase += numpy.bincount(which[proven], weights=turns[proven], minlength=sums.count)
+                turns[of] = np.angle(alone_b * alone_a.conj())
+                turns[of] += np.angle(at_b[of] / alone_b) - np.angle(at_a[of] / alone_a)
+        self.phase += np.bincount(which[proven], weights=turns[proven], minlength=sums.count)
         noisy = around.is_noisy
         if precise or self.exact is None:
             within = noisy & (around.spread < 64 * around.noise)
@@ -442,14 +433,12 @@ class Turns:
 
 def _lowest(sums):
     """A frequency about which the lowest power begins to give way to the others."""
-    import numpy
-
     series = abs(sums._expansion[:, :, 0].sum(axis=0))
-    with numpy.errstate(divide="ignore", invalid="ignore"):
-        ratios = (series[0] / series[1:]) ** (1 / numpy.arange(1, len(series)))[:, None]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratios = (series[0] / series[1:]) ** (1 / np.arange(1, len(series)))[:, None]
     ratios[~(ratios > 0)] = math.inf
     lowest = ratios.min(axis=0)
-    return numpy.clip(numpy.where(lowest < math.inf, 0.3 * lowest, 1e-3), 1e-30, 0.5)
+    return np.clip(np.where(lowest < math.inf, 0.3 * lowest, 1e-3), 1e-30, 0.5)
 
 
 def _above_origin(sums, removable, exact):
@@ -457,18 +446,16 @@ def _above_origin(sums, removable, exact):
 
     Raises StabilityLimitError for more roots at zero than are removable.
     """
-    import numpy
-
     series, more = origin(sums, removable + sums.order + 4, exact)
     if not series[removable].all():
         raise StabilityLimitError("there are poles at zero")
-    start = 0.1 / numpy.maximum(1.0, sums.longest)
-    powers = numpy.arange(len(series) - removable)[:, None]
+    start = 0.1 / np.maximum(1.0, sums.longest)
+    powers = np.arange(len(series) - removable)[:, None]
     lowest = abs(series[removable])
     for _ in range(400):
         others = (abs(series[removable:]) * start**powers)[1:].sum(axis=0) + 2 * more * start ** len(powers)
         if not (high := others > lowest / 2).any():
             break
-        start = numpy.where(high, start / 2, start)
-    value = sums.value(numpy.arange(sums.count), start) if exact is None else exact.taylor(start, 0)[0]
-    return start, numpy.angle(value / (1j**removable * series[removable]))
+        start = np.where(high, start / 2, start)
+    value = sums.value(np.arange(sums.count), start) if exact is None else exact.taylor(start, 0)[0]
+    return start, np.angle(value / (1j**removable * series[removable]))

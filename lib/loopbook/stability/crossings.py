@@ -13,14 +13,14 @@ import functools
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from loopbook.stability.enclosures import Enclosure, divided, enclosed, geometric, walk
 from loopbook.stability.loops import FEW
 from loopbook.stability.peaks import to_the_top, with_peaks
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
-
-    import numpy
 
     from loopbook.stability.loops import Loops
 
@@ -30,7 +30,7 @@ LARGEST_GAIN = 1e12  # times 1, or times that which brings abs(L) to 1 about the
 class View:
     """Loops on intervals of frequency: what the questions look at, each thing computed once."""
 
-    def __init__(self, loops: Loops, which: numpy.ndarray, a: numpy.ndarray, b: numpy.ndarray, precise: bool = False):
+    def __init__(self, loops: Loops, which: np.ndarray, a: np.ndarray, b: np.ndarray, precise: bool = False):
         self.loops, self.which, self.a, self.b, self.precise = loops, which, a, b, precise
         self.c, self.r = (a + b) / 2, (b - a) / 2
 
@@ -59,10 +59,8 @@ class View:
 class NearZero(View):
     """The intervals from -b to b, without zeros at zero that A and B have in common."""
 
-    def __init__(self, loops: Loops, b: numpy.ndarray):
-        import numpy
-
-        super().__init__(loops, numpy.arange(loops.count), 0 * b, b)
+    def __init__(self, loops: Loops, b: np.ndarray):
+        super().__init__(loops, np.arange(loops.count), 0 * b, b)
         self.c, self.r = 0 * b, b
         self.both = loops.near_zero(self.which, b)
 
@@ -80,11 +78,9 @@ class NearZero(View):
 
     @functools.cached_property
     def C(self) -> Enclosure:
-        import numpy
-
         total = self.B + self.A
         lost = abs(total.terms[0]) <= 4e-16 * (abs(self.A.terms[0]) + abs(self.B.terms[0]))
-        total.terms[0] = numpy.where(lost, 0, total.terms[0])
+        total.terms[0] = np.where(lost, 0, total.terms[0])
         return total
 
 
@@ -97,10 +93,10 @@ class Question:
 
     name = ""
 
-    def judge(self, view: View) -> tuple[numpy.ndarray, numpy.ndarray]:
+    def judge(self, view: View) -> tuple[np.ndarray, np.ndarray]:
         raise NotImplementedError
 
-    def take(self, view: View, chosen: numpy.ndarray) -> None:
+    def take(self, view: View, chosen: np.ndarray) -> None:
         pass
 
 
@@ -112,16 +108,14 @@ class SizeOne(Question):
     def __init__(self):
         self.brackets = []
 
-    def judge(self, view: View) -> tuple[numpy.ndarray, numpy.ndarray]:
-        import numpy
-
+    def judge(self, view: View) -> tuple[np.ndarray, np.ndarray]:
         if isinstance(view, NearZero):  # `Loops.start` has taken care of that
-            self.crossing = numpy.zeros(len(view.which), dtype=bool)
+            self.crossing = np.zeros(len(view.which), dtype=bool)
             return self.crossing, self.crossing
         A, B = view.early, view.B
         undecided = (B.least <= A.most) & (A.least <= B.most)
-        self.crossing, noisy = numpy.zeros((2, len(view.which)), dtype=bool)
-        if (some := numpy.flatnonzero(undecided)).size:
+        self.crossing, noisy = np.zeros((2, len(view.which)), dtype=bool)
+        if (some := np.flatnonzero(undecided)).size:
             A, B = A[some], B[some]
             rest = (B @ B).real - (A @ A).real
             away = (rest.least > 0) | rest.is_positive | (-1 * rest).is_positive
@@ -129,10 +123,8 @@ class SizeOne(Question):
             self.crossing[some], noisy[some], undecided[some] = crossing, rest.is_noisy, ~away & ~crossing
         return undecided, noisy
 
-    def take(self, view: View, chosen: numpy.ndarray) -> None:
-        import numpy
-
-        some = numpy.flatnonzero(self.crossing & chosen)
+    def take(self, view: View, chosen: np.ndarray) -> None:
+        some = np.flatnonzero(self.crossing & chosen)
         if len(some):
             which, a, b = (x[some] for x in (view.which, view.a, view.b))
             low, high = (
@@ -142,14 +134,12 @@ class SizeOne(Question):
             some = (low > 0) != (high > 0)
             self.brackets.append([x[some] for x in (which, a, b, low, high)])
 
-    def solved(self, loops: Loops) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray, numpy.ndarray]:
+    def solved(self, loops: Loops) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """The points and frequencies, and A and B there."""
-        import numpy
-
         if not self.brackets:
-            nothing = numpy.zeros(0)
+            nothing = np.zeros(0)
             return nothing.astype(int), nothing, nothing, nothing
-        which, a, b, low, high = (numpy.concatenate(x) for x in zip(*self.brackets, strict=True))
+        which, a, b, low, high = (np.concatenate(x) for x in zip(*self.brackets, strict=True))
         return which, *solved(loops, which, a, b, difference, low, high)
 
 
@@ -163,57 +153,49 @@ class Real(Question):
     name = "whether poles cross the imaginary axis"
 
     def __init__(self, loops: Loops, all_gains: bool = False, pivot: float = 1.0):
-        import numpy
-
         self.loops, self.all_gains, self.pivot = loops, all_gains, pivot
         _ = loops.start  # which finds the loops that are always real
-        every, one = numpy.arange(loops.count), numpy.ones(loops.count)
+        every, one = np.arange(loops.count), np.ones(loops.count)
         A, B = (abs(x[0]) for x in loops.values(every, one))
-        with numpy.errstate(divide="ignore"):
-            self.endless = LARGEST_GAIN * numpy.maximum(1, numpy.where(A > 0, B / A, 1))
-        self.lowest, self.highest = numpy.zeros(loops.count), self.endless.copy()
-        self.points, self.gains, self.frequencies = numpy.zeros(0, dtype=int), numpy.zeros(0), numpy.zeros(0)
+        with np.errstate(divide="ignore"):
+            self.endless = LARGEST_GAIN * np.maximum(1, np.where(A > 0, B / A, 1))
+        self.lowest, self.highest = np.zeros(loops.count), self.endless.copy()
+        self.points, self.gains, self.frequencies = np.zeros(0, dtype=int), np.zeros(0), np.zeros(0)
 
-    def add(self, points: numpy.ndarray, gains: numpy.ndarray, frequencies: numpy.ndarray) -> None:
+    def add(self, points: np.ndarray, gains: np.ndarray, frequencies: np.ndarray) -> None:
         """Remember crossings."""
-        import numpy
-
-        self.points = numpy.concatenate([self.points, points])
-        self.gains = numpy.concatenate([self.gains, gains])
-        self.frequencies = numpy.concatenate([self.frequencies, frequencies])
+        self.points = np.concatenate([self.points, points])
+        self.gains = np.concatenate([self.gains, gains])
+        self.frequencies = np.concatenate([self.frequencies, frequencies])
         if not self.all_gains:
             above, below = gains > self.pivot, gains < self.pivot
-            numpy.minimum.at(self.highest, points[above], gains[above])
-            numpy.maximum.at(self.lowest, points[below], gains[below])
+            np.minimum.at(self.highest, points[above], gains[above])
+            np.maximum.at(self.lowest, points[below], gains[below])
 
-    def is_known(self, points: numpy.ndarray, a: numpy.ndarray, b: numpy.ndarray) -> numpy.ndarray:
+    def is_known(self, points: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
         """Whether a crossing was found in an interval before."""
-        import numpy
-
         if len(self.points) > 1000:
-            return numpy.zeros(len(points), dtype=bool)
+            return np.zeros(len(points), dtype=bool)
         w = self.frequencies
         return ((self.points == points[:, None]) & (w >= a[:, None]) & (w <= b[:, None])).any(axis=1)
 
-    def judge(self, view: View) -> tuple[numpy.ndarray, numpy.ndarray]:
-        import numpy
-
+    def judge(self, view: View) -> tuple[np.ndarray, np.ndarray]:
         which = view.which
         if isinstance(view, NearZero):  # `Loops.start` has taken care of that
-            nothing = numpy.zeros(len(which), dtype=bool)
+            nothing = np.zeros(len(which), dtype=bool)
             return nothing, nothing
         undecided = ~self.loops.is_real[which]
         undecided &= (self.highest[which] * view.early.most >= view.B.least) & (
             self.lowest[which] * view.early.least <= view.B.most
         )
-        noisy = numpy.zeros(len(which), dtype=bool)
-        some = numpy.flatnonzero(undecided)
+        noisy = np.zeros(len(which), dtype=bool)
+        some = np.flatnonzero(undecided)
         if not len(some):
             return undecided, noisy
         A, B = view.A[some], view.B[some]
         product = A @ B
         middle = product.terms[0]
-        away = numpy.where(middle.real < 0, abs(middle.imag), abs(middle)) > product.spread
+        away = np.where(middle.real < 0, abs(middle.imag), abs(middle)) > product.spread
         monotone = ~away & product.imag.is_monotone
         if len(candidates := some[monotone]):
             self._solve(view, candidates)
@@ -236,31 +218,25 @@ class Real(Question):
         )
         self.solve(points, a, b, at_a, at_b)
 
-    def solve(
-        self, points: numpy.ndarray, a: numpy.ndarray, b: numpy.ndarray, at_a: numpy.ndarray, at_b: numpy.ndarray
-    ) -> None:
+    def solve(self, points: np.ndarray, a: np.ndarray, b: np.ndarray, at_a: np.ndarray, at_b: np.ndarray) -> None:
         """Find the crossings in intervals with values of Im A conj(B) at the ends, if these have different signs."""
-        import numpy
-
-        new = numpy.flatnonzero(((at_a > 0) != (at_b > 0)) & ~self.is_known(points, a, b))
+        new = np.flatnonzero(((at_a > 0) != (at_b > 0)) & ~self.is_known(points, a, b))
         if len(new):
             points, a, b, at_a, at_b = (x[new] for x in (points, a, b, at_a, at_b))
             w, A, B = solved(self.loops, points, a, b, imaginary, at_a, at_b)
-            with numpy.errstate(divide="ignore", invalid="ignore"):
+            with np.errstate(divide="ignore", invalid="ignore"):
                 gain = -(B / A).real
-            seen = (gain > 0) & numpy.isfinite(gain)
+            seen = (gain > 0) & np.isfinite(gain)
             self.add(points[seen], gain[seen], w[seen])
 
 
 def _misses(A: Enclosure, B: Enclosure, low, high):
     """Whether 0 is farther from all B + k A, with k from low to high, than these differ from those in the middle."""
-    import numpy
-
     first, last = B + low * A, B + high * A
     start, step = first.terms[0], last.terms[0] - first.terms[0]
-    with numpy.errstate(divide="ignore", invalid="ignore"):
-        along = numpy.clip(numpy.nan_to_num((-start * step.conj()).real / abs(step) ** 2), 0, 1)
-    return abs(start + along * step) > numpy.maximum(first.spread, last.spread)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        along = np.clip(np.nan_to_num((-start * step.conj()).real / abs(step) ** 2), 0, 1)
+    return abs(start + along * step) > np.maximum(first.spread, last.spread)
 
 
 class Positive(Question):
@@ -269,37 +245,31 @@ class Positive(Question):
     name = "the largest sensitivity"
 
     def __init__(self, loops: Loops, share: float = 1e-9):
-        import numpy
-
         self.loops, self.share = loops, share
-        self.most, self.place = numpy.zeros(loops.count), numpy.zeros(loops.count)
+        self.most, self.place = np.zeros(loops.count), np.zeros(loops.count)
         self.width = 0.0  # of the last one whose top was found
 
-    def see(self, points: numpy.ndarray, sizes: numpy.ndarray, frequencies: numpy.ndarray) -> None:
+    def see(self, points: np.ndarray, sizes: np.ndarray, frequencies: np.ndarray) -> None:
         """Remember values, where they are higher than what was seen."""
-        import numpy
-
-        order = numpy.argsort(sizes)
+        order = np.argsort(sizes)
         points, sizes, frequencies = points[order], sizes[order], frequencies[order]
         higher = sizes > self.most[points]
         self.most[points[higher]] = sizes[higher]
         self.place[points[higher]] = frequencies[higher]
 
-    def judge(self, view: View) -> tuple[numpy.ndarray, numpy.ndarray]:
-        import numpy
-
+    def judge(self, view: View) -> tuple[np.ndarray, np.ndarray]:
         which = view.which
         before = self.most.copy()
         B, C, early = view.B, view.C, view.early
         known = slice(None) if view.precise else ~C.is_noisy
-        with numpy.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore"):
             self.see(which[known], (B.sizes[0] / C.sizes[0])[known], view.c[known])
         if (self.most > before * (1 + 1e-12)).any():
             to_the_top(self.loops, self)
         most = self.most[which] * (1 + self.share)
         undecided = (most * (B.least - early.most) <= B.most) & (most * C.least <= B.most)
-        noisy = numpy.zeros(len(which), dtype=bool)
-        if (some := numpy.flatnonzero(undecided)).size:
+        noisy = np.zeros(len(which), dtype=bool)
+        if (some := np.flatnonzero(undecided)).size:
             B, C, most = B[some], C[some], most[some]
             above = (most * most) * (C @ C).real - (B @ B).real
             undecided[some] = ~above.is_positive
@@ -328,28 +298,26 @@ def difference(A: Sequence, B: Sequence) -> tuple:
 
 def solved(
     loops: Loops,
-    which: numpy.ndarray,
-    a: numpy.ndarray,
-    b: numpy.ndarray,
+    which: np.ndarray,
+    a: np.ndarray,
+    b: np.ndarray,
     function: Callable,
-    at_a: numpy.ndarray,
-    at_b: numpy.ndarray,
-) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray]:
+    at_a: np.ndarray,
+    at_b: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The zeros between a and b of monotone functions, and A and B there, from the values at both ends.
 
     With more digits where rounding has a share in A or B.
     """
-    import numpy
-
     # where a straight line has its zero, not too close to the ends
-    w = a + (b - a) * numpy.clip(at_a / numpy.where(at_a == at_b, 1, at_a - at_b), 0.02, 0.98)
+    w = a + (b - a) * np.clip(at_a / np.where(at_a == at_b, 1, at_a - at_b), 0.02, 0.98)
     if len(w) == 1:
         w = _solved_one(loops, which, float(a[0]), float(b[0]), function, bool(at_a[0] < at_b[0]), float(w[0]))
     else:
         w = _solved(loops, which, a, b, function, at_a < at_b, w, False)
     A, B = (x[0] for x in loops.values(which, w))
     if loops.exact is not None and 0 < len(w) < FEW:
-        again = numpy.flatnonzero(loops.doubtful(which, w, A, B))
+        again = np.flatnonzero(loops.doubtful(which, w, A, B))
         if len(again):
             some = which[again]
             w[again] = _solved(loops, some, a[again], b[again], function, (at_a < at_b)[again], w[again], True)
@@ -359,11 +327,9 @@ def solved(
 
 def _solved_one(loops, which, a, b, function, rising, w):
     """The same for one, with less ado."""
-    import numpy
-
     enough = 3e-6 * (b - a)
     for _ in range(100):
-        A, B = (x[:, 0].tolist() for x in loops.values(which, numpy.array([w]), 2))
+        A, B = (x[:, 0].tolist() for x in loops.values(which, np.array([w]), 2))
         value, slope, bend = function(A, B)
         if not value:
             break
@@ -379,39 +345,35 @@ def _solved_one(loops, which, a, b, function, rising, w):
         # the next change would be about the cube of this one
         if change <= max(enough if inside else 0.0, 4e-16 * w):
             break
-    return numpy.array([w])
+    return np.array([w])
 
 
 def _solved(loops, which, a, b, function, rising, w, precise):
     """Halley's steps, and halves where they lead out."""
-    import numpy
-
-    a, b, moving = a.copy(), b.copy(), numpy.arange(len(which))
+    a, b, moving = a.copy(), b.copy(), np.arange(len(which))
     enough = 3e-6 * (b - a)
     for _ in range(100):
         if not len(moving):
             break
         value, slope, bend = function(*loops.values(which[moving], w[moving], 2, precise))
         before = (value < 0) == rising[moving]
-        a[moving] = numpy.where(before, w[moving], a[moving])
-        b[moving] = numpy.where(before, b[moving], w[moving])
-        with numpy.errstate(divide="ignore", invalid="ignore"):
+        a[moving] = np.where(before, w[moving], a[moving])
+        b[moving] = np.where(before, b[moving], w[moving])
+        with np.errstate(divide="ignore", invalid="ignore"):
             better = w[moving] - 2 * value * slope / (2 * slope * slope - value * bend)
         outside = ~((better >= a[moving]) & (better <= b[moving]))
         better[outside] = ((a + b) / 2)[moving][outside]
         change = abs(better - w[moving])
         w[moving] = better
         # the next change would be about the cube of this one
-        moving = moving[(change > numpy.maximum(enough[moving] * ~outside, 4e-16 * better)) & (value != 0)]
+        moving = moving[(change > np.maximum(enough[moving] * ~outside, 4e-16 * better)) & (value != 0)]
     return w
 
 
-def phase_left(A: numpy.ndarray, B: numpy.ndarray) -> numpy.ndarray:
+def phase_left(A: np.ndarray, B: np.ndarray) -> np.ndarray:
     """How much more the phase of L = A/B may fall until L is negative, between 0 and 2 pi."""
-    import numpy
-
-    angle = numpy.angle(-A / B)
-    return numpy.where(abs(angle) < 1e-9, 0, angle) % (2 * math.pi)
+    angle = np.angle(-A / B)
+    return np.where(abs(angle) < 1e-9, 0, angle) % (2 * math.pi)
 
 
 # ---- asking
@@ -420,17 +382,16 @@ def phase_left(A: numpy.ndarray, B: numpy.ndarray) -> numpy.ndarray:
 def asked(
     loops: Loops,
     questions: list[Question],
-    which: numpy.ndarray,
-    a: numpy.ndarray,
-    b: numpy.ndarray,
+    which: np.ndarray,
+    a: np.ndarray,
+    b: np.ndarray,
     most: int | None = None,
 ) -> int:
     """Ask questions about all intervals, dividing them until all are decided; return how many there were."""
-    import numpy
 
     def judge(which, a, b, precise):
         view = View(loops, which, a, b, precise)
-        undecided, noisy = numpy.zeros(len(which), dtype=bool), numpy.zeros(len(which), dtype=bool)
+        undecided, noisy = np.zeros(len(which), dtype=bool), np.zeros(len(which), dtype=bool)
         for question in questions:
             open_, doubtful = question.judge(view)
             undecided |= open_
@@ -447,7 +408,7 @@ def asked(
         about = (a < peak.place[which]) & (peak.place[which] < b)
         others = divided(*(x[~about] for x in (which, a, b, pieces)))
         return tuple(
-            numpy.concatenate(x)
+            np.concatenate(x)
             for x in zip(others, with_peaks(*(x[about] for x in (which, a, b)), peak.place), strict=True)
         )
 
@@ -455,25 +416,23 @@ def asked(
     return walk(judge, which, a, b, names, loops.unit, loops.exact is not None, divide, most)
 
 
-def below(loops: Loops, questions: list[Question]) -> numpy.ndarray:
+def below(loops: Loops, questions: list[Question]) -> np.ndarray:
     """A frequency up to which all questions are decided from zero on."""
-    import numpy
-
     start = loops.start.copy()
     for _ in range(300):
         view = NearZero(loops, start)
-        undecided = numpy.zeros(loops.count, dtype=bool)
+        undecided = np.zeros(loops.count, dtype=bool)
         for question in questions:
             undecided |= question.judge(view)[0]
         if not undecided.any():
             for question in questions:
                 question.take(view, ~undecided)
             return start
-        start = numpy.where(undecided, start / 4, start)
+        start = np.where(undecided, start / 4, start)
     raise ValueError(f"{questions[0].name} is not decided at the frequency zero")
 
 
-def steps(start: numpy.ndarray, end: numpy.ndarray) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray]:
+def steps(start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Intervals from start to end, in geometric steps."""
     which, a, b = geometric(start, end)
     some = a >= start[which]

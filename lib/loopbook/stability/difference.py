@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
-if TYPE_CHECKING:
-    import numpy
+import numpy as np
 
 HIGHEST_MULTIPLE = 5000  # of one dead time, up to which others count as multiples of it
 CLOSE = 1e-9
@@ -26,22 +25,20 @@ class Endless(NamedTuple):
 
     least: float
     unit: float = 0.0
-    angles: numpy.ndarray | None = None
-    phases: numpy.ndarray | None = None
-    values: numpy.ndarray | None = None
+    angles: np.ndarray | None = None
+    phases: np.ndarray | None = None
+    values: np.ndarray | None = None
     terms: tuple | None = None
 
     def phase(self, w: float) -> float:
         """The phase at s = j w, continued from the far right, where it is zero."""
-        import numpy
-
         if self.angles is None:
             return 0.0
         angle = (self.unit * w) % (2 * math.pi)
         near = int(abs(self.angles - angle).argmin())
         later, powers = self.terms
-        value = 1 + later @ numpy.exp(-1j * powers * angle)
-        return float(self.phases[near] + numpy.angle(value / self.values[near]))
+        value = 1 + later @ np.exp(-1j * powers * angle)
+        return float(self.phases[near] + np.angle(value / self.values[near]))
 
 
 def common_unit(delays: list[float]) -> tuple[float, list[int]] | None:
@@ -54,7 +51,7 @@ def common_unit(delays: list[float]) -> tuple[float, list[int]] | None:
     return (delays[0] * float(share), powers) if max(powers) <= HIGHEST_MULTIPLE else None
 
 
-def at_endless_frequency(later: numpy.ndarray, delays: numpy.ndarray) -> Endless:
+def at_endless_frequency(later: np.ndarray, delays: np.ndarray) -> Endless:
     """What 1 + sum(later*exp(-delays*s)) is in the right half-plane.
 
     Raises ValueError where that is not decided: where the sizes add up to 1 or more and the dead times are no multiples
@@ -88,31 +85,29 @@ def at_endless_frequency(later: numpy.ndarray, delays: numpy.ndarray) -> Endless
 
 def _on_circle(later, unit, powers):
     """The same for dead times that are multiples of one; None where it is too close to the limit."""
-    import numpy
-
-    powers = numpy.array(powers, dtype=float)
+    powers = np.array(powers, dtype=float)
     steep = float(abs(later) @ powers)
     count = 16 * int(max(powers))
-    edges = numpy.linspace(0, 2 * math.pi, count + 1)
+    edges = np.linspace(0, 2 * math.pi, count + 1)
     for _ in range(30):
-        values = 1 + later @ numpy.exp(-1j * numpy.multiply.outer(powers, edges))
+        values = 1 + later @ np.exp(-1j * np.multiply.outer(powers, edges))
         middle, half = (edges[1:] + edges[:-1]) / 2, (edges[1:] - edges[:-1]) / 2
         # from both ends, no value on an interval is farther than half of it allows
-        low = numpy.minimum(abs(values[1:]), abs(values[:-1])) - steep * half
+        low = np.minimum(abs(values[1:]), abs(values[:-1])) - steep * half
         if (open_ := low <= 0).any():
             if half.min() < CLOSE or len(edges) > 2_000_000:
                 return None
-            edges = numpy.sort(numpy.concatenate([edges, middle[open_]]))
+            edges = np.sort(np.concatenate([edges, middle[open_]]))
             continue
-        turns = numpy.angle(values[1:] / values[:-1])
+        turns = np.angle(values[1:] / values[:-1])
         if round(turns.sum() / (2 * math.pi)):
             return Endless(-1.0)  # exp(-unit*s) runs through the disc in which there are roots
-        phases = numpy.concatenate([[0.0], numpy.cumsum(turns)])
+        phases = np.concatenate([[0.0], np.cumsum(turns)])
         return Endless(float(low.min()), unit, edges, phases, values, (later, powers))
     return None
 
 
-def prevailing(coefficients: numpy.ndarray, least: numpy.ndarray | None = None) -> numpy.ndarray:
+def prevailing(coefficients: np.ndarray, least: np.ndarray | None = None) -> np.ndarray:
     """A frequency beyond which the highest power of the first part outweighs all other terms; nan without one.
 
     Arguments:
@@ -120,22 +115,18 @@ def prevailing(coefficients: numpy.ndarray, least: numpy.ndarray | None = None) 
         least: a lower bound of the size of all terms with the highest power, if it is known to be better than that of
             the first part without the sizes of the others.
     """
-    import numpy
-
     sizes = abs(coefficients).sum(axis=0)
     order = len(sizes) - 1
     reserve = 2 * abs(coefficients[0, -1]) - sizes[-1]
     if least is not None:
-        reserve = numpy.maximum(reserve, least)
-    reserve = numpy.where(reserve > 0, reserve, math.nan)
+        reserve = np.maximum(reserve, least)
+    reserve = np.where(reserve > 0, reserve, math.nan)
     # Fujiwara's bound: there each lower term is below a half, a quarter, an eighth ... of the highest
-    bounds = 2 * (sizes[:-1] / reserve) ** (1 / numpy.arange(order, 0, -1)[:, None])
+    bounds = 2 * (sizes[:-1] / reserve) ** (1 / np.arange(order, 0, -1)[:, None])
     end = bounds.max(axis=0) if order else 0 * reserve
-    return numpy.where(end == 0, 1.0, end)
+    return np.where(end == 0, 1.0, end)
 
 
-def power_of_two(frequency: numpy.ndarray) -> numpy.ndarray:
+def power_of_two(frequency: np.ndarray) -> np.ndarray:
     """The next power of two, so that time in its unit rounds nothing."""
-    import numpy
-
-    return 2.0 ** numpy.ceil(numpy.log2(frequency))
+    return 2.0 ** np.ceil(np.log2(frequency))

@@ -12,13 +12,13 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from loopbook.quasipolynomials.arrays import DEGREE, Quasipolynomials
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from fractions import Fraction
-
-    import numpy
 
 EPSILON = 2.0**-52
 RATIO = 1.45  # of the frequencies at the ends of an interval, at first
@@ -45,10 +45,10 @@ class Enclosure:
 
     __array_ufunc__ = None  # so that an array of factors leaves its multiplication to this class
 
-    terms: numpy.ndarray
-    noise: numpy.ndarray
-    rest: numpy.ndarray
-    slope: numpy.ndarray
+    terms: np.ndarray
+    noise: np.ndarray
+    rest: np.ndarray
+    slope: np.ndarray
 
     def __getitem__(self, chosen: object) -> Enclosure:
         return Enclosure(self.terms[:, chosen], self.noise[chosen], self.rest[chosen], self.slope[chosen])
@@ -60,19 +60,17 @@ class Enclosure:
     def __sub__(self, other: Enclosure) -> Enclosure:
         return self + -1 * other
 
-    def __rmul__(self, factor: float | numpy.ndarray) -> Enclosure:
+    def __rmul__(self, factor: float | np.ndarray) -> Enclosure:
         size = abs(factor)
         return Enclosure(factor * self.terms, size * self.noise, size * self.rest, size * self.slope)
 
     def __matmul__(self, other: Enclosure) -> Enclosure:
         """The product with the other's conjugate."""
-        import numpy
-
         count, conjugate = len(self.terms), other.terms.conj()
         if conjugate.shape[1] <= FEW:
             terms = _diagonals(count) @ (self.terms[:, None] * conjugate).reshape(count * count, -1)
         else:
-            terms = numpy.zeros((2 * count - 1, conjugate.shape[1]), dtype=complex)
+            terms = np.zeros((2 * count - 1, conjugate.shape[1]), dtype=complex)
             for k in range(count):
                 terms[k : k + count] += self.terms[k] * conjugate
         noise = self.size * other.noise + other.size * self.noise + 4 * EPSILON * self.size * other.size
@@ -93,63 +91,57 @@ class Enclosure:
         return Enclosure(self.terms.imag, self.noise, self.rest, self.slope)
 
     @functools.cached_property
-    def sizes(self) -> numpy.ndarray:
+    def sizes(self) -> np.ndarray:
         return abs(self.terms)
 
     @functools.cached_property
-    def size(self) -> numpy.ndarray:
+    def size(self) -> np.ndarray:
         """A bound of the polynomial."""
         return self.sizes.sum(axis=0)
 
     @functools.cached_property
-    def steepness(self) -> numpy.ndarray:
+    def steepness(self) -> np.ndarray:
         """A bound of the polynomial's derivative."""
-        import numpy
-
-        return numpy.arange(len(self.terms)) @ self.sizes
+        return np.arange(len(self.terms)) @ self.sizes
 
     @property
-    def spread(self) -> numpy.ndarray:
+    def spread(self) -> np.ndarray:
         """How far values are from that in the middle, at most."""
         return self.size - self.sizes[0] + self.rest
 
     @property
-    def least(self) -> numpy.ndarray:
+    def least(self) -> np.ndarray:
         """A bound from below of the size; negative where there may be a zero."""
         return 2 * self.sizes[0] - self.size - self.rest
 
     @property
-    def most(self) -> numpy.ndarray:
+    def most(self) -> np.ndarray:
         return self.size + self.rest
 
     @property
-    def is_noisy(self) -> numpy.ndarray:
+    def is_noisy(self) -> np.ndarray:
         """Whether rounding is a reason for not knowing."""
         return self.sizes[0] <= NOISY * self.noise
 
     @property
-    def is_monotone(self) -> numpy.ndarray:
+    def is_monotone(self) -> np.ndarray:
         """Whether a real function certainly rises or falls all the way."""
         return self.sizes[1] > self.steepness - self.sizes[1] + self.slope
 
     @property
-    def is_positive(self) -> numpy.ndarray:
+    def is_positive(self) -> np.ndarray:
         """Whether a real function is certainly positive: a parabola is, and the rest does not change that."""
-        import numpy
-
         value, rise = self.terms[0], self.sizes[1]
         bend = self.terms[2] - (self.size - self.sizes[0] - self.sizes[1] - self.sizes[2])
-        with numpy.errstate(divide="ignore", invalid="ignore"):
-            lowest = numpy.where(rise < 2 * bend, value - rise * rise / (4 * bend), value + bend - rise)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            lowest = np.where(rise < 2 * bend, value - rise * rise / (4 * bend), value + bend - rise)
         return lowest > self.rest
 
 
 @functools.cache
 def _diagonals(count):
     """The matrix that adds the products of two polynomials' terms to the terms of their product."""
-    import numpy
-
-    matrix = numpy.zeros((2 * count - 1, count, count))
+    matrix = np.zeros((2 * count - 1, count, count))
     for i in range(count):
         for k in range(count):
             matrix[i + k, i, k] = 1
@@ -158,9 +150,9 @@ def _diagonals(count):
 
 def enclosed(
     sums: Quasipolynomials,
-    which: numpy.ndarray,
-    c: numpy.ndarray,
-    r: numpy.ndarray,
+    which: np.ndarray,
+    c: np.ndarray,
+    r: np.ndarray,
     exact: Exact | None = None,
     degree: int = DEGREE,
 ) -> Enclosure:
@@ -181,9 +173,7 @@ def enclosed(
 
 @functools.cache
 def _DEGREES():
-    import numpy
-
-    return numpy.arange(DEGREE + 2)
+    return np.arange(DEGREE + 2)
 
 
 # ---- more digits
@@ -223,12 +213,10 @@ class Exact:
             found.append((delay * unit, rows))
         return found
 
-    def taylor(self, w: numpy.ndarray, degree: int = DEGREE) -> numpy.ndarray:
+    def taylor(self, w: np.ndarray, degree: int = DEGREE) -> np.ndarray:
         """The coefficients of the powers of h in the quasipolynomial at j (w + h)*unit: array [power, frequency]."""
-        import numpy
-
         columns = [self._column(frequency, degree) for frequency in w.tolist()]
-        return numpy.array(columns, dtype=complex).T.reshape(degree + 1, len(columns))
+        return np.array(columns, dtype=complex).T.reshape(degree + 1, len(columns))
 
     def _column(self, frequency, degree):
         from mpmath import libmp
@@ -266,25 +254,23 @@ class UndecidedError(ValueError):
 
 
 def geometric(
-    start: numpy.ndarray, end: numpy.ndarray, near: numpy.ndarray | None = None, ratio: float = RATIO
-) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray]:
+    start: np.ndarray, end: np.ndarray, near: np.ndarray | None = None, ratio: float = RATIO
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Intervals from zero, and from `start` to `end` in geometric steps: points, and both ends of each.
 
     About a frequency `near` of each point, if it is not nan, the steps become ever smaller.
     """
-    import numpy
-
     reach = math.log(max(1.0, (end / start).max())) if len(start) else 0.0
     steps = max(1, math.ceil(reach / math.log(ratio)))
-    edges = numpy.empty((steps + 2, len(start)))
+    edges = np.empty((steps + 2, len(start)))
     edges[0] = 0
-    edges[1:] = start * (end / start) ** (numpy.arange(steps + 1)[:, None] / steps)
+    edges[1:] = start * (end / start) ** (np.arange(steps + 1)[:, None] / steps)
     edges[-1] = end
     if near is not None:
         closer = near * _OFFSETS()[:, None]
-        closer = numpy.where((closer > 0) & (closer < end), closer, end)
-        edges = numpy.sort(numpy.concatenate([edges, closer]), axis=0)
-    which = numpy.broadcast_to(numpy.arange(len(start)), edges[1:].shape)
+        closer = np.where((closer > 0) & (closer < end), closer, end)
+        edges = np.sort(np.concatenate([edges, closer]), axis=0)
+    which = np.broadcast_to(np.arange(len(start)), edges[1:].shape)
     a, b = edges[:-1], edges[1:]
     some = b > a
     return which[some], a[some], b[some]
@@ -292,19 +278,17 @@ def geometric(
 
 @functools.cache
 def _OFFSETS():
-    import numpy
-
-    steps = CLOSEST * 5.0 ** numpy.arange(math.ceil(math.log(0.5 / CLOSEST, 5)) + 1)
-    return 1 + numpy.concatenate([-steps[::-1], steps])
+    steps = CLOSEST * 5.0 ** np.arange(math.ceil(math.log(0.5 / CLOSEST, 5)) + 1)
+    return 1 + np.concatenate([-steps[::-1], steps])
 
 
 def walk(
     judge: Callable,
-    which: numpy.ndarray,
-    a: numpy.ndarray,
-    b: numpy.ndarray,
+    which: np.ndarray,
+    a: np.ndarray,
+    b: np.ndarray,
     what: str,
-    unit: numpy.ndarray,
+    unit: np.ndarray,
     exact: bool = False,
     divide: Callable | None = None,
     most: int | None = None,
@@ -324,8 +308,6 @@ def walk(
     Raises:
         UndecidedError: for an interval that is so narrow that it cannot be divided any more, or too many intervals.
     """
-    import numpy
-
     most = MOST_INTERVALS + MORE_INTERVALS * len(unit) if most is None else most
     left, digits_left = most, MOST_EXACT
     pending = [(which, a, b)]
@@ -340,49 +322,45 @@ def walk(
             continue
         narrow = (b - a) <= 2 * NARROWEST * b
         if exact and (undecided & (noisy | narrow)).any():
-            again = numpy.flatnonzero(undecided & (noisy | narrow))
+            again = np.flatnonzero(undecided & (noisy | narrow))
             digits_left -= len(again)
             if digits_left >= 0:
                 undecided[again] = judge(which[again], a[again], b[again], True)[0]
-        stuck = numpy.flatnonzero(undecided & (narrow | (b <= 1e-250)))
+        stuck = np.flatnonzero(undecided & (narrow | (b <= 1e-250)))
         if left < 0 or digits_left < 0 or len(stuck):
-            k = stuck[0] if len(stuck) else numpy.flatnonzero(undecided)[0]
+            k = stuck[0] if len(stuck) else np.flatnonzero(undecided)[0]
             raise UndecidedError(what, a[k], b[k], float(unit[which[k]]))
         which, a, b, delay = (x[undecided] for x in (which, a, b, delay))
-        pieces = numpy.clip(numpy.ceil((b - a) * delay / 0.8), 4, 64).astype(int)
+        pieces = np.clip(np.ceil((b - a) * delay / 0.8), 4, 64).astype(int)
         pending.append((divide or divided)(which, a, b, pieces))
     return most - left
 
 
 def divided(
-    which: numpy.ndarray, a: numpy.ndarray, b: numpy.ndarray, pieces: numpy.ndarray
-) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray]:
+    which: np.ndarray, a: np.ndarray, b: np.ndarray, pieces: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Intervals in equal pieces."""
-    import numpy
-
-    source = numpy.repeat(numpy.arange(len(which)), pieces)
-    number = numpy.arange(len(source)) - numpy.repeat(numpy.cumsum(pieces) - pieces, pieces)
+    source = np.repeat(np.arange(len(which)), pieces)
+    number = np.arange(len(source)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
     step, pieces = ((b - a) / pieces)[source], pieces[source]
     start = a[source]
-    end = numpy.where(number + 1 == pieces, b[source], start + (number + 1) * step)
+    end = np.where(number + 1 == pieces, b[source], start + (number + 1) * step)
     return which[source], start + number * step, end
 
 
 # ---- at zero
 
 
-def origin(sums: Quasipolynomials, degree: int, exact: Exact | None = None) -> tuple[numpy.ndarray, numpy.ndarray]:
+def origin(sums: Quasipolynomials, degree: int, exact: Exact | None = None) -> tuple[np.ndarray, np.ndarray]:
     """The power series in s at zero: coefficients [power, point] up to a degree, and what bounds the next ones.
 
     Coefficients that are zero but for rounding are zero; those of an exact sum are zero where they are.
     """
-    import numpy
-
-    degrees = numpy.arange(degree + 2)
-    factorials = numpy.array([math.factorial(n) for n in degrees], dtype=float)
+    degrees = np.arange(degree + 2)
+    factorials = np.array([math.factorial(n) for n in degrees], dtype=float)
     late = sums.delays[:, None, :] ** degrees[:, None] / factorials[:, None]
-    bounds = numpy.zeros((degree + 2, sums.count))
-    series = numpy.zeros_like(bounds, dtype=sums.coefficients.dtype)
+    bounds = np.zeros((degree + 2, sums.count))
+    series = np.zeros_like(bounds, dtype=sums.coefficients.dtype)
     signs = (-1.0) ** degrees[:, None]
     for n in range(min(sums.order, degree + 1) + 1):
         part = sums.coefficients[:, n, None]
@@ -392,7 +370,7 @@ def origin(sums: Quasipolynomials, degree: int, exact: Exact | None = None) -> t
     if exact is None:
         series[small] = 0
     else:
-        for n in numpy.flatnonzero(((abs(series) <= 1e-9 * bounds) & (bounds > 0))[:, 0]):
+        for n in np.flatnonzero(((abs(series) <= 1e-9 * bounds) & (bounds > 0))[:, 0]):
             series[n, 0] = exact_coefficient(exact, int(n))
     return series[:-1], bounds[-1]
 

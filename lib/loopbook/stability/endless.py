@@ -14,6 +14,8 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.stability.crossings import Positive, Real, View, asked, steps
 from loopbook.stability.difference import common_unit, prevailing
@@ -21,8 +23,6 @@ from loopbook.stability.loops import ENOUGH, Loops, positive_beyond, square
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-    import numpy
 
 MOST_ANGLES = 200_000
 MOST_EXPANSIONS = 50
@@ -53,8 +53,6 @@ class Far:
     """
 
     def __init__(self, loops: Loops, pivot: float = 1.0):
-        import numpy
-
         A, B = loops.exact[:2]
         self.loops, self.pivot, self.last = loops, pivot, {}
         rows: dict[Fraction, list[Fraction]] = {Fraction(0): [Fraction(0), Fraction(0)]}
@@ -63,8 +61,8 @@ class Far:
                 if len(part) == exact.order + 1:
                     rows.setdefault(delay, [Fraction(0), Fraction(0)])[k] += Fraction(part[-1], exact.divisor)
         self.rows = dict(sorted(rows.items()))
-        self.a, self.b = (numpy.array([float(row[k]) for row in self.rows.values()]) for k in range(2))
-        self.delays = numpy.array([float(delay) for delay in self.rows])
+        self.a, self.b = (np.array([float(row[k]) for row in self.rows.values()]) for k in range(2))
+        self.delays = np.array([float(delay) for delay in self.rows])
         self.vanishes = not self.a.any()
         self.lowest, self.highest = 0.0, math.inf
         if not self.vanishes:
@@ -78,10 +76,8 @@ class Far:
         return common_unit(self.delays[1:].tolist()) if len(self.delays) > 1 else (1.0, [])
 
     @functools.cached_property
-    def powers(self) -> numpy.ndarray:
-        import numpy
-
-        return numpy.array([0, *(self.unit[1] if self.unit else ())])
+    def powers(self) -> np.ndarray:
+        return np.array([0, *(self.unit[1] if self.unit else ())])
 
     @property
     def is_one_delayed(self) -> bool:
@@ -123,11 +119,9 @@ class Far:
     @functools.cached_property
     def on_circle(self) -> list[tuple[float, float]]:
         """The gains for which b + k a vanishes at an angle of exp(-unit*s), and these angles, from 0 to pi."""
-        import numpy
-
         real = Real(self._highest_powers, pivot=self.pivot)
         self._ask(real)
-        turns = numpy.exp(-1j * numpy.multiply.outer(self.powers, [0.0, math.pi]))
+        turns = np.exp(-1j * np.multiply.outer(self.powers, [0.0, math.pi]))
         found = [*zip(real.gains.tolist(), real.frequencies.tolist(), strict=True)]
         for angle, above, below in zip((0.0, math.pi), (self.a @ turns).real, (self.b @ turns).real, strict=True):
             if abs(above) > 1e-15 * abs(self.a).sum() and -below / above > 0:
@@ -141,10 +135,8 @@ class Far:
         return Loops(*(Quasipolynomials(row[:, None, None], multiples) for row in (self.a, self.b)))
 
     def _ask(self, question):
-        import numpy
-
-        loops, one = self._highest_powers, numpy.zeros(1, dtype=int)
-        start = numpy.full(1, 0.1)
+        loops, one = self._highest_powers, np.zeros(1, dtype=int)
+        start = np.full(1, 0.1)
         while True:
             view = View(loops, one, -start, start)
             if not question.judge(view)[0].any():
@@ -152,7 +144,7 @@ class Far:
             start = start / 2
             if start[0] < 1e-12:
                 raise ValueError(f"{question.name} is not decided at endless frequency")
-        asked(loops, [question], *steps(start, numpy.full(1, math.pi + 1e-3)))
+        asked(loops, [question], *steps(start, np.full(1, math.pi + 1e-3)))
 
     # ---- how far the highest powers are from what is asked
 
@@ -161,10 +153,8 @@ class Far:
 
         Angles that are as near to some as is said do not count.
         """
-        import numpy
-
         count = 16 * max(4, int(max(self.powers)))
-        middle, half = (numpy.arange(count) + 0.5) * (math.pi / count), math.pi / (2 * count)
+        middle, half = (np.arange(count) + 0.5) * (math.pi / count), math.pi / (2 * count)
         least = math.inf
         for _ in range(40):
             for angle, near in without:
@@ -173,14 +163,14 @@ class Far:
                     middle = middle[apart + half > near]
             if not len(middle):
                 return least / 2 if least < math.inf else 0.0
-            values = size(numpy.exp(-1j * numpy.multiply.outer(self.powers, middle)))
+            values = size(np.exp(-1j * np.multiply.outer(self.powers, middle)))
             least = min(least, float(values.min()))
             open_ = values - steep * half < least / 2
             if least <= 0 or open_.sum() > MOST_ANGLES:
                 return 0.0
             if not open_.any():
                 return least / 2
-            middle, half = numpy.concatenate([middle[open_] - half / 2, middle[open_] + half / 2]), half / 2
+            middle, half = np.concatenate([middle[open_] - half / 2, middle[open_] + half / 2]), half / 2
         return 0.0
 
     def _distance(self, low: float, high: float, without=()) -> float:
@@ -203,13 +193,11 @@ class Far:
 
     def _end(self, lower, reserve):
         """A frequency beyond which the lower powers are smaller than the highest one with that factor."""
-        import numpy
-
         if reserve <= 0:
             return math.nan
         if not lower.any():
             return 0.0
-        return float(prevailing(numpy.concatenate([lower, [reserve]])[None, :, None])[0])
+        return float(prevailing(np.concatenate([lower, [reserve]])[None, :, None])[0])
 
     # ---- gains
 
@@ -219,27 +207,23 @@ class Far:
 
         A limiting gain itself is no such k.
         """
-        import numpy
-
-        simple = float(self.loops.beyond(numpy.array([high]))[0])
+        simple = float(self.loops.beyond(np.array([high]))[0])
         if self.vanishes and not math.isnan(simple):
             return simple
         limiting = abs(high / self.highest - 1) < 1e-12 if self.highest < math.inf else False
         if limiting and not math.isnan(limit := float(self.loops.beyond_limit()[0])):
-            simple = float(numpy.fmin(simple, limit))
+            simple = float(np.fmin(simple, limit))
         lower = self._lower(1.0, high)
         if limiting and not lower.any():
             return 0.0
         end = self._end(lower, self._distance(low, high))
         # the next power may make it better by far
         if not min(end if end == end else math.inf, simple if simple == simple else math.inf) < 30:
-            end = float(numpy.fmin(end, self._beyond_circle(low, high)))
-        return float(numpy.fmin(simple, end))
+            end = float(np.fmin(end, self._beyond_circle(low, high)))
+        return float(np.fmin(simple, end))
 
     def _beyond_circle(self, low: float, high: float) -> float:
         """The same, by expansions about the angles at which the highest powers alone have such a gain."""
-        import numpy
-
         if not self.unit or len(self.a) == 1 or self._series is None:
             return math.nan
         A, B = self._series
@@ -257,23 +241,21 @@ class Far:
                 distance = self._distance(low, high, [(angle, near) for _, angle in angles])
                 end = self._end(self._lower(1.0, high), distance)
                 if not math.isnan(end):
-                    best = numpy.fmin(best, max(end, 1 / min(largest, default=math.inf)))
+                    best = np.fmin(best, max(end, 1 / min(largest, default=math.inf)))
         return float(best)
 
     @functools.cached_property
     def _series(self):
         """Coefficients of A and B by multiples of the unit and powers of v; None with dead times that are none."""
-        import numpy
-
         scaled, order = self.unit[0] * float(self.loops.unit[0]), self.loops.B.order
         both = []
         for sums in (self.loops.A, self.loops.B):
-            rows: dict[int, numpy.ndarray] = {}
+            rows: dict[int, np.ndarray] = {}
             for part, delay in zip(sums.coefficients[..., 0], sums.delays[:, 0], strict=True):
                 multiple = round(delay / scaled)
                 if abs(multiple * scaled - delay) > 1e-12 * delay:
                     return None
-                rows[multiple] = rows.get(multiple, 0) + part[::-1] * (-1j) ** numpy.arange(order + 1)
+                rows[multiple] = rows.get(multiple, 0) + part[::-1] * (-1j) ** np.arange(order + 1)
             both.append(rows)
         return both
 
@@ -291,9 +273,7 @@ class Far:
 
     def _size_end(self, sign):
         """A frequency beyond which abs(B) - abs(A), times the sign, is positive."""
-        import numpy
-
-        if sign > 0 and (end := float(self.loops.beyond(numpy.ones(1))[0])) == end:
+        if sign > 0 and (end := float(self.loops.beyond(np.ones(1))[0])) == end:
             return end
         a, b = self.a, self.b
         if self.is_one_delayed:
@@ -317,14 +297,12 @@ class Far:
     @functools.cached_property
     def exceeds_one(self) -> bool:
         """Whether abs(L) is certainly above 1 at ever higher frequencies, if not at all of them."""
-        import numpy
-
         if self.vanishes or self.size:
             return not self.vanishes and self.size > 0
         if not self.unit:
             return abs(self.b).sum() < abs(self.a).max() * 2 - abs(self.a).sum()
-        angles = numpy.linspace(0, math.pi, 16 * int(max(self.powers)) + 1)
-        turns = numpy.exp(-1j * numpy.multiply.outer(self.powers, angles))
+        angles = np.linspace(0, math.pi, 16 * int(max(self.powers)) + 1)
+        turns = np.exp(-1j * np.multiply.outer(self.powers, angles))
         return bool((abs(self.a @ turns) > abs(self.b @ turns) * (1 + 1e-9)).any())
 
     # ---- the sensitivity
@@ -349,27 +327,23 @@ class Far:
     @functools.cached_property
     def _peaks(self) -> list[tuple[float, float]]:
         """The highest abs(b/(a + b)), and the angles where it may be about as high."""
-        import numpy
-
         if len(self.a) == 2 and not self.b[1]:
             sign = (self.a[0] + self.b[0]) * self.a[1]
             return [(self.sensitivity, math.pi if sign > 0 else 0.0)]
         loops = self._highest_powers
         peak = Positive(loops)
         for angle in (0.0, math.pi):
-            turns = numpy.exp(-1j * self.powers * angle)
+            turns = np.exp(-1j * self.powers * angle)
             value = abs(self.b @ turns) / abs((self.a + self.b) @ turns)
-            peak.see(numpy.zeros(1, dtype=int), numpy.array([value]), numpy.array([angle]))
+            peak.see(np.zeros(1, dtype=int), np.array([value]), np.array([angle]))
         self._ask(peak)
         return [(float(peak.most[0]), float(peak.place[0]))]
 
     @_remembered
     def no_peak_beyond(self, most: float) -> float:
         """A frequency beyond which abs(B/C) is below `most`."""
-        import numpy
-
         loops, a, b = self.loops, self.a, self.b
-        simple = float(loops.beyond(numpy.array([most / (most - 1)]))[0]) if most > 1 else math.nan
+        simple = float(loops.beyond(np.array([most / (most - 1)]))[0]) if most > 1 else math.nan
         if self.vanishes:
             if math.isnan(simple) and loops.longest[0] == 0 and loops.squares is not None:
                 simple = self._undelayed_peak_end(most)
@@ -380,7 +354,7 @@ class Far:
         if len(a) == 1:
             reserve = most * abs(a[0] + b[0]) - abs(b[0])
             if loops.longest[0] == 0 and loops.squares is not None:
-                simple = float(numpy.fmin(simple, self._undelayed_peak_end(most)))
+                simple = float(np.fmin(simple, self._undelayed_peak_end(most)))
         elif self.unit:
             steep = (most * abs(a + b) + abs(b)) @ self.powers
             reserve = self._least(lambda turns: most * abs((a + b) @ turns) - abs(b @ turns), steep)
@@ -388,8 +362,8 @@ class Far:
             reserve = most * (abs(a[0] + b[0]) - abs(a[1:]).sum()) - abs(b[0])
         end = self._end(self._lower(most + 1, most), reserve)
         if not min(end if end == end else math.inf, simple if simple == simple else math.inf) < 30:
-            end = float(numpy.fmin(end, self._beyond_peak(most)))
-        return float(numpy.fmin(simple, end))
+            end = float(np.fmin(end, self._beyond_peak(most)))
+        return float(np.fmin(simple, end))
 
     def _undelayed_peak_end(self, most):
         loops = self.loops
@@ -398,8 +372,6 @@ class Far:
 
     def _beyond_peak(self, most):
         """The same, by expansions about the angle at which the highest powers alone have their largest value."""
-        import numpy
-
         if not self.unit or len(self.a) == 1 or self._series is None:
             return math.nan
         A, B = self._series
@@ -423,20 +395,18 @@ class Far:
                         largest.append(_not_above_beside(ratio, most, 0.1 * apart) if ratio else 0.0)
                     apart *= 1.2
             if min(largest) > 0:
-                best = numpy.fmin(best, max(end, 1 / min(largest)))
+                best = np.fmin(best, max(end, 1 / min(largest)))
         return float(best)
 
 
 def _to_segment(start, step):
     """The distance of 0 from start + t*step, with t from 0 to 1."""
-    import numpy
-
-    with numpy.errstate(divide="ignore", invalid="ignore"):
-        along = numpy.nan_to_num((-start * step.conj()).real / abs(step) ** 2)
-    return abs(start + numpy.clip(along, 0, 1) * step)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        along = np.nan_to_num((-start * step.conj()).real / abs(step) ** 2)
+    return abs(start + np.clip(along, 0, 1) * step)
 
 
-def _related(delays: numpy.ndarray) -> bool:
+def _related(delays: np.ndarray) -> bool:
     """Whether dead times, no multiples of one, may have a common multiple in sums with small whole factors."""
     if len(delays) < 3:
         return False
@@ -458,7 +428,7 @@ class Expansion(NamedTuple):
         largest: a bound there of how far it is from its value in the middle, and so of all terms but the first.
     """
 
-    terms: numpy.ndarray
+    terms: np.ndarray
     wide: float
     tall: float
     largest: float
@@ -467,13 +437,11 @@ class Expansion(NamedTuple):
     def of(
         cls, above: dict, below: dict, angle: float, wide: float, sign: float, more: float = 0.0
     ) -> Expansion | None:
-        import numpy
-
         numbers = []
         for rows in (above, below):
-            terms = numpy.zeros((3, 3), dtype=complex)
+            terms = np.zeros((3, 3), dtype=complex)
             for multiple, row in rows.items():
-                turn = numpy.exp(-1j * multiple * angle)
+                turn = np.exp(-1j * multiple * angle)
                 for i in range(3):
                     for j in range(min(3, len(row))):
                         terms[i, j] += row[j] * turn * (-1j * multiple) ** i / math.factorial(i)
@@ -493,7 +461,7 @@ class Expansion(NamedTuple):
         else:
             return None
         largest = (change[0] * size + change[1] * abs(N[0, 0])) / ((size - change[1]) * size)
-        quotient = numpy.zeros((3, 3), dtype=complex)
+        quotient = np.zeros((3, 3), dtype=complex)
         for i in range(3):
             for j in range(3 - i):
                 known = sum(
@@ -551,9 +519,7 @@ def _no_gain_between(gains: Expansion, low: float, high: float, near: float, ang
 
 def _square(ratio):
     """The terms of the square of a quotient's size for real angles and v: the product with the conjugate series."""
-    import numpy
-
-    u, f = ratio.terms, numpy.zeros((3, 3))
+    u, f = ratio.terms, np.zeros((3, 3))
     for i in range(3):
         for j in range(3 - i):
             f[i, j] = sum((u[p, q] * u[i - p, j - q].conj()).real for p in range(i + 1) for q in range(j + 1))
@@ -562,17 +528,13 @@ def _square(ratio):
 
 def _bounds(ratio, x, y):
     """Bounds of the terms of that square, for shares x and y of the radii."""
-    import numpy
-
-    numbers, middle = numpy.arange(64), abs(ratio.terms[0, 0])
-    both = numpy.outer((numbers + 1) * x**numbers, (numbers + 1) * y**numbers)
-    return 1.001 * ratio.largest * (2 * middle * numpy.outer(x**numbers, y**numbers) + ratio.largest * both)
+    numbers, middle = np.arange(64), abs(ratio.terms[0, 0])
+    both = np.outer((numbers + 1) * x**numbers, (numbers + 1) * y**numbers)
+    return 1.001 * ratio.largest * (2 * middle * np.outer(x**numbers, y**numbers) + ratio.largest * both)
 
 
 def _orders():
-    import numpy
-
-    return numpy.add.outer(numpy.arange(64), numpy.arange(64))
+    return np.add.outer(np.arange(64), np.arange(64))
 
 
 def _not_above_beside(ratio: Expansion, most: float, near: float) -> float:
@@ -594,8 +556,6 @@ def _not_above_beside(ratio: Expansion, most: float, near: float) -> float:
 
 def _not_above(ratio: Expansion, most: float, near: float, angle: float) -> float:
     """The same about an angle at which it is largest for v = 0, by the terms of the second order."""
-    import numpy
-
     symmetric, v = abs(math.sin(angle)) < 1e-9, ratio.tall / 4
     f = _square(ratio)
     base, bend = f[0, 0], f[2, 0]
@@ -605,7 +565,7 @@ def _not_above(ratio: Expansion, most: float, near: float, angle: float) -> floa
     if x > 0.5:
         return 0.0
     high = _orders() >= (4 if symmetric else 3)
-    squared = (numpy.arange(64) >= 2)[:, None] & high
+    squared = (np.arange(64) >= 2)[:, None] & high
     for _ in range(60):
         if (y := v / ratio.tall) <= 0.5:
             # bounds of the terms of the square; those with the angle squared make the bend weaker

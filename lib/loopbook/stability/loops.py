@@ -7,14 +7,14 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from loopbook.quasipolynomials.arrays import DEGREE, Quasipolynomials, powers_of
 from loopbook.quasipolynomials.fraction import plus
 from loopbook.stability.difference import at_endless_frequency, power_of_two, prevailing
 from loopbook.stability.enclosures import EPSILON, Enclosure, Exact, exact_coefficient_fraction, origin
 
 if TYPE_CHECKING:
-    import numpy
-
     from loopbook.quasipolynomials import DelayFraction
 
 DOUBTFUL = 1e-12  # the share of rounding in a value above which crossings and peaks are computed with more digits
@@ -31,10 +31,8 @@ class Loops:
     """
 
     def __init__(self, A: Quasipolynomials, B: Quasipolynomials, fraction: DelayFraction | None = None):
-        import numpy
-
         if B.coefficients[1:, -1].any():
-            self.endless_least = numpy.array([_least_at_endless(B, k) for k in range(B.count)])
+            self.endless_least = np.array([_least_at_endless(B, k) for k in range(B.count)])
         else:
             self.endless_least = abs(B.coefficients[0, -1])
         if not (self.endless_least > 0).all():
@@ -69,18 +67,14 @@ class Loops:
         return self.B + self.A
 
     @functools.cached_property
-    def longest(self) -> numpy.ndarray:
+    def longest(self) -> np.ndarray:
         """The longest dead time of each loop."""
-        import numpy
-
-        return numpy.maximum(self.A.longest, self.B.longest)
+        return np.maximum(self.A.longest, self.B.longest)
 
     def values(
-        self, which: numpy.ndarray, w: numpy.ndarray, degree: int = 0, precise: bool = False
-    ) -> tuple[numpy.ndarray, numpy.ndarray]:
+        self, which: np.ndarray, w: np.ndarray, degree: int = 0, precise: bool = False
+    ) -> tuple[np.ndarray, np.ndarray]:
         """The expansions of A and B at frequencies."""
-        import numpy
-
         if precise:
             return tuple(each.taylor(w, degree) for each in self.exact[:2])
         if self.count > 1:
@@ -88,20 +82,18 @@ class Loops:
         matrices, late, parts = self._stacked
         values = matrices[:, : degree + 1] @ powers_of(w, self.B.order + 1)
         for part, delay in late:
-            values[part] *= numpy.exp(-1j * (w * delay))
+            values[part] *= np.exp(-1j * (w * delay))
         A, B = values[:parts], values[parts:]
         return A[0] if parts == 1 else A.sum(axis=0), B[0] if len(B) == 1 else B.sum(axis=0)
 
     @functools.cached_property
     def _stacked(self):
         """What the expansions of A and B take, in one piece."""
-        import numpy
-
-        matrices = numpy.concatenate([self.A.turned, self.B.turned])
+        matrices = np.concatenate([self.A.turned, self.B.turned])
         delays = [*self.A.delays[:, 0].tolist(), *self.B.delays[:, 0].tolist()]
         return matrices, [(k, delay) for k, delay in enumerate(delays) if delay], len(self.A.delays)
 
-    def doubtful(self, which: numpy.ndarray, w: numpy.ndarray, *values: numpy.ndarray) -> numpy.ndarray:
+    def doubtful(self, which: np.ndarray, w: np.ndarray, *values: np.ndarray) -> np.ndarray:
         """Where rounding has a share in A or B, whose values are given, or in A + B if one value is."""
         doubt = False
         for sums, value in zip((self.A, self.B) if len(values) == 2 else (self.C,), values, strict=True):
@@ -114,33 +106,29 @@ class Loops:
     @functools.cached_property
     def at_zero(self) -> tuple:
         """The power series of A and B at zero in j w, zeros that both have removed; and bounds of the next terms."""
-        import numpy
-
         degree = 2 * self.B.order + 6
         exact = self.exact[:2] if self.exact else (None, None)
         (a, more_a), (b, more_b) = (origin(x, degree, e) for x, e in zip((self.A, self.B), exact, strict=True))
-        removed = numpy.argmax((a != 0) | (b != 0), axis=0)
+        removed = np.argmax((a != 0) | (b != 0), axis=0)
         more_a, more_b = 2 * more_a, 2 * more_b  # for all terms, where the frequency times each delay is below 1/2
         if removed.any():
             for n in set(removed[removed > 0].tolist()):
                 some = removed == n
                 a[:-n, some], b[:-n, some] = a[n:, some], b[n:, some]
                 a[-n:, some] = b[-n:, some] = 0
-        turns = 1j ** numpy.arange(degree + 1)[:, None]
+        turns = 1j ** np.arange(degree + 1)[:, None]
         return a * turns, b * turns, more_a, more_b, removed
 
-    def near_zero(self, which: numpy.ndarray, r: numpy.ndarray) -> tuple[Enclosure, Enclosure]:
+    def near_zero(self, which: np.ndarray, r: np.ndarray) -> tuple[Enclosure, Enclosure]:
         """Enclosures of A and B from -r to r, without the zeros at zero that both have."""
-        import numpy
-
         a, b, more_a, more_b, removed = self.at_zero
         found = []
         for series, more in ((a, more_a), (b, more_b)):
-            scale = r ** numpy.arange(len(series))[:, None]
+            scale = r ** np.arange(len(series))[:, None]
             terms = series[:, which] * scale
             sizes = abs(terms)
             noise = 8 * EPSILON * sizes.sum(axis=0)
-            powers = numpy.arange(DEGREE + 1, len(series))
+            powers = np.arange(DEGREE + 1, len(series))
             last = more[which] * r ** (len(series) - removed[which])
             rest = sizes[DEGREE + 1 :].sum(axis=0) + last
             slope = powers @ sizes[DEGREE + 1 :] + 2 * len(series) * last
@@ -148,18 +136,16 @@ class Loops:
         return tuple(found)
 
     @functools.cached_property
-    def start(self) -> numpy.ndarray:
+    def start(self) -> np.ndarray:
         """A frequency up to which L turns off the real axis and the size 1, if it begins there, but never returns."""
-        import numpy
-
         a, b, more_a, more_b, removed = self.at_zero
         count, points = len(a), self.count
         size_a, size_b = abs(a), abs(b)
         # Im A conj(B), an odd function of the frequency, and abs(B)**2 - abs(A)**2, an even one, side by side
-        series = numpy.concatenate(
+        series = np.concatenate(
             [_conjugate_product(a, b).imag, (_conjugate_product(b, b) - _conjugate_product(a, a)).real], axis=1
         )
-        sizes = numpy.concatenate(
+        sizes = np.concatenate(
             [
                 _conjugate_product(size_a, size_b),
                 _conjugate_product(size_b, size_b) + _conjugate_product(size_a, size_a),
@@ -172,23 +158,23 @@ class Loops:
             for parity in (1, 0):
                 mine = slice(1 - parity, 2 - parity)
                 self._exactly(series[:, mine], sizes[:, mine], parity)
-        some, sides = series[:count].any(axis=0), numpy.arange(2 * points)
-        lowest = numpy.argmax(series[:count] != 0, axis=0)
+        some, sides = series[:count].any(axis=0), np.arange(2 * points)
+        lowest = np.argmax(series[:count] != 0, axis=0)
         self.is_real = ~some[:points]
         # where the next powers are still below the lowest one; then in halves, until all others are, too
         known, series = abs(series[lowest, sides]), abs(series)
-        gaps = numpy.arange(len(series))[:, None] - lowest
-        with numpy.errstate(divide="ignore", invalid="ignore"):
-            ratios = (known / (4 * series)) ** (1 / numpy.maximum(gaps, 1))
+        gaps = np.arange(len(series))[:, None] - lowest
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratios = (known / (4 * series)) ** (1 / np.maximum(gaps, 1))
         ratios[gaps <= 0] = math.inf
-        start = numpy.tile(0.25 / numpy.maximum(self.longest, 1.0), 2)
-        start = numpy.where(some, numpy.fmin(start, ratios[:count].min(axis=0)), start)
+        start = np.tile(0.25 / np.maximum(self.longest, 1.0), 2)
+        start = np.where(some, np.fmin(start, ratios[:count].min(axis=0)), start)
         series[lowest, sides] = 0
         series[count:] = sizes[count:]
         degrees = _degrees(count)
         for _ in range(400):
             others = (series * start**gaps).sum(axis=0)
-            wider = numpy.maximum(start[:points], start[points:])
+            wider = np.maximum(start[:points], start[points:])
             sum_a, sum_b = ((x * wider**degrees).sum(axis=0) for x in (size_a, size_b))
             for half, (first, second) in enumerate(
                 (((sum_a, more_a), (sum_b, more_b)), ((sum_a, more_a), (sum_a, more_a)))
@@ -202,8 +188,8 @@ class Loops:
             high = some & (others > known / 2)
             if not high.any():
                 break
-            start = numpy.where(high, start / 2, start)
-        return numpy.minimum(start[:points], start[points:])
+            start = np.where(high, start / 2, start)
+        return np.minimum(start[:points], start[points:])
 
     def _exactly(self, series, size, parity):
         """The lowest term that is not zero, which rounding may hide, as it is."""
@@ -227,29 +213,25 @@ class Loops:
             if value:
                 return
 
-    def static_gains(self) -> numpy.ndarray:
+    def static_gains(self) -> np.ndarray:
         """The gain with which there is a pole at zero; nan without one."""
-        import numpy
-
         a, b, *_ = self.at_zero
-        with numpy.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore"):
             gain = -b[0].real / a[0].real
-        return numpy.where((gain > 0) & numpy.isfinite(gain), gain, math.nan)
+        return np.where((gain > 0) & np.isfinite(gain), gain, math.nan)
 
     # ---- beyond
 
-    def beyond(self, factor: numpy.ndarray) -> numpy.ndarray:
+    def beyond(self, factor: np.ndarray) -> np.ndarray:
         """A frequency beyond which abs(L)*factor is below 1; nan where none is known."""
-        import numpy
-
         A, B = self._term_sizes
         sizes = B + factor * A
         reserve = self._endless_reserve - factor * A[-1]
-        sizes[-1] = numpy.where(reserve > 0, reserve, math.nan)
+        sizes[-1] = np.where(reserve > 0, reserve, math.nan)
         end = prevailing(sizes[None])
         if self.squares is not None and not (end < 8).all():
             squares = self.squares
-            end = numpy.fmin(end, positive_beyond(squares[1] - factor**2 * squares[0]))
+            end = np.fmin(end, positive_beyond(squares[1] - factor**2 * squares[0]))
         return end
 
     @functools.cached_property
@@ -258,48 +240,40 @@ class Loops:
 
     @functools.cached_property
     def _endless_reserve(self):
-        import numpy
-
-        return numpy.maximum(2 * abs(self.B.coefficients[0, -1]) - self._term_sizes[1][-1], self.endless_least)
+        return np.maximum(2 * abs(self.B.coefficients[0, -1]) - self._term_sizes[1][-1], self.endless_least)
 
     @functools.cached_property
-    def squares(self) -> list[numpy.ndarray] | None:
+    def squares(self) -> list[np.ndarray] | None:
         """abs(A)**2 and abs(B)**2 of loops with one dead time, polynomials in the square of the frequency."""
         if len(self.A.coefficients) != 1 or len(self.B.coefficients) != 1:
             return None
         if self.exact is None:
             return [square(x.coefficients[0]) for x in (self.A, self.B)]
-        import numpy
+        return [np.array([[float(c)] for c in _exact_square(each)]) for each in self.exact[:2]]
 
-        return [numpy.array([[float(c)] for c in _exact_square(each)]) for each in self.exact[:2]]
-
-    def beyond_limit(self) -> numpy.ndarray:
+    def beyond_limit(self) -> np.ndarray:
         """A frequency beyond which abs(L) is not above what it is at endless frequency, with one dead time; or nan."""
-        import numpy
-
         if self.squares is None:
-            return numpy.full(self.count, math.nan)
+            return np.full(self.count, math.nan)
         if self.exact is not None:
             a, b = (_exact_square(each) for each in self.exact[:2])
             if not a[-1]:
-                return numpy.full(1, math.nan)
-            rows = numpy.array([[float(y - b[-1] / a[-1] * x)] for x, y in zip(a, b, strict=True)])
+                return np.full(1, math.nan)
+            rows = np.array([[float(y - b[-1] / a[-1] * x)] for x, y in zip(a, b, strict=True)])
             sizes = abs(self.squares[1])
         else:
             a, b = self.squares
-            with numpy.errstate(divide="ignore", invalid="ignore"):
+            with np.errstate(divide="ignore", invalid="ignore"):
                 rows = b - b[-1] / a[-1] * a
                 sizes = abs(b) + b[-1] / a[-1] * abs(a)
             rows[-1] = 0
         # less than that could make no difference to a gain that could be told
         rows[abs(rows) <= 1e-11 * sizes.max(axis=0)] = 0
-        return numpy.where(rows.any(axis=0), positive_beyond(rows), numpy.where(rows[-1] == 0, 1.0, math.nan))
+        return np.where(rows.any(axis=0), positive_beyond(rows), np.where(rows[-1] == 0, 1.0, math.nan))
 
     @functools.cached_property
     def real_beyond(self) -> float:
         """A frequency beyond which L is never real, of a single loop; nan if it may be, zero if L is always real."""
-        import numpy
-
         parts: dict[Fraction, list[Fraction]] = {}
         A, B = self.exact[:2]
         for early, p in A.parts.items():
@@ -322,7 +296,7 @@ class Loops:
         rows = [lead, *parts.values()]
         scale = float(A.unit)
         largest = max(abs(c) for row in rows for c in row)
-        coefficients = numpy.zeros((len(rows), order + 1))
+        coefficients = np.zeros((len(rows), order + 1))
         for k, row in enumerate(rows):
             coefficients[k, : len(row)] = [
                 float(Fraction(c, largest)) * scale**n for n, c in enumerate(row[: order + 1])
@@ -330,22 +304,20 @@ class Loops:
         end = float(prevailing(coefficients[:, :, None])[0])
         return end if coefficients[0, -1] else math.nan
 
-    def real_beyond_all(self) -> numpy.ndarray:
+    def real_beyond_all(self) -> np.ndarray:
         """The same for many loops, in numbers."""
-        import numpy
-
         mirrored = [
-            Quasipolynomials((-1.0) ** numpy.arange(x.order + 1)[:, None] * x.coefficients, -x.delays)
+            Quasipolynomials((-1.0) ** np.arange(x.order + 1)[:, None] * x.coefficients, -x.delays)
             for x in (self.A, self.B)
         ]
         odd = self.A * mirrored[1] + -1 * (mirrored[0] * self.B)
         sizes = abs(self.A.coefficients).sum(axis=0).max(axis=0) * abs(self.B.coefficients).sum(axis=0).max(axis=0)
-        coefficients = numpy.where(abs(odd.coefficients) <= 1e-13 * sizes, 0, odd.coefficients)
-        end = numpy.zeros(self.count)
+        coefficients = np.where(abs(odd.coefficients) <= 1e-13 * sizes, 0, odd.coefficients)
+        end = np.zeros(self.count)
         for point in range(self.count):
             one = coefficients[:, :, point]
             if one.any():
-                last = numpy.flatnonzero(one.any(axis=0))[-1]
+                last = np.flatnonzero(one.any(axis=0))[-1]
                 end[point] = prevailing(one[:, : last + 1, None])[0] if one[0, last] else math.nan
         return end
 
@@ -362,12 +334,10 @@ def _exact_square(exact):
     return [Fraction(c, exact.divisor**2) * scale ** (n - order) for n, c in enumerate(terms)]
 
 
-def square(part: numpy.ndarray) -> numpy.ndarray:
+def square(part: np.ndarray) -> np.ndarray:
     """The squares of the sizes of polynomials [power, point] on the imaginary axis, in powers of w*w."""
-    import numpy
-
     order = len(part) - 1
-    return numpy.array(
+    return np.array(
         [
             sum(
                 (-1.0) ** (n - i) * part[i] * part[2 * n - i]
@@ -378,54 +348,46 @@ def square(part: numpy.ndarray) -> numpy.ndarray:
     )
 
 
-def positive_beyond(rows: numpy.ndarray) -> numpy.ndarray:
+def positive_beyond(rows: np.ndarray) -> np.ndarray:
     """The roots of numbers beyond which polynomials [power, point] are positive; nan without one."""
-    import numpy
-
     count = len(rows)
-    found = numpy.full(rows.shape[1], math.inf)
-    possible = numpy.ones(rows.shape[1], dtype=bool)
+    found = np.full(rows.shape[1], math.inf)
+    possible = np.ones(rows.shape[1], dtype=bool)
     for n in range(count - 1, -1, -1):
         lead = rows[n]
         possible = possible & (lead >= 0)
         if not possible.any():
             break
-        lower = numpy.maximum(-rows[:n], 0)
+        lower = np.maximum(-rows[:n], 0)
         number = (lower > 0).sum(axis=0)
-        with numpy.errstate(divide="ignore", invalid="ignore"):
-            ends = (lower * number / lead) ** (1 / numpy.arange(n, 0, -1)[:, None])
-        end = numpy.nan_to_num(ends, nan=math.inf).max(axis=0, initial=1e-6)
-        found = numpy.where(possible & (lead > 0), numpy.minimum(found, end), found)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ends = (lower * number / lead) ** (1 / np.arange(n, 0, -1)[:, None])
+        end = np.nan_to_num(ends, nan=math.inf).max(axis=0, initial=1e-6)
+        found = np.where(possible & (lead > 0), np.minimum(found, end), found)
     # a little beyond, because such a bound may itself be a zero
-    return numpy.where(found < math.inf, 1.001 * numpy.sqrt(found), math.nan)
+    return np.where(found < math.inf, 1.001 * np.sqrt(found), math.nan)
 
 
 @functools.cache
 def _degrees(count):
-    import numpy
-
-    return numpy.arange(count)[:, None]
+    return np.arange(count)[:, None]
 
 
 def _conjugate_product(x, y):
     """The power series in w of one times the other's conjugate."""
-    import numpy
-
     other = y.conj()
     if x.shape[1] == 1:
-        return numpy.convolve(x[:, 0], other[:, 0])[:, None]
-    product = numpy.zeros((len(x) + len(y) - 1, x.shape[1]), dtype=x.dtype)
+        return np.convolve(x[:, 0], other[:, 0])[:, None]
+    product = np.zeros((len(x) + len(y) - 1, x.shape[1]), dtype=x.dtype)
     for i, row in enumerate(x):
         product[i : i + len(y)] += row * other
     return product
 
 
 def _least_at_endless(B, point):
-    import numpy
-
     lead = B.coefficients[:, -1, point]
     if not lead[1:].any():
         return abs(lead[0])
-    with numpy.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore"):
         later = lead[1:] / lead[0]
     return abs(lead[0]) * at_endless_frequency(later, B.delays[1:, point]).least

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
+import numpy as np
 import sympy
 
 from loopbook.expressions import s
@@ -15,13 +16,12 @@ from loopbook.transfer import transfer_function
 from loopbook.validation import real_numbers
 
 if TYPE_CHECKING:
-    import numpy
     from numpy.typing import ArrayLike
 
 CHUNK = 2000  # points at once
 
 
-def stability_map(loop: object, progress: bool | None = None, **values: ArrayLike) -> numpy.ndarray:
+def stability_map(loop: object, progress: bool | None = None, **values: ArrayLike) -> np.ndarray:
     """Return the number of unstable closed-loop poles for many values of two letters.
 
     Arguments:
@@ -41,8 +41,6 @@ def stability_map(loop: object, progress: bool | None = None, **values: ArrayLik
            [0, 2],
            [2, 2]])
     """
-    import numpy
-
     L = transfer_function(loop)
     letters = {str(letter): letter for letter in L.free_symbols - {s}}
     if set(letters) != set(values) or len(values) != 2:
@@ -61,17 +59,17 @@ def stability_map(loop: object, progress: bool | None = None, **values: ArrayLik
     order = parts[0].degree()
     rows = [part.coeff_monomial(s**n) for part in parts.values() for n in range(order + 1)]
     numbers = sympy.lambdify([positive[name] for name in values], [*rows, *parts], "numpy", cse=True)
-    points = [grid.ravel() for grid in numpy.meshgrid(*grids)]
-    counts = numpy.empty(points[0].size, dtype=int)
+    points = [grid.ravel() for grid in np.meshgrid(*grids)]
+    counts = np.empty(points[0].size, dtype=int)
     chunks = [slice(k, k + CHUNK) for k in range(0, counts.size, CHUNK)]
     for chunk in _watched(chunks, progress):
         here = [x[chunk] for x in points]
         found = [row + 0.0 * here[0] for row in numbers(*here)]
-        coefficients, delays = numpy.array(found[: len(rows)]), numpy.array(found[len(rows) :])
+        coefficients, delays = np.array(found[: len(rows)]), np.array(found[len(rows) :])
         if (delays < 0).any():
             raise ValueError(f"the values make a dead time {delays.min():g}: expected one that is not negative")
         coefficients = coefficients.reshape(len(parts), order + 1, -1)
-        if (lost := numpy.flatnonzero(coefficients[0, -1] == 0)).size:
+        if (lost := np.flatnonzero(coefficients[0, -1] == 0)).size:
             where = ", ".join(f"{name} = {x[lost[0]]:g}" for name, x in zip(values, here, strict=True))
             raise ValueError(f"the closed loop of {L} loses its highest power at {where}: expected other values")
         counts[chunk] = count_roots(Quasipolynomials(coefficients, delays))

@@ -7,6 +7,8 @@ import functools
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from loopbook.stability.confirmation import confirm
 from loopbook.stability.counting import (
     cancels,
@@ -158,19 +160,17 @@ class Survey:
 
     def _begin(self):
         """What is known at zero and at endless frequency."""
-        import numpy
-
-        loops, far, one = self.loops, self.far, numpy.zeros(1, dtype=int)
+        loops, far, one = self.loops, self.far, np.zeros(1, dtype=int)
         if self.real:
-            self.real.highest = numpy.minimum(self.real.highest, far.highest)
-            self.real.lowest = numpy.maximum(self.real.lowest, far.lowest)
+            self.real.highest = np.minimum(self.real.highest, far.highest)
+            self.real.lowest = np.maximum(self.real.lowest, far.lowest)
             if (static := loops.static_gains())[0] > 0:
-                self.real.add(one, static, numpy.zeros(1))
+                self.real.add(one, static, np.zeros(1))
         if self.peak:
-            A, B = loops.near_zero(one, numpy.full(1, 1e-300))
+            A, B = loops.near_zero(one, np.full(1, 1e-300))
             zero = abs(B.terms[0] / (A.terms[0] + B.terms[0]))
-            self.peak.see(one, zero, numpy.zeros(1))
-            self.peak.see(one, numpy.array([far.sensitivity]), numpy.full(1, math.inf))
+            self.peak.see(one, zero, np.zeros(1))
+            self.peak.see(one, np.array([far.sensitivity]), np.full(1, math.inf))
 
     def _end(self, question, done: float) -> float:
         """A frequency beyond which a question is decided; nan where none is known yet."""
@@ -186,8 +186,6 @@ class Survey:
         return far.no_peak_beyond(float(question.most[0]) * (1 + ENOUGH))
 
     def _ask(self, questions):
-        import numpy
-
         loops = self.loops
         if self.size and self.far.size == 0:
             if questions == [self.size] and self.far.exceeds_one:
@@ -198,7 +196,7 @@ class Survey:
         end, left, most = self._scout(float(done[0]), questions), questions, MOST_INTERVALS
         while True:
             most -= asked(loops, left, *self._intervals(float(done[0]), end), most)
-            done = numpy.array([end])
+            done = np.array([end])
             ends = {id(question): self._end(question, end) for question in questions}
             left = [question for question in questions if not ends[id(question)] <= end]
             if not left:
@@ -226,13 +224,11 @@ class Survey:
 
     def _scout(self, start, questions):
         """See from values alone where the answers may be, so that they are soon proved; an end of the first window."""
-        import numpy
-
         loops = self.loops
-        end = float(loops.beyond(numpy.full(1, 2.0))[0])
+        end = float(loops.beyond(np.full(1, 2.0))[0])
         end = max(end if end < 64 else 4.0, 4 * start)
-        w = numpy.geomspace(start, 2 * end, 80)
-        which = numpy.zeros(len(w), dtype=int)
+        w = np.geomspace(start, 2 * end, 80)
+        which = np.zeros(len(w), dtype=int)
         A, B = (x[0] for x in loops.values(which, w))
         if self.peak:
             C = A + B
@@ -242,7 +238,7 @@ class Survey:
         if self.real:
             product = A * B.conj()
             imag, negative = product.imag, product.real < 0
-            some = numpy.flatnonzero(((imag[1:] > 0) != (imag[:-1] > 0)) & negative[1:] & negative[:-1])[:8]
+            some = np.flatnonzero(((imag[1:] > 0) != (imag[:-1] > 0)) & negative[1:] & negative[:-1])[:8]
             if len(some):
                 self.real.solve(which[some], w[some], w[some + 1], imag[some], imag[some + 1])
         ends = [self._end(question, end) for question in questions if question is not self.size]
@@ -250,25 +246,21 @@ class Survey:
 
     def _intervals(self, start, end):
         """Geometric steps, and the peak in the middle of one of them."""
-        import numpy
-
-        which, a, b = steps(numpy.full(1, start), numpy.full(1, end))
+        which, a, b = steps(np.full(1, start), np.full(1, end))
         if self.peak and start < self.peak.place[0] < end:
             p, width = float(self.peak.place[0]), self.peak.width
-            edges = numpy.append(a, b[-1])
-            near = p + width * numpy.array([-9.0, -3.0, -1.0, 1.0, 3.0, 9.0]) / 4
+            edges = np.append(a, b[-1])
+            near = p + width * np.array([-9.0, -3.0, -1.0, 1.0, 3.0, 9.0]) / 4
             inner = edges[1:-1][abs(edges[1:-1] - p) > width / 4]
             near = near[(near > start) & (near < end)]
-            edges = numpy.unique(numpy.concatenate([edges[[0, -1]], inner, near]))
-            return numpy.zeros(len(edges) - 1, dtype=int), edges[:-1], edges[1:]
+            edges = np.unique(np.concatenate([edges[[0, -1]], inner, near]))
+            return np.zeros(len(edges) - 1, dtype=int), edges[:-1], edges[1:]
         return which, a, b
 
     # ---- what was found
 
     def gain_margins(self) -> dict[str, float]:
         """How far the gain may grow and fall, and the frequencies of both."""
-        import numpy
-
         real, unit = self.real, float(self.loops.unit[0])
         found = {}
         for name, omega, value, none in (
@@ -278,7 +270,7 @@ class Survey:
             if value == none:
                 found |= {name: math.inf if none else 0.0, omega: math.nan}
                 continue
-            at = numpy.flatnonzero(real.gains == value)
+            at = np.flatnonzero(real.gains == value)
             found |= {name: value, omega: float(real.frequencies[at[0]]) * unit if len(at) else math.inf}
         return found
 
@@ -290,12 +282,10 @@ class Survey:
 
     def phase_margins(self) -> dict[str, float]:
         """How far the phase may turn, either way, and the frequency; infinite where abs(L) is never 1."""
-        import numpy
-
         w, left = self._crossings
         if not len(w):
             return {"phase_margin": math.inf, "omega_c": math.nan}
-        either_way = numpy.minimum(left, 2 * math.pi - left)
+        either_way = np.minimum(left, 2 * math.pi - left)
         nearest = either_way.argmin()
         return {"phase_margin": math.degrees(either_way[nearest]), "omega_c": float(w[nearest])}
 

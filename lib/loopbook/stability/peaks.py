@@ -5,20 +5,18 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    import numpy
+import numpy as np
 
+if TYPE_CHECKING:
     from loopbook.stability.crossings import Positive
     from loopbook.stability.loops import Loops
 
 
 def to_the_top(loops: Loops, question: Positive) -> None:
     """Move the highest values that were seen to the tops of their peaks."""
-    import numpy
-
     if loops.count == 1 and _single_to_the_top(loops, question):
         return
-    every = numpy.flatnonzero((question.place > 0) & numpy.isfinite(question.place))
+    every = np.flatnonzero((question.place > 0) & np.isfinite(question.place))
     if not len(every):
         return
 
@@ -28,8 +26,8 @@ def to_the_top(loops: Loops, question: Positive) -> None:
 
     best, places, bend = _climbed(at, question.place[every], 30)
     question.see(every, best, places)
-    with numpy.errstate(divide="ignore", invalid="ignore"):
-        question.width = float(numpy.clip((-2 / bend[0]) ** 0.5, 1e-7 * places[0], places[0] / 4))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        question.width = float(np.clip((-2 / bend[0]) ** 0.5, 1e-7 * places[0], places[0] / 4))
     place = question.place[every]
     if loops.exact is not None and loops.doubtful(every, place, loops.C.value(every, place))[0]:
         # rounding made what was seen, also if that is higher than what is there
@@ -39,14 +37,12 @@ def to_the_top(loops: Loops, question: Positive) -> None:
 
 def _single_to_the_top(loops, question):
     """The same for one loop, with less ado; and whether rounding has no share in it."""
-    import numpy
-
     w = float(question.place[0])
     if not 0 < w < math.inf:
         return True
-    one, best = numpy.zeros(1, dtype=int), (0.0, w, w)
+    one, best = np.zeros(1, dtype=int), (0.0, w, w)
     for _ in range(30):
-        A, B = (x[:, 0].tolist() for x in loops.values(one, numpy.array([w]), 2))
+        A, B = (x[:, 0].tolist() for x in loops.values(one, np.array([w]), 2))
         height, step, width = _step([a + b for a, b in zip(A, B, strict=True)], B, w)
         if height > best[0]:
             best = height, w, width
@@ -58,9 +54,9 @@ def _single_to_the_top(loops, question):
                 break
             w = (w + best[1]) / 2
     height, w, width = best
-    question.see(one, numpy.array([height]), numpy.array([w]))
+    question.see(one, np.array([height]), np.array([w]))
     question.width = min(max(width, 1e-7 * w), w / 4)
-    place = numpy.array([w])
+    place = np.array([w])
     return loops.exact is None or not loops.doubtful(one, place, loops.C.value(one, place))[0]
 
 
@@ -83,41 +79,37 @@ def _step(C, B, w):
 
 def _climbed(at, w, most):
     """The largest abs(B/C) that Newton's steps find, where, and the second derivative of twice its logarithm there."""
-    import numpy
-
-    best, places, settled = -numpy.ones(len(w)), w.copy(), numpy.zeros(len(w), dtype=bool)
+    best, places, settled = -np.ones(len(w)), w.copy(), np.zeros(len(w), dtype=bool)
     for _ in range(most):
         (up, up1, up2), (down, down1, down2) = (
             (abs(x[0]) ** 2, 2 * (x[1] * x[0].conj()).real, 2 * abs(x[1]) ** 2 + 4 * (x[2] * x[0].conj()).real)
             for x in at(w)
         )
-        with numpy.errstate(divide="ignore", invalid="ignore"):
-            height = numpy.sqrt(up / down)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            height = np.sqrt(up / down)
             slope = up1 / up - down1 / down
             bend = up2 / up - (up1 / up) ** 2 - down2 / down + (down1 / down) ** 2
-            step = numpy.where(bend < 0, -slope / bend, numpy.sign(slope) * 0.1 * w)
+            step = np.where(bend < 0, -slope / bend, np.sign(slope) * 0.1 * w)
             # the next step would be about the square of this one, as a share of the peak's width
-            small = (bend < 0) & (abs(step) <= numpy.maximum(1e-5 * numpy.sqrt(-2 / bend), 4e-16 * w))
-        step = numpy.clip(numpy.nan_to_num(step), -0.3 * w, 0.3 * w)
+            small = (bend < 0) & (abs(step) <= np.maximum(1e-5 * np.sqrt(-2 / bend), 4e-16 * w))
+        step = np.clip(np.nan_to_num(step), -0.3 * w, 0.3 * w)
         better = height > best
-        best, places = numpy.where(better, height, best), numpy.where(better, w, places)
+        best, places = np.where(better, height, best), np.where(better, w, places)
         if settled.all():
             break
         # what did not rise is tried again with half the step
         settled = settled | small | (~better & (abs(w - places) <= 1e-8 * places))
-        w = numpy.where(better, w + step, (w + places) / 2)
+        w = np.where(better, w + step, (w + places) / 2)
     return best, places, bend
 
 
 def with_peaks(
-    which: numpy.ndarray, a: numpy.ndarray, b: numpy.ndarray, peaks: numpy.ndarray
-) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray]:
+    which: np.ndarray, a: np.ndarray, b: np.ndarray, peaks: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Intervals that hold the peaks of their loops, in three pieces, of which one has the peak in its middle."""
-    import numpy
-
     p = peaks[which]
-    r = numpy.minimum(numpy.minimum(p - a, b - p), (b - a) / 8)
+    r = np.minimum(np.minimum(p - a, b - p), (b - a) / 8)
     edges = (a, p - r, p + r, b)
-    which, a, b = numpy.tile(which, 3), numpy.concatenate(edges[:3]), numpy.concatenate(edges[1:])
+    which, a, b = np.tile(which, 3), np.concatenate(edges[:3]), np.concatenate(edges[1:])
     some = b > a
     return which[some], a[some], b[some]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
 import sympy
 
 from loopbook.expressions import s
@@ -54,8 +55,6 @@ def dominant_roots(parts: Quasipolynomial, count: int | None, name: str) -> list
         count: how many; None means all of a polynomial, and two where there are infinitely many.
         name: of what has the roots as its poles, for errors.
     """
-    import numpy
-
     if count is not None:
         whole("count", count)
     if len(parts) == 1:
@@ -68,7 +67,7 @@ def dominant_roots(parts: Quasipolynomial, count: int | None, name: str) -> list
     upper = [p for p in found if p.imag >= 0]
     poles = [q for p in sorted(upper, key=lambda p: (-p.real, p.imag)) for q in ([p, p.conjugate()] if p.imag else [p])]
     end = count + 1 if len(poles) > count and poles[count - 1].imag > 0 else count
-    return [complex(numpy.complex128(p)) for p in poles[:end]]
+    return [complex(np.complex128(p)) for p in poles[:end]]
 
 
 def _of_sum(sums, count, name):
@@ -87,12 +86,10 @@ def _of_sum(sums, count, name):
 
 def _of_polynomial(polynomial):
     """The roots of a polynomial, multiple ones as exact as others: it is divided into factors without such."""
-    import numpy
-
     return [
         complex(root)
         for factor, multiplicity in polynomial.sqf_list()[1]
-        for root in numpy.roots([float(c / factor.LC()) for c in factor.all_coeffs()])
+        for root in np.roots([float(c / factor.LC()) for c in factor.all_coeffs()])
         for _ in range(multiplicity)
     ]
 
@@ -132,18 +129,14 @@ def _right_of(sums, real_part):
 
 def _shifted(sums, real_part):
     """The quasipolynomials as functions of s - real_part."""
-    import numpy
-
     powers = range(sums.order + 1)
     shift = [[math.comb(n, k) * real_part ** (n - k) if n >= k else 0.0 for n in powers] for k in powers]
-    coefficients = numpy.einsum("kn,pnx->pkx", numpy.array(shift, dtype=float), sums.coefficients)
-    return Quasipolynomials(coefficients * numpy.exp(-sums.delays * real_part)[:, None], sums.delays)
+    coefficients = np.einsum("kn,pnx->pkx", np.array(shift, dtype=float), sums.coefficients)
+    return Quasipolynomials(coefficients * np.exp(-sums.delays * real_part)[:, None], sums.delays)
 
 
 def _inside(sums, left, right, most):
     """Roots with real parts from left to right, by Newton's method, from ever finer grids until `most` are found."""
-    import numpy
-
     top = float(prevailing(_shifted(sums, left).coefficients)[0])
     if not math.isfinite(top):
         raise ValueError(f"how far the poles right of {left:.6g} reach is not known: expected fewer to be wanted")
@@ -152,14 +145,14 @@ def _inside(sums, left, right, most):
         rows = refinement * (20 + int(top * float(sums.delays.max()) + 8 * sums.order))
         columns = 6 * refinement
         rows = min(rows, MOST_POINTS // columns)
-        x, y = numpy.meshgrid(numpy.linspace(left, right, columns), numpy.linspace(0, top, rows))
+        x, y = np.meshgrid(np.linspace(left, right, columns), np.linspace(0, top, rows))
         points, rest = _newton(sums, derivative, (x + 1j * y).ravel())
         inside = (points.real > left) & (points.real < right) & (points.imag > -1e-9 * top)
-        points, rest, size = points[inside], rest[inside], numpy.maximum(abs(points[inside]), 1e-9 * top)
-        there = rest <= 1e-5 * numpy.minimum(size, right - left)
+        points, rest, size = points[inside], rest[inside], np.maximum(abs(points[inside]), 1e-9 * top)
+        there = rest <= 1e-5 * np.minimum(size, right - left)
         for close, flat in ((1e-6, 1e-8), (1e-3, 1e-3)):  # rounding scatters what leads to a triple root
             distinct = []
-            for k in numpy.argsort(rest):
+            for k in np.argsort(rest):
                 p = points[k]
                 if there[k] and all(abs(p - q) > close * size[k] for q in distinct):
                     distinct.append(complex(p.real, 0.0 if abs(p.imag) < flat * size[k] else p.imag))
@@ -171,13 +164,11 @@ def _inside(sums, left, right, most):
 
 def _newton(sums, derivative, points):
     """Where Newton's method leads from many points, and how long its next step would be."""
-    import numpy
-
-    with numpy.errstate(all="ignore"):
+    with np.errstate(all="ignore"):
         for _ in range(60):
             change = _value(sums, points) / _value(derivative, points)
             points = points - change
-            points = points[numpy.isfinite(points)]
+            points = points[np.isfinite(points)]
             if not len(points) or (abs(change) <= 1e-14 * (1 + abs(change.real))).all():
                 break
         rest = abs(_value(sums, points) / _value(derivative, points))
@@ -185,21 +176,17 @@ def _newton(sums, derivative, points):
 
 
 def _value(sums, points):
-    import numpy
-
     total = 0
     for part, delay in zip(sums.coefficients[..., 0], sums.delays[:, 0], strict=True):
-        total = total + numpy.polynomial.polynomial.polyval(points, part) * numpy.exp(-delay * points)
+        total = total + np.polynomial.polynomial.polyval(points, part) * np.exp(-delay * points)
     return total
 
 
 def _multiplicity(sums, derivative, root, others, top):
     """How often a root occurs: the turns of the phase on a circle around it that leaves out the others."""
-    import numpy
-
     distances = (abs(root - q) for p in others for q in (p, p.conjugate()) if q != root)
     apart = min(distances, default=top)
-    circle = min(apart, 1e-2 * top) / 3 * numpy.exp(2j * math.pi * numpy.arange(64) / 64)
-    with numpy.errstate(all="ignore"):
+    circle = min(apart, 1e-2 * top) / 3 * np.exp(2j * math.pi * np.arange(64) / 64)
+    with np.errstate(all="ignore"):
         turns = (_value(derivative, root + circle) / _value(sums, root + circle) * circle).real.mean()
-    return max(1, round(float(turns))) if numpy.isfinite(turns) else 1
+    return max(1, round(float(turns))) if np.isfinite(turns) else 1

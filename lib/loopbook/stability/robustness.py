@@ -7,6 +7,8 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from loopbook.quasipolynomials import DelayFraction
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.stability.counting import count_roots, fraction_sums, open_loop
@@ -16,7 +18,6 @@ from loopbook.stability.loops import Loops
 from loopbook.validation import positive_numbers
 
 if TYPE_CHECKING:
-    import numpy
     from numpy.typing import ArrayLike
 
 
@@ -30,8 +31,8 @@ class DelayRatios(NamedTuple):
         regions: for each gain ratio the list of all regions, as (lower, upper).
     """
 
-    lower: numpy.ndarray | float
-    upper: numpy.ndarray | float
+    lower: np.ndarray | float
+    upper: np.ndarray | float
     regions: list
 
 
@@ -61,19 +62,17 @@ def robustness(process: object, controller: object, gain_ratio: ArrayLike) -> De
     >>> ratios.upper.round(4)    # pi over the gain ratio
     array([3.1416, 1.5708])
     """
-    import numpy
-
     gains = _gain_ratios(gain_ratio)
     A, B, delay = open_loop_without_dead_time(process, controller)
     regions = [[(low / delay, high / delay) for low, high in each] for each in _stable_delays(gains.ravel() * A, B)]
-    chosen = numpy.array([min(each, key=_distance_from_1, default=(math.nan, math.nan)) for each in regions])
+    chosen = np.array([min(each, key=_distance_from_1, default=(math.nan, math.nan)) for each in regions])
     lower, upper = (x.reshape(gains.shape) for x in chosen.T)
     return DelayRatios(lower, upper, regions) if gains.ndim else DelayRatios(float(lower), float(upper), regions[0])
 
 
 def robustness_pi_first_order(
     K: float, T: float, delay: float, Kp: float, Ti: float, gain_ratio: ArrayLike
-) -> numpy.ndarray | float:
+) -> np.ndarray | float:
     """Return the delay ratio on the limit of stability for PI control of a lag with dead time, in closed form.
 
     Arguments:
@@ -88,17 +87,15 @@ def robustness_pi_first_order(
     >>> round(robustness_pi_first_order(2, 4, 1, Kp=1, Ti=4, gain_ratio=2), 4)    # pi/2
     1.5708
     """
-    import numpy
-
     gains = _gain_ratios(gain_ratio)
     k = (float(K) * float(Kp) * gains) ** 2
     T, delay, Ti = float(T), float(delay), float(Ti)
     middle = (k - 1) * Ti
-    root = numpy.sqrt(middle**2 + 4 * k * T**2)
+    root = np.sqrt(middle**2 + 4 * k * T**2)
     # the sum under the root, or where it would cancel the quotient that is equal to it
-    sum_ = numpy.where(middle > 0, middle + root, 4 * k * T**2 / (root - numpy.minimum(middle, 0)))
-    w = numpy.sqrt(sum_ / (2 * Ti * T**2))
-    ratio = (math.pi / 2 + numpy.arctan(w * Ti) - numpy.arctan(w * T)) / w / delay
+    sum_ = np.where(middle > 0, middle + root, 4 * k * T**2 / (root - np.minimum(middle, 0)))
+    w = np.sqrt(sum_ / (2 * Ti * T**2))
+    ratio = (math.pi / 2 + np.arctan(w * Ti) - np.arctan(w * T)) / w / delay
     return ratio if ratio.ndim else float(ratio)
 
 
@@ -127,12 +124,10 @@ def _distance_from_1(region):
 
 def _stable_delays(A: Quasipolynomials, B: Quasipolynomials) -> list[list[tuple[float, float]]]:
     """For each loop with one more dead time in it, the regions of that dead time in which it is stable."""
-    import numpy
-
-    loops = Loops(A, Quasipolynomials(B.coefficients, numpy.broadcast_to(B.delays, (len(B.delays), A.count))))
-    end = loops.beyond(numpy.ones(A.count))
+    loops = Loops(A, Quasipolynomials(B.coefficients, np.broadcast_to(B.delays, (len(B.delays), A.count))))
+    end = loops.beyond(np.ones(A.count))
     # where the gain at ever higher frequencies is 1 or more, no dead time is small enough
-    decided = numpy.flatnonzero(~numpy.isnan(end))
+    decided = np.flatnonzero(~np.isnan(end))
     regions = [[] for _ in end]
     if not len(decided):
         return regions
@@ -144,11 +139,11 @@ def _stable_delays(A: Quasipolynomials, B: Quasipolynomials) -> list[list[tuple[
     which, w, A, B = size.solved(loops)
     rise = difference(*loops.values(which, w, 2))[1]
     first, period = phase_left(A, B) / w, 2 * math.pi / w
-    direction = 2 * numpy.sign(rise).astype(int)
+    direction = 2 * np.sign(rise).astype(int)
     # counted before the first crossing, because poles may lie on the axis without any dead time
-    earliest = numpy.full(len(decided), math.inf)
-    numpy.minimum.at(earliest, which, numpy.where(first > 0, first, period))
-    earliest = numpy.where(earliest < math.inf, earliest, 1.0)
+    earliest = np.full(len(decided), math.inf)
+    np.minimum.at(earliest, which, np.where(first > 0, first, period))
+    earliest = np.where(earliest < math.inf, earliest, 1.0)
     begun = count_roots(loops.B + loops.A.delayed(earliest / 2))
     for k, point in enumerate(decided):
         mine, unit = which == k, float(loops.unit[k])
@@ -164,8 +159,6 @@ def _regions(count, first, period, direction):
 
     Poles cross at the dead times first, first + period, first + 2*period ...; direction is by how many more there are.
     """
-    import numpy
-
     if not len(first):
         return [(0.0, math.inf)] if count == 0 else []
     if count < 0:
@@ -175,15 +168,14 @@ def _regions(count, first, period, direction):
     until = (count + abs(direction).sum()) / rate + 2 * period.max() if rate > 0 else 100 * period.max()
     until = min(until, 10_000 * period.max())
     turns = [
-        start + length * numpy.arange((until - start) // length + 1)
-        for start, length in zip(first, period, strict=True)
+        start + length * np.arange((until - start) // length + 1) for start, length in zip(first, period, strict=True)
     ]
-    times = numpy.concatenate(turns)
-    steps = numpy.repeat(direction, [len(each) for each in turns])
-    order = numpy.argsort(times, kind="stable")
+    times = np.concatenate(turns)
+    steps = np.repeat(direction, [len(each) for each in turns])
+    order = np.argsort(times, kind="stable")
     order = order[times[order] > 0]
     edges = [0.0, *times[order].tolist()]
-    counts = numpy.cumsum([count, *steps[order]])[:-1]
+    counts = np.cumsum([count, *steps[order]])[:-1]
     return [
         (low, high) for n, (low, high) in zip(counts, itertools.pairwise(edges), strict=True) if n == 0 and low < high
     ]

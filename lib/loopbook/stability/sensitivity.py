@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.stability.counting import count_roots
@@ -11,13 +12,10 @@ from loopbook.stability.crossings import Positive, asked, below
 from loopbook.stability.enclosures import UndecidedError, geometric
 from loopbook.stability.loops import ENOUGH, Loops, positive_beyond, square
 
-if TYPE_CHECKING:
-    import numpy
-
 MOST_TURNS = 2000.0  # of the phase by dead time, in radians, after which it is given up that has no end in sight
 
 
-def largest_sensitivities(A: Quasipolynomials, B: Quasipolynomials) -> numpy.ndarray:
+def largest_sensitivities(A: Quasipolynomials, B: Quasipolynomials) -> np.ndarray:
     """Return Ms for many loops L = A/B at once, certified as `margins` does; nan for those that are not stable.
 
     Arguments:
@@ -25,24 +23,22 @@ def largest_sensitivities(A: Quasipolynomials, B: Quasipolynomials) -> numpy.nda
     Raises:
         ValueError: where it is not decided, with the frequencies between which it is not.
 
-    >>> import numpy
-    >>> B = Quasipolynomials(numpy.array([[[0.0], [1.0]]]), numpy.zeros((1, 1)))    # s
-    >>> A = Quasipolynomials(numpy.array([[[0.3, 0.5, 2.0], [0.0] * 3]]), numpy.ones((1, 1)))    # K exp(-s)
+    >>> import numpy as np
+    >>> B = Quasipolynomials(np.array([[[0.0], [1.0]]]), np.zeros((1, 1)))    # s
+    >>> A = Quasipolynomials(np.array([[[0.3, 0.5, 2.0], [0.0] * 3]]), np.ones((1, 1)))    # K exp(-s)
     >>> largest_sensitivities(A, B).round(3).tolist()
     [1.307, 1.59, nan]
     """
-    import numpy
-
     count = max(A.count, B.count)
     A, B = (
         Quasipolynomials(
-            numpy.broadcast_to(x.coefficients, (*x.coefficients.shape[:2], count)),
-            numpy.broadcast_to(x.delays, (len(x.delays), count)),
+            np.broadcast_to(x.coefficients, (*x.coefficients.shape[:2], count)),
+            np.broadcast_to(x.delays, (len(x.delays), count)),
         )
         for x in (A, B)
     )
-    found = numpy.full(count, math.nan)
-    stable = numpy.flatnonzero(count_roots(B + A) == 0)
+    found = np.full(count, math.nan)
+    stable = np.flatnonzero(count_roots(B + A) == 0)
     for start in range(0, len(stable), AT_ONCE):
         points = stable[start : start + AT_ONCE]
         found[points] = _largest(Loops(A[points], B[points]))
@@ -53,32 +49,28 @@ AT_ONCE = 2000
 
 
 def _largest(loops):
-    import numpy
-
-    every = numpy.arange(loops.count)
+    every = np.arange(loops.count)
     peak = Positive(loops)
-    near_A, near_B = loops.near_zero(every, numpy.full(loops.count, 1e-300))
-    peak.see(every, abs(near_B.terms[0] / (near_A.terms[0] + near_B.terms[0])), numpy.zeros(loops.count))
-    peak.see(every, _at_endless_frequency(loops), numpy.full(loops.count, math.inf))
+    near_A, near_B = loops.near_zero(every, np.full(loops.count, 1e-300))
+    peak.see(every, abs(near_B.terms[0] / (near_A.terms[0] + near_B.terms[0])), np.zeros(loops.count))
+    peak.see(every, _at_endless_frequency(loops), np.full(loops.count, math.inf))
     done = below(loops, [peak])
-    end = numpy.maximum(
-        numpy.clip(numpy.nan_to_num(loops.beyond(numpy.full(loops.count, 2.0)), nan=4.0), 0, 64), 4 * done
-    )
+    end = np.maximum(np.clip(np.nan_to_num(loops.beyond(np.full(loops.count, 2.0)), nan=4.0), 0, 64), 4 * done)
     while True:
-        mine = numpy.flatnonzero(end > done)
+        mine = np.flatnonzero(end > done)
         which, a, b = geometric(done[mine], end[mine])
         inner = a >= done[mine[which]]
         asked(loops, [peak], mine[which[inner]], a[inner], b[inner])
-        done = numpy.maximum(done, end)
-        need = numpy.nan_to_num(_no_peak_beyond(loops, peak.most * (1 + ENOUGH)), nan=math.inf)
+        done = np.maximum(done, end)
+        need = np.nan_to_num(_no_peak_beyond(loops, peak.most * (1 + ENOUGH)), nan=math.inf)
         if (need <= done).all():
             return peak.most
         far_out = (need == math.inf) & ((done * loops.longest > MOST_TURNS) | (done > 1e15))
-        if (lost := numpy.flatnonzero(far_out)).size:
+        if (lost := np.flatnonzero(far_out)).size:
             raise UndecidedError(peak.name, float(done[lost[0]]), math.inf, float(loops.unit[lost[0]]))
-        with numpy.errstate(divide="ignore"):
-            window = numpy.maximum(4 * done, done + numpy.where(loops.longest > 0, 20 / loops.longest, 0))
-        end = numpy.where(need > done, numpy.minimum(need, window), done)
+        with np.errstate(divide="ignore"):
+            window = np.maximum(4 * done, done + np.where(loops.longest > 0, 20 / loops.longest, 0))
+        end = np.where(need > done, np.minimum(need, window), done)
 
 
 def _at_endless_frequency(loops):
@@ -94,14 +86,12 @@ def _at_endless_frequency(loops):
 
 def _no_peak_beyond(loops, most):
     """A frequency beyond which abs(B/C) is below `most`."""
-    import numpy
-
-    with numpy.errstate(divide="ignore", invalid="ignore"):
-        end = loops.beyond(numpy.where(most > 1, most / (most - 1), math.nan))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        end = loops.beyond(np.where(most > 1, most / (most - 1), math.nan))
     if loops.squares is None:
         return end
-    end = numpy.fmin(end, numpy.where(most >= _at_endless_frequency(loops), loops.beyond_limit(), math.nan))
+    end = np.fmin(end, np.where(most >= _at_endless_frequency(loops), loops.beyond_limit(), math.nan))
     if not loops.longest.any():
         C = square((loops.A.coefficients + loops.B.coefficients)[0])
-        end = numpy.fmin(end, positive_beyond(most**2 * C - loops.squares[1]))
+        end = np.fmin(end, positive_beyond(most**2 * C - loops.squares[1]))
     return end

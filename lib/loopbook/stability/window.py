@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from loopbook.stability.crossings import View
 from loopbook.stability.enclosures import UndecidedError, geometric, walk
@@ -12,11 +13,8 @@ from loopbook.stability.loops import Loops
 from loopbook.stability.robustness import open_loop_without_dead_time, robustness
 from loopbook.validation import whole
 
-if TYPE_CHECKING:
-    import numpy
 
-
-def shinskey_window(points: int = 25) -> tuple[numpy.ndarray, numpy.ndarray]:
+def shinskey_window(points: int = 25) -> tuple[np.ndarray, np.ndarray]:
     """Return the outline of Shinskey's window in the plane of gain ratio and delay ratio, for a robustness plot.
 
     In the window the product of the two ratios lies between 0.5 and 2, and so does their quotient. (The source prints
@@ -32,13 +30,11 @@ def shinskey_window(points: int = 25) -> tuple[numpy.ndarray, numpy.ndarray]:
     >>> gains.round(3).tolist(), delays.round(3).tolist()
     ([2.0, 1.0, 0.5, 1.0, 2.0], [1.0, 2.0, 1.0, 0.5, 1.0])
     """
-    import numpy
-
     points = whole("points", points, least=2)
-    corners = numpy.array([(1, 0), (0, 1), (-1, 0), (0, -1), (1, 0)], dtype=float)
-    along = numpy.linspace(0, 1, points)[:-1, None]
+    corners = np.array([(1, 0), (0, 1), (-1, 0), (0, -1), (1, 0)], dtype=float)
+    along = np.linspace(0, 1, points)[:-1, None]
     sides = [one + along * (other - one) for one, other in itertools.pairwise(corners)]
-    gains, delays = 2.0 ** numpy.vstack([*sides, corners[:1]]).T
+    gains, delays = 2.0 ** np.vstack([*sides, corners[:1]]).T
     return gains, delays
 
 
@@ -70,19 +66,17 @@ def robust_in_window(process: object, controller: object) -> bool:
 
 def _misses_window(A, B, delay):
     """Whether the limit of stability, a curve over the frequency, stays out of Shinskey's window."""
-    import numpy
-
     loops = Loops(A, B)
-    end, delay = loops.beyond(numpy.full(1, 2.0)), delay * float(loops.unit[0])
+    end, delay = loops.beyond(np.full(1, 2.0)), delay * float(loops.unit[0])
     if math.isnan(end[0]):  # with twice the gain there is no end of unstable poles
         return False
 
     def meets(low, high, w_low, w_high, angle, more):
         """Whether a gain ratio between low and high has a delay ratio in the window, for these phases."""
-        middle = numpy.clip(1.0, low, high)  # where the window is widest
-        shortest = numpy.maximum(1 / (2 * middle), middle / 2) * delay * w_low - angle - more
-        longest = numpy.minimum(2 / middle, 2 * middle) * delay * w_high - angle + more
-        return (high >= 0.5) & (low <= 2) & (numpy.ceil(shortest / (2 * math.pi)) <= longest / (2 * math.pi))
+        middle = np.clip(1.0, low, high)  # where the window is widest
+        shortest = np.maximum(1 / (2 * middle), middle / 2) * delay * w_low - angle - more
+        longest = np.minimum(2 / middle, 2 * middle) * delay * w_high - angle + more
+        return (high >= 0.5) & (low <= 2) & (np.ceil(shortest / (2 * math.pi)) <= longest / (2 * math.pi))
 
     misses = True
 
@@ -90,20 +84,18 @@ def _misses_window(A, B, delay):
         nonlocal misses
         view = View(loops, which, a, b)
         A, B = view.A, view.B
-        size_A, size_B, angle = A.sizes[0], B.sizes[0], numpy.angle(-A.terms[0] / B.terms[0])
-        with numpy.errstate(divide="ignore", invalid="ignore"):
+        size_A, size_B, angle = A.sizes[0], B.sizes[0], np.angle(-A.terms[0] / B.terms[0])
+        with np.errstate(divide="ignore", invalid="ignore"):
             if meets(size_B / size_A, size_B / size_A, view.c, view.c, angle, 0).any():
                 misses = False
-                return numpy.zeros(len(which), dtype=bool), False, loops.longest[which]
-            low = numpy.maximum(B.least, 0) / A.most
-            high = numpy.where(A.least > 0, B.most / numpy.maximum(A.least, 0), math.inf)
-            turn = sum(
-                numpy.where(x.least > 0, numpy.arcsin(numpy.minimum(x.spread / x.sizes[0], 1)), math.pi) for x in (A, B)
-            )
+                return np.zeros(len(which), dtype=bool), False, loops.longest[which]
+            low = np.maximum(B.least, 0) / A.most
+            high = np.where(A.least > 0, B.most / np.maximum(A.least, 0), math.inf)
+            turn = sum(np.where(x.least > 0, np.arcsin(np.minimum(x.spread / x.sizes[0], 1)), math.pi) for x in (A, B))
         return meets(low, high, a, b, angle, turn), False, loops.longest[which] + delay
 
     try:
-        walk(undecided, *geometric(numpy.minimum(loops.start, end / 2), end), "the limit of stability", loops.unit)
+        walk(undecided, *geometric(np.minimum(loops.start, end / 2), end), "the limit of stability", loops.unit)
     except UndecidedError:
         return False
     return misses

@@ -10,6 +10,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, ClassVar
 
+import numpy as np
 import sympy
 from sympy.core.function import AppliedUndef
 
@@ -20,7 +21,6 @@ from loopbook.types import Number, SampledController
 from loopbook.validation import is_number, number
 
 if TYPE_CHECKING:
-    import numpy
     from numpy.typing import ArrayLike
 
 __all__ = ["Calculation", "ControlLoop", "SplitRange"]
@@ -209,11 +209,9 @@ class SplitRange:
             self.lines[_name("actuator", name)] = float(line.a), float(line.b), sorted(map(float, openings))
         self.reads, self.writes = (signal,), tuple(actuators)
 
-    def openings(self, u: ArrayLike) -> dict[str, float | numpy.ndarray]:
+    def openings(self, u: ArrayLike) -> dict[str, float | np.ndarray]:
         """The openings for a control signal, a number or an array: ``{input: opening}``."""
-        import numpy
-
-        found = {name: numpy.clip(a * numpy.asarray(u) + b, *ends) for name, (a, b, ends) in self.lines.items()}
+        found = {name: np.clip(a * np.asarray(u) + b, *ends) for name, (a, b, ends) in self.lines.items()}
         return {name: x if x.ndim else float(x) for name, x in found.items()}
 
     def update(self, values: Mapping[str, float], time: float) -> dict[str, float]:

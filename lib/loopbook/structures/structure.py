@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from loopbook.signals import beyond_all_numbers, by_hand, noise, samples
 from loopbook.structures.blocks import ControlLoop, SplitRange
 from loopbook.types import Block, ManualStretches, Signal
 from loopbook.validation import is_number
-
-if TYPE_CHECKING:
-    import numpy
 
 __all__ = ["Structure"]
 
@@ -86,7 +84,7 @@ class Structure:
 
     def prepare(
         self,
-        times: numpy.ndarray,
+        times: np.ndarray,
         signals: Mapping[str, Signal],
         added_noise: Signal | Mapping[str, Signal],
         seed: int,

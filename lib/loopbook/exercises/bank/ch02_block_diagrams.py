@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import sympy
 
 from loopbook.exercises.authoring import (
@@ -396,11 +397,9 @@ def _(T_1, K):
 
 def _positions(m, D, K, times):
     """The step response of mass, spring and damper, relative to its final value."""
-    import numpy
-
-    root = numpy.sqrt(complex(D**2 - 4 * m * K)) or 1e-6 * D
+    root = np.sqrt(complex(D**2 - 4 * m * K)) or 1e-6 * D
     p, q = (-D + root) / (2 * m), (-D - root) / (2 * m)
-    return 1 + ((q * numpy.exp(p * times) - p * numpy.exp(q * times)) / (p - q)).real
+    return 1 + ((q * np.exp(p * times) - p * np.exp(q * times)) / (p - q)).real
 
 
 @exercise(
@@ -425,9 +424,7 @@ def damper(
         return 100 * math.exp(-math.pi * zeta / math.sqrt(1 - zeta**2)) if zeta < 1 else 0.0
 
     def error_after(D):
-        import numpy
-
-        times = numpy.linspace(end, 5 * end, 1001)
+        times = np.linspace(end, 5 * end, 1001)
         return 100 * float(abs(1 - _positions(mass, D, stiffness, times)).max())
 
     return answers(

@@ -2,6 +2,7 @@
 
 from functools import lru_cache
 
+import numpy as np
 from sympy import Min, Rational, exp, pi, symbols
 
 from loopbook.exercises.authoring import (
@@ -373,8 +374,6 @@ def _is_stable(Kp, Ti):
 @lru_cache
 def _overshoot(Kp, Ti):
     """Overshoot of the loop after a setpoint step, in percent of the step."""
-    import numpy as np
-
     from loopbook.deadtime import Loop
 
     y = Loop(_INTEGRATOR, PID(Kp, Ti)).servo.step(np.linspace(0, 25, 201))
