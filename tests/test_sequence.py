@@ -127,7 +127,7 @@ def test_a_run_does_not_change_the_chart_and_a_copy_goes_its_own_way():
     other = copy.deepcopy(two)
     other.update(dict.fromkeys(SIGNALS, 0), 1)
     assert (two.active, other.active) == (("A",), ("B",))
-    assert other.recorded == {"SFC.A": 0, "SFC.B": 1}
+    assert other.recorded == {"A": 0, "B": 1}
     assert set(other.reads) == set(SIGNALS)
     assert set(other.writes) == {"y", "n"}
 

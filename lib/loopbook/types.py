@@ -70,7 +70,7 @@ class Block(Protocol):
 
     @property
     def recorded(self) -> Mapping[str, float]:
-        """Further signals of the last sample."""
+        """Further signals of the last sample, by names of the block's own: a run calls them "tag.name"."""
 
     def update(self, values: Mapping[str, float], time: float) -> dict[str, float]:
         """Run once on the signals of a moment and return what it writes."""

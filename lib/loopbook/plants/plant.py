@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
 from typing import Any
 
@@ -117,12 +118,12 @@ class Plant(metaclass=Declaring):
 
     # -------------------------------------------------------------------------------------------- what it consists of
 
-    @property
+    @functools.cached_property
     def states(self) -> list[sympy.Expr]:
         """The signals whose derivatives the laws give; of a second derivative, the first is a state too."""
         return _states(self)
 
-    @property
+    @functools.cached_property
     def inputs(self) -> list[sympy.Expr]:
         """The signals that drive the plant, in the order of its table."""
         return _inputs(self)

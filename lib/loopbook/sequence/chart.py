@@ -144,8 +144,8 @@ class Chart:
 
     @property
     def recorded(self) -> dict[str, float]:
-        """Which steps are active, as 1 and 0, by their names in a run."""
-        return {f"{self.tag}.{step}": float(step in self.active) for step in self.steps}
+        """Which steps are active, as 1 and 0."""
+        return {step: float(step in self.active) for step in self.steps}
 
     def take_over(self, earlier: Chart) -> None:
         """Go on where the same chart, maybe with other conditions, has stopped in an earlier run.

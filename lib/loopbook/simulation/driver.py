@@ -112,7 +112,8 @@ def simulate(
     system = kind(plant, sources, times, past.system if past else None)
     if of_one_loop:
         external = {name: given[name] for name in structure.external}
-        noise, manual = _by_loop(structure, given, times, seed)
+        if blocks:
+            noise, manual = _of_the_loop(blocks[0], noise, manual, times, seed)
     else:
         external = {name: signal for name, signal in inputs.items() if name not in names}
     structure.prepare(times, external, noise, seed, manual)
@@ -122,8 +123,9 @@ def simulate(
         warnings.filterwarnings("ignore", module="scipy")  # of a step that fails, before it is tried in another way
         for time in times:
             system.advance(time)
-            for name, value in structure.sample(system.readings(time, structure.driven)).items():
-                sources[name].values.append(value)
+            if blocks:
+                for name, value in structure.sample(system.readings(time, structure.driven)).items():
+                    sources[name].values.append(value)
     record = structure.seen_by(SINGLE) if of_one_loop and blocks else structure.record
     signals = {name: np.array(values) for name, values in (system.signals(times) | record).items()}
     held = {name for name, source in sources.items() if not any(map(callable, source.values))} | set(record)
@@ -147,8 +149,9 @@ def _one_loop(plant, controller, step, acting_on, given, inputs):
         raise ValueError("the setpoint is missing: expected a signal for the controller to follow")
     if given["scheduling"] is not None and not hasattr(controller, "schedule"):
         raise ValueError(f"scheduling is given, but {controller!r} has no gain schedule")
+    feedforward = None if is_number(given["feedforward"]) and given["feedforward"] == 0 else "feedforward"
     scheduling = None if given["scheduling"] is None else "scheduling"
-    loop = ControlLoop(SINGLE, controller, "setpoint", name_of(plant.output), acting_on, "feedforward", scheduling)
+    loop = ControlLoop(SINGLE, controller, "setpoint", name_of(plant.output), acting_on, feedforward, scheduling)
     if acting_on in inputs:
         raise ValueError(f"{acting_on} is given, but it is the controller that sets it")
     if step is not None and step != controller.step:
@@ -156,15 +159,11 @@ def _one_loop(plant, controller, step, acting_on, given, inputs):
     return [loop]
 
 
-def _by_loop(structure, given, times, seed):
-    """Noise and manual mode of the one loop, if there is one, as for a list of blocks."""
-    noise = {}
-    for loop in structure.loops.values():
-        noise[loop.measurement] = given["noise"]
-        if is_number(given["noise"]):  # a run that goes on has noise of its own
-            number = round(times[0] / (times[1] - times[0]))
-            noise[loop.measurement] = normal_noise(times, given["noise"], (seed, number))
-    return noise or 0, {tag: given["manual"] for tag in structure.loops}
+def _of_the_loop(loop, noise, manual, times, seed):
+    """Noise and manual mode of the one loop, as for a list of blocks."""
+    if is_number(noise) and noise != 0:  # a run that goes on has noise of its own
+        noise = normal_noise(times, noise, (seed, round(times[0] / (times[1] - times[0]))))
+    return 0 if is_number(noise) else {loop.measurement: noise}, {loop.tag: manual}
 
 
 def _refuse_what_belongs_to_one_loop(structure, given, manipulated, inputs):

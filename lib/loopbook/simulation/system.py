@@ -146,13 +146,16 @@ class System:
         raise beyond_all_numbers(", ".join(self.names), end)
 
     def _limited(self, state):
+        if not self.limited:
+            return state
         return [min(max(x, low), high) for x, (low, high) in zip(state, self.limits, strict=True)]
 
     def _look(self, start, end):
         """Take what drives the states in a stretch of time in which no signal jumps."""
         middle = (start + end) / 2
         self.inside = [(self._around(name, middle - delay), delay) for name, delay in self.driving]
-        self.held = None if any(callable(x) for x, _ in self.inside) else [x for x, _ in self.inside]
+        values = [x for x, _ in self.inside]
+        self.held = None if any(map(callable, values)) else values
         self.failure = None
 
     def _around(self, name, moment):

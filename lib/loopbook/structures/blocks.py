@@ -1,7 +1,7 @@
 """The blocks of a control structure: a control loop, a calculation, a split range.
 
 A block has a tag, the names that it reads and writes, a step (None: every sample) and `update(values, time)`, which
-returns {name: number}; `recorded` holds further signals of the last sample.
+returns {name: number}; `recorded` holds further signals of the last sample, by names of the block's own.
 """
 
 from __future__ import annotations
@@ -102,18 +102,22 @@ class ControlLoop:
         manual = self.in_manual(values)
         if self.inner is not None:  # do not integrate beyond what the inner loop can do
             self.controller.blocked = self.inner.stuck()
-        setpoint = self.setpoint if is_number(self.setpoint) else values[self.setpoint]
-        more = {name: values[x] for name in ("feedforward", "scheduling") if (x := getattr(self, name))}
-        u = self.controller.update(setpoint, values[self.measurement], manual=manual, **more)
-        recorded = {"setpoint": setpoint, "measurement": values[self.measurement]}
-        if hasattr(self.controller, "terms"):
-            recorded["ramped"], recorded["filtered"] = self.controller.setpoint, self.controller.filtered
-            recorded["u_p"], recorded["u_i"], recorded["u_d"] = self.controller.terms
+        controller, measurement = self.controller, values[self.measurement]
+        setpoint = values[self.setpoint] if isinstance(self.setpoint, str) else self.setpoint
+        more = {}
+        if self.feedforward:
+            more["feedforward"] = values[self.feedforward]
         if self.scheduling:
-            recorded["scheduling"] = values[self.scheduling]
-        for name in getattr(self.controller, "recorded", ()):
-            recorded[name] = getattr(self.controller, name)
-        self.recorded = {f"{self.tag}.{name}": value for name, value in recorded.items()}
+            more["scheduling"] = values[self.scheduling]
+        u = controller.update(setpoint, measurement, manual=manual, **more)
+        self.recorded = recorded = {"setpoint": setpoint, "measurement": measurement}
+        if hasattr(controller, "terms"):
+            recorded["ramped"], recorded["filtered"] = controller.setpoint, controller.filtered
+            recorded["u_p"], recorded["u_i"], recorded["u_d"] = controller.terms
+        if self.scheduling:
+            recorded["scheduling"] = more["scheduling"]
+        for name in getattr(controller, "recorded", ()):
+            recorded[name] = getattr(controller, name)
         return {self.output: u}
 
     def stuck(self) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import math
 from collections.abc import Iterable, Mapping
 
 import numpy as np
@@ -29,7 +30,6 @@ class Structure:
     loops: dict[str, ControlLoop]
     driven: list[str]
     external: list[str]
-    record: dict[str, list[float]]
 
     def __init__(self, blocks: Iterable[Block], of_plant: Iterable[str], inputs: Iterable[str]):
         self.blocks, self.of_plant, self.inputs = copy.deepcopy(list(blocks)), list(of_plant), list(inputs)
@@ -98,12 +98,15 @@ class Structure:
         if missing:
             reader = next(block.tag for block in self.blocks if missing[0] in block.reads)
             raise ValueError(f"{reader} reads {missing[0]}, which nobody gives: expected {missing[0]}=...")
-        self.times, self.interval, self.record, self.before_last = times, times[1] - times[0], {}, None
+        self.times, self.interval, self.before_last = times, times[1] - times[0], None
         self.k, self.k0, self.values = 0, 0, {}
         self.beginning = {}  # the loops that begin as after manual mode, with their last outputs as far as known
         self.signals = {name: samples(name, signals[name], times) for name in self.external}
         self.noise, self.by_hand = self._noise(added_noise, seed), self._by_hand(manual)
         self.every = {block.tag: self._every(block, self.interval) for block in self.blocks}
+        written = dict.fromkeys(name for block in self.blocks for name in block.writes)
+        self.seen = {name: [] for name in (*written, *self.external) if name not in self.driven}
+        self.rows = {block.tag: [] for block in self.blocks}  # what each block records, a dictionary for each sample
 
     def _noise(self, added, seed):
         if is_number(added) and added == 0:
@@ -134,9 +137,9 @@ class Structure:
             raise ValueError(f"{block.tag} runs every {block.step:g}: expected a whole multiple of the step {step:g}")
         return every
 
-    def continue_after(self, earlier: object, last: Mapping[str, float]) -> None:
+    def continue_after(self, earlier: Structure, last: Mapping[str, float]) -> None:
         """Take over the memory of an earlier run's blocks; without one, loops begin from the last control signals."""
-        before = earlier.before_last if isinstance(earlier, Structure) else {}
+        before = earlier.before_last or {}
         for block in self.blocks:
             old = before.get(block.tag)
             if isinstance(block, ControlLoop):
@@ -149,7 +152,8 @@ class Structure:
             elif old is not None and hasattr(block, "take_over"):
                 block.take_over(old)
         if before:
-            self.k0, self.values = round(earlier.phase * earlier.interval / self.interval), dict(earlier.values)
+            self.k0 = round(earlier.phase * earlier.interval / self.interval)
+            self.values = {name: earlier.values[name] for block in earlier.blocks for name in block.writes}
 
     def seen_by(self, tag: str) -> dict[str, list[float]]:
         """The record of one loop, its signals by their own names, "setpoint" and the like."""
@@ -166,8 +170,9 @@ class Structure:
         time = self.times[k]
         if self.k == len(self.times):  # a run that goes on from here begins with this sample, maybe with other settings
             self.before_last = {block.tag: copy.deepcopy(block) for block in self.blocks}
-        measured = {name: readings[name] + values[k] for name, values in self.noise.items()}
-        values = readings | measured | {name: signal[k] for name, signal in self.signals.items()}
+        for name, added in self.noise.items():
+            readings[name] += added[k]
+        values = readings | {name: signal[k] for name, signal in self.signals.items()}
         for tag, output in self.by_hand.items():
             self.loops[tag].operator = output[k]
         for block in self.blocks:
@@ -177,13 +182,21 @@ class Structure:
                 values |= self._checked(block, block.update(values, time), time)
             else:
                 values |= {name: self.values[name] for name in block.writes}
-            for name, value in block.recorded.items():
-                self.record.setdefault(name, []).append(value)
-        self.values = {name: values[name] for block in self.blocks for name in block.writes}
-        for name in (*self.values, *self.external):
-            if name not in self.driven:
-                self.record.setdefault(name, []).append(values[name])
+            self.rows[block.tag].append(block.recorded)
+        self.values = values
+        for name, seen in self.seen.items():
+            seen.append(values[name])
         return {name: values[name] for name in self.driven}
+
+    @property
+    def record(self) -> dict[str, list[float]]:
+        """The signals of the run so far, but for the plant's: what the blocks record, write, and read from outside."""
+        recorded = {
+            f"{tag}.{name}": [row[name] for row in rows]
+            for tag, rows in self.rows.items()
+            for name in (rows[0] if rows else ())
+        }
+        return recorded | self.seen
 
     def _begin(self, loop, values):
         """Let a loop that is new on a running plant begin without a bump."""
@@ -196,8 +209,10 @@ class Structure:
     @staticmethod
     def _checked(block, written, time):
         for name, value in written.items():
-            if not is_number(value) and not isinstance(value, bool):
-                if isinstance(value, float):
+            if type(value) is not float or not math.isfinite(value):
+                if isinstance(value, float) and not math.isfinite(value):
                     raise beyond_all_numbers(name, time)
-                raise ValueError(f"{block.tag} gives {name} = {value!r} at t = {time:g}: expected a finite number")
-        return {name: float(value) for name, value in written.items()}
+                if not is_number(value) and not isinstance(value, bool):
+                    raise ValueError(f"{block.tag} gives {name} = {value!r} at t = {time:g}: expected a finite number")
+                written = written | {name: float(value)}
+        return written
