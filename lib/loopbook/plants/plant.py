@@ -374,7 +374,7 @@ def _states(plant):
 
 
 def _inputs(plant):
-    inside = _signals_in(sympy.Tuple(*plant.model))
+    inside = {x.func(t) for equation in plant.model for x in equation.atoms(AppliedUndef)}
     followed = {*_states(plant), *plant.measured}
     return [x for x in plant.quantities if x in inside and x not in followed]
 
