@@ -546,15 +546,15 @@ def test_the_approximate_boundary_is_exact_where_the_lag_is_cancelled():
 @pytest.mark.parametrize(
     ("question", "message"),
     [
-        (lambda: boundary_pi(MODEL, 0), "Ti is 0: expected a positive"),
+        (lambda: boundary_pi(MODEL, 0), "values of Ti contain 0: expected positive"),
         (lambda: boundary_pi(MODEL, [1, math.inf]), "values of Ti contain inf"),
-        (lambda: boundary_pid(MODEL, 1, -1), "Td is -1"),
+        (lambda: boundary_pid(MODEL, 1, -1), "values of Td contain -1"),
         (lambda: boundary_pid(MODEL, [1, 2], [1, 2, 3]), "arrays that fit"),
         (lambda: boundary_pid((s + 1) / (s + 2), 1, 1), "improper"),
         (lambda: boundary_pi_approximate(0, 1, 1), "T is 0"),
         (lambda: robustness(LAG, PID(1), 1), "one dead time"),
         (lambda: robustness(LAG * (1 + DELAY), PID(1), 1), "one dead time"),
-        (lambda: robustness(MODEL, PID(1), [1, 0]), "gain ratio is 0"),
+        (lambda: robustness(MODEL, PID(1), [1, 0]), "gain ratios contain 0"),
         (lambda: robustness(MODEL, PID(1), "a"), "gain ratios are 'a'"),
         (lambda: shinskey_window(1), "points is 1"),
     ],
