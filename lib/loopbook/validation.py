@@ -231,4 +231,6 @@ def did_you_mean(name: object, known: Iterable[object], otherwise: str | None = 
     alike = {one.casefold(): one for one in names}
     if close := difflib.get_close_matches(str(name).casefold(), alike, n=1):
         return f"did you mean {alike[close[0]]!r}?"
-    return f"expected one of {', '.join(names) or 'none'}" if otherwise is None else otherwise
+    if otherwise is not None:
+        return otherwise
+    return f"expected one of {', '.join(names)}" if names else "there are none"
