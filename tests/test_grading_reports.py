@@ -328,9 +328,9 @@ def test_what_is_no_text_is_refused():
 
 
 def test_a_module_of_the_folder_that_registers_nothing_is_named(tmp_path, monkeypatch):
-    (tmp_path / "blackboard.py").write_text("def grades(results):\n    return ''\n")
+    (tmp_path / "lectern_of_nobody.py").write_text("def grades(results):\n    return ''\n")
     monkeypatch.setattr(reports.outputs, "__path__", [*reports.outputs.__path__, str(tmp_path)])
-    with pytest.raises(GradingError, match="blackboard registers no output: expected a function with @output"):
+    with pytest.raises(GradingError, match="lectern_of_nobody registers no output: expected a function with @output"):
         registered()
 
 
