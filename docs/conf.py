@@ -28,6 +28,18 @@ myst_enable_extensions = ["attrs_block", "attrs_inline", "colon_fence", "dollarm
 myst_heading_anchors = 4
 myst_dmath_double_inline = True
 
+# the library's docstrings
+default_role = "py:obj"
+smartquotes_action = "D"  # dashes, but no quotes: "PI" in a docstring is what one types
+add_module_names = False
+autodoc_member_order = "bysource"
+autodoc_preserve_defaults = True
+autodoc_inherit_docstrings = False
+autodoc_typehints = "none"
+napoleon_numpy_docstring = False
+napoleon_use_rtype = False
+napoleon_custom_sections = [(name, "params_style") for name in ("Arguments", "Attributes", "Attributes of the class")]
+
 # the look
 html_theme = "furo"
 html_title = "loopbook"

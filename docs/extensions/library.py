@@ -1,8 +1,12 @@
-"""The library's reference from its docstrings: the directive `library` documents a module, with all that it offers.
+"""The library's reference: the directive `library` documents a module, with all that it offers.
 
-A package is documented by its parts, under the names that a reader imports: `loopbook.tuning.simc` and not the module
-within. Docstrings are plain text with code in back-quotes; what reStructuredText would read into a formula such as
-`T**2*s**2` is taken out of its sight.
+Autodoc and napoleon read the docstrings, which are reStructuredText: code in double back-quotes, names of the library
+in single ones. What is here is what they cannot do:
+
+- a package is documented under the names that a reader imports, `loopbook.tuning.simc` and not the module within, part
+  by part in the order of the source;
+- a name in single back-quotes leads to its place, whatever module it is of;
+- a function has links to the chapters that use it, and its source stands among arguments and results.
 """
 
 import functools
@@ -19,12 +23,7 @@ from sphinx.pycode import ModuleAnalyzer
 from sphinx.util.docutils import SphinxDirective
 
 ROOT = Path(__file__).parents[2]
-_DOCTEST = re.compile(r"^( *)>>>.*(?:\n(?! *$).*)*", re.MULTILINE)
-_LITERAL = re.compile(r"::\n\n(?:(?: {4}.*)?\n)*(?: {4}.*)?")
-_RETURNS = re.compile(r"^Returns:\n((?: {4}.*(?:\n|$))+)", re.MULTILINE)
-_BLOCK = "\f"  # stands before what is kept of whole lines, so that a paragraph ends there
-_CODE = re.compile(r"``[^`]+``|`[^`]+`")
-_SOURCE = re.compile(r"\n(Source): (.*(?:\n(?! *$|\f).*)*)\n*")
+_SOURCE = re.compile(r"^Source: (.*(?:\n(?! *$).*)*)", re.MULTILINE)
 
 
 def modules():
@@ -97,37 +96,6 @@ def public():
     return found
 
 
-def as_rst(text, module="loopbook"):
-    """Return a docstring of the library as reStructuredText that shows just what the docstring says.
-
-    >>> as_rst("It is T**2*s, as `simc` has it; `x` is |y|.")
-    'It is T\\\\*\\\\*2\\\\*s, as :py:obj:`simc <loopbook.tuning.simc>` has it; ``x`` is \\\\|y\\\\|.'
-    """
-    kept = []
-
-    def keep(match):
-        is_code = match[0].startswith("`")
-        kept.append(_code(match[0], module) if is_code else match[0])
-        return f"{'' if is_code else _BLOCK}\0{len(kept) - 1}\0"
-
-    for pattern in (_DOCTEST, _LITERAL, _CODE):
-        text = pattern.sub(keep, text)
-    text = re.sub(r"[\\*|]|_(?!\w)", r"\\\g<0>", text)
-    text = _RETURNS.sub(lambda match: f"\n:Returns:\n{match[1]}\n", text)  # napoleon would look for a type in it
-    text = _SOURCE.sub(lambda match: f"\n\n:{match[1]}: " + re.sub(r"\n\s*", "\n    ", match[2]) + "\n\n", text)
-    return re.sub(f"{_BLOCK}?\0(\\d+)\0", lambda match: kept[int(match[1])], text)
-
-
-def _code(quoted, module):
-    code = " ".join(quoted.strip("`").split())
-    name, _, rest = code.removeprefix("loopbook.").partition(".")
-    own = f"{module}.{name}"
-    target = own if own in public().values() else public().get(name)
-    if not target or not re.fullmatch(r"\w+(\.\w+)*", code):
-        return f"``{code}``"
-    return f":py:obj:`{code} <{target}{'.' + rest if rest else ''}>`"
-
-
 @functools.cache
 def chapters_with():
     """Return the chapters that use a function or a class: {its address in the reference: [chapter, ...]}."""
@@ -143,16 +111,26 @@ def chapters_with():
 
 
 def mend(app, what, name, obj, options, lines):
-    """Make a docstring readable for Sphinx before napoleon reads its sections."""
-    if name.startswith("loopbook"):
-        module = name if what == "module" else re.match(r"loopbook(\.[a-z_]\w*)*(?=\.)", name)[0]
-        text = as_rst("\n".join(lines), module)
-        pages = [chapter for chapter in chapters_with().get(name, ()) if f"chapters/{chapter}" in app.env.found_docs]
-        if pages:
-            links = ", ".join(f":doc:`{page.partition('_')[0].lstrip('0')} </chapters/{page}>`" for page in pages)
-            example = re.search(r"^>>>|\Z", text, re.MULTILINE).start()
-            text = f"{text[:example]}\n\n:In {'chapters' if pages[1:] else 'chapter'}: {links}\n\n{text[example:]}"
-        lines[:] = text.split("\n")
+    """Make a field of the source, and one with the chapters that use a function or a class."""
+    if not name.startswith("loopbook"):
+        return
+    text = _SOURCE.sub(lambda match: "\n:Source: " + re.sub(r"\n\s*", "\n    ", match[1]) + "\n", "\n".join(lines))
+    pages = [chapter for chapter in chapters_with().get(name, ()) if f"chapters/{chapter}" in app.env.found_docs]
+    if pages:
+        links = ", ".join(f":doc:`{page.partition('_')[0].lstrip('0')} </chapters/{page}>`" for page in pages)
+        example = re.search(r"^>>>|\Z", text, re.MULTILINE).start()
+        text = f"{text[:example]}\n\n:In {'chapters' if pages[1:] else 'chapter'}: {links}\n\n{text[example:]}"
+    lines[:] = text.split("\n")
+
+
+def find(app, env, node, shown):
+    """Return a link to what a back-quoted name of the library means, of whatever module it is; None for others."""
+    head, _, rest = node["reftarget"].removeprefix("loopbook.").partition(".")
+    if node.get("reftype") != "obj" or head not in public():
+        return None
+    address = f"{public()[head]}{'.' + rest if rest else ''}"
+    domain = env.domains["py"]
+    return domain.resolve_xref(env, node["refdoc"], app.builder, "obj", address, node, shown)
 
 
 class Library(SphinxDirective):
@@ -168,7 +146,7 @@ class Library(SphinxDirective):
         name = self.arguments[0]
         module = importlib.import_module(name)
         self.env.note_dependency(module.__file__)
-        lines = [f".. py:module:: {name}", "", as_rst(inspect.getdoc(module), name), ""]
+        lines = [f".. py:module:: {name}", "", *inspect.getdoc(module).split("\n"), ""]
         homes = {}
         for key in offered(module):
             homes.setdefault(part_of(module, key), []).append(key)
@@ -188,7 +166,7 @@ class Library(SphinxDirective):
         part = importlib.import_module(home)
         self.env.note_dependency(part.__file__)
         title = title.removeprefix("loopbook.") or home.rpartition(".")[2].replace("_", " ")
-        return [title, "-" * len(title), "", as_rst(inspect.getdoc(part), home), ""]
+        return [title, "-" * len(title), "", *inspect.getdoc(part).split("\n"), ""]
 
 
 def listed(name, parts):
@@ -209,7 +187,7 @@ def documented(module, name):
     value, address = getattr(module, name), f"{module.__name__}.{name}"
     if inspect.isclass(value):
         if value.__name__ != name:  # another name for a class that has its place elsewhere
-            return [f".. py:class:: {address}", "", f"   The same as {_code(value.__name__, module.__name__)}.", ""]
+            return [f".. py:class:: {address}", "", f"   The same as `{value.__name__}`.", ""]
         lines = [f".. auto{'exception' if issubclass(value, Exception) else 'class'}:: {address}", "   :members:"]
         bases = [base for base in value.__bases__ if base.__module__.startswith("loopbook")]
         return [*lines, *(["   :show-inheritance:"] if bases else []), ""]
@@ -217,7 +195,7 @@ def documented(module, name):
         return [f".. autofunction:: {address}", ""]
     home = part_of(module, name)
     comment = ModuleAnalyzer.for_module(home).find_attr_docs().get(("", name), [])
-    return [f".. py:data:: {address}", "", *(f"   {line}" for line in as_rst("\n".join(comment), home).split("\n")), ""]
+    return [f".. py:data:: {address}", "", *(f"   {line}" for line in comment), ""]
 
 
 class Modules(SphinxDirective):
@@ -247,21 +225,7 @@ def setup(app):
     app.setup_extension("sphinx.ext.autodoc")
     app.setup_extension("sphinx.ext.napoleon")
     app.connect("autodoc-process-docstring", mend, priority=400)
-    app.connect("config-inited", configure)
+    app.connect("missing-reference", find)
     app.add_directive("library", Library)
     app.add_directive("modules", Modules)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
-
-
-def configure(app, config):
-    """Choose how autodoc and napoleon write, for the docstrings of this library."""
-    config.autodoc_member_order = "bysource"
-    config.autodoc_preserve_defaults = True
-    config.autodoc_inherit_docstrings = False
-    config.napoleon_numpy_docstring = False
-    config.napoleon_use_rtype = False
-    sections = ("Arguments", "Attributes", "Attributes of the class")
-    config.napoleon_custom_sections = [(name, "params_style") for name in sections]
-    config.autodoc_typehints = "none"
-    config.smartquotes_action = "D"  # dashes, but no quotes: "PI" in a docstring is what one types
-    config.add_module_names = False

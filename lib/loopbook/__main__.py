@@ -1,4 +1,4 @@
-"""The command line: `loopbook`, or `python -m loopbook`, lists the commands."""
+"""The command line: `loopbook`, or ``python -m loopbook``, lists the commands."""
 
 import os
 from pathlib import Path

@@ -228,7 +228,7 @@ def _heaviside(x, at_zero=None):
 
 
 def _bounded(function):
-    """The function for arguments below 10**60: an exponential of an exponential can fill the memory."""
+    """The function for arguments below ``10**60``: an exponential of an exponential can fill the memory."""
 
     def bounded(x):
         if abs(x) > 1e60:

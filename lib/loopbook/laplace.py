@@ -144,7 +144,7 @@ def _transform_product(blocks):
 
 
 def _transform_impulse(signal):
-    """An impulse is what picks one value out of an integral; here, of the signal beside it times exp(-s*t)."""
+    """An impulse is what picks one value out of an integral; here, of the signal beside it times ``exp(-s*t)``."""
     impulse = next(iter(signal.atoms(sympy.DiracDelta)))
     beside = signal / impulse
     if beside.has(sympy.DiracDelta) or len(impulse.args) > 1:
@@ -190,7 +190,7 @@ def _image(function):
 
 @functools.cache
 def _power_integral(n):
-    """The integral of t**n * exp(-sigma*t) from 0 to oo, as a function of sigma, worked out for sigma > 0."""
+    """The integral of ``t**n * exp(-sigma*t)`` from 0 to oo, as a function of sigma, worked out for sigma > 0."""
     sigma, time = sympy.Dummy("sigma", positive=True), sympy.Dummy("t", positive=True)
     if (n + 1).is_nonpositive:
         raise ValueError(f"cannot transform t**({n}): its defining integral has no finite value")
@@ -202,7 +202,7 @@ def _power_integral(n):
 
 
 def by_delay(F: Number) -> dict[sympy.Expr, sympy.Expr]:
-    """Split F(s) into its dead times: return {delay: rational part}, F being the sum of part * exp(-delay*s).
+    """Split F(s) into its dead times: return {delay: rational part}, F being the sum of ``part * exp(-delay*s)``.
 
     Raises ValueError where F is no such sum: with a dead time in the denominator, a response has no end of terms.
 
@@ -229,7 +229,8 @@ def by_delay(F: Number) -> dict[sympy.Expr, sympy.Expr]:
 
 
 def without_delays(F: sympy.Expr) -> tuple[sympy.Expr, dict[sympy.Symbol, sympy.Expr]]:
-    """Return F(s) with a letter for each exp(-delay*s), which makes it rational, and the dictionary {letter: delay}.
+    """Return F(s) with a letter for each ``exp(-delay*s)``, which makes it rational, and the dictionary {letter:
+    delay}.
 
     Raises ValueError where F is not a rational function of s and dead times.
     """
@@ -307,7 +308,7 @@ def inverse(F: Number) -> sympy.Expr:
 
 
 def _inverse_fraction(fraction):
-    """The time function of one partial fraction: numerator/(linear or quadratic in s)**n, or a power of s."""
+    """The time function of one partial fraction: ``numerator/(linear or quadratic in s)**n``, or a power of s."""
     numerator, denominator = sympy.factor(fraction).as_numer_denom()
     constant, denominator = denominator.as_independent(s, as_Add=False)
     numerator /= constant
@@ -328,7 +329,7 @@ def _inverse_fraction(fraction):
 
 
 def _residue(rest, p, n):
-    """The residue of rest/(s - p)**n * exp(s*t) at the pole p, without the factor exp(p*t)."""
+    """The residue of ``rest/(s - p)**n * exp(s*t)`` at the pole p, without the factor ``exp(p*t)``."""
     taylor = (rest.diff(s, n - 1 - k).subs(s, p) / sympy.factorial(n - 1 - k) for k in range(n))
     return sympy.Add(*(c * t**k / sympy.factorial(k) for k, c in enumerate(taylor)))
 
@@ -353,7 +354,7 @@ def _inverse_quadratic(numerator, base, n):
 
 
 def _inverse_numerically(numerator, base, n):
-    """numerator/base**n for a base of third or higher degree, at its roots."""
+    """``numerator/base**n`` for a base of third or higher degree, at its roots."""
     found, f = base.nroots(n=30, maxsteps=200), sympy.S.Zero
     for p in found:
         others = sympy.Mul(base.LC(), *(s - q for q in found if q != p))
@@ -385,7 +386,7 @@ def solve_ode(
         initial: the initial values as in SymPy's dsolve, ``{y(0): 4, y(t).diff(t).subs(t, 0): 1}``. What is not
             given stays in the answer as it is.
     Returns:
-        y(t) for one equation; a dictionary {y(t): expression} for a list.
+        y(t) for one equation; a dictionary ``{y(t): expression}`` for a list.
     Raises:
         ValueError: if the equations are not linear, or not as many as the unknown functions, or if an initial value
             is given that they do not ask for.

@@ -3,7 +3,7 @@
 A stored notebook is part of the proof: its outputs are compared cell by cell at each test, and its changes are read
 in a diff. So nothing is stored that differs from run to run or from machine to machine, or with what stands before a
 cell: no times, no execution counts, no widget models, no paths, no addresses. A cell keeps its id for life. The library
-never imports this module; `python -m loopbook execute` does.
+never imports this module; ``python -m loopbook execute`` does.
 """
 
 import ast
@@ -194,7 +194,7 @@ def _first_line(text: str) -> str:
 
 
 def normalised(notebook: NotebookNode) -> NotebookNode:
-    """The one form in which a notebook is stored; `normalised(normalised(n)) == normalised(n)`.
+    """The one form in which a notebook is stored; ``normalised(normalised(n)) == normalised(n)``.
 
     A cell keeps its id; one without an id, or with the id of a cell before it, gets one from its content. Empty cells
     and execution counts are dropped, neighbouring pieces of printed text joined. Widget views are dropped, because
@@ -289,7 +289,7 @@ def unfit(notebook: NotebookNode) -> list[str]:
 
 
 def labelled(notebook: NotebookNode) -> Iterator[tuple[str, NotebookNode]]:
-    """The cells with what a reader finds them by, their first line; the seventh code cell is `cell [7]` besides.
+    """The cells with what a reader finds them by, their first line; the seventh code cell is ``cell [7]`` besides.
 
     That is the number beside it after the notebook has been run.
     """

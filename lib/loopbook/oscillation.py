@@ -18,10 +18,10 @@ __all__ = ["Oscillation", "oscillation", "oscillation_of_pole"]
 
 @dataclass(frozen=True)
 class Oscillation:
-    """A denominator of second order, T**2*s**2 + 2*zeta*T*s + 1. It oscillates for zeta between -1 and 1.
+    """A denominator of second order, ``T**2*s**2 + 2*zeta*T*s + 1``. It oscillates for zeta between -1 and 1.
 
     Arguments:
-        T: natural period over 2*pi, positive, in the unit of time.
+        T: natural period over ``2*pi``, positive, in the unit of time.
         zeta: relative damping.
     Raises:
         ValueError: for a T that is not positive, or a zeta that is not real; and by the properties for a system that

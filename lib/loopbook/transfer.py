@@ -39,7 +39,7 @@ __all__ = [
 
 
 def dead_time(delay: Number) -> sympy.Expr:
-    """Return the transfer function of a pure dead time, exp(-delay*s). (Haugen, equation 6.32)
+    """Return the transfer function of a pure dead time, ``exp(-delay*s)``. (Haugen, equation 6.32)
 
     Raises ValueError for a negative delay.
 
@@ -59,7 +59,7 @@ def integrator(K: Number, delay: Number = 0) -> sympy.Expr:
 
 
 def first_order(K: Number, T: Number, delay: Number = 0) -> sympy.Expr:
-    """Return K/(T*s + 1), a lag (time-constant system) with gain K and dead time `delay`. (Haugen, equation 6.13)
+    """Return ``K/(T*s + 1)``, a lag (time-constant system) with gain K and dead time `delay`. (Haugen, equation 6.13)
 
     Arguments:
         K: gain, in units of the output for one unit of the input.
@@ -74,7 +74,7 @@ def first_order(K: Number, T: Number, delay: Number = 0) -> sympy.Expr:
 
 
 def second_order(K: Number, T1: Number, T2: Number, delay: Number = 0) -> sympy.Expr:
-    """Return K/((T1*s + 1)*(T2*s + 1)), two lags in series. (Haugen, equation 6.33)
+    """Return ``K/((T1*s + 1)*(T2*s + 1))``, two lags in series. (Haugen, equation 6.33)
 
     >>> second_order(1, 3, 2)
     1/((2*s + 1)*(3*s + 1))
@@ -83,7 +83,7 @@ def second_order(K: Number, T1: Number, T2: Number, delay: Number = 0) -> sympy.
 
 
 def integrator_with_lag(K: Number, T: Number, delay: Number = 0) -> sympy.Expr:
-    """Return K/(s*(T*s + 1)), an integrator behind a lag.
+    """Return ``K/(s*(T*s + 1))``, an integrator behind a lag.
 
     >>> integrator_with_lag(1, 4)
     1/(s*(4*s + 1))
@@ -92,7 +92,7 @@ def integrator_with_lag(K: Number, T: Number, delay: Number = 0) -> sympy.Expr:
 
 
 def double_integrator(K: Number, delay: Number = 0) -> sympy.Expr:
-    """Return K/s**2.
+    """Return ``K/s**2``.
 
     >>> double_integrator(3)
     3/s**2
@@ -242,7 +242,7 @@ def feedback(forward: TransferFunctionLike, back: TransferFunctionLike = 1, sign
         forward, back: transfer functions.
         sign: -1 for negative feedback, the rule in control; +1 for positive.
     Raises:
-        ValueError: for another sign, or where the loop has no solution because 1 - sign*forward*back vanishes.
+        ValueError: for another sign, or where the loop has no solution because ``1 - sign*forward*back`` vanishes.
 
     >>> feedback(2 / s)
     2/(s + 2)
@@ -362,7 +362,8 @@ def initial_gain(H: TransferFunctionLike) -> sympy.Expr:
 
 
 def initial_slope(H: TransferFunctionLike) -> sympy.Expr:
-    """Return the slope of the unit step response right after the step: the limit of s*(H(s) - H(oo)) for infinite `s`.
+    """Return the slope of the unit step response right after the step: the limit of ``s*(H(s) - H(oo))`` for infinite
+    `s`.
 
     It is zero before a dead time is over, and where H has two poles more than zeros.
 
@@ -391,7 +392,7 @@ def zero_pole_gain(H: TransferFunctionLike) -> sympy.Expr:
 
 
 def zero_pole_form(H: TransferFunctionLike) -> sympy.Expr:
-    """Return H as K*(s - z1)*(s - z2).../((s - p1)*(s - p2)...). (Haugen, equation 5.12)
+    """Return H as ``K*(s - z1)*(s - z2).../((s - p1)*(s - p2)...)``. (Haugen, equation 5.12)
 
     Complex pairs of roots stay together, and so do two roots of which letters leave open whether they are real.
 
@@ -402,7 +403,7 @@ def zero_pole_form(H: TransferFunctionLike) -> sympy.Expr:
 
 
 def time_constant_form(H: TransferFunctionLike) -> sympy.Expr:
-    """Return H as K*(T1*s + 1).../((T2*s + 1)...), with factors `s` for poles and zeros at the origin.
+    """Return H as ``K*(T1*s + 1).../((T2*s + 1)...)``, with factors `s` for poles and zeros at the origin.
 
     Factors are quadratic for complex pairs of roots, and where letters leave open whether the roots are real.
 

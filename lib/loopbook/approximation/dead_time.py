@@ -12,12 +12,12 @@ from loopbook.validation import whole
 
 
 def taylor(H: TransferFunctionLike, order: int = 1, inverted: bool = False) -> sympy.Expr:
-    """Return H with each dead time replaced by its Taylor polynomial: exp(-delay*s) becomes 1 - delay*s + ...
+    """Return H with each dead time replaced by its Taylor polynomial: ``exp(-delay*s)`` becomes ``1 - delay*s + ...``
 
     Arguments:
         H: transfer function; dead times may stand anywhere.
         order: degree of the polynomial, at least 1.
-        inverted: whether to expand exp(delay*s) below the fraction bar instead: 1/(1 + delay*s + ...).
+        inverted: whether to expand ``exp(delay*s)`` below the fraction bar instead: ``1/(1 + delay*s + ...)``.
     Raises:
         ValueError: for another order, or what is no function of `s` and dead times.
     Source: Skogestad, slide on the half rule; Seborg et al., before equation (12-11).
@@ -36,7 +36,7 @@ def taylor(H: TransferFunctionLike, order: int = 1, inverted: bool = False) -> s
 def pade(H: TransferFunctionLike, order: int = 1) -> sympy.Expr:
     """Return H with each dead time replaced by its Pade approximation, both polynomials of the same degree.
 
-    It agrees with the Taylor series of the dead time up to the power 2*order of `s`.
+    It agrees with the Taylor series of the dead time up to the power ``2*order`` of `s`.
 
     Arguments:
         H: transfer function; dead times may stand anywhere.
@@ -60,8 +60,8 @@ def pade(H: TransferFunctionLike, order: int = 1) -> sympy.Expr:
 def repeated_pade(H: TransferFunctionLike, order: int) -> sympy.Expr:
     """Return H with each dead time cut into equal parts and each part replaced by its first-order Pade approximation.
 
-    It is exp(-delay*s) = ((1 - delay*s/(2*n))/(1 + delay*s/(2*n)))**n, which agrees with the Taylor series up to the
-    second power of `s` only, whatever n, but keeps all its zeros and poles real.
+    It is ``exp(-delay*s) = ((1 - delay*s/(2*n))/(1 + delay*s/(2*n)))**n``, which agrees with the Taylor series up to
+    the second power of `s` only, whatever n, but keeps all its zeros and poles real.
 
     Arguments:
         H: transfer function; dead times may stand anywhere.

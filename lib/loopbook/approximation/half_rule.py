@@ -91,7 +91,7 @@ def half_rule(
 
 
 def zero_rule(T0: Number, lag: Number, Tc: Number) -> Step:
-    """Return what Skogestad's rules T1, T1a, T1b, T2 and T3 put in place of (T0*s + 1)/(lag*s + 1).
+    """Return what Skogestad's rules T1, T1a, T1b, T2 and T3 put in place of ``(T0*s + 1)/(lag*s + 1)``.
 
     Arguments:
         T0: time constant of the zero, positive.

@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class SOPDT:
-    """A second-order-plus-dead-time model, K*exp(-delay*s)/((T1*s + 1)*(T2*s + 1)).
+    """A second-order-plus-dead-time model, ``K*exp(-delay*s)/((T1*s + 1)*(T2*s + 1))``.
 
     It is of first order, FOPDT, where T2 = 0. An infinite lag is an integrator, and K is then the slope:
-    K*exp(-delay*s)/(s*(T2*s + 1)) for T1 = oo, and K*exp(-delay*s)/s**2 for two of them.
+    ``K*exp(-delay*s)/(s*(T2*s + 1))`` for T1 = oo, and ``K*exp(-delay*s)/s**2`` for two of them.
 
     Arguments:
         K: gain, in units of the measurement for one unit of the control signal; of an integrator, that per time.
@@ -112,7 +112,8 @@ def model_of(H: TransferFunctionLike, largest_first: Sequence[Number] | None = N
 
 
 class TimeConstants(NamedTuple):
-    """The gain, and the time constants T of the factors T*s + 1 below and above the fraction bar; oo for `s` itself."""
+    """The gain, and the time constants T of the factors ``T*s + 1`` below and above the fraction bar; oo for `s`
+    itself."""
 
     K: sympy.Expr
     lags: list[sympy.Expr]

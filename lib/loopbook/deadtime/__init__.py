@@ -1,7 +1,7 @@
 """Linear systems with exact dead time: algebra, responses in time, frequency response.
 
-A system is a fraction of sums of polynomials in `s`, each with a dead time exp(-delay*s). Everything is computed from
-that, without a Pade approximation or a time step: `System` for block diagrams, `Loop` for a process under control.
+A system is a fraction of sums of polynomials in `s`, each with a dead time ``exp(-delay*s)``. Everything is computed
+from that, without a Pade approximation or a time step: `System` for block diagrams, `Loop` for a process under control.
 """
 
 from loopbook.deadtime.loop import Loop, LoopResponse

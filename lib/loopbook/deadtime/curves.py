@@ -40,7 +40,8 @@ class FrequencyCurve(NamedTuple):
     Attributes:
         omega: frequencies in radians for one unit of time, an array.
         values: H(j omega), complex.
-        phase: in degrees, continuous. Far below all corners, K*s**n has n times 90 degrees, less 180 if K is negative.
+        phase: in degrees, continuous. Far below all corners, ``K*s**n`` has n times 90 degrees, less 180 if K is
+            negative.
     """
 
     omega: np.ndarray

@@ -91,8 +91,8 @@ class Response:
     def quadrature(self, longest: float = math.inf) -> tuple[np.ndarray, np.ndarray]:
         """Return times and weights, two arrays with a row for each interval, for integrals over the response.
 
-        The sum of weight * response(time)**2 is the integral of the square, exact for these polynomials. It goes to the
-        last of the edges, which lies beyond the end that was asked for only where a segment begins there.
+        The sum of ``weight * response(time)**2`` is the integral of the square, exact for these polynomials. It goes to
+        the last of the edges, which lies beyond the end that was asked for only where a segment begins there.
 
         Arguments:
             longest: no interval is longer; by itself each is a segment. For integrals of what is not smooth, as of the

@@ -108,7 +108,7 @@ def settled_response(
 
 
 def _extreme(response: Response, sign: int) -> tuple[float, float]:
-    """The largest value of sign*response and when it is reached."""
+    """The largest value of ``sign*response`` and when it is reached."""
     rows = sign * response.coefficients
     bounds = rows[:, 0] + abs(rows[:, 1:]).sum(axis=1)
     points = np.r_[-1.0, np.polynomial.legendre.leggauss(rows.shape[1])[0], 1.0]

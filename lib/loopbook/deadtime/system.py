@@ -395,12 +395,12 @@ def _round_time(value: float) -> float:
 
 
 def closed_loop(G: object, H: object = 1) -> System:
-    """Return the closed loop G/(1 + G*H), with G in the forward path and H in the path back, as a `System`.
+    """Return the closed loop ``G/(1 + G*H)``, with G in the forward path and H in the path back, as a `System`.
 
     Arguments:
         G, H: systems, controllers, expressions in `s`, or systems of python-control. Each may be improper.
     Raises:
-        ValueError: for an algebraic loop that has no solution because 1 + G*H is zero at infinite frequency, or as
+        ValueError: for an algebraic loop that has no solution because ``1 + G*H`` is zero at infinite frequency, or as
             `System`.
 
     >>> closed_loop(2 * sympy.exp(-s) / s, sympy.Rational(1, 2))

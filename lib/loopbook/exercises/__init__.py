@@ -28,7 +28,7 @@ class ExerciseError(Exception):
 
 
 def exercise(number: str, student: str | None = None) -> Question:
-    """Return an exercise as a question: shown, it is the statement; `.check(...)` responds to answers.
+    """Return an exercise as a question: shown, it is the statement; ``.check(...)`` responds to answers.
 
     Arguments:
         number: chapter and place in it, as "10.3".

@@ -93,7 +93,7 @@ class Question:
         return _PLACE.sub(fill, text)
 
     def check(self, /, *alone: object, **given: object) -> Response:
-        """Respond to answers, whatever they are: `check(Kp=2, Ti="3 min")`; a single quantity needs no name.
+        """Respond to answers, whatever they are: ``check(Kp=2, Ti="3 min")``; a single quantity needs no name.
 
         Raises nothing: what cannot be judged is said in the response.
         """

@@ -15,7 +15,7 @@ class TooSlow(BaseException):
 
 
 def limited(seconds: float, function: Callable[..., _Found], *arguments: Any) -> _Found:
-    """Return `function(*arguments)`, which may take that many seconds.
+    """Return ``function(*arguments)``, which may take that many seconds.
 
     The computation runs in a thread of its own, which is stopped at its next step in Python when the time is over.
 

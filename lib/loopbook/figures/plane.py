@@ -99,7 +99,7 @@ def plane_plot(
         log: logarithmic axes.
         equal: one unit is as long on both axes, as for complex numbers; then both axes are drawn at zero.
     Returns:
-        A `PlanePlot`, which a notebook shows as the value of a cell; `.area`, `.points` and `.text` add to it.
+        A `PlanePlot`, which a notebook shows as the value of a cell; ``.area``, ``.points`` and ``.text`` add to it.
     Raises:
         ValueError: for no curve, or unequal lengths.
 

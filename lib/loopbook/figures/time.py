@@ -203,7 +203,7 @@ def time_plot(
         before: how much time to show ahead of t = 0, with every signal at zero, so that a step at t = 0 is seen.
         low: make it less high, and flat the legend under a given `ylim`, where a chapter has many figures.
     Returns:
-        A `TimePlot`, which a notebook shows as the value of a cell; `.mark` and `.level` add to it.
+        A `TimePlot`, which a notebook shows as the value of a cell; ``.mark`` and ``.level`` add to it.
     Raises:
         ValueError: for times that do not increase, a signal that is neither expression nor array or has another length
             than the times, an unknown role, a label used twice, or an expression with letters besides `t`.

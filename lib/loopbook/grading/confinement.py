@@ -1,7 +1,7 @@
 """What a process gives up before it runs a submission. Linux alone; bubblewrap has made the outer walls already.
 
-The walls are the kernel's: namespaces (`man 7 user_namespaces`), resource limits, capabilities, and a filter of system
-calls by libseccomp. Each step that fails raises OSError, and nothing is run.
+The walls are the kernel's: namespaces (``man 7 user_namespaces``), resource limits, capabilities, and a filter of
+system calls by libseccomp. Each step that fails raises OSError, and nothing is run.
 """
 
 from __future__ import annotations

@@ -133,7 +133,8 @@ def grade(
         students: the roster.
         submissions: folder or zip file.
         folder: where results and reports go.
-        place: where submissions are graded, `here(workers)` or `cluster.connected(address)`; `here(1)` if not given.
+        place: where submissions are graded, ``here(workers)`` or ``cluster.connected(address)``; ``here(1)`` if not
+            given.
         only: ids of the students to grade; all if empty.
         regrade: grade again what has a result.
         jailed: without a jail, submissions run with the rights of whoever grades, and every output says so.

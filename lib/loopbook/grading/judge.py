@@ -1,6 +1,6 @@
 """The judge: a process of its own, which holds the assignment and its keys, and sees answers as plain data only.
 
-`python -m loopbook.grading.judge` is that process; `Judge` talks with it in lines of JSON. What takes too long, or
+``python -m loopbook.grading.judge`` is that process; `Judge` talks with it in lines of JSON. What takes too long, or
 takes the process down, is not judged, and the judge begins again behind it.
 """
 

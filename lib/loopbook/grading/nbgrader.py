@@ -31,7 +31,7 @@ _HOW_TO_ANSWER = "Assign your answers to the names that are listed, in the place
 
 
 def source(assignment: Assignment, student_id: str | None = None) -> NotebookNode:
-    """Return the source notebook of an assignment, for `nbgrader generate_assignment`.
+    """Return the source notebook of an assignment, for ``nbgrader generate_assignment``.
 
     An exercise is a locked statement, a cell with the solution between nbgrader's marks, and a locked cell whose
     hidden tests judge and end in the points. What cannot be written into a cell is graded by hand: designs, whose

@@ -7,10 +7,10 @@ name in small letters without spaces and signs, the number of the student, the n
 name. From an anonymous assignment it is `anon_Ab3dE_456_heater.ipynb` (lib/content_zipper.rb in
 https://github.com/instructure/canvas-lms).
 
-Moodle names the folder of a download `Jane Doe_12345_assignsubmission_file`, in older versions with one more underscore
-at the end, and without folders the file `Jane Doe_12345_assignsubmission_file_heater.ipynb`. The number is that of the
-grading worksheet; an underscore in the name becomes a space, and of an anonymous submission the name is Participant
-(mod/assign/classes/downloader.php in https://github.com/moodle/moodle).
+Moodle names the folder of a download ``Jane Doe_12345_assignsubmission_file``, in older versions with one more
+underscore at the end, and without folders the file ``Jane Doe_12345_assignsubmission_file_heater.ipynb``. The number is
+that of the grading worksheet; an underscore in the name becomes a space, and of an anonymous submission the name is
+Participant (mod/assign/classes/downloader.php in https://github.com/moodle/moodle).
 
 What a student chooses, the file's own name, stands last in all of these and cannot stand for somebody else.
 """

@@ -1,7 +1,7 @@
 """How well a record tells each parameter of a simple model: standard errors, and intervals by the profile likelihood.
 
 The sum of squares of a model with two lags is symmetric in them, so that it is not regular in the lags where they are
-equal; it is in their sum and in how equal they are, `4*T1*T2/(T1 + T2)**2`, a number from 0 to 1. (Both count from
+equal; it is in their sum and in how equal they are, ``4*T1*T2/(T1 + T2)**2``, a number from 0 to 1. (Both count from
 the shortest lag that is looked for.) A profile is the
 least sum of squares for each value of one parameter, whatever the others are then.
 """

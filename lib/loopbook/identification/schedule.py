@@ -22,7 +22,7 @@ class GainSchedule:
     """A table of PID settings over a scheduling variable GS, and the way between its rows.
 
     "constant": the settings of a row hold from its GS up to the next row's, because those of lower GS are the safe ones
-    (as in a tank with flow GS, whose gain and dead time are largest at low flow); with `safe="high"` it is the other
+    (as in a tank with flow GS, whose gain and dead time are largest at low flow); with ``safe="high"`` it is the other
     way round. With a hysteresis h, GS must pass a border by h/2 before the settings change, so that noise does not make
     them chatter. "linear": each setting lies on the straight line between two rows. Beyond the ends of the table the
     first and the last row hold.
@@ -110,8 +110,8 @@ class GainSchedule:
 class ScheduledController(Controller):
     """The practical PID controller with settings from a gain schedule. (Haugen, Figure 10.13)
 
-    `simulate(..., scheduling=signal)` tells it the value of GS at each sample. The settings change without a bump for a
-    loop at rest; while there is a control error, the proportional term steps with its gain.
+    ``simulate(..., scheduling=signal)`` tells it the value of GS at each sample. The settings change without a bump for
+    a loop at rest; while there is a control error, the proportional term steps with its gain.
 
     Arguments:
         schedule: a `GainSchedule`; the controller has a copy of its own, without the values before.

@@ -94,8 +94,8 @@ def first_order_from_step(
 def integrator_from_step(times: ArrayLike, y: ArrayLike, U: float = 1, at: float = 0, part: float = 0.5) -> SOPDT:
     """Return the gain and the dead time of an integrator with dead time, read off a step response.
 
-    The response ends on a straight line, its asymptote. Its slope is K*U, and it leaves the initial level one dead time
-    after the step; of an integrator with a lag, one dead time and one lag after it.
+    The response ends on a straight line, its asymptote. Its slope is ``K*U``, and it leaves the initial level one dead
+    time after the step; of an integrator with a lag, one dead time and one lag after it.
 
     Arguments:
         times, y, U, at: as for `first_order_from_step`; the record ends on the asymptote.

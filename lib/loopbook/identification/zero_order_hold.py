@@ -135,7 +135,7 @@ def responses(
         delay: the dead time.
         times, u, hold: as for `DrivenChain`.
     Returns:
-        An array with a value for each sample, and one with a column for each way to move without that input: one for
+        An array with a value for each sample, and one with a column for each way to move without that input, one for
         each state that is 1 at the first sample, the last one for a constant input of 1.
 
     >>> import numpy as np

@@ -27,8 +27,8 @@ __all__ = ["pi_first_order", "symbolic_pi_first_order"]
 def symbolic_pi_first_order(mode: str = "servo") -> sympy.Expr:
     """Return the integral of the squared error of a PI loop around a lag with dead time, as an expression.
 
-    The process is K/(T*s + 1)*exp(-delay*s), the controller Kp*(1 + 1/(Ti*s)), the setpoint or the load a unit step. It
-    is derived by `residue_method`, and valid for stable loops only.
+    The process is ``K/(T*s + 1)*exp(-delay*s)``, the controller ``Kp*(1 + 1/(Ti*s))``, the setpoint or the load a unit
+    step. It is derived by `residue_method`, and valid for stable loops only.
 
     Arguments:
         mode: "servo" or "regulator".
@@ -60,8 +60,8 @@ def pi_first_order(
 ) -> float | np.ndarray:
     """Return the integral of the squared error of a PI loop around a lag with dead time, by its closed formula.
 
-    The process is K/(T*s + 1)*exp(-delay*s), the controller Kp*(1 + 1/(Ti*s)), the setpoint or the load a unit step.
-    With the zeros of Delta in the right half-plane and on the axis, sigma and j omega,
+    The process is ``K/(T*s + 1)*exp(-delay*s)``, the controller ``Kp*(1 + 1/(Ti*s))``, the setpoint or the load a unit
+    step. With the zeros of Delta in the right half-plane and on the axis, sigma and j omega,
 
         ISE = Ti/(2 r) (P tan(x)/omega - Q y/sigma),
         x = (omega delay + atan(omega T) + atan(1/(omega Ti)))/2,  y = (1 - L(sigma))/(1 + L(sigma)),
@@ -78,7 +78,7 @@ def pi_first_order(
         unstable: the value to return for unstable settings, as ``math.inf``; without it they are an error.
         Each number may be an array; arrays are broadcast.
     Returns:
-        A float, or an array: the setpoint's unit squared, or the load's with K squared, times the unit of time.
+        A float, or an array, in the setpoint's unit squared, or the load's with K squared, times the unit of time.
     Raises:
         UnstableLoopError: for settings that are not stable, unless `unstable` is given.
         ValueError: for times that are not positive and finite, or another mode.

@@ -33,7 +33,7 @@ def ise(
         mode: "servo" for a step of the setpoint, "regulator" for one of the load at the process input.
         method: as for `integral_of_square`.
     Returns:
-        A float: the output's unit squared, times the unit of time.
+        A float, in the output's unit squared, times the unit of time.
     Raises:
         UnstableLoopError: if the loop is not stable. A pole that controller and process cancel is not seen in the error
             after a step of the setpoint: if it is unstable, the loop is, and the caller has to know.

@@ -25,7 +25,8 @@ class ManyModesError(Exception):
 
 @dataclass(frozen=True)
 class Modes:
-    """The sum of the real parts of weight*residue*exp(pole*t), the weight 2 for one of a pair and 1 for a real pole.
+    """The sum of the real parts of ``weight*residue*exp(pole*t)``, the weight 2 for one of a pair and 1 for a real
+    pole.
 
     Attributes:
         poles, residues: arrays, of each pair the upper pole.
@@ -149,7 +150,7 @@ class Modes:
 
 @dataclass(frozen=True)
 class _Grid:
-    """Times, and the real and imaginary parts of exp(pole*t) there, which are the same for each chunk."""
+    """Times, and the real and imaginary parts of ``exp(pole*t)`` there, which are the same for each chunk."""
 
     times: np.ndarray
     waves: np.ndarray

@@ -26,7 +26,7 @@ class Zero(NamedTuple):
 
 
 class OneDelay:
-    """The sum A(s) + C(s) exp(-delay*s), and Delta = A(s) A(-s) - C(s) C(-s), a polynomial in s^2.
+    """The sum ``A(s) + C(s) exp(-delay*s)``, and Delta = A(s) A(-s) - C(s) C(-s), a polynomial in s^2.
 
     Arguments:
         A, C: whole coefficients, lowest power first.

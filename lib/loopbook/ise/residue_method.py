@@ -17,9 +17,10 @@ __all__ = ["ResidueMethod", "residue_method"]
 class ResidueMethod:
     """The residue method for one dead time, step by step: what `residue_method` returns.
 
-    E(s) = (B + D z)/(A + C z) with z = exp(-delay*s). Where A + C z = 0, z is -A/C, and E(-s) is the rational function
-    G(s) = (A B* - C D*)/(A A* - C C*), a star meaning -s for s. So E(s) (E(-s) - G(s)) has no poles there, and the
-    integral of e(t)^2 is minus the sum of the residues of E(s) G(s) at the zeros of Delta = A A* - C C*.
+    ``E(s) = (B + D z)/(A + C z)`` with ``z = exp(-delay*s)``. Where ``A + C z = 0``, z is -A/C, and E(-s) is the
+    rational function ``G(s) = (A B* - C D*)/(A A* - C C*)``, a star meaning -s for s. So ``E(s) (E(-s) - G(s))`` has no
+    poles there, and the integral of e(t)^2 is minus the sum of the residues of ``E(s) G(s)`` at the zeros of
+    ``Delta = A A* - C C*``.
 
     Attributes:
         A, B, C, D: polynomials, expressions in `s`.
@@ -50,7 +51,7 @@ class ResidueMethod:
 
     @property
     def integrand(self) -> sympy.Expr:
-        """E(s) G(s)."""
+        """``E(s) G(s)``."""
         return self.E * self.G
 
     @property
@@ -119,8 +120,8 @@ class ResidueMethod:
 def both_residues(A: Any, B: Any, C: Any, D: Any, B_mirrored: Any, D_mirrored: Any, z: Any) -> Any:
     """Delta' times (A + C z) times the sum of the residues of E G at p and -p, all functions taken at p.
 
-    At -p take that of E (E* - G) instead, which is (B + D z)(A* D* - B* C*)/((A* z + C*) Delta): the same but for its
-    sign, and its denominator has no zero there if the loop is stable. They are expressions or arrays.
+    At -p take that of ``E (E* - G)`` instead, which is ``(B + D z)(A* D* - B* C*)/((A* z + C*) Delta)``: the same but
+    for its sign, and its denominator has no zero there if the loop is stable. They are expressions or arrays.
     """
     return (B * B_mirrored + D * D_mirrored) * (A - C * z) + 2 * (A * D * B_mirrored * z - B * C * D_mirrored)
 

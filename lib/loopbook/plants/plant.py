@@ -465,7 +465,7 @@ def _solved_one_by_one(laws, highest):
 
 
 def _latex(symbol):
-    """A symbol as LaTeX, with everything behind its first underscore in the index: u_{valve,in}."""
+    """A symbol as LaTeX, with everything behind its first underscore in the index: ``u_{valve,in}``."""
     name, _, index = name_of(symbol).partition("_")
     return f"{name}_{{{index.replace('_', ',')}}}" if "_" in index else sympy.latex(_symbol(symbol))
 

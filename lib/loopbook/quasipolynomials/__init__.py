@@ -1,4 +1,5 @@
-"""Sums of polynomials in `s`, each with a dead time exp(-delay*s): exact ones, their fractions, and many in numbers.
+"""Sums of polynomials in `s`, each with a dead time ``exp(-delay*s)``: exact ones, their fractions, and many in
+numbers.
 
 In mathematics such a sum is a quasipolynomial. The characteristic equation of a loop with dead time is one, and has
 infinitely many roots.

@@ -19,7 +19,7 @@ FEW = 20_000  # values, up to which they are computed in one piece
 
 
 class Quasipolynomials:
-    """Sums of p(s)*exp(-delay*s) of one shape, one for each point of a map, a boundary or a family.
+    """Sums of ``p(s)*exp(-delay*s)`` of one shape, one for each point of a map, a boundary or a family.
 
     Arguments:
         coefficients: array [part, power, point], the lowest power first.
@@ -107,7 +107,7 @@ class Quasipolynomials:
         return Quasipolynomials(_derivative(self.coefficients) - self.delays[:, None] * self.coefficients, self.delays)
 
     def slower(self, unit: np.ndarray, power: int | None = None) -> Quasipolynomials:
-        """The quasipolynomials divided by unit**power, with time in a unit in which the frequency `unit` is 1."""
+        """The quasipolynomials divided by ``unit**power``, with time in a unit in which the frequency `unit` is 1."""
         powers = np.arange(self.order + 1) - (self.order if power is None else power)
         return Quasipolynomials(self.coefficients * unit ** powers[:, None].astype(float), self.delays * unit)
 
@@ -156,7 +156,7 @@ class Quasipolynomials:
 
     @functools.cached_property
     def _expansion(self):
-        """Array [part, k, power, point]: polynomials that, times exp(-delay*s), are the derivatives over k!."""
+        """Array [part, k, power, point]: polynomials that, times ``exp(-delay*s)``, are the derivatives over k!."""
         return np.array(self._expanded(self.coefficients, -self.delays, DEGREE)).swapaxes(0, 1)
 
     @functools.cached_property

@@ -1,7 +1,8 @@
 """Exact fractions of sums of polynomials with dead times, and their algebra.
 
-A sum of polynomials in `s`, each with a dead time exp(-delay*s), is a dictionary {delay: coefficients}: the delay a
-fraction, the coefficients whole numbers, the lowest power first. 5*s + 2 + 3*exp(-s/2) is {0: (2, 5), 1/2: (3,)}.
+A sum of polynomials in `s`, each with a dead time ``exp(-delay*s)``, is a dictionary {delay: coefficients}: the delay a
+fraction, the coefficients whole numbers, the lowest power first. ``5*s + 2 + 3*exp(-s/2)`` is
+``{0: (2, 5), 1/2: (3,)}``.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ MOST_MULTIPLES = 60  # of a common base, up to which delays are powers of one le
 
 
 def plus(one: Quasipolynomial, other: Quasipolynomial, factor: int = 1) -> Quasipolynomial:
-    """Return one + factor*other."""
+    """Return ``one + factor*other``."""
     total = dict(one)
     for delay, part in other.items():
         mine = total.get(delay, ())
@@ -56,7 +57,7 @@ def plus(one: Quasipolynomial, other: Quasipolynomial, factor: int = 1) -> Quasi
 
 
 def times(one: Quasipolynomial, other: Quasipolynomial) -> Quasipolynomial:
-    """Return one*other."""
+    """Return ``one*other``."""
     total: Quasipolynomial = {}
     for delay, p in one.items():
         for later, q in other.items():
@@ -70,7 +71,7 @@ def times(one: Quasipolynomial, other: Quasipolynomial) -> Quasipolynomial:
 
 
 def taylor_coefficient(parts: Quasipolynomial, k: int) -> Fraction:
-    """Return the coefficient of s**k in the Taylor series of a quasipolynomial at zero, exact.
+    """Return the coefficient of ``s**k`` in the Taylor series of a quasipolynomial at zero, exact.
 
     >>> taylor_coefficient({Fraction(0): (1,), Fraction(2): (-1,)}, 1)    # of 1 - exp(-2*s)
     Fraction(2, 1)
@@ -486,7 +487,7 @@ def _read(e: sympy.Expr) -> tuple[Quasipolynomial, Quasipolynomial]:
 
 
 def _read_dead_time(e: sympy.Expr) -> tuple[Quasipolynomial, Quasipolynomial]:
-    """exp(a - delay*s), as a shift of `s` makes it, with the number exp(a) as a factor."""
+    """``exp(a - delay*s)``, as a shift of `s` makes it, with the number exp(a) as a factor."""
     constant, rest = sympy.expand(e.exp).as_independent(s, as_Add=True)
     delay = sympy.expand(-rest / s)
     if delay.has(s) or not constant.is_number:

@@ -19,8 +19,8 @@ def normal_form(H: object) -> tuple[dict[sympy.Expr, sympy.Poly], dict[sympy.Exp
     Common factors are cancelled, also those that contain dead times, if these are multiples of one, up to 60 times it.
 
     Arguments:
-        H: expression in `s`, rational in `s` and in dead times exp(-delay*s), which may stand anywhere. Other letters
-            are allowed, in delays too. Or a `System`.
+        H: expression in `s`, rational in `s` and in dead times ``exp(-delay*s)``, which may stand anywhere. Other
+            letters are allowed, in delays too. Or a `System`.
     Returns:
         Two dictionaries ``{delay: polynomial}``, the polynomials as SymPy ``Poly`` in `s`. The denominator has a part
         without dead time.
@@ -58,7 +58,7 @@ def normal_form(H: object) -> tuple[dict[sympy.Expr, sympy.Poly], dict[sympy.Exp
 
 
 def _split(exponential):
-    """exp(a - delay*s), as a shift of `s` makes it, with the number exp(a) to 30 digits as a factor."""
+    """``exp(a - delay*s)``, as a shift of `s` makes it, with the number exp(a) to 30 digits as a factor."""
     number, rest = sympy.expand(exponential.exp).as_independent(s, as_Add=True)
     return _rational(sympy.exp(number)) * sympy.exp(rest) if number.is_number and rest.has(s) else exponential
 

@@ -16,7 +16,7 @@ is activated, runs while it is active, and keeps its value when the step becomes
 at activation and store their values are the standard's qualifier P1 with assignments; a chart then lists only what a
 step changes, as the book's action boxes do.
 
-Why no state-machine library: in `transitions` and `python-statemachine` a machine waits for events, a transition has
+Why no state-machine library: in `transitions` and ``python-statemachine`` a machine waits for events, a transition has
 one source and one target (several sources are alternatives), and parallel states must be nested; Petri net libraries
 such as SNAKES have every convergence, but clear one transition at a time, without scan and priority.
 """
@@ -238,7 +238,7 @@ def scan_by_scan(
         scans: how many; needed only where no input is a list.
         inputs: a list for each input, one value a scan; True and False for TRUE and FALSE. A single value holds always.
     Returns:
-        A `Scans`, which a notebook shows as a table: time, inputs, active steps and outputs after the scan.
+        A `Scans`, which a notebook shows as a table of time, inputs, active steps and outputs after the scan.
     Raises:
         ValueError: for an input that the chart does not have or that is missing, lists of different lengths, what is no
             number, or a step that is not positive.

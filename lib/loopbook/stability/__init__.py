@@ -1,11 +1,11 @@
 """Stability of a feedback loop with dead time, without approximation.
 
-A closed loop with dead times has infinitely many poles, the roots of a sum of polynomials in `s` with exp(-delay*s).
-The argument principle counts those in the right half-plane. All searches walk up the imaginary axis and believe what
-they see only on intervals on which an expansion with a bound of its rest proves it. Intervals about which nothing is
-proved are divided, and computed with more digits; what is then still undecided is an error that says where. No search
-takes more than 60,000 intervals, and no count more than 400,000. Limits of gain and dead time are confirmed by the
-number of poles on both sides of them; a phase margin, too, where that number is decided.
+A closed loop with dead times has infinitely many poles, the roots of a sum of polynomials in `s` with
+``exp(-delay*s)``. The argument principle counts those in the right half-plane. All searches walk up the imaginary axis
+and believe what they see only on intervals on which an expansion with a bound of its rest proves it. Intervals about
+which nothing is proved are divided, and computed with more digits; what is then still undecided is an error that says
+where. No search takes more than 60,000 intervals, and no count more than 400,000. Limits of gain and dead time are
+confirmed by the number of poles on both sides of them; a phase margin, too, where that number is decided.
 """
 
 from loopbook.stability.counting import (

@@ -288,7 +288,7 @@ def imaginary(A: Sequence, B: Sequence) -> tuple:
 
 
 def difference(A: Sequence, B: Sequence) -> tuple:
-    """abs(B)**2 - abs(A)**2 and its first two derivatives."""
+    """``abs(B)**2 - abs(A)**2`` and its first two derivatives."""
     (A0, A1, A2), (B0, B1, B2) = A, B
     size_A, size_B = abs(A0), abs(B0)
     first = 2 * (B1 * B0.conjugate() - A1 * A0.conjugate()).real

@@ -1,4 +1,4 @@
-"""The highest powers of a quasipolynomial, which alone count at endless frequency: 1 + c1*exp(-delay1*s) + ...
+"""The highest powers of a quasipolynomial, which alone count at endless frequency: ``1 + c1*exp(-delay1*s) + ...``
 
 Where that has roots in the right half-plane, so has the sum, an endless row of them. Where its size has a lower bound
 in all of the right half-plane, the sum has none beyond a certain frequency.
@@ -20,7 +20,7 @@ class Endless(NamedTuple):
     """What the highest powers are in the right half-plane: a lower bound of the size, and the phase on the boundary.
 
     `least` is zero on the limit, negative where there are roots in the right half-plane. Without `angles` the phase is
-    that of the undelayed term, within a quarter turn; otherwise it is known at those of exp(-unit*s).
+    that of the undelayed term, within a quarter turn; otherwise it is known at those of ``exp(-unit*s)``.
     """
 
     least: float
@@ -52,7 +52,7 @@ def common_unit(delays: list[float]) -> tuple[float, list[int]] | None:
 
 
 def at_endless_frequency(later: np.ndarray, delays: np.ndarray) -> Endless:
-    """What 1 + sum(later*exp(-delays*s)) is in the right half-plane.
+    """What ``1 + sum(later*exp(-delays*s))`` is in the right half-plane.
 
     Raises ValueError where that is not decided: where the sizes add up to 1 or more and the dead times are no multiples
     of one.

@@ -180,7 +180,7 @@ def _DEGREES():
 
 
 class Exact:
-    """A quasipolynomial with more digits: ``{delay: coefficients}`` over divisor*unit**order.
+    """A quasipolynomial with more digits: ``{delay: coefficients}`` over ``divisor*unit**order``.
 
     Time is measured so that the frequency `unit` is 1.
     """
@@ -190,9 +190,9 @@ class Exact:
 
     @functools.cached_property
     def _matrices(self):
-        """For each part its dead time and the polynomials that, times exp(-delay*s), are the derivatives over k!.
+        """For each part its dead time and the polynomials that, times ``exp(-delay*s)``, are the derivatives over k!.
 
-        The numbers are whole multiples of 2**-BITS.
+        The numbers are whole multiples of ``2**-BITS``.
         """
         from fractions import Fraction
 
@@ -214,7 +214,8 @@ class Exact:
         return found
 
     def taylor(self, w: np.ndarray, degree: int = DEGREE) -> np.ndarray:
-        """The coefficients of the powers of h in the quasipolynomial at j (w + h)*unit: array [power, frequency]."""
+        """The coefficients of the powers of h in the quasipolynomial at ``j (w + h)*unit``: array [power,
+        frequency]."""
         columns = [self._column(frequency, degree) for frequency in w.tolist()]
         return np.array(columns, dtype=complex).T.reshape(degree + 1, len(columns))
 
@@ -376,7 +377,7 @@ def origin(sums: Quasipolynomials, degree: int, exact: Exact | None = None) -> t
 
 
 def exact_coefficient(exact: Exact, n: int) -> float:
-    """The coefficient of s**n in the power series of an exact quasipolynomial at zero, time in its unit."""
+    """The coefficient of ``s**n`` in the power series of an exact quasipolynomial at zero, time in its unit."""
     if not n:
         total = sum(part[0] for part in exact.parts.values())
         return total / exact.divisor / exact.unit**exact.order

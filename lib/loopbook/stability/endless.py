@@ -42,7 +42,7 @@ def _remembered(method):
 
 
 class Far:
-    """The highest powers of a single loop: b + k a, sums of exp(-delay*s) with `delays` (the first one zero).
+    """The highest powers of a single loop: b + k a, sums of ``exp(-delay*s)`` with `delays` (the first one zero).
 
     Arguments:
         loops: a single loop, with more digits.
@@ -81,7 +81,7 @@ class Far:
 
     @property
     def is_one_delayed(self) -> bool:
-        """Whether L is a/b*exp(-delay*s) there, so that its size does not depend on the frequency."""
+        """Whether L is ``a/b*exp(-delay*s)`` there, so that its size does not depend on the frequency."""
         return len(self.a) == 1 or (len(self.a) == 2 and not self.a[0] and not self.b[1])
 
     # ---- limiting gains
@@ -118,7 +118,7 @@ class Far:
 
     @functools.cached_property
     def on_circle(self) -> list[tuple[float, float]]:
-        """The gains for which b + k a vanishes at an angle of exp(-unit*s), and these angles, from 0 to pi."""
+        """The gains for which b + k a vanishes at an angle of ``exp(-unit*s)``, and these angles, from 0 to pi."""
         real = Real(self._highest_powers, pivot=self.pivot)
         self._ask(real)
         turns = np.exp(-1j * np.multiply.outer(self.powers, [0.0, math.pi]))
@@ -400,7 +400,7 @@ class Far:
 
 
 def _to_segment(start, step):
-    """The distance of 0 from start + t*step, with t from 0 to 1."""
+    """The distance of 0 from ``start + t*step``, with t from 0 to 1."""
     with np.errstate(divide="ignore", invalid="ignore"):
         along = np.nan_to_num((-start * step.conj()).real / abs(step) ** 2)
     return abs(start + np.clip(along, 0, 1) * step)

@@ -59,7 +59,7 @@ def ultimate(process: object) -> tuple[float, float]:
 
 
 def boundary_pi(process: object, Ti: ArrayLike) -> np.ndarray | float:
-    """Return the gain Kp on the limit of stability for PI control, Kp*(1 + 1/(Ti*s)), of any process.
+    """Return the gain Kp on the limit of stability for PI control, ``Kp*(1 + 1/(Ti*s))``, of any process.
 
     Of a first-order lag with dead time, the limit solves equations (4) and (5) of the source, here without their
     approximation.
@@ -68,7 +68,7 @@ def boundary_pi(process: object, Ti: ArrayLike) -> np.ndarray | float:
         process: transfer function with numbers; dead times may stand anywhere.
         Ti: integral time in the unit of the lags, a number or an array; ``math.inf`` is not among them.
     Returns:
-        Kp, a number or an array: the upper end of the lowest range of positive gains with a stable loop; infinite where
+        Kp, a number or an array, the upper end of the lowest range of positive gains with a stable loop; infinite where
         no gain is too high, nan where no positive one makes the loop stable.
     Raises:
         ValueError: for an integral time that is not positive and finite, or as `ultimate`.
@@ -83,7 +83,7 @@ def boundary_pi(process: object, Ti: ArrayLike) -> np.ndarray | float:
 
 
 def boundary_pid(process: object, Ti: ArrayLike, Td: ArrayLike, Tf: ArrayLike = 0) -> np.ndarray | float:
-    """Return the gain Kp on the limit of stability for PID control, Kp*(1 + 1/(Ti*s) + Td*s/(Tf*s + 1)).
+    """Return the gain Kp on the limit of stability for PID control, ``Kp*(1 + 1/(Ti*s) + Td*s/(Tf*s + 1))``.
 
     Arguments:
         process: as for `boundary_pi`.
@@ -128,7 +128,7 @@ def boundary_pid(process: object, Ti: ArrayLike, Td: ArrayLike, Tf: ArrayLike = 
 
 
 def _pid(i, d, f):
-    """Numerator and denominator, times s, of 1 + i/s + d*s/(f*s + 1)."""
+    """Numerator and denominator, times s, of ``1 + i/s + d*s/(f*s + 1)``."""
     nothing = np.zeros((1, len(i)))
     return (
         Quasipolynomials(np.array([[i, 1 + i * f, f + d]]), nothing),
@@ -250,14 +250,14 @@ def _endless_gains(loops, far):
 def boundary_pi_approximate(T: float, delay: float, Ti: ArrayLike, K: float = 1) -> np.ndarray | float:
     """Return the gain Kp on the limit of stability for PI control of a lag with dead time, as the source approximates.
 
-    The difference of two arc tangents in equation (5) is one, of x = w*(Ti - T)/(1 + w**2*T*Ti). Where abs(x) <= 1 it
-    is replaced by pi/4*x, which makes (5) the cubic equation (6); elsewhere by pi/2 - pi/(4*x), which makes it the
-    quadratic equation (7). A root counts where it is positive and its x lies in the branch from which it came. Of
-    several the lowest frequency is taken, as in the exact problem.
+    The difference of two arc tangents in equation (5) is one, of ``x = w*(Ti - T)/(1 + w**2*T*Ti)``. Where abs(x) <= 1
+    it is replaced by ``pi/4*x``, which makes (5) the cubic equation (6); elsewhere by ``pi/2 - pi/(4*x)``, which makes
+    it the quadratic equation (7). A root counts where it is positive and its x lies in the branch from which it came.
+    Of several the lowest frequency is taken, as in the exact problem.
 
     The second branch is printed for x > 1 alone: for x < -1 it would need -pi/2. As abs(x) is never above
-    abs(Ti - T)/(2*sqrt(Ti*T)), it is needed only for Ti > 5.8 T, and the other one for Ti < 0.17 T. There, and wherever
-    no root lies in its branch, the result is nan.
+    ``abs(Ti - T)/(2*sqrt(Ti*T))``, it is needed only for Ti > 5.8 T, and the other one for Ti < 0.17 T. There, and
+    wherever no root lies in its branch, the result is nan.
 
     Arguments:
         T, delay: lag and dead time of the process, positive.

@@ -223,7 +223,7 @@ class Loops:
     # ---- beyond
 
     def beyond(self, factor: np.ndarray) -> np.ndarray:
-        """A frequency beyond which abs(L)*factor is below 1; nan where none is known."""
+        """A frequency beyond which ``abs(L)*factor`` is below 1; nan where none is known."""
         A, B = self._term_sizes
         sizes = B + factor * A
         reserve = self._endless_reserve - factor * A[-1]
@@ -244,7 +244,7 @@ class Loops:
 
     @functools.cached_property
     def squares(self) -> list[np.ndarray] | None:
-        """abs(A)**2 and abs(B)**2 of loops with one dead time, polynomials in the square of the frequency."""
+        """``abs(A)**2`` and ``abs(B)**2`` of loops with one dead time, polynomials in the square of the frequency."""
         if len(self.A.coefficients) != 1 or len(self.B.coefficients) != 1:
             return None
         if self.exact is None:
@@ -335,7 +335,7 @@ def _exact_square(exact):
 
 
 def square(part: np.ndarray) -> np.ndarray:
-    """The squares of the sizes of polynomials [power, point] on the imaginary axis, in powers of w*w."""
+    """The squares of the sizes of polynomials [power, point] on the imaginary axis, in powers of ``w*w``."""
     order = len(part) - 1
     return np.array(
         [

@@ -31,7 +31,7 @@ def dominant_poles(loop: object, count: int = 2) -> list[complex]:
         loop: the open loop, as for `unstable_closed_loop_poles`.
         count: how many poles; a loop without dead time may have fewer, and a complex pair is never divided.
     Returns:
-        Complex numbers, sorted: the largest real part first, and of a pair the positive imaginary part first. A pole
+        Complex numbers, the largest real part first, and of a pair the positive imaginary part first. A pole
         stands there as often as it occurs.
     Raises:
         ValueError: as `unstable_closed_loop_poles`; for a count that is no positive integer; where the loop's gain at

@@ -157,7 +157,8 @@ def _stable_delays(A: Quasipolynomials, B: Quasipolynomials) -> list[list[tuple[
 def _regions(count, first, period, direction):
     """The intervals of dead time without unstable poles, from their number at the beginning and all crossings.
 
-    Poles cross at the dead times first, first + period, first + 2*period ...; direction is by how many more there are.
+    Poles cross at the dead times first, first + period, ``first + 2*period`` ...; direction is by how many more there
+    are.
     """
     if not len(first):
         return [(0.0, math.inf)] if count == 0 else []

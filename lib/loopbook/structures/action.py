@@ -15,8 +15,8 @@ __all__ = ["controller_action"]
 def controller_action(process: Number) -> str:
     """Return the action that a controller needs for a process: "reverse" or "direct". (Haugen, Section 7.3.3)
 
-    The sign of the process gain decides, the limit of s**n H(s) at s = 0 with the number n of integrators: where the
-    measurement rises with the control signal, the controller must lower that against a rise.
+    The sign of the process gain decides, the limit of ``s**n H(s)`` at s = 0 with the number n of integrators: where
+    the measurement rises with the control signal, the controller must lower that against a rise.
 
     Arguments:
         process: the transfer function from the control signal to the measurement, with numbers or positive letters.

@@ -1,6 +1,6 @@
 """The blocks of a control structure: a control loop, a calculation, a split range.
 
-A block has a tag, the names that it reads and writes, a step (None: every sample) and `update(values, time)`, which
+A block has a tag, the names that it reads and writes, a step (None: every sample) and ``update(values, time)``, which
 returns {name: number}; `recorded` holds further signals of the last sample, by names of the block's own.
 """
 

@@ -27,7 +27,7 @@ class Design(NamedTuple):
     Attributes:
         model: the model, its dead time approximated.
         invertible: its part that the controller inverts.
-        remaining: its zeros in the right half-plane, as factors 1 - T*s; the closed loop keeps them.
+        remaining: its zeros in the right half-plane, as factors ``1 - T*s``; the closed loop keeps them.
         filter: what is asked of the closed loop besides.
         match: the controller that follows, read as a PID controller.
     """
@@ -65,8 +65,9 @@ def imc_design(model: TransferFunctionLike, Tc: Number, approximation: Approxima
     """Design a controller by internal model control, and read it as a PID controller.
 
     The dead time is approximated, and the model is split: zeros in the right half-plane remain, the rest is inverted.
-    The closed loop shall be the remaining part times a filter: 1/(Tc*s + 1); with an integrator
-    (a*s + 1)/(Tc*s + 1)**2, with the a for which a load leaves no offset. The controller follows by direct synthesis.
+    The closed loop shall be the remaining part times a filter: ``1/(Tc*s + 1)``; with an integrator
+    ``(a*s + 1)/(Tc*s + 1)**2``, with the a for which a load leaves no offset. The controller follows by direct
+    synthesis.
 
     Arguments:
         model: transfer function, with numbers or letters, stable but for one integrator, with one dead time.

@@ -44,8 +44,8 @@ class Match:
 def as_pid(controller: TransferFunctionLike, kind: str | None = None) -> Match:
     """Read a controller as a PID controller, exactly if it is one, and otherwise by its series around s = 0.
 
-    The series c[-1]/s + c[0] + c[1]*s + ... is that of Kp*(1 + 1/(Ti*s) + Td*s), for a PID with filter
-    Kp*(1 + 1/(Ti*s) + Td*s/(Tf*s + 1)).
+    The series ``c[-1]/s + c[0] + c[1]*s + ...`` is that of ``Kp*(1 + 1/(Ti*s) + Td*s)``, for a PID with filter
+    ``Kp*(1 + 1/(Ti*s) + Td*s/(Tf*s + 1))``.
 
     Arguments:
         controller: an expression in `s`; dead times may stand anywhere in it.
@@ -82,7 +82,7 @@ def _kind(settings):
 
 
 def _exactly(C):
-    """The settings of C = (n2*s**2 + n1*s + n0)/(s*(Tf*s + 1)), or None where C is something else."""
+    """The settings of ``C = (n2*s**2 + n1*s + n0)/(s*(Tf*s + 1))``, or None where C is something else."""
     if any(factor.has(s) for factor in C.atoms(sympy.exp)):
         return None
     above, below, field = _coefficients(*sympy.fraction(sympy.together(C)))
@@ -144,7 +144,7 @@ def _written(field, element):
 
 
 def _pid(field, integral, proportional, derivative, Tf):
-    """The settings of integral/s + proportional + derivative*s/(Tf*s + 1); ValueError where there are none."""
+    """The settings of ``integral/s + proportional + derivative*s/(Tf*s + 1)``; ValueError where there are none."""
     if not proportional:
         raise ValueError("it has no proportional part")
     Ti = _written(field, proportional / integral) if integral else sympy.oo
@@ -169,7 +169,7 @@ def _by_series(C, kind):
 
 
 def _series(C):
-    """The coefficients of 1/s, 1, s and s**2 in the series of C around s = 0, and the field they are in."""
+    """The coefficients of 1/s, 1, s and ``s**2`` in the series of C around s = 0, and the field they are in."""
     rational, delays = without_delays(C)
     dead_times = {letter: sympy.exp(-delay * s) for letter, delay in delays.items()}
     parts = [part.xreplace(dead_times) for part in sympy.fraction(sympy.together(rational))]

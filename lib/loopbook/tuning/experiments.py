@@ -127,8 +127,8 @@ class WeightedPID(NamedTuple):
 def hang(K: Number, Ku: Number, Pu: Number, extrapolate: bool = False) -> WeightedPID:
     """Return PID settings by the refinement of Ziegler and Nichols' that weights the setpoint, as a `WeightedPID`.
 
-    With k = K*Ku. From 2.25 to 15 the settings are Ziegler and Nichols', and w_p = (15 - k)/(15 + k). From 1.5 to 2.25
-    the integral time is shortened by the factor mu = 4*k/9, and w_p = 8*(mu + 1)/17.
+    With ``k = K*Ku``. From 2.25 to 15 the settings are Ziegler and Nichols', and ``w_p = (15 - k)/(15 + k)``. From 1.5
+    to 2.25 the integral time is shortened by the factor ``mu = 4*k/9``, and ``w_p = 8*(mu + 1)/17``.
 
     Arguments:
         K: static gain of the process.

@@ -45,8 +45,8 @@ def ziegler_nichols_reaction(model: TransferFunctionLike, kind: str = "PID") -> 
 def cohen_coon(model: TransferFunctionLike, kind: str = "PID") -> PID:
     """Return the settings of Cohen and Coon, which aim at quarter decay and a small area of the error.
 
-    With r = delay/T, which is zero for an integrator. The rule was derived, and fitted, for dead times from about 0.1
-    to 1 lag.
+    With ``r = delay/T``, which is zero for an integrator. The rule was derived, and fitted, for dead times from about
+    0.1 to 1 lag.
 
     Arguments:
         model: a lag with dead time, or an integrator as its limit.
@@ -90,13 +90,14 @@ _ITAE = {
     mode={"regulator": "load", "servo": "setpoint"},
 )
 def itae(model: TransferFunctionLike, kind: str = "PI", mode: str = "regulator", extrapolate: bool = False) -> PID:
-    """Return settings that nearly minimise the integral of t*abs(e), fitted for dead times of 0.1 to 1 lag.
+    """Return settings that nearly minimise the integral of ``t*abs(e)``, fitted for dead times of 0.1 to 1 lag.
 
-    Each is A*r**B with r = delay/T, and for T/Ti after a setpoint step A + B*r. Servo settings do not suit a load, and
-    those of a PID controller are for one whose derivative term does not see the setpoint (chapter 16 shows it).
+    Each is ``A*r**B`` with ``r = delay/T``, and for T/Ti after a setpoint step ``A + B*r``. Servo settings do not suit
+    a load, and those of a PID controller are for one whose derivative term does not see the setpoint (chapter 16 shows
+    it).
 
     Arguments:
-        model: a lag with dead time. An integrator has no such settings: with r, K*Kp*r goes to zero or infinity.
+        model: a lag with dead time. An integrator has no such settings: with r, ``K*Kp*r`` goes to zero or infinity.
         kind: "PI" or "PID" (parallel form).
         mode: "regulator" for a step of the load at the process input, "servo" for one of the setpoint.
         extrapolate: use the formulas also for dead times outside of 0.1 to 1 lag.

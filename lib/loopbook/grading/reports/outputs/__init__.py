@@ -1,7 +1,7 @@
 """The files that grading leaves behind. Each module of this folder makes one, and registers it by `output`.
 
 A new learning management system is a new module here and nothing else: what is registered is written, is listed by
-`loopbook grade --help`, and is tested.
+``loopbook grade --help``, and is tested.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ def output(file: str, what: str) -> Callable[[Callable[..., str]], Callable[...,
 
     Arguments:
         file: its place in the folder of the grades, with "{student}" in it for a file for each student.
-        what: it is, and for whom, for the list of `loopbook grade --help`.
+        what: it is, and for whom, for the list of ``loopbook grade --help``.
     Raises:
         GradingError: for a file that is none of this folder or is made already, where it is not said what it is, and
             for a function that asks for something else.
