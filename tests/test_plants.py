@@ -290,9 +290,13 @@ FORGOTTEN = {
         {"volume": lambda tank: Balance(tank.A * (tank.h + delayed(tank.h, 2)), tank.q)},
         "Tank: volume has a delayed rate of change",
     ),
+    "what is at work": (
+        {"at_work": lambda tank: {tank.A: 3}},
+        "Tank is at work by other signals: expected one of q, h",
+    ),
     "that a limit is one of a state": (
         {"q": signal(0.1, "m³/s", "inflow", limits=(0, 1))},
-        r"Tank has limits or a value at work for q\(t\)",
+        "Tank has limits for a signal that is no state: expected one of h",
     ),
 }
 

@@ -117,6 +117,7 @@ def test_a_plant_that_is_not_linear():
 E, SHORT = sympy.exp, sympy.Rational(1, 50)
 WITH_DEAD_TIMES = {
     "two at the input": (E(-s) + 2 * E(-5 * s / 2)) / ((2 * s + 1) * (s + 1)),
+    "two that differ by whole steps": (E(-s / 10) + E(-7 * s / 10) + E(-13 * s / 10) - E(-31 * s / 10)) / (s + 1),
     "one around an integrator": 1 / (s + E(-s)),
     "a recycle": (s + 1) * E(-s / 2) / (2 * (s + 1) * (3 * s + 1) - E(-7 * s / 3) / 2),
     "two inside": (s + 2 + E(-s / 5)) / (s**2 + 3 * s + 2 + s * E(-13 * s / 10) / 2 - E(-2 * s) / 3),
@@ -162,7 +163,7 @@ def recycle_loop(step):
 @pytest.mark.parametrize("tau", [7, 0.3, 0])
 @pytest.mark.parametrize("step", [1, 0.7])
 def test_a_dead_time_in_a_balance_is_exact(tau, step):
-    plant = Recycle(tau=tau)
+    plant = Recycle(tau=tau, tau_m=3 if tau > 1 else 0.4)  # also shorter than a step
     run = simulate(plant, recycle_loop(step), until=70, setpoint=1)
     H = System(plant.numbers(plant.transfer_function()))
     assert np.abs(run["c_m"] - 0.9 - H.response(run.times, run["c_in"] - 1.5)).max() < 1e-8
@@ -273,6 +274,12 @@ def test_what_a_run_contains():
     assert run["w_out"][[0, 19, 20, 100]].tolist() == [25, 25, 30, 30]
     assert run["u"] == pytest.approx(45 + run["u_p"] + run["u_i"] + run["u_d"])
     assert 0.03 < (run["measurement"] - run["h"]).std() < 0.07
+    assert [run.unit(name) for name in ("h", "setpoint", "measurement", "filtered", "u", "u_p")] == 4 * ["m"] + [
+        "%",
+        "1",
+    ]
+    with pytest.raises(ValueError, match="'x' is no signal of WoodChipTank"):
+        run.unit("x")
     assert repr(run) == (
         "<run of 101 samples, t = 0 to 500: h, u, w_out, setpoint, measurement, ramped, filtered, u_p, u_i, u_d>"
     )

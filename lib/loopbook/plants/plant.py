@@ -13,6 +13,7 @@ from sympy.polys.matrices import DomainMatrix
 
 from loopbook.expressions import exact, s, t
 from loopbook.plants.declarations import Balance, Body, Declared, Declaring, Lag, Quantity, name_of
+from loopbook.plants.gaps import refuse_gaps
 from loopbook.stability import is_stable
 from loopbook.transfer import simplified
 from loopbook.types import Number
@@ -70,7 +71,7 @@ class Plant(metaclass=Declaring):
         equations = [law.equation for law in independent]
         cls.model = (*equations, *(sympy.Eq(x, f, evaluate=False) for x, f in cls.measured.items()))
         if cls.quantities:
-            _check(cls, len(independent))
+            refuse_gaps(cls, _states(cls), _inputs(cls), len(independent))
             said_of_it = (cls.__doc__ or cls.__name__).rstrip()
             cls.__doc__ = "\n".join([said_of_it, "", "    Attributes:", *_table(cls.quantities), "    "])
 
@@ -379,50 +380,11 @@ def _inputs(plant):
     return [x for x in plant.quantities if x in inside and x not in followed]
 
 
-def _check(cls, laws):
-    """Refuse a class in which something is missing, in one sentence."""
-    said = {
-        **{name: law.equation for name, law in cls.laws.items()},
-        **{name_of(x): f for x, f in cls.measured.items()},
-    }
-    said |= {f"the limits of {name_of(x)}": sympy.Tuple(*limits) for x, limits in cls.limits.items()}
-    used = {x for x in cls.measured}
-    for name, formula in said.items():
-        inside = {x for x in formula.free_symbols if x != t} | {x.func(t) for x in formula.atoms(AppliedUndef)}
-        for x in sorted(inside - set(cls.quantities), key=str):
-            how = f"{x} = parameter(...)" if x.is_Symbol else f"{name_of(x)} = signal(...)"
-            raise ValueError(f"{cls.__name__}: {name} contains {x}, which is not declared: expected {how}")
-        for x in sorted(inside & set(cls.measured), key=str):
-            raise ValueError(f"{cls.__name__}: {name} contains {x}, which is measured: expected {cls.measured[x]}")
-        if formula.has(sympy.Subs) or any(not x.expr.args == (t,) for x in formula.atoms(sympy.Derivative)):
-            raise ValueError(f"{cls.__name__}: {name} has a delayed rate of change: expected delayed signals alone")
-        used |= inside
-    for x in cls.quantities:
-        if x not in used:
-            raise ValueError(f"{cls.__name__} declares {name_of(x)}, which no law contains and which is not measured")
-    states, inputs = _states(cls), _inputs(cls)
-    highest = [name_of(x) for x in states if x.diff(t) not in states]
-    if len(highest) != laws:
-        raise ValueError(f"{cls.__name__} has {laws} laws for the states {', '.join(highest)}: expected one for each")
-    for word, chosen, among in (
-        ("output", cls.output, [*states, *cls.measured]),
-        ("manipulated", cls.manipulated, inputs),
-    ):
-        if chosen not in among:
-            one = ", ".join(map(name_of, among))
-            raise ValueError(f"{cls.__name__} has {chosen} for {word}: expected one of {one}")
-    for x in (*cls.limits, *cls.at_work):
-        if x not in (*states, *inputs) or (x in cls.limits and x not in states):
-            raise ValueError(f"{cls.__name__} has limits or a value at work for {x}: expected a state or an input")
-
-
 def _table(quantities):
     """What the docstring says of the quantities, a line for each."""
     for x, (value, unit, meaning) in quantities.items():
-        unit = "" if unit == "1" else f" {unit}"
-        yield f"        {name_of(x)}: {meaning}, " + (
-            f"measured in{unit}" if value is None else f"{_short(value)}{unit}"
-        )
+        amount = "measured in" if value is None else _short(value)
+        yield f"        {name_of(x)}: {meaning}, {amount}{'' if unit == '1' else f' {unit}'}"
 
 
 def _symbol(x):

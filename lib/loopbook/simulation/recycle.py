@@ -45,17 +45,11 @@ class RecycleSystem(System):
                 f"the dead time {inner[0]:g} inside the plant makes {count:.0f} stretches of time: "
                 f"expected at most {MOST_STRETCHES}, in a shorter run"
             )
-        new = np.unique(np.concatenate([*self._jumps(), self._begins()]))
-        new = new[np.isfinite(new)]
-        found = [new]
+        found = [np.concatenate([*self._jumps(), self._begins()])]
         for _ in range(SMOOTH):
-            new = np.unique(np.concatenate([new[new < times[-1]] + delay for delay in inner]))
-            found.append(new)
-        moments = np.concatenate(found)
-        moments = moments[(moments > self.begin) & (moments < times[-1])]
-        moments = np.unique(np.concatenate([times, moments[~self._at_samples(moments)]]))
-        moments = moments[np.diff(moments, prepend=-math.inf) > CLOSE * min(self.step, inner[0])]
-        moments[-1] = times[-1]
+            known = np.unique(found[-1][np.isfinite(found[-1]) & (found[-1] < times[-1])])
+            found.append(np.concatenate([known + delay for delay in inner]))
+        moments = self._with_samples(np.concatenate(found), times)
         parts = np.ceil(np.diff(moments) / inner[0] * (1 - CLOSE)).astype(int)
         cuts = [np.linspace(a, b, n + 1)[1:] for a, b, n in zip(moments[:-1], moments[1:], parts, strict=True)]
         return np.concatenate(cuts).tolist()

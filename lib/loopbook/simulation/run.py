@@ -23,7 +23,7 @@ class Past(NamedTuple):
     """What a later run needs in order to go on: the plant with its history, and the blocks with their memory."""
 
     system: System
-    structure: Structure | None
+    structure: Structure
 
 
 @dataclass(frozen=True, repr=False)
@@ -54,12 +54,12 @@ class Run:
 
     def unit(self, name: str) -> str:
         """The unit of a signal of the plant, or of a setpoint, as that of the measurement; "1" for a number."""
-        structure, of_plant = self._past.structure if self._past else None, {name_of(x) for x in self.plant.quantities}
-        if structure:
-            name = self.output if name in OF_THE_LOOP and name not in of_plant else name
-            found = structure.measurement_of
-            while name in found and name not in of_plant:
-                name = found[name]
+        of_plant = {name_of(x) for x in self.plant.quantities}
+        if self._past and name not in of_plant and name in self.signals:
+            structure = self._past.structure
+            name = self.output if name in OF_THE_LOOP else name
+            while name in structure.measurement_of and name not in of_plant:
+                name = structure.measurement_of[name]
             if name not in of_plant:
                 return "%" if name in structure.split else "1"
         return self.plant.quantities[self.plant.signal(name)].unit or "1"
@@ -69,7 +69,7 @@ class Run:
 
         Raises ValueError for a tag that no loop has.
         """
-        loops = self._past.structure.loops if self._past and self._past.structure else {}
+        loops = self._past.structure.loops if self._past else {}
         if tag not in loops:
             raise ValueError(f"the run has no loop {tag!r}: {did_you_mean(tag, loops)}")
         own = {name.removeprefix(f"{tag}."): name for name in self.signals if name.startswith(f"{tag}.")}

@@ -108,19 +108,20 @@ class System:
 
     def _discontinuities(self, times):
         """The moments to stop at: the samples, and where a signal, maybe delayed, jumps between two of them."""
-        moments = np.unique(np.concatenate([*self._jumps(), []]))
-        moments = moments[(moments > self.begin) & (moments < times[-1])]
-        return np.sort(np.concatenate([times[1:], moments[~self._at_samples(moments)]])).tolist()
+        return self._with_samples(np.concatenate([*self._jumps(), []]), times)[1:].tolist()
 
     def _jumps(self):
         """For each input that drives the states the moments at which it may jump there, late as it is."""
         inputs = [(name, delay) for name, delay in self.driving if name in self.sources]
         return [np.array(self.sources[name].jumps()) + delay for name, delay in inputs]
 
-    def _at_samples(self, moments):
-        """Which of the moments are those of samples, but for rounding."""
-        steps = (moments - self.begin) / self.step
-        return abs(steps - np.round(steps)) <= CLOSE + 1e-15 * abs(moments) / self.step
+    def _with_samples(self, moments, times):
+        """The samples and the moments between them, all that are the same but for rounding as one."""
+        moments = np.unique(moments[(moments > self.begin) & (moments < times[-1])])
+        rounding = CLOSE * self.step + 1e-15 * abs(moments)
+        after_sample = (moments - self.begin) - self.step * np.round((moments - self.begin) / self.step)
+        moments = moments[(abs(after_sample) > rounding) & (np.diff(moments, prepend=-np.inf) > rounding)]
+        return np.sort(np.concatenate([times, moments]))
 
     def advance(self, time: float) -> None:
         """Integrate up to the sample at `time`, and measure there."""
