@@ -39,7 +39,7 @@ def close(computed, exact):
     return np.abs(computed - exact).max() <= EXACT * max(1, np.abs(exact).max())
 
 
-# The plant alone: against the response of its transfer function, which SymPy inverts.
+# The plant alone: against the response of its transfer function, which SymPy inverts where it can.
 
 OPEN = [cls() for _, cls in inspect.getmembers(plants, inspect.isclass) if issubclass(cls, Plant) and cls.quantities]
 OPEN += [
@@ -58,7 +58,8 @@ def test_where_an_input_acts_linearly_a_step_response_is_the_analytic_one(plant,
         return
     name, H = name_of(plant.output), plant.transfer_function(source, numbers=True)
     times = np.linspace(0, System(H).horizon() if H else 100, 151)
-    response = evaluate(step_response(H, 1), times)
+    recycles = H != 0 and len(System(H).denominator) > 1  # no end of echoes
+    response = System(H).step(times) if recycles else evaluate(step_response(H, 1), times)
     low, high = (plant.numbers(sympy.sympify(x)) for x in plant.limits.get(plant.output, (-sympy.oo, sympy.oo)))
     at_rest = getattr(plant, name)
     size = float(min(1, (at_rest - low) / 2, (high - at_rest) / 2))
