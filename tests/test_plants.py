@@ -255,8 +255,9 @@ TANK = {
 }
 FORGOTTEN = {
     "nothing": ({}, None),
-    "a unit": ({"h": signal(1, "", "level")}, r"Tank.h has the unit '': expected one such as 'kg/s', or '1'"),
-    "a meaning": ({"h": signal(1, "m", None)}, r"Tank.h has the meaning None"),
+    "a unit": ({"h": signal(1, "", "level")}, r"Tank.h has the unit '' and the meaning 'level': expected both"),
+    "a meaning": ({"h": signal(1, "m")}, r"Tank.h has the unit 'm' and the meaning '': expected both"),
+    "all laws": ({"volume": 3}, "Tank has no law: expected a Balance or a Lag for each state"),
     "an operating point": ({"h": signal(None, "m", "level")}, r"Tank.h has no value: .* at the operating point"),
     "a value that is none": ({"A": parameter("2", "m²", "area")}, "Tank.A: '2' is of type str"),
     "a parameter": (

@@ -54,7 +54,7 @@ def parameters(names: str) -> tuple[sympy.Symbol, ...]:
     return tuple(map(_positive, names.split()))
 
 
-def signal(value: Number, unit: str, meaning: str, limits: tuple[Number, Number] | None = None) -> Any:
+def signal(value: Number, unit: str = "", meaning: str = "", limits: tuple[Number, Number] | None = None) -> Any:
     """Declare a signal of a plant, in the body of its class: an input, or a state that a law makes of it.
 
     Arguments:
@@ -68,7 +68,7 @@ def signal(value: Number, unit: str, meaning: str, limits: tuple[Number, Number]
     return Declared(Quantity(value, unit, meaning), limits=limits)
 
 
-def parameter(value: Number, unit: str, meaning: str) -> Any:
+def parameter(value: Number, unit: str = "", meaning: str = "") -> Any:
     """Declare a parameter of a plant, in the body of its class; it is positive, or zero.
 
     Arguments:
@@ -81,7 +81,7 @@ def parameter(value: Number, unit: str, meaning: str) -> Any:
     return Declared(Quantity(value, unit, meaning), is_parameter=True)
 
 
-def measured(formula: sympy.Expr, unit: str, meaning: str) -> Any:
+def measured(formula: sympy.Expr, unit: str = "", meaning: str = "") -> Any:
     """Declare a signal that follows from others at once, or some dead time later.
 
     Arguments:
@@ -216,10 +216,11 @@ class Body(dict):
 
     def _named(self, name, declared):
         number, unit, meaning = declared.quantity
-        if not isinstance(unit, str) or not unit:
-            raise ValueError(f"{self.plant}.{name} has the unit {unit!r}: expected one such as 'kg/s', or '1' for none")
-        if not isinstance(meaning, str) or not meaning:
-            raise ValueError(f"{self.plant}.{name} has the meaning {meaning!r}: expected a few words")
+        if not (isinstance(unit, str) and unit and isinstance(meaning, str) and meaning):
+            said = f"the unit {unit!r} and the meaning {meaning!r}"
+            raise ValueError(
+                f"{self.plant}.{name} has {said}: expected both, as 'kg/s' ('1' for a number) and 'inflow'"
+            )
         symbol = _positive(name) if declared.is_parameter else _function(name)
         self.quantities[symbol] = declared.quantity
         if declared.formula is not None:

@@ -24,6 +24,8 @@ def refuse_gaps(cls: Any, states: list[sympy.Expr], inputs: list[sympy.Expr], la
     Raises:
         ValueError: for what is not declared, not used or not determined.
     """
+    if not laws:
+        raise ValueError(f"{cls.__name__} has no law: expected a Balance or a Lag for each state")
     used = set(cls.measured)
     for name, formula in _formulas(cls):
         used |= _words_of(cls, name, formula)
