@@ -137,7 +137,7 @@ def _in_order(sum_):
 
 
 def _term_place(term):
-    """Where a term stands in a sum: by the times in it, so that T**2 + 2*zeta*T*tau + tau**2 stays in this order."""
+    """Where a term stands in a sum: by the times in it, so that ``T**2 + 2*zeta*T*tau + tau**2`` keeps its order."""
     places = sorted(_place(x) for x in sympy.Mul.make_args(term) if not x.is_number)
     return [x for x in places if x[0] > 1] or places
 

@@ -153,7 +153,7 @@ TERMS = 3  # of the expansion for large s
 
 
 def _for_large_s(above, above_delays, below, below_delays, pole):
-    """E for large s as the sum of c exp(-delay*s)/(s + 1)^k: for k = 0, 1 ... {delay: c}, the last one for the rest."""
+    """E for large s, a sum of ``c exp(-delay*s)/(s + 1)^k``: {delay: c} for k = 0, 1 ..., the last one for the rest."""
 
     def in_powers(row, order):  # the polynomial divided by (s + 1)^order, in powers of u = 1/(s + 1)
         shifted = np.polynomial.Polynomial(row)(np.polynomial.Polynomial([-1, 1])).coef  # in powers of s + 1

@@ -127,7 +127,7 @@ def both_residues(A: Any, B: Any, C: Any, D: Any, B_mirrored: Any, D_mirrored: A
 
 
 def _on_axis(A, B, C, D, A_mirrored, B_mirrored, C_mirrored, D_mirrored, angle):
-    """The same at p = j omega, with (A* + C* / z) put on top and below and A A* = C C* used, so that it is real."""
+    """The same at ``p = j omega``, real by ``A A* = C C*`` once ``(A* + C* / z)`` is put above and below the bar."""
     z = sympy.cos(angle) - sympy.I * sympy.sin(angle)
     one, other = sympy.expand(A * C_mirrored), sympy.expand(D * B_mirrored)
     real, imaginary = sympy.expand(one * z.conjugate()).as_real_imag()

@@ -107,7 +107,7 @@ def _exactly(C):
 
 
 def _serial_pid(n0, n1, n2, Tf):
-    """The serial settings of (n2*s**2 + n1*s + n0)/(s*(Tf*s + 1)), or None; ValueError for times that are negative."""
+    """The serial settings of ``(n2*s**2 + n1*s + n0)/(s*(Tf*s + 1))``, or None; ValueError for negative times."""
     if n1 == 0:
         return None
     if n0 == 0:
