@@ -25,7 +25,7 @@ _FUNCTIONS = {"sin": "sin", "cos": "cos", "tan": "tan", "atan": "arctan"}
 
 
 class _Printer(LatexPrinter):
-    """SymPy's own, but for the order of factors and terms; fractions are on one line in exponents, and if `flat`."""
+    """SymPy's own, but for the order of factors and terms; fractions are on one line in exponents, and if ``flat``."""
 
     def __init__(self, flat=False):
         super().__init__()

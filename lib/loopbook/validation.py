@@ -99,7 +99,7 @@ def exact_real(name: str, value: Any, infinite: bool = False, symbols: bool = Tr
     Arguments:
         name: of the argument, as the sentence begins with it.
         value: a number of any kind, or an expression.
-        infinite: whether `oo` is one too, as for an integral time that is switched off.
+        infinite: whether ``oo`` is one too, as for an integral time that is switched off.
         symbols: whether symbols may stand in it.
     Raises:
         ValueError: for what is neither, or is known not to be real and finite.
@@ -176,7 +176,7 @@ def real_numbers(name: str, values: ArrayLike) -> np.ndarray:
 
 
 def positive_numbers(name: str, values: ArrayLike, zero: bool = False) -> np.ndarray:
-    """Return values as an array of positive floats, or with `zero` of those that are not negative; or raise ValueError.
+    """Return values as an array of positive floats, with ``zero`` of those that are not negative; or raise ValueError.
 
     >>> positive_numbers("gain ratios", [1, -2])
     Traceback (most recent call last):

@@ -32,7 +32,7 @@ class Need(NamedTuple):
     """What a rule starts from.
 
     Attributes:
-        quantities: names of what describes it, all of them in `DIMENSIONS`.
+        quantities: names of what describes it, all of them in ``DIMENSIONS``.
         parameters: the first parameters of the rule's function.
     """
 
@@ -74,7 +74,7 @@ class Rule:
     Attributes:
         name: for people, as "Ziegler-Nichols".
         function: that returns the settings.
-        needs: what it starts from, one of `NEEDS`.
+        needs: what it starts from, one of ``NEEDS``.
         choices: {parameter: {word: the word for people}}, as {"kind": {"P": "P", "PI": "PI"}}.
         source: where it is from.
     """
@@ -138,7 +138,7 @@ def rule(name: str, needs: str, **choices: tuple[str, ...] | Mapping[str, str]) 
 
     Arguments:
         name: of the rule, for people.
-        needs: what the rule starts from, one of `NEEDS`; the function begins with the parameters of that.
+        needs: what the rule starts from, one of ``NEEDS``; the function begins with the parameters of that.
         choices: the words that a parameter of the function takes, as ``kind=("P", "PI", "PID")``; where people call
             them otherwise ``mode={"servo": "setpoint"}``.
     Raises:

@@ -33,7 +33,7 @@ class Kind:
     """An asked quantity: its key, and how an answer is read, compared and responded to.
 
     A class of its own is a kind of answers: it registers itself in `MAKERS`, from where authors, the answer sheet and
-    the exports have it. It reads answers, says whether one agrees with the key, and names in `FORM` what of its
+    the exports have it. It reads answers, says whether one agrees with the key, and names in ``FORM`` what of its
     arguments says how an answer looks.
 
     Arguments:
@@ -80,7 +80,7 @@ class Kind:
         """Return a kind that reads answers and has nothing to compare them with.
 
         Arguments:
-            parts, named: those of the constructor that are in `FORM`.
+            parts, named: those of the constructor that are in ``FORM``.
 
         >>> from loopbook.exercises.kinds import Number
         >>> Number.without_key("s").read("2 min")
