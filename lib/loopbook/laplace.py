@@ -335,7 +335,7 @@ def _residue(rest, p, n):
 
 
 def _inverse_quadratic(numerator, base, n):
-    """``numerator/(a s**2 + b s + c)**n``: a damped oscillation, or two exponentials where the roots are real."""
+    """``numerator/(a s**2 + b s + c)**n``: a damped oscillation, or two exponentials if the roots are surely real."""
     a, b, c = base.all_coeffs()
     decay = b / (2 * a)
     square = sympy.factor(c / a - decay**2)
