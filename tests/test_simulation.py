@@ -194,6 +194,21 @@ def test_a_plant_goes_on_with_a_dead_time_inside_that_it_did_not_have():
 # Limits.
 
 
+class RecycleWithRim(Plant):
+    """A vessel out of which flows what was in it a second ago."""
+
+    u = plants.signal(0, "1/s", "inflow")
+    x = plants.signal(0, "1", "level", limits=(0, sympy.Rational(1, 2)))
+    volume = plants.Balance(x, u - plants.delayed(x, 1))
+    output, manipulated = x, u
+
+
+def test_a_level_with_a_dead_time_stays_within_its_limits_too():
+    run = simulate(RecycleWithRim(), until=6, step=0.3, u=stepwise(1, {3: 0}))
+    falling = np.interp(run.times, [0, 0.5, 3, 4], [0, 0.5, 0.5, 0])  # for a second what flows out is what was there
+    assert run["x"] == pytest.approx(falling, abs=1e-6)
+
+
 def test_a_level_stays_within_its_limits_and_leaves_them_at_once():
     run = simulate(LiquidTank(), until=40, step=1, q_i=stepwise(0.1, {15: 0, 25: 0.05}), q_o=stepwise(0, {15: 0.15}))
     exact = np.interp(run.times, [0, 5, 15, 15 + 1 / 0.15, 40], [0.5, 1, 1, 0, 0])
