@@ -185,9 +185,10 @@ def listed(name, parts):
 def documented(module, name):
     """Return the lines that document one name of a module."""
     value, address = getattr(module, name), f"{module.__name__}.{name}"
+    place = f"   :module: {module.__name__}"
     if inspect.isclass(value):
         if value.__name__ != name:  # another name for a class that has its place elsewhere
-            return [f".. py:class:: {address}", "", f"   The same as `{value.__name__}`.", ""]
+            return [f".. py:class:: {name}", place, "", f"   The same as `{value.__name__}`.", ""]
         lines = [f".. auto{'exception' if issubclass(value, Exception) else 'class'}:: {address}", "   :members:"]
         bases = [base for base in value.__bases__ if base.__module__.startswith("loopbook")]
         return [*lines, *(["   :show-inheritance:"] if bases else []), ""]
@@ -195,7 +196,7 @@ def documented(module, name):
         return [f".. autofunction:: {address}", ""]
     home = part_of(module, name)
     comment = ModuleAnalyzer.for_module(home).find_attr_docs().get(("", name), [])
-    return [f".. py:data:: {address}", "", *(f"   {line}" for line in comment), ""]
+    return [f".. py:data:: {name}", place, "", *(f"   {line}" for line in comment), ""]
 
 
 class Modules(SphinxDirective):
