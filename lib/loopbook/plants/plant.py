@@ -157,16 +157,10 @@ class Plant(metaclass=Declaring):
         y(t) changes at the rate Derivative(y(t), t)
         Derivative(y(t), t) changes at the rate -D*Derivative(y(t), t)/m - K*y(t)/m + F(t)/m
         """
-        laws = [equation for equation in self.model if equation.has(sympy.Derivative)]
-        states = self.states
-        highest = [x.diff(t) for x in states if x.diff(t) not in states]
-        if any(law.has(sympy.Max, sympy.Min) for law in laws):
-            solved = [_solved_one_by_one(laws, highest)]  # `solve` would tell the cases apart, all of them
-        else:
-            solved = sympy.solve(laws, highest, dict=True)
-        if len(solved) != 1:
-            raise ValueError(f"the laws of {type(self).__name__} do not determine {highest}")
-        return {x: solved[0].get(x.diff(t), x.diff(t)) for x in states}
+        try:
+            return dict(_rates(self.model, tuple(self.states)))
+        except ValueError as error:
+            raise ValueError(f"{type(self).__name__}: {error}") from None
 
     def is_linear(self, source: str | sympy.Expr | None = None) -> bool:
         """Whether the effects of changes of any size add up, in the states and in what is measured.
@@ -407,6 +401,20 @@ def _solved(A, B):
             polynomials = polynomials.to_field()
             return polynomials.lu_solve(numbers.convert_to(polynomials.domain)).to_Matrix()
     return A.LUsolve(B)
+
+
+@functools.lru_cache(maxsize=256)  # whatever their values, plants of a class have one model
+def _rates(model, states):
+    """``{state: its derivative}``, solved from the laws."""
+    laws = [equation for equation in model if equation.has(sympy.Derivative)]
+    highest = [x.diff(t) for x in states if x.diff(t) not in states]
+    if any(law.has(sympy.Max, sympy.Min) for law in laws):
+        solved = [_solved_one_by_one(laws, highest)]  # `solve` would tell the cases apart, all of them
+    else:
+        solved = sympy.solve(laws, highest, dict=True)
+    if len(solved) != 1:
+        raise ValueError(f"the laws do not determine {', '.join(map(str, highest))}")
+    return {x: solved[0].get(x.diff(t), x.diff(t)) for x in states}
 
 
 def _solved_one_by_one(laws, highest):
