@@ -41,8 +41,10 @@ class Process(Plant):
         order = H.order
         if not H.numerator:
             raise ValueError("the transfer function is 0: expected a process that its input moves")
-        if H.is_neutral or (not H.is_proper and any(len(part) > order + 1 for part in H.denominator.values())):
-            raise ValueError(f"{H.expr} has its highest power of s with a dead time below: expected it without one")
+        if any(delay and len(part) > order for delay, part in H.denominator.items()):
+            raise ValueError(
+                f"{H.expr} delays the highest power of s in its denominator: expected it without dead time"
+            )
         if any(len(part) > order for part in H.numerator.values()):
             raise ValueError(f"{H.expr} is not strictly proper: expected fewer zeros than poles")
         u, d, y, *x = signals("u d y " + " ".join(f"x_{n}" for n in range(1, order + 1)))
