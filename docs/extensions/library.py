@@ -9,6 +9,7 @@ in single ones. What is here is what they cannot do:
 - a function has links to the chapters that use it, and its source stands among arguments and results.
 """
 
+import ast
 import functools
 import importlib
 import inspect
@@ -47,7 +48,7 @@ def _place(module, name):
     """Where a name is made: the part of the package as `__init__` imports it, and the line there."""
     home = part_of(module, name)
     parts = [part for part in _imported_parts(module) if part != module.__name__]
-    return (parts.index(home) if home in parts else -1, _tags(home).get(name, 10**9))
+    return (parts.index(home) if home in parts else -1, _made(home).get(name, 10**9))
 
 
 @functools.cache
@@ -59,29 +60,23 @@ def _imported_parts(module):
 
 
 @functools.cache
-def _tags(name):
-    """The line at which a module makes each of its names, constants too."""
-    analyzer = ModuleAnalyzer.for_module(name)
-    analyzer.analyze()
-    return {key: line for key, line in analyzer.tagorder.items() if "." not in key}
+def _made(name):
+    """The line at which a module makes each of its names, constants too; what it imports is made elsewhere."""
+    lines = {}
+    for node in ast.parse(inspect.getsource(importlib.import_module(name))).body:
+        if isinstance(node, ast.FunctionDef | ast.ClassDef):
+            lines[node.name] = node.lineno
+        elif isinstance(node, ast.Assign | ast.AnnAssign):
+            names = (part for part in ast.walk(node) if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store))
+            lines |= {part.id: node.lineno for part in names}
+    return lines
 
 
 def part_of(module, name):
     """Return the module that makes what another one offers: itself, or a part of a package."""
-    for part in (module.__name__, *_imported_parts(module)):
-        if name in _tags(part) and not _imports(part, name):
-            return part
-    made_in = getattr(getattr(module, name), "__module__", "")
-    return made_in if made_in.startswith("loopbook") else module.__name__
-
-
-def _imports(part, name):
-    return name in re.findall(r"\w+", " ".join(re.findall(r"^from [\w.]+ import (\([^)]*\)|.*)", _source(part), re.M)))
-
-
-@functools.cache
-def _source(name):
-    return inspect.getsource(importlib.import_module(name))
+    made_in = getattr(getattr(module, name), "__module__", "") or module.__name__
+    parts = (part for part in (module.__name__, *_imported_parts(module)) if name in _made(part))
+    return next(parts, made_in if made_in.startswith("loopbook") else module.__name__)
 
 
 @functools.cache

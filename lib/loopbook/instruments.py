@@ -164,7 +164,8 @@ def decode(tag: str) -> Tag:
         tag: its capital letters and then perhaps the number of its loop, as "FC123", "PDT4" or "LT"; a hyphen may stand
             between, and a letter may follow the number.
     Returns:
-        A `Tag`, with its `words`, what is `measured`, the `modifier` of that, the `functions` and the `loop`'s number.
+        A `Tag`, with its ``words``, what is ``measured``, the ``modifier`` of that, the ``functions`` and the number of
+        its ``loop``.
     Raises:
         ValueError: for a text of another form, a letter without a meaning where it stands, or a tag without function.
     Source:
