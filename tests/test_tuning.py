@@ -12,14 +12,14 @@ from scipy.optimize import minimize
 from sympy import Max, Min, Rational, exp, oo, sqrt, symbols
 
 from draws import draws
-from loopbook import s, tuning
+from loopbook import pid, s, tuning
 from loopbook.approximation import SOPDT, model_of
 from loopbook.ise import criteria
 from loopbook.oscillation import oscillation_of_pole
 from loopbook.pid import PID
 from loopbook.stability import dominant_poles
 from loopbook.transfer import double_integrator, first_order, integrator, integrator_with_lag, second_order
-from loopbook.tuning.rules import DIMENSIONS, confirm
+from loopbook.tuning.registry import DIMENSIONS, confirm
 from loopbook.validation import one_of
 
 K, T, T1, T2, delay, Tc, c, Ku, Pu, x = symbols("K T T1 T2 delay Tc c Ku Pu x", positive=True)
@@ -30,10 +30,11 @@ RATIOS = st.fractions(Rational(1, 10), 1, max_denominator=40).map(Rational)  # o
 RANGE_OF_HANG = st.fractions(Rational(3, 2), 15, max_denominator=40).map(Rational)
 KINDS = ("P", "PI", "PID")
 
-# every rule in every variant, as the registry has them
+# every rule in every variant, for every process that it is for, as the registry has them
 CASES = {
-    f"{name}: {words}": functools.partial(found.settings, **chosen)
+    f"{name}: {words}{f', {process}' if process else ''}": functools.partial(found.settings, process=process, **chosen)
     for name, found in tuning.RULES.items()
+    for process in found.need.processes or [None]
     for words, chosen in found.variants.items()
 }
 CASES["simc: faster"] = functools.partial(tuning.RULES["simc"].settings, c=1.44)
@@ -48,7 +49,7 @@ def settings_of(name, values):
 
 
 def rules_of(*needs):
-    """The rules, in every variant, that start from one of these."""
+    """The rules, in every variant, that start from one of these, for each of its processes."""
     return pytest.mark.parametrize("rule", [name for name in CASES if RULES[name].needs in needs])
 
 
@@ -81,6 +82,21 @@ def half(Ku, Pu, kind="P") -> PID:
     return {"P": PID(Ku / 2), "PI": PID(Ku / 2, Pu)}[one_of("kind", kind, ("P", "PI"))]
 
 
+def of_the_module(Ku, Pu) -> "pid.PID":
+    return pid.PID(Ku / 4, Pu)
+
+
+def of_no_name(Ku, Pu) -> "Settings":  # noqa: F821 - a name that is nowhere
+    return PID(Ku, Pu)
+
+
+def of_one_lag(model) -> PID:
+    model = model_of(model)
+    if model.T2 != 0:
+        raise ValueError(f"{model} has two lags")
+    return PID(1 / model.K, model.T1)
+
+
 def of_a_relay(amplitude, period) -> PID:
     return PID(1 / amplitude, period)
 
@@ -92,20 +108,25 @@ def without_hint(Ku, Pu):
 @pytest.fixture
 def registered(monkeypatch):
     """Registers a function as a rule, in a registry of the test's own."""
-    monkeypatch.setattr(tuning.rules, "RULES", dict(tuning.RULES))
+    monkeypatch.setattr(tuning.registry, "RULES", dict(tuning.RULES))
 
     def put(function, docstring=SOURCED, needs="the ultimate gain and period", **choices):
         monkeypatch.setattr(function, "__doc__", docstring)
         tuning.rule("Half", needs=needs, **choices)(function)
-        confirm(tuning.rules.RULES[function.__name__])
+        confirm(tuning.registry.RULES[function.__name__])
 
     return put
 
 
 def test_a_complete_rule_is_registered(registered):
     registered(half, kind=("P", "PI"))
-    assert list(tuning.rules.RULES["half"].variants) == ["Half P", "Half PI"]
-    assert tuning.rules.RULES["half"].source == "nobody (1900)."
+    assert list(tuning.registry.RULES["half"].variants) == ["Half P", "Half PI"]
+    assert tuning.registry.RULES["half"].source == "nobody (1900)."
+
+
+def test_a_hint_may_name_the_settings_by_their_module(registered):
+    registered(of_the_module)
+    assert tuning.registry.RULES["of_the_module"].settings() == PID(Ku / 4, Pu)
 
 
 @pytest.mark.parametrize(
@@ -116,6 +137,12 @@ def test_a_complete_rule_is_registered(registered):
         (half, {"needs": "luck"}, "half needs 'luck', which is not known: expected one of one or two lags"),
         (of_a_relay, {}, "of_a_relay begins with amplitude, period: expected Ku, Pu"),
         (without_hint, {}, "without_hint has no hint .*: expected -> PID"),
+        (of_no_name, {}, "of_no_name has no hint .*: expected -> PID"),
+        (
+            of_one_lag,
+            {"needs": "one or two lags or integrators"},
+            "of_one_lag has no settings of two lags for {}: .* has two lags",
+        ),
         (half, {}, r"half does not say what it takes: expected kind=\('P', ...\)"),
         (half, {"kinds": ("P", "PI")}, "half has no parameter 'kinds': did you mean 'kind'?"),
         (half, {"kind": ("PI",)}, "kind by itself, in the rule half, is 'P': expected 'PI'"),
@@ -165,13 +192,16 @@ def test_symbols_give_the_formula_that_numbers_fit(name):
 # Limits.
 
 
-@rules_of("a lag or an integrator with dead time")
-def test_an_infinite_lag_is_an_integrator(rule):
+FOR_INTEGRATORS = [name for name in CASES if RULES[name].needs == "a lag or an integrator with dead time"]
+
+
+@pytest.mark.parametrize("name", [name for name in FOR_INTEGRATORS if CASES[name].keywords["process"] == "a lag"])
+def test_an_infinite_lag_is_an_integrator(name):
     """With the slope K = gain/T fixed, the settings for a lag become those for an integrator."""
-    function, chosen = CASES[rule].func.__self__.function, CASES[rule].keywords
-    lag, endless = function(first_order(K * T, T, delay), **chosen), function(integrator(K, delay), **chosen)
+    values = {"K": K * T, "T": T, "delay": delay}
+    lag, infinite = CASES[name](values), CASES[name](values, process="an integrator")
     limits = [sympy.limit(e, T, oo) for e in (lag.Kp, *times(lag))]
-    assert same(limits, [endless.Kp, *times(endless)])
+    assert same(limits, [infinite.Kp, *times(infinite)])
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -467,7 +497,7 @@ LAG, LATE = first_order(1, 2), first_order(1, 2, 1)
         (lambda: tuning.itae(LATE, "P"), "kind is 'P': expected 'PI', 'PID'"),
         (lambda: tuning.itae(LATE, mode="load"), "mode is 'load': expected 'servo', 'regulator'"),
         (lambda: tuning.itae(integrator(1, 1)), "integrating"),
-        (lambda: tuning.itae(first_order(1, 1, 2)), "delay/T is 2.000: the rule is for 1/10 to 1; extrapolate"),
+        (lambda: tuning.itae(first_order(1, 1, 2)), "delay/T is 2.000: expected 1/10 to 1; extrapolate"),
         (lambda: tuning.itae(first_order(1, 100, 2)), "delay/T is 0.02"),
         (lambda: tuning.itae(first_order(1, 1, 7), mode="servo", extrapolate=True), "no positive integral time"),
         (lambda: tuning.ziegler_nichols_ultimate(0, 1), "Ku is 0: expected a number other than zero"),
@@ -480,7 +510,7 @@ LAG, LATE = first_order(1, 2), first_order(1, 2, 1)
         (lambda: tuning.good_gain(0, 1), "KpGG is 0"),
         (lambda: tuning.good_gain(1, 0), "Tou is 0"),
         (lambda: tuning.hang(0, 1, 1), "K is 0"),
-        (lambda: tuning.hang(1, 1, 1), "K.Ku is 1.000: the rule is for 3/2 to 15"),
+        (lambda: tuning.hang(1, 1, 1), "K.Ku is 1.000: expected 3/2 to 15"),
         (lambda: tuning.hang(-1, 5, 1), "K.Ku is -5.000"),
         (lambda: tuning.closed_loop_time(LAG), "no dead time"),
         (lambda: tuning.closed_loop_time(LATE, "morari"), "guideline is 'morari'"),

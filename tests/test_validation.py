@@ -15,6 +15,7 @@ from loopbook.oscillation import Oscillation
 from loopbook.stability import boundary_pi, boundary_pid
 from loopbook.validation import (
     did_you_mean,
+    exact_in_range,
     exact_nonzero,
     exact_not_negative,
     exact_positive,
@@ -62,6 +63,15 @@ def test_symbols_are_let_through_unless_they_are_known_to_be_wrong():
         assert check("K", 0.1) == Rational(1, 10)
     assert exact_positive("T", oo, infinite=True) == exact_not_negative("T", oo, infinite=True) == oo
     assert exact_not_negative("T", 0) == 0
+
+
+def test_a_range_holds_its_ends_and_symbols_and_may_be_left():
+    for value in (1, Rational(5, 2), 4, K):
+        assert exact_in_range("x", value, 1, 4) == value
+    assert exact_in_range("x", 5, 1, 4, extrapolate=True) == 5
+    for value in (0.999, 5, NEGATIVE):
+        with pytest.raises(ValueError, match=r"x is .*: expected 1 to 4; extrapolate=True leaves this range"):
+            exact_in_range("x", value, 1, 4)
 
 
 @pytest.mark.parametrize(

@@ -1,9 +1,9 @@
 """What functions ask of single arguments: a sentence names the value and what was expected, one for each fault.
 
 Three kinds of arguments are checked. `number`, `positive`, `not_negative` and `whole` are for values to compute with in
-floats and integers; `exact_real`, `exact_positive`, `exact_not_negative` and `exact_nonzero` are for numbers or
-symbols, of which only what is known to be wrong is refused; `real_numbers` and `positive_numbers` are for arrays. Of
-words, `one_of` takes one out of several, and `did_you_mean` ends the sentence on a name that is not known.
+floats and integers; `exact_real`, `exact_positive`, `exact_not_negative`, `exact_nonzero` and `exact_in_range` are for
+numbers or symbols, of which only what is known to be wrong is refused; `real_numbers` and `positive_numbers` are for
+arrays. Of words, `one_of` takes one out of several, and `did_you_mean` ends the sentence on a name that is not known.
 """
 
 from __future__ import annotations
@@ -21,6 +21,8 @@ from loopbook.expressions import exact
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+
+    from loopbook.types import Number
 
 A_FINITE_NUMBER = "a finite real number"
 A_POSITIVE_NUMBER = "a positive number"
@@ -149,6 +151,28 @@ def exact_nonzero(name: str, value: Any) -> sympy.Expr:
     """
     found = exact_real(name, value)
     return _unless(found.is_zero, name, found, "a number other than zero")
+
+
+def exact_in_range(name: str, value: Any, low: Number, high: Number, extrapolate: bool = False) -> sympy.Expr:
+    """Return a number or an expression, exact, that is not known to be outside of the range a formula was made for.
+
+    Arguments:
+        name: of the value, as the sentence begins with it.
+        value: a number of any kind, or an expression.
+        low, high: the ends of the range, which belong to it.
+        extrapolate: what the function that checks was told: whether it may be left.
+    Raises:
+        ValueError: for what is no number or expression; and outside of the range, unless it may be left.
+
+    >>> exact_in_range("delay/T", 2, 0, 1)
+    Traceback (most recent call last):
+    ValueError: delay/T is 2.000: expected 0 to 1; extrapolate=True leaves this range
+    """
+    found = exact_real(name, value)
+    is_outside = (low - found).is_positive or (found - high).is_positive
+    if is_outside and not extrapolate:
+        raise ValueError(f"{name} is {found.evalf(4)}: expected {low} to {high}; extrapolate=True leaves this range")
+    return found
 
 
 def _unless(wrong, name, value, expected):

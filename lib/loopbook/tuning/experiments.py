@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import sympy
 from sympy import Min
 from sympy import Rational as Q
 
-from loopbook.expressions import exact, s
+from loopbook.expressions import exact
 from loopbook.pid import PID
-from loopbook.tuning.rules import rule, within
+from loopbook.tuning.registry import rule
+from loopbook.tuning.weighted import WeightedPID
 from loopbook.types import Number
-from loopbook.validation import exact_nonzero, exact_positive, one_of
+from loopbook.validation import exact_in_range, exact_nonzero, exact_positive, one_of
 
 
 @rule("Good Gain", needs="the Good Gain experiment", kind=("P", "PI", "PID"))
@@ -106,23 +105,6 @@ def tyreus_luyben(Ku: Number, Pu: Number, kind: str = "PI") -> PID:
     return rules[one_of("kind", kind, rules)]
 
 
-class WeightedPID(NamedTuple):
-    """PID settings with a weight of the setpoint in the proportional term: what `hang` returns.
-
-    Attributes:
-        settings: the `PID` through which the measurement acts.
-        w_p: the weight, as the argument of `Controller`; that of the derivative term is zero.
-    """
-
-    settings: PID
-    w_p: sympy.Expr
-
-    @property
-    def from_setpoint(self) -> sympy.Expr:
-        """The transfer function from the setpoint to the control signal, the third argument of `Loop`."""
-        return self.settings.Kp * (self.w_p + 1 / (self.settings.Ti * s))
-
-
 @rule("Hang", needs="the static gain, and the ultimate gain and period")
 def hang(K: Number, Ku: Number, Pu: Number, extrapolate: bool = False) -> WeightedPID:
     """Return PID settings by the refinement of Ziegler and Nichols' that weights the setpoint, as a `WeightedPID`.
@@ -142,8 +124,7 @@ def hang(K: Number, Ku: Number, Pu: Number, extrapolate: bool = False) -> Weight
     WeightedPID(settings=PID(Kp=3, Ti=3, Td=3/4), w_p=1/5)
     """
     Kp, Ti, Td = (getattr(ziegler_nichols_ultimate(Ku, Pu), name) for name in ("Kp", "Ti", "Td"))
-    k = exact_nonzero("K", K) * exact(Ku)
-    within("K*Ku", k, Q("1.5"), 15, extrapolate)
+    k = exact_in_range("K*Ku", exact_nonzero("K", K) * exact(Ku), Q("1.5"), 15, extrapolate)
     mu = Min(4 * k / 9, 1)
     w_p = sympy.Piecewise(((15 - k) / (15 + k), k >= Q("2.25")), (8 * (mu + 1) / 17, True))
     return WeightedPID(PID(Kp, mu * Ti, Td), w_p)

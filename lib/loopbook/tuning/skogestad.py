@@ -8,8 +8,8 @@ from sympy import Rational as Q
 
 from loopbook.approximation import model_of
 from loopbook.pid import PID
-from loopbook.tuning.reaction_curves import steepest_slope
-from loopbook.tuning.rules import rule
+from loopbook.tuning.registry import rule
+from loopbook.tuning.step_response_rules import steepest_slope
 from loopbook.types import Number, TransferFunctionLike
 from loopbook.validation import exact_not_negative, exact_positive, one_of
 

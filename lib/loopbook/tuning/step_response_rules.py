@@ -1,4 +1,4 @@
-"""Rules for a lag with dead time, by formulas that were fitted: Ziegler and Nichols, Cohen and Coon, ITAE."""
+"""Rules for the model that a step response gives, a lag with dead time: Ziegler and Nichols, Cohen and Coon, ITAE."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from sympy import Rational as Q
 
 from loopbook.approximation import SOPDT, model_of
 from loopbook.pid import PID
-from loopbook.tuning.rules import rule, within
+from loopbook.tuning.registry import rule
 from loopbook.types import TransferFunctionLike
-from loopbook.validation import one_of
+from loopbook.validation import exact_in_range, one_of
 
 
 @rule("Ziegler-Nichols", needs="a lag or an integrator with dead time", kind=("P", "PI", "PID"))
@@ -116,7 +116,7 @@ def itae(model: TransferFunctionLike, kind: str = "PI", mode: str = "regulator",
     if model.is_integrating:
         raise ValueError(f"{model} is integrating: the ITAE rule is for a lag")
     _, r, _ = _reaction_curve(model, "the ITAE rule")
-    within("delay/T", r, Q("0.1"), 1, extrapolate)
+    exact_in_range("delay/T", r, Q("0.1"), 1, extrapolate)
     proportional, integral, *derivative = (tuple(map(Q, row)) for row in rows)
     rate = integral[0] + integral[1] * r if mode == "servo" else _power_law(*integral, r)  # T/Ti
     if rate.is_nonpositive:
@@ -125,10 +125,10 @@ def itae(model: TransferFunctionLike, kind: str = "PI", mode: str = "regulator",
     return PID(_power_law(*proportional, r) / model.K, model.T1 / rate, Td)
 
 
-def steepest_slope(model: SOPDT, rule: str) -> sympy.Expr:
+def steepest_slope(model: SOPDT, name: str) -> sympy.Expr:
     """The steepest slope of the step response: the gain over the largest lag."""
     if model.T1 == 0:
-        raise ValueError(f"{rule} needs a lag or an integrator, and {model} has none: give it a small lag")
+        raise ValueError(f"{name} needs a lag or an integrator, and {model} has none: give it a small lag")
     return model.K if model.is_integrating else model.K / model.T1
 
 
@@ -136,11 +136,11 @@ def _power_law(A, B, r):
     return A * r**B
 
 
-def _reaction_curve(model, rule):
+def _reaction_curve(model, name):
     """The steepest slope, the dead time over the lag and the dead time of a lag or an integrator with dead time."""
     model = model_of(model)
     if model.T2 != 0:
-        raise ValueError(f"{rule} is for one lag or integrator with dead time, not for {model}: half_rule reduces it")
+        raise ValueError(f"{name} is for one lag or integrator with dead time, not for {model}: half_rule reduces it")
     if model.delay == 0:
-        raise ValueError(f"{model} has no dead time: {rule} would have an infinite gain")
-    return steepest_slope(model, rule), model.delay / model.T1, model.delay
+        raise ValueError(f"{model} has no dead time: {name} would have an infinite gain")
+    return steepest_slope(model, name), model.delay / model.T1, model.delay

@@ -9,17 +9,21 @@ from __future__ import annotations
 import inspect
 import itertools
 import re
+import types
+import typing
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, TypeVar
 
 import sympy
 
-from loopbook.transfer import first_order
+from loopbook.expressions import exact
+from loopbook.pid import PID
+from loopbook.transfer import double_integrator, first_order, integrator, integrator_with_lag, second_order
+from loopbook.tuning.weighted import WeightedPID
 from loopbook.validation import did_you_mean, one_of
 
 if TYPE_CHECKING:
-    from loopbook.pid import PID
     from loopbook.types import Number
 
 #: Powers of the units of the process gain and of time in the unit of what rules start from.
@@ -33,31 +37,53 @@ class Need(NamedTuple):
 
     Attributes:
         quantities: names of what describes it, all of them in ``DIMENSIONS``.
-        parameters: the first parameters of the rule's function.
+        processes: {words: function that returns a process made of the quantities}, one of each sort that the rules are
+            for; empty where they start from the quantities themselves.
     """
 
     quantities: tuple[str, ...]
-    parameters: tuple[str, ...]
+    processes: Mapping[str, Callable[..., sympy.Expr]] = types.MappingProxyType({})
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """The first parameters of the rule's function."""
+        return ("model",) if self.processes else self.quantities
 
     @property
     def symbols(self) -> dict[str, sympy.Symbol]:
         """The quantities as positive symbols, {name: symbol}."""
         return {name: sympy.Symbol(name, positive=True) for name in self.quantities}
 
-    def arguments(self, values: Mapping[str, Number]) -> tuple[Any, ...]:
-        """Return what the rule's function begins with, from {name: value} of the quantities."""
-        given = [values[name] for name in self.quantities]
-        return (first_order(*given),) if self.parameters == ("model",) else tuple(given)
+    def arguments(self, values: Mapping[str, Number], process: str | None = None) -> tuple[Any, ...]:
+        """Return what the rule's function begins with.
+
+        Arguments:
+            values: {quantity: number or symbol}.
+            process: which of the processes; the first if not given.
+
+        >>> need = NEEDS["a lag or an integrator with dead time"]
+        >>> need.arguments({"K": 2, "T": 8, "delay": 1}, "an integrator")
+        (exp(-s)/(4*s),)
+        """
+        given = tuple(exact(values[name]) for name in self.quantities)
+        return (self.processes[process or next(iter(self.processes))](*given),) if self.processes else given
 
 
-_LAG = Need(("K", "T", "delay"), ("model",))
+_OF_A_PROCESS = ("K", "T", "delay")
+_LAG = {"a lag": first_order}
+_INTEGRATOR = {"an integrator": lambda K, T, delay: integrator(K / T, delay)}
+_SECOND_ORDER = {
+    "two lags": lambda K, T, delay: second_order(K, T, T / 3, delay),
+    "an integrator with a lag": lambda K, T, delay: integrator_with_lag(K / T, T, delay),
+    "two integrators": lambda K, T, delay: double_integrator(K / T**2, delay),
+}
 NEEDS = {
-    "one or two lags or integrators": _LAG,
-    "a lag or an integrator with dead time": _LAG,
-    "a lag with dead time": _LAG,
-    "the ultimate gain and period": Need(("Ku", "Pu"), ("Ku", "Pu")),
-    "the static gain, and the ultimate gain and period": Need(("K", "Ku", "Pu"), ("K", "Ku", "Pu")),
-    "the Good Gain experiment": Need(("KpGG", "Tou"), ("KpGG", "Tou")),
+    "one or two lags or integrators": Need(_OF_A_PROCESS, _LAG | _INTEGRATOR | _SECOND_ORDER),
+    "a lag or an integrator with dead time": Need(_OF_A_PROCESS, _LAG | _INTEGRATOR),
+    "a lag with dead time": Need(_OF_A_PROCESS, _LAG),
+    "the ultimate gain and period": Need(("Ku", "Pu")),
+    "the static gain, and the ultimate gain and period": Need(("K", "Ku", "Pu")),
+    "the Good Gain experiment": Need(("KpGG", "Tou")),
 }
 
 #: Which terms the kinds of controllers have.
@@ -91,12 +117,6 @@ class Rule:
         return NEEDS[self.needs]
 
     @property
-    def gives(self) -> str:
-        """The type of its settings: "PID" or "WeightedPID"."""
-        hint = inspect.signature(self.function).return_annotation
-        return getattr(hint, "__name__", str(hint))
-
-    @property
     def variants(self) -> dict[str, dict[str, str]]:
         """All that it can be asked for: {words for people: arguments}.
 
@@ -114,19 +134,21 @@ class Rule:
             found[", ".join([name, *spoken])] = chosen
         return found
 
-    def settings(self, values: Mapping[str, Number] | None = None, **chosen: Any) -> PID:
+    def settings(self, values: Mapping[str, Number] | None = None, process: str | None = None, **chosen: Any) -> PID:
         """Return the `PID` of the rule; of weighted settings, the one through which the measurement acts.
 
         Arguments:
             values: {quantity of the need: number or symbol}; its own symbols if not given.
+            process: which of the processes of the need; the first if not given.
             chosen: further arguments of the function.
 
         >>> from loopbook.tuning import RULES
         >>> RULES["tyreus_luyben"].settings(kind="PI")
         PID(Kp=31*Ku/100, Ti=11*Pu/5)
         """
-        found = self.function(*self.need.arguments(self.need.symbols if values is None else values), **chosen)
-        return found.settings if self.gives == "WeightedPID" else found
+        values = self.need.symbols if values is None else values
+        found = self.function(*self.need.arguments(values, process), **chosen)
+        return found.settings if isinstance(found, WeightedPID) else found
 
 
 #: All rules: {name of the function: `Rule`}.
@@ -163,25 +185,35 @@ def rule(name: str, needs: str, **choices: tuple[str, ...] | Mapping[str, str]) 
 
 def _check(made):
     """Raise ValueError for what a rule has left open."""
-    rule, parameters = f"the rule {made.function.__name__}", inspect.signature(made.function).parameters
+    subject, parameters = f"the rule {made.function.__name__}", inspect.signature(made.function).parameters
     if made.function.__name__ in RULES:
-        raise ValueError(f"{rule} is there already: expected another name")
+        raise ValueError(f"{subject} is there already: expected another name")
     if not made.source:
-        raise ValueError(f"{rule} has no source: expected 'Source: author (year)' in its docstring")
+        raise ValueError(f"{subject} has no source: expected 'Source: author (year)' in its docstring")
     if made.needs not in NEEDS:
-        raise ValueError(f"{rule} needs {made.needs!r}, which is not known: {did_you_mean(made.needs, NEEDS)}")
+        raise ValueError(f"{subject} needs {made.needs!r}, which is not known: {did_you_mean(made.needs, NEEDS)}")
     if (begins := tuple(parameters)[: len(made.need.parameters)]) != made.need.parameters:
-        raise ValueError(f"{rule} begins with {', '.join(begins)}: expected {', '.join(made.need.parameters)}")
-    if made.gives not in ("PID", "WeightedPID"):
-        raise ValueError(f"{rule} has no hint of what it returns: expected -> PID or -> WeightedPID")
+        raise ValueError(f"{subject} begins with {', '.join(begins)}: expected {', '.join(made.need.parameters)}")
+    if _returned(made.function) not in (PID, WeightedPID):
+        raise ValueError(f"{subject} has no hint of what it returns: expected -> PID or -> WeightedPID")
     for parameter in made.choices:
         if parameter not in parameters:
-            raise ValueError(f"{rule} has no parameter {parameter!r}: {did_you_mean(parameter, parameters)}")
+            raise ValueError(f"{subject} has no parameter {parameter!r}: {did_you_mean(parameter, parameters)}")
     for parameter, one in parameters.items():
         if isinstance(one.default, str):
             if parameter not in made.choices:
-                raise ValueError(f"{rule} does not say what it takes: expected {parameter}=({one.default!r}, ...)")
-            one_of(f"{parameter} by itself, in {rule},", one.default, made.choices[parameter])
+                raise ValueError(f"{subject} does not say what it takes: expected {parameter}=({one.default!r}, ...)")
+            one_of(f"{parameter} by itself, in {subject},", one.default, made.choices[parameter])
+
+
+def _returned(function):
+    """The class that a function says it returns, however the hint names it; None where it says none."""
+    # a hint of the result alone, since those of the parameters may name what only type checkers import
+    hint = types.SimpleNamespace(__annotations__={"return": function.__annotations__.get("return")})
+    try:
+        return typing.get_type_hints(hint, function.__globals__)["return"]
+    except NameError:
+        return None
 
 
 def confirm(made: Rule) -> None:
@@ -189,17 +221,18 @@ def confirm(made: Rule) -> None:
 
     It works the settings out, which takes a while; the tests confirm all rules.
     """
-    rule = f"the rule {made.function.__name__}"
-    for chosen in made.variants.values():
+    subject = f"the rule {made.function.__name__}"
+    for process, chosen in itertools.product(made.need.processes or [None], made.variants.values()):
         try:
-            found = made.settings(**chosen)
+            found = made.settings(process=process, **chosen)
         except (ValueError, KeyError) as error:
-            raise ValueError(f"{rule} has no settings for {chosen}: {error}") from None
+            of = f" of {process}" if process else ""
+            raise ValueError(f"{subject} has no settings{of} for {chosen}: {error}") from None
         if "kind" in chosen and (found.Ti.is_finite is not False, found.Td != 0) != _KINDS[chosen["kind"]]:
-            raise ValueError(f"{rule} gives {found} for {chosen}: expected a {chosen['kind']} controller")
+            raise ValueError(f"{subject} gives {found} for {chosen}: expected a {chosen['kind']} controller")
     for kind in _KINDS if "kind" in made.choices else ():
         if kind not in made.choices["kind"] and _has(made, kind):
-            raise ValueError(f"{rule} has settings for {kind!r} too: expected it among its words for kind")
+            raise ValueError(f"{subject} has settings for {kind!r} too: expected it among its words for kind")
 
 
 def _has(made, kind):
@@ -208,11 +241,3 @@ def _has(made, kind):
     except ValueError:
         return False
     return True
-
-
-def within(name: str, value: sympy.Expr, low: Number, high: Number, extrapolate: bool) -> None:
-    """Raise ValueError for a value outside of the range that a rule was made for, unless it may be left."""
-    if not extrapolate and ((low - value).is_positive or (value - high).is_positive):
-        raise ValueError(
-            f"{name} is {value.evalf(4)}: the rule is for {low} to {high}; extrapolate=True leaves this range"
-        )
