@@ -6,8 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from loopbook.exercises.kinds import NOT_ANSWERED
-from loopbook.exercises.reading import Unreadable, shortened
+from loopbook.exercises.reading import NOT_ANSWERED, Unreadable, shortened
 from loopbook.exercises.timeout import limited
 
 if TYPE_CHECKING:

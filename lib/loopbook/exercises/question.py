@@ -7,9 +7,10 @@ import re
 from typing import TYPE_CHECKING, Any
 
 from loopbook.exercises.judging import OPEN, Verdict, harmless, judge
-from loopbook.exercises.kinds import NOT_ANSWERED, Kind
+from loopbook.exercises.kinds import Kind
 from loopbook.exercises.parameters import call
 from loopbook.exercises.progress import note
+from loopbook.exercises.reading import NOT_ANSWERED
 from loopbook.exercises.response import Response
 from loopbook.validation import did_you_mean
 

@@ -1,16 +1,18 @@
-"""Reading formulas that readers give, without running anything of theirs.
+"""Reading what readers give, without running anything of theirs: values, rows of values, and formulas.
 
-Python's grammar reads the text, and what is no arithmetic is refused. SymPy's expressions, and systems of the library
-and of python-control, are read from what they spell.
+Python's grammar reads the text of a formula, and what is no arithmetic is refused. SymPy's expressions, and systems of
+the library and of python-control, are read from what they spell.
 """
 
 from __future__ import annotations
 
 import ast
+import itertools
 import math
 import re
 import unicodedata
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Iterator, MappingView
+from typing import Any
 
 import numpy as np
 import sympy
@@ -18,7 +20,11 @@ from sympy.core.function import AppliedUndef
 
 from loopbook.validation import did_you_mean
 
+#: What is left of an answer cell that nobody has filled in.
+NOT_ANSWERED = "not answered yet"
 LONGEST, MOST_NODES = 4000, 2000
+#: Of what gives one value after another, so many are read.
+MOST_VALUES = 10_000
 
 #: What a formula may call, and with how many values.
 ONE_VALUE = (
@@ -41,6 +47,63 @@ _ARITHMETIC = (
 
 class Unreadable(ValueError):  # noqa: N818 - it is what became of the answer
     """An answer that cannot be judged; the sentence says why and what is expected."""
+
+
+# --------------------------------------------------------------------------------------------------------- values
+
+
+def answered(given: object) -> Any:
+    """Return what was given; raises Unreadable where that is nothing yet."""
+    if given is None or given is Ellipsis:
+        raise Unreadable(NOT_ANSWERED)
+    return given
+
+
+def in_a_row(given: object) -> list[Any] | None:
+    """Return the values of a list, tuple, array, matrix or range as a list; None where there is no row of values."""
+    if isinstance(given, sympy.MatrixBase):
+        return given.tolist()
+    if isinstance(given, sympy.Tuple | list | tuple | range | Iterator | MappingView):
+        return list(itertools.islice(given, MOST_VALUES))
+    if hasattr(given, "tolist") and hasattr(given, "ndim"):
+        return given.tolist() if given.ndim else None
+    return None
+
+
+def alone(given: object) -> Any:
+    """Return the value that stands alone in a row, a set, an array, or an equation for a symbol; others as they are.
+
+    >>> alone([{sympy.Symbol("x"): 3}]), alone(sympy.Eq(sympy.Symbol("x"), 3)), alone([1, 2])
+    (3, 3, [1, 2])
+    """
+    if isinstance(given, sympy.Equality) and isinstance(given.lhs, sympy.Symbol | AppliedUndef):
+        return given.rhs
+    if isinstance(given, dict) and len(given) == 1 and isinstance(next(iter(given)), sympy.Symbol | AppliedUndef):
+        return next(iter(given.values()))
+    if isinstance(given, set | frozenset | sympy.FiniteSet):
+        given = list(given)
+    elif getattr(given, "ndim", None) == 0 and hasattr(given, "tolist") and not hasattr(given, "units"):
+        return given.tolist()
+    row = in_a_row(given)
+    if row is None:
+        return given
+    return alone(row[0]) if len(row) == 1 else row
+
+
+def listed_in(text: str) -> list[str]:
+    """Return the parts of a text that lists several: "[1, 2]" or "1; 2".
+
+    >>> listed_in("[-1,-2]"), listed_in("-1 + 2j; -3"), listed_in("1,5")
+    (['-1', '-2'], ['-1 + 2j', '-3'], ['1,5'])
+    """
+    text = text.strip()
+    inside = text.strip("[]{}")
+    separator = r";|,\s" if inside == text else "[;,]"
+    parts = [part.strip() for part in re.split(separator, inside) if part.strip()]
+    return parts if text else [text]
+
+
+# ------------------------------------------------------------------------------------------------------- formulas
 
 
 def plain(text: str) -> str:

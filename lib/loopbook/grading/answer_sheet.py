@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from loopbook.exercises.judging import harmless
-from loopbook.exercises.kinds import MAKERS, NOT_ANSWERED
-from loopbook.exercises.reading import Unreadable, shortened
+from loopbook.exercises.kinds import MAKERS
+from loopbook.exercises.reading import NOT_ANSWERED, Unreadable, shortened
 from loopbook.grading.plain import Plain, plain, unreadable
 from loopbook.validation import did_you_mean
 

@@ -20,8 +20,7 @@ import sympy
 
 from loopbook.exercises.formulas import Formula
 from loopbook.exercises.judging import harmless
-from loopbook.exercises.kinds.kind import alone
-from loopbook.exercises.reading import Unreadable, spelled
+from loopbook.exercises.reading import Unreadable, alone, spelled
 from loopbook.pid import PID
 
 DEEPEST, MOST_VALUES, LONGEST_TEXT, MOST_TEXT, MOST_DIGITS = 8, 2000, 5000, 50_000, 300

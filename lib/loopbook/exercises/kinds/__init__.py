@@ -8,7 +8,7 @@ import pkgutil
 
 from loopbook.exercises.kinds.design import Criterion, Design
 from loopbook.exercises.kinds.formula import Expression, TimeFunction, TransferFunction
-from loopbook.exercises.kinds.kind import MAKERS, NOT_ANSWERED, Kind
+from loopbook.exercises.kinds.kind import MAKERS, Kind
 from loopbook.exercises.kinds.numeric import Number, Numbers, Poles
 from loopbook.exercises.kinds.settings import Settings
 from loopbook.exercises.kinds.words import Word, Words
@@ -18,6 +18,6 @@ for _module in pkgutil.iter_modules(__path__):  # a kind in a module of its own 
 globals().update({kind.__name__: kind for kind in MAKERS.values()})
 
 __all__ = [
-    "MAKERS", "NOT_ANSWERED", "Criterion", "Design", "Expression", "Kind", "Number", "Numbers", "Poles", "Settings",
+    "MAKERS", "Criterion", "Design", "Expression", "Kind", "Number", "Numbers", "Poles", "Settings",
     "TimeFunction", "TransferFunction", "Word", "Words",
 ]  # fmt: skip

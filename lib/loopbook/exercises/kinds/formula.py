@@ -11,10 +11,10 @@ import sympy
 
 from loopbook.exercises import formulas, units
 from loopbook.exercises.formulas import Formula
-from loopbook.exercises.kinds.kind import Kind, alone, answered, literal, with_unit
+from loopbook.exercises.kinds.kind import Kind, literal, with_unit
 from loopbook.exercises.kinds.numeric import in_unit
 from loopbook.exercises.kinds.settings import Settings
-from loopbook.exercises.reading import Unreadable, letters_in, listed
+from loopbook.exercises.reading import Unreadable, alone, answered, letters_in, listed
 from loopbook.expressions import exact, parse, s, t
 
 if TYPE_CHECKING:

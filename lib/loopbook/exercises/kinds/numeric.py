@@ -12,8 +12,8 @@ import sympy
 
 from loopbook.exercises import units
 from loopbook.exercises.formulas import Formula
-from loopbook.exercises.kinds.kind import Kind, alone, answered, in_a_row, listed_in, with_unit
-from loopbook.exercises.reading import Unreadable, plain, shortened
+from loopbook.exercises.kinds.kind import Kind, with_unit
+from loopbook.exercises.reading import Unreadable, alone, answered, in_a_row, listed_in, plain, shortened
 
 _WITH_UNIT = re.compile(r"([+-]? ?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?) ?(.*)")
 #: Up to so many times the tolerance, an answer is nearly right.

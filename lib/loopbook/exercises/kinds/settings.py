@@ -9,9 +9,9 @@ from typing import Any
 import sympy
 
 from loopbook.exercises import units
-from loopbook.exercises.kinds.kind import Kind, alone, answered, in_a_row, listed_in, literal, with_unit
+from loopbook.exercises.kinds.kind import Kind, literal, with_unit
 from loopbook.exercises.kinds.numeric import in_digits, near, one_number
-from loopbook.exercises.reading import Unreadable, listed
+from loopbook.exercises.reading import Unreadable, alone, answered, in_a_row, listed, listed_in
 from loopbook.pid import PID
 from loopbook.validation import one_of
 

@@ -9,8 +9,8 @@ from collections.abc import Iterable, Iterator
 import sympy
 from sympy.logic.boolalg import BooleanAtom
 
-from loopbook.exercises.kinds.kind import Kind, alone, answered, in_a_row
-from loopbook.exercises.reading import Unreadable, shortened
+from loopbook.exercises.kinds.kind import Kind
+from loopbook.exercises.reading import Unreadable, alone, answered, in_a_row, shortened
 
 _TRUTH = {True: "yes", False: "no"}
 _SEPARATOR = re.compile(r"[,;\n]|[-=]>|→|\band\b")
