@@ -11,9 +11,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import contributing
 from loopbook.exercises import authoring, bank
 from loopbook.exercises.formulas import Formula
 from loopbook.exercises.kinds import MAKERS, Kind
+from loopbook.exercises.reading import Unreadable
 from loopbook.grading import answer_sheet
 from loopbook.pid import PID
 
@@ -73,6 +75,21 @@ def test_a_kind_registers_by_being_written(registry):
     assert color("red").asking == "color()"
     assert color("red").making == 'color("red")'
     assert color("red").as_code() == '"red"'
+
+
+def test_the_kind_that_contributors_are_shown_is_one(registry):
+    span = contributing.run("Add a kind of answers")["Span"]
+    assert registry["span"] is span
+    kind = span((4, 20), "mA", "the range of the signal")
+    assert kind.asking == 'span("mA")'
+    assert kind.making == 'span([4, 20], unit="mA", what="the range of the signal")'
+    for ends, is_right in (([4, 20], True), (np.array([4, 20.1]), True), ((0, 20), False)):
+        answer = kind.read(ends)[0]
+        assert kind.agrees(answer) == is_right
+        assert_reads_back(kind, answer)
+    for ends in (4, [20, 4], [4, 20, 5], "4 to 20", [4, "x"]):
+        with pytest.raises(Unreadable, match="no range: expected two numbers, the lower one first"):
+            kind.read(ends)
 
 
 # Answers as code.

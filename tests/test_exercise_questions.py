@@ -5,8 +5,9 @@ import types
 import pytest
 import sympy
 
+import contributing
 from loopbook import exercises, s
-from loopbook.exercises import bank
+from loopbook.exercises import authoring, bank
 from loopbook.exercises.authoring import Exercise, answers, between, choice, exercise, number, transfer_function, word
 from loopbook.exercises.judging import MISTAKE, RIGHT, WRONG, Verdict
 from loopbook.exercises.response import Response
@@ -38,6 +39,15 @@ def test_a_question():
     assert "- `rate`: the rate of the level, in m/s" in question.statement
     with pytest.raises(ValueError, match="gives no 'V': expected 'A', 'q', 'kind', 'H'"):
         question.given("V")
+
+
+def test_the_exercise_that_contributors_are_shown_is_one():
+    heater = contributing.run("Add an exercise", vars(authoring))["air_heater"]
+    question = heater.question()
+    assert "a gain of 3\N{NO-BREAK SPACE}K/%, a lag of 25\N{NO-BREAK SPACE}s and a dead time" in question.statement
+    assert [one.status for one in question.check(Kp=25 / 24, Ti=16).verdicts] == [RIGHT, RIGHT]
+    wrong = question.check(Kp=25 / 24, Ti=25).verdicts[1]
+    assert (wrong.status, wrong.says) == (MISTAKE, "That is the integral time for $c = 4$; here $c = 2$ is asked.")
 
 
 def accuracies(x=between(1, 9)):

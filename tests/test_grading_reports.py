@@ -11,6 +11,7 @@ import time
 import pytest
 from typer.testing import CliRunner
 
+import contributing
 from loopbook.__main__ import app
 from loopbook.exercises.authoring import answers, between, choice, exercise, expression, number, word
 from loopbook.exercises.bank import exercises
@@ -320,6 +321,13 @@ def test_the_command_lists_every_output():
 def test_what_an_output_lacks_is_said(file, what, makes, says):
     with pytest.raises(GradingError, match=re.escape(says)):
         output(file, what)(makes)
+
+
+def test_the_output_that_contributors_are_shown_is_one(monkeypatch):
+    monkeypatch.setattr(reports.outputs, "_REGISTERED", dict(reports.outputs._REGISTERED))
+    contributing.run("Add an output for an LMS")
+    (one,) = [one for one in registered() if one.file == "names.txt"]
+    assert dict(one.files(TITLE, CLASS, RESULTS)) == {"names.txt": "\n".join(student.name for student in CLASS)}
 
 
 def test_what_is_no_text_is_refused():

@@ -17,6 +17,7 @@ import sympy
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
+import contributing
 import loopbook.ledger
 from draws import draws
 from loopbook import s, t
@@ -54,6 +55,20 @@ def holds(value, printed, **result):
 
 def formula_holds(value, printed, **result):
     return holds(value, printed, kind="formula", **result)
+
+
+# What contributors are shown.
+
+
+def test_the_entry_that_contributors_are_shown_is_one():
+    head, entry = contributing.example("Add a book", "toml"), contributing.example("Add an example", "toml")
+    assert Source.read("syder", head.encode()).citation == loopbook.ledger.syder.citation
+    shown = Source.read("syder", (head + entry).encode())["Example 10.2"]
+    K, T, tau = shown.given("K", "T", "tau")
+    assert (K, T, tau) == (1, 1, sympy.Rational(1, 2))
+    names = {name: sympy.Symbol(name, positive=True) for name in ("K", "T", "tau")}
+    H = names["K"] * sympy.exp(-names["tau"] * s) / (names["T"] * s + 1)
+    assert all(verdict.holds for verdict in shown.compare(Kp=T / (K * 2 * tau), H=H).verdicts)
 
 
 # Numbers.

@@ -1,15 +1,14 @@
 """The plants: what is derived from a balance law is checked by a second derivation."""
 
 import inspect
-import re
 import types
-from pathlib import Path
 
 import numpy as np
 import pytest
 import sympy
 from sympy.core.function import AppliedUndef
 
+import contributing
 from loopbook import plants, s, t
 from loopbook.expressions import agreement
 from loopbook.plants import (
@@ -320,11 +319,8 @@ def test_what_is_forgotten_is_said_in_one_sentence_at_once(what):
 
 
 def test_the_plant_that_contributors_are_shown_is_one():
-    text = (Path(__file__).parents[1] / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    (source,) = re.findall(r"```python\n(class Separator\(Plant\).*?)```", text, re.DOTALL)
     known = {name: getattr(plants, name) for name in plants.__all__}
-    exec(source, known)
-    separator = known["Separator"]()
+    separator = contributing.run("Add a plant", known)["Separator"]()
     assert separator.numbers(separator.transfer_function("q_i", "h")) == sympy.exp(-20 * s) / (2 * s)
     assert separator.p == sympy.Rational("9.81")
     assert "    gamma: weight of the water, 9.81 kN/m³\n" in separator.__doc__

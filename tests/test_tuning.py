@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize
 from sympy import Max, Min, Rational, exp, oo, sqrt, symbols
 
+import contributing
 from draws import draws
 from loopbook import pid, s, tuning
 from loopbook.approximation import SOPDT, model_of
@@ -122,6 +123,16 @@ def test_a_complete_rule_is_registered(registered):
     registered(half, kind=("P", "PI"))
     assert list(tuning.registry.RULES["half"].variants) == ["Half P", "Half PI"]
     assert tuning.registry.RULES["half"].source == "nobody (1900)."
+
+
+def test_the_rule_that_contributors_are_shown_is_the_one_of_the_library(registered):
+    del tuning.registry.RULES["tyreus_luyben"]
+    shown = contributing.run("Add a tuning rule")["tyreus_luyben"]
+    made = tuning.registry.RULES["tyreus_luyben"]
+    confirm(made)
+    assert made.function is shown is not tuning.tyreus_luyben
+    for chosen in made.variants.values():
+        assert made.settings(**chosen) == tuning.RULES["tyreus_luyben"].settings(**chosen)
 
 
 def test_a_hint_may_name_the_settings_by_their_module(registered):

@@ -1,0 +1,20 @@
+"""The examples that contributors are shown, as the tests run them."""
+
+import re
+import textwrap
+from pathlib import Path
+
+GUIDE = Path(__file__).parents[1] / "CONTRIBUTING.md"
+
+
+def example(heading, language="python"):
+    """The first block of code under a heading of CONTRIBUTING.md."""
+    section = GUIDE.read_text(encoding="utf-8").partition(f"\n## {heading}\n")[2].partition("\n## ")[0]
+    return textwrap.dedent(re.search(rf"```{language}\n(.*?)```", section, re.DOTALL)[1])
+
+
+def run(heading, known=()):
+    """The names that the example under a heading makes."""
+    names = dict(known)
+    exec(compile(example(heading), heading, "exec"), names)
+    return names
