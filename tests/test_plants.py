@@ -75,12 +75,20 @@ def test_where_a_plant_regulates_itself_a_static_gain_is_the_slope_of_the_static
         assert sympy.simplify(plant.numbers(slope) - gain) == 0
 
 
+def delayed_states(plant, formula):
+    return {x for x in formula.atoms(AppliedUndef) if x.func(t) in plant.states and plant.numbers(t - x.args[0])}
+
+
 @named
 def test_the_linear_model_is_that_of_small_changes(cls):
     """Rates with one signal changed a little, numerically, against the matrices."""
     plant = cls()
     states, equations = plant.states, plant.state_equations()
-    A, B, C, D = (np.array(plant.numbers(matrix), dtype=float) for matrix in plant.linear_model())
+    if late := delayed_states(plant, plant.measured.get(plant.output, plant.output)):
+        with pytest.raises(ValueError, match="has the delayed state"):
+            plant.linear_model()
+    output = plants.name_of(late.pop().func(t)) if late else None
+    A, B, C, D = (np.array(plant.numbers(matrix), dtype=float) for matrix in plant.linear_model(output))
     at_rest = {x: sympy.Float(0 if x.is_Derivative else plant.values[x], 30) for x in [*states, *plant.inputs]}
 
     def rates(changed, change):
@@ -88,6 +96,7 @@ def test_the_linear_model_is_that_of_small_changes(cls):
         for rate in equations.values():
             rate = plant.numbers(rate)
             late = {f: values[f.func(t)] for f in rate.atoms(AppliedUndef) if f not in values}
+            assert not {f.func(t) for f in late} & set(states), "of a delayed state no matrix says all"
             yield rate.xreplace(values | late).evalf(30)  # two flows of 25 kg/s differ by little
 
     for column, among in ((A, states), (B, plant.inputs)):
@@ -97,6 +106,20 @@ def test_the_linear_model_is_that_of_small_changes(cls):
             slope = np.array([float((up - down) / (2 * change)) for up, down in zip(above, below, strict=True)])
             assert slope == pytest.approx(column[:, n], rel=1e-6, abs=1e-12)
     assert (C.shape, D.shape) == ((1, len(states)), (1, len(plant.inputs)))
+
+
+def test_no_matrices_describe_a_delayed_state():
+    recycle = Process(1 / (s + 2 - sympy.exp(-s)))
+    with pytest.raises(
+        ValueError,
+        match=r"Process has the delayed state x_1\(t - 1\): no matrices A, B describe it, use transfer_function",
+    ):
+        recycle.linear_model()
+    assert Process(sympy.exp(-s) / (s + 2)).linear_model()[:2] == (sympy.Matrix([[-2]]), sympy.Matrix([[1, 1]]))
+    assert HeatedTankWithTransport(tau=0).linear_model()[2] == sympy.Matrix([[1]])
+    with pytest.raises(ValueError, match=r"has the delayed state T_1\(t - tau\): no matrix C .* or another output"):
+        HeatedTankWithTransport().linear_model()
+    assert HeatedTankWithTransport().linear_model("T_1")[0] == HeatedTankWithTransport(tau=0).linear_model()[0]
 
 
 def test_two_balances_solved_by_hand():

@@ -29,7 +29,7 @@ from loopbook.plants import (
     name_of,
 )
 from loopbook.signals import stepwise
-from loopbook.simulation import simulate
+from loopbook.simulation import delayed_states, integrator, simulate
 from loopbook.transfer import feedback, first_order, response, step_response
 
 EXACT = 1e-6  # relative to the size of the response
@@ -184,6 +184,23 @@ def test_a_recycle_in_parts_is_the_whole_run():
     assert back == pytest.approx(longer["c"][65:95], abs=0.02)
 
 
+def test_a_stiff_plant_with_a_delayed_state():
+    """Far too stiff for the explicit method: x' = 1e5 (u - x + x(t - 1)/2), u a step, is a geometric series."""
+    run = simulate(Process(1e5 / (s + 100_000 * (1 - sympy.exp(-s) / 2))), until=6, step=0.5, u=1)
+    steps = np.floor(run.times[1:] - 1e-9)
+    assert run["y"][2::2] == pytest.approx(2 - 0.5 ** steps[1::2], abs=1e-6)
+
+
+def test_a_run_that_needs_too_many_steps_does_not_grow_beyond_all_numbers(monkeypatch):
+    for module, H in ((delayed_states, 1 / (s**2 + 1 + sympy.exp(-50 * s) / 100)), (integrator, 1 / (s**2 + 1))):
+        monkeypatch.setattr(module, "MOST_STEPS", 10)
+        monkeypatch.setattr(delayed_states, "TOO_STIFF", 10)
+        with pytest.raises(
+            ValueError, match="x_2 needs more than 10 steps between t = 0 and 50: an oscillation is too fast"
+        ):
+            simulate(Process(H), until=100, step=50, u=1)
+
+
 def test_a_plant_goes_on_with_a_dead_time_inside_that_it_did_not_have():
     first = simulate(Recycle(tau=0), until=20, step=1, c_in=2)
     run = simulate(Recycle(tau=4), until=60, step=1, c_in=2, after=first)
@@ -290,12 +307,13 @@ def test_what_a_run_contains():
     assert run["w_out"][[0, 19, 20, 100]].tolist() == [25, 25, 30, 30]
     assert run["u"] == pytest.approx(45 + run["u_p"] + run["u_i"] + run["u_d"])
     assert 0.03 < (run["measurement"] - run["h"]).std() < 0.07
-    assert [run.unit(name) for name in ("h", "setpoint", "measurement", "filtered", "u", "u_p")] == 4 * ["m"] + [
-        "%",
-        "1",
-    ]
+    assert [run.unit(name) for name in ("h", "setpoint", "measurement", "filtered")] == 4 * ["m"]
+    assert [run.unit(name) for name in ("u", "u_p", "u_i", "u_d")] == 4 * ["%"]
     with pytest.raises(ValueError, match="'x' is no signal of WoodChipTank"):
         run.unit("x")
+    in_percent = Controller(PID(1.35, 917), 5, u0=50, control_range=(0, 90), measurement_range=(0, 15))
+    later = simulate(WoodChipTank(), in_percent, until=700, setpoint=10, after=run)
+    assert (later.unit("u_p"), simulate(WoodChipTank(), until=800, step=5, after=later).unit("u_p")) == ("%", "%")
     assert repr(run) == (
         "<run of 101 samples, t = 0 to 500: h, u, w_out, setpoint, measurement, ramped, filtered, u_p, u_i, u_d>"
     )
@@ -541,7 +559,7 @@ REFUSED = {
     "a signal without a value": (lambda: simulate(TANK, until=10, step=1, w_out=sympy.log(t)), "w_out"),
     "a signal with a hole between the samples": (
         lambda: simulate(TANK, until=10, step=1, w_out=1 / (t - sympy.Rational(15, 2))),
-        "before t = 8: the system is unstable or a signal infinite",
+        "between t = 7 and 8: an oscillation is too fast for the step, or a signal infinite",
     ),
     "parameters that divide by zero": (lambda: simulate(RCCircuit(R=0), until=10, step=1), "divides by zero"),
     "a controller that returns nothing": (

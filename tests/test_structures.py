@@ -140,6 +140,8 @@ def test_the_signals_of_a_cascade_fit_together():
     assert np.allclose(run["TC2.u_p"], 0.05 * (run["T_hSP"] - run["TC2.measurement"]))
     assert 0.03 < (run["TC2.measurement"] - run["T_hm"]).std() < 0.07
     assert run.loop("TC1").unit("T_hSP") == run.loop("TC2").unit("T_SP") == "°C"
+    assert [run.unit(f"TC1.{name}") for name in ("measurement", "filtered", "u_p", "u_i")] == 4 * ["°C"]
+    assert [run.unit(f"TC2.{name}") for name in ("setpoint", "u_p", "u_d")] == ["°C", "kg/s", "kg/s"]
     assert "T_hSP" in str(trends(run.loop("TC1")))
 
 
@@ -331,7 +333,8 @@ def test_split_range_shares_one_signal_out():
     assert (run["q_i"] * run["q_o"] == 0).all(), "never both"
     assert run["q_i"].max() > 0.01 < run["q_o"].max()
     assert abs(run["h"][[499, 1000]] - [0.6, 0.4]).max() < 0.02
-    assert run.loop("LC1").unit("u") == "%"
+    assert run.loop("LC1").unit("u") == run.unit("LC1.u_p") == "%"
+    assert run.unit("LC1.measurement") == "m"
 
 
 # ------------------------------------------------------------------------------------------------ what is refused

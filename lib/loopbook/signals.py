@@ -139,7 +139,7 @@ def samples(name: str, signal: Signal, times: ArrayLike) -> list[float]:
     return values.tolist()
 
 
-def in_time(name: str, signal: Signal, times: np.ndarray) -> Stretches:
+def in_time(name: str, signal: Signal, times: np.ndarray) -> PiecewiseSignal:
     """Return a signal in time as an object that knows its value at any moment."""
     step = times[1] - times[0]
     if isinstance(signal, sympy.Expr) and signal.has(t):
@@ -147,19 +147,19 @@ def in_time(name: str, signal: Signal, times: np.ndarray) -> Stretches:
             samples(name, signal, times)  # says what is wrong with it
         stretches = [(max(start, times[0]), f) for start, end, f in between_steps(exact(signal)) if end > times[0]]
         values = [float(f) if f.is_number else _changing(name, f) for _, f in stretches]
-        return Stretches([start for start, _ in stretches], values, step)
+        return PiecewiseSignal([start for start, _ in stretches], values, step)
     if is_number(signal):
-        return Stretches(times[:1], [float(signal)], step)
-    return Stretches(times, samples(name, signal, times), step)
+        return PiecewiseSignal(times[:1], [float(signal)], step)
+    return PiecewiseSignal(times, samples(name, signal, times), step)
 
 
-class Stretches:
+class PiecewiseSignal:
     """A signal that is one number, or one function of time, from each of its moments to the next.
 
     Before the first moment it is what its past says, another signal.
     """
 
-    past: Stretches | None = None
+    past: PiecewiseSignal | None = None
     values: list[Any]  # numbers, and functions of time
 
     def __init__(self, times: Iterable[float], values: list[Any], step: float):
@@ -220,3 +220,9 @@ def beyond_all_numbers(names: str, time: float) -> ValueError:
     """The error of a run that cannot go on."""
     reason = "the system is unstable or a signal infinite, end the run earlier"
     return ValueError(f"{names} grows beyond all numbers before t = {time:g}: {reason}")
+
+
+def too_many_steps(names: str, most: int, start: float, end: float) -> ValueError:
+    """The error of a run whose integration does not come to an end."""
+    reason = "an oscillation is too fast for the step, or a signal infinite"
+    return ValueError(f"{names} needs more than {most} steps between t = {start:g} and {end:g}: {reason}")

@@ -224,12 +224,20 @@ class Plant(metaclass=Declaring):
             )
         return solved[0]
 
-    def linear_model(self) -> tuple[sympy.Matrix, sympy.Matrix, sympy.Matrix, sympy.Matrix]:
+    def linear_model(
+        self, output: str | sympy.Expr | None = None
+    ) -> tuple[sympy.Matrix, sympy.Matrix, sympy.Matrix, sympy.Matrix]:
         """Return the matrices A, B, C, D of the model linearised at a steady state, in symbols.
 
         With small changes dx of the states, du of the inputs and dy of the output, dx' = A dx + B du and
         dy = C dx + D du. The operating point appears as the signals' symbols. Delayed inputs keep their delay, which
         the matrices do not show; `transfer_function` has it.
+
+        Arguments:
+            output: a state or a measured signal, a name or a signal; the plant's output if not given.
+        Raises:
+            ValueError: for a name that is none, and for a delayed state, in the rates or in what is measured: no
+                matrices describe it.
 
         >>> from loopbook.plants import BlendingTank
         >>> A, B, C, D = BlendingTank().linear_model()
@@ -238,12 +246,21 @@ class Plant(metaclass=Declaring):
         """
         equations = self.state_equations()
         states, rates = list(equations), [self._active(rate) for rate in equations.values()]
-        measured = self._active(self.measured.get(self.output, self.output))
+        output = self.signal(self.output if output is None else output)
+        measured = self._active(self.measured.get(output, output))
+        for f in rates:
+            self._refuse_delayed_states(f, "no matrices A, B describe it, use transfer_function")
+        self._refuse_delayed_states(measured, "no matrix C describes it, use transfer_function or another output")
         return tuple(
             sympy.Matrix([[self._in_constants(_sensitivity(f, x)) for x in among] for f in functions])
             for functions in (rates, [measured])
             for among in (states, self.inputs)
         )
+
+    def _refuse_delayed_states(self, f, what):
+        delays = {x: self.numbers(t - x.args[0]) for x in f.atoms(AppliedUndef) if x.func(t) in self.states}
+        for x in sorted((x for x, delay in delays.items() if delay), key=str):
+            raise ValueError(f"{type(self).__name__} has the delayed state {x}: {what}")
 
     def transfer_function(
         self, source: str | sympy.Expr | None = None, output: str | sympy.Expr | None = None, numbers: bool = False

@@ -2,8 +2,8 @@
 
 Between two samples the control signal is held, and the plant's state is integrated from one discontinuity to the next
 by the Dormand-Prince method of order 5 (SciPy) to a relative tolerance of 1e-9. Dead time is a delayed signal, exact
-on any grid: the moments at which a held signal arrives late are among the discontinuities. Where a state acts late on
-the plant, as behind a recycle, `loopbook.simulation.recycle` keeps its history. A single controller is a control
+on any grid: the moments at which a held signal arrives late are among the discontinuities. Of a delayed
+state, as behind a recycle, `loopbook.simulation.delayed_states` keeps the history. A single controller is a control
 structure of one loop.
 """
 

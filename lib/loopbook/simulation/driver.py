@@ -11,11 +11,11 @@ import numpy as np
 import sympy
 
 from loopbook.plants import Plant, name_of
-from loopbook.signals import Stretches, in_time
+from loopbook.signals import PiecewiseSignal, in_time
 from loopbook.signals import noise as normal_noise
-from loopbook.simulation.recycle import RecycleSystem
+from loopbook.simulation.delayed_states import DelayedStateIntegrator
+from loopbook.simulation.integrator import PlantIntegrator, compiled
 from loopbook.simulation.run import Past, Run, joined
-from loopbook.simulation.system import System, programs_of
 from loopbook.structures import ControlLoop, Structure
 from loopbook.types import Block, ManualStretches, Number, SampledController, Signal
 from loopbook.validation import did_you_mean, is_number, number, positive
@@ -105,11 +105,10 @@ def simulate(
     begin, past = (0.0, None) if after is None else (float(after.times[-1]), after._past)
     times = _grid(begin, until, step)
 
-    sources = _sources(plant, times, {name: signal for name, signal in inputs.items() if name in names}, past)
-    for name in structure.driven:
-        sources[name].times, sources[name].values = times.tolist(), []
-    kind = RecycleSystem if programs_of(plant).late_states else System
-    system = kind(plant, sources, times, past.system if past else None)
+    given_inputs = {name: signal for name, signal in inputs.items() if name in names}
+    sources = _sources(plant, times, given_inputs, structure.driven, past)
+    kind = DelayedStateIntegrator if compiled(plant).delayed_states else PlantIntegrator
+    integrator = kind(plant, sources, times, structure.driven, past.integrator if past else None)
     if of_one_loop:
         external = {name: given[name] for name in structure.external}
         if blocks:
@@ -122,15 +121,15 @@ def simulate(
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", module="scipy")  # of a step that fails, before it is tried in another way
         for time in times:
-            system.advance(time)
+            integrator.advance(time)
             if blocks:
-                for name, value in structure.sample(system.readings(time, structure.driven)).items():
+                for name, value in structure.sample(integrator.readings(time)).items():
                     sources[name].values.append(value)
     record = structure.seen_by(SINGLE) if of_one_loop and blocks else structure.record
-    signals = {name: np.array(values) for name, values in (system.signals(times) | record).items()}
+    signals = {name: np.array(values) for name, values in (integrator.signals(times) | record).items()}
     held = {name for name, source in sources.items() if not any(map(callable, source.values))} | set(record)
     main = structure.driven[0] if structure.driven else acting_on
-    run = Run(times, signals, plant, main, held, _past=Past(system, structure))
+    run = Run(times, signals, plant, main, held, _past=Past(integrator, structure))
     return run if after is None else joined(after, run)
 
 
@@ -182,16 +181,17 @@ def _refuse_what_belongs_to_one_loop(structure, given, manipulated, inputs):
             raise ValueError(f"{name} is given, but it is a block that sets it")
 
 
-def _sources(plant, times, inputs, past):
-    """All inputs of the plant as signals in time, with their past."""
+def _sources(plant, times, inputs, driven, past):
+    """All inputs of the plant as signals in time, with their past; those that blocks drive get their values later."""
     at_rest = {name_of(x): plant.values[x] for x in plant.inputs}
-    if past and not set(past.system.sources) >= set(at_rest):
-        earlier, now = (", ".join(names) for names in (past.system.sources, at_rest))
+    if past and not set(past.integrator.sources) >= set(at_rest):
+        earlier, now = (", ".join(names) for names in (past.integrator.sources, at_rest))
         raise ValueError(f"the earlier run has the inputs {earlier}, this plant has {now}")
     sources = {name: in_time(name, signal, times) for name, signal in (at_rest | inputs).items()}
+    sources |= {name: PiecewiseSignal(times.tolist(), [], times[1] - times[0]) for name in driven}
     for name, source in sources.items():
-        before = Stretches([-math.inf], [float(at_rest[name])], source.step)
-        source.past = past.system.sources[name] if past else before
+        before = PiecewiseSignal([-math.inf], [float(at_rest[name])], source.step)
+        source.past = past.integrator.sources[name] if past else before
     return sources
 
 

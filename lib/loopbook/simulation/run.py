@@ -11,18 +11,19 @@ from loopbook.plants import Plant, name_of
 from loopbook.validation import did_you_mean
 
 if TYPE_CHECKING:
-    from loopbook.simulation.system import System
+    from loopbook.simulation.integrator import PlantIntegrator
     from loopbook.structures import Structure
 
 __all__ = ["Run"]
 
-OF_THE_LOOP = ("setpoint", "measurement", "ramped", "filtered")  # signals with the unit of the measurement
+LIKE_THE_MEASUREMENT = ("setpoint", "measurement", "ramped", "filtered")  # what a loop records in its unit
+LIKE_THE_OUTPUT = ("u_p", "u_i", "u_d", "feedforward")  # what adds up to the control signal
 
 
 class Past(NamedTuple):
     """What a later run needs in order to go on: the plant with its history, and the blocks with their memory."""
 
-    system: System
+    integrator: PlantIntegrator
     structure: Structure
 
 
@@ -53,11 +54,24 @@ class Run:
         return self.measured or name_of(self.plant.output)
 
     def unit(self, name: str) -> str:
-        """The unit of a signal of the plant, or of a setpoint, as that of the measurement; "1" for a number."""
+        """The unit of a signal of the plant or of a loop; "1" for a number.
+
+        Setpoints have that of the measurement, the terms of a controller that of the control signal. Raises ValueError
+        for a name that is no signal of the run or the plant.
+        """
         of_plant = {name_of(x) for x in self.plant.quantities}
         if self._past and name not in of_plant and name in self.signals:
             structure = self._past.structure
-            name = self.output if name in OF_THE_LOOP else name
+            tag, _, own = name.rpartition(".")
+            if tag in structure.loops:
+                return self.loop(tag).unit(own)
+            if name in LIKE_THE_MEASUREMENT:
+                name = self.output
+            elif name in LIKE_THE_OUTPUT:
+                of_output = [loop.controller for loop in structure.loops.values() if loop.output == self.manipulated]
+                if any(getattr(controller, "from_percent", None) for controller in of_output):
+                    return "%"
+                name = self.manipulated
             while name in structure.measurement_of and name not in of_plant:
                 name = structure.measurement_of[name]
             if name not in of_plant:

@@ -1,4 +1,4 @@
-"""A plant in time: its equations as programs, and its state from one discontinuity to the next."""
+"""A plant in time: its equations compiled, and its state from one discontinuity to the next."""
 
 from __future__ import annotations
 
@@ -12,16 +12,18 @@ from sympy.core.function import AppliedUndef
 
 from loopbook.expressions import t
 from loopbook.plants import Plant, name_of
-from loopbook.signals import CLOSE, Stretches, beyond_all_numbers, last_not_after
+from loopbook.signals import CLOSE, PiecewiseSignal, beyond_all_numbers, last_not_after, too_many_steps
 
-__all__ = ["System"]
+__all__ = ["PlantIntegrator"]
 
 INFINITE = (-sympy.oo, sympy.oo)
-TOLERANCE = {"rtol": 1e-9, "atol": 1e-12, "nsteps": 100_000}
+TOLERANCE = {"rtol": 1e-9, "atol": 1e-12}
+MOST_STEPS = 100_000  # from one discontinuity to the next
+TOO_MANY_STEPS = -1  # how SciPy's LSODA says so
 
 
-class Programs:
-    """The equations of a plant as programs, and the signals besides the undelayed states that each needs."""
+class CompiledModel:
+    """The equations of a plant as functions of numbers, and what each needs besides the undelayed states."""
 
     def __init__(self, plant: Plant):
         equations = plant.state_equations()
@@ -30,12 +32,12 @@ class Programs:
         self.measure, self.measuring = self._compiled(plant, plant.measured.values())
 
     @property
-    def late_states(self) -> list[tuple[str, float]]:
+    def delayed_states(self) -> list[tuple[str, float]]:
         """The states that act on the plant some time later: (name, delay)."""
         return [(name, delay) for name, delay in self.driving if name in self.names]
 
     def _compiled(self, plant, formulas):
-        """A program for the formulas, and what else it needs: (name, delay)."""
+        """A function for the formulas, and what else it needs: (name, delay)."""
         formulas = [plant.numbers(formula) for formula in formulas]
         if any(formula.has(sympy.zoo, sympy.nan, sympy.oo) for formula in formulas):
             raise ValueError(f"{plant} divides by zero: expected parameters that are not zero")
@@ -43,37 +45,45 @@ class Programs:
         formulas = [formula.xreplace(symbols) for formula in formulas]
         found = sorted({x for formula in formulas for x in formula.atoms(AppliedUndef)}, key=str)
         others = {x: sympy.Dummy() for x in found}
-        program = sympy.lambdify([*symbols.values(), *others.values()], [f.xreplace(others) for f in formulas], "math")
-        return program, [(name_of(x), float(t - x.args[0])) for x in found]
+        function = sympy.lambdify([*symbols.values(), *others.values()], [f.xreplace(others) for f in formulas], "math")
+        return function, [(name_of(x), float(t - x.args[0])) for x in found]
 
 
-_PROGRAMS = weakref.WeakKeyDictionary()  # of the plants in use: a plant never changes, and compiling takes its time
+_COMPILED = weakref.WeakKeyDictionary()  # of the plants in use: a plant never changes, and compiling takes its time
 
 
-def programs_of(plant: Plant) -> Programs:
-    """The programs of a plant, compiled once."""
-    if plant not in _PROGRAMS:
-        _PROGRAMS[plant] = Programs(plant)
-    return _PROGRAMS[plant]
+def compiled(plant: Plant) -> CompiledModel:
+    """The equations of a plant, compiled once."""
+    if plant not in _COMPILED:
+        _COMPILED[plant] = CompiledModel(plant)
+    return _COMPILED[plant]
 
 
-class System:
-    """The state of a plant, of which no state acts late, from one discontinuity to the next.
+class PlantIntegrator:
+    """The state of a plant without delayed states, from one discontinuity to the next.
 
     Arguments:
         plant: the plant.
         sources: its inputs as signals in time, by name.
         times: the moments of the samples.
-        past: the system of an earlier run, which this one continues.
+        driven: the names of those that blocks drive, whose values come sample by sample.
+        past: the integrator of an earlier run, which this one continues.
     """
 
-    def __init__(self, plant: Plant, sources: Mapping[str, Stretches], times: np.ndarray, past: System | None = None):
-        self.plant, self.sources, self.past, self.rows = plant, sources, past, []
+    def __init__(
+        self,
+        plant: Plant,
+        sources: Mapping[str, PiecewiseSignal],
+        times: np.ndarray,
+        driven: Collection[str] = (),
+        past: PlantIntegrator | None = None,
+    ):
+        self.plant, self.sources, self.driven, self.past, self.rows = plant, sources, driven, past, []
         self.begin, self.step = times[0], times[1] - times[0]
-        programs = programs_of(plant)
-        self.rates, self.driving, self.late_states = programs.rates, programs.driving, programs.late_states
-        self.measure, self.measuring = programs.measure, programs.measuring
-        self.states, self.names = programs.states, programs.names
+        model = compiled(plant)
+        self.rates, self.driving, self.delayed_states = model.rates, model.driving, model.delayed_states
+        self.measure, self.measuring = model.measure, model.measuring
+        self.states, self.names = model.states, model.names
         if past and past.names != self.names:
             raise ValueError(f"the earlier run has the states {past.names}, this plant has {self.names}")
         self.measured = [name_of(x) for x in plant.measured]
@@ -90,11 +100,12 @@ class System:
     def _prepare(self):
         from scipy.integrate import ode
 
+        exact = TOLERANCE | {"nsteps": MOST_STEPS}
         self.method, self.solvers = (
             "dopri5",
             {
-                "dopri5": ode(self._rate_of_change).set_integrator("dopri5", first_step=self.step, **TOLERANCE),
-                "lsoda": ode(self._rate_of_change).set_integrator("lsoda", **TOLERANCE),
+                "dopri5": ode(self._rate_of_change).set_integrator("dopri5", first_step=self.step, **exact),
+                "lsoda": ode(self._rate_of_change).set_integrator("lsoda", **exact),
             },
         )
 
@@ -103,7 +114,7 @@ class System:
             if delay < 0:
                 raise ValueError(f"{name} acts {-delay:g} before its time: expected a dead time that is not negative")
         for name, delay in self.measuring:
-            if name in self.sources and not self.sources[name].values and not delay:
+            if name in self.driven and not delay:
                 raise ValueError(f"{name} acts on a measured signal at once: expected a lag between the two")
 
     def _discontinuities(self, times):
@@ -134,7 +145,7 @@ class System:
 
     def _integrated(self, state, start, end):
         """The state at the end of a stretch of time in which no signal jumps."""
-        self._look(start, end)
+        self._freeze_inputs(start, end)
         # what is too stiff for the explicit method goes to the one that switches to an implicit method by itself
         for method in dict.fromkeys((self.method, "lsoda")):
             solver = self.solvers[method]
@@ -144,6 +155,8 @@ class System:
             if solver.successful() and all(map(math.isfinite, found)):
                 self.method = method
                 return self._limited(found)
+        if solver.get_return_code() == TOO_MANY_STEPS:
+            raise too_many_steps(", ".join(self.names), MOST_STEPS, start, end)
         raise beyond_all_numbers(", ".join(self.names), end)
 
     def _limited(self, state):
@@ -151,8 +164,8 @@ class System:
             return state
         return [min(max(x, low), high) for x, (low, high) in zip(state, self.limits, strict=True)]
 
-    def _look(self, start, end):
-        """Take what drives the states in a stretch of time in which no signal jumps."""
+    def _freeze_inputs(self, start, end):
+        """Keep what drives the states in a stretch of time in which no signal jumps: numbers and functions of time."""
         middle = (start + end) / 2
         self.inside = [(self._around(name, middle - delay), delay) for name, delay in self.driving]
         values = [x for x, _ in self.inside]
@@ -195,9 +208,9 @@ class System:
             return self.state_at(time)[self.names.index(name)]
         return self.sources[name].at(time)
 
-    def readings(self, time: float, driven: Collection[str]) -> dict[str, float]:
+    def readings(self, time: float) -> dict[str, float]:
         """What the plant says at the last sample: states, measured signals and inputs that no block drives, by name."""
-        inputs = {name: source.at(time) for name, source in self.sources.items() if name not in driven}
+        inputs = {name: source.at(time) for name, source in self.sources.items() if name not in self.driven}
         measured = dict(zip(self.measured, self.rows[-1], strict=True))
         return inputs | dict(zip(self.names, self.trace[-1], strict=True)) | measured
 

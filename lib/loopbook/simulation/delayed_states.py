@@ -1,6 +1,6 @@
-"""A plant in time, some of whose states act on it late, as behind a recycle or in a balance with a dead time.
+"""A plant with delayed states in time, as behind a recycle or in a balance with a dead time.
 
-The method of steps: in a stretch of time no longer than the shortest such dead time, what acts late is known already,
+The method of steps: in a stretch of time no longer than the shortest such dead time, what is delayed is known already,
 from a history that is as exact as the integration. A jump of an input returns as a jump of a higher derivative after
 each of these dead times; the integration stops there until it is too smooth to matter. The method is that of Dormand
 and Prince of order 8 with its interpolation of order 7 (SciPy), to a relative tolerance of 1e-11.
@@ -13,32 +13,33 @@ import math
 
 import numpy as np
 
-from loopbook.signals import CLOSE, beyond_all_numbers
-from loopbook.simulation.system import System
+from loopbook.signals import CLOSE, beyond_all_numbers, too_many_steps
+from loopbook.simulation.integrator import PlantIntegrator
 
-__all__ = ["RecycleSystem"]
+__all__ = ["DelayedStateIntegrator"]
 
 TOLERANCE = {"rtol": 1e-11, "atol": 1e-13}
 SMOOTH = 8  # the derivative that may jump without a stop
-MOST_STEPS = 2000  # in one stretch; for more, a system is too stiff for an explicit method
+TOO_STIFF = 2000  # steps of the explicit method in one stretch
+MOST_STEPS = 100_000  # of the method for stiff systems
 MOST_STRETCHES = 1_000_000
 
 
-class RecycleSystem(System):
-    """The state of a plant, of which some states act late, from one discontinuity to the next; else as `System`."""
+class DelayedStateIntegrator(PlantIntegrator):
+    """The state of a plant with delayed states, from one discontinuity to the next; else as `PlantIntegrator`."""
 
     def _prepare(self):
         from scipy.integrate import DOP853, LSODA
 
-        self.methods, self.first = [DOP853, LSODA], None
+        self.methods, self.first = [(DOP853, TOO_STIFF), (LSODA, MOST_STEPS)], None
         self.ends, self.pieces = [], []  # the history: up to which time each interpolant holds
 
     def _begins(self):
-        return [self.begin, *(self.past._begins() if isinstance(self.past, RecycleSystem) else ())]
+        return [self.begin, *(self.past._begins() if isinstance(self.past, DelayedStateIntegrator) else ())]
 
     def _discontinuities(self, times):
         """The samples, where an input jumps, and where such jumps come back; no two further apart than a dead time."""
-        inner = sorted({delay for _, delay in self.late_states})
+        inner = sorted({delay for _, delay in self.delayed_states})
         count = (times[-1] - self.begin) / inner[0]
         if count > MOST_STRETCHES:
             raise ValueError(
@@ -75,9 +76,9 @@ class RecycleSystem(System):
 
     def _integrated(self, state, start, end):
         """The state at the end of a stretch of time; what lies between becomes history."""
-        self._look(start, end)
-        for method in tuple(self.methods):
-            found = self._stepped(method, state, start, end)
+        self._freeze_inputs(start, end)
+        for method, most in tuple(self.methods):
+            found = self._stepped(method, most, state, start, end)
             if self.failure:
                 raise self.failure
             if found is not None:
@@ -88,7 +89,7 @@ class RecycleSystem(System):
             self.methods = self.methods[1:] or self.methods  # what was too stiff once remains so
         raise beyond_all_numbers(", ".join(self.names), end)
 
-    def _stepped(self, method, state, start, end):
+    def _stepped(self, method, most, state, start, end):
         """The steps of a method with their interpolants, and the state at the end; None if it gets stuck."""
         first = None if self.first is None else min(self.first, end - start)
         try:
@@ -96,13 +97,16 @@ class RecycleSystem(System):
         except ValueError:  # of rates that are no numbers
             return None
         ends, pieces = [], []
-        while solver.status == "running" and len(pieces) < MOST_STEPS:
+        while solver.status == "running" and len(pieces) < most:
             solver.step()
             if solver.status == "failed" or not all(map(math.isfinite, solver.y)):
                 return None
             ends.append(solver.t)
             pieces.append(solver.dense_output())
+        if solver.status != "finished" and most == MOST_STEPS:
+            raise too_many_steps(", ".join(self.names), most, start, end)
         if solver.status != "finished":
             return None
-        self.first = None if solver.h_abs > end - start else solver.h_abs
+        proposed = getattr(solver, "h_abs", math.inf)  # LSODA proposes none
+        self.first = None if proposed > end - start else proposed
         return ends, pieces, solver.y.tolist()
