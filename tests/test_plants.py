@@ -1,7 +1,11 @@
 """The plants: what is derived from a balance law is checked by a second derivation."""
 
 import inspect
+import shutil
+import subprocess
+import sys
 import types
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -298,8 +302,9 @@ FORGOTTEN = {
         "Tank has 1 laws for the states h, c: expected one for each",
     ),
     "that one law is enough": ({"mass": lambda tank: Balance(3 * tank.h, tank.q)}, "Tank has 2 laws for the states h"),
+    "that all instances have values": ({"values": signal(1, "1", "ratio")}, "every plant has a 'values'"),
     "that a name is taken": ({"model": parameter(1, "m", "")}, "every plant has a 'model', expected another name"),
-    "the output": ({"output": None}, "Tank has None for output: expected one of h"),
+    "the output": ({"output": None}, "Tank names no output: expected output = h"),
     "what is manipulated": (
         {"manipulated": lambda tank: tank.h},
         r"Tank has h\(t\) for manipulated: expected one of q",
@@ -309,19 +314,44 @@ FORGOTTEN = {
             "L": lambda tank: measured(50 * tank.h, "%", "level"),
             "volume": lambda tank: Balance(tank.A * tank.h, tank.q - tank.L),
         },
-        r"Tank: volume contains L\(t\), which is measured: expected 50\*h\(t\)",
+        r"Tank: volume contains L, which is measured: expected 50\*h",
     ),
     "that a content is one of now": (
         {"volume": lambda tank: Balance(tank.A * (tank.h + delayed(tank.h, 2)), tank.q)},
         "Tank: volume has a delayed rate of change",
     ),
+    "what a measured signal was when it is delayed": (
+        {
+            "h_m": lambda tank: measured(delayed(tank.h, 2), "m", "measured level"),
+            "volume": lambda tank: Balance(tank.A * tank.h, tank.q - delayed(tank.h_m, 5)),
+        },
+        r"Tank: volume contains delayed\(h_m, 5\), which is measured: expected delayed\(h, 7\)$",
+    ),
+    "that the output is no text": ({"output": "h"}, "Tank: output is the text 'h': expected the signal h"),
+    "that the text is no name": ({"manipulated": "u"}, "Tank: manipulated is the text 'u': expected one of q"),
+    "any quantity": (
+        dict.fromkeys("Aqh", None) | {"volume": Balance(*signals("h q"))},
+        r"Tank: volume contains h\(t\), which is not declared: expected h = signal\(...\)",
+    ),
+    "an input": (
+        {"q": parameter(0, "m³/s", "inflow"), "manipulated": lambda tank: tank.q},
+        "Tank has q for manipulated: there is none that could be",
+    ),
+    "the order of limits": (
+        {"h": signal(2, "m", "level", limits=(3, 1))},
+        r"Tank: the limits of h are \(3, 1\): expected the lower one first",
+    ),
+    "one of two limits": (
+        {"h": signal(2, "m", "level", limits=(0,))},
+        r"Tank: the limits of h are \(0,\): expected \(lowest, highest\)",
+    ),
     "what is at work": (
         {"at_work": lambda tank: {tank.A: 3}},
-        "Tank is at work by other signals: expected one of q, h",
+        "Tank is at work by A, which is no input and no state: expected one of q, h",
     ),
     "that a limit is one of a state": (
         {"q": signal(0.1, "m³/s", "inflow", limits=(0, 1))},
-        "Tank has limits for a signal that is no state: expected one of h",
+        r"Tank has limits for q\(t\), which is no state: expected one of h",
     ),
 }
 
@@ -339,6 +369,40 @@ def test_what_is_forgotten_is_said_in_one_sentence_at_once(what):
     with pytest.raises(ValueError, match=message) as caught:
         declared(**body)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("law", "message"),
+    [
+        (lambda h, q: Balance("A*h", q), r"the content of a balance is 'A\*h': expected a formula of signals"),
+        (lambda h, q: Balance(h, lambda: q), "the inflow of a balance is <function .*: expected a formula of signals"),
+        (lambda h, q: types.SimpleNamespace(of=measured("2*h")), r"what is measured is '2\*h': expected a formula"),
+        (lambda h, q: delayed("h", 5), "what is delayed is 'h': expected a formula of signals"),
+        (lambda h, q: delayed(h, "5"), "the delay is '5': expected a number or an expression"),
+    ],
+)
+def test_a_law_is_a_formula(law, message):
+    with pytest.raises(ValueError, match=message):
+        law(*signals("h q"))
+
+
+def test_laws_of_another_sort_do_not_add_up():
+    x, u = signals("x u")
+    with pytest.raises(TypeError, match=r"unsupported operand .* 'Balance' and 'Lag'"):
+        Balance(x, u) + plants.Lag(x, u, 2)
+    assert (Balance(x, 0) + Balance(u, 1)).inflow == 1
+
+
+def test_a_new_module_with_a_plant_is_found(tmp_path):
+    """In a copy of the package, since modules that are imported stay."""
+    shutil.copytree(Path(plants.__file__).parent, tmp_path / "copied", ignore=shutil.ignore_patterns("__pycache__"))
+    new = Path(plants.__file__).with_name("separators.py").read_text(encoding="utf-8").replace("TwoStage", "ThirdStage")
+    (tmp_path / "copied" / "third.py").write_text(new, encoding="utf-8")
+    code = "import copied; assert copied.ThirdStageSeparator in vars(copied).values(); print(sorted(copied.__all__))"
+    found = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
+    ).stdout
+    assert found.strip() == str(sorted([*plants.__all__, "ThirdStageSeparator"]))
 
 
 def test_the_plant_that_contributors_are_shown_is_one():

@@ -20,6 +20,7 @@ from loopbook.validation import (
     exact_not_negative,
     exact_positive,
     exact_real,
+    limits,
     not_negative,
     number,
     one_of,
@@ -448,12 +449,5 @@ def _in_floats(scaling):
 
 
 def _limits(name, given):
-    if given is None:
-        return -math.inf, math.inf
-    try:
-        low, high = (float(x) for x in given)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} is {given!r}: expected (lowest, highest)") from None
-    if not low < high:
-        raise ValueError(f"{name} is ({low:g}, {high:g}): expected the lower one first")
-    return low, high
+    low, high = (-math.inf, math.inf) if given is None else limits(name, given)
+    return float(low), float(high)

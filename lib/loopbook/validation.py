@@ -181,6 +181,31 @@ def _unless(wrong, name, value, expected):
     return value
 
 
+def limits(name: str, given: Any, symbols: bool = False) -> tuple[sympy.Expr, sympy.Expr]:
+    """Return ``(lowest, highest)``, exact; either may be infinite.
+
+    Arguments:
+        name: of the limits, in the plural, as the sentence begins with it.
+        given: two numbers.
+        symbols: whether symbols may stand in them, of which the order need not be known.
+    Raises:
+        ValueError: for what is not two numbers, the lower one first.
+
+    >>> limits("the limits of h", (3, 1))
+    Traceback (most recent call last):
+    ValueError: the limits of h are (3, 1): expected the lower one first
+    """
+    try:
+        low, high = ends = tuple(map(exact, given))
+    except (TypeError, ValueError):
+        ends = ()
+    if not ends or any(x.is_extended_real is False or not (symbols or x.is_number) for x in ends):
+        raise ValueError(f"{name} are {given!r}: expected (lowest, highest)")
+    if (high - low).is_extended_positive is False:
+        raise ValueError(f"{name} are ({low}, {high}): expected the lower one first")
+    return low, high
+
+
 # --------------------------------------------------------------------------------------------------------- arrays
 
 

@@ -8,20 +8,10 @@ Signals are functions of time, ``T(t)``, parameters are symbols. ``HeatedTank.m`
 the number. A new class in a module here is offered by the package, and found by the tests, through the module's list.
 """
 
-from loopbook.plants import (
-    batch,
-    circuits,
-    declarations,
-    flows,
-    heat,
-    material,
-    motion,
-    plant,
-    plantwide,
-    process,
-    reactor,
-    separators,
-)
+import importlib
+import pkgutil
+
+# the names are here for editors and type checkers
 from loopbook.plants.batch import *
 from loopbook.plants.circuits import *
 from loopbook.plants.declarations import *
@@ -35,7 +25,9 @@ from loopbook.plants.process import *
 from loopbook.plants.reactor import *
 from loopbook.plants.separators import *
 
-__all__ = [
-    *batch.__all__, *circuits.__all__, *declarations.__all__, *flows.__all__, *heat.__all__, *material.__all__,
-    *motion.__all__, *plant.__all__, *plantwide.__all__, *process.__all__, *reactor.__all__, *separators.__all__,
-]  # fmt: skip
+__all__: list[str] = []
+# a plant in a module of its own is found by itself
+for _module in pkgutil.iter_modules(__path__):  # noqa: F405
+    _found = importlib.import_module(f"{__name__}.{_module.name}")
+    globals().update({name: getattr(_found, name) for name in _found.__all__})
+    __all__ += _found.__all__

@@ -14,6 +14,8 @@ from sympy.core.function import AppliedUndef
 
 from loopbook.expressions import exact, t
 from loopbook.types import Number
+from loopbook.validation import exact_real, is_number
+from loopbook.validation import limits as checked_limits
 
 __all__ = [
     "Balance", "Lag", "Quantity", "delayed", "measured", "name_of", "parameter", "parameters", "signal", "signals",
@@ -50,7 +52,7 @@ def signals(names: str) -> tuple[AppliedUndef, ...]:
 
 
 def parameters(names: str) -> tuple[sympy.Symbol, ...]:
-    """The symbols with these names; parameters are positive."""
+    """The symbols with these names; in formulas they count as positive, as parameters do."""
     return tuple(map(_positive, names.split()))
 
 
@@ -69,7 +71,9 @@ def signal(value: Number, unit: str = "", meaning: str = "", limits: tuple[Numbe
 
 
 def parameter(value: Number, unit: str = "", meaning: str = "") -> Any:
-    """Declare a parameter of a plant, in the body of its class; it is positive, or zero.
+    """Declare a parameter of a plant, in the body of its class.
+
+    Its symbol counts as positive in formulas, as where a root is simplified; its value may be zero, but not negative.
 
     Arguments:
         value: in the unit.
@@ -91,7 +95,7 @@ def measured(formula: sympy.Expr, unit: str = "", meaning: str = "") -> Any:
     Returns:
         In the body of the class, the function of time, as ``T(t)``.
     """
-    return Declared(Quantity(None, unit, meaning), formula=formula)
+    return Declared(Quantity(None, unit, meaning), formula=_formula("what is measured", formula))
 
 
 def delayed(x: sympy.Expr, delay: Number) -> sympy.Expr:
@@ -101,7 +105,7 @@ def delayed(x: sympy.Expr, delay: Number) -> sympy.Expr:
     >>> delayed(2 * u, tau)
     2*u(t - tau)
     """
-    return sympy.sympify(x).subs(t, t - exact(delay))
+    return _formula("what is delayed", x).subs(t, t - exact_real("the delay", delay))
 
 
 def name_of(x: sympy.Expr) -> str:
@@ -119,18 +123,29 @@ def _positive(name):
     return sympy.Symbol(name, positive=True)
 
 
+def _formula(what, given):
+    """A formula as it was given, or a number."""
+    if isinstance(given, sympy.Expr):
+        return given
+    if is_number(given):
+        return exact(given)
+    raise ValueError(f"{what} is {given!r}: expected a formula of signals and parameters")
+
+
 # ---------------------------------------------------------------------------------------------------------- laws
 
 
 @dataclass(frozen=True)
 class Balance:
-    """What is stored in a part of a plant, such as mass, energy or momentum, changes as it flows in, and no other way.
+    """What is stored in a part of a plant changes by what flows in, what flows out, and what is generated there.
 
-    The sum of two balances is that of both parts together: what one hands on to the other cancels.
+    Accumulation is inflow less outflow plus generation: of mass, energy, momentum, or of a substance, which a reaction
+    generates or consumes. The sum of two balances is that of both parts together: what one hands on to the other
+    cancels.
 
     Arguments:
         content: what is stored, a formula of signals and parameters.
-        inflow: what flows in, less what flows out: the rate of change of the content.
+        inflow: the net rate at which the content changes: what flows in, less what flows out, plus what is generated.
 
     >>> (h_1, h_2, q_in, q_12, q_out), (A,) = signals("h_1 h_2 q_in q_12 q_out"), parameters("A")
     >>> first, second = Balance(A * h_1, q_in - q_12), Balance(2 * A * h_2, q_12 - q_out)
@@ -144,12 +159,18 @@ class Balance:
     inflow: sympy.Expr
     parts: tuple[Balance, ...] = ()
 
+    def __post_init__(self) -> None:
+        for name in ("content", "inflow"):
+            object.__setattr__(self, name, _formula(f"the {name} of a balance", getattr(self, name)))
+
     @property
     def equation(self) -> sympy.Equality:
-        """The law as an equation: the derivative of the content is the net inflow."""
+        """The law as an equation: the derivative of the content is the net rate."""
         return sympy.Eq(sympy.diff(self.content, t), self.inflow, evaluate=False)
 
     def __add__(self, other: Balance) -> Balance:
+        if not isinstance(other, Balance):
+            return NotImplemented
         return Balance(self.content + other.content, self.inflow + other.inflow, (self, other))
 
     def subs(self, old: sympy.Expr, new: sympy.Expr) -> Balance:
@@ -181,6 +202,10 @@ class Lag:
     u: sympy.Expr
     T: Number
 
+    def __post_init__(self) -> None:
+        for name in ("x", "u", "T"):
+            object.__setattr__(self, name, _formula(f"{name} of a lag", getattr(self, name)))
+
     @property
     def equation(self) -> sympy.Equality:
         """The law as an equation."""
@@ -190,7 +215,7 @@ class Lag:
 # ----------------------------------------------------------------------------------------------- the body of a class
 
 
-class Body(dict):
+class ClassBody(dict):
     """The body of a plant's class while it is read: what is declared gets its name, and is recorded."""
 
     def __init__(self, plant: str, bases: tuple[type, ...]):
@@ -233,18 +258,18 @@ class Body(dict):
             except ValueError as error:
                 raise ValueError(f"{self.plant}.{name}: {error}") from None
         if declared.limits is not None:
-            self.limits[symbol] = declared.limits
+            self.limits[symbol] = checked_limits(f"{self.plant}: the limits of {name}", declared.limits, symbols=True)
         return symbol
 
 
-class Declaring(type):
-    """The class of the classes of plants: it reads their bodies as declarations."""
+class PlantMeta(type):
+    """The metaclass of plants: it reads the bodies of their classes as declarations."""
 
     @classmethod
     def __prepare__(cls, name: str, bases: tuple[type, ...], **_: Any) -> dict[str, Any]:
-        return Body(name, bases)
+        return ClassBody(name, bases)
 
     def __new__(cls, name: str, bases: tuple[type, ...], body: dict[str, Any], **more: Any) -> Any:
-        if not isinstance(body, Body):
+        if not isinstance(body, ClassBody):
             raise ValueError(f"{name} is made by type(): expected a class statement, or types.new_class")
         return super().__new__(cls, name, bases, dict(body) | {"_declared": body}, **more)

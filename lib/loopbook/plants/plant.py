@@ -12,8 +12,8 @@ from sympy.polys.domains import QQ, ZZ
 from sympy.polys.matrices import DomainMatrix
 
 from loopbook.expressions import exact, s, t
-from loopbook.plants.declarations import Balance, Body, Declared, Declaring, Lag, Quantity, name_of
-from loopbook.plants.gaps import refuse_gaps
+from loopbook.plants.checks import refuse_gaps
+from loopbook.plants.declarations import Balance, ClassBody, Declared, Lag, PlantMeta, Quantity, name_of
 from loopbook.stability import is_stable
 from loopbook.transfer import simplified
 from loopbook.types import Number
@@ -22,7 +22,7 @@ from loopbook.validation import did_you_mean, exact_not_negative, exact_real
 __all__ = ["Plant"]
 
 
-class Plant(metaclass=Declaring):
+class Plant(metaclass=PlantMeta):
     """A process with parameters, inputs, states and one measured output; a subclass states its physics.
 
     What its body declares by `signal`, `parameter` and `measured` are the quantities; each `Balance` or `Lag` in it is
@@ -56,8 +56,8 @@ class Plant(metaclass=Declaring):
     measured: Mapping[sympy.Expr, sympy.Expr] = {}
     model: tuple[sympy.Equality, ...] = ()
     limits: Mapping[sympy.Expr, tuple[Number, Number]] = {}
-    values: dict[sympy.Expr, sympy.Expr]
-    _declared: Body
+    values: Mapping[sympy.Expr, sympy.Expr] = {}
+    _declared: ClassBody
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
@@ -70,7 +70,7 @@ class Plant(metaclass=Declaring):
         independent = [law for law in cls.laws.values() if not (isinstance(law, Balance) and law.parts)]
         equations = [law.equation for law in independent]
         cls.model = (*equations, *(sympy.Eq(x, f, evaluate=False) for x, f in cls.measured.items()))
-        if cls.quantities:
+        if cls.quantities or cls.laws:
             refuse_gaps(cls, _states(cls), _inputs(cls), len(independent))
             said_of_it = (cls.__doc__ or cls.__name__).rstrip()
             cls.__doc__ = "\n".join([said_of_it, "", "    Attributes:", *_table(cls.quantities), "    "])

@@ -49,7 +49,8 @@ def simulate(
     a pulse far shorter than a step would be stepped over.
 
     Arguments:
-        plant: a `plants.Plant`. Before the start it has been at rest at its operating point.
+        plant: a `plants.Plant`. Before the start its inputs and its state have been those of its operating point,
+            constant, whether or not that is a steady state.
         controller: a `pid.Controller`, or any object with a `step` and a method `update` like its own. The object
             itself is not changed. For several of them on one plant, a list of the blocks of `structures`: loops,
             calculations, split ranges, and a `sequence.Chart`.

@@ -10,8 +10,9 @@ from sympy.core.function import AppliedUndef
 
 from loopbook.expressions import t
 from loopbook.plants.declarations import name_of
+from loopbook.validation import did_you_mean
 
-__all__ = ["refuse_gaps"]
+__all__: list[str] = []  # nothing that a user of the package would call
 
 
 def refuse_gaps(cls: Any, states: list[sympy.Expr], inputs: list[sympy.Expr], laws: int) -> None:
@@ -35,10 +36,14 @@ def refuse_gaps(cls: Any, states: list[sympy.Expr], inputs: list[sympy.Expr], la
     highest = [name_of(x) for x in states if x.diff(t) not in states]
     if len(highest) != laws:
         raise ValueError(f"{cls.__name__} has {laws} laws for the states {', '.join(highest)}: expected one for each")
-    _refuse_others(f"{cls.__name__} has {cls.output} for output", [cls.output], [*states, *cls.measured])
-    _refuse_others(f"{cls.__name__} has {cls.manipulated} for manipulated", [cls.manipulated], inputs)
-    _refuse_others(f"{cls.__name__} has limits for a signal that is no state", cls.limits, states)
-    _refuse_others(f"{cls.__name__} is at work by other signals", cls.at_work, [*inputs, *states])
+    _refuse_role(cls, "output", [*states, *cls.measured])
+    _refuse_role(cls, "manipulated", inputs)
+    for x in _others(cls.limits, states):
+        raise ValueError(f"{cls.__name__} has limits for {x}, which is no state: {_one_of(states)}")
+    for x in _others(cls.at_work, [*inputs, *states]):
+        raise ValueError(
+            f"{cls.__name__} is at work by {x}, which is no input and no state: {_one_of(inputs + states)}"
+        )
 
 
 def _formulas(cls):
@@ -54,13 +59,38 @@ def _words_of(cls, name, formula):
     for x in sorted(inside - set(cls.quantities), key=str):
         how = f"{x} = parameter(...)" if x.is_Symbol else f"{name_of(x)} = signal(...)"
         raise ValueError(f"{cls.__name__}: {name} contains {x}, which is not declared: expected {how}")
-    for x in sorted(inside & set(cls.measured), key=str):
-        raise ValueError(f"{cls.__name__}: {name} contains {x}, which is measured: expected {cls.measured[x]}")
+    for x in sorted((x for x in formula.atoms(AppliedUndef) if x.func(t) in cls.measured), key=str):
+        instead = cls.measured[x.func(t)].subs(t, x.args[0])
+        raise ValueError(
+            f"{cls.__name__}: {name} contains {_in_words(x)}, which is measured: expected {_in_words(instead)}"
+        )
     if formula.has(sympy.Subs) or any(x.expr.args != (t,) for x in formula.atoms(sympy.Derivative)):
         raise ValueError(f"{cls.__name__}: {name} has a delayed rate of change: expected delayed signals alone")
     return inside
 
 
-def _refuse_others(what: str, chosen: Iterable[Any], among: list[sympy.Expr]) -> None:
-    if not {*chosen} <= {*among}:
-        raise ValueError(f"{what}: expected one of {', '.join(map(name_of, among))}")
+def _in_words(formula):
+    """A formula as a class states it: T for T(t), delayed(T, 5) for T(t - 5)."""
+    delays = {x: t - x.args[0] for x in formula.atoms(AppliedUndef)}
+    words = {x: f"delayed({name_of(x)}, {delay})" if delay else name_of(x) for x, delay in delays.items()}
+    return str(formula.xreplace({x: sympy.Symbol(word) for x, word in words.items()}))
+
+
+def _refuse_role(cls: Any, role: str, among: list[sympy.Expr]) -> None:
+    """Refuse an output or a manipulated input that is none."""
+    chosen, names = getattr(cls, role), list(map(name_of, among))
+    if isinstance(chosen, str):
+        meant = f"expected the signal {chosen}" if chosen in names else did_you_mean(chosen, names)
+        raise ValueError(f"{cls.__name__}: {role} is the text {chosen!r}: {meant}")
+    if chosen is None and among:
+        raise ValueError(f"{cls.__name__} names no {role}: expected {role} = {' or '.join(names)}")
+    if chosen not in among:
+        raise ValueError(f"{cls.__name__} has {chosen} for {role}: {_one_of(among)}")
+
+
+def _others(chosen: Iterable[Any], among: list[sympy.Expr]) -> list[Any]:
+    return [x for x in chosen if x not in among]
+
+
+def _one_of(among: list[sympy.Expr]) -> str:
+    return f"expected one of {', '.join(map(name_of, among))}" if among else "there is none that could be"
