@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from loopbook import s, t
 from loopbook.laplace import evaluate
-from loopbook.pid import PID, Controller, LowpassFilter
+from loopbook.pid import HOLD, PID, Controller, LowpassFilter
 from loopbook.transfer import first_order, response
 
 TIMES = st.fractions(0, 50, max_denominator=20).map(sympy.Rational)
@@ -220,7 +220,7 @@ def test_the_range_of_the_feedback_alone():
 def test_no_bump_between_the_modes(pid):
     controller = Controller(pid, step=1, u0=30, limits=(0, 100))
     last = run(controller, [1.0, 0.5, 0.5], setpoint=1)[-1]
-    assert run(controller, [0.4, 0.3], setpoint=1, manual=math.nan) == [last, last]
+    assert run(controller, [0.4, 0.3], setpoint=1, manual=HOLD) == [last, last]
     assert run(controller, [0.4, 0.3], setpoint=1, manual=55.0) == [55, 55]
     assert run(controller, [0.3], setpoint=1) == pytest.approx([55])
     following = run(controller, [0.3, 0.3], setpoint=1)
@@ -235,7 +235,7 @@ def test_without_bumpless_transfer_there_is_a_bump():
 
 
 def test_manual_mode_from_the_beginning_starts_at_the_nominal_control_signal():
-    assert run(Controller(PID(2, 10), step=1, u0=30), [5.0], manual=math.nan) == [30]
+    assert run(Controller(PID(2, 10), step=1, u0=30), [5.0], manual=HOLD) == [30]
 
 
 def test_percent_inside_engineering_units_outside():

@@ -540,6 +540,10 @@ REFUSED = {
     "a class for a plant": (lambda: simulate(WoodChipTank, until=10, step=1), "the plant is"),
     "a plant for the earlier run": (lambda: simulate(TANK, until=10, step=1, after=TANK), "after is"),
     "settings for a controller": (lambda: simulate(TANK, PID(1), until=10, setpoint=1), "the controller is PID"),
+    "an array of noise for nobody": (
+        lambda: simulate(TANK, until=2, step=1, noise=np.zeros(3)),
+        "noise is given, but no controller",
+    ),
     "noise for nobody": (lambda: simulate(TANK, until=10, step=1, noise=1), "no controller"),
     "an unknown manipulated input": (
         lambda: simulate(TANK, LOOP, until=10, setpoint=1, manipulated="h"),

@@ -265,13 +265,13 @@ def test_the_outer_loop_stops_integrating_at_the_inner_ones_limit():
     assert back() < 0.6 * back(anti_windup=False)
 
 
-def test_stuck_says_which_way_the_setpoint_has_no_effect():
+def test_at_limit_says_which_way_the_setpoint_has_no_effect():
     for action, sign in (("reverse", 1), ("direct", -1)):
         loop = ControlLoop("C", Controller(PID(1), step=1, action=action, limits=(0, 10)), "r", "y", "u")
-        assert loop.stuck() == 0
+        assert loop.at_limit() == 0
         for u, way in ((10, 1), (0, -1), (5, 0)):
             loop.controller.u = u
-            assert loop.stuck() == way * sign
+            assert loop.at_limit() == way * sign
 
 
 # ------------------------------------------------------------------------------------------------ other blocks

@@ -27,9 +27,12 @@ from loopbook.validation import (
     positive,
 )
 
-__all__ = ["PID", "Controller", "LowpassFilter"]
+__all__ = ["HOLD", "PID", "Controller", "LowpassFilter"]
 
 FORMS = ("parallel", "serial")
+
+#: The operator's control signal in manual mode that keeps the last one; a NaN, so that it fits among numbers.
+HOLD = math.nan
 
 
 @dataclass(frozen=True)
@@ -261,8 +264,8 @@ class Controller:
         control_range: (lowest, highest) of what it puts out; u is then in percent of this range inside.
 
     Attributes:
-        blocked: +1 or -1 while a rise or a fall of the control signal has no effect, as that of an outer loop whose
-            inner loop is at its limit: with anti wind-up, the integration halts in this direction. 0 otherwise.
+        hold_integration: +1 or -1 while a rise or a fall of the control signal has no effect, as that of an outer loop
+            whose inner loop is at its limit: with anti wind-up, the integration halts in this direction. 0 otherwise.
 
     Raises:
         ValueError: for settings with letters, a step that is not positive, limits in the wrong order, or another value
@@ -276,7 +279,7 @@ class Controller:
     settings: PID
     limits: tuple[float, float]
     pid_limits: tuple[float, float]
-    blocked: int
+    hold_integration: int
     setpoint: float | None
     u: float | None
     terms: tuple[float, float, float]
@@ -314,11 +317,11 @@ class Controller:
         if control_range is not None:
             scaling = Scaling(PERCENT, control_range)
             self.from_percent, self.back_to_percent = _in_floats(scaling), _in_floats(scaling.inverse)
-        self.filter = LowpassFilter(T_filter, step)
-        self.lagging = None  # the signal behind the filter of the derivative term
+        self.measurement_filter = LowpassFilter(T_filter, step)
+        self.derivative_filter_output = None
         self.integral = 0.0
         self.in_manual = False
-        self.blocked = 0
+        self.hold_integration = 0
         self.setpoint = self.u = None  # as of the last sample
         self.terms = (0.0, 0.0, 0.0)
 
@@ -331,7 +334,7 @@ class Controller:
             raise ValueError(f"Kp is {Kp:g} and the action is direct: give a positive gain with an action")
         self.Kp = -Kp if self.action == "direct" else Kp
         self.Ti = math.inf if parallel.Ti == sympy.oo else number("Ti", parallel.Ti)
-        self.lag_remains = math.exp(-self.step / self.Tf) if self.Tf else 0.0
+        self.derivative_filter_decay = math.exp(-self.step / self.Tf) if self.Tf else 0.0
         self.settings = settings
 
     def change(self, settings: PID) -> None:
@@ -350,7 +353,7 @@ class Controller:
     @property
     def filtered(self) -> float | None:
         """The measurement behind the filter at the last sample, in the unit of the measurement."""
-        return self.filter.output
+        return self.measurement_filter.output
 
     def update(
         self, setpoint: Number, measurement: Number, feedforward: Number = 0.0, manual: Number | None = None
@@ -362,8 +365,8 @@ class Controller:
         Arguments:
             setpoint, measurement: in the unit of the measurement.
             feedforward: u_f, in the unit of u.
-            manual: the operator's control signal in manual mode, in the unit of u; NaN keeps the last one. None for
-                automatic mode.
+            manual: the operator's control signal in manual mode, in the unit of u; `HOLD` keeps the last one.
+                None for automatic mode.
         Returns:
             The control signal, in the unit of u, or with a `control_range` in the unit of that range.
         Raises:
@@ -375,18 +378,19 @@ class Controller:
         except (TypeError, ValueError):
             given = f"({setpoint!r}, {measurement!r}, {feedforward!r}, {manual!r})"
             raise ValueError(f"setpoint, measurement, feedforward and manual are {given}: expected numbers") from None
-        y = self.filter.update(measurement)
+        y = self.measurement_filter.update(measurement)
         if self.setpoint is None:
             self.setpoint, at_rest = y, self._in_percent(y)
-            self.lagging = (self.w_d - 1) * at_rest
+            self.derivative_filter_output = (self.w_d - 1) * at_rest
             self.integral = self.Kp * (1 - self.w_p) * at_rest  # so that the control signal was u0
         # the setpoint that the controller sees moves no faster than the ramp
         self.setpoint += _between(setpoint - self.setpoint, (-self.ramp, self.ramp))
         y, y_SP = self._in_percent(y), self._in_percent(self.setpoint)
 
         by_hand = manual is not None
-        if by_hand or (self.in_manual and self.bumpless):
-            self.lagging = self.w_d * y_SP - y  # the derivative term starts at zero with the automatic mode
+        begins_without_bump = self.in_manual and self.bumpless and not by_hand
+        if by_hand or begins_without_bump:
+            self.derivative_filter_output = self.w_d * y_SP - y  # so that the derivative term begins at zero
         u_p = self.Kp * (self.w_p * y_SP - y)
         u_d = self._differentiate(self.w_d * y_SP - y)
         growth = 0.0
@@ -394,13 +398,13 @@ class Controller:
             last = self.u0 if self.u is None else self.u
             self.u = _between(last if math.isnan(manual) else manual, self.limits)
         else:
-            if self.in_manual and self.bumpless:  # go on from where the operator left the control signal
-                self.integral = _between(self.u - feedforward, self.pid_limits) - (self.u0 + u_p + u_d)
+            if begins_without_bump:
+                self._transfer_without_bump(u_p + u_d, feedforward)
             u_PID = self.u0 + u_p + self.integral + u_d
             u = _between(u_PID, self.pid_limits) + feedforward
             self.u = _between(u, self.limits)
             growth = self.Kp * self.step / self.Ti * (y_SP - y)
-            if self.anti_windup and (growth * self.blocked > 0 or self._at_limit(u_PID, u, growth)):
+            if self.anti_windup and self._is_clamped(u_PID, u, growth):
                 growth = 0.0
         self.in_manual = by_hand
         self.terms = (u_p, self.integral, u_d)
@@ -410,11 +414,13 @@ class Controller:
     def take_over(self, other: Controller) -> None:
         """Continue where another controller stopped, as after a change of settings; a loop at rest feels no bump."""
         self.setpoint, self.u, self.integral, self.in_manual = other.setpoint, other.u, other.integral, other.in_manual
-        self.filter.input, self.filter.output, self.lagging = other.filter.input, other.filter.output, other.lagging
+        mine, others = self.measurement_filter, other.measurement_filter
+        mine.input, mine.output = others.input, others.output
+        self.derivative_filter_output = other.derivative_filter_output
         if self.setpoint is not None:
             y_SP = self._in_percent(self.setpoint)
             self.integral += other.u0 - self.u0 + (other.Kp * (other.w_p - 1) - self.Kp * (self.w_p - 1)) * y_SP
-            self.lagging += (self.w_d - other.w_d) * y_SP
+            self.derivative_filter_output += (self.w_d - other.w_d) * y_SP
 
     def start_from(self, u: Number) -> None:
         """Begin as after manual mode with a control signal such as `update` returns."""
@@ -426,12 +432,18 @@ class Controller:
 
     def _differentiate(self, x):
         """The derivative term, its mean over the coming sample: the slope behind the filter, exact for ramps."""
-        slope = (1 - self.lag_remains) * (x - self.lagging) / self.step
-        self.lagging += slope * self.step
+        slope = (1 - self.derivative_filter_decay) * (x - self.derivative_filter_output) / self.step
+        self.derivative_filter_output += slope * self.step
         return self.Kp * self.Td * slope
 
-    def _at_limit(self, u_PID, u, growth):
-        """Whether the integral term would drive a limited signal further beyond its limit."""
+    def _transfer_without_bump(self, u_pd, feedforward):
+        """Bumpless transfer from manual to automatic mode: the integral term takes up the difference."""
+        self.integral = _between(self.u - feedforward, self.pid_limits) - (self.u0 + u_pd)
+
+    def _is_clamped(self, u_PID, u, growth):
+        """Conditional integration (clamping): whether the integral term would drive a limited signal further out."""
+        if growth * self.hold_integration > 0:
+            return True
         signals = ((u_PID, self.pid_limits), (u, self.limits))
         return any((growth > 0 and x > high) or (growth < 0 and x < low) for x, (low, high) in signals)
 

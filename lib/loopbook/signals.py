@@ -6,7 +6,6 @@ A signal in time is a number, an expression in `t`, or an array with a value for
 from __future__ import annotations
 
 import bisect
-import math
 import numbers
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -16,6 +15,7 @@ import sympy
 
 from loopbook.expressions import exact, t
 from loopbook.laplace import between_steps, evaluate
+from loopbook.pid import HOLD
 from loopbook.types import ManualStretches, Number, Signal
 from loopbook.validation import is_number, not_negative, positive, whole
 
@@ -139,6 +139,17 @@ def samples(name: str, signal: Signal, times: ArrayLike) -> list[float]:
     return values.tolist()
 
 
+def is_given(signal: object) -> bool:
+    """Whether an argument of a simulation is a signal at all, and not None, the number 0 or an empty list.
+
+    >>> [is_given(signal) for signal in (None, 0, [], 0.5, t, np.zeros(3))]
+    [False, False, False, True, True, True]
+    """
+    if signal is None or (is_number(signal) and signal == 0):
+        return False
+    return not hasattr(signal, "__len__") or len(signal) > 0
+
+
 def in_time(name: str, signal: Signal, times: np.ndarray) -> PiecewiseSignal:
     """Return a signal in time as an object that knows its value at any moment."""
     step = times[1] - times[0]
@@ -194,7 +205,7 @@ def _changing(name, formula):
 
 
 def by_hand(manual: ManualStretches, times: Sequence[float] | np.ndarray) -> list[float | None]:
-    """For each sample None in automatic mode, else the operator's control signal, NaN for the last one."""
+    """For each sample None in automatic mode, else the operator's control signal, `HOLD` for the last one."""
     found = [None] * len(times)
     if not isinstance(manual, (list, tuple)):
         raise ValueError(f"manual is {manual!r}: expected a list of (beginning, end, control signal)")
@@ -207,7 +218,7 @@ def by_hand(manual: ManualStretches, times: Sequence[float] | np.ndarray) -> lis
             raise ValueError(f"manual has {stretch!r}: expected the beginning before the end")
         for k, time in enumerate(times):
             if float(begin) <= time < float(end):
-                found[k] = math.nan if u is None else float(u)
+                found[k] = HOLD if u is None else float(u)
     return found
 
 

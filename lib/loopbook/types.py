@@ -54,7 +54,10 @@ class SampledController(Protocol):
     def update(
         self, setpoint: float, measurement: float, feedforward: float = 0.0, manual: float | None = None
     ) -> float:
-        """Take the signals of a sample and return the control signal; in manual mode `manual` is the operator's."""
+        """Take the signals of a sample and return the control signal.
+
+        In manual mode `manual` is the operator's, or `pid.HOLD`, a NaN, to keep the last one; else it is None.
+        """
 
 
 class Block(Protocol):

@@ -232,10 +232,11 @@ class Relay:
     def update(
         self, setpoint: Number, measurement: Number, feedforward: Number = 0.0, manual: Number | None = None
     ) -> float:
-        """Take the signals of this sample and return the control signal, in manual mode the operator's (NaN: the last).
+        """Take the signals of this sample and return the control signal, in manual mode the operator's.
 
+        >>> from loopbook.pid import HOLD
         >>> relay = Relay(amplitude=5, step=1, u0=50)
-        >>> [relay.update(20, 19, manual=u) for u in (None, 47, math.nan, None)]
+        >>> [relay.update(20, 19, manual=u) for u in (None, 47, HOLD, None)]
         [55.0, 47.0, 47.0, 55.0]
         """
         error = float(setpoint) - float(measurement)

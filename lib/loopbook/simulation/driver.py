@@ -11,7 +11,7 @@ import numpy as np
 import sympy
 
 from loopbook.plants import Plant, name_of
-from loopbook.signals import PiecewiseSignal, in_time
+from loopbook.signals import PiecewiseSignal, in_time, is_given
 from loopbook.signals import noise as normal_noise
 from loopbook.simulation.delayed_states import DelayedStateIntegrator
 from loopbook.simulation.integrator import PlantIntegrator, compiled
@@ -62,7 +62,8 @@ def simulate(
         seed: names the sequence of random numbers.
         feedforward: a signal that is added to the control signal.
         scheduling: a signal for a controller with a gain schedule, such as `identification.ScheduledController`.
-        manual: ``[(beginning, end, u)]``, the stretches of time in manual mode; u is None for the last control signal.
+        manual: ``[(beginning, end, u)]``, the stretches of time in manual mode; u is None where the last control
+            signal is kept (a controller's `update` then gets `pid.HOLD`).
             For a list of blocks ``{tag: such a list}``.
         after: an earlier run that this one continues, with its state, its past and its controller's memory; the plant
             and the settings may be others. If it was without control, the controller begins as after manual mode. The
@@ -142,14 +143,14 @@ def _one_loop(plant, controller, step, acting_on, given, inputs):
             raise ValueError(f"{type(plant).__name__} has no input {name!r}: {did_you_mean(name, names)}")
     if controller is None:
         for name, signal in given.items():
-            if signal is not None and signal != () and not (is_number(signal) and signal == 0):
+            if is_given(signal):
                 raise ValueError(f"{name} is given, but no controller")
         return []
     if given["setpoint"] is None:
         raise ValueError("the setpoint is missing: expected a signal for the controller to follow")
     if given["scheduling"] is not None and not hasattr(controller, "schedule"):
         raise ValueError(f"scheduling is given, but {controller!r} has no gain schedule")
-    feedforward = None if is_number(given["feedforward"]) and given["feedforward"] == 0 else "feedforward"
+    feedforward = "feedforward" if is_given(given["feedforward"]) else None
     scheduling = None if given["scheduling"] is None else "scheduling"
     loop = ControlLoop(SINGLE, controller, "setpoint", name_of(plant.output), acting_on, feedforward, scheduling)
     if acting_on in inputs:
@@ -161,9 +162,11 @@ def _one_loop(plant, controller, step, acting_on, given, inputs):
 
 def _of_the_loop(loop, noise, manual, times, seed):
     """Noise and manual mode of the one loop, as for a list of blocks."""
-    if is_number(noise) and noise != 0:  # a run that goes on has noise of its own
+    if not is_given(noise):
+        return {}, {loop.tag: manual}
+    if is_number(noise):  # a run that goes on has noise of its own
         noise = normal_noise(times, noise, (seed, round(times[0] / (times[1] - times[0]))))
-    return 0 if is_number(noise) else {loop.measurement: noise}, {loop.tag: manual}
+    return {loop.measurement: noise}, {loop.tag: manual}
 
 
 def _refuse_what_belongs_to_one_loop(structure, given, manipulated, inputs):
@@ -173,7 +176,7 @@ def _refuse_what_belongs_to_one_loop(structure, given, manipulated, inputs):
             reader = next(block.tag for block in structure.blocks if name in block.reads)
             raise ValueError(f"{reader} reads {name}, which is an argument of simulate: expected another name")
     for name in ("setpoint", "feedforward", "scheduling"):
-        if not (given[name] is None or (is_number(given[name]) and given[name] == 0)):
+        if is_given(given[name]):
             raise ValueError(f"{name} is given, but there are several controllers: give each loop's by its own name")
     if manipulated is not None:
         raise ValueError("manipulated is given, but there are several controllers: each loop names its output")

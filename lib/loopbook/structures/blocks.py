@@ -15,7 +15,7 @@ import sympy
 from sympy.core.function import AppliedUndef
 
 from loopbook.expressions import exact, t
-from loopbook.pid import Controller
+from loopbook.pid import HOLD, Controller
 from loopbook.scaling import Scaling
 from loopbook.types import Number, SampledController
 from loopbook.validation import is_number, number
@@ -40,7 +40,7 @@ class ControlLoop:
         feedforward: the name of a signal to be added, if any.
         scheduling: the name of the signal by which a controller with a gain schedule takes its settings.
         mode: the name of a signal; the loop is in automatic mode while it is TRUE, above 0.5. Always, if not given.
-        manual: the output in manual mode; None keeps the last one.
+        manual: the output in manual mode; if not given, the last one is kept.
     Raises:
         ValueError: for a name that is none, or no controller.
 
@@ -77,19 +77,19 @@ class ControlLoop:
         self.feedforward, self.scheduling, self.mode = (None if x is None else _name("signal", x) for x in further)
         if (scheduling is None) == hasattr(controller, "schedule"):
             raise ValueError(f"scheduling is {scheduling!r} for {controller!r}: expected a signal for a gain schedule")
-        self.manual = math.nan if manual is None else number("manual", manual)
+        self.manual = HOLD if manual is None else number("manual", manual)
         named = (self.setpoint, self.measurement, self.feedforward, self.scheduling, self.mode)
         self.reads, self.writes = tuple(x for x in named if isinstance(x, str)), (self.output,)
         self.inner, self.operator, self.recorded = None, None, {}
         self.following = ()  # what an outer loop must know of this one in order to follow it
 
-    def in_manual(self, values: Mapping[str, float]) -> float | None:
+    def manual_output(self, values: Mapping[str, float]) -> float | None:
         """The output that is prescribed in this sample, None in automatic mode.
 
         An outer loop follows the inner one's measurement while that does not listen, so that nothing jumps when it
         listens again.
         """
-        if self.inner is not None and self.inner.in_manual(values) is not None:
+        if self.inner is not None and self.inner.manual_output(values) is not None:
             return values[self.inner.measurement]
         if self.operator is not None:
             return self.operator
@@ -99,9 +99,9 @@ class ControlLoop:
 
     def update(self, values: Mapping[str, float], time: float) -> dict[str, float]:
         """Run the controller once and return ``{output: value}``."""
-        manual = self.in_manual(values)
+        manual = self.manual_output(values)
         if self.inner is not None:  # do not integrate beyond what the inner loop can do
-            self.controller.blocked = self.inner.stuck()
+            self.controller.hold_integration = self.inner.at_limit()
         controller, measurement = self.controller, values[self.measurement]
         setpoint = values[self.setpoint] if isinstance(self.setpoint, str) else self.setpoint
         more = {}
@@ -120,7 +120,7 @@ class ControlLoop:
             recorded[name] = getattr(controller, name)
         return {self.output: u}
 
-    def stuck(self) -> int:
+    def at_limit(self) -> int:
         """Which way the setpoint has no effect any more, +1 up or -1 down, because the output is at a limit; else 0."""
         controller = self.controller
         if not isinstance(controller, Controller) or controller.u is None:
@@ -128,7 +128,7 @@ class ControlLoop:
         low, high = controller.limits
         direction = (controller.u >= high) - (controller.u <= low)
         if not direction and self.inner is not None:
-            direction = self.inner.stuck()
+            direction = self.inner.at_limit()
         return int(math.copysign(direction, direction * controller.Kp)) if direction else 0
 
     def __repr__(self) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from loopbook.signals import beyond_all_numbers, by_hand, noise, samples
+from loopbook.signals import beyond_all_numbers, by_hand, is_given, noise, samples
 from loopbook.structures.blocks import ControlLoop, SplitRange
 from loopbook.types import Block, ManualStretches, Signal
 from loopbook.validation import is_number
@@ -45,15 +45,16 @@ class Structure:
                 if name in self.of_plant:
                     raise ValueError(f"{block.tag} writes {name}, but it is the plant that says what it is")
                 writer[name] = block.tag
+        self.driven = [name for name in writer if name in self.inputs]
+        self._external(writer)  # refuses an inner loop before its outer one
         self.loops = {block.tag: block for block in self.blocks if isinstance(block, ControlLoop)}
-        for loop in reversed(self.loops.values()):  # from the inside out
+        for loop in reversed(self.loops.values()):  # from the inside out, since outer loops come first
             behind = [inner for inner in self.loops.values() if inner.setpoint == loop.output]
             if len(behind) == 1:  # of two loops with one setpoint neither is to be followed
                 (loop.inner,) = behind
                 loop.reads += loop.inner.following
             loop.following = tuple(x for x in (loop.measurement, loop.mode) if x) + loop.following
-        self.driven = [name for name in writer if name in self.inputs]
-        self.external = self._external(writer)
+        self.external = self._external(writer)  # now with what an outer loop must know of its inner one
 
     def _external(self, writer):
         """The names that are read and that neither the plant nor a block gives."""
@@ -109,7 +110,7 @@ class Structure:
         self.rows = {block.tag: [] for block in self.blocks}  # what each block records, a dictionary for each sample
 
     def _noise(self, added, seed):
-        if is_number(added) and added == 0:
+        if not is_given(added):
             return {}
         if not isinstance(added, dict):
             raise ValueError(f"noise is {added!r}: expected {{measurement: standard deviation}}")
@@ -123,7 +124,7 @@ class Structure:
         return found
 
     def _by_hand(self, manual):
-        manual = {} if manual in ((), []) else manual
+        manual = manual if is_given(manual) else {}
         if not isinstance(manual, dict) or not set(manual) <= set(self.loops):
             raise ValueError(f"manual is {manual!r}: expected {{tag: stretches of time}} for {', '.join(self.loops)}")
         return {tag: by_hand(stretches, self.times) for tag, stretches in manual.items()}
