@@ -388,9 +388,15 @@ def test_times_that_are_none(times):
 
 
 def test_samples_that_do_not_fit():
-    flat = ([0, 1], [1, 2, 3]), ([1, 1], [1, 1]), ([0, 2, 1], [0, 0, 0]), (1.0, [0, 1]), ([], [])
-    for times, u in (*flat, ([[0, 1], [2, 3]], [[0, 1], [2, 3]])):
-        with pytest.raises(ValueError, match="expected one each for times that increase"):
+    for times, u, message in (
+        ([0, 1], [1, 2, 3], "u has 3 values for 2 times"),
+        ([1, 1], [1, 1], "the times go from 1 to 1: expected increasing numbers"),
+        ([0, 2, 1], [0, 0, 0], "the times go from 2 to 1: expected increasing numbers"),
+        (1.0, [0, 1], "expected a row of numbers"),
+        ([], [], "expected a row of numbers"),
+        ([[0, 1], [2, 3]], [[0, 1], [2, 3]], "expected a row of numbers"),
+    ):
+        with pytest.raises(ValueError, match=message):
             System(1 / s).response(times, u)
     with pytest.raises(ValueError, match="the hold is 'spline'"):
         System(1 / s).response([0, 1], [0, 1], hold="spline")

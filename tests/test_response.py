@@ -454,8 +454,13 @@ def test_long_records_take_no_time(hold, jitter):
 
 def test_samples_that_do_not_fit():
     lag = feedback(1, 1, 1)
-    for times, u in (([0, 1], [1, 2, 3]), ([0, 2, 1], [0, 0, 0]), (1.0, [0, 1]), ([], [])):
-        with pytest.raises(ValueError, match="expected one each for times that increase"):
+    for times, u, message in (
+        ([0, 1], [1, 2, 3], "u has 3 values for 2 times"),
+        ([0, 2, 1], [0, 0, 0], "the times go from 2 to 1: expected increasing numbers"),
+        (1.0, [0, 1], "expected a row of numbers"),
+        ([], [], "expected a row of numbers"),
+    ):
+        with pytest.raises(ValueError, match=message):
             response_to_samples(lag, times, u)
     with pytest.raises(ValueError, match="the hold is 'linear'"):
         response_to_samples(lag, [0, 1], [1, 2], "linear")

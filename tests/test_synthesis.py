@@ -331,7 +331,7 @@ def test_the_rest_is_what_the_settings_lack(Kp, T1, T2, one, other):
         (1 / (s * (s + 1)), None, "Ti is -1"),
         (1 - s, "PID", "Td is -1"),
         (1 + (1 + sympy.I) / s, None, "finite real number"),
-        (1, "PD", "kind is 'PD': expected 'P', 'PI', 'PID', 'PID with filter'"),
+        (1, "PD", "kind is 'PD': expected one of P, PI, PID, PID with filter"),
         (1, 3, "kind is 3"),
         (sqrt(s), None, "not a rational function"),
         (sympy.Function("G")(s), None, "not a rational function"),

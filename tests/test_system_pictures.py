@@ -418,7 +418,7 @@ def test_frequency_data_at_given_frequencies():
         (lambda: bode_plot(sympy.Symbol("K") / s), "give a number for K"),
         (lambda: step_plot({"a": LOOP, "b": LOOP.T}), "expected no systems beside loops"),
         (lambda: step_plot(LOOP, end=-1), "the end is -1: expected a positive number"),
-        (lambda: frequency_data(1 / s, [2, 1]), "expected positive ones that increase"),
+        (lambda: frequency_data(1 / s, [2, 1]), "the frequencies go from 2 to 1: expected increasing numbers"),
         (lambda: frequency_data(1 / (s**2 + 1), [1]), "H has a pole at the frequency 1"),
     ],
 )

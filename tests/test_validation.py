@@ -1,6 +1,8 @@
 """Checks of arguments: what is let through, and one sentence for one fault, wherever it is made."""
 
+import inspect
 import math
+import re
 from decimal import Decimal
 from fractions import Fraction
 
@@ -9,8 +11,12 @@ import pytest
 import sympy
 from sympy import I, Rational, Symbol, nan, oo
 
-from loopbook import pid, signals, stability, transfer, tuning
+from loopbook import pid, signals, stability, transfer, tuning, validation
 from loopbook.approximation import SOPDT, zero_rule
+from loopbook.deadtime import System
+from loopbook.expressions import s
+from loopbook.figures import time_plot
+from loopbook.identification.records import record
 from loopbook.oscillation import Oscillation
 from loopbook.stability import boundary_pi, boundary_pid
 from loopbook.validation import (
@@ -20,6 +26,7 @@ from loopbook.validation import (
     exact_not_negative,
     exact_positive,
     exact_real,
+    increasing,
     is_number,
     not_negative,
     number,
@@ -142,10 +149,52 @@ def test_one_fault_in_an_array_has_one_sentence_everywhere():
         stability.robustness(process, pid.PID(0.5), [-1, 1])
 
 
+NOT_INCREASING = [
+    ([0, 2, 1, 5], "the times go from 2 to 1: expected increasing numbers"),
+    ([0, 1, 2, 2, 3], "the times go from 2 to 2: expected increasing numbers"),
+    ([[0, 1], [2, 3]], "the times have the shape (2, 2): expected a row of numbers"),
+    (5, "the times have the shape (): expected a row of numbers"),
+    ([], "the times have the shape (0,): expected a row of numbers"),
+    ([0, math.nan, 2, 3], "the times contain nan: expected finite numbers"),
+    ([0, 1, 2, math.inf], "the times contain inf: expected finite numbers"),
+    ("now", "the times are 'now': expected real numbers"),
+]
+
+
+@pytest.mark.parametrize(("values", "message"), NOT_INCREASING)
+@pytest.mark.parametrize(
+    "use",
+    [
+        lambda times: increasing("times", times),
+        lambda times: record(times, y=[0, 0, 1, 1]),
+        lambda times: signals.pulse_width_modulation(50, times, 2),
+        lambda times: time_plot({"y": 1}, times),
+        lambda times: System(1 / s).response(times, [0, 0, 1, 1]),
+    ],
+)
+def test_times_that_do_not_increase_have_one_sentence_everywhere(use, values, message):
+    with pytest.raises(ValueError, match=re.escape(message)):
+        use(values)
+
+
+def test_increasing_numbers_become_an_array():
+    assert increasing("times", [sympy.Rational(1, 2), 1, 2]).tolist() == [0.5, 1, 2]
+    assert increasing("times", [3]).tolist() == [3]
+    with pytest.raises(ValueError, match="the number of times is 3: expected 4 or more"):
+        increasing("times", [0, 1, 2], least=4)
+
+
+def test_the_module_says_which_functions_it_offers():
+    own = {
+        f.__name__ for f in vars(validation).values() if inspect.isfunction(f) and f.__module__ == validation.__name__
+    }
+    assert {name for name in own if not name.startswith("_")} == set(validation.__all__)
+
+
 def test_one_of_several_words():
     assert one_of("kind", "PI", ("P", "PI")) == "PI"
     for word in ("PD", 3, None, ["PI"]):
-        with pytest.raises(ValueError, match=r"kind is .*: expected 'P', 'PI'"):
+        with pytest.raises(ValueError, match=r"kind is .*: expected one of P, PI"):
             one_of("kind", word, ("P", "PI"))
 
 

@@ -17,7 +17,7 @@ from loopbook.expressions import exact, t
 from loopbook.laplace import between_steps, evaluate
 from loopbook.pid import HOLD
 from loopbook.types import ManualStretches, Number, Signal
-from loopbook.validation import is_number, not_negative, positive, whole
+from loopbook.validation import increasing, is_number, not_negative, positive, real_numbers, whole
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -89,12 +89,7 @@ def pulse_width_modulation(duty: ArrayLike, times: ArrayLike, period: Number) ->
     >>> pulse_width_modulation(60, [0, 1, 2, 3, 4, 5, 6], period=5)
     array([1, 1, 1, 0, 0, 1, 1])
     """
-    try:
-        times, duty = np.asarray(times, dtype=float), np.asarray(duty, dtype=float)
-    except (TypeError, ValueError):
-        raise ValueError("the duty cycle and the times are not numbers") from None
-    if times.ndim != 1 or not len(times) or not (np.diff(times) > 0).all():
-        raise ValueError("the times must be an array of increasing numbers")
+    times, duty = increasing("times", times), real_numbers("duty cycles", duty)
     positive("period", period)
     if duty.ndim and duty.shape != times.shape:
         raise ValueError(f"the duty cycle has {duty.size} values for {times.size} times")

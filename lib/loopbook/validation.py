@@ -2,8 +2,9 @@
 
 Three kinds of arguments are checked. `number`, `positive`, `not_negative` and `whole` are for values to compute with in
 floats and integers; `exact_real`, `exact_positive`, `exact_not_negative`, `exact_nonzero` and `exact_in_range` are for
-numbers or symbols, of which only what is known to be wrong is refused; `real_numbers` and `positive_numbers` are for
-arrays. Of words, `one_of` takes one out of several, and `did_you_mean` ends the sentence on a name that is not known.
+numbers or symbols, of which only what is known to be wrong is refused; `real_numbers`, `positive_numbers` and
+`increasing` are for arrays. Of words, `one_of` takes one out of several, and `did_you_mean` ends the sentence on a name
+that is not known.
 """
 
 from __future__ import annotations
@@ -23,6 +24,12 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from loopbook.types import Number
+
+__all__ = [
+    "did_you_mean", "exact_in_range", "exact_nonzero", "exact_not_negative", "exact_positive", "exact_real",
+    "increasing", "is_number", "limits", "not_negative", "number", "one_of", "positive", "positive_numbers",
+    "real_numbers", "times_from_zero", "whole",
+]  # fmt: skip
 
 A_FINITE_NUMBER = "a finite real number"
 A_POSITIVE_NUMBER = "a positive number"
@@ -242,6 +249,30 @@ def times_from_zero(values: ArrayLike) -> np.ndarray:
     return positive_numbers("times", values, zero=True)
 
 
+def increasing(name: str, values: ArrayLike, least: int = 1) -> np.ndarray:
+    """Return values as an array of floats, each larger than the one before, or raise ValueError.
+
+    Arguments:
+        name: of the values, as the sentence begins with it.
+        values: an array or a list.
+        least: how many there must be.
+
+    >>> increasing("times", [0, 2, 1])
+    Traceback (most recent call last):
+    ValueError: the times go from 2 to 1: expected increasing numbers
+    """
+    array = real_numbers(name, values)
+    if array.ndim != 1 or not len(array):
+        raise ValueError(f"the {name} have the shape {array.shape}: expected a row of numbers")
+    if len(array) < least:
+        raise ValueError(f"the number of {name} is {len(array)}: expected {least} or more")
+    not_more = np.flatnonzero(np.diff(array) <= 0)
+    if not_more.size:
+        before, after = array[not_more[0] :][:2]
+        raise ValueError(f"the {name} go from {before:.12g} to {after:.12g}: expected increasing numbers")
+    return array
+
+
 def _all(right, name, array, expected):
     if not right.all():
         raise ValueError(f"the {name} contain {array[~right][0]:g}: expected {expected}")
@@ -256,10 +287,10 @@ def one_of(name: str, word: str, words: Collection[str]) -> str:
 
     >>> one_of("kind", "PD", ("P", "PI", "PID"))
     Traceback (most recent call last):
-    ValueError: kind is 'PD': expected 'P', 'PI', 'PID'
+    ValueError: kind is 'PD': expected one of P, PI, PID
     """
     if not isinstance(word, str) or word not in words:
-        raise ValueError(f"{name} is {word!r}: expected {', '.join(map(repr, words))}")
+        raise ValueError(f"{name} is {word!r}: {_listed(words)}")
     return word
 
 
@@ -282,4 +313,8 @@ def did_you_mean(name: object, known: Iterable[object], otherwise: str | None = 
         return f"did you mean {alike[close[0]]!r}?"
     if otherwise is not None:
         return otherwise
-    return f"expected one of {', '.join(names)}" if names else "there are none"
+    return _listed(names) if names else "there are none"
+
+
+def _listed(names):
+    return f"expected one of {', '.join(names)}"

@@ -16,7 +16,7 @@ from loopbook.figures.labels import add_legend, decades, free_place, legend_belo
 from loopbook.figures.picture import plain_words, titled
 from loopbook.figures.style import GUIDE, LEVEL, WIDTH, ZERO, look, styled
 from loopbook.quasipolynomials import DelayFraction, read
-from loopbook.validation import positive, real_numbers
+from loopbook.validation import increasing, positive, positive_numbers, real_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -555,9 +555,7 @@ def frequency_data(H: object, omega: ArrayLike | None = None, name: str = "H") -
         known = np.isfinite(curve.phase)
         omega, values = curve.omega[known], curve.values[known]
     else:
-        omega = np.atleast_1d(real_numbers("frequencies", omega))
-        if omega.ndim != 1 or not len(omega) or (omega <= 0).any() or (np.diff(omega) <= 0).any():
-            raise ValueError(f"the frequencies are {omega}: expected positive ones that increase")
+        omega = increasing("frequencies", np.atleast_1d(positive_numbers("frequencies", omega)))
         values = fraction(1j * omega)
         if not np.isfinite(values).all():
             raise ValueError(f"H has a pole at the frequency {omega[~np.isfinite(values)][0]:g}: expected others")

@@ -13,7 +13,7 @@ from loopbook.deadtime.collocation import NODES, follow
 from loopbook.deadtime.echoes import ROUNDED
 from loopbook.deadtime.family import shared_cells
 from loopbook.deadtime.superposition import superpose
-from loopbook.validation import not_negative, one_of, real_numbers, times_from_zero
+from loopbook.validation import increasing, not_negative, one_of, real_numbers, times_from_zero
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -145,9 +145,9 @@ def response_to_samples(model: ChannelModel, times: ArrayLike, u: ArrayLike, hol
     array([1.5, 3.5])
     """
     one_of("the hold", hold, HOLDS)
-    times, u = real_numbers("times", times), real_numbers("values of u", u)
-    if times.ndim != 1 or u.shape != times.shape or not len(times) or not (np.diff(times) > 0).all():
-        raise ValueError(f"{u.size} values of u for {times.size} times: expected one each for times that increase")
+    times, u = increasing("times", times), real_numbers("values of u", u)
+    if u.shape != times.shape:
+        raise ValueError(f"u has {u.size} values for {times.size} times")
     since = times - times[0]
     response = Response(model, since[-1])
     if len(times) == 1:

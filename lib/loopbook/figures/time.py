@@ -11,9 +11,9 @@ import sympy
 
 from loopbook.figures.labels import add_legend
 from loopbook.figures.picture import Picture, plain_words, titled
-from loopbook.figures.style import GUIDE, INPUTS, LEVEL, ON_WHITE, ROLES, WIDTH, look, styled
+from loopbook.figures.style import GUIDE, INPUTS, LEVEL, ON_WHITE, WIDTH, look, styled
 from loopbook.laplace import evaluate, t
-from loopbook.validation import did_you_mean
+from loopbook.validation import did_you_mean, increasing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -224,7 +224,7 @@ def time_plot(
     fixed_axes = [fixed and tuple(map(float, fixed)) for fixed in fixed_axes]
     if len(fixed_axes) != len(panels):
         raise ValueError(f"{len(fixed_axes)} ranges of vertical axes for {len(panels)} panels")
-    times = _increasing(times)
+    times = increasing("times", times, least=2)
     if before < 0 or (before and times[0] != 0):
         raise ValueError("time before t = 0 can be shown only in front of times that start at 0, and is not negative")
     curves = [{label: _curve(label, what, times, before) for label, what in panel.items()} for panel in panels]
@@ -261,22 +261,10 @@ def time_plot(
     return TimePlot(figure, titled(title, f"{shown} against {plain_words(xlabel)}"), lines)
 
 
-def _increasing(times):
-    try:
-        times = np.asarray(times, dtype=float)
-    except (TypeError, ValueError):
-        times = np.empty(0)
-    if times.ndim != 1 or len(times) < 2 or not (np.diff(times) > 0).all():
-        raise ValueError("times must be an array of two or more increasing numbers")
-    return times
-
-
 def _curve(label, what, times, before):
     """The points of a line, and its role."""
     with_role = isinstance(what, tuple) and len(what) == 2 and isinstance(what[1], (str, int))
     signal, role = what if with_role else (what, None)
-    if isinstance(role, str) and role not in ROLES:
-        raise ValueError(f"{label} has the unknown role {role!r}: the roles are {', '.join(ROLES)}")
     if isinstance(signal, (sympy.Expr, numbers.Real)):
         signal = sympy.sympify(signal)
         evaluate(signal, times[:1])  # says what is wrong with the expression before its steps are looked for

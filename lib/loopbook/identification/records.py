@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loopbook.validation import real_numbers
+from loopbook.validation import increasing, real_numbers
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -20,9 +20,7 @@ def record(times: ArrayLike, **signals: ArrayLike) -> tuple[np.ndarray, ...]:
     >>> record([0, 1, 2, 3], y=[0, 0, 1, 1])
     (array([0., 1., 2., 3.]), array([0., 0., 1., 1.]))
     """
-    times = real_numbers("times", times)
-    if times.ndim != 1 or len(times) < 4 or not (np.diff(times) > 0).all():
-        raise ValueError("the times must be an array of at least four increasing numbers")
+    times = increasing("times", times, least=4)
     found = [real_numbers(f"values of {name}", signal) for name, signal in signals.items()]
     for name, signal in zip(signals, found, strict=True):
         if signal.shape != times.shape:
