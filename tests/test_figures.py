@@ -2,6 +2,7 @@
 
 import base64
 import re
+from dataclasses import replace
 
 import nbclient
 import nbformat
@@ -285,6 +286,31 @@ def test_a_legend_hides_no_curve():
 
 
 # Trends.
+
+
+class TankInHours(WoodChipTank):
+    """The same tank with the times of its quantities in hours."""
+
+    time_unit = "h"
+
+
+def test_the_unit_of_time_is_the_plants():
+    run = simulate(TankInHours(), until=20, step=10, u=45)
+    assert (TankInHours().time_unit, WoodChipTank().time_unit, run.time_unit) == ("h", "s", "h")
+    assert trends(run).alt == "h; u against t [h]"
+    assert simulate(TankInHours(), until=30, step=10, u=45, after=run).time_unit == "h"
+    in_minutes = trends(run, minutes=True)
+    assert in_minutes.figure.axes[-1].get_xlabel() == "$t$ [min]"
+    np.testing.assert_allclose(in_minutes.lines["$h$"].get_xdata(), [0, 600, 1200], rtol=1e-15)
+    with pytest.raises(ValueError, match="the runs have times in h and in s: expected one unit"):
+        trends({"a": run, "b": simulate(WoodChipTank(), until=20, step=10, u=45)})
+
+
+def test_minutes_of_an_unknown_unit_are_refused():
+    response = replace(Loop(1 / (s + 1), PID(1)).run([0, 1, 2]), time_unit="years")
+    assert trends(response).figure.axes[-1].get_xlabel() == "$t$ [years]"
+    with pytest.raises(ValueError, match="the run's unit of time is 'years': expected one of s, min, h, d"):
+        trends(response, minutes=True)
 
 
 def loop(Kp, **options):

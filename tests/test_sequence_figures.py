@@ -82,6 +82,19 @@ def test_minutes_and_a_choice_of_signals():
     assert (trend.get_ylabel(), steps.get_xlabel(), steps.get_xlim()) == ("$h$ [m]", "$t$ [min]", (0, 10))
 
 
+def test_the_unit_of_time_is_the_plants():
+    class Slow(BatchTank):
+        """The same tank with the times of its quantities in hours."""
+
+        time_unit = "h"
+
+    run = simulate(Slow(), [CHART], until=20, step=2, start=0, T_in=15)
+    picture = sequence_trends(run, CHART, ["h"])
+    assert picture.figure.axes[-1].get_xlabel() == "$t$ [h]"
+    assert picture.alt.endswith("against t [h]")
+    assert sequence_trends(run, CHART, ["h"], minutes=True).figure.axes[-1].get_xlim() == pytest.approx((0, 1200))
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

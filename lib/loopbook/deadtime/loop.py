@@ -34,6 +34,7 @@ class LoopResponse:
     Attributes:
         times: the moments, an array.
         signals: ``{"setpoint": ..., "d": ..., "y": ..., "u": ...}``, arrays with a value for each moment.
+        time_unit: the unit of the times, as a figure names it.
     """
 
     times: np.ndarray
@@ -41,6 +42,7 @@ class LoopResponse:
     output: str = "y"
     manipulated: str = "u"
     held: frozenset[str] = frozenset({"setpoint", "d"})
+    time_unit: str = "s"
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name not in self.signals:

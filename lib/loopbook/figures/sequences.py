@@ -10,7 +10,7 @@ import sympy
 
 from loopbook.figures.picture import titled
 from loopbook.figures.style import DOTS_PER_INCH, WIDTH, look, styled
-from loopbook.figures.time import Recorded, TimePlot
+from loopbook.figures.time import Recorded, TimePlot, times_of
 
 ROW = 0.24  # inches, of a signal that is on or off and of a step
 BAR = 0.62  # height of a bar in its row
@@ -48,7 +48,7 @@ def sequence_trends(
         signals: names of analogue signals, each for a panel; ("T", "T_SP") shows a measurement and its setpoint in one.
         on_off: names of the signals that are 0 or 1; the boolean outputs of the chart if not given.
         title: stands above the plot; begins with the name of the book's figure where there is one.
-        minutes: write the time in minutes, for a run in seconds.
+        minutes: write the time in minutes, whatever the unit of the run is.
     Returns:
         A `figures.TimePlot`, which a notebook shows as the value of a cell.
     Raises:
@@ -67,7 +67,7 @@ def sequence_trends(
 
     signals, on_off = _checked(run, chart, signals, on_off)
     rows = [group for group in (on_off, [*chart.steps]) if group]
-    times = run.times / (60 if minutes else 1)
+    times, unit = times_of(run, minutes)
     heights = [1.05] * len(signals) + [ROW * len(group) + 0.2 for group in rows]
     lines = {}
     with styled():
@@ -81,12 +81,12 @@ def sequence_trends(
             _bars(axes, times, group, active, "black" if steps else look("control signal")["color"])
             axes.set_ylabel("active step" if steps else "on")
         grid[-1].set_xlim(times[0], times[-1])
-        grid[-1].set_xlabel("$t$ [min]" if minutes else "$t$ [s]")
+        grid[-1].set_xlabel(f"$t$ [{unit}]")
         grid[0].set_title(title or "")
         figure.align_ylabels()
     shown = [", ".join(name for names in signals for name in names)] * bool(signals)
     shown += [f"on and off: {', '.join(on_off)}"] * bool(on_off) + [f"active steps: {', '.join(chart.steps)}"]
-    words = f"{'; '.join(shown)} against t [{'min' if minutes else 's'}]"
+    words = f"{'; '.join(shown)} against t [{unit}]"
     return TimePlot(figure, titled(title, words), lines)
 
 

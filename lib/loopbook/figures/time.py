@@ -13,7 +13,7 @@ from loopbook.figures.labels import add_legend
 from loopbook.figures.picture import Picture, plain_words, titled
 from loopbook.figures.style import GUIDE, INPUTS, LEVEL, ON_WHITE, WIDTH, look, styled
 from loopbook.laplace import evaluate, t
-from loopbook.validation import did_you_mean, increasing
+from loopbook.validation import did_you_mean, increasing, one_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,6 +31,10 @@ class Recorded(Protocol):
     @property
     def times(self) -> np.ndarray:
         """The moments."""
+
+    @property
+    def time_unit(self) -> str:
+        """The unit of the moments."""
 
     @property
     def signals(self) -> Mapping[str, np.ndarray]:
@@ -290,6 +294,20 @@ def _with_edges(signal, times):
     return np.unique(np.r_[times, edges])
 
 
+#: How many of a unit of time make a minute.
+IN_A_MINUTE = {"s": 60, "min": 1, "h": 1 / 60, "d": 1 / 1440}
+
+
+def times_of(run: Recorded, minutes: bool) -> tuple[np.ndarray, str]:
+    """Return the times of a run and their unit: the run's own, or minutes.
+
+    Raises ValueError for a unit of which it is not known how many make a minute.
+    """
+    if not minutes:
+        return run.times, run.time_unit
+    return run.times / IN_A_MINUTE[one_of("the run's unit of time", run.time_unit, IN_A_MINUTE)], "min"
+
+
 def trends(
     runs: Recorded | Mapping[str, Recorded],
     title: str | None = None,
@@ -307,13 +325,13 @@ def trends(
         title: stands above the plot; begins with the name of the book's figure where there is one.
         disturbances: names of inputs of the plant, each shown in a panel of its own below the others.
         measured: show the noisy measurement instead of the plant's output.
-        minutes: write the time in minutes, for runs in seconds.
+        minutes: write the time in minutes, whatever the unit of the runs is.
         limits, control_limits: lowest and highest value of the upper panel's axis, and of the control signal's, where
             they must not follow the signals.
     Returns:
         A `TimePlot`, which a notebook shows as the value of a cell.
     Raises:
-        ValueError: for runs with different times, or a signal that they do not have.
+        ValueError: for runs with different times or units of time, or a signal that they do not have.
 
     >>> from loopbook.pid import PID, Controller
     >>> from loopbook.plants import HeatedTank
@@ -331,6 +349,8 @@ def trends(
     for run in runs.values():
         if not np.array_equal(run.times, first.times):
             raise ValueError("the runs have different times: expected the same step and the same end")
+        if run.time_unit != first.time_unit:
+            raise ValueError(f"the runs have times in {first.time_unit} and in {run.time_unit}: expected one unit")
         for name in ("setpoint", *disturbances):
             if name in first.signals and not np.array_equal(run[name], first[name], equal_nan=True):
                 raise ValueError(f"the runs have different signals {name!r}: expected the same in all")
@@ -348,9 +368,8 @@ def trends(
     panels += [{f"${sympy.latex(sympy.Symbol(x))}$": (first[x], "disturbance")} for x in disturbances]
     names = [f"${sympy.latex(sympy.Symbol(x))}$ [{first.unit(x)}]" for x in (output, control, *disturbances)]
     ylim = [limits, control_limits, *(None for _ in disturbances)]
-    times = first.times / (60 if minutes else 1)
-    xlabel = "$t$ [min]" if minutes else "$t$ [s]"
-    plot = time_plot(panels, times, title=title, xlabel=xlabel, ylabel=names, ylim=ylim)
+    times, unit = times_of(first, minutes)
+    plot = time_plot(panels, times, title=title, xlabel=f"$t$ [{unit}]", ylabel=names, ylim=ylim)
     for panel, name in zip(panels, (output, control, *disturbances), strict=True):
         for label in panel:
             if ("setpoint" if label == "setpoint" else name) in first.held:

@@ -28,7 +28,8 @@ class Plant(metaclass=PlantMeta):
     What its body declares by `signal`, `parameter` and `measured` are the quantities; each `Balance` or `Lag` in it is
     a law, but for a sum of balances, which follows from its parts. Besides it names the ``output``, the signal that is
     measured and controlled, and the input ``manipulated`` that a controller acts on. Where nothing flows at the
-    operating point, ``at_work = {signal: value}`` says when something does.
+    operating point, ``at_work = {signal: value}`` says when something does. Where the units of the quantities do not
+    count time in seconds but in minutes, hours or days, ``time_unit = "min"``, "h" or "d".
 
     Attributes:
         quantities: ``{symbol or signal: (value, unit, meaning)}``, all of them.
@@ -50,6 +51,7 @@ class Plant(metaclass=PlantMeta):
     output: sympy.Expr | Any = None
     manipulated: sympy.Expr | Any = None
     at_work: Mapping[sympy.Expr, Number] = {}
+    time_unit: str = "s"
     quantities: Mapping[sympy.Expr, Quantity] = {}
     laws: Mapping[str, Balance | Lag] = {}
     balances: Mapping[str, Balance] = {}

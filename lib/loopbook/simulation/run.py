@@ -32,7 +32,7 @@ class Run:
     """What `simulate` returns: named signals at the sampling times.
 
     Attributes:
-        times: the moments, an array.
+        times: the moments, an array, in the plant's unit of time.
         signals: ``{name: array}``, one value for each moment.
         plant: the plant, which knows the units.
         manipulated: the name of the input that the controller acts on.
@@ -52,6 +52,11 @@ class Run:
     def output(self) -> str:
         """The name of the controlled signal."""
         return self.measured or name_of(self.plant.output)
+
+    @property
+    def time_unit(self) -> str:
+        """The unit of the times: the plant's."""
+        return self.plant.time_unit
 
     def unit(self, name: str) -> str:
         """The unit of a signal of the plant or of a loop; "1" for a number.
