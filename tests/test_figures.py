@@ -119,6 +119,17 @@ def test_mark_reads_the_curve_that_it_is_told():
     assert [d.get_color() for d in dots] == [plot.lines[x].get_color() for x in "bc"]
 
 
+@pytest.mark.parametrize(("time", "value"), [(1, 45), (9.9, 45), (10, 60), (13, 60), (20, 50)])
+def test_mark_is_on_the_staircase_of_a_signal_that_is_held(time, value):
+    run = simulate(WoodChipTank(), until=20, step=10, u=[45, 60, 50])
+    plot = trends(run)
+    before = len(plot.figure.axes[1].lines)
+    plot.mark(time, "here", signal="$u$")
+    upright, level, dot = plot.figure.axes[1].lines[before:]
+    assert (dot.get_xdata().item(), dot.get_ydata().item()) == (time, value)
+    assert level.get_ydata()[0] == upright.get_ydata()[0] == value
+
+
 @pytest.mark.parametrize(
     ("signal", "time", "corner"),
     [(t, 5, ("left", "top")), (t, 20, ("right", "bottom")), (-t, 5, ("left", "bottom")), (-t, 20, ("right", "top"))],

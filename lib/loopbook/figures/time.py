@@ -69,6 +69,8 @@ class TimePlot(Picture):
     def mark(self, time: Number, label: str, signal: str | None = None) -> Self:
         """Mark the point where a curve is at `time`: a dot, dashed guides to both axes, and a label.
 
+        The point is on the line as it is drawn: a signal that is held has its last value, and its new one at a step.
+
         Arguments:
             time: the time of the point, in the unit of the time axis; a number or an exact SymPy number.
             label: text beside the point; mathematics between dollar signs.
@@ -83,8 +85,11 @@ class TimePlot(Picture):
         >>> plot.mark(5, "63 % at $t = T$").level(2, "$KU$")
         <Figure 6.2: y(t) against t [s]; marked: 63 % at t = T; level: KU>
         """
+        from matplotlib.cbook import STEP_LOOKUP_MAP
+
         line = self._line(signal)
-        axes, times, values = line.axes, line.get_xdata(), line.get_ydata()
+        axes, corners = line.axes, STEP_LOOKUP_MAP[line.get_drawstyle()]
+        times, values = corners(line.get_xdata(), line.get_ydata())
         time = float(time)
         if not times[0] <= time <= times[-1]:
             raise ValueError(f"cannot mark t = {time:g}: the plot shows {times[0]:g} to {times[-1]:g}")
