@@ -9,11 +9,16 @@ import nbformat
 import numpy as np
 import pytest
 import sympy
+from matplotlib.collections import QuadMesh
+from matplotlib.figure import Figure
+from matplotlib.legend import Legend
+from PIL import Image
 from sympy import DiracDelta, Heaviside, exp
 
 from loopbook.deadtime import Loop
-from loopbook.figures import level_plot, map_plot, plane_plot, time_plot, trends
-from loopbook.figures.picture import plain_words
+from loopbook.deadtime.pictures import nyquist_plot
+from loopbook.figures import PlanePlot, TimePlot, level_plot, map_plot, plane_plot, time_plot, trends
+from loopbook.figures.picture import plain_words, with_few_colours
 from loopbook.figures.style import INPUTS, ROLES, STYLE, look
 from loopbook.laplace import s, t
 from loopbook.pid import PID, Controller
@@ -270,6 +275,21 @@ def test_points_are_added_and_stay_inside():
         plot.points([0, 2], [1], "data")
 
 
+@pytest.mark.parametrize(("plot", "kind"), [(time_plot, TimePlot), (plane_plot, PlanePlot)])
+def test_what_can_be_added_is_said_where_a_plot_is_made(plot, kind):
+    (returns,) = re.findall(r"Returns:(.*?)Raises:", plot.__doc__, re.DOTALL)
+    assert {f"``.{name}``" for name in vars(kind) if not name.startswith("_")} == set(re.findall(r"``[^`]*``", returns))
+
+
+def test_black_and_white_has_two_bits_for_a_dot():
+    drawing = Image.new("RGB", (40, 40), "white")
+    for x, grey in enumerate([0, 60, 120, 170, 230]):
+        drawing.putpixel((x, 0), (grey, grey, grey))
+    few = with_few_colours(drawing).convert("L")
+    assert {grey for _, grey in few.getcolors()} == {0, 100, 170, 255}
+    assert [few.getpixel((x, 0)) for x in range(6)] == [0, 100, 100, 170, 255, 255]
+
+
 def hidden(plot):
     """The curves of the first panel that run behind its legend."""
     plot.figure.draw_without_rendering()
@@ -294,6 +314,34 @@ def test_a_legend_hides_no_curve():
     assert hidden(time_plot(everywhere, TIMES)) == []
     assert hidden(time_plot(everywhere, TIMES, ylim=(-1, 1))) != []  # an axis that was asked for stays
     assert time_plot({"a": LAG, "b": 1}, TIMES).figure.axes[0].get_ylim()[1] < 2.3  # there is room
+
+
+def test_a_legend_is_placed_without_drawing_the_figure(monkeypatch):
+    draws = []
+    monkeypatch.setattr(Figure, "draw", lambda *arguments: draws.append(arguments))
+    everywhere = {"one": sympy.sin(3 * t), "another": sympy.cos(3 * t), "a third": sympy.sin(2 * t)}
+    plot = time_plot([everywhere, {"a": LAG, "b": 1}], TIMES)
+    assert draws == []
+    assert plot.figure.axes[0].get_ylim()[1] > 1.2
+
+
+def test_a_legend_over_a_map_does_not_look_for_a_free_place():
+    class Cells(QuadMesh):
+        """What a later version of Matplotlib may return."""
+
+    plot = map_plot([1, 2, 3], [1, 2, 3], np.eye(3), "$x$", "$y$", "poles")
+    plot.axes.collections[0].__class__ = Cells
+    plot.points([2], [2], "settings")
+    assert plot.axes.get_legend()._get_loc() == Legend.codes["upper right"]
+
+
+def test_a_legend_below_stays_there_with_its_columns():
+    plot = nyquist_plot(exp(-s) / (s + 1))
+    before = plot.axes.get_legend()
+    after = plot.points([0.5], [0], "a point").axes.get_legend()
+    assert before._ncols == after._ncols == 2
+    assert after.get_bbox_to_anchor().y1 == before.get_bbox_to_anchor().y1 < plot.axes.bbox.y0
+    assert after.get_texts()[-1].get_text() == "a point"
 
 
 # Trends.

@@ -12,7 +12,7 @@ import numpy as np
 
 from loopbook.deadtime.curves import frequency_curve, natural_range
 from loopbook.figures import Picture, PlanePlot, TimePlot, time_plot
-from loopbook.figures.labels import add_legend, decades, free_place, legend_below
+from loopbook.figures.labels import decades, free_legend, free_place, legend_below
 from loopbook.figures.picture import plain_words, titled
 from loopbook.figures.style import GUIDE, LEVEL, WIDTH, ZERO, look, styled
 from loopbook.quasipolynomials import DelayFraction, read
@@ -107,7 +107,7 @@ def bode_plot(
         above.set_title(title or "")
         figure.align_ylabels()
         if len(curves) > 1:
-            add_legend(above, may_grow=True)
+            free_legend(above)
         if margins is not None:
             ((fraction, curve),) = zip(fractions.values(), curves.values(), strict=True)
             _bode_margins(above, below, fraction, curve, margins, size, unit)

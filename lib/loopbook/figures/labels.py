@@ -16,38 +16,38 @@ if TYPE_CHECKING:
 BELOW = "below"  # the name of a legend that lies under its axes
 
 
-def add_legend(axes: Axes, may_grow: bool, columns: int = 1) -> None:
-    """A legend where it hides no curve; if there is no such place, a flat one above them, for which the panel grows."""
+def add_legend(axes: Axes, columns: int = 1) -> None:
+    """A legend where it hides least, and the axes stay as they are; one that lies below its axes remains there."""
+    from matplotlib.collections import QuadMesh
+
     if axes.get_legend() and axes.get_legend().get_gid() == BELOW:
         legend_below(axes)
-        return
-    if any(type(drawn).__name__ == "QuadMesh" for drawn in axes.collections):
+    elif any(isinstance(drawn, QuadMesh) for drawn in axes.collections):
         axes.legend(loc="upper right")  # the search for a free place would go through every cell of a map
-        return
-    if not may_grow:
+    else:
         axes.legend(ncols=columns)
+
+
+def free_legend(axes: Axes) -> None:
+    """A legend where it hides no curve; if there is no such place, a flat one above them, for which the panel grows."""
+    legend = axes.legend()
+    axes.figure.get_layout_engine().execute(axes.figure)  # puts the axes where they remain, and draws nothing
+    box = legend.get_window_extent()
+    if not any(line.get_path().transformed(axes.transData).intersects_bbox(box, filled=False) for line in axes.lines):
         return
-    box = _legend_box(axes)
-    hides = any(line.get_path().transformed(axes.transData).intersects_bbox(box, filled=False) for line in axes.lines)
-    if hides:
-        columns = len(axes.lines)
-        while columns > 1 and _legend_box(axes, ncols=columns).width > 0.95 * axes.bbox.width:
-            columns -= 1
-        box, scale = _legend_box(axes, ncols=columns, loc="upper right"), axes.yaxis.get_transform()
-        low, high = scale.transform(axes.get_ylim())
-        high += 1.1 * (high - low) * box.height / (axes.bbox.height - box.height)
-        axes.set_ylim(scale.inverted().transform([low, high]))
+    for columns in range(len(axes.lines), 0, -1):
+        box = axes.legend(ncols=columns, loc="upper right").get_window_extent()
+        if box.width <= 0.95 * axes.bbox.width:
+            break
+    scale = axes.yaxis.get_transform()
+    low, high = scale.transform(axes.get_ylim())
+    high += 1.1 * (high - low) * box.height / (axes.bbox.height - box.height)
+    axes.set_ylim(scale.inverted().transform([low, high]))
 
 
-def legend_below(axes: Axes, columns: int = 2) -> None:
+def legend_below(axes: Axes) -> None:
     """A legend under the axes, where a picture has no empty corner; what is added later is explained there, too."""
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=columns).set_gid(BELOW)
-
-
-def _legend_box(axes, **options):
-    legend = axes.legend(**options)
-    axes.figure.draw_without_rendering()
-    return legend.get_window_extent()
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2).set_gid(BELOW)
 
 
 def decades(axis: Axis, low: float, high: float, short: float = 300) -> None:

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from PIL import Image
 
 
+SHADES = 3  # of each colour of a stored picture, for soft edges
+
+
 class Picture:
     """A finished figure that a notebook shows once, as the value of a cell, with a description for who cannot see it.
 
@@ -65,14 +68,13 @@ class Picture:
         return data, {"image/png": {"alt": self.alt, "width": width, "height": height}}
 
 
-def with_few_colours(image: Image.Image, shades: int = 3) -> Image.Image:
+def with_few_colours(image: Image.Image) -> Image.Image:
     """A line drawing with the colours of its lines and areas, in a few shades towards white: a quarter as large.
 
     Arguments:
         image: of Pillow, in RGB.
-        shades: of each colour, for soft edges.
     Returns:
-        The image with a palette.
+        The image with a palette: three shades of each colour, or black, white and two greys where there is no other.
     """
     from PIL import Image, ImageColor
 
@@ -82,9 +84,9 @@ def with_few_colours(image: Image.Image, shades: int = 3) -> Image.Image:
     # what covers half a per cent or more is an area or a grid, but for the white ones
     of_areas = [c for c, number in count.items() if number > 0.005 * image.width * image.height and min(c) < 245]
     mixed = [
-        tuple(round(255 + (x - 255) * k / shades) for x in colour)
+        tuple(round(255 + (x - 255) * k / SHADES) for x in colour)
         for colour in [*of_lines, *of_areas]
-        for k in range(1, shades + 1)
+        for k in range(1, SHADES + 1)
     ]
     if all(max(colour) == min(colour) for colour in [*of_lines, *of_areas]):  # black and white: two bits a dot
         greys = [colour for colour in of_areas if colour != (0, 0, 0)] or [(170, 170, 170)]

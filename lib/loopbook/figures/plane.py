@@ -73,7 +73,7 @@ class PlanePlot(Picture):
 
     def _explained(self, words):
         with styled():
-            add_legend(self.axes, may_grow=False)
+            add_legend(self.axes)
         self.alt += words
         return self
 
@@ -99,7 +99,8 @@ def plane_plot(
         log: logarithmic axes.
         equal: one unit is as long on both axes, as for complex numbers; then both axes are drawn at zero.
     Returns:
-        A `PlanePlot`, which a notebook shows as the value of a cell; ``.area``, ``.points`` and ``.text`` add to it.
+        A `PlanePlot`, which a notebook shows as the value of a cell; ``.area``, ``.line``, ``.points`` and
+            ``.text`` add to it.
     Raises:
         ValueError: for no curve, or unequal lengths.
 
@@ -124,7 +125,7 @@ def plane_plot(
             axes.axhline(0, **ZERO)
             axes.axvline(0, **ZERO)
         if len(curves) > 1:
-            add_legend(axes, may_grow=False)
+            add_legend(axes)
     shown = ", ".join(map(plain_words, curves))
     words = f"{shown}: {plain_words(ylabel)} against {plain_words(xlabel)}"
     return PlanePlot(figure, titled(title, words))

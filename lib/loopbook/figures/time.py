@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Protocol, Self, TypeAlias
 import numpy as np
 import sympy
 
-from loopbook.figures.labels import add_legend
+from loopbook.figures.labels import add_legend, free_legend
 from loopbook.figures.picture import Picture, plain_words, titled
 from loopbook.figures.style import GUIDE, INPUTS, LEVEL, ON_WHITE, WIDTH, look, styled
 from loopbook.laplace import evaluate, t
@@ -173,7 +173,7 @@ class TimePlot(Picture):
         axes.plot(times, values, "o", color="#000000", markersize=5, label=label, zorder=4)
         axes.set_ylim(min(low, *map(float, values)), max(high, *map(float, values)))
         with styled():
-            add_legend(axes, may_grow=True)
+            free_legend(axes)
         self.alt += f"; points: {plain_words(label)}"
         return self
 
@@ -212,7 +212,8 @@ def time_plot(
         before: how much time to show ahead of t = 0, with every signal at zero, so that a step at t = 0 is seen.
         low: make it less high, and flat the legend under a given `ylim`, where a chapter has many figures.
     Returns:
-        A `TimePlot`, which a notebook shows as the value of a cell; ``.mark`` and ``.level`` add to it.
+        A `TimePlot`, which a notebook shows as the value of a cell; ``.mark``, ``.level`` and ``.points`` add
+            to it.
     Raises:
         ValueError: for times that do not increase, a signal that is neither expression nor array or has another length
             than the times, an unknown role, a label used twice, or an expression with letters besides `t`.
@@ -264,7 +265,10 @@ def time_plot(
             roles = {role for *_, role in panel.values()}
             # the same responses in the same looks need no second legend
             if len(panel) > 1 and not (roles <= explained and all(isinstance(role, int) for role in roles)):
-                add_legend(axes, may_grow=not fixed, columns=3 if low else 1)
+                if fixed:
+                    add_legend(axes, columns=3 if low else 1)
+                else:
+                    free_legend(axes)
             explained |= roles
     shown = "; ".join(", ".join(map(plain_words, panel)) for panel in panels)
     return TimePlot(figure, titled(title, f"{shown} against {plain_words(xlabel)}"), lines)
@@ -362,14 +366,14 @@ def trends(
     output, control = first.output, first.manipulated
     source = "measurement" if measured else output
 
-    def panel(name, signal, role):
+    def curves(name, signal, role):
         letter = f"${sympy.latex(sympy.Symbol(name))}$"
         if len(runs) == 1:
             return {letter: (first[signal], role)}
         return {f"{letter}, {label}": (run[signal], n) for n, (label, run) in enumerate(runs.items())}
 
     top = {"setpoint": (first["setpoint"], "setpoint")} if "setpoint" in first.signals else {}
-    panels = [top | panel(output, source, "measurement"), panel(control, control, "control signal")]
+    panels = [top | curves(output, source, "measurement"), curves(control, control, "control signal")]
     panels += [{f"${sympy.latex(sympy.Symbol(x))}$": (first[x], "disturbance")} for x in disturbances]
     names = [f"${sympy.latex(sympy.Symbol(x))}$ [{first.unit(x)}]" for x in (output, control, *disturbances)]
     ylim = [limits, control_limits, *(None for _ in disturbances)]
