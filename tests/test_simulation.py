@@ -201,6 +201,21 @@ def test_a_run_that_needs_too_many_steps_does_not_grow_beyond_all_numbers(monkey
             simulate(Process(H), until=100, step=50, u=1)
 
 
+def test_the_history_is_no_longer_than_the_longest_dead_time_until_more_is_asked():
+    runs = [simulate(Recycle(), until=until, step=1, c_in=2 + sympy.sin(t)) for until in (50, 500)]
+    short, long = (run._past.integrator for run in runs)
+    assert len(long.pieces) < 2 * len(short.pieces)
+    assert long.oldest > 480
+    moments = np.linspace(0.3, 40.3, 60)
+    before = [long.trace[n] for n in range(len(long.times))]
+    asked = [long.state_at(moment)[0] for moment in moments]
+    assert long.trace == before
+    assert len(long.pieces) > 5 * len(short.pieces)
+    every = simulate(Recycle(tau_m=45), until=50, step=1, c_in=2 + sympy.sin(t))._past.integrator  # which keeps it all
+    assert every.oldest == 0
+    assert asked == pytest.approx([every.state_at(moment)[0] for moment in moments], abs=1e-9)
+
+
 def test_a_plant_goes_on_with_a_dead_time_inside_that_it_did_not_have():
     first = simulate(Recycle(tau=0), until=20, step=1, c_in=2)
     run = simulate(Recycle(tau=4), until=60, step=1, c_in=2, after=first)

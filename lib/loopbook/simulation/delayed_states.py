@@ -4,11 +4,15 @@ The method of steps: in a stretch of time no longer than the shortest such dead 
 from a history that is as exact as the integration. A jump of an input returns as a jump of a higher derivative after
 each of these dead times; the integration stops there until it is too smooth to matter. The method is that of Dormand
 and Prince of order 8 with its interpolation of order 7 (SciPy), to a relative tolerance of 1e-11.
+
+The history goes back as far as the longest dead time. A later run whose plant has a longer one asks for more: then the
+run is integrated once more, by the same steps, and all of it is kept.
 """
 
 from __future__ import annotations
 
 import bisect
+import itertools
 import math
 
 import numpy as np
@@ -29,10 +33,15 @@ class DelayedStateIntegrator(PlantIntegrator):
     """The state of a plant with delayed states, from one discontinuity to the next; else as `PlantIntegrator`."""
 
     def _prepare(self):
+        self.reach = max(delay for name, delay in self.driving + self.measuring if name in self.names)
+        self._begin_history()
+
+    def _begin_history(self):
         from scipy.integrate import DOP853, LSODA
 
         self.methods, self.first = [(DOP853, TOO_STIFF), (LSODA, MOST_STEPS)], None
         self.ends, self.pieces = [], []  # the history: up to which time each interpolant holds
+        self.oldest = self.begin  # when it begins
 
     def _begins(self):
         return [self.begin, *(self.past._begins() if isinstance(self.past, DelayedStateIntegrator) else ())]
@@ -66,13 +75,19 @@ class DelayedStateIntegrator(PlantIntegrator):
         if time <= self.begin:
             return self.past.state_at(time)[n] if self.past else self.at_rest[n]
         low, high = self.limits[n]
-        return min(max(float(self.pieces[self._piece(time)](time)[n]), low), high)
+        return min(max(float(self._piece(time)(time)[n]), low), high)
 
     def _piece(self, time):
-        return min(bisect.bisect_left(self.ends, time), len(self.pieces) - 1)
+        """The interpolant of a moment."""
+        if time < self.oldest:
+            self.reach = math.inf
+            self._begin_history()
+            for (start, end), state in zip(itertools.pairwise(self.times), self.trace, strict=False):
+                self._integrated(state, start, end)
+        return self.pieces[min(bisect.bisect_left(self.ends, time), len(self.pieces) - 1)]
 
     def _between(self, n, time):
-        return self._limited(self.pieces[self._piece(time)](time).tolist())
+        return self._limited(self._piece(time)(time).tolist())
 
     def _integrated(self, state, start, end):
         """The state at the end of a stretch of time; what lies between becomes history."""
@@ -85,9 +100,17 @@ class DelayedStateIntegrator(PlantIntegrator):
                 ends, pieces, state = found
                 self.ends += ends
                 self.pieces += pieces
+                self._drop_before(start - self.reach)
                 return self._limited(state)
             self.methods = self.methods[1:] or self.methods  # what was too stiff once remains so
         raise beyond_all_numbers(", ".join(self.names), end)
+
+    def _drop_before(self, time):
+        """Drop the history before a moment, once it is half of it."""
+        old = bisect.bisect_left(self.ends, time)
+        if 2 * old > len(self.ends):
+            self.oldest = self.ends[old - 1]
+            del self.ends[:old], self.pieces[:old]
 
     def _stepped(self, method, most, state, start, end):
         """The steps of a method with their interpolants, and the state at the end; None if it gets stuck."""
