@@ -191,7 +191,7 @@ def compiled(*settings: float) -> Callable[[np.ndarray, float], np.ndarray] | No
 
 
 def the_margins(runs: int) -> Table:
-    """Margins and Ms of loops that are easy, sharp, and with a gain at endless frequency."""
+    """Margins and Ms of loops that are easy, sharp, and with a gain at infinite frequency."""
     z = sympy.Rational(1, 100_000)
     sharp = 6 * z**2 / 5 / (s**2 + 2 * z * s + 1) ** 2
     loops = {  # process without its dead time, controller, dead time

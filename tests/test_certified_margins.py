@@ -53,7 +53,7 @@ def numbers(low, high):
 
 @st.composite
 def loops(draw):
-    """Stable loops: lags, integrators, resonances, unstable plants, several dead times, gain at endless frequency."""
+    """Stable loops: lags, integrators, resonances, unstable plants, several dead times, gain at infinite frequency."""
     kind = draw(st.sampled_from(("lags", "integrator", "resonance", "unstable", "neutral", "several", "predictor")))
     delay, T, k = draw(numbers(0.05, 10)), draw(numbers(0.3, 10)), draw(numbers(0.02, 5))
     if kind == "lags":
@@ -153,7 +153,7 @@ def test_equivalent_inputs():
     assert {is_closed_loop_stable(form) for form in forms} == {True}
 
 
-# ------------------------------------------------------------------------------------------------ endless frequency
+# ------------------------------------------------------------------------------------------------ infinite frequency
 
 
 def test_the_gain_at_endless_frequency():

@@ -117,7 +117,7 @@ def test_each_is_a_root_and_as_many_are_unstable_as_the_argument_principle_says(
 def test_what_has_no_answer_is_refused():
     with pytest.raises(ValueError, match="count is 0: expected a whole number, at least 1"):
         dominant_poles(1 / s, count=0)
-    with pytest.raises(ValueError, match="an endless row of poles"):
+    with pytest.raises(ValueError, match="an infinite row of poles"):
         dominant_poles(3 * dead_time(1) * (s + 1) / (s + 2))
     with pytest.raises(ValueError, match="give a number for K"):
         dominant_poles(sympy.Symbol("K") / s)

@@ -68,8 +68,8 @@ def test_results_have_the_shape_of_the_values():
 @pytest.mark.parametrize(
     ("question", "message"),
     [
-        (lambda: Family(1 / s, Kp), "the loop has the letters Kp, and there are values for none"),
-        (lambda: Family(1 / s, 2, Kp=[1]), "the loop has the letters none, and there are values for Kp"),
+        (lambda: Family(1 / s, Kp), "the loop has the symbols Kp, and there are values for none"),
+        (lambda: Family(1 / s, 2, Kp=[1]), "the loop has the symbols none, and there are values for Kp"),
         (lambda: Family(1 / s, Kp / (Ti * s), Kp=[1, 2], Ti=[1, 2, 3]), "expected shapes that fit"),
         (lambda: Family(sympy.exp(-delay * s) / s, 1, delay=[-1]).Ms(), "dead time -1"),
         (lambda: Family(1 / s, Kp, Kp=[1]).ise("load"), "the mode is 'load'"),

@@ -477,7 +477,7 @@ def test_near_the_limit_a_method_declines_or_is_right(process, settings, known):
 
 
 def test_it_says_why_every_method_declines():
-    """An endless row of poles comes near to the axis."""
+    """An infinite row of poles comes near to the axis."""
     E = 1 / (s + 1 + s * DELAY / 2 + sympy.Rational(4999, 10_000) * s * sympy.exp(-ROOT_TWO * s))
     with pytest.raises(ValueError, match=r"residues: .*; boundary value: .*; quadrature: .*; response: the response"):
         integral_of_square(E)

@@ -273,7 +273,7 @@ def test_what_crossings_leave_open():
     assert routh([1, 0, 1]) is None
     assert routh([6, 11, 6, 1]) == 0
     assert routh([-6, 11, -6, 1]) == 3
-    assert OneDelay((1, 1), (2, 3), Fraction(1)).unstable is None  # an endless row
+    assert OneDelay((1, 1), (2, 3), Fraction(1)).unstable is None  # an infinite row
     assert OneDelay((0, 1), (0, 0, 1), Fraction(1)).unstable is None
     k = to_limit(DELAY / s, 0)
     near = OneDelay((0, int(k.q)), (int(k.p),), Fraction(1))

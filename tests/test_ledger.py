@@ -392,7 +392,7 @@ NO_FORMULA = {
     "matrix": (sympy.Matrix([K, T]), "Matrix"),
     "frozen matrix": (sympy.ImmutableMatrix([[K]]), "Matrix"),
     "tuple": (sympy.Tuple(K, T), "Tuple"),
-    "two letters of one name": (K + sympy.Symbol("K"), "two different symbols named K"),
+    "two symbols of one name": (K + sympy.Symbol("K"), "two different symbols named K"),
     "unprintable": (Unprintable(), "Unprintable"),
 }
 NO_CLAIM = {

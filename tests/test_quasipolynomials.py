@@ -15,7 +15,7 @@ from draws import draws
 from loopbook import s
 from loopbook.pid import PID
 from loopbook.quasipolynomials import DelayFraction, normal_form, read
-from loopbook.quasipolynomials.letters import broadcast_values, with_values
+from loopbook.quasipolynomials.symbols import broadcast_values, with_values
 from loopbook.transfer import first_order
 
 POINTS = np.array([0.3 + 0.2j, -0.4 + 1.1j, 0.7j, 2.0 - 0.5j])

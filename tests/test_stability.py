@@ -706,8 +706,8 @@ def test_marks_in_a_map(capsys):
 @pytest.mark.parametrize(
     ("loop", "values", "message"),
     [
-        ("K/s", {"K": [1]}, "expected two letters"),
-        ("K/(s + a)", {"K": [1], "b": [1]}, "has the letters K, a, and there are values for K, b"),
+        ("K/s", {"K": [1]}, "expected two symbols"),
+        ("K/(s + a)", {"K": [1], "b": [1]}, "has the symbols K, a, and there are values for K, b"),
         ("K/(s + a)", {"K": 1, "a": [1]}, "one-dimensional"),
         ("K/(s + a)", {"K": ["x"], "a": [1]}, "expected real numbers"),
         ("K*exp(-a*s)/s", {"K": [1], "a": [-1, 1]}, "dead time -1"),

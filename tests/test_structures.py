@@ -76,7 +76,7 @@ def test_the_sign_of_the_process_gain_decides_the_action(H, action):
         (0, "no lasting effect"),
         (1 / (s - 1), "unstable"),
         (sympy.Symbol("K") / (s + 1), "sign of the process gain K"),
-        (HeatedTank().transfer_function("P"), "expected numbers or positive letters"),  # the flow F may be negative
+        (HeatedTank().transfer_function("P"), "expected numbers or positive symbols"),  # the flow F may be negative
         ("1/s", "type str"),
     ],
 )

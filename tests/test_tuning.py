@@ -240,9 +240,9 @@ def test_a_vanishing_dead_time_lets_the_gain_grow_without_end(rule):
 
 
 def test_skogestad_for_a_lag_becomes_that_for_an_integrator():
-    lag, endless = tuning.simc(first_order(K * T, T, delay), Tc, c), tuning.simc(integrator(K, delay), Tc, c)
-    assert lag.Kp == endless.Kp
-    assert lag.Ti.subs({delay: 1, Tc: 2, c: 4, T: 10**6}) == endless.Ti.subs({delay: 1, Tc: 2, c: 4})
+    lag, infinite = tuning.simc(first_order(K * T, T, delay), Tc, c), tuning.simc(integrator(K, delay), Tc, c)
+    assert lag.Kp == infinite.Kp
+    assert lag.Ti.subs({delay: 1, Tc: 2, c: 4, T: 10**6}) == infinite.Ti.subs({delay: 1, Tc: 2, c: 4})
 
 
 def test_skogestad_without_dead_time_is_the_limit():
@@ -287,10 +287,10 @@ def test_skogestad_cancels_the_smaller_lag(T1, T2, delay, K):
 
 
 def test_ziegler_nichols_of_a_reaction_curve():
-    letters = [tuning.ziegler_nichols_reaction(first_order(K, T, delay), kind) for kind in KINDS]
-    gains = [settings.Kp * K for settings in letters]
+    by_kind = [tuning.ziegler_nichols_reaction(first_order(K, T, delay), kind) for kind in KINDS]
+    gains = [settings.Kp * K for settings in by_kind]
     assert same(gains, [T / delay, Rational("0.9") * T / delay, Rational("1.2") * T / delay])
-    assert [times(settings) for settings in letters] == [(oo, 0), (Rational("3.33") * delay, 0), (2 * delay, delay / 2)]
+    assert [times(settings) for settings in by_kind] == [(oo, 0), (Rational("3.33") * delay, 0), (2 * delay, delay / 2)]
 
 
 def test_cohen_and_coon():
@@ -355,7 +355,7 @@ def test_hang_joins_at_the_ends_of_its_ranges():
 
 
 @given(RANGE_OF_HANG, POSITIVE)
-def test_hang_of_letters_is_that_of_numbers(k, gain):
+def test_hang_of_symbols_is_that_of_numbers(k, gain):
     formula, found = tuning.hang(K, Ku, Pu), tuning.hang(gain, k / gain, 5)
     numbers = {K: gain, Ku: k / gain, Pu: 5}
     assert formula.w_p.subs(numbers) == found.w_p
@@ -379,7 +379,7 @@ def test_cohen_and_coons_proportional_control_decays_to_a_quarter(r):
 
 
 @pytest.mark.parametrize("kind", ["P", "PI"])
-def test_ziegler_and_nichols_decay_to_a_quarter_where_the_lag_is_endless(kind):
+def test_ziegler_and_nichols_decay_to_a_quarter_where_the_lag_is_infinite(kind):
     process = integrator(1, 1)
     pair = dominant_poles(tuning.ziegler_nichols_reaction(process, kind).expr * process)[0]
     assert float(oscillation_of_pole(pair).decay_ratio) == pytest.approx(0.25, abs=0.03)

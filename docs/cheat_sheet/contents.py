@@ -1,6 +1,6 @@
 """The contents of the cheat sheet: formulas as SymPy expressions, each of them what a function of the library returns.
 
-What no function derives with letters (a relay's ultimate gain, the margins of one loop) stands in stated.py, and
+What no function derives with symbols (a relay's ultimate gain, the margins of one loop) stands in stated.py, and
 tests/repository/test_cheat_sheet.py compares it with the numbers of the library.
 """
 

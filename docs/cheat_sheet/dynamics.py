@@ -1,4 +1,4 @@
-"""The sections about processes and loops: each formula is what a function of the library returns for letters."""
+"""The sections about processes and loops: each formula is what a function of the library returns for symbols."""
 
 import functools
 
@@ -196,7 +196,7 @@ def ise_of_integrator():
 
 
 def squared_error():
-    """The closed form of `ise.pi_first_order`, in the letters of its docstring."""
+    """The closed form of `ise.pi_first_order`, in the symbols of its docstring."""
     rows = (
         (rf"$L = a\,e^{{-\theta s}}/s$:  {shown(Is('J', ise_of_integrator()))}",),
         (f"PI control of a lag with dead time:  {shown(Is('J', ISE))}  with",),

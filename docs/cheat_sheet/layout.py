@@ -162,7 +162,7 @@ def draw(sections, title, letters, file):
     Arguments:
         sections: what has `title`, `header`, `cells()` and `note`, texts with formulas between dollars.
         title: of the page.
-        letters: lines that say what the letters mean.
+        letters: lines that say what the symbols mean.
         file: name or open binary file.
     Raises:
         ValueError: for what does not fit on the page.

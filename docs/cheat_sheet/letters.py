@@ -1,4 +1,4 @@
-"""The letters of the cheat sheet, as SymPy symbols."""
+"""The symbols of the cheat sheet, as SymPy symbols."""
 
 from sympy import symbols
 

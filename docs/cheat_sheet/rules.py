@@ -1,4 +1,4 @@
-"""The sections with settings of controllers: each is what a rule of the library returns for letters."""
+"""The sections with settings of controllers: each is what a rule of the library returns for symbols."""
 
 import functools
 
@@ -51,7 +51,7 @@ def undelayed(H):
 
 @functools.cache
 def imc_row(name):
-    """Model, integral time, K*Kp/Ti, Td*Ti and filter of a row of the IMC table, in the letters of the sheet."""
+    """Model, integral time, K*Kp/Ti, Td*Ti and filter of a row of the IMC table, in the symbols of the sheet."""
     model, approximation = IMC_TABLE[name]
     pid = imc(model, Tc, **({"approximation": approximation} if approximation else {}))
     renamed = {symbols(old, positive=True): new for old, new in (("delay", theta), ("T1", T1), ("T2", T2), ("T3", T3))}
@@ -96,7 +96,8 @@ def row(name, *values):
 def experiments():
     found = settings("the ultimate gain and period", "the Good Gain experiment")
     rows = tuple(row(name, pid.Kp, pid.Ti, pid.Td) for name, pid in found.items())
-    note = f"A relay of amplitude $d$ that makes the output swing by $\\pm A$ tells $K_u = {latex(RELAY, flat=True)}$."
+    note = "A relay of amplitude $d$ with which the output oscillates by $\\pm A$ tells "
+    note += f"$K_u = {latex(RELAY, flat=True)}$."
     header = ("experiment in the loop", "$K_p$", "$T_i$", "$T_d$")
     return Section("Settings from experiments", "16_tuning_relations", rows, header, note)
 

@@ -73,9 +73,9 @@ def respond(change, strength):
     ratio = area(one) / area(two)
     end = -200 // STEP
     if abs(np.diff(two["F_h"][end:])).sum() > 1:
-        verdict = "The inner loop swings and does not come to rest"
+        verdict = "The inner loop oscillates and does not come to rest"
     elif np.ptp(two["T_p"][end:]) > 0.1:
-        verdict = "The inner loop is too slow: the outer one swings"
+        verdict = "The inner loop is too slow: the outer one oscillates"
     elif ratio > 1.05:
         verdict = f"The single loop has {ratio:.1f} times the area of the cascade"
     else:

@@ -146,7 +146,7 @@ def agreement(one: Number, other: Number) -> str:
 
     Random exact points of all magnitudes come first, because a single one refutes an equality for good. What survives
     them is simplified: a difference that vanishes is *proved* zero. Only where SymPy cannot finish the proof do the
-    points stand alone, and the answer says *probed*. Decimal numbers are exact, and the name of a bound letter does
+    points stand alone, and the answer says *probed*. Decimal numbers are exact, and the name of a bound symbol does
     not matter. Undefined functions, derivatives, open integrals and impulses count as quantities of their own.
 
     Raises ValueError when one is no expression, or the two cannot be compared at any point.
@@ -191,7 +191,7 @@ def _opaque(*expressions):
 def _nonzero_somewhere(difference, points=9):
     """Whether a difference is not zero at one of several random points; the same points every time."""
     symbols = sorted(difference.free_symbols, key=lambda symbol: (symbol.name, str(symbol.assumptions0)))
-    # dummify: two letters of one name may stand in a difference
+    # dummify: two symbols of one name may stand in a difference
     terms = sympy.lambdify(symbols, sympy.Add.make_args(sympy.expand(difference)), [_NUMERIC, "mpmath"], dummify=True)
     dice = random.Random(4)
     judged = 0
@@ -299,7 +299,7 @@ def _meant(decimal):
 
 
 def function_of(variable: sympy.Symbol, value: Number | complex) -> sympy.Expr:
-    """Return `value`, exact, as a function of `variable`, which is `s` or `t`; other letters may stand in it.
+    """Return `value`, exact, as a function of `variable`, which is `s` or `t`; other symbols may stand in it.
 
     Raises ValueError where it contains the other of the two, or a symbol that is only named like one of them. With
     such a symbol, which SymPy tells apart by its assumptions, results would be wrong without a word.

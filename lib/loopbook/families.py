@@ -1,4 +1,4 @@
-"""Whole families of loops: one loop with letters, for arrays of their values at once.
+"""Whole families of loops: one loop with symbols, for arrays of their values at once.
 
 Tuning, maps and sliders ask the same question of many settings. A family answers it in one call, which takes a small
 part of the time of as many single ones.
@@ -15,7 +15,7 @@ import numpy as np
 from loopbook.deadtime.response import ChannelModel, step_family
 from loopbook.ise import ise_family
 from loopbook.quasipolynomials.arrays import Quasipolynomials
-from loopbook.quasipolynomials.letters import broadcast_values, with_values
+from loopbook.quasipolynomials.symbols import broadcast_values, with_values
 from loopbook.stability.counting import count_roots
 from loopbook.stability.sensitivity import largest_sensitivities
 from loopbook.transfer import transfer_function
@@ -30,17 +30,17 @@ MODES = ("servo", "regulator")
 
 
 class Family:
-    """A process under feedback control, for many values of the letters in it: of settings, or of the process.
+    """A process under feedback control, for many values of the symbols in it: of settings, or of the process.
 
     The loop is that of `deadtime.Loop`. All results are arrays of the shape that the values have together.
 
     Arguments:
-        process, controller: as for `deadtime.Loop`, with letters.
-        **values: the values of the letters by their names, numbers or arrays that fit together.
+        process, controller: as for `deadtime.Loop`, with symbols.
+        **values: the values of the symbols by their names, numbers or arrays that fit together.
     Attributes:
         shape: that of the results.
     Raises:
-        ValueError: for letters without values, values without letters, shapes that do not fit, or a negative dead time.
+        ValueError: for symbols without values, values without symbols, shapes that do not fit, or a negative dead time.
 
     >>> import sympy
     >>> from loopbook import s
@@ -57,10 +57,10 @@ class Family:
 
     def __init__(self, process: object, controller: object, **values: ArrayLike):
         P, C = transfer_function(process), transfer_function(controller)
-        letters = {str(letter) for letter in (P + C).free_symbols} - {"s"}
-        if letters != set(values):
+        symbols = {str(symbol) for symbol in (P + C).free_symbols} - {"s"}
+        if symbols != set(values):
             raise ValueError(
-                f"the loop has the letters {', '.join(sorted(letters)) or 'none'}, and there are values for "
+                f"the loop has the symbols {', '.join(sorted(symbols)) or 'none'}, and there are values for "
                 f"{', '.join(sorted(values)) or 'none'}: expected the same"
             )
         self._values, self.shape = broadcast_values(values)

@@ -94,7 +94,7 @@ _BLOCKS = (sympy.exp, sympy.Heaviside, sympy.DiracDelta, *_IMPLICIT)
 
 def _products(f):
     """Multiply f(t) out: a list of terms (coefficient, {block: power}), the blocks being what depends on t."""
-    letters, constants = {}, {}
+    symbols, constants = {}, {}
 
     def spelled(part):
         if not part.has(t):
@@ -106,15 +106,15 @@ def _products(f):
         if isinstance(part, _BLOCKS) or (
             part.is_Pow and (part.base == t or part.exp.has(t)) and not part.exp.is_Integer
         ):
-            return letters.setdefault(part, sympy.Dummy())
+            return symbols.setdefault(part, sympy.Dummy())
         return part.func(*map(spelled, part.args)) if part.args else part
 
     try:
-        polynomial = sympy.Poly(spelled(f), t, *letters.values())
+        polynomial = sympy.Poly(spelled(f), t, *symbols.values())
     except sympy.PolynomialError:
         raise ValueError(f"cannot transform {f}: {_EXPECTED}") from None
-    blocks = [t, *letters]
-    meaning = {letter: constant for constant, letter in constants.items()}
+    blocks = [t, *symbols]
+    meaning = {symbol: constant for constant, symbol in constants.items()}
     return [
         (coefficient.xreplace(meaning), {block: n for block, n in zip(blocks, powers, strict=True) if n})
         for powers, coefficient in polynomial.terms()
@@ -229,23 +229,23 @@ def by_delay(F: Number) -> dict[sympy.Expr, sympy.Expr]:
 
 
 def without_delays(F: sympy.Expr) -> tuple[sympy.Expr, dict[sympy.Symbol, sympy.Expr]]:
-    """Return F(s) with a letter for each ``exp(-delay*s)``, which makes it rational, and the dictionary {letter:
+    """Return F(s) with a symbol for each ``exp(-delay*s)``, which makes it rational, and the dictionary {symbol:
     delay}.
 
     Raises ValueError where F is not a rational function of s and dead times.
     """
-    letters, replaced = {}, {}
+    symbols, replaced = {}, {}
     for exponential in sorted(F.atoms(sympy.exp), key=str):
         if exponential.has(s):
             exponent = sympy.expand(exponential.exp)
             rate = exponent.coeff(s, 1)
-            # exp(delay*s) is one over exp(-delay*s): one letter serves for both
+            # exp(delay*s) is one over exp(-delay*s): one symbol serves for both
             sign = 1 if rate.could_extract_minus_sign() else -1
-            letter = letters.setdefault(-sign * rate, sympy.Dummy())
-            replaced[exponential] = letter**sign * sympy.exp(sympy.expand(exponent - rate * s))
-    delays = {letter: delay for delay, letter in letters.items()}
+            symbol = symbols.setdefault(-sign * rate, sympy.Dummy())
+            replaced[exponential] = symbol**sign * sympy.exp(sympy.expand(exponent - rate * s))
+    delays = {symbol: delay for delay, symbol in symbols.items()}
     rational = F.xreplace(replaced)
-    constants = (*letters, *replaced.values())
+    constants = (*symbols, *replaced.values())
     if not rational.is_rational_function(s, *delays) or any(constant.has(s) for constant in constants):
         raise ValueError(f"{F} is not a rational function of s and dead times exp(-delay*s)")
     return rational, delays
@@ -278,16 +278,16 @@ def _fractions(rational):
 def inverse(F: Number) -> sympy.Expr:
     """Return the time function f(t), t >= 0, whose Laplace transform is F(s): partial fractions, then one pair each.
 
-    Poles may be real, complex, repeated, numbers or letters, and a dead time ``exp(-tau*s)`` may stand on any term.
+    Poles may be real, complex, repeated, numbers or symbols, and a dead time ``exp(-tau*s)`` may stand on any term.
     A denominator that does not factor into linear and quadratic parts over the rational numbers is factored
-    numerically, to about 15 digits; with letters in it that is not possible. Decimal numbers are taken as exact.
+    numerically, to about 15 digits; with symbols in it that is not possible. Decimal numbers are taken as exact.
 
     Arguments:
         F: expression in `s`: a sum of rational functions, each times ``exp(-delay*s)`` or not.
     Returns:
         Expression in `t`. What comes late carries ``Heaviside(t - delay)``.
     Raises:
-        ValueError: if F is no such sum, or a denominator with letters cannot be factored.
+        ValueError: if F is no such sum, or a denominator with symbols cannot be factored.
     Source: Haugen, equations (4.4)-(4.13) and (4.16).
 
     >>> K, T, U = sympy.symbols("K T U", positive=True)
@@ -323,8 +323,8 @@ def _inverse_fraction(fraction):
         return sympy.exp(p * t) * _residue(numerator / base.nth(1) ** n, p, n)
     if base.degree() == 2:
         return _inverse_quadratic(sympy.Poly(numerator, s), base, n)
-    if letters := base.free_symbols_in_domain:
-        raise ValueError(f"cannot factor {base.as_expr()}: give numbers for {', '.join(sorted(map(str, letters)))}")
+    if symbols := base.free_symbols_in_domain:
+        raise ValueError(f"cannot factor {base.as_expr()}: give numbers for {', '.join(sorted(map(str, symbols)))}")
     return _inverse_numerically(numerator, base, n)
 
 
@@ -465,9 +465,9 @@ def final_value(F: Number) -> sympy.Expr:
     """Return what f(t) tends to as t grows, the limit of s F(s) for s to zero (the Final Value Theorem).
 
     The theorem holds only where f(t) settles: every pole of s F(s) must lie strictly left of the imaginary axis. The
-    limit alone gives plausible numbers for functions that grow or swing for ever; this function does not.
+    limit alone gives plausible numbers for functions that grow or oscillate for ever; this function does not.
 
-    Raises ValueError when a pole lies elsewhere, or when that cannot be decided because a letter has no known sign.
+    Raises ValueError when a pole lies elsewhere, or when that cannot be decided because a symbol has no known sign.
     Source: Haugen, equation (4.22), with the condition that it needs.
 
     >>> final_value(12 / (s * (2 * s + 1)))
@@ -496,7 +496,7 @@ def final_value(F: Number) -> sympy.Expr:
 def _is_stable(polynomial):
     """Whether every root of a polynomial in `s` lies left of the imaginary axis, by the determinants of Hurwitz.
 
-    Raises ValueError where that cannot be decided because a letter has no known sign.
+    Raises ValueError where that cannot be decided because a symbol has no known sign.
     """
     if polynomial.has(sympy.I):
         raise ValueError(f"cannot tell whether f(t) settles: expected real coefficients in {polynomial}")
@@ -516,7 +516,7 @@ def roots(polynomial: Number) -> list[sympy.Expr]:
 
     Exact where linear and quadratic factors are enough; numbers to 15 digits where they are not.
 
-    Raises ValueError for what is no polynomial, and for letters in a factor of third or higher degree.
+    Raises ValueError for what is no polynomial, and for symbols in a factor of third or higher degree.
 
     >>> roots((s + 1) ** 2 * (s**2 + 4))
     [-1, -1, -2*I, 2*I]
@@ -526,11 +526,11 @@ def roots(polynomial: Number) -> list[sympy.Expr]:
         raise ValueError(f"{polynomial} has no roots here: expected a polynomial in s")
     for factor, n in sympy.factor_list(polynomial, s)[1]:
         factor = sympy.Poly(factor, s)
-        letters = factor.free_symbols_in_domain
+        symbols = factor.free_symbols_in_domain
         if factor.degree() <= 2:
             found += n * [root for root, times in sympy.roots(factor).items() for _ in range(times)]
-        elif letters:
-            names = ", ".join(sorted(map(str, letters)))
+        elif symbols:
+            names = ", ".join(sorted(map(str, symbols)))
             raise ValueError(f"cannot factor {factor.as_expr()}: give numbers for {names}")
         else:
             found += n * factor.nroots(n=15, maxsteps=200)
@@ -542,16 +542,16 @@ def roots(polynomial: Number) -> list[sympy.Expr]:
 def evaluate(f: Number, times: ArrayLike) -> np.ndarray:
     """Return the values of f(t) at the given times as a NumPy array; a step has its new value at the step itself.
 
-    Raises ValueError where f is no function of time alone: another letter is left, or an impulse, which has no value;
+    Raises ValueError where f is no function of time alone: another symbol is left, or an impulse, which has no value;
     and where values are complex.
 
     >>> evaluate(sympy.exp(-t), [0, 1]).round(3)
     array([1.   , 0.368])
     """
     f, times = function_of(t, f), np.asarray(times, dtype=float)
-    letters = sorted(map(str, f.free_symbols - {t}))
-    if letters:
-        raise ValueError(f"cannot evaluate {f}: give a number for {', '.join(letters)}")
+    symbols = sorted(map(str, f.free_symbols - {t}))
+    if symbols:
+        raise ValueError(f"cannot evaluate {f}: give a number for {', '.join(symbols)}")
     if f.has(sympy.DiracDelta):
         raise ValueError(f"cannot evaluate {f}: an impulse has an area but no value")
     if f.has(sympy.oo, sympy.zoo):

@@ -37,7 +37,7 @@ HOLD = math.nan
 
 @dataclass(frozen=True)
 class PID:
-    """Settings of a PID controller: exact numbers or letters.
+    """Settings of a PID controller: exact numbers or symbols.
 
     The parallel form is ``Kp*(1 + 1/(Ti*s) + Td*s/(Tf*s + 1))``; the serial form, also called cascade or series
     form, is ``Kp*(1 + 1/(Ti*s))*(Td*s + 1)/(Tf*s + 1)``. A controller without integral term has Ti = oo.
@@ -231,7 +231,7 @@ class LowpassFilter:
         """Take the input of this sample and return the output of this sample; at the first one it is at rest."""
         if self.output is None:
             self.input = self.output = x
-        behind = self.T * (x - self.input) / self.step  # how far the output of an endless ramp stays behind
+        behind = self.T * (x - self.input) / self.step  # how far the output of an unending ramp stays behind
         self.output = x - behind + self.remains * (self.output - self.input + behind)
         self.input = x
         return self.output
@@ -268,7 +268,7 @@ class Controller:
             whose inner loop is at its limit: with anti wind-up, the integration halts in this direction. 0 otherwise.
 
     Raises:
-        ValueError: for settings with letters, a step that is not positive, limits in the wrong order, or another value
+        ValueError: for settings with symbols, a step that is not positive, limits in the wrong order, or another value
             that makes no controller.
 
     >>> controller = Controller(PID(2, Ti=10), step=1, u0=50, limits=(0, 100))

@@ -212,7 +212,7 @@ def simplified(H: TransferFunctionLike) -> sympy.Expr:
     try:
         parts = by_delay(H)
     except ValueError:  # with a dead time in a denominator, as in a loop around one
-        dead_times = {letter: sympy.exp(-delay * s) for letter, delay in delays.items()}
+        dead_times = {symbol: sympy.exp(-delay * s) for symbol, delay in delays.items()}
         return sympy.factor(sympy.cancel(rational)).xreplace(dead_times)
     return sympy.Add(*(sympy.factor(sympy.cancel(part)) * sympy.exp(-delay * s) for delay, part in parts.items()))
 
@@ -275,14 +275,14 @@ def polynomials(H: TransferFunctionLike) -> tuple[sympy.Poly, sympy.Poly, sympy.
     Returns:
         The polynomials in `s`, as SymPy ``Poly`` with rational coefficients (of others, 30 digits), and the delay.
     Raises:
-        ValueError: for zero, letters, complex numbers, several dead times, or no more poles than zeros.
+        ValueError: for zero, symbols, complex numbers, several dead times, or no more poles than zeros.
 
     >>> polynomials(sympy.exp(-2 * s) / (s + 3))
     (Poly(1, s, domain='QQ'), Poly(s + 3, s, domain='QQ'), 2)
     """
     H = transfer_function(H)
-    if letters := sorted(map(str, H.free_symbols - {s})):
-        raise ValueError(f"give a number for {', '.join(letters)} in {H}")
+    if symbols := sorted(map(str, H.free_symbols - {s})):
+        raise ValueError(f"give a number for {', '.join(symbols)} in {H}")
     if H.has(sympy.I):
         raise ValueError(f"{H} is complex: expected real coefficients")
     if H == 0:
@@ -302,7 +302,7 @@ def polynomials(H: TransferFunctionLike) -> tuple[sympy.Poly, sympy.Poly, sympy.
 def poles(H: TransferFunctionLike) -> list[sympy.Expr]:
     """Return the poles of H, each as often as it occurs, sorted. A dead time has none.
 
-    Raises ValueError where a dead time stands in a denominator, as in a loop around one, or where letters prevent
+    Raises ValueError where a dead time stands in a denominator, as in a loop around one, or where symbols prevent
     the factoring of a denominator of third or higher degree.
     Source: Haugen, equations (5.12)-(5.14).
 
@@ -394,7 +394,7 @@ def zero_pole_gain(H: TransferFunctionLike) -> sympy.Expr:
 def zero_pole_form(H: TransferFunctionLike) -> sympy.Expr:
     """Return H as ``K*(s - z1)*(s - z2).../((s - p1)*(s - p2)...)``. (Haugen, equation 5.12)
 
-    Complex pairs of roots stay together, and so do two roots of which letters leave open whether they are real.
+    Complex pairs of roots stay together, and so do two roots of which symbols leave open whether they are real.
 
     >>> zero_pole_form((4 * s - 4) / (s**2 + 5 * s + 6))
     4*(s - 1)/((s + 2)*(s + 3))
@@ -405,7 +405,7 @@ def zero_pole_form(H: TransferFunctionLike) -> sympy.Expr:
 def time_constant_form(H: TransferFunctionLike) -> sympy.Expr:
     """Return H as ``K*(T1*s + 1).../((T2*s + 1)...)``, with factors `s` for poles and zeros at the origin.
 
-    Factors are quadratic for complex pairs of roots, and where letters leave open whether the roots are real.
+    Factors are quadratic for complex pairs of roots, and where symbols leave open whether the roots are real.
 
     >>> time_constant_form(3 / (4 * s + 2))
     3/(2*(2*s + 1))
@@ -486,7 +486,7 @@ def response_time(H: TransferFunctionLike, share: Number = _ONE_LAG) -> float:
     Returns:
         The time, a float, in the unit of the lags.
     Raises:
-        ValueError: if the response does not settle at a value other than zero, or letters are left in H.
+        ValueError: if the response does not settle at a value other than zero, or symbols are left in H.
     Source: Haugen, equations (6.34)-(6.36), which estimate it by the sum of the lags.
 
     >>> round(response_time(second_order(1, 1, 1)), 4)
@@ -499,8 +499,8 @@ def response_time(H: TransferFunctionLike, share: Number = _ONE_LAG) -> float:
     if hasattr(H, "response_time"):  # a `System`, whose dead times may stand anywhere
         return H.response_time(float(share))
     H = transfer_function(H)
-    if letters := sorted(map(str, H.free_symbols - {s})):
-        raise ValueError(f"the response-time of {H} is not known: give a number for {', '.join(letters)}")
+    if symbols := sorted(map(str, H.free_symbols - {s})):
+        raise ValueError(f"the response-time of {H} is not known: give a number for {', '.join(symbols)}")
     final = final_value(H / s)
     if final == 0:
         raise ValueError(f"the step response settles at {final}: expected a number other than zero")

@@ -17,7 +17,7 @@ __all__ = [
     "TransferFunctionLike", "Values",
 ]  # fmt: skip
 
-#: A number of any kind; an expression where letters may stand.
+#: A number of any kind; an expression where symbols may stand.
 Number: TypeAlias = float | int | Fraction | sympy.Expr
 
 #: A signal in time: a number, an expression in `t`, or an array with a value for each sample.

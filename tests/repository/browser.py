@@ -57,7 +57,7 @@ def required() -> None:
 class Complaints(list):
     """What a page complains about: errors and warnings on its console, exceptions, requests that fail.
 
-    Messages that match one of ``noise`` are passed over.
+    Messages that match one of ``noise`` are skipped.
     """
 
     def __init__(self, page, noise: tuple[str, ...] = ()):

@@ -83,10 +83,10 @@ def _without_dead_time(H, approximation):
     shortest = [_shortest(part, delays) for part in sympy.fraction(sympy.together(rational))]
     if (shortest[0] - shortest[1]).is_negative:
         raise ValueError(f"{H} comes before its input: expected dead times exp(-delay*s) that are not negative")
-    return rational.xreplace({letter: approximation(delay) for letter, delay in delays.items()})
+    return rational.xreplace({symbol: approximation(delay) for symbol, delay in delays.items()})
 
 
 def _shortest(part, delays):
-    """The shortest dead time among the terms of a polynomial in letters that stand for dead times."""
+    """The shortest dead time among the terms of a polynomial in symbols that stand for dead times."""
     powers = sympy.Poly(part, *delays).monoms() if delays else [()]
     return sympy.Min(*(sympy.Add(*(n * d for n, d in zip(term, delays.values(), strict=True))) for term in powers))

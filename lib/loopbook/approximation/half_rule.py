@@ -38,7 +38,7 @@ def half_rule(
         order: 1 keeps one lag, 2 keeps two; an integrator counts as an infinite lag.
         Tc: closed-loop time-constant for which the model is meant; the rules for zeros compare with it. Without it, it
             is the effective dead time of the model itself.
-        largest_first: lags with letters, sorted, where the letters leave their order open.
+        largest_first: lags with symbols, sorted, where the symbols leave their order open.
     Returns:
         The model; its `steps` say which rule did what.
     Raises:
@@ -67,7 +67,7 @@ def half_rule(
         raise ValueError(f"{H} has a pole at {-1 / unstable[0]} in the right half-plane: the half rule has no answer")
     for T in process.lags + process.zeros:
         if T.is_extended_positive is None and T.is_extended_negative is None:
-            raise ValueError(f"the sign of {T} is not known: expected positive letters")
+            raise ValueError(f"the sign of {T} is not known: expected positive symbols")
     inverse = [-T for T in process.zeros if T.is_negative]
     lifting = [T for T in process.zeros if T.is_positive]
     steps = [Step("zero in the right half-plane", 1 - T * s, dead_time(T)) for T in inverse]
@@ -100,7 +100,7 @@ def zero_rule(T0: Number, lag: Number, Tc: Number) -> Step:
     Returns:
         `Step`, from the rule's name to a gain or, by rule T3, a gain with a smaller lag.
     Raises:
-        ValueError: for letters, or a number that is not positive; Tc may be zero.
+        ValueError: for symbols, or a number that is not positive; Tc may be zero.
     Source: Skogestad, slide on the approximation of zeros in the left half-plane.
 
     >>> zero_rule(15, 20, Tc=0.15)

@@ -62,8 +62,8 @@ class SOPDT:
             value = getattr(self, name)
             value = exact_nonzero(name, value) if name == "K" else exact_not_negative(name, value, name != "delay")
             object.__setattr__(self, name, value)
-            if {"s", "t"} & {letter.name for letter in value.free_symbols}:
-                raise ValueError(f"{name} is {value}: expected a number or a letter other than s and t")
+            if {"s", "t"} & {symbol.name for symbol in value.free_symbols}:
+                raise ValueError(f"{name} is {value}: expected a number or a symbol other than s and t")
         if sympy.oo != self.T1 and (self.T2 - self.T1).is_extended_positive:
             raise ValueError(f"T1 is {self.T1} and T2 is {self.T2}: expected the larger lag first")
 
@@ -96,7 +96,7 @@ def model_of(H: TransferFunctionLike, largest_first: Sequence[Number] | None = N
     Arguments:
         H: an `SOPDT`; or a transfer function with at most two poles, both real, no zero and one dead time or none, or
             what `transfer_function` reads as one.
-        largest_first: lags with letters, sorted, where the letters leave their order open.
+        largest_first: lags with symbols, sorted, where the symbols leave their order open.
     Raises:
         ValueError: for anything else, or lags of unknown order.
 

@@ -83,7 +83,7 @@ class Loop:
         servo, regulator: `System` from the setpoint to y, and from the load to y.
         setpoint_to_control, load_to_control: `System` from the setpoint to u, and from the load to u.
     Raises:
-        ValueError: for letters, an algebraic loop without solution, or what is no `System`.
+        ValueError: for symbols, an algebraic loop without solution, or what is no `System`.
 
     >>> from loopbook.pid import PID
     >>> loop = Loop(2 * sympy.exp(-s) / (4 * s + 1), PID(1, Ti=4))
@@ -101,8 +101,8 @@ class Loop:
             )
         except ValueError:
             blocks = [transfer_function(x) for x in self._given]
-            if letters := sorted(map(str, set().union(*(x.free_symbols for x in blocks)) - {s})):
-                raise ValueError(f"give a number for {', '.join(letters)} in the loop of {blocks[0]}") from None
+            if symbols := sorted(map(str, set().union(*(x.free_symbols for x in blocks)) - {s})):
+                raise ValueError(f"give a number for {', '.join(symbols)} in the loop of {blocks[0]}") from None
             raise
         self.open_fraction = self.controller_fraction * self.process_fraction
         self._difference = return_difference(self.open_fraction)

@@ -48,7 +48,7 @@ class System(DelayFraction):
         expr: the transfer function with common factors cancelled.
         numerator, denominator: ``{delay: coefficients}``, whole numbers, the lowest power first.
     Raises:
-        ValueError: for letters, an improper system, a negative dead time, or one whose output would depend on later
+        ValueError: for symbols, an improper system, a negative dead time, or one whose output would depend on later
             inputs.
 
     >>> System(sympy.exp(-s) / s) * 2

@@ -117,7 +117,7 @@ def _trend(axes, run, times, names):
     from matplotlib.ticker import MaxNLocator
 
     lines = {}
-    letter = f"${sympy.latex(sympy.Symbol(names[0]))}$"
+    symbol = f"${sympy.latex(sympy.Symbol(names[0]))}$"
     for name, role in zip(names, ("measurement", "setpoint"), strict=False):
         held = name in run.held
         role = "control signal" if held and role == "measurement" else role
@@ -125,9 +125,9 @@ def _trend(axes, run, times, names):
     low, high = axes.get_ylim()
     ticks = MaxNLocator(4, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
     axes.set_yticks([tick for tick in ticks if low <= tick <= high])
-    axes.set_ylabel(f"{letter} [{run.unit(names[0])}]")
+    axes.set_ylabel(f"{symbol} [{run.unit(names[0])}]")
     if len(names) == 2:
-        axes.legend(lines.values(), (letter, "setpoint"), ncols=2)
+        axes.legend(lines.values(), (symbol, "setpoint"), ncols=2)
     return lines
 
 

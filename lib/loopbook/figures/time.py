@@ -216,7 +216,7 @@ def time_plot(
             to it.
     Raises:
         ValueError: for times that do not increase, a signal that is neither expression nor array or has another length
-            than the times, an unknown role, a label used twice, or an expression with letters besides `t`.
+            than the times, an unknown role, a label used twice, or an expression with symbols besides `t`.
 
     >>> from loopbook.laplace import t
     >>> time_plot([{"$y(t)$": 2 * t}, {"$u(t)$": (1, "control signal")}], range(11), title="Figure 6.1", before=1)
@@ -367,10 +367,10 @@ def trends(
     source = "measurement" if measured else output
 
     def curves(name, signal, role):
-        letter = f"${sympy.latex(sympy.Symbol(name))}$"
+        symbol = f"${sympy.latex(sympy.Symbol(name))}$"
         if len(runs) == 1:
-            return {letter: (first[signal], role)}
-        return {f"{letter}, {label}": (run[signal], n) for n, (label, run) in enumerate(runs.items())}
+            return {symbol: (first[signal], role)}
+        return {f"{symbol}, {label}": (run[signal], n) for n, (label, run) in enumerate(runs.items())}
 
     top = {"setpoint": (first["setpoint"], "setpoint")} if "setpoint" in first.signals else {}
     panels = [top | curves(output, source, "measurement"), curves(control, control, "control signal")]

@@ -44,7 +44,7 @@ class _TooManyError(Exception):
 def entries(path: Path, assignment_name: str, ids: Iterable[str]) -> list[Entry]:
     """All that lies in a folder or in a zip file, as entries; unusable ones have a fault.
 
-    Names that begin with a dot and __MACOSX are passed over. Where all lies in one folder that is named like the folder
+    Names that begin with a dot and __MACOSX are skipped. Where all lies in one folder that is named like the folder
     or the zip file itself, or like the assignment, and like none of the students' ids, the entries begin below it.
 
     Raises GradingError where there is neither a folder nor a whole zip file, or far more than a class hands in.
@@ -125,7 +125,7 @@ def _in_folder(root, wrappers):
 
 
 def _listed(folder):
-    """What lies in a folder and is not passed over."""
+    """What lies in a folder and is not skipped."""
     found = []
     with os.scandir(folder) as listing:
         for number, item in enumerate(listing):

@@ -1,6 +1,6 @@
 """What a submission tells while it runs, read with suspicion: whoever runs a submission's code can tell anything.
 
-A line is a JSON object with one entry, as `shell.run` tells them. What is something else is counted and passed over.
+A line is a JSON object with one entry, as `shell.run` tells them. What is something else is counted and skipped.
 Nothing here decides on marks: an answer is a claim of the student's, and whose it is was known before.
 """
 

@@ -79,7 +79,7 @@ def collect(path: str | Path, students: Sequence[Student], assignment_name: str)
 
     A student's notebook lies in the folder named by the id, or is named by it, or has the name that Canvas or Moodle
     gave it. Where all lies in one folder named like the folder or zip file itself or like the assignment, that one is
-    meant. Jupyter's and the system's own files are passed over: names that begin with a dot, and __MACOSX.
+    meant. Jupyter's and the system's own files are skipped: names that begin with a dot, and __MACOSX.
 
     Raises GradingError where there is neither a folder nor a whole zip file.
 

@@ -1,4 +1,4 @@
-"""The closed form for a PI loop around a lag with dead time, with letters and in fast, accurate numbers."""
+"""The closed form for a PI loop around a lag with dead time, with symbols and in fast, accurate numbers."""
 
 from __future__ import annotations
 

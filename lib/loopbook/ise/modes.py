@@ -205,7 +205,7 @@ def slow_modes(fraction: ErrorFraction, rate: float) -> Modes | None:
             return None
         sizes = abs(shifted).sum(axis=0)
         reserve = 2 * abs(shifted[_undelayed(delays), -1]) - sizes[-1]
-        if reserve <= 0:  # endless rows of poles come as far as that
+        if reserve <= 0:  # infinite rows of poles come as far as that
             return None
         order = below.shape[1] - 1
         top = max((2 * (sizes[:-1] / reserve) ** (1 / np.arange(order, 0, -1))).tolist(), default=0.0)

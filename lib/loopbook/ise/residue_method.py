@@ -1,4 +1,4 @@
-"""The residue method for one dead time, step by step and with letters."""
+"""The residue method for one dead time, step by step and with symbols."""
 
 from __future__ import annotations
 
@@ -72,9 +72,9 @@ class ResidueMethod:
 
     @property
     def formula(self) -> tuple[sympy.Expr, dict[sympy.Symbol, sympy.Expr]]:
-        """The same with letters for the zeros of Delta, and what they stand for: an expression and a dictionary.
+        """The same with symbols for the zeros of Delta, and what they stand for: an expression and a dictionary.
 
-        The letters are sigma for a pair on the real axis and omega for one on the imaginary axis, numbered if there are
+        The symbols are sigma for a pair on the real axis and omega for one on the imaginary axis, numbered if there are
         several.
         """
         total, zeros = sympy.S.Zero, {}
@@ -96,7 +96,7 @@ class ResidueMethod:
         return total, zeros
 
     def _plain_share(self, x):
-        """The residues of E G at a zero and its negative, where letters leave open where they lie."""
+        """The residues of E G at a zero and its negative, where symbols leave open where they lie."""
         z = sympy.exp(-self.delay * s)
         above = (self.B + self.D * z) * sympy.expand(self.A * _mirrored(self.B) - self.C * _mirrored(self.D))
         residue = above / ((self.A + self.C * z) * self.Delta.diff(s))
@@ -174,7 +174,7 @@ def _sign(value):
 
 
 def residue_method(E: sympy.Expr) -> ResidueMethod:
-    """Return the pieces of the residue method for an error with one dead time, letters allowed.
+    """Return the pieces of the residue method for an error with one dead time, symbols allowed.
 
     Arguments:
         E: expression in `s`, a fraction of polynomials with dead time, all dead times the same apart from one that the

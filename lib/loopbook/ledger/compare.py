@@ -121,10 +121,10 @@ def number_agrees(value: object, printed: str) -> bool:
 
 
 def formula(value: object) -> Formula:
-    """Return a computed formula as a SymPy expression or equation, in the letters of `loopbook.expressions.parse`.
+    """Return a computed formula as a SymPy expression or equation, in the symbols of `loopbook.expressions.parse`.
 
-    A letter is known by its name alone. What a computation assumed about it is dropped, except that it is an integer:
-    otherwise a letter declared as zero or even could make a false formula true.
+    A symbol is known by its name alone. What a computation assumed about it is dropped, except that it is an integer:
+    otherwise a symbol declared as zero or even could make a false formula true.
 
     Raises TypeError, saying what the value is instead, for anything else, and for one with rounded decimals, which
     no proof can start from.
@@ -137,12 +137,12 @@ def formula(value: object) -> Formula:
         raise TypeError(f"{_shortened(value)} of type {type(value).__name__}")
     if value.has(sympy.Float):
         raise TypeError(f"{_shortened(value)}, which holds rounded decimals: give exact numbers")
-    letters = {}
+    symbols = {}
     for symbol in sorted(value.free_symbols, key=str):
-        if symbol.name in {known.name for known in letters}:
+        if symbol.name in {known.name for known in symbols}:
             raise TypeError(f"two different symbols named {symbol.name}: declare {symbol.name} once")
-        letters[symbol] = _letter(symbol)
-    value = value.xreplace(letters)
+        symbols[symbol] = _letter(symbol)
+    value = value.xreplace(symbols)
     if not isinstance(value, sympy.Expr | sympy.Equality) or value.has(sympy.nan, sympy.zoo, sympy.AccumBounds):
         raise TypeError(f"not a formula, {_shortened(value)}")
     return value
@@ -173,7 +173,7 @@ def parse_formula(text: str) -> Formula:
 def formula_agrees(value: object, printed: str) -> str:
     """Say how a formula agrees with the printed one: ``"proved"``, ``"probed"``, or ``""`` where it does not.
 
-    A letter is known by its name. An equation may have its terms on either side, but it may not be multiplied:
+    A symbol is known by its name. An equation may have its terms on either side, but it may not be multiplied:
     many a false equation is true times zero.
 
     >>> formula_agrees(sympy.sympify("2*K/(2*T*s + 2)"), "K/(T*s + 1)")

@@ -33,7 +33,7 @@ Quasipolynomial = dict[Fraction, tuple[int, ...]]
 ZERO: Fraction = Fraction(0)
 ONE: Quasipolynomial = {ZERO: (1,)}
 PRIME = 2**61 - 1  # by which polynomials without a common factor are told apart quickly
-MOST_MULTIPLES = 60  # of a common base, up to which delays are powers of one letter
+MOST_MULTIPLES = 60  # of a common base, up to which delays are powers of one symbol
 
 
 # ------------------------------------------------------------------------------------------------ quasipolynomials
@@ -162,7 +162,7 @@ def _surely_coprime(parts: list[list[int]]) -> bool:
 def _without_common_quasipolynomial(
     above: Quasipolynomial, below: Quasipolynomial
 ) -> tuple[Quasipolynomial, Quasipolynomial]:
-    """Without common factors that contain dead times, these being powers of a few letters."""
+    """Without common factors that contain dead times, these being powers of a few symbols."""
     powers, units = _as_powers({*above, *below})
     ring = PolyRing(sympy.symbols(f"s z:{len(units)}"), sympy.ZZ)
     f, g = (
@@ -412,7 +412,7 @@ def read(value: object) -> DelayFraction:
             `System`; or a continuous single-input single-output system of python-control. Coefficients and dead times
             that are no fractions are taken to 30 digits.
     Raises:
-        ValueError: for letters, complex coefficients, what is no such fraction, or an output that would depend on the
+        ValueError: for symbols, complex coefficients, what is no such fraction, or an output that would depend on the
             input of a later time.
 
     >>> read(sympy.exp(-s) / s + 1)

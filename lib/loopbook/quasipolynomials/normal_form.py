@@ -1,4 +1,4 @@
-"""The normal form of a transfer function with letters: a fraction of sums of polynomials with dead times."""
+"""The normal form of a transfer function with symbols: a fraction of sums of polynomials with dead times."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def normal_form(H: object) -> tuple[dict[sympy.Expr, sympy.Poly], dict[sympy.Exp
 
     Arguments:
         H: expression in `s`, rational in `s` and in dead times ``exp(-delay*s)``, which may stand anywhere. Other
-            letters are allowed, in delays too. Or a `System`.
+            symbols are allowed, in delays too. Or a `System`.
     Returns:
         Two dictionaries ``{delay: polynomial}``, the polynomials as SymPy ``Poly`` in `s`. The denominator has a part
         without dead time.
@@ -39,7 +39,7 @@ def normal_form(H: object) -> tuple[dict[sympy.Expr, sympy.Poly], dict[sympy.Exp
     letters = sorted(H.free_symbols - {s}, key=str)
     field = sympy.QQ.frac_field(s, *delays, *letters)
     known = dict(zip(field.symbols, field.gens, strict=True))
-    known |= {exponential: known[letter] ** n for exponential, (letter, n) in powers.items()}
+    known |= {exponential: known[symbol] ** n for exponential, (symbol, n) in powers.items()}
     try:
         fraction = _in_field(H, field, known)
     except ZeroDivisionError:
@@ -49,7 +49,7 @@ def normal_form(H: object) -> tuple[dict[sympy.Expr, sympy.Poly], dict[sympy.Exp
     above, below = (_collected(part, list(delays.values()), letters) for part in (fraction.numer, fraction.denom))
     base = next((d for d in below if all((other - d).is_nonnegative for other in below)), None)
     if base is None:
-        raise ValueError(f"the dead times {', '.join(map(str, below))} cannot be ordered: give numbers for letters")
+        raise ValueError(f"the dead times {', '.join(map(str, below))} cannot be ordered: give numbers for symbols")
     above, below = ({delay - base: part for delay, part in parts.items()} for parts in (above, below))
     for delay in above:
         if not delay.is_nonnegative:
@@ -64,9 +64,9 @@ def _split(exponential):
 
 
 def _dead_times(H):
-    """Letters for the dead times in H: {exponential: (letter, power)} and {letter: dead time}.
+    """Symbols for the dead times in H: {exponential: (symbol, power)} and {symbol: dead time}.
 
-    Dead times that are multiples of a common one are powers of one letter, so that common factors are seen.
+    Dead times that are multiples of a common one are powers of one symbol, so that common factors are seen.
     """
     families = []
     for exponential in sorted(H.atoms(sympy.exp), key=str):
@@ -90,20 +90,20 @@ def _dead_times(H):
         base = unit * family[0][1]
         unit *= -1 if base.could_extract_minus_sign() else 1
         if max(abs(r / unit) for r in ratios) <= MOST_MULTIPLES:
-            letter = sympy.Dummy()
-            delays[letter] = unit * family[0][1]
-            powers |= {exponential: (letter, int(ratio / unit)) for exponential, _, ratio in family}
+            symbol = sympy.Dummy()
+            delays[symbol] = unit * family[0][1]
+            powers |= {exponential: (symbol, int(ratio / unit)) for exponential, _, ratio in family}
         else:
             for exponential, delay, _ in family:
-                letter = sympy.Dummy()
+                symbol = sympy.Dummy()
                 sign = -1 if delay.could_extract_minus_sign() else 1
-                delays[letter] = sign * delay
-                powers[exponential] = letter, sign
+                delays[symbol] = sign * delay
+                powers[exponential] = symbol, sign
     return powers, delays
 
 
 class _NotRationalError(Exception):
-    """An expression is no fraction of polynomials in the known letters."""
+    """An expression is no fraction of polynomials in the known symbols."""
 
 
 def _in_field(expression, field, known):
@@ -136,7 +136,7 @@ def _rational(number):
 
 
 def _collected(part, delays, letters):
-    """A polynomial in s, letters for dead times and other letters, as {delay: polynomial in s}."""
+    """A polynomial in s, symbols for dead times and other symbols, as {delay: polynomial in s}."""
     collected = {}
     for (power, *powers), coefficient in part.terms():
         delay = sympy.Add(*(n * d for n, d in zip(powers, delays, strict=False)))

@@ -73,7 +73,7 @@ def unstable_poles(x: object) -> float:
     Raises:
         StabilityLimitError: for poles on the imaginary axis. One at zero that a zero of the numerator removes, as in
             (1 - exp(-s))/s, is none.
-        ValueError: for letters, a loop that is improper or has no solution, or as `unstable_roots`.
+        ValueError: for symbols, a loop that is improper or has no solution, or as `unstable_roots`.
 
     >>> unstable_poles(1 / (s - 1)), unstable_poles(1 / (s + 2 * sympy.exp(-s)))
     (1, 2)
@@ -121,7 +121,7 @@ def unstable_closed_loop_poles(loop: object) -> float:
         An integer; ``math.inf`` where the loop's gain at high frequencies returns with a dead time and is above 1.
     Raises:
         StabilityLimitError: for closed-loop poles on the imaginary axis.
-        ValueError: for letters, an improper loop, an algebraic loop without solution, or as `unstable_roots`.
+        ValueError: for symbols, an improper loop, an algebraic loop without solution, or as `unstable_roots`.
 
     >>> unstable_closed_loop_poles(sympy.exp(-s) / s), unstable_closed_loop_poles(2 * sympy.exp(-s) / s)
     (0, 2)
@@ -150,7 +150,7 @@ def unstable_roots(denominator: Mapping) -> float:
     Raises:
         StabilityLimitError: for roots on the imaginary axis, or so close to it that their frequencies cannot be told
             from it.
-        ValueError: for letters, a sum that is zero, or one whose highest powers leave open whether it has an end of
+        ValueError: for symbols, a sum that is zero, or one whose highest powers leave open whether it has an end of
             roots: where they have several dead times that are no multiples of one, and the sizes of their coefficients
             add up to that of the undelayed one or more.
     Source: the criterion of A. V. Mikhailov (1938), extended to dead times.
@@ -185,8 +185,8 @@ def open_loop(loop: object, zero: bool = False) -> DelayFraction:
         return loop.open_fraction
     if not isinstance(loop, DelayFraction):
         expression = transfer_function(loop)
-        if letters := sorted(map(str, expression.free_symbols - {s})):
-            raise ValueError(f"give a number for {', '.join(letters)} in {expression}")
+        if symbols := sorted(map(str, expression.free_symbols - {s})):
+            raise ValueError(f"give a number for {', '.join(symbols)} in {expression}")
         if expression.has(sympy.I):
             raise ValueError(f"{expression} is complex: expected real coefficients")
         loop = read(expression)
@@ -229,8 +229,8 @@ def _whole(denominator: Mapping) -> Quasipolynomial:
     for delay, part in denominator.items():
         if isinstance(part, (sympy.Expr, sympy.Poly)):
             polynomial = part if isinstance(part, sympy.Poly) else sympy.Poly(part, s)
-            if letters := sorted(map(str, polynomial.as_expr().free_symbols - {s})):
-                raise ValueError(f"give a number for {', '.join(letters)} in {polynomial.as_expr()}")
+            if symbols := sorted(map(str, polynomial.as_expr().free_symbols - {s})):
+                raise ValueError(f"give a number for {', '.join(symbols)} in {polynomial.as_expr()}")
             part = polynomial.all_coeffs()[::-1]
         coefficients = [_fraction_of(c) for c in part]
         while coefficients and not coefficients[-1]:
@@ -293,7 +293,7 @@ def _count_of(parts: Quasipolynomial, removable: int, name: Callable[[], object]
     sums = Quasipolynomials.exact(parts, order, divisor)
     count = int(count_roots(sums, Exact(parts, order, divisor, 1.0), removable)[0])
     if count == ON_LIMIT:
-        raise StabilityLimitError(f"{name()} has poles on the imaginary axis, or an endless row that approaches it")
+        raise StabilityLimitError(f"{name()} has poles on the imaginary axis, or an infinite row that approaches it")
     return math.inf if count == ENDLESS else count
 
 

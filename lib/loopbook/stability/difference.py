@@ -1,6 +1,6 @@
-"""The highest powers of a quasipolynomial, which alone count at endless frequency: ``1 + c1*exp(-delay1*s) + ...``
+"""The highest powers of a quasipolynomial, which alone count at infinite frequency: ``1 + c1*exp(-delay1*s) + ...``
 
-Where that has roots in the right half-plane, so has the sum, an endless row of them. Where its size has a lower bound
+Where that has roots in the right half-plane, so has the sum, an infinite row of them. Where its size has a lower bound
 in all of the right half-plane, the sum has none beyond a certain frequency.
 """
 

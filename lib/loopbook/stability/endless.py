@@ -1,6 +1,6 @@
-"""An open loop L = A/B at endless frequency, where the highest powers alone count: a/b, numbers with dead times.
+"""An open loop L = A/B at infinite frequency, where the highest powers alone count: a/b, numbers with dead times.
 
-As the gain k grows, B + k A gets an endless row of unstable roots where b + k a has one: at a limiting gain. Below
+As the gain k grows, B + k A gets an infinite row of unstable roots where b + k a has one: at a limiting gain. Below
 that, b + k a has a certain distance from zero, and beyond a certain frequency the lower powers are smaller. Close to
 the limiting gain that frequency would be too high. There L is expanded in v = 1/w and in the angle of the dead times,
 of which it is an analytic function, and Cauchy's estimates bound the rest.
@@ -143,7 +143,7 @@ class Far:
                 break
             start = start / 2
             if start[0] < 1e-12:
-                raise ValueError(f"{question.name} is not decided at endless frequency")
+                raise ValueError(f"{question.name} is not decided at infinite frequency")
         asked(loops, [question], *steps(start, np.full(1, math.pi + 1e-3)))
 
     # ---- how far the highest powers are from what is asked
@@ -263,7 +263,7 @@ class Far:
 
     @functools.cached_property
     def size(self) -> int:
-        """-1 or 1 where abs(L) is below or above 1 at endless frequency, whatever the phases; 0 where it is neither.
+        """-1 or 1 where abs(L) is below or above 1 at infinite frequency, whatever the phases; 0 where it is neither.
 
         Where it is 1, the next power decides.
         """

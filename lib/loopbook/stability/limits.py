@@ -52,7 +52,7 @@ def ultimate(process: object) -> tuple[float, float]:
         other = _stable_range(Loops(*fraction_sums(opposite), opposite))[0][0]
         hint = "" if math.isnan(other) else ", but a negative one does"
         least = float(_endless_gains(loops, Far(loops, pivot=0.0))[0])
-        below = f" below {least:.6g}, with which the gain at endless frequency is 1," if least < math.inf else ""
+        below = f" below {least:.6g}, with which the gain at infinite frequency is 1," if least < math.inf else ""
         raise ValueError(f"no positive gain{below} makes the closed loop of {L.expr} stable{hint}")
     confirm(loops, {"gain_margin": gain, "omega_180": frequency}, itself=False)
     return gain, 2 * math.pi / frequency if frequency else math.inf

@@ -252,7 +252,7 @@ class Loops:
         return [np.array([[float(c)] for c in _exact_square(each)]) for each in self.exact[:2]]
 
     def beyond_limit(self) -> np.ndarray:
-        """A frequency beyond which abs(L) is not above what it is at endless frequency, with one dead time; or nan."""
+        """A frequency beyond which abs(L) is not above what it is at infinite frequency, with one dead time; or nan."""
         if self.squares is None:
             return np.full(self.count, math.nan)
         if self.exact is not None:

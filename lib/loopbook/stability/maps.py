@@ -1,4 +1,4 @@
-"""Maps of stability: the number of unstable poles over a plane of two letters."""
+"""Maps of stability: the number of unstable poles over a plane of two symbols."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ CHUNK = 2000  # points at once
 
 
 def stability_map(loop: object, progress: bool | None = None, **values: ArrayLike) -> np.ndarray:
-    """Return the number of unstable closed-loop poles for many values of two letters.
+    """Return the number of unstable closed-loop poles for many values of two symbols.
 
     Arguments:
-        loop: the open loop L(s), an expression with two letters, in its coefficients or dead times.
+        loop: the open loop L(s), an expression with two symbols, in its coefficients or dead times.
         progress: whether to show a progress bar; None shows one when the work takes more than two seconds.
-        **values: the values of the two letters by their names, one-dimensional arrays.
+        **values: the values of the two symbols by their names, one-dimensional arrays.
     Returns:
-        An array of integers, with a row for each value of the second letter and a column for each of the first; -1
-        on the limit of stability, and ``10**9``, which stands for endless, where there is no end of unstable poles.
+        An array of integers, with a row for each value of the second symbol and a column for each of the first; -1
+        on the limit of stability, and ``10**9``, where there are infinitely many of them.
     Raises:
-        ValueError: for other letters than two with values, a negative dead time, a loop that is improper or loses its
+        ValueError: for other symbols than two with values, a negative dead time, a loop that is improper or loses its
             highest power at a point, or as `unstable_roots`.
 
     >>> K, delay = sympy.symbols("K delay")
@@ -42,20 +42,20 @@ def stability_map(loop: object, progress: bool | None = None, **values: ArrayLik
            [2, 2]])
     """
     L = transfer_function(loop)
-    letters = {str(letter): letter for letter in L.free_symbols - {s}}
-    if set(letters) != set(values) or len(values) != 2:
+    symbols = {str(symbol): symbol for symbol in L.free_symbols - {s}}
+    if set(symbols) != set(values) or len(values) != 2:
         raise ValueError(
-            f"the loop {L} has the letters {', '.join(sorted(letters)) or 'none'}, and there are values for "
-            f"{', '.join(values) or 'none'}: expected two letters, and values for both"
+            f"the loop {L} has the symbols {', '.join(sorted(symbols)) or 'none'}, and there are values for "
+            f"{', '.join(values) or 'none'}: expected two symbols, and values for both"
         )
     grids = []
     for name, grid in values.items():
         grids.append(real_numbers(f"values of {name}", grid))
         if grids[-1].ndim != 1:
             raise ValueError(f"the values of {name} are {grid!r}: expected a one-dimensional array")
-    # letters in dead times are ordered as positive ones
+    # symbols in dead times are ordered as positive ones
     positive = {name: sympy.Symbol(name, positive=True) for name in values}
-    parts = _characteristic(L.xreplace({letters[name]: positive[name] for name in values}))
+    parts = _characteristic(L.xreplace({symbols[name]: positive[name] for name in values}))
     order = parts[0].degree()
     rows = [part.coeff_monomial(s**n) for part in parts.values() for n in range(order + 1)]
     numbers = sympy.lambdify([positive[name] for name in values], [*rows, *parts], "numpy", cse=True)
@@ -96,7 +96,7 @@ def _watched(chunks, progress):
 
 
 def _characteristic(L):
-    """The quasipolynomial A + B whose roots are the poles of the closed loop of L = A/B, with letters."""
+    """The quasipolynomial A + B whose roots are the poles of the closed loop of L = A/B, with symbols."""
     above, below = normal_form(L)
     order = below[0].degree()
     for part in (*above.values(), *below.values()):

@@ -69,7 +69,7 @@ def delay_margin(loop: object) -> float:
         loop: the open loop L(s), as for `unstable_closed_loop_poles`.
     Returns:
         The additional dead time, in the unit of the lags; infinite where none makes the loop unstable, zero where any
-        does, because the gain at endless frequency is 1 or more.
+        does, because the gain at infinite frequency is 1 or more.
     Raises:
         ValueError: if the loop is not stable to begin with, or as `unstable_closed_loop_poles`.
 
@@ -159,7 +159,7 @@ class Survey:
         self._ask(questions)
 
     def _begin(self):
-        """What is known at zero and at endless frequency."""
+        """What is known at zero and at infinite frequency."""
         loops, far, one = self.loops, self.far, np.zeros(1, dtype=int)
         if self.real:
             self.real.highest = np.minimum(self.real.highest, far.highest)

@@ -35,7 +35,7 @@ def dominant_poles(loop: object, count: int = 2) -> list[complex]:
         stands there as often as it occurs.
     Raises:
         ValueError: as `unstable_closed_loop_poles`; for a count that is no positive integer; where the loop's gain at
-            high frequencies returns with a dead time, so that an endless row of poles comes before the last one
+            high frequencies returns with a dead time, so that an infinite row of poles comes before the last one
             wanted; or where the poles are not found, with how many are known to be where.
 
     >>> import sympy
@@ -113,7 +113,7 @@ def _strip(sums, unit, count, name):
         else:
             left, most = middle, between
     if most == ENDLESS:
-        raise ValueError(f"an endless row of poles of {name} comes before the {count} that are wanted")
+        raise ValueError(f"an infinite row of poles of {name} comes before the {count} that are wanted")
     return right, left, most
 
 

@@ -19,9 +19,9 @@ def controller_action(process: Number) -> str:
     the measurement rises with the control signal, the controller must lower that against a rise.
 
     Arguments:
-        process: the transfer function from the control signal to the measurement, with numbers or positive letters.
+        process: the transfer function from the control signal to the measurement, with numbers or positive symbols.
     Raises:
-        ValueError: where the sign depends on the letters, the control signal has no lasting effect, or the process is
+        ValueError: where the sign depends on the symbols, the control signal has no lasting effect, or the process is
             unstable, so that this sign does not decide.
 
     >>> from loopbook.plants import BufferTank
@@ -36,5 +36,5 @@ def controller_action(process: Number) -> str:
     if not H.free_symbols - {s} and any(sympy.re(p).evalf() > 0 for part in by_delay(H).values() for p in poles(part)):
         raise ValueError(f"{H} is unstable: expected a stable or integrating process, whose gain decides the action")
     if not (gain.is_positive or gain.is_negative):
-        raise ValueError(f"the sign of the process gain {gain} is not known: expected numbers or positive letters")
+        raise ValueError(f"the sign of the process gain {gain} is not known: expected numbers or positive symbols")
     return "reverse" if gain.is_positive else "direct"

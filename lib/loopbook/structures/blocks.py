@@ -140,7 +140,7 @@ class Calculation:
 
     Arguments:
         output: the name of the signal that it writes.
-        formula: an expression whose letters are the names of signals, or that has signals of a plant such as h(t).
+        formula: an expression whose symbols are the names of signals, or that has signals of a plant such as h(t).
     Raises:
         ValueError: for a name that is none, or no expression, or one with signals of other moments, as a derivative.
 
@@ -160,11 +160,11 @@ class Calculation:
         of_plant = self.formula.atoms(AppliedUndef)
         if self.formula.has(sympy.Derivative, sympy.Integral) or any(x.args != (t,) for x in of_plant):
             raise ValueError(f"{output} = {self.formula}: expected a formula of the signals of one moment")
-        signals = of_plant | self.formula.free_symbols  # one letter for each name
+        signals = of_plant | self.formula.free_symbols  # one symbol for each name
         self.formula = self.formula.xreplace({x: sympy.Symbol(getattr(x, "name", str(x.func))) for x in signals})
-        letters = sorted(self.formula.free_symbols, key=str)
-        self.reads, self.writes = tuple(map(str, letters)), (self.output,)
-        self.function = sympy.lambdify(letters, self.formula, "math")
+        symbols = sorted(self.formula.free_symbols, key=str)
+        self.reads, self.writes = tuple(map(str, symbols)), (self.output,)
+        self.function = sympy.lambdify(symbols, self.formula, "math")
 
     def __deepcopy__(self, memory: dict) -> Calculation:
         return self  # it remembers nothing

@@ -27,7 +27,7 @@ def direct_synthesis(model: TransferFunctionLike, desired: TransferFunctionLike)
     Raises:
         ValueError: where no controller can do it: the desired response is not stable or not proper, or faster than the
             dead time of the process, lacks a zero of the process in the right half-plane or on the imaginary axis, or
-            leaves a pole there where it is; and for a desired response of 0 or 1. With letters, what they leave open is
+            leaves a pole there where it is; and for a desired response of 0 or 1. With symbols, what they leave open is
             not refused.
     Source: Seborg et al., equation (12-3b); Haugen, equation (10.10); Haugen on tuning, equation (7.88).
 
@@ -71,7 +71,7 @@ def _poles_outside(H):
     by_delay(H)  # refuses a dead time in a denominator
     rational, delays = without_delays(H)
     above, below = sympy.fraction(sympy.cancel(rational))
-    above = above.xreplace({letter: sympy.exp(-delay * s) for letter, delay in delays.items()})
+    above = above.xreplace({symbol: sympy.exp(-delay * s) for symbol, delay in delays.items()})
     for p, n in Counter(known_roots(below)).items():
         if sympy.re(p).is_nonnegative:  # dead times may leave no pole, as in (1 - exp(-s))/s
             yield from (n - (_zeros_at(p, above, n) if delays else 0)) * [p]
@@ -87,7 +87,7 @@ def _zeros_at(p, f, most):
 
 
 def known_roots(polynomial: sympy.Expr | sympy.Poly) -> Iterator[sympy.Expr]:
-    """The roots of the factors whose roots are known: letters may stand in a factor of high degree."""
+    """The roots of the factors whose roots are known: symbols may stand in a factor of high degree."""
     for factor, n in sympy.Poly(polynomial, s).factor_list()[1]:
         if factor.degree() == 1:
             yield from n * [-factor.eval(0) / factor.LC()]

@@ -70,14 +70,14 @@ def imc_design(model: TransferFunctionLike, Tc: Number, approximation: Approxima
     synthesis.
 
     Arguments:
-        model: transfer function, with numbers or letters, stable but for one integrator, with one dead time.
+        model: transfer function, with numbers or symbols, stable but for one integrator, with one dead time.
         Tc: closed-loop time-constant, positive.
         approximation: `taylor` or `pade`, of the dead time.
     Returns:
         `Design`, with all steps.
     Raises:
         ValueError: for poles in the right half-plane or on the imaginary axis, but for one integrator; for zeros on the
-            axis, or with letters that leave their sign open; or for a Tc that is not positive.
+            axis, or with symbols that leave their sign open; or for a Tc that is not positive.
     Source: Seborg et al., Table 12.1; the split without all-pass factors is the one that gives this table.
 
     >>> design = imc_design(integrator(2, delay=3), Tc=1)
@@ -126,7 +126,7 @@ def _split(above, G):
             if sympy.re(z).is_zero:
                 raise ValueError(f"{G} has a zero at {z}: no rule is known for zeros on the imaginary axis")
             if sympy.re(z).is_positive is None:
-                raise ValueError(f"{G} has a zero at {z}, on which side is not known: expected positive letters")
+                raise ValueError(f"{G} has a zero at {z}, on which side is not known: expected positive symbols")
         right = [z for z in zeros if sympy.re(z).is_positive]
         if not right:
             inverted.append(part.as_expr() ** n)

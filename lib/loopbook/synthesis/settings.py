@@ -55,7 +55,7 @@ def as_pid(controller: TransferFunctionLike, kind: str | None = None) -> Match:
         A `Match`. The form is serial where only that is exact, as for a PI controller behind a lag.
     Raises:
         ValueError: for a controller that is not a PID controller even at low frequencies: with two integrators, without
-            proportional part, or whose series gives times that are negative. With letters, signs that they leave open
+            proportional part, or whose series gives times that are negative. With symbols, signs that they leave open
             are not refused.
     Source: Seborg et al., Table 12.1, where the rows K and L are such series.
 
@@ -122,7 +122,7 @@ def _serial_pid(n0, n1, n2, Tf):
 def _coefficients(above, below, cancelled=True):
     """The coefficients of two polynomials from the lowest power of s, without their common factors, in a field.
 
-    In a field of fractions, sums and products cancel at once, which is quick even with many letters.
+    In a field of fractions, sums and products cancel at once, which is quick even with many symbols.
     """
     above, below = sympy.Poly(above, s), sympy.Poly(below, s)
     field = above.domain.unify(below.domain).get_field()
@@ -135,9 +135,9 @@ def _written(field, element):
     """An element of a field as an expression, factored."""
     parts = []
     for part in sympy.fraction(field.to_sympy(element)):
-        letters = sorted(part.free_symbols, key=str)
-        if letters and part.is_polynomial(*letters):
-            content, factors = sympy.Poly(part, *letters).factor_list()
+        symbols = sorted(part.free_symbols, key=str)
+        if symbols and part.is_polynomial(*symbols):
+            content, factors = sympy.Poly(part, *symbols).factor_list()
             part = content * sympy.Mul(*(factor.as_expr() ** n for factor, n in factors))
         parts.append(part)
     return parts[0] / parts[1]
@@ -171,7 +171,7 @@ def _by_series(C, kind):
 def _series(C):
     """The coefficients of 1/s, 1, s and ``s**2`` in the series of C around s = 0, and the field they are in."""
     rational, delays = without_delays(C)
-    dead_times = {letter: sympy.exp(-delay * s) for letter, delay in delays.items()}
+    dead_times = {symbol: sympy.exp(-delay * s) for symbol, delay in delays.items()}
     parts = [part.xreplace(dead_times) for part in sympy.fraction(sympy.together(rational))]
     for order in (8, 16, 32):  # powers of s may cancel, and those beyond the order are wrong
         above, below, field = _coefficients(*(taylor(part, order) for part in parts), cancelled=False)

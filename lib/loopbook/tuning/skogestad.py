@@ -18,7 +18,7 @@ from loopbook.validation import exact_not_negative, exact_positive, one_of
 def simc(model: TransferFunctionLike, Tc: Number | None = None, c: Number = 4) -> PID:
     """Return Skogestad's settings, of a PI or PID controller in serial form.
 
-    A lag T1 and an integrator are one case, since an integrator is an endless lag with a finite slope K/T1: the rows
+    A lag T1 and an integrator are one case, since an integrator is an infinite lag with a finite slope K/T1: the rows
     ``K/s``, ``K/(T1*s + 1)``, ``K/(s*(T2*s + 1))`` and ``K/((T1*s + 1)*(T2*s + 1))`` of the tables have one formula.
     For one lag the controller is PI; a second one is cancelled by Td = T2. A double integrator has a row of its own,
     without c.

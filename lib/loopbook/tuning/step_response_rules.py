@@ -17,8 +17,8 @@ def ziegler_nichols_reaction(model: TransferFunctionLike, kind: str = "PID") -> 
     """Return the settings of Ziegler and Nichols from the reaction curve, a step response without control.
 
     Only the steepest slope of the response and the dead time count, so that a lag and an integrator with the same slope
-    have the same settings. The aim is that each swing is a quarter of the one before. The rule is recommended for dead
-    times from about 0.1 to 1 lag.
+    have the same settings. The aim is that each oscillation is a quarter of the one before. The rule is recommended for
+    dead times from about 0.1 to 1 lag.
 
     Arguments:
         model: a lag or an integrator, with dead time.

@@ -1,4 +1,4 @@
-"""Transfer functions with letters, for many values of these at once."""
+"""Transfer functions with symbols, for many values of these at once."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ __all__ = ["broadcast_values", "with_values"]
 
 
 def broadcast_values(values: Mapping[str, ArrayLike]) -> tuple[dict[str, np.ndarray], tuple[int, ...]]:
-    """Return the values of letters as arrays of one dimension and equal length, and the shape that they had together.
+    """Return the values of symbols as arrays of one dimension and equal length, and the shape that they had together.
 
     Raises ValueError for what is not real and finite, or shapes that do not fit.
     """
@@ -37,13 +37,13 @@ def broadcast_values(values: Mapping[str, ArrayLike]) -> tuple[dict[str, np.ndar
 
 
 def with_values(H: object, values: Mapping[str, np.ndarray]) -> tuple[Quasipolynomials, Quasipolynomials]:
-    """Return numerator and denominator of a transfer function for many values of its letters.
+    """Return numerator and denominator of a transfer function for many values of its symbols.
 
     Arguments:
-        H: a transfer function, whose letters may also stand in dead times.
-        values: an array of values for each letter, by its name, of one dimension and equal length.
+        H: a transfer function, whose symbols may also stand in dead times.
+        values: an array of values for each symbol, by its name, of one dimension and equal length.
     Raises:
-        ValueError: for letters without values, a negative dead time, or what is no transfer function.
+        ValueError: for symbols without values, a negative dead time, or what is no transfer function.
 
     >>> import numpy as np
     >>> K = sympy.Symbol("K")
@@ -52,7 +52,7 @@ def with_values(H: object, values: Mapping[str, np.ndarray]) -> tuple[Quasipolyn
     ([[1.0, 1.0]], [[[1.0, 3.0]]])
     """
     H = transfer_function(H)
-    if missing := sorted({str(letter) for letter in H.free_symbols - {s}} - set(values)):
+    if missing := sorted({str(symbol) for symbol in H.free_symbols - {s}} - set(values)):
         raise ValueError(f"give values for {', '.join(missing)} in {H}")
     count = len(next(iter(values.values()))) if values else 1
     above, below = (_numbers(side, values, count) for side in _compiled(H, tuple(values)))
@@ -61,11 +61,11 @@ def with_values(H: object, values: Mapping[str, np.ndarray]) -> tuple[Quasipolyn
 
 @functools.lru_cache(maxsize=64)  # the same loop is asked again and again, with other values
 def _compiled(H, names):
-    """For numerator and denominator: a function of the letters, and how many parts and powers it returns."""
-    # letters in dead times are ordered as positive ones
+    """For numerator and denominator: a function of the symbols, and how many parts and powers it returns."""
+    # symbols in dead times are ordered as positive ones
     positive = {name: sympy.Symbol(name, positive=True) for name in names}
     found = []
-    for side in normal_form(H.xreplace({letter: positive[str(letter)] for letter in H.free_symbols - {s}})):
+    for side in normal_form(H.xreplace({symbol: positive[str(symbol)] for symbol in H.free_symbols - {s}})):
         side = side or {sympy.S.Zero: sympy.Poly(0, s)}
         order = max(max(part.degree() for part in side.values()), 0)
         rows = [part.coeff_monomial(s**n) for part in side.values() for n in range(order + 1)]
