@@ -21,7 +21,7 @@ def first(K=between(2, 6, "K/%"), T=between(15, 40, "s")):
     """It is {K} and {T}."""
     return answers(
         Kp=number(<gain> * K * T, "%/K", "the gain"<within>),
-        H=transfer_function(<gain> * K * s / (T + <letter>), letters="q z"),
+        H=transfer_function(<gain> * K * s / (T + <letter>), symbols="q z"),
         y=time_function(<gain> * sympy.exp(-t / T), <gain> * T, "K"),
         A=numbers([<gain> * K, T], what="the matrix"),
         p=poles([-<gain>, -T]),

@@ -35,7 +35,7 @@ def test_a_formula_has_the_values_of_the_expression(text):
     [
         ("2s", "with * for every product"),
         ("s(s + 1)", "a product needs its *"),
-        ("K/(T*s + 1)", "'K' is no letter of this answer"),
+        ("K/(T*s + 1)", "'K' is no symbol of this answer"),
         ("S", "did you mean 's'?"),
         ("exb(s)", "did you mean 'exp'?"),
         ("", "empty"),

@@ -41,8 +41,8 @@ EVERY_KIND = {
     "poles()": poles([-1, -2]),
     'poles("1/min")': poles([-1, -2], "1/min"),
     'expression("m³")': expression(X**2 * K, "the volume", unit="m³"),
-    'expression("m³", letters="K x y")': expression(X**2 * K, "the volume", letters="K x y", unit="m³"),
-    'transfer_function(letters="K T")': transfer_function(K / (5 * s + 1), letters="K T"),
+    'expression("m³", symbols="K x y")': expression(X**2 * K, "the volume", symbols="K x y", unit="m³"),
+    'transfer_function(symbols="K T")': transfer_function(K / (5 * s + 1), symbols="K T"),
     "transfer_function()": transfer_function(K / (X * s + 1)),
     'time_function("°C")': time_function(1 - sympy.exp(-t / 7), 35, "°C", "the response"),
     "settings()": settings(PID(2, Ti=10)),
@@ -61,16 +61,16 @@ def test_a_form_is_made_again_from_its_code_and_knows_no_key(code):
     form = eval(code, vars(answer_sheet))
     assert form.key is None
     assert form.asking == code
-    assert set(vars(form)) <= {"unit", "gain", "time", "form", "among", "ordered", "letters", "_told"}
+    assert set(vars(form)) <= {"unit", "gain", "time", "form", "among", "ordered", "symbols", "_told"}
     assert form.expected
 
 
 def test_letters_that_the_author_tells_are_demanded_before_the_grader_does():
-    told = transfer_function(K / (X * s + 1), letters="K x y")
-    with pytest.raises(Unreadable, match="'k' is no letter of this answer: did you mean 'K'"):
+    told = transfer_function(K / (X * s + 1), symbols="K x y")
+    with pytest.raises(Unreadable, match="'k' is no symbol of this answer: did you mean 'K'"):
         eval(told.asking, vars(answer_sheet)).read("k/(x*s + 1)")
-    with pytest.raises(ValueError, match="the key has the letter x: expected only K and s"):
-        transfer_function(K / (X * s + 1), letters="K")
+    with pytest.raises(ValueError, match="the key has the symbol x: expected only K and s"):
+        transfer_function(K / (X * s + 1), symbols="K")
 
 
 @pytest.mark.parametrize(

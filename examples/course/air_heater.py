@@ -86,11 +86,11 @@ def as_transfer_function(
 
     Then let a P controller with the gain $K_p$ hold the temperature. A disturbance $d$ at the input of the process, in
     percent of power, stays for good: by how much does the temperature leave the setpoint in the end, for $d = 1$ %?
-    Answer in the letters $K$ and $K_p$ (type `K` and `K_p`), and then for $K_p$ = {K_p}.
+    Answer in the symbols $K$ and $K_p$ (type `K` and `K_p`), and then for $K_p$ = {K_p}.
     """
     return answers(
         H=transfer_function(K * exp(-delay * s) / (T * s + 1), "the transfer function"),
-        e_s=expression(_K / (1 + _K * _K_p), "the deviation in letters", letters="K K_p"),
+        e_s=expression(_K / (1 + _K * _K_p), "the deviation in symbols", symbols="K K_p"),
         e_s_1=number(K / (1 + K * K_p), "K", "the deviation"),
     )
 

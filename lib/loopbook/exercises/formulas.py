@@ -49,13 +49,13 @@ _FUNCTIONS = {
 
 
 class Formula:
-    """A formula in some letters, as a function of arrays of values.
+    """A formula in some symbols, as a function of arrays of values.
 
     Arguments:
         given: text in Python's notation, where ``^`` is a power too; a number; an expression of SymPy; or something
             that has a transfer function, as a `PID`, a `System`, or a system of python-control with one input and
             one output.
-        letters: the names that may occur.
+        symbols: the names that may occur.
     Attributes:
         literals: its numbers other than 1 and exponents, by their places in the tree.
     Raises:
@@ -65,17 +65,17 @@ class Formula:
     array(2.+0.j)
     """
 
-    def __init__(self, given: object, letters: str | Iterable[str] = ()):
-        self.letters = letters.split() if isinstance(letters, str) else list(letters)
+    def __init__(self, given: object, symbols: str | Iterable[str] = ()):
+        self.symbols = symbols.split() if isinstance(symbols, str) else list(symbols)
         self.text = spelled(given)
-        self.tree = parsed(self.text, self.letters)
+        self.tree = parsed(self.text, self.symbols)
         nodes = list(ast.walk(self.tree))
         exponents = {id(node.right) for node in nodes if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow)}
         numbers = [node for node in nodes if isinstance(node, ast.Constant) and type(node.value) is not bool]
         self.literals = [id(node) for node in numbers if node.value != 1 and id(node) not in exponents]
 
     def __call__(self, changed: int | None = None, by: float = 1.0, /, **values: ArrayLike) -> np.ndarray:
-        """Return the values of the formula where its letters have these values, complex; NaN where it has none.
+        """Return the values of the formula where its symbols have these values, complex; NaN where it has none.
 
         A point at which any part of the formula is beyond the range of decimal numbers has no value.
 
@@ -92,7 +92,7 @@ class Formula:
                 case ast.Constant():
                     return complex(node.value) * (by if id(node) == changed else 1)
                 case ast.Name():
-                    return values[node.id] if node.id in self.letters else CONSTANTS[node.id]
+                    return values[node.id] if node.id in self.symbols else CONSTANTS[node.id]
                 case ast.UnaryOp():
                     value = work_out(node.operand)
                     return np.negative(value) if isinstance(node.op, ast.USub) else value
@@ -105,7 +105,7 @@ class Formula:
                     value = _OPERATORS[type(node.op)](work_out(node.left), work_out(node.right))
                 case ast.Call():
                     value = called(node.func.id, [work_out(argument) for argument in node.args])
-                    if node.func.id == "exp" and "s" in self.letters:  # in time, what has died away is zero
+                    if node.func.id == "exp" and "s" in self.symbols:  # in time, what has died away is zero
                         beyond = beyond | (np.abs(value) < SMALLEST)
             beyond = beyond | ~np.isfinite(value)
             return value
@@ -154,8 +154,8 @@ def agree(key: Formula, given: Formula, points: Mapping[str, np.ndarray], within
     wrong by that fraction.
 
     Arguments:
-        key, given: `Formula` in the same letters.
-        points: {letter: array of values}.
+        key, given: `Formula` in the same symbols.
+        points: {symbol: array of values}.
 
     >>> points = points_for("s")
     >>> key = Formula("2*exp(-3*s)/(10*s + 1)", "s")
@@ -190,17 +190,17 @@ def rounding(
     return np.sum(changes, axis=0) if changes else np.zeros(np.shape(expected))
 
 
-def points_for(letters: str | Iterable[str]) -> dict[str, np.ndarray]:
-    """Return values of letters at which formulas are compared: {letter: array}, the same every time.
+def points_for(symbols: str | Iterable[str]) -> dict[str, np.ndarray]:
+    """Return values of symbols at which formulas are compared: {symbol: array}, the same every time.
 
-    The letter s takes complex values of nine orders of magnitude in the right half-plane; others are positive numbers,
+    The symbol s takes complex values of nine orders of magnitude in the right half-plane; others are positive numbers,
     two of three near one and the others of eight orders of magnitude.
     """
-    letters = letters.split() if isinstance(letters, str) else list(letters)
+    symbols = symbols.split() if isinstance(symbols, str) else list(symbols)
     dice = random.Random(7)
     # no simple number, at which a value might not exist
     sizes = 1.0137 * 10 ** (np.arange(-30, 25) / 6)
     angles = np.exp(1j * np.radians([0, 40, 85]))
     ranges = [1.2 if k % 3 else 9 for k in range(165)]
-    points = {name: np.array([math.exp(dice.uniform(-a, a)) for a in ranges]) for name in sorted(letters)}
-    return points | ({"s": np.outer(sizes, angles).ravel()} if "s" in letters else {})
+    points = {name: np.array([math.exp(dice.uniform(-a, a)) for a in ranges]) for name in sorted(symbols)}
+    return points | ({"s": np.outer(sizes, angles).ravel()} if "s" in symbols else {})

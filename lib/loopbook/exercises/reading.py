@@ -120,28 +120,28 @@ def plain(text: str) -> str:
     return re.sub(r"^(\w+ ?(\(\w+\))?)? ?=(?!=) ?", "", line)
 
 
-def _in_python(text, letters):
+def _in_python(text, symbols):
     """A formula as Python writes it: powers, names of Greek letters, 2j for 2i, exp for np.exp."""
     text = re.sub("[⁰¹²³⁴-⁹⁻]+", lambda raised: "^" + raised[0].translate(_RAISED), plain(text))
-    for greek in set(re.findall("[α-ω]", text)) - set("".join(letters)):
+    for greek in set(re.findall("[α-ω]", text)) - set("".join(symbols)):
         text = text.replace(greek, unicodedata.name(greek).split()[-1].lower())
-    if "t" not in letters:  # a signal is a letter here
-        text = re.sub(r"\b(\w+) ?\(t\)", lambda call: call[1] if call[1] in letters else call[0], text)
+    if "t" not in symbols:  # a signal is a symbol here
+        text = re.sub(r"\b(\w+) ?\(t\)", lambda call: call[1] if call[1] in symbols else call[0], text)
     text = re.sub(r"\b(np|numpy|math|cmath|sympy|sp)\.(?=[A-Za-z])", "", text)
     return re.sub(r"\b(\d+\.?\d*)i\b", r"\1j", text).replace("^", "**")
 
 
-def parsed(text: str, letters: Collection[str]) -> ast.expr:
-    """Return the syntax tree of a formula in some letters: arithmetic, known functions, and nothing else.
+def parsed(text: str, symbols: Collection[str]) -> ast.expr:
+    """Return the syntax tree of a formula in some symbols: arithmetic, known functions, and nothing else.
 
     Raises Unreadable in a sentence.
 
     >>> parsed("K/(T*s + 1)", ["s"])
     Traceback (most recent call last):
-    loopbook.exercises.reading.Unreadable: 'K' is no letter of this answer: expected an expression in s
+    loopbook.exercises.reading.Unreadable: 'K' is no symbol of this answer: expected an expression in s
     """
-    source = _in_python(text, letters)
-    expected = "expected an expression" + (f" in {listed(letters)}" if letters else "")
+    source = _in_python(text, symbols)
+    expected = "expected an expression" + (f" in {listed(symbols)}" if symbols else "")
     if not source:
         raise Unreadable(f"the text is empty: {expected}")
     try:
@@ -164,9 +164,9 @@ def parsed(text: str, letters: Collection[str]) -> ast.expr:
             case ast.Constant():
                 _check_number(node.value, expected)
             case ast.Name() if id(node) in called:
-                _check_function(node.id, letters)
+                _check_function(node.id, symbols)
             case ast.Name():
-                _check_letter(node.id, letters)
+                _check_symbol(node.id, symbols)
             case ast.Call():
                 _check_call(node, source)
             case ast.Tuple() if id(node) not in pieces or len(node.elts) != 2:
@@ -178,12 +178,12 @@ def parsed(text: str, letters: Collection[str]) -> ast.expr:
     return tree
 
 
-def letters_in(given: object) -> list[str]:
-    """Return the letters of a formula, whichever they are, in their order; of what is no formula, none.
+def symbols_in(given: object) -> list[str]:
+    """Return the symbols of a formula, whichever they are, in their order; of what is no formula, none.
 
     Raises Unreadable where nothing spells it.
 
-    >>> letters_in("K*exp(-tau*s)/(T*s + 1)")
+    >>> symbols_in("K*exp(-tau*s)/(T*s + 1)")
     ['K', 'T', 's', 'tau']
     """
     try:
@@ -193,13 +193,13 @@ def letters_in(given: object) -> list[str]:
             raise
         return []
     calls = [node for node in nodes if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)]
-    # h(t) is a signal, a letter; K(s + 1) a product without its sign, which is said of a letter
+    # h(t) is a signal, a symbol; K(s + 1) a product without its sign, which is said of a symbol
     signals = [call for call in calls if [ast.unparse(argument) for argument in call.args] == ["t"]]
     signals = [call for call in signals if call.func.id not in (*ONE_VALUE, *SEVERAL_VALUES)]
-    letters = {call.func.id for call in calls if len(call.func.id.partition("_")[0]) == 1 or call in signals}
+    symbols = {call.func.id for call in calls if len(call.func.id.partition("_")[0]) == 1 or call in signals}
     passed = {id(call.func) for call in calls} | {id(call.args[0]) for call in signals}
-    letters |= {node.id for node in nodes if isinstance(node, ast.Name) and id(node) not in passed}
-    return sorted(letters - CONSTANTS.keys())
+    symbols |= {node.id for node in nodes if isinstance(node, ast.Name) and id(node) not in passed}
+    return sorted(symbols - CONSTANTS.keys())
 
 
 def _quoted(source, node):
@@ -219,22 +219,22 @@ def _check_number(value, expected):
         raise Unreadable("a number in the expression is out of range: expected a simpler one")
 
 
-def _check_function(name, letters):
+def _check_function(name, symbols):
     known = (*ONE_VALUE, *SEVERAL_VALUES)
-    if name in letters or name in CONSTANTS:
+    if name in symbols or name in CONSTANTS:
         raise Unreadable(f"{name} stands before a bracket: a product needs its *")
     if name not in known:
         hint = did_you_mean(name, known, otherwise="expected exp, log, sqrt, sin ...")
         raise Unreadable(f"{name!r} is no function that is known here: {hint}")
 
 
-def _check_letter(name, letters):
-    if name in letters or name in CONSTANTS:
+def _check_symbol(name, symbols):
+    if name in symbols or name in CONSTANTS:
         return
-    if not letters:
-        raise Unreadable(f"{name!r} stands for no number: expected a value without letters")
-    hint = did_you_mean(name, letters, otherwise=f"expected an expression in {listed(letters)}")
-    raise Unreadable(f"{name!r} is no letter of this answer: {hint}")
+    if not symbols:
+        raise Unreadable(f"{name!r} stands for no number: expected a value without symbols")
+    hint = did_you_mean(name, symbols, otherwise=f"expected an expression in {listed(symbols)}")
+    raise Unreadable(f"{name!r} is no symbol of this answer: {hint}")
 
 
 def _check_call(node, source):
@@ -271,7 +271,7 @@ def spelled(given: object) -> str:
 def _expression(given):
     """The expression in SymPy that an object is or has; None where there is none."""
     if isinstance(given, sympy.Expr):
-        # a signal, h(t), is a letter here
+        # a signal, h(t), is a symbol here
         return None if given.is_Matrix else given.replace(_is_signal, lambda signal: sympy.Symbol(signal.func.__name__))
     if isinstance(getattr(given, "expr", None), sympy.Expr):
         return given.expr

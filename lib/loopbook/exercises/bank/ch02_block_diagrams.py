@@ -158,14 +158,14 @@ def first_integrator(model=choice(*MODELS, reference="pendulum")):
 
     How many integrators does its block diagram need? Call what comes out of the last one $x_1$ (this is $y$), what
     comes out of the one before it $x_2$, and so on. Which formula must the blocks in front of the first integrator
-    compute? Write it with these letters and those of the model.
+    compute? Write it with these symbols and those of the model.
     """
     driving, against, factor, order = MODELS[model][2]
     formula = (driving - against) / factor
-    letters = " ".join(["x_1 x_2 x_3", *(symbol.name for symbol in formula.free_symbols)])
+    names = " ".join(["x_1 x_2 x_3", *(symbol.name for symbol in formula.free_symbols)])
     return answers(
         integrators=number(order, "", "the number of integrators", within=0),
-        formula=expression(formula, "the formula in front of the first integrator", letters=letters),
+        formula=expression(formula, "the formula in front of the first integrator", symbols=names),
     )
 
 
@@ -210,7 +210,7 @@ def _(model):
     return {"formula": (driving - against.replace(sympy.sin, lambda x: x)) / factor} if against.has(sympy.sin) else {}
 
 
-@first_integrator.mistake("In the formula, leave $g$ a letter.")
+@first_integrator.mistake("In the formula, leave $g$ a symbol.")
 def _(model):
     driving, against, factor, _ = MODELS[model][2]
     formula = (driving - against) / factor

@@ -125,13 +125,13 @@ def sloping_walls(shape=choice(*SHAPES, reference="funnel"), outlet=choice(*OUTL
     bottom. All lengths are in metres. The volume flow $q_i$ [m³/s] comes in, and {loses}.
 
     Find the volume $V$ of the liquid, and from the mass balance the rate $\dot h$ at which the level changes, both as
-    formulas in these letters.
+    formulas in these symbols.
     """
     (V, area), out = _volume(shape), OUTLETS[outlet][1]
-    letters = " ".join(["rho", *(symbol.name for symbol in (V + area + out + q_i).free_symbols)])
+    names = " ".join(["rho", *(symbol.name for symbol in (V + area + out + q_i).free_symbols)])
     return answers(
-        V=expression(V, "the volume", letters=letters, unit="m³"),
-        rate=expression((q_i - out) / area, "the rate of the level", letters=letters, unit="m/s"),
+        V=expression(V, "the volume", symbols=names, unit="m³"),
+        rate=expression((q_i - out) / area, "the rate of the level", symbols=names, unit="m/s"),
     )
 
 
@@ -347,7 +347,7 @@ def lift(
     cabin. Rope and friction count for nothing, and $g$ = 9.81 m/s².
 
     The tension of the rope is an inner force on each side. Get rid of both, and find the acceleration of the cabin,
-    upwards positive, as a formula in the letters. Then in numbers: the mass that the rope seems to move, the torque
+    upwards positive, as a formula in the symbols. Then in numbers: the mass that the rope seems to move, the torque
     that holds the cabin where it is, and the acceleration under a torque of {T}.
     """
     return answers(
@@ -446,7 +446,7 @@ def _(m_1, m_2, J, r, T):
     }
 
 
-@lift.mistake("In the formula, leave $g$ a letter.")
+@lift.mistake("In the formula, leave $g$ a symbol.")
 def _():
     return {"formula": _lift(TORQUE, INERTIA, RADIUS, CABIN, WEIGHT, g_earth)}
 
@@ -486,7 +486,7 @@ def two_resistors(
     """{looks}. Nothing else takes a current from the output.
 
     Set up the balance of the currents, and find the transfer function from the input voltage to the output voltage in
-    the letters $R_1$, $R_2$ and $C$.
+    the symbols $R_1$, $R_2$ and $C$.
 
     Now let $R_1$ = {r_1}, $R_2$ = {r_2} and $C$ = {c}. With which time constant does the capacitor follow? By which
     factor does the circuit multiply a constant voltage, and by which one a voltage that changes very fast?
@@ -495,7 +495,7 @@ def two_resistors(
     share = r_2 / (r_1 + r_2)
     slow, fast = {"loaded": (share, 0), "stepped": (1, share), "bridged": (share, 1)}[circuit]
     return answers(
-        H=transfer_function(H, "the transfer function", letters="R_1 R_2 C"),
+        H=transfer_function(H, "the transfer function", symbols="R_1 R_2 C"),
         T=number(_lag(circuit, r_1, r_2, c), "ms", "the time constant"),
         slow=number(slow, "", "the factor for a constant voltage"),
         fast=number(fast, "", "the factor for a very fast one"),
@@ -538,7 +538,7 @@ def _(circuit):
     return {"H": 1 / ((R_1 + R_2) * C * s + 1) if circuit == "stepped" else sympy.together(1 - H)}
 
 
-@two_resistors.mistake("That is the circuit with its values. Give the transfer function in the letters.")
+@two_resistors.mistake("That is the circuit with its values. Give the transfer function in the symbols.")
 def _(circuit, r_1, r_2, c):
     return {"H": CIRCUITS[circuit][1].subs({R_1: 1000 * r_1, R_2: 1000 * r_2, C: c / 10**6})}
 

@@ -293,14 +293,14 @@ def full_power_first(
 
     with $K$ = {K} and $T$ = {T}. The oven shall become {warmer} warmer than the room, soon, and then stay so. At
     $t = 0$ the heater is switched to its full power, $u_1$ = {full}. At the moment $t_1$, when the temperature is
-    reached, it is switched back to a power $u_2$ that just holds it. Transform the power, in the letters $u_1$, $u_2$,
+    reached, it is switched back to a power $u_2$ that just holds it. Transform the power, in the symbols $u_1$, $u_2$,
     $t_1$ and $s$. Then find $u_2$ and $t_1$.
     """
     u_1, u_2, t_1 = (Symbol(name, positive=True) for name in ("u_1", "u_2", "t_1"))
     return answers(
         U=transfer_function(
             u_1 / s + (u_2 - u_1) / s * exp(-t_1 * s),
-            "the transform of the power, in the letters $u_1$, $u_2$, $t_1$ and $s$",
+            "the transform of the power, in the symbols $u_1$, $u_2$, $t_1$ and $s$",
         ),
         u_2=number(warmer / K, "kW", "the power that holds the temperature"),
         t_1=number(T * log(K * full / (K * full - warmer)), "min", "the moment of switching back"),

@@ -215,7 +215,7 @@ def two_loops(
     - {inner}
     - $y = H_2\,v + H_4\,u$
 
-    Draw the diagram, and reduce it to one block: give $y(s)/u(s)$ in the letters $H_1$, $H_2$, $H_3$ and $H_4$. Which
+    Draw the diagram, and reduce it to one block: give $y(s)/u(s)$ in the symbols $H_1$, $H_2$, $H_3$ and $H_4$. Which
     static gain does it have if the static gains of the four blocks are {k_1}, {k_2}, {k_3} and {k_4}?
     """
     sense = _SIGNS[sign]
@@ -286,7 +286,7 @@ def hot_plate(
     $y$ is its temperature above that of the room. To make it faster, the temperature is compared with a wanted one,
     $r$, and the heater gets $u = K_c\,(r - y)$.
 
-    Give the transfer function from $r$ to $y$, in $s$ and the letter $K_c$, with the numbers of the plate. Then choose
+    Give the transfer function from $r$ to $y$, in $s$ and the symbol $K_c$, with the numbers of the plate. Then choose
     $K_c$ for a step of {step} in $r$, from rest: in the end the plate shall be at {share} of the step or more, the
     time-constant of the whole must not exceed {T_max}, and the power must not exceed {u_max}. (When is it largest?)
     """

@@ -246,7 +246,7 @@ def _():
     return {"e": K * K_p * W / (1 + K * K_p)}
 
 
-@oil_tank.mistake("Here numbers have been put in. Asked is first the formula with the letters.")
+@oil_tank.mistake("Here numbers have been put in. Asked is first the formula with the symbols.")
 def _(K, W):
     return {"e": K * W / (1 + K * Symbol("K_p"))}
 

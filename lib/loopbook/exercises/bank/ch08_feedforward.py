@@ -87,7 +87,7 @@ def _(T_SP, T_c, T_h, before, more):
     }
 
 
-@wash_water.mistake("Here numbers have been put in. Asked is the formula with all its letters.")
+@wash_water.mistake("Here numbers have been put in. Asked is the formula with all its symbols.")
 def _(T_SP, T_c, T_h):
     return {"w_h": Symbol("w_c") * (T_SP - T_c) / (T_h - T_SP)}
 
@@ -165,7 +165,7 @@ def _():
     return {"F_f": _force(wind=0)}
 
 
-@trolley.mistake("Here numbers have been put in. Asked is the formula with all its letters.")
+@trolley.mistake("Here numbers have been put in. Asked is the formula with all its symbols.")
 def _(m, D, F_w):
     return {"F_f": m * Symbol("a_SP") + D * Symbol("v_SP") + F_w}
 

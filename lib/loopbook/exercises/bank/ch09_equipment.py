@@ -226,11 +226,11 @@ def _sump_ripple():
 
 @pump_sump.mistake("While the pump runs, the outflow goes on. By how much does the level rise in each second?")
 def _(A, q, D, ripple):
-    letters = _sump_ripple() / (1 - Symbol("D"))
-    return {"ripple": letters, "P": ripple * A / (q * D), "P_any": ripple * A / q}
+    formula = _sump_ripple() / (1 - Symbol("D"))
+    return {"ripple": formula, "P": ripple * A / (q * D), "P_any": ripple * A / q}
 
 
-@pump_sump.mistake("Here numbers have been put in. Asked is first the formula with the letters.")
+@pump_sump.mistake("Here numbers have been put in. Asked is first the formula with the symbols.")
 def _(A, q, D):
     return {"ripple": q * D * (1 - D) / A * Symbol("P")}
 

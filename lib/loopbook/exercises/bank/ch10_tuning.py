@@ -178,14 +178,14 @@ def integral_time(
     has Skogestad's gain $K_p = \frac{{T}}{K(T_C + \tau)}$ and an integral time $T_i$ that is still to be chosen.
 
     The slow motions do not feel the dead time: leave $e^{-\tau s}$ away. Which $T_i$ gives the two poles of the loop
-    the damping $\zeta = {zeta}$? Put this number in for $\zeta$, and give $T_i$ in the letters $T$, $T_C$ and $\tau$
+    the damping $\zeta = {zeta}$? Put this number in for $\zeta$, and give $T_i$ in the symbols $T$, $T_C$ and $\tau$
     (type `T`, `T_C`, `tau`). Then let the lag be {n} times as long as $T_C + \tau$: how many times as long as
     $T_C + \tau$ is the integral time?
     """
     total = _T_C + _tau
     return answers(
         Ti=expression(
-            4 * zeta**2 * total * _T**2 / (_T + total) ** 2, "the integral time in letters", letters="T T_C tau"
+            4 * zeta**2 * total * _T**2 / (_T + total) ** 2, "the integral time in symbols", symbols="T T_C tau"
         ),
         factor=number(4 * zeta**2 * n**2 / (n + 1) ** 2, "", r"the integral time as a multiple of $T_C + \tau$"),
     )

@@ -347,7 +347,7 @@ def two_poles(
     the drum in cascade, $u = K_{p2}\,(K_{p1}(y_{SP} - y_1) - y_2)$, all counted from the operating point.
 
     Choose the two gains so that the closed loop has two real poles, which belong to lags of {L_1} and {L_2}. A P
-    controller leaves an error: give, with the letters `K_1`, `K_2`, `K_p1` and `K_p2`, what is left of a setpoint step
+    controller leaves an error: give, with the symbols `K_1`, `K_2`, `K_p1` and `K_p2`, what is left of a setpoint step
     of 1 K in the end.
     """
     K_p1, K_p2 = two_P(K_1, T_1, K_2, T_2, L_1, L_2)
@@ -374,7 +374,7 @@ def _(K_1, T_1, K_2, T_2, L_1, L_2):
     return {"K_p1": K_p1 * K_p2}
 
 
-@two_poles.mistake("That may be its value here. Asked is an expression in the letters.")
+@two_poles.mistake("That may be its value here. Asked is an expression in the symbols.")
 def _(K_1, T_1, K_2, T_2, L_1, L_2):
     K_p1, K_p2 = two_P(K_1, T_1, K_2, T_2, L_1, L_2)
     return {"left": float((1 + K_2 * K_p2) / (1 + K_2 * K_p2 + K_1 * K_2 * K_p1 * K_p2))}

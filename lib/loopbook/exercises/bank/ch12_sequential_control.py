@@ -496,7 +496,7 @@ def shift(
     Torricelli's law $A\,dh/dt = -K_v \sqrt{h}$. At full power the water follows a lag of $\tau$ = {tau} towards
     $T_{end}$ = {T_end}.
 
-    Give the time of `Empty` in the letters `A`, `K_v`, `h_0` and `h_1`, in units that fit together; then the time of
+    Give the time of `Empty` in the symbols `A`, `K_v`, `h_0` and `h_1`, in units that fit together; then the time of
     `Heat` and of a whole batch. How many whole batches are finished in a shift of eight hours that begins with `Fill`?
     (The scans are so short that they do not matter.)
     """
@@ -562,7 +562,7 @@ def _(A, h_0, h_1, q, K_v, tau, T_0, T_SP, T_end, hold):
     return {"batches": 480 / sum(stages(A, h_0, h_1, q, K_v, tau, T_0, T_SP, T_end, hold))}
 
 
-@shift.mistake("That may be its value here. Asked is an expression in the letters.")
+@shift.mistake("That may be its value here. Asked is an expression in the symbols.")
 def _(A, h_0, h_1, K_v):
     return {"Empty": float(2 * A * (sqrt(h_1) - sqrt(h_0)) / K_v) * 1000 / 60}
 

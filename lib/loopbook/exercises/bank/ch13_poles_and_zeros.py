@@ -265,21 +265,21 @@ def gain_and_damping(
     r"""The temperature of a small oven follows its heater with a gain of {k} and two lags, {tau_1} and {tau_2}. It is
     controlled by a P controller with the gain $K_c$ [%/K].
 
-    Derive the damping $\zeta$ of the closed loop, in the letters $k$, $K_c$, $\tau_1$ and $\tau_2$ (type `k`, `K_c`,
+    Derive the damping $\zeta$ of the closed loop, in the symbols $k$, $K_c$, $\tau_1$ and $\tau_2$ (type `k`, `K_c`,
     `tau_1`, `tau_2`). For which gain is it {zeta}? With this gain, how much of a setpoint step is left as an offset,
     and which time constant $\tau$ does the closed loop have?
     """
     product = tau_1 * tau_2
     square = (tau_1 + tau_2) ** 2 / (4 * Rational(zeta) ** 2 * product)  # 1 + K_c*k
     return answers(
-        damping=expression(_damping_in_letters(1), "the damping in letters"),
+        damping=expression(_damping_in_symbols(1), "the damping in symbols"),
         K_c=number((square - 1) / k, "%/K", "the gain of the controller"),
         offset=number(100 / square, "%", "the offset"),
         tau=number(sympy.sqrt(product / square), "s", "the time constant of the closed loop"),
     )
 
 
-def _damping_in_letters(one):
+def _damping_in_symbols(one):
     k, K_c, tau_1, tau_2 = symbols("k K_c tau_1 tau_2", positive=True)
     return (tau_1 + tau_2) / (2 * sympy.sqrt(tau_1 * tau_2 * (one + K_c * k)))
 
@@ -288,7 +288,7 @@ def _damping_in_letters(one):
     "In the constant term of the denominator there is more than the loop gain. Multiply $1 + gc$ out again."
 )
 def _():
-    return {"damping": _damping_in_letters(0)}
+    return {"damping": _damping_in_symbols(0)}
 
 
 @gain_and_damping.mistake("That is the damping of the process alone. What does the loop do to the constant term?")
@@ -299,10 +299,10 @@ def _():
 
 @gain_and_damping.mistake("The middle coefficient is $2\\zeta\\tau$, with a two.")
 def _():
-    return {"damping": 2 * _damping_in_letters(1)}
+    return {"damping": 2 * _damping_in_symbols(1)}
 
 
-@gain_and_damping.mistake("Here numbers have been put in. Asked is first the formula with the letters.")
+@gain_and_damping.mistake("Here numbers have been put in. Asked is first the formula with the symbols.")
 def _(k, tau_1, tau_2):
     return {"damping": (tau_1 + tau_2) / (2 * sympy.sqrt(tau_1 * tau_2 * (1 + k * symbols("K_c"))))}
 
@@ -441,14 +441,14 @@ def calm_level(
     oscillations.
 
     With $u = -\Delta q_{out}$ the level is an integrating process $k'/s$ with $k' = 1/A$, and the gain $K_c$ of the
-    controller is positive. Give the least integral time $\tau_I$ without oscillations, in the letters $A$ and $K_c$
+    controller is positive. Give the least integral time $\tau_I$ without oscillations, in the symbols $A$ and $K_c$
     (type `A`, `K_c`). Then choose $K_c$ and $\tau_I$; a `PID` calls them `Kp` and `Ti`.
     """
-    A_letter, K_c = symbols("A K_c", positive=True)
+    A_symbol, K_c = symbols("A K_c", positive=True)
     Kp = Rational(98, 100) * r_max * A / d
     numbers = float(A), float(d)
     return answers(
-        tau_least=expression(4 * A_letter / K_c, "the least integral time in letters"),
+        tau_least=expression(4 * A_symbol / K_c, "the least integral time in symbols"),
         controller=design(
             settings(
                 PID(Kp, Ti=Rational(41, 10) * A / Kp), gain="m²/min", time="min", what="the settings of the controller"

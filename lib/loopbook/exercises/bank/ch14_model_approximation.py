@@ -100,7 +100,7 @@ def gas_holder(
 
     {process}
 
-    The integrator counts as an endless lag. Find by the half rule the model of first order, $g_1$, and that of second
+    The integrator counts as an infinite lag. Find by the half rule the model of first order, $g_1$, and that of second
     order, $g_2$. Then let the valve open by one percent. The level rises as a ramp in the end: by how much does the
     ramp of $g_1$ lie above that of $g$?
     """

@@ -187,15 +187,15 @@ def relay_with_hysteresis(
     amplitude $Kd\theta$ that the oscillation has without hysteresis.
 
     Find the amplitude $a$ and the period $P$ of the oscillation, and the ultimate gain that one computes from $a$
-    as if $y$ were a sine, all in the letters $K$, $d$ and $\theta$. How many percent of the true ultimate gain is
+    as if $y$ were a sine, all in the symbols $K$, $d$ and $\theta$. How many percent of the true ultimate gain is
     that?
     """
     q = q / 100
-    letters = "K d theta"
+    names = "K d theta"
     return answers(
-        a=expression((1 + q) * _K * _d * _theta, "the amplitude", letters=letters),
-        P=expression(4 * (1 + q) * _theta, "the period", letters=letters),
-        Kcu=expression(4 / (pi * (1 + q) * _K * _theta), "the estimate of the ultimate gain", letters=letters),
+        a=expression((1 + q) * _K * _d * _theta, "the amplitude", symbols=names),
+        P=expression(4 * (1 + q) * _theta, "the period", symbols=names),
+        Kcu=expression(4 / (pi * (1 + q) * _K * _theta), "the estimate of the ultimate gain", symbols=names),
         share=number(800 / (pi**2 * (1 + q)), "%", "the estimate as a share of the true ultimate gain"),
     )
 
@@ -290,7 +290,7 @@ def bad_copy(
     - **D**: ${D}$
 
     Some formulas cannot have been meant like this, because of their **units**. Which? Of the others, some fail in the
-    **limit**: when the lag becomes endless and the slope $k = K/\tau$ stays as it is, gain and times of the controller
+    **limit**: when the lag becomes infinite and the slope $k = K/\tau$ stays as it is, gain and times of the controller
     must stay finite, and the gain must not vanish. Which?
     """
     return answers(

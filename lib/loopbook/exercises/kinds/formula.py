@@ -14,7 +14,7 @@ from loopbook.exercises.formulas import Formula
 from loopbook.exercises.kinds.kind import Kind, literal, with_unit
 from loopbook.exercises.kinds.numeric import in_unit
 from loopbook.exercises.kinds.settings import Settings
-from loopbook.exercises.reading import Unreadable, alone, answered, letters_in, listed
+from loopbook.exercises.reading import Unreadable, alone, answered, listed, symbols_in
 from loopbook.expressions import exact, parse, s, t
 
 if TYPE_CHECKING:
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 
 
 class Expression(Kind):
-    """An expression in letters, equal in any form; its numbers may be rounded.
+    """An expression in symbols, equal in any form; its numbers may be rounded.
 
     Arguments:
         key: an expression, or a text that spells one.
-        letters: that an answer may have, all of the key's among them; a notebook that is handed out tells a wrong one.
-            Those of the key, if not given: what letters there are is then a part of the answer.
+        symbols: that an answer may have, all of the key's among them; a notebook that is handed out tells a wrong one.
+            Those of the key, if not given: what symbols there are is then a part of the answer.
     Raises:
-        ValueError: for a key with a letter that is not among them.
+        ValueError: for a key with a symbol that is not among them.
 
     >>> gain = Expression(sympy.sympify("K*T/(K + 1)"), "the gain")
     >>> gain.agrees(gain.read("T/(1 + 1/K)")[0])
@@ -37,34 +37,34 @@ class Expression(Kind):
     """
 
     def __init__(
-        self, key: Number | str, what: str = "the expression", letters: str = "", within: float = 0.01, unit: str = ""
+        self, key: Number | str, what: str = "the expression", symbols: str = "", within: float = 0.01, unit: str = ""
     ):
         self.expr = _expression(key)
-        names, self._told = {symbol.name for symbol in self.expr.free_symbols}, letters
-        self.letters = sorted(self.always.union(letters.split() or names))
-        if beyond := sorted(names.difference(self.letters)):
-            raise ValueError(f"the key has the letter {beyond[0]}: expected only {listed(self.letters)}")
+        names, self._told = {symbol.name for symbol in self.expr.free_symbols}, symbols
+        self.symbols = sorted(self.always.union(symbols.split() or names))
+        if beyond := sorted(names.difference(self.symbols)):
+            raise ValueError(f"the key has the symbol {beyond[0]}: expected only {listed(self.symbols)}")
         super().__init__(self.expr, unit, what, within)
 
     expr: sympy.Expr | None
     always: frozenset[str] = frozenset()
-    #: Without a key, any letter may occur.
-    letters: Sequence[str] | None = None
+    #: Without a key, any symbol may occur.
+    symbols: Sequence[str] | None = None
     _told = ""
 
     @classmethod
-    def without_key(cls, *parts: Any, letters: str = "", **named: Any) -> Self:
-        """Return a kind that reads answers; in the letters that the author has told, or in any."""
+    def without_key(cls, *parts: Any, symbols: str = "", **named: Any) -> Self:
+        """Return a kind that reads answers; in the symbols that the author has told, or in any."""
         kind = super().without_key(*parts, **named)
-        if letters:
-            kind._told, kind.letters = letters, sorted(cls.always.union(letters.split()))
+        if symbols:
+            kind._told, kind.symbols = symbols, sorted(cls.always.union(symbols.split()))
         return kind
 
     @property
     def asking(self) -> str:
-        """The call that makes a kind of this form, with the letters that the author has told."""
+        """The call that makes a kind of this form, with the symbols that the author has told."""
         call = super().asking[:-1]
-        told = f"{'' if call.endswith('(') else ', '}letters={literal(self._told)}" if self._told else ""
+        told = f"{'' if call.endswith('(') else ', '}symbols={literal(self._told)}" if self._told else ""
         return f"{call}{told})"
 
     @property
@@ -77,7 +77,7 @@ class Expression(Kind):
         return super().making if is_read else ""
 
     def _argument(self, name):
-        return " ".join(self.letters) if name == "letters" else super()._argument(name)
+        return " ".join(self.symbols) if name == "symbols" else super()._argument(name)
 
     def as_code(self, answer: Any = None) -> str:
         """The text of the formula. Raises ValueError for a function of the reader's."""
@@ -94,19 +94,19 @@ class Expression(Kind):
 
     @property
     def expected(self) -> str:
-        """An expression in its letters."""
-        return f"an expression in {', '.join(self.letters)}" if self.letters else "an expression"
+        """An expression in its symbols."""
+        return f"an expression in {', '.join(self.symbols)}" if self.symbols else "an expression"
 
     def read(self, given: object) -> tuple[Formula, str]:
-        """Return the `Formula`; without a key, also a remark on its letters."""
+        """Return the `Formula`; without a key, also a remark on its symbols."""
         given = answered(given)
         if isinstance(given, Formula):
             return given, ""
         given = alone(given)
         if isinstance(given, dict) and {"Kp", "form"} <= given.keys():  # a controller, as data
             given, _ = Settings.without_key().read(given)
-        used = letters_in(given) if self.letters is None else ()
-        formula = Formula(given, sorted(self.always.union(used)) if self.letters is None else self.letters)
+        used = symbols_in(given) if self.symbols is None else ()
+        formula = Formula(given, sorted(self.always.union(used)) if self.symbols is None else self.symbols)
         self._demand_values(formula)
         return formula, f"an expression in {listed(used)}" if used else ""
 
@@ -123,11 +123,11 @@ class Expression(Kind):
         return with_unit(str(self.expr.xreplace({number: sympy.Float(number, 8) for number in long})), self.unit)
 
     def points(self) -> dict[str, np.ndarray]:
-        """The values of the letters at which formulas are compared."""
-        return formulas.points_for(self.letters)
+        """The values of the symbols at which formulas are compared."""
+        return formulas.points_for(self.symbols)
 
     def _demand_values(self, formula):
-        points = self.points() if self.letters is not None else formulas.points_for(formula.letters)
+        points = self.points() if self.symbols is not None else formulas.points_for(formula.symbols)
         if not np.isfinite(formula(**points)).any():
             raise Unreadable(f"this has no finite value: expected {self.expected}")
 
@@ -155,7 +155,7 @@ def _expression(key):
 
 
 class TransferFunction(Expression):
-    """A transfer function in s, with or without letters; dead time is exact.
+    """A transfer function in s, with or without symbols; dead time is exact.
 
     >>> H = TransferFunction(2 * sympy.exp(-3 * s) / (10 * s + 1))
     >>> H.agrees(H.read("0.2*exp(-3*s)/(s + 0.1)")[0])
@@ -168,11 +168,11 @@ class TransferFunction(Expression):
         self,
         key: Number | str,
         what: str = "the transfer function",
-        letters: str = "",
+        symbols: str = "",
         within: float = 0.01,
         unit: str = "",
     ):
-        super().__init__(key, what, letters, within, unit)
+        super().__init__(key, what, symbols, within, unit)
 
     def mistakes(self) -> Iterator[tuple[str, Any]]:
         """Those of an expression, a forgotten dead time, its sign, and an s too many or too few."""
@@ -218,7 +218,7 @@ class TimeFunction(Expression):
     """
 
     always = frozenset({"t"})
-    letters = ("t",)
+    symbols = ("t",)
     until: float | None = None
 
     def __init__(

@@ -250,8 +250,8 @@ def one_number(given: object, unit: str, expected: str) -> tuple[complex, str]:
     if isinstance(given, bool | np.bool_) or given is sympy.true or given is sympy.false:
         raise Unreadable(f"{given} is a truth value: expected {expected}")
     if isinstance(given, sympy.Expr) and given.free_symbols:
-        letters = shortened(", ".join(sorted(symbol.name for symbol in given.free_symbols)))
-        raise Unreadable(f"there is still {letters} in it: expected {expected}")
+        symbols = shortened(", ".join(sorted(symbol.name for symbol in given.free_symbols)))
+        raise Unreadable(f"there is still {symbols} in it: expected {expected}")
     if (isinstance(given, dict | set) or callable(given)) and not isinstance(given, sympy.Basic):
         raise Unreadable(f"this is of type {type(given).__name__}: expected {expected}")
     try:
