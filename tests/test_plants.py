@@ -335,7 +335,7 @@ FORGOTTEN = {
     ),
     "an input": (
         {"q": parameter(0, "m³/s", "inflow"), "manipulated": lambda tank: tank.q},
-        "Tank has q for manipulated: there is none that could be",
+        "Tank has q for manipulated: no signal of its laws could be one",
     ),
     "the order of limits": (
         {"h": signal(2, "m", "level", limits=(3, 1))},

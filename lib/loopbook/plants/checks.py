@@ -93,4 +93,4 @@ def _others(chosen: Iterable[Any], among: list[sympy.Expr]) -> list[Any]:
 
 
 def _one_of(among: list[sympy.Expr]) -> str:
-    return f"expected one of {', '.join(map(name_of, among))}" if among else "there is none that could be"
+    return f"expected one of {', '.join(map(name_of, among))}" if among else "no signal of its laws could be one"
