@@ -354,7 +354,7 @@ def test_pytest_compares_every_output_of_a_stored_notebook(tmp_path):
     ]
     result = subprocess.run(command, capture_output=True, encoding="utf-8", cwd=tmp_path, check=False)
     assert result.returncode == 1
-    outcomes = {name: set(re.findall(rf"^(PASSED|FAILED) \S*{name}\.ipynb", result.stdout, re.M)) for name in cells}
+    outcomes = {name: set(re.findall(rf"^(PASSED|FAILED) .*\b{name}\.ipynb", result.stdout, re.M)) for name in cells}
     assert outcomes == {
         "same": {"PASSED"},
         "changed": {"FAILED"},
