@@ -4,6 +4,7 @@ Everything is measured before it is drawn, so that a formula too wide for its co
 page, is an error and not an overlap. The page holds no date, so that equal contents are equal bytes.
 """
 
+import functools
 import itertools
 
 import matplotlib
@@ -22,12 +23,15 @@ SIZE, SMALL, HEADING, TITLE = 8, 7.2, 9, 15  # of the type, in points
 LEADINGS = (3.0, 2.5, 2.0, 1.5)  # between rows: the first with which all sections fit on the page
 GAP = 4  # at least, between the columns of a table
 COLOUR, RULE = ROLES["measurement"]["color"], "#bbbbbb"
+TOP = MARGIN + 25  # where the columns begin, below the title
+ROOM = PAGE[1] - MARGIN - TOP  # for a column
 WIDTH = (PAGE[0] - 2 * MARGIN - (COLUMNS - 1) * GUTTER) / COLUMNS
 PARSER = MathTextParser("path")
 # Fonts as TrueType, so that words can be searched for and copied.
 LOOK = {**{name: STYLE[name] for name in ("font.family", "mathtext.fontset")}, "pdf.fonttype": 42}
 
 
+@functools.cache  # the same words are measured with each leading
 def measure(text, size, weight="normal"):
     """Width, height above the baseline and depth below it of a line of text with formulas, in points."""
     if not text:
@@ -168,17 +172,15 @@ def draw(sections, title, letters, file):
         ValueError: for what does not fit on the page.
     """
     with matplotlib.rc_context(LOOK):
-        top = MARGIN + 25
-        room = PAGE[1] - MARGIN - top
-        leading, parts = arranged(sections, room)
+        leading, parts = arranged(sections, ROOM)
         page = Page(leading)
         page.text(MARGIN, MARGIN + 10, title, TITLE, weight="bold")
         for number, line in enumerate(letters):
             page.text(PAGE[0] - MARGIN, MARGIN - 5 + 9 * number, line, SMALL, GREY, ha="right")
-        page.rule(MARGIN, top - 7, PAGE[0] - 2 * MARGIN, "black", 0.8)
+        page.rule(MARGIN, TOP - 7, PAGE[0] - 2 * MARGIN, "black", 0.8)
         for number, blocks in enumerate(parts):
-            space = (room - sum(block.height for block in blocks)) / max(len(blocks) - 1, 1)
-            y = top
+            space = (ROOM - sum(block.height for block in blocks)) / max(len(blocks) - 1, 1)
+            y = TOP
             for block in blocks:
                 y = page.block(MARGIN + number * (WIDTH + GUTTER), y, block) + space
         page.figure.savefig(file, format="pdf", metadata={"Title": f"loopbook: {title}", "CreationDate": None})
