@@ -309,14 +309,14 @@ class Word(str, enum.Enum):  # noqa: UP042 - as a reader may write it
 
 @pytest.mark.parametrize("value", ["stable", "Stable", " stable\n", np.str_("stable"), Word.STABLE])
 def test_a_claim_is_the_same_word_whatever_its_case_and_spaces(value):
-    verdict = example("Stable", kind="claim").compare(y=value).verdicts[0]
+    verdict = example("Stable", kind="name").compare(y=value).verdicts[0]
     assert (verdict.holds, verdict.computed.casefold()) == (True, "stable")
 
 
 @pytest.mark.parametrize("value", ["", "unstable", "stable.", "not stable", "s table"])
 def test_another_word_is_another_claim(value):
-    assert not holds(value, "stable", kind="claim")
-    assert holds("unstable", "stable", kind="claim", status="corrected", correct="unstable", because="a slip")
+    assert not holds(value, "stable", kind="name")
+    assert holds("unstable", "stable", kind="name", status="corrected", correct="unstable", because="a slip")
 
 
 # What is no value at all. Each complaint is one line, with the names of source, entry and result.
@@ -407,7 +407,7 @@ NO_VALUE = [
     for kind, printed, cases in [
         ("number", "1.5", NO_NUMBER),
         ("formula", "K/(T*s + 1)", NO_FORMULA),
-        ("claim", "stable", NO_CLAIM),
+        ("name", "stable", NO_CLAIM),
     ]
     for name, (value, words) in cases.items()
 ]
@@ -439,7 +439,7 @@ def test_a_number_that_claims_to_be_every_other_one():
 def test_a_disagreement_names_the_place_the_value_and_the_print(capsys):
     said = complaint(example("1.50").check, error=Disagreement, y=1.506)
     assert said == "book, Example 1: y = 1.506 does not agree with the printed 1.50"
-    said = complaint(example("1", kind="claim").check, error=Disagreement, y="a\nb")
+    said = complaint(example("1", kind="name").check, error=Disagreement, y="a\nb")
     assert "y = a b" in said
     said = complaint(example("1", status="corrected", correct="2", because="a slip").check, error=Disagreement, y=1)
     assert all(word in said for word in ("y = 1", "2", "1", "corrected"))
@@ -576,7 +576,7 @@ MALFORMED = {
     "a percentage of zero": (result(**RECONSTRUCTED, printed="0.0", within="5 %"), ["'5 %' of 0"]),
     "a margin around infinity": (result(**RECONSTRUCTED, printed="oo", within="5 %"), ["'oo'", "expected a number"]),
     "a margin around a word": (
-        result(**RECONSTRUCTED, kind="claim", printed="stable", within="5 %"),
+        result(**RECONSTRUCTED, kind="name", printed="stable", within="5 %"),
         ["no use for 'within'"],
     ),
     "a margin around a formula": (result(**RECONSTRUCTED, kind="formula", within="5 %"), ["expected a number"]),
@@ -635,7 +635,7 @@ MIXED = book(
     result=[
         {"name": "share", "equation": "6.21", "printed": "0.63", "unit": "m/s"},
         {"name": "H", "kind": "formula", "printed": "K/(T*s + 1)"},
-        {"name": "action", "kind": "claim", "printed": "Reverse"},
+        {"name": "action", "kind": "name", "printed": "Reverse"},
         {"name": "a", "printed": "1", "status": "corrected", "correct": "2", "because": 'a <b>"slip"</b> & more'},
         {"name": "b", "printed": "1", "status": "reconstructed", "assuming": "F = 1 <kg/s>", "within": "5 %"},
         {"name": "c", "printed": "1", "status": "unreproduced", "computed": "2", "because": "nobody knows"},

@@ -187,7 +187,7 @@ def untrue(written, computed):
             if not same(kind, value, told):
                 found.append(f"{where}: {value} is not {told}")
         if status == "reconstructed":
-            if kind == "claim" and not printed_holds:
+            if kind == "name" and not printed_holds:
                 found.append(f"{where}: {value} is not {row['printed']}")
             if kind == "number" and not within(value, row["printed"], row["within"]):
                 found.append(f"{where}: {value} is not within {row['within']} of {row['printed']}")
@@ -197,7 +197,7 @@ def untrue(written, computed):
 
 
 def same(kind, value, told):
-    if kind == "claim":
+    if kind == "name":
         return value.split() == told.split() or value.lower().split() == told.lower().split()
     return same_number(value, told) if kind == "number" else same_formula(value, told)
 
@@ -341,7 +341,7 @@ result = [
 result = [
     { name = "first", printed = "10", status = "reconstructed", assuming = "F = 1", within = "5 %" },
     { name = "second", printed = "-2", status = "reconstructed", assuming = "F = 1", within = "0.1" },
-    { name = "third", kind = "claim", printed = "settles", status = "reconstructed", assuming = "F = 1" },
+    { name = "third", kind = "name", printed = "settles", status = "reconstructed", assuming = "F = 1" },
 ]
 [formulas]
 result = [
@@ -353,8 +353,8 @@ result = [
 ]
 [claims]
 result = [
-    { name = "stable", kind = "claim", printed = "Yes" },
-    { name = "action", kind = "claim", printed = "direct", status = "corrected", correct = "reverse", because = "a" },
+    { name = "stable", kind = "name", printed = "Yes" },
+    { name = "action", kind = "name", printed = "direct", status = "corrected", correct = "reverse", because = "a" },
 ]
 """)
 TRUE = {

@@ -1,4 +1,4 @@
-"""Whether a computed value is what the book prints: numbers by their digits, formulas by proof, claims by the word."""
+"""Whether a computed value is what the book prints: numbers by their digits, formulas by proof, names by the word."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from loopbook.expressions import agreement, exact, parse
 
 NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]+)?|\.[0-9]+)([eE][+-]?[0-9]{1,3})?")
 INFINITE = {"oo": math.inf, "-oo": -math.inf}
-KINDS = ("number", "formula", "claim")
+KINDS = ("number", "formula", "name")
 
 
 #: A formula that a book prints: an expression, or an equation.
@@ -196,8 +196,8 @@ def formula_agrees(value: object, printed: str) -> str:
     return "" if how == "different" else how
 
 
-def claim(value: object) -> str:
-    """Return a claim, a word or a few, in one line. Raises TypeError for anything else."""
+def name_of(value: object) -> str:
+    """Return a name, a word or a few, in one line. Raises TypeError for anything else."""
     if not isinstance(value, str):
         raise TypeError(f"{_shortened(value)} of type {type(value).__name__}")
     # the plain text also of an enumeration, or of another kind of text
@@ -205,7 +205,7 @@ def claim(value: object) -> str:
 
 
 #: How a computed value of each kind is read.
-READ = {"number": number, "formula": formula, "claim": claim}
+READ = {"number": number, "formula": formula, "name": name_of}
 
 
 def agrees(kind: str, value: object, printed: str) -> str:
@@ -218,8 +218,8 @@ def agrees(kind: str, value: object, printed: str) -> str:
             return "digits" if number_agrees(value, printed) else ""
         case "formula":
             return formula_agrees(value, printed)
-        case "claim":
-            return "word" if claim(value).casefold() == claim(printed).casefold() else ""
+        case "name":
+            return "word" if name_of(value).casefold() == name_of(printed).casefold() else ""
 
 
 def spelled(kind: str, value: object, *printed: str) -> str:
@@ -228,8 +228,8 @@ def spelled(kind: str, value: object, *printed: str) -> str:
     >>> spelled("number", 1 - math.exp(-1), "0.63")
     '0.632121'
     """
-    if kind == "claim":
-        return claim(value)
+    if kind == "name":
+        return name_of(value)
     if kind == "formula":
         value = formula(value)
         return f"{value.lhs} = {value.rhs}" if isinstance(value, sympy.Equality) else str(value)

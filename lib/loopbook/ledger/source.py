@@ -47,7 +47,7 @@ _QUANTITY = re.compile(rf"(?P<number>{NUMBER.pattern})(\s+(?P<unit>([^\W\d]|[%°
 
 @dataclass(frozen=True)
 class Result:
-    """One number, formula or claim that a book prints as a result."""
+    """One number, formula or name that a book prints as a result."""
 
     name: str
     printed: str
@@ -86,7 +86,7 @@ class Result:
             raise LedgerError(f"{where}: the kind is {self.kind!r}, {did_you_mean(self.kind, KINDS)}")
         if self.status not in STATUSES:
             raise LedgerError(f"{where}: the status is {self.status!r}, {did_you_mean(self.status, STATUSES)}")
-        needed = set(STATUSES[self.status]) - ({"within"} if self.kind == "claim" else set())  # a word has no margin
+        needed = set(STATUSES[self.status]) - ({"within"} if self.kind == "name" else set())  # a word has no margin
         if self.status == "unreproduced" and not self.computed:  # what it takes is not printed: nothing to compare
             needed.remove("computed")
         for key in ("correct", "because", "assuming", "within", "computed"):
@@ -104,7 +104,7 @@ class Result:
     def _validate_value(self, where, text):
         if self.kind == "number" and not NUMBER.fullmatch(text) and text not in INFINITE:
             raise LedgerError(
-                f"{where} is {text!r}, expected a number like 1.50 or 2e-3, or else a kind 'formula' or 'claim'"
+                f"{where} is {text!r}, expected a number like 1.50 or 2e-3, or else a kind 'formula' or 'name'"
             )
         if self.kind == "formula":
             try:
