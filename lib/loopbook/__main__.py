@@ -62,11 +62,14 @@ def execute(
 @app.command()
 def ledger(
     errata: Annotated[Path, typer.Option(help="Where to write the list of the books' errors.")] = Path("ERRATA.md"),
+    damage: Annotated[Path, typer.Option(help="Where to write the list of what our copies have damaged.")] = Path(
+        "docs/damage.md"
+    ),
 ) -> None:
-    """Print the totals of the ledger by source and status, and write the list of the books' errors."""
+    """Print the totals of the ledger by source and status, and write the lists of the books' errors and of damage."""
     from loopbook.ledger import LedgerError, sources
-    from loopbook.ledger.errata import page, totals
-    from loopbook.ledger.source import STATUSES
+    from loopbook.ledger.errata import damaged, page, totals
+    from loopbook.ledger.statuses import STATUSES
 
     try:
         books = sources()
@@ -82,11 +85,13 @@ def ledger(
     sums = [sum(count[status] for count in counts.values()) for status in STATUSES]
     table.add_row("all", *map(str, sums), str(sum(sums)))
     Console(highlight=False, width=1000).print(table)  # no name is cut where the terminal is narrow
-    try:
-        errata.write_text(page(books), encoding="utf-8", newline="\n")
-    except OSError as error:
-        fail(f"{errata} cannot be written: {error.strerror}")
-    console.print(f"{errata} written", markup=False)
+    for path, text in ((errata, page(books)), (damage, damaged(books))):
+        try:
+            path.parent.mkdir(exist_ok=True)
+            path.write_text(text, encoding="utf-8", newline="\n")
+        except OSError as error:
+            fail(f"{path} cannot be written: {error.strerror}")
+        console.print(f"{path} written", markup=False)
 
 
 ROSTER = (

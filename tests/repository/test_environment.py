@@ -126,6 +126,7 @@ ORDER = [
     ["sequence"],
     ["instruments"],
     ["diagrams"],
+    ["evidence"],
     ["ledger", "notebooks"],
     ["exercises"],
     ["grading"],

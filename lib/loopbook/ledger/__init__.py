@@ -1,4 +1,4 @@
-"""The ledger: every number and formula that the books print as a result, and the checker that confirms them.
+"""The ledger: every number, formula and claim that the books print as a result, and the checker that confirms them.
 
 Each source is a TOML file beside this one, and is imported by its name:
 
@@ -7,10 +7,10 @@ Each source is a TOML file beside this one, and is imported by its name:
 >>> example.given("H")
 3/(4*s + 2)
 >>> example.check(K=1.5, T=2)
-haugen, Equation 6.14 · Gain and time-constant of a numerical example
-equation  result  book  computed  verdict
-6.14      K       1.5   3/2       reproduced
-6.14      T       2     2         reproduced
+Haugen, Equation 6.14 · Gain and time-constant of a numerical example: 2 computed
+verdict   equation  result  book  computed
+computed  6.14      K       1.5   3/2
+computed  6.14      T       2     2
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from __future__ import annotations
 import functools
 import importlib.resources
 
-from loopbook.ledger.compare import Disagreement, LedgerError
-from loopbook.ledger.source import Entry, Given, Result, Source
+from loopbook.ledger.errors import Disagreement, LedgerError
+from loopbook.ledger.source import Entry, Given, Result, Slip, Source
 from loopbook.validation import did_you_mean
 
-__all__ = ["Disagreement", "Entry", "Given", "LedgerError", "Result", "Source", "sources"]
+__all__ = ["Disagreement", "Entry", "Given", "LedgerError", "Result", "Slip", "Source", "sources"]
 
 
 def sources() -> dict[str, Source]:

@@ -1,14 +1,16 @@
-"""Verdicts, and how a reader sees them: as plain text, as HTML, and as data for the tests."""
+"""Verdicts, and how a reader sees them: as plain text, as HTML, and as data for whatever shows them otherwise."""
 
 from __future__ import annotations
 
 import html
+import re
+from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import sympy
 
-from loopbook.ledger.compare import NUMBER, parse_formula
+from loopbook.ledger.kinds import Claim, is_symbol, typeset
 
 if TYPE_CHECKING:
     from loopbook.ledger.source import Entry, Result
@@ -16,69 +18,103 @@ if TYPE_CHECKING:
 #: The MIME type under which a stored notebook carries the verdicts as data.
 MIME_TYPE = "application/vnd.loopbook.check+json"
 
-_GREEK = {"alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi",
-          "pi", "rho", "sigma", "tau", "phi", "chi", "psi", "omega"}  # fmt: skip
-
-
-_HEAD = ("equation", "result", "book", "computed", "verdict")
+_HEAD = ("verdict", "equation", "result", "book", "computed")
+_FAILS = ("✗", "fails")
+_LEFT = 'style="text-align:left"'  # JupyterLab would centre the heads and align numbers to the right
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What became of one result: the computed value as text, whether it holds, and how that was found."""
+    """What became of one result.
+
+    Attributes:
+        result: of the ledger.
+        computed: the value, or the evidence, as text.
+        how: how it was found to hold; empty where it does not hold.
+        value: the number, formula or name, or the evidence; None where nothing can be computed.
+    """
 
     result: Result
     computed: str
-    holds: bool
     how: str
+    value: Any = None
+
+    @property
+    def holds(self) -> bool:
+        """Whether the computation bears the status out."""
+        return bool(self.how)
+
+    @property
+    def near(self) -> bool:
+        """Whether the evidence hangs on the limit of a criterion, or on a few percent."""
+        return self.is_claim and self.value is not None and self.value.near
+
+    @property
+    def is_claim(self) -> bool:
+        """Whether the result is a sentence."""
+        return isinstance(self.result.printed, Claim)
 
     @property
     def word(self) -> str:
         """The verdict in a word or two."""
         if not self.holds:
             return "does not hold"
-        return self.result.status + (" (at random points)" if self.how == "probed" else "")
+        more = [text for text, so in (("at random points", self.how == "probed"), ("a near thing", self.near)) if so]
+        return self.result.status.word + (f" ({', '.join(more)})" if more else "")
 
     @property
     def mark(self) -> tuple[str, str]:
-        """A sign and its colour: whether it holds, and whether book and computation agree in the end."""
-        if not self.holds:
-            return "✗", "#b33c00"
-        if not self.result.is_checked:
-            return "–", "#555555"
-        return ("≠", "#8a5a00") if self.result.status == "unreproduced" else ("✓", "#00664d")
-
-    @property
-    def note(self) -> str:
-        """What the reader must know besides: the reason, or the assumption. Empty where there is none."""
-        row = self.result
-        if row.status == "reconstructed":
-            return f"reconstructed{f' to within {row.within}' if row.within else ''}, assuming {row.assuming}"
-        return f"{row.status}: {row.because}" if row.because else ""
+        """A sign, and the class under which a page shows it."""
+        return self.result.status.mark if self.holds else _FAILS
 
     @property
     def complaint(self) -> str:
         """A sentence on what does not hold."""
-        row = self.result
-        start = f"{row.name} = {self.computed}"
-        if row.within:
-            return f"{start} is not within {row.within} of the printed {row.printed}"
-        if not (row.correct or row.computed):
-            return f"{start} does not agree with the printed {row.printed}"
-        stored = row.correct or row.computed
-        return f"{start} must agree with {stored} and not with the printed {row.printed} to be {row.status}"
+        what = f"the evidence ({self.computed})" if self.is_claim else f"= {self.computed}"
+        return f"{self.result.name} {what} {self.result.status.complaint(self.result.printed)}"
 
     @property
-    def data(self) -> dict[str, str | bool]:
-        """The verdict as JSON data."""
+    def book(self) -> str:
+        """What the book prints, as text: of a claim what it says of the sentence."""
+        printed = self.result.printed
+        if isinstance(printed, Claim):
+            return "says so" if printed.says else "denies it"
+        return f"{printed.text} {self.result.unit}".strip()
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """The verdict as JSON data; `tex` has the texts that hold formulas again, those between dollar signs."""
+        result, printed = self.result, self.result.printed
+        evidence = self.value.data if self.is_claim and self.value is not None else None
+        typeset_texts = {
+            "title": f"${sympy.latex(sympy.Symbol(result.name))}$"
+            if is_symbol(result.name) and not result.label
+            else "",
+            "book": f"{printed.latex(printed.text)} {result.unit}".strip() if not self.is_claim else "",
+            "computed": self._typeset,
+        }
+        plain = {"title": printed.text if self.is_claim else result.title, "book": self.book, "computed": self.computed}
         return {
-            "name": self.result.name,
-            "printed": self.result.printed,
-            "status": self.result.status,
-            "computed": self.computed,
+            "name": result.name,
+            "kind": printed.kind,
+            **plain,
+            "equation": result.equation,
+            "unit": result.unit,
+            "status": result.status.word,
+            "note": result.status.note,
+            "word": self.word,
+            "mark": self.mark[1],
             "holds": self.holds,
             "how": self.how,
-        }
+            "tex": {key: text for key, text in typeset_texts.items() if text and text != plain[key]},
+        } | ({"evidence": evidence} if evidence else {})
+
+    @property
+    def _typeset(self):
+        """The computed value or the evidence, its formulas between dollar signs."""
+        if self.is_claim and self.value is not None:
+            return self.value.told(typeset)
+        return self.result.printed.latex(self.computed)
 
 
 @dataclass(frozen=True)
@@ -94,48 +130,82 @@ class Report:
         return tuple(verdict for verdict in self.verdicts if not verdict.holds)
 
     @property
+    def counts(self) -> str:
+        """How many results have which verdict, as in "7 computed, 2 corrected"."""
+        words = Counter(v.result.status.word if v.holds else "does not hold" for v in self.verdicts)
+        return ", ".join(f"{count} {word}" for word, count in words.items())
+
+    @property
     def notes(self) -> list[str]:
-        """The notes on the verdicts, each once, with the names that it is about."""
-        about = {}
+        """The notes on the verdicts, each once, with the results that it is about, and the slips of the entry."""
+        about: dict[str, list[str]] = {}
         for verdict in self.verdicts:
-            if verdict.note:
-                about.setdefault(verdict.note, []).append(verdict.result.name)
-        return [f"{', '.join(names)} {'are' if names[1:] else 'is'} {note}" for note, names in about.items()]
+            if note := verdict.result.status.note:
+                about.setdefault(note, []).append("claim" if verdict.is_claim else verdict.result.title)
+        told = []
+        for note, of in about.items():
+            names = [*dict.fromkeys(name for name in of if name != "claim")]
+            claims = of.count("claim")
+            names += [f"{claims} claims" if claims > 1 else "the claim"] if (claims and names) or claims > 1 else []
+            told.append(f"{', '.join(names)}: {note}" if names else note)
+        told += [f"misprint: the book {slip.sentence}" for slip in self.entry.misprints]
+        return told + [f"damaged: our copy {slip.sentence}" for slip in self.entry.damage]
 
     @property
     def data(self) -> dict[str, Any]:
         """The verdicts as JSON data."""
-        return {"source": self.entry.source, "entry": self.entry.name, "verdicts": [v.data for v in self.verdicts]}
+        return {
+            "source": self.entry.source,
+            "entry": self.entry.name,
+            "heading": heading(self.entry),
+            "counts": self.counts,
+            "verdicts": [verdict.data for verdict in self.verdicts],
+            "notes": self.notes,
+        }
 
     def __repr__(self) -> str:
-        rows = []
+        values = [verdict for verdict in self.verdicts if not verdict.is_claim]
+        rows = [(v.word, v.result.equation, v.result.title, v.book, v.computed) for v in values]
+        lines = _aligned(self._without_equations([_HEAD, *rows], 1)) if rows else []
         for verdict in self.verdicts:
-            row = verdict.result
-            rows.append((row.equation, row.name, f"{row.printed} {row.unit}".strip(), verdict.computed, verdict.word))
-        return "\n".join(
-            [_heading(self.entry), *_aligned([self._columns(_HEAD), *map(self._columns, rows)]), *self.notes]
-        )
+            if verdict.is_claim:
+                denied = "" if verdict.result.printed.says else " (The book denies it.)"
+                lines += [f"{verdict.word}: {verdict.result.printed.text}{denied}", f"    {verdict.computed}"]
+        return "\n".join([f"{heading(self.entry)}: {self.counts}", *lines, *self.notes])
 
-    def _columns(self, row):
-        """A row of the table, without the equations where none has a number."""
-        return row if any(verdict.result.equation for verdict in self.verdicts) else row[1:]
+    def _without_equations(self, rows, column):
+        """Rows without the column of equations where none has a number."""
+        if any(verdict.result.equation for verdict in self.verdicts):
+            return rows
+        return [row[:column] + row[column + 1 :] for row in rows]
 
     def _repr_html_(self):
-        rows = []
-        for verdict in self.verdicts:
-            row = verdict.result
-            mark, colour = verdict.mark
-            rows.append(
-                (
-                    _escape(f"({row.equation})") if row.equation else "",
-                    _name(row.name),
-                    _typeset(row.kind, row.printed, row.unit),
-                    _typeset(row.kind, verdict.computed),
-                    f'<span style="color: {colour}; white-space: nowrap">{mark} {_escape(verdict.word)}</span>',
-                )
-            )
-        table = _table(self.entry, map(self._columns, rows), self._columns(_HEAD))
-        return table + "".join(f"\n<p>{_escape(note)}</p>" for note in self.notes)
+        rows = [self._cells(verdict.data, verdict.mark[0]) for verdict in self.verdicts]
+        head = "".join(f"<th {_LEFT}>{name}</th>" for name in self._without_equations([_HEAD], 1)[0])
+        lines = [f'<tr class="{v.mark[1]}">{row}</tr>' for v, row in zip(self.verdicts, rows, strict=True)]
+        sign = _FAILS[0] if self.failures else "✓"
+        opened = " open" if self.failures else ""
+        return "\n".join(
+            [
+                f'<details class="loopbook-check"{opened}>',
+                f"<summary>{sign} <strong>{marked(heading(self.entry))}</strong>: {self.counts}</summary>",
+                f"<table><thead><tr>{head}</tr></thead>",
+                *lines,
+                "</table>",
+                *(f"<p>{marked(note)}</p>" for note in self.notes),
+                "</details>",
+            ]
+        )
+
+    def _cells(self, data, sign):
+        title, book, computed = (marked(data["tex"].get(key, data[key])) for key in ("title", "book", "computed"))
+        equation = marked(f"({data['equation']})") if data["equation"] else ""
+        cells = [f'<td {_LEFT} class="verdict">{sign}&nbsp;{marked(data["word"])}</td>', f"<td {_LEFT}>{equation}</td>"]
+        if data["kind"] == Claim.kind:
+            cells.append(f'<td {_LEFT} colspan="2">{title}{"" if book == "says so" else f" ({book})"}</td>')
+        else:
+            cells += [f"<td {_LEFT}>{title}</td>", f"<td {_LEFT}>{book}</td>"]
+        return "".join(self._without_equations([[*cells, f"<td {_LEFT}>{computed}</td>"]], 1)[0])
 
     def _repr_mimebundle_(self, include=None, exclude=None):
         return {"text/plain": repr(self), "text/html": self._repr_html_(), MIME_TYPE: self.data}
@@ -143,68 +213,50 @@ class Report:
 
 def described(entry: Entry, as_html: bool = False) -> str:
     """An entry with its givens, as text or HTML."""
-    if as_html:
-        return _table(entry, [(_name(name), _given(given)) for name, given in entry.inputs.items()])
-    rows = [(name, "=" if "=" not in given.text else ":", given.text) for name, given in entry.inputs.items()]
-    return "\n".join([_heading(entry), *_aligned(rows)])
+    if not as_html:
+        rows = [(name, "=" if "=" not in given.text else ":", given.text) for name, given in entry.inputs.items()]
+        return "\n".join([heading(entry), *_aligned(rows)])
+    lines = [f"<p><strong>{marked(heading(entry))}</strong></p>"]
+    if entry.inputs:
+        cells = [(marked(_symbol(name)), marked(_given(given))) for name, given in entry.inputs.items()]
+        rows = [f"<tr><td {_LEFT}>{name}</td><td {_LEFT}>{given}</td></tr>" for name, given in cells]
+        lines += ["<table>", *rows, "</table>"]
+    return "\n".join(lines)
 
 
-def _escape(text):
-    # a dollar sign in a tag of its own opens no mathematics
-    return html.escape(text, quote=False).replace("$", "<span>$</span>")
+def heading(entry: Entry) -> str:
+    """The short title of the book, the name of the entry and its title."""
+    return f"{entry.book or entry.source}, {entry.name} · {entry.title}"
 
 
-def _heading(entry):
-    return f"{entry.source}, {entry.name} · {entry.title}"
+def marked(text: str) -> str:
+    """A text as HTML; what is between dollar signs stays a formula.
+
+    >>> marked("K < 1, $T < 2$")
+    'K &lt; 1, $T &lt; 2$'
+    """
+    pieces = re.split(r"(\$[^$]+\$)", text)
+    return "".join(
+        _formula(piece) if piece[:1] == "$" and piece[1:] else html.escape(piece, quote=False) for piece in pieces
+    )
+
+
+def _formula(latex):
+    # an older MathJax breaks lines as soon as it can, unless the cell has the width that the formula needs
+    room = min(16, 1 + 0.2 * len(re.sub(r"\\[a-z]+|[{}]", "", latex)))
+    formula = html.escape(latex, quote=False)
+    return f'<span style="display: inline-block; min-width: {room:.0f}em">{formula}</span>' if room > 6 else formula
+
+
+def _symbol(name):
+    """A name as a symbol where it is one, K or T_1 or tau, and as words otherwise."""
+    return f"${sympy.latex(sympy.Symbol(name))}$" if is_symbol(name) else name.replace("_", " ")
+
+
+def _given(given):
+    return given.text if isinstance(given.value, sympy.Rational) else typeset(given.value)
 
 
 def _aligned(rows):
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
-
-
-def _table(entry, rows, head=()):
-    left = 'style="text-align:left"'  # JupyterLab would centre the heads and align numbers to the right
-    rows = list(rows)
-    lines = [f"<p><strong>{_escape(_heading(entry))}</strong></p>"]
-    if rows:
-        lines.append("<table>")
-        if head:
-            lines.append("<thead><tr>" + "".join(f"<th {left}>{cell}</th>" for cell in head) + "</tr></thead>")
-        lines += ["<tr>" + "".join(f"<td {left}>{cell}</td>" for cell in row) + "</tr>" for row in rows]
-        lines.append("</table>")
-    return "\n".join(lines)
-
-
-def _math(expression):
-    # an older MathJax breaks lines as soon as it can, unless the cell has the width that the formula needs
-    room = min(16, 1 + 0.35 * len(str(expression)))
-    words = {x: rf"\mathrm{{{x}}}" for x in getattr(expression, "free_symbols", ()) if _is_word(str(x))}
-    latex = sympy.latex(expression, symbol_names=words, mul_symbol=r"\," if words else None)
-    formula = f"$\\displaystyle {html.escape(latex, quote=False)}$"
-    return f'<div style="min-width: {room:.0f}em">{formula}</div>' if room > 6 else formula
-
-
-def _is_word(name):
-    """Whether a symbol's name is a word, such as a unit, and no letter."""
-    return len(name) > 2 and name.isalpha() and name not in _GREEK
-
-
-def _name(name):
-    """A name as a symbol where it is one, K or T_1 or tau, and as code where it is words."""
-    letter, _, index = name.partition("_")
-    is_symbol = (len(letter) == 1 or letter in _GREEK) and len(index) <= 3
-    return _math(sympy.Symbol(name)) if is_symbol else f"<code>{_escape(name)}</code>"
-
-
-def _given(given):
-    return _escape(given.text) if isinstance(given.value, sympy.Rational) else _math(given.value)
-
-
-def _typeset(kind, text, unit=""):
-    if kind == "formula" and not NUMBER.fullmatch(text):
-        try:
-            return _math(parse_formula(text))
-        except ValueError:  # what SymPy prints is not always what it reads
-            return f"<code>{_escape(text)}</code>"
-    return _escape(f"{text} {unit}".strip())

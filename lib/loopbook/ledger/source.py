@@ -2,69 +2,56 @@
 
 from __future__ import annotations
 
-import decimal
 import keyword
 import re
 import sys
 import tomllib
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
-from fractions import Fraction
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self
 
 import sympy
 
-from loopbook.ledger.compare import (
-    INFINITE,
-    KINDS,
-    NUMBER,
-    READ,
-    Disagreement,
-    LedgerError,
-    agrees,
-    half_unit,
-    in_one_line,
-    parse_formula,
-    spelled,
-)
+from loopbook.evidence.values import NUMBER, in_one_line, parse_formula
+from loopbook.ledger.errors import Disagreement, LedgerError
+from loopbook.ledger.kinds import KINDS, Claim, Number, Printed, is_symbol
 from loopbook.ledger.report import Report, Verdict, described
+from loopbook.ledger.statuses import KEYS, Computed, Status, status_of
 from loopbook.validation import did_you_mean
 
 if TYPE_CHECKING:
-    from loopbook.ledger.compare import Formula
+    from loopbook.evidence.values import Formula
 
-#: What each status needs beside the printed value.
-STATUSES = {
-    "reproduced": (),
-    "corrected": ("correct", "because"),
-    "reconstructed": ("assuming", "within"),
-    "unreproduced": ("computed", "because"),
-    "measured": ("because",),
-}
 _QUANTITY = re.compile(rf"(?P<number>{NUMBER.pattern})(\s+(?P<unit>([^\W\d]|[%°]|\(\w[\w/]*\))[\w%°·/^*()-]*))?")
+_OF_A_RESULT = ("name", "label", "equation", "kind", "printed", "unit", "claim", "says", "status")
+_TRUTH = {"true": True, "false": False}
 
 
 @dataclass(frozen=True)
 class Result:
-    """One number, formula or name that a book prints as a result."""
+    """What a book prints as a result, and what was done about it.
+
+    Attributes:
+        name: the argument of the check, and its place on a page.
+        label: the same in words; empty where the name is a symbol.
+        equation: its number, if it has one.
+        unit: of a number.
+        printed: the number, formula, name or claim.
+        status: what was done.
+    """
 
     name: str
-    printed: str
-    equation: str = ""
-    kind: str = "number"
-    unit: str = ""
-    status: str = "reproduced"
-    correct: str = ""
-    because: str = ""
-    assuming: str = ""
-    within: str = ""
-    computed: str = ""
+    label: str
+    equation: str
+    unit: str
+    printed: Printed
+    status: Status
 
     @classmethod
     def read(cls, where: str, data: object) -> Self:
         """Make a result of a TOML table, or raise LedgerError."""
-        known = [f.name for f in fields(cls)]
+        known = [*_OF_A_RESULT, *KEYS]
         if not isinstance(data, dict):
             raise LedgerError(f"{where}: a result is {data!r}, expected a table like {{ name = ..., printed = ... }}")
         for key, value in data.items():
@@ -72,90 +59,97 @@ class Result:
                 raise LedgerError(f"{where}: a result has the unknown key {key!r}, {did_you_mean(key, known)}")
             if not isinstance(value, str) or not value.strip():
                 raise LedgerError(f"{where}: {key} is {value!r}, expected text in quotes (digits carry the tolerance)")
-        for key in ("name", "printed"):
-            if key not in data:
-                raise LedgerError(f"{where}: a result has no {key!r}: {data}")
-        result = cls(**{key: in_one_line(value) for key, value in data.items()})
-        result._validate(f"{where}, {result.name}")
-        return result
-
-    def _validate(self, where):
-        if not self.name.isidentifier() or keyword.iskeyword(self.name):
+        data = {key: in_one_line(value) for key, value in data.items()}
+        if "name" not in data:
+            raise LedgerError(f"{where}: a result has no 'name': {data}")
+        where, name = f"{where}, {data['name']}", data["name"]
+        if not name.isidentifier() or keyword.iskeyword(name):
             raise LedgerError(f"{where}: expected a name that can be an argument in Python, as Kp or y_s")
-        if self.kind not in KINDS:
-            raise LedgerError(f"{where}: the kind is {self.kind!r}, {did_you_mean(self.kind, KINDS)}")
-        if self.status not in STATUSES:
-            raise LedgerError(f"{where}: the status is {self.status!r}, {did_you_mean(self.status, STATUSES)}")
-        needed = set(STATUSES[self.status]) - ({"within"} if self.kind == "name" else set())  # a word has no margin
-        if self.status == "unreproduced" and not self.computed:  # what it takes is not printed: nothing to compare
-            needed.remove("computed")
-        for key in ("correct", "because", "assuming", "within", "computed"):
-            if bool(getattr(self, key)) != (key in needed):
-                verb = "needs" if key in needed else "has no use for"
-                raise LedgerError(f"{where}: the status {self.status!r} {verb} {key!r}")
-        for key in ("printed", "correct", "computed"):
-            if text := getattr(self, key):
-                self._validate_value(f"{where}: {key}", text)
-                if self.kind == "number" and _coarser(text, self.printed):
-                    raise LedgerError(f"{where}: {key} is {text!r}, expected as many digits as in {self.printed!r}")
-        if self.within:
-            self.margin(where)
-
-    def _validate_value(self, where, text):
-        if self.kind == "number" and not NUMBER.fullmatch(text) and text not in INFINITE:
-            raise LedgerError(
-                f"{where} is {text!r}, expected a number like 1.50 or 2e-3, or else a kind 'formula' or 'name'"
-            )
-        if self.kind == "formula":
-            try:
-                parse_formula(text)
-            except ValueError as error:
-                raise LedgerError(f"{where}: {error}") from None
+        printed = _claim(where, data) if "claim" in data else _printed(where, data)
+        told = {key: value for key, value in data.items() if key in KEYS}
+        status = status_of(where, printed, data.get("status", Computed.word), told)
+        return cls(name, data.get("label", ""), data.get("equation", ""), data.get("unit", ""), printed, status)
 
     @property
     def is_checked(self) -> bool:
         """Whether there is something to compute: not for laboratory data, nor where what it takes is not printed."""
-        return self.status != "measured" and (self.status != "unreproduced" or bool(self.computed))
+        return self.status.is_checked
 
-    def margin(self, where: str = "") -> Fraction:
-        """How far a reconstructed number may lie from the print: `within`, absolute or in percent of the print."""
-        amount, percent = re.fullmatch(r"(.*?)(\s*%)?", self.within).groups()
-        if self.kind != "number" or not NUMBER.fullmatch(self.printed):
-            raise LedgerError(f"{where}: {self.printed!r} cannot be reconstructed, expected a number")
-        if not NUMBER.fullmatch(amount) or not 0 < Fraction(amount) < (100 if percent else float("inf")):
-            raise LedgerError(
-                f"{where}: within is {self.within!r}, expected a positive number, or a percentage below 100 %"
-            )
-        if percent and not Fraction(self.printed):
-            raise LedgerError(f"{where}: within is {self.within!r} of 0, expected a positive number")
-        return Fraction(amount) / 100 * abs(Fraction(self.printed)) if percent else Fraction(amount)
+    @property
+    def title(self) -> str:
+        """What a reader calls it: its label, or else its symbol."""
+        return self.label or (self.name if is_symbol(self.name) else self.name.replace("_", " "))
 
     def judge(self, value: object) -> Verdict:
-        """Return the verdict on a computed value.
+        """Return the verdict on a computed value, or on evidence.
 
         Raises TypeError, saying what the value is instead, where it is not of the result's kind.
         """
-        value = READ[self.kind](value)
-        printed_holds = agrees(self.kind, value, self.printed)
-        match self.status:
-            case "corrected" | "unreproduced":
-                how = agrees(self.kind, value, self.correct or self.computed)
-                holds = bool(how) and not printed_holds
-            case "reconstructed" if self.within:
-                how = "within"
-                holds = abs(value - Fraction(self.printed)) <= self.margin()
-            case _:
-                how, holds = printed_holds, bool(printed_holds)
-        texts = [text for text in (self.printed, self.correct, self.computed) if text]
-        return Verdict(self, spelled(self.kind, value, *texts), holds, how if holds else "")
+        value = self.printed.computed(value)
+        how = self.status.judge(self.printed, value)
+        return Verdict(self, self.printed.written(value, *self.status.others(self.printed)), how, value)
 
 
-def _coarser(text, printed):
-    """Whether a number is given with fewer digits than printed, and so with a wider tolerance."""
-    if not NUMBER.fullmatch(text) or not NUMBER.fullmatch(printed):
-        return False
-    digits = [len(decimal.Decimal(number).as_tuple().digits) for number in (text, printed)]
-    return digits[0] < digits[1] and half_unit(text) > half_unit(printed)
+def _claim(where, data):
+    """The claim of a TOML table."""
+    for key in ("printed", "kind", "unit", "label"):
+        if key in data:
+            raise LedgerError(f"{where}: a claim has no use for {key!r}")
+    if not data["claim"].endswith("."):
+        raise LedgerError(f"{where}: the claim is {data['claim']!r}, expected a sentence with a full stop")
+    says = data.get("says", "true")
+    if says not in _TRUTH:
+        raise LedgerError(f"{where}: says is {says!r}, expected true or false")
+    return Claim(data["claim"], _TRUTH[says])
+
+
+def _printed(where, data):
+    """The number, formula or name of a TOML table."""
+    if "printed" not in data:
+        raise LedgerError(f"{where}: a result has no 'printed': {data}")
+    if "says" in data:
+        raise LedgerError(f"{where}: what is no claim has no use for 'says'")
+    kind = data.get("kind", Number.kind)
+    if kind not in KINDS:
+        raise LedgerError(f"{where}: the kind is {kind!r}, {did_you_mean(kind, KINDS)}")
+    try:
+        return KINDS[kind].read(data["printed"])
+    except ValueError as error:
+        raise LedgerError(f"{where}: printed is {error}") from None
+
+
+@dataclass(frozen=True)
+class Slip:
+    """A slip of the print that changes no result: a lost cross-reference, a word for another one.
+
+    Attributes:
+        printed: what stands there.
+        correct: what it should be.
+        because: how one knows.
+        place: where in the section, if it must be said.
+    """
+
+    printed: str
+    correct: str
+    because: str
+    place: str = ""
+
+    @classmethod
+    def read(cls, where: str, data: object) -> Self:
+        """Make a slip of a TOML table, or raise LedgerError."""
+        keys = ("printed", "correct", "because", "place")
+        if not isinstance(data, dict) or not set(keys[:3]) <= set(data) <= set(keys):
+            raise LedgerError(f"{where}: {data!r}, expected a table with printed, correct, because and perhaps place")
+        for key, value in data.items():
+            if not isinstance(value, str) or not value.strip():
+                raise LedgerError(f"{where}: {key} is {value!r}, expected text in quotes")
+        return cls(**{key: in_one_line(value) for key, value in data.items()})
+
+    @property
+    def sentence(self) -> str:
+        """The slip in a sentence without its full stop."""
+        place = f" ({self.place})" if self.place else ""
+        return f"prints `{self.printed}`{place} for `{self.correct}`: {self.because}"
 
 
 @dataclass(frozen=True)
@@ -190,14 +184,17 @@ class Entry:
     chapter: str
     inputs: MappingProxyType[str, Given]
     results: tuple[Result, ...]
+    misprints: tuple[Slip, ...] = ()
+    damage: tuple[Slip, ...] = ()
+    book: str = ""
 
     @classmethod
-    def read(cls, source: str, name: str, data: object) -> Self:
-        """Make an entry of a TOML table, or raise LedgerError."""
+    def read(cls, source: str, name: str, data: object, book: str = "") -> Self:
+        """Make an entry of a TOML table, or raise LedgerError; `book` is the short title of its source."""
         where = f"{source}, {name}"
         if not isinstance(data, dict):
             raise LedgerError(f"{where}: the entry is {data!r}, expected a table")
-        known = ["title", "chapter", "given", "result"]
+        known = ["title", "chapter", "given", "result", "misprint", "damage"]
         for key in data:
             if key not in known:
                 raise LedgerError(f"{where}: the entry has the unknown key {key!r}, {did_you_mean(key, known)}")
@@ -213,7 +210,12 @@ class Entry:
         if twice := sorted({name for name in names if names.count(name) > 1}):
             raise LedgerError(f"{where}: {', '.join(twice)} is a result twice, expected every name once")
         title, chapter = in_one_line(data["title"]), data["chapter"]
-        return cls(source, in_one_line(name), title, chapter, MappingProxyType(inputs), results)
+        slips = []
+        for key in ("misprint", "damage"):
+            if not isinstance(data.get(key, []), list):
+                raise LedgerError(f"{where}: {key} is {data[key]!r}, expected a list of tables")
+            slips.append(tuple(Slip.read(f"{where}, {key}", slip) for slip in data.get(key, [])))
+        return cls(source, in_one_line(name), title, chapter, MappingProxyType(inputs), results, *slips, book)
 
     def given(self, *names: str) -> Any:
         """Return inputs of the example as exact numbers or expressions: one for one name, a tuple for several.
@@ -231,16 +233,22 @@ class Entry:
         values = tuple(self.inputs[name].value for name in names)
         return values[0] if len(values) == 1 else values
 
-    def measured(self, *names: str) -> Any:
-        """Return laboratory data of the example as exact numbers: one for one name, a tuple for several.
+    def as_printed(self, *names: str) -> Any:
+        """Return numbers of the book that nobody can compute, exactly as printed: one for one name, a tuple for several.
 
-        Raises LedgerError for a name that is no result with the status "measured" and a number.
+        Those are laboratory data, and results of which the book does not print what they take.
+
+        Raises LedgerError for the name of anything else.
         """
-        rows = {row.name: row.printed for row in self.results if row.status == "measured" and row.kind == "number"}
+        rows = {
+            row.name: row.printed.value
+            for row in self.results
+            if not row.is_checked and isinstance(row.printed, Number) and row.printed.is_finite
+        }
         for name in names:
             if name not in rows:
                 where = f"{self.source}, {self.name}"
-                raise LedgerError(f"{where}: {name!r} is no measured number, {did_you_mean(name, rows)}")
+                raise LedgerError(f"{where}: {name!r} is no number that only the book has, {did_you_mean(name, rows)}")
         values = tuple(sympy.Rational(rows[name]) for name in names)
         return values[0] if len(values) == 1 else values
 
@@ -266,18 +274,18 @@ class Entry:
         verdicts = []
         for row in self.results:
             if not row.is_checked:
-                verdicts.append(Verdict(row, "", True, row.status))
+                verdicts.append(Verdict(row, "", row.status.word))
                 continue
             value = values[row.name]
             try:
                 verdicts.append(row.judge(value))
             except TypeError as error:
-                raise LedgerError(f"{where}, {row.name}: expected a {row.kind}, got {error}") from None
+                raise LedgerError(f"{where}, {row.name}: expected {_a(row)}, got {error}") from None
             except ValueError as error:
                 raise LedgerError(f"{where}, {row.name}: {error}") from None
             except Exception as error:  # whatever an object does that only pretends to be a number
                 what = f"a {type(value).__name__} that fails with {type(error).__name__}: {error}"
-                raise LedgerError(f"{where}, {row.name}: expected a {row.kind}, got {what}") from error
+                raise LedgerError(f"{where}, {row.name}: expected {_a(row)}, got {what}") from error
         return Report(self, tuple(verdicts))
 
     def check(self, /, **values: object) -> None:
@@ -297,9 +305,10 @@ class Entry:
 
 @dataclass(frozen=True)
 class Source:
-    """A book: its entries in the order of the file, found by name."""
+    """A book: its entries in the order of the file, found by name; `title` is short, for headings."""
 
     name: str
+    title: str
     citation: str
     entries: MappingProxyType[str, Entry]
 
@@ -311,10 +320,12 @@ class Source:
         except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
             raise LedgerError(f"{name}.toml is not valid TOML: {error}") from None
         head = data.pop("source", {})
-        if not isinstance(head, dict) or set(head) != {"citation"} or not isinstance(head["citation"], str):
-            raise LedgerError(f'{name}.toml: expected a table [source] with citation = "..." and nothing else')
-        entries = {key: Entry.read(name, key, entry) for key, entry in data.items()}
-        return cls(name, in_one_line(head["citation"]), MappingProxyType(entries))
+        keys = {"title", "citation"}
+        if not isinstance(head, dict) or set(head) != keys or not all(isinstance(head[key], str) for key in keys):
+            raise LedgerError(f"{name}.toml: expected a table [source] with title and citation, and nothing else")
+        title, citation = (in_one_line(head[key]) for key in ("title", "citation"))
+        entries = {key: Entry.read(name, key, entry, title) for key, entry in data.items()}
+        return cls(name, title, citation, MappingProxyType(entries))
 
     def __getitem__(self, name: str) -> Entry:
         if not isinstance(name, str) or name not in self.entries:
@@ -332,6 +343,10 @@ class Source:
 
     def __repr__(self) -> str:
         return f"{self.name}: {self.citation} ({len(self.entries)} entries)"
+
+
+def _a(row):
+    return "evidence" if isinstance(row.printed, Claim) else f"a {row.printed.kind}"
 
 
 def _show(report):

@@ -1,4 +1,4 @@
-"""Whether a computed value is what the book prints: numbers by their digits, formulas by proof, names by the word."""
+"""Values as they are compared: numbers exactly or by their digits, formulas by proof, names by the word."""
 
 from __future__ import annotations
 
@@ -16,26 +16,10 @@ from loopbook.expressions import agreement, exact, parse
 
 NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]+)?|\.[0-9]+)([eE][+-]?[0-9]{1,3})?")
 INFINITE = {"oo": math.inf, "-oo": -math.inf}
-KINDS = ("number", "formula", "name")
 
 
 #: A formula that a book prints: an expression, or an equation.
 Formula: TypeAlias = sympy.Expr | sympy.Equality
-
-
-class LedgerError(Exception):
-    """A wrong use of the ledger, or a malformed entry: one sentence that names the entry and what was expected."""
-
-    def __init__(self, message: str):
-        super().__init__(in_one_line(message))
-
-    def _render_traceback_(self):
-        """Notebooks show the sentence alone: the place in the library's code helps no reader."""
-        return [f"{type(self).__name__}: {self}"]
-
-
-class Disagreement(LedgerError):  # noqa: N818 - it reads as what it is: "Disagreement: Kp = 1.7 ..."
-    """A computed value that the ledger does not confirm."""
 
 
 def in_one_line(text: str) -> str:
@@ -181,18 +165,27 @@ def formula_agrees(value: object, printed: str) -> str:
     """
     value, printed = formula(value), parse_formula(printed)
     whole = {symbol.name: symbol for symbol in value.free_symbols if symbol.is_integer}
-    printed = printed.xreplace({letter: whole.get(letter.name, letter) for letter in printed.free_symbols})
-    if isinstance(value, sympy.Equality) != isinstance(printed, sympy.Equality):
+    return formulas_agree(value, printed.xreplace({x: whole.get(x.name, x) for x in printed.free_symbols}))
+
+
+def formulas_agree(one: Formula, other: Formula) -> str:
+    """Say how two formulas or two equations agree: ``"proved"``, ``"probed"``, or ``""`` where they do not.
+
+    >>> K, T = sympy.symbols("K T", positive=True)
+    >>> formulas_agree(sympy.Eq(K, T), sympy.Eq(T, K)), formulas_agree(K, T)
+    ('proved', '')
+    """
+    if isinstance(one, sympy.Equality) != isinstance(other, sympy.Equality):
         return ""
-    if isinstance(value, sympy.Equality):
-        value, printed = (equation.lhs - equation.rhs for equation in (value, printed))
+    if isinstance(one, sympy.Equality):
+        one, other = (equation.lhs - equation.rhs for equation in (one, other))
         # with the sides exchanged, it is still the same equation
-        how = agreement(value, printed)
-        how = agreement(-value, printed) if how == "different" else how
-    elif value.is_infinite or printed.is_infinite:
-        how = "proved" if value == printed else "different"
+        how = agreement(one, other)
+        how = agreement(-one, other) if how == "different" else how
+    elif one.is_infinite or other.is_infinite:
+        how = "proved" if one == other else "different"
     else:
-        how = agreement(value, printed)
+        how = agreement(one, other)
     return "" if how == "different" else how
 
 
@@ -204,35 +197,12 @@ def name_of(value: object) -> str:
     return in_one_line(str.__str__(value))
 
 
-#: How a computed value of each kind is read.
-READ = {"number": number, "formula": formula, "name": name_of}
+def spelled_number(value: object, *printed: str) -> str:
+    """Return a number as text, four digits beyond the finest of some printed ones, without trailing zeros.
 
-
-def agrees(kind: str, value: object, printed: str) -> str:
-    """Say how a value agrees with the print: ``"digits"``, ``"proved"``, ``"probed"``, ``"word"``, or ``""`` if not.
-
-    Raises TypeError, saying what the value is, where it is not of the kind.
-    """
-    match kind:
-        case "number":
-            return "digits" if number_agrees(value, printed) else ""
-        case "formula":
-            return formula_agrees(value, printed)
-        case "name":
-            return "word" if name_of(value).casefold() == name_of(printed).casefold() else ""
-
-
-def spelled(kind: str, value: object, *printed: str) -> str:
-    """Return the computed value as text; a number four digits beyond the finest print, without trailing zeros.
-
-    >>> spelled("number", 1 - math.exp(-1), "0.63")
+    >>> spelled_number(1 - math.exp(-1), "0.63")
     '0.632121'
     """
-    if kind == "name":
-        return name_of(value)
-    if kind == "formula":
-        value = formula(value)
-        return f"{value.lhs} = {value.rhs}" if isinstance(value, sympy.Equality) else str(value)
     value = number(value)
     if isinstance(value, float):
         return "oo" if value > 0 else "-oo"

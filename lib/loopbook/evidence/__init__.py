@@ -1,0 +1,49 @@
+"""Evidence: what decides a claim in words, with its numbers.
+
+A book says "with the larger gain the response is less stable". The claim is a sentence, true or false; evidence is what
+a computation has to say about it, and a check shows both:
+
+>>> greater(2.31, 1.59, "Ms")
+holds: Ms 2.31 > 1.59
+
+What cannot fail is no evidence. A truth value is refused, because it shows no number; so is a list without cases.
+Words such as "much" or "about the same" have one meaning in all chapters, in `evidence.criteria`, and evidence that
+rests on one says so, and whether half or twice the limit would give another verdict.
+"""
+
+from loopbook.evidence.cases import Cases, decreasing, every, increasing, some
+from loopbook.evidence.comparisons import (
+    Comparison,
+    Evidence,
+    EvidenceError,
+    Ratio,
+    about_equal,
+    at_least,
+    at_most,
+    different,
+    equal,
+    greater,
+    less,
+    much_greater,
+    much_less,
+    negative,
+    negligible,
+    no_overshoot,
+    nonzero,
+    overshoots,
+    positive,
+    somewhat_greater,
+    somewhat_less,
+    well_damped,
+    zero,
+)
+from loopbook.evidence.criteria import CRITERIA, Criterion
+from loopbook.evidence.loops import Refusal, Stability, good_stability, poor_stability, refused, stable, unstable
+
+__all__ = [
+    "CRITERIA", "Cases", "Comparison", "Criterion", "Evidence", "EvidenceError", "Ratio", "Refusal", "Stability",
+    "about_equal", "at_least", "at_most", "decreasing", "different", "equal", "every", "good_stability", "greater",
+    "increasing", "less", "much_greater", "much_less", "negative", "negligible", "no_overshoot", "nonzero",
+    "overshoots", "poor_stability", "positive", "refused", "some", "somewhat_greater", "somewhat_less", "stable", "unstable",
+    "well_damped", "zero",
+]  # fmt: skip

@@ -1,0 +1,152 @@
+"""Evidence of several cases: that something always holds, or at least once, or grows from one case to the next."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from loopbook.evidence.comparisons import Comparison, Evidence, EvidenceError, Typeset, greater, less
+
+if TYPE_CHECKING:
+    from loopbook.evidence.criteria import Criterion
+    from loopbook.types import Number
+
+_SHOWN = 4  # cases that a sentence tells
+
+
+@dataclass(frozen=True, repr=False)
+class Cases(Evidence):
+    """Evidence of several cases.
+
+    Attributes:
+        cases: the evidence of each, by its name.
+        all: whether each must hold; otherwise one is enough.
+    """
+
+    cases: tuple[tuple[str, Evidence], ...]
+    all: bool = True
+
+    @property
+    def criteria(self) -> tuple[Criterion, ...]:
+        """Those of all cases, each once."""
+        return tuple(dict.fromkeys(criterion for _, case in self.cases for criterion in case.criteria))
+
+    @property
+    def holds(self) -> bool:
+        """Whether all cases hold, or one of them."""
+        return (all if self.all else any)(case.holds for _, case in self.cases)
+
+    @property
+    def near(self) -> bool:
+        """Whether another verdict on near things would turn the verdict on all."""
+        others = [case.holds is not case.near for _, case in self.cases]
+        return (all if self.all else any)(others) is not self.holds
+
+    def turned(self) -> Cases:
+        """With a counterexample to what shall hold always; without what shall hold once."""
+        (name, first), *others = self.cases
+        if self.all:
+            return replace(self, cases=((name, first.turned()), *others))
+        return replace(self, cases=tuple((name, case.turned() if case.holds else case) for name, case in self.cases))
+
+    def told(self, typeset: Typeset = str) -> str:
+        """The deciding cases first: counterexamples to what shall hold always, examples of what shall hold once."""
+        deciding = [pair for pair in self.cases if pair[1].holds is not self.all] or list(self.cases)
+        told = [f"{name}: {case.told(typeset)}" if name else case.told(typeset) for name, case in deciding[:_SHOWN]]
+        number, count = len(self.cases), sum(case.holds for _, case in self.cases)
+        if number > _SHOWN or not (self.all and self.holds):
+            told.insert(0, f"in {count} of {number} cases")
+        return "; ".join([*told, "..."] if len(deciding) > _SHOWN else told)
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """The data of all cases."""
+        cases = [{"case": name} | case.data for name, case in self.cases]
+        return {"kind": "every" if self.all else "some", "cases": cases, "holds": self.holds, "near": self.near}
+
+
+@dataclass(frozen=True, repr=False)
+class Chain(Cases):
+    """Comparisons of neighbours in a row of values."""
+
+    def told(self, typeset: Typeset = str) -> str:
+        """The quantity and all values in a row."""
+        first = self.cases[0][1]
+        if len(self.cases) > 2 * _SHOWN or not self.holds:
+            return super().told(typeset)
+        rows = [case.told(typeset).removeprefix(first.quantity).strip() for _, case in self.cases]
+        steps = [row.partition(f" {first.relation} ")[2] for row in rows[1:]]
+        return f" {first.relation} ".join([f"{first.quantity} {rows[0]}".strip(), *steps])
+
+
+def every(*cases: Evidence | Mapping[Any, Evidence]) -> Cases:
+    """Evidence that each of several cases holds: for "always", and for "and".
+
+    Arguments:
+        cases: evidence, or one mapping with evidence by the names of the cases.
+    Raises:
+        EvidenceError: without cases, and for what is no evidence.
+
+    >>> every(greater(2.3, 1.6, "Ms"), less(8, 9, "rise time [s]"))
+    holds: Ms 2.3 > 1.6; rise time 8 s < 9 s
+    >>> every({"K = 1": less(1, 2), "K = 2": less(3, 2)})
+    does not hold: in 1 of 2 cases; K = 2: 3 not < 2
+    """
+    return Cases(_read(cases))
+
+
+def some(*cases: Evidence | Mapping[Any, Evidence]) -> Cases:
+    """Evidence that at least one of several cases holds: for "can" and "in some cases"; otherwise as `every`.
+
+    >>> some({"K = 1": less(1, 2), "K = 2": less(3, 2)})
+    holds: in 1 of 2 cases; K = 1: 1 < 2
+    """
+    return Cases(_read(cases), all=False)
+
+
+def _read(cases):
+    if len(cases) == 1 and isinstance(cases[0], Mapping):
+        pairs = tuple((str(name), case) for name, case in cases[0].items())
+    else:
+        pairs = tuple(("", case) for case in cases)
+    if not pairs:
+        raise EvidenceError("no case is given: nothing always holds of none")
+    for name, case in pairs:
+        if not isinstance(case, Evidence):
+            where = f" {name}" if name else ""
+            raise EvidenceError(f"the case{where} is {case!r:.60}: expected evidence, as greater(2.3, 1.6)")
+    return pairs
+
+
+def increasing(values: Iterable[Number], quantity: str = "") -> Chain:
+    """Evidence that each of several values is larger than the one before it.
+
+    Arguments:
+        values: at least two, as for `greater`.
+        quantity: what they are values of, with its unit in brackets.
+    Raises:
+        EvidenceError: for fewer values, or as `greater`.
+
+    >>> increasing([1.4, 1.6, 2.1], "Ms")
+    holds: Ms 1.4 < 1.6 < 2.1
+    """
+    return _chain(values, less, quantity)
+
+
+def decreasing(values: Iterable[Number], quantity: str = "") -> Chain:
+    """Evidence that each of several values is smaller than the one before it; otherwise as `increasing`.
+
+    >>> decreasing([9, 5, 7], "control error [mm]")
+    does not hold: in 1 of 2 cases; control error 5 mm not > 7 mm
+    """
+    return _chain(values, greater, quantity)
+
+
+def _chain(values, compared, quantity):
+    values = list(values)
+    if len(values) < 2:
+        raise EvidenceError(f"{values} is no row: expected at least two values")
+    links: list[Comparison] = [compared(a, b, quantity) for a, b in itertools.pairwise(values)]
+    return Chain(tuple(("", link) for link in links))

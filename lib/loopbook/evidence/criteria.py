@@ -1,0 +1,93 @@
+"""What the words of control engineering mean in numbers: one home for "about the same", "much", "good stability".
+
+A book says that a response overshoots somewhat, that two curves are nearly the same, that a loop is stable enough. Each
+such word is a `Criterion` with a limit and a reason. Evidence that rests on one shows it, and says that it is a near
+thing if half or twice the limit gave another verdict.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+__all__ = ["CRITERIA", "Criterion"]
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """A word, the limit that it stands for, and why that one.
+
+    Attributes:
+        word: as it is used in a sentence.
+        limit: a number, in the unit that `meaning` says.
+        meaning: the criterion in a few words.
+        reason: where the limit comes from.
+        published: whether it is a usual one of the literature; otherwise it is ours.
+    """
+
+    word: str
+    limit: Fraction
+    meaning: str
+    reason: str
+    published: bool
+
+
+SAME = Criterion(
+    "about equal",
+    Fraction(5, 100),
+    "at most 5 % of the larger one apart",
+    "the band of 5 % within which a response counts as settled; the eye sees no less in a printed plot",
+    published=True,
+)
+NEGLIGIBLE = Criterion(
+    "negligible",
+    Fraction(5, 100),
+    "at most 5 % of what it is compared with",
+    "the band of 5 % within which a response counts as settled",
+    published=True,
+)
+SOMEWHAT = Criterion(
+    "somewhat",
+    Fraction(1, 2),
+    "by less than half of the smaller one",
+    "a number of ours: no book says how much somewhat is; half is where a plot looks like another one",
+    published=False,
+)
+MUCH = Criterion(
+    "much",
+    Fraction(1, 2),
+    "by half of the smaller one or more",
+    "a number of ours, the end of somewhat",
+    published=False,
+)
+NO_OVERSHOOT = Criterion(
+    "no overshoot",
+    Fraction(2),
+    "at most 2 % of the step",
+    "the band of 2 % within which a response counts as settled",
+    published=True,
+)
+WELL_DAMPED = Criterion(
+    "well damped",
+    Fraction(1, 4),
+    "a decay ratio of at most 1/4",
+    "quarter decay, the least damping that published rules aim at",
+    published=True,
+)
+GAIN_MARGIN = Criterion(
+    "good stability",
+    Fraction(2),
+    "a gain margin of at least 2",
+    "the usual lower limit of textbooks",
+    published=True,
+)
+PHASE_MARGIN = Criterion(
+    "good stability",
+    Fraction(30),
+    "a phase margin of at least 30 degrees",
+    "the usual lower limit of textbooks",
+    published=True,
+)
+
+#: All criteria, as a page can list them.
+CRITERIA = (SAME, NEGLIGIBLE, SOMEWHAT, MUCH, NO_OVERSHOOT, WELL_DAMPED, GAIN_MARGIN, PHASE_MARGIN)

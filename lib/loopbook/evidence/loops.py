@@ -1,0 +1,179 @@
+"""Evidence about systems and loops: stable or not, with the margins that say how far from the limit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+from loopbook.evidence.cases import Cases, every, some
+from loopbook.evidence.comparisons import Comparison, Evidence, Typeset, rounded
+from loopbook.evidence.criteria import GAIN_MARGIN, PHASE_MARGIN
+from loopbook.evidence.values import in_one_line, number
+from loopbook.stability import StabilityLimitError, margins, unstable_poles
+
+_CLOSE = 1.05  # a stable loop that 5 percent more gain makes unstable is so by a near thing
+
+
+@dataclass(frozen=True, repr=False)
+class Stability(Evidence):
+    """Whether a system is stable.
+
+    Attributes:
+        is_stable: whether it is said to be.
+        unstable_poles: how many poles are in the right half-plane; nan for a system on the limit.
+        margins: (gain margin, phase margin in degrees, Ms) of a stable loop; empty for what is no loop.
+    """
+
+    is_stable: bool
+    unstable_poles: float
+    margins: tuple[float, ...] = ()
+
+    @property
+    def holds(self) -> bool:
+        """Whether it is as said; a system on the limit is neither stable nor unstable."""
+        return self.unstable_poles == 0 if self.is_stable else self.unstable_poles > 0
+
+    @property
+    def near(self) -> bool:
+        """Whether a few percent of gain would make a stable loop unstable."""
+        return bool(self.margins) and self.margins[0] < _CLOSE
+
+    def turned(self) -> Stability:
+        """The contrary of what is said."""
+        return replace(self, is_stable=not self.is_stable)
+
+    def told(self, typeset: Typeset = str) -> str:
+        """The margins of what is stable, the number of unstable poles of what is not."""
+        if math.isnan(self.unstable_poles):
+            return "on the limit of stability: poles on the imaginary axis"
+        if self.unstable_poles:
+            poles = rounded(Fraction(self.unstable_poles) if self.unstable_poles < math.inf else math.inf)
+            return f"unstable: {poles} {'pole' if poles == '1' else 'poles'} in the right half-plane"
+        if not self.margins:
+            return "stable: no pole in the right half-plane"
+        gain, phase, Ms = (rounded(x if x == math.inf else Fraction(x)) for x in self.margins)
+        return f"stable: gain margin {gain}, phase margin {phase}°, Ms {Ms}"
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """The number of poles and the margins."""
+        poles = "nan" if math.isnan(self.unstable_poles) else f"{self.unstable_poles:g}"
+        return {
+            "kind": "stability", "is_stable": self.is_stable, "unstable_poles": poles,
+            "margins": [f"{x:.6g}" for x in self.margins], "holds": self.holds, "near": self.near,
+        }  # fmt: skip
+
+
+def stable(system: object) -> Stability:
+    """Evidence that a system or a loop is stable, with the margins of a loop.
+
+    Arguments:
+        system: a `Loop`, a `System` or a transfer function with numbers.
+    Raises:
+        ValueError: as `stability.unstable_poles`.
+
+    >>> from loopbook import PID, Loop, s
+    >>> stable(Loop(1 / (5 * s + 1) ** 2, PID(2, Ti=8)))
+    holds: stable: gain margin ∞, phase margin 54°, Ms 1.46
+    >>> stable(1 / (s - 1))
+    does not hold: unstable: 1 pole in the right half-plane
+    """
+    try:
+        count = unstable_poles(system)
+    except StabilityLimitError:
+        return Stability(True, math.nan)
+    if count or not hasattr(system, "margins"):
+        return Stability(True, count)
+    return Stability(True, 0, _margins(system))
+
+
+def _margins(loop):
+    found = margins(loop)
+    return found.gain_margin, found.phase_margin, found.Ms
+
+
+def unstable(system: object) -> Stability:
+    """Evidence that a system or a loop has poles in the right half-plane; otherwise as `stable`.
+
+    >>> from loopbook import s
+    >>> unstable(1 / (s - 1))
+    holds: unstable: 1 pole in the right half-plane
+    """
+    return stable(system).turned()
+
+
+def good_stability(loop: object) -> Cases:
+    """Evidence that a loop has a gain margin of at least 2 and a phase margin of at least 30 degrees.
+
+    >>> from loopbook import PID, Loop, s
+    >>> good_stability(Loop(1 / (s * (s + 1) ** 2), PID(0.5)))
+    holds: gain margin 4 ≥ 2 (good stability: a gain margin of at least 2); phase margin 44.1° ≥ 30° (good stability: a phase margin of at least 30 degrees)
+    """  # noqa: E501
+    found = stable(loop)
+    if not found.holds:
+        return every(found)
+    gain, phase, _ = found.margins
+    return every(
+        Comparison(number(gain), "≥", GAIN_MARGIN.limit, "gain margin", "", GAIN_MARGIN),
+        Comparison(number(phase), "≥", PHASE_MARGIN.limit, "phase margin", "°", PHASE_MARGIN),
+    )
+
+
+def poor_stability(loop: object) -> Cases:
+    """Evidence that a loop misses what `good_stability` asks for, or is not stable.
+
+    >>> from loopbook import PID, Loop, s
+    >>> poor_stability(Loop(1 / (s * (s + 1) ** 2), PID(3))).holds
+    True
+    """
+    return some(*(case.turned() for _, case in good_stability(loop).cases))
+
+
+@dataclass(frozen=True, repr=False)
+class Refusal(Evidence):
+    """What a function said when it declined; empty where it did not."""
+
+    sentence: str
+    is_refused: bool = True
+
+    @property
+    def holds(self) -> bool:
+        """Whether the function declined."""
+        return bool(self.sentence) is self.is_refused
+
+    near = False
+
+    def turned(self) -> Refusal:
+        """The contrary: that it is accepted."""
+        return replace(self, is_refused=not self.is_refused)
+
+    def told(self, typeset: Typeset = str) -> str:
+        """The sentence of the error."""
+        return f"declined: {self.sentence}" if self.sentence else "accepted"
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """The sentence."""
+        return {"kind": "refusal", "sentence": self.sentence, "is_refused": self.is_refused, "holds": self.holds,
+                "near": False}  # fmt: skip
+
+
+def refused(function: Callable[..., Any], *arguments: Any, **named: Any) -> Refusal:
+    """Evidence that something cannot be done: a function of the library declines with a sentence.
+
+    Arguments:
+        function: that declines by a ValueError.
+        arguments, named: what it is called with.
+
+    >>> from loopbook import s
+    >>> refused(margins, 1 / (s - 1) ** 2).holds
+    True
+    """
+    try:
+        function(*arguments, **named)
+    except ValueError as error:
+        return Refusal(in_one_line(str(error)) or type(error).__name__)
+    return Refusal("")
