@@ -21,9 +21,11 @@ import contributing
 import loopbook.ledger
 from draws import draws
 from loopbook import s, t
+from loopbook.evidence import Evidence, greater, increasing, much_greater, positive
+from loopbook.evidence.values import number_agrees
 from loopbook.ledger import Disagreement, LedgerError, Source, haugen
-from loopbook.ledger.compare import number_agrees
 from loopbook.ledger.report import MIME_TYPE
+from loopbook.ledger.statuses import STATUSES
 
 x, K, T = sympy.symbols("x K T", positive=True)
 
@@ -41,7 +43,9 @@ def book(**entry):
     """A source with one entry, "Example 1", of which some keys are told."""
     entry = {"title": "An example", "chapter": "10_tuning"} | entry
     lines = [f"{key} = {toml(value)}" for key, value in entry.items()]
-    return Source.read("book", "\n".join(['[source]\ncitation = "A. Author"\n["Example 1"]', *lines]).encode())
+    return Source.read(
+        "book", "\n".join(['[source]\ntitle = "Author"\ncitation = "A. Author"\n["Example 1"]', *lines]).encode()
+    )
 
 
 def example(printed, **result):
@@ -68,7 +72,9 @@ def test_the_entry_that_contributors_are_shown_is_one():
     assert (K, T, tau) == (1, 1, sympy.Rational(1, 2))
     names = {name: sympy.Symbol(name, positive=True) for name in ("K", "T", "tau")}
     H = names["K"] * sympy.exp(-names["tau"] * s) / (names["T"] * s + 1)
-    assert all(verdict.holds for verdict in shown.compare(Kp=T / (K * 2 * tau), H=H).verdicts)
+    assert all(
+        verdict.holds for verdict in shown.compare(Kp=T / (K * 2 * tau), H=H, less_stable=greater(2, 1)).verdicts
+    )
 
 
 # Numbers.
@@ -300,7 +306,7 @@ def test_a_wrong_formula_is_recorded_as_the_books_error_with_its_correction():
     assert not formula_holds(K / (T * s + 1), **told | {"printed": "(K/T)/(s + 1/T)"})  # the book was right
 
 
-# Claims.
+# Names.
 
 
 class Word(str, enum.Enum):  # noqa: UP042 - as a reader may write it
@@ -308,15 +314,64 @@ class Word(str, enum.Enum):  # noqa: UP042 - as a reader may write it
 
 
 @pytest.mark.parametrize("value", ["stable", "Stable", " stable\n", np.str_("stable"), Word.STABLE])
-def test_a_claim_is_the_same_word_whatever_its_case_and_spaces(value):
+def test_a_name_is_the_same_whatever_its_case_and_spaces(value):
     verdict = example("Stable", kind="name").compare(y=value).verdicts[0]
     assert (verdict.holds, verdict.computed.casefold()) == (True, "stable")
 
 
 @pytest.mark.parametrize("value", ["", "unstable", "stable.", "not stable", "s table"])
-def test_another_word_is_another_claim(value):
+def test_another_word_is_another_name(value):
     assert not holds(value, "stable", kind="name")
     assert holds("unstable", "stable", kind="name", status="corrected", correct="unstable", because="a slip")
+
+
+# Claims.
+
+CLAIM = {"name": "y", "claim": "The peak grows with the gain."}
+CONTRARY = {"status": "corrected", "correct": "The peak falls with the gain.", "because": "a slip"}
+
+
+def claim_holds(evidence, **told):
+    return book(result=[CLAIM | told])["Example 1"].compare(y=evidence).verdicts[0].holds
+
+
+def test_evidence_decides_a_claim():
+    for_it, against_it = greater(2, 1, "peak"), greater(1, 2, "peak")
+    assert claim_holds(for_it)
+    assert not claim_holds(against_it)
+    assert claim_holds(against_it, says="false")
+    assert not claim_holds(for_it, says="false")
+
+
+@pytest.mark.parametrize("status", ["corrected", "damaged", "unreproduced"])
+def test_evidence_contradicts_a_claim_that_is_wrong(status):
+    told = CONTRARY | {"status": status}
+    if status == "unreproduced":
+        told["computed"] = told.pop("correct")
+    assert claim_holds(greater(1, 2, "peak"), **told)
+    assert not claim_holds(greater(2, 1, "peak"), **told)
+
+
+def test_a_near_thing_is_said_to_be_one():
+    report = book(result=[CLAIM])["Example 1"].compare(y=increasing([1, 1.01], "peak"))
+    assert report.verdicts[0].word == "computed (a near thing)"
+    assert "computed (a near thing): The peak grows" in repr(report)
+    assert not book(result=[CLAIM])["Example 1"].compare(y=increasing([1, 2], "peak")).verdicts[0].near
+
+
+def test_a_claim_that_does_not_hold_is_told_with_its_evidence(capsys):
+    said = complaint(book(result=[CLAIM])["Example 1"].check, error=Disagreement, y=greater(1, 2, "peak"))
+    assert said == (
+        "book, Example 1: y the evidence (peak 1 not > 2) does not say that it is true: The peak grows with the gain."
+    )
+    capsys.readouterr()
+
+
+@pytest.mark.parametrize("value", [True, "grows", 1.5, None, [greater(2, 1)], Evidence])
+def test_what_is_no_evidence_is_refused(value):
+    said = complaint(book(result=[CLAIM])["Example 1"].check, y=value)
+    assert said.startswith("book, Example 1, y: expected evidence, got ")
+    assert "hand over evidence, as greater(2.3, 1.6)" in said
 
 
 # What is no value at all. Each complaint is one line, with the names of source, entry and result.
@@ -395,7 +450,7 @@ NO_FORMULA = {
     "two symbols of one name": (K + sympy.Symbol("K"), "two different symbols named K"),
     "unprintable": (Unprintable(), "Unprintable"),
 }
-NO_CLAIM = {
+NO_NAME = {
     "number": (1, "type int"),
     "symbol": (sympy.Symbol("stable"), "Symbol"),
     "bool": (True, "type bool"),
@@ -407,7 +462,7 @@ NO_VALUE = [
     for kind, printed, cases in [
         ("number", "1.5", NO_NUMBER),
         ("formula", "K/(T*s + 1)", NO_FORMULA),
-        ("name", "stable", NO_CLAIM),
+        ("name", "stable", NO_NAME),
     ]
     for name, (value, words) in cases.items()
 ]
@@ -499,7 +554,7 @@ def text(content):
     return lambda: Source.read("book", content if isinstance(content, bytes) else content.encode())
 
 
-CITATION = '[source]\ncitation = "A"\n'
+CITATION = '[source]\ntitle = "A"\ncitation = "A"\n'
 RECONSTRUCTED = {"status": "reconstructed", "assuming": "a guess"}
 MALFORMED = {
     "syntax": (text("[source"), ["book.toml", "TOML"]),
@@ -508,8 +563,9 @@ MALFORMED = {
     "no source": (text('["Example 1"]\ntitle = "A"\n'), ["book.toml", "[source]", "citation"]),
     "a source of another type": (text('source = "A"\n'), ["book.toml", "[source]"]),
     "an unknown key of the source": (text(CITATION + 'year = "2010"\n'), ["book.toml", "nothing else"]),
-    "a citation of another type": (text("[source]\ncitation = 1\n"), ["book.toml", "citation"]),
-    "an entry of another type": (text('a = 1\n[source]\ncitation = "A"\n'), ["book, a", "expected a table"]),
+    "a source without a short title": (text('[source]\ncitation = "A"\n'), ["book.toml", "title"]),
+    "a citation of another type": (text('[source]\ntitle = "A"\ncitation = 1\n'), ["book.toml", "citation"]),
+    "an entry of another type": (text("a = 1\n" + CITATION), ["book, a", "expected a table"]),
     "no title": (text(CITATION + '["Example 1"]\nchapter = "10"\n'), ["book, Example 1", "title"]),
     "no chapter": (text(CITATION + '["Example 1"]\ntitle = "A"\n'), ["book, Example 1", "chapter"]),
     "an empty title": (entry(title=" "), ["book, Example 1", "title"]),
@@ -533,7 +589,7 @@ MALFORMED = {
     "a printed decimal comma": (result(printed="1,5"), ["book, Example 1, y", "'1,5'", "a number like 1.50"]),
     "a printed unit": (result(printed="1.5 s"), ["book, Example 1, y", "'1.5 s'", "a number like 1.50"]),
     "a printed per cent": (result(printed="63 %"), ["book, Example 1, y", "'63 %'"]),
-    "a printed word": (result(printed="stable"), ["book, Example 1, y", "'claim'"]),
+    "a printed word": (result(printed="stable"), ["book, Example 1, y", "'name'"]),
     "a printed nan": (result(printed="nan"), ["book, Example 1, y", "'nan'"]),
     "a printed number with a bare point": (result(printed="1."), ["book, Example 1, y", "'1.'"]),
     "other digits": (result(printed="١.٥"), ["book, Example 1, y"]),
@@ -557,8 +613,8 @@ MALFORMED = {
         result(printed="0.123", status="corrected", correct="1.2", because="a slip"),
         ["correct is '1.2'", "as many digits as in '0.123'"],
     ),
-    "a reason for nothing": (result(because="a slip"), ["'reproduced' has no use for 'because'"]),
-    "a margin for nothing": (result(within="5 %"), ["'reproduced' has no use for 'within'"]),
+    "a reason for nothing": (result(because="a slip"), ["'computed' has no use for 'because'"]),
+    "a margin for nothing": (result(within="5 %"), ["'computed' has no use for 'within'"]),
     "unreproduced without reason": (result(status="unreproduced", computed="2"), ["needs 'because'"]),
     "unreproduced with a margin": (
         result(status="unreproduced", because="a", computed="2", within="1"),
@@ -579,6 +635,32 @@ MALFORMED = {
         result(**RECONSTRUCTED, kind="name", printed="stable", within="5 %"),
         ["no use for 'within'"],
     ),
+    "a claim with a print": (result(claim="It grows."), ["book, Example 1, y", "no use for 'printed'"]),
+    "a claim that is no sentence": (
+        entry(result=[{"name": "y", "claim": "grows"}]),
+        ["book, Example 1, y", "'grows'", "full stop"],
+    ),
+    "a claim that says something else": (
+        entry(result=[{"name": "y", "claim": "It grows.", "says": "yes"}]),
+        ["says is 'yes'", "true or false"],
+    ),
+    "a number that says something": (result(says="true"), ["no use for 'says'"]),
+    "quoted without its place": (result(status="quoted"), ["'quoted' needs 'library'"]),
+    "observed without a plant": (result(status="observed"), ["'observed' needs 'on'"]),
+    "damaged without the right value": (result(status="damaged", because="a"), ["'damaged' needs 'correct'"]),
+    "a corrected claim without a reason": (
+        entry(result=[{"name": "y", "claim": "It grows.", "status": "corrected", "correct": "It falls."}]),
+        ["needs 'because'"],
+    ),
+    "misprints of another type": (entry(misprint="a"), ["book, Example 1", "misprint is 'a'", "list"]),
+    "a misprint without a reason": (
+        entry(misprint=[{"printed": "a", "correct": "b"}]),
+        ["book, Example 1, misprint", "printed, correct, because"],
+    ),
+    "damage that is empty": (
+        entry(damage=[{"printed": "a", "correct": "b", "because": ""}]),
+        ["book, Example 1, damage", "because is ''"],
+    ),
     "a margin around a formula": (result(**RECONSTRUCTED, kind="formula", within="5 %"), ["expected a number"]),
 }
 
@@ -593,7 +675,7 @@ def test_a_malformed_entry_is_explained_in_one_line(name):
 
 def test_text_over_several_lines_is_joined():
     entry = example("1", status="corrected", correct="2", because="the author\n  slipped")
-    assert entry.results[0].because == "the author slipped"
+    assert entry.results[0].status.because == "the author slipped"
     assert book(title="two\nlines")["Example 1"].title == "two lines"
 
 
@@ -641,16 +723,55 @@ MIXED = book(
         {"name": "c", "printed": "1", "status": "unreproduced", "computed": "2", "because": "nobody knows"},
         {"name": "d", "printed": "17.3", "status": "measured", "because": "in the laboratory"},
         {"name": "e", "printed": "8.4", "status": "unreproduced", "because": "its settings are not printed"},
+        {"name": "f", "printed": "0.9", "label": "share of <water>", "status": "quoted", "library": "tuning.simc"},
+        {"name": "grows", "claim": "The peak grows with the gain."},
+        {"name": "is_large", "claim": "The gain is large & positive.", "status": "observed", "on": "a tank of ours"},
+        {
+            "name": "is_much",
+            "claim": "The peak is much larger.",
+            "status": "corrected",
+            "correct": "The peak is a little larger.",
+            "because": "it grows by a fifth",
+        },
+        {
+            "name": "b_3",
+            "printed": "2(a+b)",
+            "kind": "name",
+            "status": "damaged",
+            "correct": "2",
+            "because": "a bracket",
+        },
     ],
+    misprint=[{"printed": "Section ??", "correct": "Section 9.2", "because": "the reference is lost"}],
+    damage=[{"printed": "k 1", "correct": "k_1", "because": "an index is lost", "place": "footnote"}],
 )["Example 1"]
-GOOD = {"share": 0.632121, "H": K / (T * s + 1), "action": "reverse", "a": 2, "b": 1.04, "c": 2}
+GOOD = {
+    "share": 0.632121,
+    "H": K / (T * s + 1),
+    "action": "reverse",
+    "a": 2,
+    "b": 1.04,
+    "c": 2,
+    "f": 0.9,
+    "grows": greater(1.5, 1.2, "peak [m]"),
+    "is_large": positive(K * T, "gain"),
+    "is_much": much_greater(1.2, 1, "peak [m]"),
+    "b_3": "2",
+}
 
 
 def test_a_report_tells_everything_as_text():
     told = repr(MIXED.compare(**GOOD))
     for row in MIXED.results:
-        assert all(part in told for part in (row.name, row.printed, row.status, row.because, row.assuming, row.within))
-    assert all(part in told for part in ("book", "Example 1", MIXED.title, "6.21", "m/s", "0.632121", "reverse"))
+        assert all(part in told for part in (row.title, row.printed.text, row.status.word, row.status.note))
+    for part in ("Author, Example 1", MIXED.title, "6.21", "m/s", "0.632121", "reverse", "5 %", "F = 1 <kg/s>"):
+        assert part in told
+    assert "computed: The peak grows with the gain.\n    peak 1.5 m > 1.2 m\n" in told
+    assert "misprint: the book prints `Section ??` for `Section 9.2`: the reference is lost" in told
+    assert "damaged: our copy prints `k 1` (footnote) for `k_1`: an index is lost" in told
+    heading = told.splitlines()[0]
+    assert heading.endswith(": 4 computed, 2 corrected, 1 reconstructed, 2 unreproduced, 1 measured, 1 quoted, "
+                            "1 observed, 1 damaged")  # fmt: skip
     assert "does not hold" not in told
     assert repr(MIXED.compare(**GOOD | {"a": 1})).count("does not hold") == 1
 
@@ -663,13 +784,21 @@ def test_a_report_tells_everything_as_html_and_escapes_it():
     assert "a &lt;b&gt;" in told
     assert "F = 1 &lt;kg/s&gt;" in told
     assert "<b>" not in told
+    assert "share of &lt;water&gt;" in told
+    assert "The gain is large &amp; positive." in told
+    assert not re.search("colou?r", told)
+    assert "<summary>✓ <strong>Author, Example 1" in told
+    assert '<details class="loopbook-check" open>' in MIXED.compare(**GOOD | {"a": 1})._repr_html_()
     assert "does not hold" in MIXED.compare(**GOOD | {"a": 1})._repr_html_()
 
 
 def test_a_report_marks_agreement_only_where_there_is_some():
-    told = MIXED.compare(**GOOD)._repr_html_()
-    marks = [sign for sign in told if sign in "✓≠–✗"]
-    assert marks == ["✓", "✓", "✓", "✓", "✓", "≠", "–", "–"]
+    told = MIXED.compare(**GOOD)._repr_html_().partition("</thead>")[2]
+    marks = re.findall(r'class="verdict">(.)&nbsp;(\w+)', told)
+    agreement = {"computed": "✓", "reconstructed": "✓", "observed": "✓", "quoted": "="}
+    others = {"corrected": "≠", "damaged": "≠", "unreproduced": "?", "measured": "–"}
+    assert marks == [((agreement | others)[row.status.word], row.status.word) for row in MIXED.results]
+    assert {word for _, word in marks} == set(STATUSES)
     assert "✗" in MIXED.compare(**GOOD | {"c": 1})._repr_html_()
 
 
@@ -678,16 +807,32 @@ def test_a_report_carries_its_verdicts_as_data():
     assert {"text/plain", "text/html", MIME_TYPE} <= set(bundle)
     data = json.loads(json.dumps(bundle["application/vnd.loopbook.check+json"], allow_nan=False))
     assert (data["source"], data["entry"]) == ("book", "Example 1")
-    assert [(v["name"], v["printed"], v["status"], v["computed"], v["holds"], v["how"]) for v in data["verdicts"]] == [
-        ("share", "0.63", "reproduced", "0.632121", True, "digits"),
-        ("H", "K/(T*s + 1)", "reproduced", "K/(T*s + 1)", True, "proved"),
-        ("action", "Reverse", "reproduced", "reverse", True, "word"),
+    assert [(v["name"], v["book"], v["status"], v["computed"], v["holds"], v["how"]) for v in data["verdicts"]] == [
+        ("share", "0.63 m/s", "computed", "0.632121", True, "digits"),
+        ("H", "K/(T*s + 1)", "computed", "K/(T*s + 1)", True, "proved"),
+        ("action", "Reverse", "computed", "reverse", True, "word"),
         ("a", "1", "corrected", "2", True, "digits"),
         ("b", "1", "reconstructed", "1.04", True, "within"),
         ("c", "1", "unreproduced", "2", True, "digits"),
         ("d", "17.3", "measured", "", True, "measured"),
         ("e", "8.4", "unreproduced", "", True, "unreproduced"),
+        ("f", "0.9", "quoted", "0.9", True, "digits"),
+        ("grows", "says so", "computed", "peak 1.5 m > 1.2 m", True, "evidence"),
+        ("is_large", "says so", "observed", "gain K*T > 0, proved", True, "evidence"),
+        (
+            "is_much",
+            "says so",
+            "corrected",
+            "peak 1.2 m not much larger than 1 m (by half of the smaller one or more)",
+            True,
+            "evidence",
+        ),
+        ("b_3", "2(a+b)", "damaged", "2", True, "word"),
     ]
+    H, is_large = data["verdicts"][1], data["verdicts"][-3]
+    assert H["tex"]["computed"] == H["tex"]["book"] == r"$\displaystyle \frac{K}{T s + 1}$"
+    assert is_large["tex"] == {"computed": r"gain $\displaystyle K T$ > 0, proved"}
+    assert is_large["evidence"] == positive(K * T, "gain").data
     failed = MIXED.compare(**GOOD | {"a": 1})._repr_mimebundle_()[MIME_TYPE]["verdicts"]
     assert [verdict["name"] for verdict in failed if not verdict["holds"]] == ["a"]
 

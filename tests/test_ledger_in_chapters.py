@@ -30,14 +30,19 @@ from typer.testing import CliRunner
 
 import loopbook.ledger
 import loopbook.ledger.errata as errata
+from loopbook import s
 from loopbook.__main__ import app
+from loopbook.evidence import decreasing, equal, every, greater, much_greater, negligible, refused, some, unstable
+from loopbook.evidence.criteria import CRITERIA
 from loopbook.ledger import Source, sources
-from loopbook.ledger.source import STATUSES
+from loopbook.ledger.kinds import is_symbol
+from loopbook.ledger.statuses import STATUSES
 
 ROOT = Path(__file__).parents[1]
 LEDGER = ROOT / "lib" / "loopbook" / "ledger"
 CHAPTERS = ROOT / "chapters"
 MIME_TYPE = "application/vnd.loopbook.check+json"
+K, T = sympy.symbols("K T", positive=True)
 
 
 def books(folder=LEDGER):
@@ -71,8 +76,10 @@ def gaps(written, checks, chapters):
             continue
         if chapter != entry["chapter"]:
             found.append(f"{place}: it belongs to {entry['chapter']}")
-        expected = [(row["name"], row["printed"], row.get("status", "reproduced")) for row in entry.get("result", [])]
-        if [(row["name"], row["printed"], row["status"]) for row in check["verdicts"]] != expected:
+        expected = [(row["name"], *print_of(row), row.get("status", "computed")) for row in entry.get("result", [])]
+        if [
+            tuple(row.get(key) for key in ("name", "title", "book", "status")) for row in check["verdicts"]
+        ] != expected:
             found.append(f"{place}: not the results of the ledger as it stands now: run `make execute`")
         found += [f"{place}: {row['name']} does not hold" for row in check["verdicts"] if row["holds"] is not True]
     checked = {(check["source"], check["entry"]) for _, check in checks}
@@ -83,6 +90,14 @@ def gaps(written, checks, chapters):
             if entry.get("result") and (source, name) not in checked:
                 found.append(f"{source}, {name}: checked by no chapter")
     return found
+
+
+def print_of(row):
+    """What a check shows of a result: what it is called, and what the book prints."""
+    if "claim" in row:
+        return " ".join(row["claim"].split()), "says so" if row.get("says", "true") == "true" else "denies it"
+    title = row.get("label") or (row["name"] if is_symbol(row["name"]) else row["name"].replace("_", " "))
+    return title, " ".join(f"{row['printed']} {row.get('unit', '')}".split())
 
 
 def chapters_in(folder):
@@ -122,7 +137,8 @@ def doctored(tmp_path):
         (lambda check: check.update(source="nobody"), "no such entry"),
         (lambda check: check["verdicts"][0].update(holds=False), "does not hold"),
         (lambda check: check["verdicts"][0].update(holds="yes"), "does not hold"),
-        (lambda check: check["verdicts"][0].update(printed="7"), "not the results of the ledger"),
+        (lambda check: check["verdicts"][0].update(book="7"), "not the results of the ledger"),
+        (lambda check: check["verdicts"][0].update(title="another"), "not the results of the ledger"),
         (lambda check: check["verdicts"][0].update(status="measured"), "not the results of the ledger"),
         (lambda check: check["verdicts"][0].update(name="other"), "not the results of the ledger"),
         (lambda check: check["verdicts"].pop(), "not the results of the ledger"),
@@ -164,36 +180,148 @@ def test_a_ledger_that_moved_on_is_found_out():
 
 
 def untrue(written, computed):
-    """The statuses of a source that are not true, in sentences; `computed` holds texts by entry and result."""
+    """The statuses of a source that are not true, in sentences; `computed` holds texts and evidence by result."""
     found = []
     rows = [(name, row) for name, entry in written.items() for row in entry.get("result", [])]
     assumed = Counter(row["assuming"] for _, row in rows if row.get("status") == "reconstructed")
     for entry, row in rows:
-        status, kind = row.get("status", "reproduced"), row.get("kind", "number")
-        if status == "measured" or (status == "unreproduced" and not row.get("computed")):
+        status, kind = row.get("status", "computed"), "claim" if "claim" in row else row.get("kind", "number")
+        if status == "measured" or (status == "unreproduced" and "computed" not in row):
             continue
         where = f"{entry}, {row['name']}"
         value = computed.get((entry, row["name"]))
         if value is None:
             found.append(f"{where}: nothing is computed")
             continue
-        printed_holds = same(kind, value, row["printed"])
-        if status == "reproduced" and not printed_holds:
-            found.append(f"{where}: {value} is not {row['printed']}")
-        if status in ("corrected", "unreproduced"):
-            told = row["correct" if status == "corrected" else "computed"]
+        printed = row["claim" if kind == "claim" else "printed"]
+        if kind == "claim":
+            if not isinstance(value, dict) or value["holds"] is not speaks_for(value):
+                found.append(f"{where}: no evidence, or told wrongly")
+                continue
+            if speaks_for(turned(value)) is value["holds"]:
+                found.append(f"{where}: the evidence cannot fail")
+            printed_holds = value["holds"] is (row.get("says", "true") == "true")
+            if status == "computed" and (ours := criteria_of(value) & OURS):
+                found.append(f"{where}: judged by a criterion of ours, {', '.join(sorted(ours))}")
+        else:
+            printed_holds = same(kind, value, printed)
+        if status in ("computed", "quoted", "observed") and not printed_holds:
+            found.append(f"{where}: {value} is not {printed}")
+        if status in ("corrected", "damaged", "unreproduced"):
+            told = row["computed" if status == "unreproduced" else "correct"]
             if printed_holds:
                 found.append(f"{where}: the book is right")
-            if not same(kind, value, told):
+            if kind != "claim" and not same(kind, value, told):
                 found.append(f"{where}: {value} is not {told}")
         if status == "reconstructed":
-            if kind == "name" and not printed_holds:
-                found.append(f"{where}: {value} is not {row['printed']}")
+            if kind in ("claim", "name") and not printed_holds:
+                found.append(f"{where}: {value} is not {printed}")
             if kind == "number" and not within(value, row["printed"], row["within"]):
                 found.append(f"{where}: {value} is not within {row['within']} of {row['printed']}")
             if assumed[row["assuming"]] < 2:
                 found.append(f"{where}: an assumption for this number alone")
     return found
+
+
+# Evidence, judged again from its data.
+
+OURS = {criterion.word for criterion in CRITERIA if not criterion.published}
+ORDER = {">": operator.gt, "<": operator.lt, "≥": operator.ge, "≤": operator.le}
+CONTRARY = {">": "≤", "≤": ">", "<": "≥", "≥": "<", "=": "≠", "≠": "="}
+
+
+def speaks_for(evidence):
+    """Whether a piece of evidence holds, by its stored data."""
+    match evidence["kind"]:
+        case "every":
+            return all(map(speaks_for, evidence["cases"])) and bool(evidence["cases"])
+        case "some":
+            return any(map(speaks_for, evidence["cases"]))
+        case "stability":
+            poles = evidence["unstable_poles"]
+            return poles == "0" if evidence["is_stable"] else poles not in ("0", "nan")
+        case "refusal":
+            return bool(evidence["sentence"]) is evidence["is_refused"]
+        case "ratio":
+            return by_ratio(evidence) is not evidence["contrary"]
+        case "comparison" if evidence["relation"] in "=≠":
+            equal = {"texts": operator.eq, "numbers": nearly, "formulas": same_formula}[evidence["of"]]
+            return equal(evidence["left"], evidence["right"]) is (evidence["relation"] == "=")
+        case "comparison":
+            holds, left, right = ORDER[evidence["relation"]], evidence["left"], evidence["right"]
+            if evidence["of"] == "formulas":
+                return all(holds(value, 0) for value in differences(left, right))
+            return holds(decimal_of(left), decimal_of(right))
+    raise ValueError(f"cannot judge {evidence}")
+
+
+def decimal_of(text):
+    return Decimal({"oo": "Infinity", "-oo": "-Infinity"}.get(text, text))
+
+
+def nearly(left, right):
+    a, b = decimal_of(left), decimal_of(right)
+    return a == b or abs(a - b) <= Decimal("1e-5") * max(abs(a), abs(b))
+
+
+def by_ratio(evidence):
+    a, b, limit = (decimal_of(evidence[key]) for key in ("left", "right", "limit"))
+    match evidence["criterion"]:
+        case "about equal":
+            return a == b or abs(a - b) <= limit * max(abs(a), abs(b))
+        case "negligible":
+            return abs(a) <= limit * abs(b)
+        case "somewhat":
+            return b < a < (1 + limit) * b
+        case "much":
+            return a > b and a >= (1 + limit) * b
+    raise ValueError(f"cannot judge {evidence}")
+
+
+def differences(left, right, points=12):
+    """The difference of two expressions at random points, where all symbols are positive."""
+    found = []
+    for draw in range(points):
+        difference, dice = read(left, draw) - read(right, draw), random.Random(draw)
+        symbols = sorted(difference.free_symbols, key=str)
+        point = {x: sympy.Rational(dice.randint(1, 10**6), 10 ** dice.randint(3, 8)) for x in symbols}
+        found.append(difference.evalf(30, subs=point))
+    return found
+
+
+def turned(evidence):
+    """The evidence turned around: sides exchanged, a counterexample among the cases, another system."""
+    match evidence:
+        case {"kind": "every" | "some" as kind, "cases": cases}:
+            first = next(number for number, case in enumerate(cases) if case["holds"] is evidence["holds"])
+            whole = evidence["holds"] is (kind == "some")  # all of them turn the verdict, otherwise the first one does
+            return evidence | {
+                "cases": [
+                    turned(case) if number == first or (whole and case["holds"] is evidence["holds"]) else case
+                    for number, case in enumerate(cases)
+                ]
+            }
+        case {"kind": "comparison", "relation": ">" | "<", "holds": True, "left": left, "right": right}:
+            return evidence | {"left": right, "right": left}
+        case {"kind": "comparison", "relation": relation}:
+            return evidence | {"relation": CONTRARY[relation]}
+        case {"kind": "ratio", "criterion": "somewhat" | "much", "contrary": False, "holds": True}:
+            return evidence | {"left": evidence["right"], "right": evidence["left"]}
+        case {"kind": "ratio", "contrary": contrary}:
+            return evidence | {"contrary": not contrary}
+        case {"kind": "stability", "unstable_poles": poles}:
+            return evidence | {"unstable_poles": "1" if poles == "0" else "0"}
+        case {"kind": "refusal", "sentence": sentence}:
+            return evidence | {"sentence": "" if sentence else "no"}
+    raise ValueError(f"cannot turn {evidence}")
+
+
+def criteria_of(evidence):
+    """The words of all criteria that a piece of evidence rests on."""
+    return {evidence.get("criterion", "")}.union(*map(criteria_of, evidence.get("cases", [])))
+
+
+# Values.
 
 
 def same(kind, value, told):
@@ -314,7 +442,7 @@ def same_formula(one, other, points=12, least=6):
 
 def computed_in(checks, source):
     return {
-        (check["entry"], row["name"]): row["computed"]
+        (check["entry"], row["name"]): row.get("evidence", row["computed"])
         for _, check in checks
         if check["source"] == source
         for row in check["verdicts"]
@@ -350,11 +478,23 @@ result = [
     { name = "h", kind = "formula", printed = "Integral(q(theta)/A, (theta, 0, t)) + f(oo)" },
     { name = "d", kind = "formula", printed = "Subs(Derivative(f(t), t), t, 0)" },
     { name = "wrong", kind = "formula", printed = "-K", status = "corrected", correct = "K", because = "a sign" },
+    { name = "bracket", kind = "formula", printed = "K", status = "damaged", correct = "K**2", because = "a bracket" },
+]
+[names]
+result = [
+    { name = "valve", kind = "name", printed = "V1", status = "quoted", library = "instruments.says" },
+    { name = "action", kind = "name", printed = "direct", status = "corrected", correct = "reverse", because = "a" },
 ]
 [claims]
 result = [
-    { name = "stable", kind = "name", printed = "Yes" },
-    { name = "action", kind = "name", printed = "direct", status = "corrected", correct = "reverse", because = "a" },
+    { name = "grows", claim = "It grows." },
+    { name = "falls", claim = "It falls.", says = "false" },
+    { name = "always", claim = "It grows in every case.", status = "corrected", correct = "At times.", because = "a" },
+    { name = "can", claim = "It can be unstable.", status = "observed", on = "a tank" },
+    { name = "much", claim = "It is much larger.", status = "observed", on = "a tank" },
+    { name = "same", claim = "They are the same.", status = "quoted", library = "tuning.simc" },
+    { name = "none", claim = "There is none.", status = "reconstructed", assuming = "F = 1" },
+    { name = "unknown", claim = "It is small.", status = "unreproduced", computed = "It is large.", because = "a" },
 ]
 """)
 TRUE = {
@@ -371,8 +511,17 @@ TRUE = {
     ("formulas", "h"): "f(oo) + Integral(q(x), (x, 0, t))/A",
     ("formulas", "d"): "Subs(Derivative(f(x), x), x, 0)",
     ("formulas", "wrong"): "K*(sin(T)**2 + cos(T)**2)",
-    ("claims", "stable"): "yes",
-    ("claims", "action"): "Reverse",
+    ("formulas", "bracket"): "K*K",
+    ("names", "valve"): "v1",
+    ("names", "action"): "Reverse",
+    ("claims", "grows"): greater(2, 1, "peak [m]").data,
+    ("claims", "falls"): decreasing([1, 2, 3]).data,
+    ("claims", "always"): every({"K = 1": greater(2, 1), "K = 2": greater(1, 2)}).data,
+    ("claims", "can"): some(equal("V1", "V2"), unstable(1 / (s - 1))).data,
+    ("claims", "much"): much_greater(3, 1).data,
+    ("claims", "same"): equal(K * (T + 1), K * T + K).data,
+    ("claims", "none"): refused(unstable, K).data,
+    ("claims", "unknown"): negligible(1, 2).data,
 }
 
 
@@ -402,15 +551,29 @@ def test_true_statuses_are_accepted():
         ("formulas", "d", "Subs(Derivative(f(x), x), x, 1)", "is not Subs"),
         ("formulas", "wrong", "-K", "the book is right"),
         ("formulas", "wrong", "2*K", "2*K is not K"),
-        ("claims", "stable", "no", "no is not Yes"),
-        ("claims", "action", "Direct", "the book is right"),
-        ("claims", "action", "neither", "neither is not reverse"),
-        ("claims", "action", None, "nothing is computed"),
+        ("formulas", "bracket", "K", "the book is right"),
+        ("names", "valve", "V2", "V2 is not V1"),
+        ("names", "action", "Direct", "the book is right"),
+        ("names", "action", "neither", "neither is not reverse"),
+        ("names", "action", None, "nothing is computed"),
+        ("claims", "grows", greater(1, 2).data, "is not It grows."),
+        ("claims", "grows", greater(1, 2).data | {"holds": True}, "told wrongly"),
+        ("claims", "grows", much_greater(2, 1).data, "a criterion of ours, much"),
+        ("claims", "grows", every(greater(2, 1), much_greater(2, 1)).data, "a criterion of ours, much"),
+        ("claims", "grows", {"kind": "every", "cases": [], "holds": True}, "told wrongly"),
+        ("claims", "grows", "yes", "no evidence"),
+        ("claims", "falls", decreasing([3, 2, 1]).data, "is not It falls."),
+        ("claims", "always", every({"K = 1": greater(2, 1)}).data, "the book is right"),
+        ("claims", "can", some(equal("V1", "V2"), unstable(1 / (s + 1))).data, "is not It can be unstable."),
+        ("claims", "much", much_greater(1.2, 1).data, "is not It is much larger."),
+        ("claims", "same", equal(K * T, K + T).data, "is not They are the same."),
+        ("claims", "none", refused(abs, 1).data, "is not There is none."),
+        ("claims", "unknown", negligible(1, 100).data, "the book is right"),
     ],
 )
 def test_a_value_that_belies_its_status_is_found_out(entry, name, value, words):
     found = untrue(SYNTHETIC, TRUE | {(entry, name): value})
-    assert any(words in sentence for sentence in found)
+    assert any(words in sentence for sentence in found), found
     assert all(sentence.startswith(f"{entry}, {name}: ") for sentence in found)
 
 
@@ -419,13 +582,17 @@ def test_a_value_that_belies_its_status_is_found_out(entry, name, value, words):
     [
         ("digits", "share", {"status": "corrected", "correct": "0.632", "because": "a"}, "the book is right"),
         ("digits", "share", {"status": "unreproduced", "computed": "0.63", "because": "a"}, "the book is right"),
-        ("digits", "wrong", {"status": "reproduced"}, "1.6049 is not 1.50"),
+        ("digits", "wrong", {"status": "computed"}, "1.6049 is not 1.50"),
         ("digits", "wrong", {"correct": "1.7"}, "1.6049 is not 1.7"),
         ("curves", "first", {"within": "4 %"}, "not within 4 %"),
         ("curves", "first", {"assuming": "F = 2"}, "an assumption for this number alone"),
         ("formulas", "H", {"status": "corrected", "correct": "K", "because": "a"}, "the book is right"),
-        ("claims", "stable", {"status": "unreproduced", "computed": "no", "because": "a"}, "the book is right"),
-        ("digits", "measured", {"status": "reproduced"}, "nothing is computed"),
+        ("claims", "grows", {"status": "unreproduced", "computed": "It falls.", "because": "a"}, "the book is right"),
+        ("claims", "grows", {"status": "corrected", "correct": "It falls.", "because": "a"}, "the book is right"),
+        ("claims", "grows", {"says": "false"}, "is not It grows."),
+        ("claims", "much", {"status": "computed"}, "a criterion of ours, much"),
+        ("claims", "none", {"assuming": "F = 2"}, "an assumption for this number alone"),
+        ("digits", "measured", {"status": "computed"}, "nothing is computed"),
     ],
 )
 def test_a_false_status_is_found_out(entry, name, lie, words):
@@ -446,6 +613,7 @@ def test_what_cannot_be_read_is_no_agreement():
 
 def test_errata_is_what_the_command_writes():
     assert (ROOT / "ERRATA.md").read_text(encoding="utf-8") == errata.page(sources())
+    assert (ROOT / "docs" / "damage.md").read_text(encoding="utf-8") == errata.damaged(sources())
 
 
 def test_errata_names_every_error_of_the_books():
@@ -455,16 +623,22 @@ def test_errata_names_every_error_of_the_books():
             for row in entry.get("result", []):
                 if row.get("status") not in ("corrected", "unreproduced"):
                     continue
-                line = next(line for line in told.splitlines() if f"**{name}" in line and f"`{row['name']}`" in line)
-                stored = row.get("correct") or row.get("computed") or "cannot be computed"
+                claim = " ".join(row.get("claim", "").split())
+                called = claim or f", {print_of(row)[0]}: "
+                line = next(line for line in told.splitlines() if f"**{name}" in line and called in line)
+                stored = row.get("correct") or row.get("computed") or ("" if claim else "cannot be computed")
                 because = " ".join(row["because"].split())
-                assert all(part in line for part in (row["printed"], stored, because, entry["chapter"]))
+                assert all(part in line for part in (row.get("printed", claim), stored, because, entry["chapter"]))
+            for slip in entry.get("misprint", []):
+                line = next(line for line in told.splitlines() if f"**{name}" in line and slip["printed"] in line)
+                assert all(" ".join(part.split()) in line for part in slip.values())
         assert source in sources()
 
 
 def test_errata_lists_corrections_and_what_is_not_reproduced_and_nothing_else():
     content = """
 [source]
+title = "Author"
 citation = "A. Author"
 ["Example 1"]
 title = "An example"
@@ -475,20 +649,34 @@ result = [
     { name = "c", printed = "5", status = "reconstructed", assuming = "F = 1", within = "5 %" },
     { name = "d", printed = "6", status = "measured", because = "in the laboratory" },
     { name = "e", printed = "7" },
+    { name = "f", printed = "8", status = "damaged", correct = "9", because = "a bracket is lost" },
+    { name = "g", claim = "It falls.", status = "corrected", correct = "It grows.", because = "the sign" },
+    { name = "h", printed = "8", status = "quoted", library = "tuning.simc" },
 ]
+misprint = [{ printed = "Section ??", correct = "Section 2", because = "a lost reference", place = "footnote" }]
+damage = [{ printed = "k 1", correct = "k_1", because = "a lost index" }]
 """
-    told = errata.page({"book": Source.read("book", content.encode())})
+    book = {"book": Source.read("book", content.encode())}
+    told = errata.page(book)
     assert "A. Author" in told
-    corrected, unreproduced = [line for line in told.splitlines() if line.startswith("- ")]
-    assert all(part in corrected for part in ("Example 1", "1.2", "`a`", "`1`", "`2`", "a slip", "10_tuning"))
-    assert all(part in unreproduced for part in ("Example 1", "`b`", "`3`", "`4`", "nobody knows", "10_tuning"))
-    assert errata.page({"book": Source.read("book", content.partition("result")[0].encode())}) == errata.INTRODUCTION
+    corrected, unreproduced, claim, misprint = [line for line in told.splitlines() if line.startswith("- ")]
+    assert all(part in corrected for part in ("Example 1", "1.2", ", a: ", "`1`", "`2`", "a slip", "10_tuning"))
+    assert all(part in unreproduced for part in ("Example 1", ", b: ", "`3`", "`4`", "nobody knows", "10_tuning"))
+    assert "claims: It falls. Correct is: It grows. Because: the sign." in claim
+    assert "prints `Section ??` (footnote) for `Section 2`: a lost reference." in misprint
+    damaged = [line for line in errata.damaged(book).splitlines() if line.startswith("- ")]
+    assert len(damaged) == 2
+    assert all(part in damaged[0] for part in (", f: ", "`8`", "`9`", "a bracket is lost"))
+    assert "prints `k 1` for `k_1`: a lost index." in damaged[1]
+    nothing = {"book": Source.read("book", content.partition("result")[0].encode())}
+    assert errata.page(nothing) == errata.INTRODUCTION
+    assert errata.damaged(nothing) == errata.DAMAGE
 
 
 def test_the_totals_add_up():
     for source, count in errata.totals(sources()).items():
         expected = Counter(
-            row.get("status", "reproduced") for entry in books()[source].values() for row in entry.get("result", [])
+            row.get("status", "computed") for entry in books()[source].values() for row in entry.get("result", [])
         )
         assert {status: number for status, number in count.items() if number} == expected
 

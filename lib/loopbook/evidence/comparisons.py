@@ -131,7 +131,7 @@ class Comparison(Evidence):
         """The values, with enough digits to judge them again."""
         left, right = written(self.left, self.right)
         return {
-            "kind": "comparison", "quantity": self.quantity, "unit": self.unit,
+            "kind": "comparison", "of": _kind_of(self.left, self.right), "quantity": self.quantity, "unit": self.unit,
             "left": left, "relation": self.relation, "right": right,
             "criterion": self.criterion.word if self.criterion else "", "holds": self.holds, "near": self.near,
         }  # fmt: skip
@@ -304,7 +304,7 @@ def equal(left: object, right: object, quantity: str = "") -> Comparison:
             one is a set or a mapping, the order does not count.
         quantity: what is compared.
     Raises:
-        EvidenceError: for what is none of these, for rounded decimals in formulas, and for one collection on both sides.
+        EvidenceError: for what is none of these, for rounded decimals in a formula, and for a collection on both sides.
 
     >>> equal(0.1 + 0.2, 0.3)
     holds: 0.3 = 0.3
@@ -563,6 +563,12 @@ def written(*values: Value) -> tuple[str, ...]:
         if len(set(texts)) == len(set(map(str, values))):
             break
     return texts
+
+
+def _kind_of(*values):
+    if any(isinstance(value, tuple) for value in values):
+        return "texts"
+    return "formulas" if any(isinstance(value, sympy.Basic) for value in values) else "numbers"
 
 
 def _as_data(value, digits):

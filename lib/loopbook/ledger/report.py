@@ -85,14 +85,12 @@ class Verdict:
     def data(self) -> dict[str, Any]:
         """The verdict as JSON data; `tex` has the texts that hold formulas again, those between dollar signs."""
         result, printed = self.result, self.result.printed
-        evidence = self.value.data if self.is_claim and self.value is not None else None
-        typeset_texts = {
-            "title": f"${sympy.latex(sympy.Symbol(result.name))}$"
-            if is_symbol(result.name) and not result.label
-            else "",
-            "book": f"{printed.latex(printed.text)} {result.unit}".strip() if not self.is_claim else "",
-            "computed": self._typeset,
-        }
+        typeset_texts = {"computed": printed.latex(self.computed)}
+        if self.is_claim:
+            typeset_texts["computed"] = self.value.told(typeset) if self.value is not None else ""
+        else:
+            typeset_texts["title"] = "" if result.label else _symbol(result.name)
+            typeset_texts["book"] = f"{printed.latex(printed.text)} {result.unit}".strip()
         plain = {"title": printed.text if self.is_claim else result.title, "book": self.book, "computed": self.computed}
         return {
             "name": result.name,
@@ -107,14 +105,7 @@ class Verdict:
             "holds": self.holds,
             "how": self.how,
             "tex": {key: text for key, text in typeset_texts.items() if text and text != plain[key]},
-        } | ({"evidence": evidence} if evidence else {})
-
-    @property
-    def _typeset(self):
-        """The computed value or the evidence, its formulas between dollar signs."""
-        if self.is_claim and self.value is not None:
-            return self.value.told(typeset)
-        return self.result.printed.latex(self.computed)
+        } | ({"evidence": self.value.data} if self.is_claim and self.value is not None else {})
 
 
 @dataclass(frozen=True)
@@ -132,7 +123,7 @@ class Report:
     @property
     def counts(self) -> str:
         """How many results have which verdict, as in "7 computed, 2 corrected"."""
-        words = Counter(v.result.status.word if v.holds else "does not hold" for v in self.verdicts)
+        words = Counter(v.result.status.word if v.holds else "not confirmed" for v in self.verdicts)
         return ", ".join(f"{count} {word}" for word, count in words.items())
 
     @property

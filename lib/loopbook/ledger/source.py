@@ -234,7 +234,7 @@ class Entry:
         return values[0] if len(values) == 1 else values
 
     def as_printed(self, *names: str) -> Any:
-        """Return numbers of the book that nobody can compute, exactly as printed: one for one name, a tuple for several.
+        """Return numbers of the book that nobody can compute, exactly as printed: one for one name, or a tuple.
 
         Those are laboratory data, and results of which the book does not print what they take.
 
