@@ -2,6 +2,8 @@
 
 import ast
 import builtins
+import copy
+import inspect
 import re
 import statistics
 import symtable
@@ -15,7 +17,7 @@ from typing import NamedTuple
 import nbformat
 from nbformat import NotebookNode
 
-from loopbook import notebooks
+from loopbook import evidence, notebooks
 
 ROOT = Path(__file__).parents[2]
 LEDGER = ROOT / "lib" / "loopbook" / "ledger"
@@ -290,6 +292,97 @@ def names_of_literals(modules: list[ast.Module]) -> set[str]:
     return found
 
 
+def evidence_can_fail(stored: Stored) -> list[str]:
+    """No evidence compares two literals, or a thing with itself under one name or another."""
+    cells = [(label, tree(cell)) for label, cell in code(stored.notebook)]
+    modules = [module for _, module in cells]
+    literal, same = CONSTANTS | names_of_literals(modules), other_names(modules)
+    found = []
+    for label, call in ((label, call) for label, module in cells for call in evidence_in(module, modules)):
+        sides = [side for side in call.args[: SIDES[called(call)]] if not isinstance(side, ast.Starred)]
+        if sides and all(names(side) <= literal for side in sides):
+            found.append(f"{label}: {ast.unparse(call)} is evidence of literals")
+        if len(sides) > 1 and len({ast.unparse(Renamed(same).visit(copy.deepcopy(side))) for side in sides}) == 1:
+            found.append(f"{label}: {ast.unparse(call)} compares a thing with itself")
+    return found
+
+
+#: How many of the arguments of evidence are values.
+SIDES = {
+    name: 2 if len(inspect.signature(getattr(evidence, name)).parameters) > 2 else 1
+    for name in evidence.__all__
+    if name[0].islower() and name not in ("every", "some", "refused")
+}  # fmt: skip
+
+
+def called(call: ast.Call) -> str:
+    """The last name of what is called."""
+    return getattr(call.func, "id", getattr(call.func, "attr", ""))
+
+
+def evidence_in(module: ast.Module, modules: list[ast.Module]) -> list[ast.Call]:
+    """The calls in a cell of what the notebook imports from `loopbook.evidence`."""
+    imported = {
+        alias.name
+        for node in (n for m in modules for n in ast.walk(m))
+        if isinstance(node, ast.ImportFrom) and node.module == "loopbook.evidence"
+        for alias in node.names
+    }
+    calls = [node for node in ast.walk(module) if isinstance(node, ast.Call) and called(node) in SIDES]
+    return [
+        call
+        for call in calls
+        if called(call) in imported or (isinstance(call.func, ast.Attribute) and "evidence" in names(call.func.value))
+    ]
+
+
+def other_names(modules: list[ast.Module]) -> dict[str, str]:
+    """Names that are bound once, and to nothing but another name."""
+    bound: dict[str, list[str]] = {}
+    for node in (n for module in modules for n in ast.walk(module)):
+        match node:
+            case ast.Assign(targets=[ast.Name(name)], value=ast.Name(other)):
+                bound.setdefault(name, []).append(other)
+            case ast.Name(id=name, ctx=ast.Store()):
+                bound.setdefault(name, []).append("")
+    return {
+        name: others[0] for name, others in bound.items() if len([o for o in others if o]) == 1 and len(others) == 2
+    }
+
+
+class Renamed(ast.NodeTransformer):
+    """Writes the first name of everything."""
+
+    def __init__(self, same: dict[str, str]):
+        self.same = same
+
+    def visit_Name(self, node: ast.Name) -> ast.Name:
+        return ast.Name(self.same.get(node.id, node.id), node.ctx)
+
+
+def no_truth_value_becomes_a_word(stored: Stored) -> list[str]:
+    """No cell but a slider chooses one of two texts by a condition: a claim is decided by evidence."""
+    found = []
+    for label, cell in code(stored.notebook):
+        if notebooks.SLIDERS in cell.metadata.get("tags", []):
+            continue
+        for node in ast.walk(tree(cell)):
+            match node:
+                case ast.IfExp(body=one, orelse=other) if is_text(one) and is_text(other):
+                    found.append(f"{label}: {ast.unparse(node)} turns a truth value into a word")
+                case ast.Dict(keys=[ast.Constant(bool()), *_], values=values) if all(map(is_text, values)):
+                    found.append(f"{label}: {ast.unparse(node)} has words for truth values")
+                case ast.Subscript(value=ast.Tuple(parts) | ast.List(parts), slice=index) if all(
+                    map(is_text, parts)
+                ) and not isinstance(index, ast.Constant | ast.UnaryOp | ast.Slice):
+                    found.append(f"{label}: {ast.unparse(node)} chooses a word")
+    return found
+
+
+def is_text(node: ast.AST) -> bool:
+    return isinstance(node, ast.JoinedStr) or (isinstance(node, ast.Constant) and isinstance(node.value, str))
+
+
 def no_number_of_the_book(stored: Stored) -> list[str]:
     """In a section, no literal is a given or a result of the ledger's entries that the section uses."""
     sources = {}
@@ -391,5 +484,7 @@ CHECKS = (
     sliders_follow_a_figure,
     sliders_keep_what_they_use,
     checks_are_computed,
+    evidence_can_fail,
+    no_truth_value_becomes_a_word,
     no_number_of_the_book,
 )

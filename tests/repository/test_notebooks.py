@@ -74,6 +74,14 @@ def with_code(*sources, section=True):
     return stored(*GOOD, *([] if section else [text("## Another")]), *(code(source) for source in sources))
 
 
+def with_evidence(*sources):
+    """The good notebook, and cells that use the library's evidence."""
+    imports = code(
+        "from loopbook import evidence\nfrom loopbook.evidence import every, greater, less, positive, stable"
+    )
+    return stored(imports, *GOOD, *(code(source) for source in sources))
+
+
 BROKEN = [
     (hygiene.named_as_designed, "no row in the README", stored(*GOOD, name="10_tuning_copy")),
     (hygiene.valid, "format 4.4", changed(lambda n: n.update(nbformat_minor=4))),
@@ -154,6 +162,17 @@ BROKEN = [
     (hygiene.checks_are_computed, "'Kp': 2", with_code("example.check(**{'Kp': 2})")),
     (hygiene.checks_are_computed, "gain", with_code("gain = 2", "example.check(Kp=gain)")),
     (hygiene.checks_are_computed, "itself", with_code("example.check(Kp=example['Kp'].printed)")),
+    (hygiene.evidence_can_fail, "of literals", with_evidence("example.check(Kp=Kp, large=greater(2, 1))")),
+    (hygiene.evidence_can_fail, "of literals", with_evidence("a, b = 2, 1", "greater(a, 3 * b)")),
+    (hygiene.evidence_can_fail, "of literals", with_evidence("every(stable(loop), greater(2, 1, 'Ms'))")),
+    (hygiene.evidence_can_fail, "of literals", with_evidence("evidence.positive(3)")),
+    (hygiene.evidence_can_fail, "with itself", with_evidence("greater(Kp, Kp)")),
+    (hygiene.evidence_can_fail, "with itself", with_evidence("again = Kp", "evidence.equal(again, Kp)")),
+    (hygiene.evidence_can_fail, "with itself", with_evidence("greater(2 * Kp + 1, 2*Kp+1)")),
+    (hygiene.no_truth_value_becomes_a_word, "into a word", with_code('word = "stable" if Ms < 2 else "not stable"')),
+    (hygiene.no_truth_value_becomes_a_word, "into a word", with_code('example.check(a=f"{x} more" if x else "less")')),
+    (hygiene.no_truth_value_becomes_a_word, "words for", with_code('words = {True: "stable", False: "unstable"}')),
+    (hygiene.no_truth_value_becomes_a_word, "chooses", with_code('("worse", "better")[Ms < 2]')),
     (hygiene.no_number_of_the_book, "0.5 stands in haugen Example 10.2", with_code("process = lag(delay=0.5)")),
     (hygiene.no_number_of_the_book, "0.5", with_code("process = lag(delay=1/2)")),
     (hygiene.no_number_of_the_book, "0.5", with_code("process = lag(delay=Rational(1, 2))")),
@@ -166,6 +185,11 @@ BROKEN = [
 ]
 
 ACCEPTED = [
+    (hygiene.evidence_can_fail, with_evidence("greater(Kp, 0)", "less(1, Kp)", "positive(T)")),
+    (hygiene.evidence_can_fail, with_code("def greater(a, b): return a > b", "greater(2, 1)")),
+    (hygiene.evidence_can_fail, with_evidence("a = Kp", "a = 2 * a", "greater(a, Kp)")),
+    (hygiene.no_truth_value_becomes_a_word, with_code('label = name if name else "process"', '("P", "PI")[-1]')),
+    (hygiene.no_truth_value_becomes_a_word, with_code("K if stable else 0", '{"slow": 1, "quick": 2}')),
     (hygiene.one_import_cell, stored()),
     (hygiene.fit_to_store, stored(*GOOD, text("A ratio a/home/b, https://example.org/home/x and 0xff are fine."))),
     (hygiene.checks_are_computed, with_code("count = 0", "count += poles", "example.check(order=count)")),
