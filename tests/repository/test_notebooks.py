@@ -166,6 +166,7 @@ BROKEN = [
     (hygiene.evidence_can_fail, "of literals", with_evidence("a, b = 2, 1", "greater(a, 3 * b)")),
     (hygiene.evidence_can_fail, "of literals", with_evidence("every(stable(loop), greater(2, 1, 'Ms'))")),
     (hygiene.evidence_can_fail, "of literals", with_evidence("evidence.positive(3)")),
+    (hygiene.evidence_can_fail, "of literals", with_evidence("pair = [2, 1]", "greater(*pair)")),
     (hygiene.evidence_can_fail, "with itself", with_evidence("greater(Kp, Kp)")),
     (hygiene.evidence_can_fail, "with itself", with_evidence("again = Kp", "evidence.equal(again, Kp)")),
     (hygiene.evidence_can_fail, "with itself", with_evidence("greater(2 * Kp + 1, 2*Kp+1)")),
@@ -187,6 +188,7 @@ BROKEN = [
 ACCEPTED = [
     (hygiene.evidence_can_fail, with_evidence("greater(Kp, 0)", "less(1, Kp)", "positive(T)")),
     (hygiene.evidence_can_fail, with_code("def greater(a, b): return a > b", "greater(2, 1)")),
+    (hygiene.evidence_can_fail, with_evidence('greater(*pair, "angle [rad]")')),
     (hygiene.evidence_can_fail, with_evidence("a = Kp", "a = 2 * a", "greater(a, Kp)")),
     (hygiene.no_truth_value_becomes_a_word, with_code('label = name if name else "process"', '("P", "PI")[-1]')),
     (hygiene.no_truth_value_becomes_a_word, with_code("K if stable else 0", '{"slow": 1, "quick": 2}')),

@@ -1,0 +1,327 @@
+"""Evidence holds for what is so and for nothing else, says when it is a near thing, and refuses what cannot fail."""
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+import sympy
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from draws import draws
+from loopbook import PID, Loop, evidence, s
+from loopbook.evidence import (
+    CRITERIA,
+    Evidence,
+    EvidenceError,
+    about_equal,
+    at_least,
+    at_most,
+    decreasing,
+    different,
+    equal,
+    every,
+    good_stability,
+    greater,
+    increasing,
+    less,
+    much_greater,
+    much_less,
+    negative,
+    negligible,
+    no_overshoot,
+    nonzero,
+    overshoots,
+    poor_stability,
+    positive,
+    refused,
+    some,
+    somewhat_greater,
+    somewhat_less,
+    stable,
+    unstable,
+    well_damped,
+    zero,
+)
+from loopbook.tuning import simc
+
+K, T = sympy.symbols("K T", positive=True)
+x = sympy.Symbol("x", real=True)
+LAG = 1 / (5 * s + 1)
+
+
+# One of each, which holds and says so.
+
+TRUE = {
+    "greater": (greater(2.31, 1.59, "Ms"), "Ms 2.31 > 1.59"),
+    "less": (less(Fraction(1, 3), np.float64(0.5), "decay ratio"), "decay ratio 0.333 < 0.5"),
+    "at least": (at_least(2, 2), "2 ≥ 2"),
+    "at most": (at_most(1, sympy.pi, "x [rad]"), "x 1 rad ≤ 3.14 rad"),
+    "digits that keep apart": (greater(1.00012, 1.00011), "1.00012 > 1.00011"),
+    "infinite": (greater(math.inf, 3, "gain margin"), "gain margin ∞ > 3"),
+    "a symbol": (greater(2 * K, K, "gain"), "gain 2*K > K, proved"),
+    "a sign": (negative(-1 / (K * T), "pole [1/s]"), "pole -1/(K*T) < 0, proved"),
+    "a square": (positive(x**2 + 1), "x**2 + 1 > 0, proved"),
+    "positive": (positive(0.1, "gain [m/%]"), "gain 0.1 m/% > 0"),
+    "equal numbers": (equal(0.1 * 3, Fraction(3, 10)), "0.3 = 0.3"),
+    "equal formulas": (equal(K / (T * s + 1), (K / T) / (s + 1 / T)), "K/(T*s + 1) = K/(T*(s + 1/T)), proved"),
+    "equal equations": (equal(sympy.Eq(K, T), sympy.Eq(T, K)), "Eq(K, T) = Eq(T, K), proved"),
+    "equal texts": (equal("V 1", "V  1"), "V 1 = V 1"),
+    "equal sets": (equal({"V1", "V2"}, ["V2", "V1"], "valves"), "valves V1, V2 = V1, V2"),
+    "different": (different(K, T), "K ≠ T, proved"),
+    "different rows": (different([1, 2], [2, 1]), "1, 2 ≠ 2, 1"),
+    "nothing": (different(set(), {"V1"}, "valves"), "valves none ≠ V1"),
+    "zero": (zero(sympy.sin(sympy.pi), "offset [m]"), "offset 0 = 0"),
+    "nonzero": (nonzero(0.25, "offset [m]"), "offset 0.25 m ≠ 0"),
+    "about equal": (about_equal(41, 40, "T [s]"), "T 41 s about equal to 40 s (at most 5 % of the larger one apart)"),
+    "somewhat greater": (somewhat_greater(1.4, 1), "1.4 somewhat larger than 1 (by less than half of the smaller one)"),
+    "somewhat less": (somewhat_less(1, 1.4), "1.4 somewhat larger than 1 (by less than half of the smaller one)"),
+    "much greater": (much_greater(1, 0), "1 much larger than 0 (by half of the smaller one or more)"),
+    "much less": (much_less(10, 15), "15 much larger than 10 (by half of the smaller one or more)"),
+    "negligible": (negligible(-0.04, 1), "-0.04 negligible beside 1 (at most 5 % of what it is compared with)"),
+    "no overshoot": (no_overshoot(Fraction(1, 50)), "overshoot 2 % ≤ 2 % (no overshoot: at most 2 % of the step)"),
+    "overshoots": (overshoots(0.3), "overshoot 30 % > 2 % (no overshoot: at most 2 % of the step)"),
+    "well damped": (well_damped(0.1), "decay ratio 0.1 ≤ 0.25 (well damped: a decay ratio of at most 1/4)"),
+    "increasing": (increasing([1, 2, 3.5], "Ms"), "Ms 1 < 2 < 3.5"),
+    "decreasing": (decreasing(np.array([3, 2]), "offset [m]"), "offset 3 m > 2 m"),
+    "every": (every({"K = 1": less(1, 2), "K = 2": less(2, 3)}), "K = 1: 1 < 2; K = 2: 2 < 3"),
+    "and": (every(less(1, 2), equal(1, 1)), "1 < 2; 1 = 1"),
+    "some": (some({"K = 1": less(3, 2), "K = 2": less(2, 3)}), "in 1 of 2 cases; K = 2: 2 < 3"),
+    "stable": (stable(LAG), "stable: no pole in the right half-plane"),
+    "a stable loop": (stable(Loop(LAG, PID(2, Ti=5))), "stable: gain margin ∞, phase margin 90°, Ms 1"),
+    "unstable": (unstable(1 / (s**2 - s + 1)), "unstable: 2 poles in the right half-plane"),
+    "poor stability": (poor_stability(Loop(LAG, PID(-2))), "in 1 of 1 cases; unstable: 1 pole in the right half-plane"),
+    "refused": (refused(float, "a"), "declined: could not convert string to float: 'a'"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", TRUE)
+def test_what_is_so_is_told_with_its_numbers(name):
+    found, told = TRUE[name]
+    assert found.holds
+    assert found.told() == told
+    assert repr(found) == f"holds: {told}"
+
+
+@pytest.mark.parametrize("name", TRUE)
+def test_turned_around_it_falls_and_twice_turned_it_stands(name):
+    found, _ = TRUE[name]
+    assert not found.turned().holds
+    assert found.turned().told()
+    if not isinstance(found, evidence.Cases):
+        assert found.turned().turned() == found
+
+
+FALSE = {
+    "greater": greater(1, 1),
+    "less": less(2, 1),
+    "at least": at_least(1, 1.0000001),
+    "a proved sign": greater(-K, T),
+    "equal": equal(1, 1 + 1e-8),
+    "equal formulas": equal(K, T),
+    "formula and equation": equal(K, sympy.Eq(K, T)),
+    "formula and text": equal(K, "K"),
+    "rows in another order": equal([1, 2], [2, 1]),
+    "different": different({"a": 1}, {"a": 1}),
+    "zero": zero(1e-300),
+    "infinite and not": equal(math.inf, 1e308),
+    "about equal": about_equal(106, 100),
+    "about equal to nothing": about_equal(1e-9, 0),
+    "somewhat is not much": somewhat_greater(1.5, 1),
+    "somewhat is not the same": somewhat_greater(1, 1),
+    "much is not somewhat": much_greater(1.49, 1),
+    "much of nothing": much_greater(0, 0),
+    "negligible": negligible(0.06, 1),
+    "overshoot": no_overshoot(0.021),
+    "an undamped one": well_damped(0.26),
+    "increasing": increasing([1, 3, 2]),
+    "constant": decreasing([1, 1]),
+    "every": every(less(1, 2), less(2, 1)),
+    "none of some": some(less(3, 2), less(2, 1)),
+    "on the limit": stable(1 / s),
+    "on the limit, too": unstable(1 / (s**2 + 1)),
+    "poor": good_stability(Loop(1 / (s * (s + 1) ** 2), PID(1.2))),
+    "unstable": good_stability(Loop(1 / (s * (s + 1) ** 2), PID(3))),
+    "accepted": refused(simc, LAG, Tc=1),
+}
+
+
+@pytest.mark.parametrize("name", FALSE)
+def test_what_is_not_so_does_not_hold(name):
+    assert not FALSE[name].holds
+    assert repr(FALSE[name]).startswith("does not hold: ")
+
+
+@pytest.mark.parametrize(
+    ("found", "told"),
+    [
+        (greater(1, 2, "Ms"), "Ms 1 not > 2"),
+        (equal(1, 2, "poles"), "poles 1 ≠ 2"),
+        (different(2, 2), "2 = 2"),
+        (much_greater(1, 2), "1 not much larger than 2 (by half of the smaller one or more)"),
+        (every({"K = 1": less(1, 2), "K = 2": less(4, 3)}), "in 1 of 2 cases; K = 2: 4 not < 3"),
+        (increasing([1, 3, 2], "Ms"), "in 1 of 2 cases; Ms 3 not < 2"),
+        (stable(1 / s), "on the limit of stability: poles on the imaginary axis"),
+        (refused(float, 1), "accepted"),
+        (every(*(less(n, 9) for n in range(6))), "in 6 of 6 cases; 0 < 9; 1 < 9; 2 < 9; 3 < 9; ..."),
+    ],
+)
+def test_what_fails_is_told_by_its_counterexample(found, told):
+    assert found.told() == told
+
+
+# Near things.
+
+
+@pytest.mark.parametrize(
+    ("found", "near"),
+    [
+        (somewhat_greater(1.4, 1), True),  # much, if half of somewhat were enough for it
+        (somewhat_greater(1.2, 1), False),
+        (much_greater(1.6, 1), True),
+        (much_greater(2.1, 1), False),
+        (much_greater(1.1, 1), False),
+        (about_equal(1, 1.04), True),
+        (about_equal(1, 1.02), False),
+        (about_equal(1, 1.09), True),
+        (about_equal(1, 1.2), False),
+        (no_overshoot(0.005), False),
+        (no_overshoot(0.015), True),
+        (no_overshoot(0.03), True),
+        (overshoots(0.3), False),
+        (well_damped(0.3), True),
+        (greater(1.02, 1), True),
+        (greater(1.2, 1), False),
+        (positive(1e-9), False),
+        (greater(math.inf, 1), False),
+        (equal(1, 1), False),
+        (every(greater(2, 1), greater(1.01, 1)), True),
+        (every(greater(1, 2), greater(1.01, 1)), False),
+        (every(greater(1, 1.01), greater(2, 1)), True),
+        (some(greater(2, 1), greater(1.01, 1)), False),
+        (some(greater(1, 2), greater(1.01, 1)), True),
+        (increasing([1, 1.01, 2]), True),
+        (stable(Loop(1 / (s + 1) ** 3, PID(7.9))), True),
+        (stable(Loop(1 / (s + 1) ** 3, PID(4))), False),
+    ],
+)
+def test_a_near_thing_is_known(found, near):
+    assert found.near is near
+    assert found.data["near"] is near
+
+
+# What is no evidence.
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: greater(True, 1), "a truth value, True"),
+        (lambda: greater("2", 1), "'2' of type str"),
+        (lambda: greater(math.nan, 1), "not a number"),
+        (lambda: greater(None, 1), "NoneType"),
+        (lambda: greater(1j, 0), "complex number"),
+        (lambda: greater([2], 1), "list"),
+        (lambda: greater(K, T), "the sign of K - T is not known"),
+        (lambda: positive(x), "the sign of x is not known"),
+        (lambda: positive(0.5 * K), "rounded decimals"),
+        (lambda: equal(0.5 * K, K), "rounded decimals"),
+        (lambda: equal(True, 1), "a truth value, True"),
+        (lambda: equal(row := [1], row), "compared with itself"),
+        (lambda: much_greater(-2, -1), "numbers that are not negative"),
+        (lambda: about_equal(K, K), "a real number"),
+        (lambda: no_overshoot("0.1"), "a real number"),
+        (lambda: every(), "no case is given"),
+        (lambda: every({}), "no case is given"),
+        (lambda: some(), "no case is given"),
+        (lambda: every(True), "the case is True: expected evidence"),
+        (lambda: every({"K = 1": 3 > 2}), "the case K = 1 is True: expected evidence"),
+        (lambda: every([greater(2, 1)]), "expected evidence"),
+        (lambda: increasing([1]), "at least two values"),
+        (lambda: decreasing([]), "at least two values"),
+        (lambda: greater(2, 1, 3), "the quantity is 3"),
+    ],
+)
+def test_what_cannot_fail_or_be_decided_is_refused_in_one_line(call, words):
+    with pytest.raises(EvidenceError) as caught:
+        call().holds  # noqa: B018 - the sign of an expression is asked for then
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_evidence_is_no_truth_value():
+    with pytest.raises(TypeError, match="no truth value"):
+        bool(greater(2, 1))
+    with pytest.raises(TypeError, match="no truth value"):
+        all([greater(2, 1)])
+
+
+# Against another route.
+
+NUMBERS = st.fractions(0, 100, max_denominator=1000)
+
+
+@settings(max_examples=draws(300))
+@given(a=NUMBERS, b=NUMBERS)
+def test_numbers_are_compared_as_the_words_say(a, b):
+    assert greater(a, b).holds is (a > b) is less(b, a).holds is not at_most(a, b).holds
+    assert much_greater(a, b).holds is (a > b and a - b >= b / 2)
+    assert somewhat_greater(a, b).holds is (0 < a - b < b / 2)
+    assert (greater(a, b).holds) is (much_greater(a, b).holds or somewhat_greater(a, b).holds)
+    assert about_equal(a, b).holds is (20 * abs(a - b) <= max(a, b)) is about_equal(b, a).holds
+    assert negligible(a, b).holds is (20 * a <= b)
+
+
+@settings(max_examples=draws(60), deadline=None)
+@given(values=st.lists(NUMBERS, min_size=2, max_size=9))
+def test_rows_are_compared_neighbour_by_neighbour(values):
+    assert increasing(values).holds is (values == sorted(set(values)))
+    assert decreasing(values).holds is increasing(values[::-1]).holds
+    cases = {str(n): less(value, 50) for n, value in enumerate(values)}
+    assert every(cases).holds is (max(values) < 50)
+    assert some(cases).holds is (min(values) < 50)
+    assert every(cases).holds is not some({name: case.turned() for name, case in cases.items()}).holds
+
+
+def test_margins_decide_good_stability():
+    for gain in (0.1, 0.3, 0.6, 0.9, 1.1, 1.5, 2.5):
+        loop = Loop(1 / (s * (s + 1) ** 2), PID(gain))
+        margins = loop.margins() if loop.is_stable else None
+        good = margins is not None and margins.gain_margin >= 2 and margins.phase_margin >= 30
+        assert good_stability(loop).holds is good is not poor_stability(loop).holds
+        assert stable(loop).holds is loop.is_stable is not unstable(loop).holds
+
+
+# Criteria, and what carries them.
+
+
+def test_each_criterion_has_its_word_its_number_and_its_reason():
+    for criterion in CRITERIA:
+        assert criterion.limit > 0
+        assert all(len(text) > 3 for text in (criterion.word, criterion.meaning, criterion.reason))
+    assert {c.word for c in CRITERIA if not c.published} == {"somewhat", "much"}
+
+
+def test_evidence_names_the_criteria_that_it_rests_on():
+    both = every(somewhat_greater(1.2, 1), some(no_overshoot(0), greater(2, 1)))
+    assert [criterion.word for criterion in both.criteria] == ["somewhat", "no overshoot"]
+    assert greater(2, 1).criteria == ()
+
+
+def test_data_is_plain_and_keeps_values_apart():
+    found = greater(1 + 1e-12, 1, "Ms").data
+    assert (found["left"], found["relation"], found["right"]) == ("1.000000000001", ">", "1")
+    assert every({"K = 1": equal(K, T)}).data["cases"][0]["of"] == "formulas"
+    assert equal("a", "b").data["of"] == "texts"
+    assert stable(1 / s).data["unstable_poles"] == "nan"
+
+
+def test_formulas_in_a_sentence_are_typeset_by_whom_it_is_told():
+    assert greater(2 * K, K).told(lambda formula: f"<{formula}>") == "<2*K> > <K>, proved"
+
+
+def test_all_that_is_offered_is_evidence_or_says_what_it_is():
+    for name in evidence.__all__:
+        assert getattr(evidence, name).__doc__ or name == "CRITERIA"
+    assert all(isinstance(found, Evidence) for found, _ in TRUE.values())
