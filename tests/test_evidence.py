@@ -32,6 +32,7 @@ from loopbook.evidence import (
     negligible,
     no_overshoot,
     nonzero,
+    not_substantially_less,
     overshoots,
     poor_stability,
     positive,
@@ -40,6 +41,7 @@ from loopbook.evidence import (
     somewhat_greater,
     somewhat_less,
     stable,
+    substantially_less,
     unstable,
     well_damped,
     zero,
@@ -78,6 +80,11 @@ TRUE = {
     "somewhat greater": (somewhat_greater(1.4, 1), "1.4 somewhat larger than 1 (by less than half of the smaller one)"),
     "somewhat less": (somewhat_less(1, 1.4), "1.4 somewhat larger than 1 (by less than half of the smaller one)"),
     "much greater": (much_greater(1, 0), "1 much larger than 0 (by half of the smaller one or more)"),
+    "substantially less": (substantially_less(2, 10), "2 substantially smaller than 10 (to a fifth or less)"),
+    "not substantially less": (
+        not_substantially_less(3, 10),
+        "3 not substantially smaller than 10 (to a fifth or less)",
+    ),
     "much less": (much_less(10, 15), "15 much larger than 10 (by half of the smaller one or more)"),
     "negligible": (negligible(-0.04, 1), "-0.04 negligible beside 1 (at most 5 % of what it is compared with)"),
     "no overshoot": (no_overshoot(Fraction(1, 50)), "overshoot 2 % ≤ 2 % (no overshoot: at most 2 % of the step)"),
@@ -131,6 +138,8 @@ FALSE = {
     "somewhat is not much": somewhat_greater(1.5, 1),
     "somewhat is not the same": somewhat_greater(1, 1),
     "much is not somewhat": much_greater(1.49, 1),
+    "a third is not substantially less": substantially_less(1, 3),
+    "a sixth is substantially less": not_substantially_less(1, 6),
     "much of nothing": much_greater(0, 0),
     "negligible": negligible(0.06, 1),
     "overshoot": no_overshoot(0.021),
@@ -179,6 +188,9 @@ def test_what_fails_is_told_by_its_counterexample(found, told):
     [
         (somewhat_greater(1.4, 1), True),  # much, if half of somewhat were enough for it
         (somewhat_greater(1.2, 1), False),
+        (substantially_less(1, 6), True),  # not to a tenth
+        (not_substantially_less(1, 3), True),  # to two fifths
+        (not_substantially_less(1, 2), False),
         (much_greater(1.6, 1), True),
         (much_greater(2.1, 1), False),
         (much_greater(1.1, 1), False),
@@ -300,7 +312,7 @@ def test_each_criterion_has_its_word_its_number_and_its_reason():
     for criterion in CRITERIA:
         assert criterion.limit > 0
         assert all(len(text) > 3 for text in (criterion.word, criterion.meaning, criterion.reason))
-    assert {c.word for c in CRITERIA if not c.published} == {"somewhat", "much"}
+    assert {c.word for c in CRITERIA if not c.published} == {"somewhat", "much", "substantially"}
 
 
 def test_evidence_names_the_criteria_that_it_rests_on():

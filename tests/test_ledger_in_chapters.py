@@ -275,6 +275,8 @@ def by_ratio(evidence):
             return b < a < (1 + limit) * b
         case "much":
             return a > b and a >= (1 + limit) * b
+        case "substantially":
+            return a <= limit * b
     raise ValueError(f"cannot judge {evidence}")
 
 

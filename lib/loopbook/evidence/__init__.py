@@ -30,10 +30,12 @@ from loopbook.evidence.comparisons import (
     negligible,
     no_overshoot,
     nonzero,
+    not_substantially_less,
     overshoots,
     positive,
     somewhat_greater,
     somewhat_less,
+    substantially_less,
     well_damped,
     zero,
 )
@@ -44,6 +46,6 @@ __all__ = [
     "CRITERIA", "Cases", "Comparison", "Criterion", "Evidence", "EvidenceError", "Ratio", "Refusal", "Stability",
     "about_equal", "at_least", "at_most", "decreasing", "different", "equal", "every", "good_stability", "greater",
     "increasing", "less", "much_greater", "much_less", "negative", "negligible", "no_overshoot", "nonzero",
-    "overshoots", "poor_stability", "positive", "refused", "some", "somewhat_greater", "somewhat_less", "stable",
-    "unstable", "well_damped", "zero",
+    "not_substantially_less", "overshoots", "poor_stability", "positive", "refused", "some", "somewhat_greater",
+    "somewhat_less", "stable", "substantially_less", "unstable", "well_damped", "zero",
 ]  # fmt: skip

@@ -13,7 +13,16 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import sympy
 
-from loopbook.evidence.criteria import MUCH, NEGLIGIBLE, NO_OVERSHOOT, SAME, SOMEWHAT, WELL_DAMPED, Criterion
+from loopbook.evidence.criteria import (
+    MUCH,
+    NEGLIGIBLE,
+    NO_OVERSHOOT,
+    SAME,
+    SOMEWHAT,
+    SUBSTANTIALLY,
+    WELL_DAMPED,
+    Criterion,
+)
 from loopbook.evidence.values import formulas_agree, in_one_line, number
 from loopbook.expressions import exact
 
@@ -144,7 +153,7 @@ class Ratio(Evidence):
     Attributes:
         left, right: the numbers, none of them negative.
         quantity, unit: what is compared.
-        criterion: SAME, SOMEWHAT, MUCH or NEGLIGIBLE.
+        criterion: SAME, SOMEWHAT, MUCH, SUBSTANTIALLY or NEGLIGIBLE.
         contrary: whether it is said not to be so.
     """
 
@@ -180,7 +189,7 @@ class Ratio(Evidence):
         left, right = sides(self.left, self.right, self.unit, typeset)
         so = self.holds is not self.contrary
         word = {SOMEWHAT: "somewhat larger than", MUCH: "much larger than", NEGLIGIBLE: "negligible beside",
-                SAME: "about equal to"}[self.criterion]  # fmt: skip
+                SAME: "about equal to", SUBSTANTIALLY: "substantially smaller than"}[self.criterion]  # fmt: skip
         return f"{self.quantity} {left} {'' if so else 'not '}{word} {right} ({self.criterion.meaning})".strip()
 
     @property
@@ -199,6 +208,7 @@ _BY_RATIO = {
     NEGLIGIBLE: lambda a, b, limit: abs(a) <= limit * abs(b),
     SOMEWHAT: lambda a, b, limit: b < a < (1 + limit) * b,
     MUCH: lambda a, b, limit: a > b and a >= (1 + limit) * b,
+    SUBSTANTIALLY: lambda a, b, limit: a <= limit * b,
 }
 
 
@@ -420,6 +430,26 @@ def much_less(left: Number, right: Number, quantity: str = "") -> Ratio:
     holds: settling time 30 s much larger than 10 s (by half of the smaller one or more)
     """
     return _by_ratio(right, left, quantity, MUCH)
+
+
+def substantially_less(left: Number, right: Number, quantity: str = "") -> Ratio:
+    """Evidence that the first of two numbers is a fifth of the other one or less.
+
+    Raises EvidenceError for negative numbers, of which no ratio speaks.
+
+    >>> substantially_less(3, 30, "area [K s]")
+    holds: area 3 K s substantially smaller than 30 K s (to a fifth or less)
+    """
+    return _by_ratio(left, right, quantity, SUBSTANTIALLY)
+
+
+def not_substantially_less(left: Number, right: Number, quantity: str = "") -> Ratio:
+    """Evidence that the first of two numbers is more than a fifth of the other one.
+
+    >>> not_substantially_less(20, 30, "area [K s]")
+    holds: area 20 K s not substantially smaller than 30 K s (to a fifth or less)
+    """
+    return substantially_less(left, right, quantity).turned()
 
 
 def no_overshoot(overshoot: Number) -> Comparison:

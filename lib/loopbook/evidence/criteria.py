@@ -60,6 +60,13 @@ MUCH = Criterion(
     "a number of ours, the end of somewhat",
     published=False,
 )
+SUBSTANTIALLY = Criterion(
+    "substantially",
+    Fraction(1, 5),
+    "to a fifth or less",
+    "a number of ours: where one improvement is called substantial and another one is not, a fifth parts the two",
+    published=False,
+)
 NO_OVERSHOOT = Criterion(
     "no overshoot",
     Fraction(2),
@@ -90,4 +97,4 @@ PHASE_MARGIN = Criterion(
 )
 
 #: All criteria, as a page can list them.
-CRITERIA = (SAME, NEGLIGIBLE, SOMEWHAT, MUCH, NO_OVERSHOOT, WELL_DAMPED, GAIN_MARGIN, PHASE_MARGIN)
+CRITERIA = (SAME, NEGLIGIBLE, SOMEWHAT, MUCH, SUBSTANTIALLY, NO_OVERSHOOT, WELL_DAMPED, GAIN_MARGIN, PHASE_MARGIN)
