@@ -16,7 +16,7 @@
         const text = plain([entry, row.textContent, row.dataset.f, why ? why.textContent : ""].join(" "));
         results.push({
           row, why, body, table, text, formulas: compact(text),
-          source: table.dataset.source, chapter: body.dataset.chapter, status: row.cells[4].className,
+          source: table.dataset.source, chapter: body.dataset.chapter, status: row.cells[0].classList[1],
         });
       }
     }

@@ -9,6 +9,7 @@ import json
 import re
 from pathlib import Path
 
+import checks
 import functions_used
 import launch
 import mathml
@@ -22,7 +23,6 @@ DOCS = Path(__file__).parents[1]
 ROOT = DOCS.parent
 FOLDERS = ("chapters", "solutions")
 SLIDERS = "nbval-ignore-output"
-CHECK = "application/vnd.loopbook.check+json"
 RESPONSE = "application/vnd.loopbook.response+json"
 SHOWN = ("image/png", "text/html", "text/latex", "text/markdown", "text/plain")  # the first of these that there is
 STATEMENT = re.compile(r"\*\*Exercise ([\dA-Z]+\.\d+) · (.*?)\*\*( \(\d+ points?\))?\s*(.*)", re.DOTALL)
@@ -150,12 +150,13 @@ def one_way(output):
     if mime == "text/latex" and not re.fullmatch(r"\$\$?([^$]|\\text\{[^}]*\})*\$\$?", content.strip()):
         mime, content = "text/html", f'<div class="math" tabindex="0">{mathml.in_html(content)}</div>'
     elif mime == "text/html":
-        content = html(content, output["data"].get(CHECK))
+        data = output["data"].get(checks.MIME_TYPE)
+        content = checks.check(data) if data else html(content)
     return {**output, "data": {mime: content}}
 
 
-def html(content, check):
-    """A table or a response: formulas as MathML, colours by name, and for a check its place and its link."""
+def html(content):
+    """A table or a response: formulas as MathML, colours by name."""
     content = mathml.in_html(content)
     content = re.sub(r'style="color: (#\w+)(?:; (white-space: nowrap))?"', with_class, content)
     content = re.sub(
@@ -165,12 +166,7 @@ def html(content, check):
     )
     content = content.replace(' role="status"', "")  # what stands in a page from the beginning is no news
     content = content.replace(' style="text-align:left"', "").replace(' style="text-align:right"', ' class="number"')
-    if not check:
-        return f'<div class="table" tabindex="0">{content}</div>' if "<table" in content else content
-    source, entry = check["source"], check["entry"]
-    target = f"../ledger.html#{slugs.ledger_anchor(source, entry)}"
-    content = re.sub(r"<p><strong>(.*?)</strong></p>", rf'<p><a href="{target}">\1</a></p>', content, count=1)
-    return f'<div class="table check" id="{slugs.check_anchor(source, entry)}" tabindex="0">{content}</div>'
+    return f'<div class="table" tabindex="0">{content}</div>' if "<table" in content else content
 
 
 COLOURS = {"#00664d": "right", "#5a5a5a": "open", "#555555": "open", "#8a5a00": "differs"}

@@ -14,8 +14,9 @@ from pathlib import Path
 import pytest
 import sympy
 
+from loopbook.evidence import CRITERIA
 from loopbook.ledger import sources
-from loopbook.ledger.source import STATUSES
+from loopbook.ledger.statuses import STATUSES
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -23,6 +24,7 @@ MIME_TYPE = "application/vnd.loopbook.check+json"
 sys.path.insert(0, str(DOCS / "extensions"))
 
 pytest.importorskip("sphinx", reason="the book's extra is not installed")
+import checks  # noqa: E402  (of docs/extensions)
 import ledger_page  # noqa: E402  (of docs/extensions)
 import library  # noqa: E402
 import repository_pages  # noqa: E402
@@ -47,7 +49,7 @@ class Table(html.parser.HTMLParser):
             if "id" in attrs:
                 assert attrs["id"] not in self.rows
                 self.rows[attrs["id"]] = self.row
-            elif attrs.get("class") == "why":
+            elif attrs.get("class") in ("why", "slip"):
                 self.notes.append(self.row)
         elif tag in ("td", "th"):
             self.row["cells"].append("")
@@ -69,7 +71,7 @@ class Table(html.parser.HTMLParser):
 def page():
     table = Table()
     for source in sources().values():
-        made = ledger_page.table(source, ledger_page.stored(), "../chapters/{}.html".format, typeset=lambda cell: cell)
+        made = ledger_page.table(source, ledger_page.stored(), "../chapters/{}.html".format, formulas=lambda cell: cell)
         table.feed(made)
     return table
 
@@ -98,30 +100,60 @@ def test_every_entry_leads_to_a_cell_that_checks_it(page):
 
 def test_every_row_says_what_the_ledger_says(page):
     for entry, result in RESULTS:
-        row = row_of(page, entry, result)
-        equation, _, printed, computed, status = row["cells"]
+        row, word = row_of(page, entry, result), result.status.word
+        verdict, equation, title, *book, computed = row["cells"]
         assert equation == (f"({result.equation})" if result.equation else "")
-        assert re.fullmatch(rf"[✓≠–] {result.status}( at random points)?", status.strip())
-        assert row["classes"][4] == result.status in STATUSES
-        if result.kind != "formula":
-            assert printed == f"{result.printed} {result.unit}".strip()
+        sign = re.escape(STATUSES[word].mark[0])
+        assert re.fullmatch(rf"{sign}\xa0{word}( at random points| a near thing|)+", verdict.strip())
+        assert row["classes"][0] == f"verdict {word}"
+        if result.printed.kind == "claim":
+            assert (title, book) == (result.printed.text + " (denies it)" * (not result.printed.says), [])
+        elif result.printed.kind != "formula" and result.printed.text not in ("oo", "-oo"):
+            assert book == [f"{result.printed.text} {result.unit}".strip()]
         assert (computed == "–") is not result.is_checked
 
 
 def test_computed_numbers_are_those_that_the_ledger_accepts(page):
-    numbers = [(entry, row) for entry, row in RESULTS if row.kind == "number" and row.is_checked]
+    numbers = [(entry, row) for entry, row in RESULTS if row.printed.kind == "number" and row.is_checked]
     assert len(numbers) > 150
     for entry, result in numbers:
-        computed = row_of(page, entry, result)["cells"][3]
-        value = sympy.oo if computed in ("∞", "oo") else sympy.Rational(computed)
+        computed = row_of(page, entry, result)["cells"][-1]
+        value = sympy.oo if computed == r"$\infty$" else sympy.Rational(computed)
         assert result.judge(value).holds, f"{entry.source}, {entry.name}: {result.name} = {computed}"
 
 
 def test_every_reason_is_told(page):
     notes = " ".join(note["cells"][0] for note in page.notes)
     for _, result in RESULTS:
-        for text in (result.correct, result.because, result.assuming):
-            assert text in notes
+        told = [getattr(result.status, key, "") for key in ("correct", "because", "assuming", "on", "library")]
+        assert all(text.replace("`", "") in notes for text in told)
+
+
+def test_slips_of_the_print_are_told(page):
+    notes = " ".join(note["cells"][0] for note in page.notes)
+    slips = [slip for source in sources().values() for entry in source if entry.results for slip in entry.misprints]
+    assert len(slips) > 5
+    assert all(slip.because.replace("`", "") in notes for slip in slips)
+
+
+VERDICT = {
+    "name": "y", "kind": "claim", "title": "A < B grows.", "book": "says so", "computed": "Ms 2 > 1", "equation": "",
+    "status": "computed", "word": "computed (a near thing)", "holds": True, "tex": {},
+}  # fmt: skip
+
+
+def test_a_check_shows_the_verdict_first_and_escapes_what_is_no_formula():
+    cells = checks.cells(VERDICT)
+    assert cells.startswith('<td class="verdict computed">✓&nbsp;computed <small>a near thing</small>')
+    assert '<th scope="row" class="claim" colspan="2">A &lt; B grows.' in cells
+    assert '<td class="value">Ms 2 &gt; 1' in cells
+    assert "<math" in checks.cells(VERDICT | {"tex": {"computed": "gain $K T$ > 0"}})
+    assert "✗" in checks.cells(VERDICT | {"holds": False})
+
+
+def test_what_words_mean_is_on_the_page():
+    told = ledger_page.criteria()
+    assert all(c.word in told and c.meaning in told and c.reason in told for c in CRITERIA)
 
 
 def test_the_search_offers_all_sources_statuses_and_chapters():

@@ -1,0 +1,88 @@
+"""A check of a chapter, and a row of the ledger, as HTML, from the data that a notebook stores with its check."""
+
+import html
+import re
+from xml.etree import ElementTree
+
+from mathml import in_html
+from slugs import check_anchor, ledger_anchor
+
+from loopbook.ledger.statuses import STATUSES
+
+MIME_TYPE = "application/vnd.loopbook.check+json"
+WIDE = 26  # letters of a formula that fit into a cell, on a phone too
+COLUMNS = ("verdict", "equation", "result", "book", "computed")
+
+
+def typeset(verdict, key, formulas=in_html):
+    """Return a text of a verdict, its title, print or computed value, as HTML with its formulas."""
+    text = verdict["tex"].get(key, verdict[key])
+    pieces = re.split(r"(\$[^$]+\$)", text)
+    # what is no formula is text, also where it has a sign that HTML knows
+    return formulas("".join(html.escape(p, quote=False) if n % 2 == 0 else p.replace("<", r"\lt ").replace(">", r"\gt ")
+                            for n, p in enumerate(pieces)))  # fmt: skip
+
+
+def cells(verdict, formulas=in_html):
+    """Return the cells of a verdict: what was done first, then equation, result, print, and what was computed."""
+    status = STATUSES[verdict["status"]]
+    sign = status.mark[0] if verdict["holds"] else "✗"
+    word, _, more = verdict["word"].partition(" (")
+    more = f" <small>{html.escape(more.rstrip(')'))}</small>" if more else ""
+    title, book, computed = (typeset(verdict, key, formulas) for key in ("title", "book", "computed"))
+    equation = f"({html.escape(verdict['equation'])})" if verdict["equation"] else ""
+    label = f' aria-label="{html.escape(verdict["name"])}"' if "<math" in title else ""  # for readers of a screen
+    parts = [
+        f'<td class="verdict {verdict["status"]}">{sign}&nbsp;{html.escape(word)}{more}',
+        f'<td class="equation">{equation}',
+    ]
+    if verdict["kind"] == "claim":
+        denied = f" <small>({book})</small>" if book != "says so" else ""
+        parts.append(f'<th scope="row" class="claim" colspan="2">{title}{denied}')
+    else:
+        parts += [f'<th scope="row" class="result"{label}>{title}', f'<td class="book">{_framed(book)}']
+    return "".join([*parts, f'<td class="value">{_framed(computed) or "–"}'])
+
+
+def check(data):
+    """Return the check of an entry as one line that opens, with its place and its link to the ledger.
+
+    Arguments:
+        data: what a notebook stores.
+    """
+    place = ledger_anchor(data["source"], data["entry"])
+    heading = f'<a href="../ledger.html#{place}">{html.escape(data["heading"], quote=False)}</a>'
+    head = "".join(f'<th scope="col">{name}' for name in COLUMNS)
+    sign = "✓" if all(verdict["holds"] for verdict in data["verdicts"]) else "✗"
+    return "\n".join(
+        [
+            f'<details class="check" id="{check_anchor(data["source"], data["entry"])}">',
+            f"<summary>{sign} <strong>{heading}</strong>: {html.escape(data['counts'])}</summary>",
+            '<div class="table" tabindex="0">',
+            f"<table><thead><tr>{head}</thead><tbody>",
+            *(f"<tr>{cells(verdict)}" for verdict in data["verdicts"]),
+            "</table>",
+            *(f"<p>{code(note)}</p>" for note in data["notes"]),
+            "</div></details>",
+        ]
+    )
+
+
+def code(text):
+    """Return a sentence as HTML, what is between back-quotes as code."""
+    return re.sub(r"`([^`]+)`", r"<code>\1</code>", html.escape(text, quote=False))
+
+
+def _framed(cell):
+    """A cell whose formula scrolls within itself where it is wide; it is then reached by the keyboard too."""
+    found = re.findall(r"<math.*?</math>", cell, re.DOTALL)
+    wide = any(_width(ElementTree.fromstring(formula)) > WIDE for formula in found)
+    return f'<div class="wide" tabindex="0">{cell}</div>' if wide else cell
+
+
+def _width(formula):
+    """About how many letters wide a formula is."""
+    widths = [_width(part) for part in formula]
+    if formula.tag == "mfrac":
+        return max(widths)
+    return len((formula.text or "").strip()) + (0.75 if formula.tag in ("msub", "msup") else 1) * sum(widths)
