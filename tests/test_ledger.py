@@ -2,6 +2,7 @@
 
 import decimal
 import enum
+import importlib
 import json
 import math
 import re
@@ -888,3 +889,23 @@ def test_a_notebook_shows_the_table_once_and_an_error_as_one_sentence():
     ]:
         assert output.evalue == words
         assert output.traceback == [f"{output.ename}: {words}"]
+
+
+# What is quoted.
+
+
+QUOTED = {
+    row.status.library
+    for source in loopbook.ledger.sources().values()
+    for entry in source
+    for row in entry.results
+    if row.status.word == "quoted"
+}
+
+
+@pytest.mark.parametrize("place", sorted(QUOTED))
+def test_what_is_quoted_is_in_the_library_and_public(place):
+    module, _, name = place.rpartition(".")
+    found = getattr(importlib.import_module(f"loopbook.{module}"), name)
+    assert not name.startswith("_")
+    assert found.__doc__ or not callable(found)
