@@ -173,6 +173,11 @@ def test_what_is_not_so_does_not_hold(name):
         (increasing([1, 3, 2], "Ms"), "in 1 of 2 cases; Ms 3 not < 2"),
         (stable(1 / s), "on the limit of stability: poles on the imaginary axis"),
         (refused(float, 1), "accepted"),
+        (
+            every({"P": about_equal(1, 2), "PI": about_equal(3, 5), "PID": about_equal(1, 1)}),
+            "in 1 of 3 cases; P: 1 not about equal to 2; PI: 3 not about equal to 5 "
+            "(at most 5 % of the larger one apart)",
+        ),
         (every(*(less(n, 9) for n in range(6))), "in 6 of 6 cases; 0 < 9; 1 < 9; 2 < 9; 3 < 9; ..."),
     ],
 )

@@ -12,6 +12,7 @@ from loopbook.ledger.statuses import STATUSES
 MIME_TYPE = "application/vnd.loopbook.check+json"
 WIDE = 26  # letters of a formula that fit into a cell, on a phone too
 COLUMNS = ("verdict", "equation", "result", "book", "computed")
+CLAIMS = ("verdict", "equation", "claim", "evidence")
 
 
 def typeset(verdict, key, formulas=in_html):
@@ -23,8 +24,14 @@ def typeset(verdict, key, formulas=in_html):
                             for n, p in enumerate(pieces)))  # fmt: skip
 
 
-def cells(verdict, formulas=in_html):
-    """Return the cells of a verdict: what was done first, then equation, result, print, and what was computed."""
+def cells(verdict, formulas=in_html, equations=True):
+    """Return the cells of a verdict: what was done first, then equation, result, print, and what was computed.
+
+    Arguments:
+        verdict: as a notebook stores it.
+        formulas: what writes those of a text as HTML.
+        equations: whether there is a column for their numbers.
+    """
     status = STATUSES[verdict["status"]]
     sign = status.mark[0] if verdict["holds"] else "✗"
     word, _, more = verdict["word"].partition(" (")
@@ -34,13 +41,15 @@ def cells(verdict, formulas=in_html):
     label = f' aria-label="{html.escape(verdict["name"])}"' if "<math" in title else ""  # for readers of a screen
     parts = [
         f'<td class="verdict {verdict["status"]}">{sign}&nbsp;{html.escape(word)}{more}',
-        f'<td class="equation">{equation}',
+        *([f'<td class="equation">{equation}'] if equations else []),
     ]
     if verdict["kind"] == "claim":
         denied = f" <small>({book})</small>" if book != "says so" else ""
         parts.append(f'<th scope="row" class="claim" colspan="2">{title}{denied}')
     else:
         parts += [f'<th scope="row" class="result"{label}>{title}', f'<td class="book">{_framed(book)}']
+    if verdict["kind"] == "formula" and computed == book:
+        computed = "the same"
     return "".join([*parts, f'<td class="value">{_framed(computed) or "–"}'])
 
 
@@ -50,9 +59,11 @@ def check(data):
     Arguments:
         data: what a notebook stores.
     """
-    place = ledger_anchor(data["source"], data["entry"])
-    heading = f'<a href="../ledger.html#{place}">{html.escape(data["heading"], quote=False)}</a>'
-    head = "".join(f'<th scope="col">{name}' for name in COLUMNS)
+    place, heading = ledger_anchor(data["source"], data["entry"]), html.escape(data["heading"], quote=False)
+    equations = any(verdict["equation"] for verdict in data["verdicts"])
+    columns = CLAIMS if all(verdict["kind"] == "claim" for verdict in data["verdicts"]) else COLUMNS
+    wide = {"claim": ' colspan="2"'}
+    head = "".join(f'<th scope="col"{wide.get(name, "")}>{name}' for name in columns if equations or name != "equation")
     sign = "✓" if all(verdict["holds"] for verdict in data["verdicts"]) else "✗"
     return "\n".join(
         [
@@ -60,10 +71,11 @@ def check(data):
             f"<summary>{sign} <strong>{heading}</strong>: {html.escape(data['counts'])}</summary>",
             '<div class="table" tabindex="0">',
             f"<table><thead><tr>{head}</thead><tbody>",
-            *(f"<tr>{cells(verdict)}" for verdict in data["verdicts"]),
-            "</table>",
+            *(f"<tr>{cells(verdict, equations=equations)}" for verdict in data["verdicts"]),
+            "</table></div>",
             *(f"<p>{code(note)}</p>" for note in data["notes"]),
-            "</div></details>",
+            f'<p><a href="../ledger.html#{place}">In the ledger</a></p>',
+            "</details>",
         ]
     )
 

@@ -58,7 +58,14 @@ class Cases(Evidence):
         number, count = len(self.cases), sum(case.holds for _, case in self.cases)
         if number > _SHOWN or not (self.all and self.holds):
             told.insert(0, f"in {count} of {number} cases")
-        return "; ".join([*told, "..."] if len(deciding) > _SHOWN else told)
+        return self._once("; ".join([*told, "..."] if len(deciding) > _SHOWN else told))
+
+    def _once(self, text):
+        """The sentence with each criterion explained where it is used last, and not before."""
+        for why in (f" ({more}{c.meaning})" for c in self.criteria for more in ("", f"{c.word}: ")):
+            before, found, after = text.rpartition(why)
+            text = before.replace(why, "") + found + after
+        return text
 
     @property
     def data(self) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy
 
-from loopbook.ledger.kinds import Claim, is_symbol, typeset
+from loopbook.ledger.kinds import Claim, Formula, is_symbol, typeset
 
 if TYPE_CHECKING:
     from loopbook.ledger.source import Entry, Result
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 MIME_TYPE = "application/vnd.loopbook.check+json"
 
 _HEAD = ("verdict", "equation", "result", "book", "computed")
+_CLAIMS = ("verdict", "equation", "claim", "", "evidence")
 _FAILS = ("✗", "fails")
 _LEFT = 'style="text-align:left"'  # JupyterLab would centre the heads and align numbers to the right
 
@@ -172,7 +173,8 @@ class Report:
 
     def _repr_html_(self):
         rows = [self._cells(verdict.data, verdict.mark[0]) for verdict in self.verdicts]
-        head = "".join(f"<th {_LEFT}>{name}</th>" for name in self._without_equations([_HEAD], 1)[0])
+        names = _CLAIMS if all(verdict.is_claim for verdict in self.verdicts) else _HEAD
+        head = "".join(f"<th {_LEFT}>{name}</th>" for name in self._without_equations([names], 1)[0])
         lines = [f'<tr class="{v.mark[1]}">{row}</tr>' for v, row in zip(self.verdicts, rows, strict=True)]
         sign = _FAILS[0] if self.failures else "✓"
         opened = " open" if self.failures else ""
@@ -196,6 +198,7 @@ class Report:
             cells.append(f'<td {_LEFT} colspan="2">{title}{"" if book == "says so" else f" ({book})"}</td>')
         else:
             cells += [f"<td {_LEFT}>{title}</td>", f"<td {_LEFT}>{book}</td>"]
+        computed = "the same" if data["kind"] == Formula.kind and computed == book else computed
         return "".join(self._without_equations([[*cells, f"<td {_LEFT}>{computed}</td>"]], 1)[0])
 
     def _repr_mimebundle_(self, include=None, exclude=None):
