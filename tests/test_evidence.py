@@ -98,7 +98,7 @@ TRUE = {
     "stable": (stable(LAG), "stable: no pole in the right half-plane"),
     "a stable loop": (stable(Loop(LAG, PID(2, Ti=5))), "stable: gain margin ∞, phase margin 90°, Ms 1"),
     "unstable": (unstable(1 / (s**2 - s + 1)), "unstable: 2 poles in the right half-plane"),
-    "poor stability": (poor_stability(Loop(LAG, PID(-2))), "in 1 of 1 cases; unstable: 1 pole in the right half-plane"),
+    "poor stability": (poor_stability(Loop(LAG, PID(-2))), "unstable: 1 pole in the right half-plane"),
     "refused": (refused(float, "a"), "declined: could not convert string to float: 'a'"),
 }  # fmt: skip
 
@@ -170,7 +170,7 @@ def test_what_is_not_so_does_not_hold(name):
         (different(2, 2), "2 = 2"),
         (much_greater(1, 2), "1 not much larger than 2 (by half of the smaller one or more)"),
         (every({"K = 1": less(1, 2), "K = 2": less(4, 3)}), "in 1 of 2 cases; K = 2: 4 not < 3"),
-        (increasing([1, 3, 2], "Ms"), "in 1 of 2 cases; Ms 3 not < 2"),
+        (increasing([1, 3, 2], "Ms"), "Ms 3 not < 2"),
         (stable(1 / s), "on the limit of stability: poles on the imaginary axis"),
         (refused(float, 1), "accepted"),
         (

@@ -765,6 +765,9 @@ def test_a_report_tells_everything_as_text():
     told = repr(MIXED.compare(**GOOD))
     for row in MIXED.results:
         assert all(part in told for part in (row.title, row.printed.text, row.status.word, row.status.note))
+    assert "\nreconstructed to within 5 %, assuming F = 1 <kg/s>\n" in told  # the only one
+    assert "\na: corrected: a <b>" in told  # one of two
+    assert "\none claim: corrected: it grows by a fifth\n" in told
     for part in ("Author, Example 1", MIXED.title, "6.21", "m/s", "0.632121", "reverse", "5 %", "F = 1 <kg/s>"):
         assert part in told
     assert "computed: The peak grows with the gain.\n    peak 1.5 m > 1.2 m\n" in told

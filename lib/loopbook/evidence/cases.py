@@ -56,7 +56,7 @@ class Cases(Evidence):
         deciding = [pair for pair in self.cases if pair[1].holds is not self.all] or list(self.cases)
         told = [f"{name}: {case.told(typeset)}" if name else case.told(typeset) for name, case in deciding[:_SHOWN]]
         number, count = len(self.cases), sum(case.holds for _, case in self.cases)
-        if number > _SHOWN or not (self.all and self.holds):
+        if number > _SHOWN or (any(name for name, _ in self.cases) and not (self.all and self.holds)):
             told.insert(0, f"in {count} of {number} cases")
         return self._once("; ".join([*told, "..."] if len(deciding) > _SHOWN else told))
 
@@ -146,7 +146,7 @@ def decreasing(values: Iterable[Number], quantity: str = "") -> Chain:
     """Evidence that each of several values is smaller than the one before it; otherwise as `increasing`.
 
     >>> decreasing([9, 5, 7], "control error [mm]")
-    does not hold: in 1 of 2 cases; control error 5 mm not > 7 mm
+    does not hold: control error 5 mm not > 7 mm
     """
     return _chain(values, greater, quantity)
 

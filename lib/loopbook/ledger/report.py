@@ -130,16 +130,15 @@ class Report:
     @property
     def notes(self) -> list[str]:
         """The notes on the verdicts, each once, with the results that it is about, and the slips of the entry."""
-        about: dict[str, list[str]] = {}
+        about: dict[str, list[Result]] = {}
         for verdict in self.verdicts:
             if note := verdict.result.status.note:
-                about.setdefault(note, []).append("claim" if verdict.is_claim else verdict.result.title)
-        told = []
-        for note, of in about.items():
-            names = [*dict.fromkeys(name for name in of if name != "claim")]
-            claims = of.count("claim")
-            names += [f"{claims} claims" if claims > 1 else "the claim"] if (claims and names) or claims > 1 else []
-            told.append(f"{', '.join(names)}: {note}" if names else note)
+                about.setdefault(note, []).append(verdict.result)
+        alike = Counter(verdict.result.status.word for verdict in self.verdicts)
+        told = [
+            note if len(results) == alike[results[0].status.word] else f"{_named(results)}: {note}"
+            for note, results in about.items()
+        ]
         told += [f"misprint: the book {slip.sentence}" for slip in self.entry.misprints]
         return told + [f"damaged: our copy {slip.sentence}" for slip in self.entry.damage]
 
@@ -203,6 +202,14 @@ class Report:
 
     def _repr_mimebundle_(self, include=None, exclude=None):
         return {"text/plain": repr(self), "text/html": self._repr_html_(), MIME_TYPE: self.data}
+
+
+def _named(results):
+    """A few results by their titles, more of them, or claims, by their number."""
+    if len(results) > 3 or any(isinstance(result.printed, Claim) for result in results):
+        kind = "claim" if all(isinstance(result.printed, Claim) for result in results) else "result"
+        return f"{len(results)} {kind}s" if results[1:] else f"one {kind}"
+    return ", ".join(result.title for result in results)
 
 
 def described(entry: Entry, as_html: bool = False) -> str:
