@@ -25,6 +25,7 @@ from loopbook import s, t
 from loopbook.evidence import Evidence, greater, increasing, much_greater, positive
 from loopbook.evidence.values import number_agrees
 from loopbook.ledger import Disagreement, LedgerError, Source, haugen
+from loopbook.ledger.kinds import is_symbol
 from loopbook.ledger.report import MIME_TYPE
 from loopbook.ledger.statuses import STATUSES
 
@@ -912,3 +913,14 @@ def test_what_is_quoted_is_in_the_library_and_public(place):
     found = getattr(importlib.import_module(f"loopbook.{module}"), name)
     assert not name.startswith("_")
     assert found.__doc__ or not callable(found)
+
+
+def test_what_is_no_symbol_has_a_label_for_the_reader():
+    bare = [
+        f"{source.name}, {entry.name}: {row.name}"
+        for source in loopbook.ledger.sources().values()
+        for entry in source
+        for row in entry.results
+        if row.printed.kind != "claim" and not row.label and not is_symbol(row.name)
+    ]
+    assert not bare, "\n" + "\n".join(bare)
