@@ -30,6 +30,7 @@ from loopbook.evidence.comparisons import (
     negligible,
     no_overshoot,
     nonzero,
+    not_negligible,
     not_substantially_less,
     overshoots,
     positive,
@@ -46,6 +47,6 @@ __all__ = [
     "CRITERIA", "Cases", "Comparison", "Criterion", "Evidence", "EvidenceError", "Ratio", "Refusal", "Stability",
     "about_equal", "at_least", "at_most", "decreasing", "different", "equal", "every", "good_stability", "greater",
     "increasing", "less", "much_greater", "much_less", "negative", "negligible", "no_overshoot", "nonzero",
-    "not_substantially_less", "overshoots", "poor_stability", "positive", "refused", "some", "somewhat_greater",
-    "somewhat_less", "stable", "substantially_less", "unstable", "well_damped", "zero",
+    "not_negligible", "not_substantially_less", "overshoots", "poor_stability", "positive", "refused", "some",
+    "somewhat_greater", "somewhat_less", "stable", "substantially_less", "unstable", "well_damped", "zero",
 ]  # fmt: skip

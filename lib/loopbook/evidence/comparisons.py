@@ -392,6 +392,15 @@ def negligible(value: Number, beside: Number, quantity: str = "") -> Ratio:
     return Ratio(_number(value), _number(beside), *_named(quantity), NEGLIGIBLE)
 
 
+def not_negligible(value: Number, beside: Number, quantity: str = "") -> Ratio:
+    """Evidence that a number is more than 5 percent of another one, and so can be seen beside it.
+
+    >>> not_negligible(0.1, 0.5, "control error [m]")
+    holds: control error 0.1 m not negligible beside 0.5 m (at most 5 % of what it is compared with)
+    """
+    return negligible(value, beside, quantity).turned()
+
+
 def somewhat_greater(left: Number, right: Number, quantity: str = "") -> Ratio:
     """Evidence that the first of two numbers is the larger one, but by less than half of the other.
 
