@@ -76,6 +76,8 @@ TRUE = {
     "different rows": (different([1, 2], [2, 1]), "1, 2 ≠ 2, 1"),
     "nothing": (different(set(), {"V1"}, "valves"), "valves none ≠ V1"),
     "zero": (zero(sympy.sin(sympy.pi), "offset [m]"), "offset 0 = 0"),
+    "degrees": (less(20, 31.5, "phase [°]"), "phase 20° < 31.5°"),
+    "degrees Celsius": (less(20, 31.5, "T [°C]"), "T 20 °C < 31.5 °C"),
     "nonzero": (nonzero(0.25, "offset [m]"), "offset 0.25 m ≠ 0"),
     "about equal": (about_equal(41, 40, "T [s]"), "T 41 s about equal to 40 s (at most 5 % of the larger one apart)"),
     "somewhat greater": (somewhat_greater(1.4, 1), "1.4 somewhat larger than 1 (by less than half of the smaller one)"),

@@ -558,7 +558,7 @@ def sides(left: Value, right: Value, unit: str, typeset: Typeset = str) -> tuple
     texts = next(pair for digits in (3, 4, 6, 12) if (pair := _pair(left, right, digits, typeset)) or digits == 12)
     if texts is None:
         texts = tuple(_text(value, 12, typeset) for value in (left, right))
-    space = "" if unit.startswith("°") else " "
+    space = "" if unit == "°" else " "
     return tuple(
         f"{text}{space}{unit}" if unit and isinstance(value, Fraction) and value else text
         for text, value in zip(texts, (left, right), strict=True)
