@@ -17,7 +17,7 @@ CLAIMS = ("verdict", "equation", "claim", "evidence")
 
 def typeset(verdict, key, formulas=in_html):
     """Return a text of a verdict, its title, print or computed value, as HTML with its formulas."""
-    text = verdict["tex"].get(key, verdict[key])
+    text = verdict.get("tex", {}).get(key, verdict[key])
     pieces = re.split(r"(\$[^$]+\$)", text)
     # what is no formula is text, also where it has a sign that HTML knows
     return formulas("".join(html.escape(p, quote=False) if n % 2 == 0 else p.replace("<", r"\lt ").replace(">", r"\gt ")
@@ -37,7 +37,7 @@ def cells(verdict, formulas=in_html, equations=True):
     word, _, more = verdict["word"].partition(" (")
     more = f" <small>{html.escape(more.rstrip(')'))}</small>" if more else ""
     title, book, computed = (typeset(verdict, key, formulas) for key in ("title", "book", "computed"))
-    equation = f"({html.escape(verdict['equation'])})" if verdict["equation"] else ""
+    equation = f"({html.escape(verdict['equation'])})" if "equation" in verdict else ""
     label = f' aria-label="{html.escape(verdict["name"])}"' if "<math" in title else ""  # for readers of a screen
     parts = [
         f'<td class="verdict {verdict["status"]}">{sign}&nbsp;{html.escape(word)}{more}',
@@ -60,7 +60,7 @@ def check(data):
         data: what a notebook stores.
     """
     place, heading = ledger_anchor(data["source"], data["entry"]), html.escape(data["heading"], quote=False)
-    equations = any(verdict["equation"] for verdict in data["verdicts"])
+    equations = any("equation" in verdict for verdict in data["verdicts"])
     columns = CLAIMS if all(verdict["kind"] == "claim" for verdict in data["verdicts"]) else COLUMNS
     wide = {"claim": ' colspan="2"'}
     head = "".join(f'<th scope="col"{wide.get(name, "")}>{name}' for name in columns if equations or name != "equation")

@@ -59,7 +59,7 @@ def note(result):
 def row(entry, result, verdict, formulas=in_html, shared=False):
     """Return the lines of a table for a result; a note that it shares with the result after it is below that one."""
     # what a search finds the row by that its cells do not say: the name and formulas as they are typed
-    typed = (verdict["book"], verdict["computed"]) if verdict["tex"] else ()
+    typed = (verdict["book"], verdict["computed"]) if "tex" in verdict else ()
     words = html.escape(" ".join(dict.fromkeys([result.name, *typed])))
     about = note(result)
     place = ledger_anchor(entry.source, entry.name, result.name)

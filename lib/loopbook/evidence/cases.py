@@ -70,7 +70,7 @@ class Cases(Evidence):
     @property
     def data(self) -> dict[str, Any]:
         """The data of all cases."""
-        cases = [{"case": name} | case.data for name, case in self.cases]
+        cases = [({"case": name} if name else {}) | case.data for name, case in self.cases]
         return {"kind": "every" if self.all else "some", "cases": cases, "holds": self.holds, "near": self.near}
 
 

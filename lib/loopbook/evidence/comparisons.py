@@ -139,10 +139,11 @@ class Comparison(Evidence):
     def data(self) -> dict[str, Any]:
         """The values, with enough digits to judge them again."""
         left, right = written(self.left, self.right)
+        told = {"quantity": self.quantity, "unit": self.unit, "criterion": self.criterion and self.criterion.word}
         return {
-            "kind": "comparison", "of": _kind_of(self.left, self.right), "quantity": self.quantity, "unit": self.unit,
+            "kind": "comparison", "of": _kind_of(self.left, self.right),
             "left": left, "relation": self.relation, "right": right,
-            "criterion": self.criterion.word if self.criterion else "", "holds": self.holds, "near": self.near,
+            "holds": self.holds, "near": self.near, **without_gaps(told),
         }  # fmt: skip
 
 
@@ -197,9 +198,9 @@ class Ratio(Evidence):
         """The values, with enough digits to judge them again."""
         left, right = written(self.left, self.right)
         return {
-            "kind": "ratio", "quantity": self.quantity, "unit": self.unit, "left": left, "right": right,
-            "criterion": self.criterion.word, "limit": written(self.criterion.limit)[0], "contrary": self.contrary,
-            "holds": self.holds, "near": self.near,
+            "kind": "ratio", "left": left, "right": right, "criterion": self.criterion.word,
+            "limit": written(self.criterion.limit)[0], "contrary": self.contrary,
+            "holds": self.holds, "near": self.near, **without_gaps({"quantity": self.quantity, "unit": self.unit}),
         }  # fmt: skip
 
 
@@ -602,6 +603,11 @@ def written(*values: Value) -> tuple[str, ...]:
         if len(set(texts)) == len(set(map(str, values))):
             break
     return texts
+
+
+def without_gaps(data: Mapping[str, Any]) -> dict[str, Any]:
+    """The same data without what is empty."""
+    return {key: value for key, value in data.items() if value not in (None, "", {}, [])}
 
 
 def _kind_of(*values):

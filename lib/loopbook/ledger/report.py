@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy
 
+from loopbook.evidence.comparisons import without_gaps
 from loopbook.ledger.kinds import Claim, Formula, is_symbol, typeset
 
 if TYPE_CHECKING:
@@ -84,7 +85,10 @@ class Verdict:
 
     @property
     def data(self) -> dict[str, Any]:
-        """The verdict as JSON data; `tex` has the texts that hold formulas again, those between dollar signs."""
+        """The verdict as JSON data; `tex` has the texts that hold formulas again, those between dollar signs.
+
+        What is empty is left out.
+        """
         result, printed = self.result, self.result.printed
         typeset_texts = {"computed": printed.latex(self.computed)}
         if self.is_claim:
@@ -97,16 +101,18 @@ class Verdict:
             "name": result.name,
             "kind": printed.kind,
             **plain,
-            "equation": result.equation,
-            "unit": result.unit,
             "status": result.status.word,
-            "note": result.status.note,
             "word": self.word,
-            "mark": self.mark[1],
             "holds": self.holds,
             "how": self.how,
-            "tex": {key: text for key, text in typeset_texts.items() if text and text != plain[key]},
-        } | ({"evidence": self.value.data} if self.is_claim and self.value is not None else {})
+            **without_gaps(
+                {
+                    "equation": result.equation,
+                    "tex": {key: text for key, text in typeset_texts.items() if text and text != plain[key]},
+                    "evidence": self.value.data if self.is_claim and self.value is not None else None,
+                }
+            ),
+        }
 
 
 @dataclass(frozen=True)
@@ -190,8 +196,10 @@ class Report:
         )
 
     def _cells(self, data, sign):
-        title, book, computed = (marked(data["tex"].get(key, data[key])) for key in ("title", "book", "computed"))
-        equation = marked(f"({data['equation']})") if data["equation"] else ""
+        title, book, computed = (
+            marked(data.get("tex", {}).get(key, data[key])) for key in ("title", "book", "computed")
+        )
+        equation = marked(f"({data['equation']})") if "equation" in data else ""
         cells = [f'<td {_LEFT} class="verdict">{sign}&nbsp;{marked(data["word"])}</td>', f"<td {_LEFT}>{equation}</td>"]
         if data["kind"] == Claim.kind:
             cells.append(f'<td {_LEFT} colspan="2">{title}{"" if book == "says so" else f" ({book})"}</td>')
