@@ -68,6 +68,9 @@ def ziegler_nichols_ultimate(Ku: Number, Pu: Number, kind: str = "PID") -> PID:
 def modified_ziegler_nichols(Ku: Number, Pu: Number, overshoot: str = "some") -> PID:
     """Return PID settings from the ultimate gain and period, for less overshoot than Ziegler and Nichols' own.
 
+    The settings for no overshoot are as the slide has them, and overshoot nevertheless. Its two times seem to be
+    interchanged: with Ti = Pu/2 and Td = Pu/3, as in other publications, there is less of it (chapter 16).
+
     Arguments:
         Ku, Pu: as for `ziegler_nichols_ultimate`.
         overshoot: "some" or "none".
