@@ -695,6 +695,26 @@ def test_givens_are_exact():
     assert [given.unit for given in entry.inputs.values()] == ["", "s", "%", "", ""]
 
 
+def test_printed_values_are_had_for_numbers_of_any_status():
+    rows = [
+        {"name": "Kp", "printed": "1.50"},
+        {"name": "Ti", "printed": "8", "status": "unreproduced", "because": "it is not said how"},
+        {"name": "Td", "printed": "2", "status": "corrected", "correct": "3", "because": "of a slip"},
+        {"name": "H", "kind": "formula", "printed": "K/s"},
+        {"name": "fast", "claim": "It is fast."},
+        {"name": "limit", "printed": "oo"},
+    ]
+    entry = book(result=rows)["Example 1"]
+    assert entry.printed_value("Kp") == sympy.Rational(3, 2)
+    assert entry.printed_value("Td", "Ti", "Kp") == (2, 8, sympy.Rational(3, 2))
+    assert entry.as_printed("Ti") == 8
+    for name in ("H", "fast", "limit", "Kc", 3):
+        with pytest.raises(LedgerError, match="is no printed number"):
+            entry.printed_value(name)
+    with pytest.raises(LedgerError, match="no number that only the book has"):
+        entry.as_printed("Kp")
+
+
 def test_a_notebook_cannot_change_the_ledger():
     entry = haugen["Example 4.2"]
     entry.givens["y_0"] = 5  # a copy

@@ -8,7 +8,7 @@ import re
 import statistics
 import symtable
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
@@ -83,10 +83,12 @@ def parsed(source: str) -> ast.Module | None:
         return None
 
 
-def names(node: ast.AST) -> set[str]:
-    """The names and attributes used in an expression."""
-    parts = list(ast.walk(node))
-    return {n.id for n in parts if isinstance(n, ast.Name)} | {n.attr for n in parts if isinstance(n, ast.Attribute)}
+def names(node: ast.AST, without: Collection[ast.AST] = ()) -> set[str]:
+    """The names and attributes used in an expression, but for some of its parts."""
+    if node in without:
+        return set()
+    own = {getattr(node, "id", getattr(node, "attr", ""))} if isinstance(node, ast.Name | ast.Attribute) else set()
+    return own.union(*(names(part, without) for part in ast.iter_child_nodes(node)))
 
 
 # The file.
@@ -249,9 +251,11 @@ def globals_of(function: symtable.SymbolTable) -> set[str]:
 def checks_are_computed(stored: Stored) -> list[str]:
     """No argument of `.check(...)` is a literal, a name for a literal, or the printed value handed back."""
     cells = [(label, tree(cell)) for label, cell in code(stored.notebook)]
-    literal = CONSTANTS | names_of_literals([module for _, module in cells])
+    modules = [module for _, module in cells]
+    literal, printed = CONSTANTS | names_of_literals(modules), names_of_printed_values(modules)
     found = []
     for label, module in cells:
+        compared = evidence_in(module, modules)  # a claim may be about printed values
         calls = [n for n in ast.walk(module) if isinstance(n, ast.Call) and getattr(n.func, "attr", "") == "check"]
         uses = [n for n in ast.walk(module) if isinstance(n, ast.Attribute) and n.attr == "check"]
         if len(uses) > len(calls):
@@ -260,8 +264,19 @@ def checks_are_computed(stored: Stored) -> list[str]:
         for argument in (a for call in of_ledger for a in [*call.args, *(keyword.value for keyword in call.keywords)]):
             if names(argument) <= literal:
                 found.append(f"{label}: {ast.unparse(argument)} in a check is not computed")
-            if names(argument) & {"printed", "correct", "computed"}:
+            if names(argument) & {"printed", "correct", "computed"} or names(argument, compared) & printed:
                 found.append(f"{label}: {ast.unparse(argument)} checks the ledger against itself")
+    return found
+
+
+def names_of_printed_values(modules: list[ast.Module]) -> set[str]:
+    """The method `printed_value`, and the names that are bound to what it returns, or to an expression with it."""
+    found = {"printed_value"}
+    for module in modules:
+        compared = evidence_in(module, modules)
+        for node in ast.walk(module):
+            if isinstance(node, ast.Assign) and names(node.value, compared) & {"printed_value"}:
+                found |= {name for target in node.targets for name in names(target)}
     return found
 
 

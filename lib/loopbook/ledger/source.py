@@ -240,15 +240,31 @@ class Entry:
 
         Raises LedgerError for the name of anything else.
         """
-        rows = {
-            row.name: row.printed.value
-            for row in self.results
-            if not row.is_checked and isinstance(row.printed, Number) and row.printed.is_finite
-        }
+        unchecked = [row for row in self.results if not row.is_checked]
+        return self._values_in_print("no number that only the book has", unchecked, names)
+
+    def printed_value(self, *names: str) -> Any:
+        """Return numbers of the book exactly as printed, for claims about the printed table itself.
+
+        What a book reads from its own table is judged by the cells of that table. A number is never checked against
+        itself: the rules for notebooks refuse a printed value that is handed back.
+
+        Raises LedgerError for the name of what is no number.
+
+        >>> from loopbook.ledger import syder
+        >>> syder["Table 1 (Hang et al.)"].printed_value("PID_Hang_servo_B", "PID_Hang_regulator_B")
+        (181/100, 363/100)
+        """
+        return self._values_in_print("no printed number", self.results, names)
+
+    def _values_in_print(self, what, results, names):
+        """The printed numbers of some results, one for one name, or a tuple."""
+        numbers = [row for row in results if isinstance(row.printed, Number) and row.printed.is_finite]
+        rows = {row.name: row.printed.value for row in numbers}
         for name in names:
             if name not in rows:
                 where = f"{self.source}, {self.name}"
-                raise LedgerError(f"{where}: {name!r} is no number that only the book has, {did_you_mean(name, rows)}")
+                raise LedgerError(f"{where}: {name!r} is {what}, {did_you_mean(name, rows)}")
         values = tuple(sympy.Rational(rows[name]) for name in names)
         return values[0] if len(values) == 1 else values
 
