@@ -1,8 +1,10 @@
 """Evidence holds for what is so and for nothing else, says when it is a near thing, and refuses what cannot fail."""
 
+import decimal
 import math
 from fractions import Fraction
 
+import control
 import numpy as np
 import pytest
 import sympy
@@ -51,7 +53,9 @@ from loopbook.tuning import simc
 
 K, T = sympy.symbols("K T", positive=True)
 x = sympy.Symbol("x", real=True)
+n = sympy.Symbol("n", integer=True)
 LAG = 1 / (5 * s + 1)
+f = sympy.Function("f")
 
 
 # One of each, which holds and says so.
@@ -94,7 +98,20 @@ TRUE = {
         not_negligible(0.06, 1),
         "0.06 not negligible beside 1 (at most 5 % of what it is compared with)",
     ),
-    "no overshoot": (no_overshoot(Fraction(1, 50)), "overshoot 2 % ≤ 2 % (no overshoot: at most 2 % of the step)"),
+    "on the limit, but for rounding": (at_least(0.3, 0.1 + 0.2), "0.3 ≥ 0.3"),
+    "on the limit of a ratio": (about_equal(0.95, 1), "0.95 about equal to 1 (at most 5 % of the larger one apart)"),
+    "digits in order": (greater(1234.5, 1234, "T [s]"), "T 1234.5 s > 1234 s"),
+    "large digits in order": (greater(1000000.4, 999999.7), "1000000.4 > 999999.7"),
+    "a row with digits in order": (increasing([1, 2.006, 2.0084]), "1 < 2.006 < 2.008"),
+    "a row of formulas": (increasing([K, 2 * K, 3 * K], "gain"), "gain K < 2*K < 3*K, proved"),
+    "at random points": (equal(sympy.Min(K, 10**15), K), "Min(1000000000000000, K) = K, at random points"),
+    "a huge number": (greater(10**400, 1), "1e+400 > 1"),
+    "poor on the limit": (
+        poor_stability(Loop(1 / (s + 1) ** 3, PID(8))),
+        "gain margin 1 < 2 (good stability: a gain margin of at least 2); "
+        "phase margin 0 < 30° (good stability: a phase margin of at least 30 degrees)",
+    ),
+    "no overshoot": (no_overshoot(0.02), "overshoot 2 % ≤ 2 % (no overshoot: at most 2 % of the step)"),
     "overshoots": (overshoots(0.3), "overshoot 30 % > 2 % (no overshoot: at most 2 % of the step)"),
     "well damped": (well_damped(0.1), "decay ratio 0.1 ≤ 0.25 (well damped: a decay ratio of at most 1/4)"),
     "increasing": (increasing([1, 2, 3.5], "Ms"), "Ms 1 < 2 < 3.5"),
@@ -135,8 +152,18 @@ FALSE = {
     "equal": equal(1, 1 + 1e-8),
     "equal formulas": equal(K, T),
     "formula and equation": equal(K, sympy.Eq(K, T)),
-    "formula and text": equal(K, "K"),
     "rows in another order": equal([1, 2], [2, 1]),
+    "rows of another length": equal([1], [1, 1]),
+    "a row of other kinds": equal(["1"], [1]),
+    "the same row": different([1.0, K * (T + 1)], [1, K * T + K]),
+    "the same mapping": different({"a": 1.0}, {"a": 1.0}),
+    "rounding alone": greater(0.1 + 0.2, 0.3),
+    "rounding in a row": increasing([0.3, 0.1 + 0.2]),
+    "rounding in a ratio": somewhat_greater(0.1 + 0.2, 0.3),
+    "a decimal beside a formula": greater(
+        sympy.sin(K) ** 2 * Fraction(3, 10) + sympy.cos(K) ** 2 * sympy.Rational(3, 10), 0.3
+    ),
+    "an integer that may be negative": equal(abs(n), n),
     "different": different({"a": 1}, {"a": 1}),
     "zero": zero(1e-300),
     "infinite and not": equal(math.inf, 1e308),
@@ -229,6 +256,9 @@ def test_what_fails_is_told_by_its_counterexample(found, told):
         (increasing([1, 1.01, 2]), True),
         (stable(Loop(1 / (s + 1) ** 3, PID(7.9))), True),
         (stable(Loop(1 / (s + 1) ** 3, PID(4))), False),
+        (stable(Loop(1 / (s - 1), PID(1.02))), True),
+        (every(greater(1.01, 1), greater(1, 1.01)), True),
+        (some(greater(1.01, 1), greater(1, 1.01)), True),
     ],
 )
 def test_a_near_thing_is_known(found, near):
@@ -254,7 +284,28 @@ def test_a_near_thing_is_known(found, near):
         (lambda: equal(0.5 * K, K), "rounded decimals"),
         (lambda: equal(True, 1), "a truth value, True"),
         (lambda: equal(row := [1], row), "compared with itself"),
-        (lambda: much_greater(-2, -1), "numbers that are not negative"),
+        (
+            lambda: much_greater(-2, -0.1),
+            "-2 beside -0.1: how much larger one is asks for numbers that are not negative",
+        ),
+        (lambda: about_equal(math.inf, math.inf), "two infinite numbers have no ratio"),
+        (lambda: greater(2 * K, sympy.Symbol("K", negative=True)), "two different symbols named K"),
+        (lambda: equal([3 > 2], [True]), "a truth value, True"),
+        (lambda: equal({"ok": True}, {"ok": True}), "a truth value, True"),
+        (lambda: equal(str(3 > 2), "True"), "a truth value as text"),
+        (lambda: equal(K, "K"), "K beside a text"),
+        (lambda: equal(b"a", b"a"), "b'a'"),
+        (lambda: equal([math.nan], [math.nan]), "not a number"),
+        (lambda: equal(np.array(1.0), 1), "array(1.)"),
+        (lambda: equal(sympy.Integral(f(x), (x, 0, 1)), sympy.Integral(f(1 - x), (x, 0, 1))), "is not decided"),
+        (lambda: equal(f((K**2 - 1) / (K - 1)), f(K + 1)), "is not decided"),
+        (lambda: positive(sympy.Integral(f(x), (x, 0, 1))), "is not known"),
+        (lambda: increasing(3), "3 is no row"),
+        (lambda: good_stability(LAG), "has no margins: expected a Loop"),
+        (lambda: refused(greater, K, T), "the sign of K - T is not known"),
+        (lambda: refused(3), "3 cannot be called"),
+        (lambda: greater(decimal.Decimal("sNaN"), 1), "evidence needs a real number"),
+        (lambda: stable(control.ss([[-1, 0], [0, 1]], [[1], [0]], [[1, 0]], [[0]])), "state space"),
         (lambda: about_equal(K, K), "a real number"),
         (lambda: no_overshoot("0.1"), "a real number"),
         (lambda: every(), "no case is given"),
@@ -270,7 +321,7 @@ def test_a_near_thing_is_known(found, near):
 )
 def test_what_cannot_fail_or_be_decided_is_refused_in_one_line(call, words):
     with pytest.raises(EvidenceError) as caught:
-        call().holds  # noqa: B018 - the sign of an expression is asked for then
+        call()
     assert words in str(caught.value)
     assert "\n" not in str(caught.value)
 
@@ -335,8 +386,10 @@ def test_evidence_names_the_criteria_that_it_rests_on():
 
 
 def test_data_is_plain_and_keeps_values_apart():
-    found = greater(1 + 1e-12, 1, "Ms").data
-    assert (found["left"], found["relation"], found["right"]) == ("1.000000000001", ">", "1")
+    found = greater(1 + 1e-8, 1, "Ms").data
+    assert (found["left"], found["relation"], found["right"]) == ("1.00000001", ">", "1")
+    assert about_equal(0.94999999, 1).data["left"] == "0.94999999"  # with fewer digits it would be on the limit
+    assert equal(["V1, V2"], ["V1", "V2"]).data["right"] == ["V1", "V2"]
     assert every({"K = 1": equal(K, T)}).data["cases"][0]["of"] == "formulas"
     assert equal("a", "b").data["of"] == "texts"
     assert stable(1 / s).data["unstable_poles"] == "nan"

@@ -250,7 +250,10 @@ def speaks_for(evidence):
         case "comparison":
             holds, left, right = ORDER[evidence["relation"]], evidence["left"], evidence["right"]
             if evidence["of"] == "formulas":
-                return all(holds(value, 0) for value in differences(left, right))
+                room = sympy.Float("1e-20") * {"≥": -1, "≤": 1}.get(
+                    evidence["relation"], 0
+                )  # for the noise around zero
+                return all(holds(value, room) for value in differences(left, right))
             return holds(decimal_of(left), decimal_of(right))
     raise ValueError(f"cannot judge {evidence}")
 
@@ -259,9 +262,12 @@ def decimal_of(text):
     return Decimal({"oo": "Infinity", "-oo": "-Infinity"}.get(text, text))
 
 
+ROUNDING = Decimal("1e-9")
+
+
 def nearly(left, right):
     a, b = decimal_of(left), decimal_of(right)
-    return a == b or abs(a - b) <= Decimal("1e-5") * max(abs(a), abs(b))
+    return a == b or abs(a - b) <= ROUNDING * max(abs(a), abs(b)) < Decimal("Infinity")
 
 
 def by_ratio(evidence):
@@ -276,7 +282,7 @@ def by_ratio(evidence):
         case "much":
             return a > b and a >= (1 + limit) * b
         case "substantially":
-            return a <= limit * b
+            return a < b and a <= limit * b
     raise ValueError(f"cannot judge {evidence}")
 
 

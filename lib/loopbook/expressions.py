@@ -246,7 +246,9 @@ _NUMERIC = {"Heaviside": _heaviside} | {
 def _random_value(symbol, scale, dice):
     """A random exact value that the symbol's assumptions allow; complex for a symbol that assumes nothing."""
     if symbol.is_integer:
-        return sympy.Integer(dice.randint(1, 6))
+        # small ones, of which factorials and powers are moderate, and larger ones where a limiter may begin
+        value = sympy.Integer(dice.randint(7, 40) if scale > 0 else dice.randint(1, 6))
+        return value if symbol.is_nonnegative else -value if symbol.is_nonpositive else value * dice.choice((-1, 1))
 
     def value():
         # a prime below the fraction bar: a power with such an exponent stays a number of moderate size

@@ -308,21 +308,44 @@ def names_of_literals(modules: list[ast.Module]) -> set[str]:
 
 
 def evidence_can_fail(stored: Stored) -> list[str]:
-    """No evidence compares two literals, or a thing with itself under one name or another."""
+    """No evidence is of literals, of a thing beside itself, or of what a condition or a sort has put in order."""
     cells = [(label, tree(cell)) for label, cell in code(stored.notebook)]
     modules = [module for _, module in cells]
     literal, same = CONSTANTS | names_of_literals(modules), other_names(modules)
     found = []
+    for label, module in cells:
+        for node in ast.walk(module):
+            match node:
+                case ast.ImportFrom(module="loopbook.evidence", names=imported):
+                    for alias in imported:
+                        if alias.asname or alias.name not in OFFERED:
+                            found.append(f"{label}: {ast.unparse(alias)} is evidence under another name, or its making")
+                case ast.IfExp(body=one, orelse=other) if all(evidence_in(choice, modules) for choice in (one, other)):
+                    found.append(f"{label}: {ast.unparse(node)} chooses among evidence")
+                case ast.Attribute(attr="turned"):
+                    found.append(f"{label}: {ast.unparse(node)} turns evidence around")
     for label, call in ((label, call) for label, module in cells for call in evidence_in(module, modules)):
+        of = f"{label}: {ast.unparse(call)}"
         starred = [side.value for side in call.args if isinstance(side, ast.Starred)]
-        sides = starred or call.args[: SIDES[called(call)]]
+        named = [keyword.value for keyword in call.keywords if keyword.arg not in ("quantity", None)]
+        sides = starred or [*call.args[: SIDES[called(call)]], *named]
+        written = [ast.unparse(Renamed(same).visit(copy.deepcopy(side))) for side in sides]
         if sides and all(names(side) <= literal for side in sides):
-            found.append(f"{label}: {ast.unparse(call)} is evidence of literals")
-        if len(sides) > 1 and len({ast.unparse(Renamed(same).visit(copy.deepcopy(side))) for side in sides}) == 1:
-            found.append(f"{label}: {ast.unparse(call)} compares a thing with itself")
+            found.append(f"{of} is evidence of literals")
+        if called(call) in OF_ORDER:  # the largest of several is never smaller than the smallest
+            written = [re.sub(r"^(max|min)\b", "", text) for text in written]
+        if len(sides) > 1 and len(set(written)) == 1:
+            found.append(f"{of} compares a thing with itself")
+        done = {called(side) for side in sides if isinstance(side, ast.Call)}
+        if called(call) in OF_ORDER and done & {"sorted", "abs", "Abs"}:
+            found.append(f"{of} has been put in order, or made positive, before it is compared")
     return found
 
 
+#: What holds of any values, once they are in order.
+OF_ORDER = {"greater", "less", "at_least", "at_most", "positive", "negative", "increasing", "decreasing"}
+#: What evidence is made with.
+OFFERED = {name for name in evidence.__all__ if name[0].islower()}
 #: How many of the arguments of evidence are values.
 SIDES = {
     name: 2 if len(inspect.signature(getattr(evidence, name)).parameters) > 2 else 1
@@ -393,6 +416,14 @@ def no_truth_value_becomes_a_word(stored: Stored) -> list[str]:
                     found.append(f"{label}: {ast.unparse(node)} turns a truth value into a word")
                 case ast.Dict(keys=[ast.Constant(bool()), *_], values=values) if all(map(is_text, values)):
                     found.append(f"{label}: {ast.unparse(node)} has words for truth values")
+                case ast.Subscript(value=ast.Dict(values=values)) if all(map(is_text, values)):
+                    found.append(f"{label}: {ast.unparse(node)} chooses a word")
+                case ast.BoolOp(values=values) if any(map(is_text, values)):
+                    found.append(f"{label}: {ast.unparse(node)} chooses a word")
+                case ast.If(body=[ast.Assign(value=one)], orelse=[ast.Assign(value=other)]) if is_text(one) and is_text(
+                    other
+                ):
+                    found.append(f"{label}: {ast.unparse(node.test)} chooses a word")
                 case ast.Subscript(value=ast.Tuple(parts) | ast.List(parts), slice=index) if all(
                     map(is_text, parts)
                 ) and not isinstance(index, ast.Constant | ast.UnaryOp | ast.Slice):

@@ -15,7 +15,6 @@ from loopbook.evidence.cases import Cases, decreasing, every, increasing, some
 from loopbook.evidence.comparisons import (
     Comparison,
     Evidence,
-    EvidenceError,
     Ratio,
     about_equal,
     at_least,
@@ -42,6 +41,7 @@ from loopbook.evidence.comparisons import (
 )
 from loopbook.evidence.criteria import CRITERIA, Criterion
 from loopbook.evidence.loops import Refusal, Stability, good_stability, poor_stability, refused, stable, unstable
+from loopbook.evidence.sides import EvidenceError
 
 __all__ = [
     "CRITERIA", "Cases", "Comparison", "Criterion", "Evidence", "EvidenceError", "Ratio", "Refusal", "Stability",

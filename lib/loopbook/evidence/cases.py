@@ -7,7 +7,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from loopbook.evidence.comparisons import Comparison, Evidence, EvidenceError, Typeset, greater, less
+from loopbook.evidence.comparisons import Comparison, Evidence, greater, less
+from loopbook.evidence.sides import EvidenceError, Typeset, texts
 
 if TYPE_CHECKING:
     from loopbook.evidence.criteria import Criterion
@@ -40,9 +41,15 @@ class Cases(Evidence):
 
     @property
     def near(self) -> bool:
-        """Whether another verdict on near things would turn the verdict on all."""
-        others = [case.holds is not case.near for _, case in self.cases]
-        return (all if self.all else any)(others) is not self.holds
+        """Whether other verdicts on some of the near things would turn the verdict on all."""
+        to_hold, to_fail = (all, any) if self.all else (any, all)
+        may_hold = to_hold(case.holds or case.near for _, case in self.cases)
+        return may_hold and to_fail(not case.holds or case.near for _, case in self.cases)
+
+    @property
+    def probed(self) -> bool:
+        """Whether one of the cases was found at random points."""
+        return any(case.probed for _, case in self.cases)
 
     def turned(self) -> Cases:
         """With a counterexample to what shall hold always; without what shall hold once."""
@@ -80,12 +87,12 @@ class Chain(Cases):
 
     def told(self, typeset: Typeset = str) -> str:
         """The quantity and all values in a row."""
-        first = self.cases[0][1]
-        if len(self.cases) > 2 * _SHOWN or not self.holds:
+        links: list[Comparison] = [link for _, link in self.cases]
+        if len(links) > 2 * _SHOWN or not self.holds:
             return super().told(typeset)
-        rows = [case.told(typeset).removeprefix(first.quantity).strip() for _, case in self.cases]
-        steps = [row.partition(f" {first.relation} ")[2] for row in rows[1:]]
-        return f" {first.relation} ".join([f"{first.quantity} {rows[0]}".strip(), *steps])
+        first = links[0]
+        row = texts([first.left, *(link.right for link in links)], first.unit, typeset)
+        return f"{first.quantity} {f' {first.relation} '.join(row)}{first.way}".strip()
 
 
 def every(*cases: Evidence | Mapping[Any, Evidence]) -> Cases:
@@ -152,7 +159,10 @@ def decreasing(values: Iterable[Number], quantity: str = "") -> Chain:
 
 
 def _chain(values, compared, quantity):
-    values = list(values)
+    try:
+        values = list(values)
+    except TypeError:
+        raise EvidenceError(f"{values!r:.60} is no row: expected at least two values") from None
     if len(values) < 2:
         raise EvidenceError(f"{values} is no row: expected at least two values")
     links: list[Comparison] = [compared(a, b, quantity) for a, b in itertools.pairwise(values)]

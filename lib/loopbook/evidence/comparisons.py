@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import functools
 import math
-import operator
 import re
-from collections.abc import Callable, Collection, Mapping, Set
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import sympy
 
@@ -23,24 +21,28 @@ from loopbook.evidence.criteria import (
     WELL_DAMPED,
     Criterion,
 )
-from loopbook.evidence.values import formulas_agree, in_one_line, number
-from loopbook.expressions import exact
+from loopbook.evidence.sides import (
+    ROUNDING,
+    EvidenceError,
+    Side,
+    Typeset,
+    anything,
+    data,
+    equality,
+    kind_of,
+    numbers,
+    numbers_or_expressions,
+    order,
+    proved,
+    texts,
+)
+from loopbook.evidence.values import in_one_line
 
 if TYPE_CHECKING:
     from loopbook.types import Number
 
-#: What the sides of a comparison are: numbers, formulas, or names in a row.
-Value: TypeAlias = Fraction | float | sympy.Expr | sympy.Equality | tuple
-#: How a formula is written into a sentence.
-Typeset: TypeAlias = Callable[[Any], str]
-
-_HOLDS = {">": operator.gt, "<": operator.lt, "≥": operator.ge, "≤": operator.le}
+_HOLDS = {">": (1,), "<": (-1,), "≥": (1, 0), "≤": (-1, 0)}  # the orders of two numbers between which it is
 _CONTRARY = {">": "≤", "≤": ">", "<": "≥", "≥": "<", "=": "≠", "≠": "="}
-_ROUNDING = Fraction(1, 10**9)  # what floats that are equal may differ by, as a share of the larger one
-
-
-class EvidenceError(ValueError):
-    """What is no evidence: one sentence that names the value and what was expected."""
 
 
 class Evidence:
@@ -48,13 +50,15 @@ class Evidence:
 
     Attributes:
         holds: whether it speaks for the claim.
-        near: whether a criterion with half or twice its limit would give another verdict.
+        near: whether a criterion with half or twice its limit would give another verdict, or a few percent of a value.
+        probed: whether an equality was found at random points, and not proved.
         criteria: those it rests on.
         data: all of it as JSON data, from which it can be judged again.
     """
 
     holds: bool
     near: bool
+    probed: bool = False
     criteria: tuple[Criterion, ...] = ()
     data: dict[str, Any]
 
@@ -63,7 +67,7 @@ class Evidence:
         raise NotImplementedError
 
     def turned(self) -> Evidence:
-        """The evidence for the contrary: with sides exchanged, or a counterexample added."""
+        """The evidence for the contrary."""
         raise NotImplementedError
 
     def __bool__(self) -> bool:
@@ -84,12 +88,15 @@ class Comparison(Evidence):
         criterion: whose limit the value on the right is; None where it is a value of its own.
     """
 
-    left: Value
+    left: Side
     relation: str
-    right: Value
+    right: Side
     quantity: str = ""
     unit: str = ""
     criterion: Criterion | None = None
+
+    def __post_init__(self) -> None:
+        self._is_so(self.left, self.right)  # what cannot be decided is said at once
 
     @property
     def criteria(self) -> tuple[Criterion, ...]:
@@ -99,25 +106,25 @@ class Comparison(Evidence):
     @property
     def holds(self) -> bool:
         """Whether the relation is between the two values."""
-        return self._is_so(self.right)
+        return self._is_so(self.left, self.right)
 
-    def _is_so(self, right):
+    def _is_so(self, left, right):
         if self.relation in "=≠":
-            return bool(self._how) is (self.relation == "=")
-        if isinstance(self.left, sympy.Basic) or isinstance(right, sympy.Basic):
-            return _HOLDS[self.relation](_sign(self.left, right), 0)
-        return _HOLDS[self.relation](self.left, right)
+            return bool(equality(left, right)) is (self.relation == "=")
+        if isinstance(left, sympy.Basic):
+            return proved(left, self.relation, right)
+        return order(left, right) in _HOLDS[self.relation]
 
     @property
-    def _how(self):
-        """How the two are equal; empty where they are not."""
-        return _equal(self.left, self.right)
+    def probed(self) -> bool:
+        """Whether the two were found equal at random points alone."""
+        return self.relation in "=≠" and equality(self.left, self.right) == "probed"
 
     @property
     def near(self) -> bool:
         """Whether the verdict hangs on the limit, or on a few percent."""
         if self.criterion:
-            return len({self._is_so(self.right * factor) for factor in (Fraction(1, 2), 1, 2)}) > 1
+            return len({self._is_so(self.left, self.right * factor) for factor in (Fraction(1, 2), 1, 2)}) > 1
         if self.relation in "=≠" or not all(isinstance(side, Fraction) for side in (self.left, self.right)):
             return False
         return self.left != 0 != self.right and _apart(self.left, self.right) <= SAME.limit
@@ -126,24 +133,33 @@ class Comparison(Evidence):
         """The same values in the contrary relation."""
         return replace(self, relation=_CONTRARY[self.relation])
 
+    @property
+    def sign(self) -> str:
+        """The relation as it was found."""
+        return self.relation if self.holds else {"=": "≠", "≠": "="}.get(self.relation, f"not {self.relation}")
+
+    @property
+    def way(self) -> str:
+        """How it was found, where formulas are compared, as the end of a sentence."""
+        if not isinstance(self.left, sympy.Basic):
+            return ""
+        return ", at random points" if self.probed else ", proved"
+
     def told(self, typeset: Typeset = str) -> str:
         """The quantity, its values and the relation, as in "Ms 2.31 > 1.59"."""
-        relation = self.relation if self.holds else {"=": "≠", "≠": "="}.get(self.relation, f"not {self.relation}")
-        left, right = sides(self.left, self.right, self.unit, typeset)
-        how = ", proved" if isinstance(self.left, sympy.Basic) or isinstance(self.right, sympy.Basic) else ""
-        how = ", at random points" if how and self.relation == "=" and self._how == "probed" else how
+        left, right = texts([self.left, self.right], self.unit, typeset)
         why = f" ({self.criterion.word}: {self.criterion.meaning})" if self.criterion else ""
-        return f"{self.quantity} {left} {relation} {right}{how}{why}".strip()
+        return f"{self.quantity} {left} {self.sign} {right}{self.way}{why}".strip()
 
     @property
     def data(self) -> dict[str, Any]:
         """The values, with enough digits to judge them again."""
-        left, right = written(self.left, self.right)
-        told = {"quantity": self.quantity, "unit": self.unit, "criterion": self.criterion and self.criterion.word}
+        left, right = data(self.left, self.right, decides=lambda *sides: self._is_so(*sides) is self.holds)
+        named = {"quantity": self.quantity, "unit": self.unit, "criterion": self.criterion and self.criterion.word}
         return {
-            "kind": "comparison", "of": _kind_of(self.left, self.right),
+            "kind": "comparison", "of": kind_of(self.left, self.right),
             "left": left, "relation": self.relation, "right": right,
-            "holds": self.holds, "near": self.near, **without_gaps(told),
+            "holds": self.holds, "near": self.near, **without_gaps(named),
         }  # fmt: skip
 
 
@@ -152,7 +168,7 @@ class Ratio(Evidence):
     """Two numbers, and a criterion on how much larger one is than the other.
 
     Attributes:
-        left, right: the numbers, none of them negative.
+        left, right: the numbers.
         quantity, unit: what is compared.
         criterion: SAME, SOMEWHAT, MUCH, SUBSTANTIALLY or NEGLIGIBLE.
         contrary: whether it is said not to be so.
@@ -165,6 +181,13 @@ class Ratio(Evidence):
     criterion: Criterion
     contrary: bool = False
 
+    def __post_init__(self) -> None:
+        if abs(self.left) == abs(self.right) == math.inf:
+            raise EvidenceError("two infinite numbers have no ratio: expected numbers to compare")
+        if self.criterion in (SOMEWHAT, MUCH, SUBSTANTIALLY) and min(self.left, self.right) < 0:
+            one, other = texts([self.left, self.right])
+            raise EvidenceError(f"{one} beside {other}: how much larger one is asks for numbers that are not negative")
+
     @property
     def criteria(self) -> tuple[Criterion, ...]:
         """The criterion."""
@@ -173,13 +196,19 @@ class Ratio(Evidence):
     @property
     def holds(self) -> bool:
         """Whether the criterion says so."""
-        return _BY_RATIO[self.criterion](self.left, self.right, self.criterion.limit) is not self.contrary
+        return self._is_so(self.left, self.right, self.criterion.limit) is not self.contrary
+
+    def _is_so(self, left, right, limit):
+        return _BY_RATIO[self.criterion](left, right, limit)
+
+    def _with_limits(self, left, right):
+        """The verdicts with half the limit, the limit, and twice the limit."""
+        return [self._is_so(left, right, self.criterion.limit * factor) for factor in (Fraction(1, 2), 1, 2)]
 
     @property
     def near(self) -> bool:
         """Whether half or twice the limit gives another verdict."""
-        judge, limit = _BY_RATIO[self.criterion], self.criterion.limit
-        return len({judge(self.left, self.right, limit * factor) for factor in (Fraction(1, 2), 1, 2)}) > 1
+        return len(set(self._with_limits(self.left, self.right))) > 1
 
     def turned(self) -> Ratio:
         """The same numbers, for the contrary."""
@@ -187,29 +216,36 @@ class Ratio(Evidence):
 
     def told(self, typeset: Typeset = str) -> str:
         """The numbers and the word for what is between them."""
-        left, right = sides(self.left, self.right, self.unit, typeset)
-        so = self.holds is not self.contrary
-        word = {SOMEWHAT: "somewhat larger than", MUCH: "much larger than", NEGLIGIBLE: "negligible beside",
-                SAME: "about equal to", SUBSTANTIALLY: "substantially smaller than"}[self.criterion]  # fmt: skip
-        return f"{self.quantity} {left} {'' if so else 'not '}{word} {right} ({self.criterion.meaning})".strip()
+        left, right = texts([self.left, self.right], self.unit, typeset)
+        word = _WORDS[self.criterion] if self.holds is not self.contrary else f"not {_WORDS[self.criterion]}"
+        return f"{self.quantity} {left} {word} {right} ({self.criterion.meaning})".strip()
 
     @property
     def data(self) -> dict[str, Any]:
         """The values, with enough digits to judge them again."""
-        left, right = written(self.left, self.right)
+        verdicts = self._with_limits(self.left, self.right)
+        left, right = data(self.left, self.right, decides=lambda *sides: self._with_limits(*sides) == verdicts)
         return {
             "kind": "ratio", "left": left, "right": right, "criterion": self.criterion.word,
-            "limit": written(self.criterion.limit)[0], "contrary": self.contrary,
+            "limit": data(self.criterion.limit)[0], "contrary": self.contrary,
             "holds": self.holds, "near": self.near, **without_gaps({"quantity": self.quantity, "unit": self.unit}),
         }  # fmt: skip
 
 
+_ROOM = 1 + ROUNDING  # a limit is met where rounding alone is beyond it
 _BY_RATIO = {
-    SAME: lambda a, b, limit: _apart(a, b) <= limit,
-    NEGLIGIBLE: lambda a, b, limit: abs(a) <= limit * abs(b),
-    SOMEWHAT: lambda a, b, limit: b < a < (1 + limit) * b,
-    MUCH: lambda a, b, limit: a > b and a >= (1 + limit) * b,
-    SUBSTANTIALLY: lambda a, b, limit: a <= limit * b,
+    SAME: lambda a, b, limit: _apart(a, b) <= limit * _ROOM,
+    NEGLIGIBLE: lambda a, b, limit: abs(a) <= limit * abs(b) * _ROOM,
+    SOMEWHAT: lambda a, b, limit: order(a, b) > 0 and a * _ROOM < (1 + limit) * b,
+    MUCH: lambda a, b, limit: order(a, b) > 0 and a * _ROOM >= (1 + limit) * b,
+    SUBSTANTIALLY: lambda a, b, limit: order(a, b) < 0 and a <= limit * b * _ROOM,
+}
+_WORDS = {
+    SOMEWHAT: "somewhat larger than",
+    MUCH: "much larger than",
+    NEGLIGIBLE: "negligible beside",
+    SAME: "about equal to",
+    SUBSTANTIALLY: "substantially smaller than",
 }
 
 
@@ -218,6 +254,11 @@ def _apart(a, b):
     if a == b:
         return 0
     return math.inf if math.inf in (abs(a), abs(b)) else abs(a - b) / max(abs(a), abs(b))
+
+
+def without_gaps(data: Mapping[str, Any]) -> dict[str, Any]:
+    """The same data without what is empty."""
+    return {key: value for key, value in data.items() if value not in (None, "", {}, [])}
 
 
 # ------------------------------------------------------------------------------------- which of two values is larger
@@ -288,20 +329,8 @@ def negative(value: Number, quantity: str = "") -> Comparison:
 
 
 def _compared(left, relation, right, quantity):
-    return Comparison(_number_or_expression(left), relation, _number_or_expression(right), *_named(quantity))
-
-
-@functools.cache
-def _sign(left, right):
-    """The sign of a difference of expressions, proved."""
-    left, right = (sympy.Rational(x) if isinstance(x, Fraction) else sympy.sympify(x) for x in (left, right))
-    difference = left - right
-    for simpler in (sympy.factor, lambda x: sympy.factor(sympy.together(x)), sympy.simplify):
-        found = simpler(difference)
-        for sign, known in ((1, found.is_positive), (-1, found.is_negative), (0, found.is_zero)):
-            if known:
-                return sign
-    raise EvidenceError(f"the sign of {difference} is not known: expected numbers, or symbols that decide it")
+    left, right = numbers_or_expressions(left, right)
+    return Comparison(left, relation, right, *_named(quantity))
 
 
 # ----------------------------------------------------------------------------------------- what is equal, and what not
@@ -327,9 +356,8 @@ def equal(left: object, right: object, quantity: str = "") -> Comparison:
     """
     if left is right and isinstance(left, list | set | dict):
         raise EvidenceError(f"{in_one_line(repr(left))[:60]} is compared with itself: expected two computed values")
-    if any(isinstance(side, Set | Mapping) for side in (left, right)):
-        left, right = (sorted(_row(side)) if isinstance(side, Collection) else side for side in (left, right))
-    return Comparison(_any(left), "=", _any(right), *_named(quantity))
+    left, right = anything(left, right)
+    return Comparison(left, "=", right, *_named(quantity))
 
 
 def different(left: object, right: object, quantity: str = "") -> Comparison:
@@ -359,19 +387,6 @@ def nonzero(value: Number, quantity: str = "") -> Comparison:
     return different(value, 0, quantity)
 
 
-@functools.cache
-def _equal(left, right):
-    """How two values are equal: "exact", "proved", "probed", or empty where they are not."""
-    if isinstance(left, tuple) or isinstance(right, tuple):
-        return "exact" if left == right else ""
-    if isinstance(left, sympy.Basic) or isinstance(right, sympy.Basic):
-        left, right = (sympy.Rational(x) if isinstance(x, Fraction) else sympy.sympify(x) for x in (left, right))
-        return formulas_agree(left, right)
-    if math.inf in (abs(left), abs(right)):
-        return "exact" if left == right else ""
-    return "exact" if abs(left - right) <= _ROUNDING * max(abs(left), abs(right)) else ""
-
-
 # ------------------------------------------------------------------------------------------------------- by a criterion
 
 
@@ -381,7 +396,7 @@ def about_equal(left: Number, right: Number, quantity: str = "") -> Ratio:
     >>> about_equal(41, 40, "period [s]")
     holds: period 41 s about equal to 40 s (at most 5 % of the larger one apart)
     """
-    return Ratio(_number(left), _number(right), *_named(quantity), SAME)
+    return _by_ratio(left, right, quantity, SAME)
 
 
 def negligible(value: Number, beside: Number, quantity: str = "") -> Ratio:
@@ -390,7 +405,7 @@ def negligible(value: Number, beside: Number, quantity: str = "") -> Ratio:
     >>> negligible(0.001, 0.5, "control error [m]")
     holds: control error 0.001 m negligible beside 0.5 m (at most 5 % of what it is compared with)
     """
-    return Ratio(_number(value), _number(beside), *_named(quantity), NEGLIGIBLE)
+    return _by_ratio(value, beside, quantity, NEGLIGIBLE)
 
 
 def not_negligible(value: Number, beside: Number, quantity: str = "") -> Ratio:
@@ -471,7 +486,8 @@ def no_overshoot(overshoot: Number) -> Comparison:
     >>> no_overshoot(0.013)
     holds: overshoot 1.3 % ≤ 2 % (no overshoot: at most 2 % of the step)
     """
-    return Comparison(100 * _number(overshoot), "≤", NO_OVERSHOOT.limit, "overshoot", "%", NO_OVERSHOOT)
+    (share,) = numbers(overshoot)
+    return _within(100 * share, "overshoot", "%", NO_OVERSHOOT)
 
 
 def overshoots(overshoot: Number) -> Comparison:
@@ -489,58 +505,16 @@ def well_damped(decay_ratio: Number) -> Comparison:
     >>> well_damped(0.11).holds, well_damped(0.4).holds
     (True, False)
     """
-    return Comparison(_number(decay_ratio), "≤", WELL_DAMPED.limit, "decay ratio", "", WELL_DAMPED)
+    (ratio,) = numbers(decay_ratio)
+    return _within(ratio, "decay ratio", "", WELL_DAMPED)
+
+
+def _within(value, quantity, unit, criterion):
+    return Comparison(value, "≤", criterion.limit, quantity, unit, criterion)
 
 
 def _by_ratio(left, right, quantity, criterion):
-    left, right = _number(left), _number(right)
-    if left < 0 or right < 0:
-        raise EvidenceError(f"{left} beside {right}: how much larger one is asks for numbers that are not negative")
-    return Ratio(left, right, *_named(quantity), criterion)
-
-
-# ------------------------------------------------------------------------------------------------------- reading values
-
-
-def _number(value):
-    try:
-        return number(value)
-    except TypeError as error:
-        raise EvidenceError(f"evidence needs a real number, got {error}") from None
-
-
-def _number_or_expression(value):
-    try:
-        return number(value)
-    except TypeError as error:
-        if isinstance(value, sympy.Expr):
-            return _expression(value)
-        raise EvidenceError(f"evidence needs a real number or an expression, got {error}") from None
-
-
-def _expression(value):
-    if value.has(sympy.Float):
-        raise EvidenceError(f"{value} holds rounded decimals: give exact numbers")
-    if value.has(sympy.nan, sympy.zoo, sympy.AccumBounds):
-        raise EvidenceError(f"{value} has no value")
-    return exact(value) if isinstance(value, sympy.Expr) else value
-
-
-def _any(value):
-    if isinstance(value, sympy.Equality):
-        return _expression(value)
-    if isinstance(value, Collection) and not isinstance(value, sympy.Basic):
-        return _row(value)
-    return _number_or_expression(value)
-
-
-def _row(collection):
-    """A collection as texts in a row; a mapping by its items."""
-    if isinstance(collection, str):
-        return (in_one_line(collection),)
-    if isinstance(collection, Mapping):
-        return tuple(f"{key}: {value}" for key, value in collection.items())
-    return tuple(map(str, collection))
+    return Ratio(*numbers(left, right), *_named(quantity), criterion)
 
 
 def _named(quantity):
@@ -549,78 +523,3 @@ def _named(quantity):
         raise EvidenceError(f'the quantity is {quantity!r}: expected text, as "settling time [s]"')
     name, unit = re.fullmatch(r"(.*?)\s*(?:\[([^\[\]]*)\])?", in_one_line(quantity)).groups()
     return name, unit or ""
-
-
-# ------------------------------------------------------------------------------------------------------- writing values
-
-
-def sides(left: Value, right: Value, unit: str, typeset: Typeset = str) -> tuple[str, str]:
-    """Two values as text, numbers with so many digits that they differ if they do, each with the unit."""
-    texts = next(pair for digits in (3, 4, 6, 12) if (pair := _pair(left, right, digits, typeset)) or digits == 12)
-    if texts is None:
-        texts = tuple(_text(value, 12, typeset) for value in (left, right))
-    space = "" if unit == "°" else " "
-    return tuple(
-        f"{text}{space}{unit}" if unit and isinstance(value, Fraction) and value else text
-        for text, value in zip(texts, (left, right), strict=True)
-    )
-
-
-def _pair(left, right, digits, typeset):
-    pair = tuple(_text(value, digits, typeset) for value in (left, right))
-    return pair if pair[0] != pair[1] or isinstance(left, tuple | sympy.Basic) or _equal(left, right) else None
-
-
-def _text(value, digits, typeset):
-    if isinstance(value, tuple):
-        return ", ".join(value) or "none"
-    if isinstance(value, sympy.Basic):
-        return typeset(value)
-    return rounded(value, digits)
-
-
-def rounded(value: Fraction | float, digits: int = 3) -> str:
-    """A number with so many significant digits, without an exponent where it is of usual size.
-
-    >>> rounded(Fraction(200, 3)), rounded(Fraction(1234)), rounded(Fraction(1, 3000)), rounded(math.inf)
-    ('66.7', '1234', '0.000333', '∞')
-    """
-    if value in (math.inf, -math.inf):
-        return "∞" if value > 0 else "-∞"
-    if value == 0 or (value.denominator == 1 and abs(value) < 10**6):
-        return str(value)
-    if not Fraction(1, 10**4) <= abs(value) < 10**6:
-        return f"{float(value):.{digits}g}"
-    places = digits - 1 - math.floor(math.log10(abs(value)))
-    text = f"{float(round(value, places)):.{max(places, 0)}f}"
-    return text.rstrip("0").rstrip(".") if "." in text else text
-
-
-def written(*values: Value) -> tuple[str, ...]:
-    """Values as data: numbers with as many digits as keep them apart, six at least."""
-    for digits in (6, 9, 12, 15):
-        texts = tuple(_as_data(value, digits) for value in values)
-        if len(set(texts)) == len(set(map(str, values))):
-            break
-    return texts
-
-
-def without_gaps(data: Mapping[str, Any]) -> dict[str, Any]:
-    """The same data without what is empty."""
-    return {key: value for key, value in data.items() if value not in (None, "", {}, [])}
-
-
-def _kind_of(*values):
-    if any(isinstance(value, tuple) for value in values):
-        return "texts"
-    return "formulas" if any(isinstance(value, sympy.Basic) for value in values) else "numbers"
-
-
-def _as_data(value, digits):
-    if isinstance(value, tuple):
-        return ", ".join(value)
-    if isinstance(value, sympy.Equality):
-        return f"{value.lhs} = {value.rhs}"
-    if isinstance(value, sympy.Basic):
-        return str(value)
-    return f"{float(value):.{digits}g}" if isinstance(value, Fraction) else ("oo" if value > 0 else "-oo")

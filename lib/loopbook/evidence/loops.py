@@ -9,9 +9,10 @@ from fractions import Fraction
 from typing import Any
 
 from loopbook.evidence.cases import Cases, every, some
-from loopbook.evidence.comparisons import Comparison, Evidence, Typeset, rounded
+from loopbook.evidence.comparisons import Comparison, Evidence
 from loopbook.evidence.criteria import GAIN_MARGIN, PHASE_MARGIN
-from loopbook.evidence.values import in_one_line, number
+from loopbook.evidence.sides import EvidenceError, Typeset, numbers, rounded
+from loopbook.evidence.values import in_one_line
 from loopbook.stability import StabilityLimitError, margins, unstable_poles
 
 _CLOSE = 1.05  # a stable loop that 5 percent more gain makes unstable is so by a near thing
@@ -24,7 +25,7 @@ class Stability(Evidence):
     Attributes:
         is_stable: whether it is said to be.
         unstable_poles: how many poles are in the right half-plane; nan for a system on the limit.
-        margins: (gain margin, phase margin in degrees, Ms) of a stable loop; empty for what is no loop.
+        margins: (gain margin, phase margin in degrees, Ms, gain reduction) of a stable loop; empty for what is none.
     """
 
     is_stable: bool
@@ -38,8 +39,8 @@ class Stability(Evidence):
 
     @property
     def near(self) -> bool:
-        """Whether a few percent of gain would make a stable loop unstable."""
-        return bool(self.margins) and self.margins[0] < _CLOSE
+        """Whether a few percent of gain, up or down, would make a stable loop unstable."""
+        return bool(self.margins) and (self.margins[0] < _CLOSE or self.margins[3] * _CLOSE > 1)
 
     def turned(self) -> Stability:
         """The contrary of what is said."""
@@ -54,7 +55,7 @@ class Stability(Evidence):
             return f"unstable: {poles} {'pole' if poles == '1' else 'poles'} in the right half-plane"
         if not self.margins:
             return "stable: no pole in the right half-plane"
-        gain, phase, Ms = (rounded(x if x == math.inf else Fraction(x)) for x in self.margins)
+        gain, phase, Ms = (rounded(x if x == math.inf else Fraction(x)) for x in self.margins[:3])
         return f"stable: gain margin {gain}, phase margin {phase}°, Ms {Ms}"
 
     @property
@@ -81,10 +82,14 @@ def stable(system: object) -> Stability:
     >>> stable(1 / (s - 1))
     does not hold: unstable: 1 pole in the right half-plane
     """
+    if hasattr(system, "nstates"):
+        raise EvidenceError("a model in state space may have modes that no input or output sees: expected its matrix A")
     try:
         count = unstable_poles(system)
     except StabilityLimitError:
         return Stability(True, math.nan)
+    except ArithmeticError as error:
+        raise EvidenceError(f"whether {in_one_line(repr(system))[:60]} is stable is not known: {error}") from None
     if count or not hasattr(system, "margins"):
         return Stability(True, count)
     return Stability(True, 0, _margins(system))
@@ -92,7 +97,7 @@ def stable(system: object) -> Stability:
 
 def _margins(loop):
     found = margins(loop)
-    return found.gain_margin, found.phase_margin, found.Ms
+    return found.gain_margin, found.phase_margin, found.Ms, found.gain_reduction
 
 
 def unstable(system: object) -> Stability:
@@ -113,12 +118,15 @@ def good_stability(loop: object) -> Cases:
     holds: gain margin 4 ≥ 2 (good stability: a gain margin of at least 2); phase margin 44.1° ≥ 30° (good stability: a phase margin of at least 30 degrees)
     """  # noqa: E501
     found = stable(loop)
-    if not found.holds:
+    if found.unstable_poles > 0:
         return every(found)
-    gain, phase, _ = found.margins
+    if found.holds and not found.margins:
+        raise EvidenceError(f"{in_one_line(repr(loop))[:60]} has no margins: expected a Loop")
+    # on the limit of stability nothing is left
+    gain, phase = numbers(*found.margins[:2]) if found.margins else (Fraction(1), Fraction(0))
     return every(
-        Comparison(number(gain), "≥", GAIN_MARGIN.limit, "gain margin", "", GAIN_MARGIN),
-        Comparison(number(phase), "≥", PHASE_MARGIN.limit, "phase margin", "°", PHASE_MARGIN),
+        Comparison(gain, "≥", GAIN_MARGIN.limit, "gain margin", "", GAIN_MARGIN),
+        Comparison(phase, "≥", PHASE_MARGIN.limit, "phase margin", "°", PHASE_MARGIN),
     )
 
 
@@ -165,15 +173,21 @@ def refused(function: Callable[..., Any], *arguments: Any, **named: Any) -> Refu
     """Evidence that something cannot be done: a function of the library declines with a sentence.
 
     Arguments:
-        function: that declines by a ValueError.
+        function: of the library, that declines by a ValueError.
         arguments, named: what it is called with.
+    Raises:
+        EvidenceError: for what cannot be called, and as other evidence that is asked for in it.
 
     >>> from loopbook import s
     >>> refused(margins, 1 / (s - 1) ** 2).holds
     True
     """
+    if not callable(function):
+        raise EvidenceError(f"{function!r:.60} cannot be called: expected a function, and its arguments after it")
     try:
         function(*arguments, **named)
+    except EvidenceError:
+        raise
     except ValueError as error:
         return Refusal(in_one_line(str(error)) or type(error).__name__)
     return Refusal("")

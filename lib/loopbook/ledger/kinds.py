@@ -163,8 +163,10 @@ class Claim:
         return value
 
     def agrees(self, evidence: Evidence) -> str:
-        """Return "evidence" where it says of the sentence what the book says, otherwise nothing."""
-        return "evidence" if evidence.holds is self.says else ""
+        """Return "evidence", or "probed", where it says of the sentence what the book says, otherwise nothing."""
+        if evidence.holds is not self.says:
+            return ""
+        return "probed" if evidence.probed else "evidence"
 
     def written(self, evidence: Evidence, *others: Claim) -> str:
         """Return the evidence as text."""
