@@ -38,8 +38,10 @@ from loopbook.evidence import (
     not_substantially_less,
     overshoots,
     poor_stability,
+    poorly_damped,
     positive,
     refused,
+    roughly_equal,
     some,
     somewhat_greater,
     somewhat_less,
@@ -84,6 +86,7 @@ TRUE = {
     "degrees Celsius": (less(20, 31.5, "T [°C]"), "T 20 °C < 31.5 °C"),
     "nonzero": (nonzero(0.25, "offset [m]"), "offset 0.25 m ≠ 0"),
     "about equal": (about_equal(41, 40, "T [s]"), "T 41 s about equal to 40 s (at most 5 % of the larger one apart)"),
+    "roughly equal": (roughly_equal(1, 1.4), "1 roughly equal to 1.4 (less than half of the smaller one apart)"),
     "somewhat greater": (somewhat_greater(1.4, 1), "1.4 somewhat larger than 1 (by less than half of the smaller one)"),
     "somewhat less": (somewhat_less(1, 1.4), "1.4 somewhat larger than 1 (by less than half of the smaller one)"),
     "much greater": (much_greater(1, 0), "1 much larger than 0 (by half of the smaller one or more)"),
@@ -114,6 +117,7 @@ TRUE = {
     "no overshoot": (no_overshoot(0.02), "overshoot 2 % ≤ 2 % (no overshoot: at most 2 % of the step)"),
     "overshoots": (overshoots(0.3), "overshoot 30 % > 2 % (no overshoot: at most 2 % of the step)"),
     "well damped": (well_damped(0.1), "decay ratio 0.1 ≤ 0.25 (well damped: a decay ratio of at most 1/4)"),
+    "poorly damped": (poorly_damped(0.3), "decay ratio 0.3 > 0.25 (well damped: a decay ratio of at most 1/4)"),
     "increasing": (increasing([1, 2, 3.5], "Ms"), "Ms 1 < 2 < 3.5"),
     "decreasing": (decreasing(np.array([3, 2]), "offset [m]"), "offset 3 m > 2 m"),
     "every": (every({"K = 1": less(1, 2), "K = 2": less(2, 3)}), "K = 1: 1 < 2; K = 2: 2 < 3"),
@@ -169,6 +173,9 @@ FALSE = {
     "infinite and not": equal(math.inf, 1e308),
     "about equal": about_equal(106, 100),
     "about equal to nothing": about_equal(1e-9, 0),
+    "roughly is not half more": roughly_equal(3, 2),
+    "roughly is not a third less": roughly_equal(2, 3),
+    "roughly nothing": roughly_equal(1e-9, 0),
     "somewhat is not much": somewhat_greater(1.5, 1),
     "somewhat is not the same": somewhat_greater(1, 1),
     "much is not somewhat": much_greater(1.49, 1),
@@ -179,6 +186,7 @@ FALSE = {
     "just negligible": not_negligible(Fraction(1, 20), 1),
     "overshoot": no_overshoot(0.021),
     "an undamped one": well_damped(0.26),
+    "a quarter is not poorly damped": poorly_damped(Fraction(1, 4)),
     "increasing": increasing([1, 3, 2]),
     "constant": decreasing([1, 1]),
     "every": every(less(1, 2), less(2, 1)),
@@ -234,6 +242,10 @@ def test_what_fails_is_told_by_its_counterexample(found, told):
         (much_greater(1.6, 1), True),
         (much_greater(2.1, 1), False),
         (much_greater(1.1, 1), False),
+        (roughly_equal(1, 1.2), False),
+        (roughly_equal(1, 1.3), True),
+        (roughly_equal(1, 1.9), True),
+        (roughly_equal(1, 2.1), False),
         (about_equal(1, 1.04), True),
         (about_equal(1, 1.02), False),
         (about_equal(1, 1.09), True),
@@ -288,6 +300,7 @@ def test_a_near_thing_is_known(found, near):
             lambda: much_greater(-2, -0.1),
             "-2 beside -0.1: how much larger one is asks for numbers that are not negative",
         ),
+        (lambda: roughly_equal(-2, -1), "numbers that are not negative"),
         (lambda: about_equal(math.inf, math.inf), "two infinite numbers have no ratio"),
         (lambda: greater(2 * K, sympy.Symbol("K", negative=True)), "two different symbols named K"),
         (lambda: equal([3 > 2], [True]), "a truth value, True"),
@@ -347,6 +360,7 @@ def test_numbers_are_compared_as_the_words_say(a, b):
     assert (greater(a, b).holds) is (much_greater(a, b).holds or somewhat_greater(a, b).holds)
     assert about_equal(a, b).holds is (20 * abs(a - b) <= max(a, b)) is about_equal(b, a).holds
     assert negligible(a, b).holds is (20 * a <= b)
+    assert roughly_equal(a, b).holds is (a == b or somewhat_greater(a, b).holds or somewhat_less(a, b).holds)
 
 
 @settings(max_examples=draws(60), deadline=None)
@@ -376,7 +390,9 @@ def test_each_criterion_has_its_word_its_number_and_its_reason():
     for criterion in CRITERIA:
         assert criterion.limit > 0
         assert all(len(text) > 3 for text in (criterion.word, criterion.meaning, criterion.reason))
-    assert {c.word for c in CRITERIA if not c.published} == {"somewhat", "much", "substantially"}
+    assert {c.word for c in CRITERIA if not c.published} == {
+        "somewhat", "roughly equal", "much", "substantially",
+    }  # fmt: skip
 
 
 def test_evidence_names_the_criteria_that_it_rests_on():

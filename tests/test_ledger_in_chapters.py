@@ -277,6 +277,8 @@ def by_ratio(evidence):
             return a == b or abs(a - b) <= limit * max(abs(a), abs(b))
         case "negligible":
             return abs(a) <= limit * abs(b)
+        case "roughly equal":
+            return a == b or max(a, b) < (1 + limit) * min(a, b)
         case "somewhat":
             return b < a < (1 + limit) * b
         case "much":

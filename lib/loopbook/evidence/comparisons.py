@@ -15,6 +15,7 @@ from loopbook.evidence.criteria import (
     MUCH,
     NEGLIGIBLE,
     NO_OVERSHOOT,
+    ROUGHLY,
     SAME,
     SOMEWHAT,
     SUBSTANTIALLY,
@@ -170,7 +171,7 @@ class Ratio(Evidence):
     Attributes:
         left, right: the numbers.
         quantity, unit: what is compared.
-        criterion: SAME, SOMEWHAT, MUCH, SUBSTANTIALLY or NEGLIGIBLE.
+        criterion: SAME, ROUGHLY, SOMEWHAT, MUCH, SUBSTANTIALLY or NEGLIGIBLE.
         contrary: whether it is said not to be so.
     """
 
@@ -184,7 +185,7 @@ class Ratio(Evidence):
     def __post_init__(self) -> None:
         if abs(self.left) == abs(self.right) == math.inf:
             raise EvidenceError("two infinite numbers have no ratio: expected numbers to compare")
-        if self.criterion in (SOMEWHAT, MUCH, SUBSTANTIALLY) and min(self.left, self.right) < 0:
+        if self.criterion in (ROUGHLY, SOMEWHAT, MUCH, SUBSTANTIALLY) and min(self.left, self.right) < 0:
             one, other = texts([self.left, self.right])
             raise EvidenceError(f"{one} beside {other}: how much larger one is asks for numbers that are not negative")
 
@@ -236,6 +237,7 @@ _ROOM = 1 + ROUNDING  # a limit is met where rounding alone is beyond it
 _BY_RATIO = {
     SAME: lambda a, b, limit: _apart(a, b) <= limit * _ROOM,
     NEGLIGIBLE: lambda a, b, limit: abs(a) <= limit * abs(b) * _ROOM,
+    ROUGHLY: lambda a, b, limit: order(a, b) == 0 or max(a, b) * _ROOM < (1 + limit) * min(a, b),
     SOMEWHAT: lambda a, b, limit: order(a, b) > 0 and a * _ROOM < (1 + limit) * b,
     MUCH: lambda a, b, limit: order(a, b) > 0 and a * _ROOM >= (1 + limit) * b,
     SUBSTANTIALLY: lambda a, b, limit: order(a, b) < 0 and a <= limit * b * _ROOM,
@@ -245,6 +247,7 @@ _WORDS = {
     MUCH: "much larger than",
     NEGLIGIBLE: "negligible beside",
     SAME: "about equal to",
+    ROUGHLY: "roughly equal to",
     SUBSTANTIALLY: "substantially smaller than",
 }
 
@@ -399,6 +402,17 @@ def about_equal(left: Number, right: Number, quantity: str = "") -> Ratio:
     return _by_ratio(left, right, quantity, SAME)
 
 
+def roughly_equal(left: Number, right: Number, quantity: str = "") -> Ratio:
+    """Evidence that the larger one of two numbers exceeds the smaller one by less than half of that.
+
+    Raises EvidenceError for negative numbers, of which no ratio speaks.
+
+    >>> roughly_equal(0.21, 0.25, "decay ratio")
+    holds: decay ratio 0.21 roughly equal to 0.25 (less than half of the smaller one apart)
+    """
+    return _by_ratio(left, right, quantity, ROUGHLY)
+
+
 def negligible(value: Number, beside: Number, quantity: str = "") -> Ratio:
     """Evidence that a number is at most 5 percent of another one.
 
@@ -511,6 +525,15 @@ def well_damped(decay_ratio: Number) -> Comparison:
 
 def _within(value, quantity, unit, criterion):
     return Comparison(value, "≤", criterion.limit, quantity, unit, criterion)
+
+
+def poorly_damped(decay_ratio: Number) -> Comparison:
+    """Evidence that a peak of a response is more than a quarter of the one before it.
+
+    >>> poorly_damped(0.4)
+    holds: decay ratio 0.4 > 0.25 (well damped: a decay ratio of at most 1/4)
+    """
+    return well_damped(decay_ratio).turned()
 
 
 def _by_ratio(left, right, quantity, criterion):

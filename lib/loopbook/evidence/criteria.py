@@ -53,6 +53,13 @@ SOMEWHAT = Criterion(
     "a number of ours: no book says how much somewhat is; half is where a plot looks like another one",
     published=False,
 )
+ROUGHLY = Criterion(
+    "roughly equal",
+    Fraction(1, 2),
+    "less than half of the smaller one apart",
+    "a number of ours: as much as somewhat, upwards or downwards",
+    published=False,
+)
 MUCH = Criterion(
     "much",
     Fraction(1, 2),
@@ -97,4 +104,6 @@ PHASE_MARGIN = Criterion(
 )
 
 #: All criteria, as a page can list them.
-CRITERIA = (SAME, NEGLIGIBLE, SOMEWHAT, MUCH, SUBSTANTIALLY, NO_OVERSHOOT, WELL_DAMPED, GAIN_MARGIN, PHASE_MARGIN)
+CRITERIA = (
+    SAME, NEGLIGIBLE, SOMEWHAT, ROUGHLY, MUCH, SUBSTANTIALLY, NO_OVERSHOOT, WELL_DAMPED, GAIN_MARGIN, PHASE_MARGIN,
+)  # fmt: skip
