@@ -53,6 +53,7 @@ def of_jupyterlab(chromium) -> None:
 
         figure = desk.cell('title = "Figure 10.7')
         check = desk.cell("T_i_at_most = given_c * (T_C_chosen + numbers[tau])")
+        check.locator("summary").click()  # a check is one line until it is opened
         cells.filter(has_text="With the numbers of the book, and its suggestion").first.click()
         bring_into_view(page, figure)
         save("chapter.png", page, [figure, check])

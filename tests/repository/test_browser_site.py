@@ -66,6 +66,11 @@ class TestSite:
             widths[page] = reader.page.evaluate("document.documentElement.scrollWidth")
         assert {page: width for page, width in widths.items() if width > PHONE["width"]} == {}
 
+    def test_the_ledger_fits_a_window_of_middle_width(self, reader):
+        reader.page.set_viewport_size({"width": 1200, "height": 900})
+        reader.go("ledger.html")
+        assert reader.page.evaluate("document.documentElement.scrollWidth") <= 1200
+
     def test_the_pages_are_whole_as_files(self, chromium, addresses):
         reader = Reader(chromium, addresses["file"])
         for page in KINDS.values():
@@ -108,6 +113,20 @@ class TestSite:
         reader.page.locator(".sidebar-tree a", has_text="Robustness").first.click()
         expect(reader.page.locator("h1")).to_contain_text("Robustness")
         reader.screenshot("phone_chapter")
+
+    @pytest.mark.parametrize("screen", [DESKTOP, PHONE], ids=["desktop", "phone"])
+    def test_a_check_opens_from_its_line_and_shows_the_verdicts_first(self, reader, screen):
+        reader.page.set_viewport_size(screen)
+        reader.go(KINDS["chapter"])
+        check = reader.page.locator("details.check").first
+        verdict = check.locator("td.verdict").first
+        expect(verdict).to_be_hidden()
+        check.locator("summary").click()
+        expect(verdict).to_be_visible()
+        box, place = verdict.bounding_box(), check.bounding_box()
+        assert place["x"] <= box["x"] < place["x"] + 20
+        assert box["x"] + box["width"] <= screen["width"]
+        assert verdict.evaluate("cell => cell.scrollWidth <= cell.clientWidth")
 
     def test_dark_and_light_by_a_switch(self, reader):
         reader.go("index.html")
