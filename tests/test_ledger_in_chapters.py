@@ -624,22 +624,28 @@ def test_what_cannot_be_read_is_no_agreement():
 def test_errata_is_what_the_command_writes():
     assert (ROOT / "ERRATA.md").read_text(encoding="utf-8") == errata.page(sources())
     assert (ROOT / "docs" / "damage.md").read_text(encoding="utf-8") == errata.damaged(sources())
+    assert (ROOT / "docs" / "unreproduced.md").read_text(encoding="utf-8") == errata.unreproduced(sources())
 
 
 def test_errata_names_every_error_of_the_books():
-    told = (ROOT / "ERRATA.md").read_text(encoding="utf-8")
+    pages = {"corrected": ROOT / "ERRATA.md"} | {
+        status: ROOT / "docs" / f"{name}.md" for status, name in (("unreproduced",) * 2, ("damaged", "damage"))
+    }
+    texts = {status: page.read_text(encoding="utf-8") for status, page in pages.items()}
     for source, entries in books().items():
         for name, entry in entries.items():
             for row in entry.get("result", []):
-                if row.get("status") not in ("corrected", "unreproduced"):
+                if row.get("status") not in texts:
                     continue
                 claim = " ".join(row.get("claim", "").split())
                 called = claim or f", {print_of(row)[0]}: "
+                told = texts[row["status"]]
                 line = next(line for line in told.splitlines() if f"**{name}" in line and called in line)
                 stored = row.get("correct") or row.get("computed") or ("" if claim else "cannot be computed")
                 because = " ".join(row["because"].split())
                 assert all(part in line for part in (row.get("printed", claim), stored, because, entry["chapter"]))
             for slip in entry.get("misprint", []):
+                told = texts["corrected"]
                 line = next(line for line in told.splitlines() if f"**{name}" in line and slip["printed"] in line)
                 assert all(" ".join(part.split()) in line for part in slip.values())
         assert source in sources()
@@ -669,10 +675,11 @@ damage = [{ printed = "k 1", correct = "k_1", because = "a lost index" }]
     book = {"book": Source.read("book", content.encode())}
     told = errata.page(book)
     assert "A. Author" in told
-    corrected, unreproduced, claim, misprint = [line for line in told.splitlines() if line.startswith("- ")]
+    corrected, claim, misprint = [line for line in told.splitlines() if line.startswith("- ")]
+    (unreproduced,) = [line for line in errata.unreproduced(book).splitlines() if line.startswith("- ")]
     assert all(part in corrected for part in ("Example 1", "1.2", ", a: ", "`1`", "`2`", "a slip", "10_tuning"))
     assert all(part in unreproduced for part in ("Example 1", ", b: ", "`3`", "`4`", "nobody knows", "10_tuning"))
-    assert "claims: It falls. Correct is: It grows. Because: the sign." in claim
+    assert "claims: It falls. It should read: It grows. Reason: the sign." in claim
     assert "prints `Section ??` (footnote) for `Section 2`: a lost reference." in misprint
     damaged = [line for line in errata.damaged(book).splitlines() if line.startswith("- ")]
     assert len(damaged) == 2
@@ -681,6 +688,7 @@ damage = [{ printed = "k 1", correct = "k_1", because = "a lost index" }]
     nothing = {"book": Source.read("book", content.partition("result")[0].encode())}
     assert errata.page(nothing) == errata.INTRODUCTION
     assert errata.damaged(nothing) == errata.DAMAGE
+    assert errata.unreproduced(nothing) == errata.UNREPRODUCED
 
 
 def test_the_totals_add_up():

@@ -62,13 +62,13 @@ def execute(
 @app.command()
 def ledger(
     errata: Annotated[Path, typer.Option(help="Where to write the list of the books' errors.")] = Path("ERRATA.md"),
-    damage: Annotated[Path, typer.Option(help="Where to write the list of what our copies have damaged.")] = Path(
-        "docs/damage.md"
-    ),
+    pages: Annotated[
+        Path, typer.Option(help="Folder for what was not reproduced, and what our copies have damaged.")
+    ] = Path("docs"),
 ) -> None:
-    """Print the totals of the ledger by source and status, and write the lists of the books' errors and of damage."""
+    """Print the totals of the ledger by source and status, and write errors, open questions and damage as pages."""
     from loopbook.ledger import LedgerError, sources
-    from loopbook.ledger.errata import damaged, page, totals
+    from loopbook.ledger.errata import damaged, page, totals, unreproduced
     from loopbook.ledger.statuses import STATUSES
 
     try:
@@ -85,7 +85,8 @@ def ledger(
     sums = [sum(count[status] for count in counts.values()) for status in STATUSES]
     table.add_row("all", *map(str, sums), str(sum(sums)))
     Console(highlight=False, width=1000).print(table)  # no name is cut where the terminal is narrow
-    for path, text in ((errata, page(books)), (damage, damaged(books))):
+    texts = {errata: page(books), pages / "unreproduced.md": unreproduced(books), pages / "damage.md": damaged(books)}
+    for path, text in texts.items():
         try:
             path.parent.mkdir(exist_ok=True)
             path.write_text(text, encoding="utf-8", newline="\n")

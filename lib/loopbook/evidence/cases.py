@@ -47,6 +47,11 @@ class Cases(Evidence):
         return may_hold and to_fail(not case.holds or case.near for _, case in self.cases)
 
     @property
+    def room(self) -> float:
+        """How far apart the closest numbers are."""
+        return min(case.room for _, case in self.cases)
+
+    @property
     def probed(self) -> bool:
         """Whether one of the cases was found at random points."""
         return any(case.probed for _, case in self.cases)
@@ -59,9 +64,14 @@ class Cases(Evidence):
         return replace(self, cases=tuple((name, case.turned() if case.holds else case) for name, case in self.cases))
 
     def told(self, typeset: Typeset = str) -> str:
-        """The deciding cases first: counterexamples to what shall hold always, examples of what shall hold once."""
+        """The deciding cases: counterexamples to what shall hold always, examples of what shall hold once.
+
+        Of many those are told in which the numbers are closest.
+        """
         deciding = [pair for pair in self.cases if pair[1].holds is not self.all] or list(self.cases)
-        told = [f"{name}: {case.told(typeset)}" if name else case.told(typeset) for name, case in deciding[:_SHOWN]]
+        closest = sorted(range(len(deciding)), key=lambda place: deciding[place][1].room)[:_SHOWN]
+        shown = [deciding[place] for place in sorted(closest)]
+        told = [f"{name}: {case.told(typeset)}" if name else case.told(typeset) for name, case in shown]
         number, count = len(self.cases), sum(case.holds for _, case in self.cases)
         if number > _SHOWN or (any(name for name, _ in self.cases) and not (self.all and self.holds)):
             told.insert(0, f"in {count} of {number} cases")

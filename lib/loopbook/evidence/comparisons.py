@@ -53,6 +53,7 @@ class Evidence:
         holds: whether it speaks for the claim.
         near: whether a criterion with half or twice its limit would give another verdict, or a few percent of a value.
         probed: whether an equality was found at random points, and not proved.
+        room: how far two numbers are apart, as a share of the larger one; infinite for all else.
         criteria: those it rests on.
         data: all of it as JSON data, from which it can be judged again.
     """
@@ -60,6 +61,7 @@ class Evidence:
     holds: bool
     near: bool
     probed: bool = False
+    room: float = math.inf
     criteria: tuple[Criterion, ...] = ()
     data: dict[str, Any]
 
@@ -126,9 +128,14 @@ class Comparison(Evidence):
         """Whether the verdict hangs on the limit, or on a few percent."""
         if self.criterion:
             return len({self._is_so(self.left, self.right * factor) for factor in (Fraction(1, 2), 1, 2)}) > 1
+        return self.left != 0 != self.right and self.room <= SAME.limit
+
+    @property
+    def room(self) -> float:
+        """How far two numbers are apart of which one shall be larger."""
         if self.relation in "=≠" or not all(isinstance(side, Fraction) for side in (self.left, self.right)):
-            return False
-        return self.left != 0 != self.right and _apart(self.left, self.right) <= SAME.limit
+            return math.inf
+        return _apart(self.left, self.right)
 
     def turned(self) -> Comparison:
         """The same values in the contrary relation."""
@@ -207,6 +214,11 @@ class Ratio(Evidence):
         return [self._is_so(left, right, self.criterion.limit * factor) for factor in (Fraction(1, 2), 1, 2)]
 
     @property
+    def room(self) -> float:
+        """How far the numbers are apart."""
+        return _apart(self.left, self.right)
+
+    @property
     def near(self) -> bool:
         """Whether half or twice the limit gives another verdict."""
         return len(set(self._with_limits(self.left, self.right))) > 1
@@ -217,7 +229,8 @@ class Ratio(Evidence):
 
     def told(self, typeset: Typeset = str) -> str:
         """The numbers and the word for what is between them."""
-        left, right = texts([self.left, self.right], self.unit, typeset)
+        # what is about equal need not be told apart
+        left, right = texts([self.left, self.right], self.unit, typeset, apart=self.criterion not in (SAME, NEGLIGIBLE))
         word = _WORDS[self.criterion] if self.holds is not self.contrary else f"not {_WORDS[self.criterion]}"
         return f"{self.quantity} {left} {word} {right} ({self.criterion.meaning})".strip()
 

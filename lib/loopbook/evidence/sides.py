@@ -216,9 +216,9 @@ def _is_open(left, right):
 # ----------------------------------------------------------------------------------------------------------- writing
 
 
-def texts(values: Collection[Side], unit: str = "", typeset: Typeset = str) -> list[str]:
-    """Return values as text, numbers with the unit and with so many digits that their order can be seen."""
-    digits = next((digits for digits in _DIGITS if _is_told(values, digits)), _DIGITS[-1])
+def texts(values: Collection[Side], unit: str = "", typeset: Typeset = str, apart: bool = True) -> list[str]:
+    """Return values as text, numbers with the unit, and with so many digits that their order is seen if it shall be."""
+    digits = next((digits for digits in _DIGITS if not apart or _is_told(values, digits)), _DIGITS[-1])
     space = "" if unit in ("°", "'") else " "
     return [
         text(value, digits, typeset) + (f"{space}{unit}" if unit and isinstance(value, Fraction) and value else "")
@@ -260,7 +260,10 @@ def rounded(value: Fraction | float, digits: int = 3) -> str:
         return str(value)
     with decimal.localcontext(prec=digits):
         found = (decimal.Decimal(value.numerator) / value.denominator).normalize()
-    return f"{found:f}" if Fraction(1, 10**4) <= abs(value) < 10**6 else f"{found:g}"
+    if Fraction(1, 10**4) <= abs(value) < 10**6:
+        return f"{found:f}"
+    digits, _, exponent = f"{found:e}".partition("e")
+    return f"{digits}e{exponent}"
 
 
 def data(*values: Side, decides: Callable[..., bool] = lambda *values: True) -> list[Any]:

@@ -1,4 +1,4 @@
-"""What the ledger says as a whole: its totals by status, the books' errors as a page, and the damage of our copies."""
+"""What the ledger says as a whole: its totals by status, and three pages: errors, open questions, damaged copies."""
 
 from __future__ import annotations
 
@@ -16,14 +16,23 @@ INTRODUCTION = """\
 
 What the books print and a computation contradicts, with the reason, and slips of the print that change no result.
 `make execute` writes this page from the ledger itself, and a test proves each line on a result: what is computed agrees
-with the correction and not with the print.
+with the correction and not with the print. What did not come out, and nobody knows why, is no error of a book: it is on
+[a page of its own](docs/unreproduced.md), and so is [what our copies have damaged](docs/damage.md).
+"""
+UNREPRODUCED = """\
+# Not reproduced
+
+What did not come out as it is printed, though all that it takes is known, and what cannot be computed because the book
+does not print what it takes. Nothing here says that a book is wrong. `make execute` writes this page from the ledger, and
+a test proves each line that has a number or evidence: that is what is computed, and it does not agree with the print.
 """
 DAMAGE = """\
 # Damage of our copies
 
 Where the text that this collection was made from has lost a bracket, an index or a digit of the book on its way: no
-error of the authors. `make execute` writes this page from the ledger, and a test proves each line on a result: what is
-computed agrees with what the book must have, and not with our copy.
+error of the authors, as far as one can see. `make execute` writes this page from the ledger, and a test proves each
+line on a result: what is computed agrees with what the book must have, and not with our copy. The other lines are
+misreadings in the text around the results.
 """
 
 
@@ -41,22 +50,30 @@ def totals(sources: Mapping[str, Source]) -> dict[str, dict[str, int]]:
 
 
 def page(sources: Mapping[str, Source]) -> str:
-    """Return the text of ERRATA.md: what is corrected, what could not be reproduced, and misprints."""
-    return _page(INTRODUCTION, sources, (Corrected, Unreproduced), "misprints", "chapters/")
+    """Return the text of ERRATA.md: what is corrected, and misprints."""
+    return _page(INTRODUCTION, sources, Corrected, "misprints", "chapters/")
+
+
+def unreproduced(sources: Mapping[str, Source]) -> str:
+    """Return the text of the page on what did not come out."""
+    return _page(UNREPRODUCED, sources, Unreproduced, "", "/chapters/")
 
 
 def damaged(sources: Mapping[str, Source]) -> str:
     """Return the text of the page on what is damaged in our copies."""
-    return _page(DAMAGE, sources, (Damaged,), "damage", "/chapters/")
+    return _page(DAMAGE, sources, Damaged, "damage", "/chapters/")
 
 
-def _page(introduction, sources, statuses, slips, folder):
+def _page(introduction, sources, status, slips, folder):
     lines = [introduction]
     for source in sources.values():
         found = []
         for entry in source:
-            found += [_line(entry, row, folder) for row in entry.results if type(row.status) in statuses]
-            found += [f"- **{entry.name}** {slip.sentence}. {_link(entry, folder)}" for slip in getattr(entry, slips)]
+            found += [_line(entry, row, folder) for row in entry.results if type(row.status) is status]
+            found += [
+                f"- **{entry.name}** {slip.sentence}. {_link(entry, folder)}"
+                for slip in getattr(entry, slips or "", ())
+            ]
         if found:
             lines += [f"## {source.citation}\n", *found, ""]
     return "\n".join(lines)
@@ -65,19 +82,18 @@ def _page(introduction, sources, statuses, slips, folder):
 def _line(entry: Entry, row: Result, folder: str) -> str:
     place = f"{entry.name}, equation ({row.equation})" if row.equation else entry.name
     status, printed = row.status, row.printed
+    right = getattr(status, "correct", "") or getattr(status, "computed", "")
     if isinstance(printed, Claim):
         says = "claims" if printed.says else "denies"
-        verdict = f"{says}: {printed.text}"
-        right = getattr(status, "correct", "") or getattr(status, "computed", "")
-        if right:
-            verdict += f" {'Correct is' if isinstance(status, Corrected) else 'Found is'}: {right}"
-        return f"- **{place}** {verdict} Because: {status.because}. {_link(entry, folder)}"
+        found = {Unreproduced: "We found: "}.get(type(status), "It should read: ") + right if right else ""
+        return f"- **{place}** {says}: {printed.text} {found} Reason: {status.because}. {_link(entry, folder)}"
+    verb = "reads" if isinstance(status, Damaged) else "prints"
     if isinstance(status, Corrected):
-        verdict = f"prints `{printed.text}`, correct is `{status.correct}`"
-    elif not status.computed:
+        verdict = f"{verb} `{printed.text}`, correct is `{right}`"
+    elif not right:
         verdict = f"prints `{printed.text}`, which cannot be computed"
     else:
-        verdict = f"prints `{printed.text}`, computed is `{status.computed}`, unexplained so far"
+        verdict = f"prints `{printed.text}`, computed is `{right}`"
     return f"- **{place}**, {row.title}: {verdict}: {status.because}. {_link(entry, folder)}"
 
 
