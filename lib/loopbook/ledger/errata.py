@@ -23,8 +23,9 @@ UNREPRODUCED = """\
 # Not reproduced
 
 What did not come out as it is printed, though all that it takes is known, and what cannot be computed because the book
-does not print what it takes. Nothing here says that a book is wrong. `make execute` writes this page from the ledger, and
-a test proves each line that has a number or evidence: that is what is computed, and it does not agree with the print.
+does not print what it takes. Nothing here says that a book is wrong. `make execute` writes this page from the ledger,
+and a test proves each line that has a number or evidence: that is what is computed, and it does not agree with the
+print.
 """
 DAMAGE = """\
 # Damage of our copies
