@@ -35,7 +35,7 @@ class GainSchedule:
     Raises:
         ValueError: for a table that is too short, of mixed forms, with a GS twice or, if linear, with an integral term
             in some rows only; another way; or a hysteresis larger than the smallest distance of two rows.
-    Source: Haugen, Table 10.2, Figure 10.14, equations (10.30) to (10.32).
+    Source: Haugen, Table 10.2, Figure 10.14, equations (10.30) to (10.32) and (10.41).
 
     >>> table = {12: PID(4.1, Ti=7), 16: PID(5.4, Ti=5.4), 20: PID(6.8, Ti=4.4)}
     >>> GainSchedule(table).settings(18)
