@@ -182,6 +182,9 @@ def _next_switch(distance, since, period):
             k = int(beyond.argmax())
             if distance(t[k - 1]) == 0:  # at rest up to the end of a dead time
                 return _last(lambda x: distance(x) <= 0, t[k - 1], t[k])
+            for end, is_there in ((t[k - 1], distance(t[k - 1]) > 0), (t[k], distance(t[k]) <= 0)):
+                if is_there:  # the distance is rounding alone: alone and among others a moment is not computed alike
+                    return end
             return brentq(distance, t[k - 1], t[k], xtol=1e-14 * max(t[k], period), rtol=1e-14)
         if stretch > 1000:
             raise ValueError(
