@@ -15,7 +15,6 @@ import sympy
 from loopbook.expressions import agreement, exact, parse
 
 NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]+)?|\.[0-9]+)([eE][+-]?[0-9]{1,3})?")
-INFINITE = {"oo": math.inf, "-oo": -math.inf}
 
 
 #: A formula that a book prints: an expression, or an equation.
@@ -90,18 +89,6 @@ def _parts(digits):
 def _shortened(value, length=60):
     text = in_one_line(repr(value))
     return text if len(text) <= length else text[: length - 3] + "..."
-
-
-def number_agrees(value: object, printed: str) -> bool:
-    """Whether a value lies within half a unit of the last printed digit. Nothing is rounded on the way.
-
-    >>> number_agrees(0.6321, "0.63"), number_agrees(0.636, "0.63")
-    (True, False)
-    """
-    value = number(value)
-    if printed in INFINITE or isinstance(value, float):
-        return value == INFINITE.get(printed)
-    return abs(value - fractions.Fraction(printed)) <= half_unit(printed)
 
 
 def formula(value: object) -> Formula:

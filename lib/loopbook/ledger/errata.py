@@ -83,7 +83,7 @@ def _page(introduction, sources, status, slips, folder):
 def _line(entry: Entry, row: Result, folder: str) -> str:
     place = f"{entry.name}, equation ({row.equation})" if row.equation else entry.name
     status, printed = row.status, row.printed
-    right = getattr(status, "correct", "") or getattr(status, "computed", "")
+    right = status.found
     if isinstance(printed, Claim):
         says = "claims" if printed.says else "denies"
         found = {Unreproduced: "We found: "}.get(type(status), "It should read: ") + right if right else ""

@@ -158,8 +158,47 @@ class Reconstructed(Status):
         )
 
 
+class Contrary(Status):
+    """What was found instead of the print: a value that agrees, where the print does not.
+
+    Of a claim it is a sentence, and evidence contradicts the claim.
+    """
+
+    because: str
+
+    @property
+    def found(self) -> str:
+        """What the value must agree with."""
+        raise NotImplementedError
+
+    def _validate(self, where, printed):
+        if self.found:
+            _value(where, "correct" if hasattr(self, "correct") else "computed", self.found, printed)
+
+    def judge(self, printed: Printed, value: Any) -> str:
+        """Say how the value agrees with what was found; empty where it does not, or where the print holds too."""
+        if printed.agrees(value):
+            return ""
+        return "evidence" if isinstance(printed, Claim) else type(printed).read(self.found).agrees(value)
+
+    @property
+    def note(self) -> str:
+        """The reason, as far as it is known."""
+        return f"{self.word}: {self.because}"
+
+    def complaint(self, printed: Printed) -> str:
+        """What it takes to differ from the print."""
+        if isinstance(printed, Claim):
+            return f"bears out what is {self.word}: {printed.text}"
+        return f"must agree with {self.found} and not with the printed {printed.text} to be {self.word}"
+
+    def others(self, printed: Printed) -> tuple[Printed, ...]:
+        """What was found."""
+        return () if isinstance(printed, Claim) or not self.found else (type(printed).read(self.found),)
+
+
 @dataclass(frozen=True)
-class Corrected(Status):
+class Corrected(Contrary):
     """The print is wrong."""
 
     word = "corrected"
@@ -168,29 +207,10 @@ class Corrected(Status):
     correct: str
     because: str
 
-    def _validate(self, where, printed):
-        _value(where, "correct", self.correct, printed)
-
-    def judge(self, printed: Printed, value: Any) -> str:
-        """Say how the value agrees with the correction; empty where it does not, or where the print holds too."""
-        if printed.agrees(value):
-            return ""
-        return "evidence" if isinstance(printed, Claim) else type(printed).read(self.correct).agrees(value)
-
     @property
-    def note(self) -> str:
-        """The correction and its reason."""
-        return f"{self.word}: {self.because}"
-
-    def complaint(self, printed: Printed) -> str:
-        """What a correction asks for."""
-        if isinstance(printed, Claim):
-            return f"bears out what is {self.word}: {printed.text}"
-        return f"must agree with {self.correct} and not with the printed {printed.text} to be {self.word}"
-
-    def others(self, printed: Printed) -> tuple[Printed, ...]:
+    def found(self) -> str:
         """The correction."""
-        return () if isinstance(printed, Claim) else (type(printed).read(self.correct),)
+        return self.correct
 
 
 @dataclass(frozen=True)
@@ -202,7 +222,7 @@ class Damaged(Corrected):
 
 
 @dataclass(frozen=True)
-class Unreproduced(Status):
+class Unreproduced(Contrary):
     """The print and the computation differ, and nobody knows why."""
 
     word = "unreproduced"
@@ -220,30 +240,10 @@ class Unreproduced(Status):
         """Whether something can be computed."""
         return bool(self.computed)
 
-    def _validate(self, where, printed):
-        if self.computed:
-            _value(where, "computed", self.computed, printed)
-
-    def judge(self, printed: Printed, value: Any) -> str:
-        """Say how the value agrees with what was computed before; empty where the print holds, too."""
-        if printed.agrees(value):
-            return ""
-        return "evidence" if isinstance(printed, Claim) else type(printed).read(self.computed).agrees(value)
-
     @property
-    def note(self) -> str:
-        """The reason, as far as it is known."""
-        return f"unreproduced: {self.because}"
-
-    def complaint(self, printed: Printed) -> str:
-        """What it takes to differ as before."""
-        if isinstance(printed, Claim):
-            return f"bears out what was not reproduced: {printed.text}"
-        return f"must agree with {self.computed} and not with the printed {printed.text} to be unreproduced"
-
-    def others(self, printed: Printed) -> tuple[Printed, ...]:
+    def found(self) -> str:
         """What was computed before."""
-        return () if isinstance(printed, Claim) or not self.computed else (type(printed).read(self.computed),)
+        return self.computed
 
 
 @dataclass(frozen=True)
