@@ -24,9 +24,10 @@ from draws import draws
 from loopbook import s, t
 from loopbook.evidence import Evidence, greater, increasing, much_greater, positive
 from loopbook.ledger import Disagreement, LedgerError, Source, haugen
-from loopbook.ledger.kinds import Number, is_symbol
+from loopbook.ledger.kinds import Number
 from loopbook.ledger.report import MIME_TYPE
 from loopbook.ledger.statuses import STATUSES
+from loopbook.tables import is_symbol
 
 x, K, T = sympy.symbols("x K T", positive=True)
 

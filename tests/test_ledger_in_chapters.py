@@ -35,8 +35,8 @@ from loopbook.__main__ import app
 from loopbook.evidence import decreasing, equal, every, greater, much_greater, negligible, refused, some, unstable
 from loopbook.evidence.criteria import CRITERIA
 from loopbook.ledger import Source, sources
-from loopbook.ledger.kinds import is_symbol
 from loopbook.ledger.statuses import STATUSES
+from loopbook.tables import is_symbol
 
 ROOT = Path(__file__).parents[1]
 LEDGER = ROOT / "lib" / "loopbook" / "ledger"

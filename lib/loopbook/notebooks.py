@@ -40,7 +40,11 @@ PICTURES = {"image/png", "image/jpeg"}  # base64 is no text, though it may happe
 
 SLIDERS = "nbval-ignore-output"
 """The tag of a cell with sliders: nbval runs it, and does not compare the widgets that it shows."""
-INTERACT = {"interact", "interactive", "interact_manual", "interactive_output"}
+INTERACT = {"sliders", "interact", "interactive", "interact_manual", "interactive_output"}
+FOLDED = "hide-input"
+"""The tag of a cell whose code is folded, in JupyterLab and on a page: it makes sliders, or serves the ledger alone."""
+FURTHER = re.compile(r"^\*Further[ .:]|^## How we know\b", re.MULTILINE)
+"""What the text under a heading begins with when its section may be skipped: JupyterLab opens it folded."""
 ID = re.compile(r"[a-zA-Z0-9_-]{1,64}")  # what the format of notebooks allows
 
 PATH = re.compile(
@@ -198,8 +202,9 @@ def normalised(notebook: NotebookNode) -> NotebookNode:
 
     A cell keeps its id; one without an id, or with the id of a cell before it, gets one from its content. Empty cells
     and execution counts are dropped, neighbouring pieces of printed text joined. Widget views are dropped, because
-    their models have random names and live in the kernel only. Metadata says no more than which kernel runs the
-    notebook and which cells have sliders, as follows from their code: no tag can hide a cell from the tests.
+    their models have random names and live in the kernel only; a picture beside one stays. Metadata says no more than
+    which kernel runs the notebook, which cells have sliders, whose code is folded, and which sections are further
+    reading. All of it follows from the cells: no tag can hide one from the tests.
 
     >>> from nbformat import v4
     >>> cells = [v4.new_code_cell("T = 5", id="lag", execution_count=7), v4.new_code_cell(""), v4.new_code_cell("T")]
@@ -220,7 +225,12 @@ def normalised(notebook: NotebookNode) -> NotebookNode:
             kept.outputs = _outputs(cell.outputs)
             if has_sliders(source):
                 kept.metadata.tags = [SLIDERS]
+        elif source.startswith("## ") and FURTHER.search(source):
+            kept.metadata["jp-MarkdownHeadingCollapsed"] = True
         cells.append(kept)
+    for cell in folded(cells):
+        cell.metadata.tags = [FOLDED, *cell.metadata.get("tags", [])]
+        cell.metadata.jupyter = {"source_hidden": True}
     for cell, own in zip(cells, _ids(cells), strict=True):
         cell.id = own
     return nbformat.from_dict({"nbformat": 4, "nbformat_minor": 5, "metadata": METADATA, "cells": cells})
@@ -238,20 +248,97 @@ def _ids(cells: list[NotebookNode]) -> list[str]:
 
 
 def has_sliders(source: str) -> bool:
-    """Whether the code of a cell makes sliders, with ipywidgets' `interact` or one like it."""
-    try:
-        nodes = [*ast.walk(ast.parse(source))]
-    except SyntaxError:  # a magic of IPython
-        return False
+    """Whether the code of a cell makes sliders, with `sliders` or ipywidgets' `interact` or one like it."""
+    nodes = [*ast.walk(_parsed(source))]
     names = {node.id for node in nodes if isinstance(node, ast.Name)}
     return not INTERACT.isdisjoint(names.union(node.attr for node in nodes if isinstance(node, ast.Attribute)))
+
+
+def folded(cells: Iterable[NotebookNode]) -> list[NotebookNode]:
+    """The cells whose code a reader need not see: sliders, checks against the ledger, and what serves checks alone.
+
+    A cell serves checks alone if it shows nothing and all that it binds is used in folded cells only. What belongs to
+    the argument is shown, and is not folded then.
+
+    >>> from nbformat import v4
+    >>> codes = ["x = 1", "x + 1", "worst = max(x, 2)", "example.check(worst=worst)", "exercise('1.1').check(y=...)"]
+    >>> [cell.source for cell in folded([v4.new_code_cell(code) for code in codes])]
+    ['worst = max(x, 2)', 'example.check(worst=worst)']
+    """
+    code = [cell for cell in cells if cell.cell_type == "code"]
+    bound, used = [bound_in(cell.source) for cell in code], [_used_in(cell.source) for cell in code]
+    hidden = {n for n, cell in enumerate(code) if has_sliders(cell.source) or _checks(cell.source)}
+
+    def serves_hidden_cells(n: int) -> bool:
+        if n in hidden or not bound[n] or code[n].outputs or _imports(code[n].source):
+            return False
+        return all(m in hidden or m == n or bound[n].isdisjoint(used[m]) for m in range(len(code))) and any(
+            not bound[n].isdisjoint(used[m]) for m in hidden
+        )
+
+    while more := {n for n in range(len(code)) if serves_hidden_cells(n)}:
+        hidden |= more
+    return [code[n] for n in sorted(hidden)]
+
+
+def _parsed(source: str) -> ast.Module:
+    """The syntax tree of a cell, empty where it is no Python, such as a magic of IPython."""
+    try:
+        return ast.parse(source)
+    except SyntaxError:
+        return ast.Module([], [])
+
+
+def bound_in(source: str) -> set[str]:
+    """The names that a cell binds for those after it; those of functions and comprehensions remain in them.
+
+    >>> sorted(bound_in("K, T = 2, 5\\ndef lag(x): y = x"))
+    ['K', 'T', 'lag']
+    """
+    found: set[str] = set()
+    waiting: list[ast.AST] = [_parsed(source)]
+    while waiting:
+        for node in ast.iter_child_nodes(waiting.pop()):
+            match node:
+                case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
+                    found.add(name)
+                case ast.Name(id=name, ctx=ast.Store()):
+                    found.add(name)
+                case ast.alias():
+                    found.add((node.asname or node.name).split(".")[0])
+                case ast.Lambda() | ast.comprehension():
+                    pass
+                case _:
+                    waiting.append(node)
+    return found
+
+
+def _used_in(source: str) -> set[str]:
+    return {n.id for n in ast.walk(_parsed(source)) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)}
+
+
+def _imports(source: str) -> bool:
+    return any(isinstance(node, ast.Import | ast.ImportFrom) for node in ast.walk(_parsed(source)))
+
+
+def _checks(source: str) -> bool:
+    """Whether a cell compares results with the ledger; an answer to an exercise is none."""
+    for node in ast.walk(_parsed(source)):
+        match node:
+            case ast.Call(func=ast.Attribute(value=ast.Call(func=ast.Name("exercise")), attr="check")):
+                pass
+            case ast.Call(func=ast.Attribute(attr="check")):
+                return True
+    return False
 
 
 def _outputs(outputs: list[NotebookNode]) -> list[NotebookNode]:
     kept: list[NotebookNode] = []
     for output in copy.deepcopy(outputs):
         if WIDGET in output.get("data", {}):
-            continue
+            if PICTURES.isdisjoint(output.data):
+                continue
+            del output.data[WIDGET]
         if output.output_type == "execute_result":
             output.execution_count = None
         # How many pieces a printed text arrives in depends on how fast the machine is.

@@ -28,6 +28,7 @@ MOST_LINES = 12
 MOST_IMPORTS = 13
 MOST_COLUMNS = 88  # what a notebook shows beside a file list without scrolling
 MOST_BYTES = 900_000
+MOST_IN_CORE = 60
 
 # Functions that make a number of a literal, and names of constants: what consists of these alone is not computed.
 MAKERS = {"S", "sympify", "Rational", "Integer", "Float", "Fraction", "Decimal", "int", "float", "abs", "round"}
@@ -183,9 +184,9 @@ def short_cells(stored: Stored) -> list[str]:
 def only_sliders_escape_comparison(stored: Stored) -> list[str]:
     found = []
     for label, cell in code(stored.notebook):
-        expected = [notebooks.SLIDERS] if notebooks.has_sliders(cell.source) else []
-        if (tags := cell.metadata.get("tags", [])) != expected:
-            found.append(f"{label}: tags {tags} instead of {expected}")
+        escapes = {tag for tag in cell.metadata.get("tags", []) if tag != notebooks.FOLDED}
+        if escapes != ({notebooks.SLIDERS} if notebooks.has_sliders(cell.source) else set()):
+            found.append(f"{label}: tags {sorted(escapes)}, but only sliders escape comparison")
         if re.search(r"NBVAL|PYTEST_VALIDATE", cell.source):
             found.append(f"{label}: a comment that hides a cell from comparison")
     return found
@@ -196,9 +197,9 @@ def sliders_follow_a_figure(stored: Stored) -> list[str]:
     for section in sections(stored.notebook):
         shown = False
         for label, cell in section:
-            if notebooks.has_sliders(cell.source) and not shown:
-                found.append(f"{label}: a slider without a figure before it in its section")
             shown = shown or any(mime.startswith("image/") for o in cell.outputs for mime in o.get("data", {}))
+            if notebooks.has_sliders(cell.source) and not shown:
+                found.append(f"{label}: a slider without a figure, its own or one before it in its section")
     return found
 
 
@@ -215,27 +216,8 @@ def sliders_keep_what_they_use(stored: Stored) -> list[str]:
         while more := set().union(*(functions[name] for name in used & set(functions))) - used:
             used |= more
         for later, other in cells[n + 1 :]:
-            for name in sorted(used & bound_in(other)):
+            for name in sorted(used & notebooks.bound_in(other.source)):
                 found.append(f"{label}: the slider uses {name}, which {later} binds again")
-    return found
-
-
-def bound_in(cell: NotebookNode) -> set[str]:
-    """The names that a cell binds for those after it; those of functions and comprehensions remain in them."""
-    found, waiting = set(), [tree(cell)]
-    while waiting:
-        for node in ast.iter_child_nodes(waiting.pop()):
-            match node:
-                case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
-                    found.add(name)
-                case ast.Name(id=name, ctx=ast.Store()):
-                    found.add(name)
-                case ast.alias():
-                    found.add((node.asname or node.name).split(".")[0])
-                case ast.Lambda() | ast.comprehension():
-                    pass
-                case _:
-                    waiting.append(node)
     return found
 
 
@@ -243,6 +225,65 @@ def globals_of(function: symtable.SymbolTable) -> set[str]:
     """The names from outside that a function uses, itself or in a function or comprehension within it."""
     own = {symbol.get_name() for symbol in function.get_symbols() if symbol.is_global()}
     return own.union(*map(globals_of, function.get_children()))
+
+
+# The answers.
+
+
+def answers_are_labelled(stored: Stored) -> list[str]:
+    """In a chapter, no cell ends in a literal: a number has its name and unit, and several of them are a table.
+
+    Solutions end in answers as a student gives them.
+    """
+    if stored.path.parent.name != "chapters":
+        return []
+    return [
+        f"{label}: answers {''.join(output.data['text/plain'])[:40]!r}, which nothing names: show quantities or a table"
+        for label, cell in code(stored.notebook)
+        for output in cell.outputs
+        if output.output_type == "execute_result"
+        and "text/html" not in output.data
+        and is_bare(output.data["text/plain"])
+    ]
+
+
+def is_bare(text: str) -> bool:
+    """Whether what a cell shows is a number, a text, a truth value, or several of them, and nothing with a name."""
+    node = parsed(text)
+    values = (ast.Constant, ast.Tuple, ast.List, ast.Dict, ast.Set, ast.UnaryOp, ast.BinOp, ast.Call, ast.Name)
+    form = (ast.Module, ast.Expr, ast.operator, ast.unaryop, ast.Load)
+    return node is not None and all(
+        isinstance(part, values + form) and (not isinstance(part, ast.Name) or part.id in IN_NUMBERS)
+        for part in ast.walk(node)
+    )
+
+
+#: Names that stand in what SymPy and NumPy print of numbers.
+IN_NUMBERS = {"pi", "E", "I", "oo", "inf", "nan", "sqrt", "exp", "log", "atan", "acos", "array", "Matrix"}
+
+
+def core_is_short(stored: Stored) -> list[str]:
+    """The core of a chapter, all but what is marked as further reading, is a first reading of 45 minutes."""
+    if stored.path.parent.name != "chapters":
+        return []
+    inside, count = True, 0
+    for cell in stored.notebook.cells:
+        if re.match(r"## ", cell.source) and cell.cell_type == "markdown":
+            inside = not notebooks.FURTHER.search(cell.source)
+        count += inside and cell.cell_type == "code"
+    return [f"{count} code cells in its core are more than {MOST_IN_CORE}"] if count > MOST_IN_CORE else []
+
+
+def opens_and_closes(stored: Stored) -> list[str]:
+    """A chapter opens with something that moves, before its first section, and says what the reader can do now."""
+    if stored.path.parent.name != "chapters":
+        return []
+    first = next((n for n, cell in enumerate(stored.notebook.cells) if cell.source.startswith("## ")), 0)
+    live = [c for c in stored.notebook.cells[:first] if c.cell_type == "code" and notebooks.has_sliders(c.source)]
+    found = [] if live else ["no slider before the first section"]
+    if not any(cell.source.startswith("## What you can do now") for cell in stored.notebook.cells):
+        found.append("no section 'What you can do now'")
+    return found
 
 
 # The numbers.

@@ -17,12 +17,11 @@ import sympy
 from loopbook.evidence import Evidence
 from loopbook.evidence import values as known
 from loopbook.evidence.values import NUMBER, half_unit, in_one_line
+from loopbook.tables import typeset
 
 __all__ = ["KINDS", "Claim", "Formula", "Name", "Number", "Printed"]
 
 INFINITE = {"oo": math.inf, "-oo": -math.inf}
-_GREEK = {"alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi",
-          "pi", "rho", "sigma", "tau", "phi", "chi", "psi", "omega"}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -182,33 +181,3 @@ Printed: TypeAlias = Number | Formula | Name | Claim
 
 #: The kinds by name, as the ledger writes them; a claim is known by its sentence.
 KINDS: dict[str, Any] = {kind.kind: kind for kind in (Number, Formula, Name)}
-
-
-# ---------------------------------------------------------------------------------------------------------- typesetting
-
-
-def typeset(expression: known.Formula) -> str:
-    """Return a formula between dollar signs; a symbol whose name is a word, such as a unit, stands upright.
-
-    >>> from loopbook.expressions import parse
-    >>> typeset(parse("K/(T*s + 1)"))
-    '$\\\\displaystyle \\\\frac{K}{T s + 1}$'
-    """
-    words = {x: rf"\mathrm{{{x}}}" for x in getattr(expression, "free_symbols", ()) if _is_word(str(x))}
-    latex = sympy.latex(expression, symbol_names=words, mul_symbol=r"\," if words else None)
-    return rf"$\displaystyle {latex}$"
-
-
-def _is_word(name):
-    """Whether a symbol's name is a word, such as a unit, and no letter."""
-    return len(name) > 2 and name.isalpha() and name not in _GREEK
-
-
-def is_symbol(name: str) -> bool:
-    """Whether a name is that of a symbol, K or T_1 or tau, which needs no other label.
-
-    >>> is_symbol("T_1"), is_symbol("tau"), is_symbol("T_i_in_minutes")
-    (True, True, False)
-    """
-    letter, _, index = name.partition("_")
-    return (len(letter) == 1 or letter in _GREEK) and len(index) <= 3 and "_" not in index

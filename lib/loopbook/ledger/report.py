@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import html
-import re
 from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -11,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import sympy
 
 from loopbook.evidence.comparisons import without_gaps
-from loopbook.ledger.kinds import Claim, Formula, is_symbol, typeset
+from loopbook.ledger.kinds import Claim, Formula
+from loopbook.tables import aligned, marked, symbol, typeset
 
 if TYPE_CHECKING:
     from loopbook.ledger.source import Entry, Result
@@ -94,7 +93,7 @@ class Verdict:
         if self.is_claim:
             typeset_texts["computed"] = self.value.told(typeset) if self.value is not None else ""
         else:
-            typeset_texts["title"] = "" if result.label else _symbol(result.name)
+            typeset_texts["title"] = "" if result.label else symbol(result.name)
             typeset_texts["book"] = f"{printed.latex(printed.text)} {result.unit}".strip()
         plain = {"title": printed.text if self.is_claim else result.title, "book": self.book, "computed": self.computed}
         return {
@@ -163,7 +162,7 @@ class Report:
     def __repr__(self) -> str:
         values = [verdict for verdict in self.verdicts if not verdict.is_claim]
         rows = [(v.word, v.result.equation, v.result.title, v.book, v.computed) for v in values]
-        lines = _aligned(self._without_equations([_HEAD, *rows], 1)) if rows else []
+        lines = aligned(self._without_equations([_HEAD, *rows], 1)) if rows else []
         for verdict in self.verdicts:
             if verdict.is_claim:
                 denied = "" if verdict.result.printed.says else " (The book denies it.)"
@@ -224,10 +223,10 @@ def described(entry: Entry, as_html: bool = False) -> str:
     """An entry with its givens, as text or HTML."""
     if not as_html:
         rows = [(name, "=" if "=" not in given.text else ":", given.text) for name, given in entry.inputs.items()]
-        return "\n".join([heading(entry), *_aligned(rows)])
+        return "\n".join([heading(entry), *aligned(rows)])
     lines = [f"<p><strong>{marked(heading(entry))}</strong></p>"]
     if entry.inputs:
-        cells = [(marked(_symbol(name)), marked(_given(given))) for name, given in entry.inputs.items()]
+        cells = [(marked(symbol(name)), marked(_given(given))) for name, given in entry.inputs.items()]
         rows = [f"<tr><td {_LEFT}>{name}</td><td {_LEFT}>{given}</td></tr>" for name, given in cells]
         lines += ["<table>", *rows, "</table>"]
     return "\n".join(lines)
@@ -238,34 +237,5 @@ def heading(entry: Entry) -> str:
     return f"{entry.book or entry.source}, {entry.name} · {entry.title}"
 
 
-def marked(text: str) -> str:
-    """A text as HTML; what is between dollar signs stays a formula.
-
-    >>> marked("K < 1, $T < 2$")
-    'K &lt; 1, $T &lt; 2$'
-    """
-    pieces = re.split(r"(\$[^$]+\$)", text)
-    return "".join(
-        _formula(piece) if piece[:1] == "$" and piece[1:] else html.escape(piece, quote=False) for piece in pieces
-    )
-
-
-def _formula(latex):
-    # an older MathJax breaks lines as soon as it can, unless the cell has the width that the formula needs
-    room = min(16, 1 + 0.2 * len(re.sub(r"\\[a-z]+|[{}]", "", latex)))
-    formula = html.escape(latex, quote=False)
-    return f'<span style="display: inline-block; min-width: {room:.0f}em">{formula}</span>' if room > 6 else formula
-
-
-def _symbol(name):
-    """A name as a symbol where it is one, K or T_1 or tau, and as words otherwise."""
-    return f"${sympy.latex(sympy.Symbol(name))}$" if is_symbol(name) else name.replace("_", " ")
-
-
 def _given(given):
     return given.text if isinstance(given.value, sympy.Rational) else typeset(given.value)
-
-
-def _aligned(rows):
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]

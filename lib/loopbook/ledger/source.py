@@ -15,9 +15,10 @@ import sympy
 
 from loopbook.evidence.values import NUMBER, in_one_line, parse_formula
 from loopbook.ledger.errors import Disagreement, LedgerError
-from loopbook.ledger.kinds import KINDS, Claim, Number, Printed, is_symbol
+from loopbook.ledger.kinds import KINDS, Claim, Number, Printed
 from loopbook.ledger.report import Report, Verdict, described
 from loopbook.ledger.statuses import KEYS, Computed, Status, status_of
+from loopbook.tables import is_symbol
 from loopbook.validation import did_you_mean
 
 if TYPE_CHECKING:
