@@ -27,6 +27,7 @@ __all__ = ["Table", "aligned", "is_symbol", "marked", "quantities", "rounded", "
 _GREEK = {"alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi",
           "pi", "rho", "sigma", "tau", "phi", "chi", "psi", "omega"}  # fmt: skip
 _LEFT = 'style="text-align:left"'  # JupyterLab would centre the heads and align texts to the right
+_LARGEST_DENOMINATOR = 12  # a fraction with a larger one says less than a decimal number
 _RIGHT = 'style="text-align:right"'
 
 
@@ -70,7 +71,8 @@ def quantities(named: Mapping[str, Any] | None = None, /, *, digits: int = 3, **
         digits: significant digits; what stands before the decimal point is never rounded.
         symbols: more of them by their symbols, where they have no unit.
     Returns:
-        A table, as text and as HTML. A truth value is shown as yes or no, a formula typeset, of several values each.
+        A table, as text and as HTML. A truth value is shown as yes or no, a formula is typeset, several values have
+        commas between them, and an exact fraction stays one if its denominator is small.
     Raises:
         ValueError: if there is nothing to show.
 
@@ -167,7 +169,7 @@ def _written(value, digits, tex):
     if isinstance(value, bool) or type(value).__name__ == "bool" or isinstance(value, sympy.logic.boolalg.BooleanAtom):
         return "yes" if value else "no"
     if isinstance(value, sympy.Basic):
-        if value.is_Float or (value.is_number and value.is_infinite):
+        if value.is_Float or value in (sympy.oo, -sympy.oo) or (value.is_Rational and value.q > _LARGEST_DENOMINATOR):
             return rounded(float(value), digits)
         return str(value) if value.is_Integer or not tex else typeset(value)
     if isinstance(value, numbers.Integral):
