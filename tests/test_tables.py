@@ -25,8 +25,8 @@ def test_numbers_are_rounded_to_three_digits_but_not_before_the_point(value, tex
     ("value", "text"),
     [
         (True, "yes"), (np.bool_(False), "no"), (sympy.false, "no"), (None, "–"), (np.float64(0.5), "0.500"),
-        (np.int64(7), "7"), (1 - 2j, "1 - 2j"), (sympy.Rational(3, 2), "3/2"), (sympy.oo, "∞"), (sympy.Rational(27, 20), "1.35"),
-        (sympy.Float(2.5), "2.50"),
+        (np.int64(7), "7"), (1 - 2j, "1 - 2j"), (sympy.Rational(3, 2), "3/2"), (sympy.oo, "∞"),
+        (sympy.Rational(27, 20), "1.35"),         (sympy.Float(2.5), "2.50"),
         ([1.0, 2.5], "1, 2.50"), ([], "none"), (PID(2, Ti=40), "PID(Kp=2, Ti=40)"), ("as said", "as said"),
     ],
 )  # fmt: skip
