@@ -39,7 +39,7 @@ SECRET = "a secret of the tests"
 
 @exercise("1", title="The response", points=2)
 def response(K=between(2, 6, "K/%"), T=between(15, 40, "s")):
-    """A process has the gain {K} and the time-constant {T}."""
+    """A process has the gain {K} and the time constant {T}."""
     return answers(y=number(2 * K, "K", "the response to 2 %"), p=number(-1 / T, "rad/s", "the pole"))
 
 
@@ -50,7 +50,7 @@ def _(K):
 
 @exercise("2", title="Settings", points=3)
 def tuned(K=between(2, 6, "K/%"), T=between(15, 40, "s"), delay=between(2, 6, "s")):
-    """A lag has the gain {K}, the time-constant {T} and the dead time {delay}."""
+    """A lag has the gain {K}, the time constant {T} and the dead time {delay}."""
     return answers(C=settings(simc(first_order(K, T, delay), Tc=delay, c=2), gain="%/K"))
 '''
 SOLUTION = {

@@ -45,7 +45,7 @@ def gain(K=between(1.05, 9.95, step=0.05, reference=2), T=between(11, 99, "s", r
     """A lag of {T} with the gain {K}."""
     return answers(
         K=number(2 * K, "K/%", "twice the gain"),
-        T=number(T, "s", "the time-constant"),
+        T=number(T, "s", "the time constant"),
         H=expression(K / (T * s + 1), what="the transfer function"),
     )
 

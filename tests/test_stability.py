@@ -648,7 +648,7 @@ def test_a_predictor_is_robust_only_if_it_is_gentle():
         window = (abs(np.log2(x * y)) <= 1) & (abs(np.log2(x / y)) <= 1)
         assert (counts[window] == 0).all() == robust
     assert not robust_in_window(MODEL, PID(3, 1))
-    assert not robust_in_window(DELAY / (s + 1), PID(0.6, 9, 1))  # twice the gain returns for ever
+    assert not robust_in_window(DELAY / (s + 1), PID(0.6, 9, 1))  # twice the gain returns forever
 
 
 # ------------------------------------------------------------------------------------------------ maps

@@ -418,7 +418,7 @@ def test_responses_refuse_what_has_none():
         response(1 / (s + 1), symbols("t"))
 
 
-# ------------------------------------------------------------------------------------------------ response-time
+# ------------------------------------------------------------------------------------------------ response time
 
 
 def test_equation_6_34_response_time_of_one_lag():

@@ -9,10 +9,10 @@ from cheat_sheet import dynamics, rules
 TITLE = "Process control on one page"
 LETTERS = (
     r"$K$ gain, $T$ and $T_1 \geq T_2 \geq T_3$ lags, $\theta$ dead time, $r = \theta/T$, $\zeta$ damping; "
-    "$T_c$ time constant that the closed loop shall have",
+    "$T_c$ time constant that the closed loop should have",
     "$K_p$, $T_i$, $T_d$, $T_f$ gain, integral time, derivative time, filter of a PID controller in parallel form, "
     "unless the serial one is named",
-    r"$K_u$, $P_u$ gain and period of the loop that oscillates for ever; $K_{pGG}$, $T_{ou}$ gain and time from "
+    r"$K_u$, $P_u$ gain and period of the loop that oscillates forever; $K_{pGG}$, $T_{ou}$ gain and time from "
     "overshoot to undershoot of Good Gain",
 )
 

@@ -42,7 +42,7 @@ def ordinary(delay, gain, Tc):
 
 
 def respond(delay, gain, Tc):
-    """Answer for one ratio of dead times, one ratio of gains (model to process) and one wanted time-constant."""
+    """Answer for one ratio of dead times, one ratio of gains (model to process) and one wanted time constant."""
     servo, regulator = predictor(delay, gain, Tc)
     y, stable = stepped(TIMES, servo, regulator, LOAD_AT), servo.is_stable
     beside, beside_stable = ordinary(delay, gain, Tc)
@@ -75,7 +75,7 @@ LESSON = Lesson(
     sliders=(
         Slider("delay", "Dead time of the model, to that of the process", DELAYS, Q(1)),
         Slider("gain", "Gain of the model, to that of the process", GAINS, Q(1)),
-        Slider("Tc", "Wanted time-constant <i>T</i><sub>C</sub>", WANTED, Q(2), "s"),
+        Slider("Tc", "Wanted time constant <i>T</i><sub>C</sub>", WANTED, Q(2), "s"),
     ),
     panels=(Panel("output y", -0.25, 2.25),),
     curves=(

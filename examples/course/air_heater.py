@@ -45,13 +45,13 @@ def step_in_power(
     """With the controller in manual mode, the power of the heater is raised by {step}. The temperature rises by {rise}
     in the end. It has covered 28 % of the rise {t_28} after the step, and 63 % after {t_63}.
 
-    Find the gain, the time-constant and the dead time of a lag with dead time that does the same: without dead time, a
-    lag has covered 28 % after a third of its time-constant, and 63 % after one.
+    Find the gain, the time constant and the dead time of a lag with dead time that does the same: without dead time, a
+    lag has covered 28 % after a third of its time constant, and 63 % after one.
     """
     T = Rational(3, 2) * (t_63 - t_28)
     return answers(
         K=number(rise / step, "K/%", "the gain"),
-        T=number(T, "s", "the time-constant"),
+        T=number(T, "s", "the time constant"),
         tau=number(t_63 - T, "s", "the dead time", within=0.05),  # more exact numbers than 28 % and 63 % do no harm
     )
 
@@ -66,7 +66,7 @@ def _(t_63):
     return {"T": t_63}
 
 
-@step_in_power.mistake("At 28 % the response has been on its way for a third of the time-constant already.")
+@step_in_power.mistake("At 28 % the response has been on its way for a third of the time constant already.")
 def _(t_28):
     return {"tau": t_28}
 
@@ -81,7 +81,7 @@ def as_transfer_function(
     delay=between(3, 9, "s", step=1, reference=6),
     K_p=between(1, 6, "%/K", step=0.5, reference=2),
 ):
-    r"""A model of the heater has the gain {K}, the time-constant {T} and the dead time {delay}. Write its transfer
+    r"""A model of the heater has the gain {K}, the time constant {T} and the dead time {delay}. Write its transfer
     function from power to temperature, with the time in seconds and without units.
 
     Then let a P controller with the gain $K_p$ hold the temperature. A disturbance $d$ at the input of the process, in
@@ -95,7 +95,7 @@ def as_transfer_function(
     )
 
 
-@as_transfer_function.mistake("A time-constant stands before $s$ in the denominator, and a dead time in an exponent.")
+@as_transfer_function.mistake("A time constant stands before $s$ in the denominator, and a dead time in an exponent.")
 def _(K, T, delay):
     return {"H": K * exp(-T * s) / (delay * s + 1)}
 
@@ -120,7 +120,7 @@ def settings_by_rule(
     delay=between(3, 9, "s", step=1, reference=6),
     c=choice(2, 4),
 ):
-    r"""Tune a PI controller for the heater with the gain {K}, the time-constant {T} and the dead time {delay} by
+    r"""Tune a PI controller for the heater with the gain {K}, the time constant {T} and the dead time {delay} by
     Skogestad's rule: $T_C$ equal to the dead time, and the factor {c} in $T_i = \min(T, c\,(T_C + \tau))$.
     """
     return answers(pid=settings(PID(T / (K * 2 * delay), min(T, 2 * c * delay)), "%/K", "s", "the settings"))
@@ -148,14 +148,14 @@ def loop_without_dead_time(
     K_p=between(1, 6, "%/K", step=0.5, reference=2),
     T_i=between(4, 40, "s", step=4, reference=8),
 ):
-    r"""At a high flow the dead time hardly counts, and the heater is a lag with the gain {K} and the time-constant {T}.
-    A PI controller has $K_p$ = {K_p} and $T_i$ = {T_i}. Where are the poles of the loop, and does it swing?
+    r"""At a high flow the dead time hardly counts, and the heater is a lag with the gain {K} and the time constant {T}.
+    A PI controller has $K_p$ = {K_p} and $T_i$ = {T_i}. Where are the poles of the loop, and does it oscillate?
     """
     b, under_the_root = _quadratic(K, T, K_p, T_i)
     root = sqrt(under_the_root)
     return answers(
         poles=poles([(-b + root) / 2, (-b - root) / 2], "rad/s", "the poles"),
-        swings=word("yes" if under_the_root < 0 else "no", ["yes", "no"], "whether the loop swings"),
+        swings=word("yes" if under_the_root < 0 else "no", ["yes", "no"], "whether the loop oscillates"),
     )
 
 
@@ -170,7 +170,7 @@ def _(T):
     return {"poles": [-1 / T, 0]}
 
 
-@loop_without_dead_time.mistake("Poles with an imaginary part belong to a response that swings.")
+@loop_without_dead_time.mistake("Poles with an imaginary part belong to a response that oscillates.")
 def _(K, T, K_p, T_i):
     return {"swings": "no" if _quadratic(K, T, K_p, T_i)[1] < 0 else "yes"}
 
@@ -181,8 +181,8 @@ def controller_of_your_own(
     T=between(30, 60, "s", step=5, reference=30),
     delay=between(4, 8, "s", step=1, reference=6),
 ):
-    r"""Design a PI controller for the heater with the gain {K}, the time-constant {T} and the dead time {delay}. It
-    shall
+    r"""Design a PI controller for the heater with the gain {K}, the time constant {T} and the dead time {delay}. It
+    should
 
     - leave the loop a margin: the largest sensitivity $M_s$ is at most 1.7;
     - fight disturbances: after a step of 1 % at the input of the process, the integral of the control error is at most
@@ -203,7 +203,7 @@ def controller_of_your_own(
 
 
 def _limit(K, delay):
-    """A fifth more than Skogestad's rule leaves where the integral time is the time-constant."""
+    """A fifth more than Skogestad's rule leaves where the integral time is the time constant."""
     return round(float(Rational(12, 5) * K * delay), 1)
 
 

@@ -107,7 +107,7 @@ def release(
     students: Annotated[Path | None, typer.Option(help=ROSTER)] = None,
     nbgrader: Annotated[bool, typer.Option(help="Write one source assignment for nbgrader instead.")] = False,
 ) -> None:
-    """Write a notebook a student: own numbers, places for answers, nothing of the key."""
+    """Write one notebook per student: own numbers, places for answers, nothing of the key."""
     from loopbook.grading import GradingError
     from loopbook.grading.assignment import load
 

@@ -465,7 +465,7 @@ def final_value(F: Number) -> sympy.Expr:
     """Return what f(t) tends to as t grows, the limit of s F(s) for s to zero (the Final Value Theorem).
 
     The theorem holds only where f(t) settles: every pole of s F(s) must lie strictly left of the imaginary axis. The
-    limit alone gives plausible numbers for functions that grow or oscillate for ever; this function does not.
+    limit alone gives plausible numbers for functions that grow or oscillate forever; this function does not.
 
     Raises ValueError when a pole lies elsewhere, or when that cannot be decided because a symbol has no known sign.
     Source: Haugen, equation (4.22), with the condition that it needs.

@@ -59,7 +59,7 @@ def integrator(K: Number, delay: Number = 0) -> sympy.Expr:
 
 
 def first_order(K: Number, T: Number, delay: Number = 0) -> sympy.Expr:
-    """Return ``K/(T*s + 1)``, a lag (time-constant system) with gain K and dead time `delay`. (Haugen, equation 6.13)
+    """Return ``K/(T*s + 1)``, a lag (time constant system) with gain K and dead time `delay`. (Haugen, equation 6.13)
 
     Arguments:
         K: gain, in units of the output for one unit of the input.
@@ -500,7 +500,7 @@ def response_time(H: TransferFunctionLike, share: Number = _ONE_LAG) -> float:
         return H.response_time(float(share))
     H = transfer_function(H)
     if symbols := sorted(map(str, H.free_symbols - {s})):
-        raise ValueError(f"the response-time of {H} is not known: give a number for {', '.join(symbols)}")
+        raise ValueError(f"the response time of {H} is not known: give a number for {', '.join(symbols)}")
     final = final_value(H / s)
     if final == 0:
         raise ValueError(f"the step response settles at {final}: expected a number other than zero")

@@ -36,7 +36,7 @@ def half_rule(
         H: transfer function with one dead time or none, with real poles, none of them in the right half-plane; in any
             form, or of python-control.
         order: 1 keeps one lag, 2 keeps two; an integrator counts as an infinite lag.
-        Tc: closed-loop time-constant for which the model is meant; the rules for zeros compare with it. Without it, it
+        Tc: closed-loop time constant for which the model is meant; the rules for zeros compare with it. Without it, it
             is the effective dead time of the model itself.
         largest_first: lags with symbols, sorted, where the symbols leave their order open.
     Returns:
@@ -96,7 +96,7 @@ def zero_rule(T0: Number, lag: Number, Tc: Number) -> Step:
     Arguments:
         T0: time constant of the zero, positive.
         lag: the lag that it is set against, positive; oo for an integrator, whose place 1/s takes that of the lag.
-        Tc: closed-loop time-constant for which the approximation is meant; the effective dead time in the source.
+        Tc: closed-loop time constant for which the approximation is meant; the effective dead time in the source.
     Returns:
         `Step`, from the rule's name to a gain or, by rule T3, a gain with a smaller lag.
     Raises:

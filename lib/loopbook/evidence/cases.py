@@ -57,14 +57,14 @@ class Cases(Evidence):
         return any(case.probed for _, case in self.cases)
 
     def turned(self) -> Cases:
-        """With a counterexample to what shall hold always; without what shall hold once."""
+        """With a counterexample to what should hold always; without what should hold once."""
         (name, first), *others = self.cases
         if self.all:
             return replace(self, cases=((name, first.turned()), *others))
         return replace(self, cases=tuple((name, case.turned() if case.holds else case) for name, case in self.cases))
 
     def told(self, typeset: Typeset = str) -> str:
-        """The deciding cases: counterexamples to what shall hold always, examples of what shall hold once.
+        """The deciding cases: counterexamples to what should hold always, examples of what should hold once.
 
         Of many those are told in which the numbers are closest.
         """

@@ -132,7 +132,7 @@ class Comparison(Evidence):
 
     @property
     def room(self) -> float:
-        """How far two numbers are apart of which one shall be larger."""
+        """How far two numbers are apart of which one should be larger."""
         if self.relation in "=≠" or not all(isinstance(side, Fraction) for side in (self.left, self.right)):
             return math.inf
         return _apart(self.left, self.right)

@@ -217,7 +217,7 @@ def _is_open(left, right):
 
 
 def texts(values: Collection[Side], unit: str = "", typeset: Typeset = str, apart: bool = True) -> list[str]:
-    """Return values as text, numbers with the unit, and with so many digits that their order is seen if it shall be."""
+    """Return values as text, numbers with the unit, and with enough digits to show their order if it is wanted."""
     digits = next((digits for digits in _DIGITS if not apart or _is_told(values, digits)), _DIGITS[-1])
     space = "" if unit in ("°", "'") else " "
     return [

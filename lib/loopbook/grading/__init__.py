@@ -1,4 +1,4 @@
-"""Assignments: a notebook a student, and a grader that lets no submission near the key.
+"""Assignments: one notebook per student, and a grader that lets no submission near the key.
 
 Answers come out of the student's process as plain data; judging happens in another process. ``loopbook release`` and
 ``loopbook grade`` are the commands.

@@ -1,4 +1,4 @@
-"""Releasing an assignment: a notebook a student, with the student's own numbers and nothing of the key."""
+"""Releasing an assignment: one notebook per student, with the student's own numbers and nothing of the key."""
 
 from __future__ import annotations
 

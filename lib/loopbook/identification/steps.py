@@ -16,7 +16,7 @@ from loopbook.validation import number, one_of
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-RISE = 0.6321205588285577  # of a lag after one time-constant, 1 - 1/e
+RISE = 0.6321205588285577  # of a lag after one time constant, 1 - 1/e
 EARLY_RISE = 0.2834686894262108  # after a third of it, 1 - exp(-1/3)
 LAST = 10  # the final value is the mean over this part of the record: a tenth
 EARLY = 0.05  # share of the record by which an asymptote may start too early

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["Criteria", "criteria"]
 
 DIFFERENTIATOR = read(s)
-SMALLEST_TOLERANCE = 1e-12  # smaller ones are lost in rounding, and the response would be followed for ever
+SMALLEST_TOLERANCE = 1e-12  # smaller ones are lost in rounding, and the response would be followed forever
 NEGLIGIBLE = 1e-11  # the share of the integral that may be left when a response is cut off
 MOST_SEGMENTS = 16_000  # of a response that is followed
 EARLY = 400  # segments from which it pays to ask for the modes at once

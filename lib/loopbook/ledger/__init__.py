@@ -7,7 +7,7 @@ Each source is a TOML file beside this one, and is imported by its name:
 >>> example.given("H")
 3/(4*s + 2)
 >>> example.check(K=1.5, T=2)
-Haugen, Equation 6.14 · Gain and time-constant of a numerical example: 2 computed
+Haugen, Equation 6.14 · Gain and time constant of a numerical example: 2 computed
 verdict   equation  result  book  computed
 computed  6.14      K       1.5   3/2
 computed  6.14      T       2     2

@@ -25,7 +25,7 @@ class Process(Plant):
         H: a strictly proper transfer function with numbers, an expression in `s`, with dead times wherever they are.
     Raises:
         ValueError: for symbols in H, a numerator of the denominator's degree or more, or a highest derivative of the
-            output that occurs with a dead time, as behind a jump that comes back for ever.
+            output that occurs with a dead time, as behind a jump that comes back forever.
 
     >>> from loopbook import s
     >>> Process(3 * sympy.exp(-2 * s) / (4 * s + 1)).transfer_function("u")

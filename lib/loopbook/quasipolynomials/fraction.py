@@ -364,7 +364,7 @@ class DelayFraction:
 
     @property
     def is_neutral(self) -> bool:
-        """Whether the highest derivative of the output occurs with a dead time, so that a jump returns for ever.
+        """Whether the highest derivative of the output occurs with a dead time, so that a jump returns forever.
 
         >>> read(1 / (s + 1 + s * sympy.exp(-s) / 2)).is_neutral
         True

@@ -57,7 +57,7 @@ class Chart:
         final: names of the steps that no transition leaves.
     Raises:
         ValueError: for no or two initial steps, a step that is unknown, that cannot be reached or that can stay active
-            for ever without being final, an unknown signal, a signal that is input and output, a condition that is
+            forever without being final, an unknown signal, a signal that is input and output, a condition that is
             none, a value that does not fit its output, a convergence whose steps are never active together, a step that
             could be activated while it is active, a transition that is never cleared, what is of another kind.
 

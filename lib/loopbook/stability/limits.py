@@ -1,4 +1,4 @@
-"""The limit of stability: the gain with which a loop oscillates for ever, alone and over the times of a controller."""
+"""The limit of stability: the gain with which a loop oscillates forever, alone and over the times of a controller."""
 
 from __future__ import annotations
 

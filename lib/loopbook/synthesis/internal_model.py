@@ -65,13 +65,13 @@ def imc_design(model: TransferFunctionLike, Tc: Number, approximation: Approxima
     """Design a controller by internal model control, and read it as a PID controller.
 
     The dead time is approximated, and the model is split: zeros in the right half-plane remain, the rest is inverted.
-    The closed loop shall be the remaining part times a filter: ``1/(Tc*s + 1)``; with an integrator
+    The closed loop should be the remaining part times a filter: ``1/(Tc*s + 1)``; with an integrator
     ``(a*s + 1)/(Tc*s + 1)**2``, with the a for which a load leaves no offset. The controller follows by direct
     synthesis.
 
     Arguments:
         model: transfer function, with numbers or symbols, stable but for one integrator, with one dead time.
-        Tc: closed-loop time-constant, positive.
+        Tc: closed-loop time constant, positive.
         approximation: `taylor` or `pade`, of the dead time.
     Returns:
         `Design`, with all steps.

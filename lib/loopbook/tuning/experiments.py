@@ -41,7 +41,7 @@ def ziegler_nichols_ultimate(Ku: Number, Pu: Number, kind: str = "PID") -> PID:
     """Return the settings of Ziegler and Nichols from the ultimate gain and period.
 
     Arguments:
-        Ku: the gain with which the loop oscillates for ever under P control; negative for a negative process gain.
+        Ku: the gain with which the loop oscillates forever under P control; negative for a negative process gain.
         Pu: the period of that oscillation.
         kind: "P", "PI" or "PID" (parallel form).
     Raises:

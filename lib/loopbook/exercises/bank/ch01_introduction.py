@@ -362,7 +362,7 @@ def swings(
     Kp=between(1, 4, "", reference=2, step=0.2),
     Ti=between(4, 20, "min", reference=8),
 ):
-    """The level in a silo gets a new setpoint. The trend shows how it swings around it: first {above} beyond the
+    """The level in a silo gets a new setpoint. The trend shows how it oscillates around it: first {above} beyond the
     setpoint, then {below} to the other side. The level is controlled in percent, with a gain of {Kp} (percent by
     percent) and an integral time of {Ti}.
 
@@ -383,7 +383,7 @@ def swings(
     )
 
 
-@swings.mistake("The advice is for loops that swing too much, and for no others. Does this one?")
+@swings.mistake("The advice is for loops that oscillate too much, and for no others. Does this one?")
 def _(above, below, Kp, Ti):
     return {} if _is_poor(above, below) else {"settings": PID(Kp / 2, Ti * 2)}
 
@@ -439,8 +439,8 @@ def gain_between(
     setpoint. The transmitter measures the level over a range of {reach}; its noise has a standard deviation of
     {sigma}, and there is no filter.
 
-    Choose $K_p$ for two wishes at once. When {more} more are drawn from the tank, for good, the error that stays shall
-    not be larger than {e_max}. And the standard deviation of the control signal, which the noise causes, shall not be
+    Choose $K_p$ for two wishes at once. When {more} more are drawn from the tank, for good, the error that stays should
+    not be larger than {e_max}. And the standard deviation of the control signal, which the noise causes, should not be
     larger than {u_max}.
     """
     low, high = (float(x) for x in _gain_limits(reach, sigma, per_percent, more, e_max, u_max))

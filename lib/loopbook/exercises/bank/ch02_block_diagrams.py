@@ -295,13 +295,13 @@ def scale(
     r"""The platform of a scale has next to no mass. It stands on a spring of {K} with a damper of {D}, and $y$ is how
     far it is pressed down. Somebody sets down a sack of {m} on it. With the weight of the sack as the force, and with
     $g = 9.81$ m/s²: where does the platform come to rest? Which poles has the transfer function from the force to the
-    position, and does the platform swing on its way?
+    position, and does the platform oscillate on its way?
     """
     root = sympy.sqrt(D**2 - 4 * m * K)
     return answers(
         y_s=number(1000 * m * g_earth / K, "mm", "the position at rest"),
         poles=poles([(-D + root) / (2 * m), (-D - root) / (2 * m)], "1/s", "the poles"),
-        swings=word("yes" if 4 * m * K > D**2 else "no", ["yes", "no"], what="whether the platform swings"),
+        swings=word("yes" if 4 * m * K > D**2 else "no", ["yes", "no"], what="whether the platform oscillates"),
     )
 
 
@@ -412,7 +412,7 @@ def damper(
 ):
     """A machine of {m} stands on springs that have {K} together. When a press comes down on it, a constant force acts
     on the machine, and it moves to a new position. Choose the damping constant $D$ of the damper beside the springs.
-    The machine shall move beyond its new position by no more than 10 % of the way, and {t_s} after the step it shall
+    The machine should move beyond its new position by no more than 10 % of the way, and {t_s} after the step it should
     be within 5 % of the way and remain there.
 
     Try values in a simulation, or look at the exact response.

@@ -564,11 +564,11 @@ def hum(
     t_95=between(60, 800, "ms", reference=300, step=20),
     C=choice(1, 2.2, 3.3, 4.7, 6.8, 10, 15, 22, unit="µF", reference=4.7),
 ):
-    r"""The signal of a thermometer carries the hum of the mains, a sine of {f}. An RC circuit as in Example 3.5 shall
+    r"""The signal of a thermometer carries the hum of the mains, a sine of {f}. An RC circuit as in Example 3.5 should
     take it away. A capacitor of {C} is at hand.
 
-    Choose the resistance $R$: no more than {rest} of the amplitude of the hum shall come through. And when the
-    temperature makes a step, the output shall have gone 95 % of the way after {t_95} at the latest.
+    Choose the resistance $R$: no more than {rest} of the amplitude of the hum should come through. And when the
+    temperature makes a step, the output should have gone 95 % of the way after {t_95} at the latest.
     """
     omega, capacitance, end = 2 * math.pi * float(f), float(C) * 1e-6, float(t_95)
 

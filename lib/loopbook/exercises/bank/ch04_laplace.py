@@ -150,7 +150,7 @@ def thermometer(
     rest=between(0.5, 2, "K", reference=1, step=0.25),
 ):
     r"""A thermometer shows {start}. At $t = 0$ it is put into water of {bath}. From then on its reading $y(t)$ follows
-    the temperature of the water $u$ with the time-constant $T$ = {T},
+    the temperature of the water $u$ with the time constant $T$ = {T},
 
     $$T\,\dot y(t) + y(t) = u$$
 
@@ -172,7 +172,7 @@ def _(T, bath, rest):
     return {"Y": bath / (s * (T * s + 1)), "y": bath * (1 - exp(-t / T)), "t_near": T * log(bath / rest)}
 
 
-@thermometer.mistake("In the equation the derivative is multiplied by the time-constant, and so is its initial value.")
+@thermometer.mistake("In the equation the derivative is multiplied by the time constant, and so is its initial value.")
 def _(T, start, bath):
     return {"Y": (start * s + bath) / (s * (T * s + 1)), "y": bath - (bath - start / T) * exp(-t / T)}
 
@@ -184,7 +184,7 @@ def _(T, start, bath):
     return {"Y": (T * start + bath) / (T * s + 1), "y": (start + bath / T) * exp(-t / T)}
 
 
-@thermometer.mistake("An exponent is a pure number: here it must be a time over a time-constant.")
+@thermometer.mistake("An exponent is a pure number: here it must be a time over a time constant.")
 def _(T, start, bath):
     return {"y": bath - (bath - start) * exp(-T * t)}
 
@@ -242,7 +242,7 @@ def _():
     return {"settling": ["A", "B", "C", "D"]}
 
 
-@which_settle.mistake("One of these swings for ever. A pair of poles on the imaginary axis does not fade.")
+@which_settle.mistake("One of these oscillates forever. A pair of poles on the imaginary axis does not fade.")
 def _(order):
     return {"settling": sorted([order[0], order[2], order[3]])}
 
@@ -291,7 +291,7 @@ def full_power_first(
 
     $$T\,\dot y(t) + y(t) = K\,u(t)$$
 
-    with $K$ = {K} and $T$ = {T}. The oven shall become {warmer} warmer than the room, soon, and then stay so. At
+    with $K$ = {K} and $T$ = {T}. The oven should become {warmer} warmer than the room, soon, and then stay so. At
     $t = 0$ the heater is switched to its full power, $u_1$ = {full}. At the moment $t_1$, when the temperature is
     reached, it is switched back to a power $u_2$ that just holds it. Transform the power, in the symbols $u_1$, $u_2$,
     $t_1$ and $s$. Then find $u_2$ and $t_1$.
@@ -332,7 +332,7 @@ def _(T, K, full, warmer):
 
 
 @full_power_first.mistake(
-    "After one time-constant, 63 % of the way to $Ku_1$ is done. Is that the temperature that is wanted?"
+    "After one time constant, 63 % of the way to $Ku_1$ is done. Is that the temperature that is wanted?"
 )
 def _(T, K, full, warmer):
     return {"t_1": T} if abs(_excess(K, full, warmer) - 1.582) > 0.05 else {}

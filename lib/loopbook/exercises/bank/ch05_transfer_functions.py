@@ -57,7 +57,7 @@ def _(J, k, b):
     return {"H_u": k / (J * s - b), "H_M": -1 / (J * s - b)}
 
 
-@stirrer.mistake("That is the time-constant. The pole is the root of the denominator.")
+@stirrer.mistake("That is the time constant. The pole is the root of the denominator.")
 def _(J, b):
     return {"pole": J / b} if J != b else {}
 
@@ -165,7 +165,7 @@ def _(K, T, T_0, U):
     return {"y": K * U * (1 - T_0 / T * exp(-t / T))}
 
 
-@creeping_sensor.mistake("Beginning and end are right. Which time-constant belongs to the pole?")
+@creeping_sensor.mistake("Beginning and end are right. Which time constant belongs to the pole?")
 def _(K, T, T_0, U):
     return {"y": K * U * (1 - (1 - T_0 / T) * exp(-t / T_0))}
 
@@ -282,13 +282,13 @@ def hot_plate(
     u_max=between(1, 6, "kW", reference=3, step=0.5),
     step=between(10, 40, "K", reference=20, step=5),
 ):
-    r"""A hot plate follows the power $u$ [kW] of its heater with a gain of {K} and a time-constant of {T}; its output
+    r"""A hot plate follows the power $u$ [kW] of its heater with a gain of {K} and a time constant of {T}; its output
     $y$ is its temperature above that of the room. To make it faster, the temperature is compared with a wanted one,
     $r$, and the heater gets $u = K_c\,(r - y)$.
 
     Give the transfer function from $r$ to $y$, in $s$ and the symbol $K_c$, with the numbers of the plate. Then choose
-    $K_c$ for a step of {step} in $r$, from rest: in the end the plate shall be at {share} of the step or more, the
-    time-constant of the whole must not exceed {T_max}, and the power must not exceed {u_max}. (When is it largest?)
+    $K_c$ for a step of {step} in $r$, from rest: in the end the plate should be at {share} of the step or more, the
+    time constant of the whole must not exceed {T_max}, and the power must not exceed {u_max}. (When is it largest?)
     """
     K_c = Symbol("K_c", positive=True)
     least, largest = _range(K, T, share, T_max, u_max, step)
@@ -302,7 +302,7 @@ def hot_plate(
             number((least + largest) / 2, "kW/K", "the gain of the feedback"),
             criterion("the loop is stable", lambda gain: 1 + float(gain) * float(K) > 0),
             criterion("the share of the step that is reached", measured(_reached(K)), above=share, unit="%"),
-            criterion("the time-constant", measured(_time_constant(K, T)), below=T_max, unit="s"),
+            criterion("the time constant", measured(_time_constant(K, T)), below=T_max, unit="s"),
             criterion("the largest power", measured(lambda gain: gain * float(step)), below=u_max, unit="kW"),
         ),
     )

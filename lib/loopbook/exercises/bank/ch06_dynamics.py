@@ -75,13 +75,13 @@ def half_way(
 ):
     """The air of a dryer is warmed by steam. The steam valve stood at {u_1}, and the air had a temperature of {y_1}.
     Then the valve was opened further, to {u_2}. The air became {dy} warmer in the end, and it had gone half of this
-    way after {t_half}. Take the dryer for a time-constant system. Find its gain and its time-constant. Which
-    temperature did the air have when one time-constant had passed since the step?
+    way after {t_half}. Take the dryer for a time constant system. Find its gain and its time constant. Which
+    temperature did the air have when one time constant had passed since the step?
     """
     return answers(
         K=number(dy / du, "K/%", "the gain"),
-        T=number(t_half / log(2), "min", "the time-constant"),
-        y_T=number(y_1 + (1 - 1 / E) * dy, "°C", "the temperature after one time-constant", within=0.005),
+        T=number(t_half / log(2), "min", "the time constant"),
+        y_T=number(y_1 + (1 - 1 / E) * dy, "°C", "the temperature after one time constant", within=0.005),
     )
 
 
@@ -100,13 +100,13 @@ def _(u_1, du, y_1, dy):
     return {"K": (y_1 + dy) / (u_1 + du)} if not _near((y_1 + dy) / (u_1 + du), dy / du) else {}
 
 
-@half_way.mistake("After one time-constant more than half of the way is done. At which moment is it exactly half?")
+@half_way.mistake("After one time constant more than half of the way is done. At which moment is it exactly half?")
 def _(t_half):
     return {"T": t_half}
 
 
 @half_way.mistake(
-    "Half of the way is done before one time-constant has passed. On which side does the logarithm belong?"
+    "Half of the way is done before one time constant has passed. On which side does the logarithm belong?"
 )
 def _(t_half):
     return {"T": t_half * log(2)}
@@ -187,12 +187,12 @@ def _(V, F):
     return {"t_half": V / F * log(2)}
 
 
-@brine.mistake("After the delay and one time-constant, more than half of the change has arrived.")
+@brine.mistake("After the delay and one time constant, more than half of the change has arrived.")
 def _(V, V_pipe, F):
     return {"t_half": (V + V_pipe) / F}
 
 
-@brine.mistake("With less flow everything takes longer. Which flow do time-constant and delay contain, and where?")
+@brine.mistake("With less flow everything takes longer. Which flow do time constant and delay contain, and where?")
 def _(V, V_pipe, F, less):
     return {"t_slow": (V_pipe + V * log(2)) / F * (1 - less / 100)}
 
@@ -246,7 +246,7 @@ def _(length, v, F, run):
     return {"m": F * (Heaviside(t - length / v) - Heaviside(t - length / v - run))}
 
 
-@belt.mistake("The hopper fills on for ever. The feeder stops, and after a while nothing more arrives.")
+@belt.mistake("The hopper fills on forever. The feeder stops, and after a while nothing more arrives.")
 def _(length, v, F):
     return {"m": F * (t - length / v) * Heaviside(t - length / v)}
 
@@ -300,18 +300,18 @@ def pocket(
 ):
     """Hot water arrives from a boiler after a delay of {delay}. It warms the wall of a pocket, a lag of {T_1}, and the
     wall warms the sensor in it, a lag of {T_2}. All gains are one. The water at the boiler becomes suddenly warmer.
-    Estimate the response-time of the sensor. Which share of its way has the sensor gone at this moment, and what is the
-    exact response-time, the time to 63.2 % of the way?
+    Estimate the response time of the sensor. Which share of its way has the sensor gone at this moment, and what is the
+    exact response time, the time to 63.2 % of the way?
     """
     T_1, T_2, delay = float(T_1), float(T_2), float(delay)
     return answers(
-        estimate=number(T_1 + T_2 + delay, "s", "the estimate of the response-time", within=0.002),
+        estimate=number(T_1 + T_2 + delay, "s", "the estimate of the response time", within=0.002),
         share=number(100 - 100 * _share_left(T_1 + T_2, T_1, T_2), "%", "the share that is reached at the estimate"),
-        T_r=number(_response_time(T_1, T_2) + delay, "s", "the exact response-time", within=0.005),
+        T_r=number(_response_time(T_1, T_2) + delay, "s", "the exact response time", within=0.005),
     )
 
 
-@pocket.mistake("The delay adds to the response-time as well.")
+@pocket.mistake("The delay adds to the response time as well.")
 def _(T_1, T_2):
     return {"estimate": T_1 + T_2, "T_r": _response_time(float(T_1), float(T_2))}
 
@@ -364,11 +364,11 @@ def against_pulses(
 ):
     """Waste water flows at {F} into a treatment plant. From time to time somebody rinses a vessel: for {pulse} the salt
     concentration of the inflow is {c} higher than before, and then it is as it was. The plant tolerates {c_max} above
-    normal, not more. A stirred tank at its inlet shall take care of this; it is always full, and its volume is yours to
-    choose. But it must not be too slow: when the inflow changes for good, 90 % of the change shall have come through
+    normal, not more. A stirred tank at its inlet takes care of this; it is always full, and its volume is yours to
+    choose. But it must not be too slow: when the inflow changes for good, 90 % of the change should have come through
     after at most {t_max}.
 
-    Which time-constant must the tank have at least? Choose a volume.
+    Which time constant must the tank have at least? Choose a volume.
     """
     least, largest = _volumes(F, pulse, c, c_max, t_max)
     F, pulse, c = float(F), float(pulse), float(c)
@@ -377,7 +377,7 @@ def against_pulses(
         return c * (1 - exponential(-pulse * F / 60 / volume)) if volume > 0 else c
 
     return answers(
-        T_least=number(-pulse / log(1 - c_max / c), "min", "the least time-constant"),
+        T_least=number(-pulse / log(1 - c_max / c), "min", "the least time constant"),
         V=design(
             number((least + largest) / 2, "m³", "the volume of the tank"),
             criterion("the highest concentration above normal", highest, below=c_max, unit="g/L"),
@@ -400,6 +400,6 @@ def _(pulse, c, c_max):
     return {"T_least": pulse / log(c / c_max)} if abs(c_max / c - 0.5) > 0.02 else {}
 
 
-@against_pulses.mistake("That is the largest time-constant, from the time to 90 %. The least one comes from the pulse.")
+@against_pulses.mistake("That is the largest time constant, from the time to 90 %. The least one comes from the pulse.")
 def _(t_max):
     return {"T_least": t_max / log(10)}

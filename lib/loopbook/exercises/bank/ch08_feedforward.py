@@ -366,7 +366,7 @@ def water_main(
     straight lines between {points} points of a table. The points are exact, and evenly spaced from $d$ = 0 to 100 m³/h.
 
     Which control signal does it give at a consumption of {d}? How large is its error at the worst consumption? And how
-    many points does it take, at least, if the error shall nowhere be more than {e_max}?
+    many points does it take, at least, if the error is nowhere to be more than {e_max}?
     """
     return answers(
         u_f=number(_line(u_0, u_full, points, d), "%", "the control signal from the table"),
@@ -431,7 +431,7 @@ def flow_filter(
 ):
     """The feedforward of a level control sets the inflow of a tank equal to the measured outflow. The tank has an area
     of {A}. The flow is measured once a second, with a noise of {sigma} (standard deviation). If it went straight into
-    the inflow, the valve would not live long. So the measurement passes a lowpass filter with the time-constant $T_f$
+    the inflow, the valve would not live long. So the measurement passes a lowpass filter with the time constant $T_f$
     [s]. Take the share of the noise that it leaves as $\\sqrt{h/(2 T_f)}$, where $h$ is the time between two samples.
 
     Choose $T_f$ such that two demands are met:
@@ -439,12 +439,12 @@ def flow_filter(
     - The noise in the feedforward has a standard deviation of at most {sigma_max}.
     - When the outflow rises by {jump} in a step, the level falls by at most {e_max}, by the feedforward alone.
 
-    Any time-constant that meets both is right.
+    Any time constant that meets both is right.
     """
     low, high = float(sigma**2 / (2 * sigma_max**2)), float(A * e_max / jump)
     return answers(
         T_f=design(
-            number(round(math.sqrt(low * high), 2), "s", "the time-constant of the filter"),
+            number(round(math.sqrt(low * high), 2), "s", "the time constant of the filter"),
             criterion(
                 "the noise in the feedforward", lambda T_f: _noise(sigma, T_f), below=float(sigma_max), unit="L/s"
             ),
@@ -458,6 +458,6 @@ def _noise(sigma, T_f):
     return float(sigma) * math.sqrt(min(1, 1 / (2 * T_f))) if T_f > 0 else float(sigma)
 
 
-@flow_filter.mistake("The noise falls with the square root of the time-constant, not in proportion to it.")
+@flow_filter.mistake("The noise falls with the square root of the time constant, not in proportion to it.")
 def _(sigma, sigma_max):
     return {"T_f": sigma / (2 * sigma_max)}

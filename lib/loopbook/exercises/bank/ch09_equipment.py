@@ -314,12 +314,12 @@ def _(full, T, D):
     return {"y": full * D * (1 - exp(-t / T))}
 
 
-@oven.mistake("So hot would it be with the relay always on. Which part of the power does the oven get in the mean?")
+@oven.mistake("So hot would it be with the relay always on. Which part of the power does the oven get on average?")
 def _(full):
     return {"mean": full}
 
 
-@oven.mistake("That formula holds for cycles that are short beside the time-constant. This one is not.")
+@oven.mistake("That formula holds for cycles that are short beside the time constant. This one is not.")
 def _(full, T, D, P):
     return {"ripple": full * D * (1 - D) * P / T}
 
@@ -378,7 +378,7 @@ def _(K, T, tau, K_p):
     return {"margin": pi * T / (K * K_p) - tau}
 
 
-@program.mistake("The controller's output stands still for a whole step. How old is it on the average?")
+@program.mistake("The controller's output stands still for a whole step. How old is it on average?")
 def _(K, T, tau, K_p, h):
     margin = _margin(K, T, tau, K_p)
     return {"h_limit": margin, "left": margin - h}
@@ -400,7 +400,7 @@ def relay(
     life=choice(2, 5, 10, reference=10),
     years=between(3, 10, reference=6, step=1),
 ):
-    """A PLC heats a greenhouse with a relay and pulse-width modulation. The greenhouse is a lag with a time-constant of
+    """A PLC heats a greenhouse with a relay and pulse-width modulation. The greenhouse is a lag with a time constant of
     {T}. The PLC switches an output only once in its own cycle of {cycle}, and the relay lasts for {life} million
     switching cycles (on and off again). Choose the period $P$ of the modulation in seconds such that
 
@@ -454,6 +454,6 @@ def _(cycle, fineness, life, years):
     return {"P": P} if 0.98 * _shortest(cycle, fineness, life, years) > P else {}
 
 
-@relay.mistake("The ripple grows with the period. Compare it with the time-constant.")
+@relay.mistake("The ripple grows with the period. Compare it with the time constant.")
 def _(T, ripple):
     return {"P": 60 * float(T)}

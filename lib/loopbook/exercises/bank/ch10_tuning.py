@@ -39,13 +39,13 @@ def ruler(
     makes a step of {step}. In the end the air is {rise} warmer than before. It has covered 28 % of this rise after
     {t_28}, and 63 % after {t_63}.
 
-    Take the dryer for a lag with dead time, and find its gain, its time-constant and its dead time. A lag without dead
-    time has covered 28 % after a third of its time-constant, $1 - e^{-1/3} = 0.28$, and 63 % after one time-constant.
+    Take the dryer for a lag with dead time, and find its gain, its time constant and its dead time. A lag without dead
+    time has covered 28 % after a third of its time constant, $1 - e^{-1/3} = 0.28$, and 63 % after one time constant.
     """
     T = Rational(3, 2) * (t_63 - t_28)
     return answers(
         K=number(rise / step, "K/%", "the gain of the process"),
-        T=number(T, "s", "the time-constant"),
+        T=number(T, "s", "the time constant"),
         tau=number(t_63 - T, "s", "the dead time", within=0.05),  # exact logarithms for 28 % and 63 % do no harm
     )
 
@@ -60,12 +60,12 @@ def _(t_63):
     return {"T": t_63}
 
 
-@ruler.mistake("Between 28 % and 63 % there is less than a whole time-constant: look at what each of them stands for.")
+@ruler.mistake("Between 28 % and 63 % there is less than a whole time constant: look at what each of them stands for.")
 def _(t_28, t_63):
     return {"T": t_63 - t_28}
 
 
-@ruler.mistake("At 28 % the response is well on its way: the dead time was over a part of the time-constant before.")
+@ruler.mistake("At 28 % the response is well on its way: the dead time was over a part of the time constant before.")
 def _(t_28):
     return {"tau": t_28}
 
@@ -134,7 +134,7 @@ def heat_exchanger(
     $$H_{{psf}}(s) = \frac{K\,e^{-\tau s}}{(T_1 s + 1)(T_2 s + 1)}$$
 
     with the gain $K$ = {K}, the lags $T_1$ = {T_1} and $T_2$ = {T_2}, and the dead time $\tau$ = {delay}. The loop
-    shall be as fast as the dead time allows, $T_C = \tau$, and recover quickly from loads, with the factor $c = 2$.
+    should be as fast as the dead time allows, $T_C = \tau$, and recover quickly from loads, with the factor $c = 2$.
 
     Find Skogestad's settings. The controller at hand has the **parallel** form.
     """
@@ -173,7 +173,7 @@ def integral_time(
     zeta=between(0.5, 1, step=0.05, reference=1),
     n=choice(3, 4, 5, 6, 8, 9, 10, 12, 15, reference=9),
 ):
-    r"""For an integrator, the shortest integral time that does not make the loop swing slowly was found to be
+    r"""For an integrator, the shortest integral time that does not make the loop oscillate slowly was found to be
     $4(T_C + \tau)$. What is it for a lag? The process is $\frac{K\,e^{-\tau s}}{Ts + 1}$, and the PI controller
     has Skogestad's gain $K_p = \frac{{T}}{K(T_C + \tau)}$ and an integral time $T_i$ that is still to be chosen.
 
@@ -213,7 +213,7 @@ def relay(
     period=between(4, 16, "min", step=1, reference=8),
 ):
     r"""An autotuner has let a relay switch the steam valve of a pasteuriser between {low} and {high}. Soon the
-    temperature swings steadily between {coldest} and {hottest}, with a period of {period}.
+    temperature oscillates steadily between {coldest} and {hottest}, with a period of {period}.
 
     Estimate the ultimate gain, and find the PID settings of Ziegler and Nichols
     ($K_p = 0.6 K_u$, $T_i = P_u/2$, $T_d = P_u/8$).
@@ -270,7 +270,7 @@ def another_flow(
     w_2=choice(10, 12, 15, 18, 32, 36, 40, unit="kg/min", reference=15),
 ):
     r"""The temperature of a stirred heating tank is under PI control. The process is a lag with dead time whose gain
-    $K$, time-constant $T$ and dead time $\tau$ are all proportional to $1/w$, where $w$ is the flow of liquid. At
+    $K$, time constant $T$ and dead time $\tau$ are all proportional to $1/w$, where $w$ is the flow of liquid. At
     $w$ = {w_1} Skogestad's rule with $T_C = \tau$ gave the settings $K_p$ = {K_p} and $T_i$ = {T_i}, where $T_i = T$.
 
     The flow changes to {w_2}. Find the settings that the rule gives now. And what would become of the loop if the
@@ -288,7 +288,7 @@ def another_flow(
 
 
 @another_flow.mistake(
-    "Follow $T$ and $\\tau$ once more: does the time-constant grow or shrink with this change of the flow?"
+    "Follow $T$ and $\\tau$ once more: does the time constant grow or shrink with this change of the flow?"
 )
 def _(T_i, w_1, w_2):
     return {"Ti": T_i * w_2 / w_1}
@@ -311,7 +311,7 @@ def _(K_p, w_1, w_2):
     return {"Kp": K_p * w_2**2 / w_1**2}
 
 
-@another_flow.mistake("The rule makes the integral time equal to the time-constant. Does that stay as it was?")
+@another_flow.mistake("The rule makes the integral time equal to the time constant. Does that stay as it was?")
 def _(T_i):
     return {"Ti": T_i}
 

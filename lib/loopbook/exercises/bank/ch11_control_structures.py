@@ -36,7 +36,7 @@ def lemonade(
     F_S=between(0.4, 2, "kg/s", reference=0.5),
     part=between(20, 80, "%", reference=25, step=5),
 ):
-    """Lemonade is made of sugar syrup and water. The syrup holds {x_S} of sugar by mass, the lemonade shall hold {x_L},
+    """Lemonade is made of sugar syrup and water. The syrup holds {x_S} of sugar by mass, the lemonade needs {x_L},
     and the water holds none. The syrup is the wild stream: its flow is what the filling machine asks for, now {F_S}. A
     ratio controller multiplies the measured flow of syrup by $K$ and hands the result to the flow controller of the
     water as its setpoint, $F_{W,SP} = K F_S$.
@@ -656,7 +656,7 @@ def lazy_tank(
     gain=between(30, 70, "%", reference=40, step=5),
 ):
     r"""Process water reaches a distillation column by way of a tank with vertical walls and an area of {A}. The pump
-    upstream swings: its flow has a wave with a period of {period}, of which at most {gain} may reach the column. Now
+    upstream cycles: its flow has a wave with a period of {period}, of which at most {gain} may reach the column. Now
     and then another pump is started; then {F} more flow in for good, and the level must not rise by more than {dh}. Two
     hours later it must be back at its setpoint, to 1 cm. And no wave of any other period may leave the tank with more
     than 130 % of its size. The level controller acts on the outflow $u$ in kg/s, and the density is 1000 kg/m³.

@@ -278,7 +278,7 @@ MISTAKES = {
     "dead end": "no transition leaves the step",
     "orphan": "no transition leads to the step, which is not the initial one",
     "covered branch": "the step is behind a transition that is never cleared, because of the one before it in the list",
-    "waiting for ever": "the step is behind a convergence of steps that are never active together",
+    "waiting forever": "the step is behind a convergence of steps that are never active together",
     "twice active": "the step can be activated again while it is still active",
     "sound": "none of these, and the step is `none`",
 }
@@ -298,7 +298,7 @@ def faulty_chart(mistake, A, B, C, D):
         "covered branch": (
             [(A, B, "start"), (B, C, "TRUE"), (B, D, "fault"), (C, A, "empty"), (D, A, "reset")], D
         ),
-        "waiting for ever": (
+        "waiting forever": (
             [(A, B, "start"), (A, C, "fault"), ((B, C), D, "done"), (D, A, "empty")], D
         ),
         "twice active": (
@@ -311,7 +311,7 @@ def faulty_chart(mistake, A, B, C, D):
 @exercise("12.4", title="What is wrong with this chart?", points=3)
 def wrong_chart(
     plant=choice(*PLANTS),
-    mistake=choice("twice active", "dead end", "orphan", "covered branch", "waiting for ever", "sound"),
+    mistake=choice("twice active", "dead end", "orphan", "covered branch", "waiting forever", "sound"),
     swapped=choice(0, 1),
 ):
     """{plant} runs by a chart with the initial step `{first}`. These are its transitions in their order, each with the
@@ -357,14 +357,14 @@ def _(mistake):
     "Each transition by itself is fine. But one of them has two steps in front of it: are both ever active?"
 )
 def _(mistake):
-    return {"mistake": "sound"} if mistake == "waiting for ever" else {}
+    return {"mistake": "sound"} if mistake == "waiting forever" else {}
 
 
 @wrong_chart.mistake(
     "If all goes well, both branches come to their end. What is active after a fault, and what comes next?"
 )
 def _(mistake):
-    return {"mistake": "waiting for ever"} if mistake == "twice active" else {}
+    return {"mistake": "waiting forever"} if mistake == "twice active" else {}
 
 
 @wrong_chart.mistake("This one is left by the transition. Look at what goes on in the other branch meanwhile.")
@@ -374,7 +374,7 @@ def _(plant, mistake, swapped):
 
 @wrong_chart.mistake("A transition does leave it and one leads to it. Look at when these can be cleared.")
 def _(mistake):
-    return {"mistake": "orphan"} if mistake in ("covered branch", "waiting for ever") else {}
+    return {"mistake": "orphan"} if mistake in ("covered branch", "waiting forever") else {}
 
 
 # --- 12.5 ---------------------------------------------------------------------------------------------------------

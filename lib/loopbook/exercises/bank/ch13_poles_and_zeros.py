@@ -122,7 +122,7 @@ def _real_part(percent, P):
     return -zeta / tau, tau
 
 
-@exercise("13.2", title="A pressure loop swings", points=3, where=lambda before, after: after >= before + 1)
+@exercise("13.2", title="A pressure loop oscillates", points=3, where=lambda before, after: after >= before + 1)
 def swinging_loop(
     before=between(2, 5, "bar", reference=4, step=0.5),
     after=between(3, 8, "bar", reference=6, step=0.5),
@@ -130,7 +130,7 @@ def swinging_loop(
     P=between(6, 40, "s", reference=12, step=1),
 ):
     r"""The setpoint of a pressure controller is raised from {before} to {after}, and the pressure follows without an
-    offset. It swings: the first peak exceeds the new setpoint by {percent} of the step, and {P} later comes the next
+    offset. The first peak exceeds the new setpoint by {percent} of the step, and {P} later comes the next
     peak. Describe the loop by a transfer function of second order without a zero,
     $1/(\tau^2s^2 + 2\zeta\tau s + 1)$. Find the damping $\zeta$, the time constant $\tau$ and the poles. By how much
     does the *second* peak exceed the setpoint?
@@ -162,7 +162,7 @@ def _(percent):
 
 
 @swinging_loop.mistake(
-    "That is $P/2\\pi$, which is right for small damping only. Your loop swings a little slower than $1/\\tau$."
+    "That is $P/2\\pi$, which is right for small damping only. Your loop oscillates a little slower than $1/\\tau$."
 )
 def _(P):
     return {"tau": P / (2 * sympy.pi)}
@@ -435,9 +435,9 @@ def calm_level(
     h_max=between(20, 90, "cm", reference=42, step=2),
     r_max=between(0.01, 0.1, "m³/min²", reference=0.05, step=0.005),
 ):
-    r"""The level in a buffer tank with the area {A} is held by a PI controller that moves the outflow. The tank shall
+    r"""The level in a buffer tank with the area {A} is held by a PI controller that moves the outflow. The tank should
     protect the plant behind it. When the inflow suddenly rises by {d}, the level must not rise by more than {h_max},
-    and the outflow must not change faster than by {r_max} at first. Then the level shall come back without
+    and the outflow must not change faster than by {r_max} at first. Then the level should come back without
     oscillations.
 
     With $u = -\Delta q_{out}$ the level is an integrating process $k'/s$ with $k' = 1/A$, and the gain $K_c$ of the

@@ -251,7 +251,7 @@ def price_of_a_fraction(
     T=between(6, 40, "s", step=1, reference=20),
     theta=between(2, 12, "s", step=0.5, reference=4),
 ):
-    r"""A program without dead time shall simulate the P control of a process with the gain 1, a lag of {T} and a dead
+    r"""A program without dead time should simulate the P control of a process with the gain 1, a lag of {T} and a dead
     time $\theta$ = {theta}. So the dead time is replaced by its Padé approximation of first order. (Times in seconds.)
 
     Find the transfer function that the program knows, and the ultimate gain and the period (of the oscillation there)

@@ -27,7 +27,7 @@ from loopbook.transfer import integrator
 
 @exercise(
     "15.1",
-    title="A tank that shall answer faster",
+    title="A tank that should respond faster",
     points=2,
     where=lambda K, T, Tc: Tc <= Rational(3, 5) * T and T <= 10 * K * Tc,
 )
@@ -37,7 +37,7 @@ def faster_tank(
     Tc=between(2, 20, "min", reference=6),
 ):
     """A well-stirred tank is heated by steam. From the steam valve to the temperature of the water the process has
-    the gain {K}, a lag of {T}, and practically no dead time. The control loop shall answer to the setpoint like a lag
+    the gain {K}, a lag of {T}, and practically no dead time. The control loop should respond to the setpoint like a lag
     of {Tc}, and without offset. Find by direct synthesis the PI controller that does it. And when has the temperature
     come 95 % of the way to a new setpoint?
     """
@@ -48,7 +48,7 @@ def faster_tank(
 
 
 @faster_tank.mistake(
-    "The zero of the controller shall cancel the pole of the tank. Which lag is the integral time then?"
+    "The zero of the controller should cancel the pole of the tank. Which lag is the integral time then?"
 )
 def _(K, T, Tc):
     return {"controller": PID(T / (K * Tc), Tc)}
@@ -146,7 +146,7 @@ def uncertain_gain(
 ):
     r"""The consistency of paper pulp [%] is controlled by the valve [%] of the thick stock. The model has the gain
     {K}, a lag of {T} and the dead time $\theta$ = {delay}. The lag and the dead time are well known. The gain changes
-    with the sort of pulp, so that the loop shall have a gain margin of {margin}.
+    with the sort of pulp, so that the loop should have a gain margin of {margin}.
 
     Tune a PI controller by direct synthesis: the wish is a lag of $T_c$ after the dead time, and $1 - \theta s$
     stands for the dead time in the controller. Which $T_c$ gives this gain margin, with the exact dead time in the
@@ -293,7 +293,7 @@ def oven(
     controller that cancels the lag, each opened door is felt for a long time.
 
     Design a PI controller that is robust, with an $M_s$ of at most 1.7, and that recovers: after a step of the load
-    at the input of the process, the deviation shall stay below 5 % of its largest value from {limit} on, counted from
+    at the input of the process, the deviation should stay below 5 % of its largest value from {limit} on, counted from
     the step of the load. Many settings do it, and any that do are right.
     """
     process = float(K), float(T), float(delay)

@@ -131,8 +131,8 @@ def decay(
     left=between(5, 30, "%", step=5, reference=25),
 ):
     r"""Two lags in series, {tau_1} and {tau_2}, have the gain $K$ = {K}. (Control signal and measurement are in
-    percent.) They are under P control, and the gain $K_c$ shall be chosen by the decay ratio: after a setpoint
-    step, each peak above the final value shall be followed by one of {left} of its height.
+    percent.) They are under P control, and the gain $K_c$ should be chosen by the decay ratio: after a setpoint
+    step, each peak above the final value should be followed by one of {left} of its height.
 
     Find $K_c$. And which share of the setpoint step will remain as an offset?
     """
@@ -338,7 +338,7 @@ def factor_for_a_damping(
     zeta=between(0.55, 0.95, step=0.05, reference=0.8),
 ):
     r"""A fermenter's temperature answers to the warm water in its jacket with the gain {K}, a lag $T$ of {T} and a
-    dead time $\tau$ of {tau}. Skogestad's rule shall be used with $T_C = {n}\,\tau$
+    dead time $\tau$ of {tau}. Skogestad's rule should be used with $T_C = {n}\,\tau$
     and with such a factor $k_1$ that the loop of an integrator would have the damping $\zeta = {zeta}$.
 
     Find the factor, and the PI settings for the fermenter.

@@ -114,7 +114,7 @@ def _(K, T, delay, Tc):
     return {"controller": PID(T / (K * (Tc + delay)), T)}
 
 
-@dairy.mistake("The integral time shall cancel the lag of the model.")
+@dairy.mistake("The integral time should cancel the lag of the model.")
 def _(K, T, Tc):
     return {"controller": PID(T / (K * Tc), Tc)}
 
@@ -313,8 +313,8 @@ def two_flows(
 
     Which $\theta_m$ is that? Then design the PI controller in the predictor. Let $T_0(s)$ be the closed loop without
     dead time, and $M(s) = T_0(s)\,(e^{-\theta s} - e^{-\theta_m s})$. As long as $|M(j\omega)|$ stays below 1, the
-    loop is stable. Here it shall stay below 0.8 at all frequencies, both for the longest and for the shortest dead
-    time. And when the model is right, the ISE after a unit step of the setpoint shall be at most {limit}. Any
+    loop is stable. Here it should stay below 0.8 at all frequencies, both for the longest and for the shortest dead
+    time. And when the model is right, the ISE after a unit step of the setpoint should be at most {limit}. Any
     settings that do both are right.
     """
     model, off = _middle(volume, low, high)

@@ -269,7 +269,7 @@ def nearly_least(
     T=between(4, 30, "s", reference=12),
     delay=between(2, 20, "s", reference=6),
 ):
-    r"""The settings with the least ISE swing for long and are not robust. A little more ISE buys much.
+    r"""The settings with the least ISE oscillate for long and are not robust. A little more ISE buys much.
 
     For a process with the gain {K}, a lag of {T} and a dead time of {delay}, design a PI controller whose $M_s$ is at
     most 1.8, and whose ISE after a unit step of the setpoint is at most {limit}, which is 8 % above the least one

@@ -283,11 +283,11 @@ def in_the_window(
     delay=between(2, 15, "s", reference=5),
 ):
     r"""A loop controls a process with the gain {K}, a lag of {T} and a dead time of {delay}. Gain and dead time
-    change with the load of the plant, so the loop shall be robust in Shinskey's sense: the limit of stability shall
+    change with the load of the plant, so the loop should be robust in Shinskey's sense: the limit of stability should
     stay outside of the window everywhere. Its lag does not change.
 
     That alone would be easy, with a small gain. But after a unit step of the load at the input of the process the
-    integral of the squared error (ISE) shall be at most {limit}, with the gain and the dead time as above. Design a
+    integral of the squared error (ISE) should be at most {limit}, with the gain and the dead time as above. Design a
     PI controller that does both. Many do, and any that does is right.
 
     (The response says how far the limit of stability is from the window: 1 if it touches, 2 if it is twice as high.)

@@ -323,7 +323,7 @@ def _(quantity, n, alarm):
     return {"tags": [*loop_tags(quantity, n, alarm)[:3], f"{quantity}A{other}{n}", f"{quantity}S{2 * other}{n}"]}
 
 
-@whole_loop.mistake("The controller shall show its value besides: a letter is missing in its tag.")
+@whole_loop.mistake("The controller should show its value besides: a letter is missing in its tag.")
 def _(quantity, n, alarm):
     transmitter, _, *others = loop_tags(quantity, n, alarm)
     return {"tags": [transmitter, f"{quantity}C{n}", *others]}
