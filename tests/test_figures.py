@@ -3,29 +3,33 @@
 import base64
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import nbclient
 import nbformat
 import numpy as np
 import pytest
 import sympy
-from matplotlib.collections import QuadMesh
+from matplotlib.collections import PolyCollection, QuadMesh
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from PIL import Image
 from sympy import DiracDelta, Heaviside, exp
 
+from loopbook.approximation import half_rule
 from loopbook.deadtime import Loop
 from loopbook.deadtime.pictures import nyquist_plot
-from loopbook.figures import PlanePlot, TimePlot, level_plot, map_plot, plane_plot, time_plot, trends
+from loopbook.figures import PlanePlot, TimePlot, half_rule_plot, level_plot, map_plot, plane_plot, time_plot, trends
 from loopbook.figures.picture import plain_words, with_few_colours
-from loopbook.figures.style import INPUTS, ROLES, STYLE, look
+from loopbook.figures.style import GREY, INPUTS, LOOKS, MODELS, ROLES, STYLE, TINTS, look
 from loopbook.laplace import s, t
 from loopbook.pid import PID, Controller
 from loopbook.plants import WoodChipTank
 from loopbook.signals import stepwise
 from loopbook.simulation import simulate
 
+ROOT = Path(__file__).parents[1]
 TIMES = np.linspace(0, 25, 501)
 LAG = 2 * (1 - exp(-t / 5))
 
@@ -91,11 +95,50 @@ def test_role_decides_colour_wherever_it_stands(role):
 
 def test_no_two_looks_agree_in_colour_or_in_grey():
     assert len({line["color"] for line in ROLES.values()}) == len(ROLES)
-    assert len({line["linestyle"] for line in ROLES.values()}) == len(ROLES)
-    looks = [look(n) for n in range(20)]
-    assert len({(look["color"], look["linestyle"]) for look in looks}) == 20
+    assert len({(line["linestyle"], line["linewidth"]) for line in ROLES.values()}) == len(ROLES)
+    assert ROLES["control signal"]["linestyle"] == "-"
+    looks = [look(n) for n in range(30)]
+    assert len({(look["color"], look["linestyle"]) for look in looks}) == 30
     assert not {line["color"] for line in looks} & {line["color"] for line in ROLES.values()}
     assert set(INPUTS) < set(ROLES)
+
+
+def test_as_many_curves_as_a_panel_has_differ_in_colour_and_in_their_dashes():
+    for looks in ([look(n) for n in range(5)], list(MODELS.values())):
+        assert len({look["color"] for look in looks}) == len({look["linestyle"] for look in looks}) == len(looks)
+
+
+def luminance(colour):
+    """How light a colour is, as the guidelines for accessible pages define it."""
+    parts = np.clip(np.asarray(colour, dtype=float), 0, 1)
+    linear = np.where(parts <= 0.04045, parts / 12.92, ((parts + 0.055) / 1.055) ** 2.4)
+    return linear @ [0.2126, 0.7152, 0.0722]
+
+
+def contrast(one, other):
+    darker, lighter = sorted((luminance(one), luminance(other)))
+    return (lighter + 0.05) / (darker + 0.05)
+
+
+def turned_over(colour, share):
+    """What ``filter: invert(share) hue-rotate(180deg)`` makes of a colour."""
+    inverted = share + (1 - 2 * share) * np.asarray(colour)
+    return np.array([[-0.574, 1.430, 0.144], [0.426, 0.430, 0.144], [0.426, 1.430, -0.856]]) @ inverted
+
+
+@pytest.mark.parametrize("sheet", ["docs/_static/loopbook.css", "docs/jupyterlab/custom.css"])
+def test_lines_and_words_are_seen_on_white_and_on_a_dark_page(sheet):
+    (share,) = set(re.findall(r"filter: invert\(([\d.]+)\) hue-rotate\(180deg\)", (ROOT / sheet).read_text("utf-8")))
+    paper = turned_over([1, 1, 1], float(share))
+    assert 0.05 < paper.max() < 0.09  # as dark pages are
+    for name, line in (LOOKS | {n: look(n) for n in range(6)}).items():
+        colour = to_rgb(line["color"])
+        assert contrast(colour, [1, 1, 1]) > 3, name
+        assert contrast(turned_over(colour, float(share)), paper) > 4, name
+    for words in (GREY, "#000000"):
+        assert contrast(to_rgb(words), [1, 1, 1]) > 7 < contrast(turned_over(to_rgb(words), float(share)), paper)
+    for tint in TINTS:
+        assert contrast(to_rgb(tint), [0, 0, 0]) > 14
 
 
 def test_responses_go_on_with_the_next_look_in_the_next_panel():
@@ -191,6 +234,7 @@ def test_image_has_its_printed_size_and_an_alternative_text():
     assert set(data) == {"image/png", "text/plain"}
     assert base64.b64decode(data["image/png"]).startswith(b"\x89PNG")
     assert metadata["image/png"]["alt"] == plot.alt == data["text/plain"].strip("<>")
+    assert metadata["needs_background"] == "light"  # by which JupyterLab marks it
     assert metadata["image/png"]["width"] == pytest.approx(6.4 * 96, rel=0.03)
 
 
@@ -250,6 +294,140 @@ def test_bad_input_is_told_in_one_sentence(signals, times, options, message):
     with pytest.raises(ValueError, match=re.escape(message)) as error:
         time_plot(signals, times, **options)
     assert "\n" not in str(error.value)
+
+
+def test_a_raw_signal_is_thin_and_behind_what_is_made_of_it():
+    lines = time_plot({"filtered": (LAG, "measurement"), "raw": (t, "raw")}, TIMES).lines
+    assert lines["raw"].get_zorder() < lines["filtered"].get_zorder()
+    assert lines["raw"].get_linewidth() < lines["filtered"].get_linewidth() / 2
+
+
+def shaded(axes):
+    (area,) = [drawn for drawn in axes.collections if isinstance(drawn, PolyCollection)]
+    (path,) = area.get_paths()
+    return path
+
+
+def test_an_area_lies_between_two_curves():
+    plot = time_plot({"setpoint": (2, "setpoint"), "y": (LAG, "measurement")}, TIMES).area("y", "setpoint", "lost")
+    path = shaded(plot.figure.axes[0])
+    assert path.contains_points([(5, 1.5), (15, 1.95)]).all()
+    assert not path.contains_points([(5, 1.2), (5, 2.1), (15, 1.85)]).any()
+    assert texts(plot.figure.axes[0]) == ["lost"]
+    assert plot.alt.endswith("; shaded: lost")
+
+
+def test_an_area_above_an_axis_that_was_not_seen_is_seen():
+    axes = time_plot({"y": LAG + 5}, TIMES).area("y").figure.axes[0]
+    assert axes.get_ylim()[0] <= 0
+    assert shaded(axes).contains_point((20, 0.1))
+
+
+def test_an_area_under_a_signal_that_is_held_has_corners():
+    run = simulate(WoodChipTank(), until=20, step=10, u=[45, 60, 50])
+    path = shaded(trends(run).area("$u$").figure.axes[1])
+    assert path.contains_points([(9.9, 44), (10.1, 59)]).all()
+    assert not path.contains_point((9.9, 46))
+
+
+def test_an_area_to_a_late_step_keeps_the_step_upright():
+    plot = time_plot({"setpoint": (Heaviside(t - 5), "setpoint"), "y": 0}, TIMES).area("setpoint", "y")
+    path = shaded(plot.figure.axes[0])
+    assert path.contains_point((5.001, 0.99))
+    assert not path.contains_point((4.999, 0.01))
+
+
+def test_an_area_between_panels_is_refused():
+    plot = time_plot([{"a": 1}, {"b": t}], TIMES)
+    with pytest.raises(ValueError, match="a and b are in two panels"):
+        plot.area("a", "b")
+    with pytest.raises(ValueError, match="no signal 'c' in this plot"):
+        plot.area("c")
+
+
+def test_an_event_is_in_all_panels_with_words_that_hide_no_curve():
+    plot = time_plot([{"y": 2}, {"u": t}], TIMES).event(10, "load").event(24, "the end is near")
+    above, below = plot.figure.axes
+    for axes in (above, below):
+        moments = [x for line in axes.collections for segment in line.get_segments() for x in segment[:, 0]]
+        assert moments == [10, 10, 24, 24]
+    assert texts(above) == ["load", "the end is near"]
+    assert texts(below) == []
+    for words in above.texts:
+        box = words.get_window_extent()
+        assert above.bbox.x0 < box.x0
+        assert box.x1 < above.bbox.x1
+        assert not plot.lines["y"].get_path().transformed(above.transData).intersects_bbox(box, filled=False)
+    with pytest.raises(ValueError, match="cannot mark t = 26: the plot shows 0 to 25"):
+        plot.event(26, "late")
+
+
+def test_errors_have_a_panel_of_their_own_in_the_looks_of_their_curves():
+    curves = {"process": (LAG, "process"), "model": (LAG + exp(-t), "model"), "other": (LAG - 0.1, "second model")}
+    plot = time_plot([curves, {"u": (1, "control signal")}], TIMES, error_from="process", ylabel=["y", None])
+    top, errors, control = plot.figure.axes
+    assert [axes.get_ylabel() for axes in plot.figure.axes] == ["y", "error", "u"]
+    assert (errors.get_xlabel(), control.get_xlabel()) == ("", "$t$ [s]")
+    np.testing.assert_allclose(plot.lines["model, error"].get_ydata(), np.exp(-TIMES), atol=1e-12)
+    np.testing.assert_allclose(plot.lines["other, error"].get_ydata(), -0.1, atol=1e-12)
+    for label in ("model", "other"):
+        line, error = plot.lines[label], plot.lines[f"{label}, error"]
+        assert (line.axes, error.axes) == (top, errors)
+        assert line.get_color() == error.get_color()
+        assert line._unscaled_dash_pattern == error._unscaled_dash_pattern
+    assert "difference from process" in plot.alt
+    for wrong in ("plant", "u"):
+        with pytest.raises(ValueError, match=f"the errors are from '{wrong}'"):
+            time_plot([curves, {"u": 1}], TIMES, error_from=wrong)
+
+
+def test_regions_are_named_where_there_is_room():
+    plot = plane_plot({"border": ([1, 100], [1, 100])}, "$x$", "$y$", log=True, xlim=(1, 100), ylim=(1, 100))
+    plot.region([1, 1e9, 1], [1, 1e9, 1e9], "above").region([1, 100, 100], [1, 100, 1], "below")
+    above, below = plot.axes.texts
+    for words, side in ((above, 1), (below, -1)):
+        x, y = words.get_position()  # in the frame
+        assert 0.2 < side * (y - x) < 0.8
+        assert 0.1 < x < 0.9
+        assert 0.1 < y < 0.9
+    one, other = plot.axes.patches
+    assert one.get_facecolor() != other.get_facecolor()
+    assert one.get_xy().max() <= 100
+    assert plot.alt.endswith("; region: above; region: below")
+    assert plot.axes.get_legend() is None
+
+
+def test_borders_of_regions_need_no_legend():
+    curves = {"a": ([0, 1], [0, 1]), "b": ([0, 1], [1, 0])}
+    assert plane_plot(curves, "x", "y").axes.get_legend() is not None
+    assert plane_plot(curves, "x", "y", legend=False).axes.get_legend() is None
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_the_half_rule_as_bars_is_the_half_rule(order):
+    lags, theta = {"a": 3.0, "b": 8.0, "c": 1.0, "d": 0.4}, 0.5
+    process = exp(-theta * s) / sympy.prod(value * s + 1 for value in lags.values())
+    model = half_rule(process, order=order)
+    plot = half_rule_plot(lags, {"theta": theta}, order=order)
+    axes = plot.figure.axes[0]
+    rows = {}
+    for bar in axes.patches:
+        rows.setdefault(round(bar.get_y(), 3), []).append(bar)
+    names = [label.get_text() for label in axes.get_yticklabels()]
+    lengths = {
+        name: sum(bar.get_width() for bar in rows[y]) for name, y in zip(names, sorted(rows, reverse=True), strict=True)
+    }
+    kept = [name for name in ("lag", "second lag") if name in lengths]
+    assert len(kept) == order
+    assert [lengths[name] for name in kept] == pytest.approx([float(T) for T in (model.T1, model.T2)][:order])
+    assert lengths["dead time"] == pytest.approx(float(model.delay))
+    assert sum(lengths[name] for name in (*kept, "dead time")) == pytest.approx(sum(lags.values()) + theta)
+    assert {name: lengths[name] for name in lags} == pytest.approx(lags)
+
+
+def test_a_half_rule_needs_lags():
+    with pytest.raises(ValueError, match="order 2 with 1 lags"):
+        half_rule_plot({"T": 1}, order=2)
 
 
 def test_bad_marks_are_told_in_one_sentence():

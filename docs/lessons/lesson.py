@@ -16,7 +16,8 @@ LARGEST = 300_000  # characters in the file of a lesson
 # The colours of the figures in a dark page: as far apart, and light enough.
 IN_THE_DARK = {
     "#000000": "#ffffff", "#0072B2": "#56B4E9", "#D55E00": "#ff9248", "#CC79A7": "#e6a3c8",
-    "#009E73": "#2fc79a", "#E69F00": "#f2b632", "#56B4E9": "#8fd0f5", "#555555": "#b0b0b0",
+    "#009E73": "#2fc79a", "#C88600": "#f2b632", "#3F9BD6": "#8fd0f5", "#555555": "#b0b0b0",
+    "#6A3D9A": "#c9a6ee", "#8A3324": "#f0a898", "#8C8C8C": "#8c8c8c",
 }  # fmt: skip
 
 

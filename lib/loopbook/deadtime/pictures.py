@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from loopbook.deadtime.curves import frequency_curve, natural_range
-from loopbook.figures import Picture, PlanePlot, TimePlot, time_plot
+from loopbook.figures import Picture, PlanePlot, TimePlot, canvas, time_plot
 from loopbook.figures.labels import decades, free_legend, free_place, legend_below
 from loopbook.figures.picture import plain_words, titled
 from loopbook.figures.style import GUIDE, LEVEL, WIDTH, ZERO, look, styled
@@ -73,8 +73,6 @@ def bode_plot(
     >>> bode_plot(L, margins=margins(L), title="An integrator")
     <An integrator: magnitude and phase [deg] against omega [rad/s]; gain margin 3.14, phase margin 61.4°>
     """
-    from matplotlib.figure import Figure
-
     fractions = _fractions(H)
     _of_one(margins, fractions)
     low, high = _range(fractions, omega, margins)
@@ -84,8 +82,7 @@ def bode_plot(
         return 20 * np.log10(abs(values)) if db else abs(values)
 
     with styled():
-        figure = Figure(figsize=(WIDTH, 0.85 * WIDTH), layout="constrained")
-        above, below = figure.subplots(2, sharex=True)
+        figure, (above, below) = canvas.panels([2.25, 2.25])
         for place, (label, curve) in enumerate(curves.items()):
             with np.errstate(divide="ignore"):
                 above.plot(curve.omega, size(curve.values), label=label, **look(place))
@@ -156,7 +153,6 @@ def _bode_margins(above, below, H, curve, margins, size, unit) -> None:
         labels.append((below, words, (w, half_turn), OF_PHASE, ("below left", "above left", "below right")))
     for angle in half_turns or {-180}:
         below.axhline(angle, **LEVEL)
-    above.figure.draw_without_rendering()
     for axes, words, point, colour, places in labels:
         free_place(axes, words, point, places, color=colour)
     if margins.omega_180 == math.inf:
@@ -256,8 +252,6 @@ def nyquist_plot(
     >>> nyquist_plot(L, margins=margins(L))
     <imaginary part against real part; gain margin 3.14, phase margin 61.4°, Ms 1.59>
     """
-    from matplotlib.figure import Figure
-
     fractions = _fractions(L)
     _of_one(margins, fractions)
     low, high = _range(fractions, omega, margins)
@@ -269,10 +263,7 @@ def nyquist_plot(
     window = _window(curves.values(), margins, mirror, xlim, ylim)
     (left, right), (bottom, top) = window
     with styled():
-        rows = math.ceil((len(curves) + (3 if margins is None else 6)) / 2)
-        tall = (WIDTH - 0.8) * (top - bottom) / (right - left) + 0.7 + 0.22 * rows + (0.2 if title else 0)
-        figure = Figure(figsize=(WIDTH, tall), layout="constrained")
-        axes = figure.subplots()
+        figure, (axes,) = canvas.panels([(WIDTH - canvas.LEFT - canvas.RIGHT) * (top - bottom) / (right - left)])
         axes.axhline(0, **ZERO)
         axes.axvline(0, **ZERO)
         circle = np.exp(1j * np.linspace(0, 2 * math.pi, 361))
@@ -497,7 +488,6 @@ def _mark_info(axes, line, info, settling, rise, unit) -> list[str]:
         axes.plot([info.settling_time], [there], "o", color="#000000", markersize=5, zorder=4, **still)
         middle = floor + 0.45 * (final - floor)
         labels.append((found[-1], (info.settling_time, middle), ("left", "right"), "#000000"))
-    axes.figure.draw_without_rendering()
     for words, point, places, colour in labels:
         free_place(axes, words, point, places, color=colour)
     return found

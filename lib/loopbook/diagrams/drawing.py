@@ -10,7 +10,7 @@ from typing import TypeAlias
 
 from loopbook.figures import Picture
 from loopbook.figures.picture import plain_words
-from loopbook.figures.style import STYLE, styled
+from loopbook.figures.style import DOTS_PER_INCH, STYLE, styled
 
 # Lengths are in drawing units of half an inch, as schemdraw has them.
 INCHES = 0.5
@@ -147,7 +147,7 @@ class Drawing:
         from matplotlib.figure import Figure
 
         with styled():
-            figure = Figure()
+            figure = Figure(dpi=DOTS_PER_INCH)
             axes = figure.add_axes((0, 0, 1, 1))
             self.schemdraw.draw(show=False, canvas=axes)
             axes.set_axis_off()

@@ -11,6 +11,7 @@ from loopbook.figures.style import ON_WHITE
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
+    from matplotlib.legend import Legend
     from matplotlib.text import Text
 
 BELOW = "below"  # the name of a legend that lies under its axes
@@ -31,17 +32,29 @@ def add_legend(axes: Axes, columns: int = 1) -> None:
 def free_legend(axes: Axes) -> None:
     """A legend where it hides no curve; if there is no such place, a flat one above them, for which the panel grows."""
     legend = axes.legend()
-    axes.figure.get_layout_engine().execute(axes.figure)  # puts the axes where they remain, and draws nothing
-    box = legend.get_window_extent()
-    if not any(line.get_path().transformed(axes.transData).intersects_bbox(box, filled=False) for line in axes.lines):
+    if not hides(axes, legend):
         return
     for columns in range(len(axes.lines), 0, -1):
-        box = axes.legend(ncols=columns, loc="upper right").get_window_extent()
-        if box.width <= 0.95 * axes.bbox.width:
+        legend = axes.legend(ncols=columns, loc="upper right")
+        if legend.get_window_extent().width <= 0.95 * axes.bbox.width:
             break
-    scale = axes.yaxis.get_transform()
+    make_room(axes, legend, 1.1)
+
+
+def hides(axes: Axes, words: Legend | Text) -> bool:
+    """Tell whether a curve runs behind words or a legend."""
+    box = words.get_window_extent()
+    curves = (line.get_path().transformed(line.get_transform()) for line in axes.lines)
+    return any(curve.intersects_bbox(box, filled=False) for curve in curves)
+
+
+def make_room(axes: Axes, words: Legend | Text, share: float) -> None:
+    """Let a panel grow above its curves by a share of what is written at its upper edge, if that hides a curve."""
+    if not hides(axes, words):
+        return
+    box, scale = words.get_window_extent(), axes.yaxis.get_transform()
     low, high = scale.transform(axes.get_ylim())
-    high += 1.1 * (high - low) * box.height / (axes.bbox.height - box.height)
+    high += share * (high - low) * box.height / (axes.bbox.height - box.height)
     axes.set_ylim(scale.inverted().transform([low, high]))
 
 

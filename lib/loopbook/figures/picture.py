@@ -9,7 +9,8 @@ import struct
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
-from loopbook.figures.style import DOTS_PER_INCH, RESPONSE_COLOURS, ROLES, styled
+from loopbook.figures.canvas import drawn
+from loopbook.figures.style import DOTS_PER_INCH, LOOKS, RESPONSE_COLOURS, styled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -52,12 +53,10 @@ class Picture:
         >>> time_plot({"$y(t)$": 2 * t}, [0, 1, 2]).png()[:4]
         b'\\x89PNG'
         """
-        from PIL import Image
-
-        full, small = io.BytesIO(), io.BytesIO()
-        self.save(full, format="png", metadata={"Software": None}, pil_kwargs={"compress_level": 1})
-        with_few_colours(Image.open(full).convert("RGB")).save(small, "PNG", optimize=True)
-        return small.getvalue()
+        data = io.BytesIO()
+        with styled():
+            with_few_colours(drawn(self.figure)).save(data, "PNG", compress_level=8)
+        return data.getvalue()
 
     # The figure belongs to an object of our own because Jupyter would draw a matplotlib figure its own way, without
     # the description, and only after pyplot has been imported.
@@ -65,7 +64,9 @@ class Picture:
         image = self.png()
         width, height = (round(dots * 96 / DOTS_PER_INCH) for dots in struct.unpack(">II", image[16:24]))
         data = {"image/png": base64.b64encode(image).decode(), "text/plain": repr(self)}
-        return data, {"image/png": {"alt": self.alt, "width": width, "height": height}}
+        shown = {"alt": self.alt, "width": width, "height": height}
+        # it is drawn for white: JupyterLab marks such an image, and custom.css turns it over in a dark theme
+        return data, {"image/png": shown, "needs_background": "light"}
 
 
 def with_few_colours(image: Image.Image) -> Image.Image:
@@ -79,7 +80,7 @@ def with_few_colours(image: Image.Image) -> Image.Image:
     from PIL import Image, ImageColor
 
     count = {colour: number for number, colour in image.getcolors(image.width * image.height)}
-    lines = [*(look["color"] for look in ROLES.values()), *RESPONSE_COLOURS, "#000000"]
+    lines = [*(look["color"] for look in LOOKS.values()), *RESPONSE_COLOURS, "#000000"]
     of_lines = [colour for colour in map(ImageColor.getrgb, lines) if colour in count]
     # what covers half a per cent or more is an area or a grid, but for the white ones
     of_areas = [c for c, number in count.items() if number > 0.005 * image.width * image.height and min(c) < 245]

@@ -7,15 +7,19 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
+from loopbook.figures import canvas
 from loopbook.figures.labels import add_legend, decades
 from loopbook.figures.picture import Picture, plain_words, titled
-from loopbook.figures.style import GREY, ON_WHITE, RESPONSE_COLOURS, WIDTH, ZERO, look, styled
+from loopbook.figures.style import GREY, ON_WHITE, RESPONSE_COLOURS, TINTS, WIDTH, ZERO, look, styled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike
 
     from loopbook.types import Number, Values
+
+
+TALL = 0.55 * WIDTH  # of a panel, in inches
 
 
 class PlanePlot(Picture):
@@ -35,6 +39,37 @@ class PlanePlot(Picture):
         patch.set_hatch("///")
         patch.set_hatch_linewidth(0.4)
         return self._explained(f"; area: {plain_words(label)}")
+
+    def region(self, x: Values, y: Values, words: str) -> Self:
+        """Fill the polygon with these corners in a pale colour of its own, and name it there instead of in a legend.
+
+        Each region that is added has the next colour. What is beyond the axes is cut off, so that a corner may be far
+        away; the words are where there is most room around them. Returns the plot itself.
+
+        >>> plot = plane_plot({"border": ([1, 2], [1, 2])}, "$x$", "$y$", xlim=(1, 2), ylim=(1, 2))
+        >>> plot.region([1, 2, 1], [1, 2, 2], "above").region([1, 2, 2], [1, 2, 1], "below")
+        <border: y against x; region: above; region: below>
+        """
+        from matplotlib.path import Path
+
+        number = sum(patch.get_gid() == "region" for patch in self.axes.patches)
+        low, high = np.transpose([self.axes.get_xlim(), self.axes.get_ylim()])
+        corners = np.clip(np.column_stack([x, y]).astype(float), low, high)
+        (patch,) = self.axes.fill(*corners.T, facecolor=TINTS[number % len(TINTS)], edgecolor="none", zorder=0.5)
+        patch.set_gid("region")
+
+        to_frame = self.axes.transData - self.axes.transAxes  # from values to shares of the frame, on any scale
+        corners = to_frame.transform(corners)
+        grid = np.stack(np.meshgrid(*2 * [np.linspace(0.01, 0.99, 60)]), -1).reshape(-1, 2)
+        inside = grid[Path(corners).contains_points(grid)]
+        start, way = corners[:, None], (np.roll(corners, -1, axis=0) - corners)[:, None]
+        share = np.clip(((inside - start) * way).sum(-1) / np.maximum((way**2).sum(-1), 1e-12), 0, 1)
+        to_edge = np.hypot(*np.moveaxis(inside - start - share[..., None] * way, -1, 0)).min(axis=0)
+        place = inside[to_edge.argmax()] if len(inside) else corners.mean(axis=0)
+        with styled():
+            self.axes.text(*place, words, ha="center", va="center", zorder=5, transform=self.axes.transAxes)
+        self.alt += f"; region: {plain_words(words)}"
+        return self
 
     def line(self, x: Values, y: Values, label: str, role: str | int = 0) -> Self:
         """Add a curve, as a limit of stability over a map; look as in `plane_plot`. Returns the plot itself.
@@ -87,6 +122,7 @@ def plane_plot(
     ylim: tuple[float, float] | None = None,
     log: bool = False,
     equal: bool = False,
+    legend: bool = True,
 ) -> PlanePlot:
     """Plot curves in a plane: limits of stability, frequency responses in the complex plane.
 
@@ -98,22 +134,20 @@ def plane_plot(
         xlim, ylim: lowest and highest value of an axis.
         log: logarithmic axes.
         equal: one unit is as long on both axes, as for complex numbers; then both axes are drawn at zero.
+        legend: explain several curves in a legend; not needed where they are borders of regions that have their names.
     Returns:
-        A `PlanePlot`, which a notebook shows as the value of a cell; ``.area``, ``.line``, ``.points`` and
-            ``.text`` add to it.
+        A `PlanePlot`, which a notebook shows as the value of a cell; ``.area``, ``.region``, ``.line``,
+            ``.points`` and ``.text`` add to it.
     Raises:
         ValueError: for no curve, or unequal lengths.
 
     >>> plane_plot({"limit": ([1, 2, 3], [3, 2, 1])}, "gain ratio", "delay ratio", "Figure 2")
     <Figure 2: limit: delay ratio against gain ratio>
     """
-    from matplotlib.figure import Figure
-
     if not isinstance(curves, dict) or not curves:
         raise ValueError(f"the curves are {curves!r}: expected {{label: (x, y)}} with at least one")
     with styled():
-        figure = Figure(figsize=(WIDTH, 0.68 * WIDTH if not equal else 0.8 * WIDTH), layout="constrained")
-        axes = figure.subplots()
+        figure, (axes,) = canvas.panels([TALL if not equal else TALL + 0.12 * WIDTH])
         for number, (label, (x, y, *role)) in enumerate(curves.items()):
             x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
             if x.shape != y.shape:
@@ -124,7 +158,7 @@ def plane_plot(
             axes.set_aspect("equal")
             axes.axhline(0, **ZERO)
             axes.axvline(0, **ZERO)
-        if len(curves) > 1:
+        if legend and len(curves) > 1:
             add_legend(axes)
     shown = ", ".join(map(plain_words, curves))
     words = f"{shown}: {plain_words(ylabel)} against {plain_words(xlabel)}"
@@ -158,7 +192,6 @@ def map_plot(
     <unstable poles (0 to 4): T_i [s] against K_p>
     """
     from matplotlib.colors import ListedColormap, to_hex
-    from matplotlib.figure import Figure
 
     x, y, numbers = _on_grid(x, y, numbers)
     levels = sorted({int(n) for n in np.unique(numbers)} | {0})
@@ -170,8 +203,7 @@ def map_plot(
     ]
     colours = ListedColormap(greys[: len(levels)])
     with styled():
-        figure = Figure(figsize=(WIDTH, 0.68 * WIDTH), layout="constrained")
-        axes = figure.subplots()
+        figure, (axes,) = canvas.panels([TALL])
         mesh = axes.pcolormesh(
             x, y, shade, cmap=colours, vmin=-0.5, vmax=len(levels) - 0.5, shading="nearest", rasterized=True
         )
@@ -213,12 +245,9 @@ def level_plot(
     >>> level_plot(x, y, np.outer(y, x), [2, 4, 6], "$K_p$", "$T_i$ [s]", "ISE")
     <levels of ISE, 2 to 6: T_i [s] against K_p>
     """
-    from matplotlib.figure import Figure
-
     x, y, values = _on_grid(x, y, values)
     with styled():
-        figure = Figure(figsize=(WIDTH, 0.68 * WIDTH), layout="constrained")
-        axes = figure.subplots()
+        figure, (axes,) = canvas.panels([TALL])
         finite = np.ma.masked_invalid(values)
         lines = axes.contour(x, y, finite, levels, colors=RESPONSE_COLOURS[0], linewidths=1.3)
         axes.clabel(lines, fmt="%g", fontsize=9, colors="#000000")

@@ -8,6 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 import sympy
 
+from loopbook.figures import canvas
 from loopbook.figures.picture import titled
 from loopbook.figures.style import DOTS_PER_INCH, WIDTH, look, styled
 from loopbook.figures.time import Recorded, TimePlot, times_of
@@ -63,16 +64,13 @@ def sequence_trends(
     >>> sequence_trends(simulate(BatchTank(), [chart], until=240, step=2), chart, ["h"], title="Filling")
     <Filling: h; on and off: u_valve_in; active steps: Fill, Full against t [s]>
     """
-    from matplotlib.figure import Figure
-
     signals, on_off = _checked(run, chart, signals, on_off)
     rows = [group for group in (on_off, [*chart.steps]) if group]
     times, unit = times_of(run, minutes)
     heights = [1.05] * len(signals) + [ROW * len(group) + 0.2 for group in rows]
     lines = {}
     with styled():
-        figure = Figure(figsize=(WIDTH, 0.9 + sum(heights)), layout="constrained")
-        grid = figure.subplots(len(heights), sharex=True, squeeze=False, height_ratios=heights)[:, 0]
+        figure, grid = canvas.panels(heights)
         for axes, names in zip(grid, signals, strict=False):
             lines |= _trend(axes, run, times, names)
         for axes, group in zip(grid[len(signals) :], rows, strict=True):

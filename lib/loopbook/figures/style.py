@@ -1,7 +1,9 @@
 """One look for all figures: typeface, colours, kinds of lines, sizes.
 
 A signal has the same colour and the same kind of line in every figure. The colours are those of Okabe and Ito, which
-stay apart without colour vision; the dashes stay apart on a grey printout.
+stay apart without colour vision, two of them darkened for thin lines; the dashes stay apart on a grey printout. A
+figure is drawn for white paper; on a dark page a style sheet turns it over: `docs/_static/loopbook.css` on the site,
+`docs/jupyterlab/custom.css` in JupyterLab.
 """
 
 from __future__ import annotations
@@ -21,6 +23,7 @@ STYLE: dict[str, Any] = {
     "axes.titlesize": 11.5,
     "axes.titlelocation": "left",
     "axes.titlepad": 8,
+    "axes.titley": 1.0,  # where it is; a search for ticks above would take a fifth of the time of a drawing
     "axes.labelsize": 11,
     "axes.linewidth": 0.8,
     "axes.spines.top": False,
@@ -45,14 +48,27 @@ STYLE: dict[str, Any] = {
 ROLES: dict[str, dict[str, Any]] = {
     "setpoint": {"color": "#000000", "linestyle": (0, (4, 3)), "linewidth": 1.2, "zorder": 3},
     "measurement": {"color": "#0072B2", "linestyle": "-", "linewidth": 2.0},
-    "control signal": {"color": "#D55E00", "linestyle": (0, (16, 2)), "linewidth": 1.6},
+    "control signal": {"color": "#D55E00", "linestyle": "-", "linewidth": 1.5},
     "disturbance": {"color": "#CC79A7", "linestyle": (0, (8, 2, 2, 2)), "linewidth": 1.6},
+    "raw": {"color": "#8C8C8C", "linestyle": "-", "linewidth": 0.7, "zorder": 1.8},  # behind what is made of it
 }
 INPUTS = ("control signal", "disturbance")
 
-# What has no role takes the next of these; four colours and five kinds of line make twenty that differ in both.
-RESPONSE_COLOURS = ["#009E73", "#E69F00", "#56B4E9", GREY]
+# What has no role takes the next of these; six colours and five kinds of line make thirty that differ in one of them.
+RESPONSE_COLOURS = ["#009E73", "#C88600", "#3F9BD6", GREY, "#6A3D9A", "#8A3324"]
 RESPONSE_LINES = ["-", (0, (7, 2)), (0, (8, 2, 2, 2)), (0, (2, 1.5)), (0, (12, 2, 2, 2, 2, 2))]
+
+# A process is broad, and what is to be equal to it is drawn over it.
+MODELS: dict[str, dict[str, Any]] = {
+    "process": {"color": "#0072B2", "linestyle": "-", "linewidth": 3.2, "zorder": 1.9},
+    "model": {"color": "#C88600", "linestyle": (0, (7, 2)), "linewidth": 1.7, "zorder": 2.3},
+    "second model": {"color": "#6A3D9A", "linestyle": (0, (8, 2, 2, 2)), "linewidth": 1.7, "zorder": 2.2},
+    "third model": {"color": "#009E73", "linestyle": (0, (2, 1.5)), "linewidth": 1.7, "zorder": 2.1},
+}
+LOOKS = ROLES | MODELS
+
+# Regions of a plane, one beside the other: so pale that a curve and words on them are read.
+TINTS = ["#dcebf5", "#fbe3d3", "#d9efe6", "#f6ecd2", "#ece2f3", "#e8e8e8"]
 
 # What is no signal: the axes of a plane, a level such as a steady state, the way from a point to an axis, words.
 ZERO: dict[str, Any] = {"color": GREY, "linewidth": 0.8, "zorder": 1}
@@ -60,6 +76,7 @@ LEVEL: dict[str, Any] = {"color": GREY, "linestyle": (0, (6, 3)), "linewidth": 1
 GUIDE: dict[str, Any] = {
     "color": GREY, "linestyle": (0, (2, 2)), "linewidth": 1, "zorder": 1.6, "scalex": False, "scaley": False
 }  # fmt: skip
+EVENT: dict[str, Any] = {"color": GREY, "linewidth": 0.8, "zorder": 1.4}
 ON_WHITE: dict[str, Any] = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1}
 
 WIDTH = 6.4  # inches: a notebook column, and the text width of a printed page
@@ -82,8 +99,18 @@ def look(role: str | int) -> dict[str, Any]:
     ('#0072B2', '#009E73', (0, (7, 2)))
     """
     if isinstance(role, str):
-        if role not in ROLES:
-            raise ValueError(f"the role is {role!r}: {did_you_mean(role, ROLES)}")
-        return ROLES[role]
+        if role not in LOOKS:
+            raise ValueError(f"the role is {role!r}: {did_you_mean(role, LOOKS)}")
+        return LOOKS[role]
     colour = RESPONSE_COLOURS[role % len(RESPONSE_COLOURS)]
     return {"color": colour, "linestyle": RESPONSE_LINES[role % len(RESPONSE_LINES)], "linewidth": 1.8}
+
+
+def pale(colour: str, share: float = 0.2) -> str:
+    """Return a colour mixed with white, for an area under a line of that colour.
+
+    >>> pale("#000000"), pale("#0072B2")
+    ('#cccccc', '#cce3f0')
+    """
+    parts = (int(colour[k : k + 2], 16) for k in (1, 3, 5))
+    return "#" + "".join(f"{round(255 + (part - 255) * share):02x}" for part in parts)

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Protocol, Self, TypeAlias
 import numpy as np
 import sympy
 
-from loopbook.figures.labels import add_legend, free_legend
+from loopbook.figures import canvas
+from loopbook.figures.labels import add_legend, free_legend, free_place, make_room
 from loopbook.figures.picture import Picture, plain_words, titled
-from loopbook.figures.style import GUIDE, INPUTS, LEVEL, ON_WHITE, WIDTH, look, styled
+from loopbook.figures.style import EVENT, GUIDE, INPUTS, LEVEL, ON_WHITE, ZERO, look, pale, styled
 from loopbook.laplace import evaluate, t
 from loopbook.validation import did_you_mean, increasing, one_of
 
@@ -85,11 +86,8 @@ class TimePlot(Picture):
         >>> plot.mark(5, "63 % at $t = T$").level(2, "$KU$")
         <Figure 6.2: y(t) against t [s]; marked: 63 % at t = T; level: KU>
         """
-        from matplotlib.cbook import STEP_LOOKUP_MAP
-
         line = self._line(signal)
-        axes, corners = line.axes, STEP_LOOKUP_MAP[line.get_drawstyle()]
-        times, values = corners(line.get_xdata(), line.get_ydata())
+        axes, (times, values) = line.axes, _corners(line)
         time = float(time)
         if not times[0] <= time <= times[-1]:
             raise ValueError(f"cannot mark t = {time:g}: the plot shows {times[0]:g} to {times[-1]:g}")
@@ -177,12 +175,96 @@ class TimePlot(Picture):
         self.alt += f"; points: {plain_words(label)}"
         return self
 
+    def area(self, signal: str, other: str | Number = 0, label: str = "") -> Self:
+        """Shade what lies between a curve and another one, or a level, and name it where it is widest.
+
+        Arguments:
+            signal: label of the curve.
+            other: label of a curve in the same panel, as "setpoint"; or a number.
+            label: words on the shaded area; mathematics between dollar signs.
+        Returns:
+            The plot itself, so that it can stand last in a cell.
+        Raises:
+            ValueError: for a label that no curve has, or curves in two panels.
+
+        >>> from loopbook.laplace import t
+        >>> plot = time_plot({"setpoint": (1, "setpoint"), "$y$": (1 - sympy.exp(-t), "measurement")}, range(6))
+        >>> plot.area("$y$", "setpoint", "integral of the error")
+        <setpoint, y against t [s]; shaded: integral of the error>
+        """
+        line = self._line(signal)
+        axes, (times, values) = line.axes, _corners(line)
+        level = np.full(len(times), 0.0 if isinstance(other, str) else float(other))
+        if isinstance(other, str):
+            reference = self._line(other)
+            if reference.axes is not axes:
+                raise ValueError(f"{signal} and {other} are in two panels: expected them in one")
+            there = _corners(reference)
+            times, values, level = _on_common_times(times, values, *there)
+        low, high = axes.get_ylim()
+        tint = pale(line.get_color())
+        axes.fill_between(times, values, level, facecolor=tint, linewidth=0, zorder=0.6, interpolate=True)
+        axes.set_ylim(min(low, level.min()), max(high, level.max()))
+        if label:
+            widest = int(np.argmax(abs(values - level)))
+            with styled():
+                free_place(axes, label, (times[widest], (values[widest] + level[widest]) / 2), ("right", "left"))
+        self.alt += f"; shaded: {plain_words(label)}" if label else ""
+        return self
+
+    def event(self, time: Number, label: str) -> Self:
+        """Draw a thin upright line through all panels where something happens, with a few words at its top.
+
+        Arguments:
+            time: in the unit of the time axis.
+            label: what happens; mathematics between dollar signs.
+        Returns:
+            The plot itself, so that it can stand last in a cell.
+        Raises:
+            ValueError: for a time outside the plot.
+
+        >>> from loopbook.laplace import t
+        >>> time_plot({"$y$": 1 - sympy.exp(-t)}, range(6)).event(2, "load")
+        <y against t [s]; at 2: load>
+        """
+        time, top = float(time), self.figure.axes[0]
+        first, last = top.get_xlim()
+        if not first <= time <= last:
+            raise ValueError(f"cannot mark t = {time:g}: the plot shows {first:g} to {last:g}")
+        for axes in self.figure.axes:
+            axes.vlines(time, 0, 1, transform=axes.get_xaxis_transform(), **EVENT)
+        on_right = time < first + 0.75 * (last - first)
+        with styled():
+            words = top.annotate(
+                label, (time, 1), (3 if on_right else -3, -2), xycoords=("data", "axes fraction"),
+                textcoords="offset points", ha="left" if on_right else "right", va="top", zorder=5, bbox=ON_WHITE,
+            )  # fmt: skip
+        make_room(top, words, 1)
+        self.alt += f"; at {time:g}: {plain_words(label)}"
+        return self
+
     def _line(self, label):
         if label is None:
             return next(iter(self.lines.values()))
         if label not in self.lines:
             raise ValueError(f"no signal {label!r} in this plot: {did_you_mean(label, self.lines)}")
         return self.lines[label]
+
+
+def _corners(line):
+    """The times and values between which a line is straight, of one that is held, too."""
+    from matplotlib.cbook import STEP_LOOKUP_MAP
+
+    return STEP_LOOKUP_MAP[line.get_drawstyle()](line.get_xdata(), line.get_ydata())
+
+
+def _on_common_times(times, values, other_times, others):
+    """All times of two lines, with the values of both there; where one is upright it keeps its two values."""
+    if np.array_equal(times, other_times):
+        return times, values, others
+    all_times = np.unique(np.r_[times, np.nextafter(times, -np.inf), other_times, np.nextafter(other_times, -np.inf)])
+    all_times = all_times[(all_times >= max(times[0], other_times[0])) & (all_times <= min(times[-1], other_times[-1]))]
+    return all_times, np.interp(all_times, times, values), np.interp(all_times, other_times, others)
 
 
 def time_plot(
@@ -194,13 +276,15 @@ def time_plot(
     ylim: Limits | list[Limits | None] | None = None,
     before: float = 0,
     low: bool = False,
+    error_from: str | None = None,
 ) -> TimePlot:
     """Plot signals against time, in one panel or in several above one another with a common time axis.
 
     Arguments:
         signals: ``{label: signal}``, or a list of these, one a panel from the top down. A signal is a SymPy expression
             in `t`, a number, or an array with one value for each time; ``(signal, role)`` gives it the colour of its
-            role: "setpoint", "measurement", "control signal" or "disturbance", or a number 0, 1, 2 ... for that of a
+            role: "setpoint", "measurement", "control signal" or "disturbance", "raw" for what is filtered (thin and
+            grey), "process", "model", "second model" and "third model", or a number 0, 1, 2 ... for that of a
             response. Labels may hold mathematics between dollar signs. A panel with one input and nothing else is half
             as high as the others.
         times: increasing times, in the unit that `xlabel` says.
@@ -211,9 +295,11 @@ def time_plot(
             or a list of these, one for each panel, with None where the axis follows the signals.
         before: how much time to show ahead of t = 0, with every signal at zero, so that a step at t = 0 is seen.
         low: make it less high, and flat the legend under a given `ylim`, where a chapter has many figures.
+        error_from: label of a curve in the first panel from which the others there hardly differ; a panel below shows
+            by how much they do.
     Returns:
-        A `TimePlot`, which a notebook shows as the value of a cell; ``.mark``, ``.level`` and ``.points`` add
-            to it.
+        A `TimePlot`, which a notebook shows as the value of a cell; ``.mark``, ``.level``, ``.points``, ``.area`` and
+            ``.event`` add to it.
     Raises:
         ValueError: for times that do not increase, a signal that is neither expression nor array or has another length
             than the times, an unknown role, a label used twice, or an expression with symbols besides `t`.
@@ -221,9 +307,13 @@ def time_plot(
     >>> from loopbook.laplace import t
     >>> time_plot([{"$y(t)$": 2 * t}, {"$u(t)$": (1, "control signal")}], range(11), title="Figure 6.1", before=1)
     <Figure 6.1: y(t); u(t) against t [s]>
-    """
-    from matplotlib.figure import Figure
 
+    A process and its model, with the difference below:
+
+    >>> curves = {"process": (1 - sympy.exp(-t), "process"), "model": (1 - 0.99 * sympy.exp(-t), "model")}
+    >>> time_plot(curves, range(6), error_from="process")
+    <process, model; difference from process against t [s]>
+    """
     panels = list(signals) if isinstance(signals, (list, tuple)) else [signals]
     ylabels = list(ylabel) if isinstance(ylabel, (list, tuple)) else [ylabel] * len(panels)
     if not panels or not all(isinstance(panel, dict) and panel for panel in panels):
@@ -238,6 +328,8 @@ def time_plot(
     if before < 0 or (before and times[0] != 0):
         raise ValueError("time before t = 0 can be shown only in front of times that start at 0, and is not negative")
     curves = [{label: _curve(label, what, times, before) for label, what in panel.items()} for panel in panels]
+    if error_from is not None and (error_from not in panels[0] or len(panels[0]) < 2):
+        raise ValueError(f"the errors are from {error_from!r}: expected one of several curves of the first panel")
     labels = [label for panel in panels for label in panel]
     if len(set(labels)) < len(labels):
         raise ValueError(f"two signals have the same label: {', '.join(labels)}")
@@ -245,8 +337,11 @@ def time_plot(
     inputs = [len(panel) == 1 and all(role in INPUTS for *_, role in panel.values()) for panel in curves]
     heights = [1 if only_input and len(panels) > 1 else 2 for only_input in inputs]
     with styled():
-        figure = Figure(figsize=(WIDTH, 1.2 + (0.7 if low else 0.95) * sum(heights)), layout="constrained")
-        grid = figure.subplots(len(panels), sharex=True, squeeze=False, height_ratios=heights)[:, 0]
+        unit = 0.8 if low else 1.0
+        if error_from is not None:
+            heights.insert(1, 1)
+        figure, grid = canvas.panels([unit * height for height in heights])
+        of_error = grid.pop(1) if error_from is not None else None
         lines = {}
         number = 0
         for axes, panel, name, fixed in zip(grid, curves, ylabels, fixed_axes, strict=True):
@@ -256,8 +351,10 @@ def time_plot(
             axes.set_ylabel(name or (label if len(panel) == 1 else ""))
             # from here on, what is marked does not move the curves
             axes.set_ylim(fixed or axes.get_ylim())
-        grid[-1].set_xlim(times[0] - before, times[-1])
-        grid[-1].set_xlabel(xlabel)
+        if of_error is not None:
+            _errors(of_error, lines, error_from, curves[0])
+        grid[0].set_xlim(times[0] - before, times[-1])
+        figure.axes[-1].set_xlabel(xlabel)
         grid[0].set_title(title or "")
         figure.align_ylabels()
         explained = set()
@@ -270,8 +367,25 @@ def time_plot(
                 else:
                     free_legend(axes)
             explained |= roles
-    shown = "; ".join(", ".join(map(plain_words, panel)) for panel in panels)
+    shown = [", ".join(map(plain_words, panel)) for panel in panels]
+    if error_from is not None:
+        shown.insert(1, f"difference from {plain_words(error_from)}")
+    shown = "; ".join(shown)
     return TimePlot(figure, titled(title, f"{shown} against {plain_words(xlabel)}"), lines)
+
+
+def _errors(axes, lines, reference, names):
+    """The differences of curves from one of them, each in its look."""
+    times, values = lines[reference].get_data()
+    axes.axhline(0, **ZERO)
+    for label in names:
+        if label != reference:
+            line = lines[label]
+            at, here, there = _on_common_times(*line.get_data(), times, values)
+            (of_error,) = axes.plot(at, here - there)
+            of_error.update_from(line)
+            lines[f"{label}, error"] = of_error
+    axes.set_ylabel("error")
 
 
 def _curve(label, what, times, before):

@@ -1,0 +1,71 @@
+"""What a figure is drawn on: panels at fixed places, and one pass from the lines to the dots."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from loopbook.figures.style import DOTS_PER_INCH, WIDTH
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from PIL import Image
+
+# inches around and between the panels, for the names of the axes, their numbers and the title
+LEFT, RIGHT, BELOW, ABOVE, BETWEEN = 0.66, 0.12, 0.5, 0.32, 0.14
+ROOM = 1.5  # inches beyond the figure in which something may stick out
+MARGIN = 0.06  # inches of white around what is drawn
+
+
+def panels(heights: Sequence[float], width: float = WIDTH) -> tuple[Figure, list[Axes]]:
+    """Return a figure with panels of these heights above one another, in inches, and a common horizontal axis.
+
+    The panels stay where they are: what the axes need outside is not negotiated but sticks out, and is cut out with the
+    rest. So nothing is drawn twice, and all figures of a page have their axes in one line.
+
+    >>> figure, (above, below) = panels([2, 1])
+    >>> figure.get_size_inches().round(2), round(above.get_position().height / below.get_position().height)
+    (array([6.4 , 3.96]), 2)
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    inside, gaps = sum(heights), BETWEEN * (len(heights) - 1)
+    tall = BELOW + inside + gaps + ABOVE
+    figure = Figure(figsize=(width, tall), dpi=DOTS_PER_INCH)
+    FigureCanvasAgg(figure)  # measures texts; the canvas that a figure has by itself looks for this one every time
+    places = {"left": LEFT / width, "right": 1 - RIGHT / width, "bottom": BELOW / tall, "top": 1 - ABOVE / tall}
+    places |= {"height_ratios": heights, "hspace": BETWEEN / (inside / len(heights))}
+    grid = figure.subplots(len(heights), sharex=True, squeeze=False, gridspec_kw=places)
+    for axes in grid[:, 0]:
+        axes.set_title("")
+    return figure, list(grid[:, 0])
+
+
+def drawn(figure: Figure) -> Image.Image:
+    """Draw a figure once, with all that sticks out of it, and cut the picture out.
+
+    Arguments:
+        figure: of matplotlib, with our dots per inch.
+    Returns:
+        The image of Pillow, in RGB on white, as wide as the figure or wider.
+    """
+    from matplotlib.backends.backend_agg import RendererAgg
+    from matplotlib.transforms import Bbox
+    from PIL import Image, ImageChops
+
+    width, height = figure.get_size_inches()
+    size = tuple(round((length + 2 * ROOM) * DOTS_PER_INCH) for length in (width, height))
+    renderer = RendererAgg(*size, DOTS_PER_INCH)
+    figure.bbox_inches.set(Bbox.from_bounds(ROOM, ROOM, width, height))
+    try:
+        figure.draw(renderer)
+    finally:
+        figure.bbox_inches.set(Bbox.from_bounds(0, 0, width, height))
+    paper = Image.new("RGBA", size, "white")
+    paper.alpha_composite(Image.frombuffer("RGBA", size, renderer.buffer_rgba()))
+    paper = paper.convert("RGB")
+    left, above, right, below = ImageChops.invert(paper).getbbox() or (0, 0, *size)
+    begin, end, margin = (round(length * DOTS_PER_INCH) for length in (ROOM, ROOM + width, MARGIN))
+    return paper.crop((min(left - margin, begin), above - margin, max(right + margin, end), below + margin))
