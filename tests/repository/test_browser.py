@@ -94,6 +94,14 @@ class TestJupyterLab:
         desk.page.keyboard.press("Control+b")
         desk.page.set_viewport_size(DESKTOP)
 
+    def test_a_figure_is_turned_over_in_a_dark_theme(self, desk):
+        figure = desk.page.locator(".jp-OutputArea-output img").first
+        theme, style = "document.body.dataset.jpThemeLight = ", "figure => getComputedStyle(figure).filter"
+        assert figure.evaluate(style) == "none"
+        desk.page.evaluate(theme + "false")
+        assert figure.evaluate(style) == "invert(0.93) hue-rotate(180deg)"
+        desk.page.evaluate(theme + "true")
+
     def test_nothing_complains(self, desk):
         assert desk.complaints == []
 

@@ -71,6 +71,23 @@ class TestSite:
         reader.go("ledger.html")
         assert reader.page.evaluate("document.documentElement.scrollWidth") <= 1200
 
+    @pytest.mark.parametrize("by", ["the switch", "the system"])
+    def test_a_figure_is_turned_over_on_a_dark_page_and_not_on_paper(self, chromium, addresses, by):
+        system = "dark" if by == "the system" else "light"
+        reader = Reader(chromium, addresses["http"], color_scheme=system)
+        reader.go(KINDS["chapter"])
+        figure, style = reader.page.locator(".cell_output img").first, "figure => getComputedStyle(figure).filter"
+        if by == "the switch":
+            assert figure.evaluate(style) == "none"
+            reader.page.evaluate("document.body.dataset.theme = 'dark'")
+        assert figure.evaluate(style) == "invert(0.93) hue-rotate(180deg)"
+        figure.scroll_into_view_if_needed()
+        reader.screenshot("dark_figure_" + by.replace(" ", "_"))
+        reader.page.emulate_media(media="print", color_scheme=system)
+        assert figure.evaluate(style) == "none"
+        reader.page.close()
+        assert reader.complaints == []
+
     def test_the_pages_are_whole_as_files(self, chromium, addresses):
         reader = Reader(chromium, addresses["file"])
         for page in KINDS.values():
