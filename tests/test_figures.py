@@ -22,7 +22,7 @@ from loopbook.deadtime import Loop
 from loopbook.deadtime.pictures import nyquist_plot
 from loopbook.figures import PlanePlot, TimePlot, half_rule_plot, level_plot, map_plot, plane_plot, time_plot, trends
 from loopbook.figures.picture import plain_words, with_few_colours
-from loopbook.figures.style import GREY, INPUTS, LOOKS, MODELS, ROLES, STYLE, TINTS, look
+from loopbook.figures.style import GREY, INPUTS, LOOKS, MODELS, ROLES, STYLE, TINTS, WIDTH, look
 from loopbook.laplace import s, t
 from loopbook.pid import PID, Controller
 from loopbook.plants import WoodChipTank
@@ -235,7 +235,7 @@ def test_image_has_its_printed_size_and_an_alternative_text():
     assert base64.b64decode(data["image/png"]).startswith(b"\x89PNG")
     assert metadata["image/png"]["alt"] == plot.alt == data["text/plain"].strip("<>")
     assert metadata["needs_background"] == "light"  # by which JupyterLab marks it
-    assert metadata["image/png"]["width"] == pytest.approx(6.4 * 96, rel=0.03)
+    assert metadata["image/png"]["width"] == pytest.approx(WIDTH * 96, rel=0.03)
 
 
 def test_saves_as_a_file(tmp_path):

@@ -26,7 +26,7 @@ def panels(heights: Sequence[float], width: float = WIDTH) -> tuple[Figure, list
 
     >>> figure, (above, below) = panels([2, 1])
     >>> figure.get_size_inches().round(2), round(above.get_position().height / below.get_position().height)
-    (array([6.4 , 3.96]), 2)
+    (array([6.  , 3.96]), 2)
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure

@@ -250,7 +250,7 @@ def level_plot(
         figure, (axes,) = canvas.panels([TALL])
         finite = np.ma.masked_invalid(values)
         lines = axes.contour(x, y, finite, levels, colors=RESPONSE_COLOURS[0], linewidths=1.3)
-        axes.clabel(lines, fmt="%g", fontsize=9, colors="#000000")
+        axes.clabel(lines, fmt="%g", fontsize=10, colors="#000000")
         _finish(axes, xlabel, ylabel, title, (x[0], x[-1]), (y[0], y[-1]), log)
     words = f"levels of {plain_words(label)}, {levels[0]:g} to {levels[-1]:g}"
     words = f"{words}: {plain_words(ylabel)} against {plain_words(xlabel)}"

@@ -19,12 +19,14 @@ STYLE: dict[str, Any] = {
     # One typeface for words and mathematics; it comes with matplotlib, so that every machine draws the same picture.
     "font.family": "STIXGeneral",
     "mathtext.fontset": "stix",
-    "font.size": 11,
-    "axes.titlesize": 11.5,
+    "font.size": 12,
+    "axes.titlesize": 12,
     "axes.titlelocation": "left",
     "axes.titlepad": 8,
     "axes.titley": 1.0,  # where it is; a search for ticks above would take a fifth of the time of a drawing
-    "axes.labelsize": 11,
+    "xtick.labelsize": 11,
+    "ytick.labelsize": 11,
+    "legend.fontsize": 11.5,
     "axes.linewidth": 0.8,
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -79,7 +81,7 @@ GUIDE: dict[str, Any] = {
 EVENT: dict[str, Any] = {"color": GREY, "linewidth": 0.8, "zorder": 1.4}
 ON_WHITE: dict[str, Any] = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1}
 
-WIDTH = 6.4  # inches: a notebook column, and the text width of a printed page
+WIDTH = 6.0  # inches: less than a notebook column or a printed page, so that it can be read on a phone, too
 DOTS_PER_INCH = 144  # half as many again as a browser calls an inch: sharp in print, and light in a notebook
 
 
