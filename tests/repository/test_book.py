@@ -166,7 +166,8 @@ def test_every_formula_is_mathml_and_no_latex_is_left(book, pages):
         for text in page.text:
             assert "$" not in text, (name(book, path), text[:80])
             assert not re.search(r"\\[a-z]{2,}", text), (name(book, path), text[:80])
-        if path.parent.name in ("chapters", "solutions") and path.stem != "A_instrument_symbols":
+        in_words = path.stem == "A_instrument_symbols" or name(book, path) == "solutions/11d_plantwide_control.html"
+        if path.parent.name in ("chapters", "solutions") and not in_words:
             assert formulas_here > 10, name(book, path)
     assert formulas > 3000
 
