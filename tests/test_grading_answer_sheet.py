@@ -131,7 +131,7 @@ def asked():
         ({"H": "K*exp(-2*s)/(T*s + 1)"}, "· H: K*exp(-2*s)/(T*s + 1), an expression in K, T and s"),
         ({"H": 2 / (s + X)}, "· H: 2/(s + x), an expression in s and x"),
         ({"H": "y(t)*K_p/(s + 1)"}, "· H: y(t)*K_p/(s + 1), an expression in K_p, s and y"),
-        ({"H": "K(s + 1)"}, "? H: K stands before a bracket: a product needs its *"),
+        ({"H": "K(s + 1)"}, "? H: K comes before a bracket: a product needs its *"),
         ({"H": "2/(s"}, "? H: 2/(s cannot be read: expected an expression in s, with * for every product"),
         ({"H": PID(2, Ti=10)}, "· H: 2 + 1/(5*s), an expression in s"),
         ({"k": 2}, "? k: this is not asked here: did you mean 'K'?"),

@@ -88,7 +88,7 @@ class Block:
         self.height = sum(row.height + leading for row in (self.heading, *self.head, *self.body, *self.notes)) + 2
 
     def _columns(self):
-        """Where the columns of the table begin: what is left of the width stands between them."""
+        """Where the columns of the table begin: what is left of the width is between them."""
         rows = [*self.head, *self.body]
         widths = [max(row.measures[n][0] for row in rows) for n in range(len(rows[0].cells))]
         gaps = len([width for width in widths if width]) - 1

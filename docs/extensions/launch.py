@@ -1,6 +1,6 @@
 """Where a notebook can be opened and run without an installation: Binder, Colab and Codespaces.
 
-The repository's address stands in pyproject.toml and nowhere else; a branch other than main stands behind it, as in
+The repository's address stands in pyproject.toml and nowhere else; a branch other than main follows it, as in
 https://github.com/loopbook/loopbook/tree/next.
 """
 

@@ -21,7 +21,7 @@ BRACKETS = set("()[]{}⟨⟩")
 SIGNS = {"−", "+", "±"}
 CLOSING = {")", "]", "}", "|", "!"}
 HIGH = {"mfrac", "mtable", "msqrt", "mroot", "munder", "mover", "munderover"}
-BIG = {"lim", "max", "min", "sup", "inf", "arg min", "arg max"}  # their index stands below in a formula of its own
+BIG = {"lim", "max", "min", "sup", "inf", "arg min", "arg max"}  # their index is below them in a displayed formula
 
 
 @functools.cache

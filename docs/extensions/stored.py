@@ -89,7 +89,7 @@ def noted(cells):
         result.append(cell)
         if SLIDERS in cell["metadata"].get("tags", []):
             below = cells[number + 1 : number + 2]
-            here = ", and one like it stands below" if below and "{lesson}" in below[0]["source"] else ""
+            here = ", and one like it is below" if below and "{lesson}" in below[0]["source"] else ""
             result.append(markdown(f"{{.slider-note}}\nIn JupyterLab this cell has sliders{here}."))
     return result
 

@@ -104,7 +104,7 @@ class Answer:
     Attributes:
         verdict: a word or two.
         results: {label: text}, the numbers that matter; the labels, with HTML for letters, are the same everywhere.
-        signals: {name of the curve: values}; a curve that there is not, is left out.
+        signals: {name of the curve: values}; a curve that is missing is omitted.
         marks: [(panel, time, value, label)], points to be marked.
     """
 

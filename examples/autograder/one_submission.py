@@ -87,7 +87,7 @@ def put(notebook, folder):
 
 
 def jail():
-    """Return the option to grade without a jail, where none can be had; the output then says so."""
+    """Return the option to grade without a jail, where none is possible; the output then says so."""
     try:
         Jail().close()
     except GradingError as problem:

@@ -95,7 +95,7 @@ def as_transfer_function(
     )
 
 
-@as_transfer_function.mistake("A time constant stands before $s$ in the denominator, and a dead time in an exponent.")
+@as_transfer_function.mistake("A time constant multiplies $s$ in the denominator, and a dead time in an exponent.")
 def _(K, T, delay):
     return {"H": K * exp(-T * s) / (delay * s + 1)}
 

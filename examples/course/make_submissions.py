@@ -151,7 +151,7 @@ def other_forms(notebook, ask, assignment):
 
 
 def raises(notebook, ask, assignment):
-    """A cell fails before the third exercise; what stands before and after it counts."""
+    """A cell fails before the third exercise; what is before and after it counts."""
     fill_in_all(notebook, ask, "1245")
     insert(notebook, "3", "K_p = T / (2 * K * tau)")
     fill(notebook, "3", {"pid": "[K_p, T]"})
@@ -159,7 +159,7 @@ def raises(notebook, ask, assignment):
 
 
 def endless(notebook, ask, assignment):
-    """A loop that forgets to count stands before the fourth exercise."""
+    """A loop that forgets to count comes before the fourth exercise."""
     fill_in_all(notebook, ask)
     insert(notebook, "4", "t = 0\nwhile t < 10:\n    y = 1 - 2.718 ** (-t)")
     return OWN

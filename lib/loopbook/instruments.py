@@ -161,8 +161,8 @@ def decode(tag: str) -> Tag:
     """Read the tag of an instrument.
 
     Arguments:
-        tag: its capital letters and then perhaps the number of its loop, as "FC123", "PDT4" or "LT"; a hyphen may stand
-            between, and a letter may follow the number.
+        tag: its capital letters and then perhaps the number of its loop, as "FC123", "PDT4" or "LT"; a hyphen may
+            separate them, and a letter may follow the number.
     Returns:
         A `Tag`, with its ``words``, what is ``measured``, the ``modifier`` of that, the ``functions`` and the number of
         its ``loop``.

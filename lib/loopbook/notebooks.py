@@ -1,7 +1,7 @@
 """Run a notebook from top to bottom and store it so that the same outputs are the same bytes.
 
 A stored notebook is part of the proof: its outputs are compared cell by cell at each test, and its changes are read
-in a diff. So nothing is stored that differs from run to run or from machine to machine, or with what stands before a
+in a diff. So nothing is stored that differs from run to run or from machine to machine, or with what comes before a
 cell: no times, no execution counts, no widget models, no paths, no addresses. A cell keeps its id for life. The library
 never imports this module; ``python -m loopbook execute`` does.
 """

@@ -23,7 +23,7 @@ def sliders(labels: Mapping[str, Any]) -> Callable[[Shown], Shown]:
     """Show what the function below returns, with a slider for each of its parameters.
 
     Arguments:
-        labels: what stands beside each slider, such as ``"filter [s]"``, and its range, in the order of the function's
+        labels: the words beside each slider, such as ``"filter [s]"``, and its range, in the order of the function's
             parameters. A range is (least, greatest, step), a list to choose from, True or False for a box to tick, or
             a widget of ipywidgets. The sliders begin at the function's defaults.
     Returns:

@@ -68,7 +68,7 @@ def quantities(named: Mapping[str, Any] | None = None, /, *, digits: int = 3, **
 
     Arguments:
         named: the value of each, by its name and, in square brackets, its unit: ``{"rise time [s]": 3.21}``.
-        digits: significant digits; what stands before the decimal point is never rounded.
+        digits: significant digits; what is before the decimal point is never rounded.
         symbols: more of them by their symbols, where they have no unit.
     Returns:
         A table, as text and as HTML. A truth value is shown as yes or no, a formula is typeset, several values have
@@ -104,7 +104,7 @@ def table(
         rows: the values of each row by the row's name; where there is one column, each may be a single value. Or,
             without names, a list of rows.
         of: what the names of the rows are, for the head of their column.
-        digits: significant digits; what stands before the decimal point is never rounded.
+        digits: significant digits; what is before the decimal point is never rounded.
     Returns:
         A table, as text and as HTML.
     Raises:
@@ -189,7 +189,7 @@ def _is_number(value):
 
 
 def rounded(value: float, digits: int = 3) -> str:
-    """Return a number with so many significant digits; what stands before the decimal point is never rounded.
+    """Return a number with so many significant digits; what is before the decimal point is never rounded.
 
     Arguments:
         value: any float.

@@ -60,7 +60,7 @@ def bode_plot(
         omega: the lowest and the highest frequency, in radians for one unit of time, or an array that has them at its
             ends; by itself a decade around the corner frequencies.
         margins: those of the closed loop around H, from `stability.margins`: they are marked as bars.
-        title: stands above the plot.
+        title: written above the plot.
         unit: of time, as the axis names it.
         db: magnitudes in decibels.
     Raises:
@@ -236,7 +236,7 @@ def nyquist_plot(
         omega: as for `bode_plot`; by itself it reaches far beyond the corners.
         margins: those of the closed loop, from `stability.margins`: the gain margin is marked on the negative real
             axis, the phase margin as an arc, and Ms by the circle around -1 that the curve touches.
-        title: stands above the plot.
+        title: written above the plot.
         unit: of time, for the delay margin.
         mirror: draw the curve of negative frequencies, too, as a thin line.
         xlim, ylim: lowest and highest value of an axis.
@@ -399,7 +399,7 @@ def step_plot(
         H: a `System`; a `Loop`; or ``{label: H}`` for several of one kind.
         end: the last time; by itself late enough for the response to settle.
         info: what `System.step_info` returns, for one system or the servo response of one loop: it is marked.
-        title: stands above the plot.
+        title: written above the plot.
         unit: of time, as the axis names it.
         settling, rise: the shares with which `info` was asked for.
     Raises:

@@ -39,7 +39,7 @@ def block_diagram(*items: Item, title: str | None = None) -> Picture:
         items: what the signal meets, in order. A text names the signal there (mathematics, as ``"y_1"``; one with
             dollar signs is taken as it is); a SymPy expression or `block` is a block; `parallel_paths`,
             `feedback_loop` and, in the first place, `sum_of` are parts with several paths.
-        title: stands above the diagram; begins with the name of the book's figure where there is one.
+        title: written above the diagram; begins with the name of the book's figure where there is one.
     Returns:
         A `Picture`, which a notebook shows as the value of a cell.
     Raises:
@@ -63,7 +63,7 @@ def equivalent_diagrams(
 
     Arguments:
         rules: ``{name: (left, right)}``, each side a list of items as `block_diagram` takes them.
-        title: stands above the table.
+        title: written above the table.
     Returns:
         A `Picture`, which a notebook shows as the value of a cell.
     Raises:
@@ -105,7 +105,7 @@ def overall_diagram(
         disturbances: names of the environmental variables, which enter from above, from left to right.
         parameters: names of the parameters, which enter from below.
         outputs: names of the variables that leave to the right.
-        title: stands above the diagram.
+        title: written above the diagram.
     Returns:
         A `Picture`, which a notebook shows as the value of a cell.
     Raises:
@@ -132,7 +132,7 @@ def elementary_blocks(title: str | None = None) -> Picture:
     """Draw the table of the blocks from which the diagram of a differential equation is built.
 
     Arguments:
-        title: stands above the table.
+        title: written above the table.
     Returns:
         A `Picture`, which a notebook shows as the value of a cell.
 
@@ -420,7 +420,7 @@ class _Entry:
 
 
 class _Chain:
-    """Parts one after the other, a wire before, between and after them; a signal's name stands above its wire."""
+    """Parts one after the other, a wire before, between and after them; a signal's name is above its wire."""
 
     def __init__(self, items, at_end=0.3):
         """`at_end` is what the arrow head or whatever else stands at the end takes away from the last name."""

@@ -16,7 +16,7 @@ def rc_circuit(resistor: str = "R", capacitor: str = "C", title: str | None = No
 
     Arguments:
         resistor, capacitor: mathematics at the components.
-        title: stands above the circuit.
+        title: written above the circuit.
     Returns:
         A `Picture`, which a notebook shows as the value of a cell.
 

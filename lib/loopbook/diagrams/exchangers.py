@@ -19,10 +19,10 @@ SIZES = {"shell and tube": (2.2, 0.9), "plate": (1.0, 1.2), "air cooler": (1.5, 
 
 
 def heat_exchanger(tag: str = "", kind: str = "general") -> Equipment:
-    """Return a heat exchanger, which one stream passes along and the other one across; its tag stands beside it.
+    """Return a heat exchanger, which one stream passes along and the other one across; its tag is beside it.
 
     Arguments:
-        tag: stands beside it.
+        tag: written beside it.
         kind: "general", "shell and tube", "plate", "cooler" (by a medium of the plant), "air cooler", "condenser" or
             "reboiler".
     Raises:
@@ -37,10 +37,10 @@ def heat_exchanger(tag: str = "", kind: str = "general") -> Equipment:
 
 
 def heater(tag: str = "", kind: str = "duct") -> Equipment:
-    """Return a heater; its tag stands below it.
+    """Return a heater; its tag is below it.
 
     Arguments:
-        tag: stands below it, or beside it where a pipe is below.
+        tag: written below it, or beside it where a pipe is below.
         kind: "duct" (electrical, within an air duct), "electric", "steam" or "fired" (a furnace).
     Raises:
         ValueError: for another kind.

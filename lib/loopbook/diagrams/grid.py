@@ -38,7 +38,7 @@ def grid_diagram(
         blocks: ``{name: block}`` for the names that are blocks; each a label as `block` takes it, a SymPy expression or
             one of the elementary blocks.
         names: ``{name: label}`` for signals that are to be written otherwise than their name in the layout.
-        title: stands above the diagram.
+        title: written above the diagram.
     Returns:
         A `Picture`, which a notebook shows as the value of a cell.
     Raises:

@@ -47,7 +47,7 @@ def instrumentation_diagram(
             is a box with that label, such as a function block.
         names: ``{name: label}`` for texts that are to be written otherwise than their name in the layout.
         ducts, shafts: the same as `pipes` for wide ducts (air, gas) and for mechanical shafts.
-        title: stands above the diagram.
+        title: written above the diagram.
         lines: ``{kind: paths}`` for signals whose lines say of what kind they are: "pneumatic", "hydraulic",
             "capillary", "guided wave", "radio", "data link", "measuring line"; those in `signals` are "electrical".
     Returns:

@@ -18,7 +18,7 @@ def conveyor_belt(
 
     Arguments:
         inflow, outflow, delay: mathematics at the arrow in, at the arrow out and at the time in between.
-        title: stands above the drawing.
+        title: written above the drawing.
     Returns:
         A `Picture`, which a notebook shows as the value of a cell.
 
@@ -64,7 +64,7 @@ def mass_spring_damper(
 
     Arguments:
         mass, spring, damper, force, position: mathematics at the parts.
-        title: stands above the drawing.
+        title: written above the drawing.
     Returns:
         A `Picture`, which a notebook shows as the value of a cell.
 
@@ -111,7 +111,7 @@ def motor_with_load(
         current, torque, inertia, angle: mathematics at the motor and its shaft.
         radius, force: at the gear wheel, and at the rod that it drives.
         mass, load, position: of what moves along the line.
-        title: stands above the drawing.
+        title: written above the drawing.
     Returns:
         A `Picture`, which a notebook shows as the value of a cell.
 

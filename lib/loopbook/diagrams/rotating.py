@@ -18,10 +18,10 @@ ROUND = 0.45  # radius
 
 
 def pump(tag: str = "", kind: str = "general") -> Pump:
-    """Return a pump, which points the way of the flow; its tag stands below it.
+    """Return a pump, which points the way of the flow; its tag is below it.
 
     Arguments:
-        tag: stands below it, or beside it where a pipe is below.
+        tag: written below it, or beside it where a pipe is below.
         kind: "general", "centrifugal", "displacement" (a piston), "gear", "screw" or "diaphragm".
     Raises:
         ValueError: for another kind.
@@ -33,10 +33,10 @@ def pump(tag: str = "", kind: str = "general") -> Pump:
 
 
 def fan(tag: str = "", kind: str = "axial") -> Fan:
-    """Return a fan, in a duct or by itself; its tag stands below it.
+    """Return a fan, in a duct or by itself; its tag is below it.
 
     Arguments:
-        tag: stands below it, or beside it where a pipe is below.
+        tag: written below it, or beside it where a pipe is below.
         kind: "axial" (a propeller) or "radial" (a blower).
     Raises:
         ValueError: for another kind.

@@ -34,7 +34,7 @@ def sequential_function_chart(chart: Chart, title: str | None = None, names: boo
 
     Arguments:
         chart: a `sequence.Chart`.
-        title: stands above the drawing.
+        title: written above the drawing.
         names: True writes the name of a transition before its condition, as in "T_Fill_Heat: h >= 0.9".
     Returns:
         A `Picture`, which a notebook shows as the value of a cell.

@@ -26,7 +26,7 @@ def state_diagram(chart: Chart, title: str | None = None) -> Picture:
 
     Arguments:
         chart: a `sequence.Chart`.
-        title: stands above the drawing.
+        title: written above the drawing.
     Returns:
         A `Picture`, which a notebook shows as the value of a cell.
     Raises:

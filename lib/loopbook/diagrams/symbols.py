@@ -28,7 +28,7 @@ def symbol_table(
     Arguments:
         symbols: ``{name: symbol}``, the symbols as `instrumentation_diagram` takes them; or a list of symbols, whose
             names are then their own words.
-        title: stands above the table.
+        title: written above the table.
         columns: how many symbols stand in a row.
     Returns:
         A `Picture`, which a notebook shows as the value of a cell.

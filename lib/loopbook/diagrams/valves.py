@@ -20,10 +20,10 @@ HALF = 0.26  # of the body's height
 
 
 def valve(tag: str = "", kind: str = "general") -> Valve:
-    """Return a valve without an actuator; its tag, such as "V1", stands beside it.
+    """Return a valve without an actuator; its tag, such as "V1", is beside it.
 
     Arguments:
-        tag: stands beside it.
+        tag: written beside it.
         kind: "general", "gate", "globe", "ball", "needle", "diaphragm", "butterfly", "angle" and "three-way" (whose
             openings are where its pipes come from), "check" (lets the flow pass one way only), "hand" (with a wheel),
             "safety" (held by a spring) or "reducing" (holds the pressure behind it).
@@ -39,10 +39,10 @@ def valve(tag: str = "", kind: str = "general") -> Valve:
 
 
 def control_valve(tag: str = "", actuator: str = "diaphragm", kind: str = "general") -> Valve:
-    """Return a valve with an actuator, at which a signal ends; its tag stands beside it.
+    """Return a valve with an actuator, at which a signal ends; its tag is beside it.
 
     Arguments:
-        tag: stands beside it.
+        tag: written beside it.
         actuator: "diaphragm" (pneumatic, with a spring), "piston" (pneumatic or hydraulic), "motor" (electrical) or
             "solenoid" (electrical, on and off).
         kind: of its body: "general", "gate", "globe", "ball", "needle", "diaphragm", "butterfly", "angle", "three-way".

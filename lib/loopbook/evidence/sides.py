@@ -103,7 +103,7 @@ def _expression(value):
 
 
 def _of_one_language(*values):
-    """Expressions, in none of which a symbol stands beside another one of its name."""
+    """Expressions, in none of which two symbols have the same name."""
     names: dict[str, sympy.Symbol] = {}
     for symbol in itertools.chain.from_iterable(value.free_symbols for value in values):
         if names.setdefault(symbol.name, symbol) != symbol:

@@ -34,7 +34,7 @@ def exercise(number: str, student: str | None = None) -> Question:
         number: chapter and place in it, as "10.3".
         student: a name, for numbers of one's own, the same every time; the reference variant if not given.
     Raises:
-        ExerciseError: for a number that there is not.
+        ExerciseError: for an unknown number.
     """
     if not isinstance(number, str):
         raise ExerciseError(f"the exercise is {number!r}: expected chapter and place in it as text, such as '10.3'")

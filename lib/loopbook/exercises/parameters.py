@@ -137,7 +137,7 @@ def written(value: Number | str, unit: str = "") -> str:
 
 
 def call(function: Callable[..., Any], values: Mapping[str, Any]) -> Any:
-    """Call a function with those of the values that it names; raises ValueError for a name that there is not."""
+    """Call a function with those of the values that it names; raises ValueError for an unknown name."""
     names = list(inspect.signature(function).parameters)
     unknown = [name for name in names if name not in values]
     if unknown:

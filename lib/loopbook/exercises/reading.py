@@ -222,7 +222,7 @@ def _check_number(value, expected):
 def _check_function(name, symbols):
     known = (*ONE_VALUE, *SEVERAL_VALUES)
     if name in symbols or name in CONSTANTS:
-        raise Unreadable(f"{name} stands before a bracket: a product needs its *")
+        raise Unreadable(f"{name} comes before a bracket: a product needs its *")
     if name not in known:
         hint = did_you_mean(name, known, otherwise="expected exp, log, sqrt, sin ...")
         raise Unreadable(f"{name!r} is no function that is known here: {hint}")

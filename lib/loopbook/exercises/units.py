@@ -119,7 +119,7 @@ def _registry():
 @functools.lru_cache(maxsize=1000)
 def _parsed(text):
     text = spelled(text)
-    # names with exponents, and what stands between them: no power of a power can be worked out for hours
+    # names with exponents, and what is between them: no power of a power can be worked out for hours
     between = _FACTOR.sub("", text) if isinstance(text, str) and len(text) <= _LONGEST else "?"
     if not re.fullmatch(r"(\s*1\s*/)?[\s%°·*/()]*", between):
         raise ValueError(f"{text!r} is no unit: expected one such as 's', 'kg/min' or '%/K'")

@@ -130,7 +130,7 @@ def plane_plot(
         curves: ``{label: (x, y)}`` with arrays of equal length; a curve may turn back, and is broken at a NaN. A third
             item, a role or a number as in `time_plot`, gives it that look; by itself, curve after curve has its own.
         xlabel, ylabel: names of the axes with their units.
-        title: stands above the plot; begins with the name of the book's figure where there is one.
+        title: written above the plot; begins with the name of the book's figure where there is one.
         xlim, ylim: lowest and highest value of an axis.
         log: logarithmic axes.
         equal: one unit is as long on both axes, as for complex numbers; then both axes are drawn at zero.

@@ -48,7 +48,7 @@ def sequence_trends(
         chart: the `sequence.Chart`.
         signals: names of analogue signals, each for a panel; ("T", "T_SP") shows a measurement and its setpoint in one.
         on_off: names of the signals that are 0 or 1; the boolean outputs of the chart if not given.
-        title: stands above the plot; begins with the name of the book's figure where there is one.
+        title: written above the plot; begins with the name of the book's figure where there is one.
         minutes: write the time in minutes, whatever the unit of the run is.
     Returns:
         A `figures.TimePlot`, which a notebook shows as the value of a cell.

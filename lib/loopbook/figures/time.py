@@ -288,7 +288,7 @@ def time_plot(
             response. Labels may hold mathematics between dollar signs. A panel with one input and nothing else is half
             as high as the others.
         times: increasing times, in the unit that `xlabel` says.
-        title: stands above the plot; begins with the name of the book's figure where there is one.
+        title: written above the plot; begins with the name of the book's figure where there is one.
         xlabel, ylabel: names of the axes with their units; `ylabel` is a list where there are several panels. A panel
             with one signal takes the signal's label if no `ylabel` is given.
         ylim: lowest and highest value of the top panel's axis, where it must not follow the signals, as under a slider;
@@ -445,7 +445,7 @@ def trends(
     Arguments:
         runs: a `simulation.Run` or a `deadtime.LoopResponse`, or ``{label: run}`` for several with the same times and
             the same setpoint.
-        title: stands above the plot; begins with the name of the book's figure where there is one.
+        title: written above the plot; begins with the name of the book's figure where there is one.
         disturbances: names of inputs of the plant, each shown in a panel of its own below the others.
         measured: show the noisy measurement instead of the plant's output.
         minutes: write the time in minutes, whatever the unit of the runs is.

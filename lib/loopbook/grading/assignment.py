@@ -102,7 +102,7 @@ class Assignment:
     def question(self, student_id: str, number: str) -> Question:
         """Return a student's variant of an exercise, a `Question`, the same every time.
 
-        Raises GradingError for an exercise that there is not, and where the author's functions fail.
+        Raises GradingError for an unknown exercise, and where the author's functions fail.
         """
         if number not in self.exercises:
             raise GradingError(

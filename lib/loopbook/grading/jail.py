@@ -130,7 +130,7 @@ class Jail:
         jailed: without a jail, submissions run with the rights of whoever grades.
         limits: `Limits`.
     Raises:
-        NoJail: where no jail can be had, or the libraries cannot be imported in it.
+        NoJail: where no jail is possible, or the libraries cannot be imported in it.
     """
 
     def __init__(self, jailed: bool = True, limits: Limits = USUAL):

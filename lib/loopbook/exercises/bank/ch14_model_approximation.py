@@ -365,7 +365,7 @@ def _lowest_point(K, tau, theta):
 
 
 @before_the_dead_time.mistake(
-    "Half of the dead time stands above the fraction bar and half below; here it is all of it, twice."
+    "Half of the dead time is above the fraction bar and half below; here it is all of it, twice."
 )
 def _(K, tau, theta):
     if theta != tau:

@@ -167,9 +167,7 @@ def _(delay, margin):
     return {"Tc": 2 * float(delay * margin) / math.pi}
 
 
-@uncertain_gain.mistake(
-    "In the gain of the controller the dead time has to stand beside the closed-loop time constant."
-)
+@uncertain_gain.mistake("In the gain of the controller the dead time must be added to the closed-loop time constant.")
 def _(K, T, delay, margin):
     return {"controller": PID(float(T) / (float(K * delay) * (2 * float(margin) / math.pi - 1)), T)}
 

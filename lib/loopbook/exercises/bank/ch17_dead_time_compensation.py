@@ -383,7 +383,7 @@ def _(K, T, volume, low, high):
 
 
 @two_flows.mistake(
-    "This controller is tuned for an ordinary loop. In the predictor the dead time need not stand beside $T_C$."
+    "This controller is tuned for an ordinary loop. In the predictor the dead time need not be added to $T_C$."
 )
 def _(K, T, volume, low, high):
     model, off = _middle(volume, low, high)

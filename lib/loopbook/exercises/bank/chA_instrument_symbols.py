@@ -37,12 +37,12 @@ def _(letters, loop):
     return {"tag": f"`{letters}{loop}`"}
 
 
-@tag.mistake("That is what the D means as the first letter. Here it stands behind one.")
+@tag.mistake("That is what the D means as the first letter. Here it follows one.")
 def _(letters):
     return {"measured": "density"} if letters[1] == "D" else {}
 
 
-@tag.mistake("A D that changes what is measured stands behind another letter. Which letter is the first one here?")
+@tag.mistake("A D that changes what is measured follows another letter. Which letter is the first one here?")
 def _(letters):
     return {"modifier": "difference"} if letters[0] == "D" else {}
 
@@ -105,9 +105,7 @@ def _(device, measured):
     return {"letters": [*letters[:-2], *letters[:-3:-1]]} if DEVICES[device] in ("IC", "IT") else {}
 
 
-@writing.mistake(
-    "A modifier stands behind the letter that it changes. As the first letter it has a meaning of its own."
-)
+@writing.mistake("A modifier follows the letter that it changes. As the first letter it has a meaning of its own.")
 def _(device, measured):
     letters = letters_of(device, measured)
     if decode("".join(letters)).modifier and letters[0] != letters[1]:
@@ -198,7 +196,7 @@ WIRES = {
 
 
 def _can_be(place, device, line):
-    """Whether there is such an instrument: the process comes to what stands beside it."""
+    """Whether there is such an instrument: the process comes to what is beside it."""
     return line == "electrical signal" or (place == "field" and device == "discrete")
 
 
