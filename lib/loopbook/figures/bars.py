@@ -33,7 +33,7 @@ def half_rule_plot(
         lags: the time constants in the denominator, ``{name: value}``.
         delay: what is dead time already, as a whole: dead times and the time constants of right half-plane zeros.
         order: 1 or 2, of the model.
-        title: stands above the picture.
+        title: written above the picture.
         unit: of time, as the axis names it.
     Returns:
         A `Picture`, which a notebook shows as the value of a cell.
