@@ -112,7 +112,7 @@ BROKEN = [
     (hygiene.one_import_cell, "among", stored(code("import sympy\nsympy.init_printing()"))),
     (hygiene.short_cells, "13 lines", with_code("\n".join(["K"] * 13))),
     (hygiene.short_cells, "89 columns", with_code("K" * 89)),
-    (hygiene.short_cells, "median", with_code(*["K\nK\nK\nK"] * 9)),
+    (hygiene.short_cells, "median", with_code(*["K\nK\nK\nK\nK"] * 9)),
     (hygiene.only_sliders_escape_comparison, "tags []", changed(lambda n: n.cells[5].metadata.pop("tags"))),
     (hygiene.only_sliders_escape_comparison, "hides", with_code("# NBVAL_IGNORE_OUTPUT\nexample.check(Kp=Kp)")),
     (hygiene.only_sliders_escape_comparison, "hides", with_code("# NBVAL_IGNORE_OUTPUT\n" + SLIDER.source)),
