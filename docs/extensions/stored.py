@@ -23,6 +23,8 @@ DOCS = Path(__file__).parents[1]
 ROOT = DOCS.parent
 FOLDERS = ("chapters", "solutions")
 SLIDERS = "nbval-ignore-output"
+FOLDED = "hide-input"
+EVERYWHERE = ("loopbook.tables.", "loopbook.sliders.")  # what no section needs to name
 RESPONSE = "application/vnd.loopbook.response+json"
 SHOWN = ("image/png", "text/html", "text/latex", "text/markdown", "text/plain")  # the first of these that there is
 STATEMENT = re.compile(r"\*\*Exercise ([\dA-Z]+\.\d+) · (.*?)\*\*( \(\d+ points?\))?\s*(.*)", re.DOTALL)
@@ -111,7 +113,8 @@ def with_functions(cells):
 
 
 def line_of_functions(used):
-    names = sorted(used.items(), key=lambda pair: pair[1].lower())
+    told = {address: name for address, name in used.items() if not address.startswith(EVERYWHERE)}
+    names = sorted(told.items(), key=lambda pair: pair[1].lower())
     text = ", ".join(f"{{py:obj}}`{name} <{address}>`" for address, name in names)
     return [markdown(f"{{.functions}}\nFunctions used here: {text}")] if names else []
 
@@ -128,8 +131,11 @@ def in_code(cell, folder, name):
     if folder == "chapters" and (response or cell["source"].startswith("progress(")):
         outputs = []  # of dots in the place of an answer there is nothing to say yet
     metadata = {"mystnb": {"image": {"alt": alt}}} if (alt := alternative(outputs)) else {}
-    if all(line.startswith(("from ", "import ", " ", ")")) for line in cell["source"].splitlines()):
-        metadata = {"tags": ["hide-input"], "mystnb": {"code_prompt_show": "Imports", "code_prompt_hide": "Imports"}}
+    imports = all(line.startswith(("from ", "import ", " ", ")")) for line in cell["source"].splitlines())
+    if imports or FOLDED in cell["metadata"].get("tags", []):
+        word = "Imports" if imports else "Code"
+        prompts = {"code_prompt_show": word, "code_prompt_hide": word}
+        metadata = {"tags": [FOLDED], "mystnb": metadata.get("mystnb", {}) | prompts}
     code = nbformat.from_dict({**cell, "metadata": metadata, "outputs": outputs})
     return [code]
 
