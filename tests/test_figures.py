@@ -1,6 +1,7 @@
 """The look of the collection and the plot of signals against time."""
 
 import base64
+import io
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -10,6 +11,7 @@ import nbformat
 import numpy as np
 import pytest
 import sympy
+from matplotlib._mathtext import Parser
 from matplotlib.collections import PolyCollection, QuadMesh
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
@@ -20,9 +22,10 @@ from sympy import DiracDelta, Heaviside, exp
 from loopbook.approximation import half_rule
 from loopbook.deadtime import Loop
 from loopbook.deadtime.pictures import nyquist_plot
+from loopbook.diagrams import block, block_diagram
 from loopbook.figures import PlanePlot, TimePlot, half_rule_plot, level_plot, map_plot, plane_plot, time_plot, trends
 from loopbook.figures.picture import plain_words, with_few_colours
-from loopbook.figures.style import GREY, INPUTS, LOOKS, MODELS, ROLES, STYLE, TINTS, WIDTH, look
+from loopbook.figures.style import DOTS_PER_INCH, GREY, INPUTS, LOOKS, MODELS, ROLES, STYLE, TINTS, WIDTH, look
 from loopbook.laplace import s, t
 from loopbook.pid import PID, Controller
 from loopbook.plants import WoodChipTank
@@ -501,6 +504,43 @@ def test_a_legend_is_placed_without_drawing_the_figure(monkeypatch):
     plot = time_plot([everywhere, {"a": LAG, "b": 1}], TIMES)
     assert draws == []
     assert plot.figure.axes[0].get_ylim()[1] > 1.2
+
+
+def test_a_formula_is_read_once_for_all_figures(monkeypatch):
+    read, parse = [], Parser.parse
+    monkeypatch.setattr(Parser, "parse", lambda self, *what: read.append((what[0], what[2])) or parse(self, *what))
+    for _ in range(2):
+        time_plot({"$q_{once}$": LAG, "$q_{twice}$": 1}, TIMES, xlabel="$t_{only}$").png()
+        block_diagram("q_once", block(r"\frac{K}{T_{only}s}"), "y").png()
+    assert len(read) == len(set(read))
+    assert {text for text, _ in read} >= {"$q_{once}$", "$t_{only}$", r"$\dfrac{K}{T_{only}s}$"}
+
+
+def test_a_figure_is_drawn_in_one_pass_and_nothing_is_cut_off(monkeypatch):
+    draws = []
+    draw = Figure.draw
+    monkeypatch.setattr(Figure, "draw", lambda *arguments: draws.append(arguments) or draw(*arguments))
+    plot = time_plot({"$y$": LAG, "$u$": 1}, TIMES, title="A title that goes on and on " * 3)
+    image = Image.open(io.BytesIO(plot.png())).convert("L")
+    assert len(draws) == 1
+    for edge in (0, image.width - 1):
+        assert image.crop((edge, 0, edge + 1, image.height)).getextrema() == (255, 255)
+    for edge in (0, image.height - 1):
+        assert image.crop((0, edge, image.width, edge + 1)).getextrema() == (255, 255)
+    assert image.width > WIDTH * DOTS_PER_INCH  # because of the title
+    longer = Image.open(io.BytesIO(time_plot({"y": LAG}, TIMES, title="A title that goes on and on " * 9).png()))
+    assert longer.width > 2 * image.width
+    assert longer.convert("L").crop((longer.width - 1, 0, longer.width, longer.height)).getextrema() == (255, 255)
+    assert time_plot({"y": LAG}, TIMES).figure.bbox_inches.p0.tolist() == plot.figure.bbox_inches.p0.tolist() == [0, 0]
+
+
+def test_the_axes_of_all_figures_begin_in_one_line():
+    plane = plane_plot({"a": ([0, 1], [0, 1])}, "x", "y")
+    lefts = set()
+    for plot in (time_plot({"y": 1000 * LAG}, TIMES), time_plot({"y": LAG}, TIMES), plane):
+        image = np.asarray(Image.open(io.BytesIO(plot.png())).convert("L"))
+        lefts.add(int(np.flatnonzero((image < 60).mean(axis=0) > 0.5)[0]))  # the axis is the first upright line
+    assert len(lefts) == 1
 
 
 def test_a_legend_over_a_map_does_not_look_for_a_free_place():

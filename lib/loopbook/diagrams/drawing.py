@@ -9,6 +9,7 @@ from functools import lru_cache
 from typing import TypeAlias
 
 from loopbook.figures import Picture
+from loopbook.figures.canvas import formulas
 from loopbook.figures.picture import plain_words
 from loopbook.figures.style import DOTS_PER_INCH, STYLE, styled
 
@@ -62,10 +63,18 @@ def text_size(label: str, size: float = FONT_SIZE) -> tuple[float, float]:
     from matplotlib.font_manager import FontProperties
     from matplotlib.textpath import TextPath
 
-    font = FontProperties(family=STYLE["font.family"], math_fontfamily=STYLE["mathtext.fontset"])
-    lines = [TextPath((0, 0), line or "-", size=size, prop=font).get_extents() for line in label.split("\n")]
-    height = lines[0].height + 1.2 * size * (len(lines) - 1)
-    return float(max(line.width for line in lines) / 72 / INCHES), float(height / 72 / INCHES)
+    font = FontProperties(family=STYLE["font.family"], math_fontfamily=STYLE["mathtext.fontset"], size=size)
+
+    def extent(line):
+        if "$" in line:  # as it will be drawn, so that it is read once
+            formula = formulas().parse(line, DOTS_PER_INCH, font)
+            return formula.width / DOTS_PER_INCH * 72, formula.height / DOTS_PER_INCH * 72
+        box = TextPath((0, 0), line or "-", prop=font).get_extents()
+        return box.width, box.height
+
+    widths, heights = zip(*map(extent, label.split("\n")), strict=True)
+    height = heights[0] + 1.2 * size * (len(heights) - 1)
+    return float(max(widths) / 72 / INCHES), float(height / 72 / INCHES)
 
 
 class Drawing:

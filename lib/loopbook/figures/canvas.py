@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -10,11 +11,11 @@ from loopbook.figures.style import DOTS_PER_INCH, WIDTH
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.mathtext import MathTextParser
     from PIL import Image
 
 # inches around and between the panels, for the names of the axes, their numbers and the title
 LEFT, RIGHT, BELOW, ABOVE, BETWEEN = 0.66, 0.12, 0.5, 0.32, 0.14
-ROOM = 1.5  # inches beyond the figure in which something may stick out
 MARGIN = 0.06  # inches of white around what is drawn
 
 
@@ -34,7 +35,8 @@ def panels(heights: Sequence[float], width: float = WIDTH) -> tuple[Figure, list
     inside, gaps = sum(heights), BETWEEN * (len(heights) - 1)
     tall = BELOW + inside + gaps + ABOVE
     figure = Figure(figsize=(width, tall), dpi=DOTS_PER_INCH)
-    FigureCanvasAgg(figure)  # measures texts; the canvas that a figure has by itself looks for this one every time
+    # it measures texts; the canvas that a figure has by itself looks for this one every time
+    FigureCanvasAgg(figure).get_renderer().mathtext_parser = formulas()
     places = {"left": LEFT / width, "right": 1 - RIGHT / width, "bottom": BELOW / tall, "top": 1 - ABOVE / tall}
     places |= {"height_ratios": heights, "hspace": BETWEEN / (inside / len(heights))}
     grid = figure.subplots(len(heights), sharex=True, squeeze=False, gridspec_kw=places)
@@ -43,11 +45,29 @@ def panels(heights: Sequence[float], width: float = WIDTH) -> tuple[Figure, list
     return figure, list(grid[:, 0])
 
 
-def drawn(figure: Figure) -> Image.Image:
-    """Draw a figure once, with all that sticks out of it, and cut the picture out.
+@functools.cache
+def formulas() -> MathTextParser:
+    """Return matplotlib's reader of formulas, with a memory: it needs milliseconds for each, and figures share them."""
+    import matplotlib
+    from matplotlib.backends.backend_agg import RendererAgg
+
+    parser = RendererAgg(1, 1, DOTS_PER_INCH).mathtext_parser
+    remembered = functools.lru_cache(maxsize=1000)(parser.parse)
+
+    def parse(text, dpi=72, prop=None, *, antialiased=None):
+        smooth = matplotlib.rcParams["text.antialiased"] if antialiased is None else antialiased
+        return remembered(text, dpi, prop and prop.copy(), antialiased=smooth)
+
+    parser.parse = parse
+    return parser
+
+
+def drawn(figure: Figure, room: float = 1.5) -> Image.Image:
+    """Draw a figure with all that sticks out of it, in one pass, and cut the picture out.
 
     Arguments:
         figure: of matplotlib, with our dots per inch.
+        room: inches beyond the figure in which something may stick out; it is drawn again with more if that is little.
     Returns:
         The image of Pillow, in RGB on white, as wide as the figure or wider.
     """
@@ -56,9 +76,10 @@ def drawn(figure: Figure) -> Image.Image:
     from PIL import Image, ImageChops
 
     width, height = figure.get_size_inches()
-    size = tuple(round((length + 2 * ROOM) * DOTS_PER_INCH) for length in (width, height))
+    size = tuple(round((length + 2 * room) * DOTS_PER_INCH) for length in (width, height))
     renderer = RendererAgg(*size, DOTS_PER_INCH)
-    figure.bbox_inches.set(Bbox.from_bounds(ROOM, ROOM, width, height))
+    renderer.mathtext_parser = formulas()
+    figure.bbox_inches.set(Bbox.from_bounds(room, room, width, height))
     try:
         figure.draw(renderer)
     finally:
@@ -66,6 +87,8 @@ def drawn(figure: Figure) -> Image.Image:
     paper = Image.new("RGBA", size, "white")
     paper.alpha_composite(Image.frombuffer("RGBA", size, renderer.buffer_rgba()))
     paper = paper.convert("RGB")
-    left, above, right, below = ImageChops.invert(paper).getbbox() or (0, 0, *size)
-    begin, end, margin = (round(length * DOTS_PER_INCH) for length in (ROOM, ROOM + width, MARGIN))
+    left, above, right, below = ImageChops.invert(paper).getbbox() or (1, 1, 2, 2)
+    if not (left and above and right < size[0] and below < size[1]):
+        return drawn(figure, 2 * room)
+    begin, end, margin = (round(length * DOTS_PER_INCH) for length in (room, room + width, MARGIN))
     return paper.crop((min(left - margin, begin), above - margin, max(right + margin, end), below + margin))
