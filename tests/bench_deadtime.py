@@ -1,7 +1,7 @@
 """What exact dead time costs and gives: `make bench` prints this library beside its peers, and errors beside times.
 
 The peers are in `peers.py`: python-control with Pade approximations of order 10, the same in NumPy's arrays where that
-is quicker, grids of frequencies, filters, and JiTCDDE where that is installed, which is no part of the environment.
+is quicker, grids of frequencies, filters, and JiTCDDE where that is installed, which is not a part of the environment.
 Errors are those beside independent references: series of delays with many digits, closed forms, quadrature.
 
 A ratio below one is a peer that is quicker. Many are, and some are as exact; what they do not give is a proof: that the

@@ -346,7 +346,7 @@ def test_nothing_stays_open_in_pyplot():
     ("make", "message"),
     [
         (lambda: block_diagram("u", "v", H1), "there must be a block between the signals u and v"),
-        (lambda: block_diagram("u", None, "y"), "None is no part of a block diagram"),
+        (lambda: block_diagram("u", None, "y"), "None is not a part of a block diagram"),
         (lambda: block_diagram("u", sum_of(["a", H1], ["b", H2])), "sum_of brings its own signals"),
         (lambda: block_diagram(H1, sum_of(["a", H1], ["b", H2])), "sum_of brings its own signals"),
         (lambda: sum_of([H1], ["b", H2]), "each path of sum_of begins with the name of its signal"),

@@ -177,7 +177,7 @@ def test_the_blocks_handed_in_stay_as_they_are():
         (lambda: grid_diagram("a b", "a b, b"), "a path meets two names or more, not only b"),
         (lambda: grid_diagram("a P b", "a b", {"P": gain("K")}), "the way from a to b runs through P"),
         (lambda: grid_diagram("a P", "a P", {"P": feedback_loop(sympy.Symbol("H"))}), "a grid takes single blocks"),
-        (lambda: grid_diagram("a P", "a P", {"P": None}), "None is no part of a block diagram"),
+        (lambda: grid_diagram("a P", "a P", {"P": None}), "None is not a part of a block diagram"),
     ],
 )
 def test_bad_input_is_told_in_one_sentence(make, message):

@@ -230,7 +230,7 @@ def test_the_description_tells_pipes_and_signals():
         (lambda: instrumentation_diagram(["a b"]), "a layout is one text with a line for each row"),
         (lambda: instrumentation_diagram("a b", {"a": pump()}), "paths are one text, as in 'a b c, d b'"),
         (lambda: instrumentation_diagram("a b", "a tank"), "tank is not in the layout, which has a, b"),
-        (lambda: instrumentation_diagram("a b", equipment={"a": 3}), "a is 3, which is no equipment of a plant"),
+        (lambda: instrumentation_diagram("a b", equipment={"a": 3}), "a is 3, which is not equipment of a plant"),
         (lambda: instrumentation_diagram("a LT b", "a b"), "the way from a to b runs through LT"),
         (lambda: tank(filled=2), "a tank is filled between 0 and 1, not 2"),
         (lambda: vessel(filled=-1), "a vessel is filled between 0 and 1, not -1"),

@@ -274,9 +274,9 @@ def test_a_table_has_each_symbol_over_its_name():
         (lambda: vessel(trays=3, packings=1), "either trays or packings, not 3 trays and 1 packings"),
         (lambda: vessel(lying=True, stirrer=True), "a lying vessel has neither trays nor packings, stirrer"),
         (lambda: symbol_table({}), "a table of symbols needs one symbol or more"),
-        (lambda: symbol_table({"a": "valve"}), "a is 'valve', which is no symbol of a plant"),
+        (lambda: symbol_table({"a": "valve"}), "a is 'valve', which is not a symbol of a plant"),
         (lambda: symbol_table({"a": valve()}, columns=0), "a table has one column or more, not 0"),
-        (lambda: instrumentation_diagram("NH3 b", "NH3 b"), "NH3 .*; where NH3 is no instrument, give its label in na"),
+        (lambda: instrumentation_diagram("NH3 b", "NH3 b"), "NH3 .*; where NH3 is not an instrument, give its label"),
         (lambda: instrumentation_diagram("LC b", lines={"air": "LC b"}), "the kind of line is 'air': expected "),
     ],
 )

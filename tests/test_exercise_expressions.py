@@ -36,7 +36,7 @@ JUDGED = [
     (H, 3 * (1 - s) / (1 + s) / (5 * s + 1), MISTAKE, "Pade"),
     (H, 3 * sympy.exp(-2 * s) / (5 * s + 1) / s, MISTAKE, "factor s"),
     (H, sympy.exp(2 * s) * (5 * s + 1) / 3, MISTAKE, "inverse"),
-    (H, "3/(tau*s + 1)", UNJUDGED, "'tau' is no symbol"),
+    (H, "3/(tau*s + 1)", UNJUDGED, "'tau' is not a symbol"),
     (H, System(3 * sympy.exp(-2 * s) / (5 * s + 1)), RIGHT, "right"),
     (Y, "1 - exp(-0.2*t)", RIGHT, "right"),
     (Y, lambda times: 1 - np.exp(-times / 5), RIGHT, "right"),

@@ -35,7 +35,7 @@ def test_a_formula_has_the_values_of_the_expression(text):
     [
         ("2s", "with * for every product"),
         ("s(s + 1)", "a product needs its *"),
-        ("K/(T*s + 1)", "'K' is no symbol of this answer"),
+        ("K/(T*s + 1)", "'K' is not a symbol of this answer"),
         ("S", "did you mean 's'?"),
         ("exb(s)", "did you mean 'exp'?"),
         ("", "empty"),
@@ -57,8 +57,8 @@ def test_a_formula_has_the_values_of_the_expression(text):
         ("exp(s, s)", "2 arguments"),
         ("exp(x=s)", "one function of a value"),
         ("Heaviside()", "no arguments"),
-        ("'s'", "is no number"),
-        ("True", "is no number"),
+        ("'s'", "is not a number"),
+        ("True", "is not a number"),
         (None, "neither"),
         (..., "neither"),
         ("1 < s < 3", "compares twice"),
@@ -69,7 +69,7 @@ def test_a_formula_has_the_values_of_the_expression(text):
         (object(), "neither an expression"),
         ([s], "neither an expression"),
         (sympy.Matrix([s]), "neither an expression"),
-        (sympy.Function("f")(s), "'f' is no function"),
+        (sympy.Function("f")(s), "'f' is not a known function"),
         (sympy.Add(*(s**k for k in range(1500))), "very long"),
     ],
 )

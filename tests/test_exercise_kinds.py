@@ -55,7 +55,7 @@ def is_the_key(self, answer):
         (
             "Color",
             {"read": as_given, "agrees": is_the_key, "FORM": ("units",)},
-            "FORM of the kind Color names 'units', which is no argument of it: did you mean 'unit'?",
+            "FORM of the kind Color names 'units', which is not its argument: did you mean 'unit'?",
         ),
         (
             "Number",
@@ -88,7 +88,7 @@ def test_the_kind_that_contributors_are_shown_is_one(registry):
         assert kind.agrees(answer) == is_right
         assert_reads_back(kind, answer)
     for ends in (4, [20, 4], [4, 20, 5], "4 to 20", [4, "x"]):
-        with pytest.raises(Unreadable, match="no range: expected two numbers, the lower one first"):
+        with pytest.raises(Unreadable, match="not a range: expected two numbers, the lower one first"):
             kind.read(ends)
 
 

@@ -136,14 +136,14 @@ def test_a_mistake_in_what_is_not_asked():
 def test_a_function_of_the_author_that_fails():
     one = Exercise("99.2", "A mistake", 1, lambda: True, key_of_one)
     one.mistake("Wrong.")(lambda T: {"y": T})
-    with pytest.raises(ValueError, match=r"a mistake of exercise 99\.2 fails for x = \d.*: 'T' is no parameter"):
+    with pytest.raises(ValueError, match=r"a mistake of exercise 99\.2 fails for x = \d.*: 'T' is not a parameter"):
         one.question().check(y=3)
     with pytest.raises(ValueError, match=r"the key of exercise 99\.2 fails for x = \d.*: 'apples' is a text"):
         Exercise("99.2", "A key", 1, lambda: True, key_of_apples).question().check(y=3)
 
 
 def test_a_condition_on_what_is_no_parameter():
-    with pytest.raises(ValueError, match="'T' is no parameter of the exercise: expected one of x"):
+    with pytest.raises(ValueError, match="'T' is not a parameter of the exercise: expected one of x"):
         Exercise("99.2", "A condition", 1, lambda T: T > 1, key_of_one).question()
 
 

@@ -304,6 +304,6 @@ def test_the_commands(course, tmp_path):
     assert "5 notebooks of 'A lag' in" in result.output
     result = run(app, ["grade", str(course.path), str(tmp_path / "none"), "--to", str(tmp_path / "out")])
     assert result.exit_code == 1
-    assert "there is no folder and no zip file" in result.output
+    assert "there is neither a folder nor a zip file" in result.output
     result = run(app, ["grade", str(tmp_path / "none.py"), str(tmp_path), "--to", str(tmp_path / "out")])
     assert (result.exit_code, result.output.count("\n")) == (1, 1)

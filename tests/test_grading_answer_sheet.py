@@ -67,7 +67,7 @@ def test_a_form_is_made_again_from_its_code_and_knows_no_key(code):
 
 def test_letters_that_the_author_tells_are_demanded_before_the_grader_does():
     told = transfer_function(K / (X * s + 1), symbols="K x y")
-    with pytest.raises(Unreadable, match="'k' is no symbol of this answer: did you mean 'K'"):
+    with pytest.raises(Unreadable, match="'k' is not a symbol of this answer: did you mean 'K'"):
         eval(told.asking, vars(answer_sheet)).read("k/(x*s + 1)")
     with pytest.raises(ValueError, match="the key has the symbol x: expected only K and s"):
         transfer_function(K / (X * s + 1), symbols="K")
@@ -125,7 +125,7 @@ def asked():
     [
         ({"T": "2.5 min"}, "· T: 150 s, converted from min"),
         ({"T": "150"}, "· T: 150 s"),
-        ({"T": "two"}, "? T: 'two' is a text that is no number: expected a number, in s"),
+        ({"T": "two"}, "? T: 'two' is a text that is not a number: expected a number, in s"),
         ({"T": ...}, "… T: not answered yet"),
         ({"T": lambda t: t}, "? T: a function cannot be handed in"),
         ({"H": "K*exp(-2*s)/(T*s + 1)"}, "· H: K*exp(-2*s)/(T*s + 1), an expression in K, T and s"),

@@ -310,12 +310,12 @@ def test_what_is_no_notebook_of_a_student_is_said(tmp_path):
     assert labels(found) == {"s1002": "s1002/1/2/3/4/5/a.ipynb"}
     assert set(found.complaints) == {
         "deep/1/2/3/4/5/6: is nested deeper than 6 folders",
-        "grades: is no notebook (.ipynb)",
+        "grades: is not a notebook (.ipynb)",
         "link: is a symbolic link, which is not followed",
         "mallory/a.ipynb: is named after no student of the roster",
-        "s1001/notes: is no notebook (.ipynb)",
+        "s1001/notes: is not a notebook (.ipynb)",
         "s1001/secret.ipynb: is a symbolic link, which is not followed",
-        "s1003.ipynb: is no file but a device, a pipe or a socket",
+        "s1003.ipynb: is not a file but a device, a pipe or a socket",
     }
 
 
@@ -403,7 +403,7 @@ def test_where_there_is_nothing(tmp_path):
     assert collect(tmp_path, CLASS, "a") == submissions.Collection((), ())
     os.mkfifo(tmp_path / "pipe")
     for path in (tmp_path / "none", tmp_path / "pipe"):
-        with pytest.raises(GradingError, match="there is no folder and no zip file"):
+        with pytest.raises(GradingError, match="there is neither a folder nor a zip file"):
             collect(path, CLASS, "a")
 
 
@@ -440,7 +440,7 @@ def test_downloads_of_both_systems(packed):
     assert [item.student for item in found.submissions] == [*CLASS]
     assert [item.read() for item in reversed(found.submissions)] == [b"3", b"2", b"1"]
     assert found.complaints == (
-        "doejane_123_7_notes.pdf: is no notebook (.ipynb)",
+        "doejane_123_7_notes.pdf: is not a notebook (.ipynb)",
         "anon_Ab3dE_456_heater.ipynb: is from an anonymous download of Canvas, which does not say whose it is",
     )
     assert pickle.loads(pickle.dumps(found)).submissions[1].read() == b"2"
@@ -459,7 +459,7 @@ def test_names_that_are_utf_8_without_saying_so(packed):
 
 
 def test_names_that_say_they_are_utf_8_and_are_not(packed):
-    with pytest.raises(GradingError, match="is no zip file, or it is damaged"):
+    with pytest.raises(GradingError, match="is not a zip file, or it is damaged"):
         packed(("ü.ipynb", ""), change=lambda content: content.replace("ü".encode(), b"\xff\xff"))
 
 
@@ -486,10 +486,10 @@ def info(name, mode=0):
         ("/", "has an absolute path"),
         ("C:\\s1001.ipynb", "has an absolute path"),
         (info("s1001.ipynb", stat.S_IFLNK | 0o777), "is a symbolic link, which is not followed"),
-        (info("s1001.ipynb", stat.S_IFCHR | 0o666), "is no file but a device, a pipe or a socket"),
+        (info("s1001.ipynb", stat.S_IFCHR | 0o666), "is not a file but a device, a pipe or a socket"),
         ("s1001/1/2/3/4/5/6/a.ipynb", "is nested deeper than 6 folders"),
         (f"s1001/{'x' * 300}.ipynb", "has a name longer than any file has"),
-        ("s1001/a.py", "is no notebook (.ipynb)"),
+        ("s1001/a.py", "is not a notebook (.ipynb)"),
         ("mallory.ipynb", "is named after no student of the roster"),
     ],
 )
@@ -543,7 +543,7 @@ def test_damaged_zip_files(packed, tmp_path):
     with pytest.raises(GradingError, match=r"s1001.ipynb: cannot be read: Bad CRC-32"):
         found.read()
     for change in (lambda content: content[:-30], lambda content: b"", lambda content: b"{}"):
-        with pytest.raises(GradingError, match="is no zip file, or it is damaged"):
+        with pytest.raises(GradingError, match="is not a zip file, or it is damaged"):
             packed(("s1001.ipynb", "1"), change=change)
     (found,) = packed(("s1001.ipynb", "1")).submissions
     packed(("s1001.ipynb", "another"))

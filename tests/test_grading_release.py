@@ -140,7 +140,7 @@ def test_nothing_is_written_where_a_variant_fails(tmp_path, key, says):
         (
             '{"Kp": 7',
             '{"Kp": "much" or 7',
-            'the mistake "That is wrong." of Kp in exercise 1 is no possible answer for K = ',
+            'the mistake "That is wrong." of Kp in exercise 1 is not a possible answer for K = ',
         ),
         ("above=-10)", "above=8)", "the key of C in exercise 2 would not be right for K = "),
     ],

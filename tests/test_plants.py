@@ -249,14 +249,14 @@ def test_questions_that_a_plant_cannot_answer():
     tank = LiquidTank()
     with pytest.raises(ValueError, match="do not determine h"):
         tank.static_response()
-    with pytest.raises(ValueError, match="is no input: expected one of q_i, q_o"):
+    with pytest.raises(ValueError, match="is not an input: expected one of q_i, q_o"):
         tank.transfer_function("h")
-    with pytest.raises(ValueError, match="'x' is no signal"):
+    with pytest.raises(ValueError, match="'x' is not a signal"):
         tank.transfer_function("x")
     with pytest.raises(ValueError, match="is an input"):
         tank.transfer_function("q_i", output="q_o")
     for name in ("A", [1], None, LiquidTank.A):
-        with pytest.raises(ValueError, match="is no signal of LiquidTank"):
+        with pytest.raises(ValueError, match="is not a signal of LiquidTank"):
             tank.signal(name)
 
 
@@ -327,8 +327,8 @@ FORGOTTEN = {
         },
         r"Tank: volume contains delayed\(h_m, 5\), which is measured: expected delayed\(h, 7\)$",
     ),
-    "that the output is no text": ({"output": "h"}, "Tank: output is the text 'h': expected the signal h"),
-    "that the text is no name": ({"manipulated": "u"}, "Tank: manipulated is the text 'u': expected one of q"),
+    "that the output is not a text": ({"output": "h"}, "Tank: output is the text 'h': expected the signal h"),
+    "that the text is not a name": ({"manipulated": "u"}, "Tank: manipulated is the text 'u': expected one of q"),
     "any quantity": (
         dict.fromkeys("Aqh", None) | {"volume": Balance(*signals("h q"))},
         r"Tank: volume contains h\(t\), which is not declared: expected h = signal\(...\)",
@@ -347,11 +347,11 @@ FORGOTTEN = {
     ),
     "what is at work": (
         {"at_work": lambda tank: {tank.A: 3}},
-        "Tank is at work by A, which is no input and no state: expected one of q, h",
+        "Tank is at work by A, which is neither an input nor a state: expected one of q, h",
     ),
     "that a limit is one of a state": (
         {"q": signal(0.1, "m³/s", "inflow", limits=(0, 1))},
-        r"Tank has limits for q\(t\), which is no state: expected one of h",
+        r"Tank has limits for q\(t\), which is not a state: expected one of h",
     ),
 }
 

@@ -324,7 +324,7 @@ def test_what_a_run_contains():
     assert 0.03 < (run["measurement"] - run["h"]).std() < 0.07
     assert [run.unit(name) for name in ("h", "setpoint", "measurement", "filtered")] == 4 * ["m"]
     assert [run.unit(name) for name in ("u", "u_p", "u_i", "u_d")] == 4 * ["%"]
-    with pytest.raises(ValueError, match="'x' is no signal of WoodChipTank"):
+    with pytest.raises(ValueError, match="'x' is not a signal of WoodChipTank"):
         run.unit("x")
     in_percent = Controller(PID(1.35, 917), 5, u0=50, control_range=(0, 90), measurement_range=(0, 15))
     later = simulate(WoodChipTank(), in_percent, until=700, setpoint=10, after=run)
@@ -519,8 +519,8 @@ class Early(Plant):
 REFUSED = {
     "a missing step": (lambda: simulate(TANK, until=100), "step is missing"),
     "a step of zero": (lambda: simulate(TANK, until=100, step=0), "step is 0"),
-    "a step that is no number": (lambda: simulate(TANK, until=100, step="1"), "step is '1'"),
-    "an end that is no number": (lambda: simulate(TANK, until=math.nan, step=1), "until is nan"),
+    "a step that is not a number": (lambda: simulate(TANK, until=100, step="1"), "step is '1'"),
+    "an end that is not a number": (lambda: simulate(TANK, until=math.nan, step=1), "until is nan"),
     "an end between two samples": (lambda: simulate(TANK, until=10.5, step=1), "whole number of steps"),
     "an end before the beginning": (lambda: simulate(TANK, until=-10, step=1), "whole number of steps"),
     "a dead time before its time": (lambda: simulate(Early(), until=10, step=1), "u acts 1 before its time"),

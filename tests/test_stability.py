@@ -222,7 +222,7 @@ def test_roots_with_several_dead_times_are_counted_as_by_turns(below, others):
 
 
 def test_the_roots_of_a_product_are_those_of_its_factors():
-    """Three dead times, that are no multiples of one, and five with a third factor: s + a exp(-delay*s) is known."""
+    """Three dead times, that are not multiples of one, and five with a third factor: s + a exp(-delay*s) is known."""
     draw = np.random.default_rng(7)
     for _ in range(20):
         factors, expected = [], 0

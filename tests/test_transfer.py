@@ -160,7 +160,7 @@ def test_derivatives_of_inputs_delays_and_constants():
         (Eq(y(t).diff(t), u(t)), u(t), [u(t)], "both an output and an input"),
         (Eq(y(t).diff(t), u(t) * v(t)), y(t), [u(t), v(t)], "cannot transform"),
         (Eq(y(t).diff(t), u(t) - y(t) ** 2), y(t), [u(t)], "cannot transform"),
-        (y(t).diff(t) + u(t), y(t), [u(t)], "is no equation"),
+        (y(t).diff(t) + u(t), y(t), [u(t)], "is not an equation"),
         ([Eq(y(t), x(t) + u(t)), Eq(2 * y(t), 2 * x(t) + u(t))], y(t), [u(t)], "do not determine"),
         (Eq(y(symbols("t")), u(symbols("t"))), y(t), [u(t)], "another symbol than the library's"),
     ],

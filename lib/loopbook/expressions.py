@@ -93,7 +93,7 @@ def parse(text: str) -> sympy.Expr:
         if not isinstance(node.func, ast.Name) or node.keywords:
             refuse(node)
         if node.func.id in _NAMES:
-            refuse(node, f"calls {node.func.id}, which is no function: a product needs its *")
+            refuse(node, f"calls {node.func.id}, which is not a function: a product needs its *")
         function = _FUNCTIONS.get(node.func.id) or sympy.Function(name(node.func))
         arguments = [
             sympy.Tuple(*map(read, argument.elts))
@@ -149,7 +149,7 @@ def agreement(one: Number, other: Number) -> str:
     points stand alone, and the answer says *probed*. Decimal numbers are exact, and the name of a bound symbol does
     not matter. Undefined functions, derivatives, open integrals and impulses count as quantities of their own.
 
-    Raises ValueError when one is no expression, or the two cannot be compared at any point.
+    Raises ValueError when one is not an expression, or the two cannot be compared at any point.
 
     >>> K, T = sympy.symbols("K T", positive=True)
     >>> agreement(K / (T * s + 1), (K / T) / (s + 1 / T))
@@ -269,7 +269,7 @@ def exact(value: Number | complex) -> sympy.Expr:
     0.1 is one tenth and 1/3 is one third: a fraction with a denominator up to 1000 where the decimal is one but for
     its rounding, and otherwise the decimal itself to 15 digits.
 
-    Raises ValueError for what is no number and no expression, as text, a list, a truth value or NaN.
+    Raises ValueError for what is neither a number nor an expression, as text, a list, a truth value or NaN.
 
     >>> exact(0.1) * s
     s/10

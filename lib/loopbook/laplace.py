@@ -411,7 +411,8 @@ def solve_ode(
     given = {exact(key): exact(value) for key, value in (initial or {}).items()}
     for key in given:
         if key not in asked:
-            raise ValueError(f"{key} is no initial value here: expected {', '.join(sorted(map(str, asked))) or 'none'}")
+            expected = ", ".join(sorted(map(str, asked))) or "none"
+            raise ValueError(f"{key} is not an initial value here: expected {expected}")
     solution = solve_transformed(equations, unknowns)
     responses = {y: inverse(Y.subs(given)) for y, Y in zip(unknowns, solution, strict=True)}
     return responses if several else responses[unknowns[0]]
@@ -420,7 +421,7 @@ def solve_ode(
 def transformed(equations: Iterable[sympy.Equality]) -> list[sympy.Expr]:
     """Return the transforms of several equations, each as left side minus right side.
 
-    Raises ValueError for what is no equation.
+    Raises ValueError for what is not an equation.
 
     >>> y = sympy.Function("y")
     >>> transformed([sympy.Eq(y(t).diff(t), 3)])
@@ -428,7 +429,7 @@ def transformed(equations: Iterable[sympy.Equality]) -> list[sympy.Expr]:
     """
     for equation in equations:
         if not isinstance(equation, sympy.Equality):
-            raise ValueError(f"{equation} is no equation: expected Eq(left side, right side)")
+            raise ValueError(f"{equation} is not an equation: expected Eq(left side, right side)")
     return [transform(equation.lhs) - transform(equation.rhs) for equation in equations]
 
 
@@ -516,7 +517,7 @@ def roots(polynomial: Number) -> list[sympy.Expr]:
 
     Exact where linear and quadratic factors are enough; numbers to 15 digits where they are not.
 
-    Raises ValueError for what is no polynomial, and for symbols in a factor of third or higher degree.
+    Raises ValueError for what is not a polynomial, and for symbols in a factor of third or higher degree.
 
     >>> roots((s + 1) ** 2 * (s**2 + 4))
     [-1, -1, -2*I, 2*I]

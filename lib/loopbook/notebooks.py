@@ -36,7 +36,7 @@ METADATA = {
     "language_info": {"name": "python"},
 }
 WIDGET = "application/vnd.jupyter.widget-view+json"
-PICTURES = {"image/png", "image/jpeg"}  # base64 is no text, though it may happen to spell anything
+PICTURES = {"image/png", "image/jpeg"}  # base64 is not text, though it may happen to spell anything
 
 SLIDERS = "nbval-ignore-output"
 """The tag of a cell with sliders: nbval runs it, and does not compare the widgets that it shows."""

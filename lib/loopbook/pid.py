@@ -370,7 +370,7 @@ class Controller:
         Returns:
             The control signal, in the unit of u, or with a `control_range` in the unit of that range.
         Raises:
-            ValueError: for a signal that is no number.
+            ValueError: for a signal that is not a number.
         """
         try:
             setpoint, measurement, feedforward = float(setpoint), float(measurement), float(feedforward)

@@ -34,7 +34,7 @@ def stepwise(start: Number, changes: Mapping[Any, Number]) -> sympy.Expr:
         start: its value from the beginning.
         changes: ``{time: new value}``.
     Raises:
-        ValueError: for a time or a value that is no number.
+        ValueError: for a time or a value that is not a number.
 
     >>> stepwise(10, {300: 11, 600: 10})
     -Heaviside(t - 600) + Heaviside(t - 300) + 10

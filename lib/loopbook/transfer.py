@@ -169,7 +169,7 @@ def _from_control(system):
     import control
 
     if not isinstance(system, (control.TransferFunction, control.StateSpace)):
-        raise ValueError(f"{system!r} is no transfer function and no state-space system of python-control")
+        raise ValueError(f"{system!r} is neither a transfer function nor a state-space system of python-control")
     if system.ninputs != 1 or system.noutputs != 1:
         raise ValueError(f"the system has {system.ninputs} inputs and {system.noutputs} outputs: expected one of each")
     if system.isdtime(strict=True):

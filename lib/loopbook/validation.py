@@ -169,7 +169,7 @@ def exact_in_range(name: str, value: Any, low: Number, high: Number, extrapolate
         low, high: the ends of the range, which belong to it.
         extrapolate: what the function that checks was told: whether it may be left.
     Raises:
-        ValueError: for what is no number or expression; and outside of the range, unless it may be left.
+        ValueError: for what is not a number or expression; and outside of the range, unless it may be left.
 
     >>> exact_in_range("delay/T", 2, 0, 1)
     Traceback (most recent call last):

@@ -107,7 +107,7 @@ def model_of(H: TransferFunctionLike, largest_first: Sequence[Number] | None = N
         return H
     H, delay, process = factors(H)
     if process.zeros or len(process.lags) > 2 or any(T.is_negative for T in process.lags):
-        raise ValueError(f"{H} is no simple model: expected at most two lags, no zeros; half_rule may find one")
+        raise ValueError(f"{H} is not a simple model: expected at most two lags, no zeros; half_rule may find one")
     return SOPDT(process.K, *sort_lags(process.lags, largest_first), delay=delay)
 
 

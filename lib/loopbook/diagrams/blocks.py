@@ -43,7 +43,7 @@ def block_diagram(*items: Item, title: str | None = None) -> Picture:
     Returns:
         A `Picture`, which a notebook shows as the value of a cell.
     Raises:
-        ValueError: for two signal names in a row, or anything that is no part of a block diagram.
+        ValueError: for two signal names in a row, or anything that is not a part of a block diagram.
 
     >>> from loopbook.expressions import s
     >>> T1, T2 = sympy.symbols("T1 T2")
@@ -591,4 +591,4 @@ def _part(item):
     if isinstance(item, (sympy.Expr, numbers.Real)):
         item = sympy.sympify(item)
         return _Block(mathematics(latex(item)), str(item))
-    raise ValueError(f"{item!r} is no part of a block diagram: expected a signal's name, an expression or a part")
+    raise ValueError(f"{item!r} is not a part of a block diagram: expected a signal's name, an expression or a part")

@@ -271,7 +271,7 @@ class Grid:
         return self.nodes[name]
 
     def words(self, text: str) -> str:
-        """The paths of a text in words; a corner is no part of them, a branch point is."""
+        """The paths of a text in words; a corner is not a part of them, a branch point is."""
 
         def word(name, sign):
             if isinstance(self[name], Junction):

@@ -151,7 +151,7 @@ class _Plan:
 def _part(name, what):
     part = BlockNode(block(what)) if isinstance(what, str) else what
     if not isinstance(part, Node):
-        raise ValueError(f"{name} is {what!r}, which is no equipment of a plant")
+        raise ValueError(f"{name} is {what!r}, which is not equipment of a plant")
     return part
 
 
@@ -159,4 +159,4 @@ def _instrument(name):
     try:
         return instrument(name)
     except ValueError as error:
-        raise ValueError(f"{error}; where {name} is no instrument, give its label in names") from None
+        raise ValueError(f"{error}; where {name} is not an instrument, give its label in names") from None

@@ -33,7 +33,7 @@ def symbol_table(
     Returns:
         A `Picture`, which a notebook shows as the value of a cell.
     Raises:
-        ValueError: for a table without symbols, for what is no symbol of a plant, or fewer columns than one.
+        ValueError: for a table without symbols, for what is not a symbol of a plant, or fewer columns than one.
 
     >>> from loopbook.diagrams import pump, valve
     >>> symbol_table({"a valve": valve(), "a pump": pump()})
@@ -47,7 +47,7 @@ def symbol_table(
         raise ValueError("a table of symbols needs one symbol or more")
     for name, symbol in symbols.items():
         if not isinstance(symbol, Equipment):
-            raise ValueError(f"{name} is {symbol!r}, which is no symbol of a plant")
+            raise ValueError(f"{name} is {symbol!r}, which is not a symbol of a plant")
     if not isinstance(columns, int) or columns < 1:
         raise ValueError(f"a table has one column or more, not {columns!r}")
     drawing, top = Drawing(), 0.0

@@ -172,8 +172,8 @@ def _chain(values, compared, quantity):
     try:
         values = list(values)
     except TypeError:
-        raise EvidenceError(f"{values!r:.60} is no row: expected at least two values") from None
+        raise EvidenceError(f"{values!r:.60} is not a row: expected at least two values") from None
     if len(values) < 2:
-        raise EvidenceError(f"{values} is no row: expected at least two values")
+        raise EvidenceError(f"{values} is not a row: expected at least two values")
     links: list[Comparison] = [compared(a, b, quantity) for a, b in itertools.pairwise(values)]
     return Chain(tuple(("", link) for link in links))

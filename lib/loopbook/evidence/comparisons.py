@@ -74,7 +74,7 @@ class Evidence:
         raise NotImplementedError
 
     def __bool__(self) -> bool:
-        raise TypeError("evidence is no truth value: hand it to a check, or ask whether it `holds`")
+        raise TypeError("evidence is not a truth value: hand it to a check, or ask whether it `holds`")
 
     def __repr__(self) -> str:
         return f"{'holds' if self.holds else 'does not hold'}: {self.told()}"

@@ -94,7 +94,7 @@ def _number(value):
 
 def _expression(value):
     if isinstance(value, bool) or not isinstance(value, sympy.Expr | sympy.Equality):
-        _number(value)  # a sentence for what is no number
+        _number(value)  # a sentence for what is not a number
     if isinstance(value, sympy.Basic) and value.has(sympy.Float):
         raise EvidenceError(f"{_short(value)} holds rounded decimals: give exact numbers")
     if isinstance(value, sympy.Basic) and value.has(sympy.nan, sympy.zoo, sympy.AccumBounds):
@@ -125,7 +125,7 @@ def _row(value):
     try:
         items = [f"{key}: {item}" for key, item in value.items()] if isinstance(value, Mapping) else [*value]
     except TypeError:
-        raise EvidenceError(f"{_short(value)} is no row of values") from None
+        raise EvidenceError(f"{_short(value)} is not a row of values") from None
     if isinstance(value, Mapping):
         for item in value.values():
             anything(item)  # a truth value is refused here, too

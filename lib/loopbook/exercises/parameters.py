@@ -57,7 +57,7 @@ def between(
         reference: value in the reference variant; about the middle if not given.
         step: between two values; 1, 2 or 5 times a power of ten if not given.
     Raises:
-        ValueError: for a range that is empty, or something that is no unit.
+        ValueError: for a range that is empty, or something that is not a unit.
 
     >>> [str(value) for value in between(2, 6).values]
     ['2', '5/2', '3', '7/2', '4', '9/2', '5', '11/2', '6']
@@ -91,7 +91,7 @@ def choice(*values: Number | str, unit: str = "", reference: Number | str | None
 
 def _parameter(values, unit, reference):
     if not units.is_unit(unit):
-        raise ValueError(f"{unit!r} is no unit: expected one such as 's', 'kg/min' or '%/K'")
+        raise ValueError(f"{unit!r} is not a unit: expected one such as 's', 'kg/min' or '%/K'")
     if reference is None:
         reference = values[len(values) // 2]
     elif not isinstance(reference, str):
@@ -141,5 +141,5 @@ def call(function: Callable[..., Any], values: Mapping[str, Any]) -> Any:
     names = list(inspect.signature(function).parameters)
     unknown = [name for name in names if name not in values]
     if unknown:
-        raise ValueError(f"{unknown[0]!r} is no parameter of the exercise: {did_you_mean(unknown[0], values)}")
+        raise ValueError(f"{unknown[0]!r} is not a parameter of the exercise: {did_you_mean(unknown[0], values)}")
     return function(**{name: values[name] for name in names})

@@ -138,7 +138,7 @@ def parsed(text: str, symbols: Collection[str]) -> ast.expr:
 
     >>> parsed("K/(T*s + 1)", ["s"])
     Traceback (most recent call last):
-    loopbook.exercises.reading.Unreadable: 'K' is no symbol of this answer: expected an expression in s
+    loopbook.exercises.reading.Unreadable: 'K' is not a symbol of this answer: expected an expression in s
     """
     source = _in_python(text, symbols)
     expected = "expected an expression" + (f" in {listed(symbols)}" if symbols else "")
@@ -210,7 +210,7 @@ def _quoted(source, node):
 
 def _check_number(value, expected):
     if type(value) not in (int, float, complex):
-        raise Unreadable(f"{shortened(repr(value))} is no number: {expected}")
+        raise Unreadable(f"{shortened(repr(value))} is not a number: {expected}")
     try:
         in_range = np.isfinite(complex(value))
     except OverflowError:
@@ -225,7 +225,7 @@ def _check_function(name, symbols):
         raise Unreadable(f"{name} comes before a bracket: a product needs its *")
     if name not in known:
         hint = did_you_mean(name, known, otherwise="expected exp, log, sqrt, sin ...")
-        raise Unreadable(f"{name!r} is no function that is known here: {hint}")
+        raise Unreadable(f"{name!r} is not a known function: {hint}")
 
 
 def _check_symbol(name, symbols):
@@ -234,7 +234,7 @@ def _check_symbol(name, symbols):
     if not symbols:
         raise Unreadable(f"{name!r} stands for no number: expected a value without symbols")
     hint = did_you_mean(name, symbols, otherwise=f"expected an expression in {listed(symbols)}")
-    raise Unreadable(f"{name!r} is no symbol of this answer: {hint}")
+    raise Unreadable(f"{name!r} is not a symbol of this answer: {hint}")
 
 
 def _check_call(node, source):

@@ -53,13 +53,13 @@ def convert(value: Number, unit: str, to: str) -> float:
     A turn is not forgotten: 1 Hz is 2 pi rad/s. A ratio in dB is one of amplitudes. Where a temperature stands alone
     it is one, not a difference.
 
-    Raises ValueError where one of the two is no unit, or they measure different quantities.
+    Raises ValueError where one of the two is not a unit, or they measure different quantities.
 
     >>> convert(0.5, "min", to="s"), convert(20, "°C", to="K"), convert(3, "%", to="")
     (30.0, 293.15, 0.03)
     >>> convert(2, "kg", to="s")
     Traceback (most recent call last):
-    ValueError: kg is no unit of the same quantity as s
+    ValueError: kg is not a unit of the same quantity as s
     """
     import pint
 
@@ -70,7 +70,7 @@ def convert(value: Number, unit: str, to: str) -> float:
     try:
         return float(_registry().Quantity(float(value), _parsed(unit)).to(_parsed(to)).magnitude)
     except (pint.PintError, OverflowError):
-        raise ValueError(f"{unit or 'a number without unit'} is no unit of the same quantity as {to or 1}") from None
+        raise ValueError(f"{unit or 'a number without unit'} is not a unit of the same quantity as {to or 1}") from None
 
 
 def neighbours(unit: str) -> dict[str, Callable[[Number], float]]:
@@ -122,8 +122,8 @@ def _parsed(text):
     # names with exponents, and what is between them: no power of a power can be worked out for hours
     between = _FACTOR.sub("", text) if isinstance(text, str) and len(text) <= _LONGEST else "?"
     if not re.fullmatch(r"(\s*1\s*/)?[\s%°·*/()]*", between):
-        raise ValueError(f"{text!r} is no unit: expected one such as 's', 'kg/min' or '%/K'")
+        raise ValueError(f"{text!r} is not a unit: expected one such as 's', 'kg/min' or '%/K'")
     try:
         return _registry().parse_units(re.sub(r"(?<=[A-Za-z])(-?[1-9])(?!\d)", r"^\1", text))
     except Exception:  # Pint fails in as many ways as a text can be no unit
-        raise ValueError(f"{text!r} is no unit: expected one such as 's', 'kg/min' or '%/K'") from None
+        raise ValueError(f"{text!r} is not a unit: expected one such as 's', 'kg/min' or '%/K'") from None

@@ -72,7 +72,7 @@ LOOKS = ROLES | MODELS
 # Regions of a plane, one beside the other: so pale that a curve and words on them are read.
 TINTS = ["#dcebf5", "#fbe3d3", "#d9efe6", "#f6ecd2", "#ece2f3", "#e8e8e8"]
 
-# What is no signal: the axes of a plane, a level such as a steady state, the way from a point to an axis, words.
+# What is not a signal: the axes of a plane, a level such as a steady state, the way from a point to an axis, words.
 ZERO: dict[str, Any] = {"color": GREY, "linewidth": 0.8, "zorder": 1}
 LEVEL: dict[str, Any] = {"color": GREY, "linestyle": (0, (6, 3)), "linewidth": 1, "zorder": 1.5}
 GUIDE: dict[str, Any] = {

@@ -119,13 +119,13 @@ def load(path: str | Path) -> Assignment:
     """Return the assignment in a file. Raises GradingError in a sentence, with the line where the module fails."""
     path = Path(path)
     if path.suffix != ".py":
-        raise GradingError(f"{path} is no assignment: expected a Python module, as heater.py")
+        raise GradingError(f"{path} is not an assignment: expected a Python module, as heater.py")
     try:
         source = path.read_text(encoding="utf-8-sig")
     except OSError as problem:
         raise GradingError(f"{path} cannot be read: {problem.strerror}") from None
     except UnicodeDecodeError:
-        raise GradingError(f"{path} is no text in UTF-8: expected a Python module") from None
+        raise GradingError(f"{path} is not text in UTF-8: expected a Python module") from None
     return Assignment.of(source, path.stem, path)
 
 

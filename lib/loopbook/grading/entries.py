@@ -55,7 +55,7 @@ def entries(path: Path, assignment_name: str, ids: Iterable[str]) -> list[Entry]
         return _in_folder(path, wrappers)
     if path.is_file():
         return _in_zip(path, wrappers)
-    raise GradingError(f"there is no folder and no zip file {path}")
+    raise GradingError(f"there is neither a folder nor a zip file {path}")
 
 
 def _passed_over(parts):
@@ -95,7 +95,7 @@ class _File:
         descriptor = os.open(self.path, flags)
         if not stat.S_ISREG(os.fstat(descriptor).st_mode):
             os.close(descriptor)
-            raise ValueError("it is no file any more")
+            raise ValueError("it is no longer a file")
         return os.fdopen(descriptor, "rb")
 
 
@@ -158,7 +158,7 @@ def _kind(mode):
     """What is wrong with a file of this mode."""
     if stat.S_ISLNK(mode):
         return "is a symbolic link, which is not followed"
-    return "" if stat.S_ISREG(mode) else "is no file but a device, a pipe or a socket"
+    return "" if stat.S_ISREG(mode) else "is not a file but a device, a pipe or a socket"
 
 
 # In a zip file.
@@ -197,7 +197,7 @@ def _in_zip(path, wrappers):
         with zipfile.ZipFile(path) as archive:
             members = archive.infolist()
     except FAILURES as problem:
-        raise GradingError(f"{path} is no zip file, or it is damaged: {why(problem)}") from None
+        raise GradingError(f"{path} is not a zip file, or it is damaged: {why(problem)}") from None
     if len(members) > MOST:
         raise GradingError(f"{path} has more than {MOST} files and folders: expected those of one class")
     found = []

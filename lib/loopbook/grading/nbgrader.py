@@ -66,7 +66,7 @@ def earned(taken: Mapping[str, Any], points: float, **key: Kind) -> float:
     >>> from loopbook.exercises.authoring import number
     >>> earned({"Ti": 10, "Kp": "much"}, points=4, Ti=number(10, "s"), Kp=number(2))
     Ti: right
-    Kp: 'much' is a text that is no number: expected a number
+    Kp: 'much' is a text that is not a number: expected a number
     2.0
     """
     verdicts = [judging.judge(name, kind, taken.get(name)) for name, kind in key.items()]

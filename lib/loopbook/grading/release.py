@@ -119,7 +119,7 @@ def _check_places(question):
 
 
 def _check_key(question):
-    """Raise GradingError for a key that would not be right, and for a mistake that is no possible answer."""
+    """Raise GradingError for a key that would not be right, and for a mistake that is not a possible answer."""
     number = question.exercise.number
     values = ", ".join(f"{name} = {value}" for name, value in question.values.items())
     for name, kind in question.key.items():
@@ -131,7 +131,7 @@ def _check_key(question):
             try:
                 kind.like(wrong)
             except ValueError as problem:
-                says = f'the mistake "{sentence}" of {name} in exercise {number} is no possible answer for {values}'
+                says = f'the mistake "{sentence}" of {name} in exercise {number} is not a possible answer for {values}'
                 raise GradingError(f"{says}: {problem}") from problem
 
 

@@ -77,11 +77,11 @@ def looks(student: str, outcome: Outcome, exercises: Sequence[Mapping[str, Any]]
     if others:
         found.append(f"it names another student: {', '.join(map(harmless, others[:3]))}")
     if outcome.odd:
-        found.append(f"it told {outcome.odd} lines that are no answers")
+        found.append(f"it told {outcome.odd} lines that are not answers")
     asked = {one["number"]: {verdict["name"] for verdict in one["verdicts"]} for one in exercises}
     for number, given in outcome.answers.items():
         if number not in asked:
-            found.append(f"it answers {harmless(repr(number))}, which is no exercise of this assignment")
+            found.append(f"it answers {harmless(repr(number))}, which is not an exercise of this assignment")
         elif extra := [name for name in given if name not in asked[number]]:
             found.append(f"in exercise {number} it answers {harmless(repr(extra[0]))}, which is not asked")
     return sorted(found)[:20]

@@ -106,7 +106,7 @@ def read_roster(path: str | Path) -> tuple[Student, ...]:
             raise GradingError(
                 f"{path.name}, line {line}: {student.id[:120]!r} cannot be an id, which is made of letters without "
                 "accents, digits and . _ @ -, begins with a letter or a digit, does not end in a dot, has at most 100 "
-                "characters and is no name of a device, as con"
+                "characters and is not a name of a device, as con"
             )
         first = lines.setdefault(student.id.casefold(), line)
         if first != line:
@@ -172,7 +172,7 @@ def _column(cell):
 
 
 def _canvas(row):
-    """What a row of Canvas's gradebook says; None where it is no student's."""
+    """What a row of Canvas's gradebook says; None where it is not a student's."""
     if "student" in row:
         sortable = _unquoted(row["student"])
     else:

@@ -80,7 +80,7 @@ def cells(content: bytes) -> tuple[list[str], dict[str, Any]]:
     Arguments:
         content: the file, as bytes.
     Raises:
-        ValueError: for what is no notebook, or one of another language, in a sentence.
+        ValueError: for what is not a notebook, or one of another language, in a sentence.
     """
     try:
         notebook = json.loads(content.decode("utf-8-sig"))
@@ -92,7 +92,7 @@ def cells(content: bytes) -> tuple[list[str], dict[str, Any]]:
         language = metadata.get("kernelspec", {}).get("language") or metadata.get("language_info", {}).get("name")
     except Exception as problem:  # a file can be malformed in many ways
         says = harmless(f"{type(problem).__name__}: {problem}")
-        raise ValueError(f"the file is no notebook that can be read ({says})") from None
+        raise ValueError(f"the file is not a notebook that can be read ({says})") from None
     if language not in (None, "python"):
         raise ValueError(f"the notebook is written in {harmless(str(language))}: expected Python")
     return sources, metadata

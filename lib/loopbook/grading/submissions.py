@@ -93,7 +93,7 @@ def collect(path: str | Path, students: Sequence[Student], assignment_name: str)
     lying = entries(Path(path), assignment_name, [student.id for student in students])
     owners, complaints, notebooks = Owners(students), _Complaints(), defaultdict(list)
     for entry in lying:
-        student, fault = None, entry.fault or ("" if is_notebook(entry.parts[-1]) else "is no notebook (.ipynb)")
+        student, fault = None, entry.fault or ("" if is_notebook(entry.parts[-1]) else "is not a notebook (.ipynb)")
         if not fault:
             student, fault = owners.of(entry.parts[0])
         if fault:

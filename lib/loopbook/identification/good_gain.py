@@ -106,7 +106,7 @@ def good_gain_experiment(
     Returns:
         A `GoodGain`.
     Raises:
-        ValueError: for a share that is no number between 0 and 1, a simulator without a highest gain, or where no gain
+        ValueError: for a share that is not between 0 and 1, a simulator without a highest gain, or where no gain
             gives such an undershoot, as of one or two lags without dead time.
     Source: Haugen, Section 10.2, Figures 10.1 and 10.3.
 

@@ -66,7 +66,7 @@ class GainSchedule:
     def settings(self, GS: Number) -> PID:
         """Return the settings for a value of GS, a number; with a hysteresis they depend on the values before.
 
-        Raises ValueError for a value that is no number.
+        Raises ValueError for a value that is not a number.
         """
         GS = exact_real("GS", GS, symbols=False)
         return self._linear(GS) if self.way == "linear" else self.table[self._row(GS)]

@@ -109,7 +109,7 @@ def _printed(where, data):
     if "printed" not in data:
         raise LedgerError(f"{where}: a result has no 'printed': {data}")
     if "says" in data:
-        raise LedgerError(f"{where}: what is no claim has no use for 'says'")
+        raise LedgerError(f"{where}: what is not a claim has no use for 'says'")
     kind = data.get("kind", Number.kind)
     if kind not in KINDS:
         raise LedgerError(f"{where}: the kind is {kind!r}, {did_you_mean(kind, KINDS)}")
@@ -250,7 +250,7 @@ class Entry:
         What a book reads from its own table is judged by the cells of that table. A number is never checked against
         itself: the rules for notebooks refuse a printed value that is handed back.
 
-        Raises LedgerError for the name of what is no number.
+        Raises LedgerError for the name of what is not a number.
 
         >>> from loopbook.ledger import syder
         >>> syder["Table 1 (Hang et al.)"].printed_value("PID_Hang_servo_B", "PID_Hang_regulator_B")

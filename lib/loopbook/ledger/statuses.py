@@ -141,7 +141,7 @@ class Reconstructed(Status):
         return Fraction(amount) / 100 * abs(printed.value) if percent else Fraction(amount)
 
     def judge(self, printed: Printed, value: Any) -> str:
-        """Say "within" where a number is within its margin; what is no number agrees as usual."""
+        """Say "within" where a number is within its margin; what is not a number agrees as usual."""
         if not self.within:
             return printed.agrees(value)
         return "within" if abs(value - printed.value) <= self.margin(printed) else ""

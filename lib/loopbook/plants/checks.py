@@ -39,10 +39,10 @@ def refuse_gaps(cls: Any, states: list[sympy.Expr], inputs: list[sympy.Expr], la
     _refuse_role(cls, "output", [*states, *cls.measured])
     _refuse_role(cls, "manipulated", inputs)
     for x in _others(cls.limits, states):
-        raise ValueError(f"{cls.__name__} has limits for {x}, which is no state: {_one_of(states)}")
+        raise ValueError(f"{cls.__name__} has limits for {x}, which is not a state: {_one_of(states)}")
     for x in _others(cls.at_work, [*inputs, *states]):
         raise ValueError(
-            f"{cls.__name__} is at work by {x}, which is no input and no state: {_one_of(inputs + states)}"
+            f"{cls.__name__} is at work by {x}, which is neither an input nor a state: {_one_of(inputs + states)}"
         )
 
 

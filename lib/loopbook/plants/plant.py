@@ -44,7 +44,7 @@ class Plant(metaclass=PlantMeta):
     Arguments:
         values: numbers that replace the default values, by name, in the units of `quantities`.
     Raises:
-        ValueError: for a name that the plant does not have, for a value that is no number, a negative parameter, or a
+        ValueError: for an unknown name, for a value that is not a number, a negative parameter, or a
             state outside its limits; and where a class is made, for what is missing in its body.
     """
 
@@ -139,13 +139,13 @@ class Plant(metaclass=PlantMeta):
     def signal(self, name: str | sympy.Expr) -> sympy.Expr:
         """Return the signal with this name, as ``T(t)`` for "T"; a signal itself is returned as it is.
 
-        Raises ValueError for a name that is no signal of the plant.
+        Raises ValueError for a name that is not a signal of the plant.
         """
         if isinstance(name, sympy.Basic) and name in self.quantities and not name.is_Symbol:
             return name
         found = {name_of(x): x for x in self.quantities if not x.is_Symbol}
         if not isinstance(name, str) or name not in found:
-            raise ValueError(f"{name!r} is no signal of {type(self).__name__}: {did_you_mean(name, found)}")
+            raise ValueError(f"{name!r} is not a signal of {type(self).__name__}: {did_you_mean(name, found)}")
         return found[name]
 
     # ---------------------------------------------------------------------------------------- what follows from it
@@ -287,7 +287,7 @@ class Plant(metaclass=PlantMeta):
         source = self.signal(self.manipulated if source is None else source)
         output = self.signal(self.output if output is None else output)
         if source not in self.inputs:
-            raise ValueError(f"{source} is no input: {did_you_mean(source, map(name_of, self.inputs))}")
+            raise ValueError(f"{source} is not an input: {did_you_mean(source, map(name_of, self.inputs))}")
         equations = {x: self._active(rate) for x, rate in self.state_equations().items()}
         wanted = self._active(self.measured.get(output, output))
         if output in self.inputs:

@@ -120,7 +120,7 @@ class Chart:
         for name in formula.names:
             step, dot, _ = name.partition(".")
             if dot and step not in self.steps:
-                raise ValueError(f"{formula.owner} has {name}, but {step} is no step of the chart")
+                raise ValueError(f"{formula.owner} has {name}, but {step} is not a step of the chart")
             if not dot and name not in (*self.reads, *self.writes):
                 raise ValueError(f"{formula.owner} has the unknown signal {name}: expected an input or an output")
 
@@ -167,7 +167,7 @@ class Chart:
         Returns:
             ``{output: number}``.
         Raises:
-            ValueError: for an input that is missing, or one that is no truth value where a condition needs one.
+            ValueError: for an input that is missing, or one that is not a truth value where a condition needs one.
         """
         if missing := [name for name in self.reads if name not in values]:
             raise ValueError(f"the input {missing[0]} is missing: the chart reads {checks.listed(self.reads)}")

@@ -55,7 +55,7 @@ def names(inputs: Sequence[str], outputs: Mapping[str, Any], steps: Mapping[str,
         for name in group:
             fits = isinstance(name, str) and name.isidentifier() and not keyword.iskeyword(name)
             if not fits or name.upper() in RESERVED:
-                raise ValueError(f"the {what} {name!r} is no name: expected letters, digits and underscores")
+                raise ValueError(f"the {what} {name!r} is not a name: expected letters, digits and underscores")
     if not steps:
         raise ValueError("the chart has no steps")
     if twice := [name for name in inputs if list(inputs).count(name) > 1]:
@@ -74,7 +74,7 @@ def initial_step(initial: str | Sequence[str], steps: Mapping[str, Any]) -> str:
     if len(found) > 1:
         raise ValueError(f"the chart has {len(found)} initial steps, {listed(map(str, found))}: expected one")
     if not isinstance(found[0], str) or found[0] not in steps:
-        raise ValueError(f"the initial step {found[0]} is no step of the chart: it has {listed(steps)}")
+        raise ValueError(f"the initial step {found[0]} is not a step of the chart: it has {listed(steps)}")
     return found[0]
 
 
@@ -86,7 +86,7 @@ def connections(chart: Chart) -> None:
                 raise ValueError(f"{transition.name} has the unknown step {step}: the chart has {listed(chart.steps)}")
     for step in chart.final:
         if step not in chart.steps:
-            raise ValueError(f"the final step {step} is no step of the chart: it has {listed(chart.steps)}")
+            raise ValueError(f"the final step {step} is not a step of the chart: it has {listed(chart.steps)}")
         if leaving := [x for x in chart.transitions if step in x.sources]:
             raise ValueError(f"{step} is a final step, but {leaving[0].name} leaves it")
     for step in chart.steps:

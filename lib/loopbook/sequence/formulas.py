@@ -130,7 +130,7 @@ class Formula:
                     COMPARISONS[type(how)], *(self._read(x, found) for x in (left, right))
                 )
         part = ast.unparse(node)
-        raise ValueError(f"{self.owner} is {self.text!r}, in which {part!r} is no part of a formula such as {EXAMPLE}")
+        raise ValueError(f"{self.owner} is {self.text!r}, where {part!r} is not a part of a formula such as {EXAMPLE}")
 
     def _comparison(self, compare, left, right):
         equality = compare in (operator.eq, operator.ne)

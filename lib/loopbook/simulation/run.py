@@ -62,7 +62,7 @@ class Run:
         """The unit of a signal of the plant or of a loop; "1" for a number.
 
         Setpoints have that of the measurement, the terms of a controller that of the control signal. Raises ValueError
-        for a name that is no signal of the run or the plant.
+        for a name that is not a signal of the run or the plant.
         """
         of_plant = {name_of(x) for x in self.plant.quantities}
         if self._past and name not in of_plant and name in self.signals:

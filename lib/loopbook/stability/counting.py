@@ -151,7 +151,7 @@ def unstable_roots(denominator: Mapping) -> float:
         StabilityLimitError: for roots on the imaginary axis, or so close to it that their frequencies cannot be told
             from it.
         ValueError: for symbols, a sum that is zero, or one whose highest powers leave open whether it has an end of
-            roots: where they have several dead times that are no multiples of one, and the sizes of their coefficients
+            roots: where they have several dead times that are not multiples of one, and the sizes of their coefficients
             add up to that of the undelayed one or more.
     Source: the criterion of A. V. Mikhailov (1938), extended to dead times.
 

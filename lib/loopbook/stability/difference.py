@@ -54,8 +54,8 @@ def common_unit(delays: list[float]) -> tuple[float, list[int]] | None:
 def at_endless_frequency(later: np.ndarray, delays: np.ndarray) -> Endless:
     """What ``1 + sum(later*exp(-delays*s))`` is in the right half-plane.
 
-    Raises ValueError where that is not decided: where the sizes add up to 1 or more and the dead times are no multiples
-    of one.
+    Raises ValueError where that is not decided: where the sizes add up to 1 or more and the dead times are not
+    multiples of one.
     """
 
     some = later != 0

@@ -320,7 +320,7 @@ class Far:
         if not self.unit:
             raise ValueError(
                 "the largest sensitivity at ever higher frequencies is not decided: the highest powers have dead times "
-                "that are no multiples of one"
+                "that are not multiples of one"
             )
         return self._peaks[0][0]
 

@@ -129,7 +129,7 @@ def _read(loop: object) -> Loops | None:
     if cancels(loop) and not is_stable(loop):
         raise ValueError(f"{loop} is not stable: controller and process cancel an unstable pole; it has no margin")
     if L.numerator:
-        characteristic(L)  # raises for what is no loop
+        characteristic(L)  # raises for what is not a loop
         return Loops(*fraction_sums(L), L)
     if not is_stable(L):
         raise ValueError(f"{L.expr} is not stable: it has no margin")

@@ -108,13 +108,13 @@ def _taken_for(page, wrong):
     return {name: ROLES[wrong[role]] for name, role in zip("abcd", PAGES[page], strict=True) if role in wrong}
 
 
-@parts.mistake("Ask what is to be kept where somebody wants it, and what only happens to the plant.")
+@parts.mistake("Ask which quantity has to be kept at a wanted value, and what merely happens to the plant.")
 def _(plant, page):
     return _taken_for(page, {"d": "y", "y": "d"}) if plant != "a water tower" else {}
 
 
 @parts.mistake(
-    "Ask what is to be kept where somebody wants it, and what only happens to the plant. "
+    "Ask which quantity has to be kept at a wanted value, and what merely happens to the plant. "
     "It does not matter that water flows out of the tower."
 )
 def _(plant, page):
@@ -180,7 +180,7 @@ def error_in_units(
     )
 
 
-@error_in_units.mistake("Look at the current again that stands for the lower end of the range: it is not zero.")
+@error_in_units.mistake("Look again at the current for the lower end of the range: it is not zero.")
 def _(low, high, I, p_SP):
     p = low + I * (high - low) / 20
     return {"p": p, "e": p_SP - p, "e_percent": 100 * (p_SP - p) / (high - low)}
@@ -192,7 +192,7 @@ def _(low, high, I, p_SP):
     return {"p": p, "e": p_SP - p, "e_percent": 100 * (p_SP - p) / (high - low)}
 
 
-@error_in_units.mistake("That is a percentage of the setpoint. Asked is the one of the measurement range.")
+@error_in_units.mistake("That is a percentage of the setpoint. What percentage of the measurement range is it?")
 def _(low, high, I, p_SP):
     e = p_SP - _pressure(low, high, I)
     wrong = 100 * e / p_SP
@@ -200,7 +200,7 @@ def _(low, high, I, p_SP):
     return {"e_percent": wrong} if all(abs(wrong / other - 1) > 0.03 for other in others) else {}
 
 
-@error_in_units.mistake("The range begins higher than at zero. How wide is it?")
+@error_in_units.mistake("The range does not begin at zero. How wide is it?")
 def _(low, high, I, p_SP):
     return {"e_percent": 100 * (p_SP - _pressure(low, high, I)) / high}
 
@@ -237,14 +237,14 @@ def _(change):
 
 
 @bunker.mistake(
-    "A change in percent is one of the flow that it belongs to. The control signal has to change by the same share "
-    "of its own value, which is another number of percentage points."
+    "A change in percent refers to the flow that changes. The control signal changes by the same fraction of its own "
+    "value, which is a different number of percentage points."
 )
 def _(u_0, change):
     return {"u": u_0 + change}
 
 
-@bunker.mistake("That is the change of the control signal. Asked is where it ends.")
+@bunker.mistake("That is the change of the control signal. Where does it end?")
 def _(u_0, change):
     return {"u": u_0 * change / 100}
 
@@ -254,12 +254,12 @@ def _(length, speed, w_0, change):
     return {"dm": -w_0 * (1 + change / 100) * length / speed}
 
 
-@bunker.mistake("So much lies on the belt. By how much do the flows into the bunker and out of it differ?")
+@bunker.mistake("That is the mass on the belt. By how much do the flows into the bunker and out of it differ?")
 def _(length, speed, w_0):
     return {"dm": w_0 * length / speed}
 
 
-@bunker.mistake("So much lies on the belt. By how much do the flows into the bunker and out of it differ?")
+@bunker.mistake("That is the mass on the belt. By how much do the flows into the bunker and out of it differ?")
 def _(length, speed, w_0):
     return {"dm": -w_0 * length / speed}
 
@@ -309,14 +309,14 @@ def _(A, h_0, h_low, q, more):
     return {"h": h_0 - rate * t, "t_alarm": (h_0 - h_low) / rate / 60}
 
 
-@left_alone.mistake("So much the pump delivers. How much more than that is drawn?")
+@left_alone.mistake("That is what the pump delivers. How much more than that is drawn?")
 def _(A, h_0, h_low, q, more):
     rate = q / 1000 / A
     found = {"h": h_0 - rate * t, "t_alarm": (h_0 - h_low) / rate / 60}
     return found if abs(q / more - 1) > Rational(1, 20) else {}
 
 
-@left_alone.mistake("So far the level falls in this time. Where does it stand at the beginning?")
+@left_alone.mistake("That is how far the level falls in this time. Where is it at the beginning?")
 def _(A, more):
     return {"h": -more / 1000 / A * t}
 
@@ -326,7 +326,7 @@ def _(A, h_0, h_low, more):
     return {"t_alarm": h_low * A * 1000 / more / 60} if abs(h_low / (h_0 - h_low) - 1) > Rational(1, 20) else {}
 
 
-@left_alone.mistake("That is the time until the tank is empty. The alarm comes before.")
+@left_alone.mistake("That is the time until the tank is empty. The alarm comes earlier.")
 def _(A, h_0, more):
     return {"t_alarm": h_0 * A * 1000 / more / 60}
 
@@ -336,7 +336,7 @@ def _(A, h_0, h_low, more):
     return {"h": h_0 - more * t / A, "t_alarm": (h_0 - h_low) * A / more / 60}
 
 
-@left_alone.mistake("In the formula, $t$ is asked in seconds. Did you count minutes?")
+@left_alone.mistake("In the formula, $t$ is in seconds. Did you count minutes?")
 def _(A, h_0, more):
     return {"h": h_0 - 60 * more / 1000 / A * t}
 
@@ -388,7 +388,7 @@ def _(above, below, Kp, Ti):
     return {} if _is_poor(above, below) else {"settings": PID(Kp / 2, Ti * 2)}
 
 
-@swings.mistake("Those are the settings that the controller has. Are the swings of this loop within the limit?")
+@swings.mistake("Those are the present settings of the controller. Are the swings of this loop within the limit?")
 def _(above, below, Kp, Ti):
     return {"settings": PID(Kp, Ti)} if _is_poor(above, below) else {}
 
@@ -408,7 +408,7 @@ def _(above, below, Kp, Ti):
     return {"settings": PID(Kp, Ti * 2)} if _is_poor(above, below) else {}
 
 
-@swings.mistake("That is how much smaller the next swing is. Asked is the part that is left of it.")
+@swings.mistake("That is how much smaller the next swing is. How much of it is left?")
 def _(above, below):
     return {"left": 1 - below / above}
 

@@ -72,7 +72,7 @@ def _(K, y_0, a, t_1, t_2):
     return found if abs(K - 1) * volume >= (y_0 + K * volume) / 30 else {}
 
 
-@two_meters.mistake("When does the flow begin? The integrator adds up nothing before.")
+@two_meters.mistake("When does the flow begin? Before that, the integrator adds up nothing.")
 def _(K, y_0, a, t_2):
     return {"y_A": y_0 + K * a * t_2, "y_B": K * (y_0 + a * t_2)}
 
@@ -181,7 +181,7 @@ def _(model):
     return {"formula": driving - against}
 
 
-@first_integrator.mistake("Solve for the highest derivative once more: what changes sides changes its sign.")
+@first_integrator.mistake("Solve for the highest derivative again: a term that changes sides changes its sign.")
 def _(model):
     driving, against, factor, _ = MODELS[model][2]
     return {"formula": (driving + against) / factor}
@@ -204,7 +204,7 @@ def _(model):
     return {"formula": (driving - exchanged) / factor} if order > 1 else {}
 
 
-@first_integrator.mistake("There is a sine in the model. Nobody says that the angle is small.")
+@first_integrator.mistake("There is a sine in the model. The angle need not be small.")
 def _(model):
     driving, against, factor, _ = MODELS[model][2]
     return {"formula": (driving - against.replace(sympy.sin, lambda x: x)) / factor} if against.has(sympy.sin) else {}
@@ -217,7 +217,7 @@ def _(model):
     return {"formula": formula.subs(g, g_earth)} if formula.has(g) else {}
 
 
-@first_integrator.mistake("From each integrator on there is one dot less. How many dots has the highest derivative?")
+@first_integrator.mistake("Each integrator removes one dot. How many dots has the highest derivative?")
 def _(model):
     return {"integrators": MODELS[model][2][3] + 1}
 
@@ -263,7 +263,7 @@ def _(m, D, K, y_0, h):
     return {"y": y, "v": v}
 
 
-@two_rounds.mistake("That is how it looks after one round. Go round once more.")
+@two_rounds.mistake("That is the result after one round. Go round once more.")
 def _(m, D, K, y_0, h):
     y, v = _rounds(m, D, K, y_0 / 100, h, 1)
     return {"y": y, "v": v}
@@ -305,7 +305,7 @@ def scale(
     )
 
 
-@scale.mistake("A sack of so many kilograms presses down with so many newtons. Which force is its weight?")
+@scale.mistake("That is the mass of the sack in kilograms. With how many newtons does it press down?")
 def _(m, K):
     return {"y_s": 1000 * m / K}
 
@@ -364,7 +364,7 @@ def _(T_1, T_2):
     return {"A": [[-1 / T_1, 0], [1 / T_2, -1 / T_2]]}
 
 
-@other_states.mistake("With $z = Mx$, on which side of the old matrix does $M$ stand, and on which its inverse?")
+@other_states.mistake("With $z = Mx$, on which side of the old matrix is $M$, and on which is its inverse?")
 def _(T_1, T_2):
     return {"A": [[1 / T_2 - 1 / T_1, 1 / T_1 - 2 / T_2], [1 / T_2, -2 / T_2]]}
 
@@ -374,7 +374,7 @@ def _(T_1, K):
     return {"B": [K / T_1, K / T_1]}
 
 
-@other_states.mistake("In the state-space model the rates stand alone on the left. What is the gain divided by, then?")
+@other_states.mistake("In the state-space model the rates are alone on the left. What is the gain divided by, then?")
 def _(K):
     return {"B": [K, 0]}
 
@@ -384,7 +384,7 @@ def _(T_1, T_2, K, wanted):
     return {"H": (K if "difference" in wanted else K * T_2 * s) / ((T_1 * s + 1) * (T_2 * s + 1))}
 
 
-@other_states.mistake("That is right with the time in seconds. Here it is asked in minutes.")
+@other_states.mistake("That is right with the time in seconds. Here it should be in minutes.")
 def _(T_1, T_2, K, wanted):
     numerator = K * T_2 * 60 * s if "difference" in wanted else K
     return {"H": numerator / ((60 * T_1 * s + 1) * (60 * T_2 * s + 1))}

@@ -68,7 +68,7 @@ def _(A, q_1, q_2, q_o):
     return {"rate": alone / A} if abs(abs(alone / both) - 1) > 0.05 else {}
 
 
-@cistern.mistake("Which way does the level have to go, and how far is it from where it stands now?")
+@cistern.mistake("Which way does the level have to go, and how far is it from where it is now?")
 def _(A, h, h_max, q_1, q_2, q_o):
     rate = (q_1 + q_2 - q_o) / A
     wrong, right = (h, h_max - h) if rate > 0 else (h_max - h, h)
@@ -200,8 +200,8 @@ def pond(
 
 
 @pond.mistake(
-    "That is a pond without bacteria, or nearly so. They take so much out of every cubic metre: how much is it in the "
-    "whole pond?"
+    "That is a pond without bacteria, or nearly so. They remove that much from every cubic metre: how much is it "
+    "in the whole pond?"
 )
 def _(V, q, c_in):
     T, c_s = V / q, c_in
@@ -220,7 +220,7 @@ def _(V, q, k):
     return {"T": 1 / k} if abs(k * V / q - 1) > 0.03 else {}
 
 
-@pond.mistake("Your concentration ends at that of the inflow. Do the bacteria eat nothing?")
+@pond.mistake("Your concentration ends at that of the inflow. Do the bacteria not remove anything?")
 def _(V, q, k, c_in):
     T, _ = _decay(V, q, k)
     return {"c": c_in * (1 - sympy.exp(-t / T))}
@@ -238,7 +238,7 @@ def _(V, q, k, c_in):
     return {"c": share * c_in * (1 - sympy.exp(-t * T))}
 
 
-@pond.mistake("At first the pond is clean, and in the end it is not. That is the other way round.")
+@pond.mistake("At first the pond is clean, and in the end it is not. It is the other way round.")
 def _(V, q, k, c_in):
     T, share = _decay(V, q, k)
     return {"c": share * c_in * sympy.exp(-t / T)}
@@ -293,12 +293,12 @@ def _(F, c, U_h, T_i, T_e):
     return {"T_off": mean} if abs(mean / right - 1) > 0.03 else {}
 
 
-@milk.mistake("That is per kilowatt. The power is asked in watts here.")
+@milk.mistake("That is per kilowatt. Here the power is in watts.")
 def _(m, F, c, U_h):
     return {"H": 1000 / (c * m * s + c * F + U_h)}
 
 
-@milk.mistake("That is right with the time in minutes. Here it is asked in seconds.")
+@milk.mistake("That is right with the time in minutes. Here it should be in seconds.")
 def _(m, F, c, U_h):
     return {"H": 1 / (c * m * s / 60 + c * F + U_h)}
 
@@ -308,9 +308,7 @@ def _(m, F, c, U_h):
     return {"H": 1 / (c * m / (c * F + U_h) * s + 1)}
 
 
-@milk.mistake(
-    "The energy inside is that of the whole mass. What is it that the rate of the temperature is multiplied by?"
-)
+@milk.mistake("The energy inside is that of the whole mass. What is the rate of the temperature multiplied by?")
 def _(F, c, U_h):
     return {"H": 1 / (c * s + c * F + U_h)}
 
@@ -408,7 +406,7 @@ def _(m_1, m_2, J, r, T):
 
 
 @lift.mistake(
-    "The weights of cabin and counterweight are on two sides of the drum. Do they pull it the same way round?"
+    "The weights of cabin and counterweight are on two sides of the drum. Do they turn it in the same direction?"
 )
 def _(m_1, m_2, J, r, T):
     found = _lift_with(_moved, lambda m_1, m_2, J, r: m_1 + m_2)(m_1, m_2, J, r, T)
@@ -427,7 +425,7 @@ def _(m_1, m_2, J, r, T):
     return {"formula": angular, "mass": J + (m_1 + m_2) * r**2, "a": _lift(T, J, r, m_1, m_2, g_earth) / r}
 
 
-@lift.mistake("A mass is not yet a force. With which force does the earth pull at it?")
+@lift.mistake("A mass is not yet a force. How large is the force of gravity on it?")
 def _(m_1, m_2, r):
     return {"T_hold": (m_1 - m_2) * r}
 
@@ -438,7 +436,7 @@ def _(m_1, m_2, J, r, T):
     return _only(found, "formula")
 
 
-@lift.mistake("Here a torque and a force are taken for one another. At which arm does the rope pull?")
+@lift.mistake("A torque is not a force. How long is the arm at which the rope pulls?")
 def _(m_1, m_2, J, r, T):
     return {
         "formula": (TORQUE - (CABIN - WEIGHT) * G) / (CABIN + WEIGHT + INERTIA / RADIUS**2),
@@ -519,14 +517,14 @@ def _(r_2, c):
     return {"T": r_2 * c}
 
 
-@two_resistors.mistake("Over which of the two resistors lies the voltage at the output?")
+@two_resistors.mistake("Across which of the two resistors is the output voltage?")
 def _(circuit, r_1, r_2):
     return {"fast" if circuit == "stepped" else "slow": r_1 / (r_1 + r_2)} if abs(r_1 / r_2 - 1) > 0.03 else {}
 
 
 @two_resistors.mistake(
-    "Replace the source by a wire, for which its voltage is zero. Do the two resistors, seen from the capacitor, "
-    "lie one behind the other or side by side?"
+    "Replace the source by a wire, for which its voltage is zero. Are the two resistors, seen from the capacitor, "
+    "in series or in parallel?"
 )
 def _(circuit, r_1, r_2, c):
     return {"T": r_1 * r_2 * c / (r_1 + r_2) if circuit == "stepped" else (r_1 + r_2) * c}

@@ -31,13 +31,14 @@ def oil_bath(
 
 
 @oil_bath.mistake(
-    "A constant signal is a step at $t = 0$, and the transform of a step has an $s$. Look at its pair again."
+    "A constant signal is a step at $t = 0$, and the transform of a step has an $s$. Look at its pair in the "
+    "table again."
 )
 def _(start, rate):
     return {"F": start + rate / s**2}
 
 
-@oil_bath.mistake("A signal that grows steadily is a ramp. Look at the power of $s$ in its pair again.")
+@oil_bath.mistake("A signal that grows steadily is a ramp. Look again at the power of $s$ in its pair.")
 def _(start, rate):
     return {"F": (start + rate) / s}
 
@@ -75,7 +76,7 @@ def _(q, begin, duration):
     return {"F": q / s * (exp(-begin * s) - exp(-duration * s))} if begin != duration else {}
 
 
-@dose.mistake("Your pump starts and never stops. A second step has to take the flow away again.")
+@dose.mistake("Your pump starts and never stops. A second step has to stop the flow.")
 def _(q, begin):
     return {"F": q / s * exp(-begin * s)}
 
@@ -178,7 +179,8 @@ def _(T, start, bath):
 
 
 @thermometer.mistake(
-    "The temperature of the water is constant in time. So its transform is that of a step, and has an $s$."
+    "The temperature of the water is constant in time. So its transform is that of a step, with an $s$ in the "
+    "denominator."
 )
 def _(T, start, bath):
     return {"Y": (T * start + bath) / (T * s + 1), "y": (start + bath / T) * exp(-t / T)}
@@ -194,12 +196,12 @@ def _(T, start, bath):
     return {"y": bath - (bath - start) * exp(t / T)}
 
 
-@thermometer.mistake("You have added the final value and the whole response from zero. What is the reading at $t = 0$?")
+@thermometer.mistake("You have added the final value to the whole response from zero. What is the reading at $t = 0$?")
 def _(T, start, bath):
     return {"Y": start / s + bath / (s * (T * s + 1)), "y": start + bath * (1 - exp(-t / T))}
 
 
-@thermometer.mistake("That is by how much the reading has risen. What does the thermometer show at $t = 0$?")
+@thermometer.mistake("That is the rise of the reading. What does the thermometer show at $t = 0$?")
 def _(T, start, bath):
     rise = bath - start
     return {"Y": rise / (s * (T * s + 1)), "y": rise * (1 - exp(-t / T))}
@@ -324,15 +326,13 @@ def _(T, K, full, warmer):
     return {"t_1": T * warmer / (K * full)}
 
 
-@full_power_first.mistake(
-    "The exponential is what is still missing on the way to $Ku_1$, not what has been gone already."
-)
+@full_power_first.mistake("The exponential is what is still missing on the way to $Ku_1$, not what has been covered.")
 def _(T, K, full, warmer):
     return {"t_1": T * log(K * full / warmer)} if abs(_excess(K, full, warmer) - 1.763) > 0.1 else {}
 
 
 @full_power_first.mistake(
-    "After one time constant, 63 % of the way to $Ku_1$ is done. Is that the temperature that is wanted?"
+    "After one time constant, 63 % of the way to $Ku_1$ is covered. Is that the wanted temperature?"
 )
 def _(T, K, full, warmer):
     return {"t_1": T} if abs(_excess(K, full, warmer) - 1.582) > 0.05 else {}

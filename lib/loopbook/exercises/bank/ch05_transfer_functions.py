@@ -40,19 +40,17 @@ def stirrer(
     )
 
 
-@stirrer.mistake(
-    "The friction is missing: it depends on the speed, so that it belongs to the left side of the equation."
-)
+@stirrer.mistake("The friction is missing: it depends on the speed, so it belongs on the left side of the equation.")
 def _(J, k):
     return {"H_u": k / (J * s), "H_M": -1 / (J * s)}
 
 
-@stirrer.mistake("Only the voltage is multiplied by $k$. By what is the torque multiplied in the equation?")
+@stirrer.mistake("Only the voltage is multiplied by $k$. What is the torque multiplied by in the equation?")
 def _(J, k, b):
     return {"H_M": -k / (J * s + b)} if k != 1 else {}
 
 
-@stirrer.mistake("The friction term changes its sign when it is brought to the left side.")
+@stirrer.mistake("The friction term changes sign when it moves to the left side.")
 def _(J, k, b):
     return {"H_u": k / (J * s - b), "H_M": -1 / (J * s - b)}
 
@@ -105,12 +103,12 @@ def _(K, z, p, q):
     return {"K": -K * z / (p * q), "H_s": K} if z != -p * q else {}
 
 
-@fraction.mistake("At $s = 0$ the denominator is not one. Divide by what remains of it.")
+@fraction.mistake("At $s = 0$ the denominator is not one. Divide by what is left of it.")
 def _(K, z, scale):
     return {"H_s": -scale * K * z}
 
 
-@fraction.mistake("At $s = 0$ the denominator is not one. Divide by what remains of it.")
+@fraction.mistake("At $s = 0$ the denominator is not one. Divide by what is left of it.")
 def _(K, z):
     return {"H_s": -K * z} if z != -1 else {}
 
@@ -147,7 +145,9 @@ def _(K, T, T_0):
     return {"H": K * (T_0 * s + 1) / (T * s + 1)}
 
 
-@creeping_sensor.mistake("Beginning and end are exchanged: large $s$ belongs to the beginning, and $s = 0$ to the end.")
+@creeping_sensor.mistake(
+    "Beginning and end are interchanged: large $s$ belongs to the beginning, and $s = 0$ to the end."
+)
 def _(K, T, T_0, U):
     return {"y_0": K * U, "y_s": K * U * T_0 / T, "y": K * U * (T_0 / T + (1 - T_0 / T) * exp(-t / T))}
 
@@ -170,7 +170,9 @@ def _(K, T, T_0, U):
     return {"y": K * U * (1 - (1 - T_0 / T) * exp(-t / T_0))}
 
 
-@creeping_sensor.mistake("That is the response of the denominator alone. The numerator lets the sensor react at once.")
+@creeping_sensor.mistake(
+    "That is the response of the denominator alone. The numerator makes the sensor react immediately."
+)
 def _(K, T, U):
     return {"y": K * U * (1 - exp(-t / T))}
 
@@ -235,7 +237,7 @@ def _(signal, sign, k_1, k_2, k_3, k_4):
     return _with_gains((H_1 * H_2 + H_4) / (1 + H_1 * H_2), k_1, k_2, k_3, k_4, signal, sign)
 
 
-@two_loops.mistake("Look at the sign of the inner loop again: is what comes back added or subtracted?")
+@two_loops.mistake("Look again at the sign of the inner loop: is the feedback added or subtracted?")
 def _(signal, sign, k_1, k_2, k_3, k_4):
     return _with_gains(_network(signal, -_SIGNS[sign]), k_1, k_2, k_3, k_4, signal, sign)
 

@@ -55,12 +55,14 @@ def _(A, q_in, q_out, top):
     return {"t_full": 1000 * top * A / (q_in - q_out)}
 
 
-@runs_over.mistake("That is the volume which flows in. The level rises by the volume divided by the area.")
+@runs_over.mistake("That is the volume that flows in. The level rises by the volume divided by the area.")
 def _(q_in, q_out, start, top):
     return {"rate": q_in - q_out, "t_full": 1000 * (top - start) / (q_in - q_out)}
 
 
-@runs_over.mistake("Which unit has the inflow? With one cubic metre per second more, how fast would the level rise?")
+@runs_over.mistake(
+    "What is the unit of the inflow? With one cubic metre per second more, how fast would the level rise?"
+)
 def _(A):
     return {"K": 1 / A / 1000}
 
@@ -100,21 +102,19 @@ def _(u_1, du, y_1, dy):
     return {"K": (y_1 + dy) / (u_1 + du)} if not _near((y_1 + dy) / (u_1 + du), dy / du) else {}
 
 
-@half_way.mistake("After one time constant more than half of the way is done. At which moment is it exactly half?")
+@half_way.mistake("After one time constant more than half of the way is covered. At which moment is it exactly half?")
 def _(t_half):
     return {"T": t_half}
 
 
 @half_way.mistake(
-    "Half of the way is done before one time constant has passed. On which side does the logarithm belong?"
+    "Half of the way is covered before one time constant has passed. On which side does the logarithm belong?"
 )
 def _(t_half):
     return {"T": t_half * log(2)}
 
 
-@half_way.mistake(
-    "The response is no straight line, so that you cannot get from half of the way to 63 % by proportion."
-)
+@half_way.mistake("The response is not a straight line, so proportion does not take you from half of the way to 63 %.")
 def _(t_half):
     return {"T": t_half * (1 - 1 / E) / 0.5}
 
@@ -124,13 +124,13 @@ def _(y_1, dy):
     return {"y_T": (1 - 1 / E) * dy}
 
 
-@half_way.mistake("The share of the way is counted from the old temperature on, not from zero.")
+@half_way.mistake("The way is counted from the old temperature, not from zero.")
 def _(y_1, dy):
     return {"y_T": (1 - 1 / E) * (y_1 + dy)}
 
 
 @half_way.mistake(
-    "That is the temperature with what is still missing. Which share of the way is done, and which is left?"
+    "You have used the share that is still missing. Which share of the way is covered, and which is left?"
 )
 def _(y_1, dy):
     return {"y_T": y_1 + dy / E}
@@ -177,7 +177,7 @@ def _(V, V_pipe, F):
     return {"H": exp(-60 * V_pipe / F * s) / (60 * V / F * s + 1)}
 
 
-@brine.mistake("The pipe does not mix. It is no lag: the brine arrives unchanged, but later.")
+@brine.mistake("The pipe does not mix. It is not a lag: the brine arrives unchanged, but later.")
 def _(V, V_pipe, F):
     return {"H": 1 / ((V / F * s + 1) * (V_pipe / F * s + 1)), "t_half": (V + V_pipe) / F * log(2)}
 
@@ -198,7 +198,8 @@ def _(V, V_pipe, F, less):
 
 
 @brine.mistake(
-    "The times go with one over the flow. So they grow by a larger share than the one by which the flow falls."
+    "The times are inversely proportional to the flow. So they grow by a larger percentage than the one by "
+    "which the flow falls."
 )
 def _(V, V_pipe, F, less):
     return {"t_slow": (V_pipe + V * log(2)) / F * (1 + less / 100)}
@@ -246,7 +247,7 @@ def _(length, v, F, run):
     return {"m": F * (Heaviside(t - length / v) - Heaviside(t - length / v - run))}
 
 
-@belt.mistake("The hopper fills on forever. The feeder stops, and after a while nothing more arrives.")
+@belt.mistake("Your hopper fills forever. But the feeder stops, and after a while nothing more arrives.")
 def _(length, v, F):
     return {"m": F * (t - length / v) * Heaviside(t - length / v)}
 
@@ -321,7 +322,7 @@ def _():
     return {"share": 100 - 100 * exponential(-1)}
 
 
-@pocket.mistake("That is the share which is still missing.")
+@pocket.mistake("That is the share that is still missing.")
 def _(T_1, T_2):
     return {"share": 100 * _share_left(float(T_1 + T_2), float(T_1), float(T_2))}
 
@@ -334,7 +335,7 @@ def _(T_1, T_2, delay):
     return {"share": share} if not _near(share, 100 - 100 * exponential(-1)) else {}
 
 
-@pocket.mistake("That is the estimate again. The sensor has not quite come to 63.2 % there.")
+@pocket.mistake("That is the estimate again. At that time the sensor has not quite reached 63.2 %.")
 def _(T_1, T_2, delay):
     return {"T_r": T_1 + T_2 + delay}
 
@@ -394,12 +395,14 @@ def _(pulse, c, c_max):
 
 
 @against_pulses.mistake(
-    "After that time the exponential is what is *left* of the way. How much of the way may be gone?"
+    "After that time the exponential is what is *left* of the way. How much of the way may be covered?"
 )
 def _(pulse, c, c_max):
     return {"T_least": pulse / log(c / c_max)} if abs(c_max / c - 0.5) > 0.02 else {}
 
 
-@against_pulses.mistake("That is the largest time constant, from the time to 90 %. The least one comes from the pulse.")
+@against_pulses.mistake(
+    "That is the largest time constant, from the time to 90 %. The smallest one comes from the pulse."
+)
 def _(t_max):
     return {"T_least": t_max / log(10)}

@@ -128,17 +128,17 @@ def _(medium, valve):
     return {"action": next(action for action in ACTIONS if action != _action(medium, valve))}
 
 
-@jacket.mistake("With this control signal the vessel would become hotter still. Which way does the valve have to move?")
+@jacket.mistake("With this control signal the vessel would become even hotter. Which way does the valve have to move?")
 def _(medium, valve, K_p, u_0, rise):
     return {"u": u_0 - _push(medium, valve) * K_p * rise}
 
 
-@jacket.mistake("This is the proportional term, or its magnitude. From which value does the control signal begin?")
+@jacket.mistake("This is the proportional term, or its magnitude. From which value does the control signal start?")
 def _(K_p, rise):
     return {"u": K_p * rise}
 
 
-@jacket.mistake("This is the proportional term, or its magnitude. From which value does the control signal begin?")
+@jacket.mistake("This is the proportional term, or its magnitude. From which value does the control signal start?")
 def _(K_p, rise):
     return {"u": -K_p * rise}
 
@@ -176,12 +176,14 @@ def _(P_B, repeats):
     return {"settings": PID(P_B / 100, 60 / repeats)}
 
 
-@panel.mistake("The number of repeats tells how often in a minute. The integral time is how long one of them takes.")
+@panel.mistake(
+    "The number of repeats says how often it happens in a minute. The integral time is how long one of them takes."
+)
 def _(P_B, repeats):
     return {"settings": PID(100 / P_B, 60 * repeats)}
 
 
-@panel.mistake("In this function the time is counted in minutes. Asked is $t$ in seconds.")
+@panel.mistake("In this function the time is in minutes. It should be in seconds.")
 def _(P_B, repeats, u_0, error):
     return {"u": u_0 + 100 / P_B * error * (1 + t * repeats)}
 
@@ -191,12 +193,12 @@ def _(P_B, repeats, error):
     return {"u": 100 / P_B * error * (1 + t * repeats / 60)}
 
 
-@panel.mistake("This is the integral term alone. Which term acts at once, when the error jumps?")
+@panel.mistake("This is the integral term alone. Which term acts immediately when the error jumps?")
 def _(P_B, repeats, u_0, error):
     return {"u": u_0 + 100 / P_B * error * t * repeats / 60}
 
 
-@panel.mistake("This control signal jumps and then stands still. An error that stays is integrated all the time.")
+@panel.mistake("This control signal jumps and then stays constant. An error that remains is integrated all the time.")
 def _(P_B, u_0, error):
     return {"u": u_0 + 100 / P_B * error + 0 * t}
 
@@ -227,7 +229,7 @@ def oil_tank(
     )
 
 
-@oil_tank.mistake("So much would remain without any controller. The P controller reduces it.")
+@oil_tank.mistake("That much would remain without any controller. The P controller reduces it.")
 def _():
     return {"e": Symbol("K") * Symbol("W")}
 
@@ -246,7 +248,7 @@ def _():
     return {"e": K * K_p * W / (1 + K * K_p)}
 
 
-@oil_tank.mistake("Here numbers have been put in. Asked is first the formula with the symbols.")
+@oil_tank.mistake("Here numbers have been put in. Give the formula with the symbols first.")
 def _(K, W):
     return {"e": K * W / (1 + K * Symbol("K_p"))}
 
@@ -257,8 +259,8 @@ def _(K, W, e_max):
 
 
 @oil_tank.mistake(
-    "With this gain the proportional term would cancel the loss completely. But then nothing would be left to make "
-    "the error from which that term lives."
+    "With this gain the proportional term would cancel the loss completely. But then no error would be left, and "
+    "that term needs one."
 )
 def _(W, e_max):
     return {"K_p": W / e_max}
@@ -315,17 +317,21 @@ def _wound_up(K_p, T_i, u_0, e_frost, e_after, frost):
     return at_limit, u_0 + K_p * e_frost + u_i, wait, 100 - K_p * (e_frost + e_after)
 
 
-@dryer.mistake("Not all the way to the limit is left to the integral term. What does the other term do, at once?")
+@dryer.mistake(
+    "The integral term does not have to cover the whole way to the limit. What does the other term do immediately?"
+)
 def _(K_p, T_i, u_0, e_frost):
     return {"t_limit": T_i * (100 - u_0) / (K_p * e_frost)}
 
 
-@dryer.mistake("The integral term alone has grown that far. The proportional term is there as long as the error is.")
+@dryer.mistake(
+    "The integral term alone has grown that far. The proportional term is there as long as there is an error."
+)
 def _(K_p, T_i, u_0, e_frost, frost):
     return {"u_end": u_0 + K_p * e_frost * frost / T_i}
 
 
-@dryer.mistake("This is what the heater gets. Asked is what the program computes, which knows of no limit.")
+@dryer.mistake("This is what the heater gets. What does the program compute, which knows no limit?")
 def _():
     return {"u_end": 100}
 
@@ -335,7 +341,7 @@ def _(K_p, T_i, u_0, e_frost, e_after, frost):
     return {"t_wait": T_i * (u_0 + K_p * e_frost * (1 + frost / T_i) - 100) / (K_p * e_after)}
 
 
-@dryer.mistake("This time is counted from the beginning of the frost. Asked is the time after its end.")
+@dryer.mistake("This time is counted from the beginning of the frost. Count it from the end.")
 def _(K_p, T_i, u_0, e_frost, e_after, frost):
     return {"t_wait": frost + _wound_up(K_p, T_i, u_0, e_frost, e_after, frost)[2]}
 
@@ -350,12 +356,12 @@ def _(K_p, e_frost, e_after):
     return {"u_after": 100 - K_p * e_frost} if e_frost != e_after else {}
 
 
-@dryer.mistake("So it was while the frost lasted. Which term follows the error at once, when the frost ends?")
+@dryer.mistake("That was so while the frost lasted. Which term follows the error immediately when the frost ends?")
 def _():
     return {"u_after": 100}
 
 
-@dryer.mistake("So large it would be without anti wind-up. At which value has the integral term been halted?")
+@dryer.mistake("It would be that large without anti wind-up. At which value has the integral term been halted?")
 def _(K_p, T_i, u_0, e_frost, e_after, frost):
     return {"u_after": _wound_up(K_p, T_i, u_0, e_frost, e_after, frost)[1] - K_p * (e_frost + e_after)}
 
@@ -408,12 +414,14 @@ def _(A, tau):
     return {"K_u": pi * A / tau, "P_u": 2 * tau}
 
 
-@canal.mistake("Here the dead time turns the phase by one radian. Half a turn, less the integrator's share, is more.")
+@canal.mistake(
+    "Here the dead time turns the phase by one radian. Half a turn minus the integrator's share is more than that."
+)
 def _(A, tau):
     return {"K_u": A / tau, "P_u": 2 * pi * tau}
 
 
-@canal.mistake("This is the whole delay at the limit. Some of it is there already.")
+@canal.mistake("This is the whole delay at the limit. Part of it is already there.")
 def _(A, K_p):
     return {"delay_margin": pi * A / (2 * K_p)}
 

@@ -67,9 +67,7 @@ def _hot_flow():
     return w_c * (T_SP - T_c) / (T_h - T_SP)
 
 
-@wash_water.mistake(
-    "The hot water, too, has to come down to the setpoint only, not to the temperature of the cold water."
-)
+@wash_water.mistake("The hot water has to cool down to the setpoint only, not to the temperature of the cold water.")
 def _(T_SP, T_c, T_h, before, more):
     w_c, setpoint, cold, hot = symbols("w_c T_SP T_c T_h")
     return {
@@ -87,22 +85,22 @@ def _(T_SP, T_c, T_h, before, more):
     }
 
 
-@wash_water.mistake("Here numbers have been put in. Asked is the formula with all its symbols.")
+@wash_water.mistake("Here numbers have been put in. Give the formula with all its symbols.")
 def _(T_SP, T_c, T_h):
     return {"w_h": Symbol("w_c") * (T_SP - T_c) / (T_h - T_SP)}
 
 
-@wash_water.mistake("This is the setpoint. But the cold flow has changed, and nothing has made up for it.")
+@wash_water.mistake("This is the setpoint. But the cold flow has changed, and nothing has compensated for it.")
 def _(T_SP):
     return {"T_without": T_SP}
 
 
-@wash_water.mistake("This is how much more hot water is needed. Asked is the whole hot flow.")
+@wash_water.mistake("This is how much more hot water is needed. How large is the whole hot flow?")
 def _(T_SP, T_c, T_h, before, more):
     return {"w_new": _hot_flows(T_SP, T_c, T_h, before, more)[3]}
 
 
-@wash_water.mistake("A mixture of unequal flows does not have the mean of the two temperatures.")
+@wash_water.mistake("The temperature of a mixture is the mean of the two only if the flows are equal.")
 def _(T_SP, T_c, T_h, before, more):
     hot = before * (T_SP - T_c) / (T_h - T_SP)
     mixed = (hot * T_h + (before + more) * T_c) / (hot + before + more)
@@ -160,12 +158,12 @@ def _():
     return {"F_f": _force(friction=0)}
 
 
-@trolley.mistake("This is the feedforward from the setpoint alone. The disturbance is measured; use it, too.")
+@trolley.mistake("This is the feedforward from the setpoint alone. The disturbance is measured, so use it as well.")
 def _():
     return {"F_f": _force(wind=0)}
 
 
-@trolley.mistake("Here numbers have been put in. Asked is the formula with all its symbols.")
+@trolley.mistake("Here numbers have been put in. Give the formula with all its symbols.")
 def _(m, D, F_w):
     return {"F_f": m * Symbol("a_SP") + D * Symbol("v_SP") + F_w}
 
@@ -208,7 +206,7 @@ def pasteuriser(
     )
 
 
-@pasteuriser.mistake("This feedforward knows only where everything ends. On the way there, the two lags differ.")
+@pasteuriser.mistake("This feedforward is right only in the end. On the way there, the two lags differ.")
 def _(K, K_d, tau, tau_d, rise):
     return {"F_fd": K_d / K * exp(-(tau_d - tau) * s), "u_first": rise * K_d / K}
 
@@ -220,14 +218,16 @@ def _(K, K_d):
     return {"F_fd": K_d / K}
 
 
-@pasteuriser.mistake("The two lags are exchanged. Whichever is divided by brings its lag into the numerator.")
+@pasteuriser.mistake(
+    "The two lags are interchanged. The lag of the transfer function in the denominator moves to the numerator."
+)
 def _(K, T, tau, K_d, T_d, tau_d, rise):
     F_fd = K_d * (T_d * s + 1) / (K * (T * s + 1)) * exp(-(tau_d - tau) * s)
     return {"F_fd": F_fd, "u_first": rise * K_d * T_d / (K * T)}
 
 
 @pasteuriser.mistake(
-    "The dead times do not add up. The milk flow needs its time to show; how much of it may the feedforward wait?"
+    "The dead times do not add up. The milk flow needs its time to show; how long may the feedforward wait?"
 )
 def _(K, T, tau, K_d, T_d, tau_d):
     return {"F_fd": K_d * (T * s + 1) / (K * (T_d * s + 1)) * exp(-(tau_d + tau) * s)}
@@ -280,12 +280,12 @@ def _compared(theta, P):
     return "smaller" if 6 * theta < P else "larger"
 
 
-@ship.mistake("So much the feedforward takes away. How much is left? (A swing has no sign here.)")
+@ship.mistake("That is what the feedforward removes. How much is left? (An amplitude has no sign.)")
 def _(e_0, k):
     return {"e_wrong": k * e_0}
 
 
-@ship.mistake("This is the factor by which the feedforward changes the swing. How many metres are that?")
+@ship.mistake("This is the factor by which the feedforward changes the amplitude. How many metres is that?")
 def _(k, theta, P):
     return {"e_wrong": abs(1 - k), "e_late": 2 * math.sin(_x(theta, P) / 2)}
 
@@ -296,7 +296,7 @@ def _(e_0, theta, P):
 
 
 @ship.mistake(
-    "That holds for slow swings only. How long is the difference of two arrows of length one with that angle?"
+    "That holds for slow oscillations only. How long is the difference of two arrows of length one with that angle?"
 )
 def _(e_0, theta, P):
     return {"e_late": _x(theta, P) * e_0}
@@ -312,7 +312,7 @@ def _(theta):
     return {"P_min": 2 * theta}
 
 
-@ship.mistake("Compare the swing with the one under feedback alone.")
+@ship.mistake("Compare the amplitude with the one under feedback alone.")
 def _(theta, P):
     return {"compared": "larger" if _compared(theta, P) == "smaller" else "smaller"}
 
@@ -381,7 +381,7 @@ def _(u_0, u_full):
     return {"curve": u_0 + (u_full - u_0) * (d / 100) ** 2}
 
 
-@water_main.mistake("This is what is needed at that consumption. The table knows the curve at its points only.")
+@water_main.mistake("This is what is needed at that consumption. The table has the curve at its points only.")
 def _(u_0, u_full, d):
     return {"u_f": _needed(u_0, u_full, d)}
 
@@ -398,13 +398,13 @@ def _(u_0, u_full, points, d):
     return {"u_f": right} if _apart((right, _line(u_0, u_full, points, d))) else {}
 
 
-@water_main.mistake("This is the number of intervals. How many points do they have?")
+@water_main.mistake("This is the number of intervals. How many points do they need?")
 def _(u_0, u_full, e_max):
     return {"N": _fewest(u_0, u_full, e_max) - 1}
 
 
 @water_main.mistake(
-    "With so many points the error would be small enough, but fewer will do. "
+    "With this many points the error is small enough, but fewer will do. "
     "How does it fall when the intervals become shorter?"
 )
 def _(u_0, u_full, points, e_max):

@@ -103,7 +103,7 @@ def _bits(span, finest):
     return next(bits for bits in range(1, 40) if _step(span, bits) <= finest)
 
 
-@silo.mistake("A number of that many bits has many more values. How many are there with two bits, with three bits?")
+@silo.mistake("A number with that many bits has many more values. How many are there with two bits, with three bits?")
 def _(span, bits):
     return {"step": 1000 * span / bits}
 
@@ -118,7 +118,7 @@ def _(span, inaccuracy):
     return {"error": 10 * span * inaccuracy}
 
 
-@silo.mistake("The drift is stated for one degree. By how many degrees has it become warmer?")
+@silo.mistake("The drift is stated for one degree. By how many degrees has the temperature risen?")
 def _(span, inaccuracy, drift):
     return {"error": 10 * span * (inaccuracy + drift)}
 
@@ -191,7 +191,7 @@ def _(R_load):
     return {"V": 4 * R_load / 1000}
 
 
-@dam.mistake("The cable and the input share the voltage. Which share of both together has the cable?")
+@dam.mistake("The cable and the input share the voltage. What share of the total resistance does the cable have?")
 def _(wire, length, R_voltage):
     R_cable = 2 * wire * length
     return {"lost": 100 - 100 * R_cable / (R_cable + 1000 * R_voltage)}
@@ -230,7 +230,7 @@ def _(A, q, D, ripple):
     return {"ripple": formula, "P": ripple * A / (q * D), "P_any": ripple * A / q}
 
 
-@pump_sump.mistake("Here numbers have been put in. Asked is first the formula with the symbols.")
+@pump_sump.mistake("Here numbers have been put in. Give the formula with the symbols first.")
 def _(A, q, D):
     return {"ripple": q * D * (1 - D) / A * Symbol("P")}
 
@@ -241,7 +241,7 @@ def _(A, q, D, ripple):
 
 
 @pump_sump.mistake(
-    "This is how far the level is from the middle. Asked is the way from the lowest to the highest point."
+    "This is how far the level moves from the middle. How far is it from the lowest to the highest point?"
 )
 def _(A, q, D, ripple):
     return {"ripple": _sump_ripple() / 2, "P": 2 * ripple * A / (q * D * (1 - D)), "P_any": 8 * ripple * A / q}
@@ -314,12 +314,12 @@ def _(full, T, D):
     return {"y": full * D * (1 - exp(-t / T))}
 
 
-@oven.mistake("So hot would it be with the relay always on. Which part of the power does the oven get on average?")
+@oven.mistake("The oven would be that hot with the relay always on. What part of the power does it get on average?")
 def _(full):
     return {"mean": full}
 
 
-@oven.mistake("That formula holds for cycles that are short beside the time constant. This one is not.")
+@oven.mistake("That formula holds for cycles that are short compared with the time constant. This one is not.")
 def _(full, T, D, P):
     return {"ripple": full * D * (1 - D) * P / T}
 
@@ -373,12 +373,12 @@ def _(K, T, tau, K_p):
     return {"margin": T / (K * K_p) - tau}
 
 
-@program.mistake("Here the phase is turned by half a turn. The integrator has taken a part of that already.")
+@program.mistake("Here the phase is turned by half a turn. The integrator accounts for a part of that.")
 def _(K, T, tau, K_p):
     return {"margin": pi * T / (K * K_p) - tau}
 
 
-@program.mistake("The controller's output stands still for a whole step. How old is it on average?")
+@program.mistake("The controller's output is constant for a whole step. How old is it on average?")
 def _(K, T, tau, K_p, h):
     margin = _margin(K, T, tau, K_p)
     return {"h_limit": margin, "left": margin - h}

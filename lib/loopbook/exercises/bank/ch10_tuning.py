@@ -60,7 +60,7 @@ def _(t_63):
     return {"T": t_63}
 
 
-@ruler.mistake("Between 28 % and 63 % there is less than a whole time constant: look at what each of them stands for.")
+@ruler.mistake("Between 28 % and 63 % there is less than a whole time constant: look at what each of them means.")
 def _(t_28, t_63):
     return {"T": t_63 - t_28}
 
@@ -142,14 +142,14 @@ def heat_exchanger(
     return answers(pid=settings(serial.parallel(), "%/K", "s", "the settings", form="parallel"))
 
 
-@heat_exchanger.mistake("The integral time is that for $c = 4$. Look at the factor that is asked.")
+@heat_exchanger.mistake("That is the integral time for $c = 4$. Look at the factor in the question.")
 def _(K, T_1, T_2, delay):
     if 8 * delay < T_1:
         return {"pid": PID(T_1 / (K * 2 * delay), 8 * delay, T_2, form="serial").parallel()}
 
 
 @heat_exchanger.mistake(
-    "The integral time is the lag itself here. With the factor that is asked, there is something shorter."
+    "The integral time is the lag itself here. With the factor in the question, the other limit is shorter."
 )
 def _(K, T_1, T_2, delay):
     return {"pid": PID(T_1 / (K * 2 * delay), T_1, T_2, form="serial").parallel()}
@@ -160,7 +160,7 @@ def _(K, T_1, T_2, delay):
     return {"pid": PID(T_1 / (K * delay), Min(T_1, 4 * delay), T_2, form="serial").parallel()}
 
 
-@heat_exchanger.mistake("The second lag is forgotten. A PI controller leaves it in the loop; what could cancel it?")
+@heat_exchanger.mistake("The second lag is missing. A PI controller leaves it in the loop; what could cancel it?")
 def _(K, T_1, delay):
     return {"pid": PID(T_1 / (K * 2 * delay), Min(T_1, 4 * delay))}
 
@@ -299,7 +299,7 @@ def _(K_p):
     return {"Kp": K_p}
 
 
-@another_flow.mistake("Is a larger gain of the process met by a larger or by a smaller gain of the controller?")
+@another_flow.mistake("If the gain of the process grows, should the gain of the controller grow or shrink?")
 def _(K_p, w_1, w_2):
     return {"Kp": K_p * w_1 / w_2}
 
@@ -321,7 +321,7 @@ def _(w_1, w_2):
     return {"unchanged": "more sluggish" if w_2 < w_1 else "less stable"}
 
 
-@another_flow.mistake("The settings are as they were, but the process is not. What has become of its gain?")
+@another_flow.mistake("The settings are as they were, but the process is not. What is its gain now?")
 def _():
     return {"unchanged": "as it was"}
 

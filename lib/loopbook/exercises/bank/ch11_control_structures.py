@@ -58,7 +58,7 @@ def _(x_S, x_L, F_S):
     return {"K": x_S / x_L, "F_W": x_S / x_L * F_S}
 
 
-@lemonade.mistake("That is the ratio of two contents of sugar. Set up two balances, of the sugar and of all the mass.")
+@lemonade.mistake("That is the ratio of the two sugar contents. Set up two balances, of the sugar and of all the mass.")
 def _(x_S, x_L, F_S):
     return {"K": x_L / x_S, "F_W": x_L / x_S * F_S}
 
@@ -76,7 +76,7 @@ def _():
 
 
 @lemonade.mistake(
-    "That is the part by which the flow of syrup falls. Write the quotient's gain before and after, and divide."
+    "That is the fraction by which the flow of syrup falls. Write the quotient's gain before and after, and divide."
 )
 def _(part):
     return {"factor": 1 - part / 100} if part != 50 else {}
@@ -140,7 +140,7 @@ def _(u, split, action):
     return {valve: 100 for valve, opening in openings.items() if not opening}
 
 
-@blanket.mistake("That is the control signal. Each valve passes its whole way over a part of it.")
+@blanket.mistake("That is the control signal. Each valve travels its full range over a part of it.")
 def _(u, split, action):
     openings = dict(zip(("vent", "inlet"), blanket_valves(u, split, action), strict=True))
     return {valve: u for valve, opening in openings.items() if opening and abs(opening - u) > 2}
@@ -195,14 +195,14 @@ def _(place, closing):
     }
 
 
-@tanks_in_row.mistake("That is right for a valve that opens as its signal rises. What does the valve of this one do?")
+@tanks_in_row.mistake("That is right for a valve that opens as its signal rises. What does this valve do?")
 def _(place, closing):
     return {name: OTHER[action] for name, action in actions_in_row(place, closing).items() if name in closing}
 
 
 @tanks_in_row.mistake(
-    "Look at where the flow is already decided. Upstream of there a level must be kept by what comes in, "
-    "downstream of there by what goes out."
+    "Look at where the flow is already decided. Upstream of that point a level must be controlled by its "
+    "inflow, downstream of it by its outflow."
 )
 def _(place, closing):
     return {name: OTHER[action] for name, action in actions_in_row(place, closing).items() if name not in closing}
@@ -248,12 +248,14 @@ def _(K_1, T_1, K_2, T_2, K_p2):
     return {"H": both / (1 + K_p2 * both)} | ({"factor": loop} if abs(loop - inner) > inner / 20 else {})
 
 
-@oven.mistake("That is the answer to the setpoint of the secondary loop. The disturbance does not pass the controller.")
+@oven.mistake(
+    "That is the response to the setpoint of the secondary loop. The disturbance does not pass the controller."
+)
 def _(K_1, T_1, K_2, T_2, K_p2):
     return {"H": K_p2 * K_1 * K_2 / ((T_1 * s + 1) * (T_2 * s + 1 + K_p2 * K_2))}
 
 
-@oven.mistake("That is the part by which the effect falls. Asked is how many times smaller it becomes.")
+@oven.mistake("That is the fraction by which the effect falls. How many times smaller does it become?")
 def _(K_2, K_p2):
     return {"factor": 1 - 1 / (1 + K_p2 * K_2)}
 
@@ -263,9 +265,7 @@ def _(K_1, T_1, K_2, T_2, K_p2):
     return {"H": K_1 * K_2 / ((T_1 * s + 1) * (T_2 / (1 + K_p2 * K_2) * s + 1))}
 
 
-@oven.mistake(
-    "That is the gain of the secondary loop alone. What stands in the denominator of a closed loop besides it?"
-)
+@oven.mistake("That is the gain of the secondary loop alone. What else is in the denominator of a closed loop?")
 def _(K_2, K_p2, T_2):
     return {"factor": K_p2 * K_2, "T": T_2 / (K_p2 * K_2)}
 
@@ -374,19 +374,19 @@ def _(K_1, T_1, K_2, T_2, L_1, L_2):
     return {"K_p1": K_p1 * K_p2}
 
 
-@two_poles.mistake("That may be its value here. Asked is an expression in the symbols.")
+@two_poles.mistake("That may be its value here. Give an expression in the symbols.")
 def _(K_1, T_1, K_2, T_2, L_1, L_2):
     K_p1, K_p2 = two_P(K_1, T_1, K_2, T_2, L_1, L_2)
     return {"left": float((1 + K_2 * K_p2) / (1 + K_2 * K_p2 + K_1 * K_2 * K_p1 * K_p2))}
 
 
-@two_poles.mistake("That is the gain of a controller times that of its process. Asked is the controller's alone.")
+@two_poles.mistake("That is the gain of a controller times that of its process. Give the controller's gain alone.")
 def _(K_1, T_1, K_2, T_2, L_1, L_2):
     K_p1, K_p2 = two_P(K_1, T_1, K_2, T_2, L_1, L_2)
     return {"K_p1": K_1 * K_p1} | ({"K_p2": K_2 * K_p2} if K_2 != 1 else {})
 
 
-@two_poles.mistake("That is how far the drum comes. Asked is what is missing in the end.")
+@two_poles.mistake("That is how far the drum comes. How much is missing in the end?")
 def _():
     k_1, k_2, p_1, p_2 = symbols("K_1 K_2 K_p1 K_p2", positive=True)
     return {"left": k_1 * k_2 * p_1 * p_2 / (1 + k_2 * p_2 + k_1 * k_2 * p_1 * p_2)}
@@ -400,7 +400,7 @@ def _():
     return {"left": 1 / (1 + k_1 * p_1)}
 
 
-@two_poles.mistake("There the air is not fed back. At rest the secondary loop answers with less than what it is asked.")
+@two_poles.mistake("There the air is not fed back. At rest the secondary loop gives less than its setpoint.")
 def _():
     k_1, k_2, p_1, p_2 = symbols("K_1 K_2 K_p1 K_p2", positive=True)
     return {"left": 1 / (1 + k_1 * k_2 * p_1 * p_2)}
@@ -453,7 +453,7 @@ def tuned_inside_out(K_1, T_1, K_2, T_2, delay):
     return inner, outer, delay + min(T_1, T_2) / 2
 
 
-@inside_out.mistake("That takes the secondary loop for a dead time alone. It was ordered with a lag besides.")
+@inside_out.mistake("That takes the secondary loop for a dead time alone. It was specified with a lag as well.")
 def _(K_1, T_1, delay):
     return {"primary": PID(T_1 / (2 * K_1 * delay), Min(T_1, 8 * delay))}
 
@@ -467,15 +467,13 @@ def _(K_1, T_1, K_2, T_2, delay):
     return {name: PID(pid.Kp, Ti) for name, (pid, Ti) in short.items() if Ti < pid.Ti}
 
 
-@inside_out.mistake("What stands in the denominator of Skogestad's gain besides $T_C$?")
+@inside_out.mistake("What else is in the denominator of Skogestad's gain beside $T_C$?")
 def _(K_1, T_1, K_2, T_2, delay):
     inner, outer, _ = tuned_inside_out(K_1, T_1, K_2, T_2, delay)
     return {"secondary": PID(2 * inner.Kp, inner.Ti), "primary": PID(2 * outer.Kp, outer.Ti)}
 
 
-@inside_out.mistake(
-    "That is tuned in front of the whole process. The primary controller has the closed secondary loop before it."
-)
+@inside_out.mistake("That is tuned for the whole process. The primary controller acts on the closed secondary loop.")
 def _(K_1, T_1, K_2, T_2, delay):
     late = delay + T_2 / 2
     return {"primary": PID((T_1 + T_2 / 2) / (2 * K_1 * K_2 * late), Min(T_1 + T_2 / 2, 8 * late))}
@@ -488,7 +486,7 @@ def _(T_2, delay):
     return {"alone": delay + T_2}
 
 
-@inside_out.mistake("That is only what comes from the neglected lag. Which dead time has been there before?")
+@inside_out.mistake("That is only what comes from the neglected lag. Which dead time was there before?")
 def _(T_2, delay):
     return {"alone": T_2 / 2}
 
@@ -546,7 +544,9 @@ def _(K_c, K_h):
     return {"lower": K_c, "upper": K_h}
 
 
-@where_to_split.mistake("A valve passes its whole way over half of the range: is its opening then steeper, or flatter?")
+@where_to_split.mistake(
+    "A valve travels its full range over half of the signal: is its characteristic then steeper or flatter?"
+)
 def _(K_c, K_h):
     return {"lower": K_c / 2, "upper": K_h / 2}
 
@@ -689,7 +689,9 @@ def lazy_tank(
     )
 
 
-@lazy_tank.mistake("That is what a P controller alone would allow. The integral term keeps the bow of the level lower.")
+@lazy_tank.mistake(
+    "That is what a P controller alone would allow. The integral term keeps the excursion of the level smaller."
+)
 def _(A, F, dh, period, gain):
     T_C = 1000 * float(A) * float(dh) / float(F)
     return {"T_C": T_C} if abs(T_C / shortest_T_C(period, gain) - 1) > 0.03 else {}
@@ -702,6 +704,6 @@ def _(period, gain):
     return {"T_C": shortest_T_C(period, gain)}
 
 
-@lazy_tank.mistake("There the density has been forgotten: the flows are masses per second.")
+@lazy_tank.mistake("The density is missing: the flows are masses per second.")
 def _(A, F, dh):
     return {"T_C": longest_T_C(A, F, dh) / 1000}

@@ -55,7 +55,7 @@ def _(m):
     return {"full": f"`mass >= {float(m):g}`"}
 
 
-@bottles.mistake("The condition is looked at in the scans only. Which scan is the first one that finds it true?")
+@bottles.mistake("The condition is tested in the scans only. Which scan is the first one that finds it true?")
 def _(arrival, m, q):
     return {"Cap": arrival + m / q}
 
@@ -159,7 +159,7 @@ def _(stop, lamp, stir):
 
 
 @what_is_on.mistake(
-    "The two rules are exchanged there. With stored values an output stays as it is until an action changes it."
+    "The two rules are interchanged. With stored values an output stays as it is until an action changes it."
 )
 def _(stop, lamp, stir, step):
     return {"stored": while_active(stop, lamp, stir, step), "default": stored(stop, lamp, stir, step)}
@@ -246,13 +246,13 @@ def _key(order, w_1, w_2, a, b, c):
     return {name: way_of(egg, order, w_1, w_2) for name, egg in eggs.items()}
 
 
-@eggs.mistake("That is where the egg belongs by its mass. Which condition does a scan find true first?")
+@eggs.mistake("That is where the mass of the egg belongs. Which condition does a scan find true first?")
 def _(order, w_1, w_2, a, b, c):
     meant = dict(first=by_name(a, w_1, w_2), second=by_name(b, w_1, w_2), third=by_name(c, w_1, w_2))
     return _others(meant, **_key(order, w_1, w_2, a, b, c))
 
 
-@eggs.mistake("The last true condition does not win. In which order are alternative branches looked at?")
+@eggs.mistake("The last true condition does not win. In which order are alternative branches tested?")
 def _(order, w_1, w_2, a, b, c):
     last = {name: way_of(egg, order, w_1, w_2, -1) for name, egg in dict(first=a, second=b, third=c).items()}
     meant = dict(first=by_name(a, w_1, w_2), second=by_name(b, w_1, w_2), third=by_name(c, w_1, w_2))
@@ -354,7 +354,7 @@ def _(mistake):
 
 
 @wrong_chart.mistake(
-    "Each transition by itself is fine. But one of them has two steps in front of it: are both ever active?"
+    "Each transition is fine on its own. But one of them has two steps before it: are both ever active?"
 )
 def _(mistake):
     return {"mistake": "sound"} if mistake == "waiting forever" else {}
@@ -421,7 +421,7 @@ def _(n):
     }
 
 
-@heat_and_dose.mistake("Simultaneous branches run at the same time, each by itself.")
+@heat_and_dose.mistake("Simultaneous branches run at the same time, independently of each other.")
 def _(T_0, T_SP, rate, n, dose, react):
     both = (T_SP - T_0) / rate + n * dose
     return {"begin": both, "end": both + react}
@@ -438,13 +438,14 @@ def _(T_0, T_SP, rate, n, dose):
     return {"waited": "Hold" if (T_SP - T_0) / rate > n * dose else "Ready"}
 
 
-@heat_and_dose.mistake("That is the number of steps. A state is all that is active together.")
+@heat_and_dose.mistake("That is the number of steps. A state is the set of all steps that are active together.")
 def _(n):
     return {"states": n + 5}
 
 
 @heat_and_dose.mistake(
-    "So many are passed in one run. The diagram has all that can be active together, whatever the times."
+    "That is how many occur in one run. The diagram has all combinations that can be active together, whatever "
+    "the times."
 )
 def _(n):
     return {"states": n + 4} if n != 2 else {}
@@ -517,7 +518,7 @@ def _():
 
 
 @shift.mistake(
-    "That would empty a vat that is filled to $h_1 - h_0$. A root of a difference is no difference of roots."
+    "That would empty a vat that is filled to $h_1 - h_0$. The root of a difference is not the difference of the roots."
 )
 def _():
     a, k, low, high = symbols("A K_v h_0 h_1", positive=True)
@@ -530,7 +531,7 @@ def _():
     return {"Empty": 2 * a * sqrt(high) / k}
 
 
-@shift.mistake("Differentiate the root of the level with respect to time once more: a factor is missing.")
+@shift.mistake("Differentiate the root of the level with respect to time again: a factor is missing.")
 def _():
     a, k, low, high = symbols("A K_v h_0 h_1", positive=True)
     return {"Empty": a * (sqrt(high) - sqrt(low)) / k}
@@ -551,18 +552,18 @@ def _(tau, T_SP, T_end):
     return {"Heat": float(tau) * math.log(T_end / (T_end - T_SP))}
 
 
-@shift.mistake("One step is missing in that sum: which of the four?")
+@shift.mistake("One step is missing from that sum. Which of the four?")
 def _(A, h_0, h_1, q, K_v, tau, T_0, T_SP, T_end, hold):
     times = stages(A, h_0, h_1, q, K_v, tau, T_0, T_SP, T_end, hold)
     return {"batch": sum(times) - float(hold)}
 
 
-@shift.mistake("How many of these are whole ones, and finished?")
+@shift.mistake("How many of these are complete?")
 def _(A, h_0, h_1, q, K_v, tau, T_0, T_SP, T_end, hold):
     return {"batches": 480 / sum(stages(A, h_0, h_1, q, K_v, tau, T_0, T_SP, T_end, hold))}
 
 
-@shift.mistake("That may be its value here. Asked is an expression in the symbols.")
+@shift.mistake("That may be its value here. Give an expression in the symbols.")
 def _(A, h_0, h_1, K_v):
     return {"Empty": float(2 * A * (sqrt(h_1) - sqrt(h_0)) / K_v) * 1000 / 60}
 
@@ -643,7 +644,7 @@ def _(h_1):
     return {"full": f"{float(h_1):g}"}
 
 
-@way_out.mistake("With that supply the tank is full soonest. Which supply makes filling long?")
+@way_out.mistake("With that supply the tank fills fastest. Which supply makes filling long?")
 def _(A, h_0, h_1, q_high):
     return {"longest": slowest(A, h_0, h_1, q_high)}
 
@@ -654,7 +655,7 @@ def _(A, h_1, q_low):
 
 
 @way_out.mistake(
-    "With that limit the water stands at the rim when the time is over, and the valve has not even begun to close."
+    "With that limit the water has reached the rim when the time is over, and the valve has not even begun to close."
 )
 def _(A, h_0, q_high, rim):
     return {"limit": 1000 * A * (rim - h_0) / q_high}

@@ -150,7 +150,7 @@ def swinging_loop(
 
 
 @swinging_loop.mistake(
-    "The overshoot counts from the final value and as a share of the step. Which logarithm belongs to it?"
+    "The overshoot is counted from the final value, as a share of the step. Which logarithm belongs to it?"
 )
 def _(percent):
     return {"zeta": _damping(1 - percent / 100)} if percent != 50 else {}
@@ -168,7 +168,7 @@ def _(P):
     return {"tau": P / (2 * sympy.pi)}
 
 
-@swinging_loop.mistake("The imaginary part is the frequency of the swing in rad/s. You know its period.")
+@swinging_loop.mistake("The imaginary part is the frequency of the oscillation in rad/s. You know its period.")
 def _(percent, P):
     real, tau = _real_part(percent, P)
     return {"poles": [complex(real, 1 / tau), complex(real, -1 / tau)]}
@@ -224,7 +224,7 @@ def cold_feed(
     )
 
 
-@cold_feed.mistake("One of the two effects lowers the temperature. With which sign does it enter?")
+@cold_feed.mistake("One of the two effects lowers the temperature. What is its sign?")
 def _(k, K, tau_1, tau_2):
     return {"G": k / (tau_1 * s + 1) + K / (tau_2 * s + 1), "zero": [-(k + K) / (K * tau_1 + k * tau_2)]}
 
@@ -302,7 +302,7 @@ def _():
     return {"damping": 2 * _damping_in_symbols(1)}
 
 
-@gain_and_damping.mistake("Here numbers have been put in. Asked is first the formula with the symbols.")
+@gain_and_damping.mistake("Here numbers have been put in. Give the formula with the symbols first.")
 def _(k, tau_1, tau_2):
     return {"damping": (tau_1 + tau_2) / (2 * sympy.sqrt(tau_1 * tau_2 * (1 + k * symbols("K_c"))))}
 
@@ -312,7 +312,7 @@ def _(k, tau_1, tau_2, zeta):
     return {"K_c": (tau_1 + tau_2) ** 2 / (4 * Rational(zeta) ** 2 * tau_1 * tau_2) - 1}
 
 
-@gain_and_damping.mistake("That is the share which is reached. The offset is what is left.")
+@gain_and_damping.mistake("That is the share that is reached. The offset is what is missing.")
 def _(tau_1, tau_2, zeta):
     left = 4 * Rational(zeta) ** 2 * tau_1 * tau_2 / (tau_1 + tau_2) ** 2
     return {"offset": 100 * (1 - left)} if abs(1 / left - 2) > 0.05 else {}
@@ -324,7 +324,7 @@ def _(tau_1, tau_2, zeta):
     return {"offset": 100 / (square - 1)}
 
 
-@gain_and_damping.mistake("That is the coefficient of $s^2$. Which power of the time constant stands there?")
+@gain_and_damping.mistake("That is the coefficient of $s^2$. Which power of the time constant is it?")
 def _(tau_1, tau_2, zeta):
     wrong = 4 * Rational(zeta) ** 2 * (tau_1 * tau_2) ** 2 / (tau_1 + tau_2) ** 2
     return {"tau": wrong} if abs(wrong - 1) > Rational(1, 10) else {}
@@ -363,7 +363,7 @@ def shrinking_drum(
     )
 
 
-@shrinking_drum.mistake("The bubbles that collapse lower the level. With which sign does this effect enter?")
+@shrinking_drum.mistake("The bubbles that collapse lower the level. What is the sign of this effect?")
 def _(rate, K, tau, M):
     return {
         "G": rate / s + K / (tau * s + 1),
@@ -472,13 +472,13 @@ def calm_level(
     )
 
 
-@calm_level.mistake("The area must be in it the other way around: $k'$ is one over the area.")
+@calm_level.mistake("The area is upside down: $k'$ is one over the area.")
 def _():
     A, K_c = symbols("A K_c", positive=True)
     return {"tau_least": 4 / (A * K_c)}
 
 
-@calm_level.mistake("Look at the discriminant of the closed loop's denominator again, at the factor in front.")
+@calm_level.mistake("Look again at the discriminant of the closed loop's denominator and its leading factor.")
 def _():
     A, K_c = symbols("A K_c", positive=True)
     return {"tau_least": A / K_c}

@@ -119,7 +119,8 @@ def _(k, tau_2, tau_3):
 
 
 @gas_holder.mistake(
-    "In a model of first order the integrator is all that is kept. The half that it gets is lost beside it."
+    "In a model of first order the integrator is all that is kept. Half of the lag is lost: it is negligible "
+    "beside the integrator."
 )
 def _(k, tau_2, tau_3):
     return {"g_1": k * exp(-(tau_2 / 2 + tau_3) * s) / (s * (tau_2 / 2 * s + 1))}
@@ -203,14 +204,14 @@ def _(T_0, tau_0):
     return {"part": (T_0 * s + 1) / (tau_0 * s + 1)}
 
 
-@zero_beside_a_lag.mistake("The zero is beside a longer lag, that is so. Now compare $T_0$ with five dead times.")
+@zero_beside_a_lag.mistake("It is true that the zero goes with a longer lag. Now compare $T_0$ with five dead times.")
 def _(T_0, tau_0, theta):
     other = {"T2": "T3", "T3": "T2"}.get(_rule(T_0, tau_0, theta)[0])
     return {"rule": other} if other else {}
 
 
 @zero_beside_a_lag.mistake(
-    "The lag is long beside the loop. Before the difference is taken, it is shortened, and the slope kept."
+    "The lag is long compared with the loop. It is shortened, with the slope kept, before the difference is taken."
 )
 def _(T_0, tau_0, theta):
     if _rule(T_0, tau_0, theta)[0] == "T3" and tau_0 > 5 * theta:
@@ -300,13 +301,13 @@ def _(T, theta):
     return {"g": (1 - theta * s) / (T * s + 1), "Ku": T / theta}
 
 
-@price_of_a_fraction.mistake("That is the process itself. The program has no dead time: what stands in its place?")
+@price_of_a_fraction.mistake("That is the process itself. The program has no dead time: what replaces it?")
 def _(T, theta):
     return {"g": exp(-theta * s) / (T * s + 1)}
 
 
 @price_of_a_fraction.mistake(
-    "That is so with the exact dead time. The program does not know it: take its transfer function."
+    "That holds with the exact dead time. The program does not have it: use its transfer function."
 )
 def _(T, theta):
     omega = _phase_crossing(float(T), float(theta))
@@ -318,7 +319,7 @@ def _(T, theta):
     return {"Pu": 2 * pi / _period(T, theta, 1 + 2 * T / theta)}
 
 
-@price_of_a_fraction.mistake("That is the share by which the exact gain is smaller. Take the exact gain as 100 %.")
+@price_of_a_fraction.mistake("That is the percentage by which the exact gain is smaller. Take the exact gain as 100 %.")
 def _(T, theta):
     omega = _phase_crossing(float(T), float(theta))
     exact = (1 + (float(T) * omega) ** 2) ** 0.5
@@ -373,7 +374,8 @@ def _(K, tau, theta):
 
 
 @before_the_dead_time.mistake(
-    "That is the response with the exact dead time, and it is not asked. That of the fraction begins at once."
+    "That is the response with the exact dead time, which is not the question. The response with the fraction "
+    "begins immediately."
 )
 def _(K, tau, theta):
     from sympy import Heaviside
@@ -382,7 +384,8 @@ def _(K, tau, theta):
 
 
 @before_the_dead_time.mistake(
-    "That belongs to the exact dead time, and there only to the time after it. That of the fraction begins at once."
+    "That belongs to the exact dead time, and only to the time after it. The response with the fraction begins "
+    "immediately."
 )
 def _(K, tau, theta):
     return {"y": K * (1 - exp(-(t - theta) / tau))}
@@ -468,12 +471,12 @@ def _(k, T_1, T_2, T_3, theta):
     }
 
 
-@whole_process.mistake("The small lags are not in the model. The loop has them all the same: count them in the delay.")
+@whole_process.mistake("The small lags are not in the model. But the loop has them: count them in the delay.")
 def _(k, T_1, T_2, T_3, theta):
     return {"pid": PID(T_1 / (2 * k * theta), min(T_1, 8 * theta))}
 
 
-@whole_process.mistake("That is stable enough, but too careful: not all of the largest neglected lag need be delay.")
+@whole_process.mistake("That is stable enough, but too careful: only half of the largest neglected lag becomes delay.")
 def _(k, T_1, T_2, T_3, theta):
     delay = theta + T_2 + T_3
     return {"pid": PID(T_1 / (2 * k * delay), min(T_1, 8 * delay))}

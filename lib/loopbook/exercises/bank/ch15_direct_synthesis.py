@@ -54,17 +54,19 @@ def _(K, T, Tc):
     return {"controller": PID(T / (K * Tc), Tc)}
 
 
-@faster_tank.mistake("With your gain, a faster wish would lead to a weaker controller. Solve for the controller again.")
+@faster_tank.mistake(
+    "With your gain, a faster closed loop would need a weaker controller. Solve for the controller again."
+)
 def _(K, T, Tc):
     return {"controller": PID(Tc / (K * T), T)}
 
 
-@faster_tank.mistake("So long would the tank take without a controller. Which lag does the closed loop have?")
+@faster_tank.mistake("That is how slow the tank is without a controller. Which lag does the closed loop have?")
 def _(T):
     return {"time": T * math.log(20)}
 
 
-@faster_tank.mistake("After that time the temperature has come only 63 % of the way.")
+@faster_tank.mistake("After that time the temperature has covered only 63 % of the way.")
 def _(Tc):
     return {"time": Tc}
 
@@ -109,14 +111,14 @@ def _(K, delay):
     return {"process": integrator(K, delay)}
 
 
-@level_offset.mistake("The dead time is missing: it takes part in the gain, beside the wish.")
+@level_offset.mistake("The dead time is missing: it is added to the closed-loop time constant in the gain.")
 def _(K, delay, Tc):
     return {"gain": 1 / (K * Tc), "controller": PID(2 / (K * Tc), 2 * Tc)}
 
 
 @level_offset.mistake(
-    "With that offset a stronger controller would leave more of it. Which valve position must the gain make of the "
-    "offset?"
+    "With that offset a stronger controller would leave more of it. Which valve position must the gain produce "
+    "from the offset?"
 )
 def _(K, delay, Tc, load):
     gain = 1 / (K * (Tc + delay))
@@ -124,7 +126,8 @@ def _(K, delay, Tc, load):
 
 
 @level_offset.mistake(
-    "That is Skogestad's integral time for an integrating process. Here it follows from the wish with the lead."
+    "That is Skogestad's integral time for an integrating process. Here it follows from the desired response "
+    "with the lead."
 )
 def _(K, delay, Tc):
     return {"controller": PID(1 / (K * (Tc + delay)), 4 * (Tc + delay))}
@@ -179,7 +182,7 @@ def _(margin):
     return {"phase_margin": 90 / margin}
 
 
-@uncertain_gain.mistake("That gain puts the loop on the limit of stability; the margin has to be left over.")
+@uncertain_gain.mistake("That gain puts the loop on the limit of stability; the margin is what is left.")
 def _(K, T, delay):
     return {"controller": PID(float(T) * math.pi / (2 * float(K * delay)), T)}
 
@@ -223,12 +226,12 @@ def _(K, T1, T2, beta):
     return {"process": rf"$\frac{{{gain}(1 - {lead}s)}}{{({slow}\,s + 1)({quick}\,s + 1)}}$"}
 
 
-@inverse_response.mistake("Without feedback that would do. In the loop, $M/(1 - M)$ takes the place of $M$.")
+@inverse_response.mistake("Without feedback that would be right. In the loop, $M/(1 - M)$ takes the place of $M$.")
 def _(K, T1, T2, Tc):
     return {"controller": (T1 * s + 1) * (T2 * s + 1) / (K * (Tc * s + 1) ** 2)}
 
 
-@inverse_response.mistake("That is for a wish with a single lag; here two are asked for.")
+@inverse_response.mistake("That is for a desired response with a single lag; here it has two.")
 def _(K, T1, T2, beta, Tc):
     return {
         "controller": (T1 * s + 1) * (T2 * s + 1) / (K * (Tc + beta) * s),
@@ -237,7 +240,7 @@ def _(K, T1, T2, beta, Tc):
     }
 
 
-@inverse_response.mistake("The zero is missing: the wish has to keep it.")
+@inverse_response.mistake("The zero is missing: the desired response has to keep it.")
 def _(K, T1, T2, Tc):
     return {
         "controller": (T1 * s + 1) * (T2 * s + 1) / (K * s * (Tc**2 * s + 2 * Tc)),
@@ -246,7 +249,7 @@ def _(K, T1, T2, Tc):
 
 
 @inverse_response.mistake(
-    "The wish has lost its zero, and the controller now cancels that of the process: such a controller is unstable."
+    "Your desired response has no zero, so the controller cancels that of the process: such a controller is unstable."
 )
 def _(K, T1, T2, beta, Tc):
     return {"controller": (T1 * s + 1) * (T2 * s + 1) / (K * s * (Tc**2 * s + 2 * Tc) * (1 - beta * s))}
@@ -318,7 +321,7 @@ def _(delay):
     return {"limit": f"{float(25 * delay):g} min"}
 
 
-@oven.mistake("This cancels the lag of the oven, and so a disturbance decays as slowly as without control.")
+@oven.mistake("This cancels the lag of the oven, so a disturbance decays as slowly as without control.")
 def _(K, T, delay):
     return {"controller": PID(T / (2 * K * delay), T)}
 

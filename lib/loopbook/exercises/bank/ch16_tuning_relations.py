@@ -39,17 +39,17 @@ def reaction_curve(
     )
 
 
-@reaction_curve.mistake("The slope on the paper is that for the whole step. The rule means the slope for one percent.")
+@reaction_curve.mistake("The slope on the paper is for the whole step. The rule uses the slope for one percent.")
 def _(slope, theta):
     return {"Kc": Rational(9, 10) / (slope * theta)}
 
 
-@reaction_curve.mistake("That is the gain of a P controller. With integral action it is somewhat less.")
+@reaction_curve.mistake("That is the gain of a P controller. With integral action it is somewhat smaller.")
 def _(step, slope, theta):
     return {"Kc": step / (slope * theta)}
 
 
-@reaction_curve.mistake("That is from the row of the PID controller; a PI controller is asked.")
+@reaction_curve.mistake("That is from the row of the PID controller; here it is a PI controller.")
 def _(step, slope, theta):
     return {"Kc": Rational(12, 10) * step / (slope * theta), "tau_I": 2 * theta}
 
@@ -76,7 +76,7 @@ def _by_cycle(rule, K_cu, P_u):
     return PID(Rational(45, 100) * K_cu, P_u / Rational(12, 10))
 
 
-@panel.mistake("These are the settings of another rule of the table: compare its name with the one that is asked.")
+@panel.mistake("These are the settings of another rule of the table: compare its name with the one in the question.")
 def _(rule, band, P_u):
     other = {"Tyreus and Luyben": "Ziegler and Nichols", "Ziegler and Nichols": "Tyreus and Luyben"}[rule]
     return {"pid": _by_cycle(other, 100 / band, P_u)}
@@ -92,7 +92,7 @@ def _(rule, band, P_u):
     return {"pid": _by_cycle(rule, 1 / band, P_u)}
 
 
-@panel.mistake("That is the setting of a P controller with the gain margin 2. Integral action takes a further share.")
+@panel.mistake("That is the setting of a P controller with the gain margin 2. Integral action reduces it further.")
 def _(rule, band, P_u):
     return {"pid": PID(50 / band, _by_cycle(rule, 1, P_u).Ti)}
 
@@ -143,13 +143,13 @@ def decay(
     )
 
 
-@decay.mistake("That belongs to an overshoot of this size. From one peak to the next there are two half turns.")
+@decay.mistake("That belongs to an overshoot of this size. From one peak to the next there are two half periods.")
 def _(K, tau_1, tau_2, left):
     loop_gain = _loop_gain(tau_1, tau_2, _damping_squared(left, 1))
     return {"Kc": loop_gain / K, "offset": 100 / (1 + loop_gain)}
 
 
-@decay.mistake("That is near, for a small damping. But the decay ratio has a root of $1 - \\zeta^2$ in it.")
+@decay.mistake("That is close for small damping. But the decay ratio contains the root of $1 - \\zeta^2$.")
 def _(K, tau_1, tau_2, left):
     from math import log
     from math import pi as half_turn
@@ -158,7 +158,7 @@ def _(K, tau_1, tau_2, left):
     return {"Kc": loop_gain / K, "offset": 100 / (1 + loop_gain)}
 
 
-@decay.mistake("The polynomial of the closed loop has $1 + KK_c$ as its last term. Look at the 1 again.")
+@decay.mistake("The polynomial of the closed loop has $1 + KK_c$ as its last term. Do not forget the 1.")
 def _(K, tau_1, tau_2, left):
     return {"Kc": (_loop_gain(tau_1, tau_2, _damping_squared(left, 2)) + 1) / K}
 
@@ -211,7 +211,7 @@ def _(q):
 
 
 @relay_with_hysteresis.mistake(
-    "When the relay has switched, the process does not know it yet, and goes on for a dead time."
+    "When the relay has switched, the process does not react yet, but goes on for one dead time."
 )
 def _(q):
     return {"a": q / 100 * _K * _d * _theta}
@@ -305,14 +305,14 @@ def _(a, b, c, d):
 
 
 @bad_copy.mistake(
-    "One of these, at least, has sound units: a ratio of times is a pure number, and so is its root; the root of a "
+    "At least one of these has consistent units: a ratio of times is a pure number, and so is its root; the root of a "
     "product of two times is a time."
 )
 def _(a, b, c, d):
     return {"units": sorted(_which("units", a, b, c, d) + _which("limit", a, b, c, d))}
 
 
-@bad_copy.mistake("These fail already because of their units; the limit is asked of the others.")
+@bad_copy.mistake("These already fail because of their units; the limit concerns the others.")
 def _(a, b, c, d):
     return {"limit": _which("units", a, b, c, d)}
 
@@ -351,7 +351,9 @@ def factor_for_a_damping(
     )
 
 
-@factor_for_a_damping.mistake("The damping does not enter with its first power: see the polynomial of the loop again.")
+@factor_for_a_damping.mistake(
+    "The damping does not enter with its first power: look at the polynomial of the loop again."
+)
 def _(zeta):
     return {"k_1": 4 * zeta}
 
@@ -362,18 +364,18 @@ def _(zeta):
 
 
 @factor_for_a_damping.mistake(
-    "That belongs to the usual factor 4, which is made for critical damping. Another one is asked."
+    "That belongs to the usual factor 4, which is made for critical damping. Here the factor is another one."
 )
 def _(T, tau, n):
     return {"k_1": 4} | ({"Ti": 4 * (1 + n) * tau} if 4 * (1 + n) * tau < T else {})
 
 
-@factor_for_a_damping.mistake("The rule compares two times, and takes the shorter one. That is the longer one.")
+@factor_for_a_damping.mistake("The rule compares two times, and takes the shorter one. You took the longer one.")
 def _(T, tau, n, zeta):
     return {"Ti": Max(T, 4 * zeta**2 * (1 + n) * tau)}
 
 
-@factor_for_a_damping.mistake("The loop is not asked to be as fast as the dead time here: look at $T_C$.")
+@factor_for_a_damping.mistake("Here the loop need not be as fast as the dead time: look at $T_C$.")
 def _(K, T, tau):
     return {"Kp": T / (K * 2 * tau)}
 
@@ -432,11 +434,11 @@ def _(K, tau, theta):
     return {"limit": f"{_limit(K, tau, theta):g}\N{NO-BREAK SPACE}K² min"}
 
 
-@not_so_nervous.mistake("These are Ziegler and Nichols' settings: good against loads, and too nervous.")
+@not_so_nervous.mistake("These are Ziegler and Nichols' settings: good against loads, but too aggressive.")
 def _(K, tau, theta):
     return {"pid": PID(Rational(9, 10) * tau / (K * theta), Rational(333, 100) * theta)}
 
 
-@not_so_nervous.mistake("These are Skogestad's settings: calm enough, and too slow against loads.")
+@not_so_nervous.mistake("These are Skogestad's settings: calm enough, but too slow against loads.")
 def _(K, tau, theta):
     return {"pid": PID(tau / (2 * K * theta), min(tau, 8 * theta))}

@@ -52,19 +52,19 @@ def _uncontrolled(T, end):
     return end - 2 * T * (1 - math.exp(-end / T)) + T / 2 * (1 - math.exp(-2 * end / T))
 
 
-@unavoidable.mistake("A new setpoint is known at once. How often does the dead time pass until its effect is seen?")
+@unavoidable.mistake("A new setpoint is known immediately. How many dead times pass until its effect is seen?")
 def _(delay):
     return {"servo": 2 * delay}
 
 
-@unavoidable.mistake("After one dead time the load is only noticed. How long until the answer to it arrives?")
+@unavoidable.mistake(
+    "After one dead time the load is only noticed. How long does it take until the response to it arrives?"
+)
 def _(delay):
     return {"first_effect": delay}
 
 
-@unavoidable.mistake(
-    "The output is at rest during the first dead time, so there is no error yet that could be counted."
-)
+@unavoidable.mistake("The output is at rest during the first dead time, so there is no error yet.")
 def _(K, T, delay):
     return {"load": float(K) ** 2 * _uncontrolled(T, 2 * delay)}
 
@@ -108,7 +108,8 @@ def dairy(
 
 
 @dairy.mistake(
-    "That is for an ordinary loop, which has to be weaker because of the dead time. Inside the predictor there is none."
+    "That is for an ordinary loop, which has to be weaker because of the dead time. Inside the predictor there "
+    "is no dead time."
 )
 def _(K, T, delay, Tc):
     return {"controller": PID(T / (K * (Tc + delay)), T)}
@@ -125,7 +126,7 @@ def _(Tc):
 
 
 @dairy.mistake(
-    "The integral action brings the fat content to the setpoint. Is the gain of the process still to be seen then?"
+    "The integral action brings the fat content to the setpoint. Does the gain of the process still show then?"
 )
 def _(K, delay, Tc):
     return {"y": K * Heaviside(t - delay) * (1 - exp(-(t - delay) / Tc))}
@@ -186,7 +187,7 @@ def _(Kc, Ti):
 
 
 @one_block.mistake(
-    "The controller is also told what the process has not shown yet. Which part of the model must be taken away again?"
+    "The controller is also told what the process has not shown yet. Which part of the model must be subtracted again?"
 )
 def _(K, T, Kc, Ti):
     return {"predictor": _predictor(K, T, Kc, Ti, 1)}
@@ -201,7 +202,7 @@ def _(K, T, delay, Kc, Ti):
 
 
 @one_block.mistake(
-    "One of these is the lag's own, and only a load wakes it. On the way from the setpoint, a zero of the predictor "
+    "One of these is the lag's own, and only a load excites it. On the way from the setpoint, a zero of the predictor "
     "cancels it."
 )
 def _(K, T, Kc, Ti):
@@ -259,18 +260,18 @@ def _taken_back(push, T, start):
     return push * Heaviside(t - start) * (1 - (1 + late) * exp(-late))
 
 
-@load_response.mistake("So it would go on without control. From when on, and how, does the controller take it back?")
+@load_response.mistake("That is the course without control. When and how does the controller reverse it?")
 def _(K, T, delay, load):
     return {"y": K * load * Heaviside(t - delay) * (1 - exp(-(t - delay) / T))}
 
 
-@load_response.mistake("The controller acts when it sees the deviation. Its action needs the dead time once more.")
+@load_response.mistake("The controller acts when it sees the deviation. Its action takes another dead time.")
 def _(K, T, delay, load):
     push = K * load
     return {"y": push * Heaviside(t - delay) * (1 - exp(-(t - delay) / T)) - _taken_back(push, T, delay)}
 
 
-@load_response.mistake("So far it has come when the first action arrives. It still grows a little before it turns.")
+@load_response.mistake("That is the deviation when the first action arrives. It still grows a little before it turns.")
 def _(K, T, delay, load):
     return {"largest": float(K * load) * (1 - math.exp(-float(delay / T)))}
 
@@ -370,14 +371,14 @@ def _(volume, low, high):
 
 
 @two_flows.mistake(
-    "That is the dead time at the mean flow. The dead time is no straight line over the flow, so take the mean of "
-    "the dead times."
+    "That is the dead time at the mean flow. The dead time is not a linear function of the flow, so take "
+    "the mean of the dead times."
 )
 def _(volume, low, high):
     return {"model_delay": 2 * volume / (low + high)}
 
 
-@two_flows.mistake("The model is off by half of the range only, so this loop is slower than it has to be.")
+@two_flows.mistake("The error of the model is only half of the range, so this loop is slower than necessary.")
 def _(K, T, volume, low, high):
     return {"controller": PID(T / (2 * K * _middle(volume, low, high)[1]), T)}
 

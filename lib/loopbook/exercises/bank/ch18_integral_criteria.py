@@ -59,7 +59,7 @@ def contest(
     )
 
 
-@contest.mistake("An error that is squared fades twice as fast.")
+@contest.mistake("A squared error fades twice as fast.")
 def _(delay, T):
     return {"ISE": [delay, T]}
 
@@ -69,7 +69,7 @@ def _(delay, T):
     return {"ITAE": [delay**2 / 2, T**2 / 4]}
 
 
-@contest.mistake("While the error of A stays at 1, its product with time grows like a triangle. How large is its area?")
+@contest.mistake("While the error of A stays at 1, its product with time is a triangle. How large is its area?")
 def _(delay, T):
     return {"ITAE": [delay**2, T**2]}
 
@@ -103,7 +103,7 @@ def level(
     )
 
 
-@level.mistake("That is the transform of the level. The error is what the setpoint has more than the level.")
+@level.mistake("That is the transform of the level. The error is the setpoint minus the level.")
 def _(K, Kc, Ti):
     a = K * Kc
     return {"E": (a * s + a / Ti) / (s * (s**2 + a * s + a / Ti))}
@@ -120,7 +120,7 @@ def _(K, Kc, Ti):
     return {"servo": 1 / (K * Kc), "load": Ti / Kc**2}
 
 
-@level.mistake("So large is the integral of the error itself; it has to be squared first.")
+@level.mistake("That is the integral of the error itself; it has to be squared first.")
 def _(Kc, Ti):
     return {"load": Ti / Kc}
 
@@ -157,7 +157,7 @@ def _of_integrator(x):
     return math.cos(x) / (2 * x * (1 - math.sin(x)))
 
 
-@conveyor.mistake("That is the ISE without dead time. Even before the first chips arrive there is more.")
+@conveyor.mistake("That is the ISE without dead time. Even the time before the first chips arrive adds more.")
 def _(K, Kp):
     return {"ISE": 1 / (2 * K * Kp)}
 
@@ -178,10 +178,7 @@ def _(delay):
     return {"best_gain": 0.7390851332151607 / float(delay)}
 
 
-@conveyor.mistake(
-    "Half of the gain on the limit of stability is near, but it is a rule of thumb. Look for the zero of the "
-    "derivative."
-)
+@conveyor.mistake("Half of the ultimate gain is close, but it is a rule of thumb. Look for the zero of the derivative.")
 def _(K, delay):
     return {"best_gain": math.pi / (4 * float(K * delay))}
 
@@ -300,7 +297,7 @@ def _(delay):
     return {"limit": f"{_limit(delay):g} s"}
 
 
-@nearly_least.mistake("That is the least ISE with this integral time. It leaves too little to robustness.")
+@nearly_least.mistake("That is the least ISE with this integral time. It leaves too little robustness.")
 def _(K, T, delay):
     return {"controller": PID(Rational(739, 1000) * T / (K * delay), T)}
 

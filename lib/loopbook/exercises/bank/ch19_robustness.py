@@ -60,12 +60,12 @@ def _(K, T, delay, Kc):
     return {"gain_margin": math.pi * float(T / (K * delay)) / 2} if Kc != 1 else {}
 
 
-@three_margins.mistake("That is the margin in decibels. Asked is the factor itself.")
+@three_margins.mistake("That is the margin in decibels. Give the factor itself.")
 def _(K, T, delay, Kc):
     return {"gain_margin": 20 * math.log10(math.pi * float(T / (K * Kc * delay)) / 2)}
 
 
-@three_margins.mistake("By so much the dead time turns the phase. The margin is what is left up to half a turn.")
+@three_margins.mistake("That is the phase shift of the dead time. The margin is what is left of half a turn.")
 def _(K, T, delay, Kc):
     x = math.degrees(float(K * Kc * delay / T))
     return {"phase_margin": x} if abs(x - 45) > 2 else {}
@@ -127,7 +127,7 @@ def _(K, T, delay):
     return {"limit": math.pi * float(T / (2 * delay))} if K != 1 else {}
 
 
-@unstable_poles.mistake("The integrator turns the phase by a right angle; the dead time needs to turn only the rest.")
+@unstable_poles.mistake("The integrator turns the phase by a right angle; the dead time has to provide only the rest.")
 def _(delay):
     return {"frequency": math.pi / float(delay)}
 
@@ -168,7 +168,7 @@ def _delay_on_limit(T, Ti, w):
     return (math.pi / 2 + math.atan(w * float(Ti)) - math.atan(w * float(T))) / w
 
 
-@diagnosis.mistake("So many oscillations are in a minute. How many radians does one of them have?")
+@diagnosis.mistake("That is the number of oscillations in a minute. How many radians does one of them have?")
 def _(period):
     return {"omega": 1 / float(period)}
 
@@ -181,7 +181,7 @@ def _(T, Kc, Ti, period):
 
 
 @diagnosis.mistake(
-    "Lag and integral time have changed places: the lag turns the phase back, the zero of the controller forward."
+    "Lag and integral time are interchanged: the lag gives a phase lag, the zero of the controller a phase lead."
 )
 def _(T, Kc, Ti, period):
     w = 2 * math.pi / float(period)
@@ -261,7 +261,7 @@ def _(K, T, delay, Kc, Ti):
 
 
 @gain_changes.mistake(
-    "Lag and integral time have changed places: the lag turns the phase back, the zero of the controller forward."
+    "Lag and integral time are interchanged: the lag gives a phase lag, the zero of the controller a phase lead."
 )
 def _(K, T, delay, Kc, Ti, k):
     w = _frequency(K, T, Kc, Ti, k)

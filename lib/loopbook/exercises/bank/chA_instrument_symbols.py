@@ -52,7 +52,7 @@ def _(letters):
     return {"modifier": "none"} if decode(letters).modifier else {}
 
 
-@tag.mistake("The T is the first letter here. Does it mean the same there as behind another letter?")
+@tag.mistake("The T is the first letter here. Does it mean the same as after another letter?")
 def _(letters):
     return {"functions": ["transmitter", *functions_of(letters)]} if letters == "TIC" else {}
 
@@ -99,7 +99,7 @@ def writing(device=choice(*DEVICES), measured=choice(*MEASURED)):
     return answers(letters=words(letters, ALPHABET, what="the letters of the tag", ordered=True))
 
 
-@writing.mistake("What the instrument is in the end stands last. Is it, above all, an indicator?")
+@writing.mistake("The last letter says what the instrument is. Is it primarily an indicator?")
 def _(device, measured):
     letters = letters_of(device, measured)
     return {"letters": [*letters[:-2], *letters[:-3:-1]]} if DEVICES[device] in ("IC", "IT") else {}
@@ -113,13 +113,13 @@ def _(device, measured):
     return {}
 
 
-@writing.mistake("The measured quantity is there, and what is done with it. What is made of the quantity before?")
+@writing.mistake("The measured quantity is there, and what is done with it. What is done to the quantity first?")
 def _(device, measured):
     letters = letters_of(device, measured)
     return {"letters": [letters[0], *letters[2:]]} if decode("".join(letters)).modifier else {}
 
 
-@writing.mistake("That says at which side the quantity is, and then what reacts to it. The limit stands at the end.")
+@writing.mistake("That says at which side the quantity is, and then what reacts to it. The limit comes last.")
 def _(device, measured):
     letters = letters_of(device, measured)
     return {"letters": [*letters[:-2], letters[-1], letters[-2]]} if DEVICES[device] in ("AH", "AL") else {}
@@ -238,13 +238,13 @@ def _(place):
     return {"place": other[place]} if place in other else {}
 
 
-@symbol.mistake("Nothing runs across this symbol, so that no panel is drawn. Where does one go to read it?")
+@symbol.mistake("No line crosses this symbol, so there is no panel. Where does one go to read it?")
 def _(place):
     return {"place": "in the control room"} if place == "field" else {}
 
 
 @symbol.mistake(
-    "That has a square for a hexagon, or a hexagon for a square. Which of them is a function in a computer?"
+    "You took a square for a hexagon, or a hexagon for a square. Which of them is a function in a computer?"
 )
 def _(device):
     other = {"shared": "computer function", "computer": "shared display"}
@@ -256,14 +256,12 @@ def _():
     return {"line": "pipe"}
 
 
-@symbol.mistake(
-    "A signal of an instrument carries a mark, or its line is broken. What does an unbroken line stand for?"
-)
+@symbol.mistake("A signal of an instrument carries a mark, or its line is broken. What does a solid line mean?")
 def _(line):
     return {"line": "electrical signal"} if line == "process connection" else {}
 
 
-@symbol.mistake("What an instrument feels of the process comes in an unbroken line. What does a broken one stand for?")
+@symbol.mistake("The connection of an instrument to the process is a solid line. What does a broken one mean?")
 def _(line):
     return {"line": "process connection"} if line == "electrical signal" else {}
 
@@ -315,19 +313,19 @@ def _(quantity, n, alarm):
     return {"what": what, "machine": machine, "side": SIDES[alarm], "number": str(n)}
 
 
-@whole_loop.mistake("The alarm or the switch is on the wrong side: read once more what becomes too high or too low.")
+@whole_loop.mistake("The alarm or the switch is on the wrong side: read again what becomes too high or too low.")
 def _(quantity, n, alarm):
     other = "L" if alarm == "H" else "H"
     return {"tags": [*loop_tags(quantity, n, alarm)[:3], f"{quantity}A{other}{n}", f"{quantity}S{2 * other}{n}"]}
 
 
-@whole_loop.mistake("The controller should show its value besides: a letter is missing in its tag.")
+@whole_loop.mistake("The controller should also show its value: a letter is missing from its tag.")
 def _(quantity, n, alarm):
     transmitter, _, *others = loop_tags(quantity, n, alarm)
     return {"tags": [transmitter, f"{quantity}C{n}", *others]}
 
 
-@whole_loop.mistake("Alarm and switch would react at one and the same limit there. How is the next one written?")
+@whole_loop.mistake("Alarm and switch would react at the same limit. How is the second limit written?")
 def _(quantity, n, alarm):
     return {"tags": [*loop_tags(quantity, n, alarm)[:4], f"{quantity}S{alarm}{n}"]}
 

@@ -53,7 +53,7 @@ class Kind:
         for name in cls.FORM:
             if name not in parameters[1:]:
                 known = did_you_mean(name, parameters[1:])
-                raise ValueError(f"FORM of the kind {cls.__name__} names {name!r}, which is no argument of it: {known}")
+                raise ValueError(f"FORM of the kind {cls.__name__} names {name!r}, which is not its argument: {known}")
         cls.maker = re.sub("(?<!^)(?=[A-Z])", "_", cls.__name__).lower()
         if cls.maker in MAKERS:
             other = MAKERS[cls.maker].__module__

@@ -94,7 +94,7 @@ class Numbers(Kind):
         """Return an array of floats, and a remark where a number came in another unit."""
         rows = _rows(answered(given))
         if rows is None:
-            raise Unreadable(f"this is no list: expected {self.expected}")
+            raise Unreadable(f"this is not a list: expected {self.expected}")
         remarks = []
 
         def number(value):
@@ -280,7 +280,7 @@ def _number_of_text(text, unit, expected):
         except Unreadable:
             continue
         return _in_unit_asked(value, named, unit, expected) if named else (_finite(value, expected), "")
-    raise Unreadable(f"{shortened(text, 40)!r} is a text that is no number: expected {expected}")
+    raise Unreadable(f"{shortened(text, 40)!r} is a text that is not a number: expected {expected}")
 
 
 def _in_unit_asked(value, named, unit, expected):

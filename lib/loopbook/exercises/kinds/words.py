@@ -87,7 +87,7 @@ class Words(Kind):
         is_set = isinstance(given, set | frozenset)
         row = list(given) if is_set else in_a_row(given)
         if row is None:
-            raise Unreadable(f"this is no list: expected {self.expected}")
+            raise Unreadable(f"this is not a list: expected {self.expected}")
         if self.ordered and is_set:
             raise Unreadable(f"a set has no order: expected {self.expected}")
         words = [_word(word, self.among, self.expected) for word in row]
@@ -137,7 +137,7 @@ def _word(given, among, expected):
     elif isinstance(given, int | float | sympy.Number) and f"{float(given):g}" in among:
         given = f"{float(given):g}"
     if not isinstance(given, str):
-        raise Unreadable(f"this is no text: expected {expected}")
+        raise Unreadable(f"this is not text: expected {expected}")
     wanted = _bare(given)
     for word in among:
         if _bare(word) == wanted:

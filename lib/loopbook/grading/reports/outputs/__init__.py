@@ -66,7 +66,7 @@ class Output:
             complaints: sentences on what was handed in and could not be assigned to a student.
             reveal: whether students see the keys.
         Raises:
-            GradingError: where what the function returns is no text.
+            GradingError: where what the function returns is not text.
         """
         known = {"title": title, "students": students, "results": results, "complaints": complaints, "reveal": reveal}
         if not self.is_for_each_student:
