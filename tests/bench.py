@@ -3,7 +3,8 @@
 The library: a fresh interpreter that imports loopbook, beside one that imports SymPy only. The simulator: a closed loop
 with all practical features, beside a bare loop around SciPy's solver; a cascade, and a plant with all its loops. Model
 reduction and internal model control. The responses to answers of the exercises. A chapter: its import cell and
-the whole of it, each in a fresh kernel, beside a fresh kernel that imports no more than the packages the chapter uses.
+the whole of it, each in a fresh kernel, beside a fresh kernel that imports no more than the packages the chapter uses;
+what it takes beside its imports, and how much of that is the drawing of its figures.
 Dead time has a benchmark of its own, `bench_deadtime.py`.
 """
 
@@ -13,6 +14,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from statistics import median
 
 import sympy
 from nbformat import NotebookNode, v4
@@ -50,6 +52,19 @@ PACKAGES = {
 }
 
 
+STOPWATCH = """
+from time import process_time
+from loopbook.figures import Picture
+drawn, png = [], Picture.png
+def timed(picture):
+    begin = process_time()
+    image = png(picture)
+    drawn.append(process_time() - begin)
+    return image
+Picture.png = timed
+"""
+
+
 def python(program: str) -> Callable[[], object]:
     """A task: a fresh interpreter runs `program`."""
     return lambda: subprocess.run([sys.executable, "-c", program], check=True)
@@ -73,6 +88,14 @@ def packages(chapter: NotebookNode) -> str:
     return f"import {loaded}" if loaded else "pass"
 
 
+def drawing(chapter: NotebookNode) -> tuple[int, float]:
+    """How many figures `chapter` draws in a fresh kernel, and the seconds of the processor that this takes."""
+    first, last = (v4.new_code_cell(source) for source in (STOPWATCH, "print(len(drawn), sum(drawn))"))
+    after = notebooks.run(v4.new_notebook(cells=[first, *chapter.cells, last]), ROOT / "chapters")
+    number, time = after.cells[-1].outputs[0].text.split()
+    return int(number), float(time)
+
+
 def the_library(runs: int) -> Table:
     """The time that `import loopbook` adds to `import sympy`."""
     times = medians(
@@ -86,8 +109,20 @@ def the_library(runs: int) -> Table:
 
 
 def the_chapters(runs: int, paths: list[Path]) -> Table:
-    """The time of each chapter and of its import cell, beside an empty kernel that imports the packages it uses."""
-    columns = ("packages only", "import cell", "ratio", "whole chapter", "ratio")
+    """The time of each chapter and of its import cell, beside an empty kernel that imports the packages it uses.
+
+    Sliders draw their figures, too.
+    """
+    columns = (
+        "packages only",
+        "import cell",
+        "ratio",
+        "whole chapter",
+        "ratio",
+        "beside imports",
+        "figures",
+        "drawn in",
+    )
     table = Table("fresh kernel", *columns, title=f"Running a chapter, median of {runs}")
     for path in paths:
         chapter = notebooks.read(path)
@@ -95,6 +130,7 @@ def the_chapters(runs: int, paths: list[Path]) -> Table:
         times = medians(
             runs, packages=kernel(only(packages(chapter))), imports=kernel(only(imports)), whole=kernel(chapter)
         )
+        figures = [drawing(chapter) for _ in range(runs)]
         table.add_row(
             path.stem,
             seconds(times["packages"]),
@@ -102,6 +138,9 @@ def the_chapters(runs: int, paths: list[Path]) -> Table:
             f"{times['imports'] / times['packages']:.2f}",
             seconds(times["whole"]),
             f"{times['whole'] / times['packages']:.2f}",
+            seconds(times["whole"] - times["imports"]),
+            str(figures[0][0]),
+            seconds(median(time for _, time in figures)),
         )
     return table
 
