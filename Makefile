@@ -13,12 +13,18 @@ unexport MPLBACKEND
 # Each of the fifty kernels of the tests would compile the library again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help lab test test-all bench book pictures grade execute
+.PHONY: help lab fresh edit test test-all bench book pictures grade execute
 
 help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' Makefile
 
-lab: .venv/ready ## open the collection in JupyterLab
+lab: .venv/ready ## open the start page in JupyterLab, in a copy of the notebooks that is yours
+	$(python) -m loopbook lab
+
+fresh: .venv/ready ## put a fresh notebook into your copy and keep yours beside it: make fresh CHAPTER=10
+	$(python) -m loopbook fresh $(CHAPTER)
+
+edit: .venv/ready ## open the stored notebooks themselves in JupyterLab, to change the collection
 	$(python) -m jupyterlab --config jupyter_lab_config.py
 
 test: .venv/ready ## prove everything: the library, the ledger and every cell of every notebook

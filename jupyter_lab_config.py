@@ -1,13 +1,24 @@
-"""How JupyterLab starts, for `make lab` and for the tests: it opens the folder of the chapters."""
+"""How JupyterLab starts, for `make lab` and `make edit`, and for the tests. Nothing of the user's own is changed."""
 
 import os
 from pathlib import Path
 
 c = get_config()  # noqa: F821 - Jupyter's, where it reads this
+ANNOUNCEMENTS = "@jupyterlab/apputils-extension:announcements"
+
+
+def without_news(handler, page_config):
+    """Take away the question whether to be told news of Jupyter, and the look for a newer version."""
+    page_config["disabledExtensions"] = [*page_config["disabledExtensions"], ANNOUNCEMENTS]
+    return page_config
+
 
 c.LabApp.default_url = "/lab/tree/chapters"
 # in a container there is often nobody but root
 c.ServerApp.allow_root = hasattr(os, "getuid") and os.getuid() == 0
 # figures that suit the dark theme, for this JupyterLab only: whoever has a custom.css of their own keeps it elsewhere
 c.LabApp.custom_css = True
-c.ServerApp.tornado_settings = {"static_custom_path": [str(Path(__file__).parent / "docs" / "jupyterlab")]}
+c.ServerApp.tornado_settings = {
+    "page_config_hook": without_news,
+    "static_custom_path": [str(Path(__file__).parent / "docs" / "jupyterlab")],
+}

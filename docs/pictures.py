@@ -43,10 +43,10 @@ def save(name: str, page, parts: list, margin: int = 0) -> None:
 
 def of_jupyterlab(chromium) -> None:
     """A chapter: a figure and its check. An exercise: an answer that is right, one in another unit, one to come."""
-    with tempfile.TemporaryDirectory() as folder, jupyterlab(Path(folder) / "desk", f"{CHAPTER}.ipynb") as address:
+    with tempfile.TemporaryDirectory() as folder, jupyterlab(Path(folder) / "desk", f"{CHAPTER}.ipynb") as lab:
         page = chromium.new_page(viewport={"width": 980, "height": 1900}, device_scale_factor=SHARPNESS)
-        desk = Desk(page, Path(folder) / "desk" / "chapters" / f"{CHAPTER}.ipynb")
-        desk.open(address)
+        desk = Desk(page, lab.file)
+        desk.open(lab.chapter)
         page.keyboard.press("Control+b")  # the list of files is put away
         desk.run_all()
         cells = page.locator(".jp-NotebookPanel .jp-Cell")

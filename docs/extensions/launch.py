@@ -13,7 +13,7 @@ import repository
 ROOT = Path(__file__).resolve().parents[2]
 ADDRESS = re.compile(r"https://github\.com/(?P<name>[\w.-]+/[\w.-]+?)(?:\.git)?(?:/tree/(?P<branch>[\w./-]+))?/?")
 COPIES = "colab"  # the branch where the workflow colab.yml puts the notebooks with a cell that installs loopbook
-FIRST = "chapters/01_introduction.ipynb"  # what Colab, which opens notebooks and no folders, shows of the collection
+FIRST = "chapters/00_start.ipynb"  # what is opened of the whole collection
 
 
 def of_repository(address=repository.ADDRESS):
@@ -45,7 +45,7 @@ def links(path=""):
     if not (ROOT / path).exists():
         raise ValueError(f"there is no {path}: expected the path of a notebook from the root of the repository")
     name, branch = of_repository()
-    on_binder = quote(f"lab/tree/{path or 'chapters'}", safe="")
+    on_binder = quote(f"lab/tree/{path or FIRST}", safe="")
     return (
         ("Binder", f"https://mybinder.org/v2/gh/{name}/{quote(branch, safe='')}?urlpath={on_binder}"),
         ("Colab", f"https://colab.research.google.com/github/{name}/blob/{COPIES}/{quote(path or FIRST)}"),

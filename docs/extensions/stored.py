@@ -22,6 +22,7 @@ from sphinx import addnodes
 DOCS = Path(__file__).parents[1]
 ROOT = DOCS.parent
 FOLDERS = ("chapters", "solutions")
+START = ROOT / launch.FIRST  # what it leads to is the site's own front page
 SLIDERS = "nbval-ignore-output"
 FOLDED = "hide-input"
 EVERYWHERE = ("loopbook.tables.", "loopbook.sliders.")  # what no section needs to name
@@ -211,7 +212,7 @@ def copy(app, config):
     for folder in FOLDERS:
         target = DOCS / folder
         target.mkdir(exist_ok=True)
-        paths = sorted((ROOT / folder).glob("*.ipynb"))
+        paths = [path for path in sorted((ROOT / folder).glob("*.ipynb")) if path != START]
         for path in paths:
             text = json.dumps(page(path), ensure_ascii=False, indent=1)
             write(target / path.name, text)

@@ -25,6 +25,52 @@ def loopbook(context: typer.Context) -> None:
         typer.echo(context.get_help())
 
 
+@app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
+def lab(context: typer.Context) -> None:
+    """Open the start page in JupyterLab, in a copy of the notebooks that is yours. Options of JupyterLab may follow."""
+    from loopbook import working_copy
+
+    here, copy = Path(), Path(working_copy.FOLDER)
+    if working_copy.START not in working_copy.originals(here):
+        fail(f"no {working_copy.START} here: run this in the folder that holds chapters")
+    from jupyterlab.labapp import LabApp
+
+    try:
+        news = working_copy.brought_up_to_date(here, copy)
+    except OSError as error:
+        fail(f"{error.filename or copy} cannot be written: {error.strerror}")
+    for name in news:
+        says = f"{copy}/{name} is yours, and there is a newer one: python -m loopbook fresh {name} puts it in place"
+        console.print(f"{says} and keeps yours under another name", markup=False)
+    options = {
+        "config": "jupyter_lab_config.py",
+        "ServerApp.root_dir": copy,
+        "LabApp.default_url": f"/lab/tree/{working_copy.START}",
+        "LabApp.workspaces_dir": copy.absolute() / ".workspaces",  # what was open in other folders stays there
+    }
+    LabApp.launch_instance([*(f"--{name}={value}" for name, value in options.items()), *context.args])
+
+
+@app.command()
+def fresh(
+    chapter: Annotated[
+        str, typer.Argument(help="Number or name of a chapter, or a notebook such as solutions/10_tuning.ipynb.")
+    ],
+) -> None:
+    """Put a fresh notebook into your copy; the one that you have changed is kept under another name."""
+    from loopbook import working_copy
+
+    copy = Path(working_copy.FOLDER)
+    try:
+        done = working_copy.fresh(Path(), copy, chapter)
+    except OSError as error:
+        fail(f"{error.filename or copy} cannot be written: {error.strerror}")
+    if not done:
+        fail(f"no notebook {chapter}: expected a chapter's number, such as 10, or chapters/10_tuning.ipynb")
+    for name, kept in done:
+        console.print(f"{copy}/{name} is fresh{f'; yours is {copy}/{kept}' if kept else ''}", markup=False)
+
+
 @app.command()
 def execute(
     paths: Annotated[

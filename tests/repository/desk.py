@@ -1,4 +1,4 @@
-"""JupyterLab as ``make lab`` starts it, with a chapter to work on that is a copy."""
+"""JupyterLab as ``make lab`` starts it, with the start page and a chapter to work on."""
 
 import contextlib
 import json
@@ -13,22 +13,22 @@ import time
 import urllib.request
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 import matplotlib
 import pytest
 from playwright.sync_api import TimeoutError, expect
 
 from browser import PATIENCE, SCREENSHOTS, Complaints
+from loopbook import working_copy
 
 ROOT = Path(__file__).parents[2]
 #: What JupyterLab and its packages write on the console by themselves.
 NOISE = (r"^Plugin \S+ .*(took [\d.]+ms|is taking too long) to activate",)  # on a slow machine
-#: Dialogs that come before the chapter is at rest, and not because of it.
-PASSING = {"Server Connection Error", "Select Kernel"}
 
 
 class Desk:
-    """JupyterLab with a chapter in it."""
+    """JupyterLab with a notebook in it."""
 
     def __init__(self, page, file):
         self.page, self.file, self.complaints = page, file, Complaints(page, NOISE)
@@ -36,25 +36,32 @@ class Desk:
         page.add_locator_handler(page.locator("dialog.jp-Dialog"), self.dismiss)
 
     def dismiss(self, dialog):
-        """Put away a dialog that stands before what is to be clicked. One that tells of a fault is a complaint."""
-        title = dialog.locator(".jp-Dialog-header").inner_text().strip()
-        if title not in PASSING:
-            self.complaints.append(f"dialog: {dialog.inner_text()}")
+        """Complain about a dialog that stands before what is to be clicked: none is expected. Then put it away."""
+        self.complaints.append(f"dialog: {dialog.inner_text()}")
         dialog.locator(".jp-Dialog-button").last.click()  # JupyterLab's own choice, as the return key would
 
     def open(self, address):
         self.page.goto(address)
-        # its session may begin late, and until then a click on Run asks which kernel is meant
-        expect(self.page.locator(".jp-NotebookPanel .jp-Toolbar-kernelName")).to_contain_text("Python 3")
-        self.rest()
-        self.code = self.page.locator(".jp-NotebookPanel .jp-CodeCell")
+        self.code = self.page.locator(".jp-NotebookPanel:not(.lm-mod-hidden) .jp-CodeCell")
+        self.ready()
+
+    def ready(self):
+        """Wait until the notebook in front has its kernel: until then a click on Run asks which one is meant."""
+        panel = self.page.locator(".jp-NotebookPanel:not(.lm-mod-hidden)")
+        expect(panel.locator(".jp-Toolbar-kernelName")).to_contain_text("Python 3")
+        expect(panel.locator(".jp-Notebook-ExecutionIndicator")).to_have_attribute("data-status", "idle")
+
+    def tabs(self):
+        """The tabs of what is open."""
+        return self.page.locator(".lm-DockPanel-tabBar .lm-TabBar-tab")
 
     def rest(self):
         """Wait until nothing is computed."""
-        expect(self.page.locator(".jp-Notebook-ExecutionIndicator")).to_have_attribute("data-status", "idle")
+        indicator = self.page.locator(".jp-NotebookPanel:not(.lm-mod-hidden) .jp-Notebook-ExecutionIndicator")
+        expect(indicator).to_have_attribute("data-status", "idle")
 
     def choose(self, *names):
-        """Choose from the menu, as ``choose("Run", "Run All Cells")``; again where a dialog has closed the menu."""
+        """Choose from the menu, as ``choose("Run", "Run All Cells")``; again where the page has closed the menu."""
         labels = self.page.locator(".lm-MenuBar-itemLabel, .lm-Menu-itemLabel")
         *menus, command = [labels.get_by_text(name, exact=True) for name in names]
         for menu, entry in zip(menus, [*menus[1:], command], strict=True):
@@ -127,31 +134,47 @@ class Desk:
         self.page.screenshot(path=SCREENSHOTS / f"lab_{name}.png")
 
 
+class Lab(NamedTuple):
+    """A running JupyterLab: its address, its token, and the file of the chapter in the reader's copy."""
+
+    server: str
+    token: str
+    file: Path
+
+    @property
+    def front(self) -> str:
+        """What ``make lab`` opens in a browser."""
+        return f"{self.server}/?token={self.token}"
+
+    @property
+    def chapter(self) -> str:
+        """The address of the chapter."""
+        return f"{self.server}/lab/tree/chapters/{self.file.name}?token={self.token}"
+
+
 @contextlib.contextmanager
-def jupyterlab(folder: Path, notebook: str) -> Iterator[str]:
-    """JupyterLab as ``make lab`` starts it, in a folder of its own with one chapter in it: the chapter's address."""
+def jupyterlab(folder: Path, notebook: str) -> Iterator[Lab]:
+    """JupyterLab as ``make lab`` starts it, for a reader who has never had it, in a folder with one chapter."""
     (folder / "chapters").mkdir(parents=True)
-    shutil.copy(ROOT / "chapters" / notebook, folder / "chapters")
-    settings = folder / "config" / "labconfig"
-    settings.mkdir(parents=True)
-    # the question about news would ask the network
-    off = {"disabledExtensions": {"@jupyterlab/apputils-extension:announcements": True}}
-    (settings / "page_config.json").write_text(json.dumps(off), encoding="utf-8")
+    for path in (working_copy.START, f"chapters/{notebook}", "jupyter_lab_config.py"):
+        shutil.copy(ROOT / path, folder / path)
+    shutil.copytree(ROOT / "docs" / "jupyterlab", folder / "docs" / "jupyterlab")
     port, token = free_port(), secrets.token_hex(16)
     own = {"HOME": "home", "IPYTHONDIR": "ipython", "JUPYTER_CONFIG_DIR": "config", "JUPYTER_DATA_DIR": "data"}
     own |= {"JUPYTER_RUNTIME_DIR": "runtime", "JUPYTERLAB_SETTINGS_DIR": "settings"}
-    own |= {"JUPYTERLAB_WORKSPACES_DIR": "desks"}
     environment = {**os.environ, **{name: str(folder / place) for name, place in own.items()}}
     environment["MPLCONFIGDIR"] = matplotlib.get_cachedir()  # a new list of fonts costs seconds
     for name in ("LOOPBOOK_PROGRESS", "JUPYTER_PATH"):  # a reader has neither, and no forked kernels
         environment.pop(name, None)
-    command = [sys.executable, "-m", "jupyterlab", "--config", ROOT / "jupyter_lab_config.py", "--no-browser"]
+    command = [sys.executable, "-m", "loopbook", "lab", "--no-browser"]
     command += [f"--ServerApp.port={port}", "--ServerApp.port_retries=0", f"--IdentityProvider.token={token}"]
     with open(folder / "log", "w", encoding="utf-8") as log:
         server = subprocess.Popen(command, cwd=folder, env=environment, stdout=log, stderr=log)
         try:
-            wait_for(f"http://127.0.0.1:{port}/api/status?token={token}", server, folder / "log")
-            yield f"http://127.0.0.1:{port}/lab/tree/chapters/{notebook}?token={token}"
+            # the list of kernels is slow to come for the first time, and a page without it asks for a kernel
+            wait_for(f"http://127.0.0.1:{port}/api/kernelspecs?token={token}", server, folder / "log")
+            file = folder / working_copy.FOLDER / "chapters" / notebook
+            yield Lab(f"http://127.0.0.1:{port}", token, file)
         finally:
             shut_down(port, token)
             try:

@@ -12,6 +12,8 @@ import nbformat
 import pytest
 
 ROOT = Path(__file__).parents[2]
+START = "00_start"  # what leads readers of JupyterLab to the chapters; the site has a front page
+CHAPTERS = [path for path in sorted(ROOT.glob("chapters/*.ipynb")) if path.stem != START]
 LARGEST = 1_000_000  # bytes of a page without its figures
 EMPTY = {"area", "base", "br", "col", "embed", "hr", "img", "input", "link", "meta", "source", "track", "wbr"}
 OPTIONAL = {"dd", "dt", "li", "p", "tbody", "td", "tfoot", "th", "thead", "tr"}  # whose end HTML lets one leave out
@@ -83,6 +85,7 @@ def name(book, path):
 def test_every_chapter_and_every_solution_has_its_page(book, pages):
     for folder in ("chapters", "solutions"):
         stored = {path.stem for path in (ROOT / folder).glob("*.ipynb")}
+        stored.discard(START)
         assert {path.stem for path in pages if path.parent == book / folder} == stored
 
 
@@ -149,7 +152,7 @@ def test_every_figure_has_words_a_size_and_waits_for_the_reader(book, pages):
 
 
 def test_the_words_of_a_figure_are_those_that_the_notebook_stores(book, pages):
-    for stored in sorted(ROOT.glob("chapters/*.ipynb")):
+    for stored in CHAPTERS:
         outputs = [o for cell in nbformat.read(stored, as_version=4).cells for o in cell.get("outputs", [])]
         words = [o.data["text/plain"][1:-1] for o in outputs if "image/png" in o.get("data", {})]
         assert [image["alt"] for image in pages[book / "chapters" / f"{stored.stem}.html"].all("img")] == words
@@ -190,7 +193,7 @@ def test_a_solution_is_folded_and_the_way_leads_there_and_back(book, pages):
 
 def test_every_check_of_a_chapter_has_its_place_and_a_link_to_the_ledger(book, pages):
     slugs = extension("slugs")
-    for stored in sorted(ROOT.glob("chapters/*.ipynb")):
+    for stored in CHAPTERS:
         page = pages[book / "chapters" / f"{stored.stem}.html"]
         links = {attributes.get("href") for attributes in page.all("a")}
         for cell in nbformat.read(stored, as_version=4).cells:

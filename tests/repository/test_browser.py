@@ -1,8 +1,10 @@
 """A chapter in JupyterLab as a reader has it: opened, run from the menu, its sliders moved, its exercises answered."""
 
 import hashlib
+import re
 
 import pytest
+from playwright.sync_api import expect
 
 from browser import DESKTOP, PHONE, ROOT
 from desk import Desk, jupyterlab, until
@@ -15,15 +17,55 @@ CHAPTER = "05_transfer_functions.ipynb"
 def desk(chromium, tmp_path_factory):
     """JupyterLab with a chapter that has been run from the menu to its end, and saved."""
     folder = tmp_path_factory.mktemp("lab") / "desk"
-    with jupyterlab(folder, CHAPTER) as address:
-        desk = Desk(chromium.new_page(viewport=DESKTOP), folder / "chapters" / CHAPTER)
-        desk.open(address)
+    with jupyterlab(folder, CHAPTER) as lab:
+        desk = Desk(chromium.new_page(viewport=DESKTOP), lab.file)
+        desk.open(lab.chapter)
         desk.screenshot("opened")
         desk.run_all()
         desk.save()
         desk.screenshot("run")
         yield desk
         desk.page.close()
+
+
+@pytest.fixture(scope="class")
+def lab(tmp_path_factory):
+    with jupyterlab(tmp_path_factory.mktemp("lab") / "desk", CHAPTER) as lab:
+        yield lab
+
+
+@pytest.fixture(scope="class")
+def start(chromium, lab):
+    """The start page, when it has come to rest."""
+    desk = Desk(chromium.new_page(viewport=DESKTOP), lab.file.with_name("00_start.ipynb"))
+    desk.open(lab.front)
+    desk.screenshot("start")
+    yield desk
+    desk.page.close()
+
+
+class TestStartPage:
+    """What ``make lab`` opens, for a reader who has never had it."""
+
+    def test_it_is_all_that_is_open_and_nothing_is_asked(self, start):
+        expect(start.tabs()).to_have_text(["00_start.ipynb"])
+        assert start.page.locator("dialog.jp-Dialog, .Toastify__toast").count() == 0
+        assert start.page.locator(".jp-NotebookPanel h1").inner_text().startswith("Start here")
+
+    def test_it_runs_and_shows_what_is_right(self, start):
+        start.run_all()
+        expect(start.code.nth(1).locator(".jp-OutputArea-output")).to_contain_text(re.compile(r"0 of \d+ right"))
+
+    def test_a_title_opens_its_chapter_and_the_repository_stays_as_it_is(self, start, lab):
+        original = lab.file.parents[2] / "chapters" / CHAPTER
+        before = original.read_bytes()
+        start.page.locator(".jp-OutputArea-output a", has_text="Transfer functions").click()
+        expect(start.tabs()).to_have_text(["00_start.ipynb", CHAPTER])
+        start.ready()
+        start.file = lab.file
+        start.save()
+        assert original.read_bytes() == before
+        assert start.complaints == []
 
 
 @pytest.fixture(scope="class")

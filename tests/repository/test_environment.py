@@ -129,7 +129,7 @@ ORDER = [
     ["instruments"],
     ["diagrams"],
     ["evidence"],
-    ["ledger", "notebooks"],
+    ["ledger", "notebooks", "working_copy"],
     ["exercises"],
     ["grading"],
     ["__main__"],

@@ -59,6 +59,13 @@ def test_every_chapter_has_exercises():
 
 
 @each_chapter
+def test_a_chapter_has_one_title(chapter):
+    name = bank.chapters()[chapter].removeprefix("ch")
+    title = "".join(cells("chapters", name)[0]["source"]).splitlines()[0]
+    assert title == f"# {bank.title(chapter)}"
+
+
+@each_chapter
 def test_a_chapter_asks_each_of_its_exercises_in_one_notebook(chapter):
     numbers = [number for name, own in NOTEBOOKS.items() if own == chapter for number in asked(name)]
     assert sorted(numbers) == sorted(bank.exercises(chapter))

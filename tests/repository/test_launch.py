@@ -153,7 +153,7 @@ def test_links_are_whole(path):
         assert urlsplit(address).scheme == "https"
         assert f"/{owner_and_name}" in address
         assert " " not in address
-    assert unquote(places["Binder"]).endswith(f"/main?urlpath=lab/tree/{path or 'chapters'}")
+    assert unquote(places["Binder"]).endswith(f"/main?urlpath=lab/tree/{path or NOTEBOOKS[0]}")
     assert places["Colab"].endswith(f"/blob/colab/{path or NOTEBOOKS[0]}")
 
 

@@ -2,64 +2,38 @@
 
 from __future__ import annotations
 
-import contextlib
 import html
-import json
-import os
-import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
+from loopbook.exercises import notes
+
 if TYPE_CHECKING:
     from loopbook.exercises.authoring import Exercise
 
 FILE = Path(".loopbook-progress.json")
-#: A larger file is none that was written here.
-LARGEST = 10**6
-#: Set to "off", this variable of the environment keeps the file from being read and written, as in tests.
-SWITCH = "LOOPBOOK_PROGRESS"
 
 
 def note(number: str, student: str | None, is_right: bool) -> None:
     """Note that an exercise was answered, and whether all of it was right; what was right once stays so."""
-    if os.environ.get(SWITCH) == "off":
+    if notes.are_off():
         return
     known = load()
     key = _key(number, student)
     if known.get(key) is True or known.get(key) is is_right:
         return
-    _store(known | {key: bool(is_right)})
+    notes.write(FILE, "answered", known | {key: bool(is_right)}, "the progress")
 
 
 def load() -> dict[str, bool]:
     """Return what the file says: {exercise: whether it was right}. A damaged file is ignored, with a warning."""
-    if os.environ.get(SWITCH) == "off" or not os.path.lexists(FILE):
-        return {}
-    try:
-        if not FILE.is_file() or FILE.stat().st_size > LARGEST:
-            raise ValueError("no file, or a very large one")
-        stored = json.loads(FILE.read_text(encoding="utf-8-sig"))["answered"]
-        if not (isinstance(stored, dict) and all(isinstance(right, bool) for right in stored.values())):
-            raise ValueError("not a table of exercises")
-    except (OSError, ValueError, KeyError, TypeError, RecursionError):
-        warnings.warn(f"{FILE} is damaged and ignored; your next answer begins a new one", stacklevel=3)
-        return {}
-    return stored
+    return notes.read(FILE, "answered", _is_table, "your next answer begins a new one") or {}
 
 
-def _store(known):
-    """Replace the file in one step, so that an interruption leaves the old one or the new one."""
-    file = FILE.resolve() if FILE.is_file() else FILE  # where a link leads
-    partial = file.with_name(f"{file.name}.{os.getpid()}")
-    try:
-        partial.write_text(json.dumps({"answered": known}, indent=1, sort_keys=True) + "\n", encoding="utf-8")
-        partial.replace(file)
-    except OSError as problem:
-        with contextlib.suppress(OSError):
-            partial.unlink(missing_ok=True)
-        warnings.warn(f"the progress cannot be stored in {FILE}: {problem.strerror}", stacklevel=4)
+def _is_table(stored):
+    return isinstance(stored, dict) and all(isinstance(right, bool) for right in stored.values())
 
 
 def _key(number, student):
@@ -89,6 +63,41 @@ class Progress:
     def _repr_html_(self):
         rows = "".join(f"<div>{_mark(right)} {html.escape(heading)}</div>" for heading, right in self.rows)
         return f'<div role="status"><strong>{self.right} of {len(self.rows)} right</strong>{rows}</div>'
+
+
+@dataclass(frozen=True)
+class Collection:
+    """All chapters: their titles, the names of their notebooks, and the progress in each."""
+
+    chapters: tuple[tuple[str, str, Progress], ...]
+
+    @property
+    def right(self) -> int:
+        """How many exercises are right."""
+        return sum(progress.right for _, _, progress in self.chapters)
+
+    @property
+    def summary(self) -> str:
+        """How many of how many exercises are right."""
+        return f"{self.right} of {sum(len(progress.rows) for _, _, progress in self.chapters)} right"
+
+    def __repr__(self) -> str:
+        widest = max(len(title) for title, _, _ in self.chapters)
+        rows = (f"  {title:{widest}}  {_marks(progress)}" for title, _, progress in self.chapters)
+        return "\n".join([self.summary, *rows])
+
+    def _repr_html_(self):
+        rows = "".join(
+            f'<tr><td style="text-align:left"><a href="{name}.ipynb">{html.escape(title)}</a></td>'
+            f'<td style="text-align:left">{_marks(progress)}</td>'
+            f'<td style="text-align:right">{progress.right} of {len(progress.rows)}</td></tr>'
+            for title, name, progress in self.chapters
+        )
+        return f'<div role="status"><strong>{self.summary}</strong><table><tbody>{rows}</tbody></table></div>'
+
+
+def _marks(progress):
+    return " ".join(_mark(right) for _, right in progress.rows)
 
 
 def _mark(right):

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import functools
 import importlib
+import inspect
 import pkgutil
+import re
 from types import ModuleType
 
 from loopbook.exercises.authoring import Exercise
@@ -21,6 +23,17 @@ def chapters() -> dict[str, str]:
 def exercises(chapter: str) -> dict[str, Exercise]:
     """Return the exercises of a chapter in their order: {number: `Exercise`}. Raises KeyError for no chapter."""
     return collected(importlib.import_module(f"{__name__}.{chapters()[chapter]}"))
+
+
+def title(chapter: str) -> str:
+    """Return number and title of a chapter, from the first line of its module. Raises KeyError for no chapter.
+
+    >>> title("15")
+    '15 · Direct synthesis'
+    """
+    module = importlib.import_module(f"{__name__}.{chapters()[chapter]}")
+    words = re.match(r"Exercises of \w+ \w+, (.+?)[.:]", inspect.getdoc(module))[1]
+    return f"{chapter} · {words[0].upper()}{words[1:]}"
 
 
 def collected(module: ModuleType) -> dict[str, Exercise]:
