@@ -376,6 +376,8 @@ def test_errors_have_a_panel_of_their_own_in_the_looks_of_their_curves():
     for label in ("model", "other"):
         line, error = plot.lines[label], plot.lines[f"{label}, error"]
         assert (line.axes, error.axes) == (top, errors)
+        box = error.get_window_extent()
+        assert errors.bbox.y0 < box.y0 <= box.y1 < errors.bbox.y1
         assert line.get_color() == error.get_color()
         assert line._unscaled_dash_pattern == error._unscaled_dash_pattern
     assert "difference from process" in plot.alt

@@ -345,17 +345,18 @@ def time_plot(
             heights.insert(1, 1)
         figure, grid = canvas.panels([unit * height for height in heights])
         of_error = grid.pop(1) if error_from is not None else None
-        lines = {}
+        lines, looks = {}, {}
         number = 0
         for axes, panel, name, fixed in zip(grid, curves, ylabels, fixed_axes, strict=True):
             for label, (x, y, role) in panel.items():
                 number += role is None
-                (lines[label],) = axes.plot(x, y, label=label, **look(number - 1 if role is None else role))
+                looks[label] = look(number - 1 if role is None else role)
+                (lines[label],) = axes.plot(x, y, label=label, **looks[label])
             axes.set_ylabel(name or (label if len(panel) == 1 else ""))
             # from here on, what is marked does not move the curves
             axes.set_ylim(fixed or axes.get_ylim())
         if of_error is not None:
-            _errors(of_error, lines, error_from, curves[0])
+            _errors(of_error, lines, error_from, {label: looks[label] for label in curves[0]})
         grid[0].set_xlim(times[0] - before, times[-1])
         figure.axes[-1].set_xlabel(xlabel)
         grid[0].set_title(title or "")
@@ -377,17 +378,14 @@ def time_plot(
     return TimePlot(figure, titled(title, f"{shown} against {plain_words(xlabel)}"), lines)
 
 
-def _errors(axes, lines, reference, names):
+def _errors(axes, lines, reference, looks):
     """The differences of curves from one of them, each in its look."""
     times, values = lines[reference].get_data()
     axes.axhline(0, **ZERO)
-    for label in names:
+    for label in looks:
         if label != reference:
-            line = lines[label]
-            at, here, there = _on_common_times(*line.get_data(), times, values)
-            (of_error,) = axes.plot(at, here - there)
-            of_error.update_from(line)
-            lines[f"{label}, error"] = of_error
+            at, here, there = _on_common_times(*lines[label].get_data(), times, values)
+            (lines[f"{label}, error"],) = axes.plot(at, here - there, **looks[label])
     axes.set_ylabel("error")
 
 
