@@ -93,7 +93,7 @@ LESSON = Lesson(
     questions=(
         "Which of the three changes is the cascade made for, and which can it hardly help against?",
         "How weak may the secondary controller be until the cascade loses its advantage?",
-        "And how strong, until the inner loop does not come to rest? What does the valve say long before that?",
+        "And how strong, until the inner loop does not settle? What does the valve show long before that?",
     ),
     sliders=(
         Slider("change", "What changes", tuple(CHANGES), "colder heating liquid", words=tuple(CHANGES)),

@@ -80,7 +80,7 @@ LESSON = Lesson(
     ),
     questions=(
         "Raise the gain until you see an undershoot that is barely there. What overshoot comes with it?",
-        "Take too much gain on purpose. How much of your carelessness does the PI controller forgive?",
+        "Take too much gain on purpose. How much of this error does the PI controller tolerate?",
         "Make the dead time longer. How do the good gain and $T_{ou}$ move?",
     ),
     sliders=(

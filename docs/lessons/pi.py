@@ -26,7 +26,7 @@ def respond(Kp, Ti):
     process, controller = first_order(K, T, DELAY), PID(Kp, Ti=Ti)
     loop = Loop(process, controller)
     servo = loop.servo.step(TIMES)
-    # what a load makes the controller do is, but for the sign, what a step of the setpoint makes of the output
+    # what a load makes the controller do is, except for the sign, what a step of the setpoint makes of the output
     later = (TIMES >= LOAD_AT) * np.interp(np.maximum(TIMES - LOAD_AT, 0), TIMES, servo)
     signals = {
         "y": stepped(TIMES, loop.servo, loop.regulator, LOAD_AT),
@@ -49,7 +49,7 @@ def respond(Kp, Ti):
 LESSON = Lesson(
     title="Live: gain and integral time",
     about=(
-        "A PI controller on the process $e^{-4s}/(10s+1)$, times in seconds. The setpoint steps at once, a load of 1 "
+        "A PI controller on the process $e^{-4s}/(10s+1)$, times in seconds. The setpoint steps at 0 s, a load of 1 "
         "comes after 60 s. $M_s$ is the largest sensitivity, $e$ the control error."
     ),
     questions=(

@@ -62,15 +62,15 @@ def respond(delay, gain, Tc):
 LESSON = Lesson(
     title="Live: a Smith predictor with a wrong model",
     about=(
-        "The process is $e^{-4s}/(4s+1)$. Two controllers are made for the same model of it and for the same wish, "
+        "The process is $e^{-4s}/(4s+1)$. Two controllers are made for the same model and the same closed loop, "
         "$e^{-\\theta s}/(T_Cs+1)$: a Smith predictor, and a PI controller without prediction. The model may be wrong. "
-        "The setpoint steps at once, a load of 1 comes after 60 s."
+        "The setpoint steps at 0 s, a load of 1 comes after 60 s."
     ),
     questions=(
         "With the right model, how fast may you ask the predictor to be? And the PI controller?",
         "Ask for $T_C$ = 0.5 s. What does an error of 10 % in the dead time cost the predictor, and what one of 20 %? "
-        "What does $T_C$ = 4 s make of it?",
-        "Is it better to believe that the gain is larger than it is, or smaller? And the dead time?",
+        "And with $T_C$ = 4 s?",
+        "Is it better to overestimate the gain or to underestimate it? And the dead time?",
     ),
     sliders=(
         Slider("delay", "Dead time of the model, to that of the process", DELAYS, Q(1)),

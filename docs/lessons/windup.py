@@ -56,7 +56,7 @@ LESSON = Lesson(
     title="Live: with and without anti wind-up",
     about=(
         "The heated tank of Example 7.4 with its PID controller, both as there, the controller sampled every 20 s. The "
-        "inflow has 40 °C, but between the minutes 40 and 130 it is colder. The heater has an upper limit. One "
+        "inflow is at 40 °C, but between minutes 40 and 130 it is colder. The heater has an upper limit. One "
         "controller goes on integrating at the limit, the other one halts (anti wind-up). The results say which "
         "control signal would balance the cold inflow, and how long after the cold spell the temperature is within one "
         "degree of its setpoint for good."
@@ -64,7 +64,7 @@ LESSON = Lesson(
     questions=(
         "How cold may the inflow be before the two controllers differ? Compare with the control signal that is needed.",
         "Beyond that, how does the time to return grow with each degree, without anti wind-up and with it?",
-        "A larger heater is the expensive remedy. How large must it be for an inflow of 10 °C?",
+        "A larger heater is the expensive solution. How large must it be for an inflow of 10 °C?",
     ),
     sliders=(
         Slider("cold", "Temperature of the cold inflow", COLD, 10, "°C"),
