@@ -34,12 +34,25 @@ _CELSIUS = re.compile(r"\s*(°\s?C|º\s?C|℃|C|deg(rees?)?\s?C|[Cc]elsius)\s*")
 _LONGEST = 40
 
 
+def _everyday():
+    """Products and quotients of names that are units, such as "1/min", "kg m²" and "K/(L/min)"."""
+    names = {"K", "Hz"}.union(*FAMILIES) - {"m³"}
+    factor = f"(?:%|(?:{'|'.join(sorted(names))})[²³]?)"
+    product, group = f"{factor}(?: {factor}){{0,2}}", f"\\({factor}[ /]{factor}\\)"
+    return re.compile(f"(?:{product})?|°C|(?:1|{product}|{group})/(?:°C|{factor}|{group})")
+
+
+_EVERYDAY = _everyday()
+
+
 def is_unit(text: str) -> bool:
     """Whether a text is a unit, as "m³/s", "%/K", "1/min" or "kJ/(kg K)"; nothing is one of them.
 
     >>> [is_unit(text) for text in ("kg/min", "°C", "%", "", "apples", "s^99")]
     [True, True, True, True, False, False]
     """
+    if isinstance(text, str) and _EVERYDAY.fullmatch(text):  # without Pint, whose registry takes its time to load
+        return True
     try:
         _parsed(text)
     except ValueError:
