@@ -193,7 +193,7 @@ class Plant(metaclass=PlantMeta):
         >>> HeatedTank().is_self_regulating, WoodChipTank().is_self_regulating
         (True, False)
         """
-        rates = [self._active(rate) for rate in self.state_equations().values()]
+        rates = self._active_equations.values()
         A = sympy.Matrix([[self._gain(rate, x, numbers=True) for x in self.states] for rate in rates])
         return is_stable(1 / (s * sympy.eye(len(rates)) - A).det(method="berkowitz"))
 
@@ -246,8 +246,7 @@ class Plant(metaclass=PlantMeta):
         >>> A, B
         (Matrix([[-q/V]]), Matrix([[1/V, -c_A/V]]))
         """
-        equations = self.state_equations()
-        states, rates = list(equations), [self._active(rate) for rate in equations.values()]
+        states, rates = list(self._active_equations), list(self._active_equations.values())
         output = self.signal(self.output if output is None else output)
         measured = self._active(self.measured.get(output, output))
         for f in rates:
@@ -288,7 +287,7 @@ class Plant(metaclass=PlantMeta):
         output = self.signal(self.output if output is None else output)
         if source not in self.inputs:
             raise ValueError(f"{source} is not an input: {did_you_mean(source, map(name_of, self.inputs))}")
-        equations = {x: self._active(rate) for x, rate in self.state_equations().items()}
+        equations = self._active_equations
         wanted = self._active(self.measured.get(output, output))
         if output in self.inputs:
             raise ValueError(f"{output} is an input: expected a state or {name_of(self.output)}")
@@ -306,12 +305,27 @@ class Plant(metaclass=PlantMeta):
 
     def _gain(self, f, x, numbers):
         """What a small change of the signal x does to f, with its dead time."""
+        if (x if x.is_Derivative else x.func(t)) not in _signals_in(f):
+            return sympy.S.Zero
+        if (f, x, numbers) not in self._known_gains:  # many transfer functions of a plant have most of them in common
+            self._known_gains[f, x, numbers] = self._gain_of(f, x, numbers)
+        return self._known_gains[f, x, numbers]
+
+    @functools.cached_property
+    def _known_gains(self):
+        return {}
+
+    def _gain_of(self, f, x, numbers):
         if numbers:  # for all but x beforehand, which leaves little to differentiate
             rates = {rate: sympy.Dummy() for rate in f.atoms(sympy.Derivative)}
             others = {y: self.values[y.func(t)] for y in f.atoms(AppliedUndef) if y.func != x.func}
             f = self.numbers(f.xreplace(others | rates)).xreplace({dummy: rate for rate, dummy in rates.items()})
         found = self._in_constants(_sensitivity(f, x, with_delay=True))
         return self.numbers(found) if numbers else found
+
+    @functools.cached_property
+    def _active_equations(self):
+        return {x: self._active(rate) for x, rate in self.state_equations().items()}
 
     def _active(self, f):
         """The formula with, for each Max and Min, the one of its arguments that counts at the operating point."""
@@ -321,7 +335,7 @@ class Plant(metaclass=PlantMeta):
             extreme = type(limit)(*values)
             return limit.args[values.index(extreme)] if values.count(extreme) == 1 else limit
 
-        return f.replace(lambda x: isinstance(x, (sympy.Max, sympy.Min)), chosen)
+        return f.replace(lambda x: isinstance(x, (sympy.Max, sympy.Min)), chosen) if f.has(sympy.Max, sympy.Min) else f
 
     @staticmethod
     def _between(equations, source, wanted):
@@ -405,11 +419,12 @@ def _symbol(x):
     return x if x.is_Symbol else sympy.Symbol(name_of(x), real=True)
 
 
+@functools.lru_cache(maxsize=1024)
 def _signals_in(expression):
     """The signals and derivatives in an expression, a delayed signal as the signal itself."""
     derivatives = expression.atoms(sympy.Derivative)
     rest = expression.xreplace({x: sympy.Dummy() for x in derivatives})
-    return derivatives | {x.func(t) for x in rest.atoms(AppliedUndef)}
+    return frozenset(derivatives | {x.func(t) for x in rest.atoms(AppliedUndef)})
 
 
 def _solved(A, B):
