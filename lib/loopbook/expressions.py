@@ -6,8 +6,10 @@ The library has one Laplace variable `s` and one time `t` (zero or later, as the
 from __future__ import annotations
 
 import ast
+import functools
 import random
 from collections.abc import Mapping
+from fractions import Fraction
 
 import mpmath
 import sympy
@@ -56,15 +58,23 @@ def parse(text: str) -> sympy.Expr:
     Traceback (most recent call last):
     ValueError: cannot read "open('file')" as an expression: 'file' is not a number, a name or a known operation
     """
-    unreadable = ValueError(f"cannot read {text!r} as an expression: expected something like 'K/(T*s + 1)'")
     if not isinstance(text, str):
-        raise unreadable
+        raise _unreadable(text)
+    return _parsed(str.__str__(text))
+
+
+def _unreadable(text):
+    return ValueError(f"cannot read {text!r} as an expression: expected something like 'K/(T*s + 1)'")
+
+
+@functools.lru_cache(maxsize=4096)  # a printed formula is read, proved and shown
+def _parsed(text):
     try:
         # an indented or broken line is no matter in a book's formula
         source = " ".join(text.split())
         tree = ast.parse(source, mode="eval")
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        raise unreadable from None
+        raise _unreadable(text) from None
 
     def refuse(node, why="is not a number, a name or a known operation"):
         raise ValueError(f"cannot read {text!r} as an expression: {ast.get_source_segment(source, node)} {why}")
@@ -128,7 +138,7 @@ def parse(text: str) -> sympy.Expr:
         with distribute(False):  # 4*(s - 1) stays as it is written
             expression = read(tree.body)
     except RecursionError:
-        raise unreadable from None
+        raise _unreadable(text) from None
     if expression.has(sympy.nan, sympy.zoo):
         refuse(tree.body, "has no value")
     return expression
@@ -278,12 +288,16 @@ def exact(value: Number | complex) -> sympy.Expr:
     """
     if isinstance(value, (str, bool)):
         raise _no_expression(value)
+    if isinstance(value, sympy.Rational):  # as it is, most often
+        return value
     try:
         expression = sympy.sympify(value)
     except (sympy.SympifyError, TypeError, AttributeError):
         raise _no_expression(value) from None
     if not isinstance(expression, sympy.Expr) or expression.has(sympy.nan) or getattr(expression, "is_Matrix", False):
         raise _no_expression(value)
+    if expression.is_Float:
+        return _meant(expression)
     return expression.xreplace({decimal: _meant(decimal) for decimal in expression.atoms(sympy.Float)})
 
 
@@ -295,9 +309,10 @@ def _meant(decimal):
     """The fraction that a decimal number is meant to be."""
     if not decimal.is_finite:
         return decimal
-    digits = sympy.Rational(str(decimal))
+    digits = Fraction(str(decimal))
     simple = digits.limit_denominator(1000)
-    return simple if abs(simple - digits) <= sympy.Rational(2, 10**15) * abs(digits) else digits
+    meant = simple if abs(simple - digits) <= Fraction(2, 10**15) * abs(digits) else digits
+    return sympy.Rational(meant.numerator, meant.denominator)
 
 
 def function_of(variable: sympy.Symbol, value: Number | complex) -> sympy.Expr:

@@ -44,7 +44,7 @@ def _load(name):
     file = importlib.resources.files(__name__).joinpath(f"{name}.toml")
     if not file.is_file():
         raise AttributeError(f"the ledger has no source {name!r}: {did_you_mean(name, _names())}")
-    return Source.read(name, file.read_bytes())
+    return Source.opened(name, file.read_bytes())
 
 
 def __getattr__(name: str) -> Source:

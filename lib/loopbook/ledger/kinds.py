@@ -7,6 +7,7 @@ them for a reader.
 from __future__ import annotations
 
 import decimal
+import functools
 import math
 from dataclasses import dataclass
 from fractions import Fraction
@@ -107,10 +108,15 @@ class Formula:
 
     def latex(self, text: str) -> str:
         """Return the text of a formula as it is typeset."""
-        try:
-            return text if NUMBER.fullmatch(text) else typeset(known.parse_formula(text))
-        except ValueError:  # what SymPy prints is not always what it reads
-            return text
+        return _latex(text)
+
+
+@functools.lru_cache(maxsize=4096)  # a report shows it as a page and as data
+def _latex(text):
+    try:
+        return text if NUMBER.fullmatch(text) else typeset(known.parse_formula(text))
+    except ValueError:  # what SymPy prints is not always what it reads
+        return text
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import keyword
 import re
 import sys
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self
@@ -320,6 +320,27 @@ class Entry:
         return described(self, as_html=True)
 
 
+class _Entries(Mapping):
+    """The entries of a book by name, each read when it is first asked for: a chapter uses a few of hundreds."""
+
+    def __init__(self, source: str, title: str, tables: dict[str, Any]):
+        self._source, self._title, self._tables, self._read = source, title, tables, {}
+
+    def __getitem__(self, name: str) -> Entry:
+        if name not in self._read:
+            self._read[name] = Entry.read(self._source, name, self._tables[name], self._title)
+        return self._read[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._tables
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._tables)
+
+    def __len__(self) -> int:
+        return len(self._tables)
+
+
 @dataclass(frozen=True)
 class Source:
     """A book: its entries in the order of the file, found by name; `title` is short, for headings."""
@@ -327,11 +348,18 @@ class Source:
     name: str
     title: str
     citation: str
-    entries: MappingProxyType[str, Entry]
+    entries: Mapping[str, Entry]
 
     @classmethod
     def read(cls, name: str, content: bytes) -> Self:
-        """Read a source from the content of its TOML file, or raise LedgerError."""
+        """Read a source from the content of its TOML file with all its entries, or raise LedgerError."""
+        source = cls.opened(name, content)
+        list(source)
+        return source
+
+    @classmethod
+    def opened(cls, name: str, content: bytes) -> Self:
+        """Open a source, of which each entry is read when it is first asked for; LedgerError is raised then."""
         try:
             data = tomllib.loads(content.decode())
         except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
@@ -341,8 +369,7 @@ class Source:
         if not isinstance(head, dict) or set(head) != keys or not all(isinstance(head[key], str) for key in keys):
             raise LedgerError(f"{name}.toml: expected a table [source] with title and citation, and nothing else")
         title, citation = (in_one_line(head[key]) for key in ("title", "citation"))
-        entries = {key: Entry.read(name, key, entry, title) for key, entry in data.items()}
-        return cls(name, title, citation, MappingProxyType(entries))
+        return cls(name, title, citation, _Entries(name, title, data))
 
     def __getitem__(self, name: str) -> Entry:
         if not isinstance(name, str) or name not in self.entries:
