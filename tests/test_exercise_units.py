@@ -60,7 +60,17 @@ NAMES = sorted({"K", "Hz", "%"}.union(*units.FAMILIES))
 
 @pytest.mark.parametrize("name", NAMES)
 def test_what_is_taken_for_a_unit_without_pint_is_one_for_pint(name):
-    texts = [name, f"1/{name}", f"K/{name}", f"{name}/({name}/s)", f"1/(kg {name})", f"{name} s kg/°C", f"({name}/s)/m", "", "°C"]
+    texts = [
+        name,
+        f"1/{name}",
+        f"K/{name}",
+        f"{name}/({name}/s)",
+        f"1/(kg {name})",
+        f"{name} s kg/°C",
+        f"({name}/s)/m",
+        "",
+        "°C",
+    ]
     texts += [name + exponent for exponent in "²³" if name not in ("%", "m³")]
     assert all(units._EVERYDAY.fullmatch(text) for text in texts)
     assert all(units._parsed(text) for text in texts)

@@ -444,8 +444,9 @@ class Controller:
         """Conditional integration (clamping): whether the integral term would drive a limited signal further out."""
         if growth * self.hold_integration > 0:
             return True
-        signals = ((u_PID, self.pid_limits), (u, self.limits))
-        return any((growth > 0 and x > high) or (growth < 0 and x < low) for x, (low, high) in signals)
+        if growth > 0:
+            return u_PID > self.pid_limits[1] or u > self.limits[1]
+        return growth < 0 and (u_PID < self.pid_limits[0] or u < self.limits[0])
 
     def __repr__(self) -> str:
         return f"Controller({self.settings}, step={self.step:g})"

@@ -173,8 +173,10 @@ class PiecewiseSignal:
 
     def around(self, time: float) -> float | Callable[[float], float]:
         """A number, or a function of time, that is the signal all around a moment at which it does not jump."""
-        n = last_not_after(time, self.times, self.step)
-        return self.past.around(time) if n < 0 else self.values[min(n, len(self.values) - 1)]
+        n = bisect.bisect_right(self.times, time + CLOSE * self.step + 1e-15 * abs(time)) - 1  # as `last_not_after`
+        if n < 0:
+            return self.past.around(time)
+        return self.values[n] if n < len(self.values) else self.values[-1]
 
     def at(self, time: float) -> float:
         """The value at a moment; a step has its new value."""

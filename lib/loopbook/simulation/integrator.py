@@ -167,9 +167,9 @@ class PlantIntegrator:
     def _freeze_inputs(self, start, end):
         """Keep what drives the states in a stretch of time in which no signal jumps: numbers and functions of time."""
         middle = (start + end) / 2
-        self.inside = [(self._around(name, middle - delay), delay) for name, delay in self.driving]
-        values = [x for x, _ in self.inside]
+        values = [self._around(name, middle - delay) for name, delay in self.driving]
         self.held = None if any(map(callable, values)) else values
+        self.inside = [(x, delay) for x, (_, delay) in zip(values, self.driving, strict=True)] if not self.held else ()
         self.failure = None
 
     def _around(self, name, moment):
@@ -210,9 +210,10 @@ class PlantIntegrator:
 
     def readings(self, time: float) -> dict[str, float]:
         """What the plant says at the last sample: states, measured signals and inputs that no block drives, by name."""
-        inputs = {name: source.at(time) for name, source in self.sources.items() if name not in self.driven}
-        measured = dict(zip(self.measured, self.rows[-1], strict=True))
-        return inputs | dict(zip(self.names, self.trace[-1], strict=True)) | measured
+        found = {name: source.at(time) for name, source in self.sources.items() if name not in self.driven}
+        found.update(zip(self.names, self.trace[-1], strict=True))
+        found.update(zip(self.measured, self.rows[-1], strict=True))
+        return found
 
     def signals(self, times: Iterable[float]) -> dict[str, list[float]]:
         """The states, the measured signals and the inputs at the samples."""
