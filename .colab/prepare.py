@@ -13,7 +13,6 @@ from importlib import metadata
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-ALSO = ["control"]  # the second opinion of two chapters, on which the library itself does not stand
 
 
 def constraints(environment):
@@ -44,7 +43,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         pins = Path(folder) / "constraints.txt"
         pins.write_text("\n".join(constraints((ROOT / "environment.txt").read_text(encoding="utf-8"))), "utf-8")
-        command = ["install", "--quiet", "--disable-pip-version-check", "--constraint", str(pins), str(ROOT), *ALSO]
+        command = ["install", "--quiet", "--disable-pip-version-check", "--constraint", str(pins), str(ROOT)]
         subprocess.run([sys.executable, "-m", "pip", *command], check=True)
     after = versions()
     if any(after.get(name) != before.get(name) for name in loaded):

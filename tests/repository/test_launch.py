@@ -113,14 +113,10 @@ def imported(path):
 
 
 def test_colab_has_what_the_chapters_import():
-    """The library's own packages and those beside them are installed; ipywidgets is Colab's own."""
-    installed = {Requirement(line).name for line in [*PROJECT["dependencies"], *prepare.ALSO]} | {
-        "loopbook",
-        "ipywidgets",
-    }
+    """The library's own packages are installed; ipywidgets is Colab's own."""
+    installed = {Requirement(line).name for line in PROJECT["dependencies"]} | {"loopbook", "ipywidgets"}
     needed = {name for path in NOTEBOOKS for name in imported(path)} - set(sys.stdlib_module_names)
     assert needed <= installed
-    assert set(prepare.ALSO) <= needed
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS[:2])
