@@ -555,6 +555,19 @@ def test_a_legend_over_a_map_does_not_look_for_a_free_place():
     assert plot.axes.get_legend()._get_loc() == Legend.codes["upper right"]
 
 
+@pytest.mark.parametrize("corner", [(0, 0), (0, 1), (1, 0), (1, 1)])
+def test_a_legend_over_levels_is_where_no_level_is(corner):
+    x = np.linspace(0, 1, 101)
+    far = np.hypot(*np.meshgrid(x - corner[0], x - corner[1]))  # the levels are around all corners but one
+    plot = level_plot(x, x, far, np.linspace(0.6, 1.3, 15), "$x$", "$y$", "distance").points([0.5], [0.5], "here")
+    box = plot.axes.get_legend().get_window_extent()
+    levels = plot.axes.transData.transform(
+        np.concatenate([path.vertices for path in plot.axes.collections[0].get_paths()])
+    )
+    assert box.count_contains(levels) == 0
+    assert not box.overlaps(plot.axes.texts[0].get_window_extent())
+
+
 def test_a_legend_below_stays_there_with_its_columns():
     plot = nyquist_plot(exp(-s) / (s + 1))
     before = plot.axes.get_legend()

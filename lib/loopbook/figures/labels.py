@@ -14,19 +14,35 @@ if TYPE_CHECKING:
     from matplotlib.legend import Legend
     from matplotlib.text import Text
 
+CORNERS = ("upper left", "upper right", "lower right", "lower left")
 BELOW = "below"  # the name of a legend that lies under its axes
 
 
 def add_legend(axes: Axes, columns: int = 1) -> None:
     """A legend where it hides least, and the axes stay as they are; one that lies below its axes remains there."""
     from matplotlib.collections import QuadMesh
+    from matplotlib.contour import ContourSet
 
     if axes.get_legend() and axes.get_legend().get_gid() == BELOW:
         legend_below(axes)
     elif any(isinstance(drawn, QuadMesh) for drawn in axes.collections):
         axes.legend(loc="upper right")  # the search for a free place would go through every cell of a map
+    elif any(isinstance(drawn, ContourSet) for drawn in axes.collections):
+        axes.legend(
+            loc=min(CORNERS, key=lambda corner: _hidden_levels(axes, corner))
+        )  # that search does not see levels
     else:
         axes.legend(ncols=columns)
+
+
+def _hidden_levels(axes, corner):
+    """How much a legend in a corner would hide of lines of equal value and of points, in dots of the lines."""
+    box = axes.legend(loc=corner).get_window_extent()
+    paths = [path for drawn in axes.collections for path in drawn.get_paths()] + [
+        line.get_path() for line in axes.lines
+    ]
+    texts = sum(box.overlaps(text.get_window_extent()) for text in axes.texts)
+    return texts + sum(box.count_contains(axes.transData.transform(path.vertices)) for path in paths)
 
 
 def free_legend(axes: Axes) -> None:
