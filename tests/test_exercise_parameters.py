@@ -57,7 +57,7 @@ def test_a_range_has_values_that_a_person_would_choose(low, ratio):
     ("make", "says"),
     [
         (lambda: between(6, 2), "the smaller one first"),
-        (lambda: between(2, 6, "apples"), "no unit"),
+        (lambda: between(2, 6, "apples"), "not a unit"),
         (lambda: between(2, 6, step=10), "leaves no choice"),
         (lambda: between(2, 6, step=0), "step is 0: expected a positive number"),
         (lambda: between(2, 6, reference=7), "the reference is 7"),

@@ -137,9 +137,9 @@ class Expression(Kind):
 
     def mistakes(self) -> Iterator[tuple[str, Any]]:
         """Wrong sign, the inverse."""
-        yield "that is right but for its sign", -self.expr
+        yield "that is right except for its sign", -self.expr
         if self.expr != 0:
-            yield "that is the inverse: one divided by what is asked", 1 / self.expr
+            yield "that is the inverse: one divided by the answer", 1 / self.expr
         yield from self._in_other_units()
 
     def _in_other_units(self):
@@ -185,7 +185,7 @@ class TransferFunction(Expression):
             )
             for order in (1, 2):
                 yield (
-                    "that is a Pade approximation of the dead time; asked is the exact one",
+                    "that is a Pade approximation of the dead time; the exact one is asked for",
                     self.expr.replace(sympy.exp, lambda x, n=order: _pade(x, n)),
                 )
         yield "there is a factor s too many: compare with the transform of a response to a step", self.expr * s
@@ -197,7 +197,7 @@ def _in_other_time(expr, variable):
     """The same with another unit of time, seconds and minutes or minutes and hours exchanged, or milliseconds."""
     for factor in (60, 3600, 1000):
         for scale in (sympy.Integer(factor), sympy.Rational(1, factor)):
-            yield "its unit of time is another one than in the question", expr.subs(variable, scale * variable)
+            yield "its unit of time is not the one in the question", expr.subs(variable, scale * variable)
 
 
 def _pade(x, order):
@@ -276,7 +276,7 @@ class TimeFunction(Expression):
 
     def mistakes(self) -> Iterator[tuple[str, Any]]:
         """Wrong sign."""
-        yield "that is right but for its sign", -self.expr
+        yield "that is right except for its sign", -self.expr
         yield from self._in_other_units()
         yield from _in_other_time(self.expr, t)
 

@@ -54,7 +54,7 @@ class Number(Kind):
         for unit, converted in units.neighbours(self.unit).items():
             yield f"that would be the value {in_unit(unit)}; asked: {self.asked}", converted(self.key)
         if self.key:
-            yield "that is the inverse: one divided by what is asked", 1 / self.key
+            yield "that is the inverse: one divided by the answer", 1 / self.key
 
     def is_value(self, answer: float, wrong: Any) -> bool:
         """Whether an answer is the value of a mistake, which a reader may have rounded."""
@@ -71,7 +71,7 @@ class Number(Kind):
     def hint(self, answer: float) -> str:
         """Say that the number is nearly right."""
         if near(answer, self.key, NEARLY * self.within):
-            return f"that is close, and asked is an accuracy of {self.accuracy}: keep more digits on the way"
+            return f"that is close, but the accuracy asked for is {self.accuracy}: keep more digits on the way"
         return ""
 
 
@@ -129,7 +129,7 @@ class Numbers(Kind):
             yield f"those would be the values {in_unit(unit)}; asked: {self.asked}", np.vectorize(converted)(self.key)
         if self.key.ndim == 2 and min(self.key.shape) > 1:
             if self.key.shape[0] == self.key.shape[1]:
-                yield "rows and columns are exchanged", self.key.T
+                yield "rows and columns are interchanged", self.key.T
         else:
             yield "the values are right, in the opposite order", self.key[::-1]
 
@@ -203,7 +203,7 @@ class Poles(Kind):
             yield "those are the inverses, the times instead of the values in s", 1 / self.key
             yield "those are the time constants: a time constant of T makes the value -1/T", -1 / self.key
         if np.any(self.key.imag):
-            yield "real part and imaginary part are exchanged", self.key.imag + 1j * self.key.real
+            yield "real part and imaginary part are interchanged", self.key.imag + 1j * self.key.real
         for unit, converted in units.neighbours(self.unit).items():
             yield f"those would be the values {in_unit(unit)}; asked: {self.asked}", self.key * converted(1)
 
@@ -212,7 +212,7 @@ class Poles(Kind):
         if len(answer) != len(self.key):
             return f"{len(answer)} is not their number: count a multiple one several times, and both of a complex pair"
         if self._matched(answer, NEARLY * self.within) == len(self.key):
-            return f"they are close, and asked is an accuracy of {self.accuracy}: keep more digits on the way"
+            return f"they are close, but the accuracy asked for is {self.accuracy}: keep more digits on the way"
         right = self._matched(answer, self.within)
         return f"{right} of {len(self.key)} are right" if right else ""
 

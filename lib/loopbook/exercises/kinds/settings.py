@@ -82,7 +82,7 @@ class Settings(Kind):
                 or (unknown := sorted(map(str, set(given) - set(NAMES))))
             ):
                 why = (
-                    f"{unknown[0]} is no setting"
+                    f"{unknown[0]} is not a setting"
                     if isinstance(given, dict) and "Kp" in given
                     else "this is no controller"
                 )
@@ -179,7 +179,7 @@ class Settings(Kind):
                 swapped = {name: getattr(other, name) for name in NAMES}
                 wrong.append((f"those are the numbers of the {other.form} form", PID(**swapped, form=key.form)))
                 if self.form != "any":
-                    wrong.append((f"the controller is right, and asked is its {self.form} form", other))
+                    wrong.append((f"the controller is right, but the question asks for its {self.form} form", other))
             if key.Ti not in (key.Td, sympy.oo):
                 wrong.append(("Ti and Td are exchanged", changed(Ti=key.Td, Td=key.Ti)))
         if key.Ti != sympy.oo:

@@ -122,9 +122,9 @@ class Words(Kind):
         if self.ordered and sorted(answer) == sorted(self.key):
             return "the words are right, their order is not"
         if right == len(answer) < len(self.key):
-            return "what is there is right, and something is missing"
+            return "what is there is right, but something is missing"
         if right == len(self.key):
-            return "all that is asked is there, and more besides"
+            return "everything asked for is there, but also more"
         return f"{right} of your {len(answer)} belong there" if right else ""
 
 
