@@ -1,12 +1,10 @@
-"""Where the lessons stand in the chapters: after the reader's own slider there."""
+"""Where the lessons stand in the chapters: at the end of a section, below the reader's own slider."""
 
 import copy
 
 import nbformat
 
 from lessons.store import PLACES, load
-
-TRY_IT = "Try it"
 
 
 def headings(cell):
@@ -18,22 +16,16 @@ def headings(cell):
 
 
 def place_in(cells, section):
-    """Return the number of the cell before which a lesson stands, and the level of its heading.
+    """Return the number of the cell before which a section's lesson stands, at its end, and the level of its heading.
 
-    Raises ValueError where there is no such section, or nothing to try in it.
+    Raises ValueError where there is no such section.
     """
-    at = 0
-    for wanted in (section, TRY_IT):
-        found = (
-            (number, level)
-            for number, cell in enumerate(cells[at:], at)
-            for level, text in headings(cell)
-            if text.startswith(wanted)
-        )
-        at, level = next(found, (None, None))
-        if at is None:
-            raise ValueError(f"there is no heading {wanted!r} where the lesson for {section!r} should stand")
-    end = next((k for k, cell in enumerate(cells) if k > at and headings(cell)), len(cells))
+    found = [(number, level, text) for number, cell in enumerate(cells) for level, text in headings(cell)]
+    at = next((k for k, (_, _, text) in enumerate(found) if text.startswith(section)), None)
+    if at is None:
+        raise ValueError(f"there is no heading {section!r} where its lesson should stand")
+    level = found[at][1]
+    end = next((number for number, other, _ in found[at + 1 :] if other <= level), len(cells))
     return end, level + 1
 
 

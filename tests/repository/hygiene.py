@@ -240,7 +240,21 @@ def globals_of(function: symtable.SymbolTable) -> set[str]:
     return own.union(*map(globals_of, function.get_children()))
 
 
-# The answers.
+# What a reader meets.
+
+
+def is_chapter(stored: Stored) -> bool:
+    """Whether it is a chapter, and not a solution or the start page."""
+    return stored.path.parent.name == "chapters" and stored.path.stem in NAMES
+
+
+def sections_begin_a_cell(stored: Stored) -> list[str]:
+    """A heading of level 2 begins its cell: what JupyterLab folds under it is a section."""
+    return [
+        f"{label}: a section within the cell: begin a cell with its heading"
+        for label, cell in notebooks.labelled(stored.notebook)
+        if cell.cell_type == "markdown" and "\n## " in cell.source
+    ]
 
 
 def answers_are_labelled(stored: Stored) -> list[str]:
@@ -248,7 +262,7 @@ def answers_are_labelled(stored: Stored) -> list[str]:
 
     Solutions end in answers as a student gives them.
     """
-    if stored.path.parent.name != "chapters":
+    if not is_chapter(stored):
         return []
     return [
         f"{label}: answers {''.join(output.data['text/plain'])[:40]!r}, which nothing names: show quantities or a table"
@@ -277,7 +291,7 @@ IN_NUMBERS = {"pi", "E", "I", "oo", "inf", "nan", "sqrt", "exp", "log", "atan", 
 
 def core_is_short(stored: Stored) -> list[str]:
     """The core of a chapter, all but what is marked as further reading, is a first reading of 45 minutes."""
-    if stored.path.parent.name != "chapters":
+    if not is_chapter(stored):
         return []
     inside, count = True, 0
     for cell in stored.notebook.cells:
@@ -289,7 +303,7 @@ def core_is_short(stored: Stored) -> list[str]:
 
 def opens_and_closes(stored: Stored) -> list[str]:
     """A chapter opens with something that moves, before its first section, and says what the reader can do now."""
-    if stored.path.parent.name != "chapters":
+    if not is_chapter(stored):
         return []
     first = next((n for n, cell in enumerate(stored.notebook.cells) if cell.source.startswith("## ")), 0)
     live = [c for c in stored.notebook.cells[:first] if c.cell_type == "code" and notebooks.has_sliders(c.source)]
@@ -591,6 +605,10 @@ CHECKS = (
     sliders_keep_what_they_use,
     checks_are_computed,
     evidence_can_fail,
+    sections_begin_a_cell,
+    answers_are_labelled,
+    core_is_short,
+    opens_and_closes,
     no_truth_value_becomes_a_word,
     no_number_of_the_book,
 )

@@ -15,7 +15,6 @@ import sympy
 from loopbook import approximation, s, stability, tuning
 from loopbook.deadtime import Loop, System, closed_loop
 from loopbook.identification import good_gain_experiment
-from loopbook.notebooks import has_sliders
 from loopbook.pid import PID
 from loopbook.transfer import first_order
 
@@ -252,17 +251,17 @@ def test_every_lesson_of_the_folder_has_its_place():
 
 
 @pytest.mark.parametrize("name", lessons.NAMES)
-def test_the_lessons_stand_in_their_chapters_after_the_readers_own_slider(name):
-    chapter, _ = lessons.PLACES[name]
+def test_the_lessons_stand_at_the_end_of_their_sections(name):
+    chapter, section = lessons.PLACES[name]
     cells = nbformat.read(ROOT / "chapters" / f"{chapter}.ipynb", as_version=4).cells
     cells = places.with_lessons(cells, chapter)
     at = next(number for number, cell in enumerate(cells) if cell.get("id") == f"lesson-{name}")
     assert re.search(r"^```\{lesson\} " + name, cells[at].source, re.MULTILINE)
-    before = [
-        number for number in range(at) if any(text == places.TRY_IT for _, text in places.headings(cells[number]))
-    ]
-    assert any(has_sliders(cell.source) for cell in cells[before[-1] : at])
-    assert places.headings(cells[at + 1])
+    above = [(level, text) for cell in cells[:at] for level, text in places.headings(cell)]
+    ((own, _),) = places.headings(cells[at])
+    around = next(text for level, text in reversed(above) if level < own)
+    assert around.startswith(section)
+    assert places.headings(cells[at + 1])[0][0] < own
 
 
 def test_each_library_in_the_page_has_its_licence():

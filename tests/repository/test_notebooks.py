@@ -51,12 +51,19 @@ def prints(line, name="stdout"):
     return v4.new_output("stream", name=name, text=line)
 
 
+def answers(text):
+    return code("K", v4.new_output("execute_result", data={"text/plain": text}))
+
+
 IMPORTS = code("from loopbook.ledger import haugen\nfrom loopbook.tuning import simc")
 EXAMPLE = text("## Example 10.2 · a lag with dead time")
 GIVENS = code('example = haugen["Example 10.2"]\nK, T, tau = example.given("K", "T", "tau")')
 FIGURE = code("trends(loop)", shows(text_plain="<Figure>", image_png="iVBORw0KGgo/home/QAAUh0x7f3a5c0d1e50"))
 SLIDER = code("@interact(T=(1, 3))\ndef slow(T): trends(loop(T))")
-GOOD = [text("# Tuning"), IMPORTS, EXAMPLE, GIVENS, FIGURE, SLIDER, code("example.check(Kp=settings.Kp, Ti=T + tau)")]
+OPENING = code("@sliders({'T [s]': (1, 3)})\ndef lag(T): return trends(loop(T))", FIGURE.outputs[0])
+CHECK = code("example.check(Kp=settings.Kp, Ti=T + tau)")
+CLOSING = text("## What you can do now")
+GOOD = [text("# Tuning"), IMPORTS, OPENING, EXAMPLE, GIVENS, FIGURE, SLIDER, CHECK, CLOSING]
 
 
 def stored(*cells, name="10_tuning", change=lambda notebook: None):
@@ -71,7 +78,8 @@ def changed(change):
 
 def with_code(*sources, section=True):
     """The good notebook with more cells in the section of its example, or in a section of their own."""
-    return stored(*GOOD, *([] if section else [text("## Another")]), *(code(source) for source in sources))
+    heading = [] if section else [text("## Another")]
+    return stored(*GOOD[:-1], *heading, *(code(source) for source in sources), CLOSING)
 
 
 def with_evidence(*sources):
@@ -101,7 +109,7 @@ BROKEN = [
     (hygiene.fit_to_store, "/tmp/", stored(*GOOD, code('open("/tmp/x")'))),
     (hygiene.fit_to_store, "/work/", stored(*GOOD, text("Kept in /work/loopbook."))),
     (hygiene.fit_to_store, "/root/", stored(*GOOD, text("Kept in /root/loopbook."))),
-    (hygiene.plain_python, "cell [6]", with_code("%matplotlib inline")),
+    (hygiene.plain_python, "cell [7]", with_code("%matplotlib inline")),
     (hygiene.without_tricks, "sys.path", with_code("sys.path.append('..')")),
     (hygiene.without_tricks, "import", with_code("try:\n    import control\nexcept ImportError:\n    pass")),
     (hygiene.without_tricks, "hides", with_code("try:\n    poles(H)\nexcept Exception:\n    pass")),
@@ -113,7 +121,7 @@ BROKEN = [
     (hygiene.short_cells, "13 lines", with_code("\n".join(["K"] * 13))),
     (hygiene.short_cells, "89 columns", with_code("K" * 89)),
     (hygiene.short_cells, "median", with_code(*["K\nK\nK\nK\nK"] * 9)),
-    (hygiene.only_sliders_escape_comparison, "tags []", changed(lambda n: n.cells[5].metadata.pop("tags"))),
+    (hygiene.only_sliders_escape_comparison, "tags []", changed(lambda n: n.cells[6].metadata.pop("tags"))),
     (hygiene.only_sliders_escape_comparison, "hides", with_code("# NBVAL_IGNORE_OUTPUT\nexample.check(Kp=Kp)")),
     (hygiene.only_sliders_escape_comparison, "hides", with_code("# NBVAL_IGNORE_OUTPUT\n" + SLIDER.source)),
     (hygiene.only_sliders_escape_comparison, "hides", with_code("K\n# NBVAL_SKIP")),
@@ -125,13 +133,23 @@ BROKEN = [
             changed(lambda n, k=k, t=tags: n.cells[k].metadata.update(tags=t)),
         )
         for k, tags in [
-            (3, [notebooks.SLIDERS]),
-            (3, ["nbval-skip"]),
-            (5, ["nbval-skip"]),
-            (5, [notebooks.SLIDERS, "nbval-skip"]),
-            (6, ["raises-exception"]),
+            (4, [notebooks.SLIDERS]),
+            (4, ["nbval-skip"]),
+            (6, ["nbval-skip"]),
+            (6, [notebooks.SLIDERS, "nbval-skip"]),
+            (7, ["raises-exception"]),
         ]
     ),
+    (hygiene.sections_begin_a_cell, "within", stored(*GOOD, text("So much for this.\n\n## Example 10.3"))),
+    (hygiene.answers_are_labelled, "2.1", stored(*GOOD, answers("2.1"))),
+    (hygiene.answers_are_labelled, "[0.3, 16.0]", stored(*GOOD, answers("[0.3, 16.0]"))),
+    (hygiene.answers_are_labelled, "oo", stored(*GOOD, answers("{'pole': -oo, 'pair': sqrt(2)/2}"))),
+    (hygiene.answers_are_labelled, "True", stored(*GOOD, answers("True"))),
+    (hygiene.answers_are_labelled, "a word", stored(*GOOD, answers("'a word'"))),
+    (hygiene.core_is_short, "61 code cells", stored(*GOOD, *[code("K")] * 55)),
+    (hygiene.core_is_short, "61 code cells", stored(*GOOD, text("## Core"), *[code("K")] * 55)),
+    (hygiene.opens_and_closes, "no slider", stored(*GOOD[:2], *GOOD[3:])),
+    (hygiene.opens_and_closes, "What you can do now", stored(*GOOD[:-1])),
     (hygiene.sliders_follow_a_figure, "without a figure", with_code(SLIDER.source, section=False)),
     (hygiene.sliders_keep_what_they_use, "uses K, which", with_code(SLIDER.source.replace("T))", "K))"), "K = 3")),
     (
