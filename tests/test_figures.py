@@ -365,6 +365,16 @@ def test_an_event_is_in_all_panels_with_words_that_hide_no_curve():
         plot.event(26, "late")
 
 
+def test_the_words_at_events_are_not_behind_the_legend():
+    plot = time_plot({"y": t / 25, "z": t**2 / 625}, TIMES)
+    (axes,) = plot.figure.axes
+    legend = axes.legend(loc="upper left")
+    plot.event(2, "load").event(20, "setpoint")
+    boxes = [words.get_window_extent() for words in axes.texts]
+    assert not any(legend.get_window_extent().overlaps(box) for box in boxes)
+    assert boxes[0].y1 < legend.get_window_extent().y0 < boxes[1].y0
+
+
 def test_errors_have_a_panel_of_their_own_in_the_looks_of_their_curves():
     curves = {"process": (LAG, "process"), "model": (LAG + exp(-t), "model"), "other": (LAG - 0.1, "second model")}
     plot = time_plot([curves, {"u": (1, "control signal")}], TIMES, error_from="process", ylabel=["y", None])

@@ -239,9 +239,11 @@ class TimePlot(Picture):
                 label, (time, 1), (3 if on_right else -3, -2), xycoords=("data", "axes fraction"),
                 textcoords="offset points", ha="left" if on_right else "right", va="top", zorder=5, bbox=ON_WHITE,
             )  # fmt: skip
-        legend = top.get_legend()
-        if legend and (box := legend.get_window_extent()).overlaps(words.get_window_extent()):
-            words.xyann = (words.xyann[0], -2 - (top.bbox.y1 - box.y0) * 72 / self.figure.dpi)  # below the legend
+        words.set_gid("event")
+        for other in (text for text in top.texts if text.get_gid() == "event"):  # the legend may have moved there
+            legend = top.get_legend()
+            if legend and (box := legend.get_window_extent()).overlaps(other.get_window_extent()):
+                other.xyann = (other.xyann[0], -2 - (top.bbox.y1 - box.y0) * 72 / self.figure.dpi)
         make_room(top, words, 1)
         self.alt += f"; at {time:g}: {plain_words(label)}"
         return self
