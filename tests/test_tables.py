@@ -59,3 +59,9 @@ def test_a_table_has_one_value_for_each_column():
 def test_rows_of_one_column_need_no_list_and_rows_need_no_names():
     assert repr(table(["K"], {"a": 1, "b": 2}, of="loop")).splitlines() == ["loop  K", "a     1", "b     2"]
     assert repr(table(["t", "y"], np.array([[0, 1.0], [1, 0.25]]))).splitlines()[-1] == "1  0.250"
+
+
+def test_names_of_rows_may_be_numbers():
+    shown = table(["K"], {0.2: 1, 2: 3}, of="lag [s]")
+    assert repr(shown).splitlines()[1:] == ["0.2      1", "2        3"]
+    assert "$2$" not in shown._repr_html_()

@@ -120,7 +120,10 @@ def table(
     1      0.632
     """
     named = isinstance(rows, Mapping)
-    lines = [(name, *_row(values)) for name, values in rows.items()] if named else [(*_row(values),) for values in rows]
+    if named:
+        lines = [(f"{x:g}" if isinstance(x, float) else x, *_row(values)) for x, values in rows.items()]
+    else:
+        lines = [(*_row(values),) for values in rows]
     head = (of, *columns) if named else tuple(columns)
     if not lines:
         raise ValueError("a table without rows: expected at least one")
@@ -249,11 +252,12 @@ def _is_word(name):
 def is_symbol(name: str) -> bool:
     """Whether a name is that of a symbol, K or T_1 or tau, which needs no other label.
 
-    >>> is_symbol("T_1"), is_symbol("tau"), is_symbol("T_i_in_minutes")
-    (True, True, False)
+    >>> is_symbol("T_1"), is_symbol("tau"), is_symbol("T_i_in_minutes"), is_symbol("2")
+    (True, True, False, False)
     """
     letter, _, index = name.partition("_")
-    return (len(letter) == 1 or letter in _GREEK) and len(index) <= 3 and "_" not in index
+    is_letter = (len(letter) == 1 and letter.isalpha()) or letter in _GREEK
+    return is_letter and len(index) <= 3 and "_" not in index
 
 
 def symbol(name: str) -> str:
