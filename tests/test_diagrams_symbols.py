@@ -270,7 +270,7 @@ def test_a_table_has_each_symbol_over_its_name():
         (lambda: conductor("wire"), "the conductor is 'wire'"),
         (lambda: instrument("FC1", "room"), "the place is 'room': expected one of field, panel"),
         (lambda: instrument("FC1", device="plc"), "the device is 'plc'"),
-        (lambda: instrument("CF1"), "CF1 begins with C, which means controller behind another letter only"),
+        (lambda: instrument("CF1"), "CF1 begins with C, which means controller only after another letter"),
         (lambda: vessel(trays=3, packings=1), "either trays or packings, not 3 trays and 1 packings"),
         (lambda: vessel(lying=True, stirrer=True), "a lying vessel has neither trays nor packings, stirrer"),
         (lambda: symbol_table({}), "a table of symbols needs one symbol or more"),

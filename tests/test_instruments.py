@@ -128,7 +128,7 @@ def test_a_loop_keeps_its_number():
 @pytest.mark.parametrize(
     ("tag", "message"),
     [
-        ("CF1", "CF1 begins with C, which means controller behind another letter only: a tag begins with one of A, D"),
+        ("CF1", "CF1 begins with C, which means controller only after another letter: a tag begins with one of A, D"),
         ("BT", "BT begins with B, which has no meaning in a tag"),
         ("LXC", "LXC has X behind L, where it means nothing: expected one of A, C, E, G"),
         ("FICK3", "FICK3 has K behind FIC, where it means nothing"),

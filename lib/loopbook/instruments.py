@@ -222,7 +222,7 @@ def _is_modifier(first, rest):
 def _known(letter):
     """What a letter means that cannot be the first one."""
     meanings = [entry.noun for entry in LETTERS if entry.letter == letter]
-    return f"means {' or '.join(meanings)} behind another letter only" if meanings else "has no meaning in a tag"
+    return f"means {' or '.join(meanings)} only after another letter" if meanings else "has no meaning in a tag"
 
 
 def _at(place):
