@@ -65,3 +65,8 @@ def test_names_of_rows_may_be_numbers():
     shown = table(["K"], {0.2: 1, 2: 3}, of="lag [s]")
     assert repr(shown).splitlines()[1:] == ["0.2      1", "2        3"]
     assert "$2$" not in shown._repr_html_()
+
+
+def test_what_can_be_gone_through_once_is_shown_as_often_as_it_is_asked_for():
+    shown = quantities({"steps [s]": map(float, (0.5, 2))})
+    assert repr(shown) == repr(shown) == "steps  0.500, 2 s"

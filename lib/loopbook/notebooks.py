@@ -42,7 +42,7 @@ SLIDERS = "nbval-ignore-output"
 """The tag of a cell with sliders: nbval runs it, and does not compare the widgets that it shows."""
 INTERACT = {"sliders", "interact", "interactive", "interact_manual", "interactive_output"}
 FOLDED = "hide-input"
-"""The tag of a cell whose code is folded, in JupyterLab and on a page: it makes sliders, or serves the ledger alone."""
+"""The tag of a cell whose code is folded, in JupyterLab and on a page: imports, sliders, and what serves the ledger."""
 FURTHER = re.compile(r"^\*Further[ .:]|^## How we know\b", re.MULTILINE)
 """What the text under a heading begins with when its section may be skipped: JupyterLab opens it folded."""
 ID = re.compile(r"[a-zA-Z0-9_-]{1,64}")  # what the format of notebooks allows
@@ -255,7 +255,7 @@ def has_sliders(source: str) -> bool:
 
 
 def folded(cells: Iterable[NotebookNode]) -> list[NotebookNode]:
-    """The cells whose code a reader need not see: sliders, checks against the ledger, and what serves checks alone.
+    """The cells whose code a reader need not see: imports, sliders, checks, and what serves these alone.
 
     A cell serves checks alone if it shows nothing and all that it binds is used in folded cells only. What belongs to
     the argument is shown, and is not folded then.
@@ -267,10 +267,11 @@ def folded(cells: Iterable[NotebookNode]) -> list[NotebookNode]:
     """
     code = [cell for cell in cells if cell.cell_type == "code"]
     bound, used = [bound_in(cell.source) for cell in code], [_used_in(cell.source) for cell in code]
-    hidden = {n for n, cell in enumerate(code) if has_sliders(cell.source) or _checks(cell.source)}
+    sources = [cell.source for cell in code]
+    hidden = {n for n, x in enumerate(sources) if _imports(x) or has_sliders(x) or _checks(x)}
 
     def serves_hidden_cells(n: int) -> bool:
-        if n in hidden or not bound[n] or code[n].outputs or _imports(code[n].source):
+        if n in hidden or not bound[n] or code[n].outputs:
             return False
         return all(m in hidden or m == n or bound[n].isdisjoint(used[m]) for m in range(len(code))) and any(
             not bound[n].isdisjoint(used[m]) for m in hidden

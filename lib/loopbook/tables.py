@@ -16,7 +16,7 @@ import html
 import math
 import numbers
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -84,7 +84,7 @@ def quantities(named: Mapping[str, Any] | None = None, /, *, digits: int = 3, **
     rows = []
     for name, value in {**(named or {}), **symbols}.items():
         label, unit = _with_unit(str(name))
-        rows.append((label, _Quantity(value, unit)))
+        rows.append((label, _Quantity([*value] if isinstance(value, Iterator) else value, unit)))
     if not rows:
         raise ValueError("no quantity to show: expected at least one, as quantities(K=2)")
     return Table((), tuple(rows), digits)
@@ -148,7 +148,7 @@ def _row(values):
     """The values of a row; a single one is a row of one."""
     if isinstance(values, str | sympy.Basic) or not isinstance(values, Iterable):
         return [values]
-    return [*values]
+    return [[*value] if isinstance(value, Iterator) else value for value in values]
 
 
 def _with_unit(name):

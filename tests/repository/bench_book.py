@@ -20,7 +20,7 @@ import browser
 ROOT = Path(__file__).parents[2]
 RUNS = 5
 #: The front page, the largest pages, and one with a live lesson.
-VISITED = ["index", "ledger", "chapters/11_control_structures", "chapters/17_dead_time_compensation"]
+VISITED = ["index", "ledger", "chapters/16_tuning_relations", "chapters/17_dead_time_compensation"]
 
 
 def build(folder: Path) -> tuple[Path, float]:
