@@ -735,3 +735,11 @@ def test_what_makes_no_plane():
         plane_plot({"limit": ([1, 2], [1, 2, 3])}, "x", "y")
     with pytest.raises(ValueError, match=r"shape \(2, 3\): expected \(3, 2\)"):
         map_plot([1, 2], [1, 2, 3], np.zeros((2, 3)), "x", "y", "n")
+
+
+def test_a_panel_goes_without_a_legend_only_below_one_that_explains_its_responses():
+    first = {"y, PI": ([0, 1], 0), "y, PID": ([1, 0], 1)}
+    same = time_plot([first, {"u, PI": ([2, 1], 0), "u, PID": ([1, 2], 1)}], [0, 1])
+    other = time_plot([first, {"inflow": ([2, 1], 0), "outflow": ([1, 2], 1)}], [0, 1])
+    assert [axes.get_legend() is not None for axes in same.figure.axes] == [True, False]
+    assert [axes.get_legend() is not None for axes in other.figure.axes] == [True, True]

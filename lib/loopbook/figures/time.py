@@ -365,14 +365,15 @@ def time_plot(
         figure.align_ylabels()
         explained = set()
         for axes, panel, fixed in zip(grid, curves, fixed_axes, strict=True):
-            roles = {role for *_, role in panel.values()}
-            # the same responses in the same looks need no second legend
-            if len(panel) > 1 and not (roles <= explained and all(isinstance(role, int) for role in roles)):
+            responses = [{(role, word.strip()) for word in label.split(",")} for label, (*_, role) in panel.items()]
+            # "u, PI" below "y, PI", "PI, load" below "PI": the same responses in the same looks need no second legend
+            numbered = all(isinstance(role, int) for *_, role in panel.values())
+            if len(panel) > 1 and not (numbered and all(map(explained.intersection, responses))):
                 if fixed:
                     add_legend(axes, columns=3 if low else 1)
                 else:
                     free_legend(axes)
-            explained |= roles
+            explained = explained.union(*responses)
     shown = [", ".join(map(plain_words, panel)) for panel in panels]
     if error_from is not None:
         shown.insert(1, f"difference from {plain_words(error_from)}")
