@@ -164,16 +164,17 @@ class Contrary(Status):
     Of a claim it is a sentence, and evidence contradicts the claim.
     """
 
+    key: ClassVar[str]  # under which the ledger tells it
     because: str
 
     @property
     def found(self) -> str:
         """What the value must agree with."""
-        raise NotImplementedError
+        return getattr(self, self.key)
 
     def _validate(self, where, printed):
         if self.found:
-            _value(where, "correct" if hasattr(self, "correct") else "computed", self.found, printed)
+            _value(where, self.key, self.found, printed)
 
     def judge(self, printed: Printed, value: Any) -> str:
         """Say how the value agrees with what was found; empty where it does not, or where the print holds too."""
@@ -204,13 +205,9 @@ class Corrected(Contrary):
     word = "corrected"
     meaning = "the book is wrong, and the computation says what is right"
     mark = ("≠", "differs")
+    key = "correct"
     correct: str
     because: str
-
-    @property
-    def found(self) -> str:
-        """The correction."""
-        return self.correct
 
 
 @dataclass(frozen=True)
@@ -228,6 +225,7 @@ class Unreproduced(Contrary):
     word = "unreproduced"
     meaning = "all is known and it does not agree, or what it takes is not printed"
     mark = ("?", "open")
+    key = "computed"
     because: str
     computed: str = ""
 
@@ -239,11 +237,6 @@ class Unreproduced(Contrary):
     def is_checked(self) -> bool:
         """Whether something can be computed."""
         return bool(self.computed)
-
-    @property
-    def found(self) -> str:
-        """What was computed before."""
-        return self.computed
 
 
 @dataclass(frozen=True)
