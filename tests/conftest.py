@@ -36,7 +36,7 @@ def pytest_configure(config):
 
 
 #: What takes long begins first, so that no process works alone at the end; before all, what builds the site for others.
-FIRST = ("tests/repository/test_browser_site.py", "chapters/11_", "tests/test_ise.py",
+FIRST = ("tests/repository/test_browser_site.py", "chapters/16_", "tests/test_ise.py",
          "tests/test_ledger_in_chapters.py", "tests/test_exercises.py", "chapters/",
          "tests/repository/test_browser.py", "tests/test_solutions.py")  # fmt: skip
 #: What needs the site finds it built.
@@ -56,3 +56,11 @@ def pytest_collection_modifyitems(items):
         return 1 + LAST.index(name) if (name := next(filter(item.nodeid.startswith, LAST), None)) else 0
 
     items.sort(key=place)
+
+
+@pytest.fixture
+def own_folder(tmp_path, monkeypatch):
+    """A reader's folder, in which exercises remember what she answered."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("LOOPBOOK_PROGRESS", raising=False)
+    return tmp_path

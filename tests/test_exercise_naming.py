@@ -12,11 +12,9 @@ from loopbook.exercises.naming import FILE
 
 
 @pytest.fixture
-def desk(tmp_path, monkeypatch):
-    """A folder of one's own, where a name is kept."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.delenv("LOOPBOOK_PROGRESS", raising=False)
-    return tmp_path / FILE
+def desk(own_folder):
+    """The file of the name."""
+    return own_folder / FILE
 
 
 def right(question):

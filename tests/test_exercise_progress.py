@@ -12,11 +12,9 @@ from loopbook.exercises.progress import FILE
 
 
 @pytest.fixture
-def desk(tmp_path, monkeypatch):
-    """A folder of one's own, where progress is kept."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.delenv("LOOPBOOK_PROGRESS", raising=False)
-    return tmp_path / FILE
+def desk(own_folder):
+    """The file of the progress."""
+    return own_folder / FILE
 
 
 def test_progress_survives_a_restart(desk):
