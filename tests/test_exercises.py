@@ -14,7 +14,7 @@ import pytest
 import sympy
 
 from draws import THOROUGH
-from loopbook.exercises import bank, kinds
+from loopbook.exercises import bank, filling, kinds
 from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
 from loopbook.exercises.parameters import call
 from loopbook.grading.plain import plain
@@ -280,6 +280,61 @@ def test_the_statement_reads_well(exercise):
 def _verdict(question, name, answer):
     (verdict,) = [one for one in question.check(**{name: answer}).verdicts if one.name == name]
     return verdict
+
+
+# What an exercise offers besides its statement.
+
+
+@each_exercise
+def test_hints_and_the_solution_are_complete(exercise):
+    if not exercise.rungs:
+        pytest.skip("its hints are still to be written")
+    assert len(exercise.rungs) >= 3
+    assert exercise.insight
+    first_of_chapter = exercise.number.endswith(".1")
+    for student in (None, "Ada", "Norbert", "Zoe"):
+        question = exercise.question.__wrapped__(exercise, student)
+        rungs = question.rungs
+        assert len(rungs) > len(exercise.rungs) or not first_of_chapter, "the first one fades: a line of three stars"
+        question.check(**dict.fromkeys(question.key, 0))
+        solution = question.solution().text
+        for text in (*rungs, solution, question.filled_in(exercise.insight, also={})):
+            assert text.count("$") % 2 == 0
+            assert not re.search(r"(?<![\\\w}_^{])\{[a-z]\w+\}", re.sub(r"\$\$?.*?\$\$?", "", text, flags=re.S)), text
+            assert not re.search(r"\bnan\b|\bNone\b|<function", text)
+        for name, kind in question.key.items():
+            if isinstance(kind, kinds.Number):
+                assert filling.shown(kind.key).inside in solution, f"{name} is not in the solution"
+            if isinstance(kind, kinds.Word):
+                assert kind.key.casefold() in solution.casefold(), f"{name} is not in the solution"
+
+
+@each_exercise
+def test_pictures_are_drawn_from_the_numbers_of_the_student(exercise):
+    for function in filter(None, (exercise.drawn, exercise.drawn_in_solution)):
+        assert inspect.getdoc(function), "its docstring describes the picture"
+    if exercise.drawn is None:
+        return
+    students = (None, "Ada", "Norbert", "Zoe")
+    questions = [exercise.question.__wrapped__(exercise, student) for student in students]
+    images = {question.picture.png() for question in questions}
+    assert len(images) >= len({tuple(map(str, question.values.values())) for question in questions}) / 2
+    assert max(map(len, images)) < 100_000
+    assert all(question.picture.alt for question in questions)
+
+
+@each_exercise
+def test_no_word_is_right_in_nearly_every_variant(exercise):
+    if not exercise.rungs:
+        pytest.skip("its variants are still to be made equally hard")
+    answers = {}
+    for k in range(40):
+        for name, kind in exercise.question.__wrapped__(exercise, f"student {k}").key.items():
+            if isinstance(kind, kinds.Word | kinds.Words):
+                answers.setdefault(name, []).append(str(kind.key))
+    for name, found in answers.items():
+        most = max(map(found.count, found))
+        assert most <= 36, f"{name} is {max(found, key=found.count)} in {most} of 40 variants"
 
 
 # Many variants.

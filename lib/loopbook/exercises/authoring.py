@@ -13,6 +13,13 @@ So an exercise looks::
     @air_heater.mistake("That is the integral time for $c = 4$; here $c = 2$ is asked.")
     def _(T, delay):
         return {"Ti": min(T, 8 * delay)}
+
+    air_heater.hints("Skogestad's rule ...", "With $T_C = \\tau$ ...", "The first line is ...")
+
+    @air_heater.solution
+    def _(T, delay):
+        '''The worked solution in Markdown, with {T}, {limit} and the key {Kp}.'''
+        return {"limit": (4 * delay, "s")}
 """
 
 from __future__ import annotations
@@ -21,14 +28,14 @@ import functools
 import inspect
 import textwrap
 import unicodedata
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import sympy
 
 from loopbook.exercises.criteria import largest_sensitivity, pi_controller, stable
 from loopbook.exercises.kinds import MAKERS, Criterion, Kind, Number
-from loopbook.exercises.parameters import Parameter, between, call, choice, written
+from loopbook.exercises.parameters import Parameter, between, call, choice
 from loopbook.exercises.question import Question
 
 if TYPE_CHECKING:  # editors read no registry
@@ -42,7 +49,6 @@ if TYPE_CHECKING:  # editors read no registry
     from loopbook.exercises.kinds import TransferFunction as transfer_function  # noqa: F401, N813
     from loopbook.exercises.kinds import Word as word  # noqa: F401, N813
     from loopbook.exercises.kinds import Words as words  # noqa: F401, N813
-    from loopbook.exercises.parameters import Value
 
 __all__ = [
     "Exercise", "answers", "between", "choice", "criterion", "exercise", "largest_sensitivity", "pi_controller",
@@ -70,7 +76,7 @@ def answers(**kinds: Kind | float | sympy.Expr) -> dict[str, Kind]:
 
 
 def exercise(
-    number: str, title: str, points: float = 1, where: Callable[..., object] = lambda: True
+    number: str, title: str, points: float = 1, where: Callable[..., object] = lambda: True, insight: str = ""
 ) -> Callable[[Callable[..., dict[str, Kind]]], Exercise]:
     """Make an exercise of a function that returns its key.
 
@@ -79,8 +85,9 @@ def exercise(
         title: a few words.
         points: of the whole exercise; each asked quantity brings the same part.
         where: a condition on the parameters that it names; other draws are discarded.
+        insight: what one knows after a right answer, in one sentence.
     """
-    return functools.partial(Exercise, number, title, points, where)
+    return functools.partial(Exercise, number, title, points, where, insight=insight)
 
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
@@ -90,20 +97,31 @@ class Exercise:
     """An exercise, with all its variants.
 
     Attributes:
-        number, title, points: as given.
+        number, title, points, insight: as given.
         parameters: {name: `Parameter`}.
     """
 
     def __init__(
-        self, number: str, title: str, points: float, where: Callable[..., object], key: Callable[..., dict[str, Kind]]
+        self,
+        number: str,
+        title: str,
+        points: float,
+        where: Callable[..., object],
+        key: Callable[..., dict[str, Kind]],
+        insight: str = "",
     ):
         self.number, self.title, self.points, self.where, self.key = number, title, points, where, key
+        self.insight, self.then = insight, ""  # the heading of the next exercise, which a collection knows
         self.statement = textwrap.dedent(" " * 4 + (key.__doc__ or "")).strip()
         self.parameters: dict[str, Parameter] = {
             name: item.default for name, item in inspect.signature(key).parameters.items()
         }
         self.mistakes: list[tuple[str, Callable[..., dict[str, Any] | None]]] = []
         self.shown: Callable[..., dict[str, Any]] = lambda: {}
+        self.rungs: tuple[str, ...] = ()
+        self.worked: Callable[..., dict[str, Any] | None] | None = None
+        self.drawn: Callable[..., Any] | None = None
+        self.drawn_in_solution: Callable[..., Any] | None = None
         for name, parameter in self.parameters.items():
             if not isinstance(parameter, Parameter):
                 raise ValueError(f"{name} of exercise {number} is {parameter!r}: expected between(...) or choice(...)")
@@ -125,8 +143,30 @@ class Exercise:
         return declared
 
     def shows(self, function: _Function) -> _Function:
-        """Declare what else the statement shows: {name: expression, equation or text}."""
+        """Declare what else the statement shows: {name: expression, equation or text}; an array is data to work on."""
         self.shown = function
+        return function
+
+    def hints(self, *rungs: str) -> None:
+        """Declare the hints, from the law that helps to the first line; each goes one step further."""
+        self.rungs = rungs
+
+    def solution(self, function: _Function) -> _Function:
+        """Declare the solution: its text is the docstring, and the function returns what else the text shows.
+
+        What is below a line of three stars is left to the reader in the last hint.
+        """
+        self.worked = function
+        return function
+
+    def picture(self, function: _Function) -> _Function:
+        """Declare the picture of the statement; the docstring says what is in it to those who cannot see it."""
+        self.drawn = function
+        return function
+
+    def solution_picture(self, function: _Function) -> _Function:
+        """Declare the picture of the solution, as that of the statement."""
+        self.drawn_in_solution = function
         return function
 
     @functools.lru_cache(maxsize=64)  # noqa: B019 - the exercises live as long as the program
@@ -151,21 +191,5 @@ class Exercise:
                 return Question(self, student, values)
         raise ValueError(f"the condition of exercise {self.number} holds in none of {MOST_DRAWS} draws: widen it")
 
-    def places(self, values: Mapping[str, Value]) -> dict[str, str]:
-        """Return what stands in the places of a text: the values of the parameters, and what else is shown."""
-        places = {name: written(value, self.parameters[name].unit) for name, value in values.items()}
-        for name, value in call(self.shown, values).items():
-            places[name] = value if isinstance(value, str) else f"${sympy.latex(_in_decimals(value), full_prec=False)}$"
-        return places
-
     def __repr__(self) -> str:
         return self.heading
-
-
-def _in_decimals(value):
-    """An expression with its fractions as decimals, where few digits write them; exponents stay."""
-    if isinstance(value, sympy.Rational) and not value.is_Integer and 10**4 % value.q == 0:
-        return sympy.Float(value, 10)
-    if isinstance(value, sympy.Pow):
-        return sympy.Pow(_in_decimals(value.base), value.exp)
-    return value.func(*map(_in_decimals, value.args)) if value.args else value

@@ -32,6 +32,16 @@ def load() -> dict[str, bool]:
     return notes.read(FILE, "answered", _is_table, "your next answer begins a new one") or {}
 
 
+def is_answered(number: str, student: str | None) -> bool:
+    """Whether an exercise was answered before, right or wrong."""
+    return _key(number, student) in load()
+
+
+def students(number: str) -> list[str | None]:
+    """Return for whom an exercise may have been answered: everybody, which is None, and the names in the file."""
+    return [None, *(key.removeprefix(f"{number} ") for key in load() if key.startswith(f"{number} "))]
+
+
 def _is_table(stored):
     return isinstance(stored, dict) and all(isinstance(right, bool) for right in stored.values())
 

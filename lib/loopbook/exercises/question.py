@@ -3,25 +3,35 @@
 from __future__ import annotations
 
 import functools
+import inspect
 import re
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from loopbook.exercises.judging import OPEN, Verdict, harmless, judge
-from loopbook.exercises.kinds import Kind
+import numpy as np
+
+from loopbook.exercises import filling
+from loopbook.exercises.judging import OPEN, UNJUDGED, WRONG, Verdict, harmless, judge
+from loopbook.exercises.kinds import Kind, Word, Words
 from loopbook.exercises.parameters import call
-from loopbook.exercises.progress import note
+from loopbook.exercises.progress import is_answered, note, students
 from loopbook.exercises.reading import NOT_ANSWERED
 from loopbook.exercises.response import Response
+from loopbook.exercises.showing import Page, Showing
+from loopbook.figures import Picture
 from loopbook.validation import did_you_mean
 
 if TYPE_CHECKING:
     from loopbook.exercises.authoring import Exercise
     from loopbook.exercises.parameters import Value
 
-_PLACE = re.compile(r"\{\{(\w+)\}\}|\{(\w+)\}")
+#: In a solution, what is below it is left to the reader in the last hint.
+FADES = re.compile(r"^\*\*\*\n", re.MULTILINE)
+#: After so many responses that name no mistake, the hint is offered.
+BARE = 2
 
 
-class Question:
+class Question(Showing):
     """One variant of an exercise. Shown in a notebook, it is the statement; `check` responds to answers.
 
     Attributes:
@@ -30,6 +40,7 @@ class Question:
 
     def __init__(self, exercise: Exercise, student: str | None, values: dict[str, Value]):
         self.exercise, self.student, self.values = exercise, student, values
+        self._hints_seen = self._answered = self._bare = 0
 
     def given(self, *names: str) -> Any:
         """Return values of parameters, exact, and of what else the statement shows; a single one alone.
@@ -44,7 +55,7 @@ class Question:
         >>> twice.question().given("x")
         3
         """
-        known = self.values | call(self.exercise.shown, self.values)
+        known = self.values | self._shows
         for name in names:
             if name not in known:
                 raise ValueError(f"exercise {self.exercise.number} gives no {name!r}: expected {_listed(known)}")
@@ -81,17 +92,32 @@ class Question:
             raise ValueError(f"{what} of exercise {self.exercise.number} fails for {values}: {error}") from error
 
     @functools.cached_property
-    def _places(self):
-        return self.exercise.places(self.values)
+    def _shows(self):
+        """What the statement shows besides the parameters."""
+        return self._called(self.exercise.shown, "what the statement shows")
 
-    def filled_in(self, text: str) -> str:
-        """Return a text with the values of this variant in the places of their names; ``{{K}}`` is the letter K."""
+    @property
+    def data(self) -> dict[str, np.ndarray]:
+        """The arrays that the exercise hands out, by their names."""
+        return {name: value for name, value in self._shows.items() if isinstance(value, np.ndarray)}
 
-        def fill(match):
-            letter, name = match.groups()
-            return "{" + letter + "}" if letter else self._places.get(name, match[0])
+    def filled_in(self, text: str, also: Mapping[str, Any] | None = None) -> str:
+        """Return a text with the values of this variant in the places of their names; ``{{K}}`` is the letter K.
 
-        return _PLACE.sub(fill, text)
+        Arguments:
+            text: of the author; in a formula a value is bare, elsewhere it has its unit.
+            also: more that is shown, by name.
+        """
+        more = self._shows | (also or {})
+
+        def find(name):
+            if name in more and not isinstance(more[name], np.ndarray):
+                return filling.shown(more[name])
+            if name in self.values:
+                return filling.of_parameter(self.values[name], self.exercise.parameters[name].unit)
+            return filling.shown(self.key[name].shown) if also is not None and name in self.key else None
+
+        return filling.filled_in(text, find)
 
     def check(self, /, *alone: object, **given: object) -> Response:
         """Respond to answers, whatever they are: ``check(Kp=2, Ti="3 min")``; a single quantity needs no name.
@@ -111,10 +137,102 @@ class Question:
             judge(name, kind, given[name], self.mistakes[name]) if name in given else Verdict(name, OPEN, NOT_ANSWERED)
             for name, kind in self.key.items()
         )
-        response = Response(self.exercise.heading, verdicts, self.exercise.points, tuple(notes))
-        if any(verdict.status != OPEN for verdict in verdicts):
-            note(self.exercise.number, self.student, response.is_right)
-        return response
+        judged = {one.name: one for one in verdicts if one.status not in (OPEN, UNJUDGED)}
+        drawings = tuple(functools.partial(_drawn, self.key[name], given[name]) for name in judged)
+        response = Response(self.exercise.heading, verdicts, self.exercise.points, tuple(notes), drawings)
+        if all(verdict.status == OPEN for verdict in verdicts):
+            return response
+        self._answered += 1
+        self._bare += WRONG in {one.status for one in verdicts}
+        note(self.exercise.number, self.student, response.is_right)
+        return response.with_notes(*self._afterwards(response, {name: given[name] for name in judged}))
+
+    def _afterwards(self, response, given):
+        """What is said below the verdicts: after a right answer where to go, after wrong ones where help is."""
+        if response.is_right:
+            insight = self.filled_in(self.exercise.insight, also={})
+            return filter(None, [insight, self.exercise.then and f"Next: {self.exercise.then}"])
+        if name := self._whose(given):
+            return [f"With the numbers of {name} all of that is right. Yours are those of {_person(self.student)}."]
+        if self._bare >= BARE and self.exercise.rungs:
+            return [f'A hint is one call away: exercise("{self.exercise.number}").hint()']
+        return []
+
+    def _whose(self, given):
+        """Who has the numbers with which all answers would be right, of those for whom the exercise was shown."""
+        if not any(not isinstance(self.key[name], Word | Words) for name in given):
+            return None
+        for student in students(self.exercise.number):
+            other = self.exercise.question(student)
+            if other.values != self.values and all(_agrees(other.key[name], given[name]) for name in given):
+                return _person(student)
+        return None
+
+    @property
+    def rungs(self) -> list[str]:
+        """The hints of this variant, from the law that helps to the solution with its last steps left to the reader."""
+        rungs = [self.filled_in(rung, also={}) for rung in self.exercise.rungs]
+        begun, *rest = FADES.split(self._worked_text)
+        return [*rungs, f"{begun.strip()}\n\nThe rest is yours."] if rest else rungs
+
+    def hint(self, rung: int | None = None) -> Page:
+        """Return the next hint; each goes one step further, and the last one is shown again.
+
+        Arguments:
+            rung: a certain one, from 1.
+        Raises:
+            ValueError: for one that there is not.
+        """
+        rungs = self.rungs
+        if rung is not None and not (isinstance(rung, int) and 1 <= rung <= len(rungs)):
+            raise ValueError(f"the hint is {rung!r}: expected one from 1 to {len(rungs)}")
+        if not rungs:
+            return Page(f"Exercise {self.exercise.number} has no hints.")
+        self._hints_seen = min(self._hints_seen + 1, len(rungs)) if rung is None else rung
+        head = f"**Hint {self._hints_seen} of {len(rungs)}** · {self.exercise.heading}"
+        return Page(f"{head}\n\n{rungs[self._hints_seen - 1]}")
+
+    def solution(self) -> Page:
+        """Return the solution with the numbers of this variant; before the first attempt, how to make one."""
+        if not self.exercise.worked:
+            return Page(f"Exercise {self.exercise.number} has no solution here.")
+        if not (self._answered or is_answered(self.exercise.number, self.student)):
+            return Page(
+                f"The solution of exercise {self.exercise.number} comes after your first attempt: answer with "
+                f'`check(...)`, or begin with `exercise("{self.exercise.number}").hint()`.'
+            )
+        text = FADES.sub("", self._worked_text)
+        return Page(f"**Solution** · {self.exercise.heading}\n\n{text}", self._draws(self.exercise.drawn_in_solution))
+
+    @functools.cached_property
+    def _worked_text(self):
+        worked = self.exercise.worked
+        if not worked:
+            return ""
+        return self.filled_in(inspect.getdoc(worked) or "", also=self._called(worked, "the solution") or {})
+
+    @property
+    def pictures(self) -> Sequence[Any]:
+        """The picture of the statement, if there is one."""
+        return () if self.picture is None else (self.picture,)
+
+    @functools.cached_property
+    def picture(self) -> Any:
+        """The figure of the statement, from the numbers of this variant; None where there is none."""
+        return self._draws(self.exercise.drawn)()
+
+    def _draws(self, function: Callable[..., Any] | None) -> Callable[[], Any]:
+        """A function that draws one of the author's pictures, described in his words."""
+
+        def draw():
+            if function is None:
+                return None
+            picture = self._called(function, "a picture")
+            if isinstance(picture, Picture) and (words := inspect.getdoc(function)):
+                picture.alt = " ".join(self.filled_in(words, also={}).replace("$", "").split())
+            return picture
+
+        return draw
 
     @property
     def statement(self) -> str:
@@ -150,3 +268,15 @@ class Question:
 
 def _listed(names):
     return ", ".join(map(repr, names)) or "nothing"
+
+
+def _person(student):
+    return student or "everybody, without a name"
+
+
+def _agrees(kind, given):
+    return judge("", kind, given).is_right
+
+
+def _drawn(kind, given):
+    return kind.picture(kind.read(given)[0])

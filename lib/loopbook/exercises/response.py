@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+import contextlib
+import dataclasses
 import html
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG, earned
+from loopbook.exercises.showing import Showing
+from loopbook.exercises.timeout import limited
 
 if TYPE_CHECKING:
     from loopbook.exercises.judging import Verdict
 
 #: The MIME type under which a stored notebook carries the response as data.
 MIME_TYPE = "application/vnd.loopbook.response+json"
+
+#: What drawing an answer may take (s).
+SECONDS = 2
 
 #: A sign and a colour for each status, as in the ledger's tables.
 MARKS = {
@@ -25,7 +33,7 @@ MARKS = {
 
 
 @dataclass(frozen=True)
-class Response:
+class Response(Showing):
     """The verdicts on all asked quantities of an exercise, and the points they bring.
 
     Attributes:
@@ -33,12 +41,27 @@ class Response:
         verdicts: one for each asked quantity, in their order.
         points: of the whole exercise; each asked quantity brings the same part.
         notes: sentences on the answers as a whole.
+        drawings: functions that return figures of the answers, or None.
     """
 
     heading: str
     verdicts: tuple[Verdict, ...]
     points: float
     notes: tuple[str, ...] = ()
+    drawings: tuple[Callable[[], Any], ...] = ()
+
+    def with_notes(self, *notes: str) -> Response:
+        """The response with more sentences."""
+        return dataclasses.replace(self, notes=(*self.notes, *notes))
+
+    @property
+    def pictures(self) -> Sequence[Any]:
+        """The figures of the answers: what a design does. What cannot be drawn has none."""
+        pictures = []
+        for draw in self.drawings:
+            with contextlib.suppress(ArithmeticError, ValueError, TimeoutError):
+                pictures.append(limited(SECONDS, draw))
+        return [picture for picture in pictures if picture is not None]
 
     @property
     def is_right(self) -> bool:

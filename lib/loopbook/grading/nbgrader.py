@@ -18,7 +18,7 @@ from nbformat import v4
 from loopbook.exercises import judging
 from loopbook.exercises.kinds.kind import literal
 from loopbook.grading.plain import unreadable
-from loopbook.grading.release import answer_call, asked, bare, checked, set_up, wrapped
+from loopbook.grading.release import answer_call, asked, bare, checked, set_up, statement_cells, wrapped
 
 if TYPE_CHECKING:
     from nbformat import NotebookNode
@@ -83,7 +83,8 @@ def _question(assignment, student_id, number):
 
 def _cells(grade_id, number, question):
     """The cells of an exercise, each with its marks."""
-    yield v4.new_markdown_cell(question.statement), _locked(f"{grade_id}-statement")
+    for k, cell in enumerate(statement_cells(question)):
+        yield cell, _locked(f"{grade_id}-statement" if k == 0 else f"{grade_id}-data")
     calls = {name: kind.making and f"authoring.{kind.making}" for name, kind in question.key.items()}
     judged = {name: kind for name, kind in question.key.items() if calls[name]}
     others = {name: kind for name, kind in question.key.items() if not calls[name]}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import hashlib
 import html
 import io
@@ -17,6 +18,7 @@ from nbformat import v4
 
 from loopbook import notebooks
 from loopbook.exercises.kinds.kind import literal
+from loopbook.exercises.parameters import call
 from loopbook.grading import GradingError, files
 from loopbook.grading.assignment import check_names
 
@@ -69,7 +71,7 @@ def notebook(assignment: Assignment, student: Student) -> NotebookNode:
     cells = [v4.new_markdown_cell("\n\n".join(part for part in introduction if part))]
     cells += map(v4.new_code_cell, set_up(assignment.title, student.id, questions))
     for number, question in questions.items():
-        cells.append(v4.new_markdown_cell(question.statement))
+        cells += statement_cells(question)
         cells.append(v4.new_code_cell(answer_call(number, dict.fromkeys(question.key, "..."))))
     cells.append(v4.new_code_cell("sheet"))
     made = bare(cells)
@@ -97,7 +99,7 @@ def checked(make: Callable[[], Question], label: str) -> Question:
         check_names(question)
         _check_places(question)
         _check_key(question)
-        question.statement  # noqa: B018 - it is computed when it is looked at
+        statement_cells(question)
     except GradingError:
         raise
     except Exception as problem:  # the functions are the author's
@@ -105,15 +107,25 @@ def checked(make: Callable[[], Question], label: str) -> Question:
     return question
 
 
+def statement_cells(question: Question) -> list[NotebookNode]:
+    """Return the cells that put a question: the statement with its picture, and the data that it hands out."""
+    cell = v4.new_markdown_cell(question.statement)
+    if picture := question.picture:
+        cell.source += f"\n\n![{as_markdown(picture.alt)}](attachment:picture.png)"
+        cell.attachments = {"picture.png": {"image/png": base64.b64encode(picture.png()).decode()}}
+    data = [wrapped(f"{name} = {literal(values)}") for name, values in question.data.items()]
+    return [cell, *([v4.new_code_cell("\n".join(data))] if data else [])]
+
+
 def _check_places(question):
     """Raise GradingError for a place in the statement, or in the sentence of a mistake, that no value fills."""
     exercise = question.exercise
-    places = exercise.places(question.values)
+    names = [*question.values, *call(exercise.shown, question.values)]
     for text in (exercise.statement, *(sentence for sentence, _ in exercise.mistakes)):
         for place in _PLACE.finditer(_NOT_FILLED_IN.sub("", text)):
-            if place[1] not in places:
+            if place[1] not in names:
                 raise GradingError(
-                    f"exercise {exercise.number} has {place[0]} in a text: expected one of {', '.join(places)}, or "
+                    f"exercise {exercise.number} has {place[0]} in a text: expected one of {', '.join(names)}, or "
                     f"{{{place[0]}}} for the braces themselves"
                 )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import importlib
 import inspect
+import itertools
 import pkgutil
 import re
 from types import ModuleType
@@ -44,4 +45,6 @@ def collected(module: ModuleType) -> dict[str, Exercise]:
             if one.number in found:
                 raise ValueError(f"there are two exercises {one.number} in {module.__name__}: expected one")
             found[one.number] = one
+    for one, following in itertools.pairwise(found.values()):
+        one.then = following.heading
     return found

@@ -74,6 +74,7 @@ class Design(Kind):
     Arguments:
         example: the asked quantity, as one of the kinds; its key is a design that meets the criteria.
         criteria: each a `Criterion`.
+        draws: returns a figure of what an answer does, with the limits that it must meet.
 
     >>> from loopbook.exercises.kinds import Number
     >>> gain = Design(Number(2, what="a gain"), Criterion("the offset", lambda K: 1 / (1 + K), below=0.4))
@@ -81,15 +82,24 @@ class Design(Kind):
     (True, 'the offset is 0.5; asked is at most 0.4')
     """
 
-    def __init__(self, example: Kind, *criteria: Criterion):
+    def __init__(self, example: Kind, *criteria: Criterion, draws: Callable[[Any], Any] | None = None):
         if not criteria:
             raise ValueError("there are no criteria: expected at least one for a design")
-        self.example, self.criteria = example, criteria
+        self.example, self.criteria, self.draws = example, criteria, draws
         self.unit, self.what, self.within, self.key = example.unit, example.what, example.within, example.key
 
     def like(self, value: Any) -> Design:
         """A design by the same criteria."""
-        return Design(self.example.like(value), *self.criteria)
+        return Design(self.example.like(value), *self.criteria, draws=self.draws)
+
+    def picture(self, answer: Any) -> Any:
+        """The answer's own response, where the author draws it."""
+        return self.draws(answer) if self.draws else None
+
+    @property
+    def shown(self) -> Any:
+        """As the quantity's kind."""
+        return self.example.shown
 
     @property
     def asked(self) -> str:

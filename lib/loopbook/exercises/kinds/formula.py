@@ -122,6 +122,11 @@ class Expression(Kind):
         long = [number for number in self.expr.atoms(sympy.Rational) if number.q > 1000]
         return with_unit(str(self.expr.xreplace({number: sympy.Float(number, 8) for number in long})), self.unit)
 
+    @property
+    def shown(self) -> sympy.Expr | str:
+        """The key as an expression."""
+        return self.solution if self.expr is None else self.expr
+
     def points(self) -> dict[str, np.ndarray]:
         """The values of the symbols at which formulas are compared."""
         return formulas.points_for(self.symbols)

@@ -152,6 +152,15 @@ class Kind:
         return self.written(self.key)
 
     @property
+    def shown(self) -> Any:
+        """The key as texts of an author show it: a text, an expression, or a pair of a number and its unit."""
+        return self.solution
+
+    def picture(self, answer: Any) -> Any:
+        """Return a figure of what an answer, as it was read, does; None where there is nothing to draw."""
+        return None
+
+    @property
     def accuracy(self) -> str:
         """How near an answer must be, in words; empty where that is no question."""
         return "exact" if self.within == 0 else f"{100 * self.within:g}\N{NO-BREAK SPACE}%"

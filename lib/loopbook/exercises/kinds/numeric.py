@@ -40,6 +40,11 @@ class Number(Kind):
         value, remark = one_number(answered(given), self.unit, self.expected)
         return _real(value, self.expected), remark
 
+    @property
+    def shown(self) -> tuple[float, str]:
+        """The number and its unit."""
+        return self.key, self.unit
+
     def written(self, answer: float) -> str:
         """The number with its unit."""
         return with_unit(in_digits(answer), self.unit)

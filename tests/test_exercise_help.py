@@ -1,0 +1,136 @@
+"""What an exercise offers besides its statement: hints, its solution, pictures, data, and what follows an answer."""
+
+import numpy as np
+import pytest
+
+from loopbook.exercises import notes
+from loopbook.exercises.authoring import Exercise, answers, between, criterion, design, number, word
+from loopbook.exercises.progress import is_answered, note, students
+from loopbook.figures import time_plot
+
+
+def heating(power=between(1, 9, "kW", reference=2), mass=between(10, 90, "kg", step=10, reference=20)):
+    """How fast does {mass} of water warm up with {power}?"""
+    return answers(
+        rate=number(60 * power / (4.2 * mass), "K/min", "the rate"), more=word("no", ["yes", "no"], "whether it boils")
+    )
+
+
+@pytest.fixture
+def exercise(monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv(notes.SWITCH, raising=False)
+    one = Exercise("99.1", "Heating", 2, lambda: True, heating, insight="Twice the mass, half the rate: {rate}.")
+    one.then = "Exercise 99.2 · Cooling"
+    one.hints("The energy of {mass} of water.", "Set up $m c\\,dT/dt = P$.", "$\\frac{ {power} }{4.2 \\cdot {mass}}$")
+
+    @one.solution
+    def _(power, mass):
+        """The water takes up {power}, $4.2 \\cdot {mass} =$ {capacity}.
+
+        ***
+
+        So it warms by {rate}.
+        """
+        return {"capacity": (4.2 * mass, "kJ/K")}
+
+    return one
+
+
+def texts(pages):
+    return [repr(page) for page in pages]
+
+
+def test_hints_go_one_step_further_each_time(exercise):
+    question = exercise.question()
+    first, second, third, last, again = texts(question.hint() for _ in range(5))
+    assert first == "**Hint 1 of 4** · Exercise 99.1 · Heating\n\nThe energy of 20\N{NO-BREAK SPACE}kg of water."
+    assert second.startswith("**Hint 2 of 4**")
+    assert "$\\frac{ 2 }{4.2 \\cdot 20}$" in third
+    assert "$4.2 \\cdot 20 =$ 84\N{NO-BREAK SPACE}kJ/K." in last
+    assert last.endswith("The rest is yours.")
+    assert "1.43" not in last
+    assert again == last
+    assert repr(question.hint(2)) == second
+    with pytest.raises(ValueError, match="the hint is 5: expected one from 1 to 4"):
+        question.hint(5)
+
+
+def test_the_solution_comes_after_an_attempt(exercise):
+    question = exercise.question("Ada")
+    assert "after your first attempt" in repr(question.solution())
+    question.check(rate=...)
+    assert "after your first attempt" in repr(question.solution())
+    question.check(rate=1)
+    text = repr(question.solution())
+    assert text.startswith("**Solution** · Exercise 99.1 · Heating")
+    assert "***\n" not in text.partition("\n")[2]
+    assert exercise.question.__wrapped__(exercise, "Ada").solution().text == text, "the attempt is kept in the file"
+
+
+def test_after_two_bare_answers_a_hint_is_offered(exercise):
+    question = exercise.question("Zoe")
+    assert "hint()" not in repr(question.check(rate=1e5 + 1))
+    assert "hint()" in repr(question.check(rate=2e5 + 7))
+
+
+def test_after_a_right_answer_there_is_insight_and_the_next_exercise(exercise):
+    response = exercise.question().check(rate=120 / 84, more="no")
+    assert repr(response).splitlines()[-2:] == [
+        "  Twice the mass, half the rate: 1.429\N{NO-BREAK SPACE}K/min.", "  Next: Exercise 99.2 · Cooling"
+    ]  # fmt: skip
+
+
+def test_an_answer_to_another_variant_is_told_so(exercise):
+    question = exercise.question("Emmy")
+    assert "numbers of everybody" in repr(question.check(rate=120 / 84, more="no"))
+    assert "numbers of everybody" not in repr(question.check(more="yes")), "every second variant has this word"
+    other = exercise.question("Norbert")
+    other.check(rate=1)
+    assert other.values != question.values
+    assert "numbers of Norbert" in repr(question.check(rate=other.key["rate"].key))
+
+
+def test_a_statement_has_a_picture_and_data(exercise, monkeypatch):
+    exercise.shows(lambda power: {"t": np.arange(3.0), "y": np.arange(3.0) * float(power)})
+
+    @exercise.picture
+    def _(power):
+        """The rise with {power}."""
+        return time_plot({"$T$": [0, power]}, [0, 1])
+
+    question = exercise.question()
+    assert question.picture.alt == "The rise with 2 kW."
+    assert question.picture.png()[:4] == b"\x89PNG"
+    assert question.given("y").tolist() == [0, 2, 4]
+    assert {*question.data} == {"t", "y"}
+    shown = []
+    monkeypatch.setattr("IPython.display.display", lambda value, **_: shown.append(value))
+    question._ipython_display_()
+    assert [type(one).__name__ for one in shown] == ["dict", "TimePlot"]
+
+
+def test_a_design_draws_its_own_response():
+    def gain(limit=between(1, 9, reference=4)):
+        """A gain below {limit}."""
+        below = criterion("the gain", float, below=limit)
+        return answers(Kp=design(number(1, what="a gain"), below, draws=lambda Kp: f"drawn for {Kp:g}"))
+
+    question = Exercise("99.3", "A gain", 1, lambda: True, gain).question()
+    assert question.check(3).pictures == ["drawn for 3"]
+    assert question.check("three").pictures == []
+    assert question.check(...).pictures == []
+
+
+def test_an_exercise_without_help_says_so():
+    question = Exercise("99.1", "Heating", 2, lambda: True, heating).question()
+    assert "no hints" in repr(question.hint())
+    assert "no solution" in repr(question.solution())
+
+
+def test_who_answered_is_read_from_the_file(exercise):
+    note("99.1", "Ada Lovelace", False)
+    note("99.12", "Zoe", True)
+    assert students("99.1") == [None, "Ada Lovelace"]
+    assert is_answered("99.12", "Zoe")
+    assert not is_answered("99.1", None)
