@@ -44,8 +44,11 @@ def test_a_question():
 def test_the_exercise_that_contributors_are_shown_is_one():
     heater = contributing.run("Add an exercise", vars(authoring))["air_heater"]
     question = heater.question()
-    assert "a gain of 3\N{NO-BREAK SPACE}K/%, a lag of 25\N{NO-BREAK SPACE}s and a dead time" in question.statement
+    assert "a gain of 3\N{NO-BREAK SPACE}K/%, a time constant of 25\N{NO-BREAK SPACE}s" in question.statement
     assert [one.status for one in question.check(Kp=25 / 24, Ti=16).verdicts] == [RIGHT, RIGHT]
+    assert question.rungs[2] == "With $T_c = \\tau$ there is $K_p = 25/(3 \\cdot 2 \\cdot 4)$."
+    assert "$T_i$ = 16\N{NO-BREAK SPACE}s." in question.solution().text
+    assert question.picture.alt.endswith("it rises by 3 K/%.")
     wrong = question.check(Kp=25 / 24, Ti=25).verdicts[1]
     assert (wrong.status, wrong.says) == (MISTAKE, "That is the integral time for $c = 4$; here $c = 2$ is asked.")
 

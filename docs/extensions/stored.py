@@ -7,6 +7,7 @@ use, and every page says where else it can be opened. The notebooks themselves a
 
 import json
 import re
+from html import escape
 from pathlib import Path
 
 import checks
@@ -127,7 +128,7 @@ def in_code(cell, folder, name):
         (STATEMENT.match(o["data"]["text/markdown"]) for o in outputs if "text/markdown" in o.get("data", {})), None
     )
     if statement:
-        return [markdown(exercise(folder, *statement.groups()))]
+        return [markdown(exercise(folder, *statement.groups(), pictures(outputs)))]
     response = any(RESPONSE in output.get("data", {}) for output in cell["outputs"])
     if folder == "chapters" and (response or cell["source"].startswith("progress(")):
         outputs = []  # of dots in the place of an answer there is nothing to say yet
@@ -183,14 +184,25 @@ def with_class(match):
     return f'class="{COLOURS[match[1]]}{" nowrap" if match[2] else ""}"'
 
 
-def exercise(folder, number, title, points, statement):
+def pictures(outputs):
+    """The pictures among outputs, as HTML with their sizes and their descriptions."""
+    shown = [(o["data"]["image/png"], o["metadata"]["image/png"]) for o in outputs if "image/png" in o.get("data", {})]
+    return "\n\n".join(
+        f'<img src="data:image/png;base64,{image.strip()}" alt="{escape(said["alt"])}" '
+        f'width="{said["width"]}" height="{said["height"]}">'
+        for image, said in shown
+    )
+
+
+def exercise(folder, number, title, points, statement, pictures):
     """The statement of an exercise in a box, in the chapter under a heading, with the way to its solution or back."""
     here, there = ("exercise", "solution") if folder == "chapters" else ("solution", "exercise")
     link = f"{{ref}}`{'Solution' if there == 'solution' else 'In the chapter'} <{there}-{slugs.slug(number)}>`"
     points = (points or "").strip(" ()")
     head = f"({here}-{slugs.slug(number)})=\n### Exercise {number} · {title}\n\n" if folder == "chapters" else ""
     last = f"{{.exercise-links}}\n{' · '.join(filter(None, [points, link]))}"
-    return f"{head}:::::{{container}} exercise\n{statement}\n\n{last}\n:::::"
+    body = "\n\n".join(filter(None, [statement.rstrip(), pictures, last]))
+    return f"{head}:::::{{container}} exercise\n{body}\n:::::"
 
 
 def folded(cells):
