@@ -134,3 +134,9 @@ def test_who_answered_is_read_from_the_file(exercise):
     assert students("99.1") == [None, "Ada Lovelace"]
     assert is_answered("99.12", "Zoe")
     assert not is_answered("99.1", None)
+
+
+def test_names_of_other_books_are_understood(exercise):
+    response = exercise.question().check(Rate=120 / 84, MORE="no")
+    assert response.is_right
+    assert "is not asked" not in repr(response)

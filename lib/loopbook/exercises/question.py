@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from loopbook.exercises import filling
+from loopbook.exercises.asked_names import matched
 from loopbook.exercises.judging import OPEN, UNJUDGED, WRONG, Verdict, harmless, judge
 from loopbook.exercises.kinds import Kind, Word, Words
 from loopbook.exercises.parameters import call
@@ -122,6 +123,8 @@ class Question(Showing):
     def check(self, /, *alone: object, **given: object) -> Response:
         """Respond to answers, whatever they are: ``check(Kp=2, Ti="3 min")``; a single quantity needs no name.
 
+        A name may be that of another book, ``K_c`` for ``Kp``.
+
         Raises nothing: what cannot be judged is said in the response.
         """
         names, notes = list(self.key), []
@@ -129,6 +132,8 @@ class Question(Showing):
             given = {names[0]: alone[0]}
         elif alone:
             notes.append(f"give the answers by their names: {_listed(names)}")
+        meant = matched(given, names)
+        given = {meant.get(name, name): answer for name, answer in given.items()}
         for name in given:
             if name not in names:
                 hint = did_you_mean(name, names, otherwise=f"asked is {_listed(names)}")
