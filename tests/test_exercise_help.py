@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from loopbook.exercises import notes
+from loopbook.exercises import ExerciseError, notes
 from loopbook.exercises.authoring import Exercise, answers, between, criterion, design, number, word
 from loopbook.exercises.progress import is_answered, note, students
 from loopbook.figures import time_plot
@@ -52,7 +52,7 @@ def test_hints_go_one_step_further_each_time(exercise):
     assert "1.43" not in last
     assert again == last
     assert repr(question.hint(2)) == second
-    with pytest.raises(ValueError, match="the hint is 5: expected one from 1 to 4"):
+    with pytest.raises(ExerciseError, match="the hint is 5: expected one from 1 to 4"):
         question.hint(5)
 
 

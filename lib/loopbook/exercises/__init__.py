@@ -11,6 +11,7 @@ from types import EllipsisType
 from typing import TYPE_CHECKING
 
 from loopbook.exercises import bank, naming
+from loopbook.exercises.errors import ExerciseError
 from loopbook.exercises.progress import Collection, Progress
 from loopbook.validation import did_you_mean
 
@@ -18,14 +19,6 @@ if TYPE_CHECKING:
     from loopbook.exercises.question import Question
 
 __all__ = ["ExerciseError", "exercise", "progress", "student"]
-
-
-class ExerciseError(Exception):
-    """A wrong use of the exercises, in one sentence."""
-
-    def _render_traceback_(self):
-        """Notebooks show the sentence alone: the place in the library's code helps no reader."""
-        return [f"{type(self).__name__}: {self}"]
 
 
 def exercise(number: str, student: str | None = None) -> Question:

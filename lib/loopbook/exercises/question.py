@@ -12,6 +12,7 @@ import numpy as np
 
 from loopbook.exercises import filling
 from loopbook.exercises.asked_names import matched
+from loopbook.exercises.errors import ExerciseError
 from loopbook.exercises.judging import OPEN, UNJUDGED, WRONG, Verdict, harmless, judge
 from loopbook.exercises.kinds import Kind, Word, Words
 from loopbook.exercises.parameters import call
@@ -186,11 +187,11 @@ class Question(Showing):
         Arguments:
             rung: a certain one, from 1.
         Raises:
-            ValueError: for one that there is not.
+            ExerciseError: for one that there is not.
         """
         rungs = self.rungs
         if rung is not None and not (isinstance(rung, int) and 1 <= rung <= len(rungs)):
-            raise ValueError(f"the hint is {rung!r}: expected one from 1 to {len(rungs)}")
+            raise ExerciseError(f"the hint is {rung!r}: expected one from 1 to {len(rungs)}")
         if not rungs:
             return Page(f"Exercise {self.exercise.number} has no hints.")
         self._hints_seen = min(self._hints_seen + 1, len(rungs)) if rung is None else rung
