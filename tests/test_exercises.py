@@ -264,7 +264,8 @@ def test_each_mistake_is_named(exercise):
 def test_the_statement_reads_well(exercise):
     text = exercise.question().statement
     assert text.count("$") % 2 == 0
-    used = {*inspect.signature(exercise.shown).parameters}
+    shows = filter(None, (exercise.shown, exercise.drawn))
+    used = {name for function in shows for name in inspect.signature(function).parameters}
     for name in exercise.parameters:
         assert "{" + name + "}" in exercise.statement or name in used, f"{name} is never shown"
     letters = set(re.findall(r"\{\{(\w+)\}\}", exercise.statement))
