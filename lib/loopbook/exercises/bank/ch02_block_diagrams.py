@@ -5,6 +5,7 @@ import math
 import numpy as np
 import sympy
 
+from loopbook import diagrams as draw
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -19,7 +20,9 @@ from loopbook.exercises.authoring import (
     transfer_function,
     word,
 )
-from loopbook.expressions import s
+from loopbook.exercises.parameters import written
+from loopbook.expressions import s, t
+from loopbook.figures import time_plot
 
 g_earth = sympy.Rational("9.81")
 
@@ -28,6 +31,7 @@ g_earth = sympy.Rational("9.81")
     "2.1",
     title="An integrator remembers",
     points=2,
+    insight="Gain and integrator may change places, but what the integrator holds does not move along.",
     where=lambda K, y_0, a, t_1, t_2, t_end: (
         t_end - t_1 - t_2 >= 5 and abs(K - 1) * y_0 >= (y_0 + K * a * (t_2 - t_1)) / 30
     ),
@@ -83,6 +87,49 @@ def _(K, y_0, a, t_2):
 def _(K, y_0, a, t_1, t_2):
     volume = a * (t_2 - t_1)
     return {"y_A": K * (y_0 + volume), "y_B": y_0 + K * volume}
+
+
+two_meters.hints(
+    "An integrator adds up its input, beginning with what it holds. A gain multiplies whatever comes out of the block "
+    "before it.",
+    "Work out what flows between $t_1$ and $t_2$. In meter A the gain multiplies the flow before it is added up, in "
+    "meter B it multiplies everything that the integrator holds.",
+    "Between {t_1} and {t_2} the volume ${a}\\cdot({t_2} - {t_1})$ passes, in litres. In meter A the integrator adds "
+    "{K} times as much to its {y_0}.",
+)
+
+
+@two_meters.solution
+def _(y_0, a, t_1, t_2, K):
+    r"""A flow of {a} passes from {t_1} to {t_2}, for {duration}. That is a volume of ${a}\cdot{duration} =$
+    {volume}. When the flow stops, the input of the integrator is zero, and it stays where it is until {t_end} and
+    longer.
+
+    **Meter A.** The gain multiplies the flow before it is added up, and the integrator begins at {y_0}:
+
+    $$y_A = {y_0} + {K}\cdot{volume} = {y_A}$$
+
+    ***
+
+    **Meter B.** The integrator adds up the flow itself and holds ${y_0} + {volume} = {held}$ litres. The gain
+    behind it multiplies all of that, and also what was there to begin with:
+
+    $$y_B = {K}\cdot({y_0} + {volume}) = {y_B}$$
+
+    in litres. The two differ by ${K} - 1$ times the initial value, and by nothing else.
+    """
+    volume = a * (t_2 - t_1)
+    return {"duration": (t_2 - t_1, "s"), "volume": (volume, "L"), "held": (y_0 + volume, "L")}
+
+
+@two_meters.solution_picture
+def _(K, y_0, a, t_1, t_2, t_end):
+    """The outputs of both meters: they begin apart and remain as far apart, since both rise by the same."""
+    times = [0, float(t_1), float(t_2), float(t_end)]
+    volume = a * (t_2 - t_1)
+    outputs = {"meter A": [y_0, y_0, y_0 + K * volume, y_0 + K * volume]}
+    outputs["meter B"] = [K * y_0, K * y_0, K * (y_0 + volume), K * (y_0 + volume)]
+    return time_plot(outputs, times, ylabel="output [L]")
 
 
 # Models: what they are about, the equation, what drives them, what acts against it, the factor of the highest
@@ -150,7 +197,12 @@ MODELS = {
 }
 
 
-@exercise("2.2", title="In front of the first integrator", points=3)
+@exercise(
+    "2.2",
+    title="In front of the first integrator",
+    points=3,
+    insight="A differential equation of any order is a chain of integrators and one formula in front of it.",
+)
 def first_integrator(model=choice(*MODELS, reference="pendulum")):
     """{situation}. The model is
 
@@ -171,8 +223,9 @@ def first_integrator(model=choice(*MODELS, reference="pendulum")):
 
 @first_integrator.shows
 def _(model):
-    situation, equation, _ = MODELS[model]
-    return {"situation": situation, "equation": f"$${equation}$$"}
+    situation, equation, (*_, factor, order) = MODELS[model]
+    highest = [r"$\dot{y}$", r"$\ddot{y}$", r"$\dddot{y}$"][order - 1]
+    return {"situation": situation, "equation": f"$${equation}$$", "highest": highest, "factor": factor}
 
 
 @first_integrator.mistake("The highest derivative is not alone yet: what is it multiplied by?")
@@ -222,10 +275,44 @@ def _(model):
     return {"integrators": MODELS[model][2][3] + 1}
 
 
+@first_integrator.mistake("How many times is $y$ differentiated? Each integrator takes one of these dots away.")
+def _(model):
+    order = MODELS[model][2][3]
+    return {"integrators": order - 1} if order > 1 else {}
+
+
+first_integrator.hints(
+    "Follow the recipe of Example 2.1: the highest derivative alone on the left, a chain of integrators behind it, and "
+    "the right side in front of it.",
+    "Count the dots: each integrator removes one. Behind the last one is $x_1 = y$, in front of it $x_2 = \\dot y$, "
+    "and so on. Replace $y$ and its lower derivatives by these names.",
+    "Solve the model for {highest}: bring every other term to the right side, and divide by ${factor}$.",
+)
+
+
+@first_integrator.solution
+def _(model):
+    r"""The highest derivative is {highest}, so the order of the model is {integrators}: as many integrators lead
+    from there to $y$, one for each dot.
+
+    Bring all other terms to the right side, where they change their sign, and divide by ${factor}$. Then give the
+    outputs of the integrators their names, {names}:
+
+    $${formula}$$
+
+    This is what the blocks in front of the first integrator have to compute from the outputs of the integrators and
+    the input.
+    """
+    order = MODELS[model][2][3]
+    names = ["$x_1 = y$", r"$x_2 = \dot y$", r"$x_3 = \ddot y$"]
+    return {"names": ", ".join(names[:order])}
+
+
 @exercise(
     "2.3",
     title="Twice round the diagram",
     points=3,
+    insight="A simulator knows no calculus: it walks round the diagram, and small steps make it right.",
     where=lambda m, D, K, h: 0.03 <= h**2 * K / m <= 0.3 and 0.03 <= h * D / m <= 0.5,
 )
 def two_rounds(
@@ -237,8 +324,8 @@ def two_rounds(
 ):
     r"""A mass of {m} hangs between a spring of {K} and a damper of {D}; its position $y$ is zero where it rests.
     Somebody pulls it {y_0} away and lets it go. A simulator goes round the block diagram in steps of {h}: in each
-    round it works out the acceleration from what the two integrators hold at the beginning of the round, and lets each
-    integrator add its input times the step.
+    round it works out the acceleration from what the two integrators hold at the beginning of the round, and lets
+    each integrator add its input times the step.
 
     What do the integrators hold after the second round?
     """
@@ -281,10 +368,46 @@ def _(m, D, K, y_0, h):
     return {"y": y} if m > sympy.Rational(7, 2) else {}
 
 
+two_rounds.hints(
+    "There are two integrators, one holds the position and one the speed. In each round, each of them adds its input "
+    "times the step.",
+    "The input of the first integrator is the acceleration, $a = -(Dv + Ky)/m$, that of the second one is the speed. "
+    "Use what both hold at the beginning of the round, and only then change both.",
+    "First round: $y = {y_start}$ m and $v = 0$, so $a = -\\frac{ {K} \\cdot {y_start} }{ {m} }$ in m/s². The position "
+    "does not move yet, and the speed becomes $a \\cdot {h}$.",
+)
+
+
+@two_rounds.solution
+def _(m, D, K, y_0, h):
+    r"""**First round.** At the beginning the integrators hold $y = {y_start}$ m and $v = 0$. The blocks in front of
+    the first integrator make $a = -({D}\cdot 0 + {K}\cdot{y_start})/{m} = {a_1}$, in m/s². Each integrator adds its
+    input times the step: the position remains {y_start} m, since its input was zero, and the speed becomes
+    ${a_1}\cdot{h} = {v_1}$, in m/s.
+
+    **Second round.** Now they hold $y = {y_start}$ m and $v = {v_1}$ m/s, and the damper acts too:
+    $a = -({D}\cdot({v_1}) + {K}\cdot{y_start})/{m} = {a_2}$. Again each integrator adds its input times the step:
+
+    $$y = {y_start} + {h}\cdot({v_1}) = {y}, \qquad v = {v_1} + {h}\cdot({a_2}) = {v}$$
+
+    The position is one round behind the acceleration: in the first round it does not move at all.
+    """
+    start = y_0 / 100
+    a_1 = -K * start / m
+    v_1 = a_1 * h
+    return {"y_start": start, "a_1": a_1, "v_1": v_1, "a_2": -(D * v_1 + K * start) / m}
+
+
+@two_rounds.shows
+def _(y_0):
+    return {"y_start": written(y_0 / 100)}
+
+
 @exercise(
     "2.4",
     title="Does the scale settle?",
     points=4,
+    insight="Where it rests, spring and weight decide alone. Whether it oscillates is up to the damper.",
     where=lambda m, D, K: abs(D**2 / (4 * m * K) - 1) > 0.15 and m * g_earth / K <= 0.15,
 )
 def scale(
@@ -328,18 +451,83 @@ def _(m, K):
     return {"poles": [root, -root]}
 
 
+@scale.mistake("Compare $D^2$ with $4mK$: what is under the root decides whether the poles are real or complex.")
+def _(m, D, K):
+    return {"swings": "no" if 4 * m * K > D**2 else "yes"}
+
+
+scale.hints(
+    "Newton's second law for the sack: $m\\ddot y = F - D\\dot y - Ky$, with $F$ for its weight. At rest, all "
+    "derivatives are zero.",
+    "In the transfer function each dot is a factor $s$, so its denominator is $ms^2 + Ds + K$. The poles are its "
+    "roots. A pair of complex poles means oscillation.",
+    "Its roots are $\\frac{-{D} \\pm \\sqrt{ {D}^2 - 4\\cdot{m}\\cdot{K} }}{2\\cdot{m}}$, in 1/s. Is what is under "
+    "the root positive or negative? At rest, the spring alone holds ${m}\\cdot 9.81$ N.",
+)
+
+
+@scale.solution
+def _(m, D, K):
+    r"""**At rest** only the spring holds the sack. Its weight is $F = {m}\cdot 9.81 =$ {F}, and $Ky = F$ gives
+    $y = F/K =$ {y_s}.
+
+    **The poles.** With a factor $s$ for each dot, $m\ddot y + D\dot y + Ky = F$ becomes $(ms^2 + Ds + K)\,Y = F$.
+    The poles are the roots of this polynomial:
+
+    $$s = \frac{-{D} \pm \sqrt{ {D}^2 - 4\cdot{m}\cdot{K} }}{2\cdot{m}}$$
+
+    Under the root is ${inside}$. It is {sign}, so the poles are {which}: {p_1} and {p_2}, in 1/s. Real poles creep
+    to the new position, complex ones oscillate. Does the platform oscillate? The answer is {swings}.
+    """
+    inside = D**2 - 4 * m * K
+    root = np.sqrt(complex(inside))
+    one, other = ((-complex(D) + sign * root) / (2 * complex(m)) for sign in (1, -1))
+    return {
+        "F": (m * g_earth, "N"),
+        "inside": inside,
+        "sign": "positive" if inside > 0 else "negative",
+        "which": "real" if inside > 0 else "a complex pair",
+        "p_1": _pole(one),
+        "p_2": _pole(other),
+    }
+
+
+def _pole(value):
+    """A pole as a formula, in four digits."""
+    if not value.imag:
+        return f"${value.real:.4g}$"
+    return f"${value.real:.4g} {'+' if value.imag > 0 else '-'} {abs(value.imag):.4g}j$"
+
+
+@scale.solution_picture
+def _(m, D, K):
+    """How far the platform is pressed down: its way to the position at rest."""
+    mass, damping, stiffness = float(m), float(D), float(K)
+    slowest = abs(np.roots([mass, damping, stiffness]).real).min()
+    times = np.linspace(0, 5 / slowest, 401)
+    end = 1000 * mass * 9.81 / stiffness
+    pressed = {"$y$": (end * _positions(mass, damping, stiffness, times), "measurement")}
+    return time_plot(pressed, times, ylabel="$y$ [mm]").level(end, "at rest")
+
+
 # A furnace and a workpiece in it: T_1 x_1' = K u - x_1, T_2 x_2' = x_1 - x_2; z_1 = x_1 - x_2, z_2 = x_2.
 
 
-@exercise("2.5", title="Two other states", points=5, where=lambda T_1, T_2: 3 * T_2 <= 2 * T_1)
+@exercise(
+    "2.5",
+    title="Two other states",
+    points=5,
+    where=lambda T_1, T_2: 3 * T_2 <= 2 * T_1,
+    insight="States may be chosen, and the matrices change with them. The transfer function does not.",
+)
 def other_states(
     T_1=between(10, 50, "min", reference=20, step=5),
     T_2=choice(2, 4, 5, 8, 10, unit="min", reference=5),
     K=between(2, 10, "K/%", reference=8),
     wanted=choice("the difference $z_1$", "the temperature $z_2$ of the workpiece", reference="the difference $z_1$"),
 ):
-    r"""A workpiece lies in a furnace. $x_1$ is the temperature of the furnace and $x_2$ that of the workpiece, both in
-    kelvin above the temperature of the hall, and $u$ is the power of the furnace in percent:
+    r"""A workpiece lies in a furnace. $x_1$ is the temperature of the furnace and $x_2$ that of the workpiece, both
+    in kelvin above the temperature of the hall, and $u$ is the power of the furnace in percent:
 
     $$T_1 \dot x_1 = Ku - x_1, \qquad T_2 \dot x_2 = x_1 - x_2$$
 
@@ -395,6 +583,51 @@ def _(T_1, K):
     return {"H": K / (T_1 * s + 1)}
 
 
+other_states.hints(
+    "A state-space model has the rates of the new states on the left, and on the right only the new states and the "
+    "input.",
+    "Differentiate: $\\dot z_1 = \\dot x_1 - \\dot x_2$ and $\\dot z_2 = \\dot x_2$. Put in the two model equations, "
+    "and then $x_1 = z_1 + z_2$ and $x_2 = z_2$.",
+    "The second row is short: $\\dot z_2 = \\frac{x_1 - x_2}{ {T_2} } = \\frac{z_1}{ {T_2} }$. The first one is "
+    "$\\dot z_1 = \\frac{ {K}u - (z_1 + z_2)}{ {T_1} } - \\frac{z_1}{ {T_2} }$: collect $z_1$, $z_2$ and $u$.",
+)
+
+
+@other_states.solution
+def _(T_1, T_2, K, wanted):
+    r"""The workpiece first, as it is shorter: $\dot z_2 = \dot x_2 = (x_1 - x_2)/T_2 = z_1/{T_2}$.
+
+    The difference: $\dot z_1 = \dot x_1 - \dot x_2 = ({K}u - x_1)/{T_1} - z_1/{T_2}$, and $x_1 = z_1 + z_2$.
+    Collected,
+
+    $$\dot z_1 = -\left(\frac{1}{ {T_1} } + \frac{1}{ {T_2} }\right) z_1
+    - \frac{z_2}{ {T_1} } + \frac{ {K} }{ {T_1} }\,u$$
+
+    With the numbers,
+
+    $$A = {matrix}, \qquad B = {column}$$
+
+    **The transfer function.** Transformed, the two equations of the model are $({T_1}s + 1)\,x_1 = {K}u$ and
+    $({T_2}s + 1)\,x_2 = x_1$. {last}
+
+    $$H(s) = {fraction}$$
+    """
+    temperature = "That gives $x_2$, which is $z_2$, by multiplication:"
+    difference = (
+        "The difference is $z_1 = x_1 - x_2 = {T_2}s\\,x_2$, so it gets a factor ${T_2}s$ above the line:".replace(
+            "{T_2}", written(T_2)
+        )
+    )
+    above = K * T_2 * s if "difference" in wanted else K
+    A = sympy.Matrix([[-1 / T_1 - 1 / T_2, -1 / T_1], [1 / T_2, 0]])
+    return {
+        "matrix": sympy.latex(A),
+        "column": sympy.latex(sympy.Matrix([K / T_1, 0])),
+        "last": difference if "difference" in wanted else temperature,
+        "fraction": rf"\frac{{{sympy.latex(above)}}}{{({written(T_1)} s + 1)({written(T_2)} s + 1)}}",
+    }
+
+
 def _positions(m, D, K, times):
     """The step response of mass, spring and damper, relative to its final value."""
     root = np.sqrt(complex(D**2 - 4 * m * K)) or 1e-6 * D
@@ -403,7 +636,11 @@ def _positions(m, D, K, times):
 
 
 @exercise(
-    "2.6", title="A damper for the machine", points=5, where=lambda m, K, t_s: 4.2 <= t_s * math.sqrt(1000 * K / m) <= 6
+    "2.6",
+    title="A damper for the machine",
+    points=5,
+    where=lambda m, K, t_s: 4.2 <= t_s * math.sqrt(1000 * K / m) <= 6,
+    insight="Too little damping oscillates, too much creeps. The shortest way to rest is a little less than critical.",
 )
 def damper(
     m=between(100, 500, "kg", reference=200, step=20),
@@ -412,8 +649,8 @@ def damper(
 ):
     """A machine of {m} stands on springs that have {K} together. When a press comes down on it, a constant force acts
     on the machine, and it moves to a new position. Choose the damping constant $D$ of the damper beside the springs.
-    The machine should move beyond its new position by no more than 10 % of the way, and {t_s} after the step it should
-    be within 5 % of the way and remain there.
+    The machine should move beyond its new position by at most 10 % of the way, and {t_s} after the step it should be
+    within 5 % of the way and remain there.
 
     Try values in a simulation, or look at the exact response.
     """
@@ -427,11 +664,413 @@ def damper(
         times = np.linspace(end, 5 * end, 1001)
         return 100 * float(abs(1 - _positions(mass, D, stiffness, times)).max())
 
+    def way_to_rest(D):
+        times = np.linspace(0, 2 * end, 401)
+        way = 100 * _positions(mass, max(D, 0.0), stiffness, times)
+        limits = np.where(times < end, 110, 105), np.where(times < end, np.nan, 95)
+        signals = {"way to the new position": (way, "measurement"), "upper limit": (limits[0], "setpoint")}
+        signals["lower limit"] = (limits[1], "setpoint")
+        return time_plot(signals, times, f"With $D$ = {D:.4g} N s/m", ylabel="way [%]")
+
     return answers(
         D=design(
             number(1.5 * math.sqrt(mass * stiffness), "N s/m", "the damping constant"),
             criterion("the damping constant is positive", lambda D: D > 0),
             criterion("the overshoot", overshoot, below=10, unit="%"),
             criterion("the largest error from then on", error_after, below=5, unit="%"),
+            draws=way_to_rest,
         )
     )
+
+
+@damper.mistake("The springs have that many kilonewtons a metre. How many newtons is that?")
+def _(m, K):
+    return {"D": 1.5 * math.sqrt(m * K)}
+
+
+@damper.mistake("There is a factor 2 between the damping constant and the relative damping: $D = 2\\zeta\\sqrt{{mK}}$.")
+def _(m, K):
+    return {"D": 0.75 * math.sqrt(1000 * m * K)}
+
+
+@damper.mistake(
+    "That is critical damping. It never overshoots, which nobody asked for, and it needs longer than is allowed here."
+)
+def _(m, K, t_s):
+    from_then_on = t_s * math.sqrt(1000 * K / m)
+    return {"D": 2 * math.sqrt(1000 * m * K)} if (1 + from_then_on) * math.exp(-from_then_on) > 0.052 else {}
+
+
+@damper.mistake("With so little damping the machine oscillates far beyond its new position.")
+def _(m, K):
+    return {"D": 0.4 * math.sqrt(1000 * m * K)}
+
+
+damper.hints(
+    "Newton's second law gives $m\\ddot y + D\\dot y + Ky = F$. The overshoot is decided by the relative damping "
+    "$\\zeta = D/(2\\sqrt{{mK}})$ alone, and the time by $\\omega_0 = \\sqrt{K/m}$ as well.",
+    "The overshoot is $e^{-\\pi\\zeta/\\sqrt{1 - \\zeta^2}}$, so 10 % is a lower limit for $\\zeta$. Too much "
+    "damping makes the machine creep, and the time becomes too long.",
+    "Here $\\sqrt{{mK}} = \\sqrt{ {m}\\cdot 1000\\cdot{K} }$, in N s/m. From the overshoot $\\zeta$ must be at least "
+    "0.59, and 1 is critical damping. Try values in between.",
+)
+
+
+@damper.solution
+def _(m, K, t_s):
+    r"""Divided by $m$, the balance is $\ddot y + 2\zeta\omega_0\dot y + \omega_0^2 y = F/m$ with
+    $\omega_0 = \sqrt{K/m} = \sqrt{1000\cdot{K}/{m}} =$ {omega} and $\zeta = D/(2\sqrt{{mK}})$.
+
+    **The overshoot** $e^{-\pi\zeta/\sqrt{1 - \zeta^2}}$ is 10 % for $\zeta$ = 0.59, and less with more damping.
+
+    **The time.** With $\zeta$ = 0.75 the machine is within 5 % of its way after {needed}, and {t_s} are
+    allowed. More damping makes it creep, and sooner or later the time is too long.
+
+    So $\zeta$ = 0.75 does both: $D = 2\cdot 0.75\cdot\sqrt{1000\cdot{m}\cdot{K}} =$ {D}.
+    """
+    omega = math.sqrt(1000 * K / m)
+    return {"omega": (omega, "rad/s"), "needed": (_settled(0.75) / omega, "s")}
+
+
+def _settled(zeta):
+    """After which time the step response is within 5 % of its end, for a natural frequency of 1."""
+    times = np.linspace(0, 20, 4001)
+    return times[np.flatnonzero(abs(1 - _positions(1.0, 2 * zeta, 1.0, times)) > 0.05)[-1]]
+
+
+# Three diagrams of one loop around an integrator: where the disturbance enters.
+u_, d_, y_, v_, F_ = sympy.symbols("u d y v F")
+LAYOUTS = {
+    "behind the gain": lambda K, a, c: a * (K * u_ - d_ - c * y_),
+    "before the integrator": lambda K, a, c: a * (K * u_ - c * y_) - d_,
+    "before the gain": lambda K, a, c: a * (K * (u_ - d_) - c * y_),
+}
+
+
+def _at(formula, **values):
+    return formula.subs({sympy.Symbol(name): value for name, value in values.items()})
+
+
+def _rest(layout, K, a, c, u, d):
+    (rest,) = sympy.solve(_at(LAYOUTS[layout](K, a, c), u=u, d=d), y_)
+    return rest
+
+
+@exercise(
+    "2.7",
+    title="What does this diagram compute?",
+    points=4,
+    where=lambda layout, K, a, c, u, d, y_0: (
+        d < u
+        and abs(_at(LAYOUTS[layout](K, a, c), u=u, d=d, y=y_0)) >= 0.5
+        and abs(_rest(layout, K, a, c, u, d)) >= 0.5
+        and len({sympy.expand(each(K, a, c)) for each in LAYOUTS.values()}) == 3
+    ),
+    insight="What goes into the integrator is the rate. Write that down, and the diagram has become an equation.",
+)
+def read_diagram(
+    layout=choice(*LAYOUTS),
+    K=between(2, 6, reference=3, step=1),
+    a=choice(0.2, 0.25, 0.4, 0.5, reference=0.25),
+    c=choice(1.5, 2, 2.5, 4, 5, reference=2),
+    u=between(3, 9, reference=5, step=1),
+    d=between(1, 6, reference=3, step=1),
+    y_0=between(1, 12, reference=4, step=1),
+):
+    r"""A colleague has left this diagram of a plant behind, and no equation. Its numbers have no units, and time is
+    in minutes.
+
+    Which formula does it compute for the rate $\dot y$ of its output, from $u$, $d$ and $y$? While the integrator
+    still holds what it holds in the diagram, the inputs become $u$ = {u} and $d$ = {d}, and remain there. With
+    which rate does $y$ begin to move? And where does it come to rest?
+    """
+    formula = LAYOUTS[layout](K, a, c)
+    return answers(
+        rate=expression(formula, "the rate of the output, in $u$, $d$ and $y$", symbols="u d y"),
+        start=number(_at(formula, u=u, d=d, y=y_0), "1/min", "the rate at the beginning"),
+        rest=number(_rest(layout, K, a, c, u, d), "", "where the output comes to rest"),
+    )
+
+
+@read_diagram.shows
+def _(layout, K, a, c, y_0):
+    enters, before, after = "minus $d$", [f"gain {written(K)}"], [f"gain {written(a)}"]
+    path = {"behind the gain": [*before, enters], "before the gain": [enters, *before]}.get(layout, before)
+    after += [enters] if layout == "before the integrator" else []
+    loop = f"sum minus what comes back from $y$ through the gain {written(c)}"
+    words = ", then ".join([*path, loop, *after, f"integrator that holds {written(y_0)}"])
+    return {"diagram": f"from $u$ through {words}, to $y$"}
+
+
+@read_diagram.picture
+def _(layout, K, a, c, y_0):
+    """A block diagram: {diagram}."""
+    gain, enters = draw.gain(written(K)), draw.disturbance("d", sign="-")
+    inside = [draw.gain(written(a)), draw.integrator(written(y_0))]
+    if layout == "before the integrator":
+        inside.insert(1, enters)
+    loop = draw.feedback_loop(inside, draw.gain(written(c)))
+    before = {"behind the gain": [gain, enters], "before the gain": [enters, gain]}.get(layout, [gain])
+    return draw.block_diagram("u", *before, loop, "y")
+
+
+@read_diagram.mistake("There is a sign beside the arrow of $d$. Which one?")
+def _(layout, K, a, c):
+    return {"rate": LAYOUTS[layout](K, a, c).subs(d_, -d_)}
+
+
+@read_diagram.mistake("Something comes back from the output, with a sign of its own. Which one, at the sum?")
+def _(layout, K, a, c):
+    return {"rate": LAYOUTS[layout](K, a, c).subs(y_, -y_)}
+
+
+@read_diagram.mistake("The output goes back to the sum, too. What does it meet on its way?")
+def _(layout, K, a, c):
+    return {"rate": LAYOUTS[layout](K, a, c).subs(y_, 0)}
+
+
+@read_diagram.mistake("A gain is in the path that leads back. What does the sum subtract?")
+def _(layout, K, a, c, u, d):
+    return {"rate": LAYOUTS[layout](K, a, 1), "rest": _rest(layout, K, a, 1, u, d)}
+
+
+def _elsewhere(number):
+    """The formula of somebody who reads $d$ at one of the two other places."""
+
+    def found(layout, K, a, c):
+        other = [each for name, each in LAYOUTS.items() if name != layout][number]
+        return {"rate": other(K, a, c)}
+
+    return found
+
+
+for _number in (0, 1):
+    read_diagram.mistake("Follow $d$ from its arrow to the integrator: which blocks does it pass, and which not?")(
+        _elsewhere(_number)
+    )
+
+
+@read_diagram.mistake("What does the integrator hold at the beginning? The number that enters it from above.")
+def _(layout, K, a, c, u, d):
+    return {"start": _at(LAYOUTS[layout](K, a, c), u=u, d=d, y=0)}
+
+
+@read_diagram.mistake("The second input is not zero. How does it act here?")
+def _(layout, K, a, c, u, y_0):
+    formula = LAYOUTS[layout](K, a, c)
+    return {"start": _at(formula, u=u, d=0, y=y_0), "rest": _rest(layout, K, a, c, u, 0)}
+
+
+@read_diagram.mistake("At rest the input of the integrator is zero, not its output. Solve the formula for $y$.")
+def _():
+    return {"rest": 0}
+
+
+read_diagram.hints(
+    "Begin at the integrator: its output is $y$, so its input is $\\dot y$. Go backwards from there, block by block.",
+    "Each gain multiplies what comes to it, and each sum adds with the signs beside its arrows. Note which gains $u$ "
+    "passes, which ones $d$ passes, and which ones the path that leads back has.",
+    "$u$ passes two gains, {K} and {a}, before it arrives at the integrator, so $\\dot y = {a}\\cdot{K}\\,u - \\dots$ "
+    "At rest, $\\dot y = 0$.",
+)
+
+
+@read_diagram.solution
+def _(layout, K, a, c, u, d, y_0):
+    r"""The output of the integrator is $y$, so its input is $\dot y$. Go back from there. The input $u$ passes the
+    gains {K} and {a}; the path that leads back has the gain {c}, a minus at the sum, and then also passes {a}. The
+    other input, $d$, enters {layout}, with a minus, and {passes}. So
+
+    $$\dot y = {form}$$
+
+    **At the beginning** the integrator holds {y_0}, and with $u$ = {u} and $d$ = {d} the rate is {start}.
+
+    **At rest** nothing changes any more: the input of the integrator is zero. The formula, set to zero and solved for
+    $y$, gives {rest}.
+    """
+    passes = {
+        "behind the gain": f"passes only {written(a)}",
+        "before the integrator": "passes no gain at all",
+        "before the gain": f"passes both, {written(K)} and {written(a)}",
+    }
+    where_d = {
+        "behind the gain": rf"{written(a)}\,({written(K)}\,u - d - {written(c)}\,y)",
+        "before the integrator": rf"{written(a)}\,({written(K)}\,u - {written(c)}\,y) - d",
+        "before the gain": rf"{written(a)}\,({written(K)}\,(u - d) - {written(c)}\,y)",
+    }
+    return {"passes": passes[layout], "form": where_d[layout]}
+
+
+@read_diagram.solution_picture
+def _(layout, K, a, c, u, d, y_0):
+    """The output on its way from what the integrator holds at the beginning to its rest."""
+    rest = _rest(layout, K, a, c, u, d)
+    y = rest + (y_0 - rest) * sympy.exp(-a * c * t)
+    times = np.linspace(0, 5 / float(a * c), 201)
+    return time_plot({"$y$": (y, "measurement")}, times, xlabel="$t$ [min]").level(rest, "at rest")
+
+
+SIGN_OF_D, SIGN_OF_K, SWAPPED, MULTIPLIED = PLANTED = [
+    "sign of the damper", "sign of the spring", "D and K interchanged", "mass multiplied",
+]  # fmt: skip
+ENDS = {
+    SIGN_OF_D: "oscillates more and more",
+    SIGN_OF_K: "runs away to one side",
+    SWAPPED: "settles elsewhere",
+    MULTIPLIED: "settles at F/K",
+}
+
+
+def _as_drawn(fault, m, D, K):
+    """The acceleration that the diagram computes, with the fault in it."""
+    return {
+        SIGN_OF_D: (F_ + D * v_ - K * y_) / m,
+        SIGN_OF_K: (F_ - D * v_ + K * y_) / m,
+        SWAPPED: (F_ - K * v_ - D * y_) / m,
+        MULTIPLIED: m * (F_ - D * v_ - K * y_),
+    }[fault]
+
+
+@exercise(
+    "2.8",
+    title="Find the fault",
+    points=4,
+    where=lambda m, D, K: abs(D / K - 1) > 0.2 and 4 * m * K > 1.5 * D**2,
+    insight="A plus for a minus turns a plant that settles into one that does not: check the signs of a loop first.",
+)
+def find_the_fault(
+    fault=choice(*PLANTED, reference=SIGN_OF_K),
+    m=between(2, 12, "kg", reference=5, step=1),
+    D=between(2, 12, "N s/m", reference=4, step=1),
+    K=between(3, 20, "N/m", reference=8, step=1),
+):
+    r"""A mass $m$ = {m} hangs on a spring with $K$ = {K} and a damper with $D$ = {D}. A force $F$ pulls at it:
+
+    $$m\ddot y = F - D\dot y - Ky$$
+
+    A colleague has drawn the block diagram of the picture for a simulation, with these numbers in SI units, and made
+    one mistake. Which formula does his diagram compute for the acceleration, in $F$, the speed $v$ and the position
+    $y$? What is the mistake: the sign of the damper, the sign of the spring, are $D$ and $K$ interchanged, or is the
+    force multiplied by the mass? And what does the simulation show when a constant force begins to pull at a mass at
+    rest?
+    """
+    return answers(
+        acceleration=expression(
+            _as_drawn(fault, m, D, K),
+            "the acceleration that the diagram computes, in $F$, $v$ and $y$",
+            symbols="F v y",
+        ),
+        fault=word(fault, PLANTED, what="the mistake"),
+        shows=word(ENDS[fault], list(ENDS.values()), what="what the position does in the simulation"),
+    )
+
+
+@find_the_fault.shows
+def _(fault, m, D, K):
+    signs = ["plus" if fault == wrong else "minus" for wrong in (SIGN_OF_K, SIGN_OF_D)]
+    outer, inner = (D, K) if fault == SWAPPED else (K, D)
+    loops = f"{signs[0]} {written(outer)} times $y$, {signs[1]} {written(inner)} times $v$"
+    mass = f"{'multiplied' if fault == MULTIPLIED else 'divided'} by {written(m)}"
+    return {"diagram": f"$F$, {loops}, then {mass}, then an integrator to $v$ and an integrator to $y$"}
+
+
+@find_the_fault.picture
+def _(fault, m, D, K):
+    """A block diagram: {diagram}."""
+    inner, outer = (K, D) if fault == SWAPPED else (D, K)
+    mass = draw.multiplication(written(m)) if fault == MULTIPLIED else draw.division(written(m))
+    braked = draw.feedback_loop(
+        [mass, draw.integrator("0")], draw.multiplication(written(inner)), sign="+" if fault == SIGN_OF_D else "-"
+    )
+    whole = draw.feedback_loop(
+        [braked, "v", draw.integrator("0")],
+        draw.multiplication(written(outer)),
+        sign="+" if fault == SIGN_OF_K else "-",
+    )
+    return draw.block_diagram("F", whole, "y")
+
+
+@find_the_fault.mistake(
+    "That is what the model says. What does the diagram compute, sign by sign and number by number?"
+)
+def _(m, D, K):
+    return {"acceleration": (F_ - D * v_ - K * y_) / m}
+
+
+@find_the_fault.mistake("That is a force. Which block does it meet on its way to the first integrator?")
+def _(fault, m, D, K):
+    drawn = _as_drawn(fault, m, D, K)
+    return {"acceleration": sympy.expand(drawn / m if fault == MULTIPLIED else drawn * m)}
+
+
+@find_the_fault.mistake("Which of the two loops begins behind the first integrator, and which behind the second one?")
+def _(fault, m, D, K):
+    return {"acceleration": _as_drawn(fault, m, D, K).subs({v_: y_, y_: v_}, simultaneous=True)}
+
+
+FAULT_DOUBTS = {
+    SIGN_OF_D: "Look at the sum where the inner loop arrives. Which sign is beside its arrow, and which one should be?",
+    SIGN_OF_K: "Look at the sum where the outer loop arrives. Which sign is beside its arrow, and which one should be?",
+    SWAPPED: "Compare both numbers with the statement: which one multiplies the speed, and which one the position?",
+    MULTIPLIED: "Look at the block in front of the first integrator: what does it do with the number that enters it?",
+}
+END_DOUBTS = {
+    ENDS[SIGN_OF_D]: "For this the speed would have to be driven on in the diagram, by the inner loop. Is it?",
+    ENDS[SIGN_OF_K]: "For this the position would have to push itself further away, by the outer loop. Does it?",
+    ENDS[SWAPPED]: "At rest, $v = 0$ and the acceleration is zero. Does your formula then give another $y$ than $F/K$?",
+    ENDS[
+        MULTIPLIED
+    ]: "At rest, $v = 0$ and the acceleration is zero. What is $y$ by your formula? And does it get there?",
+}
+
+
+def _doubt(name, wrong):
+    def found(fault):
+        right = fault if name == "fault" else ENDS[fault]
+        return {name: wrong} if wrong != right else {}
+
+    return found
+
+
+for _name, _doubts in (("fault", FAULT_DOUBTS), ("shows", END_DOUBTS)):
+    for _wrong, _sentence in _doubts.items():
+        find_the_fault.mistake(_sentence)(_doubt(_name, _wrong))
+
+find_the_fault.hints(
+    "Read the diagram as if you knew nothing about the plant, and only then compare it with the model.",
+    "The input of the first integrator is the acceleration. Go back from there: one block, then a sum with two loops "
+    "that arrive with a sign and a number. The inner loop begins behind the first integrator, with the speed $v$, "
+    "the outer one behind the second, with the position $y$.",
+    "The model wants $a = \\frac{1}{ {m} }\\,(F - {D}\\,v - {K}\\,y)$. Compare each sign, each number, and what the "
+    "block in front of the first integrator does. Then ask what your formula makes of a large $v$, and of a large "
+    "$y$.",
+)
+
+
+@find_the_fault.solution
+def _(fault, m, D, K):
+    r"""Go back from the first integrator, whose input is the acceleration. As it is drawn, the diagram computes
+
+    $$a = {drawn}$$
+
+    The model wants $a = ({wanted})/{m}$. What differs is this: {fault}.
+
+    {why} So the position {shows}.
+    """
+    why = {
+        SIGN_OF_D: "The damper now drives the mass on, the more so the faster it is. The spring pulls it back, so "
+        "it passes its place of rest again and again, and farther each time.",
+        SIGN_OF_K: "The spring now pushes the mass away, the harder the farther it is. Nothing brings it back.",
+        SWAPPED: "At rest only the outer loop acts, with the number of the damper: the mass settles at $F/D$.",
+        MULTIPLIED: "At rest the sum of the forces is zero, whatever it is multiplied by. The way there "
+        "is much too fast, but it ends at the right place.",
+    }
+    over = r"\frac{1}{%s}\,(%s)"
+    forms = {
+        SIGN_OF_D: over % (written(m), rf"F + {written(D)}\,v - {written(K)}\,y"),
+        SIGN_OF_K: over % (written(m), rf"F - {written(D)}\,v + {written(K)}\,y"),
+        SWAPPED: over % (written(m), rf"F - {written(K)}\,v - {written(D)}\,y"),
+        MULTIPLIED: rf"{written(m)}\,(F - {written(D)}\,v - {written(K)}\,y)",
+    }
+    wanted = rf"F - {written(D)}\,v - {written(K)}\,y"
+    return {"drawn": forms[fault], "wanted": wanted, "why": why[fault]}
