@@ -3,8 +3,10 @@
 from math import exp as exponential
 from math import log as logarithm
 
+import numpy as np
 from sympy import E, Heaviside, exp, log
 
+from loopbook import diagrams, signals
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -15,14 +17,18 @@ from loopbook.exercises.authoring import (
     number,
     time_function,
     transfer_function,
+    word,
 )
 from loopbook.expressions import s, t
+from loopbook.figures import time_plot
 
 
 @exercise(
     "6.1",
     title="Before the tank runs over",
     points=2,
+    insight="An integrator has no final value: the smallest difference that lasts fills the tank, and only its speed "
+    "is known.",
     where=lambda q_in, q_out, start, top: q_in >= q_out + 2 and top >= start + 0.5,
 )
 def runs_over(
@@ -32,10 +38,10 @@ def runs_over(
     start=between(0.5, 2, "m", reference=1.2, step=0.1),
     top=between(1.5, 4, "m", reference=2.4, step=0.1),
 ):
-    """A tank with the area {A} receives {q_in} of water, and a pump takes out just as much. The level stands at
-    {start}. Then the pump is throttled to {q_out}. Take the net inflow [m³/s] as the input and the level [m] as the
-    output. Which gain does this integrator have, how fast does the level rise, and after which time does it reach
-    the rim at {top}?
+    """A tank with an area of {A} receives {q_in} of water, and a pump takes out just as much. The level is {start}.
+    Then the pump is throttled to {q_out}. Take the net inflow [m³/s] as the input and the level [m] as the output.
+    Which gain does this integrator have? How fast does the level rise, and after which time does it reach the rim at
+    {top}?
     """
     rate = (q_in - q_out) / A  # 1 L/m² is 1 mm
     return answers(
@@ -67,7 +73,53 @@ def _(A):
     return {"K": 1 / A / 1000}
 
 
-@exercise("6.2", title="Half of the way", points=2)
+@runs_over.picture
+def _(q_in, q_out, start, top):
+    """A tank with a level; water flows in from above, and a pump takes it out."""
+    layout = """
+        q_in  1     .     .
+        .     tank  .     .
+        .     2     pump  q_out"""
+    parts = {"tank": diagrams.tank(level="h", filled=float(0.9 * start / top)), "pump": diagrams.pump()}
+    names = {"q_in": f"${q_in}$ L/s", "q_out": f"${q_out}$ L/s"}
+    return diagrams.instrumentation_diagram(layout, "q_in 1 tank 2 pump q_out", "", parts, names)
+
+
+runs_over.hints(
+    "A tank adds up what flows in and does not flow out: its volume changes by the net inflow.",
+    r"The volume is area times level, so $A\,\frac{dh}{dt} = q_{in} - q_{out}$. Compare this with an integrator, "
+    r"$\frac{dh}{dt} = K u$. Then the level rises along a straight line from where it is now.",
+    r"The net inflow is ${q_in} - {q_out}$ L/s, and 1 L on 1 m² is 1 mm high. The level has ${top} - {start}$ m to go.",
+)
+
+
+@runs_over.solution
+def _(A, q_in, q_out, start, top):
+    r"""In each second the volume grows by the net inflow, and the volume is $A h$. So $A\,\frac{dh}{dt} = q$, or
+    $\frac{dh}{dt} = \frac{1}{{A}}\,q$: an integrator with the gain $K = 1/{A} =$ {K}.
+
+    The net inflow is ${q_in} - {q_out} =$ {net}. One litre on one square metre is 1 mm high, so the level rises by
+    ${net}/{A} =$ {rate}.
+
+    ***
+
+    To the rim there are ${top} - {start} =$ {way}, which is {way_mm}. At this speed they take
+    ${way_mm}/{rate} =$ {t_full}, or about {minutes}.
+    """
+    net, way = q_in - q_out, top - start
+    return {
+        "net": (net, "L/s"), "way": (way, "m"), "way_mm": (1000 * way, "mm"),
+        "minutes": (1000 * way * A / net / 60, "min"),
+    }  # fmt: skip
+
+
+@exercise(
+    "6.2",
+    title="Half of the way",
+    points=2,
+    insight="Half of the way takes 0.69 time constants: any point of the response gives the time constant, not only "
+    "63 %.",
+)
 def half_way(
     u_1=between(20, 45, "%", reference=40, step=5),
     du=between(5, 20, "%", reference=10, step=5),
@@ -75,10 +127,10 @@ def half_way(
     dy=between(6, 30, "K", reference=18, step=1),
     t_half=between(2, 15, "min", reference=7, step=0.5),
 ):
-    """The air of a dryer is warmed by steam. The steam valve stood at {u_1}, and the air had a temperature of {y_1}.
-    Then the valve was opened further, to {u_2}. The air became {dy} warmer in the end, and it had gone half of this
-    way after {t_half}. Take the dryer for a time constant system. Find its gain and its time constant. Which
-    temperature did the air have when one time constant had passed since the step?
+    """Steam warms the air of a dryer. The steam valve was at {u_1}, and the air at {y_1}. Then the valve was opened
+    further, to {u_2}. In the end the air was {dy} warmer, and half of this way was behind it after {t_half}. Take the
+    dryer for a time constant system, and find its gain and its time constant. Which temperature did the air have one
+    time constant after the step?
     """
     return answers(
         K=number(dy / du, "K/%", "the gain"),
@@ -140,10 +192,43 @@ def _near(wrong, right):
     return abs(float(wrong) / float(right) - 1) < 0.03
 
 
+half_way.hints(
+    "The gain is a ratio of changes. And a lag goes the same share of its way in the same time, whatever the step is.",
+    r"The step response of a lag is $K U\,(1 - e^{-t/T})$. It has gone half of its way when $e^{-t/T} = \frac{1}{2}$, "
+    "and $1 - e^{-1}$ of it at $t = T$. Count temperatures from where the air was before.",
+    r"The valve was opened by {du}, so $K = \frac{ {dy} }{ {du} }$; and $e^{-{t_half}/T} = 0.5$ gives $T = \frac{ "
+    r"{t_half} }{\ln 2}$.",
+)
+
+
+@half_way.solution
+def _(u_1, du, y_1, dy, t_half):
+    r"""The valve was opened by {du} and the air became {dy} warmer, so $K = {dy}/{du} =$ {K}.
+
+    Half of the way is left when $e^{-t/T} = 0.5$, that is at $t = T \ln 2 = 0.693\,T$. So
+    $T = \frac{ {t_half} }{\ln 2} =$ {T}.
+
+    After one time constant the air has gone $1 - e^{-1} = 63.2\ \%$ of its way. It started at {y_1}, so it was at
+    ${y_1} + 0.632 \cdot {dy} =$ {y_T}.
+    """
+    return {}
+
+
+@half_way.solution_picture
+def _(y_1, dy, t_half):
+    """The temperature of the air against time, with the points at half of the way and at 63 % of it."""
+    T = t_half / log(2)
+    curve = {"air": (y_1 + dy * (1 - exp(-t / T)), "measurement")}
+    plot = time_plot(curve, np.linspace(0, 5 * float(T), 201), xlabel="$t$ [min]", ylabel="temperature [°C]", low=True)
+    return plot.mark(t_half, "half of the way").mark(T, "63 %, at $T$")
+
+
 @exercise(
     "6.3",
     title="Brine, a stirred tank and a long pipe",
     points=3,
+    insight="Mixing makes a lag and flowing makes a delay; both are volume over flow, so that less flow makes "
+    "everything slower.",
     where=lambda V, V_pipe: 2 * V_pipe <= V <= 10 * V_pipe,
 )
 def brine(
@@ -198,15 +283,70 @@ def _(V, V_pipe, F, less):
 
 
 @brine.mistake(
-    "The times are inversely proportional to the flow. So they grow by a larger percentage than the one by "
-    "which the flow falls."
+    "The times are inversely proportional to the flow. So they grow by a larger percentage than the one by which the "
+    "flow falls."
 )
 def _(V, V_pipe, F, less):
     return {"t_slow": (V_pipe + V * log(2)) / F * (1 + less / 100)}
 
 
+@brine.picture
+def _(V, V_pipe, F):
+    """Brine flows through a stirred tank and then through a long pipe."""
+    stirred, pipe = diagrams.tank(f"${V}$ L", stirrer=True), f"Pipe\n${V_pipe}$ L"
+    layout = """
+        F   tank  pipe  c"""
+    names = {"F": f"${F}$ L/min", "c": "out"}
+    return diagrams.instrumentation_diagram(layout, "F tank pipe c", "", {"tank": stirred, "pipe": pipe}, names)
+
+
+brine.hints(
+    "What is mixed becomes a lag. What only travels becomes a delay.",
+    r"Both times are volume over flow: $T = V/F$ for the tank and $\tau = V_{pipe}/F$ for the pipe. Half of the "
+    r"change is through the tank when $e^{-t/T} = \frac{1}{2}$; the pipe comes on top.",
+    r"Here $T = \frac{ {V} }{ {F} }$ min and $\tau = \frac{ {V_pipe} }{ {F} }$ min, and the time to the half is $\tau "
+    r"+ T \ln 2$. With {less} less flow, by which factor does each of the two grow?",
+)
+
+
+@brine.solution
+def _(V, V_pipe, F, less):
+    r"""The tank mixes: it is a lag with the time constant $V/F = {V}/{F} =$ {T}. The pipe only delays, by
+    ${V_pipe}/{F} =$ {delay}. What flows in comes out, so the gain is one:
+
+    $$H(s) = {H}$$
+
+    Half of the change has left the tank after $T \ln 2 =$ {in_tank}. The pipe delays it, so it is at the end of the
+    pipe after ${delay} + {in_tank} =$ {t_half}.
+
+    With {less} less flow, {rest} of it is left. Both times have the flow in their denominator, so that everything takes
+    $1/{share} =$ {factor} times as long: {t_slow}.
+    """
+    return {
+        "T": (V / F, "min"), "delay": (V_pipe / F, "min"), "in_tank": (float(V / F) * logarithm(2), "min"),
+        "rest": (100 - less, "%"), "share": 1 - less / 100, "factor": 1 / (1 - less / 100),
+        "H": exp(-V_pipe / F * s) / (V / F * s + 1),
+    }  # fmt: skip
+
+
+@brine.solution_picture
+def _(V, V_pipe, F, less):
+    """The share of the change at the end of the pipe against time, with the flow as it is and with less flow."""
+    T, delay, slower = float(V / F), float(V_pipe / F), float(1 / (1 - less / 100))
+    times = np.linspace(0, slower * (delay + 4 * T), 400)
+    curves = {"flow as it is": 1, f"{less} % less": slower}
+    rises = {name: np.maximum(0, 1 - np.exp(-(times / k - delay) / T)) for name, k in curves.items()}
+    plot = time_plot(rises, times, xlabel="$t$ [min]", ylabel="share of the change", low=True)
+    return plot.mark(delay + T * logarithm(2), "half")
+
+
 @exercise(
-    "6.4", title="What is still on the belt", points=3, where=lambda length, v, run: abs(length / v / run - 1) > 0.05
+    "6.4",
+    title="What is still on the belt",
+    points=3,
+    insight="A delay keeps a memory of everything that is under way: what is on the belt arrives, whatever you do "
+    "meanwhile.",
+    where=lambda length, v, run: abs(length / v / run - 1) > 0.05,
 )
 def belt(
     length=between(6, 30, "m", reference=12, step=1),
@@ -288,10 +428,59 @@ def _response_time(T_1, T_2):
     return low
 
 
+belt.hints(
+    "A belt delays, and a hopper adds up.",
+    r"The delay is the length over the speed, $e^{-\tau s}$, and adding up is $1/s$. In time, the hopper fills along "
+    "a straight line while grain arrives, that is from the delay to the delay plus the time for which the feeder ran.",
+    r"The delay is $\tau = \frac{ {length} }{ {v} }$ s. The hopper begins to fill at $\tau$ and stops at $\tau + "
+    "{run}$ s, at {F}. When the feeder stops, what has been fed in the last {run} or less is still on the belt.",
+)
+
+
+@belt.solution
+def _(length, v, F, run):
+    r"""The grain needs ${length}/{v} =$ {delay} for the belt, which is a delay. The hopper adds up what falls into it,
+    which is an integrator:
+
+    $$H(s) = \frac{e^{-{delay} s}}{s}$$
+
+    So the hopper is empty until the first grain arrives after {delay}. Then it fills by {F}, for as long as the feeder
+    ran, until {last}. With a step function $\theta$ for each of the two moments,
+
+    $$m(t) = {F}\,(t - {delay})\,\theta(t - {delay}) - {F}\,(t - {last})\,\theta(t - {last})$$
+
+    in kg, so that it ends with ${F} \cdot {run} =$ {all}.
+
+    When the feeder stops, the belt holds what came on it in the last {under_way}, because {compared}. That is
+    ${F} \cdot {under_way} =$ {on_belt}.
+    """
+    delay = length / v
+    longer = "the feeder has run for longer than the belt takes, so all of the belt is full"
+    shorter = "the feeder has not run as long as the belt takes, so nothing has fallen off yet"
+    return {
+        "delay": (delay, "s"), "last": (delay + run, "s"), "all": (F * run, "kg"), "under_way": (min(run, delay), "s"),
+        "compared": longer if run > delay else shorter,
+    }  # fmt: skip
+
+
+@belt.solution_picture
+def _(length, v, F, run):
+    """The mass in the hopper and the mass on the belt against time."""
+    delay = length / v
+    times = np.linspace(0, 1.15 * float(delay + run), 300)
+    fed = np.clip(times, 0, float(run)) * float(F)
+    arrived = np.clip(times - float(delay), 0, float(run)) * float(F)
+    return time_plot(
+        {"in the hopper": arrived, "on the belt": fed - arrived}, times, ylabel="mass [kg]", low=True
+    ).event(run, "feeder stops")
+
+
 @exercise(
     "6.5",
     title="A sensor in a pocket",
     points=4,
+    insight="Lags and delays in series add up to the response time, nearly: the estimate is a little short, by 7 % at "
+    "most.",
     where=lambda T_1, T_2, delay: T_1 >= 1.25 * T_2 and T_2 >= 0.4 * T_1 and delay <= 0.5 * T_1,
 )
 def pocket(
@@ -346,10 +535,64 @@ def _volumes(F, pulse, c, c_max, t_max):
     return least * float(F) / 60, float(t_max) / logarithm(10) * float(F) / 60
 
 
+@pocket.mistake("Here the delay was subtracted. Does the water arrive sooner because of it?")
+def _(T_1, T_2, delay):
+    return {"estimate": T_1 + T_2 - delay}
+
+
+@pocket.mistake("That is how long the slowest of them takes alone. The others take their time as well.")
+def _(T_1):
+    return {"estimate": T_1, "T_r": T_1}
+
+
+pocket.hints(
+    "The response time of elements in series is about the sum of all their lags and delays.",
+    "For the exact time look at what is still missing $x$ seconds after the warm water has arrived. For two "
+    r"different lags it is $\frac{T_1 e^{-x/T_1} - T_2 e^{-x/T_2}}{T_1 - T_2}$, and the delay comes on top.",
+    "The estimate is ${T_1} + {T_2} + {delay}$ s. Of these the first {delay} are delay, so put $x = {T_1} + {T_2}$ "
+    "into the share that is missing. Then try a slightly larger $x$ until 36.8 % are left.",
+)
+
+
+@pocket.solution
+def _(T_1, T_2, delay):
+    r"""The estimate is the sum of all lags and delays: ${T_1} + {T_2} + {delay} =$ {estimate}.
+
+    {delay} of it are delay, in which nothing moves. So the two lags have had $x = {T_1} + {T_2} =$ {x}, and what is
+    missing is
+
+    $$\frac{ {T_1}\,e^{-{x}/{T_1}} - {T_2}\,e^{-{x}/{T_2}} }{ {T_1} - {T_2} } = {missing}$$
+
+    So {share} of the way are gone, a little less than 63.2 %.
+
+    The exact response time is where this share is $e^{-1} = 0.368$. There is no formula for it. Trying larger $x$ gives
+    $x =$ {exact}, and with the delay {T_r}. The estimate was {short} too short.
+    """
+    T_1, T_2, delay = float(T_1), float(T_2), float(delay)
+    exact = _response_time(T_1, T_2)
+    return {
+        "x": (T_1 + T_2, "s"), "missing": _share_left(T_1 + T_2, T_1, T_2), "exact": (exact, "s"),
+        "short": (100 * (1 - (T_1 + T_2 + delay) / (exact + delay)), "%"),
+    }  # fmt: skip
+
+
+@pocket.solution_picture
+def _(T_1, T_2, delay):
+    """The share of its way that the sensor has gone, with the estimate marked."""
+    T_1, T_2, delay = float(T_1), float(T_2), float(delay)
+    times = np.linspace(0, delay + 4 * (T_1 + T_2), 400)
+    x = np.maximum(times - delay, 0)
+    gone = 1 - (T_1 * np.exp(-x / T_1) - T_2 * np.exp(-x / T_2)) / (T_1 - T_2)
+    plot = time_plot({"sensor": (gone, "measurement")}, times, ylabel="share of the way", low=True)
+    return plot.mark(T_1 + T_2 + delay, "at the estimate").level(1 - exponential(-1), "63.2 %")
+
+
 @exercise(
     "6.6",
     title="A tank against pulses",
     points=5,
+    insight="A lag smooths what is shorter than itself; the price is that it answers slowly to what is meant to come "
+    "through.",
     where=lambda F, pulse, c, c_max, t_max: (
         10 * c_max >= c
         and 2 * c_max <= c
@@ -383,6 +626,7 @@ def against_pulses(
             number((least + largest) / 2, "m³", "the volume of the tank"),
             criterion("the highest concentration above normal", highest, below=c_max, unit="g/L"),
             criterion("the time to 90 %", lambda volume: 60 * volume / F * logarithm(10), below=t_max, unit="min"),
+            draws=lambda volume: _pulse_and_step(60 * volume / F, pulse, c, float(c_max), float(t_max)),
         ),
     )
 
@@ -406,3 +650,308 @@ def _(pulse, c, c_max):
 )
 def _(t_max):
     return {"T_least": t_max / log(10)}
+
+
+def _pulse_and_step(T, pulse, c, c_max, t_max):
+    """What a tank with this time constant makes of the pulse, and of a change that lasts, with the two limits."""
+    T = max(float(T), 1e-3)
+    times = np.linspace(0, 1.5 * t_max, 400)
+    rise = np.exp(-np.maximum(times - pulse, 0) / T) * (1 - np.exp(-np.minimum(times, pulse) / T))
+    panels = [{"after a pulse": (c * rise, 0)}, {"after a change that lasts": (100 - 100 * np.exp(-times / T), 1)}]
+    names = ["after a pulse [g/L]", "lasting change [%]"]
+    plot = time_plot(panels, times, "Outflow of your tank", xlabel="$t$ [min]", ylabel=names, low=True)
+    plot.level(c_max, "tolerated", "after a pulse").level(90, "90 %", "after a change that lasts")
+    return plot.event(t_max, "at the latest")
+
+
+against_pulses.hints(
+    "The tank is a lag, and the pulse is a step up that is taken back after a while: the highest concentration comes "
+    "just before it is taken back.",
+    r"Just before the end of the pulse the outflow is at $c\,(1 - e^{-t_p/T})$, with the length $t_p$ of the pulse. "
+    r"The plant wants this below its limit, so $T$ must be large enough. The time to 90 % is $T \ln 10$, so $T$ must "
+    "be small enough. And $V = T F$.",
+    r"At the limit $1 - e^{-{pulse}/T} = \frac{ {c_max} }{ {c} }$. From above, $T \le \frac{ {t_max} }{\ln 10}$.",
+)
+
+
+@against_pulses.solution
+def _(F, pulse, c, c_max, t_max):
+    r"""For {pulse} the inflow is higher by {c}. The tank is a lag, so at the end of the pulse its concentration is
+    higher by $c\,(1 - e^{-t_p/T})$, and that is the highest value. It is to be {c_max} at most:
+
+    $$1 - e^{-{pulse}/T} \le \frac{ {c_max} }{ {c} } = {ratio} \quad\Rightarrow\quad T \ge \frac{ {pulse} }{-\ln(1 -
+    {ratio})} = {T_least}\ \text{min}$$
+
+    A change that lasts has come through to 90 % after $T \ln 10 = 2.303\,T$. This may be {t_max}, so $T \le {T_max}$
+    min.
+
+    The time constant of the tank is volume over flow, and the flow is ${F}/60 =$ {per_minute}. So its volume is between
+    ${T_least} \cdot {per_minute} =$ {least} and ${T_max} \cdot {per_minute} =$ {largest}, for example {middle}.
+    """
+    least, largest = _volumes(F, pulse, c, c_max, t_max)
+    return {
+        "ratio": c_max / c, "T_max": float(t_max) / logarithm(10), "per_minute": (F / 60, "m³/min"),
+        "least": (least, "m³"), "largest": (largest, "m³"), "middle": ((least + largest) / 2, "m³"),
+    }  # fmt: skip
+
+
+def _record(start, T, u_1, du, y_1, dy, noise):
+    """Times, power and noisy temperature of exercise 6.7."""
+    times = np.linspace(0, float(start + 7 * T), 400)
+    since = np.maximum(times - float(start), 0)
+    y = float(y_1) + float(dy) * (1 - np.exp(-since / float(T)))
+    power = float(u_1) + float(du) * (times >= float(start))
+    return times, power, y + signals.noise(times, 0.02 * float(dy), seed=int(noise))
+
+
+@exercise(
+    "6.7",
+    title="An oven by ruler",
+    points=3,
+    where=lambda K, du, start, T: 8 <= K * du <= 40 and 0.4 * T <= start <= 1.2 * T,
+    insight="Noise moves single points, not the curve that you lay through them: read levels as averages, times on "
+    "the curve.",
+)
+def oven(
+    K=between(0.8, 4, "K/%", reference=1.6, step=0.2),
+    T=between(4, 20, "min", reference=10, step=1),
+    start=between(3, 15, "min", reference=5, step=1),
+    u_1=between(25, 55, "%", reference=40, step=5),
+    du=between(5, 20, "%", reference=10, step=5),
+    y_1=between(120, 240, "°C", reference=180, step=10),
+    noise=between(1, 999, reference=7, step=1),
+):
+    """The power of an oven was raised in a step, and its temperature was recorded; the sensor is noisy. Both are in the
+    picture. Take the oven for a time constant system, and read its gain and its time constant off the picture with a
+    ruler. How long after the step has 90 % of the change come through? (`t, u, y = exercise("6.7").given("t", "u",
+    "y")` are the times, the power and the temperature, if you prefer to compute.)
+    """
+    return answers(
+        K=number(K, "K/%", "the gain", within=0.06),
+        T=number(T, "min", "the time constant", within=0.1),
+        t_90=number(T * log(10), "min", "the time from the step to 90 % of the change", within=0.1),
+    )
+
+
+@oven.shows
+def _(K, T, start, u_1, du, y_1, noise):
+    times, power, y = _record(start, T, u_1, du, y_1, K * du, noise)
+    return {"t": times, "u": power, "y": y}
+
+
+@oven.picture
+def _(K, T, start, u_1, du, y_1, noise):
+    """The noisy temperature of an oven, which rises after a step of its power, and the power below."""
+    times, power, y = _record(start, T, u_1, du, y_1, K * du, noise)
+    panels = [{"temperature": (y, "raw")}, {"power": (power, "control signal")}]
+    return time_plot(panels, times, xlabel="$t$ [min]", ylabel=["temperature [°C]", "power [%]"])
+
+
+@oven.mistake("The gain is a ratio of changes. Here the values after the step were divided.")
+def _(K, u_1, du, y_1):
+    return {"K": (y_1 + K * du) / (u_1 + du)}
+
+
+@oven.mistake("The gain is a ratio of changes. By how much was the power *raised*?")
+def _(K, u_1, du):
+    return {"K": K * du / (u_1 + du)}
+
+
+@oven.mistake("The power is the input. Which of the two changes belongs below?")
+def _(K):
+    return {"K": 1 / K} if abs(K * K - 1) > 0.2 else {}
+
+
+@oven.mistake("This is a moment of the picture. The time constant is counted from the step.")
+def _(T, start):
+    return {"T": start + T}
+
+
+@oven.mistake("Then half of the way is covered. How much of it is covered after one time constant?")
+def _(T):
+    return {"T": T * log(2)}
+
+
+@oven.mistake("By then the response has practically ended. The time constant is the time to 63 % of the way.")
+def _(T):
+    return {"T": 5 * T}
+
+
+@oven.mistake("The response is no straight line: the last part of the way takes longest. Use the exponential.")
+def _(T):
+    return {"t_90": T * 0.9 / (1 - 1 / E)}
+
+
+@oven.mistake("This is a moment of the picture. Count from the step.")
+def _(T, start):
+    return {"t_90": start + T * log(10)}
+
+
+oven.hints(
+    "The gain is what the change of the input brings in the end. The time constant is the time to 63 % of the way.",
+    "Lay a line through the noise before the step, and one through the noise at the end: their distance is the change "
+    "of the temperature. Go up 63 % of it, and across to the middle of the noisy curve. The power's panel shows when "
+    "the step came.",
+    "The power was raised by {du}. Divide the change of the temperature by it. For the last question, $1 - e^{-t/T} "
+    "= 0.9$.",
+)
+
+
+@oven.solution
+def _(K, T, start, u_1, du, y_1):
+    r"""Before the step the temperature is about {y_1}, at the end about {end}. So it has changed by about {dy}. The
+    power was raised from {u_1} by {du}, and the gain is ${dy}/{du} =$ {K}.
+
+    63 % of the way are at ${y_1} + 0.632 \cdot {dy} =$ {level}. The middle of the noisy curve is there at about
+    {moment}. The step came at {start}, so the time constant is about {T}.
+
+    What is left after a time $t$ is $e^{-t/T}$ of the way. It is a tenth when $t = T \ln 10 = 2.303 \cdot {T} =$
+    {t_90}.
+    """
+    dy = K * du
+    return {
+        "end": (y_1 + dy, "°C"), "dy": (dy, "K"), "level": (y_1 + dy * (1 - exponential(-1)), "°C"),
+        "moment": (start + T, "min"),
+    }  # fmt: skip
+
+
+@oven.solution_picture
+def _(K, T, start, u_1, du, y_1, noise):
+    """The record with the response of the model through the noise, and the point at 63 %."""
+    times, _, y = _record(start, T, u_1, du, y_1, K * du, noise)
+    since = np.maximum(times - float(start), 0)
+    smooth = float(y_1) + float(K * du) * (1 - np.exp(-since / float(T)))
+    curves = {"measured": (y, "raw"), "model": (smooth, "model")}
+    plot = time_plot(curves, times, xlabel="$t$ [min]", ylabel="temperature [°C]")
+    return plot.mark(start + T, "63 %, after $T$", "model").event(start, "step")
+
+
+MODELS = ("lag", "two_lags", "four_lags", "delayed")  # in the order of exercise 6.8
+
+
+def _rises(T, tau, order):
+    """Times and step responses of the four models, each under its letter."""
+    T, tau = float(T), float(tau)
+    times = np.linspace(0, 3.2 * T, 400)
+    two, four, after = 2 * times / T, 4 * times / T, np.maximum(times - tau, 0)
+    responses = (
+        1 - np.exp(-times / T),
+        1 - np.exp(-two) * (1 + two),
+        1 - np.exp(-four) * (1 + four + four**2 / 2 + four**3 / 6),
+        1 - np.exp(-after / (T - tau)),
+    )
+    return times, dict(sorted(zip(order, responses, strict=True)))
+
+
+def _letter(order, model):
+    return order[MODELS.index(model)]
+
+
+@exercise(
+    "6.8",
+    title="Four models, four curves",
+    points=4,
+    where=lambda T, tau: 0.3 * T <= tau <= 0.5 * T,
+    insight="The end of a response says how long a chain takes; its beginning says of how many parts it is made.",
+)
+def four_curves(
+    T=between(10, 60, "s", reference=20, step=5),
+    tau=between(3, 30, "s", reference=8, step=1),
+    order=choice(
+        "ABCD", "BADC", "CDAB", "DCBA", "BCDA", "CADB", "DBAC", "ACBD", "BDCA", "CBDA", "DACB", "ADCB", reference="CADB"
+    ),
+):
+    r"""Four processes have a gain of one, and all of them have the same sum of lags and delays. The picture shows their
+    responses to the same step at $t = 0$, as A, B, C and D. The processes are
+
+    - one lag, $\frac{1}{Ts + 1}$,
+    - two equal lags in series, $\frac{1}{(T_2 s + 1)^2}$ with $T_2 = T/2$,
+    - four equal lags in series, $\frac{1}{(T_4 s + 1)^4}$ with $T_4 = T/4$,
+    - a lag behind a delay, $\frac{e^{-\tau s}}{(T - \tau)s + 1}$.
+
+    Which curve belongs to which? Read the time constant $T$ and the delay $\tau$ off the picture. (`t, A, B, C, D =
+    exercise("6.8").given("t", "A", "B", "C", "D")` are the curves.)
+    """
+    return answers(
+        lag=word(_letter(order, "lag"), "ABCD", "the curve of one lag"),
+        two_lags=word(_letter(order, "two_lags"), "ABCD", "the curve of two equal lags"),
+        four_lags=word(_letter(order, "four_lags"), "ABCD", "the curve of four equal lags"),
+        delayed=word(_letter(order, "delayed"), "ABCD", "the curve of the lag behind a delay"),
+        T=number(T, "s", "the time constant of the single lag", within=0.08),
+        tau=number(tau, "s", "the delay", within=0.1),
+    )
+
+
+@four_curves.shows
+def _(T, tau, order):
+    times, rises = _rises(T, tau, order)
+    return {"t": times} | rises
+
+
+@four_curves.picture
+def _(T, tau, order):
+    """Four step responses A to D, all from zero to one; they differ in how they begin."""
+    times, rises = _rises(T, tau, order)
+    return time_plot(rises, times, ylabel="response")
+
+
+def _mixed_up(asked, other):
+    """A mistake: the curve of one model taken for that of another."""
+    return lambda order: {asked: _letter(order, other)}
+
+
+_AT_ONCE = "This curve sets out with its largest slope, from the first moment on. Is there only one lag in the process?"
+_CORNER = "This curve rests, and then sets out with a corner. Can a chain of lags alone rest, and can it make a corner?"
+_SMOOTH = "This curve leaves zero without a corner. What does the response of a single lag do when it begins?"
+_NO_REST = "This curve moves from the first moment on, if only slowly. Does anything move during a delay?"
+_WHICH = "This is a chain of lags. Does a chain of more lags set out faster or more slowly?"
+for _asked, _other, _sentence in (
+    ("lag", "two_lags", _SMOOTH), ("lag", "four_lags", _SMOOTH),
+    ("lag", "delayed", "This one has the corner of a lag, but when does it come? Nothing is in front of this lag."),
+    ("two_lags", "lag", _AT_ONCE), ("two_lags", "four_lags", _WHICH), ("two_lags", "delayed", _CORNER),
+    ("four_lags", "lag", _AT_ONCE), ("four_lags", "two_lags", _WHICH), ("four_lags", "delayed", _CORNER),
+    ("delayed", "lag", "This one has the corner of a lag, but when does it come? Something is in front of this lag."),
+    ("delayed", "two_lags", _NO_REST), ("delayed", "four_lags", _NO_REST),
+):  # fmt: skip
+    four_curves.mistake(_sentence)(_mixed_up(_asked, _other))
+
+
+@four_curves.mistake("That is the lag behind the delay. How long is the time in which nothing happens?")
+def _(T, tau):
+    return {"tau": T - tau} if abs(T - 2 * tau) > 0.12 * tau else {}
+
+
+@four_curves.mistake("By then the curve has gone 63 % of its way: delay and lag together. When does it begin to move?")
+def _(T):
+    return {"tau": T}
+
+
+@four_curves.mistake("Then the single lag has gone half of its way. One time constant takes it to 63 %.")
+def _(T):
+    return {"T": T * log(2)}
+
+
+four_curves.hints(
+    "Look at the beginning. A lag answers a step with a corner. A second lag makes of this corner a smooth beginning. "
+    "A delay lets nothing through for a while.",
+    "Two of the curves have a corner: one at $t = 0$, and one later. The other two are smooth at zero; the more lags "
+    "there are, the longer they seem to rest. Then read $T$ off the curve of the single lag, at 63 %.",
+    r"The corner of the later one is at $t = \tau$. The curve of the single lag is at $1 - e^{-1} = 0.632$ when $t = "
+    "T$.",
+)
+
+
+@four_curves.solution
+def _(T, tau, order):
+    r"""Only a lag that meets the step itself answers it with a corner. Curve {one} has its corner at $t = 0$: it is the
+    single lag. Curve {late} has the same corner later, and rests before: there is a delay in front of its lag.
+
+    The other two are smooth where they begin, because each further lag smooths what comes from the one before. Curve
+    {few} moves sooner, so it has fewer lags: two. Curve {many} looks at first like a delay, but it has no corner: four
+    lags.
+
+    Curve {one} passes 63.2 % at $t = T =$ {T}. Curve {late} leaves zero at $\tau =$ {tau}; its lag is what is left of
+    the sum, ${T} - {tau} =$ {rest}.
+    """
+    one, few, many, late = order
+    return {"one": one, "few": few, "many": many, "late": late, "rest": (T - tau, "s")}
