@@ -15,7 +15,7 @@ TRUE = word("yes", ["yes", "no"], "whether it is stable")
 
 JUDGED = [
     (ACTION, " REVERSE", RIGHT, "right"),
-    (ACTION, "direct", WRONG, "the action"),
+    (ACTION, "direct", WRONG, "which way must the control signal go"),
     (ACTION, "backwards", UNJUDGED, "reverse or direct"),
     (ACTION, 1, UNJUDGED, "not text"),
     (TRUE, True, RIGHT, "right"),

@@ -7,6 +7,7 @@ no formula, however large or nested, can take long or fill the memory.
 from __future__ import annotations
 
 import ast
+import copy
 import math
 import random
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -68,8 +69,17 @@ class Formula:
     def __init__(self, given: object, symbols: str | Iterable[str] = ()):
         self.symbols = symbols.split() if isinstance(symbols, str) else list(symbols)
         self.text = spelled(given)
-        self.tree = parsed(self.text, self.symbols)
-        nodes = list(ast.walk(self.tree))
+        self._set(parsed(self.text, self.symbols))
+
+    def with_tree(self, tree: ast.expr) -> Formula:
+        """The same with another tree, as a mistake makes one of the key; its text is that of this one."""
+        other = copy.copy(self)
+        other._set(tree)
+        return other
+
+    def _set(self, tree):
+        self.tree = tree
+        nodes = list(ast.walk(tree))
         exponents = {id(node.right) for node in nodes if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow)}
         numbers = [node for node in nodes if isinstance(node, ast.Constant) and type(node.value) is not bool]
         self.literals = [id(node) for node in numbers if node.value != 1 and id(node) not in exponents]

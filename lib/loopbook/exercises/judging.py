@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from loopbook.exercises import diagnoses
 from loopbook.exercises.reading import NOT_ANSWERED, Unreadable, shortened
 from loopbook.exercises.timeout import limited
 
 if TYPE_CHECKING:
+    from loopbook.exercises.diagnoses import Background
     from loopbook.exercises.kinds import Kind
 
 RIGHT, MISTAKE, WRONG, UNJUDGED, OPEN = "right", "mistake", "wrong", "not judged", "open"
@@ -24,6 +28,8 @@ class Verdict:
     name: str
     status: str
     says: str
+    #: Whether it says little more than that the answer is not right: then a hint may help.
+    is_bare: bool = field(default=False, repr=False)
 
     @property
     def is_right(self) -> bool:
@@ -40,7 +46,13 @@ def earned(points: float, right: int, asked: int) -> float:
     return points * right / asked
 
 
-def judge(name: str, kind: Kind, given: object, mistakes: Iterable[tuple[str, Any]] = ()) -> Verdict:
+def judge(
+    name: str,
+    kind: Kind,
+    given: object,
+    mistakes: Iterable[tuple[str, Any]] = (),
+    background: Background | None = None,
+) -> Verdict:
     """Return the `Verdict` on an answer. Whatever the answer is, this raises nothing.
 
     Arguments:
@@ -48,13 +60,14 @@ def judge(name: str, kind: Kind, given: object, mistakes: Iterable[tuple[str, An
         kind: its kind, with the key.
         given: the answer, of any type.
         mistakes: those of the exercise, pairs of a sentence and a wrong value; they come before the general ones.
+        background: what else is known of the exercise, for the general ones.
 
     >>> from loopbook.exercises.kinds import Number
     >>> judge("Ti", Number(120, "s", "the integral time"), 2)
     Verdict(name='Ti', status='mistake', says='that would be the value in min; asked: the integral time, in s')
     """
     try:
-        status, says = limited(SECONDS, _judged, kind, given, mistakes)
+        return Verdict(name, *limited(SECONDS, _judged, kind, given, mistakes, background))
     except Unreadable as problem:
         status = OPEN if str(problem) == NOT_ANSWERED else UNJUDGED
         return Verdict(name, status, harmless(str(problem)))
@@ -63,17 +76,24 @@ def judge(name: str, kind: Kind, given: object, mistakes: Iterable[tuple[str, An
     except Exception as problem:  # the answer may be an object that fails in any way
         says = f"this cannot be judged ({type(problem).__name__}): expected {kind.expected}"
         return Verdict(name, UNJUDGED, harmless(says))
-    return Verdict(name, status, says)
 
 
-def _judged(kind, given, mistakes):
+def _judged(kind, given, mistakes, background):
+    """Status, sentence, and whether the sentence is bare."""
     answer, remark = kind.read(given)
     if kind.agrees(answer):
         return RIGHT, "right" + (f", {remark}" if remark else "")
     for sentence, wrong in (*mistakes, *kind.mistakes()):
         if kind.is_value(answer, wrong):
             return MISTAKE, sentence
-    return WRONG, kind.hint(answer) or f"not right; asked: {kind.asked}"
+    try:
+        found = diagnoses.explained(kind, answer, background or diagnoses.Background())
+    except (ArithmeticError, ValueError, TypeError, np.linalg.LinAlgError):  # it is wrong, whatever else it is
+        found = None
+    if found:
+        return MISTAKE if found.is_mistake else WRONG, found.says, found.is_bare
+    hint = kind.hint(answer)
+    return WRONG, hint or f"not right; asked: {kind.asked}", not hint
 
 
 def harmless(text: str) -> str:

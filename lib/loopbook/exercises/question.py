@@ -12,6 +12,7 @@ import numpy as np
 
 from loopbook.exercises import filling
 from loopbook.exercises.asked_names import matched
+from loopbook.exercises.diagnoses import Background
 from loopbook.exercises.errors import ExerciseError
 from loopbook.exercises.judging import OPEN, UNJUDGED, WRONG, Verdict, harmless, judge
 from loopbook.exercises.kinds import Kind, Word, Words
@@ -85,6 +86,16 @@ class Question(Showing):
                 found[name].append((self.filled_in(sentence), value))
         return found
 
+    @functools.cached_property
+    def background(self) -> Background:
+        """What the diagnoses of a wrong answer may know: the givens of the statement, and the key for others."""
+        parameters = {name: one for name, one in self.exercise.parameters.items() if self._states(name)}
+        return Background(self.key, self.values, parameters, self.exercise.key)
+
+    def _states(self, name):
+        """Whether the statement shows a value in the place of a name."""
+        return bool(re.search(rf"(?<!{{)\{{{name}\}}(?!}})", self.exercise.statement))
+
     def _called(self, function, what):
         """What a function of the author returns for this variant; raises ValueError where it fails."""
         try:
@@ -140,7 +151,9 @@ class Question(Showing):
                 hint = did_you_mean(name, names, otherwise=f"asked is {_listed(names)}")
                 notes.append(f"{harmless(name)} is not asked: {hint}")
         verdicts = tuple(
-            judge(name, kind, given[name], self.mistakes[name]) if name in given else Verdict(name, OPEN, NOT_ANSWERED)
+            judge(name, kind, given[name], self.mistakes[name], self.background.of(name, given))
+            if name in given
+            else Verdict(name, OPEN, NOT_ANSWERED)
             for name, kind in self.key.items()
         )
         judged = {one.name: one for one in verdicts if one.status not in (OPEN, UNJUDGED)}

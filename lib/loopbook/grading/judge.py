@@ -133,7 +133,7 @@ def judged(
         elif says := unreadable(answer):
             verdict = Verdict(name, UNJUDGED, says)
         else:
-            verdict = judge(name, kind, answer, question.mistakes[name])
+            verdict = judge(name, kind, answer, question.mistakes[name], question.background.of(name, given))
         verdicts.append(
             {"name": name, "status": verdict.status, "says": verdict.says, "answer": answer, "key": kind.solution}
         )

@@ -16,8 +16,6 @@ from loopbook.exercises.kinds.kind import Kind, with_unit
 from loopbook.exercises.reading import Unreadable, alone, answered, in_a_row, listed_in, plain, shortened
 
 _WITH_UNIT = re.compile(r"([+-]? ?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?) ?(.*)")
-#: Up to so many times the tolerance, an answer is nearly right.
-NEARLY = 4
 #: A mistake is recognised in a rounded value, too.
 ROUNDED = 0.01
 
@@ -53,14 +51,6 @@ class Number(Kind):
         """Whether the number is within the tolerance."""
         return near(answer, self.key, self.within)
 
-    def mistakes(self) -> Iterator[tuple[str, float]]:
-        """Wrong sign, another unit, the inverse."""
-        yield "the size is right, the sign is not", -self.key
-        for unit, converted in units.neighbours(self.unit).items():
-            yield f"that would be the value {in_unit(unit)}; asked: {self.asked}", converted(self.key)
-        if self.key:
-            yield "that is the inverse: one divided by the answer", 1 / self.key
-
     def is_value(self, answer: float, wrong: Any) -> bool:
         """Whether an answer is the value of a mistake, which a reader may have rounded."""
         wrong = self.like(wrong).key
@@ -72,12 +62,6 @@ class Number(Kind):
         """What an answer would be if it had been given in another unit: pairs of the unit and the value."""
         for unit in units.neighbours(self.unit):
             yield unit, units.convert(answer, unit, to=self.unit)
-
-    def hint(self, answer: float) -> str:
-        """Say that the number is nearly right."""
-        if near(answer, self.key, NEARLY * self.within):
-            return f"that is close, but the accuracy asked for is {self.accuracy}: keep more digits on the way"
-        return ""
 
 
 class Numbers(Kind):
@@ -122,9 +106,10 @@ class Numbers(Kind):
     def agrees(self, answer: np.ndarray) -> bool:
         """Whether the shape is the same and each number within the tolerance; a column is a row."""
         answer, key = _flat(answer), _flat(self.key)
-        return answer.shape == key.shape and bool(np.all(self._near(answer, key)))
+        return answer.shape == key.shape and bool(np.all(self.near_each(answer, key)))
 
-    def _near(self, answer, key):
+    def near_each(self, answer: np.ndarray, key: np.ndarray) -> np.ndarray:
+        """Which numbers are within the tolerance."""
         return np.abs(answer - key) <= _allowed(key, self.within, 1e-12)
 
     def mistakes(self) -> Iterator[tuple[str, np.ndarray]]:
@@ -143,7 +128,7 @@ class Numbers(Kind):
         answer, key = _flat(answer), _flat(self.key)
         if answer.shape != key.shape:
             raise Unreadable(f"the shape is {_shape(answer)}: expected {_shape(key)}")
-        right = int(np.sum(self._near(answer, key)))
+        right = int(np.sum(self.near_each(answer, key)))
         return f"{right} of {key.size} numbers are right" if right else ""
 
 
@@ -188,18 +173,17 @@ class Poles(Kind):
 
     def agrees(self, answer: np.ndarray) -> bool:
         """Whether each pole has its counterpart."""
-        return len(answer) == len(self.key) == self._matched(answer, self.within)
+        return len(answer) == len(self.key) == len(self.matched(answer))
 
-    def _matched(self, answer, within):
-        """How many of the answer's values are among the key's, each taken once."""
-        left = list(zip(self.key, _allowed(self.key, within, 1e-9), strict=True))
-        for value in answer:
-            distances = [abs(value - pole) for pole, _ in left]
-            if distances:
-                k = int(np.argmin(distances))
-                if distances[k] <= left[k][1]:
-                    del left[k]
-        return len(self.key) - len(left)
+    def matched(self, answer: np.ndarray) -> dict[int, int]:
+        """Which of the answer's values are among the key's, each taken once: {place in it: place in the key}."""
+        allowed, pairs = _allowed(self.key, self.within, 1e-9), {}
+        for place, value in enumerate(answer):
+            left = [k for k in range(len(self.key)) if k not in pairs.values()]
+            nearest = min(left, key=lambda k, value=value: abs(value - self.key[k]), default=None)
+            if nearest is not None and abs(value - self.key[nearest]) <= allowed[nearest]:
+                pairs[place] = nearest
+        return pairs
 
     def mistakes(self) -> Iterator[tuple[str, np.ndarray]]:
         """All signs turned, times instead of poles, another unit."""
@@ -211,15 +195,6 @@ class Poles(Kind):
             yield "real part and imaginary part are interchanged", self.key.imag + 1j * self.key.real
         for unit, converted in units.neighbours(self.unit).items():
             yield f"those would be the values {in_unit(unit)}; asked: {self.asked}", self.key * converted(1)
-
-    def hint(self, answer: np.ndarray) -> str:
-        """Say how many there should be, and how many are right."""
-        if len(answer) != len(self.key):
-            return f"{len(answer)} is not their number: count a multiple one several times, and both of a complex pair"
-        if self._matched(answer, NEARLY * self.within) == len(self.key):
-            return f"they are close, but the accuracy asked for is {self.accuracy}: keep more digits on the way"
-        right = self._matched(answer, self.within)
-        return f"{right} of {len(self.key)} are right" if right else ""
 
 
 def near(answer: float, key: float, within: float) -> bool:

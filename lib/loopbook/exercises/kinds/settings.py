@@ -11,7 +11,7 @@ import sympy
 from loopbook.exercises import units
 from loopbook.exercises.kinds.kind import Kind, literal, with_unit
 from loopbook.exercises.kinds.numeric import in_digits, near, one_number
-from loopbook.exercises.reading import Unreadable, alone, answered, in_a_row, listed, listed_in
+from loopbook.exercises.reading import Unreadable, alone, answered, in_a_row, listed_in
 from loopbook.pid import PID
 from loopbook.validation import one_of
 
@@ -147,12 +147,8 @@ class Settings(Kind):
         return answer.form if answer.Td == answer.Tf == 0 else self.form
 
     def _same_controller(self, answer):
-        if answer.form != self.key.form:
-            try:
-                answer = answer.serial() if self.key.form == "serial" else answer.parallel()
-            except ValueError:  # it has no such form
-                return False
-        return self._near(answer, self.key)
+        answer = self.in_form_of_key(answer)
+        return answer is not None and self._near(answer, self.key)
 
     def _near(self, answer, key):
         return all(self._parts_near(answer, key).values())
@@ -190,18 +186,18 @@ class Settings(Kind):
             wrong.append((f"the times are those in {unit}; asked are times in {self.time}", changed(**times)))
         yield from ((sentence, value) for sentence, value in wrong if value is not None)
 
-    def hint(self, answer: PID) -> str:
-        """Say which of the settings are right."""
-        key = self.key
-        if answer.form != key.form:
-            try:
-                answer = answer.serial() if key.form == "serial" else answer.parallel()
-            except ValueError:
-                return ""
-        right = self._parts_near(answer, key)
-        good = [name for name in NAMES if right[name] and getattr(key, name) not in (0, sympy.oo)]
-        off = [name for name in NAMES if not right[name]]
-        return f"{_are(good)} right, {_are(off)} not" if good else ""
+    def in_form_of_key(self, answer: PID) -> PID | None:
+        """The controller in the form of the key; None where it has no such form."""
+        if answer.form == self.key.form:
+            return answer
+        try:
+            return answer.serial() if self.key.form == "serial" else answer.parallel()
+        except ValueError:
+            return None
+
+    def parts_near(self, answer: PID) -> dict[str, bool]:
+        """Which of the settings of a controller in the form of the key are right."""
+        return self._parts_near(answer, self.key)
 
 
 def _said(pid):
@@ -213,10 +209,6 @@ def _near(value, key, within):
     if sympy.oo in (value, key):
         return value == key
     return near(float(value), float(key), within if key else 1e-9)
-
-
-def _are(names):
-    return f"{listed(names)} {'are' if names[1:] else 'is'}"
 
 
 def _other_form(key):

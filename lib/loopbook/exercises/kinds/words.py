@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Iterable, Iterator
 
 import sympy
@@ -113,19 +112,6 @@ class Words(Kind):
         """The opposite order."""
         if self.ordered and len(self.key) > 1:
             yield "the words are right, in the opposite order", self.key[::-1]
-
-    def hint(self, answer: list[str]) -> str:
-        """Say how many are right."""
-        if not answer:
-            return "the list is empty"
-        right = (Counter(answer) & Counter(self.key)).total()
-        if self.ordered and sorted(answer) == sorted(self.key):
-            return "the words are right, their order is not"
-        if right == len(answer) < len(self.key):
-            return "what is there is right, but something is missing"
-        if right == len(self.key):
-            return "everything asked for is there, but also more"
-        return f"{right} of your {len(answer)} belong there" if right else ""
 
 
 def _word(given, among, expected):

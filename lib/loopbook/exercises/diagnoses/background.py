@@ -1,0 +1,148 @@
+"""What a diagnosis may know besides key and answer: the givens, the other asked quantities, and the other answers."""
+
+from __future__ import annotations
+
+import copy
+import itertools
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from loopbook.exercises.parameters import call, written
+from loopbook.exercises.timeout import limited
+
+if TYPE_CHECKING:
+    from loopbook.exercises.kinds import Kind
+    from loopbook.exercises.parameters import Parameter, Value
+
+#: So many changes of the givens are tried at most: a key takes some milliseconds.
+MOST_CHANGES = 60
+#: Usually a key takes milliseconds. One that takes so long may never end; after it, no other change is tried.
+SECONDS = 0.3
+#: By these factors a given is wrong if its unit is mistaken, by what its unit contains.
+_UNIT_FACTORS = (("min", 60), ("h", 60), ("h", 3600), ("s", 60), ("%", 100), ("m", 1000), ("kg", 1000), ("mm", 1000))
+
+
+@dataclass(frozen=True)
+class Amount:
+    """A number with its unit and its words in a sentence: a given, or another asked quantity."""
+
+    value: float
+    unit: str
+    words: str
+
+
+class Background:
+    """What is known around the asked quantities of an exercise.
+
+    Arguments:
+        key: {name: kind} of the exercise.
+        values: {name: exact value} of the parameters.
+        parameters: {name: `Parameter`}, those alone that the statement shows.
+        function: returns the key for such values.
+
+    Attributes:
+        name: the quantity in question; `of` sets it.
+        answers: what the reader has answered, {name: answer}; `of` sets them.
+    """
+
+    name: str = ""
+    answers: Mapping[str, Any] = {}
+
+    def __init__(
+        self,
+        key: Mapping[str, Kind] | None = None,
+        values: Mapping[str, Value] | None = None,
+        parameters: Mapping[str, Parameter] | None = None,
+        function: Callable[..., Mapping[str, Kind]] | None = None,
+    ):
+        self.key, self.values, self.parameters, self.function = key or {}, values or {}, parameters or {}, function
+        self._keys: dict[int, Mapping[str, Kind]] = {}
+        self._endless: list[Mapping[str, Any]] = []
+
+    def of(self, name: str, answers: Mapping[str, Any]) -> Background:
+        """The same around one quantity; what has been computed is kept."""
+        other = copy.copy(self)
+        other.name, other.answers = name, answers
+        return other
+
+    @property
+    def givens(self) -> list[Amount]:
+        """The numbers among the givens, as the statement shows them."""
+        return [Amount(float(self.values[name]), self.parameters[name].unit, self.words(name)) for name in self.numbers]
+
+    @property
+    def numbers(self) -> list[str]:
+        """The names of the givens that are numbers."""
+        return [name for name in self.parameters if not isinstance(self.values[name], str)]
+
+    def words(self, name: str) -> str:
+        """A given as the statement shows it."""
+        return written(self.values[name], self.parameters[name].unit)
+
+    def changed_keys(self, most: int = MOST_CHANGES, words: bool = False) -> Iterator[tuple[str, Kind]]:
+        """The key of this quantity with a given changed, and a sentence on the change; the likelier ones first.
+
+        Arguments:
+            most: so many of them.
+            words: only with another word among the givens.
+        """
+        for place, (how, changed) in enumerate(_changes(self) if self.function else ()):
+            if place >= most:
+                return
+            if words and not any(isinstance(value, str) for value in changed.values()):
+                continue
+            if place not in self._keys:
+                self._keys[place] = self._key_with(changed)
+            if self.name in self._keys[place]:
+                yield how, self._keys[place][self.name]
+
+    def _key_with(self, changed):
+        """The key for changed values; nothing where the author's function, which is for her own ranges, has none."""
+        if self._endless:
+            return {}
+        try:
+            return limited(SECONDS, call, self.function, {**self.values, **changed})
+        except TimeoutError:
+            self._endless.append(changed)
+        except Exception:  # it may fail in any way
+            pass
+        return {}
+
+
+def _changes(background):
+    """The changes, the likelier ones first."""
+    values, parameters, numbers, words = background.values, background.parameters, background.numbers, background.words
+    for one, other in itertools.combinations(numbers, 2):
+        if parameters[one].unit == parameters[other].unit and values[one] != values[other]:
+            how = f"that is what comes out with {words(one)} and {words(other)} interchanged"
+            yield how, {one: values[other], other: values[one]}
+    for name, value in values.items():
+        if isinstance(value, str) and name in parameters:
+            for other in parameters[name].values:
+                if other != value:
+                    yield f"that would be right for '{other}' in place of '{value}'", {name: other}
+    for name in numbers:
+        # nothing of it, hardly anything where a key has no value for nothing, and as a factor
+        for nothing in (0 * values[name], values[name] / 10**6, values[name] ** 0):
+            if values[name] != nothing:
+                yield f"that is what comes out without the {words(name)}", {name: nothing}
+    for name in numbers:
+        yield f"that is what comes out with twice the {words(name)}", {name: 2 * values[name]}
+        yield f"that is what comes out with half of the {words(name)}", {name: values[name] / 2}
+    for name in numbers:
+        for factor in _mistaken(parameters[name].unit):
+            for changed in (values[name] * factor, values[name] / factor):
+                how = f"that is what comes out if the unit of {words(name)} is mistaken by a factor of {factor}"
+                yield how, {name: changed}
+    for name in numbers:
+        yield f"that is what comes out with another sign of the {words(name)}", {name: -values[name]}
+    for name in numbers:
+        if values[name] not in (0, 1, -1):
+            yield f"that is what comes out with one divided by the {words(name)}", {name: 1 / values[name]}
+
+
+def _mistaken(unit):
+    parts = re.findall(r"[^\W\d_]+|%", unit)
+    return sorted({factor for part, factor in _UNIT_FACTORS if part in parts})

@@ -1,0 +1,285 @@
+"""What of a formula is right: its gain, dead time, poles and zeros, its beginning and its end.
+
+All of it is worked out from values of the formula at some points, for the key and the answer alike. What cannot be told
+from them is not said.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from loopbook.exercises.diagnoses.finding import Finding
+from loopbook.exercises.formulas import Formula
+from loopbook.exercises.kinds import Expression, TimeFunction, TransferFunction
+from loopbook.exercises.reading import listed
+
+#: Two facts are the same up to this fraction, or what is asked if that is more.
+SAME = 0.01
+#: A rational function is one up to so many poles, if it leaves no more than this.
+MOST_POLES, LEFT = 4, 1e-7
+
+
+@functools.singledispatch
+def of(kind: Expression, answer: Any) -> Finding | None:
+    """Return what is right and what is not in a wrong formula."""
+    return _dependence(kind, answer)
+
+
+@of.register
+def _(kind: TransferFunction, answer: Any) -> Finding | None:
+    key, found = _facts(kind.key, kind), _facts(answer, kind)
+    constant = _constant(kind, answer)
+    if constant:
+        return constant
+    if found and key and found.get("poles") is not None and key.get("poles") is not None:
+        poles, right = found["poles"], key["poles"]
+        if poles.size == right.size > 0 and np.all(right != 0) and not _same(poles, right, kind):
+            if _same(poles, _in_order(1 / right), kind):
+                return Finding("its poles are one divided by those that it should have: a lag of $T$ is $Ts + 1$")
+            if _same(poles, _in_order(-right), kind):
+                return Finding("its poles are on the other side of the imaginary axis: look at the signs below")
+    if not key.get("dead time") and not found.get("dead time"):
+        key.pop("dead time", None)
+    return _listed(kind, {name: (found.get(name), value) for name, value in key.items()})
+
+
+@of.register
+def _(kind: TimeFunction, answer: Any) -> Finding | None:
+    if isinstance(answer, np.ndarray):
+        return None
+    constant = _constant(kind, answer)
+    if constant:
+        return constant
+    pairs = _in_time(kind, answer)
+    time_constants = "on the way from the one to the other it is not right: look at the time constants"
+    return _listed(kind, pairs, time_constants if len(pairs) > 1 else "")
+
+
+def _listed(kind, pairs, otherwise=""):
+    """A sentence on facts, pairs of found and right by their names."""
+    known = {name: pair for name, pair in pairs.items() if all(one is not None for one in pair)}
+    right = [name for name, (found, key) in known.items() if _same(found, key, kind)]
+    wrong = [name for name in known if name not in right]
+    right = [name for name in right if np.size(known[name][0])]  # no zeros at all are nothing to speak of
+    if not right and not wrong:
+        return None
+    are = f"its {listed(right)} {_are(right)} right" if right else ""
+    not_ = f"its {listed(wrong)} {_are(wrong)} not" + ("" if right else " right") if wrong else otherwise
+    says = ", but ".join(part for part in (are, not_) if part)
+    for name, one in (("poles", "pole"), ("zeros", "zero")):
+        if name in wrong and (counted := len(known[name][0]) - len(known[name][1])):
+            says += f"; it has too {'many' if counted > 0 else 'few'} {one}s"
+    return Finding(says, is_mistake=False, is_bare=not right) if says else None
+
+
+def _are(names):
+    return "are" if len(names) > 1 or names[0] in ("poles", "zeros") else "is"
+
+
+def _same(one, other, kind):
+    one, other = np.atleast_1d(one), np.atleast_1d(other)
+    if one.shape != other.shape:
+        return False
+    scale = np.max(np.abs(other), initial=0.0)
+    allowed = max(SAME, kind.within) * np.maximum(np.abs(other), 0.01 * scale) + 1e-9 * scale
+    return bool(np.all(np.abs(one - other) <= allowed))
+
+
+# --------------------------------------------------------------------------------------------------------- constants
+
+
+def _constant(kind, answer):
+    """Whether a formula is right but for a factor or a term without symbols, s and t."""
+    points = kind.points()
+    with np.errstate(all="ignore"):
+        key, found = np.broadcast_arrays(kind.key(**points), answer(**points))
+        known = np.isfinite(key) & np.isfinite(found) & (key != 0)
+        if np.sum(known) < 5:
+            return None
+        ratio, difference = found[known] / key[known], found[known] - key[known]
+    if np.ptp(ratio.real) + np.ptp(ratio.imag) < 1e-6 * np.abs(ratio[0]):
+        factor = float(ratio[0].real)
+        return Finding(f"it is right but for a constant factor{_factor_named(factor)}; everything else in it is right")
+    size = np.max(np.abs(key[known]))
+    if "t" in kind.symbols and np.ptp(difference.real) < 1e-6 * size < np.abs(difference[0]):
+        return Finding("it is right but for a constant that is added, or is missing: look where it begins and ends")
+    return None
+
+
+def _factor_named(factor):
+    names = {2: "2", 60: "60", 100: "100", 1000: "1000", 10: "10", 4: "4", math.pi: "π", 2 * math.pi: "2π"}
+    for value, name in names.items():
+        if any(abs(abs(factor) / one - 1) < 1e-3 for one in (value, 1 / value)):
+            return f" of {name}" + (" and the sign" if factor < 0 else "")
+    return " and the sign" if factor < 0 else ""
+
+
+def _dependence(kind, answer):
+    """In which symbols a formula is right, up to a factor or a term without them."""
+    names = [name for name in kind.symbols if name not in ("s", "t")]
+    if len(names) < 2:
+        return _constant(kind, answer)
+    points = {name: values[:24] for name, values in kind.points().items()}
+
+    def varied(formula, name):
+        """Values in a table: in a column another value of one symbol, in a row others of the rest."""
+        grid = {other: np.asarray(values)[:, None] for other, values in points.items()}
+        grid[name] = np.asarray(points[name])[None, :]
+        return np.broadcast_to(formula(**grid), (24, 24))
+
+    constant = _constant(kind, answer)
+    if constant:
+        return constant
+    in_factor, in_term, absent = [], [], []
+    for name in names:
+        with np.errstate(all="ignore"):
+            key, found = varied(kind.key, name), varied(answer, name)
+            ratio, difference = found / key, found - key
+        if not (np.isfinite(ratio).all() and np.isfinite(difference).all()):
+            return None
+        if np.all(np.ptp(np.abs(key), axis=1) <= 1e-9 * np.abs(key[:, 0])):
+            continue
+        if np.all(np.ptp(np.abs(found), axis=1) <= 1e-9 * np.abs(found[:, 0])):
+            absent.append(name)
+        if np.all(np.abs(ratio - ratio[:, :1]) <= 1e-6 * np.abs(ratio[:, :1])):
+            in_factor.append(name)
+        if np.all(np.abs(difference - difference[:, :1]) <= 1e-6 * np.abs(key)):
+            in_term.append(name)
+    if absent:
+        return Finding(f"it does not depend on {listed(absent)}, but it should", is_mistake=False)
+    right = in_factor or in_term
+    if right:
+        off = [name for name in names if name not in right]
+        says = f"it depends on {listed(right)} in the right way"
+        return Finding(says + (f"; look at {listed(off)}" if off else ""), is_mistake=False)
+    return None
+
+
+# ----------------------------------------------------------------------------------------------------- facts in time
+
+
+def _in_time(kind, answer):
+    """Beginning, initial slope and end of two functions of time."""
+    begin, early, late = 1e-9 * kind.until, 1e-6 * kind.until, 1e3 * kind.until
+
+    def value(formula, time):
+        return float(np.real(formula(t=np.array([time]))).ravel()[0])
+
+    def slope(formula):
+        return (value(formula, early) - value(formula, begin)) / early
+
+    def end(formula):
+        one, *others = (value(formula, factor * late) for factor in (1, 1.37, 2.11))
+        is_at_rest = np.isfinite(one) and all(abs(one - other) <= 1e-6 * size for other in others)
+        return one - mean if is_at_rest else None
+
+    known = np.broadcast_to(kind.key(t=kind.times), kind.times.shape).real
+    mean = float(np.nanmean(known))  # what counts is the way that the function goes
+    size = float(np.nanmax(np.abs(known - mean))) or abs(mean)
+    facts = {}
+    for name, fact in (
+        ("initial value", lambda one: value(one, begin) - mean),
+        ("initial slope", slope),
+        ("final value", end),
+    ):
+        pair = fact(answer), fact(kind.key)
+        if pair[1] is not None and (pair[0] is None or not np.isfinite(pair[0])):
+            continue
+        facts[name] = tuple(None if one is None else _rounded(one, size) for one in pair)
+    begins = facts.get("initial value")
+    if begins and not _same(*begins, kind):  # then the slope says little
+        facts.pop("initial slope", None)
+    return facts
+
+
+def _rounded(value, size):
+    """A value, zero where it is no more than a trace beside the size of the function."""
+    return 0.0 if abs(value) < 1e-6 * size else value
+
+
+# ---------------------------------------------------------------------------------------- facts of transfer functions
+
+
+def _facts(formula: Formula, kind: Expression) -> dict[str, Any]:
+    """Dead time, static gain, poles and zeros; of symbols other than s, some values are taken."""
+    others = {name: 0.7 + 0.37 * place for place, name in enumerate(sorted(kind.symbols)) if name != "s"}
+
+    def values(s):
+        return np.broadcast_to(formula(s=np.asarray(s, complex), **others), np.shape(s))
+
+    scale = _scale(kind, others)
+    delay = _delay(values, scale)
+    if delay is None:
+        return {}
+    for exact in dict.fromkeys([0.0 if delay == 0 else float(f"{delay:.{digits}g}") for digits in range(1, 7)]):
+        above, below = _rational(lambda s, exact=exact: values(s) * np.exp(exact * s), scale)
+        if below is not None and (exact == 0) == (delay == 0):
+            break
+    else:
+        return {"dead time": delay}
+    poles, zeros = _roots(below, scale), _roots(above, scale)
+    small = 1e-6 / scale
+    integrators = int(np.sum(np.abs(poles) < small)) - int(np.sum(np.abs(zeros) < small))
+    low = np.array([1e-7 / scale])
+    gain = (values(low) * low**integrators)[0].real
+    name = "static gain" if integrators == 0 else "gain at low frequencies"
+    return {name: gain, "dead time": exact, "poles": poles, "zeros": zeros}
+
+
+def _scale(kind, others):
+    """A time in the range of the key's: where its size changes most with s."""
+    s = np.geomspace(1e-6, 1e6, 241)
+    with np.errstate(all="ignore"):
+        logs = np.log(np.abs(np.broadcast_to(kind.key(s=1j * s, **others), s.shape)))
+    change = np.abs(np.gradient(np.gradient(logs)))
+    return float(1 / s[np.nanargmax(np.where(np.isfinite(change), change, 0))])
+
+
+def _delay(values: Callable[[Any], Any], scale: float) -> float | None:
+    """The dead time, from what is left where s is large; powers of s fall out of the second difference."""
+    for size in np.geomspace(1e4, 1, 25):
+        step = size / scale
+        with np.errstate(all="ignore"):
+            logs = np.log(np.abs(values(np.array([1, 2, 4]) * step)))
+        if np.isfinite(logs).all():
+            delay = -(logs[2] - 2 * logs[1] + logs[0]) / step
+            return float(delay) if abs(delay) > 1e-3 * scale else 0.0
+    return None
+
+
+def _rational(values, scale):
+    """Numerator and denominator, in scaled s, of a rational function; None where it is none of so many poles."""
+    s = 1.7 * np.exp(1j * np.linspace(-1.3, 1.3, 41)) * np.geomspace(0.2, 5, 41)
+    found = values(s / scale)
+    if not np.isfinite(found).all():
+        return None, None
+    size = np.max(np.abs(found))
+    for order in range(MOST_POLES + 1):
+        powers = s[:, None] ** np.arange(order + 1)
+        system = np.hstack([powers, -found[:, None] / size * powers])
+        system = np.vstack([system.real, system.imag])
+        widths = np.linalg.norm(system, axis=0)
+        _, left, rows = np.linalg.svd(system / widths)
+        if left[-1] < LEFT * left[0]:
+            solution = rows[-1] / widths
+            return solution[: order + 1], solution[order + 1 :]
+    return None, None
+
+
+def _roots(polynomial, scale):
+    """The roots, lowest powers first, without those at infinity, in order."""
+    largest = np.max(np.abs(polynomial))
+    while polynomial.size and abs(polynomial[-1]) < 1e-6 * largest:
+        polynomial = polynomial[:-1]
+    roots = np.polynomial.polynomial.polyroots(polynomial) / scale if polynomial.size > 1 else np.array([])
+    return _in_order(roots)
+
+
+def _in_order(roots):
+    size = np.max(np.abs(roots), initial=0.0) or 1.0
+    return np.array(sorted(roots, key=lambda root: (round(root.real / size, 6), root.imag)), complex)

@@ -1,0 +1,50 @@
+"""What is found in a wrong answer."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from loopbook.exercises.diagnoses.background import MOST_CHANGES
+
+if TYPE_CHECKING:
+    from loopbook.exercises.diagnoses.background import Background
+    from loopbook.exercises.kinds import Kind
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A sentence on a wrong answer.
+
+    Attributes:
+        says: the sentence.
+        is_mistake: whether it names the mistake; otherwise it says something true about the answer.
+        is_bare: whether it says little more than that the answer is not right.
+    """
+
+    says: str
+    is_mistake: bool = True
+    is_bare: bool = False
+
+
+@functools.singledispatch
+def explained(kind: Kind, answer: Any, background: Background) -> Finding | None:
+    """Return what is found in a wrong answer; None where that is nothing.
+
+    Arguments:
+        kind: the asked quantity with its key.
+        answer: as it was read.
+        background: what else is known of the exercise.
+    """
+    return recomputed(kind, answer, background)
+
+
+def recomputed(kind: Kind, answer: Any, background: Background, most: int = MOST_CHANGES) -> Finding | None:
+    """Return the change of a given, of at most so many, with which the answer would be right."""
+    for how, key in background.changed_keys(most):
+        if type(key) is type(kind):
+            wrong = kind.like(key.key)
+            if not wrong.agrees(kind.key) and wrong.agrees(answer):
+                return Finding(how)
+    return None

@@ -1,0 +1,363 @@
+"""Mistakes in a number, as a table: a sentence, and the wrong value that it makes.
+
+The order of `TABLE` decides where two mistakes make the same value: what happens more often, and what can hardly be
+true by chance, comes first. A value is recognised within half a unit of the last digit that the reader gives.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from decimal import Decimal
+
+from loopbook.exercises import units
+from loopbook.exercises.diagnoses.background import Amount, Background
+from loopbook.exercises.diagnoses.finding import Finding, explained
+from loopbook.exercises.kinds import Number
+from loopbook.exercises.kinds.numeric import in_unit
+from loopbook.exercises.reading import Unreadable
+
+#: A value is recognised within this fraction of it, however many digits the answer has, and never beyond the other.
+NARROWEST, WIDEST = 0.001, 0.01
+#: What is true of many numbers by chance is said of answers with so many digits, or of a value without others.
+ENOUGH_DIGITS = 3
+EXACTLY = 1e-6
+#: An answer that is off by less than this is in the neighbourhood of the right one.
+NEARBY = 0.1
+#: A rounded answer is off by less than this.
+ROUNDED = 0.3
+
+
+@dataclass(frozen=True)
+class Case:
+    """A number that is asked for, and what is around it.
+
+    Attributes:
+        key, unit, within: of the number.
+        asked: the quantity in words, with its unit.
+        others: the other numbers that are asked for.
+        givens: the numbers that are given.
+        changed: pairs of a sentence and the number that comes out with a change of the givens; called last.
+        answered: pairs of another asked number and what the reader has instead of it.
+    """
+
+    key: float
+    unit: str
+    asked: str
+    within: float = 0.01
+    others: list[Amount] = field(default_factory=list)
+    givens: list[Amount] = field(default_factory=list)
+    changed: Callable[[], Iterator[tuple[str, float]]] = lambda: iter(())
+    answered: list[tuple[Amount, float]] = field(default_factory=list)
+
+
+#: A wrong value and the sentence for it.
+Wrong = tuple[float, str]
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """A mistake that can be made in any number.
+
+    Attributes:
+        name: of the mistake.
+        wrongs: function of a `Case` that gives the wrong values, each with its sentence.
+        is_rare: whether it is made so seldom that a number of two digits is more likely equal to it by chance.
+    """
+
+    name: str
+    wrongs: Callable[[Case], Iterator[Wrong]]
+    is_rare: bool = False
+
+
+def found_in(answer: float, case: Case, agrees: Callable[[float], bool] | None = None) -> Finding | None:
+    """Return the mistake in a wrong number; the nearest ones before those within its rounding.
+
+    >>> case = Case(12, "s", "the integral time, in s", givens=[Amount(4, "s", "4 s"), Amount(3, "", "3")])
+    >>> found_in(4, case).says
+    'that is the 4 s of the question itself: how does one get from there to the integral time, in s?'
+    >>> found_in(17.9, case)
+    """
+    agrees = agrees or (lambda wrong: abs(wrong - case.key) <= case.within * abs(case.key))
+    wrongs = [
+        (mistake, wrong, says)
+        for mistake in TABLE
+        for wrong, says in mistake.wrongs(case)
+        if math.isfinite(wrong) and not agrees(wrong)
+    ]
+    for narrow in (True, False):
+        for mistake, wrong, says in wrongs:
+            if is_recognised(answer, wrong, mistake.is_rare, narrow):
+                return Finding(says)
+    return None
+
+
+def is_recognised(answer: float, wrong: float, is_rare: bool = False, narrow: bool = False) -> bool:
+    """Whether an answer is a wrong value, as far as the digits of the answer can tell.
+
+    >>> is_recognised(0.67, 2 / 3), is_recognised(0.66, 2 / 3), is_recognised(0.7, 2 / 3)
+    (True, False, False)
+    """
+    if answer == 0 or wrong == 0:
+        return answer == wrong
+    digits, half_unit = _digits(answer)
+    within = NARROWEST if narrow else min(max(half_unit / abs(wrong), NARROWEST), WIDEST)
+    if is_rare and digits < ENOUGH_DIGITS:
+        within = EXACTLY if digits > 1 else 0
+    return abs(answer - wrong) <= within * abs(wrong)
+
+
+def _digits(answer):
+    """How many digits a number is given with, and half a unit of the last one."""
+    _, digits, exponent = Decimal(repr(float(answer))).normalize().as_tuple()
+    return len(digits), 0.5 * 10.0**exponent
+
+
+# ------------------------------------------------------------------------------------------------------- the table
+
+
+def _other(case):
+    for other in case.others:
+        if other.unit == case.unit:
+            yield other.value, f"that is {other.words}: have you interchanged the two?"
+
+
+def _sign(case):
+    yield -case.key, "the size is right, the sign is not"
+
+
+def _unit(case):
+    for unit, converted in units.neighbours(case.unit).items():
+        yield converted(case.key), f"that would be the value {in_unit(unit)}; asked: {case.asked}"
+
+
+def _inverse(case):
+    if case.key:
+        yield 1 / case.key, "that is the inverse: one divided by the answer"
+
+
+def _given(case):
+    for given in case.givens:
+        if given.unit == case.unit:
+            says = f"that is the {given.words} of the question itself: how does one get from there to {case.asked}?"
+            yield given.value, says
+
+
+def _decibel(case):
+    if case.unit == "" and case.key > 0:
+        yield 20 * math.log10(case.key), "that is the value in dB; asked is the factor itself"
+
+
+def _complement(case):
+    wholes = {"deg": (90, 180, 360), "rad": (math.pi / 2, math.pi, 2 * math.pi), "%": (100,), "": (1,)}
+    for whole in wholes.get(case.unit, ()):
+        if case.unit in ("deg", "rad") or 0 < case.key < whole:
+            angle = {90: "a right angle", 180: "half a turn", 360: "a whole turn"}
+            names = angle.get(round(math.degrees(whole))) if case.unit == "rad" else angle.get(whole)
+            what = names or f"{whole}{chr(160) + case.unit if case.unit else ''}"
+            sides = "from which side does the angle count?" if names else "which of the two parts is asked for?"
+            yield whole - case.key, f"that is what is missing to {what}: {sides}"
+            if names:
+                yield case.key - whole, f"that is off by {what}: from where does the angle count?"
+
+
+def _with_given(case):
+    for given in case.givens:
+        if given.value not in (0, 1, -1):
+            says = f"it is off by a factor as large as the {given.words}: is that missing, or in it once too often?"
+            yield case.key * given.value, says
+            yield case.key / given.value, says
+
+
+_FACTORS = (
+    (2, "it is off by a factor of 2: is something the half or the double here, as an amplitude is half of a swing?"),
+    (100, "it is off by a factor of 100: look at percent and fraction, or at a prefix such as centi"),
+    (1000, "it is off by a factor of 1000: look at the units, at a prefix such as kilo or milli"),
+    (60, "it is off by a factor of 60: look at the units, at seconds and minutes"),
+    (10, "it is off by a factor of 10: look at the decimal point, and at the units"),
+    (3600, "it is off by a factor of 3600: look at the units, at seconds and hours"),
+    (2 * math.pi, "it is off by a factor of 2π: count in radians or in whole turns?"),
+)
+_RARE_FACTORS = (
+    (4, "it is off by a factor of 4: is something halved, doubled or squared twice, or not at all?"),
+    (math.pi, "it is off by a factor of π"),
+    (180 / math.pi, "it is off by the factor between degrees and radians"),
+    (math.log(2), "it is off by a factor of ln 2: that is the way from a time constant to the time for one half"),
+    (math.log(10), "it is off by a factor of ln 10: the natural logarithm and the decimal one are interchanged"),
+    (math.e, "it is off by a factor of e"),
+    (math.sqrt(2), "it is off by a factor of √2"),
+    (1 - math.exp(-1), "it is off by a factor of 0.632: that is the share reached after one time constant"),
+)
+
+
+def _factor(case):
+    yield from _times(case, _FACTORS)
+
+
+def _rare_factor(case):
+    yield from _times(case, _RARE_FACTORS)
+
+
+def _times(case, factors):
+    for factor, says in factors:
+        yield case.key * factor, says
+        yield case.key / factor, says
+
+
+def _follows(case):
+    """From a wrong number before it, by the right way."""
+    for other, answered in case.answered:
+        if not other.value or not answered or abs(answered / other.value - 1) < 0.03:
+            continue
+        says = f"this fits what you have for {other.words}, which is not right itself: mend that, then this one follows"
+        for power in (1, -1, 2, 0.5):
+            ratio = answered / other.value
+            if ratio > 0:
+                yield case.key * ratio**power, says
+        if other.unit == case.unit:
+            yield case.key + (answered - other.value), says
+            yield case.key - (answered - other.value), says
+
+
+def _changed(case):
+    for says, value in case.changed():
+        yield value, says
+
+
+def _beside_given(case):
+    for given in case.givens:
+        if given.unit == case.unit and given.value:
+            says = f"it is off by just {given.words}: is that left out, or is it there once too often?"
+            yield case.key + given.value, says
+            yield case.key - given.value, says
+
+
+def _power(case):
+    if case.key > 0:
+        yield case.key**2, "that is the square of the answer"
+        yield math.sqrt(case.key), "that is the square root of the answer"
+
+
+def _two_givens(case):
+    for given in case.givens:
+        if given.value:
+            yield 1 / given.value, f"that is one divided by the {given.words}: is that {case.asked}?"
+    for one, other in itertools.permutations(case.givens, 2):
+        if other.value:
+            yield one.value / other.value, f"that is {one.words} divided by {other.words}: is that {case.asked}?"
+    for one, other in itertools.combinations(case.givens, 2):
+        yield one.value * other.value, f"that is {one.words} times {other.words}: is that {case.asked}?"
+        if one.unit == other.unit:
+            yield one.value + other.value, f"that is the sum of {one.words} and {other.words}: is that {case.asked}?"
+            says = f"that is the difference between {one.words} and {other.words}: is that {case.asked}?"
+            yield one.value - other.value, says
+            yield other.value - one.value, says
+
+
+TABLE = (
+    Mistake("interchanged", _other),
+    Mistake("sign", _sign),
+    Mistake("unit", _unit),
+    Mistake("inverse", _inverse),
+    Mistake("given", _given),
+    Mistake("decibel", _decibel),
+    Mistake("complement", _complement),
+    Mistake("with a given", _with_given),
+    Mistake("factor", _factor),
+    Mistake("follows", _follows, is_rare=True),
+    Mistake("changed", _changed),
+    Mistake("two givens", _two_givens, is_rare=True),
+    Mistake("beside a given", _beside_given, is_rare=True),
+    Mistake("power", _power, is_rare=True),
+    Mistake("rare factor", _rare_factor, is_rare=True),
+)
+
+
+# ---------------------------------------------------------------------------------------------- what is said at last
+
+
+def rounded(answer: float, key: float) -> bool:
+    """Whether an answer is the key, rounded or cut off to the digits that the answer has.
+
+    >>> rounded(0.7, 2 / 3), rounded(0.6, 2 / 3), rounded(0.65, 2 / 3)
+    (True, True, False)
+    """
+    _, half_unit = _digits(answer)
+    return abs(answer) < abs(key) + half_unit and abs(answer - key) < 2 * half_unit and answer * key > 0
+
+
+def in_general(answer: float, case: Case) -> Finding:
+    """Return what is true of any wrong number.
+
+    Sizes are compared in powers of two that do not depend on the key, so that asking again does not narrow it down.
+
+    >>> in_general(19, Case(12, "s", "the time, in s")).says
+    'not right, though of about the right size; asked: the time, in s'
+    """
+    key, digits = case.key, _digits(answer)[0]
+    if key and rounded(answer, key) and abs(answer / key - 1) < ROUNDED:
+        places = f"{digits} digit{'' if digits == 1 else 's'}"
+        says = f"that is rounded to {places}, but the accuracy asked for is {100 * case.within:g}\N{NO-BREAK SPACE}%"
+        return Finding(f"{says}: keep more digits, here and on the way", is_mistake=False)
+    is_counted = case.within == 0 or (case.unit == "" and key.is_integer() and answer.is_integer())
+    if key and not is_counted and abs(answer / key - 1) < NEARBY:
+        says = "that is off by a few percent, which is more than the rounding of a result"
+        says += ": is a small term missing, or a value rounded or read off too coarsely on the way?"
+        return Finding(says, is_mistake=False)
+    size = size_of(answer, case)
+    return Finding(f"not right{size}; asked: {case.asked}", is_mistake=False, is_bare=True)
+
+
+def size_of(answer: float, case: Case) -> str:
+    """How large a wrong number is beside the right one, in words behind "not right"."""
+    key = case.key
+    if answer == 0 or key == 0 or case.within == 0:
+        return ", and not zero" if answer == 0 else ""
+    if answer * key < 0:
+        return ": the sign is not, nor is the size"
+    steps = math.floor(math.log2(abs(answer))) - math.floor(math.log2(abs(key)))
+    if abs(steps) < 2:
+        return ", though of about the right size"
+    much = "much " if abs(steps) > 4 else ""
+    return f": {much}too {'large' if steps > 0 else 'small'}"
+
+
+# -------------------------------------------------------------------------------------------------------- one number
+
+
+def others_asked(background: Background) -> list[tuple[str, Amount]]:
+    """The other numbers that are asked for, each with its name."""
+    return [
+        (name, Amount(kind.key, kind.unit, f"{kind.what}, `{name}`"))
+        for name, kind in background.key.items()
+        if isinstance(kind, Number) and name != background.name
+    ]
+
+
+def answered_otherwise(background: Background) -> Iterator[tuple[Amount, float]]:
+    """The other numbers that the reader has answered, and not rightly."""
+    for name, amount in others_asked(background):
+        kind = background.key[name]
+        try:
+            answer, _ = kind.read(background.answers.get(name))
+        except Unreadable:
+            continue
+        if not kind.agrees(answer):
+            yield amount, answer
+
+
+@explained.register
+def _(kind: Number, answer: float, background: Background) -> Finding:
+    case = Case(
+        kind.key,
+        kind.unit,
+        kind.asked,
+        kind.within,
+        others=[amount for _, amount in others_asked(background)],
+        givens=background.givens,
+        changed=lambda: ((how, key.key) for how, key in background.changed_keys() if isinstance(key, Number)),
+        answered=list(answered_otherwise(background)),
+    )
+    return found_in(answer, case, kind.agrees) or in_general(answer, case)

@@ -1,0 +1,61 @@
+"""Mistakes in the settings of a controller: which of them are right, and what is wrong with another."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import sympy
+
+from loopbook.exercises.diagnoses.background import Amount, Background
+from loopbook.exercises.diagnoses.finding import Finding, explained, recomputed
+from loopbook.exercises.diagnoses.numbers import Case, found_in, in_general, others_asked, size_of
+from loopbook.exercises.kinds import Settings
+from loopbook.exercises.kinds.settings import NAMES
+from loopbook.exercises.reading import listed
+
+
+@explained.register
+def _(kind: Settings, answer: Any, background: Background) -> Finding | None:
+    if found := recomputed(kind, answer, background):
+        return found
+    answer = kind.in_form_of_key(answer)
+    if answer is None:
+        return None
+    near = kind.parts_near(answer)
+    right = [name for name in NAMES if near[name] and getattr(kind.key, name) not in (0, sympy.oo)]
+    wrong = [name for name in NAMES if not near[name]]
+    says = [f"{listed(right)} {'are' if right[1:] else 'is'} right"] if right else []
+    found = {name: _in_part(kind, name, answer, background) for name in wrong}
+    named = [f"{name} is not{one.says}" if one.is_bare else f"{name}: {one.says}" for name, one in found.items()]
+    is_mistake = any(one.is_mistake for one in found.values())
+    if not right and all(one.is_bare for one in found.values()):
+        return None
+    return Finding("; ".join(says + named), is_mistake)
+
+
+def _in_part(kind, name, answer, background):
+    """What is found in one of the settings, a number."""
+    value, key = getattr(answer, name), getattr(kind.key, name)
+    unit = kind.gain if name == "Kp" else kind.time
+    if key == sympy.oo:
+        return Finding("no integral term is asked for")
+    if value == sympy.oo:
+        return Finding("the integral term is missing")
+    if key == 0 or value == 0:
+        what = {"Td": "a derivative term", "Tf": "a filter"}.get(name, "it")
+        return Finding(f"{what} is not asked for" if key == 0 else f"{what} is missing")
+    others = [
+        Amount(float(getattr(kind.key, other)), kind.gain if other == "Kp" else kind.time, other)
+        for other in NAMES
+        if other != name and getattr(kind.key, other) not in (0, sympy.oo)
+    ]
+
+    def changed():
+        for how, other in background.changed_keys():
+            if isinstance(other, Settings) and other.key.form == kind.key.form and getattr(other.key, name).is_finite:
+                yield how, float(getattr(other.key, name))
+
+    others += [amount for _, amount in others_asked(background)]
+    case = Case(float(key), unit, name, kind.within, others, background.givens, changed)
+    named = found_in(float(value), case) or in_general(float(value), case)
+    return Finding(size_of(float(value), case), is_mistake=False, is_bare=True) if named.is_bare else named
