@@ -824,8 +824,8 @@ def _(A, d):
         .       tank  LT   LC  .        .
         .       tank  .    .   .        .
         .       2     .    LV  .  outflow"""
-    parts = {"tank": diagrams.tank(f"{float(A):g} m²", level="h"), "LV": diagrams.control_valve("LV")}
-    names = {"inflow": f"+{float(d):g} m³/min"}
+    parts = {"tank": diagrams.tank(rf"${float(A):g}\ \mathrm{{m^2}}$", level="h"), "LV": diagrams.control_valve("LV")}
+    names = {"inflow": rf"$+{float(d):g}\ \mathrm{{m^3/min}}$"}
     return diagrams.instrumentation_diagram(layout, "inflow 1 tank 2 LV outflow", "tank LT LC LV", parts, names)
 
 
