@@ -1,7 +1,11 @@
 """Exercises of chapter 16, tuning relations."""
 
+import math
+
+import numpy as np
 from sympy import Max, Min, Rational, exp, pi, symbols
 
+from loopbook.deadtime import Loop
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -15,28 +19,66 @@ from loopbook.exercises.authoring import (
     pi_controller,
     settings,
     stable,
+    word,
     words,
 )
 from loopbook.expressions import s
+from loopbook.figures import time_plot
+from loopbook.ise import pi_first_order
 from loopbook.pid import PID
+from loopbook.transfer import integrator
 
 
-@exercise("16.1", title="A reaction curve on paper", points=2)
+def _until(end):
+    """Times for a picture."""
+    return np.linspace(0, float(end), 401)
+
+
+@exercise(
+    "16.1",
+    title="A reaction curve on paper",
+    points=2,
+    insight="Two numbers of a response are enough for a first controller: when it begins, and how fast it rises.",
+)
 def reaction_curve(
     step=between(4, 15, "%", step=1, reference=8),
     slope=between(0.5, 4, "K/min", step=0.25, reference=1.5),
     theta=between(1.5, 8, "min", step=0.5, reference=4),
 ):
-    """An old furnace has no model, but somebody has kept a strip of paper: the gas valve was opened by {step} by
-    hand, nothing happened for {theta}, and then the temperature rose, at its steepest by {slope}.
+    """An old furnace has no model, but somebody has kept a strip of paper. At time zero the gas valve was opened by
+    {step} by hand, and the pen drew the temperature. The dashed line is a ruler, laid along the steepest part of the
+    curve.
 
-    Find the PI settings of Ziegler and Nichols by this reaction curve.
+    Read off the dead time and the slope, and find the PI settings of Ziegler and Nichols by this reaction curve.
+    (`t, y = exercise("16.1").given("t", "y")` are the times and the rise of the temperature, if you prefer to compute.)
     """
     slope_of_one_percent = slope / step
     return answers(
-        Kc=number(Rational(9, 10) / (slope_of_one_percent * theta), "%/K", "the gain of the controller"),
-        tau_I=number(Rational(333, 100) * theta, "min", "the integral time"),
+        Kc=number(Rational(9, 10) / (slope_of_one_percent * theta), "%/K", "the gain of the controller", within=0.08),
+        tau_I=number(Rational(333, 100) * theta, "min", "the integral time", within=0.08),
     )
+
+
+def _reaction_curve(slope, theta):
+    """Times, and the rise of two equal lags behind a dead time whose steepest tangent crosses zero at `theta`."""
+    slope, theta = float(slope), float(theta)
+    lag = 2 * theta  # its tangent crosses zero 3 - e lags after the dead time
+    times = _until(6 * theta)
+    late = np.maximum(times - theta + (3 - math.e) * lag, 0) / lag
+    return times, slope * math.e * lag * (1 - (1 + late) * np.exp(-late))
+
+
+@reaction_curve.shows
+def _(slope, theta):
+    return dict(zip(("t", "y"), _reaction_curve(slope, theta), strict=True))
+
+
+@reaction_curve.picture
+def _(slope, theta):
+    """The temperature after the step of the valve, an S-shaped rise, with the tangent at its steepest point."""
+    times, y = _reaction_curve(slope, theta)
+    curves = {"record": (y, "measurement"), "ruler": (np.maximum(slope * (times - theta), 0).astype(float), "setpoint")}
+    return time_plot(curves, times, "The strip of paper", "$t$ [min]", "temperature rise [K]")
 
 
 @reaction_curve.mistake("The slope on the paper is for the whole step. The rule uses the slope for one percent.")
@@ -54,20 +96,63 @@ def _(step, slope, theta):
     return {"Kc": Rational(12, 10) * step / (slope * theta), "tau_I": 2 * theta}
 
 
-@exercise("16.2", title="Settings from a panel", points=2)
+reaction_curve.hints(
+    "Ziegler and Nichols need two numbers of a reaction curve: the dead time, and the slope for one percent of valve.",
+    "The dead time $\\theta$ is where the tangent crosses the initial value. With the slope $R$ of the tangent, "
+    "divided by "
+    "the step, the PI settings are $K_c = \\frac{0.9}{R\\theta}$ and $\\tau_I = 3.33\\,\\theta$.",
+    "Take two points of the tangent that are far apart, and divide the rise by the time between them and by {step}: "
+    "$R = \\frac{\\mathrm{rise}}{\\mathrm{time} \\cdot {step} }$.",
+)
+
+
+@reaction_curve.solution
+def _(step, slope, theta):
+    r"""The tangent crosses the initial value at {theta}: that is the dead time. It rises by {slope}, after a step of
+    {step}. For one percent of valve that is $R = \frac{ {slope} }{ {step} }$, which is {R}.
+
+    ***
+
+    The rule for a PI controller: $K_c = \frac{0.9}{R\theta} = \frac{0.9}{ {R} \cdot {theta} }$, which is {Kc}, and
+    $\tau_I = 3.33 \cdot {theta}$, which is {tau_I}.
+
+    By ruler you will be a few percent off; the tolerance allows for it, and the furnace does not mind.
+    """
+    return {"R": (slope / step, "K/min/%")}
+
+
+@exercise(
+    "16.2",
+    title="Settings from a panel",
+    points=2,
+    insight="The ultimate cycle is one experiment; how careful the settings are is the choice of the rule.",
+)
 def panel(
     rule=choice("Tyreus and Luyben", "Ziegler and Nichols"),
     band=between(10, 80, "%", step=5, reference=25),
     P_u=between(2, 20, "min", step=1, reference=6),
 ):
     """The panel of an old controller shows the proportional band in percent instead of the gain. Under P control of a
-    column's base level, the band was made narrower step by step, until at {band} the level oscillated with a steady
-    amplitude. From peak to peak {P_u} went by.
+    column's base level, the band was made narrower step by step. At {band} the level oscillated with a steady
+    amplitude, as in the picture.
 
-    Find the PI settings of {rule} from this cycle. (The gain of the controller is in percent per percent, so that
-    it has no unit.)
+    Find the PI settings of {rule} from this cycle. (The gain of the controller is in percent per percent, so it
+    has no unit. `t, y = exercise("16.2").given("t", "y")` are the times and the level.)
     """
-    return answers(pid=settings(_by_cycle(rule, 100 / band, P_u), "", "min", "the settings"))
+    return answers(pid=settings(_by_cycle(rule, 100 / band, P_u), "", "min", "the settings", within=0.04))
+
+
+def _cycle(P_u):
+    """Times, and a level that oscillates."""
+    times = np.linspace(0, 4.5 * float(P_u), 401)
+    return times, 50 + 4 * np.sin(2 * math.pi * times / float(P_u) + 1)
+
+
+@panel.picture
+def _(P_u):
+    """The level oscillates around 50 % with a steady amplitude; a little more than four periods are shown."""
+    times, y = _cycle(P_u)
+    return time_plot({"$y$": (y, "measurement")}, times, "At the limit of stability", "$t$ [min]", "level [%]")
 
 
 def _by_cycle(rule, K_cu, P_u):
@@ -102,12 +187,44 @@ def _(rule, band, P_u):
     return {"pid": _by_cycle(rule, 100 / band, P_u / 2)}
 
 
+panel.hints(
+    "At the limit of stability, the gain of the controller is the ultimate gain. Which gain is a proportional band of "
+    "{band}?",
+    "$K_{cu} = \\frac{100\\,\\%}{\\mathrm{{band}} }$, and the ultimate period is the time from peak to peak: read it "
+    "over several "
+    "periods. Table 12.6 has the factors of both rules.",
+    "$K_{cu} = \\frac{100}{ {band} }$. The rule of {rule} multiplies it by {share}, and takes $P_u$ {times_P}.",
+)
+
+
+def _factors(rule):
+    return ("0.31", "times 2.2") if rule == "Tyreus and Luyben" else ("0.45", "divided by 1.2")
+
+
+@panel.shows
+def _(rule, P_u):
+    share, times_P = _factors(rule)
+    times, y = _cycle(P_u)
+    return {"share": share, "times_P": times_P, "t": times, "y": y}
+
+
+@panel.solution
+def _(rule, band, P_u):
+    r"""A band of {band} is a gain of $\frac{100}{ {band} }$, which is {gain}. With it the loop is at its limit, so
+    that is the ultimate gain.
+
+    From the first peak in the picture to the last one there are several periods: divided by their number, one is {P_u}.
+
+    The rule of {rule} for PI control: $K_c$ is {share} times the ultimate gain, {K_c}, and the integral time is $P_u$
+    {times_P}, that is {tau_I}.
+    """
+    pid = _by_cycle(rule, 100 / band, P_u)
+    return {"gain": 100 / band, "K_c": pid.Kp, "tau_I": (pid.Ti, "min")}
+
+
 def _damping_squared(left, half_turns):
     """The square of the damping with which a swing falls to a share [%] in so many half turns."""
-    from math import log
-    from math import pi as half_turn
-
-    fall = log(100 / left) / (half_turns * half_turn)
+    fall = math.log(100 / left) / (half_turns * math.pi)
     return fall**2 / (1 + fall**2)
 
 
@@ -120,6 +237,7 @@ def _loop_gain(tau_1, tau_2, damping_squared):
     "16.3",
     title="A quarter, or less",
     points=3,
+    insight="A decay ratio is a damping in other words; without integral action the price of calm is an offset.",
     where=lambda K, tau_1, tau_2, left: (
         tau_1 >= 2 * tau_2 and _loop_gain(tau_1, tau_2, _damping_squared(left, 2)) < min(40, 25 * K)
     ),
@@ -131,10 +249,10 @@ def decay(
     left=between(5, 30, "%", step=5, reference=25),
 ):
     r"""Two lags in series, {tau_1} and {tau_2}, have the gain $K$ = {K}. (Control signal and measurement are in
-    percent.) They are under P control, and the gain $K_c$ should be chosen by the decay ratio: after a setpoint
-    step, each peak above the final value should be followed by one of {left} of its height.
+    percent.) They are under P control, and the gain $K_c$ is chosen by the decay ratio: after a setpoint step, each
+    peak above the final value should be followed by one of {left} of its height.
 
-    Find $K_c$. And which share of the setpoint step will remain as an offset?
+    Which $K_c$ does that? And which share of the setpoint step remains as an offset?
     """
     loop_gain = _loop_gain(tau_1, tau_2, _damping_squared(left, 2))
     return answers(
@@ -151,10 +269,7 @@ def _(K, tau_1, tau_2, left):
 
 @decay.mistake("That is close for small damping. But the decay ratio contains the root of $1 - \\zeta^2$.")
 def _(K, tau_1, tau_2, left):
-    from math import log
-    from math import pi as half_turn
-
-    loop_gain = _loop_gain(tau_1, tau_2, (log(100 / left) / (2 * half_turn)) ** 2)
+    loop_gain = _loop_gain(tau_1, tau_2, (math.log(100 / left) / (2 * math.pi)) ** 2)
     return {"Kc": loop_gain / K, "offset": 100 / (1 + loop_gain)}
 
 
@@ -174,10 +289,62 @@ def _(tau_1, tau_2, left):
     return {"offset": 100 - 100 / (1 + _loop_gain(tau_1, tau_2, _damping_squared(left, 2)))}
 
 
+decay.hints(
+    "A decay ratio belongs to a damping $\\zeta$, and the damping to the characteristic polynomial of the loop.",
+    "From peak to peak the oscillation has two half turns: the ratio is $e^{-2\\pi\\zeta/\\sqrt{1 - \\zeta^2}}$. The "
+    "polynomial is "
+    "$\\tau_1\\tau_2 s^2 + (\\tau_1 + \\tau_2)s + 1 + KK_c$.",
+    "With the logarithm $\\ell = \\ln\\frac{100}{ {left} }$, $\\zeta^2 = \\frac{\\ell^2}{4\\pi^2 + \\ell^2}$. And in "
+    "the polynomial, "
+    "$1 + KK_c = \\frac{(\\tau_1 + \\tau_2)^2}{4\\,\\tau_1\\tau_2\\,\\zeta^2}$.",
+)
+
+
+@decay.solution
+def _(K, tau_1, tau_2, left):
+    r"""The decay ratio of {left} has the logarithm $\ell = \ln\frac{100}{ {left} }$, which is {logarithm}. It is
+    $2\pi\zeta/\sqrt{1 - \zeta^2}$, so that $\zeta^2 = \frac{\ell^2}{4\pi^2 + \ell^2}$, which is {square}, and $\zeta$
+    is {zeta}.
+
+    The characteristic polynomial of the loop is $\tau_1\tau_2 s^2 + (\tau_1 + \tau_2)s + 1 + KK_c$. Compared with
+    $s^2 + 2\zeta\omega_0 s + \omega_0^2$ it has $1 + KK_c = \frac{(\tau_1 + \tau_2)^2}{4\,\tau_1\tau_2\,\zeta^2}$,
+    which is {total}.
+
+    So $KK_c$ is one less, and $K_c$ that divided by {K}: {Kc}.
+
+    The measurement ends at $\frac{KK_c}{1 + KK_c}$ of the step. What is missing is $\frac{1}{1 + KK_c}$, {offset}.
+    """
+    square = _damping_squared(left, 2)
+    return {
+        "logarithm": math.log(100 / left),
+        "square": square,
+        "zeta": math.sqrt(square),
+        "total": 1 + _loop_gain(tau_1, tau_2, square),
+    }
+
+
+@decay.solution_picture
+def _(K, tau_1, tau_2, left):
+    """The response to a setpoint step: two peaks above its final value, which is below the setpoint."""
+    square = _damping_squared(left, 2)
+    loop_gain = _loop_gain(tau_1, tau_2, square)
+    turn = math.sqrt((1 + loop_gain) / float(tau_1 * tau_2) * (1 - square))
+    times = _until(4.5 * math.pi / turn)
+    y = Loop(K / ((tau_1 * s + 1) * (tau_2 * s + 1)), PID(loop_gain / K)).servo.step(times)
+    plot = time_plot({"$y$": (y, "measurement")}, times, "A unit step of the setpoint", "$t$ [min]", "$y$")
+    plot.mark(math.pi / turn, "a peak").mark(3 * math.pi / turn, "the next one")
+    return plot.level(loop_gain / (1 + loop_gain), "final value")
+
+
 _K, _d, _theta = symbols("K d theta", positive=True)
 
 
-@exercise("16.4", title="A relay that waits", points=4)
+@exercise(
+    "16.4",
+    title="A relay that waits",
+    points=4,
+    insight="A relay measures its own cycle: hysteresis makes it longer and higher, and the estimate more careful.",
+)
 def relay_with_hysteresis(
     q=between(10, 80, "%", step=5, reference=25),
 ):
@@ -231,35 +398,115 @@ def _(q):
     return {"Kcu": 1 / ((1 + q / 100) * _K * _theta)}
 
 
-# each formula as a text, with its LaTeX and what is wrong with it
+relay_with_hysteresis.hints(
+    "Follow $y$ for one half of the cycle. It is an integral of a constant, so it consists of straight lines. How "
+    "steep "
+    "are they?",
+    "The slope is $\\pm Kd$. The relay switches when $y$ has passed $h$, but the process goes on for one dead time "
+    "more. Then "
+    "$y$ has to fall from its peak to $-h$.",
+    "The peak is $h + Kd\\theta$, and $h$ is {q} of $Kd\\theta$. From peak to peak, $y$ goes up and down by twice the "
+    "amplitude "
+    "each time, with the slope $Kd$. For a sine, $K_{cu} = \\frac{4d}{\\pi a}$.",
+)
+
+
+@relay_with_hysteresis.solution
+def _(q):
+    r"""While the relay puts out $+d$, $y$ rises with the slope $Kd$, and with $-d$ it falls as fast: a triangle.
+
+    The relay switches down when $y$ passes $h$. The process feels that one dead time later, and until then $y$ rises
+    by another $Kd\theta$. So the amplitude is $a = h + Kd\theta$, that is {a} with $h$ as {q} of $Kd\theta$.
+
+    A period is four times the way from zero to the peak: $P = \frac{4a}{Kd}$, which is {P}.
+
+    A square wave has a fundamental of $\frac{4d}{\pi}$. Divided by the amplitude, that is the estimate
+    $K_{cu} = \frac{4d}{\pi a}$, or {Kcu}.
+
+    The true ultimate gain of an integrator with dead time is $\frac{\pi}{2K\theta}$. The estimate is
+    $\frac{8}{\pi^2\,(1 + q)}$ of it, with $q$ = {q}: {share}.
+    """
+    return {}
+
+
+@relay_with_hysteresis.solution_picture
+def _(q):
+    """The measurement is a triangle; the relay switches when it has passed the hysteresis, before each peak."""
+    amplitude, times = 1 + float(q) / 100, np.linspace(0, 8, 801)
+    y = amplitude * (1 - 2 * abs((times / amplitude + 1) % 4 / 2 - 1))
+    axes = {"xlabel": "$t$ in dead times", "ylabel": "$y$ in $Kd\\theta$"}
+    plot = time_plot({"$y$": (-y, "measurement")}, times, "A relay with hysteresis", **axes)
+    return plot.level(float(q) / 100, "$h$").level(-float(q) / 100, "$-h$")
+
+
+# each formula as a text, with its LaTeX, what is wrong with it, and why
 _GAINS_A = {
-    "(0.4 + 0.6*tau/theta)/K": (r"K_c = \frac{1}{K}\left(0.4 + 0.6\,\frac{\tau}{\theta}\right)", ""),
-    "(0.4 + 0.6*tau)/K": (r"K_c = \frac{1}{K}\left(0.4 + 0.6\,\tau\right)", "units"),
-    "0.8*sqrt(tau/theta)/K": (r"K_c = \frac{0.8}{K}\sqrt{\frac{\tau}{\theta}}", "limit"),
+    "(0.4 + 0.6*tau/theta)/K": (
+        r"K_c = \frac{1}{K}\left(0.4 + 0.6\,\frac{\tau}{\theta}\right)",
+        "",
+        "only a ratio of times is in the bracket, and for a long lag the gain tends to $0.6/(k\\theta)$",
+    ),
+    "(0.4 + 0.6*tau)/K": (
+        r"K_c = \frac{1}{K}\left(0.4 + 0.6\,\tau\right)",
+        "units",
+        "a time is added to a pure number",
+    ),
+    "0.8*sqrt(tau/theta)/K": (
+        r"K_c = \frac{0.8}{K}\sqrt{\frac{\tau}{\theta}}",
+        "limit",
+        "with $K = k\\tau$ the gain is $0.8/(k\\sqrt{\\tau\\theta})$, which vanishes for a long lag",
+    ),
 }
 _GAINS_B = {
-    "(tau + 0.5*theta)/(K*(tau_c + theta))": (r"K_c = \frac{\tau + 0.5\,\theta}{K\,(\tau_c + \theta)}", ""),
-    "(tau + 0.5)/(K*(tau_c + theta))": (r"K_c = \frac{\tau + 0.5}{K\,(\tau_c + \theta)}", "units"),
-    "(0.7 + 0.3*theta/tau)/K": (r"K_c = \frac{1}{K}\left(0.7 + 0.3\,\frac{\theta}{\tau}\right)", "limit"),
+    "(tau + 0.5*theta)/(K*(tau_c + theta))": (
+        r"K_c = \frac{\tau + 0.5\,\theta}{K\,(\tau_c + \theta)}",
+        "",
+        "times are divided by times, and for a long lag the gain tends to $1/(k(\\tau_c + \\theta))$",
+    ),
+    "(tau + 0.5)/(K*(tau_c + theta))": (
+        r"K_c = \frac{\tau + 0.5}{K\,(\tau_c + \theta)}",
+        "units",
+        "a pure number is added to a time",
+    ),
+    "(0.7 + 0.3*theta/tau)/K": (
+        r"K_c = \frac{1}{K}\left(0.7 + 0.3\,\frac{\theta}{\tau}\right)",
+        "limit",
+        "with $K = k\\tau$ the gain is about $0.7/(k\\tau)$, which vanishes for a long lag",
+    ),
 }
 _INTEGRAL_TIMES = {
     "theta*(3 + 0.3*theta/tau)/(1 + 2*theta/tau)": (
         r"\tau_I = \theta\,\frac{3 + 0.3\,\theta/\tau}{1 + 2\,\theta/\tau}",
         "",
+        "a time, multiplied by ratios, and for a long lag it tends to $3\\theta$",
     ),
     "theta*(3 + 0.3*theta)/(1 + 2*theta/tau)": (
         r"\tau_I = \theta\,\frac{3 + 0.3\,\theta}{1 + 2\,\theta/\tau}",
         "units",
+        "a time is added to a pure number",
     ),
     "theta*(3 + 0.3*tau/theta)/(1 + 2*theta/tau)": (
         r"\tau_I = \theta\,\frac{3 + 0.3\,\tau/\theta}{1 + 2\,\theta/\tau}",
         "limit",
+        "for a long lag it grows with $0.3\\tau$, without end",
     ),
 }
 _DERIVATIVE_TIMES = {
-    "0.4*theta/(1 + 0.2*theta/tau)": (r"\tau_D = \frac{0.4\,\theta}{1 + 0.2\,\theta/\tau}", ""),
-    "0.4/(1 + 0.2*theta/tau)": (r"\tau_D = \frac{0.4}{1 + 0.2\,\theta/\tau}", "units"),
-    "0.4*sqrt(theta*tau)": (r"\tau_D = 0.4\,\sqrt{\theta\,\tau}", "limit"),
+    "0.4*theta/(1 + 0.2*theta/tau)": (
+        r"\tau_D = \frac{0.4\,\theta}{1 + 0.2\,\theta/\tau}",
+        "",
+        "a time, divided by a pure number, and for a long lag it tends to $0.4\\theta$",
+    ),
+    "0.4/(1 + 0.2*theta/tau)": (
+        r"\tau_D = \frac{0.4}{1 + 0.2\,\theta/\tau}",
+        "units",
+        "a derivative time that is a pure number",
+    ),
+    "0.4*sqrt(theta*tau)": (
+        r"\tau_D = 0.4\,\sqrt{\theta\,\tau}",
+        "limit",
+        "for a long lag it grows with $\\sqrt{\\tau}$, without end",
+    ),
 }
 _FORMULAS = _GAINS_A | _GAINS_B | _INTEGRAL_TIMES | _DERIVATIVE_TIMES
 _LABELS = ["A", "B", "C", "D"]
@@ -273,6 +520,7 @@ def _which(fault, *formulas):
     "16.5",
     title="Four formulas from a bad copy",
     points=3,
+    insight="Units and a limit know nothing of tuning, and still they find most misprints.",
     where=lambda a, b, c, d: all(_which(fault, a, b, c, d) for fault in ("", "units", "limit")),
 )
 def bad_copy(
@@ -281,8 +529,9 @@ def bad_copy(
     c=choice(*_INTEGRAL_TIMES, reference="theta*(3 + 0.3*theta)/(1 + 2*theta/tau)"),
     d=choice(*_DERIVATIVE_TIMES),
 ):
-    r"""A bad copy of a tuning relation is found in a drawer. It is for a lag $\tau$ with the gain $K$ and the dead
-    time $\theta$, and $\tau_c$ is the desired time constant of the closed loop (all times in one unit):
+    r"""A bad copy of a tuning relation turns up in a drawer. It is for a lag $\tau$ with the gain $K$ and the dead
+    time $\theta$, and $\tau_c$ is the desired time constant of the closed loop (all times in one unit). The section
+    *Two questions that find a misprint*, which is further reading, shows how to test such formulas.
 
     - **A**: ${A}$
     - **B**: ${B}$
@@ -324,10 +573,36 @@ def _(a, b, c, d):
     return {"limit": _which("", a, b, c, d)}
 
 
+bad_copy.hints(
+    "Two questions find a misprint: does the formula survive another unit of time, and does it survive a limit?",
+    "Units: what is added must be of one kind, a gain is a pure number over $K$, and $\\tau_I$ and $\\tau_D$ are "
+    "times. Limit: "
+    "put $K = k\\tau$, keep $k$ and $\\theta$, and let $\\tau$ grow.",
+    "Begin with the units, formula by formula: A is ${A}$. Is there a time added to a pure number? Then put $K = "
+    "k\\tau$ "
+    "into those whose units are right.",
+)
+
+
+@bad_copy.solution
+def _(a, b, c, d):
+    r"""Formula by formula:
+
+    - **A**: {of_A}.
+    - **B**: {of_B}.
+    - **C**: {of_C}.
+    - **D**: {of_D}.
+
+    So the units are wrong in {units}, and the limit in {limit}.
+    """
+    return {f"of_{label}": _FORMULAS[text][2] for label, text in zip(_LABELS, (a, b, c, d), strict=True)}
+
+
 @exercise(
     "16.6",
     title="A factor for a damping",
     points=3,
+    insight="The factor 4 of Skogestad's rule is a damping of one; less damping buys a quicker recovery.",
     where=lambda T, tau, n, zeta: not Rational(3, 4) < 4 * zeta**2 * (1 + n) * tau / T < Rational(4, 3),
 )
 def factor_for_a_damping(
@@ -337,11 +612,11 @@ def factor_for_a_damping(
     n=choice(1.5, 2, 2.5, 3, reference=2),
     zeta=between(0.55, 0.95, step=0.05, reference=0.8),
 ):
-    r"""A fermenter's temperature answers to the warm water in its jacket with the gain {K}, a lag $T$ of {T} and a
-    dead time $\tau$ of {tau}. Skogestad's rule should be used with $T_C = {n}\,\tau$
-    and with such a factor $k_1$ that the loop of an integrator would have the damping $\zeta = {zeta}$.
+    r"""The temperature of a fermenter responds to the warm water in its jacket with the gain {K}, a lag $T$ of {T} and
+    a dead time $\tau$ of {tau}. Use Skogestad's rule with $T_C = {n}\,\tau$, and with such a factor $k_1$ that the loop
+    of an integrator would have the damping $\zeta = {zeta}$.
 
-    Find the factor, and the PI settings for the fermenter.
+    How large is the factor, and which are the PI settings for the fermenter?
     """
     k_1, total = 4 * zeta**2, (1 + n) * tau
     return answers(
@@ -380,10 +655,49 @@ def _(K, T, tau):
     return {"Kp": T / (K * 2 * tau)}
 
 
+factor_for_a_damping.hints(
+    "Close the loop of an integrator (dead time neglected) with the PI controller of the rule. Which damping has it?",
+    "With $K_p = \\frac{1}{k\\,(T_C + \\tau)}$ and $T_i = k_1(T_C + \\tau)$ the polynomial is "
+    "$k_1 (T_C + \\tau)^2 s^2 + k_1 (T_C + \\tau)s + 1$. Compare it with $s^2 + 2\\zeta\\omega_0 s + \\omega_0^2$.",
+    "$\\omega_0^2 = \\frac{1}{k_1 (T_C + \\tau)^2}$ and $2\\zeta\\omega_0 = \\frac{1}{T_C + \\tau}$, so $\\zeta = "
+    "\\frac{\\sqrt{{k_1}} }{2}$, which "
+    "should be {zeta}. And $T_C + \\tau = (1 + {n}) \\cdot {tau}$ min.",
+)
+
+
+@factor_for_a_damping.solution
+def _(T, tau, n, zeta):
+    r"""With the settings of the rule, the loop of an integrator has the polynomial
+    $k_1 (T_C + \tau)^2 s^2 + k_1 (T_C + \tau)s + 1$. Its damping is $\zeta = \frac{\sqrt{{k_1}}}{2}$. So
+    $k_1 = 4\zeta^2 = 4 \cdot {zeta}^2$, which is {k_1}.
+
+    For the fermenter, $T_C + \tau = (1 + {n}) \cdot {tau}$, which is {total}. The gain is
+    $K_p = \frac{{T}}{K(T_C + \tau)} = \frac{ {T} }{ {K} \cdot {total} }$, that is {Kp}.
+
+    The integral time is the shorter of the lag, {T}, and $k_1(T_C + \tau)$, {other}. It is {Ti}.
+    """
+    total = (1 + n) * tau
+    return {"total": (total, "min"), "other": (4 * zeta**2 * total, "min")}
+
+
+@factor_for_a_damping.solution_picture
+def _(K, T, tau, n, zeta):
+    """The temperature after a step of the load with this factor, and with the usual factor of four."""
+    times, total = _until(10 * (1 + n) * tau), (1 + n) * tau
+    factors = {"this factor": 4 * zeta**2, "factor 4": 4}
+    process = K * exp(-tau * s) / (T * s + 1)
+    curves = {
+        name: Loop(process, PID(T / (K * total), Min(T, factor * total))).regulator.step(times)
+        for name, factor in factors.items()
+    }
+    return time_plot(curves, times, "After a load step of 1 %", "$t$ [min]", "temperature [K]")
+
+
 @exercise(
     "16.7",
     title="Not so nervous, not so slow",
     points=5,
+    insight="Between a nervous rule and a slow one there is room; two numbers, $M_s$ and ISE, say where you are.",
     where=lambda tau, theta: tau / 5 <= theta <= 2 * tau / 5,
 )
 def not_so_nervous(
@@ -392,8 +706,8 @@ def not_so_nervous(
     theta=between(2, 16, "min", step=1, reference=5),
 ):
     r"""The temperature of a reactor is a lag of {tau} with the gain {K} and the dead time {theta}. Loads act at its
-    input. Ziegler and Nichols' PI settings make its loop nervous; Skogestad's, with $\tau_c = \theta$ and the
-    factor 4, make it slow to recover from loads.
+    input. Ziegler and Nichols' PI settings make the loop nervous; Skogestad's, with $\tau_c = \theta$ and the factor 4,
+    recover slowly from loads.
 
     Find PI settings between them, with
 
@@ -411,16 +725,25 @@ def not_so_nervous(
             stable(process),
             largest_sensitivity(process, 30 / theta, below=2),
             criterion("the ISE", lambda pid: _ise(pid, K, tau, theta), below=_limit(K, tau, theta), unit="K² min"),
+            draws=lambda pid: _after_a_load(pid, K, tau, theta),
         )
     )
 
 
 def _ise(pid, K, tau, theta):
     """The ISE after a load step of one percent."""
-    from loopbook.ise import pi_first_order
-
     given = (float(x) for x in (K, tau, theta, pid.Kp, pid.Ti))
     return float(pi_first_order(*given, "regulator", unstable=float("inf")))
+
+
+def _after_a_load(pid, K, tau, theta):
+    times = _until(20 * theta)
+    y = Loop(K * exp(-theta * s) / (tau * s + 1), pid).regulator.step(times)
+    labels = {"xlabel": "$t$ [min]", "ylabel": ["$y$ [K]", "$y^2$ [K²]"]}
+    panels = [{"$y$": (y, "measurement")}, {"$y^2$": (y**2, 0)}]
+    plot = time_plot(panels, times, "Your loop after a load step of 1 %", **labels)
+    words = f"ISE {_ise(pid, K, tau, theta):.3g}, at most {_limit(K, tau, theta):g}"
+    return plot.area("$y^2$", label=words)
 
 
 def _limit(K, tau, theta):
@@ -442,3 +765,288 @@ def _(K, tau, theta):
 @not_so_nervous.mistake("These are Skogestad's settings: calm enough, but too slow against loads.")
 def _(K, tau, theta):
     return {"pid": PID(tau / (2 * K * theta), min(tau, 8 * theta))}
+
+
+@not_so_nervous.mistake("That asks the loop to have no time constant of its own. How robust can it be then?")
+def _(K, tau, theta):
+    return {"pid": PID(tau / (K * theta), tau)}
+
+
+not_so_nervous.hints(
+    "Both rules have $K_p$ in the form of a number times $\\frac{\\tau}{K\\theta}$. What are the two numbers?",
+    "0.9 is too nervous, 0.5 too slow. And the integral time may be shorter than Skogestad's: it is what brings the "
+    "loop "
+    "back after a load.",
+    "Try $K_p = 0.6\\,\\frac{\\tau}{K\\theta} = 0.6 \\cdot \\frac{ {tau} }{ {K} \\cdot {theta} }$ with an integral "
+    "time of three dead times, or "
+    "the lag if that is shorter.",
+)
+
+
+@not_so_nervous.solution
+def _(K, tau, theta):
+    r"""Ziegler and Nichols take $0.9\,\frac{\tau}{K\theta}$ as the gain, Skogestad $0.5\,\frac{\tau}{K\theta}$.
+    Between them, 0.6 is a good beginning: $0.6 \cdot \frac{ {tau} }{ {K} \cdot {theta} }$, which is {gain}.
+
+    After a load the integral term does the work, so let the integral time be three dead times, or the lag if that is
+    shorter: {time}.
+
+    The ISE is {value}, and at most {limit} is asked. Ziegler and Nichols' settings have {nervous}, but an $M_s$ above
+    2; Skogestad's have {slow}. The $M_s$ of the new settings is {sensitivity}.
+    """
+    good = PID(Rational(3, 5) * tau / (K * theta), Min(tau, 3 * theta))
+    nervous = PID(Rational(9, 10) * tau / (K * theta), Rational(333, 100) * theta)
+    slow = PID(tau / (2 * K * theta), Min(tau, 8 * theta))
+    values = {"value": good, "nervous": nervous, "slow": slow}
+    w = np.geomspace(1e-3, 20, 3000) / float(theta)
+    L = Loop(K * exp(-theta * s) / (tau * s + 1), good).S.frequency(w)
+    return {
+        "gain": (good.Kp, "%/K"),
+        "time": (good.Ti, "min"),
+        "sensitivity": f"{max(abs(L)):.3g}",
+        **{name: (_ise(pid, K, tau, theta), "K² min") for name, pid in values.items()},
+    }
+
+
+def _with_decay(left):
+    """Of an integrator with dead time: the share that is left from peak to peak [%] by gain and frequency, in dead
+    times.
+
+    With s = -sigma + j omega in s + k e^{-s} = 0, tan omega = omega/sigma.
+    """
+    omega = math.atan(2 * math.pi / math.log(100 / float(left)))
+    sigma = omega / math.tan(omega)
+    return omega * math.exp(-sigma) / math.sin(omega), omega
+
+
+def _recorded(low, step, delay, left):
+    """Times and temperature after a step of the setpoint, with the moments and heights of two peaks and a trough."""
+    gain, omega = _with_decay(left)
+    delay, period = float(delay), 2 * math.pi * float(delay) / omega
+    times = np.linspace(0, 3 * period, 3001)
+    y = Loop(integrator(gain / delay, delay), PID(1)).servo.step(times) - 1
+    first = np.argmax(y)
+    trough = np.argmin(np.where((times > times[first]) & (times < times[first] + 0.75 * period), y, 1))
+    extremes = [first, trough, trough + np.argmax(y[trough:])]
+    return times[::5], float(low) + float(step) * (1 + y[::5]), times[extremes].tolist(), y[extremes].tolist()
+
+
+@exercise(
+    "16.8",
+    title="Two peaks on a screen",
+    points=4,
+    insight="Two peaks tell the damping of a loop, whatever its process is: count from the final value.",
+)
+def two_peaks(
+    low=between(120, 180, "°C", step=10, reference=150),
+    step=choice(4, 5, 8, 10, unit="K", reference=10),
+    delay=between(2, 8, "min", step=0.5, reference=4),
+    left=choice(12, 14, 16, 36, 40, 44, unit="%", reference=40),
+):
+    r"""The setpoint of a PI loop was raised by {step}, from {low}. The temperature goes as in the picture.
+
+    Read off the decay ratio, the height of the second peak as a share of the first, and the period from peak to peak.
+    Which damping $\zeta$ has a loop of second order with this decay ratio? And in which direction would you change the
+    gain for a decay ratio of a quarter?
+    (`t, y = exercise("16.8").given("t", "y")` are the times and the temperature.)
+    """
+    _, _, moments, (first, _, second) = _recorded(low, step, delay, left)
+    ratio = 100 * second / first
+    return answers(
+        decay_ratio=number(ratio, "%", "the decay ratio", within=0.12),
+        period=number(moments[2] - moments[0], "min", "the period", within=0.05),
+        zeta=number(math.sqrt(_damping_squared(ratio, 2)), "", "the damping", within=0.1),
+        gain=word("raise" if left < 25 else "lower", ["raise", "lower"], "what to do with the gain"),
+    )
+
+
+@two_peaks.shows
+def _(low, step, delay, left):
+    return dict(zip(("t", "y"), _recorded(low, step, delay, left)[:2], strict=True))
+
+
+@two_peaks.picture
+def _(low, step, delay, left):
+    """The temperature after the step of the setpoint: it overshoots, and then oscillates around the new setpoint."""
+    times, y, *_ = _recorded(low, step, delay, left)
+    curves = {"temperature": (y, "measurement"), "setpoint": (np.full(len(times), float(low + step)), "setpoint")}
+    return time_plot(curves, times, "A step of the setpoint", "$t$ [min]", "temperature [°C]")
+
+
+@two_peaks.mistake("Heights are counted from the final value, not from where the temperature began.")
+def _(low, step, delay, left):
+    first, _, second = _recorded(low, step, delay, left)[3]
+    return {"decay_ratio": 100 * (1 + second) / (1 + first)}
+
+
+@two_peaks.mistake("That is from a peak to the trough behind it, a half turn. The next peak is another half turn away.")
+def _(low, step, delay, left):
+    _, _, moments, (first, trough, _) = _recorded(low, step, delay, left)
+    return {"decay_ratio": -100 * trough / first, "period": moments[1] - moments[0]}
+
+
+@two_peaks.mistake("From peak to peak there are two half turns, and the angle is $2\\pi$.")
+def _(low, step, delay, left):
+    first, _, second = _recorded(low, step, delay, left)[3]
+    return {"zeta": math.sqrt(_damping_squared(100 * second / first, 1))}
+
+
+@two_peaks.mistake("That is the second peak as a share of the step. With what does a decay ratio compare it?")
+def _(low, step, delay, left):
+    return {"decay_ratio": 100 * _recorded(low, step, delay, left)[3][2]}
+
+
+@two_peaks.mistake("A quarter is 25 %. Is more than that left of the first peak here, or less?")
+def _(left):
+    return {"gain": "lower" if left < 25 else "raise"}
+
+
+two_peaks.hints(
+    "A decay ratio compares heights above the *final value*. Draw that line first.",
+    "With $\\ell = \\ln\\frac{1}{\\mathrm{decay\\ ratio}}$ the damping is $\\zeta = \\frac{\\ell}{\\sqrt{4\\pi^2 + "
+    "\\ell^2}}$. A higher gain leaves more "
+    "of a peak.",
+    "The final value is the new setpoint, {step} above {low}. Measure how far the first and the second peak are above "
+    "it, "
+    "and divide the smaller height by the larger one.",
+)
+
+
+@two_peaks.solution
+def _(low, step, delay, left):
+    r"""The temperature ends at the new setpoint, {end}. The first peak is {first} above it, the second {second}. Their
+    ratio is {decay_ratio}.
+
+    The peaks are at {at_first} and {at_second}. The period is the difference, {period}.
+
+    The logarithm of the ratio, $\ell$, is {logarithm}, and $\zeta = \frac{\ell}{\sqrt{4\pi^2 + \ell^2}}$ is {zeta}.
+
+    For a quarter, 25 %, {gain} the gain: the higher the gain, the more is left of a peak.
+    """
+    _, _, moments, (first, _, second) = _recorded(low, step, delay, left)
+    return {
+        "end": (low + step, "°C"),
+        "first": (float(step) * first, "K"),
+        "second": (float(step) * second, "K"),
+        "at_first": (moments[0], "min"),
+        "at_second": (moments[2], "min"),
+        "logarithm": math.log(first / second),
+    }
+
+
+@exercise(
+    "16.9",
+    title="A quarter with a dead time",
+    points=5,
+    insight="A loop with dead time has infinitely many poles; the first pair decides the decay, and can be placed "
+    "exactly.",
+)
+def quarter_with_dead_time(
+    K=between(0.5, 4, "K/%", step=0.5, reference=1.5),
+    T=between(10, 60, "min", step=2, reference=30),
+    delay=between(2, 10, "min", step=0.5, reference=4),
+    left=choice(10, 15, 20, 25, 30, unit="%", reference=25),
+):
+    r"""A dryer has the gain {K}, a lag $T$ of {T} and a dead time $\theta$ of {delay}. A PI controller with $T_i = T$
+    cancels the lag, so that the open loop is $L(s) = \frac{k}{s}e^{-\theta s}$ with $k = KK_c/T$. The gain should be
+    such that {left} of each peak is left in the next one.
+
+    That belongs to the first pair of poles, $s = -\sigma \pm j\omega$. Put it into $s + k\,e^{-\theta s} = 0$, once
+    for the real part and once for the imaginary part. Which gain $K_c$ has the controller, which period the
+    oscillation, and which gain margin the loop?
+    """
+    x, omega = _with_decay(left)
+    return answers(
+        Kc=number(x * float(T / (K * delay)), "%/K", "the gain of the controller"),
+        period=number(2 * math.pi * float(delay) / omega, "min", "the period of the oscillation"),
+        gain_margin=number(math.pi / 2 / x, "", "the gain margin"),
+    )
+
+
+def _all_three(x, omega, K, T, delay):
+    return {
+        "Kc": x * float(T / (K * delay)),
+        "period": 2 * math.pi * float(delay) / omega,
+        "gain_margin": math.pi / 2 / x,
+    }
+
+
+@quarter_with_dead_time.mistake(
+    "That ratio is reached after a half turn already. From peak to peak the angle is $2\\pi$."
+)
+def _(K, T, delay, left):
+    return _all_three(*_with_decay(float(left) ** 2 / 100), K, T, delay)
+
+
+@quarter_with_dead_time.mistake("That comes from a lag in place of the dead time, and such a loop would be unstable.")
+def _(K, T, delay, left):
+    return {"Kc": float(T / (K * delay)) / (4 * _damping_squared(left, 2))}
+
+
+@quarter_with_dead_time.mistake(
+    "At the pole, $e^{-\\theta s}$ is not only a turn: with $-\\sigma$ it is larger than one."
+)
+def _(K, T, delay, left):
+    _, omega = _with_decay(left)
+    x = omega / math.sin(omega)
+    return {"Kc": x * float(T / (K * delay)), "gain_margin": math.pi / 2 / x}
+
+
+@quarter_with_dead_time.mistake("That is the gain $k$ of the open loop. Which part of it belongs to the controller?")
+def _(delay, left):
+    return {"Kc": _with_decay(left)[0] / float(delay)}
+
+
+@quarter_with_dead_time.mistake("That is the period at the limit of stability. This loop is calmer, and slower.")
+def _(delay):
+    return {"period": 4 * delay}
+
+
+@quarter_with_dead_time.mistake("The phase is $-180°$ at $\\omega\\theta = \\pi/2$: what is $|L|$ there?")
+def _(left):
+    return {"gain_margin": 1 / _with_decay(left)[0]}
+
+
+quarter_with_dead_time.hints(
+    "The poles of the loop are where $1 + L(s) = 0$. The decay ratio fixes the quotient of $\\sigma$ and $\\omega$.",
+    "From peak to peak, $e^{-\\sigma t}$ falls to $e^{-2\\pi\\sigma/\\omega}$. The two parts of $s = -k\\,e^{-\\theta "
+    "s}$ are "
+    "$\\sigma = k e^{\\sigma\\theta}\\cos\\omega\\theta$ and $\\omega = k e^{\\sigma\\theta}\\sin\\omega\\theta$. "
+    "Divide one by the other.",
+    "So $\\tan\\omega\\theta = \\frac{\\omega}{\\sigma} = \\frac{2\\pi}{\\ln(100/{left})}$, which gives "
+    "$\\omega\\theta$, and then $\\sigma\\theta$. What is $k\\theta$ then?",
+)
+
+
+@quarter_with_dead_time.solution
+def _(left):
+    r"""From one peak to the next, $e^{-\sigma t}$ falls to $e^{-2\pi\sigma/\omega}$, which should be {left}. So
+    $\frac{\omega}{\sigma} = \frac{2\pi}{\ln(100/{left})}$, which is {quotient}.
+
+    The pole is a solution of $s = -k\,e^{-\theta s}$. Real and imaginary part: $\sigma = k
+    e^{\sigma\theta}\cos\omega\theta$ and $\omega = k e^{\sigma\theta}\sin\omega\theta$. The quotient of the two is
+    $\tan\omega\theta$. So $\omega\theta$ is {turn} rad, and $\sigma\theta$ is {fall}.
+
+    The imaginary part gives the gain: $k\theta = \frac{\omega\theta}{\sin\omega\theta}\,e^{-\sigma\theta}$, which is
+    {x}. With $k = KK_c/T$ the controller has $K_c = \frac{{T}}{K\theta}\,k\theta = \frac{ {T} }{ {K} \cdot {delay} }
+    \cdot {x}$: {Kc}.
+
+    The period is $\frac{2\pi}{\omega} = \frac{2\pi\theta}{\omega\theta}$, that is {period}.
+
+    At $\omega\theta = \pi/2$ the phase is $-180°$, and there $|L| = \frac{2k\theta}{\pi}$. One over it is the gain
+    margin, {gain_margin}.
+    """
+    x, omega = _with_decay(left)
+    return {"quotient": math.tan(omega), "turn": omega, "fall": omega / math.tan(omega), "x": x}
+
+
+@quarter_with_dead_time.solution_picture
+def _(K, T, delay, left):
+    """The response of the loop to a unit step of the setpoint, with its first two peaks."""
+    x, omega = _with_decay(left)
+    period = 2 * math.pi * float(delay) / omega
+    times = _until(3 * period)
+    y = Loop(K * exp(-delay * s) / (T * s + 1), PID(x * float(T / (K * delay)), T)).servo.step(times)
+    first = float(times[np.argmax(y)])
+    plot = time_plot({"$y$": (y, "measurement")}, times, "A unit step of the setpoint", "$t$ [min]", "$y$ [K]")
+    return plot.mark(first, "first peak").mark(first + period, "second peak").level(1, "setpoint")
