@@ -1,7 +1,9 @@
 """Exercises of chapter 5, transfer functions."""
 
+import numpy as np
 from sympy import Symbol, exp, symbols
 
+from loopbook import diagrams
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -17,9 +19,17 @@ from loopbook.exercises.authoring import (
     word,
 )
 from loopbook.expressions import s, t
+from loopbook.figures import plane_plot, time_plot
+from loopbook.transfer import step_response
 
 
-@exercise("5.1", title="A stirrer and its load", points=2)
+@exercise(
+    "5.1",
+    title="A stirrer and its load",
+    points=2,
+    insight="The pole belongs to the machine, not to what acts on it: both inputs meet the same inertia and the same "
+    "friction.",
+)
 def stirrer(
     J=between(0.2, 2, "kg m²", reference=0.6, step=0.1),
     k=between(0.5, 4, "N m/V", reference=1.5, step=0.25),
@@ -60,7 +70,49 @@ def _(J, b):
     return {"pole": J / b} if J != b else {}
 
 
-@exercise("5.2", title="What the fraction tells", points=3, where=lambda p, q, z: p != q and z not in (-p, -q))
+stirrer.hints(
+    "A transfer function is the transform of the output over that of one input, from rest, with the other input zero.",
+    r"From rest, the derivative becomes a factor $s$: $J s\,\Omega = k\,U - b\,\Omega - M$. Bring the friction to the "
+    r"left, and divide by what stands with $\Omega$.",
+    r"With the numbers, $({J} s + {b})\,\Omega(s) = {k}\,U(s) - M(s)$. The pole is where the bracket is zero.",
+)
+
+
+@stirrer.solution
+def _(J, k, b):
+    r"""From rest, a derivative becomes a factor $s$, so the equation is
+
+    $${J} s\,\Omega(s) = {k}\,U(s) - {b}\,\Omega(s) - M(s)$$
+
+    The friction depends on the speed, so it belongs to the left side: $({J} s + {b})\,\Omega = {k}\,U - M$.
+
+    ***
+
+    Divide by the bracket. What each input is multiplied by is its transfer function:
+
+    $$H_u(s) = {H_u}, \qquad H_M(s) = {H_M}$$
+
+    Both have the same denominator. Its root is the pole, $s = -{b}/{J} =$ {pole}.
+    """
+    return {"H_u": k / (J * s + b), "H_M": -1 / (J * s + b)}
+
+
+@stirrer.solution_picture
+def _(J, k, b):
+    """The diagram: the voltage times the gain, minus the torque, through one lag to the speed."""
+    lag = diagrams.block(rf"\frac{{1}}{{{float(J):g} s + {float(b):g}}}")
+    return diagrams.block_diagram(
+        "u", diagrams.gain(f"{float(k):g}"), diagrams.disturbance("M", sign="-"), lag, r"\omega"
+    )
+
+
+@exercise(
+    "5.2",
+    title="What the fraction tells",
+    points=3,
+    insight="A fraction tells its story at both ends: $s = 0$ is the end of the response, large $s$ its beginning.",
+    where=lambda p, q, z: p != q and z not in (-p, -q),
+)
 def fraction(
     K=between(1, 6, reference=3, step=1),
     z=choice(-6, -5, -4, -3, -2, -1, 1, 2, 3, 4, 5, 6, reference=2),
@@ -72,8 +124,9 @@ def fraction(
 
     $H(s) =$ {H}
 
-    with the time in seconds. Factor it. Give its poles and its zero, the gain $K$ of the zero-pole form, and the static
-    gain. Does the step response set out towards its final value, or away from it?
+    with the time in seconds. Factor it. Give its poles and its zero, the gain $K$ of the zero-pole form
+    $K\\,(s - z)/((s - p_1)(s - p_2))$, and the static gain. Does the step response set out towards its final value, or
+    away from it?
     """
     return answers(
         poles=poles([-p, -q], "1/s", "the poles"),
@@ -84,11 +137,6 @@ def fraction(
             "away" if z > 0 else "towards", ["towards", "away"], "the direction in which the response sets out"
         ),
     )
-
-
-@fraction.shows
-def _(K, z, p, q, scale):
-    return {"H": (scale * K * s - scale * K * z) / (scale * s**2 + scale * (p + q) * s + scale * p * q)}
 
 
 @fraction.mistake(
@@ -113,10 +161,67 @@ def _(K, z):
     return {"H_s": -K * z} if z != -1 else {}
 
 
+@fraction.mistake(
+    "Which sign has the response in the first moment, that of $K$, and which one in the end, that of $H(0)$?"
+)
+def _(z):
+    return {"sets_out": "towards" if z > 0 else "away"}
+
+
+@fraction.mistake("Look at the sign: a zero is a value of $s$ that makes the numerator zero.")
+def _(z):
+    return {"zeros": [-z]}
+
+
+fraction.hints(
+    "Poles are the roots of the denominator, zeros those of the numerator. The static gain is the value at $s = 0$.",
+    "First divide numerator and denominator by the factor of $s^2$. For the beginning of the step response look at "
+    r"large $s$: there $H(s) \approx K/s$, so the response sets out with the slope $K$.",
+    r"After the division the denominator is $s^2 + {sum}\,s + {product}$. Which two numbers have this sum and this "
+    "product?",
+)
+
+
+@fraction.shows
+def _(K, z, p, q, scale):
+    H = (scale * K * s - scale * K * z) / (scale * s**2 + scale * (p + q) * s + scale * p * q)
+    return {"H": H, "sum": p + q, "product": p * q}
+
+
+@fraction.solution
+def _(K, z, p, q, scale):
+    r"""Divide above and below by {scale}, so that the denominator begins with $s^2$, and factor it:
+
+    $$H(s) = {factored}$$
+
+    So the poles are $-{p}$ and $-{q}$, the zero is ${z}$ (all in 1/s), and the gain of the zero-pole form is $K =$ {K}.
+
+    The static gain is $H(0) = {K} \cdot \frac{ {minus_z} }{ {p} \cdot {q} } =$ {H_s}.
+
+    For large $s$ the fraction is about $K/s$, so the step response sets out with the slope {K}, and it ends at {H_s}.
+    The two signs are {compared}, so the response sets out {sets_out} its final value.
+    """
+    away = z > 0
+    return {
+        "factored": rf"\frac{{ {K}\,(s {'-' if z > 0 else '+'} {abs(z)}) }}{{ (s + {p})(s + {q}) }}", "minus_z": -z,
+        "compared": "different" if away else "the same", "sets_out": "away from" if away else "towards",
+    }  # fmt: skip
+
+
+@fraction.solution_picture
+def _(K, z, p, q):
+    """The step response with its final value."""
+    y = step_response(K * (s - z) / ((s + p) * (s + q)))
+    times = np.linspace(0, 6 / float(min(p, q)), 201)
+    return time_plot({"$y$": (y, "measurement")}, times, low=True).level(-K * z / (p * q), "static gain")
+
+
 @exercise(
     "5.3",
     title="A force sensor that creeps",
     points=4,
+    insight="As many zeros as poles, and the output jumps with the input: the sensor is quick to react and slow to be "
+    "right.",
     where=lambda T, T_0: 4 * T_0 <= 3 * T and abs(2 * T_0 - T) >= T / 10,
 )
 def creeping_sensor(
@@ -197,10 +302,44 @@ def _network(signal, sign, h_1=H_1, h_2=H_2, h_3=H_3, h_4=H_4):
 _SIGNS = {"-": -1, "+": 1}
 
 
+creeping_sensor.hints(
+    "Large $s$ belongs to the beginning of a response, $s = 0$ to its end.",
+    r"For a step of height $U$, the response begins at $U \cdot \lim_{s\to\infty} H(s)$ and ends at $U \cdot H(0)$. A "
+    "system of first order goes from the one to the other along an exponential with the time constant of its pole.",
+    r"The signal ends at ${K} \cdot {U}$ mV. It begins at the ratio of the two coefficients of $s$, times {U}. Then "
+    r"$y = y_s + (y_0 - y_s)\,e^{-t/{T}}$.",
+)
+
+
+@creeping_sensor.solution
+def _(K, T, T_0, U):
+    r"""For large $s$ only the terms with $s$ count, and the fraction is ${K} \cdot \frac{ {T_0} }{ {T} } =$ {first}. So
+    just after the step the signal is ${first} \cdot {U} =$ {y_0}.
+
+    At $s = 0$ the fraction is {K}, so the signal ends at ${K} \cdot {U} =$ {y_s}.
+
+    There is one pole, at $-1/{T}$, and so one exponential, $e^{-t/{T}}$. The signal goes from {y_0} to {y_s} along it:
+
+    $$y(t) = {y_s} + ({y_0} - {y_s})\,e^{-t/{T}} = {y}\quad\text{in mV}$$
+    """
+    y_0, y_s = K * U * T_0 / T, K * U
+    return {"first": (K * T_0 / T, "mV/N"), "y": y_s - (y_s - y_0) * exp(-t / T)}
+
+
+@creeping_sensor.solution_picture
+def _(K, T, T_0, U):
+    """The signal after the step: it jumps, and then creeps to its final value."""
+    y = K * U * (1 - (1 - T_0 / T) * exp(-t / T))
+    plot = time_plot({"signal [mV]": (y, "measurement")}, np.linspace(0, 5 * float(T), 201), low=True)
+    return plot.level(K * U, "final value")
+
+
 @exercise(
     "5.4",
     title="Two loops and a bypass",
     points=4,
+    insight="In words: direct over one plus the loop, from the inside out; what enters within a loop is fed back as "
+    "well.",
     where=lambda signal, sign, k_2, k_3: sign == "-" or (k_2 * k_3 if signal == "y" else k_3) < 0.8,
 )
 def two_loops(
@@ -268,10 +407,72 @@ def _range(K, T, share, T_max, u_max, step):
     return least, u_max / step
 
 
+two_loops.hints(
+    "Each block multiplies. Write every signal in terms of the others, then eliminate all but $u$ and $y$.",
+    "Put $e$ into the equation of $v$, and that into the equation of $y$. Or by the rules: the inner loop is direct "
+    "over one minus (or plus) its loop; it is then one block of the outer loop.",
+    r"Here {inner}. Put $e = u - y$ into it, and then $v$ into $y = H_2\,v + H_4\,u$: collect what is multiplied by "
+    "$y$ on the left, and what is multiplied by $u$ on the right.",
+)
+
+
+@two_loops.solution
+def _(signal, sign, k_1, k_2, k_3, k_4):
+    r"""Begin with {inner}, and put $e = u - y$ into it. {solved} Then $y = H_2 v + H_4 u$ becomes
+
+    $$y = {y}$$
+
+    Collect $y$ on the left and $u$ on the right, and divide:
+
+    $$\frac{{y}}{u} = {M}$$
+
+    For the static gain each block is its own static gain, {k_1}, {k_2}, {k_3} and {k_4}:
+    $M(0) = \frac{ {above} }{ {below} } =$ {M_s}.
+    """
+    M = _network(signal, _SIGNS[sign])
+    u, y = symbols("u y")
+    sense = _SIGNS[sign]
+    v = H_1 * (u - y) + sense * H_3 * y if signal == "y" else H_1 * (u - y) / (1 - sense * H_3)
+    above, below = (part.subs({H_1: k_1, H_2: k_2, H_3: k_3, H_4: k_4}) for part in M.as_numer_denom())
+    by_itself = (
+        f"There is $v$ on both sides; solved for it, $v = \\frac{{H_1 (u - y)}}{{1 {'-' if sense > 0 else '+'} H_3}}$."
+    )
+    return {
+        "M": M,
+        "y": H_2 * v + H_4 * u,
+        "solved": by_itself if signal == "v" else "",
+        "above": above,
+        "below": below,
+    }
+
+
+@two_loops.solution_picture
+def _(signal, sign):
+    """The block diagram with the two loops and the bypass."""
+    if signal == "y":
+        layout = """
+            .  6  .  .    .     H_4  7    .  .
+            u  5  e  H_1  add   H_2  out  4  y
+            .  .  .  .    8     H_3  .    3  .
+            .  .  1  .    .     .    .    2  ."""
+        ways = "u 5 e H_1 add H_2 out 4 y, 4 3 H_3 8"
+    else:
+        layout = """
+            .  6  .  .    .    .  .  H_4  7    .  .
+            u  5  e  H_1  add  v  4  H_2  out  3  y
+            .  .  .  .    8    H_3  9  .  .    .  .
+            .  .  1  .    .    .  .  .    .    2  ."""
+        ways = "u 5 e H_1 add v 4 H_2 out 3 y, 4 9 H_3 8"
+    wires = f"{ways} {sign} add, 5 6 H_4 7 out, 3 2 1 - e"
+    return diagrams.grid_diagram(layout, wires, {name: name for name in ("H_1", "H_2", "H_3", "H_4")})
+
+
 @exercise(
     "5.5",
     title="A hot plate becomes faster",
     points=5,
+    insight="Feedback makes a lag faster by one plus the loop gain; the price is paid in power, in the very first "
+    "moment.",
     where=lambda K, T, share, T_max, u_max, step: (
         1.15 <= _range(K, T, share, T_max, u_max, step)[1] / _range(K, T, share, T_max, u_max, step)[0] <= 2.5
     ),
@@ -306,6 +507,7 @@ def hot_plate(
             criterion("the share of the step that is reached", measured(_reached(K)), above=share, unit="%"),
             criterion("the time constant", measured(_time_constant(K, T)), below=T_max, unit="s"),
             criterion("the largest power", measured(lambda gain: gain * float(step)), below=u_max, unit="kW"),
+            draws=lambda gain: _plate_and_heater(float(gain), *map(float, (K, T, share, T_max, u_max, step))),
         ),
     )
 
@@ -335,3 +537,234 @@ def _(K, T):
 def _(K, T):
     K_c = Symbol("K_c", positive=True)
     return {"M": K / (T * s + 1 + K_c * K)}
+
+
+def _plate_and_heater(gain, K, T, share, T_max, u_max, step):
+    """Temperature and power after the step, with what is demanded of them."""
+    rate = (1 + gain * K) / T or 1e-9  # the gain of minus one over K leaves an integrator
+    times = np.linspace(0, 4 * T_max, 301)
+    y = step * gain * K / T * (1 - np.exp(-np.maximum(rate * times, -50))) / rate
+    panels = [{"$y$": (y, "measurement")}, {"$u$": (gain * (step - y), 0)}]
+    plot = time_plot(
+        panels,
+        times,
+        "The plate in your loop",
+        ylabel=["$y$ [K]", "$u$ [kW]"],
+        ylim=[(-0.2 * step, 1.4 * step), (0, 2 * u_max)],
+        low=True,
+    )
+    plot.level(share / 100 * step, "at least, in the end", "$y$").level(u_max, "at most", "$u$")
+    return plot.event(T_max, "63 % of its way by then")
+
+
+@hot_plate.mistake(
+    "That would be the gain without a loop. With feedback the share is a loop gain over one plus that loop gain."
+)
+def _(K, share):
+    return {"K_c": share / 100 / K}
+
+
+@hot_plate.mistake("This power is computed from the error that is left in the end. When is the error largest?")
+def _(share, u_max, step):
+    return {"K_c": u_max / step / (1 - share / 100)}
+
+
+@hot_plate.mistake(
+    "This is the whole loop gain. Which part of it is the gain of the feedback, and which one that of the plate?"
+)
+def _(T, T_max):
+    return {"K_c": T / T_max - 1}
+
+
+@hot_plate.picture
+def _(K, T):
+    """The loop: the gain of the feedback and the plate, a lag, with the temperature fed back."""
+    plate = diagrams.block(rf"\frac{{{float(K):g}}}{{{float(T):g} s + 1}}")
+    return diagrams.block_diagram("r", diagrams.feedback_loop(["e", diagrams.gain("K_c"), "u", plate]), "y")
+
+
+hot_plate.hints(
+    "The rule for feedback is direct over one plus the loop. What comes out is a lag again, with a smaller time "
+    "constant.",
+    r"With $G = K/(Ts + 1)$ it is $\frac{K_c G}{1 + K_c G} = \frac{K_c K}{Ts + 1 + K_c K}$: divide by the constant "
+    r"term to read off gain and time constant. The power $K_c\,(r - y)$ is largest in the first moment, when $y = 0$.",
+    r"So you need $\frac{ {K} K_c}{1 + {K} K_c} \ge \frac{ {share} }{100}$ and $\frac{ {T} }{1 + {K} K_c} \le "
+    r"{T_max}$ from below, and ${step}\,K_c \le {u_max}$ from above.",
+)
+
+
+@hot_plate.solution
+def _(K, T, share, T_max, u_max, step):
+    r"""In the loop, the plate gives direct over one plus the loop:
+
+    $$\frac{y}{r} = \frac{K_c \cdot \frac{ {K} }{ {T} s + 1} }{1 + K_c \cdot \frac{ {K} }{ {T} s + 1} } = {M}$$
+
+    Divided by the constant term of the denominator it is a lag with the gain $\frac{ {K} K_c}{1 + {K} K_c}$ and the
+    time constant $\frac{ {T} }{1 + {K} K_c}$.
+
+    - In the end at {share} or more: ${K} K_c \ge \frac{ {share} }{100 - {share} }$, so $K_c \ge$ {for_share}.
+    - A time constant of {T_max} or less: $1 + {K} K_c \ge \frac{ {T} }{ {T_max} }$, so $K_c \ge$ {for_speed}.
+    - The power is largest in the first moment, when the plate is still cold: $u(0) = K_c\,r$. So
+      $K_c \le \frac{ {u_max} }{ {step} } =$ {at_most}.
+
+    Any gain between the larger one of the first two and the third will do, for example $K_c =$ {K_c}.
+    """
+    return {
+        "M": Symbol("K_c") * K / (T * s + 1 + Symbol("K_c") * K), "for_share": (share / (100 - share) / K, "kW/K"),
+        "for_speed": ((T / T_max - 1) / K, "kW/K"), "at_most": (u_max / step, "kW/K"),
+    }  # fmt: skip
+
+
+KINDS = ("plain", "fast", "slow", "right")  # the zeros of H_1 to H_4 in exercise 5.6
+
+
+def _with_zero(T_0, T_1, T_2):
+    """The unit step response of (T_0 s + 1)/((T_1 s + 1)(T_2 s + 1)), an expression in t."""
+    return 1 - ((T_1 - T_0) * exp(-t / T_1) - (T_2 - T_0) * exp(-t / T_2)) / (T_1 - T_2)
+
+
+def _four_responses(K, T_1, T_2, T_0, T_r, order):
+    """The four responses, each under its letter."""
+    return dict(sorted(zip(order, (K * _with_zero(T, T_1, T_2) for T in (0, T_1, T_0, -T_r)), strict=True)))
+
+
+@exercise(
+    "5.6",
+    title="Four zeros, four responses",
+    points=4,
+    where=lambda T_1, T_2, T_0, T_r: 2 * T_2 <= T_1 and 1.6 * T_1 <= T_0 <= 2.6 * T_1 and 0.3 * T_1 <= T_r <= 0.9 * T_1,
+    insight="The poles say which exponentials there are; the zeros say how much there is of each, even none of one.",
+)
+def four_zeros(
+    K=between(1, 6, reference=2, step=0.5),
+    T_1=between(4, 12, "s", reference=6, step=1),
+    T_2=between(1, 5, "s", reference=2, step=0.5),
+    T_0=between(7, 30, "s", reference=12, step=1),
+    T_r=between(2, 10, "s", reference=4, step=0.5),
+    order=choice(
+        "ABCD", "BADC", "CDAB", "DCBA", "BCDA", "CADB", "DBAC", "ACBD", "BDCA", "CBDA", "DACB", "ADCB", reference="DBAC"
+    ),
+):
+    r"""Four transfer functions have the same poles and the same static gain:
+
+    $H_1 =$ {H_a}, $H_2 =$ {H_b}, $H_3 =$ {H_c}, $H_4 =$ {H_d}
+
+    The time is in seconds. The picture shows their step responses as A, B, C and D. Find the poles and the zeros. Which
+    response belongs to which transfer function? Give also the zero of $H_4$, and the slope with which its step response
+    sets out.
+    """
+    return answers(
+        H_1=word(order[0], "ABCD", "the response of $H_1$"),
+        H_2=word(order[1], "ABCD", "the response of $H_2$"),
+        H_3=word(order[2], "ABCD", "the response of $H_3$"),
+        H_4=word(order[3], "ABCD", "the response of $H_4$"),
+        zero=number(1 / T_r, "1/s", "the zero of $H_4$"),
+        slope=number(-K * T_r / (T_1 * T_2), "1/s", "the slope with which the response of $H_4$ sets out"),
+    )
+
+
+@four_zeros.shows
+def _(K, T_1, T_2, T_0, T_r):
+    below = T_1 * T_2 * s**2 + (T_1 + T_2) * s + 1
+    numerators = {"H_a": 0, "H_b": T_1, "H_c": T_0, "H_d": -T_r}
+    return {name: (K * T * s + K) / below for name, T in numerators.items()}
+
+
+@four_zeros.picture
+def _(K, T_1, T_2, T_0, T_r, order):
+    """Four step responses A to D that end at the same value."""
+    times = np.linspace(0, 6 * float(T_1), 300)
+    return time_plot(_four_responses(K, T_1, T_2, T_0, T_r, order), times, ylabel="step response")
+
+
+def _response_of(asked, taken):
+    """A mistake: the response of another transfer function."""
+    return lambda order: {f"H_{asked + 1}": order[taken]}
+
+
+for _taken, _sentence in enumerate((
+    "This response begins with the slope zero. How many more poles than zeros does this transfer function have?",
+    "This response is that of a single exponential, and a quick one. Which pole would the zero have to cancel?",
+    "This response goes beyond its final value. Where would the zero be, compared with the poles?",
+    "This response sets out in the wrong direction. On which side would the zero be?",
+)):  # fmt: skip
+    for _asked in range(4):
+        if _asked != _taken:
+            four_zeros.mistake(_sentence)(_response_of(_asked, _taken))
+
+
+@four_zeros.mistake("That is a time. The zero is the value of $s$ that makes the numerator zero.")
+def _(T_r):
+    return {"zero": T_r}
+
+
+@four_zeros.mistake("Put it into the numerator: is it zero there? Watch the sign.")
+def _(T_r):
+    return {"zero": -1 / T_r}
+
+
+@four_zeros.mistake(
+    "This would be the slope of a numerator $s$ alone. What is the factor of $s$ in the numerator of $H_4$?"
+)
+def _(K, T_1, T_2, T_r):
+    return {"slope": -K / (T_1 * T_2)} if T_r != 1 else {}
+
+
+@four_zeros.mistake("For large $s$ the highest powers of $s$ count, in the denominator as well.")
+def _(K, T_1, T_2, T_r):
+    return {"slope": -K * T_r / (T_1 + T_2)} if abs(T_1 * T_2 / (T_1 + T_2) - 1) > 0.05 else {}
+
+
+four_zeros.hints(
+    "Poles say which exponentials a response is made of. A zero says how much of each: a zero on a pole takes it "
+    "away, one to the right of the imaginary axis turns the beginning around, and a slow one to the left makes it "
+    "overshoot.",
+    "Factor the denominator as $(T_1 s + 1)(T_2 s + 1)$. Then compare each numerator: is there a zero at all, is it "
+    "one of the poles, is it nearer to the origin than they are, is it positive? The initial slope is "
+    r"$\lim_{s\to\infty} s\,H(s)$.",
+    "The denominator is $({T_1} s + 1)({T_2} s + 1)$, so the poles are $-1/{T_1}$ and $-1/{T_2}$. The numerator of "
+    r"$H_4$ is zero where ${T_r}\,s = 1$.",
+)
+
+
+@four_zeros.solution
+def _(K, T_1, T_2, T_0, T_r, order):
+    r"""The denominator is $({T_1} s + 1)({T_2} s + 1)$, so all four have the poles $-1/{T_1} =$ {p_1} and $-1/{T_2} =$
+    {p_2}.
+
+    - $H_1$ has no zero. With two poles more than zeros it begins with the slope zero: {a}.
+    - $H_2$ has its zero at $-1/{T_1}$, which is the slow pole. The two cancel, and the quick lag is left alone, with a
+    corner at the beginning: {b}.
+    - $H_3$ has its zero at $-1/{T_0} =$ {z_3}, nearer to the origin than both poles. It sets out so steeply that it
+    overshoots: {c}.
+    - $H_4$ has its zero at $1/{T_r} =$ {zero}, on the right. Its response sets out in the wrong direction: {d}.
+
+    The initial slope of a step response is $s\,H(s)$ for large $s$, where only the highest powers count:
+
+    $$\frac{ {K} \cdot (-{T_r}) }{ {T_1} \cdot {T_2} } = {slope}\ \text{1/s}$$
+    """
+    a, b, c, d = order
+    return {
+        "a": a,
+        "b": b,
+        "c": c,
+        "d": d,
+        "p_1": (-1 / T_1, "1/s"),
+        "p_2": (-1 / T_2, "1/s"),
+        "z_3": (-1 / T_0, "1/s"),
+    }
+
+
+@four_zeros.solution_picture
+def _(T_1, T_2, T_0, T_r):
+    """The poles and the zeros of the four in the complex plane, all of them on the real axis."""
+    poles, zeros = [float(-1 / T_1), float(-1 / T_2)], [float(x) for x in (-1 / T_1, -1 / T_0, 1 / T_r)]
+    wide = 1.2 * max(map(abs, poles + zeros))
+    axes = {"xlim": (-wide, wide), "ylim": (-0.5, 0.5)}
+    plot = plane_plot(
+        {"imaginary axis": ([0, 0], [-0.5, 0.5], "setpoint")}, "real part [1/s]", "imaginary part [1/s]", **axes
+    )
+    plot.points(poles, [0, 0], "poles", mark="x").points(zeros, [0, 0, 0], "zeros")
+    for which, x in zip((2, 3, 4), zeros, strict=True):
+        plot.text(x, 0.12, f"$H_{which}$")
+    return plot

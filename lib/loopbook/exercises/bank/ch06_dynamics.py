@@ -701,7 +701,7 @@ def _record(start, T, u_1, du, y_1, dy, noise):
     since = np.maximum(times - float(start), 0)
     y = float(y_1) + float(dy) * (1 - np.exp(-since / float(T)))
     power = float(u_1) + float(du) * (times >= float(start))
-    return times, power, y + signals.noise(times, 0.02 * float(dy), seed=int(noise))
+    return times, power, y + signals.noise(times, 0.012 * float(dy), seed=int(noise))
 
 
 @exercise(
