@@ -17,7 +17,13 @@ from loopbook.diagrams.blocks import (
     sum_of,
     switch,
 )
-from loopbook.diagrams.circuits import kirchhoff_laws, rc_circuit, resistor_combinations, two_terminal_components
+from loopbook.diagrams.circuits import (
+    kirchhoff_laws,
+    rc_circuit,
+    resistor_combinations,
+    two_terminal_components,
+    voltage_divider,
+)
 from loopbook.diagrams.conductors import CONDUCTORS, SIGNALS, conductor
 from loopbook.diagrams.conveying import conveyor, feed_screw
 from loopbook.diagrams.exchangers import EXCHANGERS, HEATERS, heat_exchanger, heater
@@ -40,5 +46,5 @@ __all__ = [
     "instrumentation_diagram", "integrator", "kirchhoff_laws", "mass_spring_damper", "motor", "motor_with_load",
     "multiplication", "overall_diagram", "parallel_paths", "pump", "rc_circuit", "resistor_combinations",
     "sequential_function_chart", "silo", "state_diagram", "sum_of", "switch", "symbol_table", "tank", "turbine",
-    "two_terminal_components", "valve", "vessel",
+    "two_terminal_components", "valve", "vessel", "voltage_divider",
 ]  # fmt: skip

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -37,6 +38,53 @@ def rc_circuit(resistor: str = "R", capacitor: str = "C", title: str | None = No
         f"{capacitor}; v_out over {capacitor}"
     )
     return drawing.picture(title, words)
+
+
+def voltage_divider(
+    upper: Sequence[str], lower: Sequence[str], in_series: bool = False, title: str | None = None
+) -> Picture:
+    """Draw a circuit of resistors and capacitors between an input voltage, at its left, and an output voltage.
+
+    Arguments:
+        upper: names of the components that lead from the input to the output, beside one another; a name that begins
+            with C is a capacitor, any other one a resistor.
+        lower: names of the components that lead from the output to ground.
+        in_series: whether these follow one another, from the top down, instead of being side by side.
+        title: written above the circuit.
+    Returns:
+        A `Picture`, which a notebook shows as the value of a cell.
+
+    >>> voltage_divider(["R_1"], ["R_2", "C"], in_series=True)
+    <circuit: R_1 from v_in to v_out; R_2, then C, from v_out to ground>
+    """
+    drawing, top = Drawing(), 4.2 if in_series else 2.6
+    for n, name in enumerate(upper):
+        _component(drawing, _kind(name), (1.2, top + 1.5 * n), (4.4, top + 1.5 * n), name)
+    for x in (1.2, 4.4) if len(upper) > 1 else ():
+        drawing.wire((x, top), (x, top + 1.5 * (len(upper) - 1)))
+        drawing.dot(x, top)
+    levels = [top * (1 - k / len(lower)) for k in range(len(lower) + 1)] if in_series else [top, 0.0]
+    places = [5.8] * len(lower) if in_series else [5.8 + 1.9 * k for k in range(len(lower))]
+    for k, (name, x) in enumerate(zip(lower, places, strict=True)):
+        start, end = (levels[k], levels[k + 1]) if in_series else (levels[0], levels[1])
+        _component(drawing, _kind(name), (x, start), (x, end), name)
+    right = places[-1] + 1.6
+    drawing.wire((0, top), (1.2, top))
+    drawing.wire((4.4, top), (right, top))
+    drawing.wire((0, 0), (right, 0))
+    for x in dict.fromkeys(places):
+        drawing.dot(x, top)
+        drawing.dot(x, 0)
+    _terminals(drawing, 0, "v_{in}", top)
+    _terminals(drawing, right, "v_{out}", top)
+    names = (", then " if in_series else " beside ").join(lower)
+    return drawing.picture(
+        title, f"circuit: {' beside '.join(upper)} from v_in to v_out; {names}, from v_out to ground"
+    )
+
+
+def _kind(name):
+    return "Capacitor" if name.startswith("C") else "Resistor"
 
 
 def two_terminal_components(title: str | None = None) -> Picture:
@@ -136,9 +184,9 @@ def _component(drawing, kind, start, end, label, voltage="", current=""):
             drawing.text(x0 + 0.3, y0 + 0.15, mathematics(current), valign="bottom")
 
 
-def _terminals(drawing, x, voltage):
-    for y in (2.6, 0):
+def _terminals(drawing, x, voltage, top=2.6):
+    for y in (top, 0):
         drawing.circle(x, y, 0.08)
-    drawing.text(x, 2.2, "$+$")
-    drawing.text(x, 1.3, mathematics(voltage))
+    drawing.text(x, top - 0.4, "$+$")
+    drawing.text(x, top / 2, mathematics(voltage))
     drawing.text(x, 0.4, "$-$")

@@ -3,8 +3,10 @@
 import functools
 import math
 
+import numpy as np
 import sympy
 
+from loopbook import diagrams as draw
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -15,16 +17,18 @@ from loopbook.exercises.authoring import (
     expression,
     number,
     time_function,
-    transfer_function,
     word,
 )
-from loopbook.expressions import s, t
+from loopbook.exercises.parameters import written
+from loopbook.expressions import t
+from loopbook.figures import plane_plot, time_plot
 
 
 @exercise(
     "3.1",
     title="The cistern in the rain",
     points=2,
+    insight="Every model begins like this: what is inside changes by what comes in, minus what goes out.",
     where=lambda h, h_max, q_1, q_2, q_o: abs(q_1 + q_2 - q_o) >= 10 and h_max - h >= 200,
 )
 def cistern(
@@ -80,6 +84,47 @@ def _(q_1, q_2, q_o):
     return {"rate": q_1 + q_2 - q_o}
 
 
+@cistern.mistake("Is there more coming in, or more going out? The sign of the rate tells which end comes.")
+def _(q_1, q_2, q_o):
+    return {"end": "runs empty" if q_1 + q_2 > q_o else "runs over"}
+
+
+cistern.hints(
+    "Balance of the water: the volume in the cistern changes by what comes in, minus what goes out.",
+    "The volume is area times level, and the area is constant: $A\\,\\dot h = q_1 + q_2 - q_o$. A litre on a square "
+    "metre is one millimetre high.",
+    "With your numbers ${A}\\,\\dot h = {q_1} + {q_2} - {q_o}$, with $\\dot h$ in mm/min. Its sign says which end "
+    "comes, and from {h} it is a way of a certain length to there.",
+)
+
+
+@cistern.solution
+def _(A, h, h_max, q_1, q_2, q_o):
+    r"""Two streams come in and one goes out. What remains of them is ${q_1} + {q_2} - {q_o} =$ {net}.
+
+    The volume is area times level. A litre on a square metre is one millimetre high, so with {A} the rate is
+
+    $$\dot h = \frac{ {net} }{ {A} } = {rate}$$
+
+    in mm/min.
+
+    ***
+
+    The rate is {sign}, so the level {moves}, and in the end the cistern {end}. From {h} to {where} it is a way of
+    {way}, and at a constant rate this takes ${way}/{speed} =$ {time}.
+    """
+    net = q_1 + q_2 - q_o
+    rises = net > 0
+    return {
+        "net": (net, "L/min"),
+        "sign": "positive" if rises else "negative",
+        "moves": "rises" if rises else "falls",
+        "where": "the rim" if rises else "the bottom",
+        "way": (h_max - h if rises else h, "mm"),
+        "speed": (abs(net) / A, "mm/min"),
+    }
+
+
 # Tanks that are not upright: what they look like, the area at the level z and that of the rim.
 h, z, H, R, L, W, q_i, q_o, k, rho = sympy.symbols("h z H R L W q_i q_o k rho", positive=True)
 SHAPES = {
@@ -119,7 +164,12 @@ def _volume(shape):
     return sympy.integrate(area, (z, 0, h)), area.subs(z, h)
 
 
-@exercise("3.2", title="Walls that are not upright", points=3)
+@exercise(
+    "3.2",
+    title="Walls that are not upright",
+    points=3,
+    insight="Whatever the shape, the level moves at the net flow over the area that the liquid has just now.",
+)
 def sloping_walls(shape=choice(*SHAPES, reference="funnel"), outlet=choice(*OUTLETS, reference="pump")):
     r"""{looks}. It holds a liquid of constant density $\rho$ [kg/m³], and its level $h$ [m] is counted from the
     bottom. All lengths are in metres. The volume flow $q_i$ [m³/s] comes in, and {loses}.
@@ -137,7 +187,9 @@ def sloping_walls(shape=choice(*SHAPES, reference="funnel"), outlet=choice(*OUTL
 
 @sloping_walls.shows
 def _(shape, outlet):
-    return {"looks": SHAPES[shape][0], "loses": OUTLETS[outlet][0]}
+    looks, area = SHAPES[shape]
+    loses, out = OUTLETS[outlet]
+    return {"looks": looks, "loses": loses, "slice": sympy.latex(area), "out": sympy.latex(out)}
 
 
 @sloping_walls.mistake("The area is not the same at every height. Add it up from the bottom to the level.")
@@ -172,12 +224,52 @@ def _(shape, outlet):
     return {"rate": (q_i + out) / area}
 
 
+sloping_walls.hints(
+    "The mass balance has the volume in it, not the level. How does the volume depend on the level?",
+    "Cut the liquid into thin slices. The one at the height $z$ has the area $A(z)$, and $V = \\int_0^h A(z)\\,dz$. "
+    "Then differentiate by the chain rule: $\\dot V = A(h)\\,\\dot h$.",
+    "The slice at the height $z$ has the area ${slice}$. The balance is $A(h)\\,\\dot h = q_i - {out}$.",
+)
+
+
+@sloping_walls.solution
+def _(shape, outlet):
+    r"""**The volume.** A thin slice at the height $z$ has the area ${slice}$. All slices from the bottom to the
+    level make
+
+    $$V = \int_0^h {slice}\,dz = {V}$$
+
+    **The balance.** The density $\rho$ is the same inside and in both streams, so it cancels: $\dot V = q_i - {out}$.
+    By the chain rule, $\dot V = \frac{dV}{dh}\,\dot h$, and $dV/dh$ is the area at the level, ${area}$. So
+
+    $$\dot h = \frac{q_i - {out}}{ {area} }$$
+
+    Where the level is low, the same flow moves it faster.
+    """
+    return {"area": _volume(shape)[1]}
+
+
+@sloping_walls.solution_picture
+def _(shape, outlet):
+    """The level of the vessel while it is filled at a constant rate: fast at first, and then more and more slowly."""
+    volume = _volume(shape)[0]
+    full = sympy.lambdify(h, (volume / volume.subs(h, H)).subs(H, 1), "numpy")
+    levels = np.linspace(0, 1, 101)
+    return plane_plot({"level": (full(levels), levels)}, "volume, as a part of $V(H)$", "$h/H$")
+
+
 def _decay(V, q, k):
     """How fast the concentration follows, and which part of the inflow's remains."""
     return V / (q + k * V), q / (q + k * V)
 
 
-@exercise("3.3", title="A pond that cleans itself", points=4, where=lambda V, q, k: 0.15 <= k * V / q <= 3)
+@exercise(
+    "3.3",
+    title="A pond that cleans itself",
+    points=4,
+    where=lambda V, q, k: 0.15 <= k * V / q <= 3,
+    insight="Whatever removes more makes two things at once: the end is lower, and it comes sooner.",
+)
 def pond(
     V=between(100, 600, "m³", reference=300),
     q=between(4, 20, "m³/h", reference=10),
@@ -244,7 +336,56 @@ def _(V, q, k, c_in):
     return {"c": share * c_in * sympy.exp(-t / T)}
 
 
-@exercise("3.4", title="Milk that is kept warm", points=4, where=lambda T_i, T_e, T_SP: T_e - T_i >= 5 and T_e < T_SP)
+pond.hints(
+    "Balance of the waste: the grams in the pond change by what flows in, minus what flows out, minus what is eaten.",
+    "In the pond there are $Vc$ grams. The stream carries $qc_{in}$ in and $qc$ out, and the bacteria eat $kc$ in "
+    "every cubic metre, so $kVc$ in all. Collect what has $c$ in it and bring the equation to the form $T\\dot c + c "
+    "= c_s$.",
+    "The balance: ${V}\\,\\dot c = {q}\\cdot{c_in} - ({q} + {k}\\cdot{V})\\,c$. Divide by what multiplies $c$.",
+)
+
+
+@pond.solution
+def _(V, q, k, c_in):
+    r"""In the pond there are $Vc$ grams of waste. In an hour, ${q}\cdot{c_in}$ grams flow in, ${q}\,c$ grams flow
+    out, and the bacteria eat ${k}\,c$ in every cubic metre, which is ${k}\cdot{V}\,c = {eaten}\,c$ in the whole
+    pond:
+
+    $${V}\,\dot c = {brought} - ({q} + {eaten})\,c$$
+
+    Divide by ${q} + {eaten} = {both}$, so that $c$ stands alone. What is then in front of $\dot c$ is the time
+    constant, and what stands on the right is the end:
+
+    $$T = \frac{ {V} }{ {both} } = {T}, \qquad c_s = \frac{ {brought} }{ {both} } = {c_s}$$
+
+    in hours and in g/m³. From a clean pond, the concentration goes to its end like any lag: $c(t) = {response}$.
+    """
+    T, share = _decay(V, q, k)
+    return {
+        "eaten": k * V,
+        "brought": q * c_in,
+        "both": q + k * V,
+        "response": rf"{float(share * c_in):.4g}\,\left(1 - e^{{-t/{float(T):.4g}}}\right)",
+    }
+
+
+@pond.solution_picture
+def _(V, q, k, c_in):
+    """The concentration with bacteria, and what it would be without them: higher in the end, and later."""
+    T, share = _decay(V, q, k)
+    with_them, without = share * c_in * (1 - sympy.exp(-t / T)), c_in * (1 - sympy.exp(-t * q / V))
+    curves = {"with bacteria": with_them, "without": without}
+    times = np.linspace(0, 4 * float(V / q), 201)
+    return time_plot(curves, times, xlabel="$t$ [h]", ylabel="$c$ [g/m³]").mark(T, "$T$", signal="with bacteria")
+
+
+@exercise(
+    "3.4",
+    title="Milk that is kept warm",
+    points=4,
+    where=lambda T_i, T_e, T_SP, c, F, U_h: T_e - T_i >= 5 and T_e < T_SP and abs(U_h / (c * F) - 1) >= 0.06,
+    insight="What carries heat away for each kelvin decides both how warm the tank gets and how fast.",
+)
 def milk(
     m=between(100, 500, "kg", reference=200, step=20),
     F=choice(0.05, 0.08, 0.1, 0.12, 0.15, 0.2, unit="kg/s", reference=0.1),
@@ -258,26 +399,27 @@ def milk(
     {c}. It comes in at {T_i}, the dairy has {T_e}, and between vat and dairy the heat transfer coefficient is {U_h}.
     An element heats the milk with the power $P$.
 
-    Which power holds the milk at {T_SP}? Which temperature does the milk reach in the end if the element fails? And
-    what is the transfer function from the power [W] to the temperature [°C], with the numbers of the vat and with time
-    in seconds?
+    Which power holds the milk at {T_SP}? Which temperature does the milk reach in the end if the element fails? By
+    how many kelvin does the milk become warmer in the end for each kilowatt more? And with which time constant does
+    it get there? (A balance $T\,\dot y + y = \dots$ has the time constant $T$.)
     """
+    loss = c * F + U_h
     return answers(
         P=number((c * F * (T_SP - T_i) + U_h * (T_SP - T_e)) / 1000, "kW", "the power"),
-        T_off=number((c * F * T_i + U_h * T_e) / (c * F + U_h), "°C", "the temperature without the element"),
-        H=transfer_function(1 / (c * m * s + c * F + U_h), "the transfer function from the power"),
+        T_off=number((c * F * T_i + U_h * T_e) / loss, "°C", "the temperature without the element"),
+        warmer=number(1000 / loss, "K/kW", "the rise of the temperature for each kilowatt"),
+        T=number(c * m / loss / 60, "min", "the time constant"),
     )
 
 
 @milk.mistake("Heat also passes through the wall, between the vat and the dairy.")
 def _(m, F, c, T_i, T_SP):
-    return {"P": c * F * (T_SP - T_i) / 1000, "T_off": T_i, "H": 1 / (c * m * s + c * F)}
+    return {"P": c * F * (T_SP - T_i) / 1000, "T_off": T_i, "warmer": 1000 / (c * F), "T": m / F / 60}
 
 
 @milk.mistake("The milk that flows through carries heat, too: it comes in cold and leaves as warm as the vat.")
-def _(m, F, c, U_h, T_e, T_SP):
-    found = {"P": U_h * (T_SP - T_e) / 1000, "T_off": T_e}
-    return found if abs(U_h / (c * F) - 1) < 0.05 else found | {"H": 1 / (c * m * s + U_h)}
+def _(m, c, U_h, T_e, T_SP):
+    return {"P": U_h * (T_SP - T_e) / 1000, "T_off": T_e, "warmer": 1000 / U_h, "T": c * m / U_h / 60}
 
 
 @milk.mistake("The dairy is warmer than the milk that comes in: the two differences of temperature are not the same.")
@@ -293,24 +435,68 @@ def _(F, c, U_h, T_i, T_e):
     return {"T_off": mean} if abs(mean / right - 1) > 0.03 else {}
 
 
-@milk.mistake("That is per kilowatt. Here the power is in watts.")
-def _(m, F, c, U_h):
-    return {"H": 1000 / (c * m * s + c * F + U_h)}
-
-
-@milk.mistake("That is right with the time in minutes. Here it should be in seconds.")
-def _(m, F, c, U_h):
-    return {"H": 1 / (c * m * s / 60 + c * F + U_h)}
-
-
-@milk.mistake("The lag is right. By how many kelvin does one watt more warm the milk in the end?")
-def _(m, F, c, U_h):
-    return {"H": 1 / (c * m / (c * F + U_h) * s + 1)}
+@milk.mistake("In which direction does heat pass through the wall when the vat is warmer than the dairy?")
+def _(F, c, U_h, T_i, T_e, T_SP):
+    return {"P": (c * F * (T_SP - T_i) - U_h * (T_SP - T_e)) / 1000}
 
 
 @milk.mistake("The energy inside is that of the whole mass. What is the rate of the temperature multiplied by?")
 def _(F, c, U_h):
-    return {"H": 1 / (c * s + c * F + U_h)}
+    return {"T": c / (c * F + U_h) / 60}
+
+
+@milk.mistake(
+    "That is the temperature that a kilowatt more would give. How many kelvin does it rise, from wherever it is?"
+)
+def _(F, c, U_h, T_i, T_e):
+    return {"warmer": (c * F * T_i + U_h * T_e + 1000) / (c * F + U_h)}
+
+
+milk.hints(
+    "Energy balance of the vat: the energy inside changes by the power of the element, plus what the stream brings, "
+    "minus what it carries away, minus what passes through the wall.",
+    "With $\\vartheta$ for the temperature of the milk, $cm\\,\\dot\\vartheta = P + cF\\,(T_i - \\vartheta) + "
+    "U_h\\,(T_e - \\vartheta)$. At rest, the left side is zero. For the last two questions collect what has "
+    "$\\vartheta$ in it.",
+    "For each kelvin, the stream carries $cF = {c}\\cdot{F}$ watts away and the wall {U_h} more. To hold {T_SP}, the "
+    "element has to make up for ${T_SP} - {T_i}$ kelvin in the stream, and for ${T_SP} - {T_e}$ at the wall.",
+)
+
+
+@milk.solution
+def _(m, F, c, U_h, T_i, T_e, T_SP):
+    r"""With $\vartheta$ for the temperature of the milk, the energy balance of the vat is, in watts,
+
+    $$cm\,\dot\vartheta = P + cF\,(T_i - \vartheta) + U_h\,(T_e - \vartheta)$$
+
+    For each kelvin the stream carries $cF = {c}\cdot{F} =$ {stream}, and the wall {U_h}.
+
+    **The power.** At rest $\dot\vartheta = 0$. The element makes up for both losses,
+    $P = {stream}\cdot({T_SP} - {T_i}) + {U_h}\cdot({T_SP} - {T_e})$, in watts, which is {P}.
+
+    **Without it** the stream pulls the milk to {T_i} and the wall to {T_e}. The balance at rest gives the mean of the
+    two, weighted with what each of them carries:
+    $\vartheta = ({stream}\cdot{T_i} + {U_h}\cdot{T_e})/({stream} + {U_h}) =$ {T_off}.
+
+    **For each kilowatt.** Collect what has $\vartheta$ in it: $cm\,\dot\vartheta + {loss}\,\vartheta = P + \dots$
+    In the end the rate is zero, so 1000 W more raise the temperature by $1000/{loss}$ kelvin, which is {warmer}.
+
+    **The time constant.** Divide the equation by {loss}. Then $\vartheta$ is alone, and in front of its rate is
+    ${c}\cdot{m}/{loss} = {seconds}$, in seconds: a time constant of {T}.
+    """
+    loss = c * F + U_h
+    return {"stream": (c * F, "W/K"), "loss": (loss, "W/K"), "seconds": c * m / loss}
+
+
+@milk.solution_picture
+def _(m, F, c, U_h, T_i, T_e, T_SP):
+    """The temperature after the element has failed: it falls from the setpoint to where stream and dairy pull it."""
+    loss = c * F + U_h
+    off, T = (c * F * T_i + U_h * T_e) / loss, c * m / loss / 60
+    milk_temperature = off + (T_SP - off) * sympy.exp(-t / T)
+    times = np.linspace(0, 5 * float(T), 201)
+    plot = time_plot({"$T$": (milk_temperature, "measurement")}, times, xlabel="$t$ [min]", ylabel="$T$ [°C]")
+    return plot.level(off, "without the element").mark(T, "one time constant")
 
 
 g_earth = sympy.Rational("9.81")
@@ -325,6 +511,7 @@ def _lift(T, J, r, m_1, m_2, g):
     "3.5",
     title="A lift with a counterweight",
     points=5,
+    insight="Weights that hang on both sides of a drum subtract, masses that move together add up.",
     where=lambda m_1, m_2, J, r, T: (
         abs(m_1 - m_2) >= 60
         and abs(T) >= 200
@@ -449,23 +636,61 @@ def _():
     return {"formula": _lift(TORQUE, INERTIA, RADIUS, CABIN, WEIGHT, g_earth)}
 
 
-# Circuits of two resistors and a capacitor: what they look like, the transfer function, the time constant.
-R_1, R_2, C = sympy.symbols("R_1 R_2 C", positive=True)
+lift.hints(
+    "Cut the rope on both sides of the drum. Then there are three bodies, and each has a balance: two of forces, one "
+    "of torques.",
+    "With the tensions $F_1$ and $F_2$: $m_1 a = F_1 - m_1 g$ for the cabin, $m_2 a = m_2 g - F_2$ for the "
+    "counterweight, which goes down as fast as the cabin goes up, and $J\\,a/r = T - F_1 r + F_2 r$ for the drum.",
+    "Solve the first two for the tensions and put them into the third, divided by $r$. What multiplies $a$ then is "
+    "$m_1 + m_2 + J/r^2 = {m_1} + {m_2} + \\frac{ {J} }{ {r}^2 }$, in kilograms.",
+)
+
+
+@lift.solution
+def _(m_1, m_2, J, r, T):
+    r"""Cut the rope on both sides, with the tensions $F_1$ and $F_2$. When the cabin goes up with $a$, the
+    counterweight goes down with $a$, and the drum turns with $a/r$:
+
+    $$m_1 a = F_1 - m_1 g, \qquad m_2 a = m_2 g - F_2, \qquad J\,a/r = T - F_1 r + F_2 r$$
+
+    The first two give $F_1 = m_1(g + a)$ and $F_2 = m_2(g - a)$. Put them into the third one and divide by $r$:
+    $J a/r^2 = T/r - m_1(g + a) + m_2(g - a)$. Collect $a$:
+
+    $$a = \frac{T/r - (m_1 - m_2)\,g}{m_1 + m_2 + J/r^2}$$
+
+    **The mass that seems to move** is what is below the line: ${m_1} + {m_2} + {J}/{r}^2 =$ {mass}. The drum counts
+    as {drum} in it.
+
+    **To hold the cabin** the force above the line must be zero: $T = (m_1 - m_2)\,g\,r$, and
+    $({m_1} - {m_2})\cdot 9.81\cdot{r} =$ {T_hold}.
+
+    **Under the torque of {T}** the force is ${T}/{r} - ({m_1} - {m_2})\cdot 9.81 = {force}$ newtons, and divided by
+    the mass this is {a}.
+    """
+    return {"drum": (J / r**2, "kg"), "force": T / r - (m_1 - m_2) * g_earth, "T": (T, "N m")}
+
+
+# Circuits of two resistors and a capacitor: what they look like, how they are drawn, and the rate of the capacitor's
+# voltage v.
+R_1, R_2, C, V_IN, V_C = sympy.symbols("R_1 R_2 C v_in v", positive=True)
 CIRCUITS = {
     "loaded": (
         "A resistor $R_1$ leads from the input to the output. From the output to ground lead a capacitor $C$ and, "
         "beside it, a resistor $R_2$, which is the input resistance of the instrument that reads the voltage",
-        R_2 / (R_1 + R_2 + R_1 * R_2 * C * s),
+        (["R_1"], ["C", "R_2"], False),
+        ((V_IN - V_C) / R_1 - V_C / R_2) / C,
     ),
     "stepped": (
         "A resistor $R_1$ leads from the input to the output. From the output to ground lead, one behind the other, a "
         "resistor $R_2$ and a capacitor $C$",
-        (R_2 * C * s + 1) / ((R_1 + R_2) * C * s + 1),
+        (["R_1"], ["R_2", "C"], True),
+        (V_IN - V_C) / (R_1 + R_2) / C,
     ),
     "bridged": (
         "A resistor $R_1$ and, beside it, a capacitor $C$ lead from the input to the output. From the output to "
         "ground leads a resistor $R_2$",
-        R_2 * (R_1 * C * s + 1) / (R_1 + R_2 + R_1 * R_2 * C * s),
+        (["R_1", "C"], ["R_2"], False),
+        ((V_IN - V_C) / R_2 - V_C / R_1) / C,
     ),
 }
 
@@ -474,47 +699,80 @@ def _lag(circuit, R_1, R_2, C):
     return (R_1 + R_2) * C if circuit == "stepped" else R_1 * R_2 * C / (R_1 + R_2)
 
 
-@exercise("3.6", title="Two resistors and a capacitor", points=5, where=lambda r_1, r_2: r_1 != r_2)
+def _slow_and_fast(circuit, r_1, r_2):
+    """By what the circuit multiplies a constant voltage, and a very fast one."""
+    share = r_2 / (r_1 + r_2)
+    return {
+        "loaded": (share, sympy.Integer(0)),
+        "stepped": (sympy.Integer(1), share),
+        "bridged": (share, sympy.Integer(1)),
+    }[circuit]
+
+
+@exercise(
+    "3.6",
+    title="Two resistors and a capacitor",
+    points=5,
+    where=lambda r_1, r_2: r_1 != r_2,
+    insight="Ask what a capacitor does at the two ends: it stops a constant current, and lets a very fast one through.",
+)
 def two_resistors(
     circuit=choice(*CIRCUITS, reference="loaded"),
     r_1=between(1, 20, "kΩ", reference=5),
     r_2=between(2, 60, "kΩ", reference=20),
     c=choice(1, 2, 5, 10, 20, 50, unit="µF", reference=10),
 ):
-    """{looks}. Nothing else takes a current from the output.
+    r"""{looks}. Nothing else takes a current from the output.
 
-    Set up the balance of the currents, and find the transfer function from the input voltage to the output voltage in
-    the symbols $R_1$, $R_2$ and $C$.
+    Call the voltage over the capacitor $v$, from its side towards the input to its other side. Set up the balance
+    of the currents: with which rate $\dot v$ does it change, as a formula in $v$, the input voltage $v_{in}$,
+    $R_1$, $R_2$ and $C$?
 
     Now let $R_1$ = {r_1}, $R_2$ = {r_2} and $C$ = {c}. With which time constant does the capacitor follow? By which
-    factor does the circuit multiply a constant voltage, and by which one a voltage that changes very fast?
+    factor does the circuit multiply a constant voltage on its way to the output, and by which one a voltage that
+    changes very fast?
     """
-    H = CIRCUITS[circuit][1]
-    share = r_2 / (r_1 + r_2)
-    slow, fast = {"loaded": (share, 0), "stepped": (1, share), "bridged": (share, 1)}[circuit]
+    slow, fast = _slow_and_fast(circuit, r_1, r_2)
     return answers(
-        H=transfer_function(H, "the transfer function", symbols="R_1 R_2 C"),
+        rate=expression(
+            CIRCUITS[circuit][2], "the rate of the voltage over the capacitor", symbols="R_1 R_2 C v_in v", unit="V/s"
+        ),
         T=number(_lag(circuit, r_1, r_2, c), "ms", "the time constant"),
         slow=number(slow, "", "the factor for a constant voltage"),
         fast=number(fast, "", "the factor for a very fast one"),
     )
 
 
-@two_resistors.shows
-def _(circuit):
-    return {"looks": CIRCUITS[circuit][0]}
+@two_resistors.picture
+def _(circuit, r_1, r_2, c):
+    """The circuit. {looks}."""
+    values = {"R_1": written(r_1, "kΩ"), "R_2": written(r_2, "kΩ"), "C": written(c, "µF")}
+    title = ", ".join(f"${name}$ = {value}" for name, value in values.items())
+    return draw.voltage_divider(*CIRCUITS[circuit][1], title=title)
 
 
 @two_resistors.mistake("There is a second resistor, and a current flows through it as well.")
 def _(circuit, r_1, c):
-    if circuit == "stepped":
-        return {"H": 1 / (R_1 * C * s + 1), "T": r_1 * c}
-    return {"H": 1 / (R_1 * C * s + 1) if circuit == "loaded" else R_2 * C * s / (R_2 * C * s + 1), "T": r_1 * c}
+    alone = {"loaded": (V_IN - V_C) / (R_1 * C), "stepped": (V_IN - V_C) / (R_1 * C), "bridged": -V_C / (R_1 * C)}
+    return {"rate": alone[circuit], "T": r_1 * c}
 
 
 @two_resistors.mistake("There is a second resistor, and a current flows through it as well.")
-def _(r_2, c):
-    return {"T": r_2 * c}
+def _(circuit, r_2, c):
+    alone = {"loaded": -V_C / (R_2 * C), "stepped": (V_IN - V_C) / (R_2 * C), "bridged": (V_IN - V_C) / (R_2 * C)}
+    return {"rate": alone[circuit], "T": r_2 * c}
+
+
+@two_resistors.mistake(
+    "Which of the currents charge the capacitor, and which one discharges it? They have opposite signs."
+)
+def _(circuit):
+    wrong = {
+        "loaded": ((V_IN - V_C) / R_1 + V_C / R_2) / C,
+        "stepped": (V_IN + V_C) / ((R_1 + R_2) * C),
+        "bridged": ((V_IN - V_C) / R_2 + V_C / R_1) / C,
+    }
+    return {"rate": wrong[circuit]}
 
 
 @two_resistors.mistake("Across which of the two resistors is the output voltage?")
@@ -530,28 +788,97 @@ def _(circuit, r_1, r_2, c):
     return {"T": r_1 * r_2 * c / (r_1 + r_2) if circuit == "stepped" else (r_1 + r_2) * c}
 
 
-@two_resistors.mistake("That is the voltage over another part of the circuit. Between which two points is the output?")
+@two_resistors.mistake("That is a current. Which law connects the current into a capacitor with its voltage?")
 def _(circuit):
-    H = CIRCUITS[circuit][1]
-    return {"H": 1 / ((R_1 + R_2) * C * s + 1) if circuit == "stepped" else sympy.together(1 - H)}
+    return {"rate": CIRCUITS[circuit][2] * C}
 
 
-@two_resistors.mistake("That is the circuit with its values. Give the transfer function in the symbols.")
+@two_resistors.mistake("That is the circuit with its values. Give the formula in the symbols.")
 def _(circuit, r_1, r_2, c):
-    return {"H": CIRCUITS[circuit][1].subs({R_1: 1000 * r_1, R_2: 1000 * r_2, C: c / 10**6})}
+    return {"rate": CIRCUITS[circuit][2].subs({R_1: 1000 * r_1, R_2: 1000 * r_2, C: c / 10**6})}
 
 
 @two_resistors.mistake("A capacitor lets no constant current through, and is like a wire for a very fast one.")
 def _(circuit, r_1, r_2):
-    share = r_2 / (r_1 + r_2)
-    slow, fast = {"loaded": (share, 0), "stepped": (1, share), "bridged": (share, 1)}[circuit]
+    slow, fast = _slow_and_fast(circuit, r_1, r_2)
     return {"slow": fast, "fast": slow}
+
+
+two_resistors.hints(
+    "Kirchhoff's law of currents: what flows into a junction flows out of it. The current into a capacitor is "
+    "$C\\dot v$, that through a resistor is its voltage over $R$.",
+    "{way}",
+    "For the two factors, take the capacitor out of the circuit (constant voltage), and then put a wire in its place "
+    "(very fast). With $R_1 = {r_1}$ and $R_2 = {r_2}$, in kΩ, what is left is a voltage divider, or less than that.",
+)
+
+
+@two_resistors.shows
+def _(circuit):
+    way = {
+        "loaded": "At the output three branches meet: what comes through $R_1$, with the voltage $v_{in} - v$, goes on "
+        "through $C$ and through $R_2$, which both have the voltage $v$.",
+        "stepped": "All three are one behind the other and share one current. The two resistors together have the "
+        "voltage $v_{in} - v$.",
+        "bridged": "The voltage over $R_1$ is $v$ as well, so $R_2$ has $v_{in} - v$. What comes through $C$ and $R_1$ "
+        "together goes on through $R_2$.",
+    }
+    return {"looks": CIRCUITS[circuit][0], "way": way[circuit]}
+
+
+@two_resistors.solution
+def _(circuit, r_1, r_2, c):
+    r"""{way} So the balance of the currents is
+
+    $${balance}$$
+
+    and solved for the rate it is $\dot v = {solved}$.
+
+    **The time constant.** Collect what has $v$ in it and bring the equation to the form $T\dot v + v = \dots$: in
+    front of the rate is {lag}, with the two resistors in {together}. With kΩ times µF in milliseconds, $T$ = {T}.
+
+    **A constant voltage.** The capacitor is charged and takes no current. Take it out of the circuit: what is left
+    multiplies the voltage by {slow}.
+
+    **A very fast one.** The capacitor has no time to change its voltage, and lets the current through like a wire:
+    now the circuit multiplies it by {fast}.
+    """
+    balance = {
+        "loaded": r"\frac{v_{in} - v}{R_1} = C\dot v + \frac{v}{R_2}",
+        "stepped": r"C\dot v = \frac{v_{in} - v}{R_1 + R_2}",
+        "bridged": r"C\dot v + \frac{v}{R_1} = \frac{v_{in} - v}{R_2}",
+    }
+    solved = {
+        "loaded": r"\frac{1}{C}\left(\frac{v_{in} - v}{R_1} - \frac{v}{R_2}\right)",
+        "stepped": r"\frac{v_{in} - v}{(R_1 + R_2)\,C}",
+        "bridged": r"\frac{1}{C}\left(\frac{v_{in} - v}{R_2} - \frac{v}{R_1}\right)",
+    }
+    in_series = circuit == "stepped"
+    return {
+        "balance": balance[circuit],
+        "solved": solved[circuit],
+        "lag": r"$(R_1 + R_2)\,C$" if in_series else r"$\frac{R_1 R_2}{R_1 + R_2}\,C$",
+        "together": "series" if in_series else "parallel",
+    }
+
+
+@two_resistors.solution_picture
+def _(circuit, r_1, r_2, c):
+    """The output after a step of the input, from the factor for very fast voltages to that for constant ones."""
+    slow, fast = _slow_and_fast(circuit, r_1, r_2)
+    T = _lag(circuit, r_1, r_2, c)
+    output = slow + (fast - slow) * sympy.exp(-t / T)
+    axes = {"xlabel": "$t$ [ms]", "ylabel": "$v_{out}/v_{in}$", "ylim": (-0.05, 1.1)}
+    return time_plot({"$v_{out}$": (output, "measurement")}, np.linspace(0, 5 * float(T), 201), **axes).level(
+        slow, "slow"
+    )
 
 
 @exercise(
     "3.7",
     title="A filter against the hum",
     points=5,
+    insight="A filter that takes more of the hum away also follows more slowly: one number for two wishes.",
     where=lambda f, rest, t_95: (
         1.3 <= 2 * math.pi * f * t_95 / 1000 / math.log(20) / math.sqrt((100 / float(rest)) ** 2 - 1) <= 4
     ),
@@ -562,10 +889,10 @@ def hum(
     t_95=between(60, 800, "ms", reference=300, step=20),
     C=choice(1, 2.2, 3.3, 4.7, 6.8, 10, 15, 22, unit="µF", reference=4.7),
 ):
-    r"""The signal of a thermometer carries the hum of the mains, a sine of {f}. An RC circuit as in Example 3.5 should
-    take it away. A capacitor of {C} is at hand.
+    r"""The signal of a thermometer carries the hum of the mains, a sine of {f}. An RC circuit as in Example 3.5
+    should take it away. A capacitor of {C} is at hand.
 
-    Choose the resistance $R$: no more than {rest} of the amplitude of the hum should come through. And when the
+    Choose the resistance $R$: at most {rest} of the amplitude of the hum should come through. And when the
     temperature makes a step, the output should have gone 95 % of the way after {t_95} at the latest.
     """
     omega, capacitance, end = 2 * math.pi * float(f), float(C) * 1e-6, float(t_95)
@@ -578,11 +905,236 @@ def hum(
 
     smallest = math.sqrt((100 / float(rest)) ** 2 - 1) / omega / capacitance / 1000
     largest = end / 1000 / math.log(20) / capacitance / 1000
+
+    def step_and_hum(R):
+        seconds = max(R, 1e-6) * 1000 * capacitance
+        times = np.linspace(0, 2 * end / 1000, 2001)
+        step = 100 * (1 - np.exp(-times / seconds))
+        signals = {
+            "step and hum, filtered": (step + hum_left(R) / 3 * np.sin(omega * times), "measurement"),
+            "the step alone": (step, "setpoint"),
+        }
+        plot = time_plot(signals, 1000 * times, f"With $R$ = {R:.4g} kΩ", xlabel="$t$ [ms]", ylabel="way [%]")
+        return plot.event(end, "from here on at least 95 %").level(95, "95 %")
+
     return answers(
         R=design(
             number(math.sqrt(smallest * largest), "kΩ", "the resistance"),
             criterion("the resistance is positive", lambda R: R > 0),
             criterion("the rest of the hum", hum_left, below=float(rest), unit="%"),
             criterion("the time to 95 % of the way", time_to_95, below=end, unit="ms"),
+            draws=step_and_hum,
         )
     )
+
+
+def _limits(f, rest, t_95, C):
+    """The products RC between which both wishes come true, in seconds."""
+    return math.sqrt((100 / float(rest)) ** 2 - 1) / (2 * math.pi * float(f)), float(t_95) / 1000 / math.log(20)
+
+
+@hum.mistake("The frequency in hertz counts periods. How many radians does the sine go in a second?")
+def _(f, rest, t_95, C):
+    return {"R": 2 * math.pi * _limits(f, rest, t_95, C)[0] / float(C) * 1000}
+
+
+@hum.mistake("After one time constant a step has gone only 63 % of its way. How many time constants take it to 95 %?")
+def _(t_95, C):
+    return {"R": float(t_95) / float(C)}
+
+
+@hum.mistake("That is the circuit that takes so much away. How much should come through?")
+def _(f, rest, t_95, C):
+    omega = 2 * math.pi * float(f)
+    taken = 1 - float(rest) / 100
+    return {"R": math.sqrt(1 / taken**2 - 1) / omega / float(C) * 1000}
+
+
+@hum.mistake(
+    "At this resistance the sine still has 71 % of its amplitude: that is where the filter only begins to act."
+)
+def _(f, C):
+    return {"R": 1 / (2 * math.pi * float(f)) / float(C) * 1000}
+
+
+hum.hints(
+    "Each wish is a limit of the product $RC$, one from below and one from above.",
+    "A sine comes through with $1/\\sqrt{1 + (\\omega RC)^2}$ of its amplitude, with $\\omega$ in radians per "
+    "second. A step has gone $1 - e^{-t/RC}$ of its way.",
+    "Here $\\omega = 2\\pi\\cdot{f}$, and $1/\\sqrt{1 + (\\omega RC)^2}$ must be at most ${rest}/100$. The step must "
+    "have gone 95 % at {t_95}: $e^{-{t_95}/RC} = 0.05$, with $RC$ in milliseconds.",
+)
+
+
+@hum.solution
+def _(f, rest, t_95, C):
+    r"""**Against the hum.** With $\omega = 2\pi\cdot{f} =$ {omega}, the rest of the sine is $1/\sqrt{1 + (\omega
+    RC)^2}$. At most {rest} means $\omega RC \geq \sqrt{(100/{rest})^2 - 1} = {product}$, so $RC$ must be at least
+    {shortest}.
+
+    **For the step.** $1 - e^{-t/RC}$ is 95 % after $\ln 20$ = 3.0 time constants. At {t_95} at the latest means
+    that $RC$ is at most {longest}.
+
+    With a capacitor of {C}, these are resistances from {smallest} to {largest}. Any of them will do; the geometric
+    mean has the same reserve to both sides: $R$ = {R}.
+    """
+    shortest, longest = _limits(f, rest, t_95, C)
+    capacitance = float(C) * 1e-6
+    return {
+        "omega": (2 * math.pi * float(f), "rad/s"),
+        "product": math.sqrt((100 / float(rest)) ** 2 - 1),
+        "shortest": (1000 * shortest, "ms"),
+        "longest": (1000 * longest, "ms"),
+        "smallest": (shortest / capacitance / 1000, "kΩ"),
+        "largest": (longest / capacitance / 1000, "kΩ"),
+    }
+
+
+# Openings through which water leaves a tank: the power of the level with which the outflow grows.
+OPENINGS = {"a hole in the bottom": sympy.Rational(1, 2), "a slot in the wall": sympy.Rational(3, 2)}
+DEEPEST = 2  # metres
+
+
+def _flows(opening, h_s, q_i):
+    """Levels, inflow and outflow of the picture, in metres and litres per second."""
+    levels = np.linspace(0, DEEPEST, 201)
+    return levels, np.full(levels.shape, float(q_i)), float(q_i) * (levels / float(h_s)) ** float(OPENINGS[opening])
+
+
+@exercise(
+    "3.8",
+    title="A balance seen in a picture",
+    points=4,
+    where=lambda opening, h_s, q_i, h_1: (
+        (h_s >= 1 or opening == "a hole in the bottom") and abs((h_1 / h_s) ** OPENINGS[opening] - 1) >= 0.25
+    ),
+    insight="Near its rest, a tank feels only the slope of its outflow: that is all of linearisation.",
+)
+def seen_balance(
+    opening=choice(*OPENINGS, reference="a hole in the bottom"),
+    A=between(1, 6, "m²", reference=3, step=0.5),
+    h_s=between(0.7, 1.4, "m", reference=0.9, step=0.1),
+    q_i=between(8, 30, "L/s", reference=16, step=1),
+    h_1=between(0.3, 1.8, "m", reference=0.4, step=0.1),
+):
+    r"""Water flows into a tank with upright walls and a cross-section of {A}, always at the same rate, and leaves
+    it through {opening}. Nobody knows the formula of this opening, so the outflow has been measured at many levels.
+    The picture shows both flows.
+
+    At which level does the tank come to rest? At which rate does the level change while it is at {h_1} (negative if
+    it falls)? And with which time constant does it come back after a small disturbance of its rest? For this, lay a
+    ruler along the curve at the place of rest: near it, the outflow is as good as a straight line.
+
+    (`h, q_i, q_o = exercise("3.8").given("h", "q_i", "q_o")` are the levels [m], the inflow and the outflow [L/s].)
+    """
+    power = OPENINGS[opening]
+    return answers(
+        h_s=number(h_s, "m", "the level at rest", within=0.06),
+        rate=number(q_i * (1 - (h_1 / h_s) ** power) / A, "mm/s", "the rate of the level", within=0.15),
+        T=number(1000 * A * h_s / (power * q_i) / 60, "min", "the time constant", within=0.15),
+    )
+
+
+@seen_balance.shows
+def _(opening, h_s, q_i):
+    levels, inflow, outflow = _flows(opening, h_s, q_i)
+    return {"h": levels, "q_i": inflow, "q_o": outflow}
+
+
+@seen_balance.picture
+def _(opening, h_s, q_i):
+    """Two curves against the level: the inflow is constant, the outflow grows with the level and crosses it once."""
+    return _both_flows(opening, h_s, q_i, "Inflow and outflow of the tank")
+
+
+def _both_flows(opening, h_s, q_i, title):
+    levels, inflow, outflow = _flows(opening, h_s, q_i)
+    curves = {"inflow": (levels, inflow, "control signal"), "outflow": (levels, outflow, "measurement")}
+    return plane_plot(curves, "$h$ [m]", "flow [L/s]", title, xlim=(0, DEEPEST), ylim=(0, 1.05 * outflow[-1]))
+
+
+@seen_balance.mistake("What comes in raises the level, what goes out lowers it. Do the two flows add up?")
+def _(opening, h_s, q_i, h_1, A):
+    return {"rate": q_i * (1 + (h_1 / h_s) ** OPENINGS[opening]) / A}
+
+
+@seen_balance.mistake("That is the flow that is left over. A litre on a square metre is one millimetre high.")
+def _(opening, h_s, q_i, h_1, A):
+    return {"rate": q_i * (1 - (h_1 / h_s) ** OPENINGS[opening])} if A >= 1.5 else {}
+
+
+@seen_balance.mistake("Something also comes in. How far apart are the two curves at this level?")
+def _(opening, h_s, q_i, h_1, A):
+    wrong, right = -((h_1 / h_s) ** OPENINGS[opening]), 1 - (h_1 / h_s) ** OPENINGS[opening]
+    return {"rate": q_i * wrong / A} if abs(wrong / right - 1) > 0.2 else {}
+
+
+@seen_balance.mistake(
+    "That is the slope of the line to the origin. Which slope has the curve itself where the level rests?"
+)
+def _(h_s, q_i, A):
+    return {"T": 1000 * A * h_s / q_i / 60}
+
+
+@seen_balance.mistake("That is the slope of the curve at the other level. Near which level is the small disturbance?")
+def _(opening, h_s, q_i, h_1, A):
+    power = OPENINGS[opening]
+    factor = (h_1 / h_s) ** (1 - power)
+    return {"T": 1000 * A * h_s / (power * q_i) / 60 * factor} if abs(factor - 1) > 0.2 else {}
+
+
+@seen_balance.mistake(
+    "A slope of the outflow in litres per second for each metre: how many litres has one metre of this tank?"
+)
+def _(opening, h_s, q_i, A):
+    return {"T": 1000 * h_s / (OPENINGS[opening] * q_i) / 60} if A >= 1.5 else {}
+
+
+seen_balance.hints(
+    "The balance of the tank, $A\\,\\dot h = q_i - q_o$, is in the picture: the distance between the two curves.",
+    "At rest the curves meet. Elsewhere their distance, divided by the area, is the rate; a litre on a square metre "
+    "is one millimetre. Near the rest the outflow is $q_o \\approx q_i + k\\,(h - h_s)$, with the slope $k$ of the "
+    "curve there.",
+    "For a small deviation $x = h - h_s$ the balance becomes ${A}\\,\\dot x = -k\\,x$, with $k$ in m³/s for each "
+    "metre. That is $T\\dot x + x = 0$. Read off the slope, as a flow that belongs to one metre of your ruler, and "
+    "mind the litres.",
+)
+
+
+@seen_balance.solution
+def _(opening, A, h_s, q_i, h_1):
+    r"""The balance is $A\,\dot h = q_i - q_o$. Both flows are in the picture, so their distance is what is left over.
+
+    **At rest** nothing is left over: the curves meet at a level of {h_s} and a flow of {flow}.
+
+    **At {h_1}** the outflow is {out}, so {left} are left over. A litre on a square metre is one millimetre high:
+    ${left}/{A} =$ {rate}.
+
+    **Near the rest** put the ruler along the outflow. It rises by {slope} for each metre, which are {cubic} m³/s. A
+    small deviation $x$ from the rest lets that much more flow out, $A\,\dot x = -{cubic}\,x$, and so
+
+    $$T = \frac{ {A} }{ {cubic} } = {seconds}$$
+
+    in seconds, or {T}. The steeper the outflow, the sooner the level is back.
+    """
+    power = OPENINGS[opening]
+    out = q_i * (h_1 / h_s) ** power
+    slope = power * q_i / h_s
+    return {
+        "flow": (q_i, "L/s"),
+        "out": (out, "L/s"),
+        "left": (q_i - out, "L/s"),
+        "slope": (slope, "L/s"),
+        "cubic": float(slope / 1000),
+        "seconds": 1000 * A / slope,
+    }
+
+
+@seen_balance.solution_picture
+def _(opening, h_s, q_i):
+    """The two flows, and the straight line that takes the place of the outflow near the rest."""
+    plot = _both_flows(opening, h_s, q_i, "The ruler at the place of rest")
+    slope, reach = float(OPENINGS[opening] * q_i / h_s), 0.5
+    ends = np.array([float(h_s) - reach, float(h_s) + reach])
+    plot = plot.line(ends, float(q_i) + slope * (ends - float(h_s)), "ruler", role="setpoint")
+    return plot.points(float(h_s), float(q_i), "rest")
