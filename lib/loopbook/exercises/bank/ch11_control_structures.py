@@ -3,8 +3,10 @@
 import cmath
 import math
 
+import numpy as np
 from sympy import Min, Rational, exp, symbols
 
+from loopbook import diagrams
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -20,7 +22,9 @@ from loopbook.exercises.authoring import (
     word,
 )
 from loopbook.exercises.parameters import written
+from loopbook.exercises.reading import listed
 from loopbook.expressions import s, t
+from loopbook.figures import time_plot
 from loopbook.pid import PID
 
 OTHER = {"reverse": "direct", "direct": "reverse"}
@@ -29,21 +33,26 @@ OTHER = {"reverse": "direct", "direct": "reverse"}
 # --- 11.1 ---------------------------------------------------------------------------------------------------------
 
 
-@exercise("11.1", title="Lemonade from syrup", points=2)
+@exercise(
+    "11.1",
+    title="Lemonade from syrup",
+    points=2,
+    insight="Multiply the wild stream, do not divide by it: the loop gain is then the same at every production rate.",
+)
 def lemonade(
     x_S=between(58, 70, "%", reference=65),
     x_L=between(8, 16, "%", reference=13),
     F_S=between(0.4, 2, "kg/s", reference=0.5),
     part=between(20, 80, "%", reference=25, step=5),
 ):
-    """Lemonade is made of sugar syrup and water. The syrup holds {x_S} of sugar by mass, the lemonade needs {x_L},
-    and the water holds none. The syrup is the wild stream: its flow is what the filling machine asks for, now {F_S}. A
-    ratio controller multiplies the measured flow of syrup by $K$ and hands the result to the flow controller of the
-    water as its setpoint, $F_{W,SP} = K F_S$.
+    """Lemonade is mixed from sugar syrup and water. The syrup contains {x_S} of sugar by mass, the lemonade should
+    contain {x_L}, and the water has none. The syrup is the wild stream: its flow follows the filling machine, and is
+    {F_S} now. A ratio controller multiplies the measured flow of syrup by $K$, and the result is the setpoint of the
+    water's flow controller, $F_{W,SP} = K F_S$.
 
     Which ratio $K$ is needed, and what is the setpoint of the water now? Somebody proposes to control the measured
-    quotient $F_W/F_S$ instead, with the same valve. The flow of syrup then falls to {part} of what it is now. By which
-    factor does the gain from the control signal to the quotient change?
+    quotient $F_W/F_S$ instead, with the same valve. Suppose the flow of syrup falls to {part} of what it is now: by
+    which factor does the gain from the control signal to the quotient change?
     """
     K = x_S / x_L - 1
     return answers(
@@ -82,6 +91,45 @@ def _(part):
     return {"factor": 1 - part / 100} if part != 50 else {}
 
 
+lemonade.hints(
+    "Sugar is neither made nor lost: which balances hold for the place where the two streams meet?",
+    "Of the sugar $x_S F_S = x_L (F_S + F_W)$; put $F_W = K F_S$ in. For the last question, write the gain of the "
+    "quotient: the valve changes $F_W$, and $F_S$ is in the denominator.",
+    "Divided by $F_S$ the balance is ${x_S} = {x_L} \\cdot (1 + K)$. The syrup's flow becomes ${part}/100$ of what it "
+    "was, and the gain of the quotient is proportional to $1/F_S$.",
+)
+
+
+@lemonade.solution
+def _():
+    r"""All the sugar comes with the syrup, and the lemonade is as much as syrup and water together:
+    $x_S F_S = x_L (F_S + F_W)$. With $F_W = K F_S$ the flow of syrup cancels: ${x_S} = {x_L} \cdot (1 + K)$.
+
+    ***
+
+    So $K = {x_S}/{x_L} - 1$, which is {K}. The setpoint of the water is $K F_S = {K} \cdot {F_S}$, which is {F_W}.
+
+    The valve changes $F_W$ by a certain amount for each percent. In the quotient $F_W/F_S$ this amount is divided by
+    the flow of syrup. If that falls to {part}, the gain of the quotient changes by the factor $100/{part}$, which is
+    {factor}, and the loop gain with it. With $K F_S$ as the setpoint, nothing of the kind happens.
+    """
+    return {}
+
+
+@lemonade.picture
+def _(x_S, x_L):
+    """The flow diagram: the measured flow of syrup times K is the setpoint of the flow controller of the water."""
+    layout = """
+        syrup  FT1  .   .   M   lemonade
+        K      x    .   .   .   .
+        .      FC2  2   .   .   .
+        water  FT2  V2  .   3   ."""
+    parts = {"V2": diagrams.control_valve(), "x": r"\times", "M": "Mixer"}
+    names = {"syrup": f"syrup, {x_S} $\\%$ sugar", "lemonade": f"lemonade, {x_L} $\\%$ sugar"}
+    pipes, signals = "syrup FT1 M lemonade, water FT2 V2 3 M", "FT1 x FC2 2 V2, K x, FT2 FC2"
+    return diagrams.instrumentation_diagram(layout, pipes, signals, parts, names)
+
+
 # --- 11.2 ---------------------------------------------------------------------------------------------------------
 
 
@@ -96,16 +144,23 @@ def _clear_opening(u, split):
     return split != 50 and abs(u - split) >= 5 and abs(moving - 50) >= 5 and moving <= 95
 
 
-@exercise("11.2", title="Nitrogen over a solvent", points=2, where=_clear_opening)
+@exercise(
+    "11.2",
+    title="Nitrogen over a solvent",
+    points=2,
+    where=_clear_opening,
+    insight="Over the whole range more signal must do the same thing to the process, so one valve closes where the "
+    "other one opens.",
+)
 def blanket(
     action=choice("reverse", "direct"),
     split=between(30, 70, "%", reference=40, step=5),
     u=between(5, 95, "%", reference=30, step=5),
 ):
     """The space above a solvent in a tank is filled with nitrogen. One pressure controller keeps the pressure with two
-    valves: one lets nitrogen in, the other one, the vent, lets gas out. The two must never be open at the same time,
-    and each passes its whole way between closed and open in its part of the control signal. Below {split} one of them
-    works, above {split} the other. The controller is set to *{action}* action.
+    valves: the inlet lets nitrogen in, the vent lets gas out. The two must never be open at the same time. Below
+    {split} of the control signal one of them travels its full range, above {split} the other one. The controller is set
+    to *{action}* action.
 
     Which of the valves moves in the lower part of the range? What are the openings when the control signal is {u}?
     """
@@ -156,6 +211,64 @@ def _(u, split, action):
     return {valve: there for valve, opening, there in pairs if abs(there - opening) > 2}
 
 
+blanket.hints(
+    "What does the action of a controller say? How does its signal move when the pressure is too high?",
+    "Too high a pressure must move the signal towards an open vent, too low a one towards an open inlet. The two are "
+    "therefore at opposite ends of the range, and both are closed at the split.",
+    "With {action} action the signal {moves} when the pressure rises. The valve of the lower part is fully open at 0 "
+    "% and closed at {split}; the other one is closed at {split} and fully open at 100 %.",
+)
+
+
+@blanket.shows
+def _(action):
+    return {"moves": "falls" if action == "reverse" else "rises"}
+
+
+@blanket.solution
+def _(u, split, action):
+    r"""With {action} action the signal {moves} when the pressure rises. There gas must be let out, so the vent belongs
+    to the {end} end of the range: the valve of the lower part is the {lower}. It is fully open at 0 % and closes
+    towards {split}; the {upper} opens from there up to 100 %.
+
+    A control signal of {u} is {side} the split. There the {closed} is closed, 0 %, and the {moving} has moved along its
+    part of the range by {way} of {length}: it is open by {opening}. So the vent is at {vent} and the inlet at {inlet}.
+    """
+    lower, upper = ("vent", "inlet") if action == "reverse" else ("inlet", "vent")
+    low = u < split
+    return {
+        "end": "lower" if action == "reverse" else "upper", "upper": upper, "side": "below" if low else "above",
+        "moving": lower if low else upper, "closed": upper if low else lower,
+        "way": (split - u if low else u - split, "%"), "length": (split if low else 100 - split, "%"),
+        "opening": (max(blanket_valves(u, split, action)), "%"),
+    }  # fmt: skip
+
+
+@blanket.picture
+def _(action, u):
+    """The flow diagram: one pressure controller in {action} action moves the inlet for nitrogen and the vent."""
+    layout = """
+        .         .      mode  .     .
+        .         4      PC    5     .
+        .         .      PT    .     .
+        nitrogen  inlet  3     vent  outside
+        .         .      tank  .     ."""
+    parts = {"inlet": diagrams.control_valve("inlet"), "vent": diagrams.control_valve("vent")}
+    parts["tank"] = diagrams.vessel(filled=0.6)
+    names = {"mode": f"{action} action, $u$ = {u} $\\%$"}
+    pipes, signals = "nitrogen inlet 3 vent outside, 3 tank", "3 PT PC 4 inlet, PC 5 vent, mode PC"
+    return diagrams.instrumentation_diagram(layout, pipes, signals, parts, names)
+
+
+@blanket.solution_picture
+def _(split, action):
+    """The openings of the two valves over the whole range of the control signal."""
+    u = np.linspace(0, 100, 201)
+    falling, rising = np.interp(u, [0, float(split)], [100, 0]), np.interp(u, [float(split), 100], [0, 100])
+    vent, inlet = (falling, rising) if action == "reverse" else (rising, falling)
+    return time_plot({"vent": vent, "inlet": inlet}, u, xlabel="$u$ [%]", ylabel="opening [%]", low=True)
+
+
 # --- 11.3 ---------------------------------------------------------------------------------------------------------
 
 
@@ -169,12 +282,18 @@ def actions_in_row(place, closing):
     return {name: OTHER[action] if name in closing else action for name, action in actions.items()}
 
 
-@exercise("11.3", title="Four tanks in a row", points=2)
+@exercise(
+    "11.3",
+    title="Four tanks in a row",
+    points=2,
+    insight="Upstream of the flow controller levels are kept by what flows in, downstream by what flows out; the "
+    "action follows from that and from the valve.",
+)
 def tanks_in_row(place=choice(2, 0, 1, 3, 4), closing=choice(*ONE, *TWO)):
     r"""In a dairy the milk passes four tanks, one after the other. Each has a level controller, LC1 to LC4, whose valve
-    is in the pipe in front of the tank or behind it. A flow controller {where} sets the production rate, and so that
-    pipe has no valve of a level controller. Every valve opens as its control signal rises, with {exceptions} without
-    signal and closed at 100 %.
+    is in the pipe in front of the tank or in the one behind it. A flow controller {where} sets the production rate, so
+    that this pipe has no valve of a level controller. Every valve opens as its control signal rises, with {exceptions}
+    without signal and closed at 100 %.
 
     Which action does each level controller need, if no two controllers may share a pipe?
     """
@@ -201,6 +320,16 @@ def _(place, closing):
 
 
 @tanks_in_row.mistake(
+    "One of the two pipes of this tank is taken by the flow controller. Which one is left, and what does more of its "
+    "flow do to the level?"
+)
+def _(place, closing):
+    actions = actions_in_row(place, closing)
+    beside = {f"LC{place}", f"LC{place + 1}"} & actions.keys()
+    return {name: OTHER[actions[name]] for name in sorted(beside) if name not in closing}
+
+
+@tanks_in_row.mistake(
     "Look at where the flow is already decided. Upstream of that point a level must be controlled by its "
     "inflow, downstream of it by its outflow."
 )
@@ -208,10 +337,64 @@ def _(place, closing):
     return {name: OTHER[action] for name, action in actions_in_row(place, closing).items() if name not in closing}
 
 
+tanks_in_row.hints(
+    "The flow is decided in one pipe. Go outwards from there, tank by tank: which pipe is left for each level "
+    "controller?",
+    "Upstream of the flow controller the inflows are left, downstream the outflows. Does the level rise or fall when "
+    "that flow grows? And does the flow grow when the signal rises?",
+    "The flow controller is {where}. A level kept by its inflow, with a valve that opens with the signal, needs "
+    "reverse action: too high a level must make the signal fall. Each change of one of these words turns the action "
+    "round.",
+)
+
+
+@tanks_in_row.solution
+def _(place, closing):
+    r"""Five pipes, four level controllers and one flow controller: no pipe is left over. The flow controller is
+    {where}. From there outwards each tank has only one pipe left: {sides}.
+
+    With a valve that opens with the signal, a level kept by its inflow needs reverse action (too high a level must
+    close the valve), and one kept by its outflow direct action. For {closing} it is the other way round, because the
+    valve closes as the signal rises. So
+
+    - LC1: {LC1},
+    - LC2: {LC2},
+    - LC3: {LC3},
+    - LC4: {LC4}.
+    """
+    ways = [(range(1, place + 1), "the pipe in front"), (range(place + 1, 5), "the pipe behind")]
+    sides = [f"{pipe} for {listed([f'tank {n}' for n in tanks])}" for tanks, pipe in ways if tanks]
+    return {"sides": ", ".join(sides)}
+
+
+@tanks_in_row.picture
+def _(place):
+    """The four tanks, and the flow controller in one of the five pipes."""
+    tanks, pipes, above, far = ["milk"], ["milk"], ["."], ["."]
+    for n in range(5):
+        if n == place:
+            tanks, above, far = [*tanks, "FT", "V"], [*above, "FC", "9"], [*far, ".", "."]
+            pipes += ["FT", "V"]
+        if n < 4:
+            tanks, above, far = [*tanks, f"T{n + 1}"], [*above, f"LT{n + 1}"], [*far, f"LC{n + 1}"]
+            pipes.append(f"T{n + 1}")
+    rows = [[*far, "."], [*above, "."], [*tanks, "filling"]]
+    layout = "\n".join(" ".join(row) for row in rows)
+    parts = {f"T{n}": diagrams.vessel(str(n), filled=0.5) for n in range(1, 5)} | {"V": diagrams.control_valve()}
+    signals = ", ".join(["FT FC 9 V", *(f"T{n} LT{n} LC{n}" for n in range(1, 5))])
+    return diagrams.instrumentation_diagram(layout, " ".join([*pipes, "filling"]), signals, parts)
+
+
 # --- 11.4 ---------------------------------------------------------------------------------------------------------
 
 
-@exercise("11.4", title="A drying oven in cascade", points=3)
+@exercise(
+    "11.4",
+    title="A drying oven in cascade",
+    points=3,
+    insight="What the secondary loop feels, it makes smaller and quicker by one factor, before the primary loop "
+    "notices.",
+)
 def oven(
     K_1=between(0.5, 0.95, "K/K", reference=0.8, step=0.05),
     T_1=between(200, 600, "s", reference=400, step=20),
@@ -220,13 +403,13 @@ def oven(
     K_p2=between(2, 6, "%/K", reference=2),
 ):
     """Painted parts dry in an oven with hot air. From the opening of the burner's valve to the temperature $y_2$ of the
-    air the process is a lag of {T_2} with the gain {K_2}; from there to the temperature $y_1$ of the parts it is a lag
-    of {T_1} with the gain {K_1}. The pressure of the fuel varies, and this acts like an additional opening $d$ of the
-    valve, in %. The secondary controller is a P controller with the gain {K_p2}, which has the air's measurement
-    without delay. The primary controller is in manual mode.
+    air the process is a lag with the gain {K_2} and the time constant {T_2}; from there to the temperature $y_1$ of the
+    parts it is a lag with the gain {K_1} and the time constant {T_1}. When the fuel's pressure varies, this acts like
+    an additional opening $d$ of the valve, in %. The secondary controller is a P controller with the gain {K_p2}; it
+    measures $y_2$ without delay. The primary controller is in manual mode.
 
-    Find the transfer function from $d$ to $y_1$, with the time in seconds. By which factor does the secondary loop make
-    the final effect of a constant $d$ on $y_1$ smaller, and which time constant does that loop have?
+    Find the transfer function from $d$ to $y_1$, with the time in seconds. By which factor does the secondary loop
+    reduce the final effect of a constant $d$ on $y_1$, and which time constant does that loop have?
     """
     loop = 1 + K_p2 * K_2
     return answers(
@@ -260,7 +443,9 @@ def _(K_2, K_p2):
     return {"factor": 1 - 1 / (1 + K_p2 * K_2)}
 
 
-@oven.mistake("The secondary loop makes its lag shorter. Does it leave the effect of a constant disturbance as it was?")
+@oven.mistake(
+    "The secondary loop makes its time constant shorter. Does it leave the effect of a constant disturbance as it was?"
+)
 def _(K_1, T_1, K_2, T_2, K_p2):
     return {"H": K_1 * K_2 / ((T_1 * s + 1) * (T_2 / (1 + K_p2 * K_2) * s + 1))}
 
@@ -270,22 +455,87 @@ def _(K_2, K_p2, T_2):
     return {"factor": K_p2 * K_2, "T": T_2 / (K_p2 * K_2)}
 
 
+oven.hints(
+    "The secondary controller sees the disturbance in $y_2$ and works against it. Which closed loop is that, and where "
+    "does $d$ enter it?",
+    "From $d$ to $y_2$: the forward path is $P_2 = \\frac{{K_2}}{T_2 s + 1}$, and the way back is $K_{p2}$ alone, so "
+    "that the transfer function is $\\frac{{P_2}}{1 + K_{p2} P_2}$. Then comes the part from the air to the parts.",
+    "Multiplied by the denominator, the loop is $\\frac{ {K_2} }{ {T_2} s + 1 + {K_p2} \\cdot {K_2} }$. Compare it "
+    "with the process without the loop: what has become of its gain and of its time constant?",
+)
+
+
+@oven.solution
+def _(K_2, K_p2):
+    r"""From $d$ to $y_2$ the forward path is $P_2 = \frac{ {K_2} }{ {T_2} s + 1}$. The secondary controller measures
+    $y_2$ and takes away $K_{p2}\,y_2$. So the loop makes of it
+
+    $$\frac{{P_2}}{1 + K_{p2} P_2} = \frac{ {K_2} }{ {T_2} s + 1 + {K_p2} \cdot {K_2} }.$$
+
+    The number $1 + {K_p2} \cdot {K_2}$ = {factor} divides both the gain and the time constant of that part: the effect
+    is smaller by the factor {factor}, and the time constant of the loop is ${T_2}/{factor}$, which is {T}.
+
+    Behind it comes the rest of the process, which the loop does not touch:
+
+    $$H(s) = \frac{ {K_1} }{ {T_1} s + 1} \cdot \frac{ {K_2} }{ {T_2} s + {factor} }.$$
+    """
+    return {}
+
+
+@oven.picture
+def _(K_1, T_1, K_2, T_2, K_p2):
+    """The block diagram: the secondary loop around the first part of the process, and then the second part."""
+    layout = """
+        .      .  .     .  d  .    .  .   .
+        y_2SP  e  K_p2  u  j  P_2  1  P_1  y_1
+        .      3  .     .  .  .    2  .   ."""
+    blocks = {"K_p2": written(K_p2), "P_2": _lag(K_2, T_2), "P_1": _lag(K_1, T_1)}
+    return diagrams.grid_diagram(layout, "y_2SP e K_p2 u j P_2 1 P_1 y_1, d + j, 1 2 3 - e", blocks)
+
+
+def _lag(K, T, delay=0):
+    """A lag with dead time, as it is written in a block."""
+    late = f"e^{{-{written(delay)}s}}" if delay else ""
+    return rf"\frac{{{written(K)}\,{late}}}{{{written(T)}\,s+1}}"
+
+
+@oven.solution_picture
+def _(K_1, T_1, K_2, T_2, K_p2):
+    """What a disturbance of 1 % does to the parts, with the secondary loop and without it."""
+    times = np.linspace(0, 5 * float(T_1), 301)
+
+    def effect(gain, short):
+        long = float(T_1)
+        slow, fast = np.exp(-times / long), np.exp(-times / float(short))
+        return float(gain) * (1 - (long * slow - float(short) * fast) / (long - float(short)))
+
+    loop = 1 + K_p2 * K_2
+    curves = {"without": effect(K_1 * K_2, T_2), "with the secondary loop": effect(K_1 * K_2 / loop, T_2 / loop)}
+    return time_plot(curves, times, ylabel="$y_1$ [K]", low=True)
+
+
 # --- 11.5 ---------------------------------------------------------------------------------------------------------
 
 
-@exercise("11.5", title="A basin for rain", points=3, where=lambda F, k: 0.1 <= F / k <= 0.5)
+@exercise(
+    "11.5",
+    title="A basin for rain",
+    points=3,
+    where=lambda F, k: 0.1 <= F / k <= 0.5,
+    insight="A level under P control is a lag: a small gain makes it slow and calm, and the level gives way for it.",
+)
 def basin(
     A=between(4, 20, "m²", reference=10),
     F=between(5, 20, "kg/s", reference=8),
     k=between(20, 80, "kg/(s m)", reference=40),
 ):
-    r"""A basin with vertical walls and an area of {A} takes up rain water, so that less of its variations reach the
-    sewage works. A P controller keeps the level, $u = u_0 + K_p (h_{SP} - h)$, where $u$ is the outflow in kg/s; the
+    r"""A basin with vertical walls and an area of {A} buffers rain water, so that the sewage works downstream get a
+    calmer flow. A P controller keeps the level, $u = u_0 + K_p (h_{SP} - h)$, where $u$ is the outflow in kg/s; the
     magnitude of $K_p$ is {k}, and its sign is the right one. The level is at its setpoint. Then it begins to rain, and
-    the inflow is larger by {F} from $t = 0$ on. Water has a density of 1000 kg/m³.
+    from $t = 0$ on the inflow is larger by {F}. Water has a density of 1000 kg/m³.
 
-    With which time constant does the level answer, how far above its setpoint does it end, and what is its deviation
-    $h - h_{SP}$ as a function of time?
+    With which time constant does the level respond, how far above its setpoint does it settle, and what is its
+    deviation $h - h_{SP}$ as a function of time?
     """
     T = 1000 * A / k
     return answers(
@@ -315,6 +565,40 @@ def _(A, F, k):
     return {"deviation": F / k * exp(-t * k / (1000 * A))}
 
 
+basin.hints(
+    "The mass in the basin changes by what flows in minus what flows out. Write that for the deviation of the level.",
+    "With $x = h - h_{SP}$: $\\rho A\\,\\dot x = F - k x$, where $k$ is the magnitude of $K_p$. At rest $\\dot x = 0$.",
+    "In numbers $1000 \\cdot {A}\\,\\dot x = {F} - {k}\\,x$. Divide by {k} and compare with $T \\dot x = x_{end} - x$.",
+)
+
+
+@basin.solution
+def _():
+    r"""The level must let more flow out when it is too high. With $x = h - h_{SP}$ the outflow has grown by $k x$, and
+    the mass balance is $\rho A\,\dot x = F - k x$, in numbers $1000 \cdot {A}\,\dot x = {F} - {k}\,x$.
+
+    Divided by $k$ it is that of a lag, $T \dot x = x_{end} - x$, with $T = 1000 \cdot {A}/{k}$, which is {T}, and
+    $x_{end} = {F}/{k}$, which is {left}: there the outflow has become as large as the inflow.
+
+    It begins at zero and approaches its end with that time constant: $x(t) = {left}\,(1 - e^{-t/{T} })$, in m.
+    """
+    return {}
+
+
+@basin.picture
+def _(A, F):
+    """The flow diagram: the level controller acts on the valve in the outflow."""
+    layout = """
+        rain  1     .    h_SP  .
+        .     tank  LT1  LC1   .
+        .     tank  .    .     .
+        .     2     .    V1    sewage"""
+    parts = {"V1": diagrams.control_valve(), "tank": diagrams.tank(text=f"{A}$\\,$m²", level="h")}
+    names = {"rain": f"rain,$\\,${F} kg/s more"}
+    pipes, signals = "rain 1 tank 2 V1 sewage", "tank LT1 LC1 V1, h_SP LC1"
+    return diagrams.instrumentation_diagram(layout, pipes, signals, parts, names)
+
+
 # --- 11.6 ---------------------------------------------------------------------------------------------------------
 
 
@@ -332,7 +616,13 @@ def _two_reasonable_gains(K_1, T_1, K_2, T_2, L_1, L_2):
     return K_p2 * K_2 >= 0.5 and K_p1 * K_1 >= 0.4 and abs(K_p2 - 1) > 0.1
 
 
-@exercise("11.6", title="Two P controllers for two poles", points=4, where=_two_reasonable_gains)
+@exercise(
+    "11.6",
+    title="Two P controllers for two poles",
+    points=4,
+    where=_two_reasonable_gains,
+    insight="Two measured states and two gains place two poles wherever you like; an offset remains all the same.",
+)
 def two_poles(
     K_1=between(0.5, 0.9, "K/K", reference=0.8, step=0.05),
     T_1=between(80, 200, "s", reference=120, step=10),
@@ -341,14 +631,15 @@ def two_poles(
     L_1=between(20, 60, "s", reference=40, step=5),
     L_2=between(8, 20, "s", reference=10, step=1),
 ):
-    r"""Air is warmed by a heater and then warms a drying drum. The temperature $y_2$ of the air follows the control
-    signal with the gain {K_2} and a lag of {T_2}; the temperature $y_1$ of the drum follows the air with the gain {K_1}
-    and a lag of {T_1}. There are no dead times. Both temperatures are measured, and two P controllers are to control
-    the drum in cascade, $u = K_{p2}\,(K_{p1}(y_{SP} - y_1) - y_2)$, all counted from the operating point.
+    r"""A heater warms air, and the air warms a drying drum. The temperature $y_2$ of the air follows the control signal
+    with the gain {K_2} and the time constant {T_2}; the temperature $y_1$ of the drum follows the air with the gain
+    {K_1} and the time constant {T_1}. There are no dead times. Both temperatures are measured, and two P controllers in
+    cascade control the drum, $u = K_{p2}\,(K_{p1}(y_{SP} - y_1) - y_2)$, all counted from the operating point.
 
-    Choose the two gains so that the closed loop has two real poles, which belong to lags of {L_1} and {L_2}. A P
-    controller leaves an error: give, with the symbols `K_1`, `K_2`, `K_p1` and `K_p2`, what is left of a setpoint step
-    of 1 K in the end.
+    Choose the two gains so that the closed loop has the time constants {L_1} and {L_2}, that is, poles at minus one
+    over each. A P controller leaves an error: give, in the symbols `K_1`, `K_2`, `K_p1` and `K_p2`, what is left of a
+    setpoint step of 1 K in the end. (All that you need is the denominator of a closed loop. Section 11.1.4, which is
+    further reading, does the same with matrices.)
     """
     K_p1, K_p2 = two_P(K_1, T_1, K_2, T_2, L_1, L_2)
     k_1, k_2, p_1, p_2 = symbols("K_1 K_2 K_p1 K_p2", positive=True)
@@ -360,7 +651,9 @@ def two_poles(
     )
 
 
-@two_poles.mistake("That makes the secondary loop alone have the shorter lag. The primary loop then moves this pole.")
+@two_poles.mistake(
+    "That gives the secondary loop alone the shorter time constant. The primary loop then moves this pole."
+)
 def _(K_2, T_2, L_2):
     return {"K_p2": (T_2 / L_2 - 1) / K_2}
 
@@ -406,6 +699,54 @@ def _():
     return {"left": 1 / (1 + k_1 * k_2 * p_1 * p_2)}
 
 
+two_poles.hints(
+    "The poles are the roots of the closed loop's denominator. Which polynomial has the roots that are asked for?",
+    "Work from the inside out. The denominator is $(T_1 s + 1)(T_2 s + 1 + K_2 K_{p2}) + K_1 K_2 K_{p1} K_{p2}$. It "
+    "must be $(L_1 s + 1)(L_2 s + 1)$ except for a factor: divide both by the coefficient of $s^2$ and compare.",
+    "The coefficients of $s$ say $\\frac{1 + K_2 K_{p2} }{ {T_2} } + \\frac{1}{ {T_1} } = \\frac{1}{ {L_1} } + "
+    "\\frac{1}{ {L_2} }$, which has only $K_{p2}$ in it. The constant terms give $K_{p1}$.",
+)
+
+
+@two_poles.solution
+def _(K_1, T_1, K_2, T_2, L_1, L_2):
+    r"""The secondary loop makes of the air $\frac{K_2 K_{p2} }{T_2 s + 1 + K_2 K_{p2} }$. Around it and the drum goes
+    the primary loop; its denominator is $(T_1 s + 1)(T_2 s + 1 + K_2 K_{p2}) + K_1 K_2 K_{p1} K_{p2}$.
+
+    Divide it by $T_1 T_2$, and $(L_1 s + 1)(L_2 s + 1)$ by $L_1 L_2$, so that both begin with $s^2$. The coefficients
+    of $s$ are then equal if
+    $\frac{1 + K_2 K_{p2} }{ {T_2} } + \frac{1}{ {T_1} } = \frac{1}{ {L_1} } + \frac{1}{ {L_2} }$. So $K_2 K_{p2}$ =
+    {inner}, and $K_{p2}$ is {K_p2}.
+
+    The constant terms: $1 + {inner} + K_1 K_{p1} \cdot {inner} = \frac{ {T_1} \cdot {T_2} }{ {L_1} \cdot {L_2} }$. So
+    $K_1 K_{p1}$ = {outer}, and $K_{p1}$ is {K_p1}.
+
+    **What is left.** At rest, $s = 0$, the drum comes up to the share
+    $\frac{K_1 K_2 K_{p1} K_{p2} }{1 + K_2 K_{p2} + K_1 K_2 K_{p1} K_{p2} }$ of its setpoint. What is missing is
+    $\frac{1 + K_2 K_{p2} }{1 + K_2 K_{p2} + K_1 K_2 K_{p1} K_{p2} }$, here {rest} K of 1 K.
+    """
+    K_p1, K_p2 = two_P(K_1, T_1, K_2, T_2, L_1, L_2)
+    inner, outer = K_2 * K_p2, K_1 * K_p1
+    return {"inner": inner, "outer": outer, "rest": (1 + inner) / (1 + inner + inner * outer)}
+
+
+def _cascade(first, second, P_1, P_2):
+    """A cascade in a block diagram, from its two controllers and the two parts of the process."""
+    layout = """
+        .     .  .    .      .  .    .  .    .  .    .  .
+        y_SP  e  C_1  y_2SP  f  C_2  u  P_2  1  P_1  2  y_1
+        .     .  .    .      4  .    .  .    3  .    .  .
+        .     6  .    .      .  .    .  .    .  .    5  ."""
+    wires = "y_SP e C_1 y_2SP f C_2 u P_2 1 P_1 2 y_1, 1 3 4 - f, 2 5 6 - e"
+    return diagrams.grid_diagram(layout, wires, {"C_1": first, "C_2": second, "P_1": P_1, "P_2": P_2})
+
+
+@two_poles.picture
+def _(K_1, T_1, K_2, T_2):
+    """The block diagram of the cascade: two P controllers, and the two parts of the process, both measured."""
+    return _cascade("K_{p1}", "K_{p2}", _lag(K_1, T_1), _lag(K_2, T_2))
+
+
 # --- 11.7 ---------------------------------------------------------------------------------------------------------
 
 
@@ -414,6 +755,8 @@ def _():
     title="From the inside out",
     points=5,
     where=lambda T_1, T_2, delay: T_1 >= 2 * T_2 and abs(T_2 - delay) >= 0.5 * delay,
+    insight="A cascade replaces the inner time constant by the one that was ordered; it pays where the inner one is "
+    "longer than its dead time.",
 )
 def inside_out(
     K_1=between(0.4, 2, "K/K", reference=0.5),
@@ -423,14 +766,14 @@ def inside_out(
     delay=between(4, 16, "s", reference=6, step=1),
 ):
     r"""The temperature $y_1$ of a mould is controlled through the temperature $y_2$ of the oil that flows around it.
-    From the valve to the oil the process is a lag of {T_2} behind a dead time of {delay}, with the gain {K_2}; from the
-    oil to the mould it is a lag of {T_1}, with the gain {K_1}.
+    From the valve to the oil the process has the gain {K_2}, the time constant {T_2} and a dead time of {delay}; from
+    the oil to the mould it has the gain {K_1} and the time constant {T_1}.
 
     Tune both PI controllers of the cascade by Skogestad's rule with $c = 4$, each with $T_C$ equal to the dead time of
-    its model. For the primary controller take the secondary loop as it was ordered, a lag $T_C$ behind the dead time,
-    and use the half rule. For comparison: which dead time would the half rule leave for a single PI controller from
-    $y_1$ to the valve? And in which of the two structures has the controller of $y_1$ the shorter dead time in its
-    model?
+    its model. For the primary controller, take the secondary loop as it was ordered, the time constant $T_C$ behind the
+    dead time, and use the half rule. For comparison: which dead time would the half rule give to the model for a single
+    PI controller from $y_1$ to the valve? And in which of the two structures has the controller of $y_1$ the shorter
+    dead time in its model?
     """
     inner, outer, alone = tuned_inside_out(K_1, T_1, K_2, T_2, delay)
     return answers(
@@ -453,7 +796,15 @@ def tuned_inside_out(K_1, T_1, K_2, T_2, delay):
     return inner, outer, delay + min(T_1, T_2) / 2
 
 
-@inside_out.mistake("That takes the secondary loop for a dead time alone. It was specified with a lag as well.")
+@inside_out.mistake("Compare the two dead times that you have computed, each with its half of a time constant in it.")
+def _(K_1, T_1, K_2, T_2, delay):
+    alone = tuned_inside_out(K_1, T_1, K_2, T_2, delay)[2]
+    return {"better": "single loop" if alone > 3 * delay / 2 else "cascade"}
+
+
+@inside_out.mistake(
+    "That takes the secondary loop for a dead time alone. It was specified with a time constant as well."
+)
 def _(K_1, T_1, delay):
     return {"primary": PID(T_1 / (2 * K_1 * delay), Min(T_1, 8 * delay))}
 
@@ -480,22 +831,65 @@ def _(K_1, T_1, K_2, T_2, delay):
 
 
 @inside_out.mistake(
-    "The half rule gives half of the neglected lag to the lag that stays. The dead time gets the other half."
+    "The half rule gives half of the neglected time constant to the one that stays. The dead time gets the other half."
 )
 def _(T_2, delay):
     return {"alone": delay + T_2}
 
 
-@inside_out.mistake("That is only what comes from the neglected lag. Which dead time was there before?")
+@inside_out.mistake("That is only what comes from the neglected time constant. Which dead time was there before?")
 def _(T_2, delay):
     return {"alone": T_2 / 2}
 
 
 @inside_out.mistake(
-    "A dead time and a lag are different things: the half rule turns some of the smaller lag into dead time."
+    "A dead time and a lag differ: the half rule turns some of the smaller time constant into dead time."
 )
 def _(delay):
     return {"alone": delay}
+
+
+inside_out.hints(
+    "Tune the inner loop first: it is a lag with dead time, for which the rule holds as it is. What does the outer "
+    "controller see of it afterwards?",
+    "Rule: $K_p = \\frac{{T}}{K(T_C + \\theta)}$ and $T_i = \\min(T,\\ c\\,(T_C + \\theta))$, here with $T_C = "
+    "\\theta$. The secondary loop, as ordered, is a lag with the time constant $\\theta$ behind the dead time "
+    "$\\theta$. The half rule gives half of a neglected time constant to the dead time, half to the time constant "
+    "that stays.",
+    "Secondary: $K_p = \\frac{ {T_2} }{2 \\cdot {K_2} \\cdot {delay} }$. Primary: the dead time of its model is "
+    "${delay} + {delay}/2$, and its time constant ${T_1} + {delay}/2$. The single loop must neglect $T_2$ = {T_2} "
+    "instead.",
+)
+
+
+@inside_out.solution
+def _(K_1, T_1, K_2, T_2, delay):
+    r"""**The secondary controller** acts on a lag with dead time. With $T_C = \theta$ = {delay} the rule gives
+    $K_p = \frac{ {T_2} }{ {K_2} \cdot 2 \cdot {delay} }$, which is {K_p2}, and the shorter one of {T_2} and
+    $4 \cdot 2 \cdot {delay}$ for $T_i$, which is {T_i2}.
+
+    **The primary controller** sees the secondary loop as it was ordered: a time constant of {delay} behind a dead time
+    of {delay}. The half rule gives half of it to $T_1$ and half to the dead time: the model has the time constant
+    ${T_1} + {delay}/2$, which is {long}, and the dead time ${delay} + {delay}/2$, which is {late}. With $T_C$ = {late}
+    the rule gives $K_p = \frac{ {long} }{ {K_1} \cdot 2 \cdot {late} }$, which is {K_p1}, and $T_i$ = {T_i1}.
+
+    **A single controller** has the whole process in front of it, and must neglect the smaller time constant, {T_2}.
+    Half of it becomes dead time: ${delay} + {T_2}/2$, which is {alone}.
+
+    That is {compared} than {late}. So the shorter dead time is that of the {better}.
+    """
+    inner, outer, alone = tuned_inside_out(K_1, T_1, K_2, T_2, delay)
+    late, long = delay + delay / 2, T_1 + delay / 2
+    return {
+        "K_p2": (inner.Kp, "%/K"), "T_i2": (inner.Ti, "s"), "K_p1": (outer.Kp, "K/K"), "T_i1": (outer.Ti, "s"),
+        "late": (late, "s"), "long": (long, "s"), "compared": "longer" if alone > late else "shorter",
+    }  # fmt: skip
+
+
+@inside_out.picture
+def _(K_1, T_1, K_2, T_2, delay):
+    """The block diagram of the cascade: two PI controllers, and the two parts of the process, both measured."""
+    return _cascade("PI controller", "PI controller", _lag(K_1, T_1), _lag(K_2, T_2, delay))
 
 
 # --- 11.8 ---------------------------------------------------------------------------------------------------------
@@ -506,7 +900,14 @@ def _unequal_halves(K_c, K_h, margin):
     return 1.5 * small <= large and margin * small >= 1.2 * large
 
 
-@exercise("11.8", title="Where to split", points=3, where=_unequal_halves)
+@exercise(
+    "11.8",
+    title="Where to split",
+    points=3,
+    where=_unequal_halves,
+    insight="The range belongs to the valves in proportion to their effect: then every percent of the signal does the "
+    "same.",
+)
 def where_to_split(
     K_c=between(0.1, 0.8, "K/%", reference=0.6, step=0.05),
     K_h=between(0.1, 0.8, "K/%", reference=0.2, step=0.05),
@@ -520,7 +921,8 @@ def where_to_split(
     Which static gain does the controller see in the lower half, which in the upper one? In which half must it be tuned?
     Suppose somebody tunes it in the other half, with a gain margin of {margin} there: which gain margin is left where
     the gain is larger? And at which control signal should the range be split instead, so that one tuning is right in
-    both parts?
+    both parts? (All that you need is the slope of a valve's characteristic. An example is in the further part of
+    Section 11.3.)
     """
     large, small = max(K_c, K_h), min(K_c, K_h)
     return answers(
@@ -571,6 +973,53 @@ def _():
 )
 def _(K_c, K_h, margin):
     return {"left": margin * max(K_c, K_h) / min(K_c, K_h)}
+
+
+where_to_split.hints(
+    "The controller sees the valve and the fermenter in series. What does one percent of its signal do to a valve that "
+    "travels its full range over half of the signal?",
+    "The slope of a valve is 100 % divided by the part of the range that it has. The gain of a half is this slope "
+    "times the effect of a percent of opening. A gain margin shrinks as the loop gain grows.",
+    "Lower half: $\\frac{100}{50}$ times {cold} for each percent. For equal gains, with the split at $p$: "
+    "$\\frac{100}{p}$ times {cold} must be $\\frac{100}{100 - p}$ times {warm}.",
+)
+
+
+@where_to_split.solution
+def _(K_c, K_h, margin):
+    r"""A valve that travels 100 % over half of the signal moves by 2 % for each percent of it. So the controller sees
+    $2 \cdot {K_c}$ in the lower half, which is {lower}, and $2 \cdot {K_h}$ in the upper one, which is {upper}.
+
+    It must be tuned where the gain is larger, in the {tune} half. Tuned in the other one, with a gain margin of
+    {margin} there, it finds in the {tune} half a gain that is {times} times as large, and the gain margin is
+    ${margin}/{times}$, which is {left}.
+
+    With the split at $p$ the slopes are $100/p$ and $100/(100 - p)$. The gains are equal if
+    ${K_c}/p = {K_h}/(100 - p)$, that is, $p = 100 \cdot \frac{ {K_c} }{ {K_c} + {K_h} }$, which is {split}.
+    """
+    return {"times": max(K_c, K_h) / min(K_c, K_h)}
+
+
+@where_to_split.picture
+def _(K_c, K_h):
+    """The characteristics of the valves: chilled water over the lower half of the signal, steam over the upper half."""
+    u = np.linspace(0, 100, 101)
+    cold, warm = (f"{written(K)} K for 1 %" for K in (-K_c, K_h))
+    curves = {f"chilled water, {cold}": np.interp(u, [0, 50], [100, 0])}
+    curves |= {f"steam, +{warm}": np.interp(u, [50, 100], [0, 100])}
+    return time_plot(curves, u, xlabel="$u$ [%]", ylabel="opening [%]")
+
+
+@where_to_split.solution_picture
+def _(K_c, K_h):
+    """What the signal does to the temperature at rest, split in the middle and split so that both gains are equal."""
+    u = np.linspace(0, 100, 101)
+
+    def effect(p):
+        return -float(K_c) * np.interp(u, [0, p], [100, 0]) + float(K_h) * np.interp(u, [p, 100], [0, 100])
+
+    curves = {"split in the middle": effect(50), "split for equal gains": effect(float(100 * K_c / (K_c + K_h)))}
+    return time_plot(curves, u, xlabel="$u$ [%]", ylabel="effect [K]", low=True)
 
 
 # --- 11.9 ---------------------------------------------------------------------------------------------------------
@@ -644,10 +1093,29 @@ def level_after(pid, A, F, time):
     if abs(w) < 1e-6 * a:
         return size * time * math.exp(-a * time / 2)
     modes = cmath.exp((w - a / 2) * time) - cmath.exp(-(w + a / 2) * time)
-    return size * abs(modes / (2 * w))
+    return size * (modes / (2 * w)).real
 
 
-@exercise("11.9", title="A lazy tank", points=6, where=_some_room)
+def _buffered(pid, A, F, dh, period):
+    """The level after the step of the inflow, and the wave of the inflow with what comes out of it."""
+    times = np.linspace(0, max(12 * longest_T_C(A, F, dh), 3 * float(period)), 401)
+    level = np.array([level_after(pid, A, F, time) for time in times])
+    phase, size = 2 * np.pi * times / float(period), flow_gain(pid, A, 2 * math.pi / float(period))
+    waves = {"wave in": 100 * np.sin(phase), "wave out, without its delay": size * np.sin(phase)}
+    limits = [(-float(dh), 2 * float(dh)), (-120, 220)]
+    panels = [{"level": (level, "measurement")}, waves]
+    plot = time_plot(panels, times, ylabel=["rise of the level [m]", "wave [%]"], ylim=limits)
+    return plot.level(dh, "highest allowed", "level")
+
+
+@exercise(
+    "11.9",
+    title="A lazy tank",
+    points=6,
+    where=_some_room,
+    insight="A buffer's level controller has two limits: too quick and the flow is not calmed, too slow and the level "
+    "runs away; the design lies between them.",
+)
 def lazy_tank(
     A=between(1, 6, "m²", reference=2),
     F=between(3, 12, "kg/s", reference=6),
@@ -655,11 +1123,12 @@ def lazy_tank(
     period=between(100, 400, "s", reference=250, step=10),
     gain=between(30, 70, "%", reference=40, step=5),
 ):
-    r"""Process water reaches a distillation column by way of a tank with vertical walls and an area of {A}. The pump
+    r"""Process water reaches a distillation column through a tank with vertical walls and an area of {A}. The pump
     upstream cycles: its flow has a wave with a period of {period}, of which at most {gain} may reach the column. Now
-    and then another pump is started; then {F} more flow in for good, and the level must not rise by more than {dh}. Two
-    hours later it must be back at its setpoint, to 1 cm. And no wave of any other period may leave the tank with more
-    than 130 % of its size. The level controller acts on the outflow $u$ in kg/s, and the density is 1000 kg/m³.
+    and then another pump is started; then {F} more flow in and go on doing so, and the level must not rise by more than
+    {dh}. Two hours later it must be back at its setpoint, to 1 cm. And no wave of any other period may leave the tank
+    with more than 130 % of its size. The level controller acts on the outflow $u$ in kg/s, and the density is 1000
+    kg/m³.
 
     First, for Skogestad's settings with $c = 2$: the longest time constant $T_C$ that the rise of the level allows.
     Then design a PI controller that meets all the demands, by whatever method; write its gain with the sign that
@@ -684,7 +1153,10 @@ def lazy_tank(
                 "the flow gain at the wave's period", lambda pid: flow_gain(pid, A, w), below=float(gain), unit="%"
             ),
             criterion("the largest flow gain", lambda pid: largest_flow_gain(pid, A), below=130, unit="%"),
-            criterion("the deviation two hours later", lambda pid: level_after(pid, A, F, 7200), below=0.01, unit="m"),
+            criterion(
+                "the deviation two hours later", lambda pid: abs(level_after(pid, A, F, 7200)), below=0.01, unit="m"
+            ),
+            draws=lambda pid: _buffered(pid, A, F, dh, period),
         ),
     )
 
@@ -707,3 +1179,455 @@ def _(period, gain):
 @lazy_tank.mistake("The density is missing: the flows are masses per second.")
 def _(A, F, dh):
     return {"T_C": longest_T_C(A, F, dh) / 1000}
+
+
+lazy_tank.hints(
+    "Two demands pull in opposite directions: the wave wants a slow controller, the level a quick one. Skogestad's "
+    "rule has one number for that.",
+    "An integrator $\\frac{K}{s}$ with $K = -\\frac{1}{\\rho A}$, and $c = 2$: $K_p = \\frac{1}{K T_C}$ and $T_i = 2 "
+    "T_C$. The level rises highest by $\\sqrt{2}\\,e^{-\\pi/4} \\cdot \\frac{F T_C}{\\rho A}$ after a step $F$ of the "
+    "inflow, which is 0.645 of $\\frac{F T_C}{\\rho A}$.",
+    "$0.645 \\cdot \\frac{ {F}\\,T_C}{1000 \\cdot {A} }$ must be at most {dh}: that is the longest $T_C$. The wave "
+    "sets the shortest one: with $y = 2\\pi T_C/{period}$ its flow gain is $\\sqrt{\\frac{1 + 4y^2}{(1 - 2y^2)^2 + "
+    "4y^2} }$. Take one between the two.",
+)
+
+
+@lazy_tank.solution
+def _(A, F, dh, period, gain):
+    r"""From the outflow to the level the tank is an integrator with the gain $-\frac{1}{\rho A}$. Skogestad's settings
+    with $c = 2$ are $K_p = -\frac{\rho A}{{T_C}}$ and $T_i = 2 T_C$.
+
+    **The level.** After a step $F$ of the inflow it rises highest by
+    $\sqrt{2}\,e^{-\pi/4}\,\frac{F T_C}{\rho A} = {highest}\,\frac{F T_C}{\rho A}$. For at most {dh} the time constant
+    may be $T_C = \frac{1000 \cdot {A} \cdot {dh} }{ {highest} \cdot {F} }$, which is {T_C}.
+
+    **The wave.** With $w = \frac{2\pi}{ {period} }$ and $y = w T_C$ the flow gain is
+    $\sqrt{\frac{1 + 4y^2}{(1 - 2y^2)^2 + 4y^2} }$. It falls to {gain} at $T_C$ = {shortest}; the controller must be at
+    least that slow.
+
+    **The choice.** Any $T_C$ between the two meets all demands, for example their geometric mean, {chosen}. Then
+    $K_p = -\frac{1000 \cdot {A} }{ {chosen} }$, which is {K_p}, and $T_i$ is twice $T_C$, {T_i}. With it the level
+    rises by {rise} and {passes} of the wave reach the column; the largest wave that leaves is {largest} of what comes
+    in, whatever $T_C$ is.
+    """
+    longest, shortest = longest_T_C(A, F, dh), shortest_T_C(period, gain)
+    T_C = math.sqrt(longest * shortest)
+    pid = PID(-1000 * float(A) / T_C, 2 * T_C)
+    return {
+        "highest": HIGHEST, "shortest": (shortest, "s"), "chosen": (T_C, "s"), "K_p": (float(pid.Kp), "kg/(s m)"),
+        "T_i": (2 * T_C, "s"), "rise": (rise_of_level(pid, A, F), "m"), "largest": (largest_flow_gain(pid, A), "%"),
+        "passes": (flow_gain(pid, A, 2 * math.pi / float(period)), "%"),
+    }  # fmt: skip
+
+
+# --- 11.10 --------------------------------------------------------------------------------------------------------
+
+
+def integral_state_feedback(K_1, T_1, K_2, T_2, L):
+    """The gains k_1, k_2 and k_i that place three poles at -1/L."""
+    inner = 3 * T_2 / L - T_2 / T_1 - 1  # K_2 k_2
+    outer = 3 * T_1 * T_2 / L**2 - 1 - inner  # K_1 K_2 k_1
+    return outer / (K_1 * K_2), inner / K_2, T_1 * T_2 / (L**3 * K_1 * K_2)
+
+
+def _reasonable_feedback(K_1, T_1, K_2, T_2, L):
+    k_1, k_2, _ = integral_state_feedback(K_1, T_1, K_2, T_2, L)
+    return K_1 * K_2 * k_1 >= 1 and K_2 * k_2 >= 0.5
+
+
+@exercise(
+    "11.10",
+    title="State feedback with an integral term",
+    points=4,
+    where=_reasonable_feedback,
+    insight="Three gains, of two states and of the integral, place three poles, and no error is left.",
+)
+def glue_kettle(
+    K_1=between(0.5, 0.9, "K/K", reference=0.8, step=0.05),
+    T_1=between(180, 400, "s", reference=300, step=20),
+    K_2=between(0.5, 2, "K/%", reference=1.25, step=0.25),
+    T_2=between(40, 90, "s", reference=60, step=5),
+    L=between(30, 90, "s", reference=60, step=5),
+):
+    r"""Glue is warmed in a kettle by its jacket. The temperature $x_2$ of the jacket follows the steam valve with the
+    gain {K_2} and the time constant {T_2}; the temperature $x_1$ of the glue follows the jacket with the gain {K_1} and
+    the time constant {T_1}. Both are measured. The controller uses both, and the integral of the control error as well:
+
+    $$u = k_i \int (y_{SP} - x_1)\,dt - k_1 x_1 - k_2 x_2,$$
+
+    all counted from the operating point.
+
+    Choose the three gains so that all three poles of the closed loop are at $-1/L$ with $L$ = {L}.
+    """
+    k_1, k_2, k_i = integral_state_feedback(K_1, T_1, K_2, T_2, L)
+    return answers(
+        k_1=number(k_1, "%/K", "the gain of the glue's temperature"),
+        k_2=number(k_2, "%/K", "the gain of the jacket's temperature"),
+        k_i=number(k_i, "%/(K s)", "the gain of the integral"),
+    )
+
+
+def _unlike(key, values):
+    """Those of the values that differ from the key by more than its tolerance."""
+    return {name: value for name, value in values.items() if abs(value - key[name]) > abs(key[name]) / 20}
+
+
+def _glue_key(K_1, T_1, K_2, T_2, L):
+    return dict(zip(("k_1", "k_2", "k_i"), integral_state_feedback(K_1, T_1, K_2, T_2, L), strict=True))
+
+
+@glue_kettle.mistake("Those gains would place two poles without the integral. How many states has the loop with it?")
+def _(K_1, T_1, K_2, T_2, L):
+    inner = 2 * T_2 / L - T_2 / T_1 - 1
+    outer = T_1 * T_2 / L**2 - 1 - inner
+    return _unlike(_glue_key(K_1, T_1, K_2, T_2, L), {"k_1": outer / (K_1 * K_2), "k_2": inner / K_2})
+
+
+@glue_kettle.mistake("Jacket and kettle have poles without any controller, too. Where are they in the polynomial?")
+def _(K_1, T_1, K_2, T_2, L):
+    wrong = {"k_1": 3 * T_1 * T_2 / L**2 / (K_1 * K_2), "k_2": 3 * T_2 / L / K_2}
+    return _unlike(_glue_key(K_1, T_1, K_2, T_2, L), wrong)
+
+
+@glue_kettle.mistake("That forgets that $k_2$ is in the coefficient of $s$ as well, beside $k_1$.")
+def _(K_1, T_1, K_2, T_2, L):
+    return _unlike(_glue_key(K_1, T_1, K_2, T_2, L), {"k_1": (3 * T_1 * T_2 / L**2 - 1) / (K_1 * K_2)})
+
+
+@glue_kettle.mistake(
+    "Two polynomials are compared after they begin with the same term. Which factor has $s^3$ in yours?"
+)
+def _(K_1, T_1, K_2, T_2, L):
+    inner = (3 * L**2 - T_2) / T_1 - 1
+    wrong = {"k_1": (3 * L - 1 - inner) / (K_1 * K_2), "k_2": inner / K_2, "k_i": 1 / (K_1 * K_2)}
+    return _unlike(_glue_key(K_1, T_1, K_2, T_2, L), wrong)
+
+
+@glue_kettle.mistake("What the controller does reaches the glue through the valve and the jacket: through both gains.")
+def _(K_1, T_1, K_2, T_2, L):
+    k_1, _, k_i = integral_state_feedback(K_1, T_1, K_2, T_2, L)
+    return {"k_1": k_1 * K_1, "k_i": k_i * K_1}
+
+
+glue_kettle.hints(
+    "Three states, the two temperatures and the integral, make a polynomial of the third degree. Which one has three "
+    "roots at $-1/L$?",
+    "Let the setpoint be zero. The jacket: $(T_2 s + 1)\\,x_2 = K_2 u$; the glue: $(T_1 s + 1)\\,x_1 = K_1 x_2$; the "
+    "integral is $-x_1/s$. Eliminate $u$ and $x_2$: $s\\,(T_1 s + 1)(T_2 s + 1 + K_2 k_2) + K_1 K_2\\,(k_1 s + k_i) = "
+    "0$.",
+    "This must be $T_1 T_2\\,(s + 1/L)^3$. The coefficients of $s^2$ say "
+    "${T_1}\\,(1 + K_2 k_2) + {T_2} = 3 \\cdot \\frac{ {T_1} \\cdot {T_2} }{ {L} }$.",
+)
+
+
+@glue_kettle.solution
+def _(K_1, T_1, K_2, T_2, L):
+    r"""With a setpoint of zero, the jacket is $(T_2 s + 1)\,x_2 = K_2 u$ and the glue $(T_1 s + 1)\,x_1 = K_1 x_2$. The
+    controller is $u = -\frac{{k_i}}{s} x_1 - k_1 x_1 - k_2 x_2$. Put one into the other; then $x_1$ cancels, and what
+    remains is
+
+    $$s\,(T_1 s + 1)(T_2 s + 1 + K_2 k_2) + K_1 K_2\,(k_1 s + k_i) = 0.$$
+
+    It begins with $T_1 T_2 s^3$. So it must be $T_1 T_2 (s + 1/L)^3 = T_1 T_2 (s^3 + 3s^2/L + 3s/L^2 + 1/L^3)$.
+    Compare:
+
+    - $s^2$: ${T_1}\,(1 + K_2 k_2) + {T_2} = 3 \cdot \frac{ {T_1} \cdot {T_2} }{ {L} }$, so $K_2 k_2$ = {inner}
+      and $k_2$ is {k_2}.
+    - $s$: $1 + {inner} + K_1 K_2 k_1 = 3 \cdot \frac{ {T_1} \cdot {T_2} }{ {L}^2}$, so $K_1 K_2 k_1$ = {outer}
+      and $k_1$ is {k_1}.
+    - Constant: $K_1 K_2 k_i = \frac{ {T_1} \cdot {T_2} }{ {L}^3}$, so $k_i$ is {k_i}.
+
+    At rest the integral stands still only if $x_1 = y_{SP}$: a constant load leaves no error, whatever the gains are.
+    """
+    k_1, k_2, _ = integral_state_feedback(K_1, T_1, K_2, T_2, L)
+    return {"inner": K_2 * k_2, "outer": K_1 * K_2 * k_1}
+
+
+@glue_kettle.picture
+def _(K_1, T_1, K_2, T_2):
+    """The block diagram: the integral of the control error, minus both temperatures, each with its gain."""
+    layout = """
+        .     .  .         .    .  .    .       .  .     .  .
+        y_SP  e  Integral  k_i  f  u    Jacket  1  Glue  2  x_1
+        .     .  .         .    9  k_2  .       3  .     .  .
+        .     .  .         .    7  k_1  .       .  .     4  .
+        .     6  .         .    .  .    .       .  .     5  ."""
+    wires = "y_SP e Integral k_i f u Jacket 1 Glue 2 x_1, 1 3 k_2 9 - f, 2 4 k_1 7 - f, 4 5 6 - e"
+    blocks = {"Integral": r"\frac{1}{s}", "Jacket": _lag(K_2, T_2), "Glue": _lag(K_1, T_1)}
+    return diagrams.grid_diagram(layout, wires, blocks | {name: name for name in ("k_i", "k_1", "k_2")})
+
+
+@glue_kettle.solution_picture
+def _(K_1, T_1, K_2, T_2, L):
+    """The glue after a setpoint step and, later, a load at the valve, with these gains."""
+    k_1, k_2, k_i = map(float, integral_state_feedback(K_1, T_1, K_2, T_2, L))
+    a, b, K_a, K_b = (float(x) for x in (T_1, T_2, K_1, K_2))
+    A = np.array([[-1 / a, K_a / a, 0], [-K_b * k_1 / b, -(1 + K_b * k_2) / b, K_b * k_i / b], [-1, 0, 0]])
+    from scipy.linalg import expm
+
+    times = np.linspace(0, 30 * float(L), 301)
+    advance, x = expm(A * times[1]), np.zeros((times.size, 3))
+    for k in range(1, times.size):
+        at_rest = -np.linalg.solve(A, [0, 10 * K_b / b * (times[k] > 15 * float(L)), 1])  # a load of 10 % of the valve
+        x[k] = at_rest + advance @ (x[k - 1] - at_rest)
+    curves = {"setpoint": (1, "setpoint"), "glue": (x[:, 0], "measurement")}
+    return time_plot(curves, times, ylabel="$x_1$ [K]").event(15 * float(L), "load")
+
+
+# --- 11.11 --------------------------------------------------------------------------------------------------------
+
+VALVES = ["V1", "V2", "V3", "V4"]
+
+
+def around_the_filter(place):
+    """The valve of the flow controller, and those of the level controllers, with the filter in the pipe of a valve."""
+    levels = {f"LC{n}": f"V{n}" if n < place else f"V{n + 1}" for n in range(1, 4)}
+    return {"rate": f"V{place}"} | levels
+
+
+@exercise(
+    "11.11",
+    title="Around the bottleneck",
+    points=3,
+    insight="The production rate is set at the bottleneck, and the level controllers work outwards from there: "
+    "upstream with what flows in, downstream with what flows out.",
+)
+def bottleneck(
+    place=choice(1, 2, 3, 4, reference=2),
+    capacity=between(8, 40, "t/h", step=1, reference=20),
+    margin=between(2, 8, "%", step=0.5, reference=4),
+):
+    r"""A pigment is made in three vessels, one after the other, with the valves V1 to V4 in the pipes as in the
+    picture. One unit limits the whole plant, the filter in the pipe of {valve}, which can pass {capacity} at most. Each
+    vessel has a level controller, LC1 to LC3, and one flow controller sets the production rate.
+
+    Today the flow controller is at {today}. All variations on the way to the filter reach it, so that the average
+    production must stay {margin} below what the filter can do. Where should the flow controller act, so that the filter
+    always works at its limit? Which valve does each level controller move then, if no two controllers may move the
+    same valve? And how many tonnes a day are gained?
+    """
+    return answers(
+        **{name: word(valve, VALVES, _moves(name)) for name, valve in around_the_filter(place).items()},
+        gained=number(24 * capacity * margin / 100, "t", "what is gained in a day"),
+    )
+
+
+def _moves(name):
+    return "the valve of the flow controller" if name == "rate" else f"the valve of {name}"
+
+
+@bottleneck.shows
+def _(place):
+    return {"valve": f"V{place}", "today": "V4, behind the last vessel" if place <= 2 else "V1, in the feed"}
+
+
+def _relation(name, valve, place):
+    """Why a valve is wrong for a controller."""
+    if name == "rate":
+        return "today" if valve == ("V4" if place <= 2 else "V1") else "elsewhere"
+    if valve == f"V{place}":
+        return "taken"
+    return "side" if int(valve[1]) - int(name[2]) in (0, 1) else "away"
+
+
+def _wrong(valve, why):
+    """A mistake: this valve, for all controllers for which it is wrong for this reason."""
+
+    def mistake(place):
+        right = around_the_filter(place)
+        return {name: valve for name in right if right[name] != valve and _relation(name, valve, place) == why}
+
+    return mistake
+
+
+_WHY = {
+    "today": (
+        "That is how it is today: the filter gets what the level controllers make of the flow. Who decides it there?"
+    ),
+    "elsewhere": (
+        "Between this valve and the filter is a vessel. Does the filter's flow obey the valve, or that vessel's level "
+        "controller?"
+    ),
+    "taken": "The flow controller moves that valve. Can two controllers move one valve?",
+    "side": "That flow does change the level. But go outwards from the filter: which controller needs this valve?",
+    "away": "Does that valve change what flows into this vessel or out of it?",
+}
+#: Valves that are never wrong for a reason: only the two at the ends are those of today, and those have one neighbour.
+_NEVER = {("V2", "today"), ("V3", "today"), ("V1", "side"), ("V4", "side")}
+for why, sentence in _WHY.items():
+    for one in VALVES:
+        if (one, why) not in _NEVER:
+            bottleneck.mistake(sentence)(_wrong(one, why))
+
+
+@bottleneck.mistake("That is gained in an hour. How many of them has a day?")
+def _(capacity, margin):
+    return {"gained": capacity * margin / 100}
+
+
+@bottleneck.mistake("That is what is made in a day today. What would be made at the limit?")
+def _(capacity, margin):
+    return {"gained": 24 * capacity * (100 - margin) / 100}
+
+
+@bottleneck.mistake("The distance is in percent of what the filter can do, not of what is made today.")
+def _(capacity, margin):
+    return {"gained": 24 * capacity * margin / (100 - margin)}
+
+
+bottleneck.hints(
+    "A flow can be kept exactly where it is controlled; everywhere else it is what the levels leave. Where must it be "
+    "exact?",
+    "The flow controller takes the valve at the filter. From there go outwards: each vessel has one of its two pipes "
+    "nearer to the filter, and that one is decided already. Which one is left?",
+    "The filter is at {valve}. What is gained is the distance to the limit: {margin} of {capacity}, hour by hour, a "
+    "whole day long.",
+)
+
+
+@bottleneck.solution
+def _(place):
+    r"""Production is lost whenever the filter passes less than it can. So its own flow must be controlled: the flow
+    controller takes the valve in the pipe of the filter, {rate}, and its setpoint is the limit.
+
+    From there go outwards, vessel by vessel. {upstream}{downstream} So LC1 moves {LC1}, LC2 moves {LC2} and
+    LC3 moves {LC3}. Each valve has one controller.
+
+    What is gained is the distance that is no longer needed: ${capacity} \cdot {margin}/100$ in tonnes an hour, and in
+    24 hours {gained}.
+    """
+    upstream = "Upstream of the filter the outflow of a vessel is decided, so its level needs the inflow. "
+    downstream = "Downstream the inflow is decided, so the level needs the outflow."
+    return {"upstream": upstream if place > 1 else "", "downstream": downstream if place < 4 else ""}
+
+
+@bottleneck.picture
+def _(place):
+    """Three vessels in a row with the valves V1 to V4, and a filter in one pipe; no controller is joined yet."""
+    row, above, far = ["feed"], ["."], ["."]
+    for n in range(1, 5):
+        pipe = ["Filter", f"V{n}"] if n == place else [f"V{n}"]
+        row, above, far = row + pipe, above + ["."] * len(pipe), far + ["."] * len(pipe)
+        if n < 4:
+            row, above, far = [*row, f"T{n}"], [*above, f"LT{n}"], [*far, f"LC{n}"]
+    row, above, far = [*row, "pigment"], [*above, "."], [*far, "."]
+    layout = "\n".join(" ".join(line) for line in (far, above, row))
+    parts = {f"T{n}": diagrams.vessel(str(n), filled=0.5) for n in range(1, 4)} | {"Filter": "Filter"}
+    parts |= {valve: diagrams.control_valve(valve) for valve in VALVES}
+    signals = ", ".join(f"T{n} LT{n} LC{n}" for n in range(1, 4))
+    return diagrams.instrumentation_diagram(layout, " ".join(row), signals, parts)
+
+
+# --- 11.12 --------------------------------------------------------------------------------------------------------
+
+
+@exercise(
+    "11.12",
+    title="The gap in the middle",
+    points=3,
+    where=lambda u_c, gap, u: u_c + gap + 10 <= u and abs(u - 50) >= 5 and abs(2 * (u - 50) - u_c) >= 5,
+    insight="A gap keeps heating and cooling from working against each other, and costs time: in it the loop is open "
+    "until the integral term has crossed it.",
+)
+def gap_in_the_middle(
+    u_c=between(25, 55, "%", step=5, reference=40),
+    gap=choice(10, 15, 20, unit="%", reference=15),
+    u=between(60, 95, "%", step=5, reference=80),
+    K_p=between(2, 8, "%/K", step=0.5, reference=5),
+    T_i=between(100, 600, "s", step=50, reference=300),
+    e=choice(0.4, 0.5, 0.8, unit="K", reference=0.5),
+):
+    r"""A greenhouse for orchids has a valve for chilled water and one for hot water, both moved by one PI controller in
+    split range. The picture shows the openings that were set up; between the two lines is a gap, in which both valves
+    are closed. The settings are $K_p$ = {K_p} and $T_i$ = {T_i}.
+
+    Read the picture: at which control signal does the chilled water close, how wide is the gap, and how far is the hot
+    water open when the control signal is {u}? In the evening the signal is where the chilled water has just closed.
+    From then on it is {e} too cold, all the time. After how many seconds does the hot water begin to open?
+    """
+    return answers(
+        closes=number(u_c, "%", "the control signal at which the chilled water closes", within=0.05),
+        gap=number(gap, "%", "the width of the gap", within=0.15),
+        hot=number(100 * (u - u_c - gap) / (100 - u_c - gap), "%", "the opening for hot water", within=0.06),
+        time=number(gap * T_i / (K_p * e), "s", "the time until hot water flows", within=0.15),
+    )
+
+
+@gap_in_the_middle.shows
+def _(u_c, gap):
+    return {"opens": (u_c + gap, "%")}
+
+
+@gap_in_the_middle.mistake("That is where the other valve begins to open. Which line is that of the chilled water?")
+def _(u_c, gap):
+    return {"closes": u_c + gap}
+
+
+@gap_in_the_middle.mistake("That is where the gap ends. Where does it begin?")
+def _(u_c, gap):
+    return {"gap": u_c + gap}
+
+
+@gap_in_the_middle.mistake("That would be so without the gap. Where does the hot water begin to open?")
+def _(u_c, gap, u):
+    right, wrong = 100 * (u - u_c - gap) / (100 - u_c - gap), 100 * (u - u_c) / (100 - u_c)
+    return {"hot": wrong} if abs(wrong - right) > 0.1 * right else {}
+
+
+@gap_in_the_middle.mistake(
+    "That is how far the signal is beyond the point of opening. The valve opens by more than that."
+)
+def _(u_c, gap, u):
+    return {"hot": u - u_c - gap}
+
+
+@gap_in_the_middle.mistake("There the gain is missing: the integral term grows by $K_p e/T_i$ each second.")
+def _(gap, T_i, K_p, e):
+    return {"time": gap * T_i / e}
+
+
+@gap_in_the_middle.mistake(
+    "That is how long it takes for one $K_p e$ of signal, the integral time. How wide is the gap?"
+)
+def _(gap, T_i, K_p, e):
+    return {"time": T_i} if abs(gap / (K_p * e) - 1) > 0.2 else {}
+
+
+@gap_in_the_middle.mistake("The error of one kelvin is not the error here. How fast does the signal move with {e}?")
+def _(gap, T_i, K_p):
+    return {"time": gap * T_i / K_p}
+
+
+gap_in_the_middle.hints(
+    "Each line of the picture belongs to one valve; both are straight. In the gap no valve moves: what moves the "
+    "signal while the error stays the same?",
+    "An opening on a straight line is a share of its way. With a constant error $e$ the proportional term is "
+    "constant, and the integral term moves the signal by $K_p\\,e/T_i$ each second.",
+    "Here that is $\\frac{ {K_p} \\cdot {e} }{ {T_i} }$ percent each second. Divide the width of the gap by it.",
+)
+
+
+@gap_in_the_middle.solution
+def _(K_p, T_i, e):
+    r"""**The picture.** The line of the chilled water reaches zero at {closes}. That of the hot water begins at
+    {opens}. So the gap is {gap} wide.
+
+    The hot water opens by 100 % from there up to the end of the range. At {u} it has made the share
+    $\frac{ {u} - {opens} }{100 - {opens} }$ of its way: {hot}.
+
+    **The time.** As long as the error is the same, only the integral term moves the signal, by
+    $\frac{K_p\,e}{{T_i}} = \frac{ {K_p} \cdot {e} }{ {T_i} }$, which is {rate}. To cross {gap} it takes {time}. In all
+    that time nothing warms the orchids.
+    """
+    return {"rate": (K_p * e / T_i, "%/s")}
+
+
+@gap_in_the_middle.picture
+def _(u_c, gap):
+    """The openings of the two valves over the whole range of the control signal, with a gap between them."""
+    signal = np.linspace(0, 100, 201)
+    cold = np.interp(signal, [0, float(u_c)], [100, 0])
+    hot = np.interp(signal, [float(u_c + gap), 100], [0, 100])
+    curves = {"chilled water": cold, "hot water": hot}
+    return time_plot(curves, signal, xlabel="control signal [%]", ylabel="opening [%]")
