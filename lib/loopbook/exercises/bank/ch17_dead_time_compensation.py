@@ -5,6 +5,8 @@ import math
 import numpy as np
 from sympy import Heaviside, Poly, Rational, exp
 
+from loopbook import diagrams
+from loopbook.deadtime import Loop, System
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -18,26 +20,51 @@ from loopbook.exercises.authoring import (
     stable,
     time_function,
     transfer_function,
+    word,
 )
 from loopbook.expressions import s, t
+from loopbook.figures import time_plot
 from loopbook.ise import pi_first_order
 from loopbook.pid import PID
-from loopbook.transfer import first_order
+from loopbook.transfer import feedback, first_order
 
 
-@exercise("17.1", title="What nobody can avoid", points=2, where=lambda T, delay: T / 4 <= delay <= 3 * T)
+def _until(end):
+    """Times for a picture."""
+    return np.linspace(0, float(end), 401)
+
+
+def _predictor_diagram(controller, G, delay):
+    """A Smith predictor: the process, the controller, and the model with its dead time in a block of its own."""
+    layout = """
+        .     .  .  .  .  .  .  .  .  .
+        y_SP  e  C  u  1  .  P  .  2  y
+        .     .  .  .  3  G  4  D  m  .
+        .     7  .  .  .  .  f  .  6  ."""
+    wires = "y_SP e C u 1 P 2 y, 1 3 G 4 D - m, 2 m 6 f, 4 f 7 - e"
+    blocks = {"C": controller, "G": G, "D": exp(-delay * s), "P": G * exp(-delay * s)}
+    return diagrams.grid_diagram(layout, wires, blocks)
+
+
+@exercise(
+    "17.1",
+    title="What nobody can avoid",
+    points=2,
+    where=lambda T, delay: T / 4 <= delay <= 3 * T,
+    insight="Control is felt one dead time after a setpoint step, and two after a load: the process decides that.",
+)
 def unavoidable(
     K=between(0.5, 4, "", reference=2),
     T=between(5, 40, "s", reference=20),
     delay=between(5, 40, "s", reference=15),
 ):
     """A gas analyser sits at the end of a long sampling line. From the valve [%] to its signal [%] the process is a
-    lag of {T} with the gain {K} and a dead time of {delay}. Nobody has chosen a controller yet, and still some things
-    are certain.
+    lag of {T} with the gain {K} and a dead time of {delay}. The picture shows its response to a load of 1 % at its
+    input without a controller. Nobody has chosen one yet, and still some things are certain.
 
     How small can the integral of the squared error (ISE) be after a unit step of the setpoint? When, after a step of
-    the load at the input of the process, can the first effect of the controller be seen in the signal? And how small
-    can the ISE be after a unit step of the load?
+    the load, can the first effect of a controller be seen in the signal? And how small can the ISE be after a unit step
+    of the load?
     """
     return answers(
         servo=number(delay, "s", "the least ISE after a setpoint step"),
@@ -79,10 +106,60 @@ def _(K, T, delay):
     return {"load": float(K) * _uncontrolled(T, delay)} if K != 1 else {}
 
 
+unavoidable.hints(
+    "Whatever a controller does, the signal feels it one dead time later. When does it know of the setpoint, and when "
+    "of "
+    "a load?",
+    "After a setpoint step the error is one for a dead time at least. After a load, nothing is seen for one dead time, "
+    "and nothing can be done about it for another one: in between the error is $K(1 - e^{-t/T})$, with $t$ counted "
+    "from "
+    "the first dead time on.",
+    "The first integral is that of 1 over {delay}. The last one is ${K}^2\\int_0^{ {delay} }(1 - e^{-t/{T}})^2 dt$. "
+    "Square "
+    "first, then integrate term by term.",
+)
+
+
+@unavoidable.picture
+def _(K, T, delay):
+    """The signal after a load step of 1 % without a controller: a dead time, and then a lag."""
+    times = _until(delay + 4 * T)
+    y = System(first_order(K, T, delay)).step(times)
+    return time_plot({"$y$": (y, "measurement")}, times, "A load of 1 %, nobody acts", ylabel="$y$ [%]")
+
+
+@unavoidable.solution
+def _(K, T, delay):
+    r"""**Setpoint.** The controller knows the new setpoint immediately, but the signal feels nothing for one dead time.
+    Until then the error is one. So the ISE is at least {servo}, and an ideal controller needs no more.
+
+    ***
+
+    **First effect.** A load is seen after one dead time, {delay}. The controller acts then, and its action takes
+    another dead time to be seen: at {first_effect}.
+
+    **Load.** In between, for one dead time, the error is that of the process alone, $K(1 - e^{-t/T})$ with $t$ counted
+    from {delay} on. The integral of its square is
+    $K^2\left[\theta - 2T(1 - e^{-\theta/T}) + \frac{{T}}{2}(1 - e^{-2\theta/T})\right]$. The bracket is {bracket}, and
+    $K^2$ is {square}: the ISE is at least {load}.
+    """
+    return {"bracket": (_uncontrolled(T, delay), "s"), "square": K**2}
+
+
+@unavoidable.solution_picture
+def _(K, T, delay):
+    """The response to the load without a controller until the first effect can be seen, with the error shaded."""
+    times = _until(2 * delay)
+    y = System(first_order(K, T, delay)).step(times)
+    plot = time_plot({"$y^2$": (y**2, "measurement")}, times, "Nobody can avoid this", ylabel="$y^2$")
+    return plot.area("$y^2$", label="the least ISE").event(delay, "seen")
+
+
 @exercise(
     "17.2",
     title="A predictor for a dairy",
     points=3,
+    insight="With the right model the dead time leaves the loop: tune as if it were not there, and wait for it once.",
     where=lambda K, T, Tc: 4 * abs(T - Tc) >= T and T <= 12 * K * Tc,
 )
 def dairy(
@@ -91,12 +168,12 @@ def dairy(
     delay=between(10, 80, "s", reference=40),
     Tc=between(4, 40, "s", reference=12),
 ):
-    r"""The fat content of milk [%] is measured far behind the valve [%] that adds the cream. The model is a lag of
-    {T} with the gain {K} and a dead time of {delay}. It is right, and it is built into a Smith predictor.
+    r"""The fat content of milk [%] is measured far behind the valve [%] that adds the cream. The process is a lag of
+    {T} with the gain {K} and a dead time of {delay}. A Smith predictor contains this model, and the model is right.
 
-    Tune the PI controller inside the predictor so that it cancels the lag, and the loop is as fast as a lag of $T_C$
-    = {Tc} would be without the dead time. How does the fat content answer to a unit step of the setpoint, and what is
-    the ISE of this response?
+    The PI controller inside the predictor should cancel the lag, and make the loop as fast as a lag of
+    $T_C$ = {Tc}, apart from the dead time. Which settings are these? How does the fat content respond to a unit step of
+    the setpoint, and what is the ISE of this response?
     """
     return answers(
         controller=settings(PID(T / (K * Tc), T), time="s", what="the settings of the PI controller"),
@@ -142,10 +219,52 @@ def _(delay, Tc):
     return {"ISE": delay + Tc}
 
 
+dairy.hints(
+    "With the right model, the controller inside the predictor does not see the dead time. What is its process?",
+    "For the lag alone, $K_c = \\frac{{T}}{K\\,T_C}$ and $T_i = T$ make the loop a lag of $T_C$. The output is that, "
+    "one dead time "
+    "late.",
+    "$K_c = \\frac{ {T} }{ {K} \\cdot {Tc} }$. The error is one for {delay}, and then $e^{-(t - {delay})/{Tc}}$: "
+    "square it before you "
+    "integrate.",
+)
+
+
+@dairy.picture
+def _(K, T, delay):
+    """Block diagram of the predictor: controller C, process, and the model with its dead time behind the model."""
+    return _predictor_diagram("C", first_order(K, T), delay)
+
+
+@dairy.solution
+def _(K, T, delay, Tc):
+    r"""The controller works as if the process were a lag alone. With $T_i = T$, {T}, it cancels the lag, and the open
+    loop is $\frac{K K_c}{T s}$. That is $\frac{1}{T_C s}$ for $K_c = \frac{{T}}{K\,T_C} = \frac{ {T} }{ {K} \cdot {Tc}
+    }$, which is {gain}.
+
+    The closed loop is a lag of {Tc} behind the dead time of {delay}: $y(t) = 1 - e^{-(t - {delay})/{Tc}}$ from {delay}
+    on, and zero before.
+
+    The error is one until {delay}, and $e^{-(t - {delay})/{Tc}}$ from then on. Its square fades twice as fast, so that
+    the ISE is the dead time plus half of $T_C$: ${delay} + \frac{ {Tc} }{2}$, which is {ISE}.
+    """
+    return {"gain": T / (K * Tc)}
+
+
+@dairy.solution_picture
+def _(delay, Tc):
+    """The fat content after the step of the setpoint: it waits for the dead time, and then follows like a lag."""
+    y = {"$y$": (Heaviside(t - delay) * (1 - exp(-(t - delay) / Tc)), "measurement")}
+    plot = time_plot(y, _until(delay + 5 * Tc), "A unit step of the setpoint", ylabel="fat content [%]")
+    return plot.level(1, "setpoint").event(delay, "dead time")
+
+
 @exercise(
     "17.3",
     title="The predictor in one block",
     points=4,
+    insight="A predictor is a controller with a model fed back around it; its loop has the poles of a loop without "
+    "dead time.",
     where=lambda K, T, Kc, Ti: abs(Ti * (1 + K * Kc) ** 2 - 4 * T * K * Kc) > T * K * Kc / 2 and Ti != T,
 )
 def one_block(
@@ -155,12 +274,12 @@ def one_block(
     Kc=between(0.5, 3, "", reference=1),
     Ti=between(2, 12, "min", reference=4),
 ):
-    r"""A rotary kiln is controlled by a Smith predictor. The process is {process}, with the time in minutes, and its
-    model is right. Both signals are in percent. Inside the predictor works a PI controller with the gain {Kc} and the
+    r"""A rotary kiln is controlled by a Smith predictor, as in the picture. The process is {process}, with the time in
+    minutes, and its model is right. Both signals are in percent. $C$ is a PI controller with the gain {Kc} and the
     integral time {Ti}.
 
-    Write the whole predictor, from the control error to the control signal, as one transfer function. Then find the
-    poles of the closed loop, from the setpoint to the measurement.
+    Write the whole predictor, from the setpoint minus the measurement to the control signal $u$, as one transfer
+    function. Then find the poles of the closed loop, from the setpoint to the measurement.
     """
     polynomial = Poly(T * Ti * s**2 + (1 + K * Kc) * Ti * s + K * Kc, s)
     return answers(
@@ -222,10 +341,54 @@ def _(K, T, Kc):
     return {"poles": [0, -float((1 + K * Kc) / T)]}
 
 
+one_block.hints(
+    "Follow the signal that comes back to the controller: which part of it needs the measurement, and which part is "
+    "computed from $u$ alone?",
+    "From $u$ alone comes $G(1 - e^{-\\theta s})\\,u$, with the lag $G$ without dead time. So the predictor is "
+    "$\\frac{C}{1 + C\\,G\\,(1 - e^{-\\theta s})}$. In the closed loop the exponential leaves the denominator: $1 + "
+    "C\\,G$ remains.",
+    "$C = {Kc}\\left(1 + \\frac{1}{ {Ti}\\,s}\\right)$ and $G = \\frac{ {K} }{ {T}\\,s + 1}$. The poles are the zeros "
+    "of "
+    "$T T_i s^2 + (1 + K K_c)T_i s + K K_c$.",
+)
+
+
+@one_block.picture
+def _(K, T, delay):
+    """Block diagram of the predictor: controller C, process, and the model with its dead time behind the model."""
+    return _predictor_diagram("C", first_order(K, T), delay)
+
+
+@one_block.solution
+def _(K, T, delay, Kc, Ti):
+    r"""The controller gets the error minus what the model expects now, plus what it expected one dead time ago:
+    $u = C\,[e - G(1 - e^{-\theta s})\,u]$. Solved for $u$, the predictor is $\frac{C}{1 + C\,G\,(1 - e^{-\theta s})}$.
+    With $C = K_c\frac{T_i s + 1}{T_i s}$ and $G = \frac{{K}}{T s + 1}$, and the small fractions cleared, it is
+
+    $$ {block} $$
+
+    In the closed loop, $\frac{C\,G\,e^{-\theta s}}{1 + C\,G}$ is left, so that the poles are those without dead time:
+    the zeros of $T T_i s^2 + (1 + K K_c)T_i s + K K_c$, which is {polynomial}. They are {roots}, in 1/min.
+    """
+    polynomial = T * Ti * s**2 + (1 + K * Kc) * Ti * s + K * Kc
+    roots = np.roots([float(c) for c in Poly(polynomial, s).all_coeffs()])
+    return {
+        "block": _predictor(K, T, Kc, Ti, 1 - exp(-delay * s)),
+        "polynomial": polynomial,
+        "roots": " and ".join(map(_written, roots)),
+    }
+
+
+def _written(pole):
+    size = f"{pole.real:.4g}"
+    return f"{size} {'-' if pole.imag < 0 else '+'} {abs(pole.imag):.4g}j" if pole.imag else size
+
+
 @exercise(
     "17.4",
     title="How far does a load push?",
     points=5,
+    insight="A predictor cannot predict a load: the deviation grows for two dead times, whatever the controller does.",
     where=lambda K, T, delay, load: T / 5 <= delay <= Rational(3, 2) * T and K * load <= 12,
 )
 def load_response(
@@ -292,10 +455,63 @@ def _(T, delay):
     return {"time": float(T) * math.exp(-float(delay / T))}
 
 
+load_response.hints(
+    "The load and the controller's action are both steps that go through the process. When does each of them arrive?",
+    "The load arrives at $\\theta$ and goes on like a lag. Its effect is taken back from $2\\theta$ on, by the lag of "
+    "the process "
+    "and the lag $T_C$ of the loop in series, which are equal here.",
+    "With $\\tau_1 = t - {delay}$ and $\\tau_2 = t - {twice}$ the deviation is {push} K times $1 - e^{-\\tau_1/T}$ "
+    "minus, "
+    "from {twice} s on, $1 - (1 + \\tau_2/T)\\,e^{-\\tau_2/T}$. Where is its derivative zero?",
+)
+
+
+@load_response.shows
+def _(K, delay, load):
+    return {"push": f"{float(K * load):g}", "twice": f"{float(2 * delay):g}"}
+
+
+@load_response.solution
+def _(K, T, delay, load):
+    r"""Without control the load of {load} would move the temperature by $K$ times as much, {far}, like a lag behind the
+    dead time: ${push}\,(1 - e^{-(t - \theta)/T})$ from {delay} on.
+
+    The loop takes it back from $2\theta$ on, {end}. From the load to the output the term that takes it back is
+    $\frac{{K}}{(T s + 1)(T_C s + 1)}e^{-2\theta s}$, with $T_C = T$: a double lag, whose step response is
+    $1 - (1 + \tau/T)\,e^{-\tau/T}$ with $\tau = t - 2\theta$.
+
+    From $2\theta$ on, the difference is ${push}\left[(1 + \tau/T) - e^{-\theta/T}\right]e^{-\tau/T}$. Its derivative
+    vanishes where $\tau/T = e^{-\theta/T}$, which is {x}. So the largest deviation is at $2\theta + T e^{-\theta/T}$,
+    that is {time}.
+
+    There the bracket is 1, and what is left is ${push}\,e^{-{x}}$, which is {largest}.
+
+    The whole course is zero until {delay}, then $y(t) = {push}\,(1 - e^{-(t - {delay})/{T}})$, and from {end} on
+    $y(t) = {push}\,(1 - e^{-(t - {delay})/{T}}) - {push}\left[1 - \left(1 + \frac{t - {end} }{ {T} }\right)e^{-(t -
+    {end})/{T}}\right]$.
+    """
+    push = K * load
+    return {
+        "far": (push, "K"),
+        "end": (2 * delay, "s"),
+        "x": math.exp(-float(delay / T)),
+    }
+
+
+@load_response.solution_picture
+def _(K, T, delay, load):
+    """The deviation after the load: it grows for two dead times and a little longer, and then fades."""
+    push, x = K * load, math.exp(-float(delay / T))
+    y = push * Heaviside(t - delay) * (1 - exp(-(t - delay) / T)) - _taken_back(push, T, 2 * delay)
+    plot = time_plot({"$y$": (y, "measurement")}, _until(2 * delay + 6 * T), "After the load", ylabel="deviation [K]")
+    return plot.mark(float(2 * delay) + float(T) * x, "largest")
+
+
 @exercise(
     "17.5",
     title="A pipe with two flows",
     points=6,
+    insight="A predictor tolerates every error of its dead time below $T_C$: uncertainty is paid for with speed.",
     where=lambda K, T, volume, low, high: (
         Rational(5, 4) * low <= high <= 2 * low and T <= 12 * K * _middle(volume, low, high)[1]
     ),
@@ -308,9 +524,9 @@ def two_flows(
     high=between(3, 12, "L/min", reference=6),
 ):
     r"""A dosing loop has the gain {K} (its signals are in percent) and a lag of {T}. Its dead time is the time that the
-    liquid spends in a pipe of {volume}. The flow is anything between {low} and {high}, and nobody measures
-    it. So the model in the Smith predictor gets a constant dead time $\theta_m$, the one that is off by the same time
-    at both ends.
+    liquid spends in a pipe of {volume}. The flow is anything between {low} and {high}, and nobody measures it. So the
+    model in the Smith predictor gets a constant dead time $\theta_m$: the one that is off by the same time at both ends
+    of the range.
 
     Which $\theta_m$ is that? Then design the PI controller in the predictor. Let $T_0(s)$ be the closed loop without
     dead time, and $M(s) = T_0(s)\,(e^{-\theta s} - e^{-\theta_m s})$. As long as $|M(j\omega)|$ stays below 1, the
@@ -332,6 +548,7 @@ def two_flows(
                 below=_ISE_limit(model, off),
                 unit="min",
             ),
+            draws=lambda controller: _size_of_M(K, T, off, controller),
         ),
     )
 
@@ -347,10 +564,20 @@ def _ISE_limit(model, off):
 
 
 def _largest_M(K, T, off, controller):
+    return float(np.max(_M(K, T, off, controller, np.geomspace(0.01, 50, 2000) / float(off))))
+
+
+def _M(K, T, off, controller, w):
+    """The size of M at the frequencies w."""
     K, T, off = float(K), float(T), float(off)
-    jw = 1j * np.geomspace(0.01, 50, 2000) / off
-    L = np.array(_frequency(controller, jw)) * K / (T * jw + 1)
-    return float(np.max(abs(L / (1 + L)) * 2 * abs(np.sin(jw.imag * off / 2))))
+    L = np.array(_frequency(controller, 1j * w)) * K / (1j * T * w + 1)
+    return abs(L / (1 + L)) * 2 * abs(np.sin(w * off / 2))
+
+
+def _size_of_M(K, T, off, controller):
+    w = _until(12 / off)[1:]
+    curve = {"$|M(j\\omega)|$": (_M(K, T, off, controller, w), "measurement")}
+    return time_plot(curve, w, "Your predictor", "$\\omega$ [rad/min]").level(0.8, "limit")
 
 
 def _frequency(controller, jw):
@@ -389,3 +616,173 @@ def _(K, T, volume, low, high):
 def _(K, T, volume, low, high):
     model, off = _middle(volume, low, high)
     return {"controller": PID(T / (K * (model + off)), T)}
+
+
+@two_flows.mistake("That is right at one end of the range only, and off by the whole range at the other one.")
+def _(volume, low):
+    return {"model_delay": volume / low}
+
+
+@two_flows.mistake("That is right at one end of the range only, and too short everywhere else.")
+def _(volume, high):
+    return {"model_delay": volume / high}
+
+
+two_flows.hints(
+    "The dead time of a pipe is its volume divided by the flow. Which dead times are possible?",
+    "The model takes the mean of the two *dead times*, and is off by half of their difference at both ends. If the "
+    "controller cancels the lag, $T_0$ is a lag of $T_C$, and a $T_C$ as long as this error keeps $|M|$ below 0.8.",
+    "The dead times are $\\frac{ {volume} }{ {low} }$ and $\\frac{ {volume} }{ {high} }$ min. Then $K_c = "
+    "\\frac{{T}}{K\\,T_C}$ and $T_i = T$.",
+)
+
+
+@two_flows.solution
+def _(K, T, volume, low, high):
+    r"""The longest dead time is $\frac{ {volume} }{ {low} }$, which is {longest}, the shortest $\frac{ {volume} }{
+    {high} }$, which is {shortest}. The model takes their mean, {model_delay}. At both ends it is off by half of their
+    difference, {off}.
+
+    A PI controller that cancels the lag makes $T_0$ a lag of $T_C$. Then
+    $|M| = \frac{2\,|\sin(\omega\,\Delta\theta/2)|}{\sqrt{1 + (\omega T_C)^2}}$ with the error $\Delta\theta$ of {off}.
+    For $T_C = \Delta\theta$ the largest value is {size}, below the 0.8 that is asked.
+
+    The ISE with the right model is $\theta_m + \frac{T_C}{2}$, which is {value} and within the {limit}.
+
+    So $T_C$ = {off} meets both: $K_c = \frac{{T}}{K\,T_C} = \frac{ {T} }{ {K} \cdot {off} }$, which is {gain}, and
+    $T_i$ is {T}.
+    """
+    model, off = _middle(volume, low, high)
+    controller = PID(T / (K * off), T)
+    return {
+        "longest": (volume / low, "min"),
+        "shortest": (volume / high, "min"),
+        "off": (off, "min"),
+        "size": _largest_M(K, T, off, controller),
+        "value": (model + off / 2, "min"),
+        "gain": controller.Kp,
+    }
+
+
+@exercise(
+    "17.6",
+    title="A predictor that is taken by surprise",
+    points=4,
+    where=lambda T, delay, model: (
+        delay / 4 <= abs(model - delay) <= Rational(3, 5) * delay and abs(model - delay) <= Rational(4, 5) * T
+    ),
+    insight="Where the control signal leaves its way, the model and the process first disagree: that is when to look.",
+)
+def surprise(
+    K=between(0.5, 4, "", step=0.5, reference=2),
+    T=between(4, 12, "min", step=1, reference=6),
+    delay=between(4, 14, "min", step=0.5, reference=8),
+    model=between(3, 20, "min", step=0.5, reference=5),
+):
+    r"""The weight of paper [%] is controlled by the stock valve [%] in front of the machine, with a Smith predictor.
+    Gain and lag of the model are right: the gain is {K}, and the lag {T}. The PI controller inside cancels the lag,
+    with $T_C = T$. With the right dead time, the valve would jump to its final position and stay there.
+
+    But the machine runs at another speed now, and the dead time $\theta_m$ of the model is wrong. The picture shows a
+    unit step of the setpoint at time zero. Read off the dead time of the process, and that of the model. Is the model's
+    too short or too long? And how long should $T_C$ be at least, so that the chapter's guarantee of stability still
+    covers such an error?
+    (`t, y, u = exercise("17.6").given("t", "y", "u")` are the times, the weight and the valve.)
+    """
+    return answers(
+        delay=number(delay, "min", "the dead time of the process", within=0.06),
+        model_delay=number(model, "min", "the dead time of the model", within=0.06),
+        model=word("too short" if model < delay else "too long", ["too short", "too long"], "the model's dead time is"),
+        least_TC=number(abs(model - delay), "min", "the least $T_C$", within=0.2),
+    )
+
+
+def _with_wrong_dead_time(K, T, delay, model):
+    """Times, output and control signal after a unit step of the setpoint, with the lag cancelled and T_C = T."""
+    lag = first_order(K, T)
+    predictor = feedback(PID(1 / K, T).expr, lag - lag * exp(-model * s))
+    loop, times = Loop(lag * exp(-delay * s), predictor), np.linspace(0, float(3 * max(delay, model) + 2 * T), 601)
+    return times, loop.servo.step(times), loop.setpoint_to_control.step(times)
+
+
+@surprise.shows
+def _(K, T, delay, model):
+    return dict(zip("tyu", _with_wrong_dead_time(K, T, delay, model), strict=True))
+
+
+@surprise.picture
+def _(K, T, delay, model):
+    """Above the weight, which waits and then rises; below the valve, which leaves its first position after a while."""
+    times, y, u = _with_wrong_dead_time(K, T, delay, model)
+    panels = [{"weight": (y, "measurement")}, {"valve": (u, "control signal")}]
+    return time_plot(panels, times, "A unit step of the setpoint", "$t$ [min]", ["weight [%]", "valve [%]"])
+
+
+@surprise.mistake("The measurement begins to move when the dead time of the process is over. What does the model know?")
+def _(delay, model):
+    return {"delay": model, "model_delay": delay}
+
+
+@surprise.mistake("That is how long the surprise lasts. Count from the step of the setpoint.")
+def _(delay, model):
+    return {"model_delay": abs(model - delay)} if abs(abs(model - delay) / model - 1) > 0.15 else {}
+
+
+@surprise.mistake("The guarantee is about the *error* of the dead time: how far are the two apart?")
+def _(delay):
+    return {"least_TC": delay}
+
+
+@surprise.mistake("The range around a middle value has two halves. Here the whole error is known, and counts.")
+def _(delay, model):
+    return {"least_TC": abs(model - delay) / 2}
+
+
+@surprise.mistake(
+    "If the model expects a response that does not come, the controller thinks that a load pushes the other way, and "
+    "acts "
+    "more. Does the valve first open or close?"
+)
+def _(delay, model):
+    return {"model": "too long" if model < delay else "too short"}
+
+
+surprise.hints(
+    "As long as model and process agree, the valve stays where it is. What is different when it moves?",
+    "At the shorter of the two dead times, one of them responds and the other does not. If the model is first, the "
+    "controller misses the response and opens the valve further. If the process is first, it closes it.",
+    "The weight begins to rise at $\\theta$: read it above. Below there are two corners, one at $\\theta$ and one at "
+    "$\\theta_m$. "
+    "The guarantee asks that $|\\theta_m - \\theta| < T_C$.",
+)
+
+
+@surprise.solution
+def _(delay, model):
+    r"""**Process.** The weight begins to move at {delay}: that is the dead time of the process.
+
+    **Model.** The valve stays at its first position as long as the measurement is what the model expects. It leaves it
+    at {first}, and goes {way}: {why}. So the model's dead time is {model_}. The two corners of the valve are at
+    {first} and {second}, one of them the dead time of the process, and the other one, {model_delay}, that of the model.
+
+    **Guarantee.** A predictor tolerates every error of the dead time below its $T_C$. Here the error is
+    $|\theta_m - \theta|$, that is {least_TC}.
+    """
+    short = model < delay
+    return {
+        "first": (min(delay, model), "min"),
+        "second": (max(delay, model), "min"),
+        "way": "up" if short else "down",
+        "why": "the model expects a response that the measurement does not show yet"
+        if short
+        else "the measurement responds although the model does not expect it yet",
+        "model_": "too short" if short else "too long",
+    }
+
+
+@surprise.solution_picture
+def _(K, T, delay, model):
+    """The valve again, with the two corners marked: where the model responds, and where the process does."""
+    times, _, u = _with_wrong_dead_time(K, T, delay, model)
+    plot = time_plot({"valve": (u, "control signal")}, times, "Two corners", "$t$ [min]", "valve [%]")
+    return plot.mark(delay, "process").mark(model, "model")
