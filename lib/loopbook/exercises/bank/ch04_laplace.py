@@ -1,6 +1,7 @@
 """Exercises of chapter 4, the Laplace transform."""
 
-from sympy import Symbol, exp, log
+import numpy as np
+from sympy import Heaviside, Symbol, exp, log
 
 from loopbook.exercises.authoring import (
     answers,
@@ -13,16 +14,22 @@ from loopbook.exercises.authoring import (
     words,
 )
 from loopbook.expressions import s, t
+from loopbook.figures import time_plot
 
 
-@exercise("4.1", title="An oil bath warms up", points=2)
+@exercise(
+    "4.1",
+    title="An oil bath warms up",
+    points=2,
+    insight="In the transform of a derivative the initial value is subtracted: where the bath started is gone from it.",
+)
 def oil_bath(
     start=between(15, 40, "°C", reference=20),
     rate=between(0.2, 2, "K/s", reference=0.5, step=0.1),
 ):
-    r"""At $t = 0$ the oil in a bath has a temperature of {start}. From then on a heater raises it steadily, by {rate}.
-    Call the temperature $\vartheta(t)$ and give its transform. Then give the transform of its time derivative
-    $\dot\vartheta(t)$. Leave the units out: temperatures are in °C, the time is in seconds.
+    r"""At $t = 0$ the oil in a bath has a temperature of {start}. From then on a heater raises it steadily, by
+    {rate}. Call the temperature $\vartheta(t)$ and give its transform. Then give the transform of its time
+    derivative $\dot\vartheta(t)$. Leave the units out: temperatures are in °C, the time is in seconds.
     """
     return answers(
         F=transfer_function(start / s + rate / s**2, "the transform of the temperature"),
@@ -53,15 +60,46 @@ def _(start, rate):
     return {"F_rate": start + rate / s}
 
 
-@exercise("4.2", title="A dose of dye", points=3)
+oil_bath.hints(
+    "Write the temperature as a function of time first: a constant and a ramp. The transform is linear, so each is "
+    "transformed on its own.",
+    "A constant 1, from $t = 0$ on, has the transform $1/s$; the ramp $t$ has $1/s^2$. For the derivative, either "
+    "transform it directly, or use the rule $sF(s) - f(0)$.",
+    "$\\vartheta(t) = {start} + {rate}\\,t$, so the constant brings $\\frac{ {start} }{s}$. What does the ramp bring?",
+)
+
+
+@oil_bath.solution
+def _(start, rate):
+    r"""The temperature is a constant and a ramp: $\vartheta(t) = {start} + {rate}\,t$. From the table, the constant
+    has the transform ${start}/s$ and the ramp ${rate}/s^2$. The transform is linear, so the two add up:
+
+    $$\Theta(s) = \frac{ {start} }{s} + \frac{ {rate} }{s^2}$$
+
+    ***
+
+    The derivative is the constant {rate}. Its transform is ${rate}/s$.
+
+    The rule says the same: $s\,\Theta(s) - \vartheta(0) = {start} + {rate}/s - {start} = {rate}/s$. The initial
+    value has to be subtracted, or the bath would seem to jump from zero to {start} at $t = 0$.
+    """
+
+
+@exercise(
+    "4.2",
+    title="A dose of dye",
+    points=3,
+    insight="A transform at $s = 0$ is the area under the signal: here, all the dye there is.",
+)
 def dose(
     q=between(2, 12, "mL/s", reference=5),
     begin=between(4, 20, "s", reference=10),
     duration=between(5, 30, "s", reference=15),
 ):
-    """To measure the flow in a pipe, a pump adds dye to the water. The pump stands still at first. At $t$ = {begin} it
-    starts and gives {q}, and it stops after it has run for {duration}. Write the flow of the dye as a sum of steps
-    and transform it. How much dye has been added in the end? (Compare the total with the transform at $s = 0$.)
+    """To measure the flow in a pipe, a pump adds dye to the water. The pump stands still at first. At $t$ = {begin}
+    it starts and gives {q}, and it stops after it has run for {duration}. Write the flow of the dye as a sum of
+    steps and transform it. How much dye has been added in the end? (Compare the total with the transform at $s =
+    0$.)
     """
     return answers(
         F=transfer_function(
@@ -69,6 +107,15 @@ def dose(
         ),
         total=number(q * duration, "mL", "the amount of dye"),
     )
+
+
+@dose.picture
+def _(q, begin, duration):
+    """The flow of the dye: zero at first, {q} from {begin} on for {duration}, and zero again."""
+    end = float(begin + duration)
+    flow = q * (Heaviside(t - begin) - Heaviside(t - begin - duration))
+    times = np.linspace(0, 1.25 * end, 201)
+    return time_plot({"$q(t)$": (flow, "control signal")}, times, "The flow of the dye", ylabel="$q$ [mL/s]", low=True)
 
 
 @dose.mistake("The delay of a step is counted from $t = 0$, not from the step before. When does the pump stop?")
@@ -103,7 +150,38 @@ def _(q, begin, duration):
     return {"total": q * (begin + duration)}
 
 
-@exercise("4.3", title="Back to time", points=3, where=lambda A, B, p, q: A != B and q >= p + 0.2)
+dose.hints(
+    "Every pulse is two steps: one up where it begins, one down where it ends.",
+    "A step of height $q$ at the time $\\tau$ has the transform $\\frac{{q}}{s}e^{-\\tau s}$. The delays count from $t "
+    "= 0$, for the second step as well.",
+    "The first step is $\\frac{ {q} }{s}e^{-{begin}s}$. The second one has the same height, the other sign, and "
+    "comes {duration} later.",
+)
+
+
+@dose.solution
+def _(q, begin, duration):
+    r"""The flow goes up by {q} at {begin} and down by as much at {end}, {duration} later. As a sum of steps it is
+    $q(t) = {q}\,\sigma(t - {begin}) - {q}\,\sigma(t - {end})$, where $\sigma$ is the unit step.
+
+    A step at zero has the transform $1/s$, and a delay is an exponential factor:
+
+    $$Q(s) = \frac{ {q} }{s}\left(e^{-{begin}s} - e^{-{end}s}\right)$$
+
+    The amount of dye is flow times duration, ${q}\cdot{duration} =$ {total}. The transform knows it, too: for small
+    $s$, $e^{-\tau s}$ is nearly $1 - \tau s$, the bracket is nearly ${duration}\,s$, and at $s = 0$ just {total}
+    are left.
+    """
+    return {"end": (begin + duration, "s")}
+
+
+@exercise(
+    "4.3",
+    title="Back to time",
+    points=3,
+    where=lambda A, B, p, q: A != B and q >= p + 0.2,
+    insight="Each pole is an exponential. Partial fractions only say how much there is of each.",
+)
 def back_to_time(
     A=between(2, 12, reference=8, step=1),
     B=between(1, 9, reference=3, step=1),
@@ -143,21 +221,62 @@ def _(A, B, p, q):
     return {"y_0": A / p + B / q}
 
 
-@exercise("4.4", title="A thermometer comes into warm water", points=4, where=lambda bath, start: bath >= start + 20)
+back_to_time.hints(
+    "Split the transform into partial fractions. Each of them is a line of the table, an exponential.",
+    "The denominator is zero at the poles; factor it into $(s + p)(s + q)$. Then $Y(s) = \\frac{{A}}{s + p} + "
+    "\\frac{{B}}{s + q}$.",
+    "The poles are at $-{p}$ and $-{q}$, per minute. To find $A$, multiply $Y(s)$ by $s + {p}$ and put $s = -{p}$ "
+    "into what is left.",
+)
+
+
+@back_to_time.solution
+def _(A, B, p, q):
+    r"""The denominator is $(s + {p})(s + {q})$: its product and its sum say so. So there are two fractions,
+
+    $$Y(s) = \frac{{A}}{s + {p}} + \frac{{B}}{s + {q}}$$
+
+    Multiply by $s + {p}$ and put $s = -{p}$: the second fraction vanishes, and $A = {above_p}/({q} - {p}) =
+    {A_found}$. In the same way, with $s = -{q}$, $B = {above_q}/({p} - {q}) = {B_found}$.
+
+    Each fraction is an exponential: $y(t) = {A_found}\,e^{-{p}t} + {B_found}\,e^{-{q}t}$. At $t = 0$ both
+    exponentials are one, and the concentration is ${A_found} + {B_found} =$ {y_0}.
+    """
+    return {"above_p": A * (q - p), "above_q": B * (p - q), "A_found": A, "B_found": B}
+
+
+@back_to_time.solution_picture
+def _(A, B, p, q):
+    """The concentration and its two parts: one dies out soon, and then only the slow one is left."""
+    curves = {
+        "$y(t)$": A * exp(-p * t) + B * exp(-q * t),
+        "the slow part": A * exp(-p * t),
+        "the fast part": B * exp(-q * t),
+    }
+    return time_plot(curves, np.linspace(0, 3 / float(p), 201), xlabel="$t$ [min]", ylabel="[mg/L]")
+
+
+@exercise(
+    "4.4",
+    title="A thermometer comes into warm water",
+    points=4,
+    where=lambda bath, start: bath >= start + 20,
+    insight="The initial value enters at the derivative, and from then on it is algebra.",
+)
 def thermometer(
     T=between(4, 20, "s", reference=8, step=1),
     start=between(15, 30, "°C", reference=22, step=1),
     bath=between(40, 75, "°C", reference=62, step=1),
     rest=between(0.5, 2, "K", reference=1, step=0.25),
 ):
-    r"""A thermometer shows {start}. At $t = 0$ it is put into water of {bath}. From then on its reading $y(t)$ follows
-    the temperature of the water $u$ with the time constant $T$ = {T},
+    r"""A thermometer shows {start}. At $t = 0$ it is put into water of {bath}. From then on its reading $y(t)$
+    follows the temperature of the water $u$ with the time constant $T$ = {T},
 
     $$T\,\dot y(t) + y(t) = u$$
 
-    Transform this equation with its initial value and solve it for $Y(s)$. Find the reading as a function of time, and
-    the moment from which on it is less than {rest} away from the temperature of the water. (In $Y(s)$ and $y(t)$ leave
-    the units out: °C and seconds.)
+    Transform this equation with its initial value and solve it for $Y(s)$. Find the reading as a function of time,
+    and the moment from which on it is less than {rest} away from the temperature of the water. (In $Y(s)$ and
+    $y(t)$ leave the units out: °C and seconds.)
     """
     return answers(
         Y=transfer_function((T * start * s + bath) / (s * (T * s + 1)), "the transform of the reading"),
@@ -207,7 +326,46 @@ def _(T, start, bath):
     return {"Y": rise / (s * (T * s + 1)), "y": rise * (1 - exp(-t / T))}
 
 
-@exercise("4.5", title="Which of them settle?", points=3)
+thermometer.hints(
+    "Transform the equation term by term. The transform of a derivative has the initial value in it.",
+    "$\\dot y$ becomes $sY - y(0)$, and the constant $u$ becomes $u/s$. Solve for $Y$, split it into a part with the "
+    "pole 0 and a part with the pole $-1/T$, and come back to time.",
+    "Transformed, it is ${T}\\,(sY - {start}) + Y = \\frac{ {bath} }{s}$. Collect $Y$. For the moment, ask how much "
+    "of the difference of ${bath} - {start}$ is left.",
+)
+
+
+@thermometer.solution
+def _(T, start, bath, rest):
+    r"""Term by term, ${T}\,(sY - {start}) + Y = {bath}/s$. The initial value comes with the derivative, so it is
+    multiplied by the time constant as well: ${T}\cdot{start} = {product}$. Solved for $Y$:
+
+    $$Y(s) = \frac{ {product}\,s + {bath} }{s\,({T}s + 1)} = \frac{ {bath} }{s} - \frac{ {difference} }{s + 1/{T} }$$
+
+    The first fraction is a constant, the second one an exponential: $y(t) = {bath} - {difference}\,e^{-t/{T}}$. At
+    $t = 0$ this is {start}, as it must be, and for a long time it goes to {bath}.
+
+    The reading is {rest} away when ${difference}\,e^{-t/{T}} = {rest}$. Take the logarithm:
+    $t = {T}\,\ln({difference}/{rest}) =$ {t_near}.
+    """
+    return {"product": T * start, "difference": bath - start}
+
+
+@thermometer.solution_picture
+def _(T, start, bath, rest):
+    """The reading goes from where it was to the temperature of the water."""
+    reading = bath - (bath - start) * exp(-t / T)
+    moment = float(T * log((bath - start) / rest))
+    plot = time_plot({"$y$": (reading, "measurement")}, np.linspace(0, 1.3 * moment, 201), ylabel="$y$ [°C]")
+    return plot.level(bath, "water").mark(moment, "near enough")
+
+
+@exercise(
+    "4.5",
+    title="Which of them settle?",
+    points=3,
+    insight="First look where the poles are, and only then take the limit: the theorem does not check that for you.",
+)
 def which_settle(
     order=choice("ABCD", "BDAC", "CADB", "DCBA", "BACD", "CDBA", "ADCB", "DBAC", reference="BDAC"),
     a=between(1, 9, reference=4, step=1),
@@ -266,9 +424,58 @@ def _(b, p):
     return {"value": -b / (p - 1)}
 
 
+@which_settle.mistake(
+    "Settling at a value that is not zero counts as well. Which of the others has a single pole at zero?"
+)
+def _(order):
+    return {"settling": [order[3]]}
+
+
 @which_settle.mistake("Put $s = 0$ into all of $sF(s)$, into its denominator as well.")
 def _(b):
     return {"value": b}
+
+
+which_settle.hints(
+    "A signal settles if each of its parts dies out, or stays where it is. The poles of the transform say which "
+    "parts there are.",
+    "A pole on the left dies out, one on the right grows, a pair on the imaginary axis oscillates forever. A single "
+    "pole at zero stays where it is.",
+    "Find the roots of each denominator. For the one signal with a single pole at zero and all others on the left, "
+    "the end is $sF(s)$ at $s = 0$: the factor $s$ cancels, and then zero is put in for every other $s$.",
+)
+
+
+@which_settle.solution
+def _(order, a, b, p, w):
+    r"""Look at the roots of the denominators.
+
+    **{settles}** has the poles 0 and $-{p}$. The one on the left dies out, the one at zero stays where it is: it
+    settles.
+
+    **{grows}** has the poles 0 and {right}. The second one is on the right: this signal grows without bounds,
+    although $sF(s)$ has a limit at $s = 0$.
+
+    **{swings}** has the poles $\pm {w}j$, on the imaginary axis. It oscillates forever.
+
+    **{fades}** has the poles $-1$ and $-{w}$. Both die out: it settles, at zero.
+
+    Only {settles} ends at a value that is not zero. Its end is $sF(s)$ at $s = 0$, which is ${b}/{p} =$ {value}.
+    """
+    settles, grows, swings, fades = order
+    return {"settles": settles, "grows": grows, "swings": swings, "fades": fades, "right": p - 1}
+
+
+@which_settle.solution_picture
+def _(order, a, b, p, w):
+    """The four signals: one settles, one grows, one oscillates, one dies out."""
+    times = np.linspace(0, 5, 501)
+    a, b, p, w = map(float, (a, b, p, w))
+    growing = (np.exp((p - 1) * times) - 1) * b / (p - 1)
+    growing[growing > 2 * max(b / p, a / w)] = np.nan
+    fading = a * (np.exp(-times) - np.exp(-w * times)) / (w - 1)
+    signals = (b * (1 - np.exp(-p * times)) / p, growing, a * np.sin(w * times) / w, fading)
+    return time_plot(dict(sorted(zip(order, signals, strict=True))), times)
 
 
 def _excess(K, full, warmer):
@@ -280,6 +487,7 @@ def _excess(K, full, warmer):
     "4.6",
     title="Full power first, then just enough",
     points=5,
+    insight="To be there soon, aim beyond the goal, and change over to what holds it at the right moment.",
     where=lambda K, full, warmer: 1.25 <= _excess(K, full, warmer) <= 4 and abs(_excess(K, full, warmer) - 2) > 0.1,
 )
 def full_power_first(
@@ -295,8 +503,8 @@ def full_power_first(
 
     with $K$ = {K} and $T$ = {T}. The oven should become {warmer} warmer than the room, soon, and then stay so. At
     $t = 0$ the heater is switched to its full power, $u_1$ = {full}. At the moment $t_1$, when the temperature is
-    reached, it is switched back to a power $u_2$ that just holds it. Transform the power, in the symbols $u_1$, $u_2$,
-    $t_1$ and $s$. Then find $u_2$ and $t_1$.
+    reached, it is switched back to a power $u_2$ that just holds it. Transform the power, in the symbols $u_1$,
+    $u_2$, $t_1$ and $s$. Then find $u_2$ and $t_1$.
     """
     u_1, u_2, t_1 = (Symbol(name, positive=True) for name in ("u_1", "u_2", "t_1"))
     return answers(
@@ -336,3 +544,189 @@ def _(T, K, full, warmer):
 )
 def _(T, K, full, warmer):
     return {"t_1": T} if abs(_excess(K, full, warmer) - 1.582) > 0.05 else {}
+
+
+@full_power_first.mistake(
+    "The power that holds the oven is what the gain makes the temperature of. Is it not divided by it?"
+)
+def _(K, warmer):
+    return {"u_2": K / warmer}
+
+
+@full_power_first.mistake("That is the power with which the oven would stay at full power. What does it need at rest?")
+def _(full):
+    return {"u_2": full}
+
+
+full_power_first.hints(
+    "The power is two steps: one up at the beginning, and one down at $t_1$. The oven follows each step like a lag.",
+    "At rest $\\dot y = 0$, so $y = Ku$: that is what $u_2$ must do. Until $t_1$ the oven knows nothing of $u_2$ and "
+    "goes to $Ku_1$: $y(t) = Ku_1\\,(1 - e^{-t/T})$.",
+    "Full power would make the oven ${K}\\cdot{full}$ kelvin warmer in the end. Set ${K}\\cdot{full}\\,(1 - "
+    "e^{-t_1/{T}}) = {warmer}$ and solve for $t_1$.",
+)
+
+
+@full_power_first.solution
+def _(K, T, full, warmer):
+    r"""**The power** goes up by $u_1$ at $t = 0$, and at $t_1$ it changes by $u_2 - u_1$, which is a step down:
+
+    $$U(s) = \frac{u_1}{s} + \frac{u_2 - u_1}{s}\,e^{-t_1 s}$$
+
+    **To hold** the temperature, nothing may change any more: $\dot y = 0$ and $y = Ku_2$, so $u_2 = {warmer}/{K} =$
+    {u_2}.
+
+    **The moment.** Until $t_1$ the oven goes to where full power would take it, which is ${K}\cdot{full} =$ {far},
+    far beyond the goal: $y(t) = {far}\,(1 - e^{-t/{T}})$. It is at {warmer} when
+
+    $$e^{-t_1/{T}} = 1 - \frac{ {warmer} }{ {far} } = {left}$$
+
+    and the logarithm gives $t_1 = -{T}\,\ln {left} =$ {t_1}. From then on $y$ is where $u_2$ holds it, and stays
+    there.
+    """
+    return {"far": (K * full, "K"), "left": 1 - warmer / (K * full)}
+
+
+@full_power_first.solution_picture
+def _(K, T, full, warmer):
+    """The temperature rises under full power, reaches its goal, and stays; else it would go far beyond."""
+    t_1 = T * log(K * full / (K * full - warmer))
+    times = np.linspace(0, 3 * float(t_1), 301)
+    rising = float(K * full) * (1 - np.exp(-times / float(T)))
+    switched = np.where(times < float(t_1), rising, float(warmer))
+    curves = {"$y$": (switched, "measurement"), "full power all the time": (rising, "raw")}
+    powers = {"$u$": (full - (full - warmer / K) * Heaviside(t - t_1), "control signal")}
+    names = ["$y$ [K]", "$u$ [kW]"]
+    return time_plot([curves, powers], times, xlabel="$t$ [min]", ylabel=names).event(t_1, "$t_1$")
+
+
+@exercise(
+    "4.7",
+    title="A pole by ruler",
+    points=4,
+    where=lambda start, end: abs(start - end) >= 30,
+    insight="A curve shows its transform: where it begins, where it ends, and how far left its pole is.",
+)
+def pole_by_ruler(
+    start=between(15, 95, "°C", reference=80, step=1),
+    end=between(15, 95, "°C", reference=30, step=1),
+    T=between(4, 25, "s", reference=10, step=1),
+):
+    r"""A temperature sensor is moved from one bath into another, at $t = 0$. The picture shows its reading $y(t)$,
+    in °C with the time in seconds. Its transform has two poles, one at zero and one to the left of it.
+
+    Read with a ruler: which value does $y$ have at $t = 0$, and to which one does it tend? Where is the pole to the
+    left? And what is the transform $Y(s)$, with the numbers that you have read? (Leave the units out of it. You can
+    check it: at $s \to 0$, $sY(s)$ must tend to where the curve ends, and at $s \to \infty$ to where it begins.)
+
+    (`t, y = exercise("4.7").given("t", "y")` are the times [s] and readings [°C] of the picture.)
+    """
+    return answers(
+        y_0=number(start, "°C", "the reading at the beginning", within=0.05),
+        y_s=number(end, "°C", "the reading in the end", within=0.05),
+        pole=number(-1 / T, "1/s", "the pole to the left", within=0.1),
+        Y=transfer_function((start * s + end / T) / (s * (s + 1 / T)), "the transform of the reading", within=0.1),
+    )
+
+
+def _reading(start, end, T):
+    times = np.linspace(0, 6 * float(T), 301)
+    return times, float(end) + float(start - end) * np.exp(-times / float(T))
+
+
+@pole_by_ruler.shows
+def _(start, end, T):
+    times, readings = _reading(start, end, T)
+    return {"t": times, "y": readings}
+
+
+@pole_by_ruler.picture
+def _(start, end, T):
+    """The reading goes from one level to another, fast at first and then more and more slowly."""
+    times, readings = _reading(start, end, T)
+    return time_plot({"$y$": (readings, "measurement")}, times, "The sensor changes baths", ylabel="$y$ [°C]")
+
+
+@pole_by_ruler.mistake("That is the time constant. Where is the pole of something that dies out with it?")
+def _(T):
+    return {"pole": T}
+
+
+@pole_by_ruler.mistake("The curve dies out. On which side of the imaginary axis is its pole?")
+def _(T):
+    return {"pole": 1 / T}
+
+
+@pole_by_ruler.mistake(
+    "That is the time after which half of the way is covered. How much is covered after a time constant?"
+)
+def _(T):
+    return {"pole": -1 / (T * log(2))}
+
+
+@pole_by_ruler.mistake(
+    "That is the time after which hardly anything is left of the way. After how many time constants is that?"
+)
+def _(T):
+    return {"pole": -1 / (4 * T)}
+
+
+@pole_by_ruler.mistake("That is a reading that begins at zero. Where does this one begin?")
+def _(end, T):
+    return {"Y": end / T / (s * (s + 1 / T))}
+
+
+@pole_by_ruler.mistake("What belongs to your transform ends at zero. Which pole keeps a signal at a value?")
+def _(start, end, T):
+    return {"Y": (start - end) / (s + 1 / T)}
+
+
+@pole_by_ruler.mistake("What belongs to your transform runs away: one of its poles is on the right.")
+def _(start, end, T):
+    return {"Y": (start * s - end / T) / (s * (s - 1 / T))}
+
+
+@pole_by_ruler.mistake(
+    "Beginning and end are interchanged in your transform. Which of them belongs to the pole at zero?"
+)
+def _(start, end, T):
+    return {"Y": (end * s + start / T) / (s * (s + 1 / T))}
+
+
+pole_by_ruler.hints(
+    "A pole at zero is a constant, and a pole at $-1/T$ is an exponential with the time constant $T$. The reading is "
+    "the sum of the two.",
+    "After one time constant, 63 % of the way from the beginning to the end are covered. So read both levels, go 63 "
+    "% of the way from one to the other, and look when the curve is there.",
+    "With $y_0$ and $y_s$ as you have read them, $y(t) = y_s + (y_0 - y_s)\\,e^{-t/T}$, and so "
+    "$Y(s) = \\frac{{y_s}}{s} + \\frac{y_0 - y_s}{s + 1/T}$.",
+)
+
+
+@pole_by_ruler.solution
+def _(start, end, T):
+    r"""The curve begins at {y_0} and tends to {y_s}: that is a way of {way}. After one time constant, 63 % of it
+    are covered, so the reading is at {after_T}. It is there at $t$ = {T}. The pole is at $-1/{T} =$ {pole}.
+
+    In time, the reading is a constant and an exponential that dies out, $y(t) = {end} + ({start} -
+    {end})\,e^{-t/{T}}$. Each has its line in the table:
+
+    $$Y(s) = \frac{ {end} }{s} + \frac{ {start} - {end} }{s + {rate} } = \frac{ {start}\,s + {both} }{s\,(s + {rate})}$$
+
+    The check: $sY(s)$ tends to ${both}/{rate} = {end}$ for $s \to 0$, where the curve ends. For $s \to \infty$ only
+    the highest powers count, and ${start}$ is left, where it begins.
+    """
+    return {
+        "way": (end - start, "K"),
+        "after_T": (float(start) + 0.632 * float(end - start), "°C"),
+        "rate": float(1 / T),
+        "both": float(end / T),
+    }
+
+
+@pole_by_ruler.solution_picture
+def _(start, end, T):
+    """The picture of the statement, with the end and the moment at which 63 % of the way are covered."""
+    times, readings = _reading(start, end, T)
+    plot = time_plot({"$y$": (readings, "measurement")}, times, "63 % of the way", ylabel="$y$ [°C]")
+    return plot.level(end, "the end").mark(T, "one time constant")
