@@ -16,10 +16,10 @@ if TYPE_CHECKING:
     from loopbook.exercises.kinds import Kind
     from loopbook.exercises.parameters import Parameter, Value
 
-#: So many changes of the givens are tried at most: a key takes some milliseconds.
-MOST_CHANGES = 60
+#: So many changes of the givens are tried at most, of the likely and of the others: a key takes some milliseconds.
+MOST_CHANGES = 30
 #: Usually a key takes milliseconds. One that takes so long may never end; after it, no other change is tried.
-SECONDS = 0.3
+SECONDS = 0.2
 #: By these factors a given is wrong if its unit is mistaken, by what its unit contains.
 _UNIT_FACTORS = (("min", 60), ("h", 60), ("h", 3600), ("s", 60), ("%", 100), ("m", 1000), ("kg", 1000), ("mm", 1000))
 
@@ -58,7 +58,7 @@ class Background:
         function: Callable[..., Mapping[str, Kind]] | None = None,
     ):
         self.key, self.values, self.parameters, self.function = key or {}, values or {}, parameters or {}, function
-        self._keys: dict[int, Mapping[str, Kind]] = {}
+        self._keys: dict[tuple[tuple[str, Value], ...], Mapping[str, Kind]] = {}
         self._endless: list[Mapping[str, Any]] = []
 
     def of(self, name: str, answers: Mapping[str, Any]) -> Background:
@@ -81,22 +81,26 @@ class Background:
         """A given as the statement shows it."""
         return written(self.values[name], self.parameters[name].unit)
 
-    def changed_keys(self, most: int = MOST_CHANGES, words: bool = False) -> Iterator[tuple[str, Kind]]:
-        """The key of this quantity with a given changed, and a sentence on the change; the likelier ones first.
+    def changed_keys(self, likely: bool = True) -> Iterator[tuple[str, Kind]]:
+        """The key of this quantity with a given changed, and a sentence on the change.
 
         Arguments:
-            most: so many of them.
-            words: only with another word among the givens.
+            likely: the changes that a reader may make by mistake, or those that are rarer.
         """
-        for place, (how, changed) in enumerate(_changes(self) if self.function else ()):
-            if place >= most:
-                return
-            if words and not any(isinstance(value, str) for value in changed.values()):
-                continue
+        changes = (_likely_changes if likely else _rarer_changes)(self) if self.function else ()
+        for how, changed in itertools.islice(changes, MOST_CHANGES):
+            place = tuple(changed.items())
             if place not in self._keys:
                 self._keys[place] = self._key_with(changed)
             if self.name in self._keys[place]:
                 yield how, self._keys[place][self.name]
+
+    def keys_of_other_words(self) -> Iterator[tuple[str, Kind]]:
+        """The key of this quantity with another word among the givens, and a sentence on the change."""
+        for how, changed in _other_words(self) if self.function else ():
+            key = self._key_with(changed)
+            if self.name in key:
+                yield how, key[self.name]
 
     def _key_with(self, changed):
         """The key for changed values; nothing where the author's function, which is for her own ranges, has none."""
@@ -111,23 +115,32 @@ class Background:
         return {}
 
 
-def _changes(background):
-    """The changes, the likelier ones first."""
+def _likely_changes(background):
+    """Two givens of one unit interchanged, another word, a given left out."""
     values, parameters, numbers, words = background.values, background.parameters, background.numbers, background.words
     for one, other in itertools.combinations(numbers, 2):
         if parameters[one].unit == parameters[other].unit and values[one] != values[other]:
             how = f"that is what comes out with {words(one)} and {words(other)} interchanged"
             yield how, {one: values[other], other: values[one]}
-    for name, value in values.items():
-        if isinstance(value, str) and name in parameters:
-            for other in parameters[name].values:
-                if other != value:
-                    yield f"that would be right for '{other}' in place of '{value}'", {name: other}
+    yield from _other_words(background)
     for name in numbers:
         # nothing of it, hardly anything where a key has no value for nothing, and as a factor
         for nothing in (0 * values[name], values[name] / 10**6, values[name] ** 0):
             if values[name] != nothing:
                 yield f"that is what comes out without the {words(name)}", {name: nothing}
+
+
+def _other_words(background):
+    for name, parameter in background.parameters.items():
+        value = background.values[name]
+        for other in parameter.values if isinstance(value, str) else ():
+            if other != value:
+                yield f"that would be right for '{other}' in place of '{value}'", {name: other}
+
+
+def _rarer_changes(background):
+    """A given twice or half as large, in a mistaken unit, with another sign, upside down."""
+    values, parameters, numbers, words = background.values, background.parameters, background.numbers, background.words
     for name in numbers:
         yield f"that is what comes out with twice the {words(name)}", {name: 2 * values[name]}
         yield f"that is what comes out with half of the {words(name)}", {name: values[name] / 2}

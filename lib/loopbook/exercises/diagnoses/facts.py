@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
+import sympy
 
+from loopbook.exercises.diagnoses.background import Background
 from loopbook.exercises.diagnoses.finding import Finding
 from loopbook.exercises.formulas import Formula
 from loopbook.exercises.kinds import Expression, TimeFunction, TransferFunction
@@ -22,20 +24,23 @@ from loopbook.exercises.reading import listed
 SAME = 0.01
 #: A rational function is one up to so many poles, if it leaves no more than this.
 MOST_POLES, LEFT = 4, 1e-7
+#: A part of a function of time counts where it goes over this share of the whole way.
+SEEN = 0.1
+#: Values of symbols, none of them simple.
+_USUAL = np.array([0.61, 0.83, 1.12, 1.34, 1.71])
 
 
 @functools.singledispatch
-def of(kind: Expression, answer: Any) -> Finding | None:
+def of(kind: Expression, answer: Any, background: Background) -> Finding | None:
     """Return what is right and what is not in a wrong formula."""
-    return _dependence(kind, answer)
+    return _constant(kind, answer, background) or _dependence(kind, answer)
 
 
 @of.register
-def _(kind: TransferFunction, answer: Any) -> Finding | None:
-    key, found = _facts(kind.key, kind), _facts(answer, kind)
-    constant = _constant(kind, answer)
-    if constant:
+def _(kind: TransferFunction, answer: Any, background: Background) -> Finding | None:
+    if constant := _constant(kind, answer, background):
         return constant
+    key, found = _facts(kind.key, kind), _facts(answer, kind)
     if found and key and found.get("poles") is not None and key.get("poles") is not None:
         poles, right = found["poles"], key["poles"]
         if poles.size == right.size > 0 and np.all(right != 0) and not _same(poles, right, kind):
@@ -49,12 +54,13 @@ def _(kind: TransferFunction, answer: Any) -> Finding | None:
 
 
 @of.register
-def _(kind: TimeFunction, answer: Any) -> Finding | None:
+def _(kind: TimeFunction, answer: Any, background: Background) -> Finding | None:
+    if constant := _constant(kind, answer, background):
+        return constant
+    if part := _right_part(kind, answer):
+        return part
     if isinstance(answer, np.ndarray):
         return None
-    constant = _constant(kind, answer)
-    if constant:
-        return constant
     pairs = _in_time(kind, answer)
     time_constants = "on the way from the one to the other it is not right: look at the time constants"
     return _listed(kind, pairs, time_constants if len(pairs) > 1 else "")
@@ -93,37 +99,51 @@ def _same(one, other, kind):
 # --------------------------------------------------------------------------------------------------------- constants
 
 
-def _constant(kind, answer):
+def _constant(kind, answer, background):
     """Whether a formula is right but for a factor or a term without symbols, s and t."""
-    points = kind.points()
     with np.errstate(all="ignore"):
-        key, found = np.broadcast_arrays(kind.key(**points), answer(**points))
+        key, found = _values(kind, answer)
         known = np.isfinite(key) & np.isfinite(found) & (key != 0)
         if np.sum(known) < 5:
             return None
         ratio, difference = found[known] / key[known], found[known] - key[known]
     if np.ptp(ratio.real) + np.ptp(ratio.imag) < 1e-6 * np.abs(ratio[0]):
         factor = float(ratio[0].real)
-        return Finding(f"it is right but for a constant factor{_factor_named(factor)}; everything else in it is right")
+        named = _factor_named(factor, background)
+        return Finding(f"it is right but for a constant factor{named}; everything else in it is right")
     size = np.max(np.abs(key[known]))
     if "t" in kind.symbols and np.ptp(difference.real) < 1e-6 * size < np.abs(difference[0]):
         return Finding("it is right but for a constant that is added, or is missing: look where it begins and ends")
     return None
 
 
-def _factor_named(factor):
+def _values(kind, answer):
+    """The values of key and answer at the points of comparison."""
+    points = kind.points()
+    return np.broadcast_arrays(kind.key(**points), answer if isinstance(answer, np.ndarray) else answer(**points))
+
+
+def _factor_named(factor, background):
+    sign = " and the sign" if factor < 0 else ""
+    for given in background.givens:
+        if given.value not in (0, 1) and _is_factor(factor, given.value):
+            return f" as large as the {given.words} of the question{sign}"
     names = {2: "2", 60: "60", 100: "100", 1000: "1000", 10: "10", 4: "4", math.pi: "π", 2 * math.pi: "2π"}
     for value, name in names.items():
-        if any(abs(abs(factor) / one - 1) < 1e-3 for one in (value, 1 / value)):
-            return f" of {name}" + (" and the sign" if factor < 0 else "")
-    return " and the sign" if factor < 0 else ""
+        if _is_factor(factor, value):
+            return f" of {name}{sign}"
+    return sign
+
+
+def _is_factor(factor, value):
+    return any(abs(abs(factor) / abs(one) - 1) < 1e-3 for one in (value, 1 / value))
 
 
 def _dependence(kind, answer):
     """In which symbols a formula is right, up to a factor or a term without them."""
     names = [name for name in kind.symbols if name not in ("s", "t")]
     if len(names) < 2:
-        return _constant(kind, answer)
+        return None
     points = {name: values[:24] for name, values in kind.points().items()}
 
     def varied(formula, name):
@@ -132,9 +152,6 @@ def _dependence(kind, answer):
         grid[name] = np.asarray(points[name])[None, :]
         return np.broadcast_to(formula(**grid), (24, 24))
 
-    constant = _constant(kind, answer)
-    if constant:
-        return constant
     in_factor, in_term, absent = [], [], []
     for name in names:
         with np.errstate(all="ignore"):
@@ -152,6 +169,14 @@ def _dependence(kind, answer):
             in_term.append(name)
     if absent:
         return Finding(f"it does not depend on {listed(absent)}, but it should", is_mistake=False)
+    limits = [
+        f"for a very {size} {name}"
+        for name in names
+        for size, value in (("small", 1e-7), ("large", 1e7))
+        if _is_right_at(kind, answer, {name: value})
+    ]
+    if limits:
+        return Finding(f"it is right {listed(limits[:3])}, but not otherwise", is_mistake=False)
     right = in_factor or in_term
     if right:
         off = [name for name in names if name not in right]
@@ -161,6 +186,29 @@ def _dependence(kind, answer):
 
 
 # ----------------------------------------------------------------------------------------------------- facts in time
+
+
+def _is_right_at(kind, answer, limit):
+    """Whether a formula has the values of the key at a limit, where that is neither zero nor infinite."""
+    usual = {name: (1 + 0.1 * place) * np.roll(_USUAL, place) for place, name in enumerate(kind.symbols)} | limit
+    with np.errstate(all="ignore"):
+        key, found = (np.abs(formula(**usual)) for formula in (kind.key, answer))
+    is_finite = np.all(np.isfinite(key) & (key > 1e-3) & (key < 1e3))
+    return bool(is_finite and np.all(np.abs(found - key) <= 1e-3 * key))
+
+
+def _right_part(kind, answer):
+    """Whether a function in pieces is right at first, or at last."""
+    if kind.expr is None or not kind.expr.has(sympy.Piecewise, sympy.Heaviside, sympy.Min, sympy.Max):
+        return None
+    key, found = (values.real[kind.times > 1e-2 * kind.until] for values in _values(kind, answer))
+    is_right = np.abs(found - key) <= kind.within * np.nanmax(np.abs(key))
+    first, last = int(np.argmin(is_right)), int(np.argmin(is_right[::-1]))
+    if first and np.ptp(key[:first]) > SEEN * np.ptp(key):
+        return Finding("it is right at first, but from some moment on it is not", is_mistake=False)
+    if last and np.ptp(key[-last:]) > SEEN * np.ptp(key):
+        return Finding("it is right from some moment on, but not before", is_mistake=False)
+    return None
 
 
 def _in_time(kind, answer):
@@ -212,10 +260,13 @@ def _facts(formula: Formula, kind: Expression) -> dict[str, Any]:
     def values(s):
         return np.broadcast_to(formula(s=np.asarray(s, complex), **others), np.shape(s))
 
-    scale = _scale(kind, others)
-    delay = _delay(values, scale)
+    def of_key(s):
+        return np.broadcast_to(kind.key(s=np.asarray(s, complex), **others), np.shape(s))
+
+    delay = _delay(values)
     if delay is None:
         return {}
+    scale = _scale((of_key, values), delay)
     for exact in dict.fromkeys([0.0 if delay == 0 else float(f"{delay:.{digits}g}") for digits in range(1, 7)]):
         above, below = _rational(lambda s, exact=exact: values(s) * np.exp(exact * s), scale)
         if below is not None and (exact == 0) == (delay == 0):
@@ -231,24 +282,30 @@ def _facts(formula: Formula, kind: Expression) -> dict[str, Any]:
     return {name: gain, "dead time": exact, "poles": poles, "zeros": zeros}
 
 
-def _scale(kind, others):
-    """A time in the range of the key's: where its size changes most with s."""
-    s = np.geomspace(1e-6, 1e6, 241)
-    with np.errstate(all="ignore"):
-        logs = np.log(np.abs(np.broadcast_to(kind.key(s=1j * s, **others), s.shape)))
-    change = np.abs(np.gradient(np.gradient(logs)))
-    return float(1 / s[np.nanargmax(np.where(np.isfinite(change), change, 0))])
+def _scale(formulas: Iterable[Callable[[Any], Any]], delay: float) -> float:
+    """A time in the range of theirs: where the size of one of them changes most with the frequency, or the delay."""
+    frequencies = np.geomspace(1e-6, 1e6, 241)
+    for values in formulas:
+        with np.errstate(all="ignore"):
+            change = np.abs(np.gradient(np.gradient(np.log(np.abs(values(1j * frequencies))))))
+        change = np.where(np.isfinite(change), change, 0)
+        if np.max(change) > 1e-4:
+            return float(1 / frequencies[np.argmax(change)])
+    return delay or 1.0
 
 
-def _delay(values: Callable[[Any], Any], scale: float) -> float | None:
-    """The dead time, from what is left where s is large; powers of s fall out of the second difference."""
-    for size in np.geomspace(1e4, 1, 25):
-        step = size / scale
+def _delay(values: Callable[[Any], Any]) -> float | None:
+    """The dead time, from what is left where s is large; powers of s fall out of the second difference.
+
+    >>> round(_delay(lambda s: np.exp(-3 * s) / (5 * s + 1)), 3)
+    3.0
+    """
+    for step in np.geomspace(1e7, 1e-7, 141):
         with np.errstate(all="ignore"):
             logs = np.log(np.abs(values(np.array([1, 2, 4]) * step)))
         if np.isfinite(logs).all():
-            delay = -(logs[2] - 2 * logs[1] + logs[0]) / step
-            return float(delay) if abs(delay) > 1e-3 * scale else 0.0
+            size = abs(logs[2] - 2 * logs[1] + logs[0])  # of which a lag leaves next to nothing
+            return float(-(logs[2] - 2 * logs[1] + logs[0]) / step) if size > 1 else 0.0
     return None
 
 
@@ -276,8 +333,8 @@ def _roots(polynomial, scale):
     largest = np.max(np.abs(polynomial))
     while polynomial.size and abs(polynomial[-1]) < 1e-6 * largest:
         polynomial = polynomial[:-1]
-    roots = np.polynomial.polynomial.polyroots(polynomial) / scale if polynomial.size > 1 else np.array([])
-    return _in_order(roots)
+    roots = np.polynomial.polynomial.polyroots(polynomial) if polynomial.size > 1 else np.array([])
+    return _in_order(np.where(np.abs(roots) < 1e-6, 0, roots) / scale)
 
 
 def _in_order(roots):

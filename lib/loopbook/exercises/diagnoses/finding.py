@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import functools
+import itertools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
-
-from loopbook.exercises.diagnoses.background import MOST_CHANGES
 
 if TYPE_CHECKING:
     from loopbook.exercises.diagnoses.background import Background
@@ -40,9 +39,9 @@ def explained(kind: Kind, answer: Any, background: Background) -> Finding | None
     return recomputed(kind, answer, background)
 
 
-def recomputed(kind: Kind, answer: Any, background: Background, most: int = MOST_CHANGES) -> Finding | None:
-    """Return the change of a given, of at most so many, with which the answer would be right."""
-    for how, key in background.changed_keys(most):
+def recomputed(kind: Kind, answer: Any, background: Background) -> Finding | None:
+    """Return the change of a given with which the answer would be right."""
+    for how, key in itertools.chain(background.changed_keys(), background.changed_keys(likely=False)):
         if type(key) is type(kind):
             wrong = kind.like(key.key)
             if not wrong.agrees(kind.key) and wrong.agrees(answer):

@@ -26,9 +26,6 @@ MOST_CHANGES = 250
 FIRST_LOOK = 0.1
 #: Of the key's symbols these are no quantities.
 _VARIABLES = ("s", "t")
-#: With changed givens, so many formulas are compared at most: it takes longer than with numbers.
-FEWER = 40
-
 #: A tree with one place changed, and a sentence on it.
 Change = tuple[ast.expr, str]
 
@@ -37,9 +34,9 @@ Change = tuple[ast.expr, str]
 def _(kind: Expression, answer: Any, background: Background) -> Finding | None:
     return (
         changed_in_one_place(kind, answer, _likely)
-        or recomputed(kind, answer, background, most=FEWER)
+        or recomputed(kind, answer, background)
         or changed_in_one_place(kind, answer, _possible)
-        or facts.of(kind, answer)
+        or facts.of(kind, answer, background)
     )
 
 

@@ -20,10 +20,9 @@ from loopbook.exercises.kinds.numeric import in_unit
 from loopbook.exercises.reading import Unreadable
 
 #: A value is recognised within this fraction of it, however many digits the answer has, and never beyond the other.
-NARROWEST, WIDEST = 0.001, 0.01
-#: What is true of many numbers by chance is said of answers with so many digits, or of a value without others.
-ENOUGH_DIGITS = 3
-EXACTLY = 1e-6
+NARROWEST, WIDEST = 0.001, 0.006
+#: What is true of many numbers by chance is said of those with so many digits and this near, or of the very value.
+ENOUGH_DIGITS, NEAR_ENOUGH, EXACTLY = 3, 0.0021, 1e-6
 #: An answer that is off by less than this is in the neighbourhood of the right one.
 NEARBY = 0.1
 #: A rounded answer is off by less than this.
@@ -39,7 +38,8 @@ class Case:
         asked: the quantity in words, with its unit.
         others: the other numbers that are asked for.
         givens: the numbers that are given.
-        changed: pairs of a sentence and the number that comes out with a change of the givens; called last.
+        changed: pairs of a sentence and the number that comes out with a change of the givens, either a likely change
+            (True) or another one.
         answered: pairs of another asked number and what the reader has instead of it.
     """
 
@@ -49,7 +49,7 @@ class Case:
     within: float = 0.01
     others: list[Amount] = field(default_factory=list)
     givens: list[Amount] = field(default_factory=list)
-    changed: Callable[[], Iterator[tuple[str, float]]] = lambda: iter(())
+    changed: Callable[[bool], Iterator[tuple[str, float]]] = lambda _: iter(())
     answered: list[tuple[Amount, float]] = field(default_factory=list)
 
 
@@ -81,16 +81,25 @@ def found_in(answer: float, case: Case, agrees: Callable[[float], bool] | None =
     >>> found_in(17.9, case)
     """
     agrees = agrees or (lambda wrong: abs(wrong - case.key) <= case.within * abs(case.key))
-    wrongs = [
-        (mistake, wrong, says)
-        for mistake in TABLE
-        for wrong, says in mistake.wrongs(case)
-        if math.isfinite(wrong) and not agrees(wrong)
-    ]
-    for narrow in (True, False):
-        for mistake, wrong, says in wrongs:
-            if is_recognised(answer, wrong, mistake.is_rare, narrow):
-                return Finding(says)
+    found = _in_tables(answer, case, agrees, (TABLE, MORE))
+    if not found and answer * case.key < 0:
+        beside = _in_tables(-answer, case, agrees, (TABLE,))
+        return beside and Finding(f"the sign is not right; and but for the sign, {beside.says}")
+    return found
+
+
+def _in_tables(answer, case, agrees, tables):
+    for mistakes in tables:
+        wrongs = [
+            (mistake, wrong, says)
+            for mistake in mistakes
+            for wrong, says in mistake.wrongs(case)
+            if math.isfinite(wrong) and not agrees(wrong)
+        ]
+        for narrow in (True, False):
+            for mistake, wrong, says in wrongs:
+                if is_recognised(answer, wrong, mistake.is_rare, narrow):
+                    return Finding(says)
     return None
 
 
@@ -104,8 +113,8 @@ def is_recognised(answer: float, wrong: float, is_rare: bool = False, narrow: bo
         return answer == wrong
     digits, half_unit = _digits(answer)
     within = NARROWEST if narrow else min(max(half_unit / abs(wrong), NARROWEST), WIDEST)
-    if is_rare and digits < ENOUGH_DIGITS:
-        within = EXACTLY if digits > 1 else 0
+    if is_rare:
+        within = min(within, NEAR_ENOUGH) if digits >= ENOUGH_DIGITS else EXACTLY
     return abs(answer - wrong) <= within * abs(wrong)
 
 
@@ -169,6 +178,11 @@ def _with_given(case):
             says = f"it is off by a factor as large as the {given.words}: is that missing, or in it once too often?"
             yield case.key * given.value, says
             yield case.key / given.value, says
+    for other in case.others:
+        if other.value not in (0, 1, -1):
+            says = f"it is off by a factor as large as {other.words}: is that missing, or in it once too often?"
+            yield case.key * other.value, says
+            yield case.key / other.value, says
 
 
 _FACTORS = (
@@ -178,9 +192,9 @@ _FACTORS = (
     (60, "it is off by a factor of 60: look at the units, at seconds and minutes"),
     (10, "it is off by a factor of 10: look at the decimal point, and at the units"),
     (3600, "it is off by a factor of 3600: look at the units, at seconds and hours"),
-    (2 * math.pi, "it is off by a factor of 2π: count in radians or in whole turns?"),
 )
 _RARE_FACTORS = (
+    (2 * math.pi, "it is off by a factor of 2π: count in radians or in whole turns?"),
     (4, "it is off by a factor of 4: is something halved, doubled or squared twice, or not at all?"),
     (math.pi, "it is off by a factor of π"),
     (180 / math.pi, "it is off by the factor between degrees and radians"),
@@ -222,7 +236,12 @@ def _follows(case):
 
 
 def _changed(case):
-    for says, value in case.changed():
+    for says, value in case.changed(True):
+        yield value, says
+
+
+def _changed_otherwise(case):
+    for says, value in case.changed(False):
         yield value, says
 
 
@@ -264,10 +283,14 @@ TABLE = (
     Mistake("given", _given),
     Mistake("decibel", _decibel),
     Mistake("complement", _complement),
-    Mistake("with a given", _with_given),
     Mistake("factor", _factor),
+    Mistake("with a given", _with_given, is_rare=True),
     Mistake("follows", _follows, is_rare=True),
+)
+#: After them, the rest: to change the givens takes time.
+MORE = (
     Mistake("changed", _changed),
+    Mistake("changed otherwise", _changed_otherwise, is_rare=True),
     Mistake("two givens", _two_givens, is_rare=True),
     Mistake("beside a given", _beside_given, is_rare=True),
     Mistake("power", _power, is_rare=True),
@@ -328,12 +351,15 @@ def size_of(answer: float, case: Case) -> str:
 
 
 def others_asked(background: Background) -> list[tuple[str, Amount]]:
-    """The other numbers that are asked for, each with its name."""
+    """The other numbers that are asked for, each with its name; what one is stays open as long as it has no answer."""
     return [
-        (name, Amount(kind.key, kind.unit, f"{kind.what}, `{name}`"))
+        (name, Amount(kind.key, kind.unit, f"{kind.what}, `{name}`" if name in background.answers else _ANOTHER))
         for name, kind in background.key.items()
         if isinstance(kind, Number) and name != background.name
     ]
+
+
+_ANOTHER = "another quantity that is asked for"
 
 
 def answered_otherwise(background: Background) -> Iterator[tuple[Amount, float]]:
@@ -357,7 +383,9 @@ def _(kind: Number, answer: float, background: Background) -> Finding:
         kind.within,
         others=[amount for _, amount in others_asked(background)],
         givens=background.givens,
-        changed=lambda: ((how, key.key) for how, key in background.changed_keys() if isinstance(key, Number)),
+        changed=lambda likely: (
+            (how, key.key) for how, key in background.changed_keys(likely) if isinstance(key, Number)
+        ),
         answered=list(answered_otherwise(background)),
     )
     return found_in(answer, case, kind.agrees) or in_general(answer, case)

@@ -16,15 +16,16 @@ from loopbook.exercises.reading import listed
 
 @explained.register
 def _(kind: Settings, answer: Any, background: Background) -> Finding | None:
-    if found := recomputed(kind, answer, background):
-        return found
+    mistake = recomputed(kind, answer, background)
     answer = kind.in_form_of_key(answer)
     if answer is None:
-        return None
+        return mistake
     near = kind.parts_near(answer)
     right = [name for name in NAMES if near[name] and getattr(kind.key, name) not in (0, sympy.oo)]
     wrong = [name for name in NAMES if not near[name]]
     says = [f"{listed(right)} {'are' if right[1:] else 'is'} right"] if right else []
+    if mistake:
+        return Finding("; ".join([*says, mistake.says]))
     found = {name: _in_part(kind, name, answer, background) for name in wrong}
     named = [f"{name} is not{one.says}" if one.is_bare else f"{name}: {one.says}" for name, one in found.items()]
     is_mistake = any(one.is_mistake for one in found.values())
@@ -50,8 +51,8 @@ def _in_part(kind, name, answer, background):
         if other != name and getattr(kind.key, other) not in (0, sympy.oo)
     ]
 
-    def changed():
-        for how, other in background.changed_keys():
+    def changed(likely):
+        for how, other in background.changed_keys(likely):
             if isinstance(other, Settings) and other.key.form == kind.key.form and getattr(other.key, name).is_finite:
                 yield how, float(getattr(other.key, name))
 

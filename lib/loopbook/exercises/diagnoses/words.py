@@ -27,7 +27,7 @@ _QUESTIONS = (
 
 @explained.register
 def _(kind: Word, answer: str, background: Background) -> Finding | None:
-    for how, key in background.changed_keys(words=True):
+    for how, key in background.keys_of_other_words():
         if isinstance(key, Word) and key.key == answer:
             return Finding(how)
     for words, question in _QUESTIONS:

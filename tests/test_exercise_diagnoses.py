@@ -1,0 +1,284 @@
+"""The diagnoses of wrong answers: each mistake has its own sentence, and hardly any number is taken for a mistake."""
+
+import contextlib
+import itertools
+import math
+import random
+import re
+import time
+
+import numpy as np
+import pytest
+import sympy
+
+from draws import THOROUGH
+from loopbook import s
+from loopbook.exercises import bank
+from loopbook.exercises.authoring import (
+    answers,
+    between,
+    choice,
+    exercise,
+    expression,
+    number,
+    numbers,
+    poles,
+    settings,
+    time_function,
+    transfer_function,
+    word,
+    words,
+)
+from loopbook.exercises.diagnoses import Background, explained
+from loopbook.exercises.diagnoses import numbers as in_numbers
+from loopbook.exercises.diagnoses.background import Amount
+from loopbook.exercises.diagnoses.numbers import MORE, TABLE, Case, found_in, in_general, is_recognised
+from loopbook.exercises.judging import MISTAKE, WRONG, judge
+from loopbook.exercises.kinds import Expression, Number
+from loopbook.exercises.reading import Unreadable
+from loopbook.pid import PID
+
+VARIANTS = 200 if THOROUGH else 1
+
+
+# An exercise with everything in it.
+
+
+@exercise("1.1", title="A tank", points=1)
+def tank(
+    K=between(1, 9, "K/%", reference=3),
+    T=between(10, 90, "s", reference=40),
+    tau=between(1, 20, "s", reference=8),
+    action=choice("heating", "cooling"),
+    noise=between(1, 999, step=1),
+):
+    """A {action} tank with {K}, {T}, {tau}."""
+    sign = 1 if action == "heating" else -1
+    return answers(
+        Kp=number(sign * T / (K * (2 * tau)), "%/K", "the gain"),
+        Ti=number(sympy.Min(T, 8 * tau), "s", "the integral time"),
+        rise=number(T * sympy.log(2) + tau, "s", "the time to one half"),
+        phase=number(65, "deg", "the phase margin"),
+        pid=settings(PID(T / (2 * K * tau), T), "%/K", "s", "the settings"),
+        H=transfer_function(K * sympy.exp(-tau * s) / (T * s + 1)),
+        h=time_function(K * (1 - sympy.exp(-sympy.Symbol("t") / T)), until=200, unit="K"),
+        way=word("up" if action == "heating" else "down", ["up", "down", "nowhere"], "the way"),
+    )
+
+
+RESPONSES = [
+    ({"Kp": -2.5 / 3}, "the size is right, the sign is not"),
+    ({"Kp": 1.2}, "that is the inverse"),
+    ({"Kp": 2.5}, "as large as the 3\xa0K/%: is that missing"),
+    ({"Kp": 1.667}, "it is off by a factor of 2"),
+    ({"Ti": 8}, "that is the 8\xa0s of the question itself"),
+    ({"Ti": 0.667}, "that would be the value in min"),
+    ({"rise": 27.73}, "that is what comes out without the 8\xa0s"),
+    ({"rise": 45.55}, "that is what comes out with 40\xa0s and 8\xa0s interchanged"),
+    ({"rise": 40}, "another quantity that is asked for: have you interchanged the two?"),
+    ({"rise": 40, "Ti": 35.7}, "that is the integral time, `Ti`: have you interchanged the two?"),
+    ({"phase": 25}, "that is what is missing to a right angle"),
+    ({"phase": 115}, "that is what is missing to half a turn"),
+    ({"phase": 1.134}, "that would be the value in rad"),
+    ({"Ti": 20.5, "Kp": 0.4271}, "this fits what you have for"),
+    ({"pid": [2.5, 40]}, "Ti is right; that is what comes out without the 3\xa0K/%"),
+    ({"pid": [0.8333, 8]}, "Kp is right; Ti: that is the 8\xa0s of the question"),
+    ({"pid": PID(0.8333)}, "Kp is right; Ti: the integral term is missing"),
+    ({"pid": PID(0.8333, 40, 5)}, "a derivative term is not asked for"),
+    ({"H": "3*exp(-40*s)/(8*s + 1)"}, "with 40\xa0s and 8\xa0s interchanged"),
+    ({"H": "3*exp(-8*s)/(40*s - 1)"}, "one sign is wrong"),
+    ({"H": "3*exp(-8*s)/(37*s + 1)"}, "its static gain and dead time are right, but its poles are not"),
+    ({"H": "3*exp(-5*s)/(40*s + 1)"}, "its static gain and poles are right, but its dead time is not"),
+    ({"H": "3*exp(-8*s)/(s + 40)"}, "its poles are one divided by those that it should have"),
+    ({"H": "7*exp(-8*s)/(40*s + 1)"}, "it is right but for a constant factor"),
+    ({"H": "3*exp(-8*s)/(40*s + 1)/(5*s + 1)"}, "it has too many poles"),
+    ({"h": "3*(1 - exp(-t/35))"}, "its initial value and final value are right, but its initial slope is not"),
+    ({"h": "3*exp(-t/40)"}, "its initial value and final value are not right"),
+    ({"h": "1 - exp(-t/40)"}, "without the 3\xa0K/%"),
+    ({"h": "3*(1 - exp(-8*t))"}, "that is what comes out"),
+    ({"way": "down"}, "that would be right for 'cooling' in place of 'heating'"),
+]
+
+
+@pytest.mark.parametrize(("given", "says"), RESPONSES[:-2] + RESPONSES[-1:])
+def test_responses(given, says):
+    assert says in repr(tank.question().check(**given))
+
+
+def test_what_the_statement_does_not_show_is_no_given():
+    question = tank.question()
+    assert "noise" not in question.background.parameters
+    assert {"K", "T", "tau", "action"} == question.background.parameters.keys()
+
+
+WITHOUT_GIVENS = [
+    (number(0.6667, "s", "the time"), 0.7, WRONG, "rounded to 1 digit, but the accuracy asked for"),
+    (number(17.97, "s", "the time"), 18.5, WRONG, "more than the rounding of a result"),
+    (number(17.97, "s", "the time"), 3, WRONG, "too small"),
+    (number(17.97, "s", "the time"), 9000, WRONG, "much too large"),
+    (number(17.97, "s", "the time"), -3, WRONG, "the sign is not, nor is the size"),
+    (number(7, "", "the number of states"), 9, WRONG, "not right"),
+    (number(4, "", "the gain margin"), 12.04, MISTAKE, "in dB"),
+    (numbers([[1, 2], [3, 4]], what="A"), [[1, 2], [3, -4]], MISTAKE, "row 2, column 2: the size is right"),
+    (numbers([1, 2, 3], what="A"), [2, 1, 3], MISTAKE, "in another order"),
+    (numbers([1, 2, 3], what="A"), [1, 2, 7.7], WRONG, "look at the third number"),
+    (poles([-1 + 2j, -1 - 2j]), [-1 + 2j], MISTAKE, "its mirror image is missing"),
+    (poles([-1, -1, -2]), [-1, -2], MISTAKE, "one of them counts several times"),
+    (poles([-1, -2]), [-1], WRONG, "what is there is right, but something is missing"),
+    (poles([-1, -2]), [1], MISTAKE, "one has the wrong sign"),
+    (poles([-1, -2]), [-1, -2, -3], WRONG, "all that are asked for are there, but also more"),
+    (poles([-4, -2]), [-0.25, -2], MISTAKE, "1 of 2 is right; one is the inverse"),
+    (poles([-1, -2]), [-1, -2.05], MISTAKE, "off by a few percent"),
+    (expression("a/(b + c)"), "a/(b - c)", MISTAKE, "one sign is wrong: look at the term with c"),
+    (expression("a/(b + c)"), "a/b", MISTAKE, "a term is missing: look for one with c"),
+    (expression("a/(b + c)"), "a*(b + c)", MISTAKE, "b and c multiplies where it should divide"),
+    (expression("a/(b + c)"), "b/(a + c)", MISTAKE, "a and b are interchanged"),
+    (expression("a**2/(b + c)"), "a/(b + c)", MISTAKE, "a power is wrong: look at the part with a"),
+    (expression("a*b/(a + c)"), "5*a*b/(a + c)", MISTAKE, "right but for a constant factor"),
+    (expression("a*b/(a + c)"), "-60*a*b/(a + c)", MISTAKE, "a constant factor of 60 and the sign"),
+    (expression("a*b*c/(c + d)"), "a*b*(c**2 + 7*d)", WRONG, "it depends on a and b in the right way"),
+    (expression("a*b*sqrt(c + d)"), "a**3 + b + d", WRONG, "it does not depend on c, but it should"),
+    (expression("4*T**2*(a + b)/(T + a + b)**2"), "4*T*(a + b)/(T + a + b)", WRONG, "right for a very large T"),
+    (words(["S2", "S4"], ["S1", "S2", "S3", "S4"]), "S2", WRONG, "something is missing"),
+    (words(["S2", "S4"], ["S1", "S2", "S3", "S4"]), "S2, S1", WRONG, "S2 belongs there, S1 does not"),
+    (words(["S2", "S4"], ["S1", "S2", "S3", "S4"]), "S2, S4, S1", WRONG, "but also more: S1 does not"),
+    (words(["S2", "S4"], ["S1", "S2", "S3", "S4"]), "S1", WRONG, "none of them belongs there"),
+    (words("ABC", "ABCD", ordered=True), "A, C, B", WRONG, "their order is not: it is right up to A"),
+    (words("ABC", "ABCD", ordered=True), "B, A, C", WRONG, "look at what comes first"),
+]
+
+
+@pytest.mark.parametrize(("kind", "given", "status", "says"), WITHOUT_GIVENS)
+def test_responses_without_givens(kind, given, status, says):
+    verdict = judge("x", kind, given)
+    assert verdict.status == status, verdict
+    assert says in verdict.says, verdict
+
+
+@pytest.mark.parametrize(
+    ("kind", "given", "is_bare"),
+    [
+        (number(17.97, "s"), 41.3, True),
+        (number(17.97, "s"), -17.97, False),
+        (number(17.97, "s"), 18.5, False),
+        (expression("a*b + c"), "a**3 + b**3 - 7*c**2", True),
+        (word("up", ["up", "down"]), "down", True),
+    ],
+)
+def test_a_verdict_says_whether_it_is_bare(kind, given, is_bare):
+    assert judge("x", kind, given).is_bare == is_bare
+
+
+def test_a_key_that_never_ends_for_other_givens_is_given_up():
+    def key(n):
+        while n != 7:
+            time.sleep(0.001)
+        return answers(x=number(n, "s", "the time"))
+
+    background = Background(key(7), {"n": 7}, {"n": between(1, 9, "s")}, key)
+    begun = time.perf_counter()
+    assert explained(number(7, "s"), 3.3, background.of("x", {})).is_bare
+    assert time.perf_counter() - begun < 2
+
+
+def test_no_diagnosis_stumbles():
+    for chapter in bank.chapters():
+        for one in bank.exercises(chapter).values():
+            question = one.question()
+            for name, kind in question.key.items():
+                if isinstance(kind, Expression):
+                    wrong = [2.5 * kind.expr, (kind.expr + 7) * 5, kind.expr**2, kind.expr - 1 / (kind.expr + 2)]
+                else:
+                    wrong = [value for _, value in (*question.mistakes[name], *kind.mistakes())]
+                for answer in (kind.read(value)[0] for value in wrong):
+                    if not kind.agrees(answer):
+                        with contextlib.suppress(Unreadable):  # a list of another length
+                            explained(kind, answer, question.background.of(name, {name: answer}))
+
+
+# The table of mistakes in numbers.
+
+
+def cases(students):
+    """The numbers that are asked for in all exercises, in some variants."""
+    for chapter in bank.chapters():
+        for one in bank.exercises(chapter).values():
+            for student in students:
+                question = one.question.__wrapped__(one, student)
+                for name, kind in question.key.items():
+                    if isinstance(kind, Number):
+                        yield question, name, kind
+
+
+def case_of(question, name, kind, monkeypatch=None):
+    """The case that the diagnosis of a number looks at."""
+    seen = []
+    monkeypatch.setattr(in_numbers, "found_in", lambda answer, case, agrees: seen.append(case))
+    explained(kind, math.pi, question.background.of(name, {}))
+    monkeypatch.undo()
+    return seen[0]
+
+
+@pytest.mark.parametrize("part", range(4))
+def test_each_mistake_is_answered_by_its_own_sentence(part, monkeypatch):
+    """Or by that of another mistake with the same value in this variant, one that comes before it."""
+    students = [f"student {k}" for k in range(VARIANTS)]
+    for place, (question, name, kind) in enumerate(itertools.islice(cases(students), part, None, 4)):
+        case = case_of(question, name, kind, monkeypatch)
+        before = []
+        for mistake in (*TABLE, *MORE) if THOROUGH or place % 5 == 0 else TABLE:  # keys with other givens take time
+            for wrong, says in mistake.wrongs(case):
+                if not math.isfinite(wrong) or wrong == 0 or kind.agrees(wrong):
+                    continue
+                found = found_in(wrong, case, kind.agrees)
+                alike = {one for value, one in before if is_recognised(wrong, value)}
+                assert found is not None, f"{question.exercise.number} {name} = {wrong}: {says}"
+                assert found.says == says or found.says in alike, f"{question.exercise.number} {name} = {wrong}: {says}"
+                before.append((wrong, says))
+
+
+def test_hardly_any_other_number_is_taken_for_a_mistake():
+    dice = random.Random(22)
+    taken, count = 0, 0
+    for question, name, kind in cases([None]):
+        for _ in range(6 if THOROUGH else 2):
+            answer = kind.key * math.exp(dice.uniform(-2, 2))
+            answer = float(f"{answer:.{dice.choice((2, 3))}e}")
+            if kind.key and not kind.agrees(answer):
+                found = explained(kind, answer, question.background.of(name, {}))
+                count += 1
+                taken += found.is_mistake
+    assert count > 300
+    assert taken <= 0.04 * count
+
+
+def test_no_sentence_tells_the_key(monkeypatch):
+    for question, name, kind in cases([None]):
+        case = case_of(question, name, kind, monkeypatch)
+        known = {amount.value for amount in case.givens} | {0, 1, 2, 4, 10, 60, 90, 100, 180, 360, 1000, 3600, 0.632}
+        if any(is_recognised(kind.key, value) for value in known if value):
+            continue
+        answers_ = [wrong for mistake in TABLE for wrong, _ in mistake.wrongs(case)]
+        for answer in (*answers_[::3], 1.3 * kind.key, 4.7 * kind.key, 1.04 * kind.key):
+            if math.isfinite(answer) and not kind.agrees(answer):
+                says = explained(kind, answer, question.background.of(name, {})).says.replace(kind.asked, "")
+                told = [float(text) for text in re.findall(r"\d+\.?\d*", says)]
+                near = [value for value in told if abs(value - abs(kind.key)) <= 1e-3 * abs(kind.key)]
+                assert not near, f"{kind.key}: {says}"
+
+
+def test_sizes_do_not_narrow_the_key_down_by_asking_again():
+    """What is said of a size is the same for all keys between two powers of two."""
+
+    def said(key):
+        far = [x for x in np.geomspace(1e-3, 1e3, 200) if abs(x / key - 1) > 0.6]
+        return {float(x): in_general(float(f"{x:.6g}"), Case(key, "s", "x")).says for x in far}
+
+    one, other = said(4.1), said(7.9)
+    assert all(one[x] == other[x] for x in one.keys() & other.keys())
+
+
+def test_amounts_read_well():
+    case = Case(24, "s", "the time, in s", givens=[Amount(6, "s", "6 s"), Amount(5, "%", "5 %")])
+    assert found_in(30, case).says == "that is 6 s times 5 %: is that the time, in s?"
+    assert found_in(18, case).says == "it is off by just 6 s: is that left out, or is it there once too often?"
