@@ -33,14 +33,15 @@ def test_a_formula_has_the_values_of_the_expression(text):
 @pytest.mark.parametrize(
     ("given", "says"),
     [
-        ("2s", "with * for every product"),
-        ("s(s + 1)", "a product needs its *"),
+        ("1/2s", "set brackets, or a *"),
+        ("s(s", "with * for every product"),
         ("K/(T*s + 1)", "'K' is not a symbol of this answer"),
         ("S", "did you mean 's'?"),
         ("exb(s)", "did you mean 'exp'?"),
         ("", "empty"),
         ("(", "cannot be read"),
-        ("0,5*s", "a decimal point"),
+        ("0,5,5*s", "a decimal point"),
+        (sympy.Symbol("s") ^ sympy.Symbol("t"), "in Python ^ is no power"),
         ("s" * 5000, "characters"),
         ("+".join(["s"] * 1900), "very long"),
         ("-" * 3000 + "s", "expected"),

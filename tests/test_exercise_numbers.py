@@ -44,8 +44,9 @@ JUDGED = [
     (TI, 1 / 120, MISTAKE, "inverse"),
     (TI, 77, WRONG, "not right, though of about the right size; asked: the integral time, in s"),
     (TI, "2 kg", UNJUDGED, "not a unit of the same quantity"),
-    (TI, "120,5", UNJUDGED, "comma"),
-    (TI, "two minutes", UNJUDGED, "a number, in s"),
+    (TI, "120,5", RIGHT, "read as 120.5"),
+    (TI, "two minutes", RIGHT, "read as 2 minutes, converted from minutes"),
+    (TI, "some minutes", UNJUDGED, "a number, in s"),
     (TI, math.nan, UNJUDGED, "NaN"),
     (TI, math.inf, UNJUDGED, "infinite"),
     (TI, 3j, UNJUDGED, "complex"),
@@ -117,6 +118,182 @@ JUDGED = [
     (GAIN, PINT.Quantity(25, "percent"), RIGHT, "right"),
     (DIFFERENCE, PINT.Quantity(10, "delta_degC"), RIGHT, "right"),
     (number(0, "m"), np.ma.masked, UNJUDGED, "missing"),
+    # as people write numbers
+    *(
+        (TI, text, RIGHT, "right")
+        for text in (
+            "120s",
+            "120 sec",
+            "120 sec.",
+            "120 secs",
+            "2 Minutes",
+            "2.0 mins",
+            "ca. 120 s",
+            "~120 s",
+            "≈ 120",
+            "about 2 min",
+            "120 s.",
+            "Ti ≈ 120 s",
+            "T_i: 120 s",
+            "240/2 s",
+            "120.0",
+            "1.2e2",
+            "1,2e2 s",
+            "1.2x10^2",
+            "1,2·10² s",
+            "2 min 0 s",
+            "1 min 60 s",
+            "1 min and 60 s",
+            "240/2 = 120",
+            "120 s = 2 min",
+            "120,0 s",
+            "+120",
+            "120 s approx.",
+            "0,0333333 h",
+        )
+    ),
+    *(
+        (number(90, "s"), text, RIGHT, "right")
+        for text in ("1 1/2 min", "1.5 min", "1,5 min", "1½ min", "3/2 min", "1 min 30 s", "90 seconds")
+    ),
+    *(
+        (number(1200, "kg"), text, RIGHT, "right")
+        for text in ("1 200 kg", "1.2 t", "1200kg", "1'200 kg", "1,200.0 kg", "1.200,0 kg", "1.2·10^3 kg")
+    ),
+    *(
+        (GAIN, text, RIGHT, "right")
+        for text in (
+            "1/4",
+            "25%",
+            "25 percent",
+            "25 per cent",
+            "0,25",
+            ".25",
+            "25 pct",
+            "25 % of the range",
+            "2.5·10^-1",
+        )
+    ),
+    *(
+        (ANGLE, text, RIGHT, "right")
+        for text in ("60°", "60 degrees", "60 degree", "60 Degrees", "π/3", "pi/3", "π/3 rad", "1,0472 rad")
+    ),
+    *(
+        (ROOM, text, RIGHT, "right")
+        for text in ("20 degrees C", "20 degrees Celsius", "20 C°", "20°C", "20 celsius", "20,0 °C")
+    ),
+    *(
+        (number(2, "%/K"), text, RIGHT, "right")
+        for text in ("2 percent/K", "2 % per K", "2 percent per kelvin", "2 %/°C", "2%/K")
+    ),
+    *(
+        (number(12, "kg/min"), text, RIGHT, "right")
+        for text in ("12 kg/min", "12 kg per minute", "12 kg per min", "0.2 kg/s", "12kg/min", "12 Kg/min")
+    ),
+    *((number(5, "N m"), text, RIGHT, "right") for text in ("5 Nm", "5 N m", "5 N*m", "5 N·m", "0.005 kNm")),
+    *((number(0), text, RIGHT, "right") for text in ("zero", "Zero", "0", "0,0", "0 %")),
+    *(
+        (TI, text, UNJUDGED, "")
+        for text in (
+            "1,200",
+            "100 = 120 s",
+            "120 ± 5",
+            "120 s 3",
+            "1 2 0",
+            "120 s or 130 s",
+            "120 m",
+            "12 0 s",
+            "between 100 and 140",
+        )
+    ),
+    # poles as people write them
+    *(
+        (poles([-1 + 2j, -1 - 2j]), text, RIGHT, "right")
+        for text in (
+            "-1 ± 2j",
+            "-1 +- 2i",
+            "-1±2j",
+            "-1 ± j2",
+            "-1 +/- 2j",
+            "−1 ± 2i",
+            "s = -1 ± 2j",
+            "s_1,2 = -1 ± 2j",
+            "s1,2 = -1±2i",
+            "-1 ± 2j rad/s",
+            r"-1 \pm 2j",
+            "-1+2j and -1-2j",
+            "-1+2j; -1-2j",
+            "s1 = -1 + 2j, s2 = -1 - 2j",
+            "[-1+2j, -1-2j]",
+            "{-1+2i, -1-2i}",
+            "(-1+2j, -1-2j)",
+            "-1+j2, -1-j2",
+            "-1 + 2*1j, -1 - 2*1j",
+            "-1,0 ± 2,0j",
+            "-1,0+2,0j; -1,0-2,0j",
+            "-1 ± j*sqrt(4)",
+            "-1 ± i√4",
+            "-1 ± sqrt(-4)",
+            "-1±j·2",
+        )
+    ),
+    *(
+        (poles([-1 + 2j, -1 - 2j]), one, RIGHT, "right")
+        for one in (["-1 ± 2j"], ["-1+2j", "-1+-2j"], ["-1 + j2", "-1 - j2"], ("-1 + 2i", "-1 - 2i"))
+    ),
+    *(
+        (poles([-0.5 + 1.3j, -0.5 - 1.3j]), text, RIGHT, "right")
+        for text in ("-0.5±j1.3", "-0,5 ± 1,3i", "-1/2 ± 1.3j", "-.5 ± 1.3j")
+    ),
+    *(
+        (poles([2j, -2j]), text, RIGHT, "right")
+        for text in ("±2j", "+-j2", "± 2i", "2j, -2j", "j2, -j2", "2j and -2j", "0 ± 2j")
+    ),
+    *(
+        (poles([-2, -2]), text, RIGHT, "right")
+        for text in (
+            "-2, -2",
+            "-2 (double)",
+            "-2 double",
+            "double pole at -2",
+            "a double pole at -2",
+            "-2 (twice)",
+            "-2, twice",
+            "-2 (2x)",
+            "-2; -2",
+            "-2 and -2",
+            "-2 (multiplicity 2)",
+        )
+    ),
+    *(
+        (poles([-1, -1, -2]), text, RIGHT, "right")
+        for text in ("-1 (double), -2", "-1 (double) and -2", "-2; -1 (twice)", "-2, -1, -1")
+    ),
+    *(
+        (poles([-1, -4]), text, RIGHT, "right")
+        for text in ("-1, -4", "-1,-4", "-1 and -4", "s = -1 and s = -4", "s1=-1; s2=-4", "{-4, -1}", "-1; -4")
+    ),
+    (poles([-1 + 2j, -1 - 2j]), "-1 + 2j", MISTAKE, "its mirror image is missing"),
+    (poles([-1 + 2j, -1 - 2j]), "1 ± 2j", MISTAKE, "signs"),
+    (poles([-2, -2]), "-2 (triple)", WRONG, "also more"),
+    (poles([-1, -5]), "-1,5", WRONG, "one or more are missing"),
+    # rows and tables in a text
+    *(
+        (A, text, RIGHT, "right")
+        for text in (
+            "[[0, 1], [-2, -3]]",
+            "[0, 1; -2, -3]",
+            "[0 1; -2 -3]",
+            "[[0 1] [-2 -3]]".replace("] [", "], ["),
+            "0, 1; -2, -3",
+            "[[0; 1]; [-2; -3]]",
+            "((0, 1), (-2, -3))",
+        )
+    ),
+    *(
+        (numbers([0.4, 0]), text, RIGHT, "right")
+        for text in ("[0,4; 0]", "0,4; 0", "0.4, 0", "[0.4 0]", "0.4 and 0", "b1 = 0.4, b2 = 0", "(0.4, 0)")
+    ),
     # lists in other forms
     *(
         (P, one, RIGHT, "right")
@@ -128,7 +305,7 @@ JUDGED = [
     ),
     (P, PINT.Quantity(np.array([-3, -1 + 2j, -1 - 2j]), "rad/s"), RIGHT, "right"),
     (P, "", UNJUDGED, "is not a number"),
-    (poles([-2]), "-2,5", UNJUDGED, "decimal comma"),
+    (poles([-2.5]), "-2,5", RIGHT, "read as -2.5"),
     (poles([]), "[]", RIGHT, "right"),
     (numbers([1, 2], "s"), "[1,2]", RIGHT, "right"),
     (numbers([1, 2], "s"), "1 s, 2 s", RIGHT, "right"),

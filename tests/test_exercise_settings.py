@@ -22,7 +22,72 @@ JUDGED = [
     (PI, PID(0.5, Ti=10), MISTAKE, "inverted"),
     (PI, PID(50, Ti=10), MISTAKE, "proportional band"),
     (PI, PID(2, Ti=0.2), MISTAKE, "integral gain"),
-    (PI, {"Kp": 2, "Ki": 3}, UNJUDGED, "Ki is not a setting"),
+    (PI, {"Kp": 2, "Ki": 0.2}, RIGHT, "Ti = 10 from the gain Ki"),
+    (ANY, {"Kp": 2.5, "Ki": 0.25, "Kd": 4}, RIGHT, "Td = 1.6 from the gain Kd"),
+    (PI, {"Kp": 2, "Ki": 3}, WRONG, "Kp is right; Ti is not"),
+    (PI, {"Kp": 2, "Ki": 0}, UNJUDGED, "from Ki follows no Ti"),
+    (PI, {"Kp": 2, "Ti": 10, "Ki": 3}, UNJUDGED, "Ki is not a setting"),
+    (PI, {"Kp": 2, "PB": 50}, UNJUDGED, "PB is not a setting"),
+    (PI, {"Kp": 2, "Kc": 2, "Ti": 10}, UNJUDGED, "two values for Kp"),
+    # as people write settings
+    *(
+        (PI, text, RIGHT, "right")
+        for text in (
+            "PI(2, 10)",
+            "PI(2, Ti=10)",
+            "PID(2, Ti=10)",
+            "PID(Kp=2, Ti=10)",
+            "Kp=2, Ti=10 s",
+            "Kp = 2, Ti = 10",
+            "Kc = 2; tau_I = 10",
+            "Kc=2 and tauI=10 s",
+            "K_p = 2 %/K, T_i = 10 s",
+            r"K_{c} = 2, \tau_I = 10",
+            "(2, 10)",
+            "2; 10",
+            "[2, 10]",
+            "PID(2, 10)",
+            "PI: Kp = 2, Ti = 10",
+            "Kp: 2, Ti: 10",
+            "Kp=2\nTi=10",
+            "{'Kp': 2, 'Ti': 10}",
+            "{Kp: 2, Ti: 10}",
+            "gain = 2, integral time = 10 s",
+            "Kp = 2,0; Ti = 10,0 s",
+            "pid(2, 10)",
+            "Kp=2 Ti=10",
+            "P = 2, Ti = 10.",
+        )
+    ),
+    *(
+        (PI, one, RIGHT, "right")
+        for one in (
+            {"Kc": 2, "tau_I": 10},
+            {"K_c": 2, "T_i": 10},
+            {"K_p": 2, "TI": 10},
+            {"kc": "2", "tauI": "10 s"},
+            {"gain": 2, "Ti": 10},
+            [{"Kp": 2, "Ti": 10}],
+        )
+    ),
+    *(
+        (settings(PID(2)), one, RIGHT, "right")
+        for one in ("P: 2", "Kp = 2", "P(2)", {"Kc": 2}, {"Kp": 2, "Ti": "∞"}, "Kp = 2, Ti = inf", "Kp=2, Ti=∞")
+    ),
+    *(
+        (ANY, one, RIGHT, "right")
+        for one in (
+            "PID(2.5, 10, 1.6)",
+            "Kc=2.5, tauI=10, tauD=1.6",
+            "PID(2, 8, 2, form='serial')",
+            "Kp = 2,5, Ti = 10, Td = 1,6",
+            {"Kc": 2.5, "tau_I": 10, "tau_D": 1.6},
+        )
+    ),
+    *(
+        (PI, text, UNJUDGED, "no controller")
+        for text in ("Kp = 2, Kp = 3, Ti = 10", "2", "PI", "good settings", "Ti = 10", "I: 10", "2 or 10")
+    ),
     (PI, 2, UNJUDGED, "no controller"),
     (PI, PID(2), MISTAKE, "Kp is right; Ti: the integral term is missing"),
     (ANY, PID(2, Ti=8, Td=2, form="serial"), RIGHT, "right"),

@@ -10,7 +10,7 @@ from __future__ import annotations
 from types import EllipsisType
 from typing import TYPE_CHECKING
 
-from loopbook.exercises import bank, naming
+from loopbook.exercises import bank, naming, slips
 from loopbook.exercises.errors import ExerciseError
 from loopbook.exercises.progress import Collection, Progress
 from loopbook.validation import did_you_mean
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from loopbook.exercises.question import Question
 
 __all__ = ["ExerciseError", "exercise", "progress", "student"]
+
+slips.install()
 
 
 def exercise(number: str, student: str | None = None) -> Question:

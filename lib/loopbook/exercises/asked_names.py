@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import unicodedata
 from collections.abc import Callable, Iterable
+
+from loopbook.exercises.notation import bare
 
 #: Names of one quantity in different books, without case and underscores. A name in two rows may be either.
 SYNONYMS = (
@@ -54,18 +55,9 @@ def matched(given: Iterable[str], asked: Iterable[str]) -> dict[str, str]:
 
 
 def _same_spelling(one: str, other: str) -> bool:
-    return _bare(one) == _bare(other)
+    return bare(one) == bare(other)
 
 
 def _same_quantity(one: str, other: str) -> bool:
-    pair = {_bare(one), _bare(other)}
+    pair = {bare(one), bare(other)}
     return any(pair <= set(row.split()) for row in SYNONYMS)
-
-
-def _bare(name: str) -> str:
-    """A name without case and underscores, and with Greek letters spelled out."""
-    letters = (
-        unicodedata.name(letter, letter).split()[-1] if "Ͱ" <= letter <= "Ͽ" else letter
-        for letter in unicodedata.normalize("NFKC", name)
-    )
-    return "".join(letters).replace("_", "").replace(" ", "").casefold()

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loopbook.exercises.reading import CONSTANTS, Unreadable, parsed, shortened, spelled
+from loopbook.exercises.reading import CONSTANTS, Unreadable, shortened, spelled, understood
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -53,11 +53,13 @@ class Formula:
     """A formula in some symbols, as a function of arrays of values.
 
     Arguments:
-        given: text in Python's notation, where ``^`` is a power too; a number; an expression of SymPy; or something
+        given: text, in Python's notation or as people write formulas; a number; an expression of SymPy; or something
             that has a transfer function, as a `PID`, a `System`, or a system of python-control with one input and
             one output.
         symbols: the names that may occur.
     Attributes:
+        text: the formula in Python's notation, where ``^`` is a power too.
+        remark: how it was read, where it was given in another notation.
         literals: its numbers other than 1 and exponents, by their places in the tree.
     Raises:
         Unreadable: for anything else, in a sentence.
@@ -69,7 +71,9 @@ class Formula:
     def __init__(self, given: object, symbols: str | Iterable[str] = ()):
         self.symbols = symbols.split() if isinstance(symbols, str) else list(symbols)
         self.text = spelled(given)
-        self._set(parsed(self.text, self.symbols))
+        source, tree = understood(self.text, self.symbols)
+        self.text, self.remark = (source, f"read as {source}") if source else (self.text, "")
+        self._set(tree)
 
     def with_tree(self, tree: ast.expr) -> Formula:
         """The same with another tree, as a mistake makes one of the key; its text is that of this one."""

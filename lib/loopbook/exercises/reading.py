@@ -1,7 +1,8 @@
 """Reading what readers give, without running anything of theirs: values, rows of values, and formulas.
 
-Python's grammar reads the text of a formula, and what is no arithmetic is refused. SymPy's expressions, and systems of
-the library and of python-control, are read from what they spell.
+Python's grammar reads the text of a formula, and what is no arithmetic is refused. A text that is none of Python's is
+read as people write formulas, in `notation`, and a remark says how. SymPy's expressions, and systems of the library
+and of python-control, are read from what they spell.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import itertools
 import math
 import re
 import unicodedata
+import warnings
 from collections.abc import Collection, Iterable, Iterator, MappingView
 from typing import Any
 
@@ -18,6 +20,7 @@ import numpy as np
 import sympy
 from sympy.core.function import AppliedUndef
 
+from loopbook.exercises import notation
 from loopbook.validation import did_you_mean
 
 #: What is left of an answer cell that nobody has filled in.
@@ -25,6 +28,8 @@ NOT_ANSWERED = "not answered yet"
 LONGEST, MOST_NODES = 4000, 2000
 #: Of what gives one value after another, so many are read.
 MOST_VALUES = 10_000
+#: Brackets around a whole list.
+MOST_BRACKETS = 10
 
 #: What a formula may call, and with how many values.
 ONE_VALUE = (
@@ -35,8 +40,21 @@ SEVERAL_VALUES = ("Min", "Max", "min", "max", "Heaviside", "Piecewise")
 CONSTANTS = {"pi": np.pi, "E": np.e, "e": np.e, "I": 1j, "j": 1j, "i": 1j}
 
 #: Signs as they are printed, and as Python writes them.
-_SIGNS = str.maketrans({"−": "-", "–": "-", "·": "*", "⋅": "*", "×": "*", "÷": "/", "√": "sqrt"})
+_SIGNS = str.maketrans(
+    dict.fromkeys("−–‐‑﹣－", "-") | dict.fromkeys("·⋅×∙•∗", "*") | dict.fromkeys("÷∕⁄", "/")
+    | {"∞": "oo", "½": "(1/2)", "¼": "(1/4)", "¾": "(3/4)", "≤": "<=", "≥": ">=", "’": "'"}
+)  # fmt: skip
 _RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
+_LOWERED = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
+#: What Python makes of the LaTeX in a text that is not raw: of ``\\tau`` a tab and "au".
+_ESCAPED = {
+    "\t": "t(?=au|heta|imes|ext|frac)", "\f": "f(?=rac)", "\r": "r(?=ight|m)", "\b": "b(?=eta|ig)",
+    "\v": "v(?=ar)", "\a": "a(?=lpha)",
+}  # fmt: skip
+#: A quantity with its sign =, as "y(t) =", "dh/dt =" or "Y(s)/U(s) [K] =".
+_NAME = r"(?:\\?[^\W\d]\w*(?:_\(\w+\))?'*(?: ?\( ?\w+ ?\))?)"
+_PREFIX = re.compile(rf"^(?!lambda\b)(?:{_NAME}(?: ?/ ?{_NAME})? ?(?:\[[^\]=]*\] ?)?)? ?(?:=(?!=)|≈|:(?!=)) ?")
+_ABOUT = re.compile(r"^(?:~|≈|(?:ca|approx|approximately|about|around|circa|roughly|nearly)\b\.?) ?", re.IGNORECASE)
 
 _ARITHMETIC = (
     ast.BinOp, ast.UnaryOp, ast.Call, ast.Compare, ast.Tuple, ast.Load,
@@ -47,6 +65,10 @@ _ARITHMETIC = (
 
 class Unreadable(ValueError):  # noqa: N818 - it is what became of the answer
     """An answer that cannot be judged; the sentence says why and what is expected."""
+
+
+class NotPython(Unreadable):
+    """A text that is no expression of Python's."""
 
 
 # --------------------------------------------------------------------------------------------------------- values
@@ -93,31 +115,72 @@ def alone(given: object) -> Any:
 def listed_in(text: str) -> list[str]:
     """Return the parts of a text that lists several: "[1, 2]" or "1; 2".
 
-    >>> listed_in("[-1,-2]"), listed_in("-1 + 2j; -3"), listed_in("1,5")
-    (['-1', '-2'], ['-1 + 2j', '-3'], ['1,5'])
+    Between brackets every comma separates, unless there are semicolons; elsewhere a comma before a space or a sign
+    does, as others are decimal commas.
+
+    >>> listed_in("[-1,-2]"), listed_in("-1 + 2j; -3"), listed_in("1,5"), listed_in("[0,5; 1]")
+    (['-1', '-2'], ['-1 + 2j', '-3'], ['1,5'], ['0,5', '1'])
+    >>> listed_in("[[1, 2], [3, 4]]"), listed_in("1, 2 and 3")
+    (['[1, 2]', '[3, 4]'], ['1', '2', '3'])
     """
-    text = text.strip()
-    inside = text.strip("[]{}")
-    separator = r";|,\s" if inside == text else "[;,]"
-    parts = [part.strip() for part in re.split(separator, inside) if part.strip()]
-    return parts if text else [text]
+    text = " ".join(text.split())
+    if not text:
+        return [text]
+    inside = _unwrapped(text)
+    for separator in (r";|\n", r",? (?:and|und|&) |, |,(?=[-−+±])", r"," if inside != text else r",(?=\[)"):
+        depths = _depths(inside)
+        places = [found for found in re.finditer(separator, inside) if not depths[found.start()]]
+        if places:
+            ends = [(0, 0), *(found.span() for found in places), (len(inside), len(inside))]
+            parts = [inside[one[1] : other[0]].strip() for one, other in itertools.pairwise(ends)]
+            return [part for part in parts if part]
+    return [inside] if inside else []
+
+
+def _depths(text):
+    """How many brackets are open before each sign of a text, and after the last one."""
+    return list(itertools.accumulate(((sign in "([{") - (sign in ")]}") for sign in text), initial=0))
+
+
+def _unwrapped(text):
+    """What stands within the brackets around the whole text; within round ones, where it lists several."""
+    pairs = {"[": "]", "{": "}", "(": ")"}
+    for _ in range(MOST_BRACKETS):
+        depths = _depths(text)
+        if not text or pairs.get(text[0]) != text[-1] or not all(depths[1:-1]):
+            break
+        lists = any(sign in ",;" and depth == 1 for sign, depth in zip(text, depths, strict=False))
+        if text[0] == "(" and not lists:
+            break
+        text = text[1:-1].strip()
+        if lists:
+            break
+    return text
 
 
 # ------------------------------------------------------------------------------------------------------- formulas
 
 
 def plain(text: str) -> str:
-    """Return a text in one line, with Python's signs, and without a name and = before it.
+    """Return a text in one line, with Python's signs, and without a name and = before it or a full stop behind it.
 
     Raises Unreadable for a long one.
 
-    >>> plain("T_i = 2 · 10 min")
-    '2 * 10 min'
+    >>> plain("T_i = 2 · 10 min"), plain("dh/dt ≈ 3 m."), plain("ca. 20 s")
+    ('2 * 10 min', '3 m', '20 s')
     """
     if len(text) > LONGEST:
         raise Unreadable(f"the text has {len(text)} characters: expected at most {LONGEST}")
+    for made, meant in _ESCAPED.items():
+        if made in text:
+            text = re.sub(made + meant[1:], "\\\\" + meant[0], text)
     line = " ".join(text.translate(_SIGNS).split())
-    return re.sub(r"^(\w+ ?(\(\w+\))?)? ?=(?!=) ?", "", line)
+    line = re.sub("[₀-₉]+", lambda low: "_" + low[0].translate(_LOWERED), line)
+    line = re.sub(r"√ ?(?=\()", "sqrt", line)
+    line = re.sub(r"√", " sqrt ", line).strip()
+    line = _ABOUT.sub("", _PREFIX.sub("", line))
+    line = re.sub(r"(?<=.),? \(?(?:approx|approximately|roughly|or so)\b\.?\)?$", "", line)
+    return re.sub(r"(?<=[^\d\s.])\.$", "", line)
 
 
 def _in_python(text, symbols):
@@ -129,6 +192,62 @@ def _in_python(text, symbols):
         text = re.sub(r"\b(\w+) ?\(t\)", lambda call: call[1] if call[1] in symbols else call[0], text)
     text = re.sub(r"\b(np|numpy|math|cmath|sympy|sp)\.(?=[A-Za-z])", "", text)
     return re.sub(r"\b(\d+\.?\d*)i\b", r"\1j", text).replace("^", "**")
+
+
+def _as_people_write(text, symbols):
+    """A formula in Python's notation that is written in another one; raises notation.Ambiguous."""
+    known = symbols or ()
+    text = plain(notation.from_latex(plain(text))).translate(str.maketrans("[]{}", "()()"))
+    text = re.sub("[⁰¹²³⁴-⁹⁻]+", lambda raised: f"^({raised[0].translate(_RAISED)})", text)
+    for greek in set(re.findall("[α-ω]", text)) - set("".join(known)):
+        name = unicodedata.name(greek).split()[-1].lower()
+        # a letter is a factor of its own, with what stands below it
+        text = re.sub(rf"(?<=[^\W_]){greek}", f" {greek}", text) if not re.search(rf"\d{greek}", text) else text
+        text = re.sub(rf"{greek}(?=[^\W\d_])", f"{name} ", text).replace(greek, name)
+    if "x" not in known:
+        text = re.sub(r"(?<=\d) ?x ?(?=10 ?\^)", "*", text)
+    if not {"i", "j"} & {symbol[0] for symbol in known}:
+        text = re.sub(r"(?<![\w.])[ij](\d+(?:\.\d+)?)(?![\w.])", r"\1j", text)
+    text = re.sub(r"\b(np|numpy|math|cmath|sympy|sp)\.(?=[A-Za-z])", "", text).replace("^", "**")
+    if not re.search(rf"\b({'|'.join(SEVERAL_VALUES)})\b", text):
+        text = notation.decimal_points(text)
+    return notation.in_python(text, symbols, (*ONE_VALUE, *SEVERAL_VALUES), CONSTANTS)
+
+
+def understood(text: str, symbols: Collection[str]) -> tuple[str, ast.expr]:
+    """Return a formula in some symbols in Python's notation, where it was not given in it, and its syntax tree.
+
+    Raises Unreadable in a sentence.
+
+    >>> understood("2e^(-3s)/(10s + 1)", ["s"])[0], understood("2*s", ["s"])[0]
+    ('2*e**(-3*s)/(10*s + 1)', '')
+    """
+    try:
+        return "", parsed(text, symbols)
+    except Unreadable as problem:
+        if not text.strip() or len(text) > LONGEST:
+            raise
+        try:
+            source = _as_people_write(text, symbols)
+            return source, parsed(source, symbols)
+        except RecursionError:
+            raise problem from None
+        except Unreadable as other:
+            raise (other if isinstance(problem, NotPython) else problem) from None
+        except notation.Ambiguous as doubt:
+            raise _the_better(problem, doubt, symbols) from None
+
+
+def _the_better(problem, doubt, symbols):
+    """The sentence that helps more: on the text as Python's, or on the text as people write it."""
+    if doubt.several:
+        return Unreadable(str(doubt))
+    if doubt.name and isinstance(problem, NotPython):
+        try:
+            _check_symbol(doubt.name, symbols)
+        except Unreadable as unknown:
+            return unknown
+    return problem
 
 
 def parsed(text: str, symbols: Collection[str]) -> ast.expr:
@@ -145,11 +264,11 @@ def parsed(text: str, symbols: Collection[str]) -> ast.expr:
     if not source:
         raise Unreadable(f"the text is empty: {expected}")
     try:
-        tree = ast.parse(source, mode="eval").body
+        with warnings.catch_warnings():  # of Python, on what it reads all the same, as 2or
+            warnings.simplefilter("ignore", SyntaxWarning)
+            tree = ast.parse(source, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        if re.search(r"\d,\d", source):
-            raise Unreadable("write the decimal comma as a point") from None
-        raise Unreadable(f"{shortened(source)} cannot be read: {expected}, with * for every product") from None
+        raise NotPython(f"{shortened(source)} cannot be read: {expected}, with * for every product") from None
     nodes = list(ast.walk(tree))
     if len(nodes) > MOST_NODES:
         raise Unreadable("the expression is very long: expected a simpler one")
@@ -186,12 +305,16 @@ def symbols_in(given: object) -> list[str]:
     >>> symbols_in("K*exp(-tau*s)/(T*s + 1)")
     ['K', 'T', 's', 'tau']
     """
-    try:
-        nodes = list(ast.walk(ast.parse(_in_python(spelled(given), ()), mode="eval")))
-    except (SyntaxError, ValueError, RecursionError, MemoryError) as problem:
-        if isinstance(problem, Unreadable):
+    text = spelled(given)
+    nodes: list[ast.AST] = []
+    for read in (_in_python, _as_people_write):
+        try:
+            nodes = list(ast.walk(ast.parse(read(text, () if read is _in_python else None), mode="eval")))
+            break
+        except Unreadable:
             raise
-        return []
+        except (notation.Ambiguous, SyntaxError, ValueError, RecursionError, MemoryError):
+            continue
     calls = [node for node in nodes if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)]
     # h(t) is a signal, a symbol; K(s + 1) a product without its sign, which is said of a symbol
     signals = [call for call in calls if [ast.unparse(argument) for argument in call.args] == ["t"]]
@@ -225,16 +348,16 @@ def _check_function(name, symbols):
         raise Unreadable(f"{name} comes before a bracket: a product needs its *")
     if name not in known:
         hint = did_you_mean(name, known, otherwise="expected exp, log, sqrt, sin ...")
-        raise Unreadable(f"{name!r} is not a known function: {hint}")
+        raise Unreadable(f"{shortened(name, 30)!r} is not a known function: {hint}")
 
 
 def _check_symbol(name, symbols):
     if name in symbols or name in CONSTANTS:
         return
     if not symbols:
-        raise Unreadable(f"{name!r} stands for no number: expected a value without symbols")
+        raise Unreadable(f"{shortened(name, 30)!r} stands for no number: expected a value without symbols")
     hint = did_you_mean(name, symbols, otherwise=f"expected an expression in {listed(symbols)}")
-    raise Unreadable(f"{name!r} is not a symbol of this answer: {hint}")
+    raise Unreadable(f"{shortened(name, 30)!r} is not a symbol of this answer: {hint}")
 
 
 def _check_call(node, source):
@@ -256,6 +379,8 @@ def spelled(given: object) -> str:
         return given
     if isinstance(given, bool | np.bool_):
         raise Unreadable(f"{given} is a truth value: expected an expression")
+    if isinstance(given, sympy.Xor):
+        raise Unreadable("in Python ^ is no power: write **, or put the formula in quotes")
     try:
         expression = _expression(given)
     except Exception:  # objects of others may fail in any way

@@ -30,8 +30,17 @@ FAMILIES = (
 _PART = re.compile(r"[^\W\d_]+³?|%")
 #: A name and its exponent of one digit, as "m³", "s^-1", "m**2" or "m3".
 _FACTOR = re.compile(r"[^\W\d_¹²³]+\s?(?:\^|\*\*)?(?:-?[1-9]|⁻?[¹²³])?(?![\d^]|\*\*)")
-_CELSIUS = re.compile(r"\s*(°\s?C|º\s?C|℃|C|deg(rees?)?\s?C|[Cc]elsius)\s*")
+_CELSIUS = re.compile(r"\s*(°\s?C|º\s?C|℃|C|C\s?°|deg(rees?)?\.?\s?([Cc]elsius|C)|[Cc]elsius)\s*")
 _LONGEST = 40
+#: Units as people write them, and what Pint knows them by.
+_SPELLINGS = {
+    "percent": "%", "per cent": "%", "pct": "%", "percents": "%", "mins": "min", "hrs": "h", "secs": "s", "Sec": "s",
+    "Min": "min", "Nm": "N m", "kNm": "kN m", "Nms": "N m s", "Ohm": "Ω", "Ohms": "Ω", "kOhm": "kΩ", "cbm": "m³",
+    "degs": "deg", "decibel": "dB", "decibels": "dB", "KW": "kW", "Kg": "kg", "sec.": "s", "min.": "min",
+}  # fmt: skip
+_SPELLED = re.compile(
+    rf"(?<![^\W\d_])(?:{'|'.join(map(re.escape, sorted(_SPELLINGS, key=len, reverse=True)))})(?![^\W\d_])"
+)
 
 
 def _everyday():
@@ -118,8 +127,18 @@ def _compatible(unit, other):
 
 
 def spelled(unit: str) -> str:
-    """Return °C for its other spellings, and other units as they are."""
-    return "°C" if isinstance(unit, str) and _CELSIUS.fullmatch(unit) else unit
+    """Return a unit as it is usually spelled: °C for "deg C", "m/s" for "m per second", % for "percent".
+
+    >>> spelled("degrees C"), spelled("kg per min"), spelled("K/percent"), spelled("Minutes")
+    ('°C', 'kg/min', 'K/%', 'minutes')
+    """
+    if not isinstance(unit, str) or len(unit) > _LONGEST:
+        return unit
+    if _CELSIUS.fullmatch(unit):
+        return "°C"
+    unit = _SPELLED.sub(lambda name: _SPELLINGS[name[0]], unit)
+    unit = re.sub(r"(?<=\S) per (?=\S)", "/", unit)
+    return re.sub(r"\b[A-Z](?=[a-z]{3})", lambda letter: letter[0].lower(), unit)
 
 
 @functools.cache

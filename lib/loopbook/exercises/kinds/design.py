@@ -124,6 +124,10 @@ class Design(Kind):
         """Return the answer as the quantity's kind reads it."""
         return self.example.read(given)
 
+    def as_read(self, answer: Any) -> str:
+        """As the quantity's kind."""
+        return self.example.as_read(answer)
+
     def as_code(self, answer: Any = None) -> str:
         """As the quantity's kind."""
         return self.example.as_code(answer)

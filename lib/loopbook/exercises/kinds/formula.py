@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Self
 
@@ -14,11 +15,15 @@ from loopbook.exercises.formulas import Formula
 from loopbook.exercises.kinds.kind import Kind, literal, with_unit
 from loopbook.exercises.kinds.numeric import in_unit
 from loopbook.exercises.kinds.settings import Settings
-from loopbook.exercises.reading import Unreadable, alone, answered, listed, symbols_in
+from loopbook.exercises.reading import Unreadable, alone, answered, listed, shortened, symbols_in
 from loopbook.expressions import exact, parse, s, t
 
 if TYPE_CHECKING:
     from loopbook.types import Number
+
+
+#: Of a formula that is shown as it was read, so many characters.
+LONGEST_SHOWN = 120
 
 
 class Expression(Kind):
@@ -106,9 +111,45 @@ class Expression(Kind):
         if isinstance(given, dict) and {"Kp", "form"} <= given.keys():  # a controller, as data
             given, _ = Settings.without_key().read(given)
         used = symbols_in(given) if self.symbols is None else ()
-        formula = Formula(given, sorted(self.always.union(used)) if self.symbols is None else self.symbols)
+        formula, remark = self._formula(
+            given, sorted(self.always.union(used)) if self.symbols is None else self.symbols
+        )
         self._demand_values(formula)
-        return formula, f"an expression in {listed(used)}" if used else ""
+        return formula, ", ".join(one for one in (f"an expression in {listed(used)}" if used else "", remark) if one)
+
+    def _formula(self, given, symbols):
+        """The formula, where a text may end in its unit, and a remark."""
+        try:
+            formula = Formula(given, symbols)
+            return formula, formula.remark
+        except Unreadable:
+            for text, unit in _with_units(given) if isinstance(given, str) else ():
+                if set(re.findall(r"[^\W\d_]+", unit)) & set(symbols):  # a factor, perhaps
+                    continue
+                try:
+                    formula = Formula(text, symbols)
+                except Unreadable:
+                    continue
+                return self._in_asked_unit(formula, unit)
+            raise
+
+    def _in_asked_unit(self, formula, unit):
+        """A formula whose text ends in a unit, in the asked one."""
+        if not self.unit:
+            raise Unreadable(f"the text ends in {unit}: expected {self.expected}, without a unit")
+        try:
+            zero, factor = (units.convert(value, unit, to=self.unit) for value in (0, 1))
+        except ValueError as error:
+            raise Unreadable(f"{error}: expected {self.expected}, in {self.unit}") from None
+        if zero:
+            raise Unreadable(f"the text is in {unit}: expected {self.expected}, in {self.unit}")
+        if factor == 1:
+            return formula, formula.remark
+        return Formula(f"({formula.text})*{factor!r}", formula.symbols), f"converted from {unit}"
+
+    def as_read(self, answer: Any) -> str:
+        """The formula in Python's notation; of a function of the reader's, nothing."""
+        return shortened(answer.text, LONGEST_SHOWN) if isinstance(answer, Formula) else ""
 
     def written(self, answer: Any) -> str:
         """The expression with its unit."""
@@ -152,6 +193,16 @@ class Expression(Kind):
         for unit, converted in units.neighbours(self.unit).items():
             if converted(0) == 0:
                 yield f"those would be the values {in_unit(unit)}; asked: {self.asked}", self.expr * exact(converted(1))
+
+
+def _with_units(text):
+    """The ways in which a text ends in a unit: pairs of what is before it and the unit, the longest unit first."""
+    text = text.strip().rstrip(".")
+    if bracket := re.search(r"^(.*\S) ?\[([^][]+)\]$", text):
+        yield bracket[1], bracket[2]
+    for place in re.finditer(r"(?<=[\w)}\]])(?: (?:in )?|(?=%$))", text):
+        if 0 < len(unit := text[place.end() :]) <= 20 and units.is_unit(unit):
+            yield text[: place.start()], unit
 
 
 def _expression(key):

@@ -172,6 +172,10 @@ class Kind:
         """
         raise NotImplementedError
 
+    def as_read(self, answer: Any) -> str:
+        """Return how an answer was read, for one that is not right; empty where it looks as it was given."""
+        return ""
+
     def agrees(self, answer: Any) -> bool:
         """Whether an answer, as it was read, is right."""
         raise NotImplementedError

@@ -10,12 +10,35 @@ from typing import Any
 import numpy as np
 import sympy
 
-from loopbook.exercises import units
+from loopbook.exercises import notation, units
 from loopbook.exercises.formulas import Formula
 from loopbook.exercises.kinds.kind import Kind, with_unit
 from loopbook.exercises.reading import Unreadable, alone, answered, in_a_row, listed_in, plain, shortened
 
 _WITH_UNIT = re.compile(r"([+-]? ?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?) ?(.*)")
+_WORDS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
+#: Numbers that are not written in digits alone, and how they are.
+_OTHER_NUMBERS = (
+    (re.compile(rf"^({'|'.join(_WORDS)})(?= |$)", re.IGNORECASE), lambda found: str(_WORDS.index(found[1].lower()))),
+    (re.compile(r"^([+-]?)(\d{1,3}) (\d{1,2}/\d{1,3})(?![\d./])"), r"\1(\2 + \3)"),
+    (re.compile(r"^([+-]?)(\d{1,3})\((1/2|1/4|3/4)\)"), r"\1(\2 + \3)"),
+    (re.compile(r"^[+-]?\d{1,3}(?:[ ']\d{3})+(?![\d'])"), lambda found: re.sub("[ ']", "", found[0])),
+)
+#: Poles that occur several times: "-2 (double)", "double pole at -2".
+_TIMES = {"double": 2, "twice": 2, "triple": 3, "two times": 2, "three times": 3, "2 times": 2, "3 times": 3}
+_TIMES |= {"2x": 2, "3x": 3, "2×": 2, "3×": 3, "x2": 2, "x3": 3, "×2": 2, "×3": 3, "repeated": 2, "2 fold": 2}
+_TIMES |= {"multiplicity 2": 2, "multiplicity 3": 3, "double pole": 2, "triple pole": 3, "double root": 2}
+_MANY = "|".join(map(re.escape, sorted(_TIMES, key=len, reverse=True)))
+_SEVERAL_TIMES = re.compile(rf"^(?P<pole>.*?\S) ?[\[(,]? ?(?P<times>{_MANY})[\])]?$", re.IGNORECASE)
+_TIMES_BEFORE = re.compile(
+    rf"^(?:an? )?(?P<times>{_MANY})(?: (?:pole|zero|root))?(?: (?:at|in))? (?P<pole>.*)$", re.IGNORECASE
+)
+#: A pair in one text, and the name of several poles before it, as "s_1,2 =".
+_PAIR = re.compile(r"±|\+ ?/ ?-|\\pm\b|\+-")
+_NAMES = re.compile(r"^\w+?_?[{(]?1 ?[,/] ?2[})]? ?= ?")
+_WITH_UNITS = re.compile(
+    r"\d+ ?(?:h|hours?|min|minutes?|m|kg)(?:,? (?:and )?[\d.,]+ ?(?:min|minutes?|s|sec|seconds?|g|cm))+"
+)
 #: A mistake is recognised in a rounded value, too.
 ROUNDED = 0.01
 
@@ -84,7 +107,11 @@ class Numbers(Kind):
         rows = _rows(answered(given))
         if rows is None:
             raise Unreadable(f"this is not a list: expected {self.expected}")
-        remarks = []
+        remarks: list[str] = []
+        if isinstance(given, str):  # rows of a table in a text
+            inner_texts = [_row_of_text(row) for row in rows]
+            rows = inner_texts[0] if len(rows) == 1 else inner_texts
+            rows = [row[0] if isinstance(row, list) and len(row) == 1 else row for row in rows]
 
         def number(value):
             value, remark = one_number(value, self.unit, self.expected)
@@ -149,7 +176,10 @@ class Poles(Kind):
         return "a list of numbers such as [-1, -2 + 3j]"
 
     def read(self, given: object) -> tuple[np.ndarray, str]:
-        """Return an array of complex numbers; a dictionary says how often each one occurs."""
+        """Return an array of complex numbers; a dictionary says how often each one occurs.
+
+        In a text a sign ± stands for a pair, and "double" for two.
+        """
         if isinstance(answered(given), dict) and alone(given) is given:
             given = [pole for pole, times in given.items() for _ in range(self._times(times))]
         elif isinstance(given, set | frozenset | sympy.FiniteSet):
@@ -157,9 +187,12 @@ class Poles(Kind):
         rows = _rows(given)
         rows = [given] if rows is None else rows
         inner = in_a_row(rows[0]) if len(rows) == 1 else None
-        rows = rows if inner is None else inner
+        rows = _each_pole(rows if inner is None else inner)
         read = [one_number(value, self.unit, self.expected) for value in rows]
-        return np.array([value for value, _ in read], complex), max((remark for _, remark in read), default="")
+        remark = max((remark for _, remark in read), default="")
+        if len(rows) > len([given] if isinstance(given, str) and len(listed_in(given)) == 1 else rows) and not remark:
+            remark = f"read as {', '.join(in_digits(value) for value, _ in read)}"
+        return np.array([value for value, _ in read], complex), remark
 
     def _times(self, times):
         times = _real(one_number(times, "", self.expected)[0], self.expected)
@@ -195,6 +228,29 @@ class Poles(Kind):
             yield "real part and imaginary part are interchanged", self.key.imag + 1j * self.key.real
         for unit, converted in units.neighbours(self.unit).items():
             yield f"those would be the values {in_unit(unit)}; asked: {self.asked}", self.key * converted(1)
+
+
+def _each_pole(rows):
+    """The values of a list, where a text may stand for a pair or for a multiple one."""
+    found, texts = [], [row.replace(" ", "") for row in rows if isinstance(row, str)]
+    for row in rows:
+        if not isinstance(row, str):
+            found.append(row)
+            continue
+        row, times = _NAMES.sub("", " ".join(row.split())).rstrip("."), 1
+        if found and row.lower() in _TIMES:  # -2, twice
+            found += found[-1:] * (_TIMES[row.lower()] - 1)
+            continue
+        several = _SEVERAL_TIMES.match(row) or _TIMES_BEFORE.match(row)
+        if several:
+            row, times = several["pole"], _TIMES[several["times"].lower()]
+        pair = _PAIR.search(row)
+        # a program writes -1+-2j for -1-2j, beside -1+2j
+        if pair and pair[0] == "+-" and row.replace(" ", "").replace("+-", "+") in texts:
+            pair = None
+        both = [_PAIR.sub(sign, row, count=1) for sign in "+-"] if pair else [row]
+        found += [re.sub(r"([+-]) ?[ij] ?(?=\d)(\d+\.?\d*|\.\d+)", r"\1 \2j", one) for one in both] * times
+    return found
 
 
 def near(answer: float, key: float, within: float) -> bool:
@@ -242,25 +298,57 @@ def one_number(given: object, unit: str, expected: str) -> tuple[complex, str]:
 
 
 def _number_of_text(text, unit, expected):
-    line = plain(text)
+    *before, line = plain(text).split(" = ")
+    if before:  # 3840 s = 64 min
+        found = [_number_of_text(part, unit, expected) for part in (*before, line)]
+        if all(near(abs(value), abs(found[-1][0]), ROUNDED) for value, _ in found):
+            return found[-1]
+        raise Unreadable(f"{shortened(text, 40)!r} has two sides that differ: expected {expected}")
+    line, remark = _in_digits_only(line)
+    parts = _WITH_UNITS.fullmatch(line) and re.findall(r"([\d.,]+ ?[^\W\d_]+)", line)
+    if parts:  # 1 h 4 min
+        found = [_number_of_text(part, unit, expected)[0] for part in parts]
+        return sum(found), f"read as {' + '.join(parts)}"
     match = _WITH_UNIT.fullmatch(line)
     if match and match[2] and not re.search(r"\bpi\b|π", match[2]):  # Pint takes pi for a unit
         named = f"1{match[2]}" if match[2].startswith("/") else match[2]
         if units.is_unit(named):
-            return _in_unit_asked(float(match[1].replace(" ", "")), named, unit, expected)
-    if re.match(r"[+-]?\d+,\d+( |$)", line):
-        raise Unreadable("write the decimal comma as a point")
-    # arithmetic, and perhaps a unit after one of the spaces
-    for space in (len(line), *(found.start() for found in re.finditer(" ", line))):
-        named = line[space + 1 :]
+            return _with(remark, *_in_unit_asked(float(match[1].replace(" ", "")), named, unit, expected))
+    # arithmetic, and perhaps a unit after one of the spaces, or a percent sign
+    says, ends = "", [len(line), *(found.start() for found in re.finditer(r" |(?<=\S)[%°]", line))]
+    for end in ends:
+        named = line[end:].strip()
         if named and not units.is_unit(named):
             continue
         try:
-            value = complex(Formula(line[:space])())
-        except Unreadable:
+            formula = Formula(line[:end])
+            value = complex(formula())
+        except Unreadable as problem:
+            says = says or str(problem)
             continue
-        return _in_unit_asked(value, named, unit, expected) if named else (_finite(value, expected), "")
+        found = _in_unit_asked(value, named, unit, expected) if named else (_finite(value, expected), "")
+        return _with(remark or formula.remark, *found)
+    if re.search("may be|needs? brackets", says):
+        raise Unreadable(says)
     raise Unreadable(f"{shortened(text, 40)!r} is a text that is not a number: expected {expected}")
+
+
+def _with(remark, value, other):
+    """A value with two remarks in one."""
+    return value, ", ".join(one for one in (remark, other) if one)
+
+
+def _in_digits_only(line):
+    """A number in a word, a mixed one, or with spaces between its thousands, in digits, and a remark on it."""
+    for pattern, meant in _OTHER_NUMBERS:
+        read, times = pattern.subn(meant, line, count=1)
+        if times:
+            return read, f"read as {read}"
+    try:
+        read = re.sub(r"(?<=[%\w]) of (?:the |its |full )*[a-z ]+$", "", notation.decimal_points(line))
+    except notation.Ambiguous as doubt:
+        raise Unreadable(str(doubt)) from None
+    return read, "" if read == line else f"read as {read}"
 
 
 def _in_unit_asked(value, named, unit, expected):
@@ -299,6 +387,13 @@ def in_unit(unit: str) -> str:
 def _rows(given):
     """The values of a list in a text too."""
     return listed_in(given) if isinstance(given, str) else in_a_row(given)
+
+
+def _row_of_text(row):
+    """The numbers of a row that is a text, between commas or between spaces."""
+    parts = listed_in(row)
+    in_spaces = len(parts) == 1 and re.fullmatch(r"[-+−]?[\d.]+(?: +[-+−]?[\d.]+)+", parts[0])
+    return re.split(" +", parts[0]) if in_spaces and not re.fullmatch(r"\S+( \d{3})+", parts[0]) else parts
 
 
 def _allowed(key, within, least):

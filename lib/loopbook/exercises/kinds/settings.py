@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator
 from typing import Any
 
 import sympy
 
-from loopbook.exercises import units
+from loopbook.exercises import notation, units
 from loopbook.exercises.kinds.kind import Kind, literal, with_unit
 from loopbook.exercises.kinds.numeric import in_digits, near, one_number
-from loopbook.exercises.reading import Unreadable, alone, answered, in_a_row, listed_in
+from loopbook.exercises.notation import bare
+from loopbook.exercises.reading import Unreadable, alone, answered, in_a_row, listed, listed_in, shortened
+from loopbook.expressions import exact
 from loopbook.pid import PID
 from loopbook.validation import one_of
 
@@ -62,27 +65,29 @@ class Settings(Kind):
         return f"a controller such as PID(1, Ti=10), or its numbers as [1, 10], with times in {self.time}"
 
     def read(self, given: object) -> tuple[PID, str]:
-        """Return a `PID` of exact numbers; from a PID, a dictionary of its settings, or a list Kp, Ti, Td, Tf.
+        """Return a `PID` of exact numbers; from a PID, a dictionary of its settings, a list Kp, Ti, Td, Tf, or a text.
 
-        A dictionary may say the form too, {"Kp": 2, "Ti": 8, "Td": 2, "form": "serial"}.
+        A dictionary may say the form too, {"Kp": 2, "Ti": 8, "Td": 2, "form": "serial"}, and use the names of other
+        books. The gains Ki and Kd of a controller whose terms are added become times.
         """
+        said = ""
         if isinstance(answered(given), PID):
             parts, form = {name: getattr(given, name) for name in NAMES}, given.form
         else:
+            form = self._understood
+            if isinstance(given, str):
+                given = _of_text(given)
+            elif isinstance(alone(given), dict):
+                given = alone(given)
             row = listed_in(given) if isinstance(given, str) else in_a_row(alone(given))
             if row is not None and 2 <= len(row) <= 4:
                 given = dict(zip(NAMES, row, strict=False))
-            form = self._understood
-            if isinstance(given, dict) and "form" in given:
-                given = dict(given)
-                form = given.pop("form")
-            if (
-                not isinstance(given, dict)
-                or "Kp" not in given
-                or (unknown := sorted(map(str, set(given) - set(NAMES))))
-            ):
+            if isinstance(given, dict):
+                given, said = _by_our_names(given)
+                form = given.pop("form", form)
+            if not isinstance(given, dict) or not {"Kp"} <= given.keys() or (unknown := _unknown(given)):
                 why = (
-                    f"{unknown[0]} is not a setting"
+                    f"{unknown} is not a setting"
                     if isinstance(given, dict) and "Kp" in given
                     else "this is no controller"
                 )
@@ -91,16 +96,21 @@ class Settings(Kind):
         remarks, numbers = set(), {}
         for name, value in parts.items():
             value = alone(value)
-            if name == "Ti" and value in ("inf", "oo", math.inf, sympy.oo):
+            if name == "Ti" and _is_infinite(value):
                 numbers[name] = sympy.oo
+                continue
+            if name in ("Ki", "Kd"):
                 continue
             value, remark = one_number(value, self.gain if name == "Kp" else self.time, f"a number for {name}")
             if value.imag:
                 raise Unreadable(f"{name} is a complex number: expected {self.expected}")
             numbers[name] = value.real
             remarks.add(remark)
+        for name, value in _times(parts, numbers.get("Kp"), self.expected).items():
+            numbers[name] = value
+            said = ", ".join(filter(None, [said, f"{name} = {in_digits(value)} from the gain K{name[1]}"]))
         try:
-            return PID(**numbers, form=form), max(remarks, default="")
+            return PID(**numbers, form=form), ", ".join(filter(None, [said, max(remarks, default="")]))
         except ValueError as error:
             raise Unreadable(str(error)) from None
 
@@ -198,6 +208,92 @@ class Settings(Kind):
     def parts_near(self, answer: PID) -> dict[str, bool]:
         """Which of the settings of a controller in the form of the key are right."""
         return self._parts_near(answer, self.key)
+
+
+#: Settings in a text have so many characters.
+LONGEST = 300
+#: The settings by the names of other books, without case and underscores.
+_OTHER_NAMES = {
+    "kp": "Kp", "kc": "Kp", "k": "Kp", "gain": "Kp", "p": "Kp", "ti": "Ti", "taui": "Ti", "td": "Td", "taud": "Td",
+    "tf": "Tf", "tauf": "Tf", "form": "form", "ki": "Ki", "kd": "Kd", "integraltime": "Ti", "derivativetime": "Td",
+    "proportionalgain": "Kp", "controllergain": "Kp", "integralgain": "Ki", "derivativegain": "Kd",
+}  # fmt: skip
+_CALL = re.compile(r"(?:PID?|PD|P|controller|settings)? ?\((.*)\)", re.IGNORECASE | re.DOTALL)
+_PAIR = re.compile(
+    r"(?P<name>[^\W\d]\w*(?:_?\{\w+\})?(?: (?:gain|time))?) ?(?:=|:|≈| is | of )\s*(?P<value>.*?)"
+    r"(?=\s*(?:[;\n]|,(?!\d)|,? and\b|\Z|[,\s]\s*[^\W\d]\w*(?: (?:gain|time))?\s*(?:=|:|≈| is | of )))"
+)
+
+
+def _of_text(text):
+    """The settings in a text such as "PI(2, Ti=10 s)" or "Kc = 2; tau_I = 10"; the text where it is a list of numbers.
+
+    Nothing is left of a text that says more, so that no name in it is passed over.
+    """
+    if len(text) > LONGEST:
+        return None
+    try:
+        text = " ".join(notation.from_latex(text).split()).rstrip(".")
+    except notation.Ambiguous:
+        return None
+    call = _CALL.fullmatch(text)
+    inside = (
+        call[1] if call else text.removeprefix("PID: ").removeprefix("PI: ").removeprefix("PID ").removeprefix("PI ")
+    )
+    inside = inside.replace("'", "").replace('"', "")
+    named = {}
+    for pair in _PAIR.finditer(inside):
+        if pair["name"] in named:
+            return None
+        named[pair["name"]] = pair["value"]
+    first = inside[: pair.start()] if (pair := _PAIR.search(inside)) else inside
+    left = _PAIR.sub("", inside[len(first) :])
+    if not re.fullmatch(r"(?:[\s,;]|and)*", left):
+        return None
+    alone = [part for part in listed_in(first.strip(" ,;")) if part] if first.strip(" ,;") else []
+    if not named and not call and not re.search("[=:]", text):
+        return text
+    positional = dict(zip(NAMES, alone, strict=False))
+    if (alone and not call) or len(alone) > len(NAMES) or positional.keys() & named.keys():
+        return None
+    return positional | named
+
+
+def _by_our_names(given):
+    """A dictionary under the names Kp, Ti, Td, Tf, Ki, Kd and form, and a remark where it was under others."""
+    found, others = {}, []
+    for name, value in given.items():
+        ours = _OTHER_NAMES.get(bare(str(name)).replace("{", "").replace("}", ""), str(name))
+        if ours in found:
+            raise Unreadable(f"there are two values for {ours}: expected one")
+        found[ours] = value
+        if ours != str(name) and ours in NAMES:
+            others.append(f"{shortened(str(name), 20)} as {ours}")
+    return found, f"read {listed(others)}" if others else ""
+
+
+def _unknown(given):
+    """A name that is no setting; empty where there is none."""
+    known = {*NAMES, *(gain for gain, time in (("Ki", "Ti"), ("Kd", "Td")) if time not in given)}
+    return min((str(name) for name in given if name not in known), default="")
+
+
+def _times(parts, gain, expected):
+    """The times that belong to the gains Ki and Kd, {"Ti": Kp/Ki, "Td": Kd/Kp}."""
+    found = {}
+    for name, time in (("Ki", "Ti"), ("Kd", "Td")):
+        if name in parts:
+            value = one_number(parts[name], "", f"a number for {name}")[0].real
+            if not (gain and (value or name == "Kd")):
+                raise Unreadable(f"from {name} follows no {time}: expected {expected}")
+            found[time] = exact(gain / value if name == "Ki" else value / gain)
+    return found
+
+
+def _is_infinite(value):
+    if isinstance(value, str):
+        return value.strip().casefold() in ("inf", "oo", "∞", "infinity", "infinite", "np.inf", "math.inf", "sympy.oo")
+    return value in (math.inf, sympy.oo)
 
 
 def _said(pid):

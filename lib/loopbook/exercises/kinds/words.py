@@ -8,15 +8,16 @@ from collections.abc import Iterable, Iterator
 import sympy
 from sympy.logic.boolalg import BooleanAtom
 
+from loopbook.exercises.kinds import synonyms
 from loopbook.exercises.kinds.kind import Kind
 from loopbook.exercises.reading import Unreadable, alone, answered, in_a_row, shortened
 
 _TRUTH = {True: "yes", False: "no"}
-_SEPARATOR = re.compile(r"[,;\n]|[-=]>|→|\band\b")
+_SEPARATOR = re.compile(r"[,;&\n]|[-=]>|→|\b(?:and|then)\b|(?<=\w)\s?/\s?(?=\w)|(?<=\w)\s?\+\s?(?=\w)")
 
 
 class Word(Kind):
-    """One word of several; upper and lower case are alike.
+    """One word of several; upper and lower case are alike, and other words for it are read.
 
     >>> action = Word("reverse", ["reverse", "direct"], "the action of the controller")
     >>> action.agrees(action.read(" Reverse")[0])
@@ -41,8 +42,8 @@ class Word(Kind):
     FORM = ("among",)
 
     def read(self, given: object) -> tuple[str, str]:
-        """Return the word as it stands in the list."""
-        return _word(answered(given), self.among, self.expected), ""
+        """Return the word as it stands in the list, and a remark where another one was given for it."""
+        return _word(answered(given), self.among, self.expected)
 
     def written(self, answer: str) -> str:
         """The word."""
@@ -80,7 +81,7 @@ class Words(Kind):
     FORM = ("among", "ordered")
 
     def read(self, given: object) -> tuple[list[str], str]:
-        """Return the words as they stand in the list."""
+        """Return the words as they stand in the list, and a remark where others were given for them."""
         if isinstance(answered(given), str):
             given = [part for part in self._parts(given.strip(" []{}")) if part.strip()]
         is_set = isinstance(given, set | frozenset)
@@ -89,20 +90,26 @@ class Words(Kind):
             raise Unreadable(f"this is not a list: expected {self.expected}")
         if self.ordered and is_set:
             raise Unreadable(f"a set has no order: expected {self.expected}")
-        words = [_word(word, self.among, self.expected) for word in row]
-        return words if self.ordered else sorted(set(words), key=self.among.index), ""
+        read = [_word(word, self.among, self.expected) for word in row]
+        words, remarks = [word for word, _ in read], [remark for _, remark in read if remark]
+        said = ", ".join([remarks[0], *(remark.removeprefix("read as ") for remark in remarks[1:])]) if remarks else ""
+        return words if self.ordered else sorted(set(words), key=self.among.index), said
 
     def written(self, answer: list[str]) -> str:
         """The words, or that there are none."""
         return ", ".join(answer) or "none of them"
 
     def _parts(self, text):
-        """The parts of a text, between separators, or between spaces or letters where no word has several of them."""
+        """The parts of a text, between separators, or one word after the other."""
+        if any(_bare(word) == _bare(text) for word in self.among):
+            return [text]
         if _SEPARATOR.search(text):
             return _SEPARATOR.split(text)
         if all(len(word) == 1 for word in self.among):
-            return text
-        return [text] if any(" " in word for word in self.among) else text.split()
+            return synonyms.listed(text, self.among) or text
+        return synonyms.listed(text, self.among) or (
+            [text] if any(" " in word for word in self.among) else text.split()
+        )
 
     def agrees(self, answer: list[str]) -> bool:
         """Whether they are the words."""
@@ -127,7 +134,9 @@ def _word(given, among, expected):
     wanted = _bare(given)
     for word in among:
         if _bare(word) == wanted:
-            return word
+            return word, ""
+    if meant := synonyms.found(given, among):
+        return meant, f'read as "{meant}"'
     raise Unreadable(f"{shortened(given, 40)!r} is none of the words: expected {expected}")
 
 
