@@ -206,6 +206,11 @@ JUDGED = [
             "between 100 and 140",
         )
     ),
+    *(
+        (number(4, "", "the number of whole batches"), text, RIGHT, "read as")
+        for text in ("4 batches", "batch 4", "four batches")
+    ),
+    (number(4, "", "the number of whole batches"), "4 dozen", UNJUDGED, "is not a number"),
     # poles as people write them
     *(
         (poles([-1 + 2j, -1 - 2j]), text, RIGHT, "right")

@@ -42,7 +42,7 @@ CONSTANTS = {"pi": np.pi, "E": np.e, "e": np.e, "I": 1j, "j": 1j, "i": 1j}
 #: Signs as they are printed, and as Python writes them.
 _SIGNS = str.maketrans(
     dict.fromkeys("−–‐‑﹣－", "-") | dict.fromkeys("·⋅×∙•∗", "*") | dict.fromkeys("÷∕⁄", "/")
-    | {"∞": "oo", "½": "(1/2)", "¼": "(1/4)", "¾": "(3/4)", "≤": "<=", "≥": ">=", "’": "'"}
+    | {"∞": "oo", "½": "(1/2)", "¼": "(1/4)", "¾": "(3/4)", "⅓": "(1/3)", "⅔": "(2/3)", "≤": "<=", "≥": ">=", "’": "'"}
 )  # fmt: skip
 _RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
 _LOWERED = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
@@ -201,7 +201,7 @@ def _as_people_write(text, symbols):
     text = re.sub("[⁰¹²³⁴-⁹⁻]+", lambda raised: f"^({raised[0].translate(_RAISED)})", text)
     for greek in set(re.findall("[α-ω]", text)) - set("".join(known)):
         name = unicodedata.name(greek).split()[-1].lower()
-        # a letter is a factor of its own, with what stands below it
+        # a letter is a factor of its own, with its index
         text = re.sub(rf"(?<=[^\W_]){greek}", f" {greek}", text) if not re.search(rf"\d{greek}", text) else text
         text = re.sub(rf"{greek}(?=[^\W\d_])", f"{name} ", text).replace(greek, name)
     if "x" not in known:

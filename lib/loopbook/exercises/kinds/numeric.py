@@ -58,8 +58,13 @@ class Number(Kind):
 
     def read(self, given: object) -> tuple[float, str]:
         """Return the number in the asked unit, as a float, and a remark where it came in another one."""
-        value, remark = one_number(answered(given), self.unit, self.expected)
-        return _real(value, self.expected), remark
+        given = answered(given)
+        if isinstance(given, str) and not self.unit and (bare := _without_noun(given, self.what)):
+            given, noun = bare, f"read as {bare}"
+        else:
+            noun = ""
+        value, remark = one_number(given, self.unit, self.expected)
+        return _real(value, self.expected), remark or noun
 
     @property
     def shown(self) -> tuple[float, str]:
@@ -228,6 +233,17 @@ class Poles(Kind):
             yield "real part and imaginary part are interchanged", self.key.imag + 1j * self.key.real
         for unit, converted in units.neighbours(self.unit).items():
             yield f"those would be the values {in_unit(unit)}; asked: {self.asked}", self.key * converted(1)
+
+
+def _without_noun(text, what):
+    """A number without the noun of what is asked, as "4 batches" or "loop 31"; empty where there is none."""
+    nouns = "|".join(re.sub("(?:(?<=[cs]h)e)?s$", "", word) for word in re.findall(r"[a-z]{4,}", what))
+    found = (
+        re.fullmatch(rf"(?:(?:the )?(?:{nouns}) ([\w.,]+)|([\w.,]+) (?:{nouns})(?:e?s)?)\.?", text.strip())
+        if nouns
+        else None
+    )
+    return (found[1] or found[2]) if found else ""
 
 
 def _each_pole(rows):

@@ -228,7 +228,7 @@ _PAIR = re.compile(
 def _of_text(text):
     """The settings in a text such as "PI(2, Ti=10 s)" or "Kc = 2; tau_I = 10"; the text where it is a list of numbers.
 
-    Nothing is left of a text that says more, so that no name in it is passed over.
+    Nothing is left of a text that says more, so that no name in it is left out unseen.
     """
     if len(text) > LONGEST:
         return None

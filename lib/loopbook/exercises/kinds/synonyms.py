@@ -10,7 +10,7 @@ import itertools
 import re
 from collections.abc import Iterable, Sequence
 
-#: Words that mean the same, a row each. Of two options of one list, no row holds both.
+#: Words that mean the same, in one row. Of two options of one list, no row holds both.
 SAME = """
 setpoint, set point, set value, reference, reference value, desired value, target, target value, wanted value, sp
 control error, error signal, control deviation, deviation from the setpoint
@@ -43,7 +43,7 @@ lower, lower half, lower part, bottom half, first half
 upper, upper half, upper part, top half, second half
 none, nothing, none of them, none of these, nil, not any, no step, no one
 dead end, deadend, blind alley
-waiting forever, forever waiting, forever, waits forever, wait forever, waits for ever, never stops waiting, deadlock
+waiting forever, forever waiting, forever, waits forever, wait forever, never stops waiting, deadlock
 twice active, active twice, doubly active, activated twice
 sound, ok, okay, correct, no mistake, nothing wrong, error free
 inverse response, wrong way response, undershoot first, wrong direction first
@@ -136,7 +136,7 @@ def found(given: str, among: Sequence[str]) -> str | None:
     """
     if len(given) > LONGEST:
         return None
-    options, text = tuple(among), _BEFORE.sub("", bare(given))
+    options, text = tuple(among), re.sub(r"\bfor (?=ever\b)", "for", _BEFORE.sub("", bare(given)))
     if any(len(option) == 1 for option in options):  # letters are themselves, and an article is none
         letters = [word for word in re.findall(r"\w+", given) if word in options]
         words = {word.casefold() for word in re.findall(r"\w+", given)}
