@@ -1,9 +1,12 @@
 """Exercises of chapter 12, sequential control."""
 
 import math
+from itertools import pairwise
 
+import numpy as np
 from sympy import Rational, ceiling, floor, log, sqrt, symbols
 
+from loopbook.diagrams import sequential_function_chart
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -16,11 +19,20 @@ from loopbook.exercises.authoring import (
     word,
     words,
 )
+from loopbook.figures import time_plot
+from loopbook.sequence import Chart
 
 # --- 12.1 ---------------------------------------------------------------------------------------------------------
 
 
-@exercise("12.1", title="Scan by scan", points=2, where=lambda m, q: 3 < m / q < 9 and 0.15 <= (m / q) % 1 <= 0.85)
+@exercise(
+    "12.1",
+    title="Scan by scan",
+    points=2,
+    where=lambda m, q: 3 < m / q < 9 and 0.15 <= (m / q) % 1 <= 0.85,
+    insight="A condition is not true when it becomes true, but when a scan finds it: every limit is overrun by "
+    "up to one scan.",
+)
 def bottles(
     arrival=between(2, 9, "s", reference=3, step=1),
     m=between(0.5, 2, "kg", reference=1, step=0.25),
@@ -51,8 +63,8 @@ def bottles(
 
 
 @bottles.shows
-def _(m):
-    return {"full": f"`mass >= {float(m):g}`"}
+def _(m, q):
+    return {"full": f"`mass >= {float(m):g}`", "ratio": f"{float(m / q):.3g}"}
 
 
 @bottles.mistake("The condition is tested in the scans only. Which scan is the first one that finds it true?")
@@ -88,6 +100,51 @@ def _(arrival, m, q):
 @bottles.mistake("That is the limit in the condition. The valve stays open until a scan finds it reached.")
 def _(m):
     return {"mass": m}
+
+
+bottles.hints(
+    "Nothing happens between two scans except in the plant. What does each scan look at, and what can it do?",
+    "In the scan in which `Fill` becomes active the valve opens. Each later scan finds one second's flow more. `Cap` "
+    "begins in the first scan that finds the limit reached. Even an unconditional transition waits for the next scan.",
+    "The bottle is there before the scan at {arrival}. Then ${m}/{q} = {ratio}$ seconds of flow are needed: how many "
+    "whole scans are that?",
+)
+
+
+@bottles.solution
+def _(arrival, m, q):
+    r"""The bottle comes just before the scan at {arrival}, and this scan finds `bottle` true: `Fill` becomes active at
+    {Fill}, and the valve is open from then on.
+
+    ***
+
+    After $n$ more scans $n \cdot {q}$ kg have flowed in. The limit is {m} kg, and ${m}/{q} = {ratio}$ is not a whole
+    number: the first scan that finds it reached is the one after {scans} seconds, at {Cap}. By then {mass} are in the
+    bottle, a little more than the limit, because the valve stays open until a scan has seen it.
+
+    The transition behind `Cap` is always true. But a step lasts for one scan at least, so that `Away` becomes active at
+    {Away}.
+    """
+    return {"scans": str(ceiling(m / q)), "m": f"{float(m):g}"}
+
+
+@bottles.picture
+def _(m):
+    """The chart: the steps Wait, Fill, Cap and Away in a circle, with their actions, as in the table."""
+    return sequential_function_chart(bottle_chart(m))
+
+
+def bottle_chart(m):
+    """The chart of the machine."""
+    steps = {
+        "Wait": {"u_cap": False},
+        "Fill": {"u_valve": True},
+        "Cap": {"u_valve": False, "u_cap": True},
+        "Away": {},
+    }
+    ways = [("Wait", "Fill", "bottle"), ("Fill", "Cap", f"mass >= {float(m):g}"), ("Cap", "Away", "TRUE")]
+    ways.append(("Away", "Wait", "NOT bottle"))
+    return Chart(("bottle", "mass"), {"u_valve": False, "u_cap": False}, steps, "Wait", ways)
 
 
 # --- 12.2 ---------------------------------------------------------------------------------------------------------
@@ -127,7 +184,14 @@ def _two_answers(stop, lamp, stir, step):
     return 0 < len(while_active(stop, lamp, stir, step)) < len(stored(stop, lamp, stir, step))
 
 
-@exercise("12.2", title="What is on?", points=2, where=_two_answers)
+@exercise(
+    "12.2",
+    title="What is on?",
+    points=2,
+    where=_two_answers,
+    insight="What an output does in a step depends on all steps before it, unless the qualifier says that it "
+    "ends with its step.",
+)
 def what_is_on(
     stop=choice("Soak", "Dose", "Heat", "Empty"),
     lamp=choice("Soak", "Rinse", "Dose", "Heat", "Empty"),
@@ -155,7 +219,7 @@ def _(stop, lamp, stir):
     for name, actions in boxes(stop, lamp, stir).items():
         done = ", ".join(f"`{output} := {str(value).upper()}`" for output, value in actions.items())
         rows.append(f"| `{name}` | {done or 'none'} |")
-    return {"table": "\n".join(rows)}
+    return {"table": "\n".join(rows), "first": " and ".join(stored(stop, lamp, stir, "Rinse"))}
 
 
 @what_is_on.mistake(
@@ -176,21 +240,81 @@ def _(stop, lamp, stir, step):
     return {"stored": ever} if ever != stored(stop, lamp, stir, step) else {}
 
 
+@what_is_on.mistake("That is the list as the step before has left it. What does this step itself change?")
+def _(stop, lamp, stir, step):
+    names = [*boxes(stop, lamp, stir)]
+    earlier = stored(stop, lamp, stir, names[names.index(step) - 1])
+    return {"stored": earlier} if earlier != stored(stop, lamp, stir, step) else {}
+
+
+@what_is_on.mistake("An action of this step sets one of these to FALSE. Which of them are set to TRUE?")
+def _(stop, lamp, stir, step):
+    named = [output for output in OUTPUTS if output in boxes(stop, lamp, stir)[step]]
+    return {"default": named} if named != while_active(stop, lamp, stir, step) else {}
+
+
+what_is_on.hints(
+    "An action box lists changes. With stored values, who else decides about an output besides the active step?",
+    "Stored: go down the table, keep a list of what is on, add at each TRUE, cross out at each FALSE, and stop at the "
+    "step. With N: forget the list, and take the TRUE actions of the step alone.",
+    "The first step leaves {first} on. Go on from there, step by step, to `{step}`.",
+)
+
+
+@what_is_on.solution
+def _(stop, lamp, stir, step):
+    """**Stored values.** Go down the table and keep a list of what is on:
+
+    {steps_on}
+
+    So while `{step}` is active, these are on: {kept}.
+
+    **Qualifier N.** An output is on only as long as a step is active that sets it to TRUE. In `{step}` that leaves:
+    {own}. Everything that an earlier step has switched on would have been off again.
+    """
+    rows = []
+    for name in boxes(stop, lamp, stir):
+        rows.append(f"- in `{name}`: {', '.join(stored(stop, lamp, stir, name)) or 'nothing'}")
+        if name == step:
+            break
+    return {
+        "steps_on": "\n".join(rows),
+        "kept": ", ".join(stored(stop, lamp, stir, step)),
+        "own": ", ".join(while_active(stop, lamp, stir, step)),
+    }
+
+
+@what_is_on.picture
+def _(stop, lamp, stir):
+    """The chart: five steps from top to bottom, with the actions of the table."""
+    steps = boxes(stop, lamp, stir)
+    ways = [(one, other, f"{one}.T >= 60") for one, other in pairwise(steps)]
+    return sequential_function_chart(Chart((), dict.fromkeys(OUTPUTS, False), steps, "Rinse", ways, final="Empty"))
+
+
 # --- 12.3 ---------------------------------------------------------------------------------------------------------
 
 SIZES = ["Small", "Medium", "Large"]
-ORDERS = ("Medium, Small, Large", "Small, Medium, Large", "Large, Medium, Small", "Medium, Large, Small")
+#: The conditions of the branches by their order; 1 and 2 are the limits.
+BRANCHES = {
+    "Medium, Small, Large": ("< 2", "< 1", ""),
+    "Small, Large, Medium": ("< 1", ">= 1", "< 2"),
+    "Small, Medium, Large": ("< 1", "< 2", ""),
+    "Large, Small, Medium": (">= 2", "< 2", ">= 1"),
+    "Large, Medium, Small": (">= 2", ">= 1", ""),
+    "Medium, Large, Small": (">= 1", ">= 2", ""),
+}
 
 
 def conditions(order, w_1, w_2):
     """The branches in their order, as pairs of step and lowest and highest mass (that excluded) of its condition."""
-    from_below = order.endswith("Large")
-    of = {
-        "Small": (-math.inf, w_1) if from_below else (-math.inf, math.inf),
-        "Medium": (-math.inf, w_2) if from_below else (w_1, math.inf),
-        "Large": (-math.inf, math.inf) if from_below else (w_2, math.inf),
-    }
-    return [(size, *of[size]) for size in order.split(", ")]
+    found = []
+    for size, condition in zip(order.split(", "), BRANCHES[order], strict=True):
+        relation, _, which = condition.partition(" ")
+        limit = {"1": w_1, "2": w_2}.get(which)
+        low = limit if relation == ">=" else -math.inf
+        found.append((size, low, limit if relation == "<" else math.inf))
+    return found
 
 
 def way_of(egg, order, w_1, w_2, pick=0):
@@ -202,21 +326,30 @@ def by_name(egg, w_1, w_2):
     return SIZES[sum(bool(egg >= limit) for limit in (w_1, w_2))]
 
 
-@exercise("12.3", title="Which way, egg?", points=2)
+@exercise(
+    "12.3",
+    title="Which way, egg?",
+    points=2,
+    where=lambda w_1, w_2, a, b, c: (
+        len({by_name(egg, w_1, w_2) for egg in (a, b, c)}) == 3 and not {a, b, c} & {w_1, w_2}
+    ),
+    insight="Alternative branches are asked from left to right, and the first one that is true wins: a wide "
+    "condition belongs behind the narrow ones.",
+)
 def eggs(
-    order=choice(*ORDERS),
+    order=choice(*BRANCHES),
     w_1=between(51, 54, "g", reference=53, step=1),
     w_2=between(61, 64, "g", reference=63, step=1),
-    a=between(46, 50, "g", reference=48, step=1),
-    b=between(55, 60, "g", reference=58, step=1),
-    c=between(65, 72, "g", reference=67, step=1),
+    a=between(46, 72, "g", reference=67, step=1),
+    b=between(46, 72, "g", reference=48, step=1),
+    c=between(46, 72, "g", reference=58, step=1),
 ):
     """Eggs are weighed and sorted. Three transitions leave the step `Weigh`, in this order:
 
     {branches}
 
-    The chart is run by the rules of this chapter. To which step do three eggs of {a}, {b} and {c} come? Which step is
-    reached by no egg, whatever its mass?
+    The chart is run by the rules of this chapter. To which steps do three eggs of {a}, {b} and {c} come? And which step
+    does no egg reach, whatever its mass?
     """
     a, b, c = (way_of(egg, order, w_1, w_2) for egg in (a, b, c))
     never = [size for size in SIZES if size not in (a, b, c)]
@@ -230,11 +363,9 @@ def eggs(
 
 @eggs.shows
 def _(order, w_1, w_2):
-    lines = []
-    for n, (size, low, high) in enumerate(conditions(order, w_1, w_2), start=1):
-        condition = f"mass < {high}" if high < math.inf else f"mass >= {low}" if low > -math.inf else "TRUE"
-        lines.append(f"{n}. to `{size}`: `{condition}`")
-    return {"branches": "\n".join(lines)}
+    listed = [(size, _condition(low, high)) for size, low, high in conditions(order, w_1, w_2)]
+    lines = [f"{n}. to `{size}`: `{condition}`" for n, (size, condition) in enumerate(listed, start=1)]
+    return {"branches": "\n".join(lines), "condition": listed[0][1]}
 
 
 def _others(found, **key):
@@ -264,6 +395,75 @@ def _(order, w_1, w_2, a, b, c):
 )
 def _(order, w_1, w_2, a, b, c):
     return {"never": "none"} if len(set(_key(order, w_1, w_2, a, b, c).values())) < 3 else {}
+
+
+@eggs.mistake("That condition is false for this egg. Which ones are true for it, and which of these is the first?")
+def _(order, w_1, w_2, a, b, c):
+    wrong = {}
+    for name, egg in dict(first=a, second=b, third=c).items():
+        false = [size for size, low, high in conditions(order, w_1, w_2) if not low <= egg < high]
+        wrong |= {name: false[0]} if false else {}
+    return wrong
+
+
+@eggs.mistake("An egg does reach this step. For which masses is its condition the first one that is true?")
+def _(order, w_1, w_2, a, b, c):
+    reached = _key(order, w_1, w_2, a, b, c)
+    return {"never": reached["second"]}
+
+
+@eggs.mistake(
+    "One of your three eggs is there. Which step is behind a condition that holds for fewer eggs than the one before?"
+)
+def _(order, w_1, w_2, a, b, c):
+    reached = _key(order, w_1, w_2, a, b, c)
+    return {"never": reached["first"]} if reached["first"] != reached["second"] else {}
+
+
+eggs.hints(
+    "Several transitions leave one step, and several of them may be true. Which one does a scan clear?",
+    "For each egg go down the list and stop at the first condition that is true. A step is never reached if everything "
+    "that satisfies its condition also satisfies one before it.",
+    "For the egg of {a}: is `{condition}` true? If not, go on with the second condition.",
+)
+
+
+@eggs.solution
+def _(order, w_1, w_2, a, b, c):
+    """The first condition that is true decides, from the top of the list:
+
+    {rows}
+
+    Their names say otherwise for some eggs, but the chart does not know names. {story}
+    """
+    rows = []
+    for egg in (a, b, c):
+        size = way_of(egg, order, w_1, w_2)
+        asked = [name for name, *_ in conditions(order, w_1, w_2)]
+        before = asked[: asked.index(size)]
+        no = f"not {' and not '.join(f'`{name}`' for name in before)}, but " if before else "immediately "
+        rows.append(f"- {egg} g: {no}`{size}`")
+    (never,) = {*SIZES} - {way_of(egg, order, w_1, w_2) for egg in (a, b, c)} or {""}
+    story = (
+        f"No egg comes to `{never}`: whatever satisfies its condition has satisfied one before it. In a list of "
+        "limits the narrow condition belongs before the wide one."
+        if never
+        else "Each step is reached, because the narrow conditions come before the wide ones: none is covered, the "
+        "answer is none."
+    )
+    return {"rows": "\n".join(rows), "story": story}
+
+
+@eggs.picture
+def _(order, w_1, w_2):
+    """The chart: from Weigh three branches lead to the sizes, from left to right in the order of the list."""
+    ways = [("Weigh", size, _condition(low, high)) for size, low, high in conditions(order, w_1, w_2)]
+    steps = {step: {} for step in ("Weigh", *order.split(", "))}
+    return sequential_function_chart(Chart("mass", {}, steps, "Weigh", ways, final=SIZES))
+
+
+def _condition(low, high):
+    return f"mass < {high}" if high < math.inf else f"mass >= {low}" if low > -math.inf else "TRUE"
 
 
 # --- 12.4 ---------------------------------------------------------------------------------------------------------
@@ -308,7 +508,13 @@ def faulty_chart(mistake, A, B, C, D):
     }[mistake]  # fmt: skip
 
 
-@exercise("12.4", title="What is wrong with this chart?", points=3)
+@exercise(
+    "12.4",
+    title="What is wrong with this chart?",
+    points=3,
+    insight="What can be wrong with a chart can be found before it runs: is each step reached, is it left, and "
+    "do branches end as they began?",
+)
 def wrong_chart(
     plant=choice(*PLANTS),
     mistake=choice("twice active", "dead end", "orphan", "covered branch", "waiting forever", "sound"),
@@ -342,7 +548,17 @@ def _(plant, mistake, swapped):
         before, behind = (y if isinstance(y, str) else " and ".join(y) for y in (before, behind))
         lines.append(f"{before} → {behind}: {condition}")
     names = "\n".join(f"- *{name}*: {meaning}" for name, meaning in MISTAKES.items())
-    return {"first": PLANTS[plant][0], "transitions": "\n".join(lines), "list": names}
+    _, *others = ways[0][1] if not isinstance(ways[0][1], str) else [ways[0][1]]
+    kind = (
+        "Two simultaneous branches begin there: follow both to their end." if others else "Follow the chart from there."
+    )
+    return {
+        "first": PLANTS[plant][0],
+        "transitions": "\n".join(lines),
+        "list": names,
+        "way": f"`{lines[0]}`",
+        "kind": kind,
+    }
 
 
 @wrong_chart.mistake(
@@ -377,6 +593,83 @@ def _(mistake):
     return {"mistake": "orphan"} if mistake in ("covered branch", "waiting forever") else {}
 
 
+def _not_this_mistake(name):
+    def mistake(mistake):
+        return {} if mistake == name else {"mistake": name}
+
+    return mistake
+
+
+for _name, _question in {
+    "dead end": "Is there a step that is in front of no transition? Go through the left sides.",
+    "orphan": "Is there a step, other than the initial one, that is behind no transition? Go through the right sides.",
+    "covered branch": "A branch is covered if the one before it, from the same step, is always taken. Is there one?",
+    "waiting forever": "That needs a convergence of two steps that are alternatives. How do its branches begin?",
+    "twice active": "That needs a branch that is left alone while the chart comes round again. Is there one?",
+    "sound": "Follow each step: is it reached, is it left, and do branches end as they have begun?",
+}.items():
+    wrong_chart.mistake(_question)(_not_this_mistake(_name))
+
+
+@wrong_chart.mistake("All of them suffer nothing only if the chart is sound. Is it?")
+def _(mistake):
+    return {} if mistake == "sound" else {"step": "none"}
+
+
+@wrong_chart.mistake(
+    "The initial step is active from the beginning and is left by a transition. Which step has a problem?"
+)
+def _(plant, mistake, swapped):
+    return {"step": steps_of(plant, swapped)[0]}
+
+
+@wrong_chart.mistake(
+    "One transition leads to this step, one leaves it, and both are cleared at their times. Which step is different?"
+)
+def _(plant, mistake, swapped):
+    _, suffers = faulty_chart(mistake, *steps_of(plant, swapped))
+    return {"step": next(step for step in steps_of(plant, swapped)[1:] if step != suffers)}
+
+
+@wrong_chart.mistake("This step can be reached and left when its time has come. Look at the others.")
+def _(plant, mistake, swapped):
+    _, suffers = faulty_chart(mistake, *steps_of(plant, swapped))
+    return {"step": [step for step in steps_of(plant, swapped)[1:] if step != suffers][-1]}
+
+
+wrong_chart.hints(
+    "A chart is sound if each step can be reached and left, and if branches end as they have begun. Draw it.",
+    "Go through the left sides of the arrows (is each step there?), then the right sides (each but the initial one?), "
+    "then the transitions that leave one step (which is asked first?), then those with two steps on one side.",
+    "The first transition is {way}. {kind}",
+)
+
+
+@wrong_chart.solution
+def _(plant, mistake, swapped):
+    """Check the list in four steps: left sides, right sides, what leaves one step in common, and how branches end.
+
+    {story}
+
+    So the mistake is: {mistake}. The step is: {suffers}.
+    """
+    A, B, C, D = steps_of(plant, swapped)
+    _, suffers = faulty_chart(mistake, A, B, C, D)
+    stories = {
+        "dead end": f"{D} is reached after a fault, but is in front of no transition: the plant stays there.",
+        "orphan": f"{D} is in front of a transition, but behind none, and not the initial step: it is never reached.",
+        "covered branch": f"Two transitions leave {B}. The first one is always true, so that the second one, to {D}, "
+        "is never cleared.",
+        "waiting forever": f"{D} begins when {B} and {C} are both active. But they are alternatives: only one of them "
+        "is active at a time, and the convergence waits forever.",
+        "twice active": f"{B} and {C} begin together and should end together. After a fault {B} is left alone, {C} "
+        f"stays active, and when the chart comes round, {C} is activated once more.",
+        "sound": f"{B} and {C} begin together and end together in one transition, {D} follows them, and the chart "
+        "comes back to its initial step. Nothing is wrong with it.",
+    }
+    return {"story": stories[mistake], "suffers": suffers}
+
+
 # --- 12.5 ---------------------------------------------------------------------------------------------------------
 
 
@@ -385,6 +678,7 @@ def _(mistake):
     title="Heat and dose",
     points=3,
     where=lambda T_0, T_SP, rate, n, dose: abs((T_SP - T_0) / rate - n * dose) >= 4 and (T_SP - T_0) / rate <= 60,
+    insight="Simultaneous branches take as long as the longest of them, and a state is a set of steps.",
 )
 def heat_and_dose(
     T_0=between(12, 25, "°C", reference=20, step=1),
@@ -418,6 +712,7 @@ def _(n):
     return {
         "number": {2: "two", 3: "three", 4: "four"}[int(n)],
         "doses": ", ".join(doses[:-1]) + " and " + doses[-1],
+        "second": str(n + 1),
     }
 
 
@@ -456,6 +751,41 @@ def _(n):
     return {"states": 2 * (n + 1)} if n != 3 else {}
 
 
+heat_and_dose.hints(
+    "The two branches run at the same time, and one transition ends both. What does that transition wait for?",
+    "Compute how long each branch takes on its own. `React` begins with the later one, and the waiting step of the "
+    "other one has waited. For the states: which steps can be active together?",
+    "Heating takes $({T_SP} - {T_0})/{rate}$ min, dosing ${n} \\cdot {dose}$ min. Each of the two steps of the first "
+    "branch can be active together with each of the {second} steps of the second one.",
+)
+
+
+@heat_and_dose.solution
+def _(T_0, T_SP, rate, n, dose, react):
+    r"""**Each branch alone.** Heating takes $\frac{ {T_SP} - {T_0} }{ {rate} } = {heating}$ min, the powders
+    ${n} \cdot {dose} = {dosing}$ min.
+
+    **The convergence** waits until both are done: `React` begins at {begin}, and ends {react} later, at {end}. The
+    branch that is ready first waits in its last step: {waited}.
+
+    **States.** A state is the set of steps that are active together. In the branches, one of 2 steps (`Heat`, `Hold`)
+    goes with one of {second} steps (the powders and `Ready`): ${count}$ states. With `Start` and `React` that makes
+    {states}, whatever the times are.
+    """
+    return {"heating": (T_SP - T_0) / rate, "dosing": n * dose, "count": 2 * (n + 1)}
+
+
+@heat_and_dose.solution_picture
+def _(T_0, T_SP, rate, n, dose, react):
+    """The chart, with its two simultaneous branches."""
+    second = [f"Dose{k}" for k in range(1, int(n) + 1)] + ["Ready"]
+    ways = [("Start", ("Heat", "Dose1"), "button"), ("Heat", "Hold", f"T >= {T_SP}")]
+    ways += [(one, other, f"{one}.T >= {dose}") for one, other in pairwise(second)]
+    ways += [(("Hold", "Ready"), "React", "TRUE"), ("React", "Start", f"React.T >= {react}")]
+    steps = {step: {} for step in ("Start", "Heat", "Hold", *second, "React")}
+    return sequential_function_chart(Chart(("button", "T"), {}, steps, "Start", ways))
+
+
 # --- 12.6 ---------------------------------------------------------------------------------------------------------
 
 
@@ -478,6 +808,7 @@ def _whole_batches(**given):
     where=lambda A, h_0, h_1, q, K_v, tau, T_0, T_SP, T_end, hold: _whole_batches(
         A=A, h_0=h_0, h_1=h_1, q=q, K_v=K_v, tau=tau, T_0=T_0, T_SP=T_SP, T_end=T_end, hold=hold
     ),
+    insight="A shift is planned with the times of the steps, and each time comes from the physics of its step.",
 )
 def shift(
     A=between(0.6, 1.5, "m²", reference=0.8, step=0.1),
@@ -574,6 +905,56 @@ def _(A, h_0, h_1, q, K_v, tau, T_0, T_SP, T_end, hold):
     return {"batches": floor(480 / sum(times)) + 1}
 
 
+shift.hints(
+    "Each step of the chart has a physics of its own. Which of the four times are a volume over a flow, which a lag, "
+    "which a fall whose rate falls with the level?",
+    "Fill: the volume over the flow. Heat: the distance to the final temperature falls by $e^{-t/\\tau}$. Empty: the "
+    "law $dt = -\\frac{A\\,dh}{K_v\\sqrt{h}}$, integrated from $h_1$ down to $h_0$; the integral of $1/\\sqrt{h}$ is "
+    "$2\\sqrt{h}$.",
+    "Heat: $\\tau\\ln\\frac{T_{end} - T_0}{T_{end} - T_{SP}}$ with the distances {from_start} K and {from_end} K. And "
+    "a litre is a thousandth of a cubic metre.",
+)
+
+
+@shift.shows
+def _(T_0, T_SP, T_end):
+    return {"from_start": f"{float(T_end - T_0):g}", "from_end": f"{float(T_end - T_SP):g}"}
+
+
+@shift.solution
+def _(A, h_0, h_1, q, K_v, tau, T_0, T_SP, T_end, hold):
+    r"""**Empty.** Torricelli's law gives each bit of the level its time, $dt = -\frac{A\,dh}{K_v\sqrt{h}}$. From $h_1$
+    down to $h_0$ these add up to $\frac{2A}{{K_v}}\left(\sqrt{{h_1}} - \sqrt{{h_0}}\right)$. With $A = {A}$ m² and
+    $K_v = {K_v}$ L/(s m$^{1/2}$), a thousandth of that in cubic metres, it takes {emptying}.
+
+    **Heat.** The distance to $T_{end}$ falls by $e^{-t/\tau}$, from {from_start} K to {from_end} K:
+    $\tau\ln\frac{ {from_start} }{ {from_end} } =$ {Heat}.
+
+    **Fill** is a volume over a flow: $\frac{ {A} \cdot ({h_1} - {h_0}) }{ {q}/1000} = {seconds}$ s, which is {filling}.
+
+    **A batch** takes the four times together, with {hold} for `Dye`: {batch}. Of these ${shifts}$ fit into eight hours,
+    so that {batches} are finished, and the next one is still in the vat.
+    """
+    filling, _, _, emptying = times = stages(A, h_0, h_1, q, K_v, tau, T_0, T_SP, T_end, hold)
+    return {
+        "emptying": (emptying, "min"),
+        "filling": (filling, "min"),
+        "seconds": 60 * filling,
+        "shifts": 480 / sum(times),
+    }
+
+
+@shift.solution_picture
+def _(A, h_0, h_1, q, K_v, tau, T_0, T_SP, T_end, hold):
+    """The level during one batch: it rises steadily, stays while heating and dyeing, and falls ever more slowly."""
+    filling, heating, holding, emptying = stages(A, h_0, h_1, q, K_v, tau, T_0, T_SP, T_end, hold)
+    low, high, begins = float(h_0), float(h_1), filling + heating + holding
+    minutes = np.linspace(0, begins + emptying, 401)
+    root = np.interp(minutes, [begins, begins + emptying], [math.sqrt(high), math.sqrt(low)])
+    level = np.where(minutes < begins, np.interp(minutes, [0, filling], [low, high]), root**2)
+    return time_plot({"level [m]": level}, minutes, xlabel="$t$ [min]", low=True)
+
+
 # --- 12.7 ---------------------------------------------------------------------------------------------------------
 
 SCAN = 2  # s
@@ -600,7 +981,14 @@ def _room_for_limit(A, h_0, h_1, q_low, q_high, close, rim):
     return 1.06 < latest(A, h_0, q_high, close, rim) / (slowest(A, h_0, h_1, q_low) / 0.9) < 1.4
 
 
-@exercise("12.7", title="A way out of filling", points=5, where=_room_for_limit)
+@exercise(
+    "12.7",
+    title="A way out of filling",
+    points=5,
+    where=_room_for_limit,
+    insight="A step that waits for a sensor needs a second way out, because sensors fail, and its limit lies "
+    "between normal operation and the rim.",
+)
 def way_out(
     A=between(0.5, 2, "m²", reference=1.2, step=0.1),
     h_0=between(0.05, 0.2, "m", reference=0.1, step=0.05),
@@ -635,6 +1023,7 @@ def way_out(
             criterion(
                 "the highest level", lambda x: level_at_last(x, A, h_0, q_high, close), below=float(rim), unit="m"
             ),
+            draws=lambda x: stuck_trends(x, A, h_0, h_1, rim, q_high, close),
         ),
     )
 
@@ -659,3 +1048,276 @@ def _(A, h_1, q_low):
 )
 def _(A, h_0, q_high, rim):
     return {"limit": 1000 * A * (rim - h_0) / q_high}
+
+
+@way_out.mistake("With that limit a normal filling with the weakest supply would already raise the alarm.")
+def _(A, h_0, h_1, q_low):
+    return {"limit": slowest(A, h_0, h_1, q_low)}
+
+
+@way_out.mistake(
+    "The limit has to be longer than the longest filling: nine tenths of which of the two is the other one?"
+)
+def _(A, h_0, h_1, q_low):
+    return {"limit": slowest(A, h_0, h_1, q_low) * Rational(9, 10)}
+
+
+way_out.hints(
+    "Two demands: the limit must be longer than any normal filling, and short enough that the water stays below the "
+    "rim. Which supply decides about which of them?",
+    "The weakest supply fills longest; the limit is at least that time over 0.9. With the strongest one water comes in "
+    "during the limit, for one scan more, and while the valve closes, at half of the flow. All of it needs room.",
+    "From below: $\\frac{1000 \\cdot {A}\\,({h_1} - {h_0})}{0.9 \\cdot {q_low}}$ s. From above: "
+    "$\\frac{1000 \\cdot {A}\\,({rim} - {h_0})}{ {q_high} }$ s, minus the scan of 2 s and half of the closing time.",
+)
+
+
+@way_out.solution
+def _(A, h_0, h_1, rim, q_low, q_high, close):
+    r"""**The longest normal filling** is that with the weakest supply:
+    $\frac{1000 \cdot {A}\,({h_1} - {h_0})}{ {q_low} } =$ {longest}. That may be 90 % of the limit at most, so the limit
+    is at least {least}.
+
+    **If the transmitter is stuck** the strongest supply is the worst case. Up to the rim there is room for
+    $\frac{1000 \cdot {A}\,({rim} - {h_0})}{ {q_high} } = {room}$ s of its flow. One scan of 2 s may pass before the
+    alarm, and while the valve closes, its flow falls steadily from all to nothing: as much water as in half of {close}.
+    The limit is at most {most}.
+
+    **Between the two** every limit is right, for example {chosen}, in the middle.
+    """
+    longest, most = slowest(A, h_0, h_1, q_low), latest(A, h_0, q_high, close, rim)
+    return {
+        "least": (longest / Rational(9, 10), "s"),
+        "room": 1000 * A * (rim - h_0) / q_high,
+        "most": (most, "s"),
+        "chosen": (floor((longest / Rational(9, 10) + most) / 2), "s"),
+    }
+
+
+@way_out.picture
+def _(h_1):
+    """The chart: Fill is left at the full level to Heat, or after the limit to Alarm."""
+    shut = {"u_valve": False}
+    steps = {"Fill": {"u_valve": True}, "Heat": shut, "Alarm": shut}
+    ways = [("Fill", "Heat", f"h > {float(h_1):g}"), ("Fill", "Alarm", "Fill.T > limit")]
+    inputs = ("h", "limit")
+    return sequential_function_chart(Chart(inputs, {"u_valve": False}, steps, "Fill", ways, final="Heat Alarm"))
+
+
+def stuck_trends(limit, A, h_0, h_1, rim, q_high, close):
+    """The level if nobody notices that the tank is full, with the rim and the level at which filling should end."""
+    closes = float(limit) + SCAN
+    times = np.linspace(0, closes + 1.5 * float(close), 301)
+    closing = np.clip((times - closes) / float(close), 0, 1)
+    inflow = np.minimum(times, closes) + float(close) * (closing - closing**2 / 2)
+    level = float(h_0) + float(q_high) * inflow / (1000 * float(A))
+    curves = {"level, transmitter stuck": (level, "measurement"), "full": (float(h_1), "setpoint")}
+    return time_plot(curves, times, ylabel="level [m]", low=True).level(rim, "rim")
+
+
+# --- 12.8 ---------------------------------------------------------------------------------------------------------
+
+MIXED = ["inlet", "heater", "stirrer", "drain", "lamp"]
+
+
+def mixing_chart(heater_off, lamp, mix):
+    """Two simultaneous branches and what follows; where the heater is switched off and the lamp on, varies."""
+    steps = {
+        "Wait": {"drain": False, "lamp": False},
+        "Fill": {"inlet": True},
+        "Hold": {"inlet": False},
+        "Warm": {"heater": True},
+        "Ready": {},
+        "Mix": {"stirrer": True},
+        "Drain": {"stirrer": False, "drain": True},
+    }
+    steps[heater_off] |= {"heater": False}
+    steps[lamp] |= {"lamp": True}
+    ways = [
+        ("Wait", ("Fill", "Warm"), "start"),
+        ("Fill", "Hold", "full"),
+        ("Warm", "Ready", "hot"),
+        (("Hold", "Ready"), "Mix", "TRUE"),
+        ("Mix", "Drain", f"Mix.T >= {mix}"),
+        ("Drain", "Wait", "empty"),
+    ]
+    return Chart(("start", "full", "hot", "empty"), dict.fromkeys(MIXED, False), steps, "Wait", ways)
+
+
+def _active(full, hot, look):
+    return ["Hold" if look >= full else "Fill", "Ready" if look >= hot else "Warm"]
+
+
+def mixing_outputs(heater_off, lamp, full, hot, look):
+    """What is on at a moment at which one of the branches waits, with stored values."""
+    steps, on = mixing_chart(heater_off, lamp, 5).steps, {}
+    seen = ["Wait", "Fill", "Warm"]
+    seen += ["Hold"] * bool(look >= full) + ["Ready"] * bool(look >= hot)
+    for step in seen:
+        on |= steps[step]
+    return [output for output in MIXED if on.get(output)]
+
+
+def _one_branch_waits(start, full, hot, look):
+    return start + 2 <= min(full, hot) <= look - 1 and look <= max(full, hot) - 2 and full != hot
+
+
+@exercise(
+    "12.8",
+    title="Read a chart",
+    points=3,
+    where=_one_branch_waits,
+    insight="To read a chart at a moment, ask three things: which steps are active, what have their actions and all "
+    "earlier ones left on, and which condition is being waited for.",
+)
+def reading(
+    heater_off=choice("Mix", "Ready", "Drain"),
+    lamp=choice("Warm", "Hold", "Ready", "Mix"),
+    mix=between(5, 15, "s", step=1, reference=8),
+    start=between(1, 4, "s", step=1, reference=2),
+    full=between(6, 20, "s", step=1, reference=7),
+    hot=between(6, 20, "s", step=1, reference=14),
+    look=between(7, 18, "s", step=1, reference=10),
+):
+    """The chart of a mixing vessel is scanned once a second. Before the start all outputs are FALSE, and values are
+    stored as in all charts of this chapter. Just before the scan at {start} somebody presses the button `start`. `full`
+    is TRUE from the scan at {full} on, `hot` from the scan at {hot} on.
+
+    Which steps are active at {look}, after the scan? Which outputs are TRUE then? Which condition must become true next
+    so that the chart goes on? And when do `Mix` and `Drain` become active?
+    """
+    begin = max(full, hot) + 1
+    return answers(
+        active=words(_active(full, hot, look), STEPS, what="the active steps"),
+        on=words(mixing_outputs(heater_off, lamp, full, hot, look), MIXED, what="the outputs that are TRUE"),
+        waits_for=word("hot" if look >= full else "full", ["start", "full", "hot", "empty"], what="the next condition"),
+        Mix=number(begin, "s", "the time at which Mix becomes active", within=0),
+        Drain=number(begin + mix, "s", "the time at which Drain becomes active", within=0),
+    )
+
+
+STEPS = ["Wait", "Fill", "Hold", "Warm", "Ready", "Mix", "Drain"]
+
+
+@reading.shows
+def _(heater_off, lamp, mix):
+    chart = mixing_chart(heater_off, lamp, mix)
+    actions = {step: ", ".join(f"{x} := {str(on).upper()}" for x, on in do.items()) for step, do in chart.steps.items()}
+    return {"actions": "; ".join(f"{step}: {does}" for step, does in actions.items() if does)}
+
+
+@reading.mistake("A double line begins simultaneous branches: how many steps are active between the two double lines?")
+def _(full, hot, look):
+    return {"active": _active(full, hot, look)[1 if look >= full else 0 :][:1]}
+
+
+@reading.mistake("Both branches began with these steps. Which of their conditions has come true in the meantime?")
+def _():
+    return {"active": ["Fill", "Warm"]}
+
+
+@reading.mistake("The convergence needs both steps in front of it. Has the other branch come to its end yet?")
+def _():
+    return {"active": ["Mix"]}
+
+
+@reading.mistake("These steps would be active if both branches were done. Which condition is still false?")
+def _():
+    return {"active": ["Hold", "Ready"]}
+
+
+@reading.mistake("That is what the active steps themselves switch on. What have earlier steps left on?")
+def _(heater_off, lamp, full, hot, look):
+    steps = mixing_chart(heater_off, lamp, 5).steps
+    own = [x for x in MIXED if any(steps[step].get(x) for step in _active(full, hot, look))]
+    return {"on": own} if own and own != mixing_outputs(heater_off, lamp, full, hot, look) else {}
+
+
+@reading.mistake(
+    "An action switches something off on the way. Which of the steps that were active has a FALSE in its box?"
+)
+def _(heater_off, lamp, full, hot, look):
+    steps = mixing_chart(heater_off, lamp, 5).steps
+    seen = ["Fill", "Warm", *_active(full, hot, look)]
+    ever = [x for x in MIXED if any(steps[step].get(x) for step in seen)]
+    return {"on": ever} if ever != mixing_outputs(heater_off, lamp, full, hot, look) else {}
+
+
+@reading.mistake("This condition is true already, and its step has been left. What is the other branch waiting for?")
+def _(full, look):
+    return {"waits_for": "full" if look >= full else "hot"}
+
+
+@reading.mistake("The button has done its work: `Wait` is not active any more. What are the active steps waiting for?")
+def _():
+    return {"waits_for": "start"}
+
+
+@reading.mistake(
+    "That is the condition behind `Drain`, which is not active yet. What are the active steps waiting for?"
+)
+def _():
+    return {"waits_for": "empty"}
+
+
+@reading.mistake("In that scan the last waiting step has only become active. When is a transition behind it cleared?")
+def _(full, hot, mix):
+    return {"Mix": max(full, hot), "Drain": max(full, hot) + mix}
+
+
+@reading.mistake("Then only one of the branches is done. What does the convergence need?")
+def _(full, hot, mix):
+    return {"Mix": min(full, hot) + 1, "Drain": min(full, hot) + 1 + mix}
+
+
+@reading.mistake("That is one scan too late: in the scan in which its time is up, the step is left.")
+def _(full, hot, mix):
+    return {"Drain": max(full, hot) + mix + 2}
+
+
+@reading.mistake("That is how long `Mix` lasts. When has it begun?")
+def _(mix):
+    return {"Drain": mix}
+
+
+reading.hints(
+    "Follow the chart from `Wait`, scan by scan. What does a double line mean, and when is what is below it cleared?",
+    "After `start` one step of each branch is active at a time. An output is as the last action has left it, whichever "
+    "branch that was in. The transition TRUE needs both steps before it, and these must have been active since the "
+    "scan before.",
+    "At {start} the steps `Fill` and `Warm` become active. `full` comes at {full}, `hot` at {hot}: and in between?",
+)
+
+
+@reading.solution
+def _(heater_off, lamp, mix, start, full, hot, look):
+    """**Active.** At {start} `Fill` and `Warm` become active, both at the same time. `Fill` is left at {full}, `Warm`
+    at {hot}. At {look} one branch is done and waits: active are {steps}.
+
+    **On.** These actions have been executed by then, in their order: {done}. They leave on: {left}.
+
+    **Next.** The branch that is not done waits for `{waits_for}`. Without it nothing goes on.
+
+    **Times.** At {last} the last of the two waiting steps becomes active. The transition between them and `Mix` is
+    always true, but steps must have been active since the scan before: `Mix` becomes active one scan later, at {Mix}.
+    Its time is up after {mix}, and `Drain` begins at {Drain}.
+    """
+    steps = mixing_chart(heater_off, lamp, mix).steps
+    seen = ["Wait", "Fill", "Warm"]
+    seen += ["Hold"] * bool(look >= full) + ["Ready"] * bool(look >= hot)
+    done = [f"`{x} := {str(on).upper()}`" for step in seen for x, on in steps[step].items()]
+    return {
+        "steps": " and ".join(f"`{step}`" for step in _active(full, hot, look)),
+        "done": ", ".join(done),
+        "left": ", ".join(mixing_outputs(heater_off, lamp, full, hot, look)) or "nothing",
+        "last": (max(full, hot), "s"),
+    }
+
+
+@reading.picture
+def _(heater_off, lamp, mix):
+    """A chart. From Wait, if start, to Fill and Warm at the same time; from Fill to Hold if full; from Warm to Ready if
+    hot; from Hold and Ready together to Mix, always; from Mix to Drain if Mix.T >= {mix}; from Drain to Wait if empty.
+    The actions: {actions}.
+    """
+    return sequential_function_chart(mixing_chart(heater_off, lamp, mix))
