@@ -28,6 +28,8 @@ NOT_ANSWERED = "not answered yet"
 LONGEST, MOST_NODES = 4000, 2000
 #: Of what gives one value after another, so many are read.
 MOST_VALUES = 10_000
+#: A text that somebody typed, and not a program, has so many characters.
+LONGEST_BY_HAND = 600
 #: Brackets around a whole list.
 MOST_BRACKETS = 10
 
@@ -196,6 +198,8 @@ def _in_python(text, symbols):
 
 def _as_people_write(text, symbols):
     """A formula in Python's notation that is written in another one; raises notation.Ambiguous."""
+    if len(text) > LONGEST_BY_HAND:
+        raise notation.Ambiguous("the text is very long")
     known = symbols or ()
     text = plain(notation.from_latex(plain(text))).translate(str.maketrans("[]{}", "()()"))
     text = re.sub("[⁰¹²³⁴-⁹⁻]+", lambda raised: f"^({raised[0].translate(_RAISED)})", text)

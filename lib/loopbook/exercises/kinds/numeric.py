@@ -13,7 +13,16 @@ import sympy
 from loopbook.exercises import notation, units
 from loopbook.exercises.formulas import Formula
 from loopbook.exercises.kinds.kind import Kind, with_unit
-from loopbook.exercises.reading import Unreadable, alone, answered, in_a_row, listed_in, plain, shortened
+from loopbook.exercises.reading import (
+    LONGEST_BY_HAND,
+    Unreadable,
+    alone,
+    answered,
+    in_a_row,
+    listed_in,
+    plain,
+    shortened,
+)
 
 _WITH_UNIT = re.compile(r"([+-]? ?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?) ?(.*)")
 _WORDS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
@@ -331,7 +340,8 @@ def _number_of_text(text, unit, expected):
         if units.is_unit(named):
             return _with(remark, *_in_unit_asked(float(match[1].replace(" ", "")), named, unit, expected))
     # arithmetic, and perhaps a unit after one of the spaces, or a percent sign
-    says, ends = "", [len(line), *(found.start() for found in re.finditer(r" |(?<=\S)[%°]", line))]
+    spaces = [found.start() for found in re.finditer(r" |(?<=\S)[%°]", line)] if len(line) <= LONGEST_BY_HAND else []
+    says, ends = "", [len(line), *spaces]
     for end in ends:
         named = line[end:].strip()
         if named and not units.is_unit(named):
