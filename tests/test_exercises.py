@@ -124,6 +124,13 @@ def _(kind: kinds.Words):
 
 
 @other_forms.register
+def _(kind: kinds.InstrumentDiagram):
+    yield kind.key.split("; ")
+    yield kind.key.lower().replace(" ->", " →")
+    yield "\n".join(reversed(kind.key.split("; ")))
+
+
+@other_forms.register
 def _(kind: kinds.Design):
     example = kind.example
     yield from (form for form in other_forms(example) if kind.agrees(kind.read(form)[0]))
@@ -179,6 +186,12 @@ def _(kind: kinds.Words):
     yield [word for word in kind.among if word not in kind.key]
     yield kind.key[1:]
     yield [*kind.key, kind.among[-1] if kind.among[-1] not in kind.key else kind.among[0]] if not kind.ordered else []
+
+
+@wrong_answers.register
+def _(kind: kinds.InstrumentDiagram):
+    lines = kind.key.split("; ")
+    yield from (lines[:n] + lines[n + 1 :] for n in range(len(lines)))
 
 
 @wrong_answers.register

@@ -41,6 +41,7 @@ from loopbook.exercises.question import Question
 if TYPE_CHECKING:  # editors read no registry
     from loopbook.exercises.kinds import Design as design  # noqa: F401, N813
     from loopbook.exercises.kinds import Expression as expression  # noqa: F401, N813
+    from loopbook.exercises.kinds import InstrumentDiagram as instrument_diagram  # noqa: F401, N813
     from loopbook.exercises.kinds import Number as number  # noqa: F401, N813
     from loopbook.exercises.kinds import Numbers as numbers  # noqa: F401, N813
     from loopbook.exercises.kinds import Poles as poles  # noqa: F401, N813

@@ -1,7 +1,19 @@
 """Exercises of appendix A, letters and symbols of P&I diagrams."""
 
 from loopbook import diagrams as draw
-from loopbook.exercises.authoring import answers, between, choice, exercise, number, numbers, word, words
+from loopbook.exercises.authoring import (
+    answers,
+    between,
+    choice,
+    exercise,
+    instrument_diagram,
+    number,
+    numbers,
+    word,
+    words,
+)
+from loopbook.exercises.diagram_layout import drawn
+from loopbook.exercises.kinds.instrument_diagram import connections
 from loopbook.instruments import decode
 
 QUANTITIES = ["density", "flow", "level", "position", "pressure", "quality", "speed", "temperature", "viscosity"]
@@ -1063,3 +1075,170 @@ def _(valve, machine, apparatus, line):
     """Four symbols with numbers: 1 is {look_1}, 2 is {look_2}, 3 is {look_3}, 4 is {look_4}."""
     right = zip(SYMBOLS.values(), (valve, machine, apparatus, line), strict=True)
     return draw.symbol_table({str(n): symbols[name][0] for n, (symbols, name) in enumerate(right, start=1)})
+
+
+# --- A.8 ----------------------------------------------------------------------------------------------------------
+
+PROCESS = {"inlet": "pipe", "vessel": "vessel", "outlet": "pipe"}
+OF_VESSEL = {"level": "L", "pressure": "P"}
+
+
+def cascade(quantity, pipe, a, side, **other):
+    """The connections of a cascade with an alarm, in which single lines may be other ones."""
+    x, b = OF_VESSEL[quantity], a + 1
+    lines = {
+        "outer": f"vessel -> {x}T{a} -> {x}C{a}",
+        "setpoint": f"{x}C{a} -> FC{b}",
+        "inner": f"{pipe} -> FT{b} -> FC{b}",
+        "valve": f"FC{b} -//-> FV{b} -> {pipe}",
+        "alarm": f"{x}T{a} -> {x}A{side[0].upper()}{a}",
+    }
+    return "\n".join(line for line in (lines | other).values() if line)
+
+
+def other_loop(a):
+    """A loop that is an example of the notation."""
+    n = a - 4
+    return f"vessel -> TT{n} -> TC{n} -//-> TV{n} -> inlet\nTT{n} -> TI{n}"
+
+
+def asked_diagram(quantity, pipe, a, side):
+    """What A.8 asks."""
+    also = {"inlet": ["inlet pipe", "in", "feed"], "vessel": ["tank", "drum"], "outlet": ["outlet pipe", "out"]}
+    return instrument_diagram(cascade(quantity, pipe, a, side), PROCESS, "the instruments of the vessel", also)
+
+
+@exercise(
+    "A.8",
+    title="Draw a cascade",
+    points=3,
+    insight="A P&I diagram is a list of connections before it is a drawing: what measures where, what tells whom, "
+    "what acts where. Whoever can write the list can draw any loop.",
+)
+def drawing(
+    quantity=choice(*OF_VESSEL),
+    pipe=choice("outlet", "inlet"),
+    a=between(11, 61, reference=21, step=2),
+    side=choice("high", "low"),
+):
+    """The {quantity} of a vessel is kept by a cascade. The controller of the {quantity}, in loop {loop}, does not act
+    on a valve: it gives the setpoint to the flow controller of loop {next}. That flow is measured in the {pipe}, and
+    its controller throttles it with a valve in the same pipe. The signal to the valve is pneumatic, all others are
+    electrical. The transmitter of the {quantity} also tells an alarm, which sounds when the {quantity} becomes too
+    {side}. Nothing is indicated or recorded.
+
+    Draw the diagram by its connections. The picture is an example of another loop, in these two lines:
+
+    ```
+    {example}
+    ```
+
+    Here `->` between two instruments is an electrical signal and `-//->` a pneumatic one. A place before an instrument
+    says where it measures, and one behind a valve where it acts; the places are `inlet`, `vessel` and `outlet`. Give a
+    text in three quotes, or a list of lines; the response draws what you have written.
+    """
+    return answers(diagram=asked_diagram(quantity, pipe, a, side))
+
+
+@drawing.shows
+def _(a):
+    return {"loop": str(a), "next": str(a + 1), "example": other_loop(a)}
+
+
+@drawing.mistake(
+    "That is one loop, and it may work. But who keeps the flow when the pressure before the valve changes? The text "
+    "has two controllers."
+)
+def _(quantity, pipe, a, side):
+    x = OF_VESSEL[quantity]
+    lines = dict(setpoint="", inner="", valve=f"{x}C{a} -//-> {x}V{a} -> {pipe}")
+    return {"diagram": cascade(quantity, pipe, a, side, **lines)}
+
+
+@drawing.mistake("Two controllers act on one valve. Which of them does what the other one tells it?")
+def _(quantity, pipe, a, side):
+    x = OF_VESSEL[quantity]
+    return {"diagram": cascade(quantity, pipe, a, side, setpoint=f"{x}C{a} -//-> FV{a + 1}")}
+
+
+@drawing.mistake(
+    "In your cascade the fast loop gives the setpoint to the slow one. Which of the two quantities is the aim?"
+)
+def _(quantity, pipe, a, side):
+    return {"diagram": cascade(quantity, pipe, a, side, setpoint=f"FC{a + 1} -> {OF_VESSEL[quantity]}C{a}")}
+
+
+@drawing.mistake(
+    "The flow is measured in the one pipe and throttled in the other: does this loop control what it measures?"
+)
+def _(quantity, pipe, a, side):
+    wrong = {"inlet": "outlet", "outlet": "inlet"}[pipe]
+    return {"diagram": cascade(quantity, pipe, a, side, inner=f"{wrong} -> FT{a + 1} -> FC{a + 1}")}
+
+
+@drawing.mistake("What moves the valve is air on a diaphragm. Which mark has the line of such a signal?")
+def _(quantity, pipe, a, side):
+    return {"diagram": cascade(quantity, pipe, a, side, valve=f"FC{a + 1} -> FV{a + 1} -> {pipe}")}
+
+
+@drawing.mistake("The alarm is connected to what makes the setpoint. Who knows first that the limit is passed?")
+def _(quantity, pipe, a, side):
+    x = OF_VESSEL[quantity]
+    return {"diagram": cascade(quantity, pipe, a, side, alarm=f"{x}C{a} -> {x}A{side[0].upper()}{a}")}
+
+
+@drawing.mistake(
+    "The letter of a valve is that of the quantity which its own controller controls. Which controller has this valve?"
+)
+def _(quantity, pipe, a, side):
+    x, b = OF_VESSEL[quantity], a + 1
+    return {"diagram": cascade(quantity, pipe, a, side, valve=f"FC{b} -//-> {x}V{a} -> {pipe}")}
+
+
+drawing.hints(
+    "A loop is a chain: something is measured, a controller compares it with its setpoint, a valve acts. Which "
+    "chain is inside the other one here?",
+    "There are two transmitters, two controllers, one valve and one alarm. Each tag is the letter of what its loop "
+    "measures, what the instrument does, and the number of the loop. The outer controller ends at the inner one.",
+    "The inner loop is a chain that begins and ends in the {pipe}: transmitter, controller, valve. Its letter is F "
+    "and its number {next}. Write it down, then the outer chain from the vessel to its controller, then the line "
+    "between the two controllers.",
+)
+
+
+@drawing.solution
+def _(quantity, pipe, a, side):
+    """One chain at a time.
+
+    *The outer loop* measures the {quantity} in the vessel: its letter is {x}, its number {loop}. Transmitter and
+    controller are `{outer}`.
+
+    *The inner loop* measures the flow in the {pipe} and throttles it there. All its instruments have the letter F and
+    the number {next}, the valve too: it belongs to the controller that moves it. Air moves the valve, so its signal is
+    pneumatic.
+
+    ***
+
+    *Between the two*, the outer controller gives the setpoint to the inner one. And the alarm hears the transmitter,
+    not the controller, since a limit is passed whatever the controller does:
+
+    ```
+    {all}
+    ```
+    """
+    x = OF_VESSEL[quantity]
+    return {"x": x, "outer": f"vessel -> {x}T{a} -> {x}C{a}", "all": cascade(quantity, pipe, a, side)}
+
+
+@drawing.picture
+def _(quantity, pipe, a, side):
+    """A vessel with its inlet and its outlet: a temperature is measured in the vessel, its controller acts on a valve
+    in the inlet by a pneumatic signal, and an indicator shows it."""
+    kind = asked_diagram(quantity, pipe, a, side)
+    return drawn(connections(kind.read(other_loop(a))[0]), PROCESS)
+
+
+@drawing.solution_picture
+def _(quantity, pipe, a, side):
+    """The cascade: the transmitter and controller above the vessel, the flow loop at the {pipe}, and the alarm."""
+    return drawn(connections(asked_diagram(quantity, pipe, a, side).key), PROCESS)
