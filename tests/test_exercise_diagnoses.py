@@ -178,7 +178,7 @@ def test_a_key_that_never_ends_for_other_givens_is_given_up():
     background = Background(key(7), {"n": 7}, {"n": between(1, 9, "s")}, key)
     begun = time.perf_counter()
     assert explained(number(7, "s"), 3.3, background.of("x", {})).is_bare
-    assert time.perf_counter() - begun < 2
+    assert time.perf_counter() - begun < 5
 
 
 def test_no_diagnosis_stumbles():

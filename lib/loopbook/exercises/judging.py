@@ -6,6 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from loopbook.exercises import diagnoses
 from loopbook.exercises.reading import NOT_ANSWERED, Unreadable, shortened
 from loopbook.exercises.timeout import limited
@@ -85,7 +87,8 @@ def _judged(kind, given, mistakes, background):
         if kind.is_value(answer, wrong):
             return MISTAKE, sentence
     try:
-        found = diagnoses.explained(kind, answer, background or diagnoses.Background())
+        with np.errstate(all="ignore"):
+            found = diagnoses.explained(kind, answer, background or diagnoses.Background())
     except Unreadable:
         raise
     except Exception:  # whatever a diagnosis stumbles over, the answer is wrong

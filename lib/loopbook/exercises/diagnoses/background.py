@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import copy
 import itertools
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from loopbook.exercises.parameters import call, written
 from loopbook.exercises.timeout import limited
@@ -16,10 +19,11 @@ if TYPE_CHECKING:
     from loopbook.exercises.kinds import Kind
     from loopbook.exercises.parameters import Parameter, Value
 
-#: So many changes of the givens are tried at most, of the likely and of the others: a key takes some milliseconds.
-MOST_CHANGES = 30
-#: Usually a key takes milliseconds. One that takes so long may never end; after it, no other change is tried.
-SECONDS = 0.2
+#: So many changes of the givens are tried at most, of the likely and of the others: a key takes a millisecond, and one
+#: with formulas several.
+MOST_CHANGES, FEWER = 30, 18
+#: All of them together may take so many seconds, of which they usually need a tenth.
+SECONDS = 1.5
 #: By these factors a given is wrong if its unit is mistaken, by what its unit contains.
 _UNIT_FACTORS = (("min", 60), ("h", 60), ("h", 3600), ("s", 60), ("%", 100), ("m", 1000), ("kg", 1000), ("mm", 1000))
 
@@ -59,7 +63,6 @@ class Background:
     ):
         self.key, self.values, self.parameters, self.function = key or {}, values or {}, parameters or {}, function
         self._keys: dict[tuple[tuple[str, Value], ...], Mapping[str, Kind]] = {}
-        self._endless: list[Mapping[str, Any]] = []
 
     def of(self, name: str, answers: Mapping[str, Any]) -> Background:
         """The same around one quantity; what has been computed is kept."""
@@ -87,32 +90,35 @@ class Background:
         Arguments:
             likely: the changes that a reader may make by mistake, or those that are rarer.
         """
-        changes = (_likely_changes if likely else _rarer_changes)(self) if self.function else ()
-        for how, changed in itertools.islice(changes, MOST_CHANGES):
-            place = tuple(changed.items())
-            if place not in self._keys:
-                self._keys[place] = self._key_with(changed)
-            if self.name in self._keys[place]:
-                yield how, self._keys[place][self.name]
+        changes = (_likely_changes if likely else _rarer_changes)(self)
+        most = FEWER if any(hasattr(kind, "expr") for kind in self.key.values()) else MOST_CHANGES
+        yield from self._keys_with(list(itertools.islice(changes, most)))
 
     def keys_of_other_words(self) -> Iterator[tuple[str, Kind]]:
         """The key of this quantity with another word among the givens, and a sentence on the change."""
-        for how, changed in _other_words(self) if self.function else ():
-            key = self._key_with(changed)
+        yield from self._keys_with(list(_other_words(self)))
+
+    def _keys_with(self, changes):
+        """The key with each of the changes. One may never end: then those after it are left out."""
+
+        def compute():
+            for _, changed in missing:
+                self._keys[_place(changed)] = {}
+                # the author's function is for her own ranges: for other values it may fail in any way
+                with contextlib.suppress(Exception), np.errstate(all="ignore"):
+                    self._keys[_place(changed)] = call(self.function, {**self.values, **changed})
+
+        if missing := [change for change in changes if _place(change[1]) not in self._keys]:
+            with contextlib.suppress(TimeoutError):
+                limited(SECONDS, compute)
+        for how, changed in changes:
+            key = self._keys.get(_place(changed), {})
             if self.name in key:
                 yield how, key[self.name]
 
-    def _key_with(self, changed):
-        """The key for changed values; nothing where the author's function, which is for her own ranges, has none."""
-        if self._endless:
-            return {}
-        try:
-            return limited(SECONDS, call, self.function, {**self.values, **changed})
-        except TimeoutError:
-            self._endless.append(changed)
-        except Exception:  # it may fail in any way
-            pass
-        return {}
+
+def _place(changed):
+    return tuple(changed.items())
 
 
 def _likely_changes(background):

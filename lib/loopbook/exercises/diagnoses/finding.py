@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import functools
 import itertools
 from dataclasses import dataclass
@@ -43,7 +44,8 @@ def recomputed(kind: Kind, answer: Any, background: Background) -> Finding | Non
     """Return the change of a given with which the answer would be right."""
     for how, key in itertools.chain(background.changed_keys(), background.changed_keys(likely=False)):
         if type(key) is type(kind):
-            wrong = kind.like(key.key)
-            if not wrong.agrees(kind.key) and wrong.agrees(answer):
+            wrong = copy.copy(kind)  # with its own symbols, times and tolerance
+            wrong.key = key.key
+            if wrong.agrees(answer) and not wrong.agrees(kind.key):
                 return Finding(how)
     return None
