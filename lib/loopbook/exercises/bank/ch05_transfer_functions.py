@@ -70,10 +70,15 @@ def _(J, b):
     return {"pole": J / b} if J != b else {}
 
 
+@stirrer.mistake("Inertia and friction are interchanged: which of the two is multiplied by the derivative?")
+def _(J, k, b):
+    return {"H_u": k / (b * s + J), "H_M": -1 / (b * s + J), "pole": -J / b} if J != b else {}
+
+
 stirrer.hints(
     "A transfer function is the transform of the output over that of one input, from rest, with the other input zero.",
     r"From rest, the derivative becomes a factor $s$: $J s\,\Omega = k\,U - b\,\Omega - M$. Bring the friction to the "
-    r"left, and divide by what stands with $\Omega$.",
+    r"left, and divide by what multiplies $\Omega$.",
     r"With the numbers, $({J} s + {b})\,\Omega(s) = {k}\,U(s) - M(s)$. The pole is where the bracket is zero.",
 )
 
@@ -171,6 +176,18 @@ def _(z):
 @fraction.mistake("Look at the sign: a zero is a value of $s$ that makes the numerator zero.")
 def _(z):
     return {"zeros": [-z]}
+
+
+@fraction.mistake(
+    "Divide by the factor of $s^2$ first: then two numbers are sought with the sum and the product that are left."
+)
+def _(p, q, scale):
+    return {"poles": [-scale * p, -scale * q]}
+
+
+@fraction.mistake("In the numerator, too, the factor of $s$ is not one. Where is the numerator zero?")
+def _(K, z, scale):
+    return {"zeros": [scale * K * z]} if scale * K != 1 else {}
 
 
 fraction.hints(
@@ -300,6 +317,11 @@ def _network(signal, sign, h_1=H_1, h_2=H_2, h_3=H_3, h_4=H_4):
 
 
 _SIGNS = {"-": -1, "+": 1}
+
+
+@creeping_sensor.mistake("Without a jump it would begin there. What does $H(s)$ become for large $s$?")
+def _():
+    return {"y_0": 0}
 
 
 creeping_sensor.hints(

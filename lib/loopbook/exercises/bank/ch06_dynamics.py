@@ -192,6 +192,21 @@ def _near(wrong, right):
     return abs(float(wrong) / float(right) - 1) < 0.03
 
 
+@half_way.mistake("The gain is a ratio of changes. You have divided the values before the step.")
+def _(u_1, du, y_1, dy):
+    return {"K": y_1 / u_1} if not _near(y_1 / u_1, dy / du) else {}
+
+
+@half_way.mistake("Twice the time to the half takes it to three quarters: each such time halves what is still missing.")
+def _(t_half):
+    return {"T": 2 * t_half}
+
+
+@half_way.mistake("That is the temperature in the end. How much of the way is gone after one time constant?")
+def _(y_1, dy):
+    return {"y_T": y_1 + dy}
+
+
 half_way.hints(
     "The gain is a ratio of changes. And a lag goes the same share of its way in the same time, whatever the step is.",
     r"The step response of a lag is $K U\,(1 - e^{-t/T})$. It has gone half of its way when $e^{-t/T} = \frac{1}{2}$, "
@@ -298,6 +313,16 @@ def _(V, V_pipe, F):
         F   tank  pipe  c"""
     names = {"F": f"${F}$ L/min", "c": "out"}
     return diagrams.instrumentation_diagram(layout, "F tank pipe c", "", {"tank": stirred, "pipe": pipe}, names)
+
+
+@brine.mistake("The tank does not follow a straight line: half of the change takes more than half of a time constant.")
+def _(V, V_pipe, F):
+    return {"t_half": (V_pipe + V / 2) / F}
+
+
+@brine.mistake("The delay is right, but the tank does not add up salt forever: what flows in also flows out.")
+def _(V, V_pipe, F):
+    return {"H": exp(-V_pipe / F * s) / (V / F * s)}
 
 
 brine.hints(
@@ -426,6 +451,22 @@ def _response_time(T_1, T_2):
         middle = (low + high) / 2
         low, high = (middle, high) if _share_left(middle, T_1, T_2) > exponential(-1) else (low, middle)
     return low
+
+
+@belt.mistake("The delay is right, but the hopper has no outflow. What does it do with the grain that arrives?")
+def _(length, v):
+    return {"H": exp(-length / v * s) / (s + 1)}
+
+
+@belt.mistake("The feeder ran that long. How long is a grain on its way?")
+def _(run):
+    return {"H": exp(-run * s) / s}
+
+
+@belt.mistake("That has fallen into the hopper already. What is still on its way?")
+def _(length, v, F, run):
+    on_belt, arrived = F * min(run, length / v), F * (run - length / v)
+    return {"on_belt": arrived} if arrived > 0 and not _near(arrived, on_belt) else {}
 
 
 belt.hints(
@@ -652,6 +693,26 @@ def _(t_max):
     return {"T_least": t_max / log(10)}
 
 
+@against_pulses.mistake(
+    "The flow is per hour, the time constant in minutes. Bring them to the same unit of time first."
+)
+def _(F, pulse, c, c_max, t_max):
+    least, largest = _volumes(F, pulse, c, c_max, t_max)
+    return {"V": 30 * (least + largest)}
+
+
+@against_pulses.mistake(
+    "That is what flows in during the pulse. How much larger must the tank be to keep the pulse small?"
+)
+def _(F, pulse):
+    return {"V": F * pulse / 60}
+
+
+@against_pulses.mistake("In that time the whole tank is exchanged. How many time constants does it take to 90 %?")
+def _(F, t_max):
+    return {"V": F * t_max / 60}
+
+
 def _pulse_and_step(T, pulse, c, c_max, t_max):
     """What a tank with this time constant makes of the pulse, and of a change that lasts, with the two limits."""
     T = max(float(T), 1e-3)
@@ -749,7 +810,8 @@ def _(K, T, start, u_1, du, y_1, noise):
 
 @oven.mistake("The gain is a ratio of changes. Here the values after the step were divided.")
 def _(K, u_1, du, y_1):
-    return {"K": (y_1 + K * du) / (u_1 + du)}
+    ratio = (y_1 + K * du) / (u_1 + du)
+    return {"K": ratio} if abs(ratio / K - 1) > 0.15 else {}
 
 
 @oven.mistake("The gain is a ratio of changes. By how much was the power *raised*?")
@@ -787,13 +849,18 @@ def _(T, start):
     return {"t_90": start + T * log(10)}
 
 
+@oven.mistake("After nine tenths of a time constant not even 63 % have come through.")
+def _(T):
+    return {"t_90": 0.9 * T}
+
+
 oven.hints(
     "The gain is what the change of the input brings in the end. The time constant is the time to 63 % of the way.",
     "Lay a line through the noise before the step, and one through the noise at the end: their distance is the change "
     "of the temperature. Go up 63 % of it, and across to the middle of the noisy curve. The power's panel shows when "
     "the step came.",
-    "The power was raised by {du}. Divide the change of the temperature by it. For the last question, $1 - e^{-t/T} "
-    "= 0.9$.",
+    "The power was raised by {du}. Divide the change of the temperature by it. For the last question, $1 - e^{-t/T} = "
+    "0.9$.",
 )
 
 
@@ -929,6 +996,11 @@ def _(T):
 @four_curves.mistake("Then the single lag has gone half of its way. One time constant takes it to 63 %.")
 def _(T):
     return {"T": T * log(2)}
+
+
+@four_curves.mistake("That is the lag behind the delay. Which curve has the whole sum as its one lag?")
+def _(T, tau):
+    return {"T": T - tau}
 
 
 four_curves.hints(

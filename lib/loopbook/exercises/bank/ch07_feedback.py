@@ -116,7 +116,7 @@ boiler.hints(
     "A linear scale maps one range onto another along a straight line: equal shares of the two ranges belong together.",
     "With the share $y/100$ both values are *lower end + share times span*. For the gain, send an error of 1 bar "
     "through the chain: how many percent is it, what does the controller make of them, and how much oil is that?",
-    r"The span of the pressure is ${p_high} - {p_low}$ bar, so 1 bar is $100/({p_high} - {p_low})$ percent; and one "
+    "The span of the pressure is ${p_high} - {p_low}$ bar, so 1 bar is $100/({p_high} - {p_low})$ percent; and one "
     r"percent of the control signal is $\frac{ {q_max} }{100}$ kg/h.",
 )
 
@@ -327,6 +327,11 @@ def _(P_B, repeats):
     return {"settings": PID(100 / P_B, 1 / repeats)}
 
 
+@panel.mistake("The gain multiplies the control error, in both terms.")
+def _(P_B, repeats, u_0, error):
+    return {"u": u_0 + error * (1 + t * repeats / 60)}
+
+
 panel.hints(
     "Both numbers count the other way round: a *narrow* band is a strong controller, and *many* repeats are a quick "
     "integral term.",
@@ -453,6 +458,13 @@ def _():
 @oil_tank.mistake("So nothing would have to change. But who makes up for the loss when no error is left?")
 def _():
     return {"u_PI": 0}
+
+
+@oil_tank.mistake(
+    "With this error the proportional term would cancel the loss completely. Would an error be left then?"
+)
+def _():
+    return {"e": Symbol("W") / Symbol("K_p")}
 
 
 oil_tank.hints(
@@ -590,6 +602,11 @@ def _(K_p, T_i, u_0, e_frost, e_after, frost):
 def _angle(A, tau, K_p):
     """How far the dead time turns the phase where the loop gain is one, in rad; a quarter of a turn is the limit."""
     return float(K_p * tau / A)
+
+
+@dryer.mistake("As if the integral term had not moved during the frost. Where was it when it was halted?")
+def _(K_p, u_0, e_frost, e_after):
+    return {"u_after": u_0 - K_p * e_after} if u_0 + K_p * e_frost < 99 else {}
 
 
 dryer.hints(
@@ -1012,8 +1029,8 @@ def _(T_f, rate):
 gauge.hints(
     "A filter of this kind is a lag. After one time constant its step response has gone 63 % of the way, whatever the "
     "height of the step.",
-    "The step has a height of {jump}. Mark 63 % of it on the vertical axis, go across to the smooth line, and "
-    r"count the time from the step. For the noise, $1/\sqrt{T_{new}} = \frac{1}{2} \cdot 1/\sqrt{{T_f}}$.",
+    "The step has a height of {jump}. Mark 63 % of it on the vertical axis, go across to the smooth line, and count "
+    r"the time from the step. For the noise, $1/\sqrt{T_{new}} = \frac{1}{2} \cdot 1/\sqrt{{T_f}}$.",
     r"The 63 % are at ${p} + 0.63 \cdot {jump}$ kPa; the step is at $t$ = {start}. Behind an even rise, a lag of gain "
     "one finally stays by the rate times its time constant.",
 )
@@ -1311,6 +1328,21 @@ def _(T_d, step_SP, ramp, K_p):
     return {"u_ramp": T_d * step_SP / ramp} if K_p != 1 else {}
 
 
+@kick.mistake("That is what multiplies the slope. How steep is the ramp?")
+def _(K_p, T_d):
+    return {"u_ramp": K_p * T_d}
+
+
+@kick.mistake("That is the slope of the ramp. What does the derivative term make of it?")
+def _(step_SP, ramp):
+    return {"u_ramp": step_SP / ramp}
+
+
+@kick.mistake("That is what the valve gets in the end. What does the controller compute, before any limit?")
+def _(K_p, step_SP, u_0):
+    return {"u_kick": 100} if abs(u_0 + 11 * K_p * step_SP - 100) > 3 else {}
+
+
 kick.hints(
     "A proportional term follows a jump with a jump. A derivative term follows it with a spike. An integral term can "
     "only begin to rise.",
@@ -1425,9 +1457,9 @@ def _(u_man, u_0):
 
 
 @hand_over.mistake("The sign of the control error: is the temperature above its setpoint, or below?")
-def _(K_p, u_0, u_old, u_man, e):
+def _(K_p, T_i, u_0, u_old, u_man, e, wait):
     u_i, bump, _ = _transfer(K_p, u_0, u_old, u_man, -e)
-    return {"u_i": u_i, "bump": bump}
+    return {"u_i": u_i, "bump": bump, "u_later": u_man - K_p * e * wait / T_i}
 
 
 @hand_over.mistake("The nominal control signal is a part of the sum: the three of them make what the operator left.")
@@ -1466,14 +1498,28 @@ def _(K_p, u_0, u_man, e):
     return {"u_tracked": u_man - u_0 - K_p * e}
 
 
+@hand_over.mistake("That would be the proportional term once more. How much does the integral term add in this time?")
+def _(K_p, T_i, u_man, e, wait):
+    return {"u_later": u_man + K_p * e} if abs(K_p * e * (1 - wait / T_i)) > 4 else {}
+
+
+@hand_over.mistake("The gain multiplies the integral term as well.")
+def _(K_p, T_i, u_man, e, wait):
+    return {"u_later": u_man + e * wait / T_i} if abs((K_p - 1) * e * wait / T_i) > 4 else {}
+
+
+@hand_over.mistake("The nominal control signal is a part of the sum, too: what is left for the integral term?")
+def _(u_man):
+    return {"u_tracked": u_man}
+
+
 hand_over.hints(
     "Bumpless means that the first control signal of the controller is the last one of the operator.",
     "In automatic mode $u = u_0 + K_p e + u_i$. In the first moment the integral term is all that can be chosen: set "
     "$u$ equal to the operator's control signal, and solve for it.",
     "Read the operator's control signal off the lower panel and $e$, setpoint minus temperature at 30 min, off the "
-    "upper "
-    r"one. Then ${u_0} + {K_p}\,e + u_i$ has to be the operator's value; and while the error lasts, the integral term "
-    r"grows by $\frac{ {K_p} }{ {T_i} }\,e$ in each minute.",
+    r"upper one. Then ${u_0} + {K_p}\,e + u_i$ has to be the operator's value; and while the error lasts, the "
+    r"integral term grows by $\frac{ {K_p} }{ {T_i} }\,e$ in each minute.",
 )
 
 

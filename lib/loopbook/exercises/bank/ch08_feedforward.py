@@ -236,6 +236,18 @@ def _(v, rise):
     return time_plot({"$v_{SP}$": (setpoint, "setpoint")}, times, ylabel="speed [m/s]", low=True)
 
 
+@trolley.mistake("That is the force for the acceleration alone. What else holds the trolley back at this moment?")
+def _(m, v, rise):
+    return {"F_rise": m * v / rise}
+
+
+@trolley.mistake(
+    "Against the wind the motor needs force at a constant speed, too, and so it does against the friction."
+)
+def _():
+    return {"F_after": 0}
+
+
 trolley.hints(
     "Feedforward is the model solved for the control signal, with the setpoint in the place of the output.",
     r"Solve the equation for $F$, and put $v_{SP}$ for $v$ and its slope $a_{SP}$ for $\frac{dv}{dt}$. Everything "
@@ -355,6 +367,19 @@ def _(K, T, tau, K_d, T_d, tau_d):
     G = diagrams.block(rf"\frac{{{float(K):g}}}{{{T}s+1}}e^{{-{tau}s}}")
     G_d = diagrams.block(rf"\frac{{-{K_d}}}{{{T_d}s+1}}e^{{-{tau_d}s}}")
     return diagrams.block_diagram("u", G, diagrams.disturbance("d", G_d), "y")
+
+
+@pasteuriser.mistake(
+    "The fraction is upside down: the way of the disturbance is undone by dividing by that of the control signal."
+)
+def _(K, T, tau, K_d, T_d, tau_d, rise):
+    F_fd = K * (T_d * s + 1) / (K_d * (T * s + 1)) * exp(-(tau_d - tau) * s)
+    return {"F_fd": F_fd, "u_end": rise * K / K_d, "u_first": rise * K * T_d / (K_d * T)}
+
+
+@pasteuriser.mistake("The two gains do not multiply. How much control signal makes up for one kelvin?")
+def _(K, K_d, rise):
+    return {"u_end": rise * K * K_d} if K != 1 else {}
 
 
 pasteuriser.hints(
@@ -491,6 +516,11 @@ def _fewest(u_0, u_full, e_max):
     while (u_full - u_0) / (4 * intervals**2) > e_max:
         intervals += 1
     return intervals + 1
+
+
+@ship.mistake("A quarter of a period is an angle of 90°. How long is the third side of the triangle then?")
+def _(theta):
+    return {"P_min": 4 * theta}
 
 
 ship.hints(
@@ -881,6 +911,11 @@ def _(share):
 )
 def _(share, kind):
     return {"factor": 2 - _given_share(share, kind)}
+
+
+@three_days.mistake("Divide by what the feedforward gives, not by what is left of the error.")
+def _(share):
+    return {"factor": 1 / share}
 
 
 three_days.hints(
