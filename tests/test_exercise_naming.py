@@ -115,7 +115,8 @@ def test_the_whole_collection_at_a_glance(desk):
     first, *rows = repr(everything).splitlines()
     assert first == everything.summary == f"1 of {total} right"
     assert len(rows) == len(bank.chapters())
-    assert [row for row in rows if "10 · Tuning of PID controllers" in row and row.endswith("✗ ✓ · · · · ·")]
+    own = len(bank.exercises("10"))
+    assert [row for row in rows if "10 · Tuning of PID controllers" in row and row.endswith("✗ ✓" + " ·" * (own - 2))]
     page = everything._repr_html_()
     assert '<a href="10_tuning.ipynb">10 · Tuning of PID controllers</a>' in page
-    assert "1 of 7" in page
+    assert f"1 of {own}" in page

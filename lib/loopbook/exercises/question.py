@@ -200,7 +200,7 @@ class Question(Showing):
         Arguments:
             rung: a certain one, from 1.
         Raises:
-            ExerciseError: for one that there is not.
+            ExerciseError: for an unknown one.
         """
         rungs = self.rungs
         if rung is not None and not (isinstance(rung, int) and 1 <= rung <= len(rungs)):
