@@ -169,6 +169,13 @@ def test_a_verdict_says_whether_it_is_bare(kind, given, is_bare):
     assert judge("x", kind, given).is_bare == is_bare
 
 
+def test_a_formula_that_is_not_right_is_shown_as_it_was_read():
+    kind = transfer_function(2 / (3 * s + 1))
+    assert judge("H", kind, "2/(3s - 1)").says.endswith(" · read as 2/(3*s - 1)")
+    assert judge("H", kind, "2/(3s + 1)").says.startswith("right")
+    assert "read as" not in judge("K", number(2), 3).says
+
+
 def test_a_key_that_never_ends_for_other_givens_is_given_up():
     def key(n):
         while n != 7:

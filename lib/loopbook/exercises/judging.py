@@ -83,9 +83,16 @@ def _judged(kind, given, mistakes, background):
     answer, remark = kind.read(given)
     if kind.agrees(answer):
         return RIGHT, "right" + (f", {remark}" if remark else "")
+    status, says, is_bare = _explained(kind, answer, mistakes, background)
+    shown = harmless(kind.as_read(answer))
+    return status, says + (f" · read as {shown}" if shown else ""), is_bare
+
+
+def _explained(kind, answer, mistakes, background):
+    """The same of an answer that is not right."""
     for sentence, wrong in (*mistakes, *kind.mistakes()):
         if kind.is_value(answer, wrong):
-            return MISTAKE, sentence
+            return MISTAKE, sentence, False
     try:
         with np.errstate(all="ignore"):
             found = diagnoses.explained(kind, answer, background or diagnoses.Background())
