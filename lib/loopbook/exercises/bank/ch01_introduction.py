@@ -52,7 +52,7 @@ PLANTS = {
         "n": "the jitter in the reading of the speedometer",
     },
     "a water tower": {
-        "r": "the 6 m that the water is to stand high",
+        "r": "the 6 m at which the water should stand",
         "e": "how far the water is below the 6 m",
         "u": "the speed that is asked of the pump in the well",
         "d": "the water that the town draws from the tower",
@@ -88,7 +88,7 @@ def parts(
     plant=choice(*PLANTS, reference="a water tower"),
     page=choice(*PAGES, reference=12),
 ):
-    """Somebody automates {plant} by feedback. On page {page} of the engineer's notebook stand four quantities:
+    """Somebody automates {plant} by feedback. Page {page} of the engineer's notebook lists four quantities:
 
     - **a**: {a}
     - **b**: {b}
@@ -239,8 +239,8 @@ def error_in_units(
     I=between(8, 16, "mA", reference=10.4, step=0.4),
     p_SP=between(4, 10, "bar", reference=7, step=0.5),
 ):
-    """The pressure of a compressed-air net is to be {p_SP}. Its transmitter sends 4 mA at {low} and 20 mA at {high},
-    and in between the current follows a straight line. Now it sends {I}, and there is no noise.
+    """A compressed-air network should be at {p_SP}. Its pressure transmitter sends 4 mA at {low} and 20 mA at
+    {high}, with a straight line in between. Now it sends {I}, without any noise.
 
     What is the pressure, and what is the control error $e$, in bar and in percent of the measurement range? The
     control signal sets the speed of the compressor. Which way does a controller with positive gain move it, compared
@@ -265,6 +265,13 @@ def _(low, high, I, p_SP):
 def _(low, high, I, p_SP):
     p = (I - 4) * (high - low) / 16
     return {"p": p, "e": p_SP - p, "e_percent": 100 * (p_SP - p) / (high - low)}
+
+
+@error_in_units.mistake("How many milliamperes are there between the two ends of the range?")
+def _(low, high, I, p_SP):
+    p, from_zero = low + (I - 4) * (high - low) / 20, (I - 4) * (high - low) / 16
+    found = {"p": p, "e": p_SP - p, "e_percent": 100 * (p_SP - p) / (high - low)}
+    return found if abs(p / from_zero - 1) > 0.03 else {}
 
 
 @error_in_units.mistake("That is a percentage of the setpoint. What percentage of the measurement range is it?")
@@ -367,6 +374,12 @@ def _(u_0, change):
     return {"u": u_0 + change}
 
 
+@bunker.mistake("Metres times metres per second is not a time. Look at the units.")
+def _(length, speed, w_0, change):
+    wrong = length * speed
+    return {"tau": wrong, "dm": -w_0 * change / 100 * wrong} if speed != 1 else {}
+
+
 @bunker.mistake("That is the change of the control signal. Where does it end?")
 def _(u_0, change):
     return {"u": u_0 * change / 100}
@@ -454,8 +467,8 @@ def left_alone(
     {h_0}: it delivers {q}, as much as is drawn. At $t = 0$ somebody opens one more hydrant, which takes {more}, and
     nobody touches the pump.
 
-    How does the level $h(t)$ [m] go on, with $t$ in seconds, until the tank is empty? And when does the level reach
-    the alarm at {h_low}?
+    How does the level $h(t)$ [m] continue, with $t$ in seconds, until the tank is empty? And when does it reach the
+    alarm at {h_low}?
     """
     rate = more / 1000 / A
     return answers(
@@ -570,7 +583,7 @@ def swings(
     Ti=between(4, 20, "min", reference=8),
     h_SP=between(5, 8, "m", reference=6, step=0.5),
     above_now=between(0.4, 0.8, "m", reference=0.6, step=0.05),
-    left_now=choice(0.2, 0.25, 0.3, 0.35, 0.4, 0.62, 0.66, 0.7, 0.74, 0.78, reference=0.4),
+    left_now=choice(0.2, 0.25, 0.3, 0.35, 0.4, 0.65, 0.68, 0.71, 0.74, 0.78, reference=0.4),
     period=between(30, 60, "min", reference=40),
 ):
     """The level in a silo gets a new setpoint and oscillates around it: first {above} beyond the setpoint, then
@@ -760,8 +773,8 @@ def _(reach, per_percent, more, e_max):
     "The gain multiplies an error in percent and gives a control signal in percent. How many percent of control signal "
     "bring the water that is missing?"
 )
-def _(reach, more, e_max):
-    return {"Kp": more * reach / e_max}
+def _(reach, per_percent, more, e_max):
+    return {"Kp": more * reach / e_max} if abs(per_percent * reach - 1) > 0.03 else {}
 
 
 @gain_between.mistake("The range is in metres, the error in centimetres. How many centimetres are one percent of it?")
@@ -1023,7 +1036,10 @@ def _read(zeta, Kp, per_percent):
     title="A new level, read with a ruler",
     points=4,
     where=lambda h_1, h_2, reach, Kp, u_0: (
-        h_2 <= reach * 4 / 5 and 8 <= Kp * (h_2 - h_1) / reach * 100 <= 78 - u_0 and h_2 - h_1 >= 0.4
+        h_2 <= reach * 4 / 5
+        and 8 <= Kp * (h_2 - h_1) / reach * 100 <= 78 - u_0
+        and h_2 - h_1 >= 0.4
+        and abs(h_2 - h_1 - 1) >= 0.2
     ),
     insight="The first jump of the control signal is the gain at work: the integral has had no time yet.",
 )
@@ -1081,7 +1097,8 @@ def _(zeta, Kp, per_percent):
 
 @new_level.mistake("That is the moment of the highest level. When does it pass the setpoint for the first time?")
 def _(zeta, Kp, per_percent):
-    return {"t_rise": 2 * _read(zeta, Kp, per_percent)[0]}
+    t_rise, _ = _read(zeta, Kp, per_percent)
+    return {"t_rise": 2 * t_rise} if abs(2 * t_rise / (t_rise + 10) - 1) > 0.18 else {}
 
 
 @new_level.mistake("That is the highest level as a part of the step. How far is it beyond the new setpoint?")
@@ -1097,6 +1114,11 @@ def _(h_1, h_2, reach, zeta, Kp, per_percent):
 @new_level.mistake("That is the overshoot in percent of the setpoint. What part of the step is it?")
 def _(h_1, h_2, zeta, Kp, per_percent):
     return {"overshoot": 100 * _read(zeta, Kp, per_percent)[1] * (h_2 - h_1) / h_2}
+
+
+@new_level.mistake("That is the overshoot in metres. What part of the step is it?")
+def _(h_1, h_2, zeta, Kp, per_percent):
+    return {"overshoot": _read(zeta, Kp, per_percent)[1] * (h_2 - h_1)}
 
 
 @new_level.mistake("That is control signal for one metre of error. The controller sees percent of the range.")

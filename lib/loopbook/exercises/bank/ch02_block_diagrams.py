@@ -362,6 +362,12 @@ def _(m, K, y_0, h):
     return {"v": v}
 
 
+@two_rounds.mistake("Spring and damper pull back. Which sign has the acceleration of a mass that has been pulled away?")
+def _(m, D, K, y_0, h):
+    y, v = _rounds(-m, D, K, y_0 / 100, h, 2)
+    return {"y": y, "v": v}
+
+
 @two_rounds.mistake("The force of the spring is not yet an acceleration. What is it divided by?")
 def _(m, D, K, y_0, h):
     y, _ = _rounds(sympy.Integer(1), D, K, y_0 / 100, h, 2)
@@ -415,10 +421,10 @@ def scale(
     D=between(100, 1200, "N s/m", reference=240, step=20),
     K=between(2000, 6000, "N/m", reference=4000, step=200),
 ):
-    r"""The platform of a scale has next to no mass. It stands on a spring of {K} with a damper of {D}, and $y$ is how
-    far it is pressed down. Somebody sets down a sack of {m} on it. With the weight of the sack as the force, and with
-    $g = 9.81$ m/s²: where does the platform come to rest? Which poles has the transfer function from the force to the
-    position, and does the platform oscillate on its way?
+    r"""The platform of a scale has next to no mass. It stands on a spring of {K} with a damper of {D}, and $y$ is
+    how far it is pressed down. Somebody sets down a sack of {m} on it. With the weight of the sack as the force,
+    and with $g = 9.81$ m/s²: where does the platform come to rest? What are the poles of the transfer function from
+    the force to the position, and does the platform oscillate on its way?
     """
     root = sympy.sqrt(D**2 - 4 * m * K)
     return answers(
@@ -856,9 +862,11 @@ def _(layout, K, a, c, u, d):
 
 
 @read_diagram.mistake("The second input is not zero. How does it act here?")
-def _(layout, K, a, c, u, y_0):
+def _(layout, K, a, c, u, d, y_0):
     formula = LAYOUTS[layout](K, a, c)
-    return {"start": _at(formula, u=u, d=0, y=y_0), "rest": _rest(layout, K, a, c, u, 0)}
+    start, rest = _at(formula, u=u, d=0, y=y_0), _rest(layout, K, a, c, u, 0)
+    found = {"start": start} if start != _at(formula, u=u, d=d, y=0) else {}
+    return found | ({"rest": rest} if rest != _rest(layout, K, a, 1, u, d) else {})
 
 
 @read_diagram.mistake("At rest the input of the integrator is zero, not its output. Solve the formula for $y$.")
@@ -1005,7 +1013,8 @@ def _(fault, m, D, K):
 
 @find_the_fault.mistake("Which of the two loops begins behind the first integrator, and which behind the second one?")
 def _(fault, m, D, K):
-    return {"acceleration": _as_drawn(fault, m, D, K).subs({v_: y_, y_: v_}, simultaneous=True)}
+    drawn = _as_drawn(fault, m, D, K)
+    return {"acceleration": drawn.subs({v_: y_, y_: v_}, simultaneous=True)} if fault != SWAPPED else {}
 
 
 FAULT_DOUBTS = {

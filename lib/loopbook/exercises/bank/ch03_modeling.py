@@ -60,6 +60,11 @@ def _(A, q_1, q_2, q_o):
     return {"rate": (q_1 + q_2 + q_o) / A}
 
 
+@cistern.mistake("The pump is running all the time. What does it do to the balance?")
+def _(A, q_1, q_2):
+    return {"rate": (q_1 + q_2) / A}
+
+
 @cistern.mistake("There are two gutters, and both bring water.")
 def _(A, q_1, q_2, q_o):
     alone, both = q_1 - q_o, q_1 + q_2 - q_o
@@ -277,8 +282,8 @@ def pond(
     c_in=between(20, 80, "g/m³", reference=50, step=5),
 ):
     r"""Waste water flows through a stirred pond with the constant volume {V}: {q} in and {q} out. Bacteria eat the
-    waste. In every cubic metre of the pond they take $kc$ grams an hour, where $c$ [g/m³] is the concentration in the
-    pond and in the outflow, and $k$ = {k}.
+    waste. In every cubic metre of the pond they remove $kc$ grams an hour, where $c$ [g/m³] is the concentration in
+    the pond and in the outflow, and $k$ = {k}.
 
     The pond is clean when, at $t = 0$, water with {c_in} of waste begins to flow in. Set up the balance of the waste.
     With which time constant does the concentration follow, where does it end, and what is $c(t)$, with $t$ in hours?
@@ -529,9 +534,9 @@ def lift(
     r"""A rope runs over the drum of a motor. On its one side hangs the cabin of a lift with the mass $m_1$ = {m_1},
     people included, on the other a counterweight of $m_2$ = {m_2}. Drum and motor have the inertia $J$ = {J} and the
     radius $r$ = {r}, and the rope does not slip. The motor turns with the torque $T$, positive where it lifts the
-    cabin. Rope and friction count for nothing, and $g$ = 9.81 m/s².
+    cabin. The mass of the rope and all friction are neglected, and $g$ = 9.81 m/s².
 
-    The tension of the rope is an inner force on each side. Get rid of both, and find the acceleration of the cabin,
+    The tension of the rope is an inner force on each side. Eliminate both, and find the acceleration of the cabin,
     upwards positive, as a formula in the symbols. Then in numbers: the mass that the rope seems to move, the torque
     that holds the cabin where it is, and the acceleration under a torque of {T}.
     """
@@ -1053,41 +1058,64 @@ def _both_flows(opening, h_s, q_i, title):
     return plane_plot(curves, "$h$ [m]", "flow [L/s]", title, xlim=(0, DEEPEST), ylim=(0, 1.05 * outflow[-1]))
 
 
+@seen_balance.mistake("That is the flow at which the two curves meet. At which level do they?")
+def _(q_i):
+    return {"h_s": q_i}
+
+
+def _told_apart(value, *others):
+    """Whether a value differs from all others by more than a ruler may be off."""
+    return all(abs(value / other - 1) > 0.35 for other in others)
+
+
+def _rates(opening, h_s, q_i, h_1, A):
+    """The rate of the level, and those of three mistakes: a sum, no area, no inflow."""
+    share = (h_1 / h_s) ** OPENINGS[opening]
+    return [q_i * (1 - share) / A, q_i * (1 + share) / A, q_i * (1 - share), -q_i * share / A]
+
+
 @seen_balance.mistake("What comes in raises the level, what goes out lowers it. Do the two flows add up?")
 def _(opening, h_s, q_i, h_1, A):
-    return {"rate": q_i * (1 + (h_1 / h_s) ** OPENINGS[opening]) / A}
+    right, added, *_ = _rates(opening, h_s, q_i, h_1, A)
+    return {"rate": added} if _told_apart(added, right) else {}
 
 
 @seen_balance.mistake("That is the flow that is left over. A litre on a square metre is one millimetre high.")
 def _(opening, h_s, q_i, h_1, A):
-    return {"rate": q_i * (1 - (h_1 / h_s) ** OPENINGS[opening])} if A >= 1.5 else {}
+    right, added, flow, _ = _rates(opening, h_s, q_i, h_1, A)
+    return {"rate": flow} if _told_apart(flow, right, added) else {}
 
 
 @seen_balance.mistake("Something also comes in. How far apart are the two curves at this level?")
 def _(opening, h_s, q_i, h_1, A):
-    wrong, right = -((h_1 / h_s) ** OPENINGS[opening]), 1 - (h_1 / h_s) ** OPENINGS[opening]
-    return {"rate": q_i * wrong / A} if abs(wrong / right - 1) > 0.2 else {}
+    right, added, flow, outflow = _rates(opening, h_s, q_i, h_1, A)
+    return {"rate": outflow} if _told_apart(outflow, right, added, flow) else {}
+
+
+def _times(opening, A, h_s, q_i, h_1):
+    """The time constant, and those of three mistakes: the line to the origin, the other level, no area."""
+    power = OPENINGS[opening]
+    right = 1000 * A * h_s / (power * q_i) / 60
+    return [right, right * power, right * (h_1 / h_s) ** (1 - power), right / A]
 
 
 @seen_balance.mistake(
     "That is the slope of the line to the origin. Which slope has the curve itself where the level rests?"
 )
-def _(h_s, q_i, A):
-    return {"T": 1000 * A * h_s / q_i / 60}
+def _(opening, A, h_s, q_i, h_1):
+    return {"T": _times(opening, A, h_s, q_i, h_1)[1]}
 
 
 @seen_balance.mistake("That is the slope of the curve at the other level. Near which level is the small disturbance?")
-def _(opening, h_s, q_i, h_1, A):
-    power = OPENINGS[opening]
-    factor = (h_1 / h_s) ** (1 - power)
-    return {"T": 1000 * A * h_s / (power * q_i) / 60 * factor} if abs(factor - 1) > 0.2 else {}
+def _(opening, A, h_s, q_i, h_1):
+    right, origin, elsewhere, _ = _times(opening, A, h_s, q_i, h_1)
+    return {"T": elsewhere} if _told_apart(elsewhere, right, origin) else {}
 
 
-@seen_balance.mistake(
-    "A slope of the outflow in litres per second for each metre: how many litres has one metre of this tank?"
-)
-def _(opening, h_s, q_i, A):
-    return {"T": 1000 * h_s / (OPENINGS[opening] * q_i) / 60} if A >= 1.5 else {}
+@seen_balance.mistake("That would be a tank of one square metre. How many litres has one metre of this one?")
+def _(opening, A, h_s, q_i, h_1):
+    right, origin, elsewhere, without = _times(opening, A, h_s, q_i, h_1)
+    return {"T": without} if _told_apart(without, right, origin, elsewhere) else {}
 
 
 seen_balance.hints(

@@ -60,6 +60,11 @@ def _(start, rate):
     return {"F_rate": start + rate / s}
 
 
+@oil_bath.mistake("The bath warms up at a constant rate. Which signal is a constant?")
+def _(rate):
+    return {"F_rate": rate / s**2}
+
+
 oil_bath.hints(
     "Write the temperature as a function of time first: a constant and a ramp. The transform is linear, so each is "
     "transformed on its own.",
@@ -216,6 +221,16 @@ def _(A, B, p, q):
     return {"y": A * exp(p * t) + B * exp(q * t)}
 
 
+@back_to_time.mistake("The denominator has two roots. Each of them brings an exponential of its own.")
+def _(A, B, p):
+    return {"y": (A + B) * exp(-p * t)}
+
+
+@back_to_time.mistake("At the beginning, both exponentials are there.")
+def _(A):
+    return {"y_0": A}
+
+
 @back_to_time.mistake("The value at the beginning is $y(0)$. You have put $s = 0$ into the transform.")
 def _(A, B, p, q):
     return {"y_0": A / p + B / q}
@@ -275,7 +290,7 @@ def thermometer(
     $$T\,\dot y(t) + y(t) = u$$
 
     Transform this equation with its initial value and solve it for $Y(s)$. Find the reading as a function of time,
-    and the moment from which on it is less than {rest} away from the temperature of the water. (In $Y(s)$ and
+    and the moment from which on it differs from the temperature of the water by less than {rest}. (In $Y(s)$ and
     $y(t)$ leave the units out: °C and seconds.)
     """
     return answers(
