@@ -124,6 +124,13 @@ def _(kind: kinds.Words):
 
 
 @other_forms.register
+def _(kind: kinds.SequentialChart):
+    yield kind.key.splitlines()
+    yield kind.key.replace("->", "→").replace(">=", "≥").upper()
+    yield kind.key.replace("\n", "; ")
+
+
+@other_forms.register
 def _(kind: kinds.InstrumentDiagram):
     yield kind.key.split("; ")
     yield kind.key.lower().replace(" ->", " →")
@@ -189,9 +196,9 @@ def _(kind: kinds.Words):
 
 
 @wrong_answers.register
-def _(kind: kinds.InstrumentDiagram):
-    lines = kind.key.split("; ")
-    yield from (lines[:n] + lines[n + 1 :] for n in range(len(lines)))
+def _(kind: kinds.SequentialChart | kinds.InstrumentDiagram):
+    lines = re.split("\n|; ", kind.key)
+    yield from (lines[:n] + lines[n + 1 :] for n in range(len(lines)) if not lines[n].endswith(": none"))
 
 
 @wrong_answers.register

@@ -45,6 +45,7 @@ if TYPE_CHECKING:  # editors read no registry
     from loopbook.exercises.kinds import Number as number  # noqa: F401, N813
     from loopbook.exercises.kinds import Numbers as numbers  # noqa: F401, N813
     from loopbook.exercises.kinds import Poles as poles  # noqa: F401, N813
+    from loopbook.exercises.kinds import SequentialChart as sequential_chart  # noqa: F401, N813
     from loopbook.exercises.kinds import Settings as settings  # noqa: F401, N813
     from loopbook.exercises.kinds import TimeFunction as time_function  # noqa: F401, N813
     from loopbook.exercises.kinds import TransferFunction as transfer_function  # noqa: F401, N813

@@ -54,9 +54,13 @@ class Picture:
         b'\\x89PNG'
         """
         data = io.BytesIO()
-        with styled():
-            with_few_colours(drawn(self.figure)).save(data, "PNG", compress_level=8)
+        with_few_colours(self._image()).save(data, "PNG", compress_level=8)
         return data.getvalue()
+
+    def _image(self):
+        """The figure as an image of Pillow."""
+        with styled():
+            return drawn(self.figure)
 
     # The figure belongs to an object of our own because Jupyter would draw a matplotlib figure its own way, without
     # the description, and only after pyplot has been imported.
@@ -67,6 +71,40 @@ class Picture:
         shown = {"alt": self.alt, "width": width, "height": height}
         # it is drawn for white: JupyterLab marks such an image, and custom.css turns it over in a dark theme
         return data, {"image/png": shown, "needs_background": "light"}
+
+
+class Stack(Picture):
+    """Several pictures, one below the other, as one."""
+
+    def __init__(self, *pictures: Picture):
+        super().__init__(pictures[0].figure, "; ".join(picture.alt for picture in pictures))
+        self.pictures = pictures
+
+    def save(self, file: str | Path | BinaryIO, **options: Any) -> None:
+        """Write all of them to a file, as the image that a notebook shows; ``options`` are those of Pillow."""
+        self._image().save(file, **options)
+
+    def _image(self):
+        from PIL import Image
+
+        images = [picture._image() for picture in self.pictures]
+        whole = Image.new("RGB", (max(one.width for one in images), sum(one.height for one in images)), "white")
+        top = 0
+        for image in images:
+            whole.paste(image, ((whole.width - image.width) // 2, top))
+            top += image.height
+        return whole
+
+
+def stacked(*pictures: Picture) -> Stack:
+    """Return pictures one below the other as one picture, which a notebook shows as the value of a cell.
+
+    >>> from loopbook.figures import time_plot
+    >>> from loopbook.laplace import t
+    >>> stacked(time_plot({"$y(t)$": 2 * t}, [0, 1, 2]), time_plot({"$u(t)$": t}, [0, 1, 2]))
+    <y(t) against t [s]; u(t) against t [s]>
+    """
+    return Stack(*pictures)
 
 
 def with_few_colours(image: Image.Image) -> Image.Image:

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 from sympy import Rational, ceiling, floor, log, sqrt, symbols
 
-from loopbook.diagrams import sequential_function_chart
+from loopbook.diagrams import control_valve, instrumentation_diagram, sequential_function_chart, tank
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -16,6 +16,7 @@ from loopbook.exercises.authoring import (
     exercise,
     expression,
     number,
+    sequential_chart,
     word,
     words,
 )
@@ -1321,3 +1322,470 @@ def _(heater_off, lamp, mix):
     The actions: {actions}.
     """
     return sequential_function_chart(mixing_chart(heater_off, lamp, mix))
+
+
+# --- 12.9 ---------------------------------------------------------------------------------------------------------
+
+TANK_INPUTS = {"start": "", "level": "m", "temperature": "°C"}
+TANK_OUTPUTS = ["inlet", "heater", "outlet"]
+#: Other names under which one knows the signals of the tank, as Figure 12.2 has them.
+TANK_NAMES = {
+    "start": ["button", "S"],
+    "level": ["h", "LT1", "L"],
+    "temperature": ["T", "TT1", "temp"],
+    "inlet": ["V1", "u_valve_in", "inflow"],
+    "outlet": ["V2", "u_valve_out", "drain", "discharge"],
+    "heater": ["u_heat", "heating", "heating element"],
+}
+
+
+def chart_of_batch(full, T_SP, hold, low, **other):
+    """The lines of a chart that does what 12.9 asks, in which single lines may be other ones."""
+    lines = {
+        "to_fill": "Wait -> Fill: start",
+        "fill": "Fill: inlet on",
+        "to_heat": f"Fill -> Heat: level >= {float(full):g}",
+        "heat": "Heat: inlet off, heater on",
+        "to_hold": f"Heat -> Hold: temperature >= {float(T_SP):g}",
+        "soak": "Hold: heater off",
+        "to_empty": f"Hold -> Empty: {float(hold):g} s",
+        "empty": "Empty: outlet on",
+        "to_wait": f"Empty -> Wait: level <= {float(low):g}",
+        "wait": "Wait (initial): outlet off",
+    }
+    return "\n".join(line for line in (lines | other).values() if line)
+
+
+def demands_on_batch(full, T_SP, hold, low):
+    """What must not happen, the worst first."""
+    full, T_SP, hold, low = (f"{float(x):g}" for x in (full, T_SP, hold, low))
+    return [
+        ("the tank runs over", "overflow > 0.1"),
+        ("the heater is on while the level is still below 0.4 m", "heater AND level < 0.4"),
+        ("inlet and outlet are open together", "inlet AND outlet"),
+        (
+            f"the inlet is closed, although start was pressed and the level has not reached {full} m",
+            "NOT inlet",
+            "Fill",
+        ),
+        ("the inlet opens, although nobody has pressed start", "inlet", "Wait"),
+        (f"the inlet is still open, although the level has reached {full} m", "inlet", "Heat Hold Empty"),
+        (f"the heater is on before the level has reached {full} m", "heater", "Fill"),
+        (
+            f"the heater stays off, although the tank is full and the water is colder than {T_SP} °C",
+            "NOT heater",
+            "Heat",
+        ),
+        (f"the heater is still on, although the water has reached {T_SP} °C", "heater", "Hold Empty"),
+        ("the heater is on, although nobody has pressed start", "heater", "Wait"),
+        (f"the outlet opens before the water has been held for {hold} s", "outlet", "Hold"),
+        (f"the outlet opens before the water has reached {T_SP} °C", "outlet", "Fill Heat"),
+        (f"the outlet stays closed, although the water has been held for {hold} s", "NOT outlet", "Empty"),
+        (f"the outlet is open, although the level has fallen to {low} m", "outlet", "Wait"),
+    ]
+
+
+SCENARIOS_OF_BATCH = [
+    ("", 2, {"start": "Wait.X AND Wait.T >= 20 AND Wait.T < 24"}),
+    ("if the supply fails for a while", 1, {
+        "start": "Wait.X AND Wait.T >= 20 AND Wait.T < 24",
+        "no_supply": "Fill.X AND Fill.T >= 60 AND Fill.T < 160",
+    }),
+    ("if somebody presses start while the water is heated", 1, {
+        "start": "Wait.X AND Wait.T >= 20 AND Wait.T < 24 OR Heat.X AND Heat.T >= 60 AND Heat.T < 64",
+    }),
+]  # fmt: skip
+
+
+def asked_chart(full, T_SP, hold, low):
+    """What 12.9 asks."""
+    return sequential_chart(
+        chart_of_batch(full, T_SP, hold, low),
+        TANK_INPUTS,
+        TANK_OUTPUTS,
+        demands_on_batch(full, T_SP, hold, low),
+        SCENARIOS_OF_BATCH,
+        what="the chart of the tank",
+        also=TANK_NAMES,
+    )
+
+
+@exercise(
+    "12.9",
+    title="Write the chart, and watch it run",
+    points=5,
+    insight="A chart is right when it is right in every situation: a tank that fills slowly, a second batch, a button "
+    "that is pressed at the wrong time. A run on a simulated plant finds in a second what paper hides.",
+)
+def written_chart(
+    full=between(0.7, 1, "m", reference=0.9, step=0.05),
+    T_SP=between(45, 75, "°C", reference=60, step=5),
+    hold=between(60, 240, "s", reference=120, step=20),
+    low=between(0.1, 0.2, "m", reference=0.12, step=0.02),
+):
+    """The tank of Figure 12.2 makes batches of hot water. It has a button `start`, which is 1 as long as it is pressed,
+    a transmitter each of `level` and `temperature`, and an `inlet`, an `outlet` and a `heater` that are on or off.
+    Write its chart:
+
+    - At first everything is off, and the chart waits for the button.
+    - The tank is filled until its level has reached {full}.
+    - Then the water is heated until it has reached {T_SP}, and then held for {hold} with everything off.
+    - Then the tank is emptied down to {low}, and the chart waits for the button again.
+
+    The heater must never be on below 0.4 m, the tank must not run over, and inlet and outlet are never open together.
+    How long filling and heating take is not known: the supply may fail for a while.
+
+    Write one line for each step, with what it switches, and one for each transition, with its condition. As in this
+    chapter, an output keeps its value until another step changes it. A lamp that a button lights for a minute:
+
+    ```
+    Dark (initial): light off
+    Dark -> Bright: button
+    Bright: light on
+    Bright -> Dark: Bright.T >= 60
+    ```
+
+    Your chart is run on the tank in several situations; whatever meets the demands is right. Give it as a text in three
+    quotes, or as a list of lines.
+    """
+    return answers(chart=asked_chart(full, T_SP, hold, low))
+
+
+@written_chart.mistake(
+    "The heater is on while there is hardly any water in the tank. Which step should switch it on, and when is that "
+    "step reached?"
+)
+def _(full, T_SP, hold, low):
+    lines = dict(fill="Fill: inlet on, heater on", heat="Heat: inlet off")
+    return {"chart": chart_of_batch(full, T_SP, hold, low, **lines)}
+
+
+@written_chart.mistake(
+    "The heater comes on in the nearly empty tank, because filling is over before it has begun. Put the level of that "
+    "moment into your condition: is it true?"
+)
+def _(full, T_SP, hold, low):
+    return {"chart": chart_of_batch(full, T_SP, hold, low, to_heat=f"Fill -> Heat: level <= {float(full):g}")}
+
+
+@written_chart.mistake(
+    "The inlet stays open and the water rises and rises: filling waits for something that filling alone does not bring "
+    "about. Which transmitter sees that the tank is full?"
+)
+def _(full, T_SP, hold, low):
+    return {"chart": chart_of_batch(full, T_SP, hold, low, to_heat=f"Fill -> Heat: temperature >= {float(T_SP):g}")}
+
+
+@written_chart.mistake(
+    "The inlet stays open while the water is heated. Values are stored, so leaving a step closes nothing. Which step "
+    "should close the valve?"
+)
+def _(full, T_SP, hold, low):
+    return {
+        "chart": chart_of_batch(
+            full, T_SP, hold, low, heat="Heat: heater on", wait="Wait (initial): inlet off, outlet off"
+        )
+    }
+
+
+@written_chart.mistake(
+    "The clock ends filling, and no two batches begin with the same rest of water and the same supply. What do you "
+    "want to know in the end: how long the inlet was open, or how full the tank is?"
+)
+def _(full, T_SP, hold, low):
+    seconds = round(float(full - Rational(1, 10)) / 0.0048) + 4
+    return {"chart": chart_of_batch(full, T_SP, hold, low, to_heat=f"Fill -> Heat: {seconds} s")}
+
+
+@written_chart.mistake("The water is hot, and it runs away at once. Which of the four demands has no step of its own?")
+def _(full, T_SP, hold, low):
+    lines = dict(
+        to_hold=f"Heat -> Empty: temperature >= {float(T_SP):g}",
+        soak="",
+        to_empty="",
+        empty="Empty: heater off, outlet on",
+    )
+    return {"chart": chart_of_batch(full, T_SP, hold, low, **lines)}
+
+
+@written_chart.mistake(
+    "The first batch is perfect, and then somebody presses start again and nothing happens. From where does the chart "
+    "come back to its initial step?"
+)
+def _(full, T_SP, hold, low):
+    lines = dict(to_wait=f"Empty -> End: level <= {float(low):g}", wait="Wait (initial): outlet off\nEnd: outlet off")
+    return {"chart": chart_of_batch(full, T_SP, hold, low, **lines)}
+
+
+@written_chart.mistake(
+    "The second batch begins although nobody has pressed start. To which step does the last transition lead?"
+)
+def _(full, T_SP, hold, low):
+    lines = dict(fill="Fill: inlet on, outlet off", to_wait=f"Empty -> Fill: level <= {float(low):g}")
+    return {"chart": chart_of_batch(full, T_SP, hold, low, **lines)}
+
+
+@written_chart.mistake(
+    "The first batch is perfect, and then the outlet stays open. Which step would have to close it, as values are "
+    "stored?"
+)
+def _(full, T_SP, hold, low):
+    return {"chart": chart_of_batch(full, T_SP, hold, low, wait="Wait (initial): inlet off")}
+
+
+written_chart.hints(
+    "Begin with the situations that the plant goes through, one after the other: each is a step. What does the "
+    "plant do in each of them, and what does it wait for?",
+    "There are five: waiting, filling, heating, holding, emptying. For each step write what *changes* when it "
+    "begins: what is switched on, and what the step before has left on. For each transition ask: which transmitter, "
+    "or which time, sees that the step is done?",
+    "The first lines are `Wait -> Fill: start`, then `Fill: inlet on`, then `Fill -> Heat: level >= ...` with the "
+    "level in m. The time of a step is a condition, too: `Hold -> Empty: {hold}`. And the last transition leads "
+    "back to `Wait`.",
+)
+
+
+@written_chart.solution
+def _(full, T_SP, hold, low):
+    """A chart is written down in three rounds.
+
+    *The steps.* The plant goes through five situations: it waits, it is filled, it is heated, the hot water is held,
+    and the tank is emptied. These are `Wait`, `Fill`, `Heat`, `Hold` and `Empty`.
+
+    *The transitions.* What ends each of them? The button, the level {full}, the temperature {T_SP}, the time {hold},
+    the level {low}. Only holding is ended by a clock. If filling were, too, a supply that fails for a while would leave
+    the tank half full, with the heater on.
+
+    ***
+
+    *The actions.* Only changes are listed, so each step has to switch off what the one before it leaves on and it does
+    not need: `Heat` closes the inlet, `Hold` switches off the heater, and `Wait` closes the outlet.
+
+    ```
+    {chart}
+    ```
+
+    Three things are easily forgotten: the way back to `Wait`, without which there is one batch only; the outlet, which
+    would be open when the next one begins; and the button, which may be pressed at any time: `Heat` has no transition
+    that looks at it, so nothing happens.
+    """
+    return {"chart": chart_of_batch(full, T_SP, hold, low)}
+
+
+@written_chart.solution_picture
+def _(full, T_SP, hold, low):
+    """Two batches with this chart, and the chart itself: level, temperature, what is on, and the active step."""
+    kind = asked_chart(full, T_SP, hold, low)
+    return kind.drawn(kind.key)
+
+
+@written_chart.picture
+def _(full):
+    """The tank with its transmitters of level and temperature, its inlet, outlet and heater, and your chart between
+    them, which hears the button start; the level of the full tank, {full}, is marked."""
+    layout = """
+        .      5     .     .     .     .    3    .
+        water  V1    1     .     .     .    .    .
+        .      .     tank  tank  tank  LT1  seq  start
+        .      .     tank  tank  tank  TT1  seq  .
+        .      .     tank  tank  tank  4    seq  .
+        .      .     tank  tank  tank  .    seq  .
+        .      .     9     .     .     .    .    .
+        out    V2    2     .     .     .    .    .
+        .      8     .     .     .     .    7    ."""
+    parts = {"V1": control_valve("inlet", "solenoid"), "V2": control_valve("outlet", "solenoid")}
+    parts |= {"tank": tank(level=f"${float(full):g}$ m", heater=True), "seq": "Your\nchart"}
+    lines = "LT1 seq, TT1 seq, start seq, seq 4 tank, seq 3 5 V1, seq 7 8 V2"
+    measured = {"measuring line": "tank LT1, tank TT1"}
+    return instrumentation_diagram(layout, "water V1 1 tank 9 2 V2 out", lines, parts, lines=measured)
+
+
+# --- 12.10 --------------------------------------------------------------------------------------------------------
+
+
+def chart_with_alarm(full, low, limit, **other):
+    """The lines of a chart that does what 12.10 asks, in which single lines may be other ones."""
+    lines = {
+        "to_fill": "Wait -> Fill: start",
+        "fill": "Fill: inlet on",
+        "to_empty": f"Fill -> Empty: level >= {float(full):g}",
+        "to_alarm": f"Fill -> Alarm: {float(limit):g} s",
+        "empty": "Empty: inlet off, outlet on",
+        "to_wait": f"Empty -> Wait: level <= {float(low):g}",
+        "alarm": "Alarm: inlet off, horn on",
+        "back": "Alarm -> Wait: reset",
+        "wait": "Wait (initial): outlet off, horn off",
+    }
+    return "\n".join(line for line in (lines | other).values() if line)
+
+
+def demands_on_alarm(full, limit):
+    """What must not happen, the worst first."""
+    full, limit = (f"{float(x):g}" for x in (full, limit))
+    return [
+        ("the tank runs over", "overflow > 0.1"),
+        ("inlet and outlet are open together", "inlet AND outlet"),
+        (f"the inlet is still open, although filling has taken {limit} s", "inlet", "Alarm"),
+        (f"the horn is silent, although filling has taken {limit} s", "NOT horn", "Alarm"),
+        ("the outlet is open, although filling has failed", "outlet", "Alarm"),
+        ("the horn sounds, although nothing is wrong", "horn", "Fill Empty"),
+        ("the horn sounds, although nothing is wrong any more", "horn", "Wait"),
+        (f"the inlet is closed, although start was pressed and the level is below {full} m", "NOT inlet", "Fill"),
+        ("the inlet opens, although nobody has pressed start", "inlet", "Wait"),
+        (f"the inlet is still open, although the level has reached {full} m", "inlet", "Empty"),
+        (f"the outlet stays closed, although the level has reached {full} m", "NOT outlet", "Empty"),
+        (f"the outlet opens before the level has reached {full} m", "outlet", "Fill"),
+        ("the outlet is open, although nobody has pressed start", "outlet", "Wait"),
+    ]
+
+
+PRESSED = "Wait.X AND Wait.T >= 20 AND Wait.T < 24"
+SCENARIOS_OF_ALARM = [
+    ("", 2, {"start": PRESSED, "reset": "FALSE"}),
+    ("if the level transmitter gets stuck", 2, {
+        "start": PRESSED,
+        "reset": "Alarm.X AND Alarm.T >= 60 AND Alarm.T < 64",
+        "level_stuck": "Fill.X AND Fill.T >= 40 OR Alarm.X",
+    }),
+    ("if somebody presses reset while the tank is filled", 1, {
+        "start": PRESSED,
+        "reset": "Fill.X AND Fill.T >= 30 AND Fill.T < 34",
+    }),
+    ("if somebody presses start during the alarm", 1, {
+        "start": f"{PRESSED} OR Alarm.X AND Alarm.T >= 30 AND Alarm.T < 34",
+        "reset": "Alarm.X AND Alarm.T >= 60 AND Alarm.T < 64",
+        "level_stuck": "Fill.X AND Fill.T >= 40 OR Alarm.X",
+    }),
+]  # fmt: skip
+
+
+def asked_alarm(full, low, limit):
+    """What 12.10 asks."""
+    return sequential_chart(
+        chart_with_alarm(full, low, limit),
+        {"start": "", "reset": "", "level": "m"},
+        ["inlet", "outlet", "horn"],
+        demands_on_alarm(full, limit),
+        SCENARIOS_OF_ALARM,
+        what="the chart of the tank",
+        also={**{name: TANK_NAMES[name] for name in ("start", "level", "inlet", "outlet")}, "horn": ["alarm horn"]},
+    )
+
+
+@exercise(
+    "12.10",
+    title="A chart that does not trust its transmitter",
+    points=5,
+    insight="Each step that waits for a measurement needs a second way out, since a measurement may never come. The "
+    "way out is an alternative branch, and it must lead back, or the first fault is the last batch.",
+)
+def chart_of_alarm(
+    full=between(0.6, 0.8, "m", reference=0.7, step=0.05),
+    low=between(0.1, 0.2, "m", reference=0.12, step=0.02),
+    limit=between(170, 200, "s", reference=180, step=5),
+):
+    """The tank of 12.9 is now used for cold water, with a `horn` and a second button, `reset`. Write the chart:
+
+    - At first everything is closed and the horn is silent. The chart waits for `start`.
+    - The tank is filled until its level has reached {full}, then emptied down to {low}, and the chart waits again.
+    - Filling takes less than {limit}. If it has taken {limit}, something is wrong: the inlet is closed and the horn
+      sounds, until somebody presses `reset`. Then the chart waits for `start` again.
+
+    `reset` does nothing else, and `start` does nothing but begin. The tank must not run over, not even when the level
+    transmitter gets stuck, and inlet and outlet are never open together.
+
+    The notation is that of 12.9: a line for each step, `Fill: inlet on`, one for each transition, `Fill -> Empty: level
+    >= ...`, and `Fill.T` is the time for which a step has been active.
+    """
+    return answers(chart=asked_alarm(full, low, limit))
+
+
+@chart_of_alarm.mistake(
+    "The transmitter is stuck, and filling goes on. Which transition would end it if the level is never seen to rise?"
+)
+def _(full, low, limit):
+    return {"chart": chart_with_alarm(full, low, limit, to_alarm="", alarm="", back="")}
+
+
+@chart_of_alarm.mistake("The horn sounds and water still comes in. What has to be switched in the step of the alarm?")
+def _(full, low, limit):
+    lines = dict(alarm="Alarm: horn on", wait="Wait (initial): inlet off, outlet off, horn off")
+    return {"chart": chart_with_alarm(full, low, limit, **lines)}
+
+
+@chart_of_alarm.mistake(
+    "After `reset` the horn goes on. Values are stored: the step behind the alarm is the first that could silence it."
+)
+def _(full, low, limit):
+    return {"chart": chart_with_alarm(full, low, limit, wait="Wait (initial): outlet off")}
+
+
+@chart_of_alarm.mistake(
+    "The horn has sounded, somebody has pressed `reset`, and nothing can be begun any more. Is there a way out of the "
+    "alarm?"
+)
+def _(full, low, limit):
+    return {"chart": chart_with_alarm(full, low, limit, back="")}
+
+
+@chart_of_alarm.mistake(
+    "After the alarm the tank is filled although nobody has pressed `start`. Where does the alarm lead to, and where "
+    "should it?"
+)
+def _(full, low, limit):
+    lines = dict(fill="Fill: inlet on, horn off", back="Alarm -> Fill: reset")
+    return {"chart": chart_with_alarm(full, low, limit, **lines)}
+
+
+@chart_of_alarm.mistake(
+    "The alarm ends as soon as it has begun, or by another button. Who is to end it, and with what?"
+)
+def _(full, low, limit):
+    return {"chart": chart_with_alarm(full, low, limit, back="Alarm -> Wait: start")}
+
+
+@chart_of_alarm.mistake(
+    "The horn sounds in every batch, as all batches are filled by the clock. What should end filling if all is well?"
+)
+def _(full, low, limit):
+    return {"chart": chart_with_alarm(full, low, limit, to_empty="", empty="", to_wait="")}
+
+
+chart_of_alarm.hints(
+    "Write the chart without the alarm first: three steps in a circle. Then ask of each step that waits for the "
+    "level what happens if the level is never reported.",
+    "A step may be left by several transitions: these are alternative branches. `Fill` has two, one for the level "
+    "and one for the time. Where does each of them lead, and what is on when it comes there?",
+    "The second transition is `Fill -> Alarm: Fill.T >= ...` with the limit in s. The step `Alarm` has two actions, "
+    "and one transition, on `reset`, which leads to `Wait`. Then go round once more: which step silences the horn?",
+)
+
+
+@chart_of_alarm.solution
+def _(full, low, limit):
+    """Without the alarm the chart is a circle of three steps: `Wait`, `Fill`, `Empty`. What ends them is the button,
+    the level {full}, and the level {low}.
+
+    `Fill` waits for a measurement. If the transmitter is stuck, the level never seems to reach {full}, and the tank
+    runs over. The time needs no transmitter: after {limit} the second transition leaves the step.
+
+    ***
+
+    It leads to `Alarm`, which closes the inlet and sounds the horn, and `reset` leads from there to `Wait`. So `Wait`
+    is reached in two ways, and silences the horn as it closes the outlet:
+
+    ```
+    {chart}
+    ```
+
+    After an alarm the tank may be full. The next `start` then finds the level reached in its first scan, and the tank
+    is emptied: the chart needs nothing special for it.
+    """
+    return {"chart": chart_with_alarm(full, low, limit)}
+
+
+@chart_of_alarm.solution_picture
+def _(full, low, limit):
+    """Two batches with this chart, and the chart itself, with the two branches that leave the step Fill."""
+    kind = asked_alarm(full, low, limit)
+    return kind.drawn(kind.key)
