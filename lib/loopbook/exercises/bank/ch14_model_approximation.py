@@ -185,8 +185,8 @@ def _(k, tau_2, tau_3):
 
 
 @gas_holder.mistake(
-    "In a model of first order the integrator is all that is kept. Half of the lag is lost: it is negligible "
-    "beside the integrator."
+    "In a model of first order the integrator is all that is kept. Half of the lag is lost: it is negligible beside "
+    "the integrator."
 )
 def _(k, tau_2, tau_3):
     return {"g_1": k * exp(-(tau_2 / 2 + tau_3) * s) / (s * (tau_2 / 2 * s + 1))}
@@ -224,8 +224,7 @@ gas_holder.hints(
     "To first order only the integrator is kept: the larger of the two lags is halved, the smaller becomes dead time. "
     "To second order the larger lag is kept too, and now the smaller one is halved.",
     "The dead time of $g_1$ is $\\frac{ {tau_2} }{2} + {tau_3}$, that of $g_2$ is $\\frac{ {tau_3} }{2}$. For the "
-    "ramps: "
-    "one that is late by a time $\\theta$ is $k\\theta$ below $kt$. How late is each of the two?",
+    "ramps: one that is late by a time $\\theta$ is $k\\theta$ below $kt$. How late is each of the two?",
 )
 
 
@@ -364,13 +363,11 @@ def _(T_0, tau_0, theta):
 
 zero_beside_a_lag.hints(
     "A loop that is as fast as its dead time looks at the fraction where $s$ is about $1/\\theta$. What is the "
-    "fraction "
-    "there?",
+    "fraction there?",
     "First compare the zero with the lag: a longer zero leads to T1, T1a or T1b, a shorter one to T2 or T3. Then "
     "compare both with the dead time, and a short zero with five dead times.",
     "In numbers: $T_0$ = {T_0}, $\\tau_0$ = {tau_0}, $\\theta$ = {theta}, and five dead times are {five}. Sort these "
-    "four "
-    "by size, and look for the rule whose inequalities they meet.",
+    "four by size, and look for the rule whose inequalities they meet.",
 )
 
 
@@ -505,12 +502,10 @@ price_of_a_fraction.hints(
     "Padé shares the dead time between numerator and denominator. With a fraction in its place, the limit of stability "
     "can be found from a polynomial.",
     "The characteristic polynomial is the denominator plus $K_u$ times the numerator, here of second order. At the "
-    "limit "
-    "its zeros lie on the imaginary axis: which coefficient vanishes? For the exact dead time, look for the frequency "
-    "where $\\arctan\\omega T + \\omega\\theta$ is $\\pi$.",
-    "The polynomial is $\\frac{\\theta T}{2}s^2 + \\left(T + \\frac{\\theta}{2} - K_u\\frac{\\theta}{2}\\right)s + 1 "
-    "+ K_u$, with "
-    "$T$ = {T} and $\\theta$ = {theta}. Its middle coefficient gives $K_u$, the other two the frequency.",
+    "limit its zeros lie on the imaginary axis: which coefficient vanishes? For the exact dead time, look for the "
+    "frequency where $\\arctan\\omega T + \\omega\\theta$ is $\\pi$.",
+    "The polynomial is $\\frac{\\theta T}{2}s^2 + \\left(T + \\frac{\\theta}{2} - K_u\\frac{\\theta}{2}\\right)s + 1 + "
+    "K_u$, with $T$ = {T} and $\\theta$ = {theta}. Its middle coefficient gives $K_u$, the other two the frequency.",
 )
 
 
@@ -595,8 +590,8 @@ def _(K, tau, theta):
 
 
 @before_the_dead_time.mistake(
-    "That is the response with the exact dead time, which is not the question. The response with the fraction "
-    "begins immediately."
+    "That is the response with the exact dead time, which is not the question. The response with the fraction begins "
+    "immediately."
 )
 def _(K, tau, theta):
     return {"y": K * (1 - exp(-(t - theta) / tau)) * Heaviside(t - theta)}
@@ -623,12 +618,10 @@ def _(K, tau, theta):
 
 before_the_dead_time.hints(
     "Write the approximation as a transfer function with a zero and two poles. What are they?",
-    "$Y(s) = \\frac{{K}}{s}\\,\\frac{1 - a s}{(1 + a s)(\\tau s + 1)}$ with $a = \\theta/2$. Partial fractions make "
-    "it a step and "
-    "two exponentials. The lowest point is where the derivative of $y(t)$ vanishes.",
+    "$Y(s) = \\frac{{K}}{s}\\,\\frac{1 - a s}{(1 + a s)(\\tau s + 1)}$ with $a = \\theta/2$. Partial fractions make it "
+    "a step and two exponentials. The lowest point is where the derivative of $y(t)$ vanishes.",
     "Here $a$ = {a}, so the exponentials are $e^{-t/{a}}$ and $e^{-t/{tau}}$. In the derivative they balance each "
-    "other: "
-    "$e^{-t(1/a - 1/\\tau)} = \\frac{\\tau + a}{2\\tau}$. Take the logarithm.",
+    "other: $e^{-t(1/a - 1/\\tau)} = \\frac{\\tau + a}{2\\tau}$. Take the logarithm.",
 )
 
 
@@ -724,7 +717,7 @@ def _after_a_load(process, pid, end, most):
     times = _until(end)
     y = Loop(process, pid).regulator.step(times)
     plot = time_plot({"$y$": (y, "measurement")}, times, "Your loop after a load step of 1 %", ylabel="$y$ [%]")
-    return plot.area("$y$", label=f"{_area(pid):.3g} % s, at most {most:g}")
+    return plot.area("$y$", label=f"at most {most:g} % s")
 
 
 def _most(good):
@@ -767,8 +760,7 @@ def _(k, T_1, T_2, T_3, theta):
 whole_process.hints(
     "Do not tune with the whole process. Reduce it first, to one lag and a dead time.",
     "The half rule keeps the largest lag. Skogestad's rule then gives $K_p = \\frac{\\tau}{k(\\tau_c + \\theta)}$ and "
-    "the "
-    "shorter of $\\tau$ and $4(\\tau_c + \\theta)$ for $T_i$, with the dead time of the *model*.",
+    "the shorter of $\\tau$ and $4(\\tau_c + \\theta)$ for $T_i$, with the dead time of the *model*.",
     "The model has the lag ${T_1} + \\frac{ {T_2} }{2}$ and the dead time ${theta} + \\frac{ {T_2} }{2} + {T_3}$. With "
     "$\\tau_c = \\theta$ its settings meet both limits. Check $M_s$ with `margins(pid.expr * process).Ms`.",
 )
@@ -896,8 +888,8 @@ four_models.hints(
     "A response begins when the dead time of its model is over. Whose dead time is the shortest, whose the longest?",
     "Work out the dead time of each model: the half rule halves the largest lag that is neglected, and makes smaller "
     "ones, the inverse response and the dead time itself delay as a whole. Two lags begin without a corner.",
-    "The one that neglects the small lags begins at {theta_0}, the one with all of them as dead time last. "
-    "Find these two in the picture. Of the other two, one begins with a corner.",
+    "The one that neglects the small lags begins at {theta_0}, the one with all of them as dead time last. Find these "
+    "two in the picture. Of the other two, one begins with a corner.",
 )
 
 

@@ -84,8 +84,7 @@ faster_tank.hints(
     "Direct synthesis writes down the wish $M$ first, here a lag, and then solves for the controller.",
     "$G_c = \\frac{1}{G}\\,\\frac{M}{1 - M}$. For a lag as the wish, $\\frac{M}{1 - M}$ is $\\frac{1}{T_c s}$.",
     "$G_c = \\frac{ {T}\\,s + 1}{ {K} \\cdot {Tc}\\,s}$. Divide the numerator term by term: what is the constant, and "
-    "what is the "
-    "factor of $1/s$?",
+    "what is the factor of $1/s$?",
 )
 
 
@@ -162,8 +161,8 @@ def _(K, delay, Tc):
 
 
 @level_offset.mistake(
-    "With that offset a stronger controller would leave more of it. Which valve position must the gain produce "
-    "from the offset?"
+    "With that offset a stronger controller would leave more of it. Which valve position must the gain produce from "
+    "the offset?"
 )
 def _(K, delay, Tc, load):
     gain = 1 / (K * (Tc + delay))
@@ -171,8 +170,8 @@ def _(K, delay, Tc, load):
 
 
 @level_offset.mistake(
-    "That is Skogestad's integral time for an integrating process. Here it follows from the desired response "
-    "with the lead."
+    "That is Skogestad's integral time for an integrating process. Here it follows from the desired response with the "
+    "lead."
 )
 def _(K, delay, Tc):
     return {"controller": PID(1 / (K * (Tc + delay)), 4 * (Tc + delay))}
@@ -187,14 +186,11 @@ def _(K, delay, Tc):
 
 level_offset.hints(
     "The formula of direct synthesis is the same for every wish: $G_c = \\frac{1}{G}\\,\\frac{M}{1 - M}$. A load that "
-    "stays "
-    "must be balanced by the controller.",
-    "For the first wish, $1 - M = \\frac{(T_c + \\theta)s}{T_c s + 1}$. For the second, $1 - M$ must vanish with "
-    "$s^2$ instead "
-    "of $s$: choose $a$ so that the term in $s$ is zero.",
+    "stays must be balanced by the controller.",
+    "For the first wish, $1 - M = \\frac{(T_c + \\theta)s}{T_c s + 1}$. For the second, $1 - M$ must vanish with $s^2$ "
+    "instead of $s$: choose $a$ so that the term in $s$ is zero.",
     "The first gain is $\\frac{1}{K(T_c + \\theta)}$ with $T_c + \\theta = {Tc} + {delay}$. In the second wish the "
-    "term in $s$ of "
-    "$(T_c s + 1)^2 - (1 - \\theta s)(a s + 1)$ is $2T_c + \\theta - a$.",
+    "term in $s$ of $(T_c s + 1)^2 - (1 - \\theta s)(a s + 1)$ is $2T_c + \\theta - a$.",
 )
 
 
@@ -295,12 +291,10 @@ def _(K, T, delay):
 
 uncertain_gain.hints(
     "The controller cancels the lag. What is left of the open loop?",
-    "$L(s) = \\frac{e^{-\\theta s}}{(T_c + \\theta)s}$. Its phase is $-90°$ from the integrator, and "
-    "$-\\omega\\theta$ from the dead "
-    "time. Where is it $-180°$, and how large is $|L|$ there?",
+    "$L(s) = \\frac{e^{-\\theta s}}{(T_c + \\theta)s}$. Its phase is $-90°$ from the integrator, and $-\\omega\\theta$ "
+    "from the dead time. Where is it $-180°$, and how large is $|L|$ there?",
     "The phase is $-180°$ at $\\omega\\theta = \\pi/2$, so the gain margin is $\\frac{\\pi}{2}\\,\\frac{T_c + "
-    "\\theta}{\\theta}$, and it "
-    "should be {margin}.",
+    "\\theta}{\\theta}$, and it should be {margin}.",
 )
 
 
@@ -406,11 +400,9 @@ inverse_response.hints(
     "Direct synthesis again: $G_c = \\frac{1}{G}\\,\\frac{M}{1 - M}$. The zero is in $M$ and in $G$: what happens to "
     "it?",
     "$1 - M = \\frac{s\\,(T_c^2 s + 2T_c + \\beta)}{(T_c s + 1)^2}$. The response is that of $M$ alone: a step, and a "
-    "double pole at "
-    "$-1/T_c$. It goes furthest down where its derivative vanishes.",
+    "double pole at $-1/T_c$. It goes furthest down where its derivative vanishes.",
     "With $a = 1 + \\beta/T_c$ the response is $1 - e^{-t/T_c}(1 + a\\,t/T_c)$, and here $a = 1 + \\frac{ {beta} }{ "
-    "{Tc} }$. Its "
-    "derivative vanishes at $t/T_c = 1 - 1/a$.",
+    "{Tc} }$. Its derivative vanishes at $t/T_c = 1 - 1/a$.",
 )
 
 
@@ -546,9 +538,8 @@ def _(K, T, delay):
 
 oven.hints(
     "The lag of {T} is long compared with the dead time of {delay}. What happens to a cancelled lag after a load?",
-    "Skogestad's rule keeps the gain of direct synthesis, $K_p = \\frac{{T}}{K(T_c + \\theta)}$, and takes the "
-    "shorter of $T$ and "
-    "$4(T_c + \\theta)$ as the integral time. Begin with $T_c = \\theta$.",
+    "Skogestad's rule keeps the gain of direct synthesis, $K_p = \\frac{{T}}{K(T_c + \\theta)}$, and takes the shorter "
+    "of $T$ and $4(T_c + \\theta)$ as the integral time. Begin with $T_c = \\theta$.",
     "With $T_c = \\theta$, $K_p = \\frac{ {T} }{ {K} \\cdot 2 \\cdot {delay} }$. The integral time is four times "
     "{twice} min, not {T}.",
 )
@@ -660,13 +651,11 @@ def _(delay, Tc):
 written_twice.hints(
     "Direct synthesis puts the inverse of the two lags into the controller. What comes instead of them?",
     "$G_c = \\frac{(T_1 s + 1)(T_2 s + 1)}{K(T_c + \\theta)s}$. The serial form $K_p\\left(1 + \\frac{1}{T_i "
-    "s}\\right)(1 + T_d s)$ has the "
-    "same two factors. For the parallel form $K_p\\left(1 + \\frac{1}{T_i s} + T_d s\\right)$ multiply them out.",
-    "Serial: $K_p = \\frac{T_1}{K(T_c + \\theta)} = \\frac{ {T1} }{ {K}\\,({Tc} + {delay})}$. Parallel: the sum of "
-    "the lags, "
-    "${T1} + {T2}$, takes the place of $T_1$, and their product divided by the sum is $T_d$. What is left of the open "
-    "loop "
-    "is $\\frac{e^{-\\theta s}}{(T_c + \\theta)s}$.",
+    "s}\\right)(1 + T_d s)$ has the same two factors. For the parallel form $K_p\\left(1 + \\frac{1}{T_i s} + T_d "
+    "s\\right)$ multiply them out.",
+    "Serial: $K_p = \\frac{T_1}{K(T_c + \\theta)} = \\frac{ {T1} }{ {K}\\,({Tc} + {delay})}$. Parallel: the sum of the "
+    "lags, ${T1} + {T2}$, takes the place of $T_1$, and their product divided by the sum is $T_d$. What is left of the "
+    "open loop is $\\frac{e^{-\\theta s}}{(T_c + \\theta)s}$.",
 )
 
 
@@ -800,8 +789,7 @@ wish_as_a_picture.hints(
     "The gain is the final rise divided by the step of {step}. The time from the beginning of a curve to 63 % is its "
     "time constant. Direct synthesis: $K_p = \\frac{{T}}{K(T_c + \\theta)}$ and $T_i = T$.",
     "The first number is $K = \\frac{\\mathrm{final\\ rise}}{ {step} }$. Then look above for 63 % of the final rise, "
-    "and below "
-    "for 0.63 K. Both curves begin when the dead time is over: count from there.",
+    "and below for 0.63 K. Both curves begin when the dead time is over: count from there.",
 )
 
 

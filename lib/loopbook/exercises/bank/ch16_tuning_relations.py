@@ -99,10 +99,9 @@ def _(step, slope, theta):
 reaction_curve.hints(
     "Ziegler and Nichols need two numbers of a reaction curve: the dead time, and the slope for one percent of valve.",
     "The dead time $\\theta$ is where the tangent crosses the initial value. With the slope $R$ of the tangent, "
-    "divided by "
-    "the step, the PI settings are $K_c = \\frac{0.9}{R\\theta}$ and $\\tau_I = 3.33\\,\\theta$.",
-    "Take two points of the tangent that are far apart, and divide the rise by the time between them and by {step}: "
-    "$R = \\frac{\\mathrm{rise}}{\\mathrm{time} \\cdot {step} }$.",
+    "divided by the step, the PI settings are $K_c = \\frac{0.9}{R\\theta}$ and $\\tau_I = 3.33\\,\\theta$.",
+    "Take two points of the tangent that are far apart, and divide the rise by the time between them and by {step}: $R "
+    "= \\frac{\\mathrm{rise}}{\\mathrm{time} \\cdot {step} }$.",
 )
 
 
@@ -191,8 +190,7 @@ panel.hints(
     "At the limit of stability, the gain of the controller is the ultimate gain. Which gain is a proportional band of "
     "{band}?",
     "$K_{cu} = \\frac{100\\,\\%}{\\mathrm{{band}} }$, and the ultimate period is the time from peak to peak: read it "
-    "over several "
-    "periods. Table 12.6 has the factors of both rules.",
+    "over several periods. Table 12.6 has the factors of both rules.",
     "$K_{cu} = \\frac{100}{ {band} }$. The rule of {rule} multiplies it by {share}, and takes $P_u$ {times_P}.",
 )
 
@@ -292,11 +290,9 @@ def _(tau_1, tau_2, left):
 decay.hints(
     "A decay ratio belongs to a damping $\\zeta$, and the damping to the characteristic polynomial of the loop.",
     "From peak to peak the oscillation has two half turns: the ratio is $e^{-2\\pi\\zeta/\\sqrt{1 - \\zeta^2}}$. The "
-    "polynomial is "
-    "$\\tau_1\\tau_2 s^2 + (\\tau_1 + \\tau_2)s + 1 + KK_c$.",
+    "polynomial is $\\tau_1\\tau_2 s^2 + (\\tau_1 + \\tau_2)s + 1 + KK_c$.",
     "With the logarithm $\\ell = \\ln\\frac{100}{ {left} }$, $\\zeta^2 = \\frac{\\ell^2}{4\\pi^2 + \\ell^2}$. And in "
-    "the polynomial, "
-    "$1 + KK_c = \\frac{(\\tau_1 + \\tau_2)^2}{4\\,\\tau_1\\tau_2\\,\\zeta^2}$.",
+    "the polynomial, $1 + KK_c = \\frac{(\\tau_1 + \\tau_2)^2}{4\\,\\tau_1\\tau_2\\,\\zeta^2}$.",
 )
 
 
@@ -400,14 +396,11 @@ def _(q):
 
 relay_with_hysteresis.hints(
     "Follow $y$ for one half of the cycle. It is an integral of a constant, so it consists of straight lines. How "
-    "steep "
-    "are they?",
+    "steep are they?",
     "The slope is $\\pm Kd$. The relay switches when $y$ has passed $h$, but the process goes on for one dead time "
-    "more. Then "
-    "$y$ has to fall from its peak to $-h$.",
+    "more. Then $y$ has to fall from its peak to $-h$.",
     "The peak is $h + Kd\\theta$, and $h$ is {q} of $Kd\\theta$. From peak to peak, $y$ goes up and down by twice the "
-    "amplitude "
-    "each time, with the slope $Kd$. For a sine, $K_{cu} = \\frac{4d}{\\pi a}$.",
+    "amplitude each time, with the slope $Kd$. For a sine, $K_{cu} = \\frac{4d}{\\pi a}$.",
 )
 
 
@@ -576,11 +569,9 @@ def _(a, b, c, d):
 bad_copy.hints(
     "Two questions find a misprint: does the formula survive another unit of time, and does it survive a limit?",
     "Units: what is added must be of one kind, a gain is a pure number over $K$, and $\\tau_I$ and $\\tau_D$ are "
-    "times. Limit: "
-    "put $K = k\\tau$, keep $k$ and $\\theta$, and let $\\tau$ grow.",
+    "times. Limit: put $K = k\\tau$, keep $k$ and $\\theta$, and let $\\tau$ grow.",
     "Begin with the units, formula by formula: A is ${A}$. Is there a time added to a pure number? Then put $K = "
-    "k\\tau$ "
-    "into those whose units are right.",
+    "k\\tau$ into those whose units are right.",
 )
 
 
@@ -657,11 +648,10 @@ def _(K, T, tau):
 
 factor_for_a_damping.hints(
     "Close the loop of an integrator (dead time neglected) with the PI controller of the rule. Which damping has it?",
-    "With $K_p = \\frac{1}{k\\,(T_C + \\tau)}$ and $T_i = k_1(T_C + \\tau)$ the polynomial is "
-    "$k_1 (T_C + \\tau)^2 s^2 + k_1 (T_C + \\tau)s + 1$. Compare it with $s^2 + 2\\zeta\\omega_0 s + \\omega_0^2$.",
+    "With $K_p = \\frac{1}{k\\,(T_C + \\tau)}$ and $T_i = k_1(T_C + \\tau)$ the polynomial is $k_1 (T_C + \\tau)^2 s^2 "
+    "+ k_1 (T_C + \\tau)s + 1$. Compare it with $s^2 + 2\\zeta\\omega_0 s + \\omega_0^2$.",
     "$\\omega_0^2 = \\frac{1}{k_1 (T_C + \\tau)^2}$ and $2\\zeta\\omega_0 = \\frac{1}{T_C + \\tau}$, so $\\zeta = "
-    "\\frac{\\sqrt{{k_1}} }{2}$, which "
-    "should be {zeta}. And $T_C + \\tau = (1 + {n}) \\cdot {tau}$ min.",
+    "\\frac{\\sqrt{{k_1}} }{2}$, which should be {zeta}. And $T_C + \\tau = (1 + {n}) \\cdot {tau}$ min.",
 )
 
 
@@ -775,11 +765,9 @@ def _(K, tau, theta):
 not_so_nervous.hints(
     "Both rules have $K_p$ in the form of a number times $\\frac{\\tau}{K\\theta}$. What are the two numbers?",
     "0.9 is too nervous, 0.5 too slow. And the integral time may be shorter than Skogestad's: it is what brings the "
-    "loop "
-    "back after a load.",
-    "Try $K_p = 0.6\\,\\frac{\\tau}{K\\theta} = 0.6 \\cdot \\frac{ {tau} }{ {K} \\cdot {theta} }$ with an integral "
-    "time of three dead times, or "
-    "the lag if that is shorter.",
+    "loop back after a load.",
+    "Begin a little above $0.5\\,\\frac{\\tau}{K\\theta} = 0.5 \\cdot \\frac{ {tau} }{ {K} \\cdot {theta} }$, and "
+    "shorten the integral time step by step, from the lag of {tau} downwards, as long as $M_s$ allows it.",
 )
 
 
@@ -904,11 +892,9 @@ def _(left):
 two_peaks.hints(
     "A decay ratio compares heights above the *final value*. Draw that line first.",
     "With $\\ell = \\ln\\frac{1}{\\mathrm{decay\\ ratio}}$ the damping is $\\zeta = \\frac{\\ell}{\\sqrt{4\\pi^2 + "
-    "\\ell^2}}$. A higher gain leaves more "
-    "of a peak.",
+    "\\ell^2}}$. A higher gain leaves more of a peak.",
     "The final value is the new setpoint, {step} above {low}. Measure how far the first and the second peak are above "
-    "it, "
-    "and divide the smaller height by the larger one.",
+    "it, and divide the smaller height by the larger one.",
 )
 
 
@@ -1010,9 +996,8 @@ def _(left):
 quarter_with_dead_time.hints(
     "The poles of the loop are where $1 + L(s) = 0$. The decay ratio fixes the quotient of $\\sigma$ and $\\omega$.",
     "From peak to peak, $e^{-\\sigma t}$ falls to $e^{-2\\pi\\sigma/\\omega}$. The two parts of $s = -k\\,e^{-\\theta "
-    "s}$ are "
-    "$\\sigma = k e^{\\sigma\\theta}\\cos\\omega\\theta$ and $\\omega = k e^{\\sigma\\theta}\\sin\\omega\\theta$. "
-    "Divide one by the other.",
+    "s}$ are $\\sigma = k e^{\\sigma\\theta}\\cos\\omega\\theta$ and $\\omega = k "
+    "e^{\\sigma\\theta}\\sin\\omega\\theta$. Divide one by the other.",
     "So $\\tan\\omega\\theta = \\frac{\\omega}{\\sigma} = \\frac{2\\pi}{\\ln(100/{left})}$, which gives "
     "$\\omega\\theta$, and then $\\sigma\\theta$. What is $k\\theta$ then?",
 )

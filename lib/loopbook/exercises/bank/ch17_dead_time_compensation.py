@@ -108,15 +108,12 @@ def _(K, T, delay):
 
 unavoidable.hints(
     "Whatever a controller does, the signal feels it one dead time later. When does it know of the setpoint, and when "
-    "of "
-    "a load?",
+    "of a load?",
     "After a setpoint step the error is one for a dead time at least. After a load, nothing is seen for one dead time, "
     "and nothing can be done about it for another one: in between the error is $K(1 - e^{-t/T})$, with $t$ counted "
-    "from "
-    "the first dead time on.",
+    "from the first dead time on.",
     "The first integral is that of 1 over {delay}. The last one is ${K}^2\\int_0^{ {delay} }(1 - e^{-t/{T}})^2 dt$. "
-    "Square "
-    "first, then integrate term by term.",
+    "Square first, then integrate term by term.",
 )
 
 
@@ -185,8 +182,8 @@ def dairy(
 
 
 @dairy.mistake(
-    "That is for an ordinary loop, which has to be weaker because of the dead time. Inside the predictor there "
-    "is no dead time."
+    "That is for an ordinary loop, which has to be weaker because of the dead time. Inside the predictor there is no "
+    "dead time."
 )
 def _(K, T, delay, Tc):
     return {"controller": PID(T / (K * (Tc + delay)), T)}
@@ -222,11 +219,9 @@ def _(delay, Tc):
 dairy.hints(
     "With the right model, the controller inside the predictor does not see the dead time. What is its process?",
     "For the lag alone, $K_c = \\frac{{T}}{K\\,T_C}$ and $T_i = T$ make the loop a lag of $T_C$. The output is that, "
-    "one dead time "
-    "late.",
+    "one dead time late.",
     "$K_c = \\frac{ {T} }{ {K} \\cdot {Tc} }$. The error is one for {delay}, and then $e^{-(t - {delay})/{Tc}}$: "
-    "square it before you "
-    "integrate.",
+    "square it before you integrate.",
 )
 
 
@@ -348,8 +343,7 @@ one_block.hints(
     "$\\frac{C}{1 + C\\,G\\,(1 - e^{-\\theta s})}$. In the closed loop the exponential leaves the denominator: $1 + "
     "C\\,G$ remains.",
     "$C = {Kc}\\left(1 + \\frac{1}{ {Ti}\\,s}\\right)$ and $G = \\frac{ {K} }{ {T}\\,s + 1}$. The poles are the zeros "
-    "of "
-    "$T T_i s^2 + (1 + K K_c)T_i s + K K_c$.",
+    "of $T T_i s^2 + (1 + K K_c)T_i s + K K_c$.",
 )
 
 
@@ -458,11 +452,9 @@ def _(T, delay):
 load_response.hints(
     "The load and the controller's action are both steps that go through the process. When does each of them arrive?",
     "The load arrives at $\\theta$ and goes on like a lag. Its effect is taken back from $2\\theta$ on, by the lag of "
-    "the process "
-    "and the lag $T_C$ of the loop in series, which are equal here.",
+    "the process and the lag $T_C$ of the loop in series, which are equal here.",
     "With $\\tau_1 = t - {delay}$ and $\\tau_2 = t - {twice}$ the deviation is {push} K times $1 - e^{-\\tau_1/T}$ "
-    "minus, "
-    "from {twice} s on, $1 - (1 + \\tau_2/T)\\,e^{-\\tau_2/T}$. Where is its derivative zero?",
+    "minus, from {twice} s on, $1 - (1 + \\tau_2/T)\\,e^{-\\tau_2/T}$. Where is its derivative zero?",
 )
 
 
@@ -582,7 +574,8 @@ def _size_of_M(K, T, off, controller):
 
 def _frequency(controller, jw):
     Kp, Ti, Td, Tf = (float(x) for x in (controller.Kp, controller.Ti, controller.Td, controller.Tf))
-    return Kp * (1 + 1 / (Ti * jw) + Td * jw / (Tf * jw + 1))
+    integral = 0 if math.isinf(Ti) else 1 / (Ti * jw)
+    return Kp * (1 + integral + Td * jw / (Tf * jw + 1))
 
 
 def _servo_ISE(K, T, model, controller):
@@ -598,8 +591,8 @@ def _(volume, low, high):
 
 
 @two_flows.mistake(
-    "That is the dead time at the mean flow. The dead time is not a linear function of the flow, so take "
-    "the mean of the dead times."
+    "That is the dead time at the mean flow. The dead time is not a linear function of the flow, so take the mean of "
+    "the dead times."
 )
 def _(volume, low, high):
     return {"model_delay": 2 * volume / (low + high)}
@@ -740,8 +733,7 @@ def _(delay, model):
 
 @surprise.mistake(
     "If the model expects a response that does not come, the controller thinks that a load pushes the other way, and "
-    "acts "
-    "more. Does the valve first open or close?"
+    "acts more. Does the valve first open or close?"
 )
 def _(delay, model):
     return {"model": "too long" if model < delay else "too short"}
@@ -752,8 +744,7 @@ surprise.hints(
     "At the shorter of the two dead times, one of them responds and the other does not. If the model is first, the "
     "controller misses the response and opens the valve further. If the process is first, it closes it.",
     "The weight begins to rise at $\\theta$: read it above. Below there are two corners, one at $\\theta$ and one at "
-    "$\\theta_m$. "
-    "The guarantee asks that $|\\theta_m - \\theta| < T_C$.",
+    "$\\theta_m$. The guarantee asks that $|\\theta_m - \\theta| < T_C$.",
 )
 
 

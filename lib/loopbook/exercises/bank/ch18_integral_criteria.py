@@ -194,9 +194,8 @@ level.hints(
     "The error is $\\frac{1}{1 + L}$ times the setpoint. What is $L$ here?",
     "$L = K_c\\left(1 + \\frac{1}{T_i s}\\right)\\frac{{K}}{s}$. With $a = K K_c$ the error after the setpoint step is "
     "$\\frac{s}{s^2 + a s + a/T_i}$. After the load step the process comes first: $\\frac{-K}{s^2 + a s + a/T_i}$.",
-    "$a = {K} \\cdot {Kc}$. In the formula, $a_1 = a$ and $a_0 = a/T_i$. For the setpoint $b_1 = 1$ and $b_0 = 0$; "
-    "for the load "
-    "$b_1 = 0$ and $b_0 = -K$.",
+    "$a = {K} \\cdot {Kc}$. In the formula, $a_1 = a$ and $a_0 = a/T_i$. For the setpoint $b_1 = 1$ and $b_0 = 0$; for "
+    "the load $b_1 = 0$ and $b_0 = -K$.",
 )
 
 
@@ -296,8 +295,7 @@ conveyor.hints(
     "The crossover frequency is $K K_p$, and the dead time turns the phase there by $x$ (in radians). The least ISE is "
     "where the derivative of $\\frac{\\cos x}{2x\\,(1 - \\sin x)}$ vanishes.",
     "$x = {K} \\cdot {Kp} \\cdot {delay}$. The derivative vanishes where $x = \\cos x$: press the cosine key of a "
-    "calculator (in "
-    "radians) again and again.",
+    "calculator (in radians) again and again.",
 )
 
 
@@ -412,11 +410,10 @@ def _(K, T, delay, Kc, Ti):
 four_points.hints(
     "$\\Delta(s) = 0$ is a quadratic equation in $s^2$. What do its two roots mean?",
     "The negative root is $-\\omega^2$: at the crossover frequency $\\omega$ the open loop has the gain one. The "
-    "positive one is "
-    "$\\sigma^2$. The phase margin is $\\varphi = \\pi - \\omega\\theta - \\arctan\\omega T - "
+    "positive one is $\\sigma^2$. The phase margin is $\\varphi = \\pi - \\omega\\theta - \\arctan\\omega T - "
     "\\arctan\\frac{1}{\\omega T_i}$.",
-    "With $k = {K} \\cdot {Kc}$: $\\omega^2 = \\frac{\\sqrt{b^2 + 4 k^2 T^2 T_i^2} + b}{2 T^2 T_i^2}$ with "
-    "$b = T_i^2 (k^2 - 1)$, and $\\sigma^2$ with $-b$ instead of $b$. Then the formula of the section.",
+    "With $k = {K} \\cdot {Kc}$: $\\omega^2 = \\frac{\\sqrt{b^2 + 4 k^2 T^2 T_i^2} + b}{2 T^2 T_i^2}$ with $b = T_i^2 "
+    "(k^2 - 1)$, and $\\sigma^2$ with $-b$ instead of $b$. Then the formula of the section.",
 )
 
 
@@ -537,11 +534,9 @@ def _(K, T, delay):
 nearly_least.hints(
     "Begin with $T_i = T$: the lag is cancelled, and the loop is that of an integrator with dead time.",
     "Then only $x = \\frac{K K_c\\theta}{{T}}$ matters. The ISE is $\\theta\\,\\frac{\\cos x}{2x\\,(1 - \\sin x)}$, "
-    "least at 0.739, and a smaller "
-    "$x$ is more robust. How small may it be?",
+    "least at 0.739, and a smaller $x$ is more robust. How small may it be?",
     "Try a few values between 0.5, the cautious choice, and 0.739, with $K_c = x\\,\\frac{ {T} }{ {K} \\cdot {delay} "
-    "}$ and $T_i$ = {T}. "
-    "`margins` has $M_s$.",
+    "}$ and $T_i$ = {T}. `margins` has $M_s$.",
 )
 
 
@@ -695,11 +690,10 @@ for _name, _question in {
 areas.hints(
     "Between two corners the error is a straight line. Cut the picture into a rectangle and triangles.",
     "A triangle of width $b$ and height $h$ has the area $\\frac{bh}{2}$; squared it has $\\frac{b h^2}{3}$. "
-    "Multiplied with time it has its "
-    "area times the time of its centre of gravity, a third of the width from the upright side.",
-    "The first corner after the rectangle is where the error leaves 1. With $w$ for its time, the rectangle gives "
-    "$w$, $w$ and "
-    "$\\frac{w^2}{2}$ for the three. The next part is the triangle down to zero.",
+    "Multiplied with time it has its area times the time of its centre of gravity, a third of the width from the "
+    "upright side.",
+    "The first corner after the rectangle is where the error leaves 1. With $w$ for its time, the rectangle gives $w$, "
+    "$w$ and $\\frac{w^2}{2}$ for the three. The next part is the triangle down to zero.",
 )
 
 
