@@ -285,6 +285,12 @@ def test_sizes_do_not_narrow_the_key_down_by_asking_again():
     assert all(one[x] == other[x] for x in one.keys() & other.keys())
 
 
+def test_a_given_explains_a_factor_better_than_units_do():
+    case = Case(2.4, "%", "the term, in %", givens=[Amount(60, "s", "60 s")])
+    assert "as large as the 60 s" in found_in(0.04, case).says
+    assert "seconds and minutes" in found_in(0.04, Case(2.4, "%", "the term, in %")).says
+
+
 def test_amounts_read_well():
     case = Case(24, "s", "the time, in s", givens=[Amount(6, "s", "6 s"), Amount(5, "%", "5 %")])
     assert found_in(30, case).says == "that is 6 s times 5 %: is that the time, in s?"

@@ -172,12 +172,15 @@ def _complement(case):
                 yield case.key - whole, f"that is off by {what}: from where does the angle count?"
 
 
+def _as_large_as(given):
+    return f"it is off by a factor as large as the {given.words}: is that missing, or in it once too often?"
+
+
 def _with_given(case):
     for given in case.givens:
         if given.value not in (0, 1, -1):
-            says = f"it is off by a factor as large as the {given.words}: is that missing, or in it once too often?"
-            yield case.key * given.value, says
-            yield case.key / given.value, says
+            yield case.key * given.value, _as_large_as(given)
+            yield case.key / given.value, _as_large_as(given)
     for other in case.others:
         if other.value not in (0, 1, -1):
             says = f"it is off by a factor as large as {other.words}: is that missing, or in it once too often?"
@@ -186,7 +189,7 @@ def _with_given(case):
 
 
 _FACTORS = (
-    (2, "it is off by a factor of 2: is something the half or the double here, as an amplitude is half of a swing?"),
+    (2, "it is off by a factor of 2: does something count twice that counts once, or only half?"),
     (100, "it is off by a factor of 100: look at percent and fraction, or at a prefix such as centi"),
     (1000, "it is off by a factor of 1000: look at the units, at a prefix such as kilo or milli"),
     (60, "it is off by a factor of 60: look at the units, at seconds and minutes"),
@@ -216,6 +219,9 @@ def _rare_factor(case):
 
 def _times(case, factors):
     for factor, says in factors:
+        for given in case.givens:  # what is in the question explains more
+            if given.value in (factor, 1 / factor):
+                says = _as_large_as(given)
         yield case.key * factor, says
         yield case.key / factor, says
 
