@@ -26,7 +26,7 @@ from loopbook.figures import plane_plot, time_plot
     title="A kiln behind a resistor",
     points=2,
     where=lambda T_low, T_high, R, V: 6 <= 1000 * V / R <= 18 and abs(5 * T_low - T_high) >= 80 and T_high != 9 * T_low,
-    insight="A range that begins at 4 mA has a zero that lives: no current is no measurement, and not a cold kiln.",
+    insight="A range that begins at 4 mA has a live zero: no current means a broken cable, and not a cold kiln.",
 )
 def kiln(
     T_low=between(100, 400, "°C", reference=200, step=50),
@@ -394,6 +394,14 @@ def _():
     return {"ripple_formula": r"$\frac{q\,D\,(1 - D)\,P}{A}$"}
 
 
+@pump_sump.picture
+def _(q, D):
+    """The flow of the pump in three cycles: it runs for the share D of each."""
+    cycles = np.linspace(0, 3, 601)[:-1]
+    flow = np.where(cycles % 1 < float(D), float(q), 0.0)
+    return time_plot({"pump [L/s]": (flow, "control signal")}, cycles, xlabel="time in cycles, $t/P$", low=True)
+
+
 @pump_sump.solution_picture
 def _(A, q, D, ripple):
     """Three of the longest cycles: the level, and the pump."""
@@ -518,6 +526,14 @@ def _(full, T, D, P):
     return {
         "top": (top, "K"), "high": top, "a": a, "b": b, "highest": (highest, "K"), "lowest": (b * highest, "K")
     }  # fmt: skip
+
+
+@oven.picture
+def _(D, P):
+    """The power that the relay lets through in the first three cycles."""
+    times = np.linspace(0, 3 * float(P), 601)[:-1]
+    power = np.where(times % float(P) < float(D * P), 100.0, 0.0)
+    return time_plot({"power [%]": (power, "control signal")}, times, xlabel="$t$ [min]", low=True)
 
 
 @oven.solution_picture

@@ -663,6 +663,14 @@ def _(K, delay):
     return {"limit": f"{_limit(K, delay):g}\N{NO-BREAK SPACE}% min"}
 
 
+@between_two_and_four.picture
+def _(K, delay):
+    """What the level does after the valve has opened by 1 % at time zero: a dead time, and then a ramp."""
+    times = np.linspace(0, 5 * float(delay), 201)
+    rise = float(K) * np.maximum(times - float(delay), 0)
+    return time_plot({"rise of the level [%]": (rise, "measurement")}, times, xlabel="$t$ [min]", low=True)
+
+
 @between_two_and_four.mistake(
     "With $c = 4$ the overshoot is small enough, but the loop recovers too slowly from the load."
 )
@@ -729,9 +737,9 @@ def from_a_record(
     start=between(30, 90, "s", step=10, reference=60),
     noise=between(1, 999, step=1, reference=7),
 ):
-    """A plate cooler was in manual mode when somebody moved its valve. The controller has recorded it every 5 s, with
-    the noise of the thermometer. `t, u, y = exercise("10.8").given("t", "u", "y")` are the record: the times in
-    seconds, the valve opening in percent and the temperature in °C, each as an array.
+    """A plate heat exchanger was in manual mode when somebody moved its steam valve. The controller has recorded it
+    every 5 s, with the noise of the thermometer. `t, u, y = exercise("10.8").given("t", "u", "y")` are the record: the
+    times in seconds, the valve opening in percent and the temperature in °C, each as an array.
 
     Fit a lag with dead time to the record, by any method: give its gain, its time constant and its dead time. (With a
     ruler on the picture you come near; the arrays are for those who want to use all of the samples.)
@@ -856,9 +864,8 @@ def four_gains(
     P_u=between(20, 90, "s", step=5, reference=40),
     place=choice(2, 3, reference=2),
 ):
-    """The temperature of a wash bath is under P control. The operator tries four gains, one after the other, and each
-    time moves the setpoint a little: {tried}. The picture shows the record. The valve cannot do more than open and
-    close.
+    """The temperature of a wash bath is under P control. The operator tries four gains, {tried}, and moves the setpoint
+    a little each time. The picture shows the record. The valve cannot do more than open and close.
 
     Read the ultimate gain and the ultimate period off the record, and give the settings of Ziegler and Nichols for a
     **PI** controller ($K_p = 0.45\\,K_u$, $T_i = P_u/1.2$).
@@ -977,8 +984,8 @@ FAULTS = {
     title="Three loops, three typing errors",
     points=3,
     where=lambda first, second, third: len({first, second, third}) == 3,
-    insight="The period tells who oscillates: some four dead times mean too much gain, twice that too little integral "
-    "time.",
+    insight="The period tells why a loop oscillates: four to five dead times mean too much gain, twice as many too "
+    "short an integral time.",
 )
 def three_loops(
     ratio=choice(3, 4, 5, 6, reference=4),

@@ -1402,10 +1402,10 @@ def bottleneck(
     picture. One unit limits the whole plant, the filter in the pipe of {valve}, which can pass {capacity} at most. Each
     vessel has a level controller, LC1 to LC3, and one flow controller sets the production rate.
 
-    Today the flow controller is at {today}. All variations on the way to the filter reach it, so that the average
-    production must stay {margin} below what the filter can do. Where should the flow controller act, so that the filter
-    always works at its limit? Which valve does each level controller move then, if no two controllers may move the
-    same valve? And how many tonnes a day are gained?
+    Today the flow controller is at {today}. The level controllers pass all variations on to the filter, so that the
+    average production must stay {margin} below what it can do. Where should the flow controller act, so that the filter
+    always works at its limit? Which valve does each level controller move then, if no two controllers may move the same
+    valve? And how many tonnes a day are gained?
     """
     return answers(
         **{name: word(valve, VALVES, _moves(name)) for name, valve in around_the_filter(place).items()},
