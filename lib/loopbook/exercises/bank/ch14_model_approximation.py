@@ -99,6 +99,11 @@ def _(tau_2, tau_3, T_inv):
     return {"theta": T_inv + tau_2 / 2 + tau_3}
 
 
+@column.mistake("The lag that is halved has two halves: only one of them goes to the lag that is kept.")
+def _(tau_1, tau_2, tau_3, T_inv, theta_0):
+    return {"tau_1": tau_1 + tau_2, "theta": theta_0 + T_inv + tau_3}
+
+
 column.hints(
     "The half rule keeps the largest lag. Everything else that makes the process late has to go somewhere: where?",
     "The largest lag that is neglected is halved: one half goes to the lag that is kept, the other to the dead time. "
@@ -614,6 +619,18 @@ def _(K, tau, theta):
 @before_the_dead_time.mistake("The zero is there, but the denominator of Padé's fraction is missing.")
 def _(K, tau, theta):
     return {"y": K * (1 - (1 + theta / tau) * exp(-t / tau))}
+
+
+@before_the_dead_time.mistake("The fraction alone begins at minus one. What does the lag behind it do to such a jump?")
+def _(K):
+    return {"lowest": -K}
+
+
+@before_the_dead_time.mistake(
+    "At that time the exact dead time is over. When does the derivative of your response vanish?"
+)
+def _(theta):
+    return {"moment": theta}
 
 
 before_the_dead_time.hints(

@@ -80,6 +80,16 @@ def _(Tc):
     return {"time": Tc}
 
 
+@faster_tank.mistake("The lag of the tank is in the gain, too: compare the numerator of the controller term by term.")
+def _(K, T, Tc):
+    return {"controller": PID(1 / (K * Tc), T)}
+
+
+@faster_tank.mistake("After that time 5 % of the way are covered. How much is *left* when 95 % are?")
+def _(Tc):
+    return {"time": Tc * math.log(1 / 0.95)}
+
+
 faster_tank.hints(
     "Direct synthesis writes down the wish $M$ first, here a lag, and then solves for the controller.",
     "$G_c = \\frac{1}{G}\\,\\frac{M}{1 - M}$. For a lag as the wish, $\\frac{M}{1 - M}$ is $\\frac{1}{T_c s}$.",
@@ -182,6 +192,11 @@ def _(K, delay, Tc):
 )
 def _(K, delay, Tc):
     return {"controller": PID(1 / (K * (Tc + delay)), 2 * Tc + delay)}
+
+
+@level_offset.mistake("For the setpoint the integrating tank is enough. But who balances a load in front of it?")
+def _():
+    return {"offset": 0}
 
 
 level_offset.hints(
@@ -287,6 +302,16 @@ def _(margin):
 @uncertain_gain.mistake("That gain puts the loop on the limit of stability; the margin is what is left.")
 def _(K, T, delay):
     return {"controller": PID(float(T) * math.pi / (2 * float(K * delay)), T)}
+
+
+@uncertain_gain.mistake("Where the phase is $-180°$, $\\omega\\theta$ is $\\pi/2$ and not 1. How large is $|L|$ there?")
+def _(delay, margin):
+    return {"Tc": delay * (margin - 1)}
+
+
+@uncertain_gain.mistake("The integrator in the open loop takes a right angle as well.")
+def _(margin):
+    return {"phase_margin": 180 - 90 / margin}
 
 
 uncertain_gain.hints(

@@ -106,6 +106,16 @@ def _(K, T, delay):
     return {"load": float(K) * _uncontrolled(T, delay)} if K != 1 else {}
 
 
+@unavoidable.mistake("That is a loop as slow as the lag. How fast may a controller be about which nothing is said?")
+def _(T, delay):
+    return {"servo": delay + T / 2}
+
+
+@unavoidable.mistake("A ramp is only the beginning of the response: the lag bends it before the controller is felt.")
+def _(K, T, delay):
+    return {"load": K**2 * delay**3 / (3 * T**2)}
+
+
 unavoidable.hints(
     "Whatever a controller does, the signal feels it one dead time later. When does it know of the setpoint, and when "
     "of a load?",
@@ -214,6 +224,11 @@ def _(delay, Tc):
 @dairy.mistake("That is the integral of the error itself. A squared error fades twice as fast.")
 def _(delay, Tc):
     return {"ISE": delay + Tc}
+
+
+@dairy.mistake("When the dead time is over, the error begins to fade. It is not gone yet.")
+def _(delay):
+    return {"ISE": delay}
 
 
 dairy.hints(
@@ -447,6 +462,16 @@ def _(K, T, delay, load):
 @load_response.mistake("Count the time from the step of the load, not from the first action of the controller.")
 def _(T, delay):
     return {"time": float(T) * math.exp(-float(delay / T))}
+
+
+@load_response.mistake("So far the load would push if nobody did anything.")
+def _(K, load):
+    return {"largest": K * load}
+
+
+@load_response.mistake("The derivative vanishes earlier: what is left of the load's own exponential at that time?")
+def _(T, delay):
+    return {"time": 2 * delay + T}
 
 
 load_response.hints(

@@ -92,6 +92,11 @@ def _(delay, T):
     return {"by_ISE": _winner(-delay, -T / 2), "by_ITAE": _winner(-(delay**2) / 2, -(T**2))}
 
 
+@contest.mistake("For loop B this is the integral of the error itself: where has the factor of time gone?")
+def _(delay, T):
+    return {"ITAE": [delay**2 / 2, T]}
+
+
 contest.hints(
     "Write down both errors as functions of time first: one is a rectangle, the other an exponential.",
     "A: the integrals of 1 and of $t$, from 0 to $\\theta$. B: the integrals of $e^{-2t/T}$ and of $t\\,e^{-t/T}$, "
@@ -405,6 +410,12 @@ def _(K, T, delay, Kc, Ti):
 )
 def _(K, T, delay, Kc, Ti):
     return {"ISE": _ISE(K, T, 0, Kc, Ti)}
+
+
+@four_points.mistake("The integral term turns the phase, too. How much of a right angle is left of it at crossover?")
+def _(K, T, delay, Kc, Ti):
+    w, _ = _crossover(K, T, Kc, Ti)
+    return {"phase_margin": 180 - math.degrees(math.atan(w * float(T)) + w * float(delay))}
 
 
 four_points.hints(
