@@ -105,7 +105,7 @@ class SequentialChart(Kind):
         (says, *_), time = run.violated
         when = self.scenarios[scenario][0]
         begins = [when] if when else []
-        begins += [f"in batch {run.rounds + 1}"] if run.rounds else []
+        begins += [f"after {'the first round' if run.rounds == 1 else f'{run.rounds} rounds'}"] if run.rounds else []
         at = f"at t = {time:g}\N{NO-BREAK SPACE}s" if time else "from the beginning"
         return f"{', '.join([*begins, at])} {says}" + (f": {run.why}" if run.why else "")
 
@@ -126,10 +126,11 @@ class SequentialChart(Kind):
         if isinstance(found, str):
             return None
         (_, run), chart = found, self._chart(answer)
-        title = f"{run_title}: {self.hint(answer).partition(': ')[0]}" if run.violated else run_title
+        says = self.hint(answer).partition(": ")[0]
+        title = textwrap.fill(says[:1].upper() + says[1:] or run_title, 76)
         trends = [name for name, unit in self.inputs.items() if unit]
         switched = [name for name, unit in self.inputs.items() if not unit] + self.outputs
-        plot = sequence_trends(run, chart, trends, switched, title=textwrap.fill(title, 90), minutes=True)
+        plot = sequence_trends(run, chart, trends, switched, title=title, minutes=True)
         if run.violated and run.violated[1] <= run.times[-1]:
             for axes in plot.figure.axes:
                 axes.axvline(run.violated[1] / 60, color="black", linestyle=":", linewidth=1.2)
