@@ -993,6 +993,14 @@ def _(left):
     return {"gain_margin": 1 / _with_decay(left)[0]}
 
 
+@quarter_with_dead_time.mistake(
+    "That is $k\\theta$, a pure number. What stands between it and the gain of the controller?"
+)
+def _(K, T, delay, left):
+    x = _with_decay(left)[0]
+    return {"Kc": x} if abs(float(T / (K * delay)) - 1) > 0.05 else {}
+
+
 quarter_with_dead_time.hints(
     "The poles of the loop are where $1 + L(s) = 0$. The decay ratio fixes the quotient of $\\sigma$ and $\\omega$.",
     "From peak to peak, $e^{-\\sigma t}$ falls to $e^{-2\\pi\\sigma/\\omega}$. The two parts of $s = -k\\,e^{-\\theta "
