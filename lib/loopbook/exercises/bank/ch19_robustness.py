@@ -719,7 +719,8 @@ def _(k, r):
     "That is the distance from $-1$ along the axis. A gain multiplies: which factor brings the curve there?"
 )
 def _(k, r):
-    return {"gain_margin": 1 - float(k) * _crossings(float(r))[0][1]}
+    crossing = float(k) * _crossings(float(r))[0][1]
+    return {"gain_margin": 1 - crossing} if abs(crossing - 0.5) > 0.05 else {}
 
 
 @nyquist.mistake("That is a later crossing, further inside. Which crossing reaches $-1$ first as the gain grows?")
@@ -962,7 +963,7 @@ def _(delay, model):
     "There the response is half of its way. The dead time ends where the output begins to move at all."
 )
 def _(delay, T_c):
-    return {"delay": delay + log(2) * T_c}
+    return {"delay": delay + log(2) * T_c} if T_c > delay / 8 else {}
 
 
 @short_model.mistake("That is the first peak of the output, long after it has begun to move.")
@@ -1017,7 +1018,8 @@ def _(model):
     "The size of $M$ is also at most two, but that says nothing about small frequencies. Compare slopes."
 )
 def _(delay, model):
-    return {"T_safe": 2 * (delay - model)}
+    double = 2 * (delay - model)
+    return {"T_safe": double} if all(abs(double - other) > delay / 6 for other in (delay, model)) else {}
 
 
 short_model.hints(
