@@ -994,7 +994,7 @@ def _(left):
 
 
 @quarter_with_dead_time.mistake(
-    "That is $k\\theta$, a pure number. What stands between it and the gain of the controller?"
+    "That is $k\\theta$, a pure number. Which factors lead from it to the gain of the controller?"
 )
 def _(K, T, delay, left):
     x = _with_decay(left)[0]
