@@ -1138,6 +1138,12 @@ def _(h_1, h_2, reach, Kp, u_0):
     return {"u_end": u_0 + 100 * Kp * (h_2 - h_1) / reach}
 
 
+@new_level.mistake("That is the lowest control signal. Where is it when nothing moves any more?")
+def _(h_1, h_2, reach, Kp, zeta, per_percent, u_0):
+    _, _, control = _new_level(h_1, h_2, reach, Kp, zeta, per_percent, u_0)
+    return {"u_end": control.min()} if control.min() < 0.85 * u_0 else {}
+
+
 new_level.hints(
     "Times are counted from the step, and swings from the new setpoint. For the gain look at the very first moment: "
     "which of the two terms of the controller has had no time yet?",

@@ -1017,6 +1017,21 @@ def _(fault, m, D, K):
     return {"acceleration": drawn.subs({v_: y_, y_: v_}, simultaneous=True)} if fault != SWAPPED else {}
 
 
+def _misread(other):
+    """The formula of somebody who sees another fault than the diagram has."""
+
+    def found(fault, m, D, K):
+        return {"acceleration": _as_drawn(other, m, D, K)} if other != fault else {}
+
+    return found
+
+
+for _other in PLANTED:
+    find_the_fault.mistake("The diagram has one fault, and your formula another one. Read it block by block.")(
+        _misread(_other)
+    )
+
+
 FAULT_DOUBTS = {
     SIGN_OF_D: "Look at the sum where the inner loop arrives. Which sign is beside its arrow, and which one should be?",
     SIGN_OF_K: "Look at the sum where the outer loop arrives. Which sign is beside its arrow, and which one should be?",

@@ -184,7 +184,7 @@ def _(q, begin, duration):
     "4.3",
     title="Back to time",
     points=3,
-    where=lambda A, B, p, q: A != B and q >= p + 0.2,
+    where=lambda A, B, p, q: A != B and p + 0.2 <= q <= 8 * p,
     insight="Each pole is an exponential. Partial fractions only say how much there is of each.",
 )
 def back_to_time(
@@ -694,6 +694,11 @@ def _(end, T):
 @pole_by_ruler.mistake("What belongs to your transform ends at zero. Which pole keeps a signal at a value?")
 def _(start, end, T):
     return {"Y": (start - end) / (s + 1 / T)}
+
+
+@pole_by_ruler.mistake("Where does the signal that belongs to your transform begin? Add its two parts at $t = 0$.")
+def _(start, end, T):
+    return {"Y": end / s + (end - start) / (s + 1 / T)}
 
 
 @pole_by_ruler.mistake("What belongs to your transform runs away: one of its poles is on the right.")
