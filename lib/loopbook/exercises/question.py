@@ -14,7 +14,7 @@ from loopbook.exercises import filling
 from loopbook.exercises.asked_names import matched
 from loopbook.exercises.diagnoses import Background
 from loopbook.exercises.errors import ExerciseError
-from loopbook.exercises.judging import OPEN, UNJUDGED, WRONG, Verdict, harmless, judge
+from loopbook.exercises.judging import OPEN, UNJUDGED, Verdict, harmless, is_right, judge
 from loopbook.exercises.kinds import Kind, Word, Words
 from loopbook.exercises.parameters import call
 from loopbook.exercises.progress import is_answered, note, students
@@ -162,7 +162,7 @@ class Question(Showing):
         if all(verdict.status == OPEN for verdict in verdicts):
             return response
         self._answered += 1
-        self._bare += WRONG in {one.status for one in verdicts}
+        self._bare += any(one.is_bare for one in verdicts)
         note(self.exercise.number, self.student, response.is_right)
         return response.with_notes(*self._afterwards(response, {name: given[name] for name in judged}))
 
@@ -183,7 +183,7 @@ class Question(Showing):
             return None
         for student in students(self.exercise.number):
             other = self.exercise.question(student)
-            if other.values != self.values and all(_agrees(other.key[name], given[name]) for name in given):
+            if other.values != self.values and all(is_right(other.key[name], given[name]) for name in given):
                 return _person(student)
         return None
 
@@ -291,10 +291,6 @@ def _listed(names):
 
 def _person(student):
     return student or "everybody, without a name"
-
-
-def _agrees(kind, given):
-    return judge("", kind, given).is_right
 
 
 def _drawn(kind, given):

@@ -4,7 +4,7 @@ import itertools
 import math
 
 import numpy as np
-from sympy import Symbol, exp, symbols
+from sympy import Symbol, ceiling, exp, sqrt, symbols
 
 from loopbook import diagrams, signals
 from loopbook.exercises.authoring import (
@@ -512,10 +512,7 @@ def _left_point(u_0, u_full, points, d):
 
 def _fewest(u_0, u_full, e_max):
     """The fewest points of a table whose largest error is at most e_max."""
-    intervals = 1
-    while (u_full - u_0) / (4 * intervals**2) > e_max:
-        intervals += 1
-    return intervals + 1
+    return ceiling(sqrt((u_full - u_0) / (4 * e_max))) + 1
 
 
 @ship.mistake("A quarter of a period is an angle of 90°. How long is the third side of the triangle then?")

@@ -16,7 +16,7 @@ from loopbook.exercises.kinds.kind import Kind, literal, with_unit
 from loopbook.exercises.kinds.numeric import in_unit
 from loopbook.exercises.kinds.settings import Settings
 from loopbook.exercises.reading import Unreadable, alone, answered, listed, shortened, symbols_in
-from loopbook.expressions import exact, parse, s, t
+from loopbook.expressions import exact, parse, s
 
 if TYPE_CHECKING:
     from loopbook.types import Number
@@ -246,14 +246,15 @@ class TransferFunction(Expression):
                 )
         yield "there is a factor s too many: compare with the transform of a response to a step", self.expr * s
         yield "a factor s is missing in it, or it is the transform of a step response", self.expr / s
-        yield from _in_other_time(self.expr, s)
+        yield from _in_other_time(self, "s")
 
 
-def _in_other_time(expr, variable):
+def _in_other_time(kind, variable):
     """The same with another unit of time, seconds and minutes or minutes and hours exchanged, or milliseconds."""
     for factor in (60, 3600, 1000):
-        for scale in (sympy.Integer(factor), sympy.Rational(1, factor)):
-            yield "its unit of time is not the one in the question", expr.subs(variable, scale * variable)
+        for scale in (f"{factor}", f"(1/{factor})"):
+            text = re.sub(rf"\b{variable}\b", f"({scale}*{variable})", kind.key.text)
+            yield "its unit of time is not the one in the question", Formula(text, kind.symbols)
 
 
 def _pade(x, order):
@@ -334,7 +335,7 @@ class TimeFunction(Expression):
         """Wrong sign."""
         yield "that is right except for its sign", -self.expr
         yield from self._in_other_units()
-        yield from _in_other_time(self.expr, t)
+        yield from _in_other_time(self, "t")
 
     def agrees(self, answer: Any) -> bool:
         """Whether the values, and their changes, differ by no more than a fraction of the largest one.
@@ -344,6 +345,8 @@ class TimeFunction(Expression):
         """
         values = [one if isinstance(one, np.ndarray) else one(**self.points()) for one in (self.key, answer)]
         expected, found = np.broadcast_arrays(*values, self.times)[:2]
+        if not np.isfinite(expected).any():
+            return False
         if not self._near(expected, found, np.asarray, 1):
             return False
         return self._near(np.where(np.isfinite(found), expected, np.nan), found, _changes, 2)
