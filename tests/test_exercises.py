@@ -321,6 +321,7 @@ def test_hints_and_the_solution_are_complete(exercise):
             assert text.count("$") % 2 == 0
             assert not re.search(r"(?<![\\\w}_^{])\{[a-z]\w+\}", re.sub(r"\$\$?.*?\$\$?", "", text, flags=re.S)), text
             assert not re.search(r"\bnan\b|\bNone\b|<function", text)
+            assert not re.search(r"\\(d?frac|sqrt|mathrm|text)\s?[0-9.]", text), "a brace of LaTeX was taken for a place"
         for name, kind in question.key.items():
             if isinstance(kind, kinds.Number):
                 assert filling.shown(kind.key).inside in solution, f"{name} is not in the solution"

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 MIME_TYPE = "application/vnd.loopbook.response+json"
 
 #: What drawing an answer may take (s).
-SECONDS = 2
+SECONDS = 5
 
 #: A sign and a colour for each status, as in the ledger's tables.
 MARKS = {
@@ -57,6 +57,8 @@ class Response(Showing):
     @property
     def pictures(self) -> Sequence[Any]:
         """The figures of the answers: what a design does. What cannot be drawn has none."""
+        if self.drawings:
+            import matplotlib.figure  # noqa: F401 - the limit below must not cut off its import
         pictures = []
         for draw in self.drawings:
             with contextlib.suppress(ArithmeticError, ValueError, TimeoutError):
