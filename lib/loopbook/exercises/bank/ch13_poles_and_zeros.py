@@ -245,7 +245,8 @@ def _(before, after, percent):
 
 @swinging_loop.mistake("The decay ratio is a ratio: the second peak to the first one. How high is the first one?")
 def _(before, after, percent):
-    return {"second_peak": (percent / 100) ** 2} if abs(percent * (after - before) - 100) > 5 else {}
+    is_another = after - before != 1 and abs(percent * (after - before) - 100) > 5
+    return {"second_peak": (percent / 100) ** 2} if is_another else {}
 
 
 @swinging_loop.mistake("That is the pressure itself at the second peak. How far is it above the setpoint?")
@@ -979,7 +980,8 @@ def _(x):
     "That is the shortest distance from $-1$. If the curve of $L$ crosses the real axis there, at which point is that?"
 )
 def _(x):
-    return {"gain_margin": 1 / _largest(x)}
+    Ms = _largest(x)
+    return {"gain_margin": 1 / Ms} if abs((Ms + 1) / Ms**2 - 1) > 0.1 else {}
 
 
 @sensitivity_peak.mistake("That is half of the angle: the point $-1$ and the curve are on either side of its bisector.")
@@ -1171,7 +1173,7 @@ def _(kind, q):
 
 @modes.mistake("That is one over the size of the eigenvalue. Only its real part decides how fast the mode changes.")
 def _(kind, p, q):
-    return {"time_constant": 1 / sympy.sqrt(p**2 + q**2)} if kind == "oscillating" else {}
+    return {"time_constant": 1 / sympy.sqrt(p**2 + q**2)} if kind == "oscillating" and 4 * p > q else {}
 
 
 @modes.mistake("That is the period of the oscillation. In which time does its amplitude change by the factor $e$?")
