@@ -321,8 +321,16 @@ def test_hints_and_the_solution_are_complete(exercise):
             assert text.count("$") % 2 == 0
             assert not re.search(r"(?<![\\\w}_^{])\{[a-z]\w+\}", re.sub(r"\$\$?.*?\$\$?", "", text, flags=re.S)), text
             assert not re.search(r"\bnan\b|\bNone\b|<function", text)
-            assert not re.search(r"\\(d?frac|sqrt|mathrm|text)\s?[0-9.]", text), "a brace of LaTeX was taken for a place"
+            assert not re.search(r"\\(d?frac|sqrt|mathrm|text)\s?[0-9.]", text), (
+                "a brace of LaTeX was taken for a place"
+            )
         for name, kind in question.key.items():
+            value = filling.shown(kind.shown).inside
+            if len(re.sub(r"\D", "", value)) > 2 and value not in question.statement:  # a small number may be any
+                told = [
+                    rung for rung in rungs[: len(exercise.rungs)] if re.search(rf"(?<![\d.]){re.escape(value)}", rung)
+                ]
+                assert not told, f"a hint tells {name}"
             if isinstance(kind, kinds.Number):
                 assert filling.shown(kind.key).inside in solution, f"{name} is not in the solution"
             if isinstance(kind, kinds.Word):
