@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 
 from judged import assert_judged
+from loopbook import s
 from loopbook.exercises.authoring import settings
 from loopbook.exercises.judging import MISTAKE, RIGHT, UNJUDGED, WRONG
 from loopbook.pid import PID
 
 PI = settings(PID(2, Ti=10), gain="%/K", what="the settings")
 PARALLEL = settings(PID(2.5, Ti=10, Td=1.6), gain="%/K", what="the settings", form="parallel")
+SERIAL = settings(PID(2, Ti=8, Td=2, form="serial"), form="serial")
 ANY = settings(PID(2.5, Ti=10, Td=1.6), gain="%/K", what="the settings")
 
 JUDGED = [
@@ -57,6 +59,12 @@ JUDGED = [
             "pid(2, 10)",
             "Kp=2 Ti=10",
             "P = 2, Ti = 10.",
+            "PI with Kp = 2 and Ti = 10 s",
+            "a PI controller with gain 2 %/K and integral time 10 s",
+            "PI, Kc = 2, tau_I = 10",
+            "gain of 2 and integral time of 10 s",
+            "Kp 2 Ti 10",
+            "Kp = 2 / Ti = 10 s",
         )
     ),
     *(
@@ -84,6 +92,62 @@ JUDGED = [
             {"Kc": 2.5, "tau_I": 10, "tau_D": 1.6},
         )
     ),
+    # the form in words
+    *(
+        (PARALLEL, text, RIGHT, "right")
+        for text in (
+            "2.5, 10, 1.6 (parallel)",
+            "Kp = 2.5, Ti = 10, Td = 1.6, in parallel form",
+            "PID(2.5, 10, 1.6), ideal",
+        )
+    ),
+    *((ANY, text, RIGHT, "right") for text in ("2, 8, 2, serial form", "Kp = 2; Ti = 8; Td = 2 (series form)")),
+    # transfer functions with numbers
+    *(
+        (PI, one, RIGHT, "right, read as Kp = 2\N{NO-BREAK SPACE}%/K, Ti = 10\N{NO-BREAK SPACE}s")
+        for one in (
+            2 * (1 + 1 / (10 * s)),
+            "2*(1+1/(10*s))",
+            "2(1 + 1/(10 s))",
+            "2 + 0,2/s",
+            "C(s) = 2(10s+1)/(10s)",
+            r"2\left(1+\frac{1}{10s}\right)",
+            "2000(s/100 + 0.001)/(10 s)",
+            PID(2, Ti=10).expr,
+        )
+    ),
+    *(
+        (ANY, one, RIGHT, "Td = 1.6\N{NO-BREAK SPACE}s, parallel form")
+        for one in (PID(2.5, 10, 1.6).expr, PID(2, 8, 2, form="serial").expr, "2.5(1 + 1/(10s) + 1.6s)")
+    ),
+    (SERIAL, "2.5*(1 + 1/(10*s) + 1.6*s)", RIGHT, "right, read as Kp = 2, Ti = 8\N{NO-BREAK SPACE}s"),
+    (SERIAL, "2.5*(1 + 1/(3*s) + 1.6*s)", WRONG, ""),  # of which there is no serial form
+    *(
+        (settings(PID(2, Ti, Td, 0.1 * Td)), PID(2, Ti, Td, 0.1 * Td).expr, RIGHT, "Tf")
+        for Ti, Td in ((0.01, 0.002), (10, 1.6), (4000, 900))
+    ),
+    (PI, "2 + 0.1/s", MISTAKE, "Kp is right; Ti: it is off by a factor of 2"),
+    (PI, "2(1 + 1/10s)", UNJUDGED, "may be .../(10*s)"),
+    *(
+        (PI, one, UNJUDGED, "no controller")
+        for one in (
+            "2*s",
+            "1/s",
+            "2*(1 + 1/(-10*s))",
+            "2*(1 + 1/(10*s))**2",
+            "K*(1 + 1/s)",
+            "2*exp(-s)/s",
+            "s/(1 - s)",
+            "1/(s - 1.3)",
+            "0*s",
+            "1/(s*s*s*s*s*s*s*s*s)",
+            s**900,
+            "sqrt(-1)*(1 + 1/s)",
+        )
+    ),
+    # what was read is said of all settings
+    (PI, "Kp = 2,0 %/K, Ti = 10 s", RIGHT, "right, read as Kp = 2\N{NO-BREAK SPACE}%/K, Ti = 10\N{NO-BREAK SPACE}s"),
+    (PI, {"Kc": "2", "Ti": "1/6 min"}, RIGHT, "right, read as Kp = 2\N{NO-BREAK SPACE}%/K, Ti = 10\N{NO-BREAK SPACE}s"),
     *(
         (PI, text, UNJUDGED, "no controller")
         for text in ("Kp = 2, Kp = 3, Ti = 10", "2", "PI", "good settings", "Ti = 10", "I: 10", "2 or 10")

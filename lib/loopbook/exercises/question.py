@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from loopbook.exercises import filling
-from loopbook.exercises.asked_names import matched
+from loopbook.exercises.asked_names import as_asked, by_name
 from loopbook.exercises.diagnoses import Background
 from loopbook.exercises.errors import ExerciseError
 from loopbook.exercises.judging import OPEN, UNJUDGED, Verdict, harmless, is_right, judge
@@ -140,12 +140,10 @@ class Question(Showing):
         Raises nothing: what cannot be judged is said in the response.
         """
         names, notes = list(self.key), []
-        if alone and len(names) == len(alone) == 1 and not given:
-            given = {names[0]: alone[0]}
-        elif alone:
+        named = by_name(alone[0], self.key) if len(alone) == 1 and not given else {}
+        if alone and not named:
             notes.append(f"give the answers by their names: {_listed(names)}")
-        meant = matched(given, names)
-        given = {meant.get(name, name): answer for name, answer in given.items()}
+        given = as_asked(given | named, self.key)
         for name in given:
             if name not in names:
                 hint = did_you_mean(name, names, otherwise=f"asked is {_listed(names)}")

@@ -7,9 +7,11 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 import sympy
 
 from loopbook.exercises import notation, units
+from loopbook.exercises.formulas import Formula
 from loopbook.exercises.kinds.kind import Kind, literal, with_unit
 from loopbook.exercises.kinds.numeric import in_digits, near, one_number
 from loopbook.exercises.notation import bare
@@ -68,51 +70,44 @@ class Settings(Kind):
         """Return a `PID` of exact numbers; from a PID, a dictionary of its settings, a list Kp, Ti, Td, Tf, or a text.
 
         A dictionary may say the form too, {"Kp": 2, "Ti": 8, "Td": 2, "form": "serial"}, and use the names of other
-        books. The gains Ki and Kd of a controller whose terms are added become times.
+        books. The gains Ki and Kd of a controller whose terms are added become times. A transfer function with numbers,
+        2*(1 + 1/(10*s)), is recognised as well.
         """
-        said = ""
-        if isinstance(answered(given), PID):
-            parts, form = {name: getattr(given, name) for name in NAMES}, given.form
-        else:
-            form = self._understood
-            if isinstance(given, str):
-                given = _of_text(given)
-            elif isinstance(alone(given), dict):
-                given = alone(given)
-            row = listed_in(given) if isinstance(given, str) else in_a_row(alone(given))
-            if row is not None and 2 <= len(row) <= 4:
-                given = dict(zip(NAMES, row, strict=False))
-            if isinstance(given, dict):
-                given, said = _by_our_names(given)
-                form = given.pop("form", form)
-            if not isinstance(given, dict) or not {"Kp"} <= given.keys() or (unknown := _unknown(given)):
-                why = (
-                    f"{unknown} is not a setting"
-                    if isinstance(given, dict) and "Kp" in given
-                    else "this is no controller"
-                )
-                raise Unreadable(f"{why}: expected {self.expected}")
-            parts = _USUAL | given
-        remarks, numbers = set(), {}
-        for name, value in parts.items():
-            value = alone(value)
+        if controller := _of_transfer_function(answered(given)):
+            controller = self._in_asked_form(controller)
+            return controller, f"read as {self.written(controller)}"
+        parts, remark = parts_of(given)
+        if parts is None or "Kp" not in parts:
+            raise Unreadable(_doubt(given) or f"this is no controller: expected {self.expected}")
+        if unknown := _unknown(parts):
+            raise Unreadable(f"{unknown} is not a setting: expected {self.expected}")
+        form, parts = parts.get("form", self._understood), _USUAL | parts
+        remarks, numbers = {remark}, {}
+        for name in NAMES:
+            value = alone(parts[name])
             if name == "Ti" and _is_infinite(value):
                 numbers[name] = sympy.oo
                 continue
-            if name in ("Ki", "Kd"):
-                continue
-            value, remark = one_number(value, self.gain if name == "Kp" else self.time, f"a number for {name}")
+            value, said = one_number(value, self.gain if name == "Kp" else self.time, f"a number for {name}")
             if value.imag:
                 raise Unreadable(f"{name} is a complex number: expected {self.expected}")
             numbers[name] = value.real
-            remarks.add(remark)
-        for name, value in _times(parts, numbers.get("Kp"), self.expected).items():
-            numbers[name] = value
-            said = ", ".join(filter(None, [said, f"{name} = {in_digits(value)} from the gain K{name[1]}"]))
+            remarks.add(said)
+        times = _times(parts, numbers["Kp"], self.expected)
+        from_gains = [f"{name} = {in_digits(value)} from the gain K{name[1]}" for name, value in times.items()]
         try:
-            return PID(**numbers, form=form), ", ".join(filter(None, [said, max(remarks, default="")]))
+            controller = PID(**numbers | times, form=form)
         except ValueError as error:
             raise Unreadable(str(error)) from None
+        as_read = [f"read as {self.written(controller)}"] if any(remarks) and not from_gains else []
+        return controller, ", ".join((*as_read, *from_gains))
+
+    def _in_asked_form(self, pid):
+        """A controller in the parallel form as it is asked for, where a formula does not say a form."""
+        try:
+            return pid.serial() if self.form == "serial" else pid
+        except ValueError:
+            return pid
 
     def as_code(self, answer: PID | None = None) -> str:
         """The settings in a dictionary, with the form where it is not understood."""
@@ -216,13 +211,53 @@ LONGEST = 300
 _OTHER_NAMES = {
     "kp": "Kp", "kc": "Kp", "k": "Kp", "gain": "Kp", "p": "Kp", "ti": "Ti", "taui": "Ti", "td": "Td", "taud": "Td",
     "tf": "Tf", "tauf": "Tf", "form": "form", "ki": "Ki", "kd": "Kd", "integraltime": "Ti", "derivativetime": "Td",
-    "proportionalgain": "Kp", "controllergain": "Kp", "integralgain": "Ki", "derivativegain": "Kd",
+    "proportionalgain": "Kp", "controllergain": "Kp", "integralgain": "Ki", "derivativegain": "Kd", "resettime": "Ti",
 }  # fmt: skip
-_CALL = re.compile(r"(?:PID?|PD|P|controller|settings)? ?\((.*)\)", re.IGNORECASE | re.DOTALL)
+_CONTROLLER = r"(?:(?:an?|the) )?(?:PID?|PD|P|controller|settings)(?:[ -](?:controller|settings))?"
+_CALL = re.compile(rf"(?:{_CONTROLLER})? ?\((.*)\)", re.IGNORECASE | re.DOTALL)
+#: The kind of controller before its settings: "PI with", "a PI controller:".
+_LEAD = re.compile(
+    rf"{_CONTROLLER}(?: ?:| with(?: the)?(?: settings)?:?|,)? (?=[^\W\d][^=:]*(?:[=:≈]| is | of ))", re.IGNORECASE
+)
+_FORM = re.compile(r"[,;]? ?\(?(?:in )?(?:the )?(serial|series|cascade|parallel|ideal)(?: form)?\)?$", re.IGNORECASE)
+#: A name before a number, without a sign between them: "gain 2".
+_NAME_ALONE = re.compile(
+    r"(?<!\w)(K_?[pc]|T_?[id]|tau_?[id]|(?:(?:proportional|controller) )?gain|(?:integral|derivative|reset) time)"
+    r" (?=[-+]?[\d.])",
+    re.IGNORECASE,
+)
 _PAIR = re.compile(
     r"(?P<name>[^\W\d]\w*(?:_?\{\w+\})?(?: (?:gain|time))?) ?(?:=|:|≈| is | of )\s*(?P<value>.*?)"
-    r"(?=\s*(?:[;\n]|,(?!\d)|,? and\b|\Z|[,\s]\s*[^\W\d]\w*(?: (?:gain|time))?\s*(?:=|:|≈| is | of )))"
+    r"(?=\s*(?:[;\n]|,(?!\d)|,? and\b|\Z|[,\s/]\s*[^\W\d]\w*(?: (?:gain|time))?\s*(?:=|:|≈| is | of )))"
 )
+
+
+def parts_of(given: object) -> tuple[dict[str, Any] | None, str]:
+    """Return the settings in an answer as they were given, {"Kp": 2, "Ti": "10 s"}, and a remark on other names.
+
+    None where there is no row of two to four settings, no dictionary of them, no `PID`, and no text that says them.
+
+    >>> parts_of("PI with K_c = 2 and tau_I = 10 s")
+    ({'Kp': '2', 'Ti': '10 s'}, 'read K_c as Kp and tau_I as Ti')
+    """
+    if isinstance(given, PID):
+        return {name: getattr(given, name) for name in NAMES} | {"form": given.form}, ""
+    given = _of_text(given) if isinstance(given, str) else alone(given)
+    if not isinstance(given, dict):
+        row = listed_in(given) if isinstance(given, str) else in_a_row(given)
+        if row is None or not 2 <= len(row) <= len(NAMES):
+            return None, ""
+        given = dict(zip(NAMES, row, strict=False))
+    return _by_our_names(given)
+
+
+def setting(name: str) -> str:
+    """Return which setting a name stands for, here or in other books; empty for another name.
+
+    >>> setting("K_c"), setting("tauI"), setting("omega")
+    ('Kp', 'Ti', '')
+    """
+    return _OTHER_NAMES.get(bare(name).replace("{", "").replace("}", ""), "")
 
 
 def _of_text(text):
@@ -236,10 +271,10 @@ def _of_text(text):
         text = " ".join(notation.from_latex(text).split()).rstrip(".")
     except notation.Ambiguous:
         return None
+    form = _FORM.search(text)
+    text = _FORM.sub("", text)
     call = _CALL.fullmatch(text)
-    inside = (
-        call[1] if call else text.removeprefix("PID: ").removeprefix("PI: ").removeprefix("PID ").removeprefix("PI ")
-    )
+    inside = call[1] if call else _LEAD.sub("", _NAME_ALONE.sub(r"\1 = ", text), count=1)
     inside = inside.replace("'", "").replace('"', "")
     named = {}
     for pair in _PAIR.finditer(inside):
@@ -248,22 +283,23 @@ def _of_text(text):
         named[pair["name"]] = pair["value"]
     first = inside[: pair.start()] if (pair := _PAIR.search(inside)) else inside
     left = _PAIR.sub("", inside[len(first) :])
-    if not re.fullmatch(r"(?:[\s,;]|and)*", left):
+    if not re.fullmatch(r"(?:[\s,;/]|and)*", left):
         return None
     alone = [part for part in listed_in(first.strip(" ,;")) if part] if first.strip(" ,;") else []
-    if not named and not call and not re.search("[=:]", text):
+    if not named and not call and not form and not re.search("[=:]", text):
         return text
     positional = dict(zip(NAMES, alone, strict=False))
-    if (alone and not call) or len(alone) > len(NAMES) or positional.keys() & named.keys():
+    if (alone and not (call or (form and not named))) or len(alone) > len(NAMES) or positional.keys() & named.keys():
         return None
-    return positional | named
+    said = {"form": "parallel" if form[1].lower() in ("parallel", "ideal") else "serial"} if form else {}
+    return positional | named | said
 
 
 def _by_our_names(given):
     """A dictionary under the names Kp, Ti, Td, Tf, Ki, Kd and form, and a remark where it was under others."""
     found, others = {}, []
     for name, value in given.items():
-        ours = _OTHER_NAMES.get(bare(str(name)).replace("{", "").replace("}", ""), str(name))
+        ours = setting(str(name)) or str(name)
         if ours in found:
             raise Unreadable(f"there are two values for {ours}: expected one")
         found[ours] = value
@@ -272,9 +308,60 @@ def _by_our_names(given):
     return found, f"read {listed(others)}" if others else ""
 
 
+#: Values of s, at which each of three terms and a filter shows itself beside the others.
+_POINTS = np.geomspace(1e-6, 1e3, 30)
+
+
+def _of_transfer_function(given):
+    """The settings, in parallel form, of a transfer function with numbers; None where it is no PID controller.
+
+    Times s and with the filter's denominator it is a polynomial, c0 + c1 s + c2 s².
+    """
+    if isinstance(given, PID | dict) or in_a_row(given) is not None:
+        return None
+    try:
+        formula = Formula(given, "s")
+    except Unreadable:
+        return None
+    if not re.search(r"\bs\b", formula.text):  # a number alone tells no controller
+        return None
+    times_s = _POINTS * formula(s=_POINTS)
+    if not np.isfinite(times_s).all() or np.any(times_s.imag) or not np.all(times_s):
+        return None
+    terms = np.stack([_POINTS**0, _POINTS, _POINTS**2, -_POINTS * times_s.real]) / times_s.real
+    for count in (3, 4):  # without a filter, or with one
+        size = np.abs(terms[:count]).max(axis=1)
+        parts = np.linalg.lstsq((terms[:count].T / size), np.ones(len(_POINTS)), rcond=None)[0]
+        if np.allclose(terms[:count].T @ (parts / size), 1, rtol=0, atol=1e-8):
+            parts[np.abs(parts) < 1e-8] = 0
+            return _with_terms(*map(float, parts / size), *[0.0][: 4 - count])
+    return None
+
+
+def _doubt(given):
+    """What is asked about a formula in s that has several readings; empty for anything else."""
+    try:
+        Formula(given, "s")
+    except Unreadable as doubt:
+        return str(doubt) if isinstance(given, str) and re.search("may be|needs? brackets", str(doubt)) else ""
+    return ""
+
+
+def _with_terms(c0, c1, c2, Tf):
+    Kp = c1 - c0 * Tf
+    try:
+        return PID(_rounded(Kp), _rounded(Kp / c0) if c0 else sympy.oo, _rounded(c2 / Kp - Tf), _rounded(Tf))
+    except (ValueError, ArithmeticError):  # a negative time, or no gain
+        return None
+
+
+def _rounded(value):
+    return float(f"{value:.8g}")
+
+
 def _unknown(given):
     """A name that is no setting; empty where there is none."""
-    known = {*NAMES, *(gain for gain, time in (("Ki", "Ti"), ("Kd", "Td")) if time not in given)}
+    known = {*NAMES, "form", *(gain for gain, time in (("Ki", "Ti"), ("Kd", "Td")) if time not in given)}
     return min((str(name) for name in given if name not in known), default="")
 
 
