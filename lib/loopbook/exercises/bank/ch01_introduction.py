@@ -5,6 +5,7 @@ import math
 import numpy as np
 from sympy import Rational
 
+from loopbook import diagrams as draw
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -17,6 +18,7 @@ from loopbook.exercises.authoring import (
     time_function,
     word,
 )
+from loopbook.exercises.parameters import written
 from loopbook.expressions import t
 from loopbook.figures import plane_plot, time_plot
 from loopbook.pid import PID
@@ -220,6 +222,11 @@ def _(plant, page):
     return reasons | {f"part_{name}": ROLES[role] for name, role in roles.items()}
 
 
+def _apart(value, *others):
+    """Whether the value of a mistake differs clearly from the key and from the values of other mistakes."""
+    return all(abs(value - other) > abs(other) * 3 / 100 for other in others)
+
+
 def _pressure(low, high, I):
     return low + (I - 4) * (high - low) / 16
 
@@ -239,8 +246,8 @@ def error_in_units(
     I=between(8, 16, "mA", reference=10.4, step=0.4),
     p_SP=between(4, 10, "bar", reference=7, step=0.5),
 ):
-    """A compressed-air network should be at {p_SP}. Its pressure transmitter sends 4 mA at {low} and 20 mA at
-    {high}, with a straight line in between. Now it sends {I}, without any noise.
+    """A controller keeps the pressure in a compressed-air network, whose setpoint is {p_SP}. The transmitter sends
+    4 mA at {low} and 20 mA at {high}, with a straight line in between. Now it sends {I}, without any noise.
 
     What is the pressure, and what is the control error $e$, in bar and in percent of the measurement range? The
     control signal sets the speed of the compressor. Which way does a controller with positive gain move it, compared
@@ -253,6 +260,23 @@ def error_in_units(
         e_percent=number(100 * (p_SP - p) / (high - low), "%", "the control error in percent of the range"),
         u=word("up" if p_SP > p else "down", ["up", "down"], what="the direction of the control signal"),
     )
+
+
+@error_in_units.picture
+def _(low, high, I, p_SP):
+    """The loop: transmitter PT, {low} to {high}, sends {I} to controller PC, which moves the compressor."""
+    layout = """
+        .    .           setpoint  .  range    .
+        .    1           PC        I  PT       .
+        air  compressor  .         .  network  consumers"""
+    parts = {"compressor": draw.compressor(), "network": draw.vessel()}
+    names = {
+        "setpoint": f"${written(p_SP)}$ bar",
+        "I": f"${written(I)}$ mA",
+        "range": f"${written(low)}$ to ${written(high)}$ bar",
+    }
+    pipes, signals = "air compressor network consumers", "network PT I PC 1 compressor, setpoint PC"
+    return draw.instrumentation_diagram(layout, pipes, signals, parts, names)
 
 
 @error_in_units.mistake("Look again at the current for the lower end of the range: it is not zero.")
@@ -271,20 +295,20 @@ def _(low, high, I, p_SP):
 def _(low, high, I, p_SP):
     p, from_zero = low + (I - 4) * (high - low) / 20, (I - 4) * (high - low) / 16
     found = {"p": p, "e": p_SP - p, "e_percent": 100 * (p_SP - p) / (high - low)}
-    return found if abs(p / from_zero - 1) > 0.03 else {}
+    return found if _apart(p, from_zero) else {}
 
 
 @error_in_units.mistake("That is a percentage of the setpoint. What percentage of the measurement range is it?")
 def _(low, high, I, p_SP):
-    e = p_SP - _pressure(low, high, I)
-    wrong = 100 * e / p_SP
-    others = [100 * e / (high - low), 100 * e / high, 100 * (e + low) / (high - low)]
-    return {"e_percent": wrong} if all(abs(wrong / other - 1) > 0.03 for other in others) else {}
+    e, span = p_SP - _pressure(low, high, I), high - low
+    others = [e / span, e / high, (e + low) / span, (p_SP - low) / span - I / 20, (p_SP - low) / span - (I - 4) / 20]
+    return {"e_percent": 100 * e / p_SP} if _apart(e / p_SP, *others) else {}
 
 
 @error_in_units.mistake("The range does not begin at zero. How wide is it?")
 def _(low, high, I, p_SP):
-    return {"e_percent": 100 * (p_SP - _pressure(low, high, I)) / high}
+    e, span = p_SP - _pressure(low, high, I), high - low
+    return {"e_percent": 100 * e / high} if _apart(e / high, (p_SP - low) / span - (I - 4) / 20) else {}
 
 
 @error_in_units.mistake(
@@ -343,10 +367,10 @@ def bunker(
     w_0=between(12, 40, "kg/s", reference=24, step=2),
     change=choice(-40, -30, -25, -20, 10, 15, 20, 25, 30, 40, 50, unit="%", reference=25),
 ):
-    """A vibrating feeder drops gravel onto a belt of {length} that runs at {speed} and ends above a bunker. The
-    flow through the feeder is proportional to its control signal. For a long time the signal has been {u_0}, as
-    much gravel has arrived as is drawn from the bunker, {w_0}, and the level has been at its setpoint. Then the
-    flow out of the bunker {event}, for good.
+    """A feeder drops gravel onto a belt of {length} that runs at {speed}. The flow through the feeder is proportional
+    to its control signal. For a long time all has been as in the picture: as much gravel arrives as is drawn from the
+    bunker, {w_0}, with a control signal of {u_0}, and the level is at its setpoint. Then the flow out of the bunker
+    {event}, for good.
 
     How long is the time delay of the belt? By how much does the mass in the bunker change within this time,
     whatever the controller does? (A loss is negative.) Which way does the level go first? And where does the
@@ -364,6 +388,23 @@ def bunker(
 @bunker.shows
 def _(change):
     return {"event": f"{'grows' if change > 0 else 'drops'} by {abs(change)} %"}
+
+
+@bunker.picture
+def _(length, speed, u_0, w_0):
+    """A feeder, a belt of {length} at {speed}, and a bunker, from which {w_0} leave; its level controller moves the
+    feeder, with a control signal of {u_0}."""
+    layout = """
+        .       1       u     .     .       LC
+        gravel  feeder  .     .     .       .
+        .       belt    belt  belt  2       .
+        .       .       .     .     bunker  LT
+        .       .       .     .     3       out"""
+    belt = draw.conveyor(f"${written(length)}$ m at ${written(speed)}$ m/s")
+    parts = {"feeder": "Feeder", "belt": belt, "bunker": draw.silo()}
+    names = {"u": f"${written(u_0)}\\,\\%$", "out": f"${written(w_0)}$ kg/s"}
+    pipes, signals = "gravel feeder belt 2 bunker 3 out", "bunker LT LC u 1 feeder"
+    return draw.instrumentation_diagram(layout, pipes, signals, parts, names)
 
 
 @bunker.mistake(
@@ -463,9 +504,9 @@ def left_alone(
     q=between(6, 15, "L/s", reference=10),
     more=between(2, 8, "L/s", reference=5, step=0.5),
 ):
-    r"""The fire-water tank of a harbour has upright walls and a cross-section of {A}. A pump keeps its level at
-    {h_0}: it delivers {q}, as much as is drawn. At $t = 0$ somebody opens one more hydrant, which takes {more}, and
-    nobody touches the pump.
+    r"""The fire-water tank of a harbour has upright walls and a cross-section of {A}. Its level is at {h_0}, and stays
+    there as long as the pump delivers as much as is drawn, {q}. At $t = 0$ somebody opens one more hydrant, which takes
+    {more}, and nobody touches the pump.
 
     How does the level $h(t)$ [m] continue, with $t$ in seconds, until the tank is empty? And when does it reach the
     alarm at {h_low}?
@@ -475,6 +516,27 @@ def left_alone(
         h=time_function(h_0 - rate * t, until=h_0 / rate, unit="m", what="the level"),
         t_alarm=number((h_0 - h_low) / rate / 60, "min", "the time of the alarm"),
     )
+
+
+@left_alone.picture
+def _(A, h_0, h_low, q, more):
+    """A tank of {A} with the level {h_0}: a pump brings {q}, {q} are drawn, and a hydrant takes {more} besides."""
+    layout = """
+        water  pump  in    1     .     .      .
+        .      .     .     tank  tank  .      .
+        .      .     .     tank  tank  .      drawn
+        .      .     .     tank  tank  valve  hydrant
+        .      .     .     tank  tank  LAL    alarm"""
+    parts = {"pump": draw.pump(), "valve": draw.valve(kind="hand")}
+    parts["tank"] = draw.tank(f"${written(A)}$ m²", level=f"${written(h_0)}$ m", filled=0.9)
+    names = {
+        "in": f"${written(q)}$ L/s",
+        "alarm": f"at ${written(h_low)}$ m",
+        "drawn": f"${written(q)}$ L/s",
+        "hydrant": f"${written(more)}$ L/s",
+    }
+    pipes = "water pump in 1 tank drawn, tank valve hydrant"
+    return draw.instrumentation_diagram(layout, pipes, "tank LAL", parts, names)
 
 
 @left_alone.mistake("The pump is still running. What is missing in the balance is the difference of the two flows.")
@@ -496,8 +558,10 @@ def _(A, more):
 
 
 @left_alone.mistake("The level does not fall by the height of the alarm, but down to it.")
-def _(A, h_0, h_low, more):
-    return {"t_alarm": h_low * A * 1000 / more / 60} if abs(h_low / (h_0 - h_low) - 1) > Rational(1, 20) else {}
+def _(A, h_0, h_low, q, more):
+    wrong, right = h_low / more, (h_0 - h_low) / more
+    others = [right, (h_0 - h_low) / q, (h_0 - h_low) / (q + more)]
+    return {"t_alarm": 1000 * A * wrong / 60} if _apart(wrong, *others) else {}
 
 
 @left_alone.mistake("That is the time until the tank is empty. The alarm comes earlier.")
@@ -724,9 +788,9 @@ def gain_between(
     u_max=between(1, 4, "%", reference=2, step=0.5),
 ):
     """A tank is filled by a pump: one percent of control signal is {per_percent} of water. A controller with a gain
-    $K_p$ alone (percent by percent, no integral term) keeps the level, and everything is at rest with the level at
-    its setpoint. The transmitter measures the level over a range of {reach}; its noise has a standard deviation of
-    {sigma}, and there is no filter.
+    $K_p$ alone (percent by percent, no integral term) keeps the level, and all is at rest, with the level at its
+    setpoint. The transmitter measures over a range of {reach}; its noise has a standard deviation of {sigma}, and there
+    is no filter.
 
     Choose $K_p$ for two wishes at once. When {more} more are drawn from the tank, for good, the error that stays
     should not be larger than {e_max}. And the standard deviation of the control signal, which the noise causes,
@@ -762,6 +826,23 @@ def gain_between(
     )
 
 
+@gain_between.picture
+def _(reach, sigma, per_percent):
+    """A tank with its level controller: the transmitter has a range of {reach} and a noise of {sigma}; a pump, of which
+    one percent is {per_percent}, fills the tank."""
+    layout = """
+        .      .     .     K_p   .
+        .      1     .     LC    .
+        water  pump  2     .     .
+        .      .     tank  LT    reach
+        .      .     tank  .     drawn"""
+    pump = draw.pump(f"${written(per_percent)}$ L/s\nfor $1\\,\\%$")
+    parts = {"pump": pump, "tank": draw.tank(level="h")}
+    names = {"reach": f"$0$ to ${written(reach)}$ m,\nnoise ${written(sigma)}$ cm"}
+    pipes, signals = "water pump 2 tank drawn", "tank LT LC 1 pump, K_p LC"
+    return draw.instrumentation_diagram(layout, pipes, signals, parts, names)
+
+
 @gain_between.mistake(
     "The controller works in percent of the measurement range. How many percent are the centimetres of the error?"
 )
@@ -773,8 +854,9 @@ def _(reach, per_percent, more, e_max):
     "The gain multiplies an error in percent and gives a control signal in percent. How many percent of control signal "
     "bring the water that is missing?"
 )
-def _(reach, per_percent, more, e_max):
-    return {"Kp": more * reach / e_max} if abs(per_percent * reach - 1) > 0.03 else {}
+def _(reach, sigma, per_percent, more, e_max, u_max):
+    wrong = more * reach / e_max
+    return {"Kp": wrong} if _apart(wrong, more / per_percent / e_max, u_max / sigma) else {}
 
 
 @gain_between.mistake("The range is in metres, the error in centimetres. How many centimetres are one percent of it?")
