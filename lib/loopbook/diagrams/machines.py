@@ -59,38 +59,59 @@ def mass_spring_damper(
     force: str = "F",
     position: str = "y",
     title: str | None = None,
+    standing: bool = False,
 ) -> Picture:
-    """Draw a mass that a spring and a damper hold to a wall, and a force that pulls it.
+    """Draw a mass that a spring and a damper hold to a wall and a force that pulls it, or one that stands on them.
 
     Arguments:
-        mass, spring, damper, force, position: mathematics at the parts.
+        mass, spring, damper, force, position: mathematics at the parts; no force is drawn where its name is empty.
         title: written above the drawing.
+        standing: True for a mass on top of spring and damper, on which the force presses; its position counts down.
     Returns:
         A `Picture`, which a notebook shows as the value of a cell.
 
     >>> mass_spring_damper(title="Figure 2.4")
     <Figure 2.4: mass m on a wall by a spring K and a damper D, moved by the force F to the position y>
+    >>> mass_spring_damper(standing=True)
+    <mass m on the ground by a spring K and a damper D, moved by the force F to the position y>
     """
-    drawing, left, right = Drawing(), 4.2, 6.4
-    _wall(drawing, 0, -1.5, 1.5)
-    drawing.wire((0, 0.75), (0.7, 0.75))
-    drawing.zigzag((0.7, 0.75), (3.5, 0.75), teeth=7, height=0.28)
-    drawing.wire((3.5, 0.75), (left, 0.75))
-    drawing.text(2.1, 1.2, mathematics(spring), valign="bottom")
-    drawing.wire((0, -0.75), (1.6, -0.75))
-    drawing.wire((2.6, -0.4), (1.6, -0.4), (1.6, -1.1), (2.6, -1.1))
-    drawing.wire((2.2, -0.45), (2.2, -1.05), width=2.2)
-    drawing.wire((2.2, -0.75), (left, -0.75))
-    drawing.text(2.1, -1.25, mathematics(damper), valign="top")
-    drawing.box(left, 0, right - left, 2.6, mathematics(mass))
-    drawing.wire((right, 0), (right + 1.6, 0), arrow="->", width=1.7)
-    drawing.text(right + 1.2, 0.15, mathematics(force), valign="bottom")
-    _axis(drawing, left, -1.45, 2.4, position)
-    words = (
-        f"mass {mass} on a wall by a spring {spring} and a damper {damper}, "
-        f"moved by the force {force} to the position {position}"
-    )
-    return drawing.picture(title, words)
+    drawing, near, far = Drawing(), 4.2, 5.7 if standing else 6.4
+
+    def at(*points):  # standing, what is along the spring is upward
+        return [(y, x) for x, y in points] if standing else points
+
+    def parts(*points, **look):
+        drawing.wire(*at(*points), **look)
+
+    _wall(drawing, at)
+    parts((0, 0.75), (0.7, 0.75))
+    drawing.zigzag(*at((0.7, 0.75), (3.5, 0.75)), teeth=7, height=0.28)
+    parts((3.5, 0.75), (near, 0.75))
+    parts((0, -0.75), (1.6, -0.75))
+    parts((2.6, -0.4), (1.6, -0.4), (1.6, -1.1), (2.6, -1.1))
+    parts((2.2, -0.45), (2.2, -1.05), width=2.2)
+    parts((2.2, -0.75), (near, -0.75))
+    drawing.area(at((near, -1.3), (near, 1.3), (far, 1.3), (far, -1.3)), fill="white")
+    drawing.text(*at(((near + far) / 2, 0))[0], mathematics(mass))
+    if standing:
+        drawing.text(1.25, 2.1, mathematics(spring), halign="left")
+        drawing.text(-1.3, 2.1, mathematics(damper), halign="right")
+        parts((far + 1.4, 0), (far, 0), arrow="->", width=1.7)
+        drawing.text(0.2, far + 1.1, mathematics(force), halign="left")
+        parts((far, 1.45), (far, 2.05), width=0.8)
+        parts((far, 1.75), (far - 1.8, 1.75), arrow="->", width=0.8)
+        drawing.text(2.15, far, "0", halign="left", size=10)
+        drawing.text(1.95, far - 1.7, mathematics(position), halign="left")
+    else:
+        drawing.text(2.1, 1.2, mathematics(spring), valign="bottom")
+        drawing.text(2.1, -1.25, mathematics(damper), valign="top")
+        if force:
+            parts((far, 0), (far + 1.6, 0), arrow="->", width=1.7)
+            drawing.text(far + 1.2, 0.15, mathematics(force), valign="bottom")
+        _axis(drawing, near, -1.45, 2.4, position)
+    moved = f"moved by the force {force} to the position {position}" if force else f"at the position {position}"
+    where = "the ground" if standing else "a wall"
+    return drawing.picture(title, f"mass {mass} on {where} by a spring {spring} and a damper {damper}, {moved}")
 
 
 def motor_with_load(
@@ -153,11 +174,12 @@ def motor_with_load(
     return drawing.picture(title, words)
 
 
-def _wall(drawing, x, bottom, top):
-    drawing.wire((x, bottom), (x, top), width=1.7)
+def _wall(drawing, at):
+    """A hatched wall at zero; `at` puts points where they belong."""
+    drawing.wire(*at((0, -1.5), (0, 1.5)), width=1.7)
     for n in range(10):
-        y = bottom + (top - bottom) * (n + 0.5) / 10
-        drawing.wire((x, y), (x - 0.3, y - 0.3), width=0.8)
+        y = 3 * (n + 0.5) / 10 - 1.5
+        drawing.wire(*at((0, y), (-0.3, y - 0.3)), width=0.8)
 
 
 def _axis(drawing, x, y, length, label):

@@ -45,8 +45,8 @@ def two_meters(
     t_end=between(30, 60, "s", reference=40),
 ):
     """A water meter adds up the flow $u(t)$ in an integrator, and a gain of {K} corrects what the impeller senses.
-    Maker A has put the gain in front of the integrator, maker B behind it. In both meters the integrator holds {y_0}
-    to begin with. A flow of {a} begins at {t_1} and stops at {t_2}; at all other times nothing flows.
+    Maker A has put the gain in front of the integrator, maker B behind it. To begin with, both integrators hold {y_0}.
+    A flow of {a} begins at {t_1} and stops at {t_2}; at all other times nothing flows.
 
     What comes out of the last block at {t_end}, in meter A and in meter B?
     """
@@ -55,6 +55,19 @@ def two_meters(
         y_A=number(y_0 + K * volume, "L", "the output of meter A"),
         y_B=number(K * (y_0 + volume), "L", "the output of meter B"),
     )
+
+
+@two_meters.picture
+def _(K, y_0):
+    """Meter A: from u through a gain of {K} into an integrator that begins at {y_0}, whose output is y_A. Meter B: from
+    u into such an integrator, and then through the gain to y_B."""
+    layout = """
+        A    u_A  K_A  I_A  y_A
+        B    u_B  I_B  K_B  y_B"""
+    gain, sum_up = draw.gain(written(K)), draw.integrator(written(y_0))
+    blocks = {"K_A": gain, "I_A": sum_up, "I_B": sum_up, "K_B": gain}
+    names = {"A": "Meter A", "B": "Meter B", "u_A": "u", "u_B": "u"}
+    return draw.grid_diagram(layout, "u_A K_A I_A y_A, u_B I_B K_B y_B", blocks, names)
 
 
 @two_meters.mistake("What did the integrator hold before the flow began?")
@@ -69,6 +82,11 @@ def _(K, y_0, a, t_1, t_end):
     return {"y_A": y_0 + K * a * (t_end - t_1), "y_B": K * (y_0 + a * (t_end - t_1))}
 
 
+def _apart(value, *others):
+    """Whether the value of a mistake differs clearly from those of other mistakes."""
+    return all(abs(value - other) > abs(other) / 30 for other in others)
+
+
 @two_meters.mistake("There is a gain in the meter, too. What does it multiply?")
 def _(K, y_0, a, t_1, t_2):
     volume = a * (t_2 - t_1)
@@ -77,8 +95,11 @@ def _(K, y_0, a, t_1, t_2):
 
 
 @two_meters.mistake("When does the flow begin? Before that, the integrator adds up nothing.")
-def _(K, y_0, a, t_2):
-    return {"y_A": y_0 + K * a * t_2, "y_B": K * (y_0 + a * t_2)}
+def _(K, y_0, a, t_1, t_2):
+    volume = a * (t_2 - t_1)
+    found = {"y_A": y_0 + K * a * t_2, "y_B": K * (y_0 + a * t_2)}
+    others = {"y_A": K * (y_0 + volume), "y_B": y_0 + K * volume}
+    return {name: value for name, value in found.items() if _apart(value, others[name], y_0 + volume)}
 
 
 @two_meters.mistake(
@@ -322,8 +343,8 @@ def two_rounds(
     y_0=between(10, 40, "cm", reference=20),
     h=choice(0.1, 0.2, unit="s", reference=0.1),
 ):
-    r"""A mass of {m} hangs between a spring of {K} and a damper of {D}; its position $y$ is zero where it rests.
-    Somebody pulls it {y_0} away and lets it go. A simulator goes round the block diagram in steps of {h}: in each
+    r"""A spring of {K} and a damper of {D} hold a mass of {m}; its position $y$ is zero where it rests. Somebody pulls
+    it {y_0} away and lets it go. A simulator goes round the block diagram in steps of {h}: in each
     round it works out the acceleration from what the two integrators hold at the beginning of the round, and lets
     each integrator add its input times the step.
 
@@ -334,6 +355,13 @@ def two_rounds(
         y=number(y, "m", "the position after two rounds"),
         v=number(v, "m/s", "the speed after two rounds"),
     )
+
+
+@two_rounds.picture
+def _(m, D, K, y_0):
+    """A mass of {m} on a wall by a spring of {K} and a damper of {D}, before it is let go {y_0} from its rest."""
+    parts = f"${written(m)}$ kg", f"${written(K)}$ N/m", f"${written(D)}$ N s/m"
+    return draw.mass_spring_damper(*parts, force="", position=f"$y(0) = {written(y_0)}$ cm")
 
 
 def _rounds(m, D, K, y, h, count, new_speed=False):
@@ -422,7 +450,7 @@ def scale(
     K=between(2000, 6000, "N/m", reference=4000, step=200),
 ):
     r"""The platform of a scale has next to no mass. It stands on a spring of {K} with a damper of {D}, and $y$ is
-    how far it is pressed down. Somebody sets down a sack of {m} on it. With the weight of the sack as the force,
+    how far it is pressed down. Somebody sets down a sack of {m} on it. With the weight of the sack as the force $F$,
     and with $g = 9.81$ m/s²: where does the platform come to rest? What are the poles of the transfer function from
     the force to the position, and does the platform oscillate on its way?
     """
@@ -432,6 +460,13 @@ def scale(
         poles=poles([(-D + root) / (2 * m), (-D - root) / (2 * m)], "1/s", "the poles"),
         swings=word("yes" if 4 * m * K > D**2 else "no", ["yes", "no"], what="whether the platform oscillates"),
     )
+
+
+@scale.picture
+def _(m, D, K):
+    """A sack of {m} on a platform, which stands on a spring of {K} and a damper of {D}."""
+    parts = f"${written(m)}$ kg", f"${written(K)}$ N/m", f"${written(D)}$ N s/m"
+    return draw.mass_spring_damper(*parts, "F", standing=True)
 
 
 @scale.mistake("That is the mass of the sack in kilograms. With how many newtons does it press down?")
@@ -551,6 +586,14 @@ def other_states(
     )
 
 
+@other_states.picture
+def _(T_1, T_2, K):
+    """A block diagram of the two equations: two integrators, each in a loop of its own; {K} in front of the first one,
+    division by {T_1} in the first loop and by {T_2} in the second one."""
+    furnace, workpiece = (draw.feedback_loop([draw.division(written(T)), draw.integrator()]) for T in (T_1, T_2))
+    return draw.block_diagram("u", draw.gain(written(K)), furnace, "x_1", workpiece, "x_2")
+
+
 @other_states.mistake(
     "That matrix belongs to the old states. Put $x_1 = z_1 + z_2$ and $x_2 = z_2$ into both equations."
 )
@@ -653,9 +696,9 @@ def damper(
     K=between(2, 20, "kN/m", reference=5),
     t_s=between(0.4, 2, "s", reference=1, step=0.1),
 ):
-    """A machine of {m} stands on springs that have {K} together. When a press comes down on it, a constant force acts
-    on the machine, and it moves to a new position. Choose the damping constant $D$ of the damper beside the springs.
-    The machine should move beyond its new position by at most 10 % of the way, and {t_s} after the step it should be
+    """A machine of {m} stands on springs that have {K} together. When a press comes down on it, a constant force $F$
+    acts on it, and it moves to a new position. Choose the damping constant $D$ of the damper beside the springs. The
+    machine should move beyond its new position by at most 10 % of the way, and {t_s} after the step it should be
     within 5 % of the way and remain there.
 
     Try values in a simulation, or look at the exact response.
@@ -687,6 +730,12 @@ def damper(
             draws=way_to_rest,
         )
     )
+
+
+@damper.picture
+def _(m, K):
+    """A machine of {m} on springs of {K} and a damper D; a force F presses it down."""
+    return draw.mass_spring_damper(f"${written(m)}$ kg", f"${written(K)}$ kN/m", "D", standing=True)
 
 
 @damper.mistake("The springs have that many kilonewtons a metre. How many newtons is that?")
