@@ -12,8 +12,10 @@ from loopbook.exercises.kinds import synonyms
 from loopbook.exercises.kinds.kind import Kind
 from loopbook.exercises.reading import Unreadable, alone, answered, in_a_row, shortened
 
+_NONE = re.compile(r"none(?: of them| of these)?|nothing|no one|not any|[-–∅]|\[\]", re.IGNORECASE)
+_ONLY = re.compile(r"^(?:only|just|solely) ", re.IGNORECASE)
 _TRUTH = {True: "yes", False: "no"}
-_SEPARATOR = re.compile(r"[,;&\n]|[-=]>|→|\b(?:and|then)\b|(?<=\w)\s?/\s?(?=\w)|(?<=\w)\s?\+\s?(?=\w)")
+_SEPARATOR = re.compile(r"[,;&\n]|[-=]>|→|\b(?:and|then|und|plus)\b|(?<=\w)\s?/\s?(?=\w)|(?<=\w)\s?\+\s?(?=\w)")
 
 
 class Word(Kind):
@@ -82,8 +84,10 @@ class Words(Kind):
 
     def read(self, given: object) -> tuple[list[str], str]:
         """Return the words as they stand in the list, and a remark where others were given for them."""
-        if isinstance(answered(given), str):
-            given = [part for part in self._parts(given.strip(" []{}")) if part.strip()]
+        if isinstance(answered(given), str) and _NONE.fullmatch(given.strip()) and "none" not in self.among:
+            given = []
+        elif isinstance(given, str):
+            given = [part for part in self._parts(_ONLY.sub("", given.strip(" []{}"))) if part.strip()]
         is_set = isinstance(given, set | frozenset)
         row = list(given) if is_set else in_a_row(given)
         if row is None:
@@ -106,7 +110,7 @@ class Words(Kind):
         if _SEPARATOR.search(text):
             return _SEPARATOR.split(text)
         if all(len(word) == 1 for word in self.among):
-            return synonyms.listed(text, self.among) or text
+            return synonyms.listed(text, self.among) or [text]
         return synonyms.listed(text, self.among) or (
             [text] if any(" " in word for word in self.among) else text.split()
         )
