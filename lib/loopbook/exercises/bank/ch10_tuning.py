@@ -32,8 +32,8 @@ from loopbook.signals import stepwise
     title="A model by ruler",
     points=2,
     where=lambda t_28, t_63: 2 * t_28 <= t_63 <= Rational(5, 2) * t_28,
-    insight="Two points of a step response are enough for a first model: their distance in time is the time constant, "
-    "and what is left in front of them is the dead time.",
+    insight="Two points of a step response are enough for a first model: their distance in time gives the time "
+    "constant, and what is then left in front is the dead time.",
 )
 def ruler(
     step=between(4, 12, "%", reference=8),
@@ -74,6 +74,46 @@ def _(t_28, t_63):
 @ruler.mistake("At 28 % the response is well on its way: the dead time was over a part of the time constant before.")
 def _(t_28):
     return {"tau": t_28}
+
+
+@ruler.mistake("That is how far the response has come at 63 %. The gain counts what one percent does in the end.")
+def _(step, rise):
+    return {"K": rise / step * (1 - exp(-1))}
+
+
+@ruler.mistake("That is the rise for the whole range of the control signal. How much does one percent of it bring?")
+def _(step, rise):
+    return {"K": 100 * rise / step}
+
+
+@ruler.mistake(
+    "The distance of the two readings is a part of the time constant. So is the time constant shorter or longer?"
+)
+def _(t_28, t_63):
+    T = Rational(2, 3) * (t_63 - t_28)
+    return {"T": T, "tau": t_63 - T}
+
+
+@ruler.mistake("This fits a time constant that is shorter than the distance of the two readings. Can it be?")
+def _(t_28, t_63):
+    return {"tau": t_28 - Rational(2, 9) * (t_63 - t_28)}
+
+
+@ruler.mistake("That would be right without a dead time: then 28 % would be reached after a third of $T$.")
+def _(t_28):
+    return {"T": 3 * t_28}
+
+
+@ruler.mistake("Here the whole {t_63} was taken for the time constant, but the dead time is in it. Find $T$ first.")
+def _(t_28, t_63):
+    return {"tau": t_28 - t_63 / 3}
+
+
+@ruler.mistake(
+    "Here the distance of the two readings was taken for a whole time constant. Which part of it lies between them?"
+)
+def _(t_28, t_63):
+    return {"tau": t_28 - (t_63 - t_28) / 3}
 
 
 ruler.hints(
@@ -154,14 +194,68 @@ def _(t_2):
     return {"Ti": Rational(3, 2) * t_2, "Td": Rational(3, 8) * t_2}
 
 
+@good_gain_experiment.mistake(
+    "The time that the method asks for does not end at the top: which two points of the response are half a period "
+    "apart?"
+)
+def _(t_1):
+    return {"Ti": Rational(3, 2) * t_1, "Td": Rational(3, 8) * t_1}
+
+
 @good_gain_experiment.mistake("Here the time was taken as it was read off. The integral time is longer than that.")
 def _(t_1, t_2):
-    return {"Ti": t_2 - t_1, "Td": (t_2 - t_1) / 4}
+    return {"Ti": t_2 - t_1}
+
+
+@good_gain_experiment.mistake("That is a quarter of the time that was read off. Of which time is it to be a quarter?")
+def _(t_1, t_2):
+    return {"Td": (t_2 - t_1) / 4}
 
 
 @good_gain_experiment.mistake("The method reads off half a period, from the top to the bottom, and not a whole one.")
 def _(t_1, t_2):
     return {"Ti": 3 * (t_2 - t_1), "Td": Rational(3, 4) * (t_2 - t_1)}
+
+
+@good_gain_experiment.mistake(
+    "Is this gain larger or smaller than that of the experiment? The integral term makes a loop less stable."
+)
+def _(K):
+    return {"Kp": K / Rational(4, 5)}
+
+
+@good_gain_experiment.mistake(
+    "This factor belongs to the ultimate gain. In this experiment the loop was not yet at the limit of stability."
+)
+def _(K):
+    return {"Kp": Rational(3, 5) * K}
+
+
+@good_gain_experiment.mistake(
+    "This factor belongs to the ultimate gain. In this experiment the loop was not yet at the limit of stability."
+)
+def _(K):
+    return {"Kp": Rational(45, 100) * K}
+
+
+@good_gain_experiment.mistake("That share of a period is the integral time of a PI controller by Ziegler and Nichols.")
+def _(t_1, t_2):
+    return {"Ti": Rational(5, 3) * (t_2 - t_1)}
+
+
+@good_gain_experiment.mistake("Is the integral time longer or shorter than the time between top and bottom?")
+def _(t_1, t_2):
+    return {"Ti": (t_2 - t_1) / Rational(3, 2), "Td": (t_2 - t_1) / 6}
+
+
+@good_gain_experiment.mistake("An eighth of the *period* is common. Which share of the integral time would that be?")
+def _(t_1, t_2):
+    return {"Td": Rational(3, 16) * (t_2 - t_1)}
+
+
+@good_gain_experiment.mistake("That would be a PI controller. A PID controller is asked for.")
+def _():
+    return {"Td": 0}
 
 
 good_gain_experiment.hints(
@@ -250,6 +344,86 @@ def _(K, T_1, T_2, delay):
 )
 def _(K, T_1, delay):
     return {"pid": PID(T_1 / (K * 2 * delay), Min(T_1, 4 * delay))}
+
+
+def _serial(K, T_1, T_2, delay):
+    """The settings of Skogestad's table, and the factor between the forms."""
+    K_p, T_i = T_1 / (K * 2 * delay), Min(T_1, 4 * delay)
+    return K_p, T_i, T_2, 1 + T_2 / T_i
+
+
+@heat_exchanger.mistake("The two times are converted. What about the gain? Multiply the serial form out.")
+def _(K, T_1, T_2, delay):
+    K_p, T_i, T_d, factor = _serial(K, T_1, T_2, delay)
+    return {"pid": PID(K_p, T_i * factor, T_d / factor)}
+
+
+@heat_exchanger.mistake("The gain is converted. What about the two times? Multiply the serial form out.")
+def _(K, T_1, T_2, delay):
+    K_p, T_i, T_d, factor = _serial(K, T_1, T_2, delay)
+    return {"pid": PID(K_p * factor, T_i, T_d)}
+
+
+@heat_exchanger.mistake(
+    "Gain and integral time are converted. For the derivative time, compare the terms with $s$: $K_p T_d$ is the same "
+    "in both forms."
+)
+def _(K, T_1, T_2, delay):
+    K_p, T_i, T_d, factor = _serial(K, T_1, T_2, delay)
+    return {"pid": PID(K_p * factor, T_i * factor, T_d * factor)}
+
+
+@heat_exchanger.mistake("Gain and integral time are converted. What about the derivative time?")
+def _(K, T_1, T_2, delay):
+    K_p, T_i, T_d, factor = _serial(K, T_1, T_2, delay)
+    return {"pid": PID(K_p * factor, T_i * factor, T_d)}
+
+
+@heat_exchanger.mistake("The factor of the conversion is upside down: which of the two times is divided by the other?")
+def _(K, T_1, T_2, delay):
+    K_p, T_i, T_d, factor = _serial(K, T_1, T_2, delay)
+    return {"pid": PID(K_p * (1 + T_i / T_d), T_i * factor, T_d / factor)}
+
+
+@heat_exchanger.mistake("The conversion goes the other way round: is the gain of the parallel form larger or smaller?")
+def _(K, T_1, T_2, delay):
+    K_p, T_i, T_d, factor = _serial(K, T_1, T_2, delay)
+    return {"pid": PID(K_p / factor, T_i / factor, T_d * factor)}
+
+
+@heat_exchanger.mistake(
+    "The two time constants are interchanged: which of them does the derivative term cancel, the larger or the "
+    "smaller? And these settings are still those of the serial form."
+)
+def _(K, T_1, T_2, delay):
+    return {"pid": PID(T_2 / (K * 2 * delay), Min(T_2, 4 * delay), T_1)}
+
+
+@heat_exchanger.mistake(
+    "The integral time is $T_1$ here. Compare it with the other limit, $c\\,(T_C + \\tau)$; and these settings are "
+    "still those of the serial form."
+)
+def _(K, T_1, T_2, delay):
+    return {"pid": PID(T_1 / (K * 2 * delay), T_1, T_2)}
+
+
+@heat_exchanger.mistake("The limit of the integral time contains $T_C$, too, and not only the dead time.")
+def _(K, T_1, T_2, delay):
+    return {"pid": PID(T_1 / (K * 2 * delay), 2 * delay, T_2, form="serial").parallel()}
+
+
+@heat_exchanger.mistake("$T_C$ is missing, in the gain and in the limit of the integral time.")
+def _(K, T_1, T_2, delay):
+    return {"pid": PID(T_1 / (K * delay), 2 * delay, T_2, form="serial").parallel()}
+
+
+@heat_exchanger.mistake(
+    "Here half of the second lag was counted as dead time, as one does for a PI controller. What can a PID controller "
+    "do with this lag?"
+)
+def _(K, T_1, T_2, delay):
+    late = delay + T_2 / 2
+    return {"pid": PID((T_1 + T_2 / 2) / (K * 2 * late), Min(T_1 + T_2 / 2, 4 * late))}
 
 
 heat_exchanger.hints(
@@ -353,6 +527,35 @@ def _(zeta, n):
         return {"Ti": 4 * zeta * total * _T**2 / (_T + total) ** 2, "factor": 4 * zeta * n**2 / (n + 1) ** 2}
 
 
+@integral_time.mistake("The middle term is squared on the way. What becomes of the fraction with $T$ in it?")
+def _(zeta, n):
+    total = _T_C + _tau
+    return {"Ti": 4 * zeta**2 * total * _T / (_T + total), "factor": 4 * zeta**2 * n / (n + 1)}
+
+
+@integral_time.mistake("That holds for a damping of one. Which damping is asked for?")
+def _(zeta, n):
+    if zeta != 1:
+        total = _T_C + _tau
+        return {"Ti": 4 * total * _T**2 / (_T + total) ** 2, "factor": 4 * n**2 / (n + 1) ** 2}
+
+
+@integral_time.mistake("That integral time cancels the lag. Here the damping of the two poles decides on it.")
+def _(zeta, n):
+    return {"Ti": _T} | ({} if abs(4 * zeta**2 / n - 1) < 0.05 else {"factor": n})
+
+
+@integral_time.mistake("The lag's own damping adds to the damping by the controller. Look at the sign.")
+def _(zeta, n):
+    total = _T_C + _tau
+    return {"Ti": 4 * zeta**2 * total * _T**2 / (_T - total) ** 2, "factor": 4 * zeta**2 * n**2 / (n - 1) ** 2}
+
+
+@integral_time.mistake("That is the integral time as a multiple of $T$. It is to be compared with $T_C + \\tau$.")
+def _(zeta, n):
+    return {"factor": 4 * zeta**2 * n / (n + 1) ** 2} if n != 4 else {}
+
+
 integral_time.hints(
     "The damping is a matter of the two poles, and these are the roots of the closed loop's polynomial. Write that "
     "first.",
@@ -438,6 +641,52 @@ def _(low, high, a):
 @relay.mistake("That is height over amplitude. The sinusoid in a square wave is larger than the square wave itself.")
 def _(low, high, a):
     return _relay_gains((high - low) / 2 / a)
+
+
+@relay.mistake("Is the sinusoid in a square wave larger or smaller than the wave? Look at the factor with $\\pi$.")
+def _(low, high, a):
+    return _relay_gains(pi * (high - low) / (8 * a))
+
+
+@relay.mistake("A factor is missing: a square wave of height $d$ contains a sinusoid larger than $d$.")
+def _(low, high, a):
+    return _relay_gains((high - low) / (2 * pi * a))
+
+
+@relay.mistake("A gain of a controller is control signal over temperature. Which amplitude is which?")
+def _(low, high, a):
+    return _relay_gains(8 * a / (pi * (high - low)))
+
+
+@relay.mistake("Amplitudes count from the middle of the oscillation, and not from zero: both of them.")
+def _(low, high, middle, a):
+    K_u, right = 4 * high / (pi * (middle + a)), 2 * (high - low) / (pi * a)
+    return _relay_gains(K_u) if abs(K_u / right - 1) > 0.05 else {}
+
+
+@relay.mistake("That is the factor of a P controller. Look at the formulas of the statement: which controller is it?")
+def _(low, high, a):
+    return {"Kp": (high - low) / (pi * a)}
+
+
+@relay.mistake("That belongs to a PI controller. Look at the formulas of the statement: which controller is it?")
+def _(low, high, a, period):
+    return {"Kp": Rational(9, 10) * (high - low) / (pi * a), "Ti": period / Rational(12, 10), "Td": 0}
+
+
+@relay.mistake("From one switching of the relay to the next it is half a period only.")
+def _(period):
+    return {"Ti": period / 4}
+
+
+@relay.mistake("An eighth of which time? The formula divides a whole period, from top to top.")
+def _(period):
+    return {"Td": period / 16}
+
+
+@relay.mistake("At the ultimate gain the loop would oscillate forever. Which share of it does the controller get?")
+def _(low, high, a):
+    return {"Kp": 2 * (high - low) / (pi * a)}
 
 
 relay.hints(
@@ -543,6 +792,11 @@ def _(w_1, w_2):
 @another_flow.mistake("The settings are as they were, but the process is not. What is its gain now?")
 def _():
     return {"unchanged": "as it was"}
+
+
+@another_flow.mistake("Count once more: how often is $1/w$ above the fraction line of $K_p$, and how often below it?")
+def _(K_p, w_1, w_2):
+    return {"Kp": K_p * w_1**2 / w_2**2}
 
 
 another_flow.hints(
@@ -691,6 +945,34 @@ def _(K, delay):
     return {"pid": PID(1 / (K * delay), 6 * delay)}
 
 
+@between_two_and_four.mistake(
+    "The gain is that for $T_C = 0$. An integrator with dead time takes $T_C + \\tau$ in the denominator; what is "
+    "$T_C$?"
+)
+def _(K, delay):
+    return {"pid": PID(1 / (K * delay), 8 * delay)}
+
+
+@between_two_and_four.mistake("The gain is upside down: the quicker the process rises, the less the controller may do.")
+def _(K, delay):
+    return {"pid": PID(2 * K * delay, 6 * delay)} if K * delay < 0.4 else {}
+
+
+@between_two_and_four.mistake("The gain is upside down: the quicker the process rises, the less the controller may do.")
+def _(K, delay):
+    return {"pid": PID(2 * K * delay, 8 * delay)} if K * delay < 0.4 else {}
+
+
+@between_two_and_four.mistake("The gain is that of a dead time of one minute. How long is it here?")
+def _(K, delay):
+    return {"pid": PID(1 / (2 * K), 6 * delay)}
+
+
+@between_two_and_four.mistake("$T_C + \\tau$ is in the integral time, too: here it is the factor times $\\tau$ alone.")
+def _(K, delay):
+    return {"pid": PID(1 / (2 * K * delay), 3 * delay)}
+
+
 between_two_and_four.hints(
     "Start from Skogestad's rule for an integrator with dead time. Which of the two demands does its factor $c$ serve "
     "when it is small, and which one when it is large?",
@@ -724,7 +1006,10 @@ def _(K, delay):
     "10.8",
     title="A model from a record",
     points=3,
-    where=lambda T, delay: Rational(1, 5) * T <= delay <= Rational(3, 5) * T,
+    where=lambda T, delay, start: (
+        Rational(1, 5) * T <= delay <= Rational(3, 5) * T
+        and abs(start - delay) >= Rational(3, 10) * delay  # the clock's time of the step is no dead time
+    ),
     insight="A fit uses every sample: noise that spoils a reading by ruler hardly moves its result.",
 )
 def from_a_record(
@@ -771,7 +1056,14 @@ def _(K, u_0, step, y_0):
     "That is the whole change of the temperature. How much of it does one percent of the valve make?"
 )
 def _(K, step):
-    return {"K": abs(K * step)}
+    return {"K": K * step}
+
+
+@from_a_record.mistake(
+    "That is the size of the whole change. How much of it, and with which sign, does one percent of the valve make?"
+)
+def _(K, step):
+    return {"K": -K * step}
 
 
 @from_a_record.mistake("By then 63 % of the change are reached, but a part of that time nothing has moved yet.")
@@ -787,6 +1079,31 @@ def _(start, delay):
 @from_a_record.mistake("A lag has covered 95 % after three time constants. Which share belongs to one of them?")
 def _(T):
     return {"T": 3 * T}
+
+
+@from_a_record.mistake("That is a time of the record. The time constant counts from the end of the dead time.")
+def _(T, delay, start):
+    return {"T": start + delay + T}
+
+
+@from_a_record.mistake("Then half of the change is reached. How much of it is reached after one time constant?")
+def _(T):
+    return {"T": T * log(2)}
+
+
+@from_a_record.mistake("By then the response has practically ended. How much of it is behind it after one $T$?")
+def _(T):
+    return {"T": 4 * T}
+
+
+@from_a_record.mistake("By then the response has practically ended. How much of it is behind it after one $T$?")
+def _(T):
+    return {"T": 5 * T}
+
+
+@from_a_record.mistake("Then the valve has moved. How long does the temperature wait after that?")
+def _(start):
+    return {"tau": start}
 
 
 from_a_record.hints(
@@ -913,6 +1230,42 @@ def _(K_u):
     return {"Kp": K_u / 2}
 
 
+@four_gains.mistake("Count the periods, not the tops: how many periods lie between the first and the last of them?")
+def _(P_u):
+    return {"Pu": Rational(8, 10) * P_u, "Ti": Rational(8, 12) * P_u}
+
+
+@four_gains.mistake("Count the periods, not the tops: how many periods lie between the first and the last of them?")
+def _(P_u):
+    return {"Pu": Rational(3, 4) * P_u}
+
+
+@four_gains.mistake("That is an angular frequency. The period is the time from one top to the next.")
+def _(P_u):
+    return {"Pu": 2 * pi / float(P_u), "Ti": 2 * pi / float(P_u) / 1.2}
+
+
+@four_gains.mistake("This is between two gains of the record. Where exactly does the oscillation last by itself?")
+def _(K_u, place):
+    mean = (_gains(K_u, place)[int(place) - 2] + K_u) / 2
+    return {"Ku": mean, "Kp": Rational(45, 100) * mean}
+
+
+@four_gains.mistake("At the ultimate gain the loop oscillates forever. Which share of it does a PI controller get?")
+def _(K_u):
+    return {"Kp": K_u}
+
+
+@four_gains.mistake("Is the integral time longer or shorter than the period? Look at the formula once more.")
+def _(P_u):
+    return {"Ti": Rational(12, 10) * P_u}
+
+
+@four_gains.mistake("That is the period itself. What does the formula do with it?")
+def _(P_u):
+    return {"Ti": P_u}
+
+
 four_gains.hints(
     "At the ultimate gain an oscillation neither grows nor dies out, on its own. What else can keep it from growing?",
     "For each gain, look at the valve as well: where it runs between fully open and closed, the oscillation would grow "
@@ -932,8 +1285,8 @@ def _(K_u, place):
 @four_gains.solution
 def _(K_u, P_u, place):
     r"""With {smaller} the oscillation dies out. With {Ku} it goes on with the same amplitude, and the valve
-    stays between its limits: this is the ultimate gain, $K_u$ = {Ku}. With {larger} it grows, until
-    the valve runs between open and closed. That oscillation is steady, too, but only because the valve can do no more.
+    stays between its limits: this is the ultimate gain, $K_u$ = {Ku}. With {larger} the valve runs from open to closed
+    and back. That oscillation is steady, too, but only because the valve can do no more: otherwise it would grow.
 
     **The period.** Between the first and the fifth top at that gain lie four periods, {four} together, so $P_u$ = {Pu}.
     Reading over several periods divides the error of the ruler by their number.
@@ -1072,7 +1425,7 @@ def _(first, second, third, delay):
     **Loop C: {third}.** {c}.
 
     With the settings that were meant, $K_p = \frac{{T}}{2K\tau}$ and $T_i = T$, all three would respond as in the
-    picture: quickly, and with hardly any overshoot.
+    picture below: quickly, and with hardly any overshoot.
     """
     places = {"fast": written(round(4.4 * delay), "s"), "slow": written(round(7.5 * delay), "s")}
     return {name: _TELLS[fault].format(**places) for name, fault in zip("abc", (first, second, third), strict=True)}
