@@ -1,21 +1,29 @@
 """Machines and circuits: labels have their room, and the description says what is drawn."""
 
 import itertools
+from functools import partial
 
 import pytest
 
 from loopbook.diagrams import (
+    hoist,
     kirchhoff_laws,
     mass_spring_damper,
     motor_with_load,
     rc_circuit,
     resistor_combinations,
     two_terminal_components,
+    voltage_divider,
+    widening_tank,
 )
 from test_diagrams import measured
 
 EXAMPLES = [
-    mass_spring_damper, motor_with_load, kirchhoff_laws, rc_circuit, resistor_combinations, two_terminal_components,
+    mass_spring_damper, partial(mass_spring_damper, standing=True), motor_with_load, hoist, partial(widening_tank, 1),
+    partial(widening_tank, 2), kirchhoff_laws, rc_circuit, resistor_combinations, two_terminal_components,
+    partial(voltage_divider, ["R_1"], ["C", "R_2"], voltages={"C": "v"}),
+    partial(voltage_divider, ["R_1"], ["R_2", "C"], in_series=True, voltages={"C": "v"}),
+    partial(voltage_divider, ["R_1", "C"], ["R_2"], voltages={"C": "v"}),
 ]  # fmt: skip
 
 
@@ -52,6 +60,8 @@ def labels(picture):
 def test_the_letters_are_the_ones_asked_for():
     assert {"$M$", "$k$", "$c$", "$f$", "$x$"} <= set(labels(mass_spring_damper("M", "k", "c", "f", "x")))
     assert {"$R_1$", "$C_2$"} <= set(labels(rc_circuit("R_1", "C_2")))
+    assert {"$A$", "$B$", "$I$"} <= set(labels(hoist("A", "B", "I")))
+    assert {"$b$", "$z$", "$q$"} <= set(labels(widening_tank(1, "b", level="z", outflow="q")))
     assert {"$i$", "$m_L$", "$F$"} <= set(labels(motor_with_load(current="i", mass="m_L", load="F")))
 
 
@@ -65,3 +75,13 @@ def test_the_rod_is_pushed_and_the_load_pushes_back():
     _, _, _, heads, _ = measured(motor_with_load())
     ways = sorted(head[1][0] - head[0][0] for head in heads if head[0][0] == head[2][0])
     assert ways[0] < 0 < ways[1]
+
+
+def test_a_mass_without_a_force_has_no_arrow_for_it():
+    assert "$F$" in labels(mass_spring_damper())
+    assert "$F$" not in labels(mass_spring_damper(force=""))
+
+
+def test_a_tank_widens_with_a_power_above_zero():
+    with pytest.raises(ValueError, match="a power above zero"):
+        widening_tank(0)

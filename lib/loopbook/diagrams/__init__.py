@@ -30,7 +30,7 @@ from loopbook.diagrams.exchangers import EXCHANGERS, HEATERS, heat_exchanger, he
 from loopbook.diagrams.grid import grid_diagram
 from loopbook.diagrams.instrument_symbols import DEVICES, PLACES, instrument
 from loopbook.diagrams.instrumentation import instrumentation_diagram
-from loopbook.diagrams.machines import conveyor_belt, mass_spring_damper, motor_with_load
+from loopbook.diagrams.machines import conveyor_belt, hoist, mass_spring_damper, motor_with_load, widening_tank
 from loopbook.diagrams.rotating import COMPRESSORS, FANS, PUMPS, compressor, fan, motor, pump, turbine
 from loopbook.diagrams.sequences import sequential_function_chart
 from loopbook.diagrams.states import state_diagram
@@ -42,9 +42,9 @@ __all__ = [
     "ACTUATORS", "COMPRESSORS", "CONDUCTORS", "DEVICES", "EXCHANGERS", "FANS", "HEATERS", "PLACES", "PUMPS",
     "ROOFS", "SIGNALS", "VALVES", "block", "block_diagram", "compressor", "conductor", "control_valve", "conveyor",
     "conveyor_belt", "cyclone", "delay", "disturbance", "division", "elementary_blocks", "equivalent_diagrams",
-    "fan", "feed_screw", "feedback_loop", "gain", "grid_diagram", "heat_exchanger", "heater", "instrument",
+    "fan", "feed_screw", "feedback_loop", "gain", "grid_diagram", "heat_exchanger", "heater", "hoist", "instrument",
     "instrumentation_diagram", "integrator", "kirchhoff_laws", "mass_spring_damper", "motor", "motor_with_load",
     "multiplication", "overall_diagram", "parallel_paths", "pump", "rc_circuit", "resistor_combinations",
     "sequential_function_chart", "silo", "state_diagram", "sum_of", "switch", "symbol_table", "tank", "turbine",
-    "two_terminal_components", "valve", "vessel", "voltage_divider",
+    "two_terminal_components", "valve", "vessel", "voltage_divider", "widening_tank",
 ]  # fmt: skip

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -41,7 +41,11 @@ def rc_circuit(resistor: str = "R", capacitor: str = "C", title: str | None = No
 
 
 def voltage_divider(
-    upper: Sequence[str], lower: Sequence[str], in_series: bool = False, title: str | None = None
+    upper: Sequence[str],
+    lower: Sequence[str],
+    in_series: bool = False,
+    title: str | None = None,
+    voltages: Mapping[str, str] | None = None,
 ) -> Picture:
     """Draw a circuit of resistors and capacitors between an input voltage, at its left, and an output voltage.
 
@@ -51,23 +55,26 @@ def voltage_divider(
         lower: names of the components that lead from the output to ground.
         in_series: whether these follow one another, from the top down, instead of being side by side.
         title: written above the circuit.
+        voltages: ``{component: voltage}``, each mathematics beside its component, between its signs.
     Returns:
         A `Picture`, which a notebook shows as the value of a cell.
 
     >>> voltage_divider(["R_1"], ["R_2", "C"], in_series=True)
     <circuit: R_1 from v_in to v_out; R_2, then C, from v_out to ground>
     """
-    drawing, top = Drawing(), 4.2 if in_series else 2.6
+    drawing, top, voltages = Drawing(), 4.2 if in_series else 2.6, voltages or {}
+    pitch = 2.1 if voltages else 1.5
     for n, name in enumerate(upper):
-        _component(drawing, _kind(name), (1.2, top + 1.5 * n), (4.4, top + 1.5 * n), name)
+        y = top + pitch * n
+        _component(drawing, _kind(name), (1.2, y), (4.4, y), name, voltages.get(name, ""))
     for x in (1.2, 4.4) if len(upper) > 1 else ():
-        drawing.wire((x, top), (x, top + 1.5 * (len(upper) - 1)))
+        drawing.wire((x, top), (x, top + pitch * (len(upper) - 1)))
         drawing.dot(x, top)
     levels = [top * (1 - k / len(lower)) for k in range(len(lower) + 1)] if in_series else [top, 0.0]
-    places = [5.8] * len(lower) if in_series else [5.8 + 1.9 * k for k in range(len(lower))]
+    places = [5.8] * len(lower) if in_series else [5.8 + (2.8 if voltages else 1.9) * k for k in range(len(lower))]
     for k, (name, x) in enumerate(zip(lower, places, strict=True)):
         start, end = (levels[k], levels[k + 1]) if in_series else (levels[0], levels[1])
-        _component(drawing, _kind(name), (x, start), (x, end), name)
+        _component(drawing, _kind(name), (x, start), (x, end), name, voltages.get(name, ""))
     right = places[-1] + 1.6
     drawing.wire((0, top), (1.2, top))
     drawing.wire((4.4, top), (right, top))

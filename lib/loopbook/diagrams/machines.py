@@ -1,4 +1,4 @@
-"""Machines as a textbook draws them: a conveyor belt, a mass on a spring, a motor that moves a load."""
+"""Machines as a textbook draws them: a conveyor belt, a mass on a spring, a motor with its load, a lift, a funnel."""
 
 from __future__ import annotations
 
@@ -170,6 +170,103 @@ def motor_with_load(
     words = (
         f"a motor with current {current} and inertia {inertia} turns a gear wheel of radius {radius}, which moves a "
         f"rod with load {mass} against the force {load} to the position {position}"
+    )
+    return drawing.picture(title, words)
+
+
+def hoist(
+    left: str = "m_1",
+    right: str = "m_2",
+    inertia: str = "J",
+    radius: str = "r",
+    torque: str = "T",
+    acceleration: str = "a",
+    title: str | None = None,
+) -> Picture:
+    """Draw two masses on the two ends of a rope over a drum, and the torque at the drum that lifts the left one.
+
+    Arguments:
+        left, right: mathematics at the two masses.
+        inertia, radius, torque: mathematics at the drum.
+        acceleration: of the left mass, upward.
+        title: written above the drawing.
+    Returns:
+        A `Picture`, which a notebook shows as the value of a cell.
+
+    >>> hoist()
+    <a rope over a drum of inertia J and radius r, with the masses m_1 on its left and m_2 on its right; the torque T lifts m_1 with a>
+    """  # noqa: E501
+    drawing, r = Drawing(), 1.5
+    drawing.circle(0, 0, r)
+    drawing.circle(0, 0, 0.08, fill="black", zorder=4)
+    drawing.wire((0, 0), (0.7 * r, -0.7 * r), arrow="->", width=0.8, zorder=4)
+    drawing.text(0.2, -0.75, mathematics(radius), halign="right")
+    drawing.text(0, 0.6, mathematics(inertia))
+    drawing.arc(0, 0, 2 * r + 0.7, 2 * r + 0.7, 55, 125, arrow="cw")
+    drawing.text(0, r + 0.5, mathematics(torque), valign="bottom")
+    for x, length, mass, height in ((-r, 2.4, left, 1.7), (r, 1.7, right, 1.2)):
+        drawing.wire((x, 0), (x, -length))
+        drawing.box(x - 1.15, -length - height / 2, 2.3, height, mathematics(mass))
+    drawing.wire((-r - 1.6, -4), (-r - 1.6, -2.5), arrow="->")
+    drawing.text(-r - 1.8, -3.2, mathematics(acceleration), halign="right")
+    words = (
+        f"a rope over a drum of inertia {inertia} and radius {radius}, with the masses {left} on its left and {right} "
+        f"on its right; the torque {torque} lifts {left} with {acceleration}"
+    )
+    return drawing.picture(title, words)
+
+
+def widening_tank(
+    power: float,
+    width: str = "R",
+    height: str = "H",
+    level: str = "h",
+    inflow: str = "q_i",
+    outflow: str = "q_o",
+    title: str | None = None,
+) -> Picture:
+    """Draw the section of a tank whose width grows with a power of the height, from a tip at its bottom.
+
+    Arguments:
+        power: 1 for straight walls, below it for a bowl, above it for a goblet.
+        width: mathematics at half of the width of the rim, as a radius.
+        height, level: mathematics at the heights of rim and liquid.
+        inflow, outflow: mathematics at the arrows into the tank and out of it.
+        title: written above the drawing.
+    Returns:
+        A `Picture`, which a notebook shows as the value of a cell.
+    Raises:
+        ValueError: for a power that is not positive.
+
+    >>> widening_tank(1)
+    <section of a tank, at the height H of the half width R, with liquid up to h; q_i flows in, q_o out at the bottom>
+    """
+    if power <= 0:
+        raise ValueError(f"the width grows with a power above zero of the height, not {power}")
+    drawing, half, rim, surface = Drawing(), 2.0, 3.2, 2.0
+    heights = [rim * n / 40 for n in range(41)]
+    wall = [(half * (y / rim) ** power, y) for y in heights]
+    wet = [(x, y) for x, y in wall if y <= surface]
+    drawing.area([(-x, y) for x, y in reversed(wet)] + wet, fill=LIQUID, outline=0)
+    drawing.wire((-wet[-1][0], surface), (wet[-1][0], surface), width=0.8)
+    drawing.wire(*[(-x, y) for x, y in reversed(wall)], *wall, width=1.7)
+    # the heights, as dimension lines
+    for x, y, label in ((half + 0.5, surface, level), (half + 1.4, rim, height)):
+        drawing.wire((x, 0), (x, y), arrow="<->", width=0.8)
+        drawing.wire((x - 0.2, y), (x + 0.2, y), width=0.8)
+        drawing.text(x + 0.15, y / 2, mathematics(label), halign="left")
+    drawing.wire((half + 0.3, 0), (half + 1.6, 0), width=0.8)
+    drawing.wire((0, rim + 0.3), (half, rim + 0.3), arrow="<->", width=0.8)
+    for x in (0, half):
+        drawing.wire((x, rim + 0.1), (x, rim + 0.5), width=0.8)
+    drawing.text(half / 2, rim + 0.4, mathematics(width), valign="bottom")
+    drawing.wire((-half - 1.2, rim + 0.9), (-0.6 * half, rim + 0.9), (-0.6 * half, rim - 0.3), arrow="->", width=1.7)
+    drawing.text(-half - 0.7, rim + 1, mathematics(inflow), valign="bottom")
+    drawing.wire((0, 0), (0, -0.5), (1.6, -0.5), arrow="->", width=1.7)
+    drawing.text(1.1, -0.4, mathematics(outflow), valign="bottom")
+    words = (
+        f"section of a tank, at the height {height} of the half width {width}, with liquid up to {level}; {inflow} "
+        f"flows in, {outflow} out at the bottom"
     )
     return drawing.picture(title, words)
 

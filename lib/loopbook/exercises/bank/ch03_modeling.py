@@ -1,6 +1,7 @@
 """Exercises of chapter 3, mathematical modeling."""
 
 import functools
+import itertools
 import math
 
 import numpy as np
@@ -55,6 +56,25 @@ def cistern(
     )
 
 
+@cistern.picture
+def _(A, h, h_max, q_1, q_2, q_o):
+    """A tank of {A} with the level {h} and the rim at {h_max}: {q_1} and {q_2} come in, a pump takes {q_o} out."""
+    layout = """
+        first  1     2     second  .
+        .      tank  tank  rim     .
+        .      tank  tank  .       .
+        .      tank  tank  pump    out"""
+    water = draw.tank(f"${written(A)}$ m²", level=f"${written(h)}$ mm")
+    names = {
+        "first": f"${written(q_1)}$ L/min",
+        "second": f"${written(q_2)}$ L/min",
+        "rim": f"rim at\n${written(h_max)}$ mm",
+        "out": f"${written(q_o)}$ L/min",
+    }
+    pipes = "first 1 tank pump out, second 2 tank"
+    return draw.instrumentation_diagram(layout, pipes, "", {"tank": water, "pump": draw.pump()}, names)
+
+
 @cistern.mistake("Which of the three flows leave the cistern? They have the other sign in the balance.")
 def _(A, q_1, q_2, q_o):
     return {"rate": (q_1 + q_2 + q_o) / A}
@@ -85,8 +105,9 @@ def _(A, h, h_max, q_1, q_2, q_o):
 
 
 @cistern.mistake("That is the flow that is left over. The level is its volume over the area.")
-def _(q_1, q_2, q_o):
-    return {"rate": q_1 + q_2 - q_o}
+def _(A, q_1, q_2, q_o):
+    flow = q_1 + q_2 - q_o
+    return {"rate": flow} if _told_apart(flow, (q_1 + q_2) / A, (q_1 + q_2 + q_o) / A, by=0.03) else {}
 
 
 @cistern.mistake("Is there more coming in, or more going out? The sign of the rate tells which end comes.")
@@ -156,10 +177,17 @@ SHAPES = {
         sympy.pi * (R * (z / H) ** 2) ** 2,
     ),
 }
+# With which power of the height each of them becomes wider, and half of its width at the rim.
+SECTIONS = {"funnel": (1, "R"), "trough": (1, "W/2"), "bowl": (0.5, "R"), "pit": (1, "L/2"), "goblet": (2, "R")}
 OUTLETS = {
     "pump": ("a pump takes the volume flow $q_o$ [m³/s] out of it", q_o),
     "hole": (r"through a hole at the bottom it loses the volume flow $k\sqrt h$ [m³/s]", k * sympy.sqrt(h)),
 }
+
+
+def _in_latex(out):
+    """An outflow with its constant in front of the root."""
+    return r"k\sqrt{h}" if out.has(k) else "q_o"
 
 
 @functools.cache
@@ -194,7 +222,14 @@ def sloping_walls(shape=choice(*SHAPES, reference="funnel"), outlet=choice(*OUTL
 def _(shape, outlet):
     looks, area = SHAPES[shape]
     loses, out = OUTLETS[outlet]
-    return {"looks": looks, "loses": loses, "slice": sympy.latex(area), "out": sympy.latex(out)}
+    return {"looks": looks, "loses": loses, "slice": sympy.latex(area), "out": _in_latex(out)}
+
+
+@sloping_walls.picture
+def _(shape, outlet):
+    """The tank in section, with its level h: q_i flows in above; {loses}."""
+    power, width = SECTIONS[shape]
+    return draw.widening_tank(power, width, outflow=_in_latex(OUTLETS[outlet][1]))
 
 
 @sloping_walls.mistake("The area is not the same at every height. Add it up from the bottom to the level.")
@@ -215,6 +250,17 @@ def _(shape, outlet):
 def _(shape, outlet):
     (V, _), net = _volume(shape), q_i - OUTLETS[outlet][1]
     return {"rate": net * h / V}
+
+
+@sloping_walls.mistake("That is a tank whose rim is as high as the level. How wide is this one there?")
+def _(shape, outlet):
+    full, net = _volume(shape)[0].subs(H, h), q_i - OUTLETS[outlet][1]
+    return {"V": full, "rate": net / full.diff(h)}
+
+
+@sloping_walls.mistake("That is how fast the volume changes. By how much does the level rise for a little more volume?")
+def _(outlet):
+    return {"rate": q_i - OUTLETS[outlet][1]}
 
 
 @sloping_walls.mistake("The density is the same inside and in both flows. Is it needed here?")
@@ -296,6 +342,18 @@ def pond(
     )
 
 
+@pond.picture
+def _(V, q, c_in):
+    """A stirred tank of {V}: {q} flow in with {c_in} of waste, and {q} flow out with the concentration c."""
+    layout = """
+        in  1     .     .
+        .   pond  pond  .
+        .   pond  pond  out"""
+    names = {"in": f"${written(q)}$ m³/h with ${written(c_in)}$ g/m³", "out": f"${written(q)}$ m³/h with $c$"}
+    water = draw.tank(f"${written(V)}$ m³", stirrer=True)
+    return draw.instrumentation_diagram(layout, "in 1 pond out", "", {"pond": water}, names)
+
+
 @pond.mistake(
     "That is a pond without bacteria, or nearly so. They remove that much from every cubic metre: how much is it "
     "in the whole pond?"
@@ -309,12 +367,13 @@ def _(V, q, c_in):
 def _(V, q, k, c_in):
     if abs(q - k * V) < q / 20:
         return {}
-    return {"T": V / (q - k * V), "c_s": q * c_in / (q - k * V)}
+    T, c_s = V / (q - k * V), q * c_in / (q - k * V)
+    return {"T": T, "c_s": c_s} if _told_apart(T, 1 / k, by=0.05) else {"c_s": c_s}
 
 
 @pond.mistake("That is the time constant of the bacteria alone. What else carries waste out of the pond?")
 def _(V, q, k):
-    return {"T": 1 / k} if abs(k * V / q - 1) > 0.03 else {}
+    return {"T": 1 / k} if _told_apart(1 / k, V / q, by=0.03) else {}
 
 
 @pond.mistake("Your concentration ends at that of the inflow. Do the bacteria not remove anything?")
@@ -417,6 +476,24 @@ def milk(
     )
 
 
+@milk.picture
+def _(m, F, U_h, T_i, T_e):
+    """A stirred tank of {m} with a heating element of the power P: {F} come in at {T_i} and leave; through the wall, of
+    {U_h}, heat passes to the dairy at {T_e}."""
+    layout = """
+        in  1    .    .    .
+        .   vat  vat  vat  dairy
+        .   vat  vat  vat  .
+        P   vat  vat  vat  out"""
+    names = {
+        "in": f"${written(F)}$ kg/s, ${written(T_i)}$ °C",
+        "dairy": f"dairy, ${written(T_e)}$ °C,\nby ${written(U_h)}$ W/K",
+        "out": f"${written(F)}$ kg/s",
+    }
+    vat = draw.tank(f"${written(m)}$ kg", stirrer=True, heater=True)
+    return draw.instrumentation_diagram(layout, "in 1 vat out", "P vat", {"vat": vat}, names)
+
+
 @milk.mistake("Heat also passes through the wall, between the vat and the dairy.")
 def _(m, F, c, T_i, T_SP):
     return {"P": c * F * (T_SP - T_i) / 1000, "T_off": T_i, "warmer": 1000 / (c * F), "T": m / F / 60}
@@ -441,8 +518,19 @@ def _(F, c, U_h, T_i, T_e):
 
 
 @milk.mistake("In which direction does heat pass through the wall when the vat is warmer than the dairy?")
+def _(m, F, c, U_h, T_i, T_e, T_SP):
+    loss = c * F - U_h
+    wrong = {"P": (c * F * (T_SP - T_i) - U_h * (T_SP - T_e)) / 1000, "T": c * m / loss / 60}
+    if loss < 0:
+        return _only(wrong, "P")
+    return wrong | {"T_off": (c * F * T_i - U_h * T_e) / loss, "warmer": 1000 / loss}
+
+
+@milk.mistake("Not all of this temperature comes from the element. How much higher is it with one kilowatt more?")
 def _(F, c, U_h, T_i, T_e, T_SP):
-    return {"P": (c * F * (T_SP - T_i) - U_h * (T_SP - T_e)) / 1000}
+    each = 1000 * T_SP / (c * F * (T_SP - T_i) + U_h * (T_SP - T_e))
+    others = [1000 / (c * F), 1000 / U_h, 1000 / (c * F + U_h), 1000 / abs(c * F - U_h)]
+    return {"warmer": each} if _told_apart(each, *others, by=0.03) else {}
 
 
 @milk.mistake("The energy inside is that of the whole mass. What is the rate of the temperature multiplied by?")
@@ -454,7 +542,8 @@ def _(F, c, U_h):
     "That is the temperature that a kilowatt more would give. How many kelvin does it rise, from wherever it is?"
 )
 def _(F, c, U_h, T_i, T_e):
-    return {"warmer": (c * F * T_i + U_h * T_e + 1000) / (c * F + U_h)}
+    reached = (c * F * T_i + U_h * T_e + 1000) / (c * F + U_h)
+    return {"warmer": reached} if _told_apart(reached, 1000 / U_h, 1000 / (c * F), by=0.03) else {}
 
 
 milk.hints(
@@ -512,6 +601,19 @@ def _lift(T, J, r, m_1, m_2, g):
     return (T / r - (m_1 - m_2) * g) / (m_1 + m_2 + J / r**2)
 
 
+def _mistakes_differ(T, J, r, m_1, m_2):
+    """Whether the masses, and the accelerations, that follow from the usual mistakes are all different."""
+    masses = [m_1 + m_2, m_1 - m_2 + J / r**2, J + (m_1 + m_2) * r**2]
+    if not masses[1]:
+        return False
+    forces = [T / r - mass * g_earth for mass in (m_1 - m_2, m_1, m_1 + m_2, m_2 - m_1)]
+    others = [*forces[1:], -T / r - (m_1 - m_2) * g_earth]
+    moved = m_1 + m_2 + J / r**2
+    accelerations = [*(force / moved for force in others), *(forces[0] / mass for mass in (*masses[:2], moved * r))]
+    pairs = itertools.chain(itertools.combinations(masses, 2), itertools.combinations(accelerations, 2))
+    return all(abs(one - other) > abs(other) / 40 for one, other in pairs)
+
+
 @exercise(
     "3.5",
     title="A lift with a counterweight",
@@ -522,6 +624,7 @@ def _lift(T, J, r, m_1, m_2, g):
         and abs(T) >= 200
         and sympy.Rational(1, 5) <= abs(_lift(T, J, r, m_1, m_2, g_earth)) <= 2
         and abs(T / r) <= 3 * abs(T / r - (m_1 - m_2) * g_earth)
+        and _mistakes_differ(T, J, r, m_1, m_2)
     ),
 )
 def lift(
@@ -548,6 +651,14 @@ def lift(
         T_hold=number((m_1 - m_2) * g_earth * r, "N m", "the torque that holds the cabin"),
         a=number(_lift(T, J, r, m_1, m_2, g_earth), "m/s²", "the acceleration"),
     )
+
+
+@lift.picture
+def _(m_1, m_2, J, r):
+    """A rope over a drum of {J} with the radius {r}; on its left hangs the cabin of {m_1}, on its right the
+    counterweight of {m_2}. The torque T lifts the cabin."""
+    cabin, weight = f"${written(m_1)}$ kg", f"${written(m_2)}$ kg"
+    return draw.hoist(cabin, weight, f"${written(J)}$ kg m²", f"${written(r)}$ m")
 
 
 def _lift_with(mass, weight):
@@ -588,7 +699,12 @@ def _(m_1, m_2, J, r, T):
 )
 def _(m_1, m_2, J, r, T):
     found = _lift_with(lambda m_1, m_2, J, r: m_1 - m_2 + J / r**2, lambda m_1, m_2, J, r: m_1 - m_2)(m_1, m_2, J, r, T)
-    return _only(found, "formula", "mass")
+    return _only(found, "formula", "mass", "a")
+
+
+@lift.mistake("Which way does this torque turn the drum? A negative one helps to lower the cabin.")
+def _(m_1, m_2, J, r, T):
+    return {"a": _lift(-T, J, r, m_1, m_2, g_earth)} if T < 0 else {}
 
 
 @lift.mistake("The counterweight helps the motor: it pulls on the other side of the drum.")
@@ -729,9 +845,9 @@ def two_resistors(
 ):
     r"""{looks}. Nothing else takes a current from the output.
 
-    Call the voltage over the capacitor $v$, from its side towards the input to its other side. Set up the balance
-    of the currents: with which rate $\dot v$ does it change, as a formula in $v$, the input voltage $v_{in}$,
-    $R_1$, $R_2$ and $C$?
+    The voltage over the capacitor is $v$, with its plus at the side towards the input. Set up the balance of the
+    currents: with which rate $\dot v$ does it change, as a formula in $v$, the input voltage $v_{in}$, $R_1$, $R_2$
+    and $C$?
 
     Now let $R_1$ = {r_1}, $R_2$ = {r_2} and $C$ = {c}. With which time constant does the capacitor follow? By which
     factor does the circuit multiply a constant voltage on its way to the output, and by which one a voltage that
@@ -750,10 +866,10 @@ def two_resistors(
 
 @two_resistors.picture
 def _(circuit, r_1, r_2, c):
-    """The circuit. {looks}."""
+    """The circuit. {looks}. The voltage v over the capacitor has its plus at the side towards the input."""
     values = {"R_1": written(r_1, "kΩ"), "R_2": written(r_2, "kΩ"), "C": written(c, "µF")}
     title = ", ".join(f"${name}$ = {value}" for name, value in values.items())
-    return draw.voltage_divider(*CIRCUITS[circuit][1], title=title)
+    return draw.voltage_divider(*CIRCUITS[circuit][1], title=title, voltages={"C": "v"})
 
 
 @two_resistors.mistake("There is a second resistor, and a current flows through it as well.")
@@ -843,10 +959,10 @@ def _(circuit, r_1, r_2, c):
     front of the rate is {lag}, with the two resistors in {together}. With kΩ times µF in milliseconds, $T$ = {T}.
 
     **A constant voltage.** The capacitor is charged and takes no current. Take it out of the circuit: what is left
-    multiplies the voltage by {slow}.
+    multiplies the voltage by {how_slow}{slow}.
 
     **A very fast one.** The capacitor has no time to change its voltage, and lets the current through like a wire:
-    now the circuit multiplies it by {fast}.
+    now the circuit multiplies it by {how_fast}{fast}.
     """
     balance = {
         "loaded": r"\frac{v_{in} - v}{R_1} = C\dot v + \frac{v}{R_2}",
@@ -859,7 +975,10 @@ def _(circuit, r_1, r_2, c):
         "bridged": r"\frac{1}{C}\left(\frac{v_{in} - v}{R_2} - \frac{v}{R_1}\right)",
     }
     in_series = circuit == "stepped"
+    share = r"$\frac{R_2}{R_1 + R_2}$, which is "
     return {
+        "how_slow": "" if in_series else share,
+        "how_fast": share if in_series else "",
         "balance": balance[circuit],
         "solved": solved[circuit],
         "lag": r"$(R_1 + R_2)\,C$" if in_series else r"$\frac{R_1 R_2}{R_1 + R_2}\,C$",
@@ -938,9 +1057,17 @@ def _limits(f, rest, t_95, C):
     return math.sqrt((100 / float(rest)) ** 2 - 1) / (2 * math.pi * float(f)), float(t_95) / 1000 / math.log(20)
 
 
+@hum.picture
+def _(C):
+    """An RC circuit: the voltage v_in lies over the resistor R and the capacitor of {C} in a row, v_out over the
+    capacitor alone."""
+    return draw.rc_circuit(capacitor=f"${written(C)}$ µF")
+
+
 @hum.mistake("The frequency in hertz counts periods. How many radians does the sine go in a second?")
 def _(f, rest, t_95, C):
-    return {"R": 2 * math.pi * _limits(f, rest, t_95, C)[0] / float(C) * 1000}
+    smallest = 2 * math.pi * _limits(f, rest, t_95, C)[0] / float(C) * 1000
+    return {"R": smallest} if _told_apart(smallest, float(t_95) / float(C), by=0.03) else {}
 
 
 @hum.mistake("After one time constant a step has gone only 63 % of its way. How many time constants take it to 95 %?")
@@ -1063,9 +1190,9 @@ def _(q_i):
     return {"h_s": q_i}
 
 
-def _told_apart(value, *others):
-    """Whether a value differs from all others by more than a ruler may be off."""
-    return all(abs(value / other - 1) > 0.35 for other in others)
+def _told_apart(value, *others, by=0.35):
+    """Whether a value differs from all others, as a rule by more than a ruler may be off."""
+    return all(abs(value / other - 1) > by for other in others)
 
 
 def _rates(opening, h_s, q_i, h_1, A):
@@ -1084,6 +1211,12 @@ def _(opening, h_s, q_i, h_1, A):
 def _(opening, h_s, q_i, h_1, A):
     right, added, flow, _ = _rates(opening, h_s, q_i, h_1, A)
     return {"rate": flow} if _told_apart(flow, right, added) else {}
+
+
+@seen_balance.mistake("That is what comes in. What goes out at this level, at the same time?")
+def _(opening, h_s, q_i, h_1, A):
+    alone = q_i / A
+    return {"rate": alone} if _told_apart(alone, *_rates(opening, h_s, q_i, h_1, A)) else {}
 
 
 @seen_balance.mistake("Something also comes in. How far apart are the two curves at this level?")
@@ -1110,6 +1243,12 @@ def _(opening, A, h_s, q_i, h_1):
 def _(opening, A, h_s, q_i, h_1):
     right, origin, elsewhere, _ = _times(opening, A, h_s, q_i, h_1)
     return {"T": elsewhere} if _told_apart(elsewhere, right, origin) else {}
+
+
+@seen_balance.mistake("A steep outflow brings the level back sooner. What is divided by what in the time constant?")
+def _(opening, A, h_s, q_i, h_1):
+    multiplied = A * OPENINGS[opening] * q_i / h_s / 60
+    return {"T": multiplied} if _told_apart(multiplied, *_times(opening, A, h_s, q_i, h_1)) else {}
 
 
 @seen_balance.mistake("That would be a tank of one square metre. How many litres has one metre of this one?")
@@ -1146,12 +1285,12 @@ def _(opening, A, h_s, q_i, h_1):
     in seconds, or {T}. The steeper the outflow, the sooner the level is back.
     """
     power = OPENINGS[opening]
-    out = q_i * (h_1 / h_s) ** power
+    out = float(q_i) * float(h_1 / h_s) ** float(power)
     slope = power * q_i / h_s
     return {
         "flow": (q_i, "L/s"),
         "out": (out, "L/s"),
-        "left": (q_i - out, "L/s"),
+        "left": (float(q_i) - out, "L/s"),
         "slope": (slope, "L/s"),
         "cubic": float(slope / 1000),
         "seconds": 1000 * A / slope,
