@@ -32,7 +32,7 @@ from loopbook.exercises.authoring import (
 from loopbook.exercises.diagnoses import Background, explained
 from loopbook.exercises.diagnoses import numbers as in_numbers
 from loopbook.exercises.diagnoses.background import Amount
-from loopbook.exercises.diagnoses.numbers import MORE, TABLE, Case, found_in, in_general, is_recognised
+from loopbook.exercises.diagnoses.numbers import FACTORS, GIVENS, MORE, TABLE, Case, found_in, in_general, is_recognised
 from loopbook.exercises.judging import MISTAKE, WRONG, judge
 from loopbook.exercises.kinds import Expression, Number
 from loopbook.exercises.reading import Unreadable
@@ -71,7 +71,7 @@ RESPONSES = [
     ({"Kp": 1.2}, "that is the inverse"),
     ({"Kp": 2.5}, "as large as the 3\xa0K/%: is that missing"),
     ({"Kp": 1.667}, "it is off by a factor of 2"),
-    ({"Ti": 8}, "that is the 8\xa0s of the question itself"),
+    ({"Ti": 8}, "that is the same number as the 8\xa0s of the question"),
     ({"Ti": 0.667}, "that would be the value in min"),
     ({"rise": 27.73}, "that is what comes out without the 8\xa0s"),
     ({"rise": 45.55}, "that is what comes out with 40\xa0s and 8\xa0s interchanged"),
@@ -82,7 +82,7 @@ RESPONSES = [
     ({"phase": 1.134}, "that would be the value in rad"),
     ({"Ti": 20.5, "Kp": 0.4271}, "this fits what you have for"),
     ({"pid": [2.5, 40]}, "Ti is right; that is what comes out without the 3\xa0K/%"),
-    ({"pid": [0.8333, 8]}, "Kp is right; Ti: that is the 8\xa0s of the question"),
+    ({"pid": [0.8333, 8]}, "Kp is right; Ti: that is the same number as the 8\xa0s of the question"),
     ({"pid": PID(0.8333)}, "Kp is right; Ti: the integral term is missing"),
     ({"pid": PID(0.8333, 40, 5)}, "a derivative term is not asked for"),
     ({"H": "3*exp(-40*s)/(8*s + 1)"}, "with 40\xa0s and 8\xa0s interchanged"),
@@ -233,15 +233,20 @@ def test_each_mistake_is_answered_by_its_own_sentence(part, monkeypatch):
     for place, (question, name, kind) in enumerate(itertools.islice(cases(students), part, None, 4)):
         case = case_of(question, name, kind, monkeypatch)
         before = []
-        for mistake in (*TABLE, *MORE) if THOROUGH or place % 5 == 0 else TABLE:  # keys with other givens take time
+        for mistake in (
+            (*TABLE, *GIVENS, *FACTORS, *MORE) if THOROUGH or place % 5 == 0 else (*TABLE, *GIVENS, *FACTORS)
+        ):  # keys with other givens take time
             for wrong, says in mistake.wrongs(case):
                 if not math.isfinite(wrong) or wrong == 0 or kind.agrees(wrong):
+                    continue
+                before.append((wrong, says))
+                if (mistake.is_rarest and not is_recognised(wrong, wrong, is_rarest=True)) or case.is_counted:
                     continue
                 found = found_in(wrong, case, kind.agrees)
                 alike = {one for value, one in before if is_recognised(wrong, value)}
                 assert found is not None, f"{question.exercise.number} {name} = {wrong}: {says}"
+                alike |= {found.says} if found.says.endswith("which factor belongs there?") else set()
                 assert found.says == says or found.says in alike, f"{question.exercise.number} {name} = {wrong}: {says}"
-                before.append((wrong, says))
 
 
 def test_hardly_any_other_number_is_taken_for_a_mistake():
@@ -262,10 +267,14 @@ def test_hardly_any_other_number_is_taken_for_a_mistake():
 def test_no_sentence_tells_the_key(monkeypatch):
     for question, name, kind in cases([None]):
         case = case_of(question, name, kind, monkeypatch)
-        known = {amount.value for amount in case.givens} | {0, 1, 2, 4, 10, 60, 90, 100, 180, 360, 1000, 3600, 0.632}
+        known = (
+            {amount.value for amount in case.givens}
+            | {*case.shown}
+            | {0, 1, 2, 4, 10, 60, 90, 100, 180, 360, 1000, 3600, 0.632}
+        )
         if any(is_recognised(kind.key, value) for value in known if value):
             continue
-        answers_ = [wrong for mistake in TABLE for wrong, _ in mistake.wrongs(case)]
+        answers_ = [wrong for mistake in (*TABLE, *GIVENS, *FACTORS) for wrong, _ in mistake.wrongs(case)]
         for answer in (*answers_[::3], 1.3 * kind.key, 4.7 * kind.key, 1.04 * kind.key):
             if math.isfinite(answer) and not kind.agrees(answer):
                 says = explained(kind, answer, question.background.of(name, {})).says.replace(kind.asked, "")
@@ -292,6 +301,84 @@ def test_a_given_explains_a_factor_better_than_units_do():
 
 
 def test_amounts_read_well():
-    case = Case(24, "s", "the time, in s", givens=[Amount(6, "s", "6 s"), Amount(5, "%", "5 %")])
-    assert found_in(30, case).says == "that is 6 s times 5 %: is that the time, in s?"
-    assert found_in(18, case).says == "it is off by just 6 s: is that left out, or is it there once too often?"
+    case = Case(24, "s", "the time, in s", givens=[Amount(6.15, "s", "6.15 s"), Amount(5, "%", "5 %")])
+    assert found_in(30.75, case).says == "that is 6.15 s times 5 %: is that the time, in s?"
+    assert found_in(17.85, case).says == "look at the 6.15 s: is that left out, or is it there once too often?"
+
+
+# What a wrong number has to do with other wrong and right ones.
+
+
+@exercise("1.2", title="A relay", points=1)
+def relay(
+    swing=between(1, 9, "K", reference=2.5),
+    height=between(5, 20, "%", reference=12),
+    first=between(10, 90, "s", reference=54),
+    last=between(20, 200, "s", reference=135),
+):
+    """A relay of {height} makes {swing} at {first} and {last}; the fraction has 44 in it."""
+    ultimate, T = 4 * height / (sympy.pi * swing), sympy.Rational(3, 2) * (last - first)
+    return answers(
+        Ku=number(ultimate, "%/K", "the ultimate gain"),
+        Kp=number(0.6 * ultimate, "%/K", "the gain"),
+        T=number(T, "s", "the time constant"),
+        tau=number(first - T / 3, "s", "the dead time"),
+        Pu=number(4 * (last - first), "s", "the ultimate period"),
+        poles=poles([-3, -5], what="the poles"),
+        zeros=poles([5], what="the zeros"),
+    )
+
+
+FITS = "this fits what you have for"
+TOGETHER = [
+    ({"Ku": 3.38, "Kp": 2.03}, "Ku", "not right"),
+    ({"Ku": 3.38, "Kp": 2.03}, "Kp", f"{FITS} the ultimate gain, `Ku`"),
+    ({"T": 135, "tau": 9}, "tau", f"{FITS} the time constant, `T`"),  # neither by a factor nor by a difference
+    ({"Ku": 3.38, "tau": 20}, "tau", "not right, though of about the right size; asked: the dead time, in s"),
+    ({"T": 135, "Pu": 333}, "Pu", "What you have for the time constant, `T`, is not right either"),
+    ({"Ku": 6.112, "Kp": 6.112}, "Kp", "that is the ultimate gain, `Ku`, itself: asked here is the gain"),
+    ({"Ku": 3.667, "Kp": 6.112}, "Kp", "have you interchanged the two?"),
+    ({"Ku": 6.112, "Kp": 2.75}, "Kp", "that is 0.45 times the ultimate gain, `Ku`: which factor belongs there?"),
+    ({"Ku": 269}, "Ku", "as large as the 44: is that missing"),
+    ({"Ku": 0.265}, "Ku", "with the numbers of 2.5\xa0K and 12\xa0% interchanged"),
+    ({"Pu": 0.01939}, "Pu", "an angular frequency instead of a period"),
+    ({"poles": [5], "zeros": [-3, -5]}, "poles", "have you interchanged the two?"),
+    ({"poles": [-3, -5], "zeros": [-3, -5]}, "zeros", "that is the poles, `poles`, itself"),
+]
+
+
+@pytest.mark.parametrize(("given", "name", "says"), TOGETHER)
+def test_numbers_that_belong_together(given, name, says):
+    said = {one.name: one.says for one in relay.question().check(**given).verdicts}
+    assert says in said[name], said
+    first = next(iter(given))
+    assert FITS not in said[first]
+
+
+def test_a_small_number_is_not_nothing():
+    mistakes = [("without a jump", 0)]
+    kind = number(15.68, "mV", "the jump")
+    assert judge("y", kind, 0, mistakes).says == "without a jump"
+    assert "without a jump" not in judge("y", kind, 0.01568, mistakes).says
+
+
+def test_of_two_mistakes_the_nearest_one_is_named():
+    mistakes = [("the wind", 1785), ("the friction", 1770)]
+    assert judge("F", number(1900, "N", within=0.05), 1770, mistakes).says == "the friction"
+
+
+def test_what_is_exact_has_exact_mistakes():
+    kind = number(123, "", "the number of the loop", 0)
+    assert judge("loop", kind, 124, [("the next one", 124)]).says == "the next one"
+    assert judge("loop", number(120, "", "the number", 0), 123, [("the next one", 124)]).status == WRONG
+
+
+def test_a_function_that_grows_is_no_mistake_of_others():
+    kind = time_function("exp(-t)", until=30)
+    assert judge("y", kind, "1", [("it grows", "exp(9*t/5)")]).says != "it grows"
+
+
+@pytest.mark.parametrize(("answer", "is_named"), [(5, False), (30, False), (2.57, True)])
+def test_round_numbers_are_no_coincidence_of_givens(answer, is_named):
+    case = Case(11.3, "", "the ratio", givens=[Amount(18, "s", "18 s"), Amount(7, "K", "7 K"), Amount(90, "m", "90 m")])
+    assert bool(found_in(answer, case)) == is_named

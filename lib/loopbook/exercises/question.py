@@ -15,7 +15,7 @@ from loopbook.exercises.asked_names import as_asked, by_name
 from loopbook.exercises.diagnoses import Background
 from loopbook.exercises.errors import ExerciseError
 from loopbook.exercises.judging import OPEN, UNJUDGED, Verdict, harmless, is_right, judge
-from loopbook.exercises.kinds import Kind, Word, Words
+from loopbook.exercises.kinds import Expression, Kind, Number, Numbers, Poles, Settings
 from loopbook.exercises.parameters import call
 from loopbook.exercises.progress import is_answered, note, students
 from loopbook.exercises.reading import NOT_ANSWERED
@@ -30,6 +30,9 @@ if TYPE_CHECKING:
 
 #: In a solution, what is below it is left to the reader in the last hint.
 FADES = re.compile(r"^\*\*\*\n", re.MULTILINE)
+#: The numbers in a statement; of those that are no givens so many may be in a diagnosis.
+_NUMBERS = re.compile(r"(?<![\w.,])\d+(?:\.\d+)?(?![\w.]*\d)")
+MOST_SHOWN = 8
 #: After so many responses that name no mistake, the hint is offered.
 BARE = 2
 
@@ -90,7 +93,10 @@ class Question(Showing):
     def background(self) -> Background:
         """What the diagnoses of a wrong answer may know: the givens of the statement, and the key for others."""
         parameters = {name: one for name, one in self.exercise.parameters.items() if self._states(name)}
-        return Background(self.key, self.values, parameters, self.exercise.key)
+        stated = {float(text) for text in _NUMBERS.findall(self.filled_in(self.exercise.statement))}
+        given = {float(self.values[name]) for name, one in parameters.items() if not isinstance(self.values[name], str)}
+        shown = [value for value in sorted(stated - given) if len(f"{value:g}".strip("0.").replace(".", "")) > 1]
+        return Background(self.key, self.values, parameters, self.exercise.key, shown[:MOST_SHOWN])
 
     def _states(self, name):
         """Whether the statement shows a value in the place of a name."""
@@ -176,14 +182,25 @@ class Question(Showing):
         return []
 
     def _whose(self, given):
-        """Who has the numbers with which all answers would be right, of those for whom the exercise was shown."""
-        if not any(not isinstance(self.key[name], Word | Words) for name in given):
+        """Who has the numbers with which all answers would be right, of those for whom the exercise was shown.
+
+        A word, a design, or a number of one digit is right for many: it alone does not tell whose numbers these are.
+        """
+        telling = [name for name in given if self._tells(name, given[name])]
+        if not telling:
             return None
         for student in students(self.exercise.number):
             other = self.exercise.question(student)
             if other.values != self.values and all(is_right(other.key[name], given[name]) for name in given):
                 return _person(student)
         return None
+
+    def _tells(self, name, given):
+        """Whether a wrong answer to a quantity tells for whose numbers it would be right."""
+        kind = self.key[name]
+        if not isinstance(kind, Number | Numbers | Poles | Settings | Expression) or is_right(kind, given):
+            return False
+        return type(kind) is not Number or len(f"{kind.read(given)[0]:g}".strip("-0.").replace(".", "")) > 1
 
     @property
     def rungs(self) -> list[str]:

@@ -40,12 +40,40 @@ def explained(kind: Kind, answer: Any, background: Background) -> Finding | None
     return recomputed(kind, answer, background)
 
 
-def recomputed(kind: Kind, answer: Any, background: Background) -> Finding | None:
-    """Return the change of a given with which the answer would be right."""
-    for how, key in itertools.chain(background.changed_keys(), background.changed_keys(likely=False)):
-        if type(key) is type(kind):
-            wrong = copy.copy(kind)  # with its own symbols, times and tolerance
-            wrong.key = key.key
-            if wrong.agrees(answer) and not wrong.agrees(kind.key):
-                return Finding(how)
+def of_another(kind: Kind, answer: Any, background: Background) -> Finding | None:
+    """Return that an answer is right for another quantity of the same kind."""
+    for name, other in background.key.items():
+        same = type(other) is type(kind) and other.unit == kind.unit and name != background.name
+        if same and not other.agrees(kind.key) and other.agrees(answer):
+            had = background.answered(name)
+            if had and had.is_right:
+                return Finding(f"that is {had.words}, itself: asked here is {kind.asked}")
+            return Finding("that fits another quantity that is asked for: have you interchanged the two?")
     return None
+
+
+def carried_on(kind: Kind, answer: Any, background: Background) -> Finding | None:
+    """Return whether an answer follows from a wrong number before it."""
+    for says, key in background.carried_on():
+        if _is_right_with(key, kind, answer):
+            return Finding(says, is_mistake=False)
+    return None
+
+
+def recomputed(kind: Kind, answer: Any, background: Background) -> Finding | None:
+    """Return the change of a given with which the answer would be right, or that it is right for another quantity."""
+    if found := of_another(kind, answer, background) or carried_on(kind, answer, background):
+        return found
+    for how, key in itertools.chain(background.changed_keys(), background.changed_keys(likely=False)):
+        if _is_right_with(key, kind, answer):
+            return Finding(how)
+    return None
+
+
+def _is_right_with(key, kind, answer):
+    """Whether an answer that is not right would be so with the key of another variant."""
+    if type(key) is not type(kind):
+        return False
+    wrong = copy.copy(kind)  # with its own symbols, times and tolerance
+    wrong.key = key.key
+    return wrong.agrees(answer) and not wrong.agrees(kind.key)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from loopbook.exercises.diagnoses.background import Amount, Background
-from loopbook.exercises.diagnoses.finding import Finding, explained, recomputed
+from loopbook.exercises.diagnoses.finding import Finding, explained, of_another, recomputed
 from loopbook.exercises.diagnoses.numbers import NEARBY, Case, found_in
 from loopbook.exercises.kinds import Numbers, Poles
 
@@ -16,6 +16,8 @@ _PLACES = ("first", "second", "third", "fourth", "fifth", "sixth")
 
 @explained.register
 def _(kind: Numbers, answer: Any, background: Background) -> Finding | None:
+    if found := of_another(kind, answer, background):
+        return found
     says = kind.hint(answer)
     if found := recomputed(kind, answer, background):
         return found
@@ -26,7 +28,7 @@ def _(kind: Numbers, answer: Any, background: Background) -> Finding | None:
     off = np.argwhere(~right)
     for place in map(tuple, off):
         others = [
-            Amount(float(value), kind.unit, f"the number for {_place(where)}")
+            Amount(float(value), kind.unit, f"the number for {_place(where)}", is_had=bool(right[where]))
             for where, value in np.ndenumerate(key)
             if where != place
         ]

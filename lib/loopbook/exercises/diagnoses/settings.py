@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 import sympy
 
 from loopbook.exercises.diagnoses.background import Amount, Background
 from loopbook.exercises.diagnoses.finding import Finding, explained, recomputed
-from loopbook.exercises.diagnoses.numbers import Case, found_in, in_general, others_asked, size_of
+from loopbook.exercises.diagnoses.numbers import (
+    Case,
+    found_in,
+    in_general,
+    others_asked,
+    scaling,
+    size_of,
+    to_check,
+    wrong_before,
+)
 from loopbook.exercises.kinds import Settings
-from loopbook.exercises.kinds.settings import NAMES
+from loopbook.exercises.kinds.numeric import near
+from loopbook.exercises.kinds.settings import NAMES, other_form
 from loopbook.exercises.reading import listed
 
 
@@ -37,7 +48,6 @@ def _(kind: Settings, answer: Any, background: Background) -> Finding | None:
 def _in_part(kind, name, answer, background):
     """What is found in one of the settings, a number."""
     value, key = getattr(answer, name), getattr(kind.key, name)
-    unit = kind.gain if name == "Kp" else kind.time
     if key == sympy.oo:
         return Finding("no integral term is asked for")
     if value == sympy.oo:
@@ -45,18 +55,43 @@ def _in_part(kind, name, answer, background):
     if key == 0 or value == 0:
         what = {"Td": "a derivative term", "Tf": "a filter"}.get(name, "it")
         return Finding(f"{what} is not asked for" if key == 0 else f"{what} is missing")
+    if (other := other_form(kind.key)) and near(value, float(getattr(other, name)), kind.within):
+        return Finding(f"that is the {name} of the {other.form} form")
+    had = kind.parts_near(answer)
     others = [
-        Amount(float(getattr(kind.key, other)), kind.gain if other == "Kp" else kind.time, other)
+        Amount(float(getattr(kind.key, other)), _unit(kind, other), other, is_had=had[other])
         for other in NAMES
         if other != name and getattr(kind.key, other) not in (0, sympy.oo)
     ]
 
+    def part(keys):
+        return float(getattr(keys[background.name].key, name))
+
     def changed(likely):
         for how, other in background.changed_keys(likely):
             if isinstance(other, Settings) and other.key.form == kind.key.form and getattr(other.key, name).is_finite:
-                yield how, float(getattr(other.key, name))
+                yield float(getattr(other.key, name)), how
 
-    others += [amount for _, amount in others_asked(background)]
-    case = Case(float(key), unit, name, kind.within, others, background.givens, changed)
+    # a derivative time is often a part of the integral time
+    before = [other for other in others if (name, other.words, other.is_had) == ("Td", "Ti", False)]
+    answered = [(other, float(answer.Ti)) for other in before if answer.Ti.is_finite]
+    case = Case(
+        float(key),
+        _unit(kind, name),
+        name,
+        kind.within,
+        others + [amount for _, amount in others_asked(background)],
+        background.givens,
+        changed,
+        [*wrong_before(background), *answered],
+        scaling=functools.cache(lambda: scaling(background, float(key), _unit(kind, name), part)),
+        shown=background.shown,
+    )
     named = found_in(float(value), case) or in_general(float(value), case)
-    return Finding(size_of(float(value), case), is_mistake=False, is_bare=True) if named.is_bare else named
+    if named.is_bare:
+        return Finding(f"{size_of(float(value), case)}{to_check(case)}", is_mistake=False, is_bare=True)
+    return named
+
+
+def _unit(kind, name):
+    return kind.gain if name == "Kp" else kind.time

@@ -13,7 +13,7 @@ import sympy
 from loopbook.exercises import formulas, units
 from loopbook.exercises.formulas import Formula
 from loopbook.exercises.kinds.kind import Kind, literal, with_unit
-from loopbook.exercises.kinds.numeric import in_unit
+from loopbook.exercises.kinds.numeric import ROUNDED, in_unit
 from loopbook.exercises.kinds.settings import Settings
 from loopbook.exercises.reading import Unreadable, alone, answered, listed, shortened, symbols_in
 from loopbook.expressions import exact, parse, s
@@ -350,6 +350,14 @@ class TimeFunction(Expression):
         if not self._near(expected, found, np.asarray, 1):
             return False
         return self._near(np.where(np.isfinite(found), expected, np.nan), found, _changes, 2)
+
+    def is_value(self, answer: Any, wrong: Any) -> bool:
+        """Whether an answer is the function of a mistake; not what its numbers, rounded, could grow to in time."""
+        other = self.like(wrong)
+        expected, found = (one if isinstance(one, np.ndarray) else one(**self.points()) for one in (other.key, answer))
+        known = np.broadcast_to(expected, self.times.shape)
+        allowed = ROUNDED * np.nanmax(np.abs(known), initial=0.0)
+        return other.agrees(answer) and bool(np.nanmax(np.abs(known - found), initial=0.0) <= allowed)
 
     def _near(self, expected, found, seen, times):
         within = times * self.within

@@ -192,6 +192,10 @@ class Kind:
         """Whether an answer, as it was read, is the value of a mistake."""
         return self.like(wrong).agrees(answer)
 
+    def off_by(self, answer: Any, wrong: Any) -> float:
+        """How far an answer is from the value of a mistake, where two are near; of most kinds nothing tells."""
+        return 0.0
+
     def in_other_units(self, answer: Any) -> Iterable[tuple[str, Any]]:
         """What an answer would be if it had been given in another unit: pairs of the unit and the value."""
         return ()

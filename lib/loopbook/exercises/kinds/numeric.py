@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
+from decimal import Decimal
 from typing import Any
 
 import numpy as np
@@ -48,8 +49,10 @@ _NAMES = re.compile(r"^\w+?_?[{(]?1 ?[,/] ?2[})]? ?= ?")
 _WITH_UNITS = re.compile(
     r"\d+ ?(?:h|hours?|min|minutes?|m|kg)(?:,? (?:and )?[\d.,]+ ?(?:min|minutes?|s|sec|seconds?|g|cm))+"
 )
-#: A mistake is recognised in a rounded value, too.
+#: A mistake is recognised in a rounded value, too, by as much as its digits tell and no more than this.
 ROUNDED = 0.01
+#: A number below this fraction of the key is zero.
+NOTHING = 1e-9
 
 
 class Number(Kind):
@@ -91,9 +94,15 @@ class Number(Kind):
     def is_value(self, answer: float, wrong: Any) -> bool:
         """Whether an answer is the value of a mistake, which a reader may have rounded."""
         wrong = self.like(wrong).key
-        if wrong == 0:
-            return abs(answer) <= self.within * abs(self.key)
-        return near(answer, wrong, max(self.within, ROUNDED))
+        if wrong == 0:  # a small number is not nothing
+            return abs(answer) <= NOTHING * abs(self.key)
+        if self.within == 0:
+            return near(answer, wrong, 0)
+        return near(answer, wrong, max(self.within, _half_unit(answer, wrong), ROUNDED / 2))
+
+    def off_by(self, answer: float, wrong: Any) -> float:
+        """How far an answer is from the value of a mistake."""
+        return abs(answer - self.like(wrong).key)
 
     def in_other_units(self, answer: float) -> Iterator[tuple[str, float]]:
         """What an answer would be if it had been given in another unit: pairs of the unit and the value."""
@@ -281,6 +290,12 @@ def _each_pole(rows):
 def near(answer: float, key: float, within: float) -> bool:
     """Whether a number is within a fraction of the key; of a key of 0, within as much absolutely."""
     return math.isfinite(answer) and abs(answer - key) <= within * (abs(key) or 1) + 1e-12 * abs(key)
+
+
+def _half_unit(answer, value):
+    """Half a unit of the last digit with which an answer is given, as a fraction of a value, and at most `ROUNDED`."""
+    _, _, exponent = Decimal(repr(float(answer))).normalize().as_tuple()
+    return min(0.5 * 10.0**exponent / abs(value), ROUNDED)
 
 
 def in_digits(value: complex | sympy.Expr) -> str:

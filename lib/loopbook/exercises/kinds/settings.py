@@ -175,7 +175,7 @@ class Settings(Kind):
         wrong = [("the sign of Kp is wrong", changed(Kp=-key.Kp)), ("Kp is inverted", changed(Kp=1 / key.Kp))]
         wrong.append(("that is the proportional band, 100 % divided by Kp", changed(Kp=100 / key.Kp)))
         if key.Td != 0:
-            other = _other_form(key)
+            other = other_form(key)
             if other:
                 swapped = {name: getattr(other, name) for name in NAMES}
                 wrong.append((f"those are the numbers of the {other.form} form", PID(**swapped, form=key.form)))
@@ -394,7 +394,8 @@ def _near(value, key, within):
     return near(float(value), float(key), within if key else 1e-9)
 
 
-def _other_form(key):
+def other_form(key: PID) -> PID | None:
+    """A controller in its other form; None where it has no such form."""
     try:
         return key.parallel() if key.form == "serial" else key.serial()
     except ValueError:
