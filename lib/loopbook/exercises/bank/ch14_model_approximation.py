@@ -33,7 +33,11 @@ from loopbook.pid import PID
     title="A column that goes the wrong way first",
     points=2,
     insight="The half rule only moves lateness from one place to another: lags and delays keep their sum.",
-    where=lambda tau_2, tau_3, T_inv, theta_0: tau_3 < tau_2 and len({tau_3 / 2, theta_0, T_inv, 2 * T_inv}) == 4,
+    where=lambda tau_2, tau_3, T_inv, theta_0: (
+        tau_3 < tau_2 - Rational(1, 2)
+        and tau_3 not in (theta_0, T_inv)
+        and len({tau_2 / 2, tau_3 / 2, theta_0, T_inv, 2 * T_inv}) == 5
+    ),
 )
 def column(
     tau_1=between(15, 40, "min", step=1, reference=25),
@@ -104,6 +108,31 @@ def _(tau_1, tau_2, tau_3, T_inv, theta_0):
     return {"tau_1": tau_1 + tau_2, "theta": theta_0 + T_inv + tau_3}
 
 
+@column.mistake("Which of the two neglected lags is the larger one? That one is halved, and the other one is not.")
+def _(tau_1, tau_2, tau_3, T_inv, theta_0):
+    return {"tau_1": tau_1 + tau_3 / 2, "theta": theta_0 + T_inv + tau_2 + tau_3 / 2}
+
+
+@column.mistake("Three lags in a row begin late, and a single lag as long as their sum does not.")
+def _(tau_1, tau_2, tau_3, T_inv, theta_0):
+    return {"tau_1": tau_1 + tau_2 + tau_3, "theta": theta_0 + T_inv}
+
+
+@column.mistake("The smallest lag is missing. It is not halved, but it makes the process late all the same.")
+def _(tau_2, T_inv, theta_0):
+    return {"theta": theta_0 + T_inv + tau_2 / 2}
+
+
+@column.mistake("The inverse response makes the process late by its time constant, once and not twice.")
+def _(tau_2, tau_3, T_inv, theta_0):
+    return {"theta": theta_0 + 2 * T_inv + tau_2 / 2 + tau_3}
+
+
+@column.mistake("So much the lags make the process late. What else does?")
+def _(tau_2, tau_3):
+    return {"theta": tau_2 / 2 + tau_3}
+
+
 column.hints(
     "The half rule keeps the largest lag. Everything else that makes the process late has to go somewhere: where?",
     "The largest lag that is neglected is halved: one half goes to the lag that is kept, the other to the dead time. "
@@ -116,12 +145,13 @@ column.hints(
 @column.solution
 def _(tau_1, tau_2):
     r"""The model keeps the largest lag, {tau_1}. The largest one that it neglects, {tau_2}, is halved, and one half
-    goes to the lag that is kept: $\tau = {tau_1} + {half}$, which is {lag}.
+    goes to the lag that is kept: $\tau = {tau_1} + {half}$.
 
     ***
 
-    The other half makes the process late. So do the dead time that it has itself, the time constant of the inverse
-    response, and the smaller lag as a whole: $\theta = {half} + {theta_0} + {T_inv} + {tau_3}$, which is {theta}.
+    That is {lag}. The other half makes the process late. So do the dead time that it has itself, the time constant of
+    the inverse response, and the smaller lag as a whole: $\theta = {half} + {theta_0} + {T_inv} + {tau_3}$, which is
+    {theta}.
 
     A check: all lags and delays together are the same before and after.
     """
@@ -222,6 +252,63 @@ def _(k, tau_2, tau_3):
 @gas_holder.mistake("That is how far the ramp of $g_1$ lies below $kt$. And where does the ramp of $g$ lie?")
 def _(k, tau_2, tau_3):
     return {"ahead": k * (tau_2 / 2 + tau_3)}
+
+
+@gas_holder.mistake("The two are interchanged. The order counts the poles, and the integrator is one of them.")
+def _(k, tau_2, tau_3):
+    lag = tau_2 + tau_3 / 2
+    return {"g_1": k * exp(-tau_3 / 2 * s) / (s * (lag * s + 1)), "g_2": k * exp(-(tau_2 / 2 + tau_3) * s) / s}
+
+
+@gas_holder.mistake("The integrator is the largest lag of all, and it stays: the level goes on rising.")
+def _(k, tau_2, tau_3):
+    lag = k * exp(-tau_3 / 2 * s) / ((tau_2 + tau_3 / 2) * s + 1)
+    return {"g_1": lag, "g_2": lag}
+
+
+@gas_holder.mistake("Both lags are halved here. The rule halves only the largest of those that are neglected.")
+def _(k, tau_2, tau_3):
+    return {"g_1": k * exp(-(tau_2 + tau_3) / 2 * s) / s}
+
+
+@gas_holder.mistake("One of the two lags is in the dead time. What becomes of the other one?")
+def _(k, tau_2):
+    return {"g_1": k * exp(-tau_2 / 2 * s) / s}
+
+
+@gas_holder.mistake("The larger lag has two halves. One is lost beside the integrator, and where is the other one?")
+def _(k, tau_3):
+    return {"g_1": k * exp(-tau_3 * s) / s}
+
+
+@gas_holder.mistake("All of the smaller lag is in the lag that is kept. What makes the model late then?")
+def _(k, tau_2, tau_3):
+    return {"g_2": k / (s * ((tau_2 + tau_3) * s + 1))}
+
+
+@gas_holder.mistake("The smaller lag has two halves. Here one of them is in the lag, and both are in the dead time.")
+def _(k, tau_2, tau_3):
+    return {"g_2": k * exp(-tau_3 * s) / (s * ((tau_2 + tau_3 / 2) * s + 1))}
+
+
+@gas_holder.mistake("By that time, in minutes, the ramp is ahead. How far does a ramp rise in it?")
+def _(k, tau_2):
+    return {"ahead": tau_2 / 2} if k != 1 else {}
+
+
+@gas_holder.mistake("Compare how late the two ramps are: the dead time of $g_1$, and all lags of $g$ together.")
+def _():
+    return {"ahead": 0}
+
+
+@gas_holder.mistake("All of the smaller lag is in the dead time of $g_1$. Of which lag is a part lost?")
+def _(k, tau_3):
+    return {"ahead": k * tau_3 / 2}
+
+
+@gas_holder.mistake("Only a part of the larger lag is lost in $g_1$. Which part is in its dead time?")
+def _(k, tau_2):
+    return {"ahead": k * tau_2}
 
 
 gas_holder.hints(
@@ -366,6 +453,33 @@ def _(T_0, tau_0, theta):
         return {"instead": 1}
 
 
+@zero_beside_a_lag.mistake("The dead time takes the place of the lag only where the lag is the shorter of the two.")
+def _(T_0, tau_0, theta):
+    return {"instead": T_0 / theta} if _rule(T_0, tau_0, theta)[0] != "T1a" else {}
+
+
+@zero_beside_a_lag.mistake("That is the fraction itself. What does the loop see of it?")
+def _(T_0, tau_0):
+    return {"instead": (T_0 * s + 1) / (tau_0 * s + 1)}
+
+
+@zero_beside_a_lag.mistake("That is the lag without the zero. Does the zero do nothing in this loop?")
+def _(tau_0):
+    return {"instead": 1 / (tau_0 * s + 1)}
+
+
+@zero_beside_a_lag.mistake("The slope is kept by this gain. But a lag is left: the difference of which two times?")
+def _(T_0, tau_0, theta):
+    if _rule(T_0, tau_0, theta)[0] == "T3" and tau_0 > 5 * theta:
+        return {"instead": 5 * theta / tau_0}
+
+
+@zero_beside_a_lag.mistake("The lag is shortened too far: the loop looks at several dead times, not at one.")
+def _(T_0, tau_0, theta):
+    if _rule(T_0, tau_0, theta)[0] == "T3" and tau_0 > theta > T_0:
+        return {"instead": theta / tau_0 / ((theta - T_0) * s + 1)}
+
+
 zero_beside_a_lag.hints(
     "A loop that is as fast as its dead time looks at the fraction where $s$ is about $1/\\theta$. What is the "
     "fraction there?",
@@ -439,13 +553,12 @@ def price_of_a_fraction(
     time?
     """
     K_u = 1 + 2 * T / theta
-    omega = _phase_crossing(float(T), float(theta))
-    exact = (1 + (float(T) * omega) ** 2) ** 0.5
+    program, exact = _gains(T, theta)
     return answers(
         g=transfer_function((1 - theta / 2 * s) / ((1 + theta / 2 * s) * (T * s + 1)), "the process in the program"),
         Ku=number(K_u, "", "the ultimate gain in the program"),
         Pu=number(_period(T, theta, K_u), "s", "the period in the program"),
-        too_large=number(100 * (float(K_u) / exact - 1), "%", "the error of the ultimate gain", within=0.03),
+        too_large=number(100 * (program / exact - 1), "%", "the error of the ultimate gain", within=0.03),
     )
 
 
@@ -459,6 +572,11 @@ def _phase_crossing(T, theta):
     from scipy.optimize import brentq
 
     return brentq(lambda w: math.atan(w * T) + w * theta - math.pi, math.pi / 2 / theta, math.pi / theta)
+
+
+def _gains(T, theta):
+    """The ultimate gain in the program, and that with the exact dead time."""
+    return float(1 + 2 * T / theta), math.hypot(1, float(T) * _phase_crossing(float(T), float(theta)))
 
 
 @price_of_a_fraction.mistake("The dead time is shared between both sides of the fraction bar. Each side gets a half.")
@@ -487,8 +605,7 @@ def _(T, theta):
     "That holds with the exact dead time. The program does not have it: use its transfer function."
 )
 def _(T, theta):
-    omega = _phase_crossing(float(T), float(theta))
-    return {"Ku": (1 + (float(T) * omega) ** 2) ** 0.5, "Pu": 2 * float(pi) / omega}
+    return {"Ku": _gains(T, theta)[1], "Pu": 2 * float(pi) / _phase_crossing(float(T), float(theta))}
 
 
 @price_of_a_fraction.mistake("That is the frequency in rad/s. How long does one oscillation take?")
@@ -498,9 +615,52 @@ def _(T, theta):
 
 @price_of_a_fraction.mistake("That is the percentage by which the exact gain is smaller. Take the exact gain as 100 %.")
 def _(T, theta):
-    omega = _phase_crossing(float(T), float(theta))
-    exact = (1 + (float(T) * omega) ** 2) ** 0.5
-    return {"too_large": 100 * (1 - exact / float(1 + 2 * T / theta))}
+    program, exact = _gains(T, theta)
+    return {"too_large": 100 * (1 - exact / program)}
+
+
+@price_of_a_fraction.mistake("With the signs like this the fraction has an unstable pole. Which side gets the minus?")
+def _(T, theta):
+    return {"g": (1 + theta / 2 * s) / ((1 - theta / 2 * s) * (T * s + 1))}
+
+
+@price_of_a_fraction.mistake(
+    "In the middle coefficient the denominator has two times, that of the lag and one of the fraction."
+)
+def _(T, theta):
+    return {"Ku": 2 * T / theta}
+
+
+@price_of_a_fraction.mistake("That holds for an integrator with the exact dead time. Here it is a lag, and a fraction.")
+def _(T, theta):
+    return {"Ku": float(pi) * T / (2 * theta), "Pu": 4 * theta}
+
+
+@price_of_a_fraction.mistake("The last coefficient of the polynomial is not 1: the gain of the controller is in it.")
+def _(T, theta):
+    return {"Pu": _period(T, theta, 0)}
+
+
+@price_of_a_fraction.mistake("The last coefficient of the polynomial is not the gain alone: the denominator has a 1.")
+def _(T, theta):
+    return {"Pu": _period(T, theta, 2 * T / theta)}
+
+
+@price_of_a_fraction.mistake("That would be a dead time alone, which turns by all of the 180°. Here the lag helps.")
+def _(theta):
+    return {"Pu": 2 * theta}
+
+
+@price_of_a_fraction.mistake("That is the program's gain in percent of the exact one. How much more than 100 % is it?")
+def _(T, theta):
+    program, exact = _gains(T, theta)
+    return {"too_large": 100 * program / exact}
+
+
+@price_of_a_fraction.mistake("That is the difference of the two gains. How large is it in percent of the exact one?")
+def _(T, theta):
+    program, exact = _gains(T, theta)
+    return {"too_large": program - exact}
 
 
 price_of_a_fraction.hints(
@@ -631,6 +791,40 @@ def _(K):
 )
 def _(theta):
     return {"moment": theta}
+
+
+@before_the_dead_time.mistake("That is the response to an impulse. Which factor makes it the one to a step?")
+def _(K, tau, theta):
+    return {"y": _response(K, tau, theta).diff(t)}
+
+
+@before_the_dead_time.mistake("The denominator of Padé's fraction is there, but its numerator, the zero, is missing.")
+def _(K, tau, theta):
+    a = theta / 2
+    return {"y": K * (1 + (a * exp(-t / a) - tau * exp(-t / tau)) / (tau - a))}
+
+
+@before_the_dead_time.mistake("That is the time constant of the fraction. When does the derivative of $y$ vanish?")
+def _(theta):
+    return {"moment": theta / 2}
+
+
+@before_the_dead_time.mistake("That is the lag itself. When does the derivative of $y$ vanish?")
+def _(tau):
+    return {"moment": tau}
+
+
+@before_the_dead_time.mistake("A logarithm is a pure number. Which times, from the exponents, make minutes of it?")
+def _(tau, theta):
+    wrong = math.log(float(2 * tau / (tau + theta / 2)))
+    return {"moment": wrong}
+
+
+@before_the_dead_time.mistake(
+    "That would be so with the exact dead time. The approximation moves immediately: where to?"
+)
+def _():
+    return {"moment": 0, "lowest": 0}
 
 
 before_the_dead_time.hints(
@@ -772,6 +966,23 @@ def _(k, T_1, T_2, T_3, theta):
 def _(k, T_1, T_2, T_3, theta):
     delay = theta + T_2 / 2 + T_3
     return {"pid": PID(Rational(9, 10) * (T_1 + T_2 / 2) / (k * delay), Rational(333, 100) * delay)}
+
+
+@whole_process.mistake("The gain of the process is missing: the loop has the product of both gains.")
+def _(k, T_1, T_2, T_3, theta):
+    return {"pid": _by_half_rule(1, T_1, T_2, T_3, theta)} if k != 1 else {}
+
+
+@whole_process.mistake("The rule adds $\\tau_c$ to the dead time of the model. Without it, how robust is the loop?")
+def _(k, T_1, T_2, T_3, theta):
+    tau, delay = T_1 + T_2 / 2, theta + T_2 / 2 + T_3
+    return {"pid": PID(tau / (k * delay), min(tau, 4 * delay))}
+
+
+@whole_process.mistake("The lag is that of the model. Its dead time is longer than that of the process: by what?")
+def _(k, T_1, T_2, T_3, theta):
+    tau = T_1 + T_2 / 2
+    return {"pid": PID(tau / (2 * k * theta), min(tau, 8 * theta))}
 
 
 whole_process.hints(
