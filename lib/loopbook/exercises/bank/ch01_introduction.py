@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from sympy import Rational
+from sympy import Rational, exp
 
 from loopbook import diagrams as draw
 from loopbook.exercises.authoring import (
@@ -131,7 +131,8 @@ def _(plant, page):
 
 
 @parts.mistake(
-    "Look at the arrows of the controller once more: one of the two goes into it, the other comes out of it."
+    "Of control error and control signal one goes into the controller, and the other comes out of it and to a machine. "
+    "Which of the two is this?"
 )
 def _(page):
     return _taken_for(page, {"e": "u", "u": "e"})
@@ -279,23 +280,38 @@ def _(low, high, I, p_SP):
     return draw.instrumentation_diagram(layout, pipes, signals, parts, names)
 
 
+def _with_pressure(p, low, high, I, p_SP):
+    """Pressure and errors of somebody who has another pressure; an error that is right except for its sign is none."""
+    e, right = p_SP - p, p_SP - _pressure(low, high, I)
+    return {"p": p} | ({"e": e, "e_percent": 100 * e / (high - low)} if _apart(e, right, -right) else {})
+
+
 @error_in_units.mistake("Look again at the current for the lower end of the range: it is not zero.")
 def _(low, high, I, p_SP):
-    p = low + I * (high - low) / 20
-    return {"p": p, "e": p_SP - p, "e_percent": 100 * (p_SP - p) / (high - low)}
+    return _with_pressure(low + I * (high - low) / 20, low, high, I, p_SP)
 
 
 @error_in_units.mistake("At 4 mA the pressure is not zero: the range has a lower end.")
 def _(low, high, I, p_SP):
-    p = (I - 4) * (high - low) / 16
-    return {"p": p, "e": p_SP - p, "e_percent": 100 * (p_SP - p) / (high - low)}
+    return _with_pressure((I - 4) * (high - low) / 16, low, high, I, p_SP)
 
 
 @error_in_units.mistake("How many milliamperes are there between the two ends of the range?")
 def _(low, high, I, p_SP):
     p, from_zero = low + (I - 4) * (high - low) / 20, (I - 4) * (high - low) / 16
-    found = {"p": p, "e": p_SP - p, "e_percent": 100 * (p_SP - p) / (high - low)}
-    return found if _apart(p, from_zero) else {}
+    return _with_pressure(p, low, high, I, p_SP) if _apart(p, from_zero) else {}
+
+
+@error_in_units.mistake("Your line goes through zero bar. Through which two points does that of the transmitter go?")
+def _(low, high, I, p_SP):
+    p, others = high * (I - 4) / 16, [low + I * (high - low) / 20, low + (I - 4) * (high - low) / 20]
+    return _with_pressure(p, low, high, I, p_SP) if _apart(p, _pressure(low, high, I), *others) else {}
+
+
+@error_in_units.mistake("Your line goes through zero bar. Through which two points does that of the transmitter go?")
+def _(low, high, I, p_SP):
+    p, others = high * I / 20, [low + I * (high - low) / 20, low + (I - 4) * (high - low) / 20]
+    return _with_pressure(p, low, high, I, p_SP) if _apart(p, _pressure(low, high, I), *others) else {}
 
 
 @error_in_units.mistake("That is a percentage of the setpoint. What percentage of the measurement range is it?")
@@ -441,6 +457,14 @@ def _(length, speed, w_0):
     return {"dm": -w_0 * length / speed}
 
 
+@bunker.mistake(
+    "The controller responds soon, but what it drops arrives only after the delay. What happens in the bunker until "
+    "then?"
+)
+def _():
+    return {"dm": 0}
+
+
 @bunker.mistake("When more is drawn, more has to arrive in the end, and when less is drawn, less.")
 def _(u_0, change):
     return {"u": u_0 * (1 - change / 100)} if change != 50 else {}
@@ -552,6 +576,29 @@ def _(A, h_0, h_low, q, more):
     return found if abs(q / more - 1) > Rational(1, 20) else {}
 
 
+def _is_told_twice(h_0, h_low, q, more):
+    """Whether the way down to the alarm at a wrong rate takes as long as that to the bottom at the right one."""
+    return not _apart(h_0 / more * (q - more), h_0 - h_low)
+
+
+@left_alone.mistake("What the pump delivers was drawn already before. By how much do the two flows differ now?")
+def _(A, h_0, h_low, q, more):
+    if q == more or not _apart(q - more, more, q):
+        return {}
+    rate = (q - more) / 1000 / A
+    minutes = {} if _is_told_twice(h_0, h_low, q, more) else {"t_alarm": (h_0 - h_low) / rate / 60}
+    return {"h": h_0 - rate * t} | minutes
+
+
+@left_alone.mistake(
+    "An exponential belongs to an outflow that grows with the level. Does the flow through the hydrant change here?"
+)
+def _(A, h_0, h_low, q, more):
+    T = h_0 / (more / 1000 / A)
+    minutes, others = T * math.log(h_0 / h_low) / 60, [(h_0 - h_low) / (x / 1000 / A) / 60 for x in (more, q, q + more)]
+    return {"h": h_0 * exp(-t / T)} | ({"t_alarm": minutes} if _apart(minutes, *others) else {})
+
+
 @left_alone.mistake("That is how far the level falls in this time. Where is it at the beginning?")
 def _(A, more):
     return {"h": -more / 1000 / A * t}
@@ -565,8 +612,13 @@ def _(A, h_0, h_low, q, more):
 
 
 @left_alone.mistake("That is the time until the tank is empty. The alarm comes earlier.")
-def _(A, h_0, more):
-    return {"t_alarm": h_0 * A * 1000 / more / 60}
+def _(A, h_0, h_low, q, more):
+    return {} if _is_told_twice(h_0, h_low, q, more) else {"t_alarm": h_0 * A * 1000 / more / 60}
+
+
+@left_alone.mistake("How far does the level fall until the alarm, and at which rate?")
+def _(A, h_0, h_low, q, more):
+    return {"t_alarm": h_0 * A * 1000 / more / 60} if _is_told_twice(h_0, h_low, q, more) else {}
 
 
 @left_alone.mistake("A litre is not a cubic metre. Put the flow into m³/s before you divide it by the area.")
@@ -655,7 +707,8 @@ def swings(
     integral time of {Ti}.
 
     How much of a swing is left in the next one? By the limit of Section 1.4, half of a swing, this is poor damping.
-    Which settings does the advice of that section make of the present ones?
+    Which settings follow from the present ones by the advice of that section? (Type a gain of 5 and an integral time
+    of 3 min as `PID(5, 3)`.)
 
     A colleague has tried settings of his own. The picture shows what they do when the setpoint becomes {h_SP}. Lay a
     ruler on it: how much of a swing is left in the next one now, and is the loop well damped or poorly damped?
@@ -716,6 +769,17 @@ def _(Kp, Ti):
 def _(above, below, left_now):
     gone = {"left": 1 - below / above}
     return gone | {"left_now": 1 - left_now} if abs((1 - left_now) / left_now - 1) > 0.15 else gone
+
+
+@swings.mistake("What is left of a swing is less than all of it. Which swing comes first, and which is the next one?")
+def _(above, below, left_now):
+    return {"left": above / below, "left_now": 1 / left_now}
+
+
+@swings.mistake("Those are two levels, one over the other. From which line is a swing measured?")
+def _(h_SP, above_now, left_now):
+    levels = (h_SP - above_now * left_now) / (h_SP + above_now)
+    return {"left_now": levels} if abs(levels / left_now - 1) > 0.15 else {}
 
 
 @swings.mistake("Those are two swings to the same side. The next swing of a level above its setpoint is one below it.")
@@ -848,6 +912,16 @@ def _(reach, sigma, per_percent):
 )
 def _(reach, per_percent, more, e_max):
     return {"Kp": more / per_percent / e_max}
+
+
+@gain_between.mistake("The gain is in percent by percent. How many percent of the range are the metres of the error?")
+def _(per_percent, more, e_max):
+    return {"Kp": 100 * more / per_percent / e_max}
+
+
+@gain_between.mistake("The gain is in percent by percent. How many percent of the range are the metres of the noise?")
+def _(sigma, u_max):
+    return {"Kp": 100 * u_max / sigma}
 
 
 @gain_between.mistake(
@@ -995,6 +1069,15 @@ def _(h_SP, u_0, Kp, t_load, size, outflow, fault):
     _, control = _night(h_SP, u_0, Kp, t_load, size, outflow, fault)
     stopped = NIGHT[(control == SLOWEST) | (control == FASTEST)]
     return {"t_load": stopped[0]} if stopped.size and stopped[0] > 1.1 * t_load else {}
+
+
+@night.mistake("At that moment the tower is full, or empty. When does the level begin to move?")
+def _(h_SP, u_0, Kp, t_load, size, outflow, fault):
+    level, control = _night(h_SP, u_0, Kp, t_load, size, outflow, fault)
+    ends = NIGHT[(level <= 0) | (level >= HEIGHT)]
+    stopped = NIGHT[(control == SLOWEST) | (control == FASTEST)]
+    told = ends.size and ends[0] > 1.1 * t_load and not (stopped.size and abs(ends[0] / stopped[0] - 1) < 0.05)
+    return {"t_load": ends[0]} if told else {}
 
 
 @night.mistake("That is the level at the right-hand edge. How far is it from its setpoint, and on which side?")
@@ -1213,6 +1296,13 @@ def _(h_1, h_2, reach, Kp):
     return {"Kp": 100 * Kp * (h_2 - h_1) / reach}
 
 
+@new_level.mistake("That is where the control signal jumps to, over the jump of the error. By how much does it jump?")
+def _(h_1, h_2, reach, Kp, u_0):
+    error = 100 * (h_2 - h_1) / reach
+    wrong, others = Kp + u_0 / error, [100 * Kp / reach, Kp * error]
+    return {"Kp": wrong} if all(abs(wrong / other - 1) > 0.15 for other in others) else {}
+
+
 @new_level.mistake(
     "That is where the control signal jumps to. Where is it when the level rests, with the same outflow?"
 )
@@ -1223,7 +1313,7 @@ def _(h_1, h_2, reach, Kp, u_0):
 @new_level.mistake("That is the lowest control signal. Where is it when nothing moves any more?")
 def _(h_1, h_2, reach, Kp, zeta, per_percent, u_0):
     _, _, control = _new_level(h_1, h_2, reach, Kp, zeta, per_percent, u_0)
-    return {"u_end": control.min()} if control.min() < 0.85 * u_0 else {}
+    return {"u_end": control.min()} if control.min() < 0.94 * u_0 else {}
 
 
 new_level.hints(
