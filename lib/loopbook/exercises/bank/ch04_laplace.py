@@ -13,8 +13,14 @@ from loopbook.exercises.authoring import (
     transfer_function,
     words,
 )
+from loopbook.exercises.parameters import written
 from loopbook.expressions import s, t
 from loopbook.figures import time_plot
+
+
+def _apart(value, *others):
+    """Whether the value of a mistake differs clearly from the key and from the values of other mistakes."""
+    return all(abs(value - other) > 0.03 * abs(other) for other in map(float, others))
 
 
 @exercise(
@@ -35,6 +41,14 @@ def oil_bath(
         F=transfer_function(start / s + rate / s**2, "the transform of the temperature"),
         F_rate=transfer_function(rate / s, "the transform of the derivative"),
     )
+
+
+@oil_bath.picture
+def _(start, rate):
+    """The temperature against time: it begins at {start} and rises along a straight line, by {rate}."""
+    signals = {r"$\vartheta(t)$": (start + rate * t, "measurement")}
+    plot = time_plot(signals, np.linspace(0, 60, 3), ylabel=r"$\vartheta$ [°C]", ylim=(0, start + 66 * rate), low=True)
+    return plot.mark(0, f"{written(start)} °C").mark(30, f"{written(rate)} K in each second")
 
 
 @oil_bath.mistake(
@@ -120,7 +134,8 @@ def _(q, begin, duration):
     end = float(begin + duration)
     flow = q * (Heaviside(t - begin) - Heaviside(t - begin - duration))
     times = np.linspace(0, 1.25 * end, 201)
-    return time_plot({"$q(t)$": (flow, "control signal")}, times, "The flow of the dye", ylabel="$q$ [mL/s]", low=True)
+    plot = time_plot({"$q(t)$": (flow, "control signal")}, times, "The flow of the dye", ylabel="$q$ [mL/s]", low=True)
+    return plot.level(q, f"{written(q)} mL/s")
 
 
 @dose.mistake("The delay of a step is counted from $t = 0$, not from the step before. When does the pump stop?")
@@ -153,6 +168,13 @@ def _(q, duration):
 @dose.mistake("No dye flows before the pump starts. For how long does it run?")
 def _(q, begin, duration):
     return {"total": q * (begin + duration)}
+
+
+@dose.mistake(
+    "At $s = 0$ the transform is zero over zero, and such a quotient has a limit. What has the pump given while it ran?"
+)
+def _():
+    return {"total": 0}
 
 
 dose.hints(
@@ -213,7 +235,16 @@ def _(A, B, p, q):
 
 @back_to_time.mistake("Each factor belongs to the other exponential. Which fraction has which pole?")
 def _(A, B, p, q):
-    return {"y": B * exp(-p * t) + A * exp(-q * t)} if abs(A - B) >= 0.4 * (A + B) and q >= 2 * p else {}
+    return {"y": B * exp(-p * t) + A * exp(-q * t)} if abs(A - B) >= 0.4 * (A + B) and q >= 1.6 * p else {}
+
+
+@back_to_time.mistake(
+    "With $s$ at a pole one factor vanishes. Which number does the other one leave in the denominator?"
+)
+def _(A, B, p, q):
+    way = q - p
+    wrong = {"y": way * (A * exp(-p * t) - B * exp(-q * t)), "y_0": way * (A - B)}
+    return wrong if abs(way - 1) > 0.05 and _apart(way * (A - B), A) else {}
 
 
 @back_to_time.mistake("Look at the signs of the poles again: the tracer cannot multiply.")
@@ -224,6 +255,16 @@ def _(A, B, p, q):
 @back_to_time.mistake("The denominator has two roots. Each of them brings an exponential of its own.")
 def _(A, B, p):
     return {"y": (A + B) * exp(-p * t)}
+
+
+@back_to_time.mistake("The denominator has two roots. Each of them brings an exponential of its own.")
+def _(A, B, p, q):
+    return {"y": (A + B) * exp(-(p + q) / 2 * t)} if q >= 2 * p else {}
+
+
+@back_to_time.mistake("The limit of $sY(s)$ for $s \\to 0$ is the end. Which limit is the beginning?")
+def _():
+    return {"y_0": 0}
 
 
 @back_to_time.mistake("At the beginning, both exponentials are there.")
@@ -247,7 +288,8 @@ back_to_time.hints(
 
 @back_to_time.solution
 def _(A, B, p, q):
-    r"""The denominator is $(s + {p})(s + {q})$: its product and its sum say so. So there are two fractions,
+    r"""The denominator is $(s + {p})(s + {q})$, since ${p} + {q} = {sum}$ stands in front of $s$, and ${p}\cdot{q} =
+    {product}$ at the end. So there are two fractions,
 
     $$Y(s) = \frac{{A}}{s + {p}} + \frac{{B}}{s + {q}}$$
 
@@ -257,7 +299,7 @@ def _(A, B, p, q):
     Each fraction is an exponential: $y(t) = {A_found}\,e^{-{p}t} + {B_found}\,e^{-{q}t}$. At $t = 0$ both
     exponentials are one, and the concentration is ${A_found} + {B_found} =$ {y_0}.
     """
-    return {"above_p": A * (q - p), "above_q": B * (p - q), "A_found": A, "B_found": B}
+    return {"sum": p + q, "product": p * q, "above_p": A * (q - p), "above_q": B * (p - q), "A_found": A, "B_found": B}
 
 
 @back_to_time.solution_picture
@@ -300,11 +342,45 @@ def thermometer(
     )
 
 
+@thermometer.picture
+def _(T, start, bath, rest):
+    """What is around the thermometer: {start} until t = 0, and {bath} from then on. The reading is drawn up to t = 0,
+    and also the line {rest} below the water."""
+    times = np.linspace(-float(T), 5 * float(T), 601)
+    before = times < 0
+    signals = {
+        "around it, $u$": (np.where(before, float(start), float(bath)), "setpoint"),
+        "reading, $y$": (np.where(before, float(start), np.nan), "measurement"),
+        f"{written(rest)} K below": (np.where(before, np.nan, float(bath - rest)), "raw"),
+    }
+    return time_plot(signals, times, ylabel="[°C]", low=True)
+
+
 @thermometer.mistake(
     "That is a thermometer that starts at 0 °C. The derivative brings the initial value into the equation."
 )
+def _(T, bath):
+    return {"Y": bath / (s * (T * s + 1)), "y": bath * (1 - exp(-t / T))}
+
+
+@thermometer.mistake("Between which two temperatures is the difference at the beginning, of which so little is left?")
 def _(T, bath, rest):
-    return {"Y": bath / (s * (T * s + 1)), "y": bath * (1 - exp(-t / T)), "t_near": T * log(bath / rest)}
+    return {"t_near": T * log(bath / rest)}
+
+
+@thermometer.mistake("After three time constants 5 % of the difference are left. Which part of it is asked for here?")
+def _(T, start, bath, rest):
+    return {"t_near": 3 * T} if _apart(3, log((bath - start) / rest), log(bath / rest)) else {}
+
+
+@thermometer.mistake("After five time constants 0.7 % of the difference are left. Which part is asked for here?")
+def _(T, start, bath, rest):
+    return {"t_near": 5 * T} if _apart(5, log((bath - start) / rest), log(bath / rest)) else {}
+
+
+@thermometer.mistake("Beginning and end are interchanged: what does your reading show at $t = 0$?")
+def _(T, start, bath):
+    return {"y": start + (bath - start) * exp(-t / T)}
 
 
 @thermometer.mistake("In the equation the derivative is multiplied by the time constant, and so is its initial value.")
@@ -439,6 +515,11 @@ def _(b, p):
     return {"value": -b / (p - 1)}
 
 
+@which_settle.mistake("The transform itself at $s = 0$ is the area under a signal. Which factor belongs to its end?")
+def _(order, a, b, p, w):
+    return {"value": a / w} if _apart(a / w, b / p, b) else {}
+
+
 @which_settle.mistake(
     "Settling at a value that is not zero counts as well. Which of the others has a single pole at zero?"
 )
@@ -518,8 +599,8 @@ def full_power_first(
 
     with $K$ = {K} and $T$ = {T}. The oven should become {warmer} warmer than the room, soon, and then stay so. At
     $t = 0$ the heater is switched to its full power, $u_1$ = {full}. At the moment $t_1$, when the temperature is
-    reached, it is switched back to a power $u_2$ that just holds it. Transform the power, in the symbols $u_1$,
-    $u_2$, $t_1$ and $s$. Then find $u_2$ and $t_1$.
+    reached, it is switched back to a power $u_2$ that just holds it (the picture is not to scale). Transform the power,
+    in the symbols $u_1$, $u_2$, $t_1$ and $s$. Then find $u_2$ and $t_1$.
     """
     u_1, u_2, t_1 = (Symbol(name, positive=True) for name in ("u_1", "u_2", "t_1"))
     return answers(
@@ -530,6 +611,18 @@ def full_power_first(
         u_2=number(warmer / K, "kW", "the power that holds the temperature"),
         t_1=number(T * log(K * full / (K * full - warmer)), "min", "the moment of switching back"),
     )
+
+
+@full_power_first.picture
+def _(full):
+    """The power against time: $u_1$ = {full} from t = 0 to $t_1$, and from then on a lower one, $u_2$; this is not to
+    scale."""
+    power = {"$u$": (float(full) * (1 - 0.45 * Heaviside(t - 1)), "control signal")}
+    plot = time_plot(power, np.linspace(0, 2.5, 251), ylim=(0, 1.3 * float(full)), xlabel="$t$", low=True)
+    axes = plot.figure.axes[0]
+    axes.set_xticks([0, 1], ["0", "$t_1$"])
+    axes.set_yticks([0, 0.55 * float(full), float(full)], ["0", "$u_2$", f"$u_1$ = {written(full)} kW"])
+    return plot
 
 
 @full_power_first.mistake("Your power is $u_1 + u_2$ after the switch. How large is the step from $u_1$ to $u_2$?")
@@ -558,12 +651,23 @@ def _(T, K, full, warmer):
     "After one time constant, 63 % of the way to $Ku_1$ is covered. Is that the wanted temperature?"
 )
 def _(T, K, full, warmer):
-    return {"t_1": T} if abs(_excess(K, full, warmer) - 1.582) > 0.05 else {}
+    excess = _excess(K, full, warmer)
+    return {"t_1": T} if _apart(1, log(excess), log(excess / (excess - 1))) else {}
 
 
 @full_power_first.mistake(
-    "The power that holds the oven is what the gain makes the temperature of. Is it not divided by it?"
+    "After five time constants a lag is at its end. Must the oven wait until then, at full power?"
 )
+def _(T, K, full, warmer):
+    return {"t_1": 5 * T}
+
+
+@full_power_first.mistake("The inverse of $e^{{-t/T}}$ is the natural logarithm. Which one have you taken?")
+def _(T, K, full, warmer):
+    return {"t_1": T * log(K * full / (K * full - warmer)) / log(10)}
+
+
+@full_power_first.mistake("At rest $Ku_2$ must be the temperature that is wanted. What is $u_2$, then?")
 def _(K, warmer):
     return {"u_2": K / warmer}
 
@@ -684,6 +788,23 @@ def _(T):
 )
 def _(T):
     return {"pole": -1 / (4 * T)}
+
+
+@pole_by_ruler.mistake("Is that 63 % of the way from the beginning to the end, or of a temperature?")
+def _(start, end, T):
+    left = (0.368 * max(start, end) - (end if start > end else 0)) / abs(start - end)
+    after = -log(left) if left > 0.01 else 0
+    return {"pole": -1 / (T * after)} if all(abs(after / n - 1) > 0.25 for n in (1, 0.693, 4)) and after else {}
+
+
+@pole_by_ruler.mistake("Where does the signal that belongs to your transform begin? Add its two parts at $t = 0$.")
+def _(start, end, T):
+    return {"Y": end / s + start / (s + 1 / T)}
+
+
+@pole_by_ruler.mistake("A constant signal is a step: which transform has the value where the curve ends?")
+def _(start, end, T):
+    return {"Y": end + (start - end) / (s + 1 / T)}
 
 
 @pole_by_ruler.mistake("That is a reading that begins at zero. Where does this one begin?")
