@@ -20,6 +20,7 @@ from loopbook.exercises.judging import MISTAKE, RIGHT, UNJUDGED, WRONG, judge
 X = sympy.Symbol("x")
 H = transfer_function(3 * sympy.exp(-2 * s) / (5 * s + 1))
 Y = time_function(1 - sympy.exp(-t / 5), until=25, what="the response")
+LATER = time_function(sympy.Heaviside(t - 3) * (1 - sympy.exp(-(t - 3) / 5)), until=25, what="the response")
 METRES = time_function(2 * (1 - sympy.exp(-t / 5)), until=25, unit="m", what="the level")
 BOX = expression(sympy.sympify("pi*r**2*h"), "the volume", unit="m³")
 pi_r2_h = sympy.pi * sympy.Symbol("r") ** 2 * sympy.Function("h")(t)
@@ -54,7 +55,39 @@ JUDGED = [
     (Y, "1/2t", UNJUDGED, "may be .../(2*t) or (.../2)*t"),
     (H, "3e^(-2s)/(5s+1)", RIGHT, "read as 3*e**(-2*s)/(5*s + 1)"),
     (H, r"\frac{3}{5s+1} e^{-2s}", RIGHT, "read as ((3)/(5*s + 1))*e**(-2*s)"),
-    (H, "3/(5s+1) e^(-2s) K", UNJUDGED, "without a unit"),
+    (H, "3/(5s+1) e^(-2s) K", UNJUDGED, "without a unit"),  # or a gain
+    (H, "3/(5s+1) e^(-2s) rad/s/V", RIGHT, "right"),
+    # units behind numbers
+    *(
+        (METRES, text, RIGHT, "right, read without the units")
+        for text in ("2 m (1 - e^(-t/5 s))", "2 m - 2 m e^(-t/(5 s))", "2 m*(1 - exp(-t/5 s))")
+    ),
+    (METRES, "2(1 - e^(-t/(5 s))) m", RIGHT, "right"),
+    (METRES, "2 s", UNJUDGED, "not a unit of the same quantity"),
+    # functions in pieces
+    *(
+        (LATER, text, RIGHT, "right, read as Piecewise")
+        for text in (
+            "0 for t < 3, 1 - e^(-(t-3)/5) for t > 3",
+            "0 for t<3; 1-e^(-(t-3)/5) for t>=3",
+            "y = 0 for t < 3 and y = 1 - e^(-(t-3)/5) for t > 3",
+            "0 until 3 s, 1 - e^(-(t-3)/5) from 3 s on",
+            "1 - exp(-(t-3)/5) for t >= 3, 0 otherwise",
+            "0 if t < 3 else 1 - exp(-(t-3)/5)",
+            "0 (t<3), 1-e^(-(t-3)/5) (t>3)",
+            "0 for 0 <= t < 3,0 and 1-e^(-(t-3,0)/5) after",
+            "0 before 3 s, then 1-e^(-(t-3)/5)",
+        )
+    ),
+    (LATER, "(1 - e^(-(t-3)/5)) θ(t-3)", RIGHT, "Heaviside(t - 3)"),
+    (LATER, "1 - e^(-(t-3)/5) for t < 3, 0 after", WRONG, "read as Piecewise"),
+    (LATER, "1 - e^(-(t-3)/5) for t > 3", UNJUDGED, "what is it before t = 3?"),
+    (LATER, "0 for t < 3", UNJUDGED, "what is it after t = 3?"),
+    (LATER, "1 for t < 3, stop after", UNJUDGED, "not a symbol"),
+    (LATER, "for t < 3, for t > 3", UNJUDGED, ""),
+    (LATER, "0 for t < 3, " * 9, UNJUDGED, ""),
+    (H, "3/(5s+1) e^(-2s) K/%", RIGHT, "right, read without K/%"),
+    (H, "3 K/%/(5s+1) e^(-2s)", RIGHT, "right, read without the units"),
     (METRES, "2(1 - e^(-t/5)) m", RIGHT, "read as 2*(1 - e**(-t/5))"),
     (METRES, "200*(1 - exp(-t/5)) cm", RIGHT, "converted from cm"),
     (METRES, "2*(1 - exp(-t/5)) [m]", RIGHT, "right"),

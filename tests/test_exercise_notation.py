@@ -187,7 +187,7 @@ DOUBTFUL = {
         "3/s s": "set brackets", "s/2(s+1)": "set brackets", "1/s2": "", "s2": "", "s 2": "", "2 3": "", "(s+1)2": "",
         "e^-2s/5": "needs brackets", "e^-2 s": "needs brackets", "e^-s(s+1)": "needs brackets", "exp^-2s": "",
         "sin^-1(s)": "inverse", "ln 2/3": "brackets", "sin s s": "brackets", "sqrt 2s/3": "", "√2s": "brackets",
-        "2e-3s": "may be", "e(-3s)": "has a ^", "1,500*s": "may be", "12,375": "may be", "1,2,3": "", "0,5,5": "",
+        "2e-3s": "may be", "e(-3s)": "has a ^", "1,500*s": "may be", "12,300": "may be", "1,2,3": "", "0,5,5": "",
         "2,5;3": "", "(s+1": "", "s+1)": "", "s+": "", "*s": "", "2**": "", "2//s": "", "s!": "", "S": "did you mean",
         "2S": "did you mean", "K/(Ts+1)": "", "xs": "", "sx": "", "ess": "", "s = 2s = 3s": "", "2 s and 3": "",
         "about": "", r"\frac{1}{2": "", r"\sqrt[3]{s}": "", r"\sum s": "",

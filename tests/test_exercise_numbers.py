@@ -67,7 +67,8 @@ JUDGED = [
     (P, [3, 1 - 2j, 1 + 2j], MISTAKE, "signs"),
     (P, [-3, -1 + 2j], MISTAKE, "a complex value never comes alone"),
     (P, [-3, -1 + 2j, -7], WRONG, "2 of 3"),
-    (P, "none", UNJUDGED, "expected a list of numbers"),
+    (P, "none", WRONG, "the list is empty"),
+    *((poles([]), text, RIGHT, "right") for text in ("none", "no zeros", "There are no finite zeros.", "[]")),
     (A, [[0, 1], [-2, -3]], RIGHT, "right"),
     (A, sympy.Matrix([[0, 1], [-2, -3]]), RIGHT, "right"),
     (A, [[0, -2], [1, -3]], MISTAKE, "rows and columns"),
@@ -211,6 +212,50 @@ JUDGED = [
         for text in ("4 batches", "batch 4", "four batches")
     ),
     (number(4, "", "the number of whole batches"), "4 dozen", UNJUDGED, "is not a number"),
+    # a single comma is a decimal one, and where zeros are at its end it is asked
+    (number(1.364, "K/%"), "1,364 K/%", RIGHT, "right, read as 1.364 K/%"),
+    (number(12.375), "12,375", RIGHT, "right, read as 12.375"),
+    (number(12375), "12,375", MISTAKE, "factor of 1000"),
+    (number(99), "12,375", WRONG, "· read as 12.375"),
+    (number(1.5, "s"), "1,500 s", UNJUDGED, "1,500 may be 1.500 or 1500"),
+    # numbers with units, worked out
+    *(
+        (number(1.5, "K/%"), text, RIGHT, "right, read as 1.5")
+        for text in ("15 K / 10 %", "15 K/(10 %)", "(45 K - 30 K)/(10 %)", "1,5e1 K / 10 %", "15 °C / 10 %")
+    ),
+    *((number(-0.75, "bar"), text, RIGHT, "right") for text in ("8 bar - 8,75 bar", "8 bar - 875 kPa", "8 - 8.75 bar")),
+    *((number(58, "°C"), text, RIGHT, "right") for text in ("60 °C - 2 K", "60 °C - 2 °C")),
+    *((number(35, "deg"), text, RIGHT, "right") for text in ("90° - 55° = 35°", "180° - 145°", "90°-55°")),
+    *(
+        (number(4, "min"), text, RIGHT, "right")
+        for text in ("10 K / (2,5 K/min)", "14 L / 3,5 L/min", "2 min * 2", "1/4 h - 11 min", "2 min + 120 s")
+    ),
+    *(
+        (number(4, "min"), text, UNJUDGED, says)
+        for text, says in (
+            ("15 K / 11 %", "do not make min"),
+            ("8 min - 4", "do not make min"),
+            ("2 min ** 2", ""),
+            ("2 min or 3 min", ""),
+            (" + ".join(["1 s"] * 30), ""),
+            ("(" * 120 + "1 s" + ")" * 120 + " * 2", ""),
+            ("1e300 min * 1e300", ""),
+        )
+    ),
+    # what stands around a number
+    *(
+        (number(4, "min"), text, RIGHT, "right")
+        for text in ("theta - theta_m = 4 min", "> 4 min", "at least 4 min", ">= 240 s", "after 4 min", "it is 4 min")
+    ),
+    *(
+        (number(1.25), text, RIGHT, "right")
+        for text in ("factor 1,25", "a factor of 1.25", "1.25 times", "1,25 times larger", "by a factor of 5/4")
+    ),
+    (number(1.25), "1.25 times smaller", UNJUDGED, "not a number"),
+    (number(0), "none", RIGHT, "right"),
+    (numbers([14, 10], "s"), {"A": "14 s", "B": "10 s"}, RIGHT, "right"),
+    (numbers([14, 10], "s"), "14,0; 10,0", RIGHT, "right, read as [14, 10]"),
+    (poles([-1 + 2.5j, -1 - 2.5j]), "-1 ± 2,5j", RIGHT, "right, read as -1 + 2.5j, -1 - 2.5j"),
     # poles as people write them
     *(
         (poles([-1 + 2j, -1 - 2j]), text, RIGHT, "right")

@@ -98,7 +98,8 @@ def _judged(kind, given, mistakes, background):
         return RIGHT, "right" + (f", {remark}" if remark else "")
     status, says, is_bare = _explained(kind, answer, mistakes, background)
     shown = harmless(kind.as_read(answer))
-    return status, says + (f" · read as {shown}" if shown else ""), is_bare
+    said = f"read as {shown}" if shown else harmless(remark)
+    return status, says + (f" · {said}" if said else ""), is_bare
 
 
 def _explained(kind, answer, mistakes, background):

@@ -12,7 +12,7 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
 #: Names of steps, which are functions where the symbol is the time.
-STEPS = ("Heaviside", "heaviside", "step", "unitstep", "u", "H", "sigma", "1")
+STEPS = ("Heaviside", "heaviside", "step", "unitstep", "u", "H", "sigma", "theta", "1")
 #: Functions by other names.
 OTHER_NAMES = {"Sqrt": "sqrt", "root": "sqrt", "Exp": "exp", "Ln": "ln", "Log": "log", "Sin": "sin", "Cos": "cos"}
 #: Letters that stand for the same in different books.
@@ -87,10 +87,12 @@ def _group(text):
 def decimal_points(text: str) -> str:
     """Return a text with points for decimal commas, and without separators of thousands, where both are clear.
 
-    Raises Ambiguous for "1,500", which may be either.
+    A single comma is a decimal one. Raises Ambiguous for "1,500", which few write with zeros at the end.
 
     >>> decimal_points("2,5*exp(-0,3*t)"), decimal_points("1.234,5"), decimal_points("12,000,000")
     ('2.5*exp(-0.3*t)', '1234.5', '12000000')
+    >>> decimal_points("1,364 K/%")
+    '1.364 K/%'
     """
     text = re.sub(r"(?<![\d.,])\d{1,3}(?:,\d{3})+(?=\.\d)", lambda found: found[0].replace(",", ""), text)
     text = re.sub(r"(?<![\d.,])\d{1,3}(?:,\d{3}){2,}(?![\d,])", lambda found: found[0].replace(",", ""), text)
@@ -99,7 +101,9 @@ def decimal_points(text: str) -> str:
     commas = re.findall(r"(?<![\d.,])(\d+),(\d+)(?![\d,])", text)
     if not commas:
         return text
-    doubtful = [pair for pair in commas if len(pair[1]) == 3 and len(pair[0]) <= 3 and pair[0].strip("0")]
+    doubtful = [
+        pair for pair in commas if re.fullmatch("[0-9]00", pair[1]) and len(pair[0]) <= 3 and pair[0].strip("0")
+    ]
     if len(doubtful) == len(commas):
         (whole, part), *_ = doubtful
         raise Ambiguous(
@@ -332,6 +336,8 @@ class _Reader:
         if not is_symbol and name in STEPS and self._is_step():
             return [self._call("Heaviside")]
         function = OTHER_NAMES.get(name, name)
+        if not is_symbol and function in ("Min", "Max", "min", "max", "Piecewise") and not opens:
+            raise Ambiguous(f"{function} needs brackets: {function}(...)", several=True)
         if not is_symbol and function in self.functions:
             return [self._call(function) if opens else self._applied(function)]
         parts = self._symbols_of(name)

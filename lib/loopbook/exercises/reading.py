@@ -225,7 +225,12 @@ def understood(text: str, symbols: Collection[str]) -> tuple[str, ast.expr]:
 
     >>> understood("2e^(-3s)/(10s + 1)", ["s"])[0], understood("2*s", ["s"])[0]
     ('2*e**(-3*s)/(10*s + 1)', '')
+    >>> understood("0 for t < 3, 2t for t > 3", ["t"])[0]
+    'Piecewise((0, t < 3), (2*t, True))'
     """
+    if "t" in symbols and (pieces := _in_pieces(text)):
+        source = _piecewise(pieces, symbols)
+        return source, parsed(source, symbols)
     try:
         return "", parsed(text, symbols)
     except Unreadable as problem:
@@ -240,6 +245,60 @@ def understood(text: str, symbols: Collection[str]) -> tuple[str, ast.expr]:
             raise (other if isinstance(problem, NotPython) else problem) from None
         except notation.Ambiguous as doubt:
             raise _the_better(problem, doubt, symbols) from None
+
+
+#: The times for which a piece of a function holds, behind it: "for t < 3 s", "until 3 s", "otherwise".
+_TIME = r"(\d+(?:[.,]\d+)?)(?: ?(?:s|min|h|sec|seconds|minutes|hours))?"
+_WHEN = re.compile(
+    rf"[,:]? ?\(?(?:(?:for|if|when|where|while|at)? ?(?:{_TIME} ?(<=?) ?)?t ?(<=?|>=?) ?{_TIME}"
+    rf"|(?:for |for times )?(until|up to|before|from|after) (?:t ?= ?)?{_TIME}(?: on)?"
+    r"|(otherwise|else|elsewhere|after(?:wards)?|then))\)?"
+)
+_TELLS_TIMES = re.compile(r"\bt ?[<>]|\b(?:for|if|when|until|before|after|from|otherwise|else)\b")
+_THE_REST = re.compile(r"^(?:else|otherwise|then|afterwards?|after that|elsewhere)[,:]? (.+)$")
+_ENDS_PIECE = re.compile(r"\s*(?:[;,.]|and\b|else\b|otherwise\b|\Z)")
+MOST_PIECES = 6
+
+
+def _in_pieces(text):
+    """The pieces of a function in words, pairs of a formula and the match of its times; none of another text."""
+    if len(text) > LONGEST_BY_HAND or "Piecewise" in text or not _TELLS_TIMES.search(text):
+        return []
+    line, pieces = plain(text), []
+    while line and len(pieces) < MOST_PIECES:
+        if pieces:
+            line = _THE_REST.sub(r"\1 otherwise", line)
+        found = next((one for one in _WHEN.finditer(line) if _ENDS_PIECE.match(line, one.end())), None)
+        if not found or not line[: found.start()].strip():
+            return []
+        pieces.append((_PREFIX.sub("", line[: found.start()].strip()), found))
+        line = re.sub(r"^\s*(?:[;,.] ?(?:and )?|and )", "", line[found.end() :]).strip()
+    return [] if line else pieces
+
+
+def _piecewise(pieces, symbols):
+    """A function in pieces, in Python's notation; raises Unreadable where it is not said for all times."""
+    parts, rest, begins, ends = [], [], [], []
+    for formula, when in pieces:
+        source = understood(formula, symbols)[0] or plain(formula)
+        low, _, sign, time, word, moment, otherwise = (one and one.replace(",", ".") for one in when.groups())
+        if otherwise:
+            rest.append(f"({source}, True)")
+            continue
+        if word:
+            sign, time = ("<" if word in ("until", "up to", "before") else ">="), moment
+        begins.append(float(low or 0) if sign[0] == "<" else float(time))
+        ends.append(float(time) if sign[0] == "<" else math.inf)
+        parts.append((ends[-1], f"({source}, t {sign} {time})"))
+    first, last = min(begins, default=0), max(ends, default=0)
+    if not rest and first > 0 and min(ends) > first:
+        raise Unreadable(f"what is it before t = {first:g}? Add it, as in: 0 for t < {first:g}, ... for t > {first:g}")
+    if not rest and last < math.inf:
+        raise Unreadable(f"what is it after t = {last:g}? Add it, as in: ... for t > {last:g}")
+    found = [part for _, part in sorted(parts, key=lambda one: one[0])]
+    if not rest:  # at the moment itself, where it was said for < and > alone
+        found[-1] = found[-1].rpartition(", ")[0] + ", True)"
+    return f"Piecewise({', '.join(found + rest[:1])})"
 
 
 def _the_better(problem, doubt, symbols):

@@ -118,31 +118,40 @@ class Expression(Kind):
         return formula, ", ".join(one for one in (f"an expression in {listed(used)}" if used else "", remark) if one)
 
     def _formula(self, given, symbols):
-        """The formula, where a text may end in its unit, and a remark."""
+        """The formula, where a text may end in its unit or have units behind its numbers, and a remark."""
         try:
             formula = Formula(given, symbols)
             return formula, formula.remark
         except Unreadable:
-            for text, unit in _with_units(given) if isinstance(given, str) else ():
-                if set(re.findall(r"[^\W\d_]+", unit)) & set(symbols):  # a factor, perhaps
+            if not isinstance(given, str):
+                raise
+            for text, unit in _with_units(given):
+                if any(re.search(rf"(?<![/(])\b{symbol}\b", unit) for symbol in symbols):  # a factor, perhaps
                     continue
+                bare = units.without_units(text, symbols)
                 try:
-                    formula = Formula(text, symbols)
+                    return self._in_asked_unit(Formula(bare, symbols), unit)
                 except Unreadable:
-                    continue
-                return self._in_asked_unit(formula, unit)
-            raise
+                    if bare == text and _is_formula(text, symbols):
+                        raise
+            bare = units.without_units(given, symbols)
+            if bare == given or not _is_formula(bare, symbols):
+                raise
+            formula = Formula(bare, symbols)
+            return formula, f"read without the units, {formula.text}"
 
     def _in_asked_unit(self, formula, unit):
         """A formula whose text ends in a unit, in the asked one."""
-        if not self.unit:
+        if not self.unit and re.search("[/%]", unit):
+            return formula, f"read without {unit}, {formula.text}"
+        if not self.unit:  # a letter may be a gain
             raise Unreadable(f"the text ends in {unit}: expected {self.expected}, without a unit")
         try:
             zero, factor = (units.convert(value, unit, to=self.unit) for value in (0, 1))
         except ValueError as error:
-            raise Unreadable(f"{error}: expected {self.expected}, in {self.unit}") from None
+            raise Unreadable(f"{error}: expected {self.expected}") from None
         if zero:
-            raise Unreadable(f"the text is in {unit}: expected {self.expected}, in {self.unit}")
+            raise Unreadable(f"the text is in {unit}, and asked is {self.unit}: expected {self.expected}")
         if factor == 1:
             return formula, formula.remark
         return Formula(f"({formula.text})*{factor!r}", formula.symbols), f"converted from {unit}"
@@ -203,6 +212,14 @@ def _with_units(text):
     for place in re.finditer(r"(?<=[\w)}\]])(?: (?:in )?|(?=%$))", text):
         if 0 < len(unit := text[place.end() :]) <= 20 and units.is_unit(unit):
             yield text[: place.start()], unit
+
+
+def _is_formula(text, symbols):
+    try:
+        Formula(text, symbols)
+    except Unreadable:
+        return False
+    return True
 
 
 def _expression(key):

@@ -26,10 +26,18 @@ from loopbook.exercises.reading import (
 )
 
 _WITH_UNIT = re.compile(r"([+-]? ?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?) ?(.*)")
+#: What may stand before a number and after it, and says nothing of its size.
+_BEFORE_IT = re.compile(
+    r"^(?:(?:at least|at most|after|only|exactly|(?:by )?(?:a )?factor(?: of)?|by|is|it is) |[<>]=? ?)", re.IGNORECASE
+)
+_BEHIND_IT = re.compile(
+    r" times(?: (?:larger|bigger|greater|higher|longer|faster|more|as (?:large|much|big|high|long|fast)))?$"
+)
 _WORDS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
 #: Numbers that are not written in digits alone, and how they are.
 _OTHER_NUMBERS = (
     (re.compile(rf"^({'|'.join(_WORDS)})(?= |$)", re.IGNORECASE), lambda found: str(_WORDS.index(found[1].lower()))),
+    (re.compile(r"^none$", re.IGNORECASE), "0"),
     (re.compile(r"^([+-]?)(\d{1,3}) (\d{1,2}/\d{1,3})(?![\d./])"), r"\1(\2 + \3)"),
     (re.compile(r"^([+-]?)(\d{1,3})\((1/2|1/4|3/4)\)"), r"\1(\2 + \3)"),
     (re.compile(r"^[+-]?\d{1,3}(?:[ ']\d{3})+(?![\d'])"), lambda found: re.sub("[ ']", "", found[0])),
@@ -127,7 +135,8 @@ class Numbers(Kind):
 
     def read(self, given: object) -> tuple[np.ndarray, str]:
         """Return an array of floats, and a remark where a number came in another unit."""
-        rows = _rows(answered(given))
+        given = list(given.values()) if isinstance(answered(given), dict) and alone(given) is given else given
+        rows = _rows(given)
         if rows is None:
             raise Unreadable(f"this is not a list: expected {self.expected}")
         remarks: list[str] = []
@@ -145,8 +154,15 @@ class Numbers(Kind):
         if any(row is not None for row in inner):
             if any(row is None or len(row) != len(inner[0]) for row in inner):
                 raise Unreadable(f"the rows are of different length: expected {self.expected}")
-            return np.array([[number(value) for value in row] for row in inner], float), max(remarks, default="")
-        return np.array([number(value) for value in rows], float), max(remarks, default="")
+            read = np.array([[number(value) for value in row] for row in inner], float)
+        else:
+            read = np.array([number(value) for value in rows], float)
+        return read, self._remark(remarks, read)
+
+    def _remark(self, remarks, read):
+        """One remark on all numbers."""
+        remark = max(remarks, default="")
+        return f"read as {self.written(read)}" if remark.startswith("read as") else remark
 
     def written(self, answer: np.ndarray) -> str:
         """The list, or the list of rows, with its unit."""
@@ -207,13 +223,18 @@ class Poles(Kind):
             given = [pole for pole, times in given.items() for _ in range(self._times(times))]
         elif isinstance(given, set | frozenset | sympy.FiniteSet):
             given = list(given)
+        elif isinstance(given, str) and re.fullmatch(
+            r"(?:there are )?(?:none|no (?:finite )?(?:poles|zeros?))\.?", given.strip().lower()
+        ):
+            given = []
         rows = _rows(given)
         rows = [given] if rows is None else rows
         inner = in_a_row(rows[0]) if len(rows) == 1 else None
         rows = _each_pole(rows if inner is None else inner)
         read = [one_number(value, self.unit, self.expected) for value in rows]
         remark = max((remark for _, remark in read), default="")
-        if len(rows) > len([given] if isinstance(given, str) and len(listed_in(given)) == 1 else rows) and not remark:
+        several = len(rows) > len([given] if isinstance(given, str) and len(listed_in(given)) == 1 else rows)
+        if remark.startswith("read as") or (several and not remark):
             remark = f"read as {', '.join(in_digits(value) for value, _ in read)}"
         return np.array([value for value, _ in read], complex), remark
 
@@ -338,13 +359,14 @@ def one_number(given: object, unit: str, expected: str) -> tuple[complex, str]:
 
 
 def _number_of_text(text, unit, expected):
-    *before, line = plain(text).split(" = ")
+    *before, line = plain(_BEFORE_IT.sub("", text.strip())).split(" = ")
+    before = [part for part in before if re.search(r"\d", part)]  # theta - theta_m = 4 min
     if before:  # 3840 s = 64 min
         found = [_number_of_text(part, unit, expected) for part in (*before, line)]
         if all(near(abs(value), abs(found[-1][0]), ROUNDED) for value, _ in found):
             return found[-1]
         raise Unreadable(f"{shortened(text, 40)!r} has two sides that differ: expected {expected}")
-    line, remark = _in_digits_only(line)
+    line, remark = _in_digits_only(_BEHIND_IT.sub("", line) if not unit else line)
     parts = _WITH_UNITS.fullmatch(line) and re.findall(r"([\d.,]+ ?[^\W\d_]+)", line)
     if parts:  # 1 h 4 min
         found = [_number_of_text(part, unit, expected)[0] for part in parts]
@@ -369,8 +391,14 @@ def _number_of_text(text, unit, expected):
             continue
         found = _in_unit_asked(value, named, unit, expected) if named else (_finite(value, expected), "")
         return _with(remark or formula.remark, *found)
-    if re.search("may be|needs? brackets", says):
-        raise Unreadable(says)
+    try:  # 15 K / 11 %
+        value = _finite(complex(units.worked_out(line, unit)), expected)
+        return value, f"read as {with_unit(in_digits(value), unit)}"
+    except ValueError as doubt:
+        if "do not make" in str(doubt):
+            raise Unreadable(f"{doubt}: expected {expected}") from None
+        if re.search("may be|needs? brackets", says):
+            raise Unreadable(says) from None
     raise Unreadable(f"{shortened(text, 40)!r} is a text that is not a number: expected {expected}")
 
 
