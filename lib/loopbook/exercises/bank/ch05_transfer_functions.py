@@ -52,7 +52,7 @@ def stirrer(
 
 @stirrer.mistake("The friction is missing: it depends on the speed, so it belongs on the left side of the equation.")
 def _(J, k):
-    return {"H_u": k / (J * s), "H_M": -1 / (J * s)}
+    return {"H_u": k / (J * s), "H_M": -1 / (J * s), "pole": 0}
 
 
 @stirrer.mistake("Only the voltage is multiplied by $k$. What is the torque multiplied by in the equation?")
@@ -72,7 +72,27 @@ def _(J, b):
 
 @stirrer.mistake("Inertia and friction are interchanged: which of the two is multiplied by the derivative?")
 def _(J, k, b):
-    return {"H_u": k / (b * s + J), "H_M": -1 / (b * s + J), "pole": -J / b} if J != b else {}
+    return {"H_u": k / (b * s + J), "H_M": -1 / (b * s + J)} if J != b else {}
+
+
+@stirrer.mistake("That is minus the time constant. For which $s$ is the denominator zero?")
+def _(J, b):
+    return {"pole": -J / b} if J != b else {}
+
+
+@stirrer.mistake("The voltage is multiplied by $k$ in the equation. What becomes of it?")
+def _(J, k, b):
+    return {"H_u": 1 / (J * s + b)} if k != 1 else {}
+
+
+@stirrer.mistake("Here a part of the equation was divided by $J$. All of its terms must be.")
+def _(J, k, b):
+    return {"H_u": k / (s + b / J), "H_M": -1 / (s + b / J)} if J != 1 else {}
+
+
+@stirrer.mistake("Does more torque make the stirrer faster or slower?")
+def _(J, k, b):
+    return {"H_M": 1 / (J * s + b)}
 
 
 stirrer.hints(
@@ -190,6 +210,26 @@ def _(K, z, scale):
     return {"zeros": [scale * K * z]} if scale * K != 1 else {}
 
 
+@fraction.mistake("These are the roots of the numerator. Which of the two parts has the poles?")
+def _(z):
+    return {"poles": [z]}
+
+
+@fraction.mistake("These are the roots of the denominator. Which of the two parts has the zeros?")
+def _(p, q):
+    return {"zeros": [-p, -q]}
+
+
+@fraction.mistake("Put them into the denominator: is it zero there? Watch the signs.")
+def _(p, q):
+    return {"poles": [p, q]}
+
+
+@fraction.mistake("At $s = 0$ only one of numerator and denominator was divided by {scale} here.")
+def _(K, z, p, q, scale):
+    return {"H_s": -scale * K * z / (p * q)}
+
+
 fraction.hints(
     "Poles are the roots of the denominator, zeros those of the numerator. The static gain is the value at $s = 0$.",
     "First divide numerator and denominator by the factor of $s^2$. For the beginning of the step response look at "
@@ -268,7 +308,7 @@ def _(K, T, T_0):
 
 
 @creeping_sensor.mistake(
-    "Beginning and end are interchanged: large $s$ belongs to the beginning, and $s = 0$ to the end."
+    "Large $s$ belongs to the beginning of the response, and $s = 0$ to its end: which of the two have you taken?"
 )
 def _(K, T, T_0, U):
     return {"y_0": K * U, "y_s": K * U * T_0 / T, "y": K * U * (T_0 / T + (1 - T_0 / T) * exp(-t / T))}
@@ -324,6 +364,21 @@ def _():
     return {"y_0": 0}
 
 
+@creeping_sensor.mistake("For large $s$ there is a factor of $s$ below the fraction line, too.")
+def _(K, T_0, U):
+    return {"y_0": K * U * T_0}
+
+
+@creeping_sensor.mistake("That is the response to an impulse. What is the transform of a step?")
+def _(K, T, T_0, U):
+    return {"y": K * U * (1 - T_0 / T) / T * exp(-t / T)}
+
+
+@creeping_sensor.mistake("A longer time constant makes the exponential fade more slowly. Does yours?")
+def _(K, T, T_0, U):
+    return {"y": K * U * (1 - (1 - T_0 / T) * exp(-T * t))}
+
+
 creeping_sensor.hints(
     "Large $s$ belongs to the beginning of a response, $s = 0$ to its end.",
     r"For a step of height $U$, the response begins at $U \cdot \lim_{s\to\infty} H(s)$ and ends at $U \cdot H(0)$. A "
@@ -335,7 +390,7 @@ creeping_sensor.hints(
 
 @creeping_sensor.solution
 def _(K, T, T_0, U):
-    r"""For large $s$ only the terms with $s$ count, and the fraction is ${K} \cdot \frac{ {T_0} }{ {T} } =$ {first}. So
+    r"""For large $s$ only the terms with $s$ count, and the fraction is $\frac{ {above} }{ {T} } =$ {first}. So
     just after the step the signal is ${first} \cdot {U} =$ {y_0}.
 
     At $s = 0$ the fraction is {K}, so the signal ends at ${K} \cdot {U} =$ {y_s}.
@@ -345,7 +400,7 @@ def _(K, T, T_0, U):
     $$y(t) = {y_s} + ({y_0} - {y_s})\,e^{-t/{T}} = {y}\quad\text{in mV}$$
     """
     y_0, y_s = K * U * T_0 / T, K * U
-    return {"first": (K * T_0 / T, "mV/N"), "y": y_s - (y_s - y_0) * exp(-t / T)}
+    return {"above": K * T_0, "first": (K * T_0 / T, "mV/N"), "y": y_s - (y_s - y_0) * exp(-t / T)}
 
 
 @creeping_sensor.solution_picture
@@ -429,10 +484,52 @@ def _range(K, T, share, T_max, u_max, step):
     return least, u_max / step
 
 
+@two_loops.mistake("Where does the signal of $H_3$ enter: before $H_1$, or after it?")
+def _(signal, sign, k_1, k_2, k_3, k_4):
+    return _with_gains(_network(signal, _SIGNS[sign], h_3=H_1 * H_3), k_1, k_2, k_3, k_4, signal, sign)
+
+
+@two_loops.mistake("In $e = u - y$ the output is subtracted. Which sign has the outer loop in the denominator?")
+def _(signal, sign, k_1, k_2, k_3, k_4):
+    above, below = _network(signal, _SIGNS[sign]).as_numer_denom()
+    return _with_gains(above / (below - 2 * H_1 * H_2), k_1, k_2, k_3, k_4, signal, sign)
+
+
+@two_loops.mistake("Where does the bypass enter: before $H_2$, or after it?")
+def _(signal, sign, k_1, k_2, k_3, k_4):
+    return _with_gains(_network(signal, _SIGNS[sign], h_4=H_2 * H_4), k_1, k_2, k_3, k_4, signal, sign)
+
+
+@two_loops.mistake("There are two loops. Which one does $e = u - y$ close?")
+def _(signal, sign, k_1, k_2, k_3, k_4):
+    above, below = _network(signal, _SIGNS[sign]).as_numer_denom()
+    return _with_gains(above / (below - H_1 * H_2), k_1, k_2, k_3, k_4, signal, sign)
+
+
+@two_loops.mistake("In the denominator something is missing that has no symbol: direct over *one* plus the loops.")
+def _(signal, sign, k_1, k_2, k_3, k_4):
+    above, below = _network(signal, _SIGNS[sign]).as_numer_denom()
+    return _with_gains(above / (below - 1), k_1, k_2, k_3, k_4, signal, sign)
+
+
+@two_loops.mistake("Which of the gains belongs to which block? Two of them are interchanged.")
+def _(signal, sign, k_1, k_2, k_3, k_4):
+    sense = _SIGNS[sign]
+    right, wrong = (_network(signal, sense, k_1, k_2, *gains) for gains in ((k_3, k_4), (k_4, k_3)))
+    return {"M_s": wrong} if abs(wrong / right - 1) > 0.02 else {}
+
+
+@two_loops.mistake("Does a loop that subtracts add its loop gain to the one in the denominator, or take it away?")
+def _(signal, sign, k_1, k_2, k_3, k_4):
+    above, below = _network(signal, _SIGNS[sign]).as_numer_denom()
+    return _with_gains(above / (2 - below), k_1, k_2, k_3, k_4, signal, sign)
+
+
 two_loops.hints(
     "Each block multiplies. Write every signal in terms of the others, then eliminate all but $u$ and $y$.",
     "Put $e$ into the equation of $v$, and that into the equation of $y$. Or by the rules: the inner loop is direct "
-    "over one minus (or plus) its loop; it is then one block of the outer loop.",
+    "over one plus its loop if it subtracts, and over one minus its loop if it adds; it is then one block of the outer "
+    "loop.",
     r"Here {inner}. Put $e = u - y$ into it, and then $v$ into $y = H_2\,v + H_4\,u$: collect what is multiplied by "
     "$y$ on the left, and what is multiplied by $u$ on the right.",
 )
@@ -440,7 +537,7 @@ two_loops.hints(
 
 @two_loops.solution
 def _(signal, sign, k_1, k_2, k_3, k_4):
-    r"""Begin with {inner}, and put $e = u - y$ into it. {solved} Then $y = H_2 v + H_4 u$ becomes
+    r"""Begin with {inner}, and put $e = u - y$ into it.{solved} Then $y = H_2 v + H_4 u$ becomes
 
     $$y = {y}$$
 
@@ -455,16 +552,18 @@ def _(signal, sign, k_1, k_2, k_3, k_4):
     u, y = symbols("u y")
     sense = _SIGNS[sign]
     v = H_1 * (u - y) + sense * H_3 * y if signal == "y" else H_1 * (u - y) / (1 - sense * H_3)
-    above, below = (part.subs({H_1: k_1, H_2: k_2, H_3: k_3, H_4: k_4}) for part in M.as_numer_denom())
-    by_itself = (
-        f"There is $v$ on both sides; solved for it, $v = \\frac{{H_1 (u - y)}}{{1 {'-' if sense > 0 else '+'} H_3}}$."
-    )
+    k_1, k_2, k_3, k_4 = (f"{float(k):g}" for k in (k_1, k_2, k_3, k_4))
+    minus, by_bypass = "-" if sense > 0 else "+", k_4
+    around = f"{k_2} \\cdot {k_3}" if signal == "y" else k_3
+    if signal == "v":
+        by_bypass += f" \\cdot (1 {minus} {k_3})"
+    by_itself = f" There is $v$ on both sides; solved for it, $v = \\frac{{H_1 (u - y)}}{{1 {minus} H_3}}$."
     return {
         "M": M,
         "y": H_2 * v + H_4 * u,
         "solved": by_itself if signal == "v" else "",
-        "above": above,
-        "below": below,
+        "above": f"{k_1} \\cdot {k_2} + {by_bypass}",
+        "below": f"1 + {k_1} \\cdot {k_2} {minus} {around}",
     }
 
 
@@ -524,7 +623,7 @@ def hot_plate(
     return answers(
         M=transfer_function(K_c * K / (T * s + 1 + K_c * K), "the transfer function from $r$ to $y$"),
         K_c=design(
-            number((least + largest) / 2, "kW/K", "the gain of the feedback"),
+            number(float(f"{float(least + largest) / 2:.2g}"), "kW/K", "the gain of the feedback"),
             criterion("the loop is stable", lambda gain: 1 + float(gain) * float(K) > 0),
             criterion("the share of the step that is reached", measured(_reached(K)), above=share, unit="%"),
             criterion("the time constant", measured(_time_constant(K, T)), below=T_max, unit="s"),
@@ -596,6 +695,11 @@ def _(share, u_max, step):
 )
 def _(T, T_max):
     return {"K_c": T / T_max - 1}
+
+
+@hot_plate.mistake("This is a loop gain, and the plate has a part in it. How much is left for the feedback?")
+def _(share):
+    return {"K_c": share / (100 - share)}
 
 
 @hot_plate.picture
@@ -671,7 +775,7 @@ def four_zeros(
 
     $H_1 =$ {H_a}, $H_2 =$ {H_b}, $H_3 =$ {H_c}, $H_4 =$ {H_d}
 
-    The time is in seconds. The picture shows their step responses as A, B, C and D. Find the poles and the zeros. Which
+    The time is in seconds. The picture shows their step responses as A, B, C and D. With poles and zeros in mind: which
     response belongs to which transfer function? Give also the zero of $H_4$, and the slope with which its step response
     sets out.
     """
@@ -735,6 +839,21 @@ def _(K, T_1, T_2, T_r):
 @four_zeros.mistake("For large $s$ the highest powers of $s$ count, in the denominator as well.")
 def _(K, T_1, T_2, T_r):
     return {"slope": -K * T_r / (T_1 + T_2)} if abs(T_1 * T_2 / (T_1 + T_2) - 1) > 0.05 else {}
+
+
+@four_zeros.mistake("That is the numerator for large $s$. What does the denominator do there?")
+def _(K, T_1, T_2, T_r):
+    return {"slope": -K * T_r} if T_1 * T_2 != 1 else {}
+
+
+@four_zeros.mistake("For large $s$ the numerator is not its constant. Which of its terms is larger there?")
+def _(K, T_1, T_2):
+    return {"slope": K / (T_1 * T_2)}
+
+
+@four_zeros.mistake("For large $s$ the highest powers of $s$ count, in the numerator and in the denominator.")
+def _(K, T_1, T_2):
+    return {"slope": K / (T_1 + T_2)}
 
 
 four_zeros.hints(
