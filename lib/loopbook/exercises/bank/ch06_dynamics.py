@@ -85,6 +85,19 @@ def _(q_in, q_out, start, top):
     return diagrams.instrumentation_diagram(layout, "q_in 1 tank 2 pump q_out", "", parts, names)
 
 
+@runs_over.mistake("That is what the pump still takes out. What is left in the tank of what flows in?")
+def _(A, q_in, q_out, start, top):
+    rate = q_out / A
+    if _near(q_out, q_in - q_out):
+        return {}
+    return {"rate": rate, "t_full": 1000 * (top - start) / rate}
+
+
+@runs_over.mistake("One of the two flows fills the tank, the other one empties it. Do they add up?")
+def _(A, q_in, q_out, start, top):
+    return {"rate": (q_in + q_out) / A, "t_full": 1000 * (top - start) * A / (q_in + q_out)}
+
+
 runs_over.hints(
     "A tank adds up what flows in and does not flow out: its volume changes by the net inflow.",
     r"The volume is area times level, so $A\,\frac{dh}{dt} = q_{in} - q_{out}$. Compare this with an integrator, "
@@ -207,12 +220,17 @@ def _(y_1, dy):
     return {"y_T": y_1 + dy}
 
 
+@half_way.mistake("After one time constant more than half of the way is gone. Which share is it?")
+def _(y_1, dy):
+    return {"y_T": y_1 + dy / 2}
+
+
 half_way.hints(
     "The gain is a ratio of changes. And a lag goes the same share of its way in the same time, whatever the step is.",
     r"The step response of a lag is $K U\,(1 - e^{-t/T})$. It has gone half of its way when $e^{-t/T} = \frac{1}{2}$, "
     "and $1 - e^{-1}$ of it at $t = T$. Count temperatures from where the air was before.",
-    r"The valve was opened by {du}, so $K = \frac{ {dy} }{ {du} }$; and $e^{-{t_half}/T} = 0.5$ gives $T = \frac{ "
-    r"{t_half} }{\ln 2}$.",
+    r"The valve was opened by {du}, and that made the air {dy} warmer. At the half, $e^{-{t_half}/T} = 0.5$: take the "
+    r"logarithm on both sides, and solve for $T$.",
 )
 
 
@@ -325,6 +343,21 @@ def _(V, V_pipe, F):
     return {"H": exp(-V_pipe / F * s) / (V / F * s)}
 
 
+@brine.mistake("With less flow the brine needs longer for the pipe, too.")
+def _(V, V_pipe, F, less):
+    return {"t_slow": V_pipe / F + V * log(2) / F / (1 - less / 100)}
+
+
+@brine.mistake("With less flow the tank is slower, too, not only the pipe.")
+def _(V, V_pipe, F, less):
+    return {"t_slow": V_pipe / F / (1 - less / 100) + V * log(2) / F}
+
+
+@brine.mistake("Look at the units: is a volume over a flow a time, or a flow over a volume?")
+def _(V, V_pipe, F):
+    return {"H": exp(-F / V_pipe * s) / (F / V * s + 1), "t_half": F / V_pipe + F / V * log(2)}
+
+
 brine.hints(
     "What is mixed becomes a lag. What only travels becomes a delay.",
     r"Both times are volume over flow: $T = V/F$ for the tank and $\tau = V_{pipe}/F$ for the pipe. Half of the "
@@ -382,7 +415,8 @@ def belt(
     """A feeder drops grain on a belt, which is {length} long and moves at {v}. At its end the grain falls into an empty
     hopper on scales. At $t = 0$ the feeder starts with {F}, and after {run} it stops. The belt runs on. Give the
     transfer function from the feeder's mass flow [kg/s] to the mass in the hopper [kg], with the time in seconds.
-    Then find the mass in the hopper as a function of time, and the mass that lies on the belt when the feeder stops.
+    Then find the mass in the hopper as a function of time (type `Heaviside(t - a)` for a step at $t = a$), and the mass
+    that lies on the belt when the feeder stops.
     """
     delay = length / v
     return answers(
@@ -469,12 +503,26 @@ def _(length, v, F, run):
     return {"on_belt": arrived} if arrived > 0 and not _near(arrived, on_belt) else {}
 
 
+@belt.mistake("Look at the units: metres and metres per second. How do they make a time?")
+def _(length, v, F, run):
+    delay = length * v
+    on_belt = F * min(run, delay)
+    mass = {"m": _filled(F, delay, delay + run)} if not _near(delay, length / v) else {}
+    is_apart = not _near(on_belt, F * min(run, length / v))
+    return mass | {"H": exp(-delay * s) / s} | ({"on_belt": on_belt} if is_apart else {})
+
+
+@belt.mistake("A mass flow times a length is no mass. For how long has the grain on the belt been fed?")
+def _(length, v, F, run):
+    return {"on_belt": F * length} if not _near(length, min(run, length / v)) else {}
+
+
 belt.hints(
     "A belt delays, and a hopper adds up.",
     r"The delay is the length over the speed, $e^{-\tau s}$, and adding up is $1/s$. In time, the hopper fills along "
     "a straight line while grain arrives, that is from the delay to the delay plus the time for which the feeder ran.",
     r"The delay is $\tau = \frac{ {length} }{ {v} }$ s. The hopper begins to fill at $\tau$ and stops at $\tau + "
-    "{run}$ s, at {F}. When the feeder stops, what has been fed in the last {run} or less is still on the belt.",
+    "{run}$ s, at {F}. When the feeder stops, compare {run} with $\\tau$: which part of the grain has arrived by then?",
 )
 
 
@@ -492,12 +540,12 @@ def _(length, v, F, run):
 
     in kg, so that it ends with ${F} \cdot {run} =$ {all}.
 
-    When the feeder stops, the belt holds what came on it in the last {under_way}, because {compared}. That is
+    When the feeder stops, the belt holds what came on it in the last {under_way}: {compared}. That is
     ${F} \cdot {under_way} =$ {on_belt}.
     """
     delay = length / v
-    longer = "the feeder has run for longer than the belt takes, so all of the belt is full"
-    shorter = "the feeder has not run as long as the belt takes, so nothing has fallen off yet"
+    longer = "what was fed before has reached the hopper"
+    shorter = "all that was fed, since the first grain has not reached the hopper"
     return {
         "delay": (delay, "s"), "last": (delay + run, "s"), "all": (F * run, "kg"), "under_way": (min(run, delay), "s"),
         "compared": longer if run > delay else shorter,
@@ -520,8 +568,8 @@ def _(length, v, F, run):
     "6.5",
     title="A sensor in a pocket",
     points=4,
-    insight="Lags and delays in series add up to the response time, nearly: the estimate is a little short, by 7 % at "
-    "most.",
+    insight="Lags and delays in series add up to the response time, nearly: for two lags the estimate is a little "
+    "short, by 7 % at most.",
     where=lambda T_1, T_2, delay: T_1 >= 1.25 * T_2 and T_2 >= 0.4 * T_1 and delay <= 0.5 * T_1,
 )
 def pocket(
@@ -531,8 +579,8 @@ def pocket(
 ):
     """Hot water arrives from a boiler after a delay of {delay}. It warms the wall of a pocket, a lag of {T_1}, and the
     wall warms the sensor in it, a lag of {T_2}. All gains are one. The water at the boiler becomes suddenly warmer.
-    Estimate the response time of the sensor. Which share of its way has the sensor gone at this moment, and what is the
-    exact response time, the time to 63.2 % of the way?
+    Estimate the response time of the sensor by the rule for elements in series. Which share of its way has the sensor
+    gone at this moment, and what is the exact response time, the time to 63.2 % of the way?
     """
     T_1, T_2, delay = float(T_1), float(T_2), float(delay)
     return answers(
@@ -586,6 +634,22 @@ def _(T_1):
     return {"estimate": T_1, "T_r": T_1}
 
 
+@pocket.mistake("Squares are not needed: how do lags in series make up the time of the whole?")
+def _(T_1, T_2, delay):
+    root = (float(T_1) ** 2 + float(T_2) ** 2) ** 0.5
+    return {"estimate": root + delay}
+
+
+@pocket.mistake("Squares are not needed: how do lags and delays in series make up the time of the whole?")
+def _(T_1, T_2, delay):
+    return {"estimate": float(T_1**2 + T_2**2 + delay**2) ** 0.5}
+
+
+@pocket.mistake("The sensor itself takes its time, too.")
+def _(T_1, T_2, delay):
+    return {"T_r": T_1 + delay} | ({} if _near(T_2, 2 * delay) else {"estimate": T_1 + delay})
+
+
 pocket.hints(
     "The response time of elements in series is about the sum of all their lags and delays.",
     "For the exact time look at what is still missing $x$ seconds after the warm water has arrived. For two "
@@ -607,13 +671,13 @@ def _(T_1, T_2, delay):
     So {share} of the way are gone, a little less than 63.2 %.
 
     The exact response time is where this share is $e^{-1} = 0.368$. There is no formula for it. Trying larger $x$ gives
-    $x =$ {exact}, and with the delay {T_r}. The estimate was {short} too short.
+    $x =$ {exact}, and with the delay {T_r}. The estimate was about {short} too short.
     """
     T_1, T_2, delay = float(T_1), float(T_2), float(delay)
     exact = _response_time(T_1, T_2)
     return {
         "x": (T_1 + T_2, "s"), "missing": _share_left(T_1 + T_2, T_1, T_2), "exact": (exact, "s"),
-        "short": (100 * (1 - (T_1 + T_2 + delay) / (exact + delay)), "%"),
+        "short": (round(100 * (1 - (T_1 + T_2 + delay) / (exact + delay)), 1), "%"),
     }  # fmt: skip
 
 
@@ -659,12 +723,13 @@ def against_pulses(
     F, pulse, c = float(F), float(pulse), float(c)
 
     def highest(volume):
-        return c * (1 - exponential(-pulse * F / 60 / volume)) if volume > 0 else c
+        return c * (1 - exponential(-pulse * F / 60 / volume))
 
     return answers(
         T_least=number(-pulse / log(1 - c_max / c), "min", "the least time constant"),
         V=design(
             number((least + largest) / 2, "m³", "the volume of the tank"),
+            criterion("it is positive", lambda volume: volume > 0, otherwise="a volume is more than zero"),
             criterion("the highest concentration above normal", highest, below=c_max, unit="g/L"),
             criterion("the time to 90 %", lambda volume: 60 * volume / F * logarithm(10), below=t_max, unit="min"),
             draws=lambda volume: _pulse_and_step(60 * volume / F, pulse, c, float(c_max), float(t_max)),
@@ -725,6 +790,25 @@ def _pulse_and_step(T, pulse, c, c_max, t_max):
     return plot.event(t_max, "at the latest")
 
 
+@against_pulses.mistake("That is a time constant in minutes. How does a volume follow from it?")
+def _(F, pulse, c, c_max, t_max):
+    least, largest = _volumes(F, pulse, c, c_max, t_max)
+    T = (least + largest) / 2 * 60 / float(F)
+    return {"V": T} if not least <= T <= largest else {}
+
+
+@against_pulses.mistake("That is a time constant in minutes. How does a volume follow from it?")
+def _(F, pulse, c, c_max, t_max):
+    least, largest = _volumes(F, pulse, c, c_max, t_max)
+    T = least * 60 / float(F)
+    return {"V": T} if not 0.99 * least <= T <= 1.01 * largest else {}
+
+
+@against_pulses.mistake("A tank so small lets nearly all of a pulse through. How does its outflow rise meanwhile?")
+def _(pulse, c, c_max):
+    return {"T_least": pulse * c_max / c}
+
+
 against_pulses.hints(
     "The tank is a lag, and the pulse is a step up that is taken back after a while: the highest concentration comes "
     "just before it is taken back.",
@@ -740,8 +824,9 @@ def _(F, pulse, c, c_max, t_max):
     r"""For {pulse} the inflow is higher by {c}. The tank is a lag, so at the end of the pulse its concentration is
     higher by $c\,(1 - e^{-t_p/T})$, and that is the highest value. It is to be {c_max} at most:
 
-    $$1 - e^{-{pulse}/T} \le \frac{ {c_max} }{ {c} } = {ratio} \quad\Rightarrow\quad T \ge \frac{ {pulse} }{-\ln(1 -
-    {ratio})} = {T_least}\ \text{min}$$
+    $$1 - e^{-{pulse}/T} \le \frac{ {c_max} }{ {c} } = {ratio}$$
+
+    $$T \ge \frac{ {pulse} }{-\ln(1 - {ratio})} = {T_least}\ \text{min}$$
 
     A change that lasts has come through to 90 % after $T \ln 10 = 2.303\,T$. This may be {t_max}, so $T \le {T_max}$
     min.
@@ -852,6 +937,26 @@ def _(T, start):
 @oven.mistake("After nine tenths of a time constant not even 63 % have come through.")
 def _(T):
     return {"t_90": 0.9 * T}
+
+
+@oven.mistake("By then the response has practically ended. The time constant is the time to 63 % of the way.")
+def _(T):
+    return {"T": 3 * T}
+
+
+@oven.mistake("By then the response has practically ended. The time constant is the time to 63 % of the way.")
+def _(T):
+    return {"T": 4 * T}
+
+
+@oven.mistake("This follows from a time constant that was not counted from the step.")
+def _(T, start):
+    return {"t_90": (start + T) * log(10)}
+
+
+@oven.mistake("After one time constant 63 % have come through. How long does it take to 90 %?")
+def _(T):
+    return {"t_90": T}
 
 
 oven.hints(
@@ -1001,6 +1106,16 @@ def _(T):
 @four_curves.mistake("That is the lag behind the delay. Which curve has the whole sum as its one lag?")
 def _(T, tau):
     return {"T": T - tau}
+
+
+@four_curves.mistake("There a smooth curve becomes visible. A delay ends with a corner: which of the curves has it?")
+def _(T):
+    return {"tau": T / 5}
+
+
+@four_curves.mistake("There a smooth curve becomes visible. A delay ends with a corner: which of the curves has it?")
+def _(T):
+    return {"tau": T / 10}
 
 
 four_curves.hints(
