@@ -1,5 +1,6 @@
 """Exercises of chapter 2, block diagrams and state-space models."""
 
+import functools
 import math
 
 import numpy as np
@@ -80,6 +81,11 @@ def _(K, a, t_1, t_2):
 )
 def _(K, y_0, a, t_1, t_end):
     return {"y_A": y_0 + K * a * (t_end - t_1), "y_B": K * (y_0 + a * (t_end - t_1))}
+
+
+@two_meters.mistake("Nothing flows any more by then. What does an integrator do when its input is zero?")
+def _():
+    return {"y_A": 0, "y_B": 0}
 
 
 def _apart(value, *others):
@@ -278,6 +284,26 @@ def _(model):
     return {"formula": (driving - exchanged) / factor} if order > 1 else {}
 
 
+@first_integrator.mistake("The whole equation is divided by this factor, not only what drives the plant.")
+def _(model):
+    driving, against, factor, _ = MODELS[model][2]
+    return {"formula": driving / factor - against}
+
+
+@first_integrator.mistake("What comes out of the last integrator is $x_1 = y$. What is its derivative, then?")
+def _(model):
+    driving, against, factor, order = MODELS[model][2]
+    late = against.subs({x_2: x_1, x_3: x_2}, simultaneous=True)
+    return {"formula": (driving - late) / factor} if order > 1 and not against.has(x_1) else {}
+
+
+@first_integrator.mistake("The outputs are counted from the end: which integrator delivers $y$, and which $x_3$?")
+def _(model):
+    driving, against, factor, order = MODELS[model][2]
+    reversed_order = against.subs({x_1: x_3, x_3: x_1}, simultaneous=True)
+    return {"formula": (driving - reversed_order) / factor} if order == 3 else {}
+
+
 @first_integrator.mistake("There is a sine in the model. The angle need not be small.")
 def _(model):
     driving, against, factor, _ = MODELS[model][2]
@@ -390,6 +416,13 @@ def _(m, K, y_0, h):
     return {"v": v}
 
 
+@two_rounds.mistake("The damper acts against the motion. Which way does the mass move when the second round begins?")
+def _(m, D, K, y_0, h):
+    _, v = _rounds(m, D, K, y_0 / 100, h, 2)
+    _, undamped = _rounds(m, sympy.Integer(0), K, y_0 / 100, h, 2)
+    return {"v": 2 * undamped - v}
+
+
 @two_rounds.mistake("Spring and damper pull back. Which sign has the acceleration of a mass that has been pulled away?")
 def _(m, D, K, y_0, h):
     y, v = _rounds(-m, D, K, y_0 / 100, h, 2)
@@ -400,6 +433,32 @@ def _(m, D, K, y_0, h):
 def _(m, D, K, y_0, h):
     y, _ = _rounds(sympy.Integer(1), D, K, y_0 / 100, h, 2)
     return {"y": y} if m > sympy.Rational(7, 2) else {}
+
+
+@two_rounds.mistake("That is the result after three rounds. The first one begins with the mass at rest.")
+def _(m, D, K, y_0, h):
+    return _found_apart(_rounds(m, D, K, y_0 / 100, h, 3), m, D, K, y_0, h)
+
+
+@two_rounds.mistake("That is how the mass really moves. What does the simulator make of it, in two steps?")
+def _(m, D, K, y_0, h):
+    mass, damping, stiffness, start, end = (float(x) for x in (m, D, K, y_0 / 100, 2 * h))
+    root = np.sqrt(complex(damping**2 - 4 * mass * stiffness))
+    if abs(root) < 1e-3:
+        return {}
+    p, q = (-damping + root) / (2 * mass), (-damping - root) / (2 * mass)
+    y = start * ((p * np.exp(q * end) - q * np.exp(p * end)) / (p - q)).real
+    v = start * (p * q * (np.exp(q * end) - np.exp(p * end)) / (p - q)).real
+    return _found_apart((y, v), m, D, K, y_0, h)
+
+
+def _found_apart(found, m, D, K, y_0, h):
+    """Position and speed of a mistake, where they differ from those that are right and those of other mistakes."""
+    start = y_0 / 100
+    others = [_rounds(m, D, K, start, h, 2), _rounds(m, D, K, start, h, 1), _rounds(m, D, K, start, h, 2, True)]
+    others.append(_rounds(m, sympy.Integer(0), K, start, h, 2))
+    told = zip("yv", found, zip(*others, strict=True), strict=True)
+    return {name: value for name, value, different in told if _apart(value, *different)}
 
 
 two_rounds.hints(
@@ -484,6 +543,28 @@ def _(D, K):
 def _(m, D, K):
     root = sympy.sqrt(D**2 - 4 * m * K)
     return {"poles": [(-D + root) / m, (-D - root) / m]}
+
+
+@scale.mistake("The sack moves together with the platform. Which mass is it that spring and damper have to move?")
+def _(D, K):
+    return {"poles": [-K / D]}
+
+
+@scale.mistake("The sack moves together with the platform. Which mass is it that spring and damper have to move?")
+def _(D, K):
+    return {"poles": [-K / D, 0]}
+
+
+@scale.mistake("In the formula for the roots of a quadratic, all of it is above the fraction line, also the root.")
+def _(m, D, K):
+    root = sympy.sqrt(D**2 - 4 * m * K)
+    return {"poles": [-D / (2 * m) + root, -D / (2 * m) - root]}
+
+
+@scale.mistake("In the formula for the roots of a quadratic, the $2m$ is below both parts, also below the root.")
+def _(m, D, K):
+    root = sympy.sqrt(D**2 - 4 * m * K)
+    return {"poles": [-D / (2 * m) + root / m, -D / (2 * m) - root / m]}
 
 
 @scale.mistake("That happens without the damper. It is in the polynomial, in the term with $s$.")
@@ -599,6 +680,26 @@ def _(T_1, T_2, K):
 )
 def _(T_1, T_2):
     return {"A": [[-1 / T_1, 0], [1 / T_2, -1 / T_2]]}
+
+
+@other_states.mistake("In the first row, $\\dot z_1 = \\dot x_1 - \\dot x_2$. Where is $\\dot x_2$ in it?")
+def _(T_1, T_2):
+    return {"A": [[-1 / T_1, -1 / T_1], [1 / T_2, 0]]}
+
+
+@other_states.mistake("In $\\dot z_1 = \\dot x_1 - \\dot x_2$, which sign does $z_1/T_2$ have?")
+def _(T_1, T_2):
+    return {"A": [[-1 / T_1 + 1 / T_2, -1 / T_1], [1 / T_2, 0]]}
+
+
+@other_states.mistake("The temperature of the furnace is more than the difference: what is $x_1$ in the new states?")
+def _(T_1, T_2):
+    return {"A": [[-1 / T_1 - 1 / T_2, 0], [1 / T_2, 0]]}
+
+
+@other_states.mistake("The temperature of the furnace is more than the difference: what is $x_1$ in the new states?")
+def _(T_1, T_2):
+    return {"A": [[-1 / T_1 - 1 / T_2, 1 / T_2], [1 / T_2, -1 / T_2]]}
 
 
 @other_states.mistake("With $z = Mx$, on which side of the old matrix is $M$, and on which is its inverse?")
@@ -726,7 +827,7 @@ def damper(
             number(1.5 * math.sqrt(mass * stiffness), "N s/m", "the damping constant"),
             criterion("the damping constant is positive", lambda D: D > 0),
             criterion("the overshoot", overshoot, below=10, unit="%"),
-            criterion("the largest error from then on", error_after, below=5, unit="%"),
+            criterion(f"the largest error after {written(t_s, 's')}", error_after, below=5, unit="%"),
             draws=way_to_rest,
         )
     )
@@ -738,14 +839,25 @@ def _(m, K):
     return draw.mass_spring_damper(f"${written(m)}$ kg", f"${written(K)}$ kN/m", "D", standing=True)
 
 
-@damper.mistake("The springs have that many kilonewtons a metre. How many newtons is that?")
-def _(m, K):
-    return {"D": 1.5 * math.sqrt(m * K)}
+def _with_factor(zeta, factor):
+    """The damping constant for one relative damping, of somebody who has lost a factor."""
+
+    def found(m, K):
+        return {"D": 2 * zeta * math.sqrt(1000 * m * K) * factor}
+
+    return found
 
 
-@damper.mistake("There is a factor 2 between the damping constant and the relative damping: $D = 2\\zeta\\sqrt{{mK}}$.")
-def _(m, K):
-    return {"D": 0.75 * math.sqrt(1000 * m * K)}
+#: The relative dampings that people choose.
+USUAL = (0.75, 0.59, 0.6, 0.65, 0.7, 0.707, 0.8, 0.9, 1)
+for _zeta in USUAL:
+    damper.mistake("The springs have that many kilonewtons a metre. How many newtons is that?")(
+        _with_factor(_zeta, 1000**-0.5)
+    )
+for _zeta in USUAL:
+    damper.mistake(
+        "There is a factor 2 between the damping constant and the relative damping: $D = 2\\zeta\\sqrt{{mK}}$."
+    )(_with_factor(_zeta, 0.5))
 
 
 @damper.mistake(
@@ -869,53 +981,104 @@ def _(layout, K, a, c, y_0):
     return draw.block_diagram("u", *before, loop, "y")
 
 
-@read_diagram.mistake("There is a sign beside the arrow of $d$. Which one?")
-def _(layout, K, a, c):
-    return {"rate": LAYOUTS[layout](K, a, c).subs(d_, -d_)}
-
-
-@read_diagram.mistake("Something comes back from the output, with a sign of its own. Which one, at the sum?")
-def _(layout, K, a, c):
-    return {"rate": LAYOUTS[layout](K, a, c).subs(y_, -y_)}
-
-
-@read_diagram.mistake("The output goes back to the sum, too. What does it meet on its way?")
-def _(layout, K, a, c):
-    return {"rate": LAYOUTS[layout](K, a, c).subs(y_, 0)}
-
-
-@read_diagram.mistake("A gain is in the path that leads back. What does the sum subtract?")
-def _(layout, K, a, c, u, d):
-    return {"rate": LAYOUTS[layout](K, a, 1), "rest": _rest(layout, K, a, 1, u, d)}
-
-
-def _elsewhere(number):
+def _elsewhere(place):
     """The formula of somebody who reads $d$ at one of the two other places."""
+    return lambda layout, K, a, c: [each for name, each in LAYOUTS.items() if name != layout][place](K, a, c)
 
-    def found(layout, K, a, c):
-        other = [each for name, each in LAYOUTS.items() if name != layout][number]
-        return {"rate": other(K, a, c)}
+
+#: What is said of a formula that is not that of the diagram, and the formula.
+MISREAD = [
+    (
+        "There is a sign beside the arrow of $d$. Which one?",
+        lambda layout, K, a, c: LAYOUTS[layout](K, a, c).subs(d_, -d_),
+    ),
+    (
+        "Something comes back from the output, with a sign of its own. Which one, at the sum?",
+        lambda layout, K, a, c: LAYOUTS[layout](K, a, c).subs(y_, -y_),
+    ),
+    (
+        "The output goes back to the sum, too. What does it meet on its way?",
+        lambda layout, K, a, c: LAYOUTS[layout](K, a, c).subs(y_, 0),
+    ),
+    (
+        "A gain is in the path that leads back. What does the sum subtract?",
+        lambda layout, K, a, c: LAYOUTS[layout](K, a, 1),
+    ),
+    (
+        "One gain is behind the sum. What does it multiply: one of the two signals there, or both?",
+        lambda layout, K, a, c: LAYOUTS[layout](K, a, c / a),
+    ),
+    (
+        "There is a gain between the sum and the integrator. Is it in your formula?",
+        lambda layout, K, a, c: LAYOUTS[layout](K, 1, c),
+    ),
+    (
+        "$u$ passes a gain before it comes to the sum. Is it in your formula?",
+        lambda layout, K, a, c: LAYOUTS[layout](1, a, c),
+    ),
+    ("Follow $d$ from its arrow to the integrator: which blocks does it pass, and which not?", _elsewhere(0)),
+    ("Follow $d$ from its arrow to the integrator: which blocks does it pass, and which not?", _elsewhere(1)),
+]
+
+
+def _numbers_of(formula, u, d, y_0):
+    """The rate at the beginning and the rest by a formula; none by one that does not know the output."""
+    if not formula.has(y_):
+        return {}
+    (rest,) = sympy.solve(_at(formula, u=u, d=d), y_)
+    return {"start": _at(formula, u=u, d=d, y=y_0), "rest": rest}
+
+
+@functools.cache
+def _all_numbers(layout, K, a, c, u, d, y_0):
+    """Those of the diagram, and of all formulas that are not its own."""
+    formulas = [LAYOUTS[layout](K, a, c), *(formula(layout, K, a, c) for _, formula in MISREAD)]
+    return [_numbers_of(formula, u, d, y_0) for formula in formulas]
+
+
+def _told(layout, K, a, c, u, d, y_0, name):
+    """The rates at the beginning, or the rests, by all of these formulas."""
+    return [one.get(name) for one in _all_numbers(layout, K, a, c, u, d, y_0)]
+
+
+def _misread_as(number):
+    """Formula and numbers of a mistake; of the numbers only those that no other mistake makes."""
+
+    def found(layout, K, a, c, u, d, y_0):
+        wrong = _all_numbers(layout, K, a, c, u, d, y_0)[number + 1]
+        told = {
+            name: value for name, value in wrong.items() if _told(layout, K, a, c, u, d, y_0, name).count(value) == 1
+        }
+        return {"rate": MISREAD[number][1](layout, K, a, c)} | told
 
     return found
 
 
-for _number in (0, 1):
-    read_diagram.mistake("Follow $d$ from its arrow to the integrator: which blocks does it pass, and which not?")(
-        _elsewhere(_number)
-    )
+for _number, (_sentence, _) in enumerate(MISREAD):
+    read_diagram.mistake(_sentence)(_misread_as(_number))
+
+
+@read_diagram.mistake(
+    "At rest the path that leads back brings as much as comes in. Is $y$ multiplied by {c}, or divided?"
+)
+def _(layout, K, a, c, u, d):
+    return {"rest": _rest(layout, K, a, c, u, d) * c**2}
 
 
 @read_diagram.mistake("What does the integrator hold at the beginning? The number that enters it from above.")
-def _(layout, K, a, c, u, d):
-    return {"start": _at(LAYOUTS[layout](K, a, c), u=u, d=d, y=0)}
+def _(layout, K, a, c, u, d, y_0):
+    start = _at(LAYOUTS[layout](K, a, c), u=u, d=d, y=0)
+    return {"start": start} if start not in _told(layout, K, a, c, u, d, y_0, "start") else {}
 
 
 @read_diagram.mistake("The second input is not zero. How does it act here?")
 def _(layout, K, a, c, u, d, y_0):
     formula = LAYOUTS[layout](K, a, c)
     start, rest = _at(formula, u=u, d=0, y=y_0), _rest(layout, K, a, c, u, 0)
-    found = {"start": start} if start != _at(formula, u=u, d=d, y=0) else {}
-    return found | ({"rest": rest} if rest != _rest(layout, K, a, 1, u, d) else {})
+    starts = [*_told(layout, K, a, c, u, d, y_0, "start"), _at(formula, u=u, d=d, y=0)]
+    rests = [*_told(layout, K, a, c, u, d, y_0, "rest"), 0]
+    found = {"start": start} if start not in starts else {}
+    return found | ({"rest": rest} if rest not in rests else {})
 
 
 @read_diagram.mistake("At rest the input of the integrator is zero, not its output. Solve the formula for $y$.")
@@ -1060,6 +1223,26 @@ def _(fault, m, D, K):
     return {"acceleration": sympy.expand(drawn / m if fault == MULTIPLIED else drawn * m)}
 
 
+@find_the_fault.mistake("Both loops arrive with a plus in your formula. Look at the signs beside their arrows.")
+def _(fault, m, D, K):
+    inner, outer = (K, D) if fault == SWAPPED else (D, K)
+    return {"acceleration": (F_ + inner * v_ + outer * y_) * (m if fault == MULTIPLIED else 1 / m)}
+
+
+@find_the_fault.mistake(
+    "The block in front of the first integrator acts on the whole sum. On what does it act for you?"
+)
+def _(fault, m, D, K):
+    loops = _as_drawn(fault, m, D, K).subs(F_, 0)
+    divided = fault != MULTIPLIED
+    return {"acceleration": F_ / m + m * loops if divided else m * F_ + loops / m}
+
+
+@find_the_fault.mistake("What does the block in front of the first integrator do with the sum: multiply or divide it?")
+def _(fault, m, D, K):
+    return {"acceleration": sympy.expand(_as_drawn(fault, m, D, K) * m**2)} if fault != MULTIPLIED else {}
+
+
 @find_the_fault.mistake("Which of the two loops begins behind the first integrator, and which behind the second one?")
 def _(fault, m, D, K):
     drawn = _as_drawn(fault, m, D, K)
@@ -1134,7 +1317,8 @@ def _(fault, m, D, K):
         SIGN_OF_D: "The damper now drives the mass on, the more so the faster it is. The spring pulls it back, so "
         "it passes its place of rest again and again, and farther each time.",
         SIGN_OF_K: "The spring now pushes the mass away, the harder the farther it is. Nothing brings it back.",
-        SWAPPED: "At rest only the outer loop acts, with the number of the damper: the mass settles at $F/D$.",
+        SWAPPED: "At rest only the outer loop acts, and it has the number of the damper: the mass settles at "
+        f"$F/{written(D)}$, not at $F/{written(K)}$.",
         MULTIPLIED: "At rest the sum of the forces is zero, whatever it is multiplied by. The way there "
         "is much too fast, but it ends at the right place.",
     }
