@@ -6,6 +6,7 @@ from functools import partial
 import pytest
 
 from loopbook.diagrams import (
+    current_loop,
     hoist,
     kirchhoff_laws,
     mass_spring_damper,
@@ -24,6 +25,7 @@ EXAMPLES = [
     partial(voltage_divider, ["R_1"], ["C", "R_2"], voltages={"C": "v"}),
     partial(voltage_divider, ["R_1"], ["R_2", "C"], in_series=True, voltages={"C": "v"}),
     partial(voltage_divider, ["R_1", "C"], ["R_2"], voltages={"C": "v"}),
+    partial(current_loop, ["R_1"]), partial(current_loop, ["R_1", "R_2"], source="Output\n$20$ mA"),
 ]  # fmt: skip
 
 
@@ -85,3 +87,9 @@ def test_a_mass_without_a_force_has_no_arrow_for_it():
 def test_a_tank_widens_with_a_power_above_zero():
     with pytest.raises(ValueError, match="a power above zero"):
         widening_tank(0)
+
+
+def test_a_current_loop_has_an_input_and_two_wires():
+    assert sorted(labels(current_loop(["R_1", "R_2"], "R"))) == ["$I$", "$R$", "$R$", "$R_1$", "$R_2$"]
+    with pytest.raises(ValueError, match="one input or more"):
+        current_loop([])

@@ -18,6 +18,7 @@ from loopbook.diagrams.blocks import (
     switch,
 )
 from loopbook.diagrams.circuits import (
+    current_loop,
     kirchhoff_laws,
     rc_circuit,
     resistor_combinations,
@@ -39,12 +40,12 @@ from loopbook.diagrams.tanks import ROOFS, cyclone, silo, tank, vessel
 from loopbook.diagrams.valves import ACTUATORS, VALVES, control_valve, valve
 
 __all__ = [
-    "ACTUATORS", "COMPRESSORS", "CONDUCTORS", "DEVICES", "EXCHANGERS", "FANS", "HEATERS", "PLACES", "PUMPS",
-    "ROOFS", "SIGNALS", "VALVES", "block", "block_diagram", "compressor", "conductor", "control_valve", "conveyor",
-    "conveyor_belt", "cyclone", "delay", "disturbance", "division", "elementary_blocks", "equivalent_diagrams",
-    "fan", "feed_screw", "feedback_loop", "gain", "grid_diagram", "heat_exchanger", "heater", "hoist", "instrument",
-    "instrumentation_diagram", "integrator", "kirchhoff_laws", "mass_spring_damper", "motor", "motor_with_load",
-    "multiplication", "overall_diagram", "parallel_paths", "pump", "rc_circuit", "resistor_combinations",
-    "sequential_function_chart", "silo", "state_diagram", "sum_of", "switch", "symbol_table", "tank", "turbine",
-    "two_terminal_components", "valve", "vessel", "voltage_divider", "widening_tank",
+    "ACTUATORS", "COMPRESSORS", "CONDUCTORS", "DEVICES", "EXCHANGERS", "FANS", "HEATERS", "PLACES", "PUMPS", "ROOFS",
+    "SIGNALS", "VALVES", "block", "block_diagram", "compressor", "conductor", "control_valve", "conveyor",
+    "conveyor_belt", "current_loop", "cyclone", "delay", "disturbance", "division", "elementary_blocks",
+    "equivalent_diagrams", "fan", "feed_screw", "feedback_loop", "gain", "grid_diagram", "heat_exchanger", "heater",
+    "hoist", "instrument", "instrumentation_diagram", "integrator", "kirchhoff_laws", "mass_spring_damper", "motor",
+    "motor_with_load", "multiplication", "overall_diagram", "parallel_paths", "pump", "rc_circuit",
+    "resistor_combinations", "sequential_function_chart", "silo", "state_diagram", "sum_of", "switch", "symbol_table",
+    "tank", "turbine", "two_terminal_components", "valve", "vessel", "voltage_divider", "widening_tank",
 ]  # fmt: skip

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from loopbook.diagrams.drawing import Drawing, mathematics, text_size
+from loopbook.diagrams.drawing import Drawing, mathematics, text_size, wording
 
 if TYPE_CHECKING:
     from loopbook.figures import Picture
@@ -88,6 +88,39 @@ def voltage_divider(
     return drawing.picture(
         title, f"circuit: {' beside '.join(upper)} from v_in to v_out; {names}, from v_out to ground"
     )
+
+
+def current_loop(inputs: Sequence[str], wire: str = "R_w", source: str = "I", title: str | None = None) -> Picture:
+    """Draw a loop in which a current goes through one wire of a cable, through all inputs, and back through the other.
+
+    Arguments:
+        inputs: names of the resistors at the far end, one behind the other.
+        wire: the resistance of each of the two wires.
+        source: words or mathematics at what drives the current.
+        title: written above the circuit.
+    Returns:
+        A `Picture`, which a notebook shows as the value of a cell.
+    Raises:
+        ValueError: without an input.
+
+    >>> current_loop(["R_1", "R_2"])
+    <circuit: I drives a current through a wire R_w, then R_1, then R_2, and back through a wire R_w>
+    """
+    if not inputs:
+        raise ValueError("a current loop has one input or more")
+    drawing, top, right = Drawing(), 2.6 * len(inputs), 7.0
+    width = max(1.5, text_size(wording(source))[0] + 0.5)
+    drawing.box(-width / 2, top / 2, width, 1.5, wording(source))
+    for y, rim in ((top, top / 2 + 0.75), (0, top / 2 - 0.75)):
+        drawing.wire((0, rim), (0, y), (1.6, y))
+        drawing.wire((5.4, y), (right, y))
+        _component(drawing, "Resistor", (1.6, y), (5.4, y), wire)
+    drawing.wire((0, top), (0.9, top), arrow="->")
+    for k, name in enumerate(inputs):
+        _component(drawing, "Resistor", (right, top - 2.6 * k), (right, top - 2.6 * (k + 1)), name)
+    middle = ", ".join(f"then {name}" for name in inputs)
+    words = f"circuit: {source} drives a current through a wire {wire}, {middle}, and back through a wire {wire}"
+    return drawing.picture(title, words)
 
 
 def _kind(name):

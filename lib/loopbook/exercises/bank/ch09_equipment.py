@@ -5,6 +5,7 @@ import math
 import numpy as np
 from sympy import Piecewise, Symbol, exp, pi, symbols
 
+from loopbook import diagrams as draw
 from loopbook.exercises.authoring import (
     answers,
     between,
@@ -17,6 +18,7 @@ from loopbook.exercises.authoring import (
     time_function,
     word,
 )
+from loopbook.exercises.parameters import written
 from loopbook.expressions import t
 from loopbook.figures import plane_plot, time_plot
 
@@ -47,6 +49,29 @@ def kiln(
     )
 
 
+@kiln.picture
+def _(T_low, T_high, R, V):
+    """From the temperature to the voltage: a thermometer of {T_low} to {T_high} sends 4 to 20 mA, and the current makes
+    {V} at a resistor of {R}."""
+    thermometer = draw.block(f"${written(T_low)}$ to ${written(T_high)}$ °C\n$4$ to $20$ mA")
+    resistor = draw.block(f"Resistor\n${written(R)}$ Ω")
+    return draw.block_diagram(r"$\vartheta$", thermometer, "I", resistor, f"${written(V)}$ V")
+
+
+@kiln.mistake("A broken cable carries no current. Which temperature has the line of the scaling at 0 mA?")
+def _():
+    return {"T_broken": 0}
+
+
+@kiln.mistake("The range of the temperature does not begin at zero. How wide is it?")
+def _(T_low, T_high, R, V):
+    share, span = (1000 * V / R - 4) / 16, T_high - T_low
+    wrong = T_low + share * T_high
+    apart = all(abs(wrong - other) > other / 30 for other in (T_low + share * span, T_low + 50 * V / R * span))
+    found = {"T": wrong} if apart else {}
+    return found | ({"T_broken": T_low - T_high / 4} if T_high != 4 * T_low else {})
+
+
 @kiln.mistake("This scaling has its lower end at 0 mA. At which current does the kiln have the lowest temperature?")
 def _(T_low, T_high, R, V):
     return {"T": T_low + 50 * V / R * (T_high - T_low), "T_broken": T_low}
@@ -60,6 +85,11 @@ def _(T_low, T_high, R, V):
 @kiln.mistake("A current is a voltage divided by a resistance. Look at Ohm's law, and at the units.")
 def _(R, V):
     return {"I": V * R / 1000} if abs(V * R / 1000 - 1000 * V / R) > 0.02 * 1000 * V / R else {}
+
+
+@kiln.mistake("A current is a voltage divided by a resistance. Look at Ohm's law, and at the units.")
+def _(R, V):
+    return {"I": V * R}
 
 
 kiln.hints(
@@ -149,6 +179,25 @@ def _error(span, inaccuracy, drift, warming):
 
 def _bits(span, finest):
     return next(bits for bits in range(1, 40) if _step(span, bits) <= finest)
+
+
+@silo.picture
+def _(span, bits):
+    """A silo on load cells of 0 to {span}; the input of the controller makes {bits} bits of their signal."""
+    layout = """
+        silo  cells  input  controller"""
+    parts = {
+        "silo": draw.silo(),
+        "cells": f"Load cells\n$0$ to ${written(span)}$ t",
+        "input": f"Input\n${written(bits)}$ bits",
+        "controller": "Controller",
+    }
+    return draw.instrumentation_diagram(layout, "", "silo cells input controller", parts)
+
+
+@silo.mistake("That is the number of steps. How many bits does it take to count so far?")
+def _(span, finest):
+    return {"bits": 1000 * span / finest}
 
 
 @silo.mistake("A number with that many bits has many more values. How many are there with two bits, with three bits?")
@@ -258,6 +307,18 @@ def _(inputs):
     return {"receivers": one if inputs == 1 else two}
 
 
+@dam.picture
+def _(R_load, inputs, R_in, wire):
+    """The loop: an output of at most {R_load}, a wire of {wire}, {receivers} an input of {R_in}, and a wire back."""
+    output = f"$4$ to $20$ mA\nup to ${written(R_load)}$ Ω"
+    return draw.current_loop([f"${written(R_in)}$ Ω"] * int(inputs), f"${written(wire)}$ Ω/km", output)
+
+
+@dam.mistake("The display is in the loop as well. Which resistance do both inputs have together?")
+def _(R_load, inputs, R_in, wire):
+    return {"distance": (R_load - R_in) / (2 * wire)} if inputs == 2 and R_load != 3 * R_in else {}
+
+
 @dam.mistake("A cable has two wires: the current goes there and comes back.")
 def _(R_load, inputs, R_in, wire, length, R_voltage):
     R_cable = wire * length
@@ -279,6 +340,12 @@ def _(R_load):
 def _(wire, length, R_voltage):
     R_cable = 2 * wire * length
     return {"lost": 100 - 100 * R_cable / (R_cable + 1000 * R_voltage)}
+
+
+@dam.mistake("That is the cable compared with the input. What part is it of the two together?")
+def _(wire, length, R_voltage):
+    R_cable, R_input = 2 * wire * length, 1000 * R_voltage
+    return {"lost": 100 * R_cable / R_input} if R_cable > R_input / 50 else {}
 
 
 dam.hints(
@@ -459,6 +526,21 @@ def _first_cycle(full, T, on):
     return Piecewise((full * (1 - exp(-t / T)), t < on), (highest * exp(-(t - on) / T), True))
 
 
+@oven.mistake("The relay is off, and the oven is still hot. How does a lag lose its heat?")
+def _(full, T, D, P):
+    return {"y": Piecewise((full * (1 - exp(-t / T)), t < D * P), (0, True))}
+
+
+@oven.mistake("While the relay is on, all of the power is there. Towards which temperature does the oven go, then?")
+def _(full, T, D, P):
+    return {"y": D * _first_cycle(full, T, D * P)}
+
+
+@oven.mistake("That is the share of the time in which the relay is off.")
+def _(full, D):
+    return {"mean": full * (1 - D)} if abs(2 * D - 1) > 0.05 else {}
+
+
 @oven.mistake("This is right as long as the relay is on. And when it is off?")
 def _(full, T):
     return {"y": full * (1 - exp(-t / T))}
@@ -490,6 +572,21 @@ def _(full):
 @oven.mistake("That formula holds for cycles that are short compared with the time constant. This one is not.")
 def _(full, T, D, P):
     return {"ripple": full * D * (1 - D) * P / T}
+
+
+@oven.mistake("That is the highest value in the end. How low does the oven become in between?")
+def _(full, T, D, P):
+    a, b, short = exp(-D * P / T), exp(-(1 - D) * P / T), D * (1 - D) * P / T
+    highest = (1 - a) / (1 - a * b)
+    return {"ripple": full * highest} if b > 0.05 and abs(highest - short) > 0.03 * short else {}
+
+
+@oven.mistake("By that much the oven cools in the first cycle. Does it begin to cool as hot in the end?")
+def _(full, T, D, P):
+    a, b = (float(exp(-share * P / T)) for share in (D, 1 - D))
+    short, ripple = float(D * (1 - D) * P / T), (1 - a) * (1 - b) / (1 - a * b)
+    fall = (1 - a) * (1 - b)
+    return {"ripple": full * fall} if all(abs(fall / other - 1) > 0.03 for other in (short, ripple)) else {}
 
 
 @oven.mistake("This is the ripple of the first cycle, which begins at room temperature. In the end no cycle does.")
@@ -584,6 +681,15 @@ def _margin(K, T, tau, K_p):
     return math.pi / 2 * float(T / (K * K_p)) - float(tau)
 
 
+@program.picture
+def _(K, T, tau, K_p):
+    """The loop: a PI controller with the gain {K_p} and the integral time {T}, and a process with the gain {K}, the
+    time constant {T} and the dead time {tau}."""
+    controller = draw.block(rf"{written(K_p)}\left(1+\frac{{1}}{{{written(T)}\,s}}\right)")
+    process = draw.block(rf"\frac{{{written(K)}\,e^{{-{written(tau)}s}}}}{{{written(T)}\,s+1}}")
+    return draw.block_diagram("y_SP", draw.feedback_loop(["e", controller, "u", process]), "y")
+
+
 @program.mistake("Here the margin is the whole dead time at the limit. But some of it is there already.")
 def _(K, T, tau, K_p, h):
     whole = pi * T / (2 * K * K_p)
@@ -593,6 +699,16 @@ def _(K, T, tau, K_p, h):
 @program.mistake("This is the time in which the phase turns by one radian. The integrator leaves a quarter of a turn.")
 def _(K, T, tau, K_p):
     return {"margin": T / (K * K_p) - tau}
+
+
+@program.mistake(
+    "The gain of the loop is that of the controller times that of the process. Are both in your crossover?"
+)
+def _(K, T, tau, K_p):
+    alone, right = pi * T / (2 * K_p) - tau, _margin(K, T, tau, K_p)
+    others = [right, float(pi * T / (K * K_p) - tau), float(T / (K * K_p) - tau)]
+    apart = all(abs(float(alone) - other) > 0.03 * abs(other) for other in others)
+    return {"margin": alone} if alone > 0 and apart else {}
 
 
 @program.mistake("Here the phase is turned by half a turn. The integrator accounts for a part of that.")
@@ -678,6 +794,7 @@ def relay(
     return answers(
         P=design(
             number(round(math.sqrt(longest * shortest), 2), "s", "the period"),
+            criterion("the period is positive", lambda P: P > 0),
             criterion("the ripple", lambda P: _ripple(T, P), below=float(ripple), unit="%"),
             criterion("the step of the pulse width", lambda P: _fine(cycle, P), below=float(fineness), unit="%"),
             criterion("the life of the relay", lambda P: _life(life, P), above=float(years), unit="years"),
@@ -722,6 +839,16 @@ def _at_half_power(T, ripple, P):
     curve = {"temperature [% of its range]": (y, "measurement")}
     plot = time_plot(curve, times, ylim=(50 - 3 * edge, 50 + 3 * edge))
     return plot.level(50 + edge, "highest allowed").level(50 - edge, "lowest allowed")
+
+
+@relay.picture
+def _(T, cycle, life):
+    """From the duty cycle to the temperature: a PLC with a cycle of {cycle}, a relay for {life} million switching
+    cycles, and a greenhouse with the time constant {T}."""
+    plc = draw.block(f"PLC, a cycle\nof ${written(cycle)}$ ms")
+    contacts = draw.block(f"Relay, ${written(life)}$\nmillion cycles")
+    greenhouse = draw.block(f"Greenhouse\n$T = {written(T)}$ min")
+    return draw.block_diagram("D", plc, "pulses", contacts, "heat", greenhouse, r"$\vartheta$")
 
 
 @relay.mistake(
@@ -843,6 +970,24 @@ def _gains(kind, authority, low, high):
     return {"gain_A": installed(kind, authority, low)[1], "gain_B": installed(kind, authority, high)[1]}
 
 
+@stroked_valve.mistake("Percent of flow for one percent of opening: which of the two is divided by the other?")
+def _(kind, authority, low, high):
+    right = _gains(kind, authority, low, high)
+    return _apart(right, {name: 1 / gain for name, gain in right.items()})
+
+
+@stroked_valve.mistake("At which of the two points is the curve that steep?")
+def _(kind, authority, low, high):
+    right = _gains(kind, authority, low, high)
+    return _apart(right, {"gain_A": right["gain_B"], "gain_B": right["gain_A"]})
+
+
+@stroked_valve.mistake("That is the flow at this point. By how much does it change with the opening?")
+def _(kind, authority, low, high):
+    (q_A, _), (q_B, _) = (installed(kind, authority, x) for x in (low, high))
+    return {"gain_A": q_A, "gain_B": q_B}
+
+
 @stroked_valve.mistake(
     "That is flow over opening, a line from the origin. The gain is how steep the curve is at the point."
 )
@@ -961,6 +1106,11 @@ def _turndown(inaccuracy, allowed):
     return math.sqrt(float(inaccuracy / allowed) / 2)
 
 
+@orifice.mistake("That is where the axis ends. Where does the curve reach 20 mA?")
+def _(q_max):
+    return {"q_max": q_max * 6 / 5}
+
+
 @orifice.mistake(
     "That takes the current for proportional to the flow. How does the pressure difference depend on the flow?"
 )
@@ -975,7 +1125,8 @@ def _(q_max, I):
 
 @orifice.mistake("The current does not begin at zero. Which share of its range is it?")
 def _(q_max, I):
-    return {"q": q_max * math.sqrt(I / 20), "shown": q_max * I / 20}
+    found = {"q": q_max * math.sqrt(I / 20), "shown": q_max * I / 20}
+    return found if I > 5 else {"q": found["q"]}
 
 
 @orifice.mistake("A factor 2 is missing: by how much does $x^2$ change when $x$ changes a little? Take the derivative.")
