@@ -209,7 +209,7 @@ JUDGED = [
     ),
     *(
         (number(4, "", "the number of whole batches"), text, RIGHT, "read as")
-        for text in ("4 batches", "batch 4", "four batches")
+        for text in ("4 batches", "batch 4", "four batches", "4 full batches", "4 (whole batches)", "No. 4")
     ),
     (number(4, "", "the number of whole batches"), "4 dozen", UNJUDGED, "is not a number"),
     # a single comma is a decimal one, and where zeros are at its end it is asked
@@ -251,6 +251,12 @@ JUDGED = [
         (number(1.25), text, RIGHT, "right")
         for text in ("factor 1,25", "a factor of 1.25", "1.25 times", "1,25 times larger", "by a factor of 5/4")
     ),
+    *(
+        (number(41, "", "the number of the loop"), text, RIGHT, "read as 41")
+        for text in ("TC41", "loop 41", "no. 41", "41 (pressure)", "#41", "TC-41")
+    ),
+    (number(41), "TC41", UNJUDGED, "not a number"),
+    (number(8, "s"), "at 8 s", RIGHT, "right"),
     (number(1.25), "1.25 times smaller", UNJUDGED, "not a number"),
     (number(0), "none", RIGHT, "right"),
     (numbers([14, 10], "s"), {"A": "14 s", "B": "10 s"}, RIGHT, "right"),

@@ -97,6 +97,8 @@ JUDGED = [
         (PARALLEL, text, RIGHT, "right")
         for text in (
             "2.5, 10, 1.6 (parallel)",
+            "parallel: 2.5, 10, 1.6",
+            "parallel form, Kp = 2.5, Ti = 10, Td = 1.6",
             "Kp = 2.5, Ti = 10, Td = 1.6, in parallel form",
             "PID(2.5, 10, 1.6), ideal",
         )

@@ -55,6 +55,13 @@ JUDGED = [
     (STEPS, "S2 und S4", RIGHT, "right"),
     (STEPS, "only S2 and S4", RIGHT, "right"),
     (STEPS, "none", WRONG, "empty"),
+    *(
+        (ACTION, one, RIGHT, 'read as "reverse"')
+        for one in ("r", "R", "rev", "increase-decrease", "reverse-acting controller")
+    ),
+    (ACTION, "x", UNJUDGED, "none of the words"),
+    (word("V2", ["V1", "V2", "V3"]), 2, RIGHT, 'read as "V2"'),
+    (word("V2", ["V1", "V2", "V3"]), 4, UNJUDGED, "not text"),
     (LETTERS, "only B", WRONG, "missing"),
     (LETTERS, "B und C", RIGHT, "right"),
     (LETTERS, "B or C", UNJUDGED, "'B or C' is none of the words"),
@@ -101,7 +108,7 @@ SAID = {
     ("up", "down"): {
         "up": ["upwards", "it goes up", "increases", "rises", "Up!", "higher"],
         "down": ["downwards", "goes down", "it decreases", "falls", "lower"],
-        None: ["not up", "up or down", "up and down", "u", "sideways", "it does not go up"],
+        None: ["not up", "up or down", "up and down", "sideways", "it does not go up"],
     },
     ("rises", "falls"): {
         "rises": ["it rises", "rising", "goes up", "increases", "risess", "rise"],
@@ -188,7 +195,7 @@ SAID = {
         "in the field": ["field", "the field", "locally"],
         "in the control room": ["control room", "the control room", "it is in the control room"],
         "behind the panel": ["behind panel", "behind the pannel"],
-        None: ["in the", "not in the field", "in front of the door"],
+        None: ["panel", "the panel", "in the", "not in the field", "in front of the door"],
     },
     ("A", "B"): {
         "A": ["loop A", "A.", "a", "A wins"],

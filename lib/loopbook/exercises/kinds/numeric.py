@@ -28,7 +28,8 @@ from loopbook.exercises.reading import (
 _WITH_UNIT = re.compile(r"([+-]? ?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?) ?(.*)")
 #: What may stand before a number and after it, and says nothing of its size.
 _BEFORE_IT = re.compile(
-    r"^(?:(?:at least|at most|after|only|exactly|(?:by )?(?:a )?factor(?: of)?|by|is|it is) |[<>]=? ?)", re.IGNORECASE
+    r"^(?:(?:at least|at most|at|after|only|exactly|(?:by )?(?:a )?factor(?: of)?|by|is|it is) |[<>]=? ?)",
+    re.IGNORECASE,
 )
 _BEHIND_IT = re.compile(
     r" times(?: (?:larger|bigger|greater|higher|longer|faster|more|as (?:large|much|big|high|long|fast)))?$"
@@ -277,11 +278,13 @@ class Poles(Kind):
 def _without_noun(text, what):
     """A number without the noun of what is asked, as "4 batches" or "loop 31"; empty where there is none."""
     nouns = "|".join(re.sub("(?:(?<=[cs]h)e)?s$", "", word) for word in re.findall(r"[a-z]{4,}", what))
-    found = (
-        re.fullmatch(rf"(?:(?:the )?(?:{nouns}) ([\w.,]+)|([\w.,]+) (?:{nouns})(?:e?s)?)\.?", text.strip())
-        if nouns
-        else None
-    )
+    text = re.sub(r" \([A-Za-z ]+\)$|\.$", "", text.strip())
+    if re.fullmatch(r"(?:(?:no|nr|number)\b\.? ?|# ?)?\d+", text, re.IGNORECASE):
+        return re.sub(r"\D", "", text)
+    if "loop" in what and (tag := re.fullmatch(r"[A-Z]{1,5}[- ]?(\d+)", text)):  # TC41
+        return tag[1]
+    some = r"([\w.,]+)(?: (?:full|whole|complete))?"
+    found = re.fullmatch(rf"(?:(?:the )?(?:{nouns}) ([\w.,]+)|{some} (?:{nouns})(?:e?s)?)", text) if nouns else None
     return (found[1] or found[2]) if found else ""
 
 

@@ -271,6 +271,7 @@ def _of_text(text):
         text = " ".join(notation.from_latex(text).split()).rstrip(".")
     except notation.Ambiguous:
         return None
+    text = re.sub(r"^(?:in )?(?:the )?(serial|series|cascade|parallel|ideal)(?: form)? ?[:,] ?(.*)$", r"\2 (\1)", text)
     form = _FORM.search(text)
     text = _FORM.sub("", text)
     call = _CALL.fullmatch(text)

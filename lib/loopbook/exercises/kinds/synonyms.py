@@ -23,6 +23,10 @@ down, downward, downwards, decrease, decreases, decreasing, falls, fall, falling
 raise, increase, increasing, higher, up, upwards, turn up, larger, bigger
 lower, decrease, decreasing, reduce, down, downwards, turn down, smaller
 up, raise, turn up
+reverse, increase decrease, reverse acting controller
+direct, increase increase, direct acting controller
+shell and tube exchanger, tube bundle exchanger, tube bundle heat exchanger, tubular heat exchanger
+in the control room, operator panel, on the panel, front of the panel, panel front, in front of the panel
 down, reduce, turn down
 dead end, step without exit
 IAE, integral of the absolute error, absolute error
@@ -156,7 +160,7 @@ _ALIKE = """
 much, high, large, big, great, strong, long, excessive, excessively
 little, low, small, weak, short, insufficient
 late, slow, slowly, delayed
-early, fast, quick, soon, quickly
+early, fast, quick, soon, quickly, premature
 interchanged, swapped, exchanged, switched, confused
 growing, grows, growth, diverging, diverges
 decaying, decays, decay, damped, shrinking
@@ -176,7 +180,7 @@ _FILLERS = {
 }  # fmt: skip
 #: What compares with nothing but the state before.
 _BEFORE = re.compile(r" (?:than|compared (?:with|to)) (?:before|it was|without|previously|earlier)\b")
-SHORTEST_TYPO, MOST_WORDS, LONGEST = 5, 12, 200
+SHORTEST_TYPO, MOST_WORDS, LONGEST, MOST_INITIALS = 5, 12, 200, 4
 
 
 @functools.cache
@@ -227,6 +231,9 @@ def found(given: str, among: Sequence[str]) -> str | None:
         letters = [word for word in said if word in options]
         words = {word.casefold() for word in said}
         return letters[0] if len(letters) == 1 and len(words) <= 4 and not words & _DENIES else None
+    if len(text) == 1 and len(options) <= MOST_INITIALS and all(re.fullmatch("[A-Za-z]{2,}", one) for one in options):
+        begun = {option[0].casefold(): option for option in options}
+        return begun.get(text) if len(begun) == len(options) else None  # d for direct, beside r for reverse
     forms = _forms(options)
     words = re.findall(r"[\w'+]+", text)
     if not words or len(words) > MOST_WORDS:
@@ -282,7 +289,7 @@ def _part(words, forms, options):
         return None
     meant = [option for option in options if set(said) < set(bare(option).split())]
     missing = set(bare(meant[0]).split()) - set(said) if len(meant) == 1 else _TELLS
-    return None if missing & (_TELLS - {"in", "the", "behind"}) else meant[0]
+    return None if missing & (_TELLS - {"in", "the"}) else meant[0]
 
 
 def _numbered(text, options):

@@ -131,8 +131,10 @@ def _word(given, among, expected):
         if not {*_TRUTH.values()} <= {*among}:
             raise Unreadable(f"{given} is a truth value: expected {expected}")
         given = _TRUTH[bool(given)]
-    elif isinstance(given, int | float | sympy.Number) and f"{float(given):g}" in among:
-        given = f"{float(given):g}"
+    elif isinstance(given, int | float | sympy.Number) and (
+        (number := f"{float(given):g}") in among or synonyms.found(number, among)
+    ):
+        given = number
     if not isinstance(given, str):
         raise Unreadable(f"this is not text: expected {expected}")
     wanted = _bare(given)
