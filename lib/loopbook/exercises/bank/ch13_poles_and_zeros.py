@@ -6,6 +6,7 @@ from math import sin as sine
 
 import numpy as np
 import sympy
+from scipy.special import lambertw
 from sympy import Rational, exp, log, symbols
 
 from loopbook import diagrams
@@ -32,6 +33,16 @@ from loopbook.figures import plane_plot, time_plot
 from loopbook.pid import PID
 
 _SHAPES = ["inverse response", "overshoot", "neither"]
+
+
+def _factor(value):
+    """A factor in a formula; a factor of one is not written."""
+    return "" if value == 1 else rf"{float(value):g}\,"
+
+
+def _apart(value, *others, by=0.04):
+    """Whether a wrong value can be told from the right one and from those of other mistakes."""
+    return all(abs(value - other) > by * abs(other) for other in others)
 
 
 @exercise(
@@ -87,6 +98,30 @@ def _(k, tau_1, tau_2, T, M):
 @before_it_is_drawn.mistake("For large $s$ it is $s^2$ that remains in the denominator, not $s$.")
 def _(k, tau_1, tau_2, T, M):
     return {"slope": k * T * M / (tau_1 + tau_2)} if tau_1 * tau_2 != tau_1 + tau_2 else {}
+
+
+@before_it_is_drawn.mistake("That is the numerator alone. By what is its $s$ divided where $s$ is large?")
+def _(k, T, M):
+    return {"slope": k * T * M}
+
+
+@before_it_is_drawn.mistake(
+    "Two lags alone would begin with the slope zero. What does the $s$ in the numerator do to that?"
+)
+def _():
+    return {"slope": 0}
+
+
+@before_it_is_drawn.mistake("Where does the response end if the input is one? The gain $g(0)$ says it.")
+def _(k, M):
+    return {"end": M} if k not in (1, M) else {}
+
+
+@before_it_is_drawn.mistake(
+    "The powers of $s$ and their factors decide nothing at rest. Which terms are left at $s = 0$?"
+)
+def _(k, tau_1, tau_2, M):
+    return {"end": k * M / (tau_1 * tau_2)}
 
 
 @before_it_is_drawn.mistake(
@@ -218,16 +253,56 @@ def _(percent):
 
 
 @swinging_loop.mistake(
+    "That takes {percent} for the decay ratio, from one peak to the next. Here it is the first peak alone, counted "
+    "from the setpoint."
+)
+def _(percent):
+    return {"zeta": _damping(sympy.sqrt(percent / 100))}
+
+
+@swinging_loop.mistake("That is with the decimal logarithm. Which one undoes the exponential function?")
+def _(percent):
+    size = -log(percent / 100, 10)
+    return {"zeta": size / sympy.sqrt(sympy.pi**2 + size**2)}
+
+
+@swinging_loop.mistake(
     "That is $P/2\\pi$, which is right for small damping only. Your loop oscillates a little slower than $1/\\tau$."
 )
 def _(P):
     return {"tau": P / (2 * sympy.pi)}
 
 
+@swinging_loop.mistake("From one peak to the next is a whole period, not half of one.")
+def _(percent, P):
+    real, tau = _real_part(percent, 2 * P)
+    w = float(sympy.pi / P)
+    return {"tau": tau, "poles": [complex(real, w), complex(real, -w)]}
+
+
+@swinging_loop.mistake("A period holds one turn, which is $2\\pi$ in radians. Where is it?")
+def _(percent, P):
+    real, tau = _real_part(percent, P)
+    return {"tau": 2 * float(sympy.pi) * tau, "poles": [complex(real, 1 / P), complex(real, -1 / P)]}
+
+
+@swinging_loop.mistake("Poles to the right of the imaginary axis: that oscillation would grow.")
+def _(percent, P):
+    real, _ = _real_part(percent, P)
+    w = 2 * float(sympy.pi / P)
+    return {"poles": [complex(-real, w), complex(-real, -w)]}
+
+
 @swinging_loop.mistake("The imaginary part is the frequency of the oscillation in rad/s. You know its period.")
 def _(percent, P):
     real, tau = _real_part(percent, P)
     return {"poles": [complex(real, 1 / tau), complex(real, -1 / tau)]}
+
+
+@swinging_loop.mistake("Those would be the poles with the time constant one. What does $\\tau$ do to them?")
+def _(percent):
+    zeta = float(_damping(percent / 100))
+    return {"poles": [complex(-zeta, sqrt(1 - zeta**2)), complex(-zeta, -sqrt(1 - zeta**2))]}
 
 
 @swinging_loop.mistake("That is one of them. A complex pole of a real process never comes alone.")
@@ -247,6 +322,22 @@ def _(before, after, percent):
 def _(before, after, percent):
     is_another = after - before != 1 and abs(percent * (after - before) - 100) > 5
     return {"second_peak": (percent / 100) ** 2} if is_another else {}
+
+
+@swinging_loop.mistake("That is a share of the step. How high is the step?")
+def _(before, after, percent):
+    return {"second_peak": (percent / 100) ** 3} if after - before != 1 else {}
+
+
+@swinging_loop.mistake("That is the first peak. By which ratio do the peaks become smaller?")
+def _(before, after, percent):
+    return {"second_peak": (after - before) * percent / 100}
+
+
+@swinging_loop.mistake("That is a share of the new setpoint. The overshoot is counted as a share of the step.")
+def _(before, after, percent):
+    wrong, decay = after * (percent / 100) ** 3, (percent / 100) ** 2
+    return {"second_peak": wrong} if _apart(wrong, (after - before) * decay, decay) else {}
 
 
 @swinging_loop.mistake("That is the pressure itself at the second peak. How far is it above the setpoint?")
@@ -286,7 +377,7 @@ def _(before, after, percent, P):
     real, _ = _real_part(percent, P)
     return {
         "real": real,
-        "imaginary": 2 * sympy.pi / P,
+        "imaginary": float(2 * sympy.pi / P),
         "first_peak": ((after - before) * percent / 100, "bar"),
         "decay": (percent / 100) ** 2,
     }
@@ -352,6 +443,33 @@ def _(k, K, tau_1, tau_2):
     return {"zero": [wrong]} if abs(wrong / right - 1) > 0.05 else {}
 
 
+@cold_feed.mistake("Those are the poles, the roots of the denominator. A zero is a root of the numerator.")
+def _(tau_1, tau_2):
+    return {"zero": [-1 / tau_1, -1 / tau_2]}
+
+
+@cold_feed.mistake("Bring the fractions to a common denominator: each gain is multiplied by the lag of the other one.")
+def _(k, K, tau_1, tau_2):
+    return {"zero": [(k - K) / (k * tau_1 - K * tau_2)]}
+
+
+@cold_feed.mistake("That is a slope. Which gain gives the fast effect this slope?")
+def _(k, tau_1, tau_2):
+    return {"K_limit": k / tau_1} if tau_2 != 1 else {}
+
+
+@cold_feed.mistake("The fast effect need not be gone. How strong may it be before it wins in the beginning?")
+def _():
+    return {"K_limit": 0}
+
+
+@cold_feed.mistake(
+    "That makes the present gain of the fast effect smaller by the ratio of the lags. Whose slope counts?"
+)
+def _(k, K, tau_1, tau_2):
+    return {"K_limit": K * tau_2 / tau_1}
+
+
 @cold_feed.mistake("With this gain the temperature comes back to where it was: that is about the end of the response.")
 def _(k):
     return {"K_limit": k}
@@ -366,15 +484,15 @@ cold_feed.hints(
     "Two paths lead from the feed to the temperature, and the temperature is their sum. Which sign has each of them?",
     "Each path is a gain over a lag. Bring the two fractions to a common denominator; the zero is the root of the "
     "numerator. For the last question compare the slopes with which the two paths begin: a gain over its lag.",
-    "$G(s) = \\frac{ {k} }{ {tau_1}\\,s + 1} - \\frac{ {K} }{ {tau_2}\\,s + 1}$. "
-    "The numerator is $k\\,(\\tau_2s + 1) - K\\,(\\tau_1s + 1)$.",
+    "With $k$ = {k} and $\\tau_1$ = {tau_1} for the slow effect, $K$ = {K} and $\\tau_2$ = {tau_2} for the fast one, "
+    "the numerator is $k\\,(\\tau_2s + 1) - K\\,(\\tau_1s + 1)$. Collect its terms with $s$.",
 )
 
 
 @cold_feed.solution
 def _(k, K, tau_1, tau_2):
     r"""The slow path warms, the fast one cools, and both start from the feed:
-    $G(s) = \frac{ {k} }{ {tau_1}\,s + 1} - \frac{ {K} }{ {tau_2}\,s + 1}$.
+    $G(s) = \frac{ {k} }{ {tau_1}\,s + 1} - \frac{ {K} }{ {fast}s + 1}$.
 
     On a common denominator the numerator is $k(\tau_2s + 1) - K(\tau_1s + 1) = (k - K) - (K\tau_1 - k\tau_2)\,s$. Its
     root is $z = \frac{k - K}{K\tau_1 - k\tau_2} = \frac{ {difference} }{ {below} } = {z}$ per minute. It is positive,
@@ -385,6 +503,7 @@ def _(k, K, tau_1, tau_2):
     $K \le k\,\tau_2/\tau_1 =$ {K_limit}.
     """
     return {
+        "fast": _factor(tau_2),
         "difference": k - K,
         "below": K * tau_1 - k * tau_2,
         "z": (k - K) / (K * tau_1 - k * tau_2),
@@ -433,14 +552,18 @@ def gain_and_damping(
     `tau_1`, `tau_2`). For which gain is it {zeta}? With this gain, how much of a setpoint step is left as an offset,
     and which time constant $\tau$ does the closed loop have?
     """
-    product = tau_1 * tau_2
-    square = (tau_1 + tau_2) ** 2 / (4 * Rational(zeta) ** 2 * product)  # 1 + K_c*k
+    square = _one_and_loop_gain(tau_1, tau_2, zeta)
     return answers(
         damping=expression(_damping_in_symbols(1), "the damping in symbols"),
         K_c=number((square - 1) / k, "%/K", "the gain of the controller"),
         offset=number(100 / square, "%", "the offset"),
-        tau=number(sympy.sqrt(product / square), "s", "the time constant of the closed loop"),
+        tau=number(sympy.sqrt(tau_1 * tau_2 / square), "s", "the time constant of the closed loop"),
     )
+
+
+def _one_and_loop_gain(tau_1, tau_2, zeta):
+    """What 1 + K_c k must be for a damping."""
+    return (tau_1 + tau_2) ** 2 / (4 * Rational(zeta) ** 2 * tau_1 * tau_2)
 
 
 def _damping_in_symbols(one):
@@ -473,24 +596,44 @@ def _(k, tau_1, tau_2):
 
 @gain_and_damping.mistake("That is the loop gain $K_ck$. Which part of it belongs to the controller?")
 def _(k, tau_1, tau_2, zeta):
-    return {"K_c": (tau_1 + tau_2) ** 2 / (4 * Rational(zeta) ** 2 * tau_1 * tau_2) - 1}
+    return {"K_c": _one_and_loop_gain(tau_1, tau_2, zeta) - 1}
+
+
+@gain_and_damping.mistake("Is that $K_c$ times $k$ alone? In the constant term of the denominator there is one more.")
+def _(k, tau_1, tau_2, zeta):
+    square = _one_and_loop_gain(tau_1, tau_2, zeta)
+    return {"K_c": square / k, "offset": 100 / (square + 1)}
+
+
+@gain_and_damping.mistake("In the damping $1 + K_ck$ is below a root. What undoes the root?")
+def _(k, tau_1, tau_2, zeta):
+    return {"K_c": (sympy.sqrt(_one_and_loop_gain(tau_1, tau_2, zeta)) - 1) / k}
+
+
+@gain_and_damping.mistake("There the middle coefficient is $\\zeta\\tau$. A factor is missing in it.")
+def _(k, tau_1, tau_2, zeta):
+    return {"K_c": (4 * _one_and_loop_gain(tau_1, tau_2, zeta) - 1) / k}
+
+
+@gain_and_damping.mistake("That is the middle coefficient, $2\\zeta\\tau$. What does it leave for $\\tau$?")
+def _(tau_1, tau_2, zeta):
+    return {"tau": (tau_1 + tau_2) / _one_and_loop_gain(tau_1, tau_2, zeta)} if 2 * zeta != 1 else {}
 
 
 @gain_and_damping.mistake("That is the share that is reached. The offset is what is missing.")
 def _(tau_1, tau_2, zeta):
-    left = 4 * Rational(zeta) ** 2 * tau_1 * tau_2 / (tau_1 + tau_2) ** 2
+    left = 1 / _one_and_loop_gain(tau_1, tau_2, zeta)
     return {"offset": 100 * (1 - left)} if abs(1 / left - 2) > 0.05 else {}
 
 
 @gain_and_damping.mistake("That is one over the loop gain. At rest the error is one over something else.")
 def _(tau_1, tau_2, zeta):
-    square = (tau_1 + tau_2) ** 2 / (4 * Rational(zeta) ** 2 * tau_1 * tau_2)
-    return {"offset": 100 / (square - 1)}
+    return {"offset": 100 / (_one_and_loop_gain(tau_1, tau_2, zeta) - 1)}
 
 
 @gain_and_damping.mistake("That is the coefficient of $s^2$. Which power of the time constant is it?")
 def _(tau_1, tau_2, zeta):
-    wrong = 4 * Rational(zeta) ** 2 * (tau_1 * tau_2) ** 2 / (tau_1 + tau_2) ** 2
+    wrong = tau_1 * tau_2 / _one_and_loop_gain(tau_1, tau_2, zeta)
     return {"tau": wrong} if abs(wrong - 1) > Rational(1, 10) else {}
 
 
@@ -529,21 +672,21 @@ def _(k, tau_1, tau_2, zeta):
     At rest the lags are one, and the share $\frac{1}{1 + K_ck} = \frac{1}{ {square} }$ of the step is left: {offset}.
     The time constant is $\tau = \sqrt{ {product}/{square} } =$ {tau}.
     """
-    return {"square": (tau_1 + tau_2) ** 2 / (4 * Rational(zeta) ** 2 * tau_1 * tau_2)}
+    return {"square": _one_and_loop_gain(tau_1, tau_2, zeta)}
 
 
 @gain_and_damping.picture
 def _(k, tau_1, tau_2):
     """A loop of the controller with the gain K_c and a process of two lags."""
-    k, tau_1, tau_2 = (f"{float(x):g}" for x in (k, tau_1, tau_2))
-    process = diagrams.block(rf"\frac{{{k}}}{{({tau_1}s + 1)({tau_2}s + 1)}}")
+    lags = "".join(f"({_factor(x)}s + 1)" for x in (tau_1, tau_2))
+    process = diagrams.block(rf"\frac{{{float(k):g}}}{{{lags}}}")
     return diagrams.block_diagram("y_s", diagrams.feedback_loop([diagrams.block("K_c"), "u", process]), "y")
 
 
 @gain_and_damping.solution_picture
 def _(k, tau_1, tau_2, zeta):
     """A setpoint step of the loop with this gain: it oscillates, and an offset is left."""
-    square = float((tau_1 + tau_2) ** 2 / (4 * Rational(zeta) ** 2 * tau_1 * tau_2))
+    square = float(_one_and_loop_gain(tau_1, tau_2, zeta))
     tau = sqrt(tau_1 * tau_2 / square)
     times = np.linspace(0, 12 * tau, 301)
     y = (1 - 1 / square) * System(1 / (tau**2 * s**2 + 2 * zeta * tau * s + 1)).step(times)
@@ -617,14 +760,53 @@ def _(rate, K, tau):
     return {"t_low": (K - rate * tau) / rate}
 
 
+def _back(rate, K, tau):
+    """When the level is back where it began."""
+    x = float(K / (rate * tau))
+    return float(tau) * (x + float(lambertw(-x * exponential(-x)).real))
+
+
+@shrinking_drum.mistake("The slope of $e^{-t/\\tau}$ has one over the time constant in it. Differentiate once more.")
+def _(rate, K, tau):
+    wrong = tau * log(K / rate)
+    return {"t_low": wrong} if _apart(wrong, _back(rate, K, tau), (K - rate * tau) / rate) else {}
+
+
+@shrinking_drum.mistake("There the level is back at its beginning. It has been lowest before, where its slope is zero.")
+def _(rate, K, tau):
+    return {"t_low": _back(rate, K, tau)}
+
+
+@shrinking_drum.mistake("The height of the step multiplies both effects. What does it do where their slopes cancel?")
+def _(rate, K, tau, M):
+    wrong = tau * log(M * K / (rate * tau))
+    others = tau * log(K / (rate * tau)), tau * log(K / rate), _back(rate, K, tau), (K - rate * tau) / rate
+    return {"t_low": wrong} if wrong > 0 and _apart(wrong, *others) else {}
+
+
+@shrinking_drum.mistake("At $t = 0$ this level has jumped already. How does the step response of a lag begin?")
+def _(rate, K, tau, M):
+    return {"h": M * (rate * t - K * exp(-t / tau))}
+
+
+@shrinking_drum.mistake("The step of the feedwater makes both effects larger, not one of them.")
+def _(rate, K, tau, M):
+    return {"h": M * rate * t - K * (1 - exp(-t / tau))}
+
+
+@shrinking_drum.mistake("The bubbles do not collapse at once: their effect comes with a lag.")
+def _(rate, K, M):
+    return {"h": M * (rate * t - K)}
+
+
 shrinking_drum.hints(
     "Two paths again: one effect goes on rising as long as there is more water, the other one ends. Which kind of "
     "process is each of them?",
     "The steady rise is an integrator, the collapse of the bubbles a lag with a negative gain; the level is their sum. "
     "The response to a step of height $M$ is $M$ times the sum of a ramp and a lag's step response. The level is "
     "lowest where its slope is zero.",
-    "$G(s) = \\frac{ {rate_n} }{s} - \\frac{ {K_n} }{ {tau_n}\\,s + 1}$, and the slope of the level after the step is "
-    "$M\\left({rate_n} - \\frac{ {K_n} }{ {tau_n} }e^{-t/{tau_n} }\\right)$.",
+    "The ramp of 1 kg/s rises by {rate_n} cm in each second. The lag's step response $1 - e^{-t/\\tau}$ with $\\tau$ = "
+    "{tau} has the slope $\\frac{1}{\\tau}e^{-t/\\tau}$: times its gain it must be as steep as the ramp.",
 )
 
 
@@ -638,22 +820,24 @@ def _(rate, K, tau, M):
     r"""More water lets the level rise steadily, an integrator; the collapsing bubbles lower it by a certain amount, a
     lag: $G(s) = \frac{ {rate_n} }{s} - \frac{ {K_n} }{ {tau_n}\,s + 1}$.
 
-    On a common denominator the numerator is ${rate_n}\,({tau_n}\,s + 1) - {K_n}\,s$. Its root is
-    $\frac{ {rate_n} }{ {K_n} - {rate_n} \cdot {tau_n} } = {z}$ per second. It is positive because the bubbles win in
+    On a common denominator the numerator is ${times}({tau_n}\,s + 1) - {K_n}\,s$. Its root is
+    $\frac{ {rate_n} }{ {K_n} - {ramp} } = {z}$ per second. It is positive because the bubbles win in
     the beginning: they lower the level by {steep} in each second, the water raises it by {rate_n} cm only.
 
     The step of {M} makes a ramp of the integrator and a lag's step response of the other one:
-    $h(t) = {M_n}\left({rate_n}\,t - {K_n}\,(1 - e^{-t/{tau_n} })\right)$ cm.
+    $h(t) = {M_n}\left({times}t - {K_n}\,(1 - e^{-t/{tau_n} })\right)$ cm.
 
     Its slope is zero where $\frac{ {K_n} }{ {tau_n} }e^{-t/{tau_n} } = {rate_n}$, that is at
-    $t = {tau_n}\,\ln\frac{ {K_n} }{ {rate_n} \cdot {tau_n} } =$ {t_low}. There the level is {lowest} below its
+    $t = {tau_n}\,\ln\frac{ {K_n} }{ {ramp} } =$ {t_low}. There the level is {lowest} below its
     beginning, and an operator who looks at it would add still more water.
     """
     return {
         "z": rate / (K - rate * tau),
         "steep": (K / tau, "cm"),
+        "times": _factor(rate),
+        "ramp": f"{float(tau):g}" if rate == 1 else rf"{float(rate):g} \cdot {float(tau):g}",
         "M_n": f"{float(M):g}",
-        "lowest": (-M * (rate * tau * log(K / (rate * tau)) - K + rate * tau), "cm"),
+        "lowest": (float(M * (K - rate * tau - rate * tau * log(K / (rate * tau)))), "cm"),
     }
 
 
@@ -761,6 +945,23 @@ def _():
     return {"tau_least": A / K_c}
 
 
+@calm_level.mistake("In the discriminant the product of the outer coefficients counts four times, not twice.")
+def _():
+    A, K_c = symbols("A K_c", positive=True)
+    return {"tau_least": 2 * A / K_c}
+
+
+@calm_level.mistake("That is upside down: does a larger gain allow a shorter integral time or need a longer one?")
+def _():
+    A, K_c = symbols("A K_c", positive=True)
+    return {"tau_least": K_c / (4 * A)}
+
+
+@calm_level.mistake("Here a number has been put in for the area. Give the formula with the symbols.")
+def _(A):
+    return {"tau_least": 4 * A / symbols("K_c", positive=True)}
+
+
 @calm_level.mistake(
     "With this integral time the damping is one half only: in the middle coefficient $2\\zeta\\tau$ there is a two."
 )
@@ -781,8 +982,8 @@ calm_level.hints(
     "The denominator is $A\\tau_Is^2 + K_c\\tau_Is + K_c$; it does not oscillate if its discriminant is not negative. "
     "The first change of the outflow does not depend on the integral time, and so it limits the gain from above. The "
     "rise of the level limits it from below.",
-    "At first the level rises by $d/A$ in a minute, and the controller answers by $K_c$ times as much: "
-    "$K_c \\le r_{max}A/d = \\frac{ {r_max_n} \\cdot {A_n} }{ {d_n} }$. Take a gain a little below.",
+    "At first the level rises by $\\frac{ {d_n} }{ {A_n} }$ in m/min, inflow over area. The controller lets the "
+    "outflow grow $K_c$ times as fast, and that may be {r_max}. Take a gain a little below, then the integral time.",
 )
 
 
@@ -811,7 +1012,7 @@ def _(A, d, h_max, r_max):
     chosen = Rational(98, 100) * r_max * A / d
     return {
         "most": (r_max * A / d, "m²/min"),
-        "least": (2 * d / (sympy.E * h_max / 100), "m²/min"),
+        "least": (float(2 * d / (sympy.E * h_max / 100)), "m²/min"),
         "chosen": (chosen, "m²/min"),
         "Ti": (Rational(41, 10) * A / chosen, "min"),
     }
@@ -930,11 +1131,26 @@ def _(x, delay, period):
     }
 
 
+def _peak_at(x, delay):
+    """The frequency of the peak."""
+    w = np.linspace(0.8, 2.2, 1401)
+    return float(w[_sensitivity(x, w).argmax()]) / float(delay)
+
+
 @sensitivity_peak.mistake("That is the frequency at which the peak is. How high is it?")
 def _(x, delay):
-    w = np.linspace(0.8, 2.2, 1401)
-    at = float(w[_sensitivity(x, w).argmax()]) / float(delay)
-    return {"Ms": at, "helps": at} if abs(at / _largest(x) - 1) > 0.1 else {"helps": at}
+    at = _peak_at(x, delay)
+    return {"Ms": at} if _apart(at, _largest(x), by=0.1) else {}
+
+
+@sensitivity_peak.mistake("There control does most harm. Up to which frequency is $|S|$ below one?")
+def _(x, delay):
+    return {"helps": _peak_at(x, delay)}
+
+
+@sensitivity_peak.mistake("The axis is in rad/min already. Which frequency is written below the crossing of one?")
+def _(x, delay):
+    return {"helps": _helps_until(x) / float(delay) / (2 * np.pi)}
 
 
 @sensitivity_peak.mistake("That is the peak in decibels. The curve has it as a factor.")
@@ -968,7 +1184,47 @@ def _(x, amplitude):
 
 @sensitivity_peak.mistake("You have divided by $|S|$. With $S$ near zero, does control work well or badly?")
 def _(x, delay, period, amplitude):
-    return {"amplitude_left": float(amplitude) / float(_sensitivity(x, np.array([_w_of(period, delay)]))[0])}
+    return {"amplitude_left": float(amplitude) / _left_of_one(x, delay, period)}
+
+
+def _left_of_one(x, delay, period):
+    """The size of the sensitivity at the frequency of the disturbance."""
+    return float(_sensitivity(x, np.array([_w_of(period, delay)]))[0])
+
+
+@sensitivity_peak.mistake("That is $|S|$ at this frequency. What does it leave of {amplitude}?")
+def _(x, delay, period, amplitude):
+    size, slow = _left_of_one(x, delay, period), _sensitivity(x, np.array([float(delay / period)]))[0]
+    return {"amplitude_left": size} if _apart(size, float(amplitude) * slow, float(amplitude) / size, by=0.16) else {}
+
+
+@sensitivity_peak.mistake("That is by how much control reduces the amplitude. How much is left?")
+def _(x, delay, period, amplitude):
+    size = _left_of_one(x, delay, period)
+    wrong = float(amplitude) * (1 - size)
+    return {"amplitude_left": wrong} if size < 1 and _apart(wrong, float(amplitude) * size, size, by=0.16) else {}
+
+
+@sensitivity_peak.mistake(
+    "That is where the curve may cross the real axis, counted from zero. What gain takes it to $-1$?"
+)
+def _(x):
+    Ms = _largest(x)
+    return {"gain_margin": 1 - 1 / Ms} if _apart(1 - 1 / Ms, 1 / Ms, by=0.1) else {}
+
+
+@sensitivity_peak.mistake(
+    "That is the peak itself. If the curve comes as near to $-1$ as $1/M_s$, where does it cross?"
+)
+def _(x):
+    Ms = _largest(x)
+    return {"gain_margin": Ms} if _apart(Ms, Ms / (Ms - 1), by=0.1) else {}
+
+
+@sensitivity_peak.mistake("The chord is $2\\sin(PM/2)$ long: what becomes of its two when it is compared with $1/M_s$?")
+def _(x):
+    Ms = _largest(x)
+    return {"phase_margin": float(np.degrees(2 * np.arcsin(1 / Ms)))}
 
 
 @sensitivity_peak.mistake("That is by how much the gain may fall for certain. By how much may it grow?")
@@ -1018,10 +1274,9 @@ def _(x, delay, period, amplitude):
     On the unit circle, two points with the angle $PM$ between them are $2\sin(PM/2)$ apart. So
     $PM \ge 2\arcsin\frac{1}{2M_s} =$ {phase_margin}. The loop may have more of both, but never less.
     """
-    w = np.linspace(0.8, 2.2, 1401)
     Ms, there = _largest(x), np.array([_w_of(period, delay)])
     return {
-        "at": (float(w[_sensitivity(x, w).argmax()]) / float(delay), "rad/min"),
+        "at": (_peak_at(x, delay), "rad/min"),
         "size": float(_sensitivity(x, there)[0]),
         "distance": 1 / Ms,
     }
@@ -1046,10 +1301,8 @@ def _(x, delay):
 @sensitivity_peak.solution_picture
 def _(x, delay, period):
     """The same curve, with the peak, the end of the range in which control helps, and the disturbance."""
-    w = np.linspace(0.8, 2.2, 1401)
-    at, unit = float(w[_sensitivity(x, w).argmax()]), float(delay)
-    there = _w_of(period, delay)
-    plot = _sensitivity_curve(x, delay).points([at / unit], [_largest(x)], "$M_s$")
+    unit, there = float(delay), _w_of(period, delay)
+    plot = _sensitivity_curve(x, delay).points([_peak_at(x, delay)], [_largest(x)], "$M_s$")
     plot.points([_helps_until(x) / unit], [1], "control helps up to here", "s")
     return plot.points([there / unit], _sensitivity(x, np.array([there])), "the disturbance", "^")
 
@@ -1111,7 +1364,14 @@ def modes(
 @modes.shows
 def _(ends, kind, p, q, skew, b):
     A = _state_matrix(ends, kind, p, q, skew, b)
-    return {"A": A, "trace": f"{float(A.trace()):.4g}", "det": f"{float(A.det()):.4g}"}
+    trace, det = A.trace(), A.det()
+    return {"A": A, "polynomial": rf"\lambda^2 {_term(-trace)}\lambda {_term(det, last=True)}"}
+
+
+def _term(value, last=False):
+    """A term of a sum with its sign; a factor of one before something is not written."""
+    sign = "-" if value < 0 else "+"
+    return f"{sign} {abs(float(value)):.4g}" if last else f"{sign} {_factor(abs(value))}"
 
 
 @modes.mistake("These are the entries on the diagonal. They are the eigenvalues only where one of the others is zero.")
@@ -1136,6 +1396,33 @@ def _(ends, kind, p, q):
 @modes.mistake("The square root is of the whole discriminant, and the formula divides by two. Which half is missing?")
 def _(ends, kind, p, q):
     return {"eigenvalues": [2 * value for value in _complex(_eigenvalues(ends, kind, p, q))]}
+
+
+@modes.mistake("The root of the discriminant is divided by two as well. Look at the imaginary part, or the distance.")
+def _(ends, kind, p, q, skew):
+    one, other = _eigenvalues(ends, kind, p, q)
+    middle, is_diagonal = (one + other) / 2, abs(skew) == abs(one - other)
+    return {} if is_diagonal else {"eigenvalues": _complex([2 * one - middle, 2 * other - middle])}
+
+
+@modes.mistake("The trace is divided by two as well. Look at the real parts: what is half of their sum?")
+def _(ends, kind, p, q):
+    one, other = _eigenvalues(ends, kind, p, q)
+    middle = (one + other) / 2
+    return {"eigenvalues": _complex([one + middle, other + middle])}
+
+
+@modes.mistake("Look at the sign of the discriminant: what is the root of a negative number?")
+def _(ends, kind, p, q):
+    last = p if ends == "grows" else -p
+    return {"eigenvalues": _complex([last + q, last - q])} if kind == "oscillating" else {}
+
+
+@modes.mistake("The determinant has a plus sign in $\\lambda^2 - (a_{11} + a_{22})\\lambda + \\det A$.")
+def _(ends, kind, p, q, skew, b):
+    A = _state_matrix(ends, kind, p, q, skew, b)
+    added = A[0, 0] * A[1, 1] + A[0, 1] * A[1, 0]
+    return {"eigenvalues": _roots(A.trace(), -A.det())} if _apart(-A.det(), added, by=0.1) else {}
 
 
 def _roots(trace, product):
@@ -1177,8 +1464,8 @@ def _(kind, p, q):
 
 
 @modes.mistake("That is the period of the oscillation. In which time does its amplitude change by the factor $e$?")
-def _(kind, q):
-    return {"time_constant": 2 * sympy.pi / q} if kind == "oscillating" else {}
+def _(kind, p, q):
+    return {"time_constant": 2 * sympy.pi / q} if kind == "oscillating" and _apart(2 * sympy.pi / q, 1 / p) else {}
 
 
 @modes.mistake("That is the time in which it changes by the factor two.")
@@ -1186,18 +1473,30 @@ def _(p):
     return {"time_constant": log(2) / p}
 
 
+@modes.mistake("That is one over the trace, the sum of both eigenvalues. Which real part has one of them?")
+def _(ends, kind, p, q):
+    one, other = _eigenvalues(ends, kind, p, q)
+    wrong = 1 / abs(sympy.expand(one + other))
+    return {"time_constant": wrong} if _apart(wrong, 1 / p, 1 / q) else {}
+
+
 modes.hints(
     "A mode is a solution $v\\,e^{\\lambda t}$. Put it into $\\dot x = Ax$: which numbers $\\lambda$ are possible?",
     "They are the roots of $\\det(\\lambda I - A) = \\lambda^2 - (a_{11} + a_{22})\\lambda + a_{11}a_{22} - "
     "a_{12}a_{21}$. $e^{\\lambda t}$ grows or decays with the real part and oscillates with the imaginary part.",
-    "With these numbers it is $\\lambda^2 - ({trace})\\lambda + ({det}) = 0$.",
+    "With these numbers it is ${polynomial} = 0$.",
 )
+
+
+def _enclosed(value):
+    """A number within a product or a power: a negative one in brackets."""
+    return f"({float(value):.4g})" if value < 0 else f"{float(value):.4g}"
 
 
 @modes.solution
 def _(ends, kind, p, q, skew, b):
-    r"""The characteristic polynomial is $\lambda^2 - ({trace})\lambda + ({det})$, with the trace and the determinant of
-    $A$. Its discriminant is $({trace})^2 - 4 \cdot ({det}) = {discriminant}$: {because}
+    r"""The characteristic polynomial is ${polynomial}$, with minus the trace and the determinant of $A$. Its
+    discriminant is ${trace}^2 - 4 \cdot {det} = {discriminant}$: {because}
 
     The eigenvalues are ${first}$ and ${second}$ per minute. So there are the modes $e^{ {first_t} }$ and
     $e^{ {second_t} }$, and every motion of the reactor is a sum of them.
@@ -1217,6 +1516,8 @@ def _(ends, kind, p, q, skew, b):
         "eigenvalues, the trace, is negative: one positive eigenvalue is enough.",
     }[stable, turning]
     return {
+        "trace": _enclosed(A.trace()),
+        "det": _enclosed(A.det()),
         "discriminant": A.trace() ** 2 - 4 * A.det(),
         "because": "negative, a complex pair." if turning else "positive, two real eigenvalues.",
         "first": one,
