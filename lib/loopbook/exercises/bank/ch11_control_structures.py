@@ -30,6 +30,11 @@ from loopbook.pid import PID
 OTHER = {"reverse": "direct", "direct": "reverse"}
 
 
+def _apart(value, *others, by=0.03):
+    """Whether a wrong value can be told from the right one and from those of other mistakes."""
+    return all(abs(value - other) > by * abs(other) for other in others)
+
+
 # --- 11.1 ---------------------------------------------------------------------------------------------------------
 
 
@@ -89,6 +94,24 @@ def _():
 )
 def _(part):
     return {"factor": 1 - part / 100} if part != 50 else {}
+
+
+@lemonade.mistake("That is the ratio of the syrup to the water. Which of the two flows is multiplied by $K$?")
+def _(x_S, x_L, F_S):
+    K = x_S / x_L - 1
+    return {"K": 1 / K, "F_W": F_S / K}
+
+
+@lemonade.mistake("The quotient has the flow of syrup in its denominator. What does a smaller denominator do to it?")
+def _(part):
+    return {"factor": part / 100}
+
+
+@lemonade.mistake(
+    "That is by how much the gain grows, relative to what it was. The factor is the new gain over the old one."
+)
+def _(part):
+    return {"factor": 100 / part - 1} if part != 50 else {}
 
 
 lemonade.hints(
@@ -199,6 +222,15 @@ def _(u, split, action):
 def _(u, split, action):
     openings = dict(zip(("vent", "inlet"), blanket_valves(u, split, action), strict=True))
     return {valve: u for valve, opening in openings.items() if opening and abs(opening - u) > 2}
+
+
+@blanket.mistake("There the valve takes all of the range for its travel. Over which part of it does this valve move?")
+def _(u, split, action):
+    here = blanket_valves(u, split, action)
+    wrong, opening = 100 - u, max(here)
+    others = opening, 100 - opening, *blanket_valves(u, split, OTHER[action]), u
+    moving = ("vent", "inlet")[here.index(opening)]
+    return {moving: wrong} if u < split and _apart(wrong, *others, by=0.05) else {}
 
 
 @blanket.mistake("That would be right if the range were split in the middle. Where is it split here?")
@@ -314,7 +346,10 @@ def _(place, closing):
     }
 
 
-@tanks_in_row.mistake("That is right for a valve that opens as its signal rises. What does this valve do?")
+@tanks_in_row.mistake(
+    "With a valve that opens as its signal rises this would be right, or with one in the other pipe of the tank. What "
+    "does this valve do, and in which pipe is it?"
+)
 def _(place, closing):
     return {name: OTHER[action] for name, action in actions_in_row(place, closing).items() if name in closing}
 
@@ -330,8 +365,8 @@ def _(place, closing):
 
 
 @tanks_in_row.mistake(
-    "Look at where the flow is already decided. Upstream of that point a level must be controlled by its "
-    "inflow, downstream of it by its outflow."
+    "Look at where the flow is already decided: upstream of that point a level must be controlled by its inflow, "
+    "downstream of it by its outflow. Direct action lets the signal rise with the level: what does this valve do then?"
 )
 def _(place, closing):
     return {name: OTHER[action] for name, action in actions_in_row(place, closing).items() if name not in closing}
@@ -428,7 +463,31 @@ def _(K_1, T_1, K_2, T_2):
 def _(K_1, T_1, K_2, T_2, K_p2):
     both = K_1 * K_2 / ((T_1 * s + 1) * (T_2 * s + 1))
     loop, inner = 1 + K_p2 * K_1 * K_2, K_p2 * K_2
-    return {"H": both / (1 + K_p2 * both)} | ({"factor": loop} if abs(loop - inner) > inner / 20 else {})
+    wrong = {"factor": loop, "T": T_2 / loop} if _apart(loop, inner, 1 + inner, by=0.02) else {}
+    return {"H": both / (1 + K_p2 * both)} | wrong
+
+
+@oven.mistake("There $K_1$ is in the loop. Is the part from the air to the parts between the valve and $y_2$?")
+def _(K_1, T_1, K_2, T_2, K_p2):
+    return {"H": K_1 * K_2 / ((T_1 * s + 1) * (T_2 * s + 1 + K_p2 * K_1 * K_2))} if K_1 < Rational(9, 10) else {}
+
+
+@oven.mistake("That is the way to the air, $y_2$. What comes between the air and the parts?")
+def _(K_2, T_2, K_p2):
+    return {"H": K_2 / (T_2 * s + 1 + K_p2 * K_2)}
+
+
+@oven.mistake("The secondary loop closes at $y_2$. Which of the two time constants is in it?")
+def _(K_2, T_1, T_2, K_p2):
+    wrong = T_1 / (1 + K_p2 * K_2)
+    return {"T": wrong} if _apart(wrong, T_2) else {}
+
+
+@oven.mistake("That is the effect of 1 % itself. How many times smaller is it than without the loop?")
+def _(K_1, K_2, K_p2):
+    loop = 1 + K_p2 * K_2
+    left = K_1 * K_2 / loop
+    return {"factor": left} if _apart(left, loop, 1 - 1 / loop) else {}
 
 
 @oven.mistake(
@@ -547,7 +606,7 @@ def basin(
 
 @basin.mistake("There volumes and masses are mixed: all the flows are masses per second, and so is what $K_p$ moves.")
 def _(A, F, k):
-    return {"T": A / k, "left": F / (1000 * k)}
+    return {"T": A / k, "left": F / (1000 * k), "deviation": F / k * (1 - exp(-t * k / A))}
 
 
 @basin.mistake("That is the level without control, where the outflow stays as it was.")
@@ -563,6 +622,21 @@ def _():
 @basin.mistake("That is how the deviation would die away. It begins at zero and ends where the outflow is the inflow.")
 def _(A, F, k):
     return {"deviation": F / k * exp(-t * k / (1000 * A))}
+
+
+@basin.mistake("The rain does not make the level quick or slow. By how much does the outflow grow for each metre?")
+def _(A, F):
+    return {"T": 1000 * A / F}
+
+
+@basin.mistake("That is how fast the level rises at first. Where does the outflow become as large as the inflow?")
+def _(A, F, k):
+    return {"left": F / (1000 * A)}
+
+
+@basin.mistake("There the level is at its end at once. How does a lag begin, and what divides $t$ in its exponent?")
+def _(F, k):
+    return {"deviation": F / k}
 
 
 basin.hints(
@@ -665,6 +739,45 @@ def _(K_2, T_2, L_2):
 def _(K_1, T_1, K_2, T_2, L_1, L_2):
     K_p1, K_p2 = two_P(K_1, T_1, K_2, T_2, L_1, L_2)
     return {"K_p1": K_p1 * K_p2}
+
+
+@two_poles.mistake(
+    "That would be the gain of the other controller. Which of the two is alone in the coefficient of $s$?"
+)
+def _(K_1, T_1, K_2, T_2, L_1, L_2):
+    K_p1, K_p2 = two_P(K_1, T_1, K_2, T_2, L_1, L_2)
+    first = (T_2 / L_2 - 1) / K_2
+    wrong = {"K_p1": K_p2} if _apart(K_p2, K_p1, K_p1 * K_p2, K_1 * K_p1, by=0.05) else {}
+    return wrong | ({"K_p2": K_p1} if _apart(K_p1, K_p2, first, K_2 * K_p2, by=0.05) else {})
+
+
+@two_poles.mistake(
+    "Two polynomials are compared after they begin with the same term. Which factor has $s^2$ in each of yours?"
+)
+def _(K_1, T_1, K_2, T_2, L_1, L_2):
+    inner = (L_1 + L_2 - T_2) / T_1 - 1
+    return {"K_p2": inner / K_2, "K_p1": -1 / K_1}
+
+
+@two_poles.mistake("The drum has a pole of its own, even without a controller. Where is it in the coefficient of $s$?")
+def _(K_1, T_1, K_2, T_2, L_1, L_2):
+    wrong = (T_2 / L_1 + T_2 / L_2 - 1) / K_2
+    others = two_P(K_1, T_1, K_2, T_2, L_1, L_2)
+    return {"K_p2": wrong} if _apart(wrong, *others, (T_2 / L_2 - 1) / K_2, K_2 * others[1]) else {}
+
+
+@two_poles.mistake("Where is $K_{p2}$ in the constant term? Beside the product of all gains it is there once more.")
+def _(K_1, T_1, K_2, T_2, L_1, L_2):
+    K_p1, K_p2 = two_P(K_1, T_1, K_2, T_2, L_1, L_2)
+    wrong = (T_1 * T_2 / (L_1 * L_2) - 1) / (K_2 * K_p2 * K_1)
+    return {"K_p1": wrong} if _apart(wrong, K_p1, K_p2, K_p1 * K_p2, K_1 * K_p1) else {}
+
+
+@two_poles.mistake("In $T_2 s + 1 + K_2K_{p2}$ there is a one beside the gains. What does it leave for them?")
+def _(K_1, T_1, K_2, T_2, L_1, L_2):
+    wrong = (T_2 / L_1 + T_2 / L_2 - T_2 / T_1) / K_2
+    others = two_P(K_1, T_1, K_2, T_2, L_1, L_2)
+    return {"K_p2": wrong} if _apart(wrong, *others, K_2 * others[1]) else {}
 
 
 @two_poles.mistake("That may be its value here. Give an expression in the symbols.")
@@ -818,6 +931,49 @@ def _(K_1, T_1, K_2, T_2, delay):
     return {name: PID(pid.Kp, Ti) for name, (pid, Ti) in short.items() if Ti < pid.Ti}
 
 
+@inside_out.mistake("The rule takes the smaller of two times for $T_i$. Which is the other one?")
+def _(K_1, T_1, K_2, T_2, delay):
+    inner, outer, _ = tuned_inside_out(K_1, T_1, K_2, T_2, delay)
+    lags = {"secondary": (inner, T_2, 8 * delay), "primary": (outer, T_1 + delay / 2, 12 * delay)}
+    return {
+        name: PID(pid.Kp, max(T, most)) for name, (pid, T, most) in lags.items() if _apart(max(T, most), min(T, most))
+    }
+
+
+@inside_out.mistake(
+    "There the half rule is used on the oil's own time constant. Which one does the closed secondary loop have?"
+)
+def _(K_1, T_1, K_2, T_2, delay):
+    late = delay + T_2 / 2
+    wrong = PID((T_1 + T_2 / 2) / (2 * K_1 * late), Min(T_1 + T_2 / 2, 8 * late))
+    return {"primary": wrong} if K_2 != 1 else {}
+
+
+@inside_out.mistake("The dead time has its half of the secondary loop's time constant. Who gets the other half?")
+def _(K_1, T_1, delay):
+    late = delay + delay / 2
+    wrong = PID(T_1 / (2 * K_1 * late), Min(T_1, 8 * late))
+    return {"primary": wrong} if delay / 2 > T_1 / 25 else {}
+
+
+@inside_out.mistake("There all of the secondary loop's time constant has become dead time. How much of it should?")
+def _(K_1, T_1, delay):
+    return {"primary": PID(T_1 / (4 * K_1 * delay), Min(T_1, 16 * delay))}
+
+
+@inside_out.mistake("The half rule neglects the smaller of the two time constants. Which one is that?")
+def _(T_1, T_2, delay):
+    return {"alone": delay + T_1 / 2} if T_1 != 2 * T_2 else {}
+
+
+@inside_out.mistake(
+    "That is the dead time in the model of the cascade. Which time constant does a single loop neglect?"
+)
+def _(T_2, delay):
+    late = 3 * delay / 2
+    return {"alone": late} if _apart(late, T_2 / 2, delay + T_2) else {}
+
+
 @inside_out.mistake("What else is in the denominator of Skogestad's gain beside $T_C$?")
 def _(K_1, T_1, K_2, T_2, delay):
     inner, outer, _ = tuned_inside_out(K_1, T_1, K_2, T_2, delay)
@@ -856,9 +1012,9 @@ inside_out.hints(
     "\\theta$. The secondary loop, as ordered, is a lag with the time constant $\\theta$ behind the dead time "
     "$\\theta$. The half rule gives half of a neglected time constant to the dead time, half to the time constant "
     "that stays.",
-    "Secondary: $K_p = \\frac{ {T_2} }{2 \\cdot {K_2} \\cdot {delay} }$. Primary: the dead time of its model is "
-    "${delay} + {delay}/2$, and its time constant ${T_1} + {delay}/2$. The single loop must neglect $T_2$ = {T_2} "
-    "instead.",
+    "Secondary: $K_p = \\frac{ {T_2} }{2 \\cdot {K_2} \\cdot {delay} }$. Primary: the secondary loop has a "
+    "time constant of {delay}, of which half goes to the dead time of the model and half to $T_1$. The single loop "
+    "must neglect $T_2$ = {T_2} instead.",
 )
 
 
@@ -961,6 +1117,20 @@ def _(K_c, K_h):
 @where_to_split.mistake("There the valve with the larger effect has become the steeper one. It needs the wider part.")
 def _(K_c, K_h):
     return {"split": 100 * K_h / (K_c + K_h)}
+
+
+@where_to_split.mistake("That is one effect as a share of the other. Which share is it of both together?")
+def _(K_c, K_h):
+    wrong = 100 * min(K_c, K_h) / max(K_c, K_h)
+    both = K_c + K_h
+    return {"split": wrong} if _apart(wrong, 50, 100 * K_c / both, 100 * K_h / both) else {}
+
+
+@where_to_split.mistake(
+    "That margin holds in the half where it was tuned. How much larger is the gain in the other one?"
+)
+def _(margin):
+    return {"left": margin}
 
 
 @where_to_split.mistake("There the range is split already, and the two gains differ.")
@@ -1176,6 +1346,23 @@ def _(period, gain):
     return {"T_C": shortest_T_C(period, gain)}
 
 
+@lazy_tank.mistake("That belongs to $c = 4$, where the poles meet. With $c = 2$ the level rises a little less.")
+def _(A, F, dh, period, gain):
+    T_C = 1000 * float(A) * float(dh) / float(F) * math.e / 2
+    return {"T_C": T_C} if _apart(T_C, shortest_T_C(period, gain)) else {}
+
+
+@lazy_tank.mistake("That is the integral time. Which part of it is $T_C$ with $c = 2$?")
+def _(A, F, dh):
+    return {"T_C": 2 * longest_T_C(A, F, dh)}
+
+
+@lazy_tank.mistake("The factor of the highest point divides what is allowed: a low factor allows a slower controller.")
+def _(A, F, dh, period, gain):
+    T_C = HIGHEST * 1000 * float(A) * float(dh) / float(F)
+    return {"T_C": T_C} if _apart(T_C, shortest_T_C(period, gain)) else {}
+
+
 @lazy_tank.mistake("The density is missing: the flows are masses per second.")
 def _(A, F, dh):
     return {"T_C": longest_T_C(A, F, dh) / 1000}
@@ -1193,6 +1380,12 @@ lazy_tank.hints(
 )
 
 
+def _away(level):
+    """A deviation of the level as one says it: what nobody can measure is less than a tenth of a millimetre."""
+    size = abs(1000 * level)
+    return "less than 0.1 mm" if size < 0.1 else (size, "mm")
+
+
 @lazy_tank.solution
 def _(A, F, dh, period, gain):
     r"""From the outflow to the level the tank is an integrator with the gain $-\frac{1}{\rho A}$. Skogestad's settings
@@ -1208,8 +1401,8 @@ def _(A, F, dh, period, gain):
 
     **The choice.** Any $T_C$ between the two meets all demands, for example their geometric mean, {chosen}. Then
     $K_p = -\frac{1000 \cdot {A} }{ {chosen} }$, which is {K_p}, and $T_i$ is twice $T_C$, {T_i}. With it the level
-    rises by {rise} and {passes} of the wave reach the column; the largest wave that leaves is {largest} of what comes
-    in, whatever $T_C$ is.
+    rises by {rise}, and two hours later it is {later} away from its setpoint. Of the wave {passes} reach the column;
+    the largest wave that leaves is {largest} of what comes in, whatever $T_C$ is.
     """
     longest, shortest = longest_T_C(A, F, dh), shortest_T_C(period, gain)
     T_C = math.sqrt(longest * shortest)
@@ -1218,6 +1411,7 @@ def _(A, F, dh, period, gain):
         "highest": HIGHEST, "shortest": (shortest, "s"), "chosen": (T_C, "s"), "K_p": (float(pid.Kp), "kg/(s m)"),
         "T_i": (2 * T_C, "s"), "rise": (rise_of_level(pid, A, F), "m"), "largest": (largest_flow_gain(pid, A), "%"),
         "passes": (flow_gain(pid, A, 2 * math.pi / float(period)), "%"),
+        "later": _away(level_after(pid, A, F, 7200)),
     }  # fmt: skip
 
 
@@ -1270,7 +1464,7 @@ def glue_kettle(
 
 def _unlike(key, values):
     """Those of the values that differ from the key by more than its tolerance."""
-    return {name: value for name, value in values.items() if abs(value - key[name]) > abs(key[name]) / 20}
+    return {name: value for name, value in values.items() if _apart(value, key[name])}
 
 
 def _glue_key(K_1, T_1, K_2, T_2, L):
@@ -1302,6 +1496,32 @@ def _(K_1, T_1, K_2, T_2, L):
     inner = (3 * L**2 - T_2) / T_1 - 1
     wrong = {"k_1": (3 * L - 1 - inner) / (K_1 * K_2), "k_2": inner / K_2, "k_i": 1 / (K_1 * K_2)}
     return _unlike(_glue_key(K_1, T_1, K_2, T_2, L), wrong)
+
+
+@glue_kettle.mistake("Multiply the polynomial out again: beside $K_2k_2$ the coefficient of $s$ has a one.")
+def _(K_1, T_1, K_2, T_2, L):
+    _, k_2, _ = integral_state_feedback(K_1, T_1, K_2, T_2, L)
+    wrong = {"k_1": (3 * T_1 * T_2 / L**2 - K_2 * k_2) / (K_1 * K_2), "k_2": (3 * T_2 / L - T_2 / T_1) / K_2}
+    return _unlike(_glue_key(K_1, T_1, K_2, T_2, L), wrong) if _apart(K_2 * k_2, 1, by=0.2) else {}
+
+
+@glue_kettle.mistake("What is $(s + 1/L)^3$, multiplied out? Its middle terms have a factor.")
+def _(K_1, T_1, K_2, T_2, L):
+    inner = T_2 / L - T_2 / T_1 - 1
+    outer = T_1 * T_2 / L**2 - 1 - inner
+    return _unlike(_glue_key(K_1, T_1, K_2, T_2, L), {"k_1": outer / (K_1 * K_2), "k_2": inner / K_2})
+
+
+@glue_kettle.mistake("In the coefficient of $s^2$ there is a term of the process itself, which no gain moves.")
+def _(K_1, T_1, K_2, T_2, L):
+    inner = 3 * T_2 / L - 1
+    outer = 3 * T_1 * T_2 / L**2 - 1 - inner
+    return _unlike(_glue_key(K_1, T_1, K_2, T_2, L), {"k_1": outer / (K_1 * K_2), "k_2": inner / K_2})
+
+
+@glue_kettle.mistake("The three roots multiply to $-1/L^3$. Which power of $L$ have you taken?")
+def _(K_1, T_1, K_2, T_2, L):
+    return {"k_i": T_1 * T_2 / (L**2 * K_1 * K_2)}
 
 
 @glue_kettle.mistake("What the controller does reaches the glue through the valve and the jacket: through both gains.")
@@ -1476,6 +1696,11 @@ def _(capacity, margin):
     return {"gained": 24 * capacity * margin / (100 - margin)}
 
 
+@bottleneck.mistake("That is all that the filter can pass in a day. How much of it is not made today?")
+def _(capacity):
+    return {"gained": 24 * capacity}
+
+
 bottleneck.hints(
     "A flow can be kept exactly where it is controlled; everywhere else it is what the levels leave. Where must it be "
     "exact?",
@@ -1543,8 +1768,8 @@ def gap_in_the_middle(
     are closed. The settings are $K_p$ = {K_p} and $T_i$ = {T_i}.
 
     Read the picture: at which control signal does the chilled water close, how wide is the gap, and how far is the hot
-    water open when the control signal is {u}? In the evening the signal is where the chilled water has just closed.
-    From then on it is {e} too cold, all the time. After how many seconds does the hot water begin to open?
+    water open when the control signal is {u}? In the evening it is {e} too cold, and stays so. The signal rises, and
+    just now the chilled water has closed. After how many seconds does the hot water begin to open?
     """
     return answers(
         closes=number(u_c, "%", "the control signal at which the chilled water closes", within=0.05),
@@ -1595,15 +1820,51 @@ def _(gap, T_i, K_p, e):
 
 
 @gap_in_the_middle.mistake("The error of one kelvin is not the error here. How fast does the signal move with {e}?")
-def _(gap, T_i, K_p):
-    return {"time": gap * T_i / K_p}
+def _(gap, T_i, K_p, e):
+    wrong = gap * T_i / K_p
+    return {"time": wrong} if _apart(wrong, _after_a_jump(gap, T_i, K_p, e), by=0.2) else {}
+
+
+def _after_a_jump(gap, T_i, K_p, e):
+    """The time if the error began only when the signal is at the gap."""
+    return (gap / (K_p * e) - 1) * T_i
+
+
+@gap_in_the_middle.mistake(
+    "There the proportional term moves the signal, too. But the error is the same before and after: what does that "
+    "term do?"
+)
+def _(gap, T_i, K_p, e):
+    wrong, right = _after_a_jump(gap, T_i, K_p, e), gap * T_i / (K_p * e)
+    return {"time": wrong} if wrong > 0 and _apart(wrong, right, right * e, T_i, by=0.2) else {}
+
+
+@gap_in_the_middle.mistake(
+    "The integral term is all that moves the signal, because the error is the same before and after. How fast is that "
+    "with {e}?"
+)
+def _(gap, T_i, K_p, e):
+    jump, one = _after_a_jump(gap, T_i, K_p, e), gap * T_i / K_p
+    both = {"time": (jump + one) / 2} if jump > 0 and not _apart(one, jump, by=0.2) else {}
+    return both if _apart((jump + one) / 2, one / e, T_i, by=0.2) else {}
+
+
+@gap_in_the_middle.mistake("There the signal begins at zero. Where is it when the chilled water has just closed?")
+def _(u_c, gap, T_i, K_p, e):
+    wrong = (u_c + gap) * T_i / (K_p * e)
+    return {"time": wrong} if _apart(wrong, gap * T_i / e, by=0.2) else {}
+
+
+@gap_in_the_middle.mistake("That is the control signal itself. The opening is read at the line of the hot water.")
+def _(u_c, gap, u):
+    return {"hot": u} if _apart(u, 100 * (u - u_c - gap) / (100 - u_c - gap), by=0.1) else {}
 
 
 gap_in_the_middle.hints(
     "Each line of the picture belongs to one valve; both are straight. In the gap no valve moves: what moves the "
     "signal while the error stays the same?",
-    "An opening on a straight line is a share of its way. With a constant error $e$ the proportional term is "
-    "constant, and the integral term moves the signal by $K_p\\,e/T_i$ each second.",
+    "An opening on a straight line is a share of its way. The error $e$ is what it was before: the proportional term "
+    "is constant, and the integral term moves the signal by $K_p\\,e/T_i$ each second.",
     "Here that is $\\frac{ {K_p} \\cdot {e} }{ {T_i} }$ percent each second. Divide the width of the gap by it.",
 )
 
@@ -1616,7 +1877,7 @@ def _(K_p, T_i, e):
     The hot water opens by 100 % from there up to the end of the range. At {u} it has made the share
     $\frac{ {u} - {opens} }{100 - {opens} }$ of its way: {hot}.
 
-    **The time.** As long as the error is the same, only the integral term moves the signal, by
+    **The time.** The error is what it was before, so that only the integral term moves the signal, by
     $\frac{K_p\,e}{{T_i}} = \frac{ {K_p} \cdot {e} }{ {T_i} }$, which is {rate}. To cross {gap} it takes {time}. In all
     that time nothing warms the orchids.
     """
