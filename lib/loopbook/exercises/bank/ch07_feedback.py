@@ -31,6 +31,11 @@ from loopbook.transfer import first_order
 ACTIONS = ["reverse", "direct"]
 
 
+def _apart(wrong, right, by=0.05):
+    """Whether a wrong value cannot be taken for the right one."""
+    return abs(float(wrong) - float(right)) > by * abs(float(right))
+
+
 @exercise(
     "7.1",
     title="Behind the percent of a boiler",
@@ -110,6 +115,26 @@ def _(p_low, p_high, q_max):
     burner = diagrams.block(f"Burner\n$0$ to ${q_max}$ kg/h")
     current, controller = diagrams.block("$4$ to $20$ mA\nto percent"), diagrams.block("Controller\nin percent")
     return diagrams.block_diagram("p", sensor, "I", current, "y", controller, "u", burner, "q")
+
+
+@boiler.mistake("The range of the current begins at 4 mA and ends at 20 mA. How large is its span?")
+def _(y):
+    return {"I": 4 + 20 * y / 100}
+
+
+@boiler.mistake("This is percent of the control signal for one bar. How much oil is one percent?")
+def _(p_low, p_high, q_max, K_p):
+    return {"K_p": K_p * 100 / (p_high - p_low)}
+
+
+@boiler.mistake("This is the oil for one percent of the pressure range. How many of these percent are one bar?")
+def _(p_low, p_high, q_max, K_p):
+    return {"K_p": K_p * q_max / 100} if _apart(p_high - p_low, 100) else {}
+
+
+@boiler.mistake("So it would be with a gain of one. How many percent does this controller make of one percent?")
+def _(p_low, p_high, q_max, K_p):
+    return {"K_p": q_max / (p_high - p_low)} if K_p not in (1, q_max / 100) else {}
 
 
 boiler.hints(
@@ -217,6 +242,11 @@ def _(medium, valve):
     return diagrams.instrumentation_diagram(layout, pipes, lines, parts, names)
 
 
+@jacket.mistake("How many percent of control signal does the controller make of one percent of error?")
+def _(medium, valve, K_p, u_0, rise):
+    return {"u": u_0 + _push(medium, valve) * rise} if K_p != 1 else {}
+
+
 jacket.hints(
     "Negative feedback: what the controller does to a temperature that is too high must make it fall.",
     "Go around the loop with signs. Does more control signal give more of the medium? Does more of the medium make "
@@ -291,8 +321,18 @@ def _(P_B, repeats):
 @panel.mistake(
     "The number of repeats says how often it happens in a minute. The integral time is how long one of them takes."
 )
-def _(P_B, repeats):
-    return {"settings": PID(100 / P_B, 60 * repeats)}
+def _(P_B, repeats, u_0, error):
+    return {"settings": PID(100 / P_B, 60 * repeats), "u": u_0 + 100 / P_B * error * (1 + t / (60 * repeats))}
+
+
+@panel.mistake("A narrow band means a strong action. Does this gain become larger when the band becomes narrower?")
+def _(P_B, repeats, u_0, error):
+    return {"u": u_0 + P_B / 100 * error * (1 + t * repeats / 60)}
+
+
+@panel.mistake("The integral term is there for an error of one percent. How large is the error?")
+def _(P_B, repeats, u_0, error):
+    return {"u": u_0 + 100 / P_B * (error + t * repeats / 60)} if error != 1 else {}
 
 
 @panel.mistake("In this function the time is in minutes. It should be in seconds.")
@@ -338,7 +378,8 @@ panel.hints(
     "The band is the error that moves the control signal by 100 %, so $K_p P_B = 100$. A repeat takes one integral "
     r"time, so there are $60\ \text{s}/T_i$ of them in a minute. For a constant error $E$, $u = u_0 + K_p E\,(1 + "
     "t/T_i)$.",
-    r"With the numbers of the panel, $K_p = \frac{100}{ {P_B} }$ and $T_i = \frac{60}{ {repeats} }$ s.",
+    "An error of {P_B} moves the control signal by 100 %: by how much does an error of 1 % move it? And {repeats} "
+    "repeats take 60 s: how long does one of them take?",
 )
 
 
@@ -412,8 +453,10 @@ def _():
 
 
 @oil_tank.mistake("Follow the loss on its way to the temperature: it goes through the same gain as the control signal.")
-def _():
-    return {"e": Symbol("W") / (1 + Symbol("K") * Symbol("K_p"))}
+def _(K, W, e_max):
+    wrong, right = (W / e_max - 1) / K, (K * W / e_max - 1) / K
+    numbers = {"K_p": wrong} if _apart(wrong, right) else {}
+    return numbers | {"e": Symbol("W") / (1 + Symbol("K") * Symbol("K_p"))}
 
 
 @oil_tank.mistake(
@@ -465,6 +508,16 @@ def _():
 )
 def _():
     return {"e": Symbol("W") / Symbol("K_p")}
+
+
+@oil_tank.mistake("Solve once more for $K_p$: on which side of the equation does the one end up, and with which sign?")
+def _(K, W, e_max):
+    return {"K_p": (K * W / e_max + 1) / K}
+
+
+@oil_tank.mistake("That is a temperature: what the loss does by itself. Which control signal makes up for it?")
+def _(K, W):
+    return {"u_PI": K * W} if _apart(K, 1) else {}
 
 
 oil_tank.hints(
@@ -609,6 +662,36 @@ def _(K_p, u_0, e_frost, e_after):
     return {"u_after": u_0 - K_p * e_after} if u_0 + K_p * e_frost < 99 else {}
 
 
+@dryer.mistake("The gain multiplies the integral term as well.")
+def _(K_p, T_i, u_0, e_frost, frost):
+    wrong = T_i * (100 - u_0 - K_p * e_frost) / e_frost
+    return {"t_limit": wrong, "u_end": u_0 + K_p * e_frost + e_frost * frost / T_i} if K_p != 1 else {}
+
+
+@dryer.mistake("In how long does the integral term of a constant error grow as large as the proportional term?")
+def _(K_p, T_i, u_0, e_frost, frost):
+    u_p = K_p * e_frost
+    return {"t_limit": (100 - u_0 - u_p) / u_p, "u_end": u_0 + u_p * (1 + frost)}
+
+
+@dryer.mistake("While the integral term runs back, which control error is it that drives it?")
+def _(K_p, T_i, u_0, e_frost, e_after, frost):
+    u_i = K_p * e_frost * frost / T_i
+    wrong = T_i * (u_0 + u_i - K_p * e_after - 100) / (K_p * e_frost)
+    return {"t_wait": wrong} if _apart(e_frost, e_after) else {}
+
+
+@dryer.mistake("After the frost the error is negative. Which sign does the proportional term have then?")
+def _(K_p, T_i, u_0, e_frost, e_after, frost):
+    wait = _wound_up(K_p, T_i, u_0, e_frost, e_after, frost)[2]
+    return {"t_wait": wait + 2 * T_i} if e_frost != e_after else {}
+
+
+@dryer.mistake("The integral term is right. With the new error, what has become of the proportional term?")
+def _(K_p, T_i, u_0, e_frost, e_after, frost):
+    return {"t_wait": _wound_up(K_p, T_i, u_0, e_frost, e_after, frost)[2] + T_i}
+
+
 dryer.hints(
     "A constant error makes a constant proportional term, and an integral term that grows along a straight line.",
     r"During the frost $u = u_0 + K_p e\,(1 + t/T_i)$, and nothing stops it at 100 %. After the frost the error has "
@@ -699,8 +782,8 @@ def _in_summer(A, tau, K_p, factor):
     "At the limit, integrator and dead time together turn the phase by half a turn. How much of it does the "
     "integrator take, and what is left?"
 )
-def _(A, tau):
-    return {"K_u": pi * A / tau, "P_u": 2 * tau}
+def _(A, tau, K_p):
+    return {"K_u": pi * A / tau, "P_u": 2 * tau, "delay_margin": pi * A / K_p - tau}
 
 
 @canal.mistake(
@@ -728,6 +811,16 @@ def _(tau, factor):
 @canal.mistake("That is the whole turn in the time of the delay. How much of a turn does the delay make at the limit?")
 def _(tau):
     return {"P_u": tau}
+
+
+@canal.mistake("Does the gain of the integrator contain turns in a second, or radians in a second?")
+def _(A, tau):
+    return {"K_u": A / (4 * tau)}
+
+
+@canal.mistake("One radian is not yet the limit. Which part of half a turn does the integrator leave to the dead time?")
+def _(A, tau, K_p):
+    return {"delay_margin": A / K_p - tau} if _angle(A, tau, K_p) < 0.9 else {}
 
 
 canal.hints(
@@ -897,8 +990,8 @@ heat_exchanger.hints(
     r"With $T_i = T$ the loop is $\frac{K K_p}{T s}e^{-\tau s}$, which is at its limit when $\frac{K K_p \tau}{{T}} = "
     r"\frac{\pi}{2}$. It does not matter whether gain or dead time grows. And the integral of the error after the "
     "load step is $T_i/K_p$.",
-    r"So the gain lies between $\frac{ {T} }{ {area} }$ and $\frac{\pi}{2} \cdot \frac{ {T} }{ {K} \cdot {delay} } / "
-    "2.5$.",
+    "With $T_i$ = {T} the third demand is a lower limit of the gain. The first two are an upper one: at 2.5 times your "
+    "gain the loop may be at its limit, and not before.",
 )
 
 
@@ -1026,6 +1119,26 @@ def _(T_f, rate):
     return {"behind": 4 * T_f * rate * (1 - math.exp(-1))}
 
 
+@gauge.mistake("Nine tenths of the way are behind it at that moment. Which share belongs to one $T_f$?")
+def _(start, T_f):
+    return {"T_f": T_f * math.log(10)} if abs(start + T_f - 2.3 * T_f) > 0.3 * T_f else {}
+
+
+@gauge.mistake("By then the filter has nearly arrived. One time constant is the time to 63 % of the way only.")
+def _(start, T_f):
+    return {"T_f": 3.3 * T_f} if start + T_f < 2.8 * T_f else {}
+
+
+@gauge.mistake("By then the filter has nearly arrived. One time constant is the time to 63 % of the way only.")
+def _(T_f):
+    return {"T_f": 5 * T_f}
+
+
+@gauge.mistake("The pressure rises by so much in each second. How far does it come while the display is late?")
+def _(T_f, rate):
+    return {"behind": 4 * T_f / rate} if rate >= 1.5 else {}
+
+
 gauge.hints(
     "A filter of this kind is a lag. After one time constant its step response has gone 63 % of the way, whatever the "
     "height of the step.",
@@ -1123,7 +1236,7 @@ def _(K_p, q):
 
 @in_steps.mistake("The derivative is a change *per time*. In which time does the program see the step happen?")
 def _(K_p, T_d, q, h):
-    return {"u_step": K_p * T_d * q} if h != 1 else {}
+    return {"u_step": K_p * T_d * q} if h != 1 and K_p * h != 1 else {}
 
 
 @in_steps.mistake("The derivative is a change *per time*: by what must the height of a step be divided?")
@@ -1132,8 +1245,9 @@ def _(K_p, T_d, q):
 
 
 @in_steps.mistake("The gain of the controller multiplies all three terms, the derivative term as well.")
-def _(T_d, q, h, a, seconds):
-    return {"u_true": T_d * q / seconds, "u_step": T_d * q / h, "u_filtered": q / a}
+def _(K_p, T_d, q, h, a, seconds):
+    filtered = {"u_filtered": q / a} if K_p * a != 1 else {}
+    return filtered | {"u_true": T_d * q / seconds, "u_step": T_d * q / h}
 
 
 @in_steps.mistake(
@@ -1146,7 +1260,29 @@ def _(K_p, q, a):
 
 @in_steps.mistake("How long does the temperature take from one step to the next? One of the two is not read correctly.")
 def _(K_p, T_d, q, h, a, seconds):
-    return {"u_true": K_p * T_d * q / (8 * seconds), "u_step": K_p * T_d * q / seconds}
+    of_the_picture = {"u_true": K_p * T_d * q / (8 * seconds)} if K_p != 8 else {}  # 8 would be the gain left out
+    return of_the_picture | {"u_step": K_p * T_d * q / seconds}
+
+
+@in_steps.mistake("The first stair is only half as long as the others. How long is a whole one?")
+def _(K_p, T_d, q, seconds):
+    return {"u_true": 2 * K_p * T_d * q / seconds}
+
+
+@in_steps.mistake("The rate is upside down: how many kelvins are there in one second?")
+def _(K_p, T_d, q, seconds):
+    return {"u_true": K_p * T_d * seconds / q}
+
+
+@in_steps.mistake("The filter is not a share of the unfiltered term. What does it make of a jump, in its first moment?")
+def _(K_p, T_d, q, h, a):
+    wrong, right = a * K_p * T_d * q / h, K_p * q / a
+    return {"u_filtered": wrong} if _apart(wrong, right, 0.1) else {}
+
+
+@in_steps.mistake("The time constant of the filter is a share of $T_d$. What does $T_d$ do below the fraction line?")
+def _(K_p, T_d, q, a):
+    return {"u_filtered": K_p * T_d * q / a}
 
 
 in_steps.hints(
@@ -1319,8 +1455,8 @@ def _(K_p, T_d, step_SP):
 
 
 @kick.mistake("The filter has followed by then: it is the derivative that counts, not the gain for sudden changes.")
-def _(K_p, step_SP):
-    return {"u_ramp": 10 * K_p * step_SP}
+def _(K_p, T_d, step_SP):
+    return {"u_ramp": 10 * K_p * step_SP} if T_d != 10 else {}
 
 
 @kick.mistake("The gain multiplies the derivative term, too.")
@@ -1343,13 +1479,35 @@ def _(K_p, step_SP, u_0):
     return {"u_kick": 100} if abs(u_0 + 11 * K_p * step_SP - 100) > 3 else {}
 
 
+@kick.mistake("$K_p T_d$ belongs to a slope. What does the filter make of a sudden change?")
+def _(K_p, T_d, step_SP, u_0):
+    size = K_p * step_SP
+    return {"u_kick": u_0 + T_d * size} if T_d not in (10, 11) else {}
+
+
+@kick.mistake("$K_p T_d$ belongs to a slope. What does the filter make of a sudden change?")
+def _(K_p, T_d, step_SP, u_0):
+    size = K_p * step_SP
+    return {"u_kick": u_0 + (1 + T_d) * size} if T_d not in (9, 10) else {}
+
+
+@kick.mistake("The factor of ten is the filter's answer to a sudden change. Is a long ramp one?")
+def _(K_p, T_d, step_SP, ramp):
+    return {"u_ramp": 10 * K_p * T_d * step_SP / ramp} if ramp != 10 and 10 * step_SP != ramp else {}
+
+
+@kick.mistake("That is the proportional term at the end of the ramp. What does the derivative term see?")
+def _(K_p, T_d, step_SP, ramp):
+    return {"u_ramp": K_p * step_SP} if _apart(T_d, ramp) and ramp != 10 * T_d and step_SP != T_d else {}
+
+
 kick.hints(
     "A proportional term follows a jump with a jump. A derivative term follows it with a spike. An integral term can "
     "only begin to rise.",
     r"For a sudden change the filtered derivative term has the gain $K_p T_d/(0.1\,T_d)$; for a ramp it is $K_p T_d$ "
     "times the slope. Look at the first moment of each curve: spike, jump or neither?",
-    r"Directly after the step: proportional term ${K_p} \cdot {step_SP}$, derivative term ten times that, on top of "
-    r"{u_0}. The slope of the ramp is $\frac{ {step_SP} }{ {ramp} }$ percent per second.",
+    r"Directly after the step only the setpoint has moved: add what the proportional term and the derivative term make "
+    r"of {step_SP} to the {u_0} from before. The ramp has the slope $\frac{ {step_SP} }{ {ramp} }$ percent per second.",
 )
 
 
@@ -1446,7 +1604,7 @@ def _(SP, e, u_man, u_0, u_old):
     times, y, u = _by_hand(SP, e, u_man, u_0 + u_old)
     panels = [{"setpoint": (float(SP), "setpoint"), "temperature": (y, "measurement")}, {"$u$": (u, "control signal")}]
     plot = time_plot(panels, times, xlabel="$t$ [min]", ylabel=["temperature [%]", "$u$ [%]"])
-    return plot.event(10, "to manual")
+    return plot.event(10, "to manual").event(30, "to automatic")
 
 
 @hand_over.mistake(
@@ -1513,6 +1671,23 @@ def _(u_man):
     return {"u_tracked": u_man}
 
 
+@hand_over.mistake("Read the control signal at 30 min: it is the operator's, and not that of the time before.")
+def _(K_p, T_i, u_0, u_old, u_man, e, wait):
+    u_i, bump, tracked = _transfer(K_p, u_0, u_old, u_man, e)
+    added = K_p * e * wait / T_i
+    wrong = {"u_i": u_old - K_p * e, "bump": K_p * e, "u_later": u_0 + u_old + added, "u_tracked": u_old}
+    right = {"u_i": u_i, "bump": bump, "u_later": u_man + added, "u_tracked": tracked}
+    return {name: value for name, value in wrong.items() if _apart(value, right[name])}
+
+
+@hand_over.mistake("The proportional term is the error times the gain.")
+def _(K_p, u_0, u_old, u_man, e):
+    u_i, bump, _ = _transfer(K_p, u_0, u_old, u_man, e)
+    wrong_u_i, wrong_bump, _ = _transfer(1, u_0, u_old, u_man, e)
+    found = {"u_i": wrong_u_i} if _apart(wrong_u_i, u_i) else {}
+    return found | ({"bump": wrong_bump} if _apart(wrong_bump, bump) else {})
+
+
 hand_over.hints(
     "Bumpless means that the first control signal of the controller is the last one of the operator.",
     "In automatic mode $u = u_0 + K_p e + u_i$. In the first moment the integral term is all that can be chosen: set "
@@ -1526,17 +1701,17 @@ hand_over.hints(
 @hand_over.solution
 def _(K_p, T_i, u_0, u_old, u_man, SP, e, wait):
     r"""At 30 min the picture shows a control signal of {u_man}, a setpoint of {SP} and a temperature of {level}. So the
-    control error is ${SP} - {level} =$ {e}, and the proportional term ${K_p} \cdot ({e}) =$ {u_p}.
+    control error is ${SP} - {level} =$ {e}, and the proportional term ${K_p} \cdot {error} =$ {u_p}.
 
     For a bumpless transfer the sum of all terms must be what the operator left:
 
-    $${u_0} + ({u_p}) + u_i = {u_man} \quad\Rightarrow\quad u_i = {u_i}\ \%$$
+    $${u_0} {plus_u_p} + u_i = {u_man} \quad\Rightarrow\quad u_i = {u_i}\ \%$$
 
-    With the old integral term the controller would begin at ${u_0} + ({u_p}) + ({u_old}) =$ {start}, and the control
+    With the old integral term the controller would begin at ${u_0} {plus_u_p} {plus_u_old} =$ {start}, and the control
     signal would jump by ${start} - {u_man} =$ {bump}.
 
     After the bumpless transfer the constant error is integrated: in {wait} it adds
-    $\frac{ {K_p} }{ {T_i} } \cdot ({e}) \cdot {wait} =$ {added}, so the control signal is then {u_later}.
+    $\frac{ {K_p} }{ {T_i} } \cdot {error} \cdot {wait} =$ {added}, so the control signal is then {u_later}.
 
     If the setpoint is first made equal to the measurement, there is no control error and no proportional term, and the
     integral term is ${u_man} - {u_0} =$ {u_tracked}.
@@ -1544,4 +1719,10 @@ def _(K_p, T_i, u_0, u_old, u_man, SP, e, wait):
     return {
         "level": (SP - e, "%"), "u_p": (K_p * e, "%"), "start": (u_0 + K_p * e + u_old, "%"),
         "added": (K_p * e * wait / T_i, "%"), "u_i": (u_man - u_0 - K_p * e, "%"),
+        "error": f"({e})" if e < 0 else f"{e}", "plus_u_p": _added(K_p * e), "plus_u_old": _added(u_old),
     }  # fmt: skip
+
+
+def _added(value):
+    """A number behind a sum, with its sign."""
+    return f"{'-' if value < 0 else '+'} {abs(float(value)):g}"
