@@ -34,6 +34,21 @@ def changed(old, new=""):
         "4. LT11 -> LAH11",
         "LT11 -(electrical)-> LC11; LC11 -> FC12; FC12 -//-> FV12; outlet -> FV12; outlet -> FT12 -> FC12; "
         "LT11 measures vessel; LT11 -> LAH11",
+        "vessel -> LT11 -> LC11, LAH11\nLC11 -> FC12 - // -> FV12 -> outlet\nFC12 <- FT12 <- outlet",
+        "vessel → lt11 → lc11 → fc12 ⫽→ fv12 → outlet; fc12 ← ft12 ← outlet; lah11 <- lt11",
+        "vessel -> LT11 -> LC11 -> FC12 (setpoint)\noutlet <- FV12 <-//- FC12\n"
+        "outlet -> FT12 -> FC12 (measurement)\nLT11 -> LAH11",
+        [
+            ("vessel", "LT11"),
+            ("LT11", "LC11"),
+            ("LC11", "FC12"),
+            ("FC12", "FV12", "pneumatic"),
+            ("FV12", "outlet"),
+            ("outlet", "FT12"),
+            ("FT12", "FC12"),
+            ("LT11", "LAH11"),
+        ],
+        changed("-//-> FV12", "-> FV12 (pneumatic)\nFV12"),
     ],
 )
 def test_diagrams_in_many_forms_are_right(text):

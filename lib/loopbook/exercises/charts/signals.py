@@ -76,6 +76,11 @@ _FILLING = {
 _NOTHING = ("", "-", "–", "none", "nothing", "no action", "no actions", "wait", "...", "/")
 
 
+#: Times as people say them: "1 min 40 s", "the time in Hold".
+_MINUTES_AND_SECONDS = re.compile(r"\b(\d{1,4}) ?min(?:utes?)?,? (?:and )?(\d{1,4}) ?s(?:ec(?:onds?)?)?\b")
+_TIME_IN = re.compile(r"\b(?:the )?(?:time|timer|clock)(?: spent)? (?:in|of) (?:step )?(\w+)\b", re.IGNORECASE)
+
+
 @dataclass(frozen=True)
 class Signals:
     """The signals of a plant: what a chart reads and what it sets.
@@ -135,6 +140,8 @@ class Signals:
             return "TRUE"
         if ":=" in line:
             raise Unreadable(":= assigns a value: expected a comparison, such as 'level >= 0.9'")
+        line = _MINUTES_AND_SECONDS.sub(lambda time: f"{60 * int(time[1]) + int(time[2])} s", line)
+        line = _TIME_IN.sub(lambda time: f"{time[1]}.T" if time[1].casefold() in steps else time[0], line)
         for pattern, sign in _WORDS:
             line = re.sub(rf"\b(?:{pattern})(?=\s|-?\d)", f" {sign} ", line, flags=re.IGNORECASE)
         tokens = self._known(list(_TOKEN.finditer(line)), step, steps)

@@ -22,7 +22,10 @@ _ARROW = re.compile(
     r"\s*(?:(?P<pneumatic>[-=]*\s*//\s*[-=]*>?|~+>|-*\s*\(?pneumatic\)?\s*-*>)|-*\s*\(?electrical\)?\s*-*>|[-=]+>|--+)\s*",
     re.IGNORECASE,
 )
-_SIGNS = str.maketrans({"–": "-", "—": "-", "−": "-", "→": "->", "⇒": "->", "\xa0": " "})
+_SIGNS = str.maketrans({"–": "-", "—": "-", "−": "-", "→": "->", "⇒": "->", "←": "<-", "⫽": "//", "\xa0": " "})
+_BACK = re.compile(r"(<\s*[-=~/]+(?:\s*//\s*-+)?)")
+#: What is said of a signal behind the instrument that it goes to.
+_NOTE = re.compile(r" \((pneumatic|electrical|setpoint|set point|measurement|signal|cascade)\)\s*$")
 _TAG = re.compile(r"([A-Za-z]{2,5})[\s_-]?(\d+)[\s_-]?([A-Ja-j]?)")
 _AT = re.compile(r"(?i)^(.+?)(?:\s*:\s*|\s+(?:measures(?: at| in)?|is in|sits in|acts on|at|in|on)\s+)(?:the )?(.+)$")
 #: What an instrument does, the strongest first.
@@ -82,12 +85,14 @@ class InstrumentDiagram(Kind):
         """Return the connections, each once, in an order of their own."""
         given = alone(answered(given))
         lines = [given] if isinstance(given, str) else in_a_row(given)
+        lines = [_from_pair(line) for line in lines or ()]
         if not lines or not all(isinstance(line, str) for line in lines):
             raise Unreadable(f"this is not a diagram: expected {self.expected}")
         if sum(map(len, lines)) > LONGEST:
             raise Unreadable(f"the text is very long: expected at most {LONGEST} characters")
         lines = [line.translate(_SIGNS) for line in lines]
         parts = [part.strip() for line in lines for part in re.split(r"[;\n]|,(?=[^)]*$)", line) if part.strip(" .")]
+        parts = _with_starts([_forwards(part) for part in parts])
         found = [one for number, part in enumerate(parts, start=1) for one in self._line(number, part)]
         if not found:
             raise Unreadable(f"the diagram is empty: expected {self.expected}")
@@ -108,8 +113,12 @@ class InstrumentDiagram(Kind):
             else:
                 bounds = [0, *(x for arrow in arrows for x in arrow.span()), len(part)]
                 texts = [part[begin:end] for begin, end in zip(bounds[::2], bounds[1::2], strict=True)]
-                names = [self._name(text) for text in texts]
-                kinds = [PNEUMATIC if arrow["pneumatic"] else ELECTRICAL for arrow in arrows]
+                notes = [_NOTE.search(text) for text in texts]
+                names = [self._name(_NOTE.sub("", text)) for text in texts]
+                kinds = [
+                    PNEUMATIC if arrow["pneumatic"] or (note and note[1] == "pneumatic") else ELECTRICAL
+                    for arrow, note in zip(arrows, notes[1:], strict=True)
+                ]
             return [self._connection(*pair) for pair in zip(names, names[1:], kinds, strict=False)]
         except Unreadable as problem:
             raise Unreadable(f"connection {number}, '{shortened(part, 50)}': {problem}") from None
@@ -340,3 +349,31 @@ def _article(tag):
 def _bare(text):
     words = re.sub(r"[\s_-]+", " ", text.casefold()).strip(" .:()[]'\"`").removeprefix("the ")
     return re.sub(r"\b(pipe|line)\b", "", words).strip() or words
+
+
+def _from_pair(line):
+    """A connection that is given as its two ends, and perhaps its kind, in a line of text."""
+    if isinstance(line, tuple | list) and 2 <= len(line) <= 3 and all(isinstance(end, str) for end in line):
+        return f"{line[0]} {'-//->' if PNEUMATIC in line[2:] else '->'} {line[1]}"
+    return line
+
+
+def _forwards(part):
+    """A line whose arrows all point back, turned round."""
+    if ">" in part or not _BACK.search(part):
+        return part
+    pieces = [piece if k % 2 == 0 else ("-//->" if "/" in piece or "~" in piece else "->")
+              for k, piece in enumerate(_BACK.split(part))]  # fmt: skip
+    return " ".join(piece.strip() for piece in reversed(pieces))
+
+
+def _with_starts(parts):
+    """The lines, where a name alone goes on from the start of the last arrow: "PT1 -> PC1, PAH1"."""
+    found: list[str] = []
+    for part in parts:
+        arrows = list(_ARROW.finditer(found[-1])) if found else []
+        if arrows and _TAG.fullmatch(part.strip(" .")):
+            begin = arrows[-2].end() if len(arrows) > 1 else 0
+            part = f"{found[-1][begin : arrows[-1].start()]} -> {part}"
+        found.append(part)
+    return found
