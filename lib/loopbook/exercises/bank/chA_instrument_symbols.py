@@ -42,8 +42,8 @@ def tag(
     ),
     loop=between(11, 49, reference=31, step=1),
 ):  # fmt: skip
-    """On a drawing there is an instrument with the tag {tag}. What does it measure, and is that modified? What is done
-    with it, and to which loop does the instrument belong?
+    """On a drawing there is the instrument {tag}. What does it measure, and is that modified? What is done with it, and
+    to which loop does it belong?
     """
     read = decode(letters)
     return answers(
@@ -59,6 +59,18 @@ def _(letters, loop):
     read = decode(letters)
     names = [f"{part.letter} says {part.meaning.partition(' (')[0]}" for part in read.parts]
     return {"tag": f"`{letters}{loop}`", "first": letters[0], "names": ", ".join(names)}
+
+
+@tag.picture
+def _(letters, loop):
+    """A part of a drawing: from a plant, in which something is measured, a line leads to the instrument
+    {letters}{loop}."""
+    layout = """
+        .       instrument  .
+        stream  Plant       product"""
+    parts = {"instrument": draw.instrument(f"{letters}{loop}"), "Plant": "Plant"}
+    line = {"measuring line": "Plant instrument"}
+    return draw.instrumentation_diagram(layout, "stream Plant product", "", parts, lines=line)
 
 
 @tag.mistake("That is what the D means as the first letter. Here it follows one.")
@@ -144,9 +156,12 @@ tag.hints(
 
 @tag.solution
 def _(letters, loop):
-    """From the left: {names}. The number {loop} is that of the loop, and all instruments of a loop have the same one.
+    """A tag is read from the left. The first letter says what is measured, and the number is that of the loop: all
+    instruments of a loop have the same one.
 
     ***
+
+    Letter by letter: {names}. The number is {loop}.
 
     So the measured quantity is {measured}, and the modifier: {modifier}. What is done with it: {done}. In one phrase,
     that is the {words}.
@@ -358,6 +373,22 @@ def _(first, watched):
 @open_loops.mistake("An indicator shows a value and does nothing about it. Which loops have a controller?")
 def _(first, lacking):
     return {"closed": [first + n - 1 for n in range(1, 5) if n != lacking]}
+
+
+def _with_the_open_one(kept):
+    """The mistake of counting the loop without a valve in the place of one of the two complete ones."""
+
+    def mistake(first, watched, lacking):
+        complete = [n for n in range(1, 5) if n not in (watched, lacking)]
+        return {"closed": [first + n - 1 for n in sorted([lacking, complete[kept]])]}
+
+    return mistake
+
+
+for _kept in (0, 1):
+    open_loops.mistake("One of these has a controller that acts on nothing. And which loop has all three parts, too?")(
+        _with_the_open_one(_kept)
+    )
 
 
 @open_loops.mistake("Not all of them are: look in each loop for a transmitter, a controller and a valve.")
@@ -657,10 +688,39 @@ def _(quantity, n, alarm):
     return {"tags": [f"{quantity}T{n + 1}", *loop_tags(quantity, n, alarm)[1:]]}
 
 
-@whole_loop.mistake("A V behind the letter of the quantity is the valve. Nothing controls the valve's C here.")
+@whole_loop.mistake("A V behind the letter of the quantity is the valve. What would a C behind it say?")
 def _(quantity, n, alarm):
     first, second, _, *others = loop_tags(quantity, n, alarm)
     return {"tags": [first, second, f"{quantity}VC{n}", *others]}
+
+
+@whole_loop.mistake("The loop measures and decides. With what does it act?")
+def _(quantity, n, alarm):
+    return {"tags": [tag for k, tag in enumerate(loop_tags(quantity, n, alarm)) if k != 2]}
+
+
+@whole_loop.mistake("The machine is stopped, but nobody has been told before. What sounds at the first limit?")
+def _(quantity, n, alarm):
+    return {"tags": [tag for k, tag in enumerate(loop_tags(quantity, n, alarm)) if k != 3]}
+
+
+@whole_loop.mistake("All instruments of a loop have the same number. One of yours has the next one.")
+def _(quantity, n, alarm):
+    first, second, _, *others = loop_tags(quantity, n, alarm)
+    return {"tags": [first, second, f"{quantity}V{n + 1}", *others]}
+
+
+@whole_loop.mistake("Alarm and switch are at two limits on one side. Which side does each of your tags name?")
+def _(quantity, n, alarm):
+    other = "L" if alarm == "H" else "H"
+    return {"tags": [*loop_tags(quantity, n, alarm)[:4], f"{quantity}S{2 * other}{n}"]}
+
+
+@whole_loop.mistake("Alarm and switch are at two limits on one side. Which side does each of your tags name?")
+def _(quantity, n, alarm):
+    first, second, third, _, last = loop_tags(quantity, n, alarm)
+    other = "L" if alarm == "H" else "H"
+    return {"tags": [first, second, third, f"{quantity}A{other}{n}", last]}
 
 
 @whole_loop.mistake("The letter of the limit is the last one of a tag.")
@@ -678,7 +738,7 @@ whole_loop.hints(
     "Read the sentence and underline each device. How many are there, and which numbers do they have?",
     "All begin with the letter of the quantity and end with the same number. Between them: T, what the controller is "
     "(it also indicates), V, an A with the side, and an S with the side, twice for the limit beyond the first one.",
-    "The transmitter is {transmitter}; the side is {side}, and its letter is {letter}. Four more tags.",
+    "The transmitter is {transmitter}. What is watched may become {side}: that is the letter {letter}. Four more tags.",
 )
 
 
@@ -1234,8 +1294,16 @@ def _(quantity, pipe, a, side):
 def _(quantity, pipe, a, side):
     """A vessel with its inlet and its outlet: a temperature is measured in the vessel, its controller acts on a valve
     in the inlet by a pneumatic signal, and an indicator shows it."""
-    kind = asked_diagram(quantity, pipe, a, side)
-    return drawn(connections(kind.read(other_loop(a))[0]), PROCESS)
+    n = a - 4
+    layout = f"""
+        .   1      TC{n}   .      .    .
+        .   .      .       .      .    .
+        .   .      TT{n}   .      .    TI{n}
+        in  TV{n}  vessel  vessel out  ."""
+    parts = {f"TV{n}": draw.control_valve(f"TV{n}"), "vessel": draw.vessel()}
+    names = {"in": "inlet", "out": "outlet"}
+    signals, air = f"vessel TT{n} TC{n}, TT{n} TI{n}", {"pneumatic": f"TC{n} 1 TV{n}"}
+    return draw.instrumentation_diagram(layout, f"in TV{n} vessel out", signals, parts, names, lines=air)
 
 
 @drawing.solution_picture
