@@ -332,7 +332,7 @@ JUDGED = [
     (poles([-1 + 2j, -1 - 2j]), "-1 + 2j", MISTAKE, "its mirror image is missing"),
     (poles([-1 + 2j, -1 - 2j]), "1 ± 2j", MISTAKE, "signs"),
     (poles([-2, -2]), "-2 (triple)", WRONG, "also more"),
-    (poles([-1, -5]), "-1,5", WRONG, "one or more are missing"),
+    (poles([-1, -5]), "-1,5", WRONG, "none of these is right, and there should be more"),
     # rows and tables in a text
     *(
         (A, text, RIGHT, "right")

@@ -25,7 +25,7 @@ JUDGED = [
     (TRUE, True, RIGHT, "right"),
     (STEPS, {"s2", "s4"}, RIGHT, "right"),
     (STEPS, "S2", WRONG, "missing"),
-    (STEPS, ["S2", "S4", "S1"], WRONG, "but also more"),
+    (STEPS, ["S2", "S4", "S1"], WRONG, "but also something that does not belong there"),
     (STEPS, [], WRONG, "empty"),
     (STEPS, ["S2", "S9"], UNJUDGED, "none of the words"),
     (ROUTE, ["empty", "heat", "fill"], MISTAKE, "opposite order"),

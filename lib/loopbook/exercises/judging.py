@@ -104,13 +104,16 @@ def _judged(kind, given, mistakes, background):
 
 def _explained(kind, answer, mistakes, background):
     """The same of an answer that is not right."""
+    background = background or diagnoses.Background()
+    if found := diagnoses.swapped(kind, answer, background):
+        return MISTAKE, found.says, False
     for known in (mistakes, kind.mistakes()):
         near = [(kind.off_by(answer, wrong), sentence) for sentence, wrong in known if kind.is_value(answer, wrong)]
         if near:  # the nearest one, of several the first
             return MISTAKE, min(near, key=lambda one: one[0])[1], False
     try:
         with np.errstate(all="ignore"):
-            found = diagnoses.explained(kind, answer, background or diagnoses.Background())
+            found = diagnoses.explained(kind, answer, background)
     except Unreadable:
         raise
     except Exception:  # whatever a diagnosis stumbles over, the answer is wrong

@@ -184,10 +184,12 @@ class Question(Showing):
     def _whose(self, given):
         """Who has the numbers with which all answers would be right, of those for whom the exercise was shown.
 
-        A word, a design, or a number of one digit is right for many: it alone does not tell whose numbers these are.
+        A word, a design, or a single number is right for many: it alone does not tell whose numbers these are.
         """
-        telling = [name for name in given if self._tells(name, given[name])]
-        if not telling:
+        wrong = [name for name in given if self._tells(name, given[name])]
+        if len(wrong) < len([name for name in given if self._is_specific(name)]):
+            return None  # a part is right: then these are no numbers of somebody else
+        if not wrong or (len(wrong) == 1 and type(self.key[wrong[0]]) is Number):
             return None
         for student in students(self.exercise.number):
             other = self.exercise.question(student)
@@ -197,10 +199,10 @@ class Question(Showing):
 
     def _tells(self, name, given):
         """Whether a wrong answer to a quantity tells for whose numbers it would be right."""
-        kind = self.key[name]
-        if not isinstance(kind, Number | Numbers | Poles | Settings | Expression) or is_right(kind, given):
-            return False
-        return type(kind) is not Number or len(f"{kind.read(given)[0]:g}".strip("-0.").replace(".", "")) > 1
+        return self._is_specific(name) and not is_right(self.key[name], given)
+
+    def _is_specific(self, name):
+        return isinstance(self.key[name], Number | Numbers | Poles | Settings | Expression)
 
     @property
     def rungs(self) -> list[str]:

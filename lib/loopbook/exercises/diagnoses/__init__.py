@@ -14,9 +14,9 @@ import importlib
 import pkgutil
 
 from loopbook.exercises.diagnoses.background import Background
-from loopbook.exercises.diagnoses.finding import Finding, explained
+from loopbook.exercises.diagnoses.finding import Finding, explained, swapped
 
 for _module in pkgutil.iter_modules(__path__):  # a module for a kind of answers registers by itself
     importlib.import_module(f"{__name__}.{_module.name}")
 
-__all__ = ["Background", "Finding", "explained"]
+__all__ = ["Background", "Finding", "explained", "swapped"]

@@ -192,9 +192,10 @@ def _is_right_at(kind, answer, limit):
     """Whether a formula has the values of the key at a limit, where that is neither zero nor infinite."""
     usual = {name: (1 + 0.1 * place) * np.roll(_USUAL, place) for place, name in enumerate(kind.symbols)} | limit
     with np.errstate(all="ignore"):
-        key, found = (np.abs(formula(**usual)) for formula in (kind.key, answer))
-    is_finite = np.all(np.isfinite(key) & (key > 1e-3) & (key < 1e3))
-    return bool(is_finite and np.all(np.abs(found - key) <= 1e-3 * key))
+        key, found = (formula(**usual) for formula in (kind.key, answer))
+        size = np.abs(key)
+        is_finite = np.all(np.isfinite(key) & (size > 1e-3) & (size < 1e3))
+        return bool(is_finite and np.all(np.abs(found - key) <= 1e-3 * size))
 
 
 def _right_part(kind, answer):
@@ -267,12 +268,15 @@ def _facts(formula: Formula, kind: Expression) -> dict[str, Any]:
     if delay is None:
         return {}
     scale = _scale((of_key, values), delay)
+    rest = []
     for exact in dict.fromkeys([0.0 if delay == 0 else float(f"{delay:.{digits}g}") for digits in range(1, 7)]):
         above, below = _rational(lambda s, exact=exact: values(s) * np.exp(exact * s), scale)
         if below is not None and (exact == 0) == (delay == 0):
-            break
-    else:
+            rest.append((exact, above, below))
+    if not rest:
         return {"dead time": delay}
+    # what a rounded dead time leaves has many poles and zeros that are none
+    exact, above, below = min(rest, key=lambda one: len(one[2]))
     poles, zeros = _roots(below, scale), _roots(above, scale)
     small = 1e-6 / scale
     integrators = int(np.sum(np.abs(poles) < small)) - int(np.sum(np.abs(zeros) < small))

@@ -8,6 +8,8 @@ import itertools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 if TYPE_CHECKING:
     from loopbook.exercises.diagnoses.background import Background
     from loopbook.exercises.kinds import Kind
@@ -38,6 +40,18 @@ def explained(kind: Kind, answer: Any, background: Background) -> Finding | None
         background: what else is known of the exercise.
     """
     return recomputed(kind, answer, background)
+
+
+def swapped(kind: Kind, answer: Any, background: Background) -> Finding | None:
+    """Return that each of two answers is right for the other."""
+    if not isinstance(kind.key, float | np.ndarray) or kind.agrees(answer):
+        return None
+    for name, other in background.key.items():
+        if type(other) is type(kind) and name != background.name and not kind.agrees(other.key):
+            one = background.answered(name)
+            if one and other.agrees(answer) and kind.agrees(one.answer):
+                return Finding(f"this and {one.words}, are interchanged")
+    return None
 
 
 def of_another(kind: Kind, answer: Any, background: Background) -> Finding | None:

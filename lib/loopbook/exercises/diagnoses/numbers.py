@@ -26,6 +26,8 @@ NARROWEST, WIDEST = 0.001, 0.006
 ENOUGH_DIGITS, NEAREST, NEAR_ENOUGH, EXACTLY = 3, 0.0004, 0.0021, 1e-6
 #: What follows from a rounded number is recognised within this fraction at most.
 CARRIED = 0.012
+#: Whole numbers without unit up to this are taken for counts.
+MOST = 12
 #: A factor of a rule is not larger, nor one divided by it smaller.
 MOST_TIMES = 20
 #: An answer that is off by less than this is in the neighbourhood of the right one.
@@ -82,10 +84,10 @@ class Case:
     scaling: Callable[[], Scaling] = lambda: Scaling()
     shown: Sequence[float] = ()
 
-    @property
-    def is_counted(self) -> bool:
-        """Whether the number is a count, or exact."""
-        return self.within == 0
+    def is_count(self, answer: float) -> bool:
+        """Whether the number is exact, or both it and an answer look like small counts."""
+        whole = self.unit == "" and all(float(one).is_integer() and abs(one) <= MOST for one in (self.key, answer))
+        return self.within == 0 or whole
 
 
 @dataclass(frozen=True)
@@ -97,12 +99,14 @@ class Mistake:
         wrongs: function of a `Case` that gives the wrong values, each with its sentence.
         is_rare: whether it is made so seldom that a number of two digits is more likely equal to it by chance.
         is_rarest: whether even the very value says nothing where it has few digits.
+        is_plain: whether it is made with a number that is as near to the right one as is asked.
     """
 
     name: str
     wrongs: Callable[[Case], Iterator[Wrong]]
     is_rare: bool = False
     is_rarest: bool = False
+    is_plain: bool = False
 
 
 def found_in(answer: float, case: Case, agrees: Callable[[float], bool] | None = None) -> Finding | None:
@@ -114,14 +118,17 @@ def found_in(answer: float, case: Case, agrees: Callable[[float], bool] | None =
     >>> found_in(17.9, case)
     """
     agrees = agrees or (lambda wrong: abs(wrong - case.key) <= case.within * abs(case.key))
-    if case.is_counted:  # nearly any count is something of the givens by chance
+    if case.is_count(answer):  # nearly any count is something of the givens by chance
         return _in_tables(answer, case, agrees, (TABLE,))
     found = (
         _in_tables(answer, case, agrees, (TABLE,))
         or _carried_on(answer, case, agrees)
         or _in_tables(answer, case, agrees, (GIVENS,))
+        or _rounded(answer, case)
         or _measured(answer, case)
-        or _in_tables(answer, case, agrees, (FACTORS, MORE))
+        or _in_tables(answer, case, agrees, (FACTORS,))
+        or _plain(answer, case, agrees)
+        or _in_tables(answer, case, agrees, (MORE,))
     )
     if not found and answer * case.key < 0:
         beside = _in_tables(-answer, case, agrees, (TABLE, GIVENS, FACTORS))
@@ -142,6 +149,15 @@ def _in_tables(answer, case, agrees, tables):
             for mistake, wrong, says in wrongs:
                 if is_recognised(answer, wrong, mistake.is_rare, narrow, mistake.is_rarest):
                     return Finding(says)
+    return None
+
+
+def _plain(answer, case, agrees):
+    """A sign, a unit or an inverse in a number that is only as near to the right one as is asked."""
+    for mistake in TABLE:
+        for wrong, says in mistake.wrongs(case) if mistake.is_plain else ():
+            if math.isfinite(wrong) and not agrees(wrong) and abs(answer - wrong) <= case.within * abs(wrong):
+                return Finding(says)
     return None
 
 
@@ -382,9 +398,9 @@ def _two_givens(case):
 
 TABLE = (
     Mistake("interchanged", _other),
-    Mistake("sign", _sign),
-    Mistake("unit", _unit),
-    Mistake("inverse", _inverse),
+    Mistake("sign", _sign, is_plain=True),
+    Mistake("unit", _unit, is_plain=True),
+    Mistake("inverse", _inverse, is_plain=True),
     Mistake("decibel", _decibel),
     Mistake("complement", _complement),
 )
@@ -420,6 +436,15 @@ def rounded(answer: float, key: float) -> bool:
     return abs(answer) < abs(key) + half_unit and abs(answer - key) < 2 * half_unit and answer * key > 0
 
 
+def _rounded(answer, case):
+    key, digits = case.key, _digits(answer)[0]
+    if not (key and rounded(answer, key) and abs(answer / key - 1) < ROUNDED):
+        return None
+    places = f"{digits} digit{'' if digits == 1 else 's'}"
+    says = f"that is rounded to {places}, but the accuracy asked for is {100 * case.within:g}\N{NO-BREAK SPACE}%"
+    return Finding(f"{says}: keep more digits, here and on the way", is_mistake=False)
+
+
 def in_general(answer: float, case: Case) -> Finding:
     """Return what is true of any wrong number.
 
@@ -428,13 +453,11 @@ def in_general(answer: float, case: Case) -> Finding:
     >>> in_general(19, Case(12, "s", "the time, in s")).says
     'not right, though of about the right size; asked: the time, in s'
     """
-    key, digits = case.key, _digits(answer)[0]
-    if key and rounded(answer, key) and abs(answer / key - 1) < ROUNDED:
-        places = f"{digits} digit{'' if digits == 1 else 's'}"
-        says = f"that is rounded to {places}, but the accuracy asked for is {100 * case.within:g}\N{NO-BREAK SPACE}%"
-        return Finding(f"{says}: keep more digits, here and on the way", is_mistake=False)
+    key = case.key
+    if found := _rounded(answer, case):
+        return found
     is_counted = case.unit == "" and float(key).is_integer() and float(answer).is_integer()
-    if key and not (is_counted or case.is_counted) and not case.answered and abs(answer / key - 1) < NEARBY:
+    if key and not (is_counted or case.is_count(answer)) and not case.answered and abs(answer / key - 1) < NEARBY:
         says = "that is off by a few percent, which is more than the rounding of a result"
         says += ": is a small term missing, or a value rounded or read off too coarsely on the way?"
         return Finding(says, is_mistake=False)
@@ -473,9 +496,9 @@ def size_of(answer: float, case: Case) -> str:
     if answer * key < 0:
         return ": the sign is not, nor is the size"
     steps = math.floor(math.log2(abs(answer))) - math.floor(math.log2(abs(key)))
-    if abs(steps) < 2:
+    if steps == 0:
         return ", though of about the right size"
-    much = "much " if abs(steps) > 4 else ""
+    much = "much " if abs(steps) > 3 else ""
     return f": {much}too {'large' if steps > 0 else 'small'}"
 
 

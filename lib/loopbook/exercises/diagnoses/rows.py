@@ -67,7 +67,8 @@ def _(kind: Poles, answer: Any, background: Background) -> Finding | None:
         more = "all that are asked for are there, but also more" if len(right) == len(key) else "these are too many"
         return Finding("; ".join(part for part in (more, slip) if part), is_mistake=False)
     if wrong:
-        return Finding("; ".join(part for part in ("one or more are missing", counted, slip) if part), bool(slip))
+        missing = "one or more are missing" if right else "none of these is right, and there should be more"
+        return Finding("; ".join(part for part in (missing, counted, slip) if part), bool(slip))
     conjugate = any(np.isclose(value, np.conj(key[k])) for k in right.values() if key[k].imag for value in left)
     if conjugate:
         return Finding("what is there is right, but a complex value never comes alone: its mirror image is missing")

@@ -23,6 +23,7 @@ from loopbook.exercises.kinds import Settings
 from loopbook.exercises.kinds.numeric import near
 from loopbook.exercises.kinds.settings import NAMES, other_form
 from loopbook.exercises.reading import listed
+from loopbook.pid import PID
 
 
 @explained.register
@@ -31,9 +32,11 @@ def _(kind: Settings, answer: Any, background: Background) -> Finding | None:
     answer = kind.in_form_of_key(answer)
     if answer is None:
         return mistake
-    near = kind.parts_near(answer)
-    right = [name for name in NAMES if near[name] and getattr(kind.key, name) not in (0, sympy.oo)]
-    wrong = [name for name in NAMES if not near[name]]
+    if kind.like(PID(kind.key.Ti, kind.key.Kp, kind.key.Td, kind.key.Tf)).agrees(answer):
+        return Finding("Kp and Ti are interchanged")
+    had = kind.parts_near(answer)
+    right = [name for name in NAMES if had[name] and getattr(kind.key, name) not in (0, sympy.oo)]
+    wrong = [name for name in NAMES if not had[name]]
     says = [f"{listed(right)} {'are' if right[1:] else 'is'} right"] if right else []
     if mistake:
         return Finding("; ".join([*says, mistake.says]))

@@ -48,8 +48,7 @@ def _(kind: Words, answer: list[str], background: Background) -> Finding | None:
     if not wrong and common.total() < len(kind.key):
         return Finding("what is there is right, but something is missing", is_mistake=False)
     if common.total() == len(kind.key):
-        more = f": {listed(wrong)} {_belong(wrong)} not" if wrong else ""
-        return Finding(f"everything asked for is there, but also more{more}", is_mistake=False)
+        return Finding("everything asked for is there, but also something that does not belong there", is_mistake=False)
     if not right:
         return Finding("none of them belongs there", is_mistake=False)
     says = f"{listed(right)} {'belongs' if len(right) == 1 else 'belong'} there, {listed(wrong)} {_belong(wrong)} not"

@@ -107,7 +107,8 @@ class Number(Kind):
             return abs(answer) <= NOTHING * abs(self.key)
         if self.within == 0:
             return near(answer, wrong, 0)
-        return near(answer, wrong, max(self.within, _half_unit(answer, wrong), ROUNDED / 2))
+        rounding = max(_half_unit(answer, wrong), ROUNDED / 2)
+        return near(answer, wrong, rounding if self.within <= ROUNDED else self.within)
 
     def off_by(self, answer: float, wrong: Any) -> float:
         """How far an answer is from the value of a mistake."""
