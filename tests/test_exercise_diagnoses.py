@@ -130,6 +130,8 @@ WITHOUT_GIVENS = [
     (poles([-4, -2]), [-0.25, -2], MISTAKE, "1 of 2 is right; one is the inverse"),
     (poles([-1, -2]), [-1, -2.05], MISTAKE, "off by a few percent"),
     (expression("a/(b + c)"), "a/(b - c)", MISTAKE, "one sign is wrong: look at the term with c"),
+    (transfer_function("90*K_c/(260*s + 1 + 90*K_c)"), "7.2/(260*s+8.2)", MISTAKE, "right if K_c is 0.08: leave K_c"),
+    (expression("a*b/(a + c)"), "-3*b/(c - 3)", MISTAKE, "that is right if a is -3"),
     (expression("a/(b + c)"), "a/b", MISTAKE, "a term is missing: look for one with c"),
     (expression("a/(b + c)"), "a*(b + c)", MISTAKE, "b and c multiplies where it should divide"),
     (expression("a/(b + c)"), "b/(a + c)", MISTAKE, "a and b are interchanged"),
@@ -368,6 +370,33 @@ def test_numbers_that_belong_together(given, name, says):
     assert says in said[name], said
     first = next(iter(given))
     assert FITS not in said[first]
+
+
+@exercise("1.3", title="A loop", points=1)
+def loop(K=between(1, 9, reference=3), T=between(10, 90, "s", reference=40), H=between(0.1, 0.9, reference=0.4)):
+    """A loop of {K}, {T} and {H}."""
+    return answers(
+        M=transfer_function(K / (T * s + 1 + K * H)),
+        gain=number(K / (1 + K * H), "", "the gain of the loop"),
+        T_M=number(T / (1 + K * H), "s", "the time constant of the loop"),
+        y=time_function(K * (1 - sympy.exp(-sympy.Symbol("t") / T)), until=200, unit="K"),
+        end=number(K, "K", "the end"),
+        M_0=expression("K/(1 + K*H)"),
+    )
+
+
+@pytest.mark.parametrize(
+    ("given", "name"),
+    [
+        ({"M": "3/(40*s + 1 - 1.2)", "gain": -15}, "gain"),
+        ({"M": "3/(40*s + 1 + 3)", "T_M": 10}, "T_M"),
+        ({"y": "7.2*(1 - exp(-t/40))", "end": 7.2}, "end"),
+        ({"M_0": "K/(1 + K + H)", "gain": 0.682}, "gain"),
+    ],
+)
+def test_a_number_may_belong_to_a_wrong_formula(given, name):
+    said = {one.name: one.says for one in loop.question().check(**given).verdicts}
+    assert FITS in said[name], said
 
 
 def test_a_small_number_is_not_nothing():

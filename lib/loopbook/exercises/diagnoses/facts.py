@@ -40,7 +40,7 @@ def of(kind: Expression, answer: Any, background: Background) -> Finding | None:
 def _(kind: TransferFunction, answer: Any, background: Background) -> Finding | None:
     if constant := _constant(kind, answer, background):
         return constant
-    key, found = _facts(kind.key, kind), _facts(answer, kind)
+    key, found = facts_of(kind.key, kind), facts_of(answer, kind)
     if found and key and found.get("poles") is not None and key.get("poles") is not None:
         poles, right = found["poles"], key["poles"]
         if poles.size == right.size > 0 and np.all(right != 0) and not _same(poles, right, kind):
@@ -254,7 +254,7 @@ def _rounded(value, size):
 # ---------------------------------------------------------------------------------------- facts of transfer functions
 
 
-def _facts(formula: Formula, kind: Expression) -> dict[str, Any]:
+def facts_of(formula: Formula, kind: Expression) -> dict[str, Any]:
     """Dead time, static gain, poles and zeros; of symbols other than s, some values are taken."""
     others = {name: 0.7 + 0.37 * place for place, name in enumerate(sorted(kind.symbols)) if name != "s"}
 

@@ -20,6 +20,8 @@ from loopbook.exercises.diagnoses.finding import Finding, explained, recomputed
 from loopbook.exercises.kinds import Expression
 from loopbook.exercises.reading import listed
 
+#: A number in place of a symbol is sought from this power of ten on, and is told in digits that make such a difference.
+LEAST_SIZE, SHORTENED = -6, 1e-3
 #: So many changes of the key are tried at most.
 MOST_CHANGES = 250
 #: A changed key that differs from the answer by more than this, at most of a few points, is not looked at closely.
@@ -33,11 +35,55 @@ Change = tuple[ast.expr, str]
 @explained.register
 def _(kind: Expression, answer: Any, background: Background) -> Finding | None:
     return (
-        changed_in_one_place(kind, answer, _likely)
+        with_a_number(kind, answer)
+        or changed_in_one_place(kind, answer, _likely)
         or recomputed(kind, answer, background)
         or changed_in_one_place(kind, answer, _possible)
         or facts.of(kind, answer, background)
     )
+
+
+def with_a_number(kind: Expression, answer: Any) -> Finding | None:
+    """Return the symbol of the key in whose place the answer has a number, and which one."""
+    if not isinstance(answer, formulas.Formula):
+        return None
+    used, there = ({node.id for node in _names(one.tree)} - {*_VARIABLES} for one in (kind.key, answer))
+    if len(used - there) != 1:
+        return None
+    (name,) = used - there
+    points = {one: np.ravel(values)[7:60:9, None] for one, values in kind.points().items() if one != name}
+    for sign in (1, -1):
+        value = sign * _best(lambda sizes, sign=sign: kind.key(**points, **{name: sign * sizes}), answer(**points))
+        if not 10 ** (LEAST_SIZE + 1) < abs(value) < 10 ** -(LEAST_SIZE + 1):  # none is the best, or an endless one
+            continue
+        short = [float(f"{value:.{digits}g}") for digits in range(1, 6)]
+        for number in short:
+            wrong = copy.copy(kind)
+            wrong.key = kind.key.with_tree(_with_number(kind.key.tree, name, number))
+            if number != 1 and abs(number / value - 1) < SHORTENED and wrong.agrees(answer):
+                return Finding(f"that is right if {name} is {number:g}: leave {name} as a symbol")
+    return None
+
+
+def _best(key, found):
+    """The size with which a key comes nearest to what is found at some points, in finer and finer steps."""
+    low, high = LEAST_SIZE, -LEAST_SIZE
+    for _ in range(5):
+        sizes = np.linspace(low, high, 121)
+        with np.errstate(all="ignore"):
+            off = np.max(np.abs(key(10**sizes) / found - 1), axis=0)
+        best, step = sizes[np.argmin(np.where(np.isfinite(off), off, np.inf))], sizes[1] - sizes[0]
+        low, high = best - 2 * step, best + 2 * step
+    return float(10**best)
+
+
+def _with_number(tree, name, number):
+    """The tree with a number in place of a symbol."""
+    for node in _names(tree):
+        if node.id == name:
+            tree = _with(tree, node, ast.Constant(number))
+            return _with_number(tree, name, number)
+    return tree
 
 
 def changed_in_one_place(kind: Expression, answer: Any, changes: Callable[..., Iterator[Change]]) -> Finding | None:

@@ -16,6 +16,7 @@ from decimal import Decimal
 from loopbook.exercises import units
 from loopbook.exercises.diagnoses.background import Amount, Background, follows
 from loopbook.exercises.diagnoses.finding import Finding, explained
+from loopbook.exercises.diagnoses.own_formulas import of_formulas
 from loopbook.exercises.kinds import Kind, Number
 from loopbook.exercises.kinds.numeric import in_unit
 
@@ -164,9 +165,9 @@ def _plain(answer, case, agrees):
 def _carried_on(answer, case, agrees):
     """Whether a number follows, by the right way, from a wrong one before it, which may be rounded."""
     half_units = [_digits(answered)[1] / abs(answered) for _, answered in case.answered if answered]
-    if not half_units or not answer:
+    if not answer:
         return None
-    within = min(_digits(answer)[1] / abs(answer) + max(half_units), CARRIED)
+    within = min(_digits(answer)[1] / abs(answer) + max(half_units, default=0), CARRIED)
     for wrong, says in itertools.chain(_follows(case), case.carried()):
         if math.isfinite(wrong) and not agrees(wrong) and abs(answer - wrong) <= max(within, NARROWEST) * abs(wrong):
             return Finding(says, is_mistake=False)
@@ -599,7 +600,10 @@ def _(kind: Number, answer: float, background: Background) -> Finding:
         givens=background.givens,
         changed=lambda likely: numbers(background.changed_keys(likely)),
         answered=wrong_before(background),
-        carried=lambda: numbers(background.carried_on()),
+        carried=lambda: itertools.chain(
+            ((own, follows(words)) for words, own in of_formulas(kind.key, background)),
+            numbers(background.carried_on()),
+        ),
         scaling=functools.cache(
             lambda: scaling(background, kind.key, kind.unit, lambda keys: keys[background.name].key)
         ),

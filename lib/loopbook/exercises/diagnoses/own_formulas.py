@@ -1,0 +1,63 @@
+"""Numbers that belong to a formula: what follows from the reader's own one, which is not right."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from loopbook.exercises.diagnoses.background import Answered, Background
+from loopbook.exercises.diagnoses.facts import facts_of
+from loopbook.exercises.formulas import Formula
+from loopbook.exercises.kinds import Expression, TimeFunction, TransferFunction
+
+#: A number belongs to a formula if it is this near to what the right formula gives.
+SAME = 1e-4
+#: So many ways to put givens into a formula are tried at most.
+MOST_WAYS = 400
+
+
+def of_formulas(key: float, background: Background) -> Iterator[tuple[str, float]]:
+    """What a number would be by each wrong formula of the reader's, and that formula in words.
+
+    Arguments:
+        key: the number, which tells how it belongs to the right formula.
+        background: with the formulas that are asked for, and what the reader has for them.
+    """
+    for name, kind in background.key.items():
+        if name != background.name and isinstance(kind, Expression):
+            one = background.answered(name)
+            if one and isinstance(one.answer, Formula) and not one.is_right:
+                for right, own in _pairs(one, background):
+                    if math.isfinite(own) and abs(right - key) <= SAME * abs(key):
+                        yield one.words, own
+
+
+def _pairs(one: Answered, background: Background) -> Iterator[tuple[float, float]]:
+    """Numbers of the right formula, and the same ones of the reader's."""
+    kind, answer = one.kind, one.answer
+    if type(kind) is TimeFunction:
+        times = np.array([1e-9, 1e3]) * kind.until
+        yield from zip(_real(kind.key, t=times), _real(answer, t=times), strict=True)
+    elif type(kind) is TransferFunction and kind.symbols == ["s"]:
+        right, own = facts_of(kind.key, kind), facts_of(answer, kind)
+        for fact in right.keys() & own.keys():
+            first, other = (np.atleast_1d(facts[fact]) for facts in (right, own))
+            if first.size == other.size == 1 and not (first.imag or other.imag):
+                yield float(first[0].real), float(other[0].real)
+                if fact == "poles" and first[0] and other[0]:
+                    yield float(-1 / first[0].real), float(-1 / other[0].real)
+    elif type(kind) is Expression:
+        givens = [given.value for given in background.givens]
+        ways = list(itertools.islice(itertools.permutations(givens, len(kind.symbols)), MOST_WAYS))
+        if ways:
+            values = dict(zip(kind.symbols, np.array(ways, float).T, strict=True))
+            yield from zip(_real(kind.key, **values), _real(answer, **values), strict=True)
+
+
+def _real(formula, **values):
+    with np.errstate(all="ignore"):
+        found = np.broadcast_to(formula(**values), np.shape(next(iter(values.values()), ())))
+    return np.where(np.abs(found.imag) < SAME * np.abs(found), found.real, np.nan).ravel().tolist()
