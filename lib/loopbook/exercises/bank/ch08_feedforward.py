@@ -32,6 +32,11 @@ def _hot_flows(T_SP, T_c, T_h, before, more):
     return right, too_far_down, upside_down, more * (T_SP - T_c) / (T_h - T_SP)
 
 
+def _near(wrong, right, by=0.03):
+    """Whether one value can be taken for the other."""
+    return abs(float(wrong) - float(right)) <= by * abs(float(right))
+
+
 def _apart(values):
     """Whether no two of the values can be taken for one another."""
     return all(abs(x - y) > 0.03 * abs(x) for x, y in itertools.permutations(values, 2))
@@ -65,7 +70,9 @@ def wash_water(
     return answers(
         w_h=expression(_hot_flow(), "the feedforward as a formula"),
         w_new=number(_hot_flows(T_SP, T_c, T_h, before, more)[0], "kg/s", "the new hot flow"),
-        T_without=number((hot * T_h + cold * T_c) / (hot + cold), "°C", "the temperature without feedforward"),
+        T_without=number(
+            (hot * T_h + cold * T_c) / (hot + cold), "°C", "the temperature without feedforward", within=0.005
+        ),
     )
 
 
@@ -111,7 +118,7 @@ def _(T_SP, T_c, T_h, before, more):
 def _(T_SP, T_c, T_h, before, more):
     hot = before * (T_SP - T_c) / (T_h - T_SP)
     mixed = (hot * T_h + (before + more) * T_c) / (hot + before + more)
-    return {"T_without": (T_h + T_c) / 2} if abs(mixed - (T_h + T_c) / 2) > 2 else {}
+    return {"T_without": (T_h + T_c) / 2} if abs(mixed - (T_h + T_c) / 2) > 0.01 * mixed else {}
 
 
 @wash_water.picture
@@ -125,6 +132,25 @@ def _(T_SP, T_c, T_h):
     names = {"w_c": rf"$w_c$, ${T_c}$ °C", "w_h": rf"$w_h$, ${T_h}$ °C", "out": rf"${T_SP}$ °C", "T_SP": "$T_{SP}$"}
     parts = {"V": diagrams.control_valve(), "F": "Feed-\nforward"}
     return diagrams.instrumentation_diagram(layout, "w_c 1 2 out, w_h V 3 2", "1 FT F V, T_SP F", parts, names)
+
+
+@wash_water.mistake("That is the hot flow from before. How large is the cold flow now?")
+def _(T_SP, T_c, T_h, before):
+    return {"w_new": before * (T_SP - T_c) / (T_h - T_SP)}
+
+
+@wash_water.mistake("Heat counts by temperature *differences*: by how much does each of the two flows change?")
+def _(T_SP, T_c, T_h, before, more):
+    w_c, setpoint, hot = symbols("w_c T_SP T_h")
+    wrong = (before + more) * T_SP / T_h
+    is_near = _near(wrong, _hot_flows(T_SP, T_c, T_h, before, more)[0])
+    return {"w_h": w_c * setpoint / hot} | ({} if is_near else {"w_new": wrong})
+
+
+@wash_water.mistake("By what is the sum divided in a mean: by the flows of before, or by those that are mixed?")
+def _(T_SP, T_c, T_h, before, more):
+    hot = before * (T_SP - T_c) / (T_h - T_SP)
+    return {"T_without": (hot * T_h + (before + more) * T_c) / (hot + before)}
 
 
 wash_water.hints(
@@ -200,6 +226,8 @@ def _force(inertia=1, friction=1, wind=1):
     "The wind pushes the trolley back, so the motor needs more force and not less. Look at the sign of $F_w$."
 )
 def _(m, D, v, rise, F_w):
+    if _near(D * v, F_w):  # the two cancel, as if both had been forgotten
+        return {"F_f": _force(wind=-1)}
     return {"F_f": _force(wind=-1), "F_rise": m * v / rise + D * v - F_w, "F_after": D * v - F_w}
 
 
@@ -209,13 +237,16 @@ def _(D, v, F_w):
 
 
 @trolley.mistake("The friction is missing: what holds the trolley back even at a constant speed and without wind?")
-def _():
-    return {"F_f": _force(friction=0)}
+def _(m, D, v, rise, F_w):
+    if _near(D * v, 2 * F_w):  # the wrong sign of the wind makes the same forces
+        return {"F_f": _force(friction=0)}
+    return {"F_f": _force(friction=0), "F_rise": m * v / rise + F_w} | ({} if _near(D * v, F_w) else {"F_after": F_w})
 
 
 @trolley.mistake("This is the feedforward from the setpoint alone. The disturbance is measured, so use it as well.")
-def _():
-    return {"F_f": _force(wind=0)}
+def _(m, D, v, rise, F_w):
+    numbers = {} if _near(D * v, F_w) else {"F_rise": m * v / rise + D * v, "F_after": D * v}
+    return {"F_f": _force(wind=0)} | numbers
 
 
 @trolley.mistake("Here numbers have been put in. Give the formula with all its symbols.")
@@ -246,6 +277,11 @@ def _(m, v, rise):
 )
 def _():
     return {"F_after": 0}
+
+
+@trolley.mistake("That is the whole change of the speed. How much of it is there in each second?")
+def _(m, D, v, rise, F_w):
+    return {"F_rise": m * v + D * v + F_w}
 
 
 trolley.hints(
@@ -382,11 +418,35 @@ def _(K, K_d, rise):
     return {"u_end": rise * K * K_d} if K != 1 else {}
 
 
+@pasteuriser.mistake("The two gains do not multiply. How much control signal makes up for one kelvin?")
+def _(K, T, tau, K_d, T_d, tau_d, rise):
+    if K == 1:
+        return {}
+    F_fd = K * K_d * (T * s + 1) / (T_d * s + 1) * exp(-(tau_d - tau) * s)
+    return {"F_fd": F_fd, "u_first": rise * K * K_d * T / T_d}
+
+
+@pasteuriser.mistake("The lags are right. Which of the two gains belongs below the fraction line?")
+def _(K, T, tau, K_d, T_d, tau_d, rise):
+    F_fd = K / K_d * (T * s + 1) / (T_d * s + 1) * exp(-(tau_d - tau) * s)
+    return {"F_fd": F_fd, "u_first": rise * K * T / (K_d * T_d)}
+
+
+@pasteuriser.mistake("The feedforward divides by the way of the control signal. Where does its lag go?")
+def _(K, T, tau, K_d, T_d, tau_d):
+    return {"F_fd": K_d / (K * (T * s + 1) * (T_d * s + 1)) * exp(-(tau_d - tau) * s)}
+
+
+@pasteuriser.mistake("The feedforward waits, that is true. How large is its change when it then begins to act?")
+def _():
+    return {"u_first": 0}
+
+
 pasteuriser.hints(
     "The feedforward is ideal if the way from the milk flow through the control signal undoes the direct way.",
-    r"Both ways end in the temperature: $H_d\,d + H_u\,F_{fd}\,d = 0$, so $F_{fd} = -H_d/H_u$. The lag of the "
-    "denominator moves to the numerator, and the dead times subtract. For a step, $s = 0$ gives the end and large "
-    "$s$ the first moment.",
+    "Call the way from the milk flow $H_d$ and that from the control signal $H_u$. Both end in the temperature: "
+    r"$H_d\,d + H_u\,F_{fd}\,d = 0$, so $F_{fd} = -H_d/H_u$. The lag of the denominator moves to the numerator, and "
+    "the dead times subtract. For a step, $s = 0$ gives the end and large $s$ the first moment.",
     r"The gains give $\frac{ {K_d} }{ {K} }$, the lags $\frac{ {T} s + 1}{ {T_d} s + 1}$, and the dead time that is "
     "left is ${tau_d} - {tau}$ s.",
 )
@@ -397,8 +457,7 @@ def _(K, T, tau, K_d, T_d, tau_d, rise):
     r"""The milk flow acts on the temperature directly, through $H_d$, and through the feedforward and the valve.
     Nothing is to be seen of it if $H_d + H_u F_{fd} = 0$, so
 
-    $$F_{fd} = -\frac{H_d}{H_u} = \frac{ {K_d} }{ {K} } \cdot \frac{ {T} s + 1}{ {T_d} s + 1} \cdot e^{-({tau_d} -
-    {tau}) s}$$
+    $$F_{fd} = -\frac{H_d}{H_u} = \frac{ {K_d} }{ {K} } \cdot \frac{ {T} s + 1}{ {T_d} s + 1}\,e^{-({tau_d} - {tau})s}$$
 
     The disturbance needs {tau_d} to show, and the valve {tau}: the feedforward has to wait for the difference, {wait}.
 
@@ -520,6 +579,17 @@ def _(theta):
     return {"P_min": 4 * theta}
 
 
+@ship.mistake("Here the sine is that of the whole angle. Cut the triangle into two equal ones: which angle has each?")
+def _(e_0, theta, P):
+    wrong, right = 2 * math.sin(_x(theta, P)), 2 * math.sin(_x(theta, P) / 2)
+    return {} if _near(wrong, right) else {"e_late": wrong * e_0}
+
+
+@ship.mistake("That is a half of the third side: the triangle was cut into two equal ones.")
+def _(e_0, theta, P):
+    return {"e_late": math.sin(_x(theta, P) / 2) * e_0} if e_0 != 2 else {}
+
+
 ship.hints(
     "What is left is a difference: what the wind does, minus what the feedforward does.",
     "With a wrong force it is the difference of two amplitudes. With a late one it is the difference of two equal "
@@ -534,9 +604,9 @@ ship.hints(
 def _(e_0, k, theta, P):
     r"""The feedforward takes away $k$ = {k} of what the wind does. So $|1 - {k}| \cdot {e_0} =$ {e_wrong} are left.
 
-    If it is late by {theta}, the two sinusoids have the same amplitude and an angle of $x = 2\pi \cdot \frac{ {theta}
-    }{ {P} } =$ {x} between them, or {degrees}. Their difference is the base of a triangle with two equal sides of
-    {e_0}:
+    If it is late by {theta}, the two sinusoids have the same amplitude and an angle of
+    $x = 2\pi \cdot \frac{ {theta} }{ {P} } =$ {x} between them, or {degrees}.
+    Their difference is the base of a triangle with two equal sides of {e_0}:
 
     $$2 \sin\frac{ {x} }{2} \cdot {e_0} = {e_late}\ \text{m}$$
 
@@ -642,6 +712,53 @@ def _(u_0, u_full, points):
     return time_plot(curves, d, **names).points(at, known, "points")
 
 
+@water_main.mistake("That is on a straight line from 0 to 100 m³/h. Between which of its points does the table go?")
+def _(u_0, u_full, points, d):
+    width = 100 / (points - 1)
+    right = _needed(u_0, u_full, d // width * width + width)
+    wrong = u_0 + (u_full - u_0) * d / 100
+    is_apart = not (_near(wrong, right) or _near(wrong, _line(u_0, u_full, points, d)))
+    return {"u_f": wrong} if is_apart else {}
+
+
+@water_main.mistake(
+    "The worst place is in the middle of an interval. How far is it from the points, and what about the square?"
+)
+def _(u_0, u_full, points):
+    return {"e_worst": (u_full - u_0) / (points - 1) ** 2}
+
+
+@water_main.mistake("How many intervals do so many points make?")
+def _(u_0, u_full, points):
+    return {"e_worst": (u_full - u_0) / (4 * points**2)}
+
+
+@water_main.mistake("That is the error at this consumption. Where between two points is it largest?")
+def _(u_0, u_full, points, d):
+    error = _line(u_0, u_full, points, d) - _needed(u_0, u_full, d)
+    return {} if _near(error, (u_full - u_0) / (4 * (points - 1) ** 2)) else {"e_worst": error}
+
+
+@water_main.mistake("A part of an interval needs an interval of its own, and there is one point more than intervals.")
+def _(u_0, u_full, e_max):
+    return {"N": _fewest(u_0, u_full, e_max) - 2}
+
+
+@water_main.mistake(
+    "With this many points the error is small enough, but fewer will do. How large is it in the middle?"
+)
+def _(u_0, u_full, e_max):
+    return {"N": ceiling(sqrt((u_full - u_0) / e_max)) + 1}
+
+
+@water_main.mistake(
+    "With this many points the error is small enough, but fewer will do. How large is it in the middle?"
+)
+def _(u_0, u_full, e_max):
+    N = ceiling(sqrt((u_full - u_0) / e_max))
+    return {"N": N} if _fewest(u_0, u_full, e_max) < N else {}
+
+
 water_main.hints(
     "Between two points the table is a straight line; at the points it is exact.",
     "Find the points on both sides of the consumption, and go the same share of the way between their values. The "
@@ -710,6 +827,7 @@ def flow_filter(
     return answers(
         T_f=design(
             number(round(math.sqrt(low * high), 2), "s", "the time constant of the filter"),
+            criterion("it is positive", lambda T_f: T_f > 0, otherwise="a time constant is more than zero"),
             criterion(
                 "the noise in the feedforward", lambda T_f: _noise(sigma, T_f), below=float(sigma_max), unit="L/s"
             ),
@@ -720,8 +838,8 @@ def flow_filter(
 
 
 def _noise(sigma, T_f):
-    """The standard deviation behind the filter; a filter of no time leaves everything."""
-    return float(sigma) * math.sqrt(min(1, 1 / (2 * T_f))) if T_f > 0 else float(sigma)
+    """The standard deviation behind the filter, which leaves all of it if it is very quick."""
+    return float(sigma) * math.sqrt(min(1, 1 / (2 * T_f)))
 
 
 @flow_filter.mistake("The noise falls with the square root of the time constant, not in proportion to it.")
@@ -756,14 +874,25 @@ def _(sigma, sigma_max):
     return {"T_f": sigma**2 / (4 * sigma_max**2)}
 
 
+@flow_filter.mistake("The share that is left has a 2 under its root. What becomes of it when you solve for $T_f$?")
+def _(A, jump, e_max, sigma, sigma_max):
+    T_f = sigma**2 / sigma_max**2
+    return {"T_f": T_f} if T_f > 1.02 * A * e_max / jump else {}
+
+
+@flow_filter.mistake("Look at the units: one litre on one square metre is how high?")
+def _(A, jump, e_max):
+    return {"T_f": A * e_max / jump / 1000}
+
+
 flow_filter.hints(
     "Noise asks for a slow filter, the level for a quick one: one demand is a lower limit of the time constant, the "
     "other an upper one.",
     r"Noise: $\sigma \sqrt{h/(2 T_f)} \le \sigma_{max}$ with $h$ = 1 s. Level: the feedforward is behind the outflow "
     "by the filter, so a volume of *jump times $T_f$* is missing in the end, and the level falls by that over the "
     "area.",
-    r"From below, $T_f \ge \frac{ {sigma}^2}{2 \cdot {sigma_max}^2}$ s. From above, ${jump} \cdot T_f/{A} \le "
-    "{e_max}$ mm (1 L/m² is 1 mm).",
+    r"Square ${sigma} \cdot \sqrt{\frac{1}{2 T_f}} \le {sigma_max}$ and solve it for $T_f$: a limit from below. From "
+    r"above, ${jump} \cdot T_f/{A} \le {e_max}$ mm (1 L/m² is 1 mm).",
 )
 
 
