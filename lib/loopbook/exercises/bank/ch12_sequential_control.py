@@ -70,7 +70,7 @@ def _(m, q):
 
 @bottles.mistake("The condition is tested in the scans only. Which scan is the first one that finds it true?")
 def _(arrival, m, q):
-    return {"Cap": arrival + m / q}
+    return {"Cap": arrival + m / q, "Away": arrival + m / q + 1}
 
 
 @bottles.mistake("That is the time since the valve was opened. The clock runs from the first scan on.")
@@ -93,9 +93,19 @@ def _(arrival, m, q):
     return {"Cap": arrival + floor(m / q), "mass": floor(m / q) * q}
 
 
-@bottles.mistake("That is one scan too late. In the scan in which `Fill` becomes active the valve is already opened.")
+@bottles.mistake("That is one scan too late. In which scan is the valve opened, and what does the next scan find?")
 def _(arrival, m, q):
-    return {"Cap": arrival + ceiling(m / q) + 1, "Away": arrival + ceiling(m / q) + 2, "mass": (ceiling(m / q) + 1) * q}
+    return {"Cap": arrival + ceiling(m / q) + 1, "Away": arrival + ceiling(m / q) + 2}
+
+
+@bottles.mistake("The flow of one scan is too much. Which step closes the valve, and does it wait with that?")
+def _(m, q):
+    return {"mass": (ceiling(m / q) + 1) * q}
+
+
+@bottles.mistake("That has flowed in if the valve is open from the first scan on. Which step opens it, and when?")
+def _(arrival, m, q):
+    return {"mass": (arrival + ceiling(m / q)) * q}
 
 
 @bottles.mistake("That is the limit in the condition. The valve stays open until a scan finds it reached.")
@@ -223,11 +233,16 @@ def _(stop, lamp, stir):
     return {"table": "\n".join(rows), "first": " and ".join(stored(stop, lamp, stir, "Rinse"))}
 
 
+@what_is_on.mistake("That is what this step itself switches on. What have earlier steps switched on, and nobody off?")
+def _(stop, lamp, stir, step):
+    return {"stored": while_active(stop, lamp, stir, step)}
+
+
 @what_is_on.mistake(
-    "The two rules are interchanged. With stored values an output stays as it is until an action changes it."
+    "That list is right for stored values. With N an action ends with its step: what does this one set to TRUE?"
 )
 def _(stop, lamp, stir, step):
-    return {"stored": while_active(stop, lamp, stir, step), "default": stored(stop, lamp, stir, step)}
+    return {"default": stored(stop, lamp, stir, step)}
 
 
 @what_is_on.mistake("Go through the table from the top and cross out what an action has set to FALSE on the way.")
@@ -254,6 +269,42 @@ def _(stop, lamp, stir, step):
     return {"default": named} if named != while_active(stop, lamp, stir, step) else {}
 
 
+def _kept_too_long(output):
+    """The mistake of overlooking where this output is switched off."""
+
+    def mistake(stop, lamp, stir, step):
+        steps, right = boxes(stop, lamp, stir), stored(stop, lamp, stir, step)
+        before = [*steps][: [*steps].index(step)]
+        if output in right or not any(steps[name].get(output) for name in before):
+            return {}
+        return {"stored": [x for x in OUTPUTS if x in right or x == output]}
+
+    return mistake
+
+
+for _output in ("pump", "heater", "dosing", "stirrer", "drain"):
+    what_is_on.mistake(f"`{_output}` was on, and an action has switched it off since. In which box is its FALSE?")(
+        _kept_too_long(_output)
+    )
+
+
+def _forgotten(output):
+    """The mistake of forgetting what an earlier step has switched on."""
+
+    def mistake(stop, lamp, stir, step):
+        right = stored(stop, lamp, stir, step)
+        kept = output in right and output not in while_active(stop, lamp, stir, step)
+        return {"stored": [x for x in right if x != output]} if kept else {}
+
+    return mistake
+
+
+for _output in ("pump", "heater", "stirrer", "lamp"):
+    what_is_on.mistake("An earlier step has switched on one more output, and no FALSE has come since.")(
+        _forgotten(_output)
+    )
+
+
 what_is_on.hints(
     "An action box lists changes. With stored values, who else decides about an output besides the active step?",
     "Stored: go down the table, keep a list of what is on, add at each TRUE, cross out at each FALSE, and stop at the "
@@ -271,7 +322,7 @@ def _(stop, lamp, stir, step):
     So while `{step}` is active, these are on: {kept}.
 
     **Qualifier N.** An output is on only as long as a step is active that sets it to TRUE. In `{step}` that leaves:
-    {own}. Everything that an earlier step has switched on would have been off again.
+    {own}. Whatever an earlier step has switched on is off again.
     """
     rows = []
     for name in boxes(stop, lamp, stir):
@@ -407,6 +458,24 @@ def _(order, w_1, w_2, a, b, c):
     return wrong
 
 
+@eggs.mistake("That condition is true for this egg, but is it the first one? Begin at the top of the list.")
+def _(order, w_1, w_2, a, b, c):
+    wrong = {}
+    for name, egg in dict(first=a, second=b, third=c).items():
+        true = [size for size, low, high in conditions(order, w_1, w_2) if low <= egg < high]
+        wrong |= {name: true[1]} if len(true) > 1 else {}
+    return wrong
+
+
+@eggs.mistake("Put the mass of this egg into that condition: is it true?")
+def _(order, w_1, w_2, a, b, c):
+    wrong = {}
+    for name, egg in dict(first=a, second=b, third=c).items():
+        false = [size for size, low, high in conditions(order, w_1, w_2) if not low <= egg < high]
+        wrong |= {name: false[-1]} if len(false) > 1 else {}
+    return wrong
+
+
 @eggs.mistake("An egg does reach this step. For which masses is its condition the first one that is true?")
 def _(order, w_1, w_2, a, b, c):
     reached = _key(order, w_1, w_2, a, b, c)
@@ -414,11 +483,17 @@ def _(order, w_1, w_2, a, b, c):
 
 
 @eggs.mistake(
-    "One of your three eggs is there. Which step is behind a condition that holds for fewer eggs than the one before?"
+    "One of your three eggs comes to this step. Is there a step whose eggs have all left by a branch before it?"
 )
 def _(order, w_1, w_2, a, b, c):
     reached = _key(order, w_1, w_2, a, b, c)
     return {"never": reached["first"]} if reached["first"] != reached["second"] else {}
+
+
+@eggs.mistake("The third of your eggs comes to this step. Go through the three steps in this way.")
+def _(order, w_1, w_2, a, b, c):
+    reached = _key(order, w_1, w_2, a, b, c)
+    return {"never": reached["third"]} if reached["third"] not in (reached["first"], reached["second"]) else {}
 
 
 eggs.hints(
@@ -435,7 +510,7 @@ def _(order, w_1, w_2, a, b, c):
 
     {rows}
 
-    Their names say otherwise for some eggs, but the chart does not know names. {story}
+    {story}
     """
     rows = []
     for egg in (a, b, c):
@@ -449,9 +524,10 @@ def _(order, w_1, w_2, a, b, c):
         f"No egg comes to `{never}`: whatever satisfies its condition has satisfied one before it. In a list of "
         "limits the narrow condition belongs before the wide one."
         if never
-        else "Each step is reached, because the narrow conditions come before the wide ones: none is covered, the "
-        "answer is none."
+        else "Each step is reached, because the narrow conditions come before the wide ones. So the answer is none."
     )
+    if any(way_of(egg, order, w_1, w_2) != by_name(egg, w_1, w_2) for egg in (a, b, c)):
+        story = f"The names say otherwise for some eggs, but the chart does not know names. {story}"
     return {"rows": "\n".join(rows), "story": story}
 
 
@@ -612,7 +688,7 @@ for _name, _question in {
     wrong_chart.mistake(_question)(_not_this_mistake(_name))
 
 
-@wrong_chart.mistake("All of them suffer nothing only if the chart is sound. Is it?")
+@wrong_chart.mistake("Then the chart would be sound. Is each step reached and left, and does no branch stay behind?")
 def _(mistake):
     return {} if mistake == "sound" else {"step": "none"}
 
@@ -625,14 +701,15 @@ def _(plant, mistake, swapped):
 
 
 @wrong_chart.mistake(
-    "One transition leads to this step, one leaves it, and both are cleared at their times. Which step is different?"
+    "Each description in the list says whether the step is in front of a transition or behind it. Does one of them fit "
+    "this step?"
 )
 def _(plant, mistake, swapped):
     _, suffers = faulty_chart(mistake, *steps_of(plant, swapped))
     return {"step": next(step for step in steps_of(plant, swapped)[1:] if step != suffers)}
 
 
-@wrong_chart.mistake("This step can be reached and left when its time has come. Look at the others.")
+@wrong_chart.mistake("This step becomes active when its time has come. Look at the others.")
 def _(plant, mistake, swapped):
     _, suffers = faulty_chart(mistake, *steps_of(plant, swapped))
     return {"step": [step for step in steps_of(plant, swapped)[1:] if step != suffers][-1]}
@@ -648,7 +725,8 @@ wrong_chart.hints(
 
 @wrong_chart.solution
 def _(plant, mistake, swapped):
-    """Check the list in four steps: left sides, right sides, what leaves one step in common, and how branches end.
+    """Check the list in four steps: left sides, right sides, transitions that leave the same step, and how branches
+    end.
 
     {story}
 
@@ -734,9 +812,43 @@ def _(T_0, T_SP, rate, n, dose):
     return {"waited": "Hold" if (T_SP - T_0) / rate > n * dose else "Ready"}
 
 
+@heat_and_dose.mistake("That heats the water from 0 °C. How warm is it at the beginning?")
+def _(T_0, T_SP, rate, n, dose, react):
+    right, cold = max((T_SP - T_0) / rate, n * dose), max(T_SP / rate, n * dose)
+    return {"begin": cold, "end": cold + react} if cold != right else {}
+
+
+@heat_and_dose.mistake("A rise is divided by its rate: look at the units, kelvin and kelvin per minute.")
+def _(T_0, T_SP, rate, n, dose, react):
+    right, wrong = max((T_SP - T_0) / rate, n * dose), max((T_SP - T_0) * rate, n * dose)
+    return {"begin": wrong, "end": wrong + react} if wrong != right else {}
+
+
+@heat_and_dose.mistake("That is when `React` begins. How long does it last?")
+def _(T_0, T_SP, rate, n, dose):
+    return {"end": max((T_SP - T_0) / rate, n * dose)}
+
+
 @heat_and_dose.mistake("That is the number of steps. A state is the set of all steps that are active together.")
 def _(n):
-    return {"states": n + 5}
+    return {"states": n + 5} if n != 3 else {}
+
+
+@heat_and_dose.mistake(
+    "That is the number of steps, and also that of the combinations within the branches. Which states are outside them?"
+)
+def _(n):
+    return {"states": 8} if n == 3 else {}
+
+
+@heat_and_dose.mistake("One state is missing. When is a step active alone, before the branches and after them?")
+def _(n):
+    return {"states": 2 * n + 3} if n != 2 else {}
+
+
+@heat_and_dose.mistake("`Hold` and `Ready` are steps, too: how many has each branch with them?")
+def _(n):
+    return {"states": n + 2}
 
 
 @heat_and_dose.mistake(
@@ -884,10 +996,30 @@ def _(tau, T_SP, T_end):
     return {"Heat": float(tau) * math.log(T_end / (T_end - T_SP))}
 
 
-@shift.mistake("One step is missing from that sum. Which of the four?")
+@shift.mistake("In a lag the distance to its end falls. How far from $T_{{end}}$ is the water at the beginning?")
+def _(tau, T_0, T_SP, T_end):
+    ratio = float((T_SP - T_0) / (T_end - T_SP))
+    return {"Heat": float(tau) * math.log(ratio)} if ratio > 1 else {}
+
+
+def _without(stage):
+    """The mistake of leaving out this stage of the batch."""
+
+    def mistake(A, h_0, h_1, q, K_v, tau, T_0, T_SP, T_end, hold):
+        times = stages(A, h_0, h_1, q, K_v, tau, T_0, T_SP, T_end, hold)
+        return {"batch": sum(times) - times[stage]} if times[stage] > sum(times) / 50 else {}
+
+    return mistake
+
+
+for _stage in range(4):
+    shift.mistake("One step is missing from that sum. Which of the four?")(_without(_stage))
+
+
+@shift.mistake("Some of these times are in seconds, others in minutes: bring them to one unit before you add them.")
 def _(A, h_0, h_1, q, K_v, tau, T_0, T_SP, T_end, hold):
-    times = stages(A, h_0, h_1, q, K_v, tau, T_0, T_SP, T_end, hold)
-    return {"batch": sum(times) - float(hold)}
+    filling, heating, holding, emptying = stages(A, h_0, h_1, q, K_v, tau, T_0, T_SP, T_end, hold)
+    return {"batch": 60 * (filling + emptying) + heating + holding}
 
 
 @shift.mistake("How many of these are complete?")
@@ -1016,10 +1148,9 @@ def way_out(
         limit=design(
             number(floor((longest / 0.9 + last) / 2), "s", "the limit"),
             criterion(
-                "the longest normal filling",
-                lambda x: 100 * float(longest) / x if x > 0 else math.inf,
-                below=90,
-                unit="% of the limit",
+                "the longest normal filling takes at most 90 % of the limit",
+                lambda x: float(longest) <= 0.9 * x * (1 + 1e-3),  # a limit that is rounded is right, too
+                otherwise="with the weakest supply a normal filling takes more than 90 % of that limit",
             ),
             criterion(
                 "the highest level", lambda x: level_at_last(x, A, h_0, q_high, close), below=float(rim), unit="m"
@@ -1042,6 +1173,21 @@ def _(A, h_0, h_1, q_high):
 @way_out.mistake("There the tank is filled from its bottom on. At which level does filling begin?")
 def _(A, h_1, q_low):
     return {"longest": slowest(A, 0, h_1, q_low)}
+
+
+@way_out.mistake("After that time the water is at the rim. At which level does filling end if all is well?")
+def _(A, h_0, rim, q_low):
+    return {"longest": slowest(A, h_0, rim, q_low)}
+
+
+@way_out.mistake("That is with a supply in the middle. Which supply makes filling longest?")
+def _(A, h_0, h_1, q_low, q_high):
+    return {"longest": slowest(A, h_0, h_1, (q_low + q_high) / 2)}
+
+
+@way_out.mistake("Until then there is room with the weakest supply. With which one does the water rise fastest?")
+def _(A, h_0, q_low, close, rim):
+    return {"limit": latest(A, h_0, q_low, close, rim)}
 
 
 @way_out.mistake(
@@ -1212,6 +1358,16 @@ def _(full, hot, look):
     return {"active": _active(full, hot, look)[1 if look >= full else 0 :][:1]}
 
 
+@reading.mistake("One branch waits in that step. Where is the other one?")
+def _(full, hot, look):
+    return {"active": _active(full, hot, look)[0 if look >= full else 1 :][:1]}
+
+
+@reading.mistake("A step that has been left is passive. Which of these has been left by now?")
+def _(full, hot, look):
+    return {"active": ["Fill", "Hold", "Warm"] if look >= full else ["Fill", "Warm", "Ready"]}
+
+
 @reading.mistake("Both branches began with these steps. Which of their conditions has come true in the meantime?")
 def _():
     return {"active": ["Fill", "Warm"]}
@@ -1244,6 +1400,43 @@ def _(heater_off, lamp, full, hot, look):
     return {"on": ever} if ever != mixing_outputs(heater_off, lamp, full, hot, look) else {}
 
 
+def _on_too(output):
+    """The mistake of taking this output for switched on, too."""
+
+    def mistake(heater_off, lamp, full, hot, look):
+        right = mixing_outputs(heater_off, lamp, full, hot, look)
+        seen = _actions_so_far(heater_off, lamp, full, hot, look)
+        off = output in right or any(x == output and on for x, on in seen)
+        return {} if off else {"on": [x for x in MIXED if x in right or x == output]}
+
+    return mistake
+
+
+def _not_on(output):
+    """The mistake of overlooking that this output is on."""
+
+    def mistake(heater_off, lamp, full, hot, look):
+        right = mixing_outputs(heater_off, lamp, full, hot, look)
+        return {"on": [x for x in right if x != output]} if output in right and len(right) > 1 else {}
+
+    return mistake
+
+
+def _actions_so_far(heater_off, lamp, full, hot, look):
+    """What the actions have set until this moment, one after the other."""
+    steps = mixing_chart(heater_off, lamp, 5).steps
+    seen = ["Wait", "Fill", "Warm"] + ["Hold"] * bool(look >= full) + ["Ready"] * bool(look >= hot)
+    return [pair for step in seen for pair in steps[step].items()]
+
+
+for _output in ("stirrer", "drain", "lamp"):
+    reading.mistake(f"Which step switches on `{_output}`, and has it been active by then?")(_on_too(_output))
+for _output in ("inlet", "heater", "lamp"):
+    reading.mistake("One more output is on: look at all steps that have been active so far, in both branches.")(
+        _not_on(_output)
+    )
+
+
 @reading.mistake("This condition is true already, and its step has been left. What is the other branch waiting for?")
 def _(full, look):
     return {"waits_for": "full" if look >= full else "hot"}
@@ -1262,8 +1455,18 @@ def _():
 
 
 @reading.mistake("In that scan the last waiting step has only become active. When is a transition behind it cleared?")
+def _(full, hot):
+    return {"Mix": max(full, hot)}
+
+
+@reading.mistake("That counts from the last waiting step on. The time is that of `Mix`: when does this step begin?")
 def _(full, hot, mix):
-    return {"Mix": max(full, hot), "Drain": max(full, hot) + mix}
+    return {"Drain": max(full, hot) + mix}
+
+
+@reading.mistake("That is one scan too late. How long does the last waiting step last, if what follows is TRUE?")
+def _(full, hot):
+    return {"Mix": max(full, hot) + 2}
 
 
 @reading.mistake("Then only one of the branches is done. What does the convergence need?")
@@ -1303,10 +1506,7 @@ def _(heater_off, lamp, mix, start, full, hot, look):
     always true, but steps must have been active since the scan before: `Mix` becomes active one scan later, at {Mix}.
     Its time is up after {mix}, and `Drain` begins at {Drain}.
     """
-    steps = mixing_chart(heater_off, lamp, mix).steps
-    seen = ["Wait", "Fill", "Warm"]
-    seen += ["Hold"] * bool(look >= full) + ["Ready"] * bool(look >= hot)
-    done = [f"`{x} := {str(on).upper()}`" for step in seen for x, on in steps[step].items()]
+    done = [f"`{x} := {str(on).upper()}`" for x, on in _actions_so_far(heater_off, lamp, full, hot, look)]
     return {
         "steps": " and ".join(f"`{step}`" for step in _active(full, hot, look)),
         "done": ", ".join(done),
@@ -1389,10 +1589,11 @@ SCENARIOS_OF_BATCH = [
     ("", 2, {"start": "Wait.X AND Wait.T >= 20 AND Wait.T < 24"}),
     ("if the supply fails for a while", 1, {
         "start": "Wait.X AND Wait.T >= 20 AND Wait.T < 24",
-        "no_supply": "Fill.X AND Fill.T >= 60 AND Fill.T < 160",
+        "no_supply": "Fill.X AND Fill.T >= 60 AND Fill.T < 1000",
     }),
-    ("if somebody presses start while the water is heated", 1, {
-        "start": "Wait.X AND Wait.T >= 20 AND Wait.T < 24 OR Heat.X AND Heat.T >= 60 AND Heat.T < 64",
+    ("if somebody presses start during the batch", 1, {
+        "start": "Wait.X AND Wait.T >= 20 AND Wait.T < 24 OR Fill.X AND Fill.T >= 60 AND Fill.T < 64 "
+        "OR Heat.X AND Heat.T >= 60 AND Heat.T < 64 OR Empty.X AND Empty.T >= 30 AND Empty.T < 34",
     }),
 ]  # fmt: skip
 
@@ -1433,7 +1634,8 @@ def written_chart(
     - Then the tank is emptied down to {low}, and the chart waits for the button again.
 
     The heater must never be on below 0.4 m, the tank must not run over, and inlet and outlet are never open together.
-    How long filling and heating take is not known: the supply may fail for a while.
+    A press of the button during a batch changes nothing. How long filling and heating take is not known: the supply may
+    fail for a while.
 
     Write one line for each step, with what it switches, and one for each transition, with its condition. As in this
     chapter, an output keeps its value until another step changes it. A lamp that a button lights for a minute:
@@ -1628,12 +1830,13 @@ def demands_on_alarm(full, limit):
         (f"the inlet is still open, although filling has taken {limit} s", "inlet", "Alarm"),
         (f"the horn is silent, although filling has taken {limit} s", "NOT horn", "Alarm"),
         ("the outlet is open, although filling has failed", "outlet", "Alarm"),
-        ("the horn sounds, although nothing is wrong", "horn", "Fill Empty"),
+        (f"the horn sounds, although filling has not taken {limit} s", "horn", "Fill"),
+        ("the horn sounds, although the tank was filled in time", "horn", "Empty"),
         ("the horn sounds, although nothing is wrong any more", "horn", "Wait"),
         (f"the inlet is closed, although start was pressed and the level is below {full} m", "NOT inlet", "Fill"),
         ("the inlet opens, although nobody has pressed start", "inlet", "Wait"),
-        (f"the inlet is still open, although the level has reached {full} m", "inlet", "Empty"),
-        (f"the outlet stays closed, although the level has reached {full} m", "NOT outlet", "Empty"),
+        (f"the inlet is open, although the level has reached {full} m", "inlet", "Empty"),
+        (f"the outlet is closed, although the level has reached {full} m", "NOT outlet", "Empty"),
         (f"the outlet opens before the level has reached {full} m", "outlet", "Fill"),
         ("the outlet is open, although nobody has pressed start", "outlet", "Wait"),
     ]
@@ -1650,6 +1853,10 @@ SCENARIOS_OF_ALARM = [
     ("if somebody presses reset while the tank is filled", 1, {
         "start": PRESSED,
         "reset": "Fill.X AND Fill.T >= 30 AND Fill.T < 34",
+    }),
+    ("if somebody presses a button at the wrong time", 1, {
+        "start": f"{PRESSED} OR Empty.X AND Empty.T >= 20 AND Empty.T < 24",
+        "reset": "Wait.X AND Wait.T >= 8 AND Wait.T < 12 OR Empty.X AND Empty.T >= 10 AND Empty.T < 14",
     }),
     ("if somebody presses start during the alarm", 1, {
         "start": f"{PRESSED} OR Alarm.X AND Alarm.T >= 30 AND Alarm.T < 34",

@@ -8,7 +8,6 @@ from loopbook.exercises.authoring import (
     exercise,
     instrument_diagram,
     number,
-    numbers,
     word,
     words,
 )
@@ -265,6 +264,32 @@ def _(device, measured):
     return {"letters": [*letters[:-1], other]} if other else {}
 
 
+@writing.mistake("A D makes a difference of the quantity, an F a fraction. Which of them does the text speak of?")
+def _(device, measured):
+    letters = letters_of(device, measured)
+    if not decode("".join(letters)).modifier:
+        return {}
+    return {"letters": [letters[0], {"D": "F", "F": "D"}[letters[1]], *letters[2:]]}
+
+
+@writing.mistake("An S switches something on its own, and an A only tells. Which of them does the drawing need?")
+def _(device, measured):
+    letters = letters_of(device, measured)
+    return {"letters": [*letters[:-2], "S", letters[-1]]} if DEVICES[device] in ("AH", "AL") else {}
+
+
+@writing.mistake("Twice is the letter of the limit that is beyond the first one. Is that meant here?")
+def _(device, measured):
+    letters = letters_of(device, measured)
+    return {"letters": [*letters, letters[-1]]} if DEVICES[device] in ("AH", "AL") else {}
+
+
+@writing.mistake("A transmitter sends a value on, and a controller acts on it. Which of them does the drawing need?")
+def _(device, measured):
+    letters, other = letters_of(device, measured), {"IC": "T", "IT": "C"}.get(DEVICES[device])
+    return {"letters": [*letters[:-1], other]} if other else {}
+
+
 @writing.mistake("That is first what it does, and then what it measures. A tag begins with what is measured.")
 def _(device, measured):
     return {"letters": list(DEVICES[device] + MEASURED[measured])}
@@ -347,9 +372,10 @@ def open_loops(
     Which loops are closed, that is, have a transmitter, a controller and a valve? One quantity is only watched: what is
     the number of its loop? And in another loop somebody has forgotten to draw the valve: in which one?
     """
+    four = [str(first + n) for n in range(4)]
     closed = [first + n - 1 for n in range(1, 5) if n not in (watched, lacking)]
     return answers(
-        closed=numbers(closed, "", "the numbers of the closed loops, in increasing order", within=0),
+        closed=words([str(loop) for loop in closed], four, what="the numbers of the closed loops"),
         watched=number(first + watched - 1, "", "the number of the loop that is only watched", within=0),
         forgotten=number(first + lacking - 1, "", "the number of the loop without its valve", within=0),
     )
@@ -357,7 +383,7 @@ def open_loops(
 
 @open_loops.mistake("A controller without a valve has nothing to act on. Look for the V of each loop.")
 def _(first, watched):
-    return {"closed": [first + n - 1 for n in range(1, 5) if n != watched]}
+    return {"closed": [str(first + n - 1) for n in range(1, 5) if n != watched]}
 
 
 @open_loops.mistake("This loop has a controller, which must act on something. What is only watched needs none.")
@@ -372,7 +398,7 @@ def _(first, watched):
 
 @open_loops.mistake("An indicator shows a value and does nothing about it. Which loops have a controller?")
 def _(first, lacking):
-    return {"closed": [first + n - 1 for n in range(1, 5) if n != lacking]}
+    return {"closed": [str(first + n - 1) for n in range(1, 5) if n != lacking]}
 
 
 def _with_the_open_one(kept):
@@ -380,7 +406,7 @@ def _with_the_open_one(kept):
 
     def mistake(first, watched, lacking):
         complete = [n for n in range(1, 5) if n not in (watched, lacking)]
-        return {"closed": [first + n - 1 for n in sorted([lacking, complete[kept]])]}
+        return {"closed": [str(first + n - 1) for n in sorted([lacking, complete[kept]])]}
 
     return mistake
 
@@ -393,7 +419,23 @@ for _kept in (0, 1):
 
 @open_loops.mistake("Not all of them are: look in each loop for a transmitter, a controller and a valve.")
 def _(first):
-    return {"closed": [first + n - 1 for n in range(1, 5)]}
+    return {"closed": [str(first + n - 1) for n in range(1, 5)]}
+
+
+def _one_closed(k):
+    """The mistake of finding only one of the closed loops."""
+
+    def mistake(first, watched, lacking):
+        closed = [n for n in range(1, 5) if n not in (watched, lacking)]
+        return {"closed": [str(first + closed[k] - 1)]}
+
+    return mistake
+
+
+for _k in (0, 1):
+    open_loops.mistake("That loop is closed. An alarm or an indicator more does not open another one: look again.")(
+        _one_closed(_k)
+    )
 
 
 @open_loops.mistake("Look again at the tags with this number: this loop has a controller, and something to act on.")
@@ -729,6 +771,11 @@ def _(quantity, n, alarm):
     return {"tags": [first, second, third, f"{quantity}{alarm}A{n}", last]}
 
 
+@whole_loop.mistake("Two of these are controllers, and the loop has one: which of them also indicates?")
+def _(quantity, n, alarm):
+    return {"tags": [*loop_tags(quantity, n, alarm), f"{quantity}C{n}"]}
+
+
 @whole_loop.mistake("The loop is there. What else is said of the limits?")
 def _(quantity, n, alarm):
     return {"tags": loop_tags(quantity, n, alarm)[:3]}
@@ -956,6 +1003,18 @@ def _(first, places):
 def _(first, places):
     tags = _readable(first, places, "panel", "field")
     return {"readable": tags} if "field" in places else {}
+
+
+@faulty_drawing.mistake(
+    "Without a line across it an instrument is in the field. Which line stands for the control room?"
+)
+def _(first, places):
+    return {"readable": _readable(first, places, "field")} if "field" in places else {}
+
+
+@faulty_drawing.mistake("A dashed line means behind the panel. Which line stands for its front?")
+def _(first, places):
+    return {"readable": _readable(first, places, "behind")} if "behind" in places else {}
 
 
 @faulty_drawing.mistake("The lines across the circles differ. What does each of them mean?")
@@ -1253,6 +1312,13 @@ def _(quantity, pipe, a, side):
 def _(quantity, pipe, a, side):
     x, b = OF_VESSEL[quantity], a + 1
     return {"diagram": cascade(quantity, pipe, a, side, valve=f"FC{b} -//-> {x}V{a} -> {pipe}")}
+
+
+@drawing.mistake("The letters and the lines are right. Read again which number each of the two loops has.")
+def _(quantity, pipe, a, side):
+    x, b = OF_VESSEL[quantity], a + 1
+    lines = [f"vessel -> {x}T{b} -> {x}C{b} -> FC{a} -//-> FV{a} -> {pipe}", f"{pipe} -> FT{a} -> FC{a}"]
+    return {"diagram": "\n".join([*lines, f"{x}T{b} -> {x}A{side[0].upper()}{b}"])}
 
 
 drawing.hints(
