@@ -451,3 +451,8 @@ def test_a_formula_with_another_sign_is_not_right_at_a_limit():
 
 def test_settings_may_be_interchanged():
     assert "Kp and Ti are interchanged" in judge("pid", settings(PID(1.5, 12)), PID(12, 1.5)).says
+
+
+def test_a_unit_that_was_given_is_the_one_that_is_wrong():
+    says = judge("Ti", number(18, "min", "the integral time"), "18 s").says
+    assert says == "the number is right, but in min: you have given it in s"

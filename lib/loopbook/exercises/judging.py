@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from loopbook.exercises import diagnoses
+from loopbook.exercises import diagnoses, units
+from loopbook.exercises.kinds import Number
 from loopbook.exercises.reading import NOT_ANSWERED, Unreadable, shortened
 from loopbook.exercises.timeout import limited
 
@@ -96,10 +98,20 @@ def _judged(kind, given, mistakes, background):
     answer, remark = kind.read(given)
     if kind.agrees(answer):
         return RIGHT, "right" + (f", {remark}" if remark else "")
+    if named := _in_its_unit(kind, answer, remark):
+        return MISTAKE, f"the number is right, but in {kind.unit}: you have given it in {named}", False
     status, says, is_bare = _explained(kind, answer, mistakes, background)
     shown = harmless(kind.as_read(answer))
     said = f"read as {shown}" if shown else harmless(remark)
     return status, says + (f" · {said}" if said else ""), is_bare
+
+
+def _in_its_unit(kind, answer, remark):
+    """The unit that was given with a number that is right in the asked one; empty where it is not so."""
+    found = re.fullmatch(r"converted from (\S+)", remark)
+    if not (found and type(kind) is Number):
+        return ""
+    return found[1] if kind.agrees(units.convert(answer, kind.unit, to=found[1])) else ""
 
 
 def _explained(kind, answer, mistakes, background):
