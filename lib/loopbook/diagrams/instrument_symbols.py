@@ -24,7 +24,8 @@ def instrument(letters: str, place: str = "field", device: str = "discrete") -> 
     """Return an instrument: a circle with its letters, and a number below them where there is one.
 
     Arguments:
-        letters: a tag that `loopbook.instruments.decode` explains, such as "LT" or "FC123".
+        letters: a tag that `loopbook.instruments.decode` explains, such as "LT" or "FC123"; "" where it is not yet
+            written.
         place: "field" (beside the process), "panel" (in the control room: a line across it), "behind" (behind the
             panel, where no operator reaches it: a dashed line) or "local panel" (two lines).
         device: "discrete" (one instrument), "shared" (a display or controller of a control system, which several loops
@@ -34,8 +35,11 @@ def instrument(letters: str, place: str = "field", device: str = "discrete") -> 
 
     >>> instrument("TC1", place="panel")
     <TC1>
+    >>> instrument("")
+    <instrument without a tag>
     """
-    decode(letters)
+    if letters:
+        decode(letters)
     return Instrument(letters, one_of("the place", place, PLACES), one_of("the device", device, DEVICES))
 
 
@@ -45,13 +49,14 @@ class Instrument(Equipment):
     radius, room, inline, openings = 0.5, (0.6, 0.4), True, ()
 
     def __init__(self, letters: str, place: str, device: str):
-        super().__init__("", letters)
+        super().__init__("", letters or "instrument without a tag")
+        self.letters = letters
         self.place_in_plant, self.device = place, device
         if device == "computer":
             self.radius, self.width = None, 2 * HEXAGON[0][0]
 
     def draw(self, drawing: Drawing) -> None:
-        letters, number = re.fullmatch(r"([A-Z]*)-?(.*)", self.words).groups()
+        letters, number = re.fullmatch(r"([A-Z]*)-?(.*)", self.letters).groups()
         if self.device == "computer":
             drawing.area(self.around(*HEXAGON), fill="white", zorder=3)
         else:

@@ -194,6 +194,19 @@ MEASURED = {
     "a level difference": "LD",
     "a position": "G",
 }
+#: Where each of them is measured, and to whom each device speaks, for the picture.
+MEASURED_AT = {
+    "a pressure difference": "Filter",
+    "a viscosity": "Oil pump",
+    "the fraction of two flows": "Mixer",
+    "a density": "Thickener",
+    "a temperature difference": "Cooler",
+    "a speed": "Fan",
+    "a quality": "Reactor",
+    "a level difference": "Screen",
+    "a position": "Gate",
+}
+HEARD_BY = {"IC": "valve", "IT": "controller", "AH": "horn", "AL": "horn"}
 #: What comes to mind first, from the English word or from the other standard.
 TEMPTING = {"a viscosity": "Q", "a density": "G", "a speed": "V", "a quality": "A", "a position": "P"}
 
@@ -211,11 +224,29 @@ def letters_of(device, measured):
     "end: who writes by this order is understood everywhere.",
 )
 def writing(device=choice(*DEVICES), measured=choice(*MEASURED)):
-    """A drawing needs {device} of {measured}. Which letters does its tag have? Give them one by one as a list, as
-    `["F", "C"]` for a flow controller.
+    """In this drawing the empty circle is {device} of {measured}. Which letters does its tag have? Give them one by one
+    as a list, as `["F", "C"]` for a flow controller.
     """
     letters = letters_of(device, measured)
     return answers(letters=words(letters, ALPHABET, what="the letters of the tag", ordered=True))
+
+
+@writing.picture
+def _(device, measured):
+    """A part of a plant, and above it a circle without letters: {device} of {measured}."""
+    layout = """
+        .   .  heard  .  .
+        .   .  .      .  .
+        .   .  empty  .  .
+        in  1  place  2  out"""
+    parts = {"empty": draw.instrument(""), "place": MEASURED_AT[measured]}
+    names, pipes = {"in": "feed", "out": "product", "heard": HEARD_BY[DEVICES[device]]}, "in 1 place 2 out"
+    taps = "1 empty, 2 empty" if len(MEASURED[measured]) > 1 else "place empty"
+    if measured == "the fraction of two flows":
+        layout += "\n        .  .  3  product  ."
+        names, pipes = names | {"in": "syrup", "out": "water"}, "in 1 place, out 2 place 3 product"
+    lines = {"measuring line": taps}
+    return draw.instrumentation_diagram(layout, pipes, "empty heard", parts, names, lines=lines)
 
 
 @writing.mistake("The last letter says what the instrument is. Is it primarily an indicator?")
