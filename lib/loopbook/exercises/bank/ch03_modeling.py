@@ -110,6 +110,17 @@ def _(A, q_1, q_2, q_o):
     return {"rate": flow} if _told_apart(flow, (q_1 + q_2) / A, (q_1 + q_2 + q_o) / A, by=0.03) else {}
 
 
+@cistern.mistake("The same flow moves a wide cistern more slowly than a narrow one. What becomes of the area, then?")
+def _(A, q_1, q_2, q_o):
+    return {"rate": A * (q_1 + q_2 - q_o)}
+
+
+@cistern.mistake("That is the whole way between bottom and rim. From where does the level start?")
+def _(A, h, h_max, q_1, q_2, q_o):
+    rate = (q_1 + q_2 - q_o) / A
+    return {"time": h_max / abs(rate)} if _told_apart(h_max, h, h_max - h, by=0.03) else {}
+
+
 @cistern.mistake("Is there more coming in, or more going out? The sign of the rate tells which end comes.")
 def _(q_1, q_2, q_o):
     return {"end": "runs empty" if q_1 + q_2 > q_o else "runs over"}
@@ -293,11 +304,13 @@ def _(shape, outlet):
     **The balance.** The density $\rho$ is the same inside and in both streams, so it cancels: $\dot V = q_i - {out}$.
     By the chain rule, $\dot V = \frac{dV}{dh}\,\dot h$, and $dV/dh$ is the area at the level, ${area}$. So
 
-    $$\dot h = \frac{q_i - {out}}{ {area} }$$
+    $$\dot h = \frac{ {below}\,(q_i - {out})}{ {above} }$$
 
     Where the level is low, the same flow moves it faster.
     """
-    return {"area": _volume(shape)[1]}
+    area = _volume(shape)[1]
+    above, below = sympy.fraction(area)
+    return {"area": area, "above": above, "below": below}
 
 
 @sloping_walls.solution_picture
@@ -363,17 +376,40 @@ def _(V, q, c_in):
     return {"T": T, "c_s": c_s, "c": c_s * (1 - sympy.exp(-t / T))}
 
 
+@pond.mistake(
+    "That is a pond without bacteria, or nearly so. They remove that much from every cubic metre: how much is it "
+    "in the whole pond?"
+)
+def _(V, q, k, c_in):
+    T, c_s = V / (q + k), q * c_in / (q + k)
+    return {"T": T, "c_s": c_s, "c": c_s * (1 - sympy.exp(-t / T))}
+
+
 @pond.mistake("The bacteria take waste out of the pond. Which sign has their term, compared with that of the outflow?")
 def _(V, q, k, c_in):
     if abs(q - k * V) < q / 20:
         return {}
     T, c_s = V / (q - k * V), q * c_in / (q - k * V)
-    return {"T": T, "c_s": c_s} if _told_apart(T, 1 / k, by=0.05) else {"c_s": c_s}
+    found = {"T": T, "c_s": c_s} if _told_apart(T, 1 / k, by=0.05) else {"c_s": c_s}
+    return found | ({"c": c_s * (1 - sympy.exp(-t / T))} if T > 0 else {})
 
 
 @pond.mistake("That is the time constant of the bacteria alone. What else carries waste out of the pond?")
+def _(V, q, k, c_in):
+    _, share = _decay(V, q, k)
+    c = share * c_in * (1 - sympy.exp(-k * t))
+    return {"T": 1 / k, "c": c} if _told_apart(1 / k, V / q, by=0.03) else {}
+
+
+@pond.mistake("Where does waste leave the pond, apart from the bacteria?")
+def _(V, q, k, c_in):
+    c_s = q * c_in / (k * V)
+    return {"c_s": c_s} if _told_apart(c_s, c_in, abs(q * c_in / (q - k * V)) if q != k * V else c_in, by=0.03) else {}
+
+
+@pond.mistake("Outflow and bacteria remove waste side by side. Does that make the pond slower, or faster?")
 def _(V, q, k):
-    return {"T": 1 / k} if _told_apart(1 / k, V / q, by=0.03) else {}
+    return {"T": V / q + 1 / k}
 
 
 @pond.mistake("Your concentration ends at that of the inflow. Do the bacteria not remove anything?")
@@ -526,11 +562,21 @@ def _(m, F, c, U_h, T_i, T_e, T_SP):
     return wrong | {"T_off": (c * F * T_i - U_h * T_e) / loss, "warmer": 1000 / loss}
 
 
-@milk.mistake("Not all of this temperature comes from the element. How much higher is it with one kilowatt more?")
-def _(F, c, U_h, T_i, T_e, T_SP):
-    each = 1000 * T_SP / (c * F * (T_SP - T_i) + U_h * (T_SP - T_e))
-    others = [1000 / (c * F), 1000 / U_h, 1000 / (c * F + U_h), 1000 / abs(c * F - U_h)]
-    return {"warmer": each} if _told_apart(each, *others, by=0.03) else {}
+def _for_each_kilowatt(rise):
+    """A difference of temperatures over the whole power."""
+
+    def found(F, c, U_h, T_i, T_e, T_SP):
+        each = 1000 * rise(T_i, T_e, T_SP) / (c * F * (T_SP - T_i) + U_h * (T_SP - T_e))
+        others = [1000 / (c * F), 1000 / U_h, 1000 / (c * F + U_h), 1000 / abs(c * F - U_h)]
+        return {"warmer": each} if _told_apart(each, *others, by=0.012) else {}
+
+    return found
+
+
+for _rise in (lambda T_i, T_e, T_SP: T_SP, lambda T_i, T_e, T_SP: T_SP - T_i, lambda T_i, T_e, T_SP: T_SP - T_e):
+    milk.mistake("Where is the milk without the element? Only what it is warmer than that comes from the power.")(
+        _for_each_kilowatt(_rise)
+    )
 
 
 @milk.mistake("The energy inside is that of the whole mass. What is the rate of the temperature multiplied by?")
@@ -733,6 +779,20 @@ def _(m_1, m_2, J, r, T):
     return {"formula": angular, "mass": J + (m_1 + m_2) * r**2, "a": _lift(T, J, r, m_1, m_2, g_earth) / r}
 
 
+@lift.mistake("An inertia in kg m² becomes a mass when it is divided by what? Look at the units.")
+def _(m_1, m_2, J, r, T):
+    found = _lift_with(lambda m_1, m_2, J, r: m_1 + m_2 + J / r, lambda m_1, m_2, J, r: m_1 - m_2)(m_1, m_2, J, r, T)
+    different = _told_apart(found["mass"], m_1 + m_2, m_1 + m_2 + J / r**2, J + (m_1 + m_2) * r**2, by=0.015)
+    return _only(found, "formula", "mass", "a") if different else _only(found, "formula")
+
+
+@lift.mistake("Where are the weights of cabin and counterweight? They are not equal.")
+def _(m_1, m_2, J, r, T):
+    found = _lift_with(_moved, lambda m_1, m_2, J, r: 0 * m_1)(m_1, m_2, J, r, T)
+    right = _lift(T, J, r, m_1, m_2, g_earth)
+    return _only(found, "formula", "a") if _told_apart(found["a"], right, -right, by=0.03) else _only(found, "formula")
+
+
 @lift.mistake("A mass is not yet a force. How large is the force of gravity on it?")
 def _(m_1, m_2, r):
     return {"T_hold": (m_1 - m_2) * r}
@@ -749,6 +809,7 @@ def _(m_1, m_2, J, r, T):
     return {
         "formula": (TORQUE - (CABIN - WEIGHT) * G) / (CABIN + WEIGHT + INERTIA / RADIUS**2),
         "T_hold": (m_1 - m_2) * g_earth,
+        "a": _lift(T * r, J, r, m_1, m_2, g_earth),
     }
 
 
@@ -909,6 +970,28 @@ def _(circuit, r_1, r_2, c):
     return {"T": r_1 * r_2 * c / (r_1 + r_2) if circuit == "stepped" else (r_1 + r_2) * c}
 
 
+@two_resistors.mistake(
+    "Replace the source by a wire, for which its voltage is zero. Are the two resistors, seen from the capacitor, "
+    "in series or in parallel?"
+)
+def _(circuit):
+    end = {"loaded": V_IN * R_2 / (R_1 + R_2), "stepped": V_IN, "bridged": V_IN * R_1 / (R_1 + R_2)}[circuit]
+    lag = R_1 * R_2 / (R_1 + R_2) if circuit == "stepped" else R_1 + R_2
+    return {"rate": (end - V_C) / (lag * C)}
+
+
+@two_resistors.mistake("Which of the three parts share one current, and which of them share one voltage?")
+def _(circuit):
+    _, _, other = CIRCUITS["loaded" if circuit == "stepped" else "stepped"]
+    return {"rate": other}
+
+
+@two_resistors.mistake("When the capacitor is charged, it takes no current. To which voltage is it charged, then?")
+def _(circuit):
+    end = {"loaded": V_IN, "stepped": V_IN * R_2 / (R_1 + R_2), "bridged": V_IN}[circuit]
+    return {"rate": (end - V_C) / (_lag(circuit, R_1, R_2, C))}
+
+
 @two_resistors.mistake("That is a current. Which law connects the current into a capacitor with its voltage?")
 def _(circuit):
     return {"rate": CIRCUITS[circuit][2] * C}
@@ -924,6 +1007,22 @@ def _(circuit, r_1, r_2):
     slow, fast = _slow_and_fast(circuit, r_1, r_2)
     return {"slow": fast, "fast": slow}
 
+
+def _seen_otherwise(name, wrong):
+    """One of the two factors as 0 or 1, where neither of them is that."""
+
+    def found(circuit, r_1, r_2):
+        return {name: wrong} if wrong not in _slow_and_fast(circuit, r_1, r_2) else {}
+
+    return found
+
+
+for _name, _sentence in (
+    ("slow", "Take the capacitor out of the circuit. Through which resistors does a current flow then?"),
+    ("fast", "Put a wire in the place of the capacitor. Which parts are bridged by it, and where is the output then?"),
+):
+    for _wrong in (0, 1):
+        two_resistors.mistake(_sentence)(_seen_otherwise(_name, _wrong))
 
 two_resistors.hints(
     "Kirchhoff's law of currents: what flows into a junction flows out of it. The current into a capacitor is "
@@ -1196,33 +1295,36 @@ def _told_apart(value, *others, by=0.35):
 
 
 def _rates(opening, h_s, q_i, h_1, A):
-    """The rate of the level, and those of three mistakes: a sum, no area, no inflow."""
+    """The rate of the level, and those of four mistakes: a sum, no area, no inflow, no outflow."""
     share = (h_1 / h_s) ** OPENINGS[opening]
-    return [q_i * (1 - share) / A, q_i * (1 + share) / A, q_i * (1 - share), -q_i * share / A]
+    return [q_i * (1 - share) / A, q_i * (1 + share) / A, q_i * (1 - share), -q_i * share / A, q_i / A]
 
 
-@seen_balance.mistake("What comes in raises the level, what goes out lowers it. Do the two flows add up?")
-def _(opening, h_s, q_i, h_1, A):
-    right, added, *_ = _rates(opening, h_s, q_i, h_1, A)
-    return {"rate": added} if _told_apart(added, right) else {}
+#: What is said of the rates of the mistakes, and of one that a ruler cannot tell from another one.
+RATES = [
+    "What comes in raises the level, what goes out lowers it. Do the two flows add up?",
+    "That is the flow that is left over. A litre on a square metre is one millimetre high.",
+    "Something also comes in. How far apart are the two curves at this level?",
+    "That is what comes in. What goes out at this level, at the same time?",
+]
+UNTOLD = "How far apart are the two curves at this level, and what does that much water do to this area?"
 
 
-@seen_balance.mistake("That is the flow that is left over. A litre on a square metre is one millimetre high.")
-def _(opening, h_s, q_i, h_1, A):
-    right, added, flow, _ = _rates(opening, h_s, q_i, h_1, A)
-    return {"rate": flow} if _told_apart(flow, right, added) else {}
+def _rate_of(number, is_told):
+    """The rate of one of the mistakes, if a ruler can tell it from the others, or else if it cannot."""
+
+    def found(opening, h_s, q_i, h_1, A):
+        right, *wrong = _rates(opening, h_s, q_i, h_1, A)
+        rate = wrong.pop(number)
+        return {"rate": rate} if _told_apart(rate, right, by=0.2) and _told_apart(rate, *wrong) == is_told else {}
+
+    return found
 
 
-@seen_balance.mistake("That is what comes in. What goes out at this level, at the same time?")
-def _(opening, h_s, q_i, h_1, A):
-    alone = q_i / A
-    return {"rate": alone} if _told_apart(alone, *_rates(opening, h_s, q_i, h_1, A)) else {}
-
-
-@seen_balance.mistake("Something also comes in. How far apart are the two curves at this level?")
-def _(opening, h_s, q_i, h_1, A):
-    right, added, flow, outflow = _rates(opening, h_s, q_i, h_1, A)
-    return {"rate": outflow} if _told_apart(outflow, right, added, flow) else {}
+for _number, _sentence in enumerate(RATES):
+    seen_balance.mistake(_sentence)(_rate_of(_number, is_told=True))
+for _number in range(len(RATES)):
+    seen_balance.mistake(UNTOLD)(_rate_of(_number, is_told=False))
 
 
 def _times(opening, A, h_s, q_i, h_1):

@@ -74,6 +74,16 @@ def _(start, rate):
     return {"F_rate": start + rate / s}
 
 
+@oil_bath.mistake("The rate is a constant from $t = 0$ on. What does the table say of the transform of a constant?")
+def _(rate):
+    return {"F_rate": rate}
+
+
+@oil_bath.mistake("Which of the two is constant in time, and which one grows steadily? Look at both pairs again.")
+def _(start, rate):
+    return {"F": rate / s + start / s**2} if rate != start else {}
+
+
 @oil_bath.mistake("The bath warms up at a constant rate. Which signal is a constant?")
 def _(rate):
     return {"F_rate": rate / s**2}
@@ -140,7 +150,10 @@ def _(q, begin, duration):
 
 @dose.mistake("The delay of a step is counted from $t = 0$, not from the step before. When does the pump stop?")
 def _(q, begin, duration):
-    return {"F": q / s * (exp(-begin * s) - exp(-duration * s))} if begin != duration else {}
+    if begin == duration:
+        return {}
+    found, total = {"F": q / s * (exp(-begin * s) - exp(-duration * s))}, q * (duration - begin)
+    return found | ({"total": total} if total > 0 else {})
 
 
 @dose.mistake("Your pump starts and never stops. A second step has to stop the flow.")
@@ -244,7 +257,12 @@ def _(A, B, p, q):
 def _(A, B, p, q):
     way = q - p
     wrong = {"y": way * (A * exp(-p * t) - B * exp(-q * t)), "y_0": way * (A - B)}
-    return wrong if abs(way - 1) > 0.05 and _apart(way * (A - B), A) else {}
+    return wrong if abs(way - 1) > 0.05 and _apart(way * (A - B), A, A + B) else {}
+
+
+@back_to_time.mistake("Which sign has the difference of the two poles, in the second fraction?")
+def _(A, B, p, q):
+    return {"y": A * exp(-p * t) - B * exp(-q * t)} | ({"y_0": A - B} if _apart(A - B, A, (q - p) * (A - B)) else {})
 
 
 @back_to_time.mistake("Look at the signs of the poles again: the tracer cannot multiply.")
@@ -397,8 +415,8 @@ def _(T, start, bath):
 
 
 @thermometer.mistake("An exponent is a pure number: here it must be a time over a time constant.")
-def _(T, start, bath):
-    return {"y": bath - (bath - start) * exp(-T * t)}
+def _(T, start, bath, rest):
+    return {"y": bath - (bath - start) * exp(-T * t), "t_near": log((bath - start) / rest) / T}
 
 
 @thermometer.mistake("This reading runs away from the water. Look at the sign of the pole again.")
@@ -409,6 +427,16 @@ def _(T, start, bath):
 @thermometer.mistake("You have added the final value to the whole response from zero. What is the reading at $t = 0$?")
 def _(T, start, bath):
     return {"Y": start / s + bath / (s * (T * s + 1)), "y": start + bath * (1 - exp(-t / T))}
+
+
+@thermometer.mistake("Is the reading above the temperature of the water at the beginning, or below it?")
+def _(T, start, bath):
+    return {"y": bath + (bath - start) * exp(-t / T)}
+
+
+@thermometer.mistake("In the transform of a derivative the initial value is subtracted. Which sign has it behind $Y$?")
+def _(T, start, bath):
+    return {"Y": (bath - T * start * s) / (s * (T * s + 1)), "y": bath - (bath + start) * exp(-t / T)}
 
 
 @thermometer.mistake("That is the rise of the reading. What does the thermometer show at $t = 0$?")
@@ -501,6 +529,26 @@ def _(order):
 @which_settle.mistake("One of these grows without bounds. On which side of the imaginary axis is its pole?")
 def _(order):
     return {"settling": sorted([order[0], order[1], order[3]])}
+
+
+@which_settle.mistake("One of these oscillates forever. A pair of poles on the imaginary axis does not fade.")
+def _(order):
+    return {"settling": sorted([order[0], order[2]])}
+
+
+@which_settle.mistake("One of these oscillates forever. A pair of poles on the imaginary axis does not fade.")
+def _(order):
+    return {"settling": sorted([order[2], order[3]])}
+
+
+@which_settle.mistake("One of these grows without bounds. On which side of the imaginary axis is its pole?")
+def _(order):
+    return {"settling": sorted([order[0], order[1]])}
+
+
+@which_settle.mistake("One of these grows without bounds. On which side of the imaginary axis is its pole?")
+def _(order):
+    return {"settling": sorted([order[1], order[3]])}
 
 
 @which_settle.mistake("Zero is a final value, too: a signal that dies out has settled.")
@@ -637,6 +685,40 @@ def _():
     return {"U": u_1 / s - u_2 / s * exp(-t_1 * s)}
 
 
+@full_power_first.mistake(
+    "The second step is a step as well, only later and of another height. Which factor has it lost?"
+)
+def _():
+    u_1, u_2, t_1 = (Symbol(name, positive=True) for name in ("u_1", "u_2", "t_1"))
+    return {"U": u_1 / s + (u_2 - u_1) * exp(-t_1 * s)}
+
+
+@full_power_first.mistake("Your power is zero after the switch. Which power holds the oven then?")
+def _():
+    u_1, t_1 = (Symbol(name, positive=True) for name in ("u_1", "t_1"))
+    return {"U": u_1 / s * (1 - exp(-t_1 * s))}
+
+
+@full_power_first.mistake("Your $u_2$ is there from $t = 0$ on. When is it switched on, and how does a delay look?")
+def _():
+    u_1, u_2, t_1 = (Symbol(name, positive=True) for name in ("u_1", "u_2", "t_1"))
+    return {"U": u_1 / s * (1 - exp(-t_1 * s)) + u_2 / s}
+
+
+@full_power_first.mistake("Your power grows at the switch. From which power to which one does it step there?")
+def _():
+    u_1, u_2, t_1 = (Symbol(name, positive=True) for name in ("u_1", "u_2", "t_1"))
+    return {"U": u_1 / s + (u_1 - u_2) / s * exp(-t_1 * s)}
+
+
+@full_power_first.mistake(
+    "After three time constants a lag is nearly at its end. Must the oven wait until then, at full power?"
+)
+def _(T, K, full, warmer):
+    excess = _excess(K, full, warmer)
+    return {"t_1": 3 * T} if _apart(3, log(excess), log(excess / (excess - 1))) else {}
+
+
 @full_power_first.mistake("Under full power the temperature does not rise along a straight line to its end: it bends.")
 def _(T, K, full, warmer):
     return {"t_1": T * warmer / (K * full)}
@@ -662,7 +744,7 @@ def _(T, K, full, warmer):
     return {"t_1": 5 * T}
 
 
-@full_power_first.mistake("The inverse of $e^{{-t/T}}$ is the natural logarithm. Which one have you taken?")
+@full_power_first.mistake("The inverse of $e^{-t/T}$ is the natural logarithm. Which one have you taken?")
 def _(T, K, full, warmer):
     return {"t_1": T * log(K * full / (K * full - warmer)) / log(10)}
 
@@ -766,9 +848,20 @@ def _(start, end, T):
     return time_plot({"$y$": (readings, "measurement")}, times, "The sensor changes baths", ylabel="$y$ [°C]")
 
 
+def _with_pole(pole, start, end):
+    """Pole and transform of somebody who has both levels right; where the way is short, a ruler takes any pole."""
+    is_long = abs(start - end) >= max(start, end) * 7 / 10
+    return {"pole": pole} | ({"Y": end / s + (start - end) / (s - pole)} if is_long else {})
+
+
 @pole_by_ruler.mistake("That is the time constant. Where is the pole of something that dies out with it?")
 def _(T):
     return {"pole": T}
+
+
+@pole_by_ruler.mistake("That is a time, with a minus. Which pole belongs to something that dies out with it?")
+def _(start, end, T):
+    return _with_pole(-T, start, end)
 
 
 @pole_by_ruler.mistake("The curve dies out. On which side of the imaginary axis is its pole?")
@@ -783,18 +876,24 @@ def _(T):
     return {"pole": -1 / (T * log(2))}
 
 
+@pole_by_ruler.mistake("After that time 37 % of the way are covered. How much is covered after a time constant?")
+def _(start, end, T):
+    return _with_pole(1 / (T * log(0.632)), start, end)
+
+
 @pole_by_ruler.mistake(
     "That is the time after which hardly anything is left of the way. After how many time constants is that?"
 )
-def _(T):
-    return {"pole": -1 / (4 * T)}
+def _(start, end, T):
+    return _with_pole(-1 / (4 * T), start, end)
 
 
 @pole_by_ruler.mistake("Is that 63 % of the way from the beginning to the end, or of a temperature?")
 def _(start, end, T):
     left = (0.368 * max(start, end) - (end if start > end else 0)) / abs(start - end)
     after = -log(left) if left > 0.01 else 0
-    return {"pole": -1 / (T * after)} if all(abs(after / n - 1) > 0.25 for n in (1, 0.693, 4)) and after else {}
+    told = after and all(abs(after / n - 1) > 0.25 for n in (1, 0.693, 0.459, 4))
+    return _with_pole(-1 / (T * after), start, end) if told else {}
 
 
 @pole_by_ruler.mistake("Where does the signal that belongs to your transform begin? Add its two parts at $t = 0$.")
