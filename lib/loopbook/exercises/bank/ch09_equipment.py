@@ -23,6 +23,11 @@ from loopbook.expressions import t
 from loopbook.figures import plane_plot, time_plot
 
 
+def _differs(value, *others, by=0.03):
+    """Whether a wrong value can be told from the right one and from those of other mistakes."""
+    return all(abs(value - other) > by * abs(other) for other in others)
+
+
 @exercise(
     "9.1",
     title="A kiln behind a resistor",
@@ -90,6 +95,21 @@ def _(R, V):
 @kiln.mistake("A current is a voltage divided by a resistance. Look at Ohm's law, and at the units.")
 def _(R, V):
     return {"I": V * R}
+
+
+@kiln.mistake("That share is one of 20 mA. How wide is the range from 4 to 20 mA?")
+def _(T_low, T_high, R, V):
+    share, span = (1000 * V / R - 4) / 16, T_high - T_low
+    wrong = T_low + share * span * 16 / 20
+    return {"T": wrong} if _differs(wrong, T_low + share * span, share * span) else {}
+
+
+@kiln.mistake(
+    "There the share is counted from 0 mA, and yet it is one of 16 mA. Where does the range of the current begin?"
+)
+def _(T_low, T_high, R, V):
+    wrong, share = T_low + 1000 * V / R * (T_high - T_low) / 16, (1000 * V / R - 4) / 16
+    return {"T": wrong} if _differs(wrong, T_low + share * T_high) else {}
 
 
 kiln.hints(
@@ -208,6 +228,11 @@ def _(span, bits):
 @silo.mistake("This is in percent of full scale. How many kilograms is full scale?")
 def _(bits, inaccuracy, drift, warming):
     return {"step": 100 / (2**bits - 1), "error": inaccuracy + drift * warming}
+
+
+@silo.mistake("By so much rounding may be wrong. A step is from one value to the next.")
+def _(span, bits):
+    return {"step": _step(span, bits) / 2}
 
 
 @silo.mistake("The drift is missing. It grows with each degree.")
@@ -342,10 +367,16 @@ def _(wire, length, R_voltage):
     return {"lost": 100 - 100 * R_cable / (R_cable + 1000 * R_voltage)}
 
 
+@dam.mistake("That would drive the inputs alone. What else may the current have to flow through?")
+def _(R_load, inputs, R_in):
+    wrong = inputs * R_in / 50
+    return {"V": wrong} if _differs(wrong, 4 * R_load / 1000) else {}
+
+
 @dam.mistake("That is the cable compared with the input. What part is it of the two together?")
 def _(wire, length, R_voltage):
     R_cable, R_input = 2 * wire * length, 1000 * R_voltage
-    return {"lost": 100 * R_cable / R_input} if R_cable > R_input / 50 else {}
+    return {"lost": 100 * R_cable / R_input} if R_cable > R_input / 60 else {}
 
 
 dam.hints(
@@ -594,6 +625,15 @@ def _(full, T, D, P):
     return {"ripple": full * (1 - exp(-D * P / T))}
 
 
+@oven.mistake("That is the lowest value in the end. How far above it is the highest one?")
+def _(full, T, D, P):
+    a, b = (math.exp(-share * P / T) for share in (D, 1 - D))
+    highest, first, short = (1 - a) / (1 - a * b), 1 - a, float(D * (1 - D) * P / T)
+    lowest = b * highest
+    is_another = _differs(lowest, highest - lowest, first, first * (1 - b), short)
+    return {"ripple": full * lowest} if is_another else {}
+
+
 oven.hints(
     "Each part of a cycle is the step response of a lag, from where it begins towards where it would end. Where is "
     "that in the on-state, and where in the off-state?",
@@ -713,13 +753,26 @@ def _(K, T, tau, K_p):
 
 @program.mistake("Here the phase is turned by half a turn. The integrator accounts for a part of that.")
 def _(K, T, tau, K_p):
-    return {"margin": pi * T / (K * K_p) - tau}
+    return {"margin": pi * T / (K * K_p) - tau} if K != 2 and K_p != 2 else {}
+
+
+@program.mistake(
+    "How far does the integrator turn the phase by itself? And are both gains in your crossover frequency?"
+)
+def _(K, T, tau, K_p):
+    return {"margin": pi * T / (K * K_p) - tau} if K == 2 or K_p == 2 else {}
+
+
+@program.mistake("Half of the step may be as long as the margin. How long may the whole step be?")
+def _(K, T, tau, K_p):
+    return {"h_limit": _margin(K, T, tau, K_p) / 2}
 
 
 @program.mistake("The controller's output is constant for a whole step. How old is it on average?")
 def _(K, T, tau, K_p, h):
     margin = _margin(K, T, tau, K_p)
-    return {"h_limit": margin, "left": margin - h}
+    left = margin - float(h)
+    return {"h_limit": margin, "left": left if abs(left) > 0.02 else 0}
 
 
 program.hints(
@@ -963,44 +1016,57 @@ def _(kind, authority, middle):
 
 def _apart(right, wrong):
     """Those of the wrong values that a ruler tells from the right ones."""
-    return {name: x for name, x in wrong.items() if not 0.7 < x / right[name] < 1.4}
+    return {name: x for name, x in wrong.items() if not 0.75 < x / right[name] < 1.3}
 
 
 def _gains(kind, authority, low, high):
     return {"gain_A": installed(kind, authority, low)[1], "gain_B": installed(kind, authority, high)[1]}
 
 
-@stroked_valve.mistake("Percent of flow for one percent of opening: which of the two is divided by the other?")
-def _(kind, authority, low, high):
-    right = _gains(kind, authority, low, high)
-    return _apart(right, {name: 1 / gain for name, gain in right.items()})
+def _not_the_slope(kind, authority, low, high):
+    """For the gain at each point what is taken for it: flow over opening, the gain at the other point, and so on."""
+    right, flows = _gains(kind, authority, low, high), [float(installed(kind, authority, x)[0]) for x in (low, high)]
+    line, openings = (flows[1] - flows[0]) / float(high - low), (float(low), float(high))
+    return {
+        name: {"origin": flow / opening, "other": right[other], "line": line, "inverse": 1 / right[name]}
+        for name, other, flow, opening in zip(right, reversed(right), flows, openings, strict=True)
+    }
 
 
-@stroked_valve.mistake("At which of the two points is the curve that steep?")
-def _(kind, authority, low, high):
-    right = _gains(kind, authority, low, high)
-    return _apart(right, {"gain_A": right["gain_B"], "gain_B": right["gain_A"]})
+_ALONE = {
+    "inverse": "Percent of flow for one percent of opening: which of the two is divided by the other?",
+    "other": "At which of the two points is the curve that steep?",
+    "origin": "That is flow over opening, a line from the origin. The gain is how steep the curve is at the point.",
+    "line": "That is the slope of the line from A to B. At each of them the curve has its own.",
+}
+#: Where a ruler does not tell two of them apart.
+_TOGETHER = (
+    "Lay the ruler along the curve at this very point. What is its slope, in percent of flow for one of opening?"
+)
+
+
+def _taken_for(why, alone):
+    """A mistake: this for the gain, where a ruler tells it from the gain and, if alone, from all else."""
+
+    def mistake(kind, authority, low, high):
+        found = {}
+        for name, wrong in _not_the_slope(kind, authority, low, high).items():
+            if alone == all(not 0.8 < x / wrong[why] < 1.25 for other, x in wrong.items() if other != why):
+                found[name] = wrong[why]
+        return _apart(_gains(kind, authority, low, high), found)
+
+    return mistake
+
+
+for why, sentence in _ALONE.items():
+    stroked_valve.mistake(sentence)(_taken_for(why, alone=True))
+    stroked_valve.mistake(_TOGETHER)(_taken_for(why, alone=False))
 
 
 @stroked_valve.mistake("That is the flow at this point. By how much does it change with the opening?")
 def _(kind, authority, low, high):
     (q_A, _), (q_B, _) = (installed(kind, authority, x) for x in (low, high))
     return {"gain_A": q_A, "gain_B": q_B}
-
-
-@stroked_valve.mistake(
-    "That is flow over opening, a line from the origin. The gain is how steep the curve is at the point."
-)
-def _(kind, authority, low, high):
-    wrong = {name: installed(kind, authority, x)[0] / float(x) for name, x in (("gain_A", low), ("gain_B", high))}
-    return _apart(_gains(kind, authority, low, high), wrong)
-
-
-@stroked_valve.mistake("That is the slope of the line from A to B. At each of them the curve has its own.")
-def _(kind, authority, low, high):
-    (q_A, _), (q_B, _) = (installed(kind, authority, x) for x in (low, high))
-    slope = (q_B - q_A) / float(high - low)
-    return _apart(_gains(kind, authority, low, high), {"gain_A": slope, "gain_B": slope})
 
 
 @stroked_valve.mistake("That is a flow. Which axis has the opening, and where does the curve reach this flow?")
@@ -1121,6 +1187,21 @@ def _(q_max, I):
 @orifice.mistake("That is the true flow. A controller without the square root scales the current linearly.")
 def _(q_max, I):
     return {"shown": q_max * math.sqrt((I - 4) / 16)}
+
+
+@orifice.mistake("That is the largest current. The flow that belongs to it is on the other axis.")
+def _():
+    return {"q_max": 20}
+
+
+@orifice.mistake("The factor 2 is on the wrong side: an error of $x^2$ is $2x$ times that of $x$. Which one is known?")
+def _(q_max, inaccuracy, allowed):
+    return {"least": q_max * math.sqrt(2 * inaccuracy / allowed)}
+
+
+@orifice.mistake("That is a share of the largest flow. How large is the flow itself?")
+def _(inaccuracy, allowed):
+    return {"least": _turndown(inaccuracy, allowed)}
 
 
 @orifice.mistake("The current does not begin at zero. Which share of its range is it?")
