@@ -26,7 +26,7 @@ from loopbook.exercises.reading import (
 )
 
 _WITH_UNIT = re.compile(r"([+-]? ?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?) ?(.*)")
-#: What may stand before a number and after it, and says nothing of its size.
+#: What may be beside a number, on either side, and says nothing of its size.
 _BEFORE_IT = re.compile(
     r"^(?:(?:at least|at most|at|after|only|exactly|(?:by )?(?:a )?factor(?: of)?|by|is|it is) |[<>]=? ?)",
     re.IGNORECASE,
