@@ -108,6 +108,13 @@ def _(arrival, m, q):
     return {"mass": (arrival + ceiling(m / q)) * q}
 
 
+@bottles.mistake(
+    "That is the flow until `Away`, counted from the first scan. In which two scans is the valve switched?"
+)
+def _(arrival, m, q):
+    return {"mass": (arrival + ceiling(m / q) + 1) * q}
+
+
 @bottles.mistake("That is the limit in the condition. The valve stays open until a scan finds it reached.")
 def _(m):
     return {"mass": m}

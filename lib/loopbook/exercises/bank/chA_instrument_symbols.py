@@ -309,6 +309,28 @@ def _(device, measured):
     return {"letters": [*letters[:-2], "S", letters[-1]]} if DEVICES[device] in ("AH", "AL") else {}
 
 
+@writing.mistake("An I only shows a value. What does the instrument do if the limit is passed?")
+def _(device, measured):
+    letters = letters_of(device, measured)
+    return {"letters": [*letters[:-2], "I", letters[-1]]} if DEVICES[device] in ("AH", "AL") else {}
+
+
+def _begins_with(letter):
+    """The mistake of beginning the tag with the letter of another quantity."""
+
+    def mistake(device, measured):
+        right = letters_of(device, measured)
+        return {"letters": [letter, *right[1:]]} if letter != right[0] else {}
+
+    return mistake
+
+
+for _quantity, _letter in zip(QUANTITIES, "DFLGPQSTV", strict=True):
+    writing.mistake(f"{_letter} as the first letter means {_quantity}. Which quantity is measured here?")(
+        _begins_with(_letter)
+    )
+
+
 @writing.mistake("Twice is the letter of the limit that is beyond the first one. Is that meant here?")
 def _(device, measured):
     letters = letters_of(device, measured)
