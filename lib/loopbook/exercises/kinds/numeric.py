@@ -28,7 +28,7 @@ from loopbook.exercises.reading import (
 _WITH_UNIT = re.compile(r"([+-]? ?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?) ?(.*)")
 #: What may be beside a number, on either side, and says nothing of its size.
 _BEFORE_IT = re.compile(
-    r"^(?:(?:at least|at most|at|after|only|exactly|(?:by )?(?:a )?factor(?: of)?|by|is|it is) |[<>]=? ?)",
+    r"^(?:(?:at least|at most|at|after|only|loops?|exactly|(?:by )?(?:a )?factor(?: of)?|by|is|it is) |[<>]=? ?)",
     re.IGNORECASE,
 )
 _BEHIND_IT = re.compile(
