@@ -335,6 +335,20 @@ def _(low, high, I, p_SP):
     return {"u": "down" if p_SP > _pressure(low, high, I) else "up"}
 
 
+@error_in_units.mistake("That is the measurement in percent of the range. What about the setpoint?")
+def _(low, high, I, p_SP):
+    e, span = p_SP - _pressure(low, high, I), high - low
+    share = (I - 4) / 16
+    return {"e_percent": 100 * share} if _apart(share, e / span, e / high, e / p_SP, (e + low) / span) else {}
+
+
+@error_in_units.mistake("That is the setpoint in percent of the range. What about the measurement?")
+def _(low, high, I, p_SP):
+    e, span = p_SP - _pressure(low, high, I), high - low
+    share = (p_SP - low) / span
+    return {"e_percent": 100 * share} if _apart(share, e / span, e / high, e / p_SP, (e + low) / span) else {}
+
+
 error_in_units.hints(
     "The transmitter draws a straight line through two points: 4 mA at the lower end of the range, 20 mA at the upper "
     "one. And a control error is setpoint minus process output.",
@@ -785,6 +799,12 @@ def _(h_SP, above_now, left_now):
 @swings.mistake("Those are two swings to the same side. The next swing of a level above its setpoint is one below it.")
 def _(left_now):
     return {"left_now": left_now**2}
+
+
+@swings.mistake("That is a difference in metres. Which part of the first swing is the next one?")
+def _(above, below):
+    gone = above - below
+    return {"left": gone} if _apart(gone, below / above, 1 - below / above) else {}
 
 
 @swings.mistake("Half of a swing is the limit. Is what you have read more, or less?")

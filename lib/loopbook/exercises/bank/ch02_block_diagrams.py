@@ -83,6 +83,14 @@ def _(K, y_0, a, t_1, t_end):
     return {"y_A": y_0 + K * a * (t_end - t_1), "y_B": K * (y_0 + a * (t_end - t_1))}
 
 
+@two_meters.mistake("The flow begins at one moment and stops at another one. For how long does it last?")
+def _(K, y_0, a, t_1, t_2, t_end):
+    volume = a * (t_2 - t_1)
+    found = {"y_A": y_0 + K * a * t_end, "y_B": K * (y_0 + a * t_end)}
+    others = {"y_A": K * (y_0 + volume), "y_B": y_0 + K * volume}
+    return {name: value for name, value in found.items() if _apart(value, others[name], y_0 + volume)}
+
+
 @two_meters.mistake("Nothing flows any more by then. What does an integrator do when its input is zero?")
 def _():
     return {"y_A": 0, "y_B": 0}
@@ -543,6 +551,23 @@ def _(D, K):
 def _(m, D, K):
     root = sympy.sqrt(D**2 - 4 * m * K)
     return {"poles": [(-D + root) / m, (-D - root) / m]}
+
+
+@scale.mistake("Which $g$ does the statement give? Ten is not near enough here.")
+def _(m, K):
+    return {"y_s": 10000 * m / K}
+
+
+@scale.mistake("Which sign has the product of the outer coefficients, under the root?")
+def _(m, D, K):
+    root = sympy.sqrt(D**2 + 4 * m * K)
+    return {"poles": [(-D + root) / (2 * m), (-D - root) / (2 * m)]}
+
+
+@scale.mistake("How many times the product of the outer coefficients is under the root?")
+def _(m, D, K):
+    root = sympy.sqrt(D**2 - m * K)
+    return {"poles": [(-D + root) / (2 * m), (-D - root) / (2 * m)]}
 
 
 @scale.mistake("The sack moves together with the platform. Which mass is it that spring and damper have to move?")

@@ -407,6 +407,13 @@ def _(V, q, k, c_in):
     return {"c_s": c_s} if _told_apart(c_s, c_in, abs(q * c_in / (q - k * V)) if q != k * V else c_in, by=0.03) else {}
 
 
+@pond.mistake("That is what the bacteria take away. How much is left?")
+def _(V, q, k, c_in):
+    eaten = k * V * c_in / (q + k * V)
+    others = [q * c_in / (q + k * V), c_in, q * c_in / (k * V), q * c_in / (q + k)]
+    return {"c_s": eaten} if _told_apart(eaten, *others, by=0.03) else {}
+
+
 @pond.mistake("Outflow and bacteria remove waste side by side. Does that make the pond slower, or faster?")
 def _(V, q, k):
     return {"T": V / q + 1 / k}
@@ -577,6 +584,16 @@ for _rise in (lambda T_i, T_e, T_SP: T_SP, lambda T_i, T_e, T_SP: T_SP - T_i, la
     milk.mistake("Where is the milk without the element? Only what it is warmer than that comes from the power.")(
         _for_each_kilowatt(_rise)
     )
+
+
+@milk.mistake("Heat is carried away by a difference of temperatures. Between which two is that of the stream?")
+def _(F, c, U_h, T_SP):
+    return {"P": (c * F + U_h) * T_SP / 1000}
+
+
+@milk.mistake("There are two ways out for the heat. At which temperature does the milk come in?")
+def _(F, c, T_e, T_SP):
+    return {"P": c * F * (T_SP - T_e) / 1000}
 
 
 @milk.mistake("The energy inside is that of the whole mass. What is the rate of the temperature multiplied by?")
@@ -791,6 +808,11 @@ def _(m_1, m_2, J, r, T):
     found = _lift_with(_moved, lambda m_1, m_2, J, r: 0 * m_1)(m_1, m_2, J, r, T)
     right = _lift(T, J, r, m_1, m_2, g_earth)
     return _only(found, "formula", "a") if _told_apart(found["a"], right, -right, by=0.03) else _only(found, "formula")
+
+
+@lift.mistake("A torque is a force times its arm, or a force is a torque over its arm. Which of the two is asked for?")
+def _(m_1, m_2, r):
+    return {"T_hold": (m_1 - m_2) * g_earth / r}
 
 
 @lift.mistake("A mass is not yet a force. How large is the force of gravity on it?")

@@ -391,6 +391,11 @@ def _(T, start, bath, rest):
     return {"t_near": 3 * T} if _apart(3, log((bath - start) / rest), log(bath / rest)) else {}
 
 
+@thermometer.mistake("After four time constants 2 % of the difference are left. Which part of it is asked for here?")
+def _(T, start, bath, rest):
+    return {"t_near": 4 * T} if _apart(4, log((bath - start) / rest), log(bath / rest)) else {}
+
+
 @thermometer.mistake("After five time constants 0.7 % of the difference are left. Which part is asked for here?")
 def _(T, start, bath, rest):
     return {"t_near": 5 * T} if _apart(5, log((bath - start) / rest), log(bath / rest)) else {}
@@ -747,6 +752,13 @@ def _(T, K, full, warmer):
 @full_power_first.mistake("The inverse of $e^{-t/T}$ is the natural logarithm. Which one have you taken?")
 def _(T, K, full, warmer):
     return {"t_1": T * log(K * full / (K * full - warmer)) / log(10)}
+
+
+@full_power_first.mistake(
+    "Kelvin times kelvin for each kilowatt does not make kilowatts. Look at the units of the gain."
+)
+def _(K, warmer):
+    return {"u_2": K * warmer}
 
 
 @full_power_first.mistake("At rest $Ku_2$ must be the temperature that is wanted. What is $u_2$, then?")
