@@ -215,6 +215,12 @@ def _(span, bits):
     return draw.instrumentation_diagram(layout, "", "silo cells input controller", parts)
 
 
+@silo.mistake("A number of bits is whole. Which whole number is enough?")
+def _(span, finest):
+    exact = math.log2(1000 * span / finest)
+    return {"bits": round(exact, 3)} if abs(exact - round(exact)) > 0.1 else {}
+
+
 @silo.mistake("That is the number of steps. How many bits does it take to count so far?")
 def _(span, finest):
     return {"bits": 1000 * span / finest}

@@ -233,6 +233,13 @@ def _(u, split, action):
     return {moving: wrong} if u < split and _apart(wrong, *others, by=0.05) else {}
 
 
+@blanket.mistake("Which of the two valves moves in this part of the range, and which way?")
+def _(u, split, action):
+    here = blanket_valves(u, split, action)
+    closed, wrong = ("vent", "inlet")[here.index(min(here))], 100 - max(here)
+    return {closed: wrong} if _apart(wrong, *blanket_valves(u, split, OTHER[action])) else {}
+
+
 @blanket.mistake("That would be right if the range were split in the middle. Where is it split here?")
 def _(u, split, action):
     if (u - split) * (u - 50) <= 0:
@@ -635,6 +642,11 @@ def _(A, F, k):
 
 
 @basin.mistake("There the level is at its end at once. How does a lag begin, and what divides $t$ in its exponent?")
+def _(A, F, k):
+    return {"deviation": F / k * (1 - exp(-1000 * A / k * t))}
+
+
+@basin.mistake("There the level is at its end at once. How does a lag begin, and what divides $t$ in its exponent?")
 def _(F, k):
     return {"deviation": F / k}
 
@@ -770,7 +782,7 @@ def _(K_1, T_1, K_2, T_2, L_1, L_2):
 def _(K_1, T_1, K_2, T_2, L_1, L_2):
     K_p1, K_p2 = two_P(K_1, T_1, K_2, T_2, L_1, L_2)
     wrong = (T_1 * T_2 / (L_1 * L_2) - 1) / (K_2 * K_p2 * K_1)
-    return {"K_p1": wrong} if _apart(wrong, K_p1, K_p2, K_p1 * K_p2, K_1 * K_p1) else {}
+    return {"K_p1": wrong} if _apart(wrong, K_p1, K_p2, K_p1 * K_p2, K_1 * K_p1, by=0.02) else {}
 
 
 @two_poles.mistake("In $T_2 s + 1 + K_2K_{p2}$ there is a one beside the gains. What does it leave for them?")
@@ -1481,6 +1493,14 @@ def _(K_1, T_1, K_2, T_2, L):
 @glue_kettle.mistake("Jacket and kettle have poles without any controller, too. Where are they in the polynomial?")
 def _(K_1, T_1, K_2, T_2, L):
     wrong = {"k_1": 3 * T_1 * T_2 / L**2 / (K_1 * K_2), "k_2": 3 * T_2 / L / K_2}
+    return _unlike(_glue_key(K_1, T_1, K_2, T_2, L), wrong)
+
+
+@glue_kettle.mistake(
+    "That follows from a $k_2$ without the poles of jacket and kettle. Where are they in the polynomial?"
+)
+def _(K_1, T_1, K_2, T_2, L):
+    wrong = {"k_1": (3 * T_1 * T_2 / L**2 - 1 - 3 * T_2 / L) / (K_1 * K_2)}
     return _unlike(_glue_key(K_1, T_1, K_2, T_2, L), wrong)
 
 

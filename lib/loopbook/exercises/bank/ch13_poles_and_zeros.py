@@ -101,6 +101,11 @@ def _(k, tau_1, tau_2, T, M):
 
 
 @before_it_is_drawn.mistake("That is the numerator alone. By what is its $s$ divided where $s$ is large?")
+def _(k, tau_1, tau_2, T, M):
+    return {"slope": k * T} if M not in (1, tau_1 * tau_2) else {}
+
+
+@before_it_is_drawn.mistake("That is the numerator alone. By what is its $s$ divided where $s$ is large?")
 def _(k, T, M):
     return {"slope": k * T * M}
 
@@ -1415,14 +1420,20 @@ def _(ends, kind, p, q):
 @modes.mistake("Look at the sign of the discriminant: what is the root of a negative number?")
 def _(ends, kind, p, q):
     last = p if ends == "grows" else -p
-    return {"eigenvalues": _complex([last + q, last - q])} if kind == "oscillating" else {}
+    if kind != "oscillating":
+        return {}
+    wrong, others = 1 / (q + last), (1 / p, 1 / q, 1 / sympy.sqrt(p**2 + q**2), 1 / (2 * p), log(2) / p)
+    return {"eigenvalues": _complex([last + q, last - q])} | (
+        {"time_constant": wrong} if _apart(wrong, *others) else {}
+    )
 
 
 @modes.mistake("The determinant has a plus sign in $\\lambda^2 - (a_{11} + a_{22})\\lambda + \\det A$.")
 def _(ends, kind, p, q, skew, b):
     A = _state_matrix(ends, kind, p, q, skew, b)
     added = A[0, 0] * A[1, 1] + A[0, 1] * A[1, 0]
-    return {"eigenvalues": _roots(A.trace(), -A.det())} if _apart(-A.det(), added, by=0.1) else {}
+    is_another = _apart(-A.det(), added, by=0.1) and (kind != "oscillating" or 5 * p > q)
+    return {"eigenvalues": _roots(A.trace(), -A.det())} if is_another else {}
 
 
 def _roots(trace, product):
