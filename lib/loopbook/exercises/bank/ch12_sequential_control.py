@@ -1706,7 +1706,7 @@ def _(full, T_SP, hold, low):
     return {"chart": chart_of_batch(full, T_SP, hold, low, to_heat=f"Fill -> Heat: {seconds} s")}
 
 
-@written_chart.mistake("The water is hot, and it runs away at once. Which of the four demands has no step of its own?")
+@written_chart.mistake("The water is hot, and it runs away at once. What comes first, and what is on meanwhile?")
 def _(full, T_SP, hold, low):
     lines = dict(
         to_hold=f"Heat -> Empty: temperature >= {float(T_SP):g}",
