@@ -90,6 +90,26 @@ def _(Tc):
     return {"time": Tc * math.log(1 / 0.95)}
 
 
+@faster_tank.mistake("The two settings are interchanged: which of them is a time, and which a gain?")
+def _(K, T, Tc):
+    return {"controller": PID(T, T / (K * Tc))}
+
+
+@faster_tank.mistake("After that time 90 % of the way are covered. How much is left when 95 % are?")
+def _(Tc):
+    return {"time": Tc * math.log(10)}
+
+
+@faster_tank.mistake("After four time constants 98 % of the way are covered. How many does 95 % take?")
+def _(Tc):
+    return {"time": 4 * Tc}
+
+
+@faster_tank.mistake("A lag does not go its way with a constant speed. Which share is left after a time $t$?")
+def _(Tc):
+    return {"time": Rational(19, 20) * Tc}
+
+
 faster_tank.hints(
     "Direct synthesis writes down the wish $M$ first, here a lag, and then solves for the controller.",
     "$G_c = \\frac{1}{G}\\,\\frac{M}{1 - M}$. For a lag as the wish, $\\frac{M}{1 - M}$ is $\\frac{1}{T_c s}$.",
@@ -199,6 +219,56 @@ def _():
     return {"offset": 0}
 
 
+@level_offset.mistake("The slope of the tank is missing in the gain: a tank that rises quickly needs less of it.")
+def _(K, delay, Tc):
+    return {"gain": 1 / (Tc + delay), "controller": PID((2 * Tc + delay) / (Tc + delay) ** 2, 2 * Tc + delay)}
+
+
+@level_offset.mistake("The process is an integrator and has no gain of its own. Who takes the load back in the end?")
+def _(K, load):
+    return {"offset": K * load}
+
+
+@level_offset.mistake(
+    "That is the offset behind a lag with the gain 1. Here the tank integrates, until the gain takes all of the load "
+    "back."
+)
+def _(K, delay, Tc, load):
+    return {"offset": load / (1 + 1 / (K * (Tc + delay)))}
+
+
+def _short_lead(square):
+    def wrong(K, delay, Tc):
+        return {"controller": PID(2 * Tc / (K * square(Tc, delay)), 2 * Tc)}
+
+    return wrong
+
+
+for _square in (lambda Tc, delay: (Tc + delay) ** 2, lambda Tc, delay: Tc**2 + 2 * Tc * delay):
+    level_offset.mistake(
+        "The dead time is in the term with $s$ as well: which lead makes this term of $1 - M$ vanish?"
+    )(_short_lead(_square))
+
+
+@level_offset.mistake(
+    "Multiply $(1 - \\theta s)(a s + 1)$ out once more: with which sign, and how often, is $\\theta$ there?"
+)
+def _(K, delay, Tc):
+    return {"controller": PID(2 / (K * (Tc + delay)), 2 * (Tc + delay))}
+
+
+@level_offset.mistake("The integral time is right. In the factor of $s^2$ the product $a\\theta$ is missing.")
+def _(K, delay, Tc):
+    return {"controller": PID((2 * Tc + delay) / (K * Tc**2), 2 * Tc + delay)}
+
+
+@level_offset.mistake(
+    "That would be a lag in the wish that is cancelled. The lead is chosen so that no offset remains."
+)
+def _(K, delay, Tc):
+    return {"controller": PID(1 / (K * (Tc + delay)), Tc)}
+
+
 level_offset.hints(
     "The formula of direct synthesis is the same for every wish: $G_c = \\frac{1}{G}\\,\\frac{M}{1 - M}$. A load that "
     "stays must be balanced by the controller.",
@@ -226,7 +296,7 @@ def _(K, delay, Tc):
     error: $\frac{ {load} }{ {gain} }$, which is {offset}.
 
     With the lead, $(T_c s + 1)^2 - (1 - \theta s)(a s + 1) = (T_c^2 + a\theta)s^2 + (2T_c + \theta - a)s$. Without the
-    term in $s$ the controller integrates once more than the tank, and no offset remains. So $a = 2T_c + \theta$, which
+    term in $s$ the controller integrates, too, as the tank does, and no offset remains. So $a = 2T_c + \theta$, which
     is {lead}, and $T_c^2 + a\theta$ is $(T_c + \theta)^2$.
 
     What remains is $\frac{a s + 1}{K(T_c + \theta)^2 s}$, a PI controller: its integral time is {lead}, and its gain
@@ -314,6 +384,36 @@ def _(margin):
     return {"phase_margin": 180 - 90 / margin}
 
 
+@uncertain_gain.mistake(
+    "The integrator has turned the phase by a right angle already. By how much may the dead time turn it?"
+)
+def _(K, T, delay, margin):
+    total = float(delay * margin) / math.pi
+    return {"Tc": total - float(delay), "controller": PID(float(T) / (float(K) * total), T)}
+
+
+@uncertain_gain.mistake(
+    "So long is $T_c$ and the dead time together where $\\omega\\theta$ is 1. The phase is not $-180°$ there."
+)
+def _(K, T, delay, margin):
+    return {"Tc": delay * margin, "controller": PID(T / (K * delay * margin), T)}
+
+
+@uncertain_gain.mistake("That is the usual choice, as long as the dead time. Which gain margin has it?")
+def _(K, T, delay):
+    return {"Tc": delay, "controller": PID(T / (2 * K * delay), T)}
+
+
+@uncertain_gain.mistake("An angle in radians was taken from one in degrees.")
+def _(margin):
+    return {"phase_margin": 90 - math.pi / (2 * float(margin))}
+
+
+@uncertain_gain.mistake("The crossover frequency is not $1/T_c$: what stands in the denominator of the open loop?")
+def _(margin):
+    return {"phase_margin": 90 - math.degrees(1 / (2 * float(margin) / math.pi - 1))}
+
+
 uncertain_gain.hints(
     "The controller cancels the lag. What is left of the open loop?",
     "$L(s) = \\frac{e^{-\\theta s}}{(T_c + \\theta)s}$. Its phase is $-90°$ from the integrator, and $-\\omega\\theta$ "
@@ -385,6 +485,19 @@ def inverse_response(
     )
 
 
+def _below(beta, Tc, late):
+    """How far the response is on the wrong side after so many time constants, in percent of the step."""
+    return 100 * abs(1 - math.exp(-late) * (1 + float(1 + beta / Tc) * late))
+
+
+def _undershoot_of_the_process(T1, T2, beta):
+    """How far the process alone goes the wrong way, in percent of its final value."""
+    T1, T2, beta = float(T1), float(T2), float(beta)
+    moment = T1 * T2 / (T1 - T2) * math.log(T1 * (T2 + beta) / (T2 * (T1 + beta)))
+    slow, quick = (T1 + beta) * math.exp(-moment / T1), (T2 + beta) * math.exp(-moment / T2)
+    return 100 * abs(1 - (slow - quick) / (T1 - T2))
+
+
 @inverse_response.shows
 def _(K, T1, T2, beta):
     gain, lead = ("" if x == 1 else f"{float(x):g}\\," for x in (K, beta))
@@ -421,6 +534,47 @@ def _(K, T1, T2, beta, Tc):
     return {"controller": (T1 * s + 1) * (T2 * s + 1) / (K * s * (Tc**2 * s + 2 * Tc) * (1 - beta * s))}
 
 
+@inverse_response.mistake("That is the inverse of the process. Where is the wish, and where is the feedback?")
+def _(K, T1, T2, beta):
+    return {"controller": (T1 * s + 1) * (T2 * s + 1) / (K * (1 - beta * s))}
+
+
+@inverse_response.mistake("That is the response to an impulse. Which factor makes it the one to a step?")
+def _(beta, Tc):
+    return {"y": (1 - exp(-t / Tc) * (1 + (1 + beta / Tc) * t / Tc)).diff(t)}
+
+
+@inverse_response.mistake("That is the process alone, as in the picture. How does the closed loop respond?")
+def _(K, T1, T2, beta):
+    return {"y": K * (1 - ((T1 + beta) * exp(-t / T1) - (T2 + beta) * exp(-t / T2)) / (T1 - T2))}
+
+
+@inverse_response.mistake("In the partial fractions the double pole has the factor of $t$ from the lags alone as well.")
+def _(beta, Tc):
+    return {"y": 1 - exp(-t / Tc) * (1 + beta * t / Tc**2)} if beta != Tc else {}
+
+
+@inverse_response.mistake("That is the process alone, as in the picture, and the share of its final value.")
+def _(T1, T2, beta):
+    return {"undershoot": _undershoot_of_the_process(T1, T2, beta)}
+
+
+@inverse_response.mistake("That is after one $T_c$. The lowest point is where the derivative vanishes.")
+def _(beta, Tc):
+    return {"undershoot": _below(beta, Tc, 1)}
+
+
+@inverse_response.mistake("That is after the time $\\beta$. The lowest point is where the derivative vanishes.")
+def _(beta, Tc):
+    return {"undershoot": _below(beta, Tc, float(beta / Tc))}
+
+
+@inverse_response.mistake("So far the second part of $y$ falls. And where does the step itself lift it?")
+def _(beta, Tc):
+    a = float(1 + beta / Tc)
+    return {"undershoot": 100 * a * math.exp(1 / a - 1)}
+
+
 inverse_response.hints(
     "Direct synthesis again: $G_c = \\frac{1}{G}\\,\\frac{M}{1 - M}$. The zero is in $M$ and in $G$: what happens to "
     "it?",
@@ -442,7 +596,8 @@ def _(K, T1, T2, beta):
 @inverse_response.solution
 def _(K, T1, T2, beta, Tc):
     r"""The zero is in $M$ and in $G$, and cancels in $\frac{M}{G}$. What remains of $1 - M$ is
-    $(T_c s + 1)^2 - (1 - \beta s) = s\,(T_c^2 s + 2T_c + \beta)$. So the controller is {controller_}, which is stable.
+    $(T_c s + 1)^2 - (1 - \beta s) = s\,(T_c^2 s + 2T_c + \beta)$. So the controller is {controller_}. Its poles are at
+    zero, from the integral action, and in the left half-plane: the zero of the process is not among them.
 
     The response is that of $M$. Its transform $\frac{1 - \beta s}{s(T_c s + 1)^2}$ in partial fractions gives
     $y(t) = 1 - e^{-t/T_c}\left(1 + a\,\frac{t}{T_c}\right)$ with $a = 1 + \beta/T_c$, which is {a}: $y(t) =$
@@ -561,6 +716,21 @@ def _(K, T, delay):
     return {"controller": PID(Rational(9, 10) * T / (K * delay), Rational(333, 100) * delay)}
 
 
+@oven.mistake("The gain of the oven is missing: what counts for stability is the product of both gains.")
+def _(K, T, delay):
+    return {"controller": PID(T / (2 * delay), 8 * delay)}
+
+
+@oven.mistake("The integral time belongs to $T_c$ and the dead time together, four times. Is that four dead times?")
+def _(K, T, delay):
+    return {"controller": PID(T / (2 * K * delay), 4 * delay)}
+
+
+@oven.mistake("With no closed-loop time constant at all the gain is doubled. How robust is the loop then?")
+def _(K, T, delay):
+    return {"controller": PID(T / (K * delay), 4 * delay)}
+
+
 oven.hints(
     "The lag of {T} is long compared with the dead time of {delay}. What happens to a cancelled lag after a load?",
     "Skogestad's rule keeps the gain of direct synthesis, $K_p = \\frac{{T}}{K(T_c + \\theta)}$, and takes the shorter "
@@ -607,13 +777,14 @@ def written_twice(
     delay=between(1, 4, "min", step=0.5, reference=2),
     Tc=between(1, 12, "min", step=0.5, reference=3),
 ):
-    r"""A kettle is heated through its jacket: the contents are a lag of {T1}, the jacket is one of {T2}, and the pocket
-    of the sensor adds a dead time $\theta$ of {delay}. The gain is {K}. The loop should respond to the setpoint like a
-    lag of $T_c$ = {Tc} after the dead time. (In the controller, $1 - \theta s$ takes the place of the dead time.)
+    r"""A kettle is heated through its jacket: the contents are a lag of {T1}, the jacket is one of {T2}, and the
+    thermowell of the sensor adds a dead time $\theta$ of {delay}. The gain is {K}. The loop should respond to the
+    setpoint like a lag of $T_c$ = {Tc} after the dead time. (In the controller, $1 - \theta s$ takes the place of the
+    dead time.)
 
-    Which PID controller does that? Write it once in serial form, as the panel of the old controller wants it, with the
-    longer time as $T_i$, and once in parallel form for the new one. And which gain margin has the loop, with its dead
-    time exact?
+    Which PID controller does that? Write it once in serial form, as the panel of the old controller expects it,
+    with the longer time as $T_i$, and once in parallel form for the new one. And what is the gain margin of the loop,
+    with its dead time exact?
     """
     total = Tc + delay
     return answers(
@@ -671,6 +842,38 @@ def _(delay, Tc):
 @written_twice.mistake("The open loop is an integrator with the time $T_c + \\theta$; a part of it is missing here.")
 def _(delay, Tc):
     return {"gain_margin": math.pi * float(Tc / delay) / 2}
+
+
+@written_twice.mistake("The sum of the lags makes the gain of one of the two forms. Of which one?")
+def _(K, T1, T2, delay, Tc):
+    return {"serial": PID((T1 + T2) / (K * (Tc + delay)), T1, T2, form="serial")}
+
+
+@written_twice.mistake("That is the factor of $s^2$. In the parallel form the gain is outside of the bracket: divide.")
+def _(K, T1, T2, delay, Tc):
+    return {"parallel": PID((T1 + T2) / (K * (Tc + delay)), T1 + T2, T1 * T2)}
+
+
+@written_twice.mistake("The integrator turns the phase by a right angle, too: $\\omega\\theta$ is not $\\pi$ there.")
+def _(delay, Tc):
+    return {"gain_margin": math.pi * float((Tc + delay) / delay)}
+
+
+@written_twice.mistake(
+    "The time of the open loop is not $T_c$ alone, and its phase is not $-180°$ where $\\omega\\theta$ is 1."
+)
+def _(delay, Tc):
+    return {"gain_margin": Tc / delay}
+
+
+@written_twice.mistake("That is the phase margin in degrees. The gain margin is a factor.")
+def _(delay, Tc):
+    return {"gain_margin": 90 - math.degrees(float(delay / (Tc + delay)))}
+
+
+@written_twice.mistake("The gain of the process is in the controller already, inverted: it is not in the open loop.")
+def _(K, delay, Tc):
+    return {"gain_margin": math.pi * float((Tc + delay) / (K * delay)) / 2} if K != 1 else {}
 
 
 written_twice.hints(
@@ -784,9 +987,23 @@ def _(step, K, T, delay, Tc):
     return {"K": K * step, "controller": PID(T / (K * step * (Tc + delay)), T)}
 
 
+def _are_alike(T, delay, Tc):
+    """Whether the wish has covered 63 % of its way after about the lag of the process."""
+    return abs(Tc + delay - T) <= T / 5
+
+
 @wish_as_a_picture.mistake("Here time was counted from the step. A lag only begins when the dead time is over.")
 def _(K, T, delay, Tc):
-    return {"Tc": Tc + delay, "controller": PID((T + delay) / (K * (Tc + delay)), T + delay)}
+    pid = {"controller": PID((T + delay) / (K * (Tc + delay)), T + delay)}
+    return pid if _are_alike(T, delay, Tc) else {"Tc": Tc + delay, **pid}
+
+
+@wish_as_a_picture.mistake(
+    "So long is the lag of the process above, and so long it takes below from the step to 63 %. Where does the wish "
+    "begin, and how long is it from there?"
+)
+def _(T, delay, Tc):
+    return {"Tc": T} if _are_alike(T, delay, Tc) else {}
 
 
 @wish_as_a_picture.mistake("In the gain, the dead time is added to the time constant of the wish.")
@@ -807,6 +1024,48 @@ def _(delay, Tc):
 @wish_as_a_picture.mistake("From the start to 95 % three time constants go by, and the dead time before them.")
 def _(Tc):
     return {"Tc": 3 * Tc}
+
+
+@wish_as_a_picture.mistake(
+    "That is the time constant of the process, from the upper panel. How fast is the wish below?"
+)
+def _(K, T, delay, Tc):
+    pid = {"controller": PID(Tc / (K * (T + delay)), Tc)}
+    return pid if _are_alike(T, delay, Tc) else {"Tc": T, **pid}
+
+
+@wish_as_a_picture.mistake(
+    "That is when 63 % of the way are covered. The dead time ends where the curve begins to move."
+)
+def _(T, delay):
+    return {"delay": delay + T}
+
+
+@wish_as_a_picture.mistake("By then the wish has covered 63 % of its way. The dead time ends where it begins to move.")
+def _(delay, Tc):
+    return {"delay": delay + Tc}
+
+
+@wish_as_a_picture.mistake(
+    "The gain is how far the temperature rises for each percent: do you multiply by the step, or divide?"
+)
+def _(step, K):
+    return {"K": K * step**2}
+
+
+@wish_as_a_picture.mistake("That is the way to 95 % in place of that to 63 %.")
+def _(K, T, delay, Tc):
+    return {"Tc": 3 * Tc + delay, "controller": PID(3 * T / (K * (Tc + delay)), 3 * T)}
+
+
+@wish_as_a_picture.mistake("The gain of the process is missing: the loop has the product of both gains.")
+def _(K, T, delay, Tc):
+    return {"controller": PID(T / (Tc + delay), T)} if K != 1 else {}
+
+
+@wish_as_a_picture.mistake("The two settings are interchanged: which of them is a time, and which a gain?")
+def _(K, T, delay, Tc):
+    return {"controller": PID(T, T / (K * (Tc + delay)))}
 
 
 wish_as_a_picture.hints(

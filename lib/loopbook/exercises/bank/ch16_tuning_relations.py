@@ -47,7 +47,7 @@ def reaction_curve(
 ):
     """An old furnace has no model, but somebody has kept a strip of paper. At time zero the gas valve was opened by
     {step} by hand, and the pen drew the temperature. The dashed line is a ruler, laid along the steepest part of the
-    curve.
+    curve and drawn from zero on.
 
     Read off the dead time and the slope, and find the PI settings of Ziegler and Nichols by this reaction curve.
     (`t, y = exercise("16.1").given("t", "y")` are the times and the rise of the temperature, if you prefer to compute.)
@@ -68,6 +68,16 @@ def _reaction_curve(slope, theta):
     return times, slope * math.e * lag * (1 - (1 + late) * np.exp(-late))
 
 
+def _where_it_leaves(theta):
+    """Where an eye sees the curve leave zero: about at two thirds of the dead time by the ruler."""
+    return Rational(3, 5) * theta
+
+
+def _differs(wrong, right):
+    """Whether a mistake is far enough from the key for a value that is read by ruler."""
+    return abs(float(wrong / right) - 1) > 0.2
+
+
 @reaction_curve.shows
 def _(slope, theta):
     return dict(zip(("t", "y"), _reaction_curve(slope, theta), strict=True))
@@ -77,7 +87,8 @@ def _(slope, theta):
 def _(slope, theta):
     """The temperature after the step of the valve, an S-shaped rise, with the tangent at its steepest point."""
     times, y = _reaction_curve(slope, theta)
-    curves = {"record": (y, "measurement"), "ruler": (np.maximum(slope * (times - theta), 0).astype(float), "setpoint")}
+    ruler = np.where(times >= theta, float(slope) * (times - float(theta)), np.nan)
+    curves = {"record": (y, "measurement"), "ruler": (ruler, "setpoint")}
     return time_plot(curves, times, "The strip of paper", "$t$ [min]", "temperature rise [K]")
 
 
@@ -93,7 +104,47 @@ def _(step, slope, theta):
 
 @reaction_curve.mistake("That is from the row of the PID controller; here it is a PI controller.")
 def _(step, slope, theta):
-    return {"Kc": Rational(12, 10) * step / (slope * theta), "tau_I": 2 * theta}
+    return {"Kc": Rational(12, 10) * step / (slope * theta)}
+
+
+@reaction_curve.mistake(
+    "Twice the dead time is from the row of the PID controller. If you have multiplied by 3.33, look at where the "
+    "*ruler* crosses zero: the curve itself leaves zero earlier."
+)
+def _(theta):
+    return {"tau_I": 2 * theta}
+
+
+@reaction_curve.mistake("The curve leaves zero earlier than the ruler. At which of the two is the dead time read?")
+def _(step, slope, theta):
+    begin = _where_it_leaves(theta)
+    return {"Kc": Rational(9, 10) * step / (slope * begin)}
+
+
+@reaction_curve.mistake("The slope and the dead time are both in the denominator: a quick process needs less gain.")
+def _(step, slope, theta):
+    wrong = Rational(9, 10) * slope * theta / step
+    return {"Kc": wrong} if _differs(wrong, Rational(9, 10) * step / (slope * theta)) else {}
+
+
+@reaction_curve.mistake("The dead time is missing: the later a process responds, the smaller the gain.")
+def _(step, slope, theta):
+    return {"Kc": Rational(9, 10) * step / slope}
+
+
+@reaction_curve.mistake("In the rule for a PI controller the dead time is multiplied by 3.33.")
+def _(theta):
+    return {"tau_I": theta * Rational(3, 10)}
+
+
+@reaction_curve.mistake("That is the dead time itself. The rule takes a multiple of it.")
+def _(theta):
+    return {"tau_I": theta}
+
+
+@reaction_curve.mistake("Divided by 1.2 is the ultimate period, in the other rule. This one takes the dead time.")
+def _(theta):
+    return {"tau_I": theta / Rational(12, 10)}
 
 
 reaction_curve.hints(
@@ -186,6 +237,36 @@ def _(rule, band, P_u):
     return {"pid": _by_cycle(rule, 100 / band, P_u / 2)}
 
 
+@panel.mistake("That is the ultimate gain itself: at it the loop oscillates. Which share of it does the rule take?")
+def _(rule, band, P_u):
+    return {"pid": PID(100 / band, _by_cycle(rule, 1, P_u).Ti)}
+
+
+@panel.mistake("The gain is right, and the time is the period itself. Which factor has the rule for it?")
+def _(rule, band, P_u):
+    return {"pid": PID(_by_cycle(rule, 100 / band, P_u).Kp, P_u)}
+
+
+@panel.mistake("The gain is right. For the time, do you multiply by the factor of this rule, or divide?")
+def _(rule, band, P_u):
+    factor = _by_cycle(rule, 1, P_u).Ti / P_u
+    return {"pid": PID(_by_cycle(rule, 100 / band, P_u).Kp, P_u / factor)}
+
+
+@panel.mistake("With this gain the loop is far beyond the limit: the rule takes a share of the ultimate gain.")
+def _(rule, band, P_u):
+    share = _by_cycle(rule, 1, P_u).Kp
+    return {"pid": PID(100 / band / share, _by_cycle(rule, 1, P_u).Ti)}
+
+
+@panel.mistake("That is from the row of the PID controller. The question is about a PI controller.")
+def _(rule, band, P_u):
+    Kcu = 100 / band
+    if rule == "Tyreus and Luyben":
+        return {"pid": PID(Rational(45, 100) * Kcu, Rational(22, 10) * P_u, P_u / Rational(63, 10))}
+    return {"pid": PID(Rational(6, 10) * Kcu, P_u / 2, P_u / 8)}
+
+
 panel.hints(
     "At the limit of stability, the gain of the controller is the ultimate gain. Which gain is a proportional band of "
     "{band}?",
@@ -233,7 +314,7 @@ def _loop_gain(tau_1, tau_2, damping_squared):
 
 @exercise(
     "16.3",
-    title="A quarter, or less",
+    title="From peak to peak",
     points=3,
     insight="A decay ratio is a damping in other words; without integral action the price of calm is an offset.",
     where=lambda K, tau_1, tau_2, left: (
@@ -285,6 +366,39 @@ def _(K, tau_1, tau_2, left):
 @decay.mistake("That is the share of the step that the measurement reaches. The offset is what is missing.")
 def _(tau_1, tau_2, left):
     return {"offset": 100 - 100 / (1 + _loop_gain(tau_1, tau_2, _damping_squared(left, 2)))}
+
+
+@decay.mistake("That belongs to a decay ratio of a quarter. Which ratio is asked here?")
+def _(K, tau_1, tau_2, left):
+    if left != 25:
+        loop_gain = _loop_gain(tau_1, tau_2, _damping_squared(25, 2))
+        return {"Kc": loop_gain / K, "offset": 100 / (1 + loop_gain)}
+
+
+@decay.mistake("The gain of the process is in the loop, too: the offset belongs to both gains together.")
+def _(K, tau_1, tau_2, left):
+    if K != 1:
+        return {"offset": 100 / (1 + _loop_gain(tau_1, tau_2, _damping_squared(left, 2)) / K)}
+
+
+@decay.mistake("The 1 is missing: behind a step the error is $1/(1 + KK_c)$ of it.")
+def _(tau_1, tau_2, left):
+    return {"offset": 100 / _loop_gain(tau_1, tau_2, _damping_squared(left, 2))}
+
+
+@decay.mistake("Without integral action something is left. How large an error does the controller need for its signal?")
+def _():
+    return {"offset": 0}
+
+
+@decay.mistake("In $2\\zeta\\omega_0$ there is a factor of two, which is squared in the last step.")
+def _(K, tau_1, tau_2, left):
+    return {"Kc": (4 * (1 + _loop_gain(tau_1, tau_2, _damping_squared(left, 2))) - 1) / K}
+
+
+@decay.mistake("The damping enters with its square: compare the polynomials once more.")
+def _(K, tau_1, tau_2, left):
+    return {"Kc": _loop_gain(tau_1, tau_2, math.sqrt(_damping_squared(left, 2))) / K}
 
 
 decay.hints(
@@ -392,6 +506,37 @@ def _(q):
 )
 def _(q):
     return {"Kcu": 1 / ((1 + q / 100) * _K * _theta)}
+
+
+@relay_with_hysteresis.mistake("From peak to peak it is twice as much: the amplitude counts from the middle.")
+def _(q):
+    return {"a": 2 * (1 + q / 100) * _K * _d * _theta}
+
+
+@relay_with_hysteresis.mistake("The relay puts out $+d$ or $-d$, so the slope is $Kd$ and not a half of it.")
+def _(q):
+    return {"a": (1 + q / 100) * _K * _d * _theta / 2}
+
+
+@relay_with_hysteresis.mistake("The output of the relay is $+d$ or $-d$: its amplitude is $d$, and that of $y$ is $a$.")
+def _(q):
+    return {"Kcu": 2 / (pi * (1 + q / 100) * _K * _theta)}
+
+
+@relay_with_hysteresis.mistake("That is the true ultimate gain. What does the experiment give?")
+def _():
+    return {"Kcu": pi / (2 * _K * _theta), "share": 100}
+
+
+@relay_with_hysteresis.mistake("That is the true gain as a share of the estimate. Which of the two is the whole?")
+def _(q):
+    return {"share": 100 * pi**2 * (1 + q / 100) / 8}
+
+
+@relay_with_hysteresis.mistake("By so much the estimate is off. How many percent of the true gain is it?")
+def _(q):
+    wrong = abs(100 - 800 / pi**2 / (1 + q / 100))
+    return {"share": wrong} if abs(wrong - 50) > 3 else {}
 
 
 relay_with_hysteresis.hints(
@@ -554,6 +699,21 @@ def _(a, b, c, d):
     return {"units": sorted(_which("units", a, b, c, d) + _which("limit", a, b, c, d))}
 
 
+@bad_copy.mistake("Every sum needs two terms of one kind. And has the whole formula the unit of what it stands for?")
+def _(a, b, c, d):
+    return {"units": _which("", a, b, c, d)}
+
+
+@bad_copy.mistake("Of the others means: what fails because of its units is not asked here again.")
+def _(a, b, c, d):
+    return {"limit": sorted(_which("units", a, b, c, d) + _which("limit", a, b, c, d))}
+
+
+@bad_copy.mistake("Do not keep $K$ fixed: with $K = k\\tau$, is there a formula among these that stays finite?")
+def _(a, b, c, d):
+    return {"limit": sorted(_which("", a, b, c, d) + _which("limit", a, b, c, d))}
+
+
 @bad_copy.mistake("These already fail because of their units; the limit concerns the others.")
 def _(a, b, c, d):
     return {"limit": _which("units", a, b, c, d)}
@@ -605,7 +765,7 @@ def factor_for_a_damping(
 ):
     r"""The temperature of a fermenter responds to the warm water in its jacket with the gain {K}, a lag $T$ of {T} and
     a dead time $\tau$ of {tau}. Use Skogestad's rule with $T_C = {n}\,\tau$, and with such a factor $k_1$ that the loop
-    of an integrator would have the damping $\zeta = {zeta}$.
+    around an integrator would have the damping $\zeta = {zeta}$.
 
     How large is the factor, and which are the PI settings for the fermenter?
     """
@@ -642,12 +802,39 @@ def _(T, tau, n, zeta):
 
 
 @factor_for_a_damping.mistake("Here the loop need not be as fast as the dead time: look at $T_C$.")
-def _(K, T, tau):
-    return {"Kp": T / (K * 2 * tau)}
+def _(K, T, tau, n):
+    return {"Kp": T / (K * 2 * tau)} if n != 2 else {}
+
+
+@factor_for_a_damping.mistake("Compare the coefficients once more: the damping is half of the root of the factor.")
+def _(zeta):
+    return {"k_1": zeta**2}
+
+
+@factor_for_a_damping.mistake("In the gain the dead time is added to $T_C$.")
+def _(K, T, tau, n):
+    return {"Kp": T / (K * n * tau)}
+
+
+@factor_for_a_damping.mistake("The gain of the process is missing: the loop has the product of both gains.")
+def _(K, T, tau, n):
+    return {"Kp": T / ((1 + n) * tau)} if K != 1 else {}
+
+
+@factor_for_a_damping.mistake("That is $T_C$ and the dead time together. Which factor comes before it?")
+def _(T, tau, n, zeta):
+    wrong = (1 + n) * tau
+    return {"Ti": wrong} if abs(wrong / Min(T, 4 * zeta**2 * wrong) - 1) > Rational(1, 20) else {}
+
+
+@factor_for_a_damping.mistake("The factor multiplies $T_C$ and the dead time together.")
+def _(T, tau, n, zeta):
+    right, wrong = Min(T, 4 * zeta**2 * (1 + n) * tau), 4 * zeta**2 * n * tau
+    return {"Ti": wrong} if abs(wrong / right - 1) > Rational(1, 20) else {}
 
 
 factor_for_a_damping.hints(
-    "Close the loop of an integrator (dead time neglected) with the PI controller of the rule. Which damping has it?",
+    "Close the loop around an integrator (dead time neglected) with the controller of the rule. What is its damping?",
     "With $K_p = \\frac{1}{k\\,(T_C + \\tau)}$ and $T_i = k_1(T_C + \\tau)$ the polynomial is $k_1 (T_C + \\tau)^2 s^2 "
     "+ k_1 (T_C + \\tau)s + 1$. Compare it with $s^2 + 2\\zeta\\omega_0 s + \\omega_0^2$.",
     "$\\omega_0^2 = \\frac{1}{k_1 (T_C + \\tau)^2}$ and $2\\zeta\\omega_0 = \\frac{1}{T_C + \\tau}$, so $\\zeta = "
@@ -762,6 +949,17 @@ def _(K, tau, theta):
     return {"pid": PID(tau / (K * theta), tau)}
 
 
+@not_so_nervous.mistake("The gain of the process is missing: the loop has the product of both gains.")
+def _(K, tau, theta):
+    return {"pid": PID(Rational(3, 5) * tau / theta, min(tau, 3 * theta))} if K >= 2 else {}
+
+
+@not_so_nervous.mistake("The two settings are interchanged: which of them is a time, and which a gain?")
+def _(K, tau, theta):
+    wrong = PID(min(tau, 3 * theta), Rational(3, 5) * tau / (K * theta))
+    return {"pid": wrong} if K * wrong.Kp * theta > 2 * tau else {}
+
+
 not_so_nervous.hints(
     "Both rules have $K_p$ in the form of a number times $\\frac{\\tau}{K\\theta}$. What are the two numbers?",
     "0.9 is too nervous, 0.5 too slow. And the integral time may be shorter than Skogestad's: it is what brings the "
@@ -834,8 +1032,8 @@ def two_peaks(
     r"""The setpoint of a PI loop was raised by {step}, from {low}. The temperature goes as in the picture.
 
     Read off the decay ratio, the height of the second peak as a share of the first, and the period from peak to peak.
-    Which damping $\zeta$ has a loop of second order with this decay ratio? And in which direction would you change the
-    gain for a decay ratio of a quarter?
+    What is the damping $\zeta$ of a loop of second order with this decay ratio? And in which direction would you
+    change the gain for a decay ratio of a quarter?
     (`t, y = exercise("16.8").given("t", "y")` are the times and the temperature.)
     """
     _, _, moments, (first, _, second) = _recorded(low, step, delay, left)
@@ -861,6 +1059,16 @@ def _(low, step, delay, left):
     return time_plot(curves, times, "A step of the setpoint", "$t$ [min]", "temperature [°C]")
 
 
+@two_peaks.mistake(
+    "That is the overshoot, the first peak as a share of the step, or the trough behind it as a share of that peak. "
+    "Which two heights does a decay ratio compare?"
+)
+def _(low, step, delay, left):
+    first = _recorded(low, step, delay, left)[3][0]
+    right = 100 * _recorded(low, step, delay, left)[3][2] / first
+    return {"decay_ratio": 100 * first} if abs(100 * first / right - 1) > 0.25 else {}
+
+
 @two_peaks.mistake("Heights are counted from the final value, not from where the temperature began.")
 def _(low, step, delay, left):
     first, _, second = _recorded(low, step, delay, left)[3]
@@ -869,8 +1077,36 @@ def _(low, step, delay, left):
 
 @two_peaks.mistake("That is from a peak to the trough behind it, a half turn. The next peak is another half turn away.")
 def _(low, step, delay, left):
-    _, _, moments, (first, trough, _) = _recorded(low, step, delay, left)
-    return {"decay_ratio": -100 * trough / first, "period": moments[1] - moments[0]}
+    moments = _recorded(low, step, delay, left)[2]
+    return {"period": moments[1] - moments[0]}
+
+
+@two_peaks.mistake("That is the frequency in rad/min. How long does one turn take?")
+def _(low, step, delay, left):
+    moments = _recorded(low, step, delay, left)[2]
+    return {"period": 2 * math.pi / (moments[2] - moments[0])}
+
+
+@two_peaks.mistake("That is when the first peak comes. The period is from there to the next one.")
+def _(low, step, delay, left):
+    moments = _recorded(low, step, delay, left)[2]
+    return {"period": moments[0]} if abs(moments[0] / (moments[2] - moments[0]) - 1) > 0.12 else {}
+
+
+@two_peaks.mistake("That is when the second peak comes. The period is counted from the first one.")
+def _(low, step, delay, left):
+    return {"period": _recorded(low, step, delay, left)[2][2]}
+
+
+@two_peaks.mistake("That is the logarithm of the ratio. How does one get from it to a damping?")
+def _(low, step, delay, left):
+    first, _, second = _recorded(low, step, delay, left)[3]
+    return {"zeta": math.log(first / second)}
+
+
+@two_peaks.mistake("This damping belongs to a decay ratio of a quarter. Which one does the picture show?")
+def _():
+    return {"zeta": math.sqrt(_damping_squared(25, 2))}
 
 
 @two_peaks.mistake("From peak to peak there are two half turns, and the angle is $2\\pi$.")
@@ -922,12 +1158,12 @@ def _(low, step, delay, left):
 
 @exercise(
     "16.9",
-    title="A quarter with a dead time",
+    title="A decay ratio with a dead time",
     points=5,
     insight="A loop with dead time has infinitely many poles; the first pair decides the decay, and can be placed "
     "exactly.",
 )
-def quarter_with_dead_time(
+def decay_with_dead_time(
     K=between(0.5, 4, "K/%", step=0.5, reference=1.5),
     T=between(10, 60, "min", step=2, reference=30),
     delay=between(2, 10, "min", step=0.5, reference=4),
@@ -938,8 +1174,8 @@ def quarter_with_dead_time(
     such that {left} of each peak is left in the next one.
 
     That belongs to the first pair of poles, $s = -\sigma \pm j\omega$. Put it into $s + k\,e^{-\theta s} = 0$, once
-    for the real part and once for the imaginary part. Which gain $K_c$ has the controller, which period the
-    oscillation, and which gain margin the loop?
+    for the real part and once for the imaginary part. What gain $K_c$ does the controller have, what is the
+    period of the oscillation, and what is the gain margin of the loop?
     """
     x, omega = _with_decay(left)
     return answers(
@@ -957,43 +1193,43 @@ def _all_three(x, omega, K, T, delay):
     }
 
 
-@quarter_with_dead_time.mistake(
+@decay_with_dead_time.mistake(
     "That ratio is reached after a half turn already. From peak to peak the angle is $2\\pi$."
 )
 def _(K, T, delay, left):
     return _all_three(*_with_decay(float(left) ** 2 / 100), K, T, delay)
 
 
-@quarter_with_dead_time.mistake("That comes from a lag in place of the dead time, and such a loop would be unstable.")
+@decay_with_dead_time.mistake("That comes from a lag in place of the dead time, and such a loop would be unstable.")
 def _(K, T, delay, left):
     return {"Kc": float(T / (K * delay)) / (4 * _damping_squared(left, 2))}
 
 
-@quarter_with_dead_time.mistake(
+@decay_with_dead_time.mistake(
     "At the pole, $e^{-\\theta s}$ is not only a turn: with $-\\sigma$ it is larger than one."
 )
 def _(K, T, delay, left):
     _, omega = _with_decay(left)
     x = omega / math.sin(omega)
-    return {"Kc": x * float(T / (K * delay)), "gain_margin": math.pi / 2 / x}
+    return {"Kc": x * float(T / (K * delay))}
 
 
-@quarter_with_dead_time.mistake("That is the gain $k$ of the open loop. Which part of it belongs to the controller?")
+@decay_with_dead_time.mistake("That is the gain $k$ of the open loop. Which part of it belongs to the controller?")
 def _(delay, left):
     return {"Kc": _with_decay(left)[0] / float(delay)}
 
 
-@quarter_with_dead_time.mistake("That is the period at the limit of stability. This loop is calmer, and slower.")
+@decay_with_dead_time.mistake("That is the period at the limit of stability. This loop is calmer, and slower.")
 def _(delay):
     return {"period": 4 * delay}
 
 
-@quarter_with_dead_time.mistake("The phase is $-180°$ at $\\omega\\theta = \\pi/2$: what is $|L|$ there?")
+@decay_with_dead_time.mistake("The phase is $-180°$ at $\\omega\\theta = \\pi/2$: what is $|L|$ there?")
 def _(left):
     return {"gain_margin": 1 / _with_decay(left)[0]}
 
 
-@quarter_with_dead_time.mistake(
+@decay_with_dead_time.mistake(
     "That is $k\\theta$, a pure number. Which factors lead from it to the gain of the controller?"
 )
 def _(K, T, delay, left):
@@ -1001,7 +1237,31 @@ def _(K, T, delay, left):
     return {"Kc": x} if abs(float(T / (K * delay)) - 1) > 0.05 else {}
 
 
-quarter_with_dead_time.hints(
+@decay_with_dead_time.mistake("That belongs to a decay ratio of a quarter. Which ratio is asked here?")
+def _(K, T, delay, left):
+    return _all_three(*_with_decay(25), K, T, delay) if left != 25 else {}
+
+
+@decay_with_dead_time.mistake(
+    "That is $|L|$ where the phase is $-180°$. By which factor may the gain grow until it is one?"
+)
+def _(left):
+    return {"gain_margin": _with_decay(left)[0] * 2 / math.pi}
+
+
+@decay_with_dead_time.mistake("That is the frequency in rad/min. How long does one turn take?")
+def _(delay, left):
+    return {"period": _with_decay(left)[1] / float(delay)}
+
+
+@decay_with_dead_time.mistake(
+    "That is $\\omega\\theta$, an angle. Which time makes a frequency of it, and that a period?"
+)
+def _(delay, left):
+    return {"period": _with_decay(left)[1]}
+
+
+decay_with_dead_time.hints(
     "The poles of the loop are where $1 + L(s) = 0$. The decay ratio fixes the quotient of $\\sigma$ and $\\omega$.",
     "From peak to peak, $e^{-\\sigma t}$ falls to $e^{-2\\pi\\sigma/\\omega}$. The two parts of $s = -k\\,e^{-\\theta "
     "s}$ are $\\sigma = k e^{\\sigma\\theta}\\cos\\omega\\theta$ and $\\omega = k "
@@ -1011,7 +1271,7 @@ quarter_with_dead_time.hints(
 )
 
 
-@quarter_with_dead_time.solution
+@decay_with_dead_time.solution
 def _(left):
     r"""From one peak to the next, $e^{-\sigma t}$ falls to $e^{-2\pi\sigma/\omega}$, which should be {left}. So
     $\frac{\omega}{\sigma} = \frac{2\pi}{\ln(100/{left})}$, which is {quotient}.
@@ -1033,7 +1293,7 @@ def _(left):
     return {"quotient": math.tan(omega), "turn": omega, "fall": omega / math.tan(omega), "x": x}
 
 
-@quarter_with_dead_time.solution_picture
+@decay_with_dead_time.solution_picture
 def _(K, T, delay, left):
     """The response of the loop to a unit step of the setpoint, with its first two peaks."""
     x, omega = _with_decay(left)

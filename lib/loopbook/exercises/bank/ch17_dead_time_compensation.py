@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from sympy import Heaviside, Poly, Rational, exp
+from sympy import Heaviside, Rational, exp
 
 from loopbook import diagrams
 from loopbook.deadtime import Loop, System
@@ -116,6 +116,35 @@ def _(K, T, delay):
     return {"load": K**2 * delay**3 / (3 * T**2)}
 
 
+@unavoidable.mistake("That is the integral of the error itself. It has to be squared first.")
+def _(K, T, delay):
+    T, theta = float(T), float(delay)
+    wrong, right = theta - T * (1 - math.exp(-theta / T)), float(K) * _uncontrolled(T, theta)
+    return {"load": float(K) * wrong} if abs(wrong / right - 1) > 0.03 else {}
+
+
+@unavoidable.mistake("The square of the deviation at the end of this time was there only at the end: it has grown.")
+def _(K, T, delay):
+    return {"load": float(K**2 * delay) * (1 - math.exp(-float(delay / T))) ** 2}
+
+
+@unavoidable.mistake(
+    "The first effect is its beginning, and a lag begins to respond at once. How often is the dead time passed?"
+)
+def _(T, delay):
+    return {"first_effect": delay + T} if abs(T / delay - 1) > Rational(1, 20) else {}
+
+
+@unavoidable.mistake("The first effect is its beginning: the lag makes it grow slowly, but not begin later.")
+def _(T, delay):
+    return {"first_effect": 2 * delay + T}
+
+
+@unavoidable.mistake("The gain of the process is not in an error that is one: nothing of the process is seen yet.")
+def _(K, delay):
+    return {"servo": K**2 * delay} if K != 1 else {}
+
+
 unavoidable.hints(
     "Whatever a controller does, the signal feels it one dead time later. When does it know of the setpoint, and when "
     "of a load?",
@@ -138,9 +167,11 @@ def _(K, T, delay):
 @unavoidable.solution
 def _(K, T, delay):
     r"""**Setpoint.** The controller knows the new setpoint immediately, but the signal feels nothing for one dead time.
-    Until then the error is one. So the ISE is at least {servo}, and an ideal controller needs no more.
+    Until then the error is one. Square it, and integrate over this time.
 
     ***
+
+    So the ISE is at least {servo}, and an ideal controller needs no more.
 
     **First effect.** A load is seen after one dead time, {delay}. The controller acts then, and its action takes
     another dead time to be seen: at {first_effect}.
@@ -231,6 +262,26 @@ def _(delay):
     return {"ISE": delay}
 
 
+@dairy.mistake("The gain of the process is missing: the loop has the product of both gains.")
+def _(T, Tc):
+    return {"controller": PID(T / Tc, T)}
+
+
+@dairy.mistake("The response begins after the dead time, and begins at zero: from when does the exponential count?")
+def _(delay, Tc):
+    return {"y": Heaviside(t - delay) * (1 - exp(-t / Tc))}
+
+
+@dairy.mistake("That is the lag of the process. How fast is the loop with this controller?")
+def _(T, delay):
+    return {"y": Heaviside(t - delay) * (1 - exp(-(t - delay) / T)), "ISE": delay + T / 2}
+
+
+@dairy.mistake("That is the error after the dead time. How large is it until then?")
+def _(delay, Tc):
+    return {"ISE": Tc} if abs((delay + Tc / 2) / Tc - 1) > Rational(3, 100) else {}
+
+
 dairy.hints(
     "With the right model, the controller inside the predictor does not see the dead time. What is its process?",
     "For the lag alone, $K_c = \\frac{{T}}{K\\,T_C}$ and $T_i = T$ make the loop a lag of $T_C$. The output is that, "
@@ -288,16 +339,20 @@ def one_block(
     minutes, and its model is right. Both signals are in percent. $C$ is a PI controller with the gain {Kc} and the
     integral time {Ti}.
 
-    Write the whole predictor, from the setpoint minus the measurement to the control signal $u$, as one transfer
-    function. Then find the poles of the closed loop, from the setpoint to the measurement.
+    Write the whole predictor as one transfer function, from the error $e = y_{SP} - y$ to the control signal $u$. Then
+    find the poles of the closed loop, from the setpoint to the measurement.
     """
-    polynomial = Poly(T * Ti * s**2 + (1 + K * Kc) * Ti * s + K * Kc, s)
     return answers(
         predictor=transfer_function(
             _predictor(K, T, Kc, Ti, 1 - exp(-delay * s)), "the transfer function of the predictor"
         ),
-        poles=poles([complex(p) for p in np.roots([float(c) for c in polynomial.all_coeffs()])], "1/min", "the poles"),
+        poles=poles(_poles(K, T, Kc, Ti), "1/min", "the poles"),
     )
+
+
+def _poles(K, T, Kc, Ti):
+    """The poles of a PI loop around a lag."""
+    return [complex(p) for p in np.roots([float(T * Ti), float((1 + K * Kc) * Ti), float(K * Kc)])]
 
 
 def _predictor(K, T, Kc, Ti, share):
@@ -335,8 +390,7 @@ def _(K, T, delay, Kc, Ti):
     "cancels it."
 )
 def _(K, T, Kc, Ti):
-    polynomial = [float(T * Ti), float((1 + K * Kc) * Ti), float(K * Kc)]
-    return {"poles": [*(complex(p) for p in np.roots(polynomial)), -1 / float(T)]}
+    return {"poles": [*_poles(K, T, Kc, Ti), -1 / float(T)]}
 
 
 @one_block.mistake("The poles of the open loop move when the loop is closed.")
@@ -349,6 +403,40 @@ def _(T):
 )
 def _(K, T, Kc):
     return {"poles": [0, -float((1 + K * Kc) / T)]}
+
+
+@one_block.mistake("The gain of the process is missing. In which places does the lag bring it in?")
+def _(K, T, delay, Kc, Ti):
+    if K != 1:
+        return {"predictor": _predictor(1, T, Kc, Ti, 1 - exp(-delay * s)), "poles": _poles(1, T, Kc, Ti)}
+
+
+@one_block.mistake(
+    "Fed back around $C$ is only what the model knows before the measurement does: $G(1 - e^{-\\theta s})$."
+)
+def _(K, T, delay, Kc, Ti):
+    return {"predictor": _predictor(K, T, Kc, Ti, exp(-delay * s))}
+
+
+@one_block.mistake("That is the closed loop, from the setpoint to the measurement. Asked is the block from $e$ to $u$.")
+def _(K, T, delay, Kc, Ti):
+    return {"predictor": _predictor(K, T, Kc, Ti, 1) * first_order(K, T, delay)}
+
+
+@one_block.mistake("The gain multiplies the integral term as well: look at the last term of the polynomial.")
+def _(K, T, Kc, Ti):
+    wrong = np.roots([float(T * Ti), float((1 + K * Kc) * Ti), 1.0])
+    return {"poles": [complex(p) for p in wrong]} if K * Kc != 1 else {}
+
+
+@one_block.mistake("The lag has a 1 in its denominator, which belongs to the term with $s$ of the polynomial.")
+def _(K, T, Kc, Ti):
+    return {"poles": [complex(p) for p in np.roots([float(T * Ti), float(K * Kc * Ti), float(K * Kc)])]}
+
+
+@one_block.mistake("Dividing by the first coefficient is not yet all: the roots have $2a$ in their denominator.")
+def _(K, T, Kc, Ti):
+    return {"poles": [2 * p for p in _poles(K, T, Kc, Ti)]}
 
 
 one_block.hints(
@@ -380,11 +468,10 @@ def _(K, T, delay, Kc, Ti):
     the zeros of $T T_i s^2 + (1 + K K_c)T_i s + K K_c$, which is {polynomial}. They are {roots}, in 1/min.
     """
     polynomial = T * Ti * s**2 + (1 + K * Kc) * Ti * s + K * Kc
-    roots = np.roots([float(c) for c in Poly(polynomial, s).all_coeffs()])
     return {
         "block": _predictor(K, T, Kc, Ti, 1 - exp(-delay * s)),
         "polynomial": polynomial,
-        "roots": " and ".join(map(_written, roots)),
+        "roots": " and ".join(map(_written, _poles(K, T, Kc, Ti))),
     }
 
 
@@ -410,7 +497,7 @@ def load_response(
     is a lag of $T$ = {T} with the gain {K} and the dead time $\theta$ = {delay}. A Smith predictor with the right
     model controls it. Its PI controller cancels the lag, and makes the loop as fast as the process itself, $T_C = T$.
 
-    At $t = 0$ a load as large as {load} of valve position enters at the input of the process, and stays. Find the
+    At $t = 0$ a load equivalent to {load} of valve position enters at the input of the process, and stays. Find the
     deviation of the temperature over time, its largest value, and the time at which that is reached.
     """
     push, x = K * load, math.exp(-float(delay / T))
@@ -430,6 +517,11 @@ def _taken_back(push, T, start):
     """What a controller with the closed-loop lag T takes back of a load, from `start` on."""
     late = (t - start) / T
     return push * Heaviside(t - start) * (1 - (1 + late) * exp(-late))
+
+
+def _risen(late, T):
+    """The step response of a lag, that much later."""
+    return Heaviside(late) * (1 - exp(-late / T))
 
 
 @load_response.mistake("That is the course without control. When and how does the controller reverse it?")
@@ -472,6 +564,35 @@ def _(K, load):
 @load_response.mistake("The derivative vanishes earlier: what is left of the load's own exponential at that time?")
 def _(T, delay):
     return {"time": 2 * delay + T}
+
+
+@load_response.mistake("What takes the load back goes through two lags: that of the process, and that of the loop.")
+def _(K, T, delay, load):
+    push = K * load
+    return {"y": push * (_risen(t - delay, T) - _risen(t - 2 * delay, T))}
+
+
+@load_response.mistake("The load enters at $t = 0$, but the temperature feels it one dead time later.")
+def _(K, T, delay, load):
+    push = K * load
+    return {"y": push * (1 - exp(-t / T)) - _taken_back(push, T, delay)}
+
+
+@load_response.mistake("The gain of the process is missing: the load is in percent, the deviation in K.")
+def _(K, T, delay, load):
+    if K != 1:
+        y = load * _risen(t - delay, T) - _taken_back(load, T, 2 * delay)
+        return {"y": y, "largest": float(load) * math.exp(-math.exp(-float(delay / T)))}
+
+
+@load_response.mistake("One dead time passes until the load is seen, and another one until the action is felt.")
+def _(T, delay):
+    return {"time": float(delay) + float(T) * math.exp(-float(delay / T))}
+
+
+@load_response.mistake("At that time the load is felt for the first time. When does the deviation turn?")
+def _(delay):
+    return {"time": delay}
 
 
 load_response.hints(
@@ -646,10 +767,43 @@ def _(volume, high):
     return {"model_delay": volume / high}
 
 
+@two_flows.mistake("A dead time is the volume over the flow. Which unit has the flow over the volume?")
+def _(volume, low, high):
+    return {"model_delay": (low + high) / (2 * volume)}
+
+
+@two_flows.mistake(
+    "By so much the dead time is off at the ends of the range. In the middle of which two is the model's?"
+)
+def _(volume, low, high):
+    return {"model_delay": _middle(volume, low, high)[1]}
+
+
+@two_flows.mistake("That is the range of the dead times, from the shortest to the longest.")
+def _(volume, low, high):
+    return {"model_delay": 2 * _middle(volume, low, high)[1]}
+
+
+@two_flows.mistake("The gain of the process is missing: the loop has the product of both gains.")
+def _(K, T, volume, low, high):
+    return {"controller": PID(T / _middle(volume, low, high)[1], T)} if K >= 2 or K <= Rational(1, 2) else {}
+
+
+@two_flows.mistake("Inside the predictor there is no dead time: $T_C$ need not be as long as the whole of it.")
+def _(K, T, volume, low, high):
+    return {"controller": PID(T / (K * _middle(volume, low, high)[0]), T)}
+
+
+@two_flows.mistake("That is Skogestad's rule for a loop with the dead time. Inside the predictor there is none.")
+def _(K, T, volume, low, high):
+    model = _middle(volume, low, high)[0]
+    return {"controller": PID(T / (2 * K * model), min(T, 8 * model))}
+
+
 two_flows.hints(
     "The dead time of a pipe is its volume divided by the flow. Which dead times are possible?",
     "The model takes the mean of the two *dead times*, and is off by half of their difference at both ends. If the "
-    "controller cancels the lag, $T_0$ is a lag of $T_C$, and a $T_C$ as long as this error keeps $|M|$ below 0.8.",
+    "controller cancels the lag, $T_0$ is a lag of $T_C$: compare $T_C$ with this error.",
     "The dead times are $\\frac{ {volume} }{ {low} }$ and $\\frac{ {volume} }{ {high} }$ min. Then $K_c = "
     "\\frac{{T}}{K\\,T_C}$ and $T_i = T$.",
 )
@@ -703,8 +857,8 @@ def surprise(
 
     But the machine runs at another speed now, and the dead time $\theta_m$ of the model is wrong. The picture shows a
     unit step of the setpoint at time zero. Read off the dead time of the process, and that of the model. Is the model's
-    too short or too long? And how long should $T_C$ be at least, so that the chapter's guarantee of stability still
-    covers such an error?
+    too short or too long? And how long should $T_C$ be at least, so that the chapter's rule of thumb, an error of the
+    dead time below $T_C$, still covers such an error?
     (`t, y, u = exercise("17.6").given("t", "y", "u")` are the times, the weight and the valve.)
     """
     return answers(
@@ -746,9 +900,16 @@ def _(delay, model):
     return {"model_delay": abs(model - delay)} if abs(abs(model - delay) / model - 1) > 0.15 else {}
 
 
-@surprise.mistake("The guarantee is about the *error* of the dead time: how far are the two apart?")
-def _(delay):
-    return {"least_TC": delay}
+def _as_long_as(which):
+    def wrong(delay, model):
+        whole = {"delay": delay, "model": model}[which]
+        return {"least_TC": whole} if abs(whole / abs(model - delay) - 1) > Rational(1, 4) else {}
+
+    return wrong
+
+
+for _which in ("delay", "model"):
+    surprise.mistake("The rule is about the *error* of the dead time: how far are the two apart?")(_as_long_as(_which))
 
 
 @surprise.mistake("The range around a middle value has two halves. Here the whole error is known, and counts.")
@@ -764,12 +925,32 @@ def _(delay, model):
     return {"model": "too long" if model < delay else "too short"}
 
 
+@surprise.mistake("That is where the weight is largest or halfway. Its dead time ends where it begins to rise.")
+def _(T, delay):
+    return {"delay": float(delay) + math.log(2) * float(T)}
+
+
+@surprise.mistake("That is the lag. The rule compares $T_C$ with the error of the dead time.")
+def _(T, delay, model):
+    return {"least_TC": T} if abs(T / abs(model - delay) - 1) > Rational(1, 4) else {}
+
+
+@surprise.mistake("That is both dead times together: a later corner of the valve. Look for the first two.")
+def _(delay, model):
+    return {"model_delay": delay + model, "delay": delay + model}
+
+
+@surprise.mistake("That is about the exact limit of $|M| < 1$. Asked is the simple rule, which compares two times.")
+def _(delay, model):
+    return {"least_TC": 0.677 * float(abs(model - delay))}  # 2 |sin(x/2)| = |1 + 0.677 jx| at one x only
+
+
 surprise.hints(
     "As long as model and process agree, the valve stays where it is. What is different when it moves?",
     "At the shorter of the two dead times, one of them responds and the other does not. If the model is first, the "
     "controller misses the response and opens the valve further. If the process is first, it closes it.",
     "The weight begins to rise at $\\theta$: read it above. Below there are two corners, one at $\\theta$ and one at "
-    "$\\theta_m$. The guarantee asks that $|\\theta_m - \\theta| < T_C$.",
+    "$\\theta_m$. The rule asks that $|\\theta_m - \\theta| < T_C$.",
 )
 
 
@@ -781,8 +962,8 @@ def _(delay, model):
     at {first}, and goes {way}: {why}. So the model's dead time is {model_}. The two corners of the valve are at
     {first} and {second}, one of them the dead time of the process, and the other one, {model_delay}, that of the model.
 
-    **Guarantee.** A predictor tolerates every error of the dead time below its $T_C$. Here the error is
-    $|\theta_m - \theta|$, that is {least_TC}.
+    **Rule.** A predictor tolerates every error of the dead time below its $T_C$. Here the error is
+    $|\theta_m - \theta|$, that is {least_TC}. (The exact limit of $|M| < 1$ is somewhat lower.)
     """
     short = model < delay
     return {
