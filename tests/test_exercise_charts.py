@@ -221,6 +221,10 @@ WRONG_CHARTS = {
         lines(to_heat="Fill -> Heat: level <= 0.9"),
         "Fill lasts for one scan only, because level <= 0.9 is true at once",
     ),
+    "another of two is true at once": (
+        lines(early="Fill -> Wait: Fill.T <= 200"),
+        "Fill lasts for one scan only, because Fill.T <= 200 is true at once",
+    ),
     "no condition": (
         lines(to_heat="Fill -> Heat"),
         "Fill -> Heat has no condition, so Fill lasts for one scan only",

@@ -1297,7 +1297,7 @@ def drawing(
     on a valve: it gives the setpoint to the flow controller of loop {next}. That flow is measured in the {pipe}, and
     its controller throttles it with a valve in the same pipe. The signal to the valve is pneumatic, all others are
     electrical. The transmitter of the {quantity} also tells an alarm, which sounds when the {quantity} becomes too
-    {side}. Nothing is indicated or recorded.
+    {side}. There is no separate indicator or recorder.
 
     Draw the diagram by its connections. The picture is an example of another loop, in these two lines:
 

@@ -203,7 +203,7 @@ class _Story:
     def __init__(self, chart):
         self.chart, self.active, self.begun, self.setters = chart, (), {}, {}
         self.reached = {}  # by which transition a step has become active
-        self.hurried = None  # a step that was left after one scan, and when
+        self.hurried = None  # a step that was left after one scan, by which transition, and when
 
     def goes_on(self, scan, time):
         """Take note of a scan."""
@@ -216,15 +216,15 @@ class _Story:
                 self.reached[step] = next((x for x in ways if not {*x.sources} & {*chart.active}), None)
         for step in self.active:
             if step not in chart.active and scan - self.begun[step] == 1 and step != chart.initial:
-                self.hurried = step, time
+                ways = [x for x in chart.transitions if step in x.sources and {*x.targets} <= {*chart.active}]
+                self.hurried = step, ways[0], time
         self.active = chart.active
 
     def why(self, never, given, time):
         """A clause on what led to a fault that began at a time, and the same without names."""
         chart, active = self.chart, " and ".join(self.chart.active)
-        if self.hurried and self.hurried[1] >= time - SCAN:
-            step = self.hurried[0]
-            way = next(x for x in chart.transitions if step in x.sources)
+        if self.hurried and self.hurried[-1] >= time - SCAN:
+            step, way, _ = self.hurried
             if way.condition == "TRUE":
                 return f"{_arrow(way)} has no condition, so {step} lasts for one scan only", "no condition"
             return f"{step} lasts for one scan only, because {way.condition} is true at once", "at once"
