@@ -769,6 +769,19 @@ def _(K, T, tau, K_p):
     return {"margin": pi * T / (K * K_p) - tau} if K == 2 or K_p == 2 else {}
 
 
+@program.mistake("A phase in degrees over a frequency in rad/s is no time. What is a quarter of a turn in radians?")
+def _(K, T, tau, K_p):
+    return {"margin": 90 * T / (K * K_p) - tau}
+
+
+@program.mistake("The crossover frequency is upside down: does more gain make a loop slower or quicker?")
+def _(K, T, tau, K_p):
+    wrong, right = pi / 2 * T * K * K_p - tau, _margin(K, T, tau, K_p)
+    others = right, right + float(tau), 2 * right + float(tau), float(T / (K * K_p) - tau), _margin(1, T, tau, K_p)
+    is_another = wrong > 0 and _differs(float(wrong), *others, float(90 * T / (K * K_p) - tau))
+    return {"margin": wrong} if is_another else {}
+
+
 @program.mistake("Half of the step may be as long as the margin. How long may the whole step be?")
 def _(K, T, tau, K_p):
     return {"h_limit": _margin(K, T, tau, K_p) / 2}

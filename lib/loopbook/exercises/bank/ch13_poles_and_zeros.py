@@ -458,6 +458,11 @@ def _(k, K, tau_1, tau_2):
     return {"zero": [(k - K) / (k * tau_1 - K * tau_2)]}
 
 
+@cold_feed.mistake("The minus in front of the second fraction holds for its whole numerator. Collect the terms again.")
+def _(k, K, tau_1, tau_2):
+    return {"zero": [(k - K) / (K * tau_1 + k * tau_2)]}
+
+
 @cold_feed.mistake("That is a slope. Which gain gives the fast effect this slope?")
 def _(k, tau_1, tau_2):
     return {"K_limit": k / tau_1} if tau_2 != 1 else {}
@@ -769,6 +774,11 @@ def _back(rate, K, tau):
     """When the level is back where it began."""
     x = float(K / (rate * tau))
     return float(tau) * (x + float(lambertw(-x * exponential(-x)).real))
+
+
+@shrinking_drum.mistake("Collect the terms with $s$ again: one of the two fractions is subtracted.")
+def _(rate, K, tau):
+    return {"zero": [rate / (K + rate * tau)]}
 
 
 @shrinking_drum.mistake("The slope of $e^{-t/\\tau}$ has one over the time constant in it. Differentiate once more.")
