@@ -314,17 +314,24 @@ def _(low, high, I, p_SP):
     return _with_pressure(p, low, high, I, p_SP) if _apart(p, _pressure(low, high, I), *others) else {}
 
 
+def _other_shares(low, high, I, p_SP):
+    """The errors, as a part of the range, of those who scale the current by another line."""
+    span = high - low
+    pressures = [low + span * I / 20, low + span * (I - 4) / 20, high * I / 20, high * (I - 4) / 16]
+    return [(p_SP - p) / span for p in pressures]
+
+
 @error_in_units.mistake("That is a percentage of the setpoint. What percentage of the measurement range is it?")
 def _(low, high, I, p_SP):
     e, span = p_SP - _pressure(low, high, I), high - low
-    others = [e / span, e / high, (e + low) / span, (p_SP - low) / span - I / 20, (p_SP - low) / span - (I - 4) / 20]
+    others = [e / span, e / high, (e + low) / span, *_other_shares(low, high, I, p_SP)]
     return {"e_percent": 100 * e / p_SP} if _apart(e / p_SP, *others) else {}
 
 
 @error_in_units.mistake("The range does not begin at zero. How wide is it?")
 def _(low, high, I, p_SP):
-    e, span = p_SP - _pressure(low, high, I), high - low
-    return {"e_percent": 100 * e / high} if _apart(e / high, (p_SP - low) / span - (I - 4) / 20) else {}
+    e = p_SP - _pressure(low, high, I)
+    return {"e_percent": 100 * e / high} if _apart(e / high, *_other_shares(low, high, I, p_SP)) else {}
 
 
 @error_in_units.mistake(
@@ -609,7 +616,8 @@ def _(A, h_0, h_low, q, more):
 )
 def _(A, h_0, h_low, q, more):
     T = h_0 / (more / 1000 / A)
-    minutes, others = T * math.log(h_0 / h_low) / 60, [(h_0 - h_low) / (x / 1000 / A) / 60 for x in (more, q, q + more)]
+    minutes, flows = T * math.log(h_0 / h_low) / 60, {more, q, q + more, abs(q - more)} - {0}
+    others = [h_0 / (more / 1000 / A) / 60, *((h_0 - h_low) / (flow / 1000 / A) / 60 for flow in flows)]
     return {"h": h_0 * exp(-t / T)} | ({"t_alarm": minutes} if _apart(minutes, *others) else {})
 
 
