@@ -379,6 +379,11 @@ def _(K, T, T_0, U):
     return {"y": K * U * (1 - (1 - T_0 / T) * exp(-T * t))}
 
 
+@creeping_sensor.mistake("The ratio is upside down: which of the two coefficients of $s$ is above the fraction line?")
+def _(K, T, T_0, U):
+    return {"y_0": K * U * T / T_0}
+
+
 creeping_sensor.hints(
     "Large $s$ belongs to the beginning of a response, $s = 0$ to its end.",
     r"For a step of height $U$, the response begins at $U \cdot \lim_{s\to\infty} H(s)$ and ends at $U \cdot H(0)$. A "
@@ -474,7 +479,7 @@ def _with_gains(M, k_1, k_2, k_3, k_4, signal, sign):
     """A wrong transfer function with its static gain, if that is not near the right one by chance."""
     above, below = M.subs({H_1: k_1, H_2: k_2, H_3: k_3, H_4: k_4}).as_numer_denom()
     right = _network(signal, _SIGNS[sign], k_1, k_2, k_3, k_4)
-    by_chance = below == 0 or abs(above / below / right - 1) < 0.02
+    by_chance = below == 0 or not above.is_finite or abs(above / below / right - 1) < 0.02
     return {"M": M} if by_chance else {"M": M, "M_s": above / below}
 
 
@@ -854,6 +859,16 @@ def _(K, T_1, T_2):
 @four_zeros.mistake("For large $s$ the highest powers of $s$ count, in the numerator and in the denominator.")
 def _(K, T_1, T_2):
     return {"slope": K / (T_1 + T_2)}
+
+
+@four_zeros.mistake("That belongs to another of the four. Where is the numerator of $H_4$ zero?")
+def _(T_0, T_r):
+    return {"zero": 1 / T_0} if abs(T_0 / T_r - 1) > 0.03 else {}
+
+
+@four_zeros.mistake("So it would be with a static gain of one. What is it here?")
+def _(K, T_1, T_2, T_r):
+    return {"slope": -T_r / (T_1 * T_2)} if K not in (1, T_r) else {}
 
 
 four_zeros.hints(

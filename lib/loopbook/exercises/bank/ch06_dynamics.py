@@ -98,6 +98,16 @@ def _(A, q_in, q_out, start, top):
     return {"rate": (q_in + q_out) / A, "t_full": 1000 * (top - start) * A / (q_in + q_out)}
 
 
+@runs_over.mistake("Does the level rise faster or more slowly if the tank is larger?")
+def _(A, q_in, q_out):
+    return {"rate": (q_in - q_out) * A}
+
+
+@runs_over.mistake("That is the way from the bottom to the level. Which way does the level have to go?")
+def _(A, q_in, q_out, start, top):
+    return {} if _near(start, top - start) else {"t_full": 1000 * start * A / (q_in - q_out)}
+
+
 runs_over.hints(
     "A tank adds up what flows in and does not flow out: its volume changes by the net inflow.",
     r"The volume is area times level, so $A\,\frac{dh}{dt} = q_{in} - q_{out}$. Compare this with an integrator, "
@@ -223,6 +233,21 @@ def _(y_1, dy):
 @half_way.mistake("After one time constant more than half of the way is gone. Which share is it?")
 def _(y_1, dy):
     return {"y_T": y_1 + dy / 2}
+
+
+@half_way.mistake("That is the whole change. How much of it does one percent of the valve make?")
+def _(dy):
+    return {"K": dy}
+
+
+@half_way.mistake("The gain is a ratio of changes. By how much has the temperature *changed*?")
+def _(du, y_1, dy):
+    return {"K": (y_1 + dy) / du}
+
+
+@half_way.mistake("The time was divided by the share at one time constant. Which share is reached at the half?")
+def _(t_half):
+    return {"T": t_half / (1 - 1 / E)}
 
 
 half_way.hints(
@@ -356,6 +381,21 @@ def _(V, V_pipe, F, less):
 @brine.mistake("Look at the units: is a volume over a flow a time, or a flow over a volume?")
 def _(V, V_pipe, F):
     return {"H": exp(-F / V_pipe * s) / (F / V * s + 1), "t_half": F / V_pipe + F / V * log(2)}
+
+
+@brine.mistake("Then the first of the change arrives. How long does the tank take for half of it?")
+def _(V_pipe, F):
+    return {"t_half": V_pipe / F}
+
+
+@brine.mistake("Half of the time is not half of the change: what happens in the tank, and what in the pipe?")
+def _(V, V_pipe, F):
+    return {"t_half": (V + V_pipe) / F / 2}
+
+
+@brine.mistake("By so much the flow has become smaller. How much of it is left?")
+def _(V, V_pipe, F, less):
+    return {"t_slow": (V_pipe + V * log(2)) / F / (less / 100)} if less != 50 else {}
 
 
 brine.hints(
@@ -650,6 +690,12 @@ def _(T_1, T_2, delay):
     return {"T_r": T_1 + delay} | ({} if _near(T_2, 2 * delay) else {"estimate": T_1 + delay})
 
 
+@pocket.mistake("That is an estimate for the two lags alone. The water arrives later, and 63.2 % are asked for.")
+def _(T_1, T_2, delay):
+    exact = _response_time(float(T_1), float(T_2)) + float(delay)
+    return {} if _near(T_1 + T_2, exact) else {"T_r": T_1 + T_2}
+
+
 pocket.hints(
     "The response time of elements in series is about the sum of all their lags and delays.",
     "For the exact time look at what is still missing $x$ seconds after the warm water has arrived. For two "
@@ -809,6 +855,26 @@ def _(pulse, c, c_max):
     return {"T_least": pulse * c_max / c}
 
 
+@against_pulses.mistake("In one time constant 63 % of a step come through. How much may come through here?")
+def _(pulse, c, c_max):
+    return {} if _near(c_max / c, 1 - 1 / E) else {"T_least": pulse}
+
+
+@against_pulses.mistake(
+    "Solve the exponential for $T$ once more: is the logarithm above the fraction line, or below it?"
+)
+def _(pulse, c, c_max):
+    return {"T_least": -pulse * log(1 - c_max / c)}
+
+
+@against_pulses.mistake(
+    "Solve the exponential for $T$ once more: which share is left, and where does the logarithm end up?"
+)
+def _(pulse, c, c_max):
+    least = -pulse / log(1 - c_max / c)
+    return {} if _near(pulse * log(c / c_max), least) else {"T_least": pulse * log(c / c_max)}
+
+
 against_pulses.hints(
     "The tank is a lag, and the pulse is a step up that is taken back after a while: the highest concentration comes "
     "just before it is taken back.",
@@ -957,6 +1023,21 @@ def _(T, start):
 @oven.mistake("After one time constant 63 % have come through. How long does it take to 90 %?")
 def _(T):
     return {"t_90": T}
+
+
+@oven.mistake("That is the whole change. How much of it does one percent of the power make?")
+def _(K, du):
+    return {"K": K * du}
+
+
+@oven.mistake("By then the response has practically ended. When is a tenth of the way still to go?")
+def _(T, start):
+    return {"t_90": 5 * T} if start < 0.8 * T else {}
+
+
+@oven.mistake("Then half of the way is covered. When is a tenth of it still to go?")
+def _(T):
+    return {"t_90": T * log(2)}
 
 
 oven.hints(

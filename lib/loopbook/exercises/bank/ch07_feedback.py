@@ -137,6 +137,11 @@ def _(p_low, p_high, q_max, K_p):
     return {"K_p": q_max / (p_high - p_low)} if K_p not in (1, q_max / 100) else {}
 
 
+@boiler.mistake("The percentage is a share of the *span*, from the lower end to the upper one.")
+def _(p_low, p_high, y):
+    return {"p": p_low + y * p_high / 100}
+
+
 boiler.hints(
     "A linear scale maps one range onto another along a straight line: equal shares of the two ranges belong together.",
     "With the share $y/100$ both values are *lower end + share times span*. For the gain, send an error of 1 bar "
@@ -245,6 +250,11 @@ def _(medium, valve):
 @jacket.mistake("How many percent of control signal does the controller make of one percent of error?")
 def _(medium, valve, K_p, u_0, rise):
     return {"u": u_0 + _push(medium, valve) * rise} if K_p != 1 else {}
+
+
+@jacket.mistake("Does a larger gain make the controller stronger or weaker?")
+def _(medium, valve, K_p, u_0, rise):
+    return {"u": u_0 + _push(medium, valve) * rise / K_p} if K_p != 1 else {}
 
 
 jacket.hints(
@@ -370,6 +380,23 @@ def _(P_B, repeats):
 @panel.mistake("The gain multiplies the control error, in both terms.")
 def _(P_B, repeats, u_0, error):
     return {"u": u_0 + error * (1 + t * repeats / 60)}
+
+
+@panel.mistake("The number of repeats is no time: how long does one of them take?")
+def _(P_B, repeats):
+    return {"settings": PID(100 / P_B, repeats)}
+
+
+@panel.mistake("Neither number of the panel is a setting yet. What does each of them count?")
+def _(P_B, repeats):
+    return {"settings": PID(P_B, repeats)}
+
+
+@panel.mistake(
+    "Both numbers count the other way round: a narrow band is a strong controller, many repeats a quick one."
+)
+def _(P_B, repeats):
+    return {"settings": PID(P_B / 100, 60 * repeats)}
 
 
 panel.hints(
@@ -518,6 +545,12 @@ def _(K, W, e_max):
 @oil_tank.mistake("That is a temperature: what the loss does by itself. Which control signal makes up for it?")
 def _(K, W):
     return {"u_PI": K * W} if _apart(K, 1) else {}
+
+
+@oil_tank.mistake("By this factor the error has become smaller. How does it follow from the loop gain?")
+def _(K, W, e_max):
+    wrong, right = K * W / e_max, (K * W / e_max - 1) / K
+    return {"K_p": wrong} if _apart(wrong, right) and K != 1 else {}
 
 
 oil_tank.hints(
@@ -690,6 +723,24 @@ def _(K_p, T_i, u_0, e_frost, e_after, frost):
 @dryer.mistake("The integral term is right. With the new error, what has become of the proportional term?")
 def _(K_p, T_i, u_0, e_frost, e_after, frost):
     return {"t_wait": _wound_up(K_p, T_i, u_0, e_frost, e_after, frost)[2] + T_i}
+
+
+@dryer.mistake("That is the first moment. What has the integral term done during the frost?")
+def _(K_p, u_0, e_frost):
+    return {"u_end": u_0 + K_p * e_frost}
+
+
+@dryer.mistake(
+    "The heater leaves full power when the sum is back at 100 %. Does the integral term have to vanish for that?"
+)
+def _(K_p, T_i, u_0, e_frost, e_after, frost):
+    wait = _wound_up(K_p, T_i, u_0, e_frost, e_after, frost)[2]
+    return {"t_wait": frost * e_frost / e_after} if _apart(frost * e_frost / e_after, wait) else {}
+
+
+@dryer.mistake("The error after the frost has the other sign. In which direction does the proportional term go?")
+def _(K_p, e_frost, e_after):
+    return {"u_after": 100 - K_p * (e_frost - e_after)} if e_frost != e_after else {}
 
 
 dryer.hints(
@@ -1686,6 +1737,32 @@ def _(K_p, u_0, u_old, u_man, e):
     wrong_u_i, wrong_bump, _ = _transfer(1, u_0, u_old, u_man, e)
     found = {"u_i": wrong_u_i} if _apart(wrong_u_i, u_i) else {}
     return found | ({"bump": wrong_bump} if _apart(wrong_bump, bump) else {})
+
+
+@hand_over.mistake("The integral term adds so much in each integral time. How long is that?")
+def _(K_p, T_i, u_man, e, wait):
+    return {"u_later": u_man + K_p * e * wait}
+
+
+@hand_over.mistake("So much the integral term adds in one minute. How many minutes are asked for?")
+def _(K_p, T_i, u_man, e, wait):
+    wrong, right = u_man + K_p * e / T_i, u_man + K_p * e * wait / T_i
+    return {"u_later": wrong} if _apart(wrong, right) and abs(K_p * e / T_i) > 3 else {}
+
+
+@hand_over.mistake("That is the old integral term. Would the control signal be the operator's with it?")
+def _(u_old):
+    return {"u_i": u_old}
+
+
+@hand_over.mistake("The integral term is not all of the control signal. What else is in the sum?")
+def _(K_p, u_0, u_old, u_man, e):
+    return {"u_i": u_man} if _apart(u_man, _transfer(K_p, u_0, u_old, u_man, e)[0], 0.1) else {}
+
+
+@hand_over.mistake("Without care the old integral term stays. Does the sum happen to be what the operator left?")
+def _():
+    return {"bump": 0}
 
 
 hand_over.hints(

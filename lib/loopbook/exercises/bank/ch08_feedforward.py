@@ -153,6 +153,12 @@ def _(T_SP, T_c, T_h, before, more):
     return {"T_without": (hot * T_h + (before + more) * T_c) / (hot + before)}
 
 
+@wash_water.mistake("To which temperature does the hot water cool down? Not to that of ice.")
+def _(T_SP, T_c, T_h, before, more):
+    w_c, setpoint, cold, hot = symbols("w_c T_SP T_c T_h")
+    return {"w_h": w_c * (setpoint - cold) / hot, "w_new": (before + more) * (T_SP - T_c) / T_h}
+
+
 wash_water.hints(
     "What the hot water gives off, the cold water takes up: a heat balance at the place where they mix.",
     r"$w_h\,(T_h - T_{SP}) = w_c\,(T_{SP} - T_c)$: each flow times the temperature difference that *it* goes through. "
@@ -282,6 +288,16 @@ def _():
 @trolley.mistake("That is the whole change of the speed. How much of it is there in each second?")
 def _(m, D, v, rise, F_w):
     return {"F_rise": m * v + D * v + F_w}
+
+
+@trolley.mistake("The friction holds the trolley back. Does the motor need more force because of it, or less?")
+def _():
+    return {"F_f": _force(friction=-1)}
+
+
+@trolley.mistake("Friction and wind hold the trolley back. Does the motor need more force because of them, or less?")
+def _(m, D, v, rise, F_w):
+    return {"F_f": _force(friction=-1, wind=-1), "F_rise": m * v / rise - D * v - F_w}
 
 
 trolley.hints(
@@ -440,6 +456,11 @@ def _(K, T, tau, K_d, T_d, tau_d):
 @pasteuriser.mistake("The feedforward waits, that is true. How large is its change when it then begins to act?")
 def _():
     return {"u_first": 0}
+
+
+@pasteuriser.mistake("That is how many kelvins the milk becomes colder. How much control signal makes up for them?")
+def _(K, K_d, rise):
+    return {"u_end": rise * K_d} if K != 1 else {}
 
 
 pasteuriser.hints(
@@ -757,6 +778,11 @@ def _(u_0, u_full, e_max):
 def _(u_0, u_full, e_max):
     N = ceiling(sqrt((u_full - u_0) / e_max))
     return {"N": N} if _fewest(u_0, u_full, e_max) < N else {}
+
+
+@water_main.mistake("How does the error of a parabola fall when the intervals become half as wide: to a half?")
+def _(u_0, u_full, points):
+    return {"e_worst": (u_full - u_0) / (4 * (points - 1))} if points < 5 else {}
 
 
 water_main.hints(

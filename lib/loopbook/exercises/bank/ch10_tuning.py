@@ -258,6 +258,18 @@ def _():
     return {"Td": 0}
 
 
+@good_gain_experiment.mistake(
+    "Half of a gain is tuned for a P controller at its ultimate gain. Neither is the case here."
+)
+def _(K):
+    return {"Kp": K / 2}
+
+
+@good_gain_experiment.mistake("Is the derivative time longer or shorter than the integral time?")
+def _(t_1, t_2):
+    return {"Td": 6 * (t_2 - t_1)}
+
+
 good_gain_experiment.hints(
     "The Good Gain method takes two numbers from the experiment: the gain, and the time between two events of the "
     "response. Which two?",
@@ -799,6 +811,11 @@ def _(K_p, w_1, w_2):
     return {"Kp": K_p * w_1**2 / w_2**2}
 
 
+@another_flow.mistake("The integral time is the time constant alone. How often is the flow in it?")
+def _(T_i, w_1, w_2):
+    return {"Ti": T_i * w_1**2 / w_2**2}
+
+
 another_flow.hints(
     "Skogestad's rule says how its settings depend on gain, time constant and dead time. How does each of these three "
     "depend on the flow?",
@@ -1106,6 +1123,21 @@ def _(start):
     return {"tau": start}
 
 
+@from_a_record.mistake("That is temperature over opening, before the step. The gain compares changes.")
+def _(K, u_0, y_0):
+    return {"K": y_0 / u_0} if abs(y_0 / u_0 - K) > 0.08 * K else {}
+
+
+@from_a_record.mistake("Then 63 % of the change are reached. When does the temperature begin to move?")
+def _(T, delay, start):
+    return {"tau": T + delay} if abs(T - start) > 0.3 * (delay + start) else {}
+
+
+@from_a_record.mistake("Does the temperature move at once when the valve does? Look closely at the record.")
+def _():
+    return {"tau": 0}
+
+
 from_a_record.hints(
     "A gain is a change divided by a change. For the two times, ask how much of the change is reached when.",
     "With averages before the step and at the end: $K = \\frac{y_{end} - y_0}{u_{end} - u_0}$. Then fit "
@@ -1264,6 +1296,21 @@ def _(P_u):
 @four_gains.mistake("That is the period itself. What does the formula do with it?")
 def _(P_u):
     return {"Ti": P_u}
+
+
+@four_gains.mistake("That is several periods together. How many of them lie between those tops?")
+def _(P_u):
+    return {"Pu": 4 * P_u}
+
+
+@four_gains.mistake("That is several periods together. How many of them lie between those tops?")
+def _(P_u):
+    return {"Pu": 5 * P_u}
+
+
+@four_gains.mistake("An eighth of the period is a derivative time. Which setting is asked for?")
+def _(P_u):
+    return {"Ti": P_u / 8}
 
 
 four_gains.hints(
