@@ -222,7 +222,7 @@ WRONG_CHARTS = {
         "Fill lasts for one scan only, because level <= 0.9 is true at once",
     ),
     "another of two is true at once": (
-        lines(early="Fill -> Wait: Fill.T <= 200"),
+        lines(early="Fill -> Late: Fill.T <= 200", late="Late: inlet off", on="Late -> Empty: 10 s"),
         "Fill lasts for one scan only, because Fill.T <= 200 is true at once",
     ),
     "no condition": (
@@ -250,12 +250,12 @@ WRONG_CHARTS = {
     ),
     "by the clock": (
         lines(to_heat="Fill -> Heat: 171 s"),
-        "if the supply fails for a while, at t = 194 s the inlet is closed, although start was pressed and the level "
-        "has not reached 0.9 m: Heat switches it off, and is reached by Fill -> Heat: Fill.T >= 171",
+        "if the supply fails for a while, at t = 194 s the heater is on while the level is still below 0.4 m: "
+        "Heat switches it on, and is reached by Fill -> Heat: Fill.T >= 171",
     ),
     "a button that is not ignored": (
         lines(again="Heat -> Fill: start"),
-        "if somebody presses start while the water is heated, at t = 252 s the inlet is still open",
+        "if somebody presses start during the batch, at t = 252 s the inlet is still open",
     ),
     "does not wait for the button": (
         ["Fill: inlet on, outlet off", *lines(wait="", to_fill="", fill="", to_wait="Empty -> Fill: h < 0.12")],
