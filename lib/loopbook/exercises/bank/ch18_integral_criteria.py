@@ -87,7 +87,7 @@ def _(delay, T):
     return {"ITAE": [delay**2, T**2]}
 
 
-@contest.mistake("Both are sums of errors: the smaller one wins.")
+@contest.mistake("Both add up errors, and the smaller sum wins. Is each of your two sums the right one?")
 def _(delay, T):
     return {"by_ISE": _winner(-delay, -T / 2), "by_ITAE": _winner(-(delay**2) / 2, -(T**2))}
 
@@ -95,6 +95,21 @@ def _(delay, T):
 @contest.mistake("For loop B this is the integral of the error itself: where has the factor of time gone?")
 def _(delay, T):
     return {"ITAE": [delay**2 / 2, T]}
+
+
+@contest.mistake("Those are the integrals of the errors themselves. Where has the factor of time gone?")
+def _(delay, T):
+    return {"ITAE": [delay, T]}
+
+
+@contest.mistake("For loop B the integral of $t\\,e^{-t/T}$ has no half in it: integrate by parts.")
+def _(delay, T):
+    return {"ITAE": [delay**2 / 2, T**2 / 2]}
+
+
+@contest.mistake("For loop A the square of one is one: its integral is the time itself.")
+def _(delay, T):
+    return {"ISE": [delay**2, T / 2]}
 
 
 contest.hints(
@@ -116,10 +131,12 @@ def _(delay, T):
 
 @contest.solution
 def _(delay, T):
-    r"""**ISE.** The error of A is 1 for {delay}, and so is its square: {A_ISE}. The error of B is $e^{-t/T}$. Its
-    square fades twice as fast, so that the integral is half of $T$: {B_ISE}.
+    r"""**ISE.** The error of A is 1 for {delay}, and so is its square: a rectangle. The error of B is $e^{-t/T}$. Its
+    square fades twice as fast, so that the integral is half of $T$.
 
     ***
+
+    So the ISE is {A_ISE} for A, and {B_ISE} for B.
 
     **ITAE.** The product of the error of A with time is a triangle, half of $\theta^2$: {A_ITAE}. For B,
     $\int_0^\infty t\,e^{-t/T} dt = T^2$, which is {B_ITAE}.
@@ -193,6 +210,39 @@ def _(K, Kc, Ti):
 @level.mistake("That is the integral of the error itself; it has to be squared first.")
 def _(Kc, Ti):
     return {"load": Ti / Kc}
+
+
+@level.mistake("The gain multiplies the integral term, too: look at the last coefficient of the denominator.")
+def _(K, Kc, Ti):
+    return {"E": s / (s**2 + K * Kc * s + K / Ti)}
+
+
+@level.mistake("That is with a gain alone. The controller has an integral term as well.")
+def _(K, Kc):
+    return {"E": 1 / (s + K * Kc)}
+
+
+@level.mistake("That is the error after an impulse of the setpoint. Which factor belongs to a step?")
+def _(K, Kc, Ti):
+    a = K * Kc
+    return {"E": s**2 / (s**2 + a * s + a / Ti)}
+
+
+@level.mistake("The load goes through the tank before it is an error: $b_0$ is its slope, squared in the formula.")
+def _(K, Kc, Ti):
+    a = K * Kc
+    return {"load": Ti / (2 * a**2)}
+
+
+@level.mistake("That is after the setpoint step. Which of the $b$ is zero after the load?")
+def _(K, Kc, Ti):
+    wrong = 1 / (2 * K * Kc)
+    return {"load": wrong} if _differs(wrong, Ti / (2 * Kc**2)) else {}
+
+
+@level.mistake("That is the integral of the error itself, which overshoots. Square it first.")
+def _():
+    return {"servo": 0}
 
 
 level.hints(
@@ -295,6 +345,39 @@ def _(K, delay):
     return {"best_gain": math.pi / (4 * float(K * delay))}
 
 
+@conveyor.mistake("That is $x$, a pure number. Which factors of it belong to the process?")
+def _(K, delay):
+    return {"best_gain": 0.7390851332151607} if abs(K * delay - 1) > 0.05 else {}
+
+
+@conveyor.mistake("With this gain the loop is on the limit of stability. Where does the derivative of the ISE vanish?")
+def _(K, delay):
+    return {"best_gain": math.pi / (2 * float(K * delay))}
+
+
+@conveyor.mistake("Here sine and cosine are of an angle in degrees. The number $x$ is in radians.")
+def _(K, delay, Kp):
+    x = float(K * Kp * delay)
+    r = math.radians(x)
+    return {"ISE": float(delay) * math.cos(r) / (2 * x * (1 - math.sin(r)))}
+
+
+@conveyor.mistake("In the denominator the sine is subtracted from one: the ISE grows towards the limit of stability.")
+def _(K, delay, Kp):
+    x = float(K * Kp * delay)
+    return {"ISE": float(delay) * math.cos(x) / (2 * x * (1 + math.sin(x)))}
+
+
+@conveyor.mistake("This is in dead times. How long is one?")
+def _():
+    return {"least_ISE": _of_integrator(0.7390851332151607)}
+
+
+@conveyor.mistake("An angle in radians was taken from one in degrees.")
+def _(K, delay, Kp):
+    return {"phase_margin": 90 - float(K * Kp * delay)}
+
+
 conveyor.hints(
     "Only one number matters in this loop: $x = K K_p\\theta$, its gain times its dead time.",
     "The crossover frequency is $K K_p$, and the dead time turns the phase there by $x$ (in radians). The least ISE is "
@@ -393,9 +476,41 @@ def _(K, T, Kc, Ti):
     return {"crossover": w} if _differs(w, _crossover(K, T, Kc, Ti)[0]) else {}
 
 
-@four_points.mistake("The dead time turns the phase, too.")
+def _margins_without_one(K, T, delay, Kc, Ti):
+    """The phase margin without the dead time, without the lag, and with the dead time in radians."""
+    w, _ = _crossover(K, T, Kc, Ti)
+    right = _phase_margin(K, T, delay, Kc, Ti)
+    turned = w * float(delay)
+    return (
+        right + math.degrees(turned),
+        right + math.degrees(math.atan(w * float(T))),
+        right + math.degrees(turned) - turned,
+    )
+
+
+@four_points.mistake(
+    "One of the three that turn the phase is missing, or not in degrees: the dead time, the lag, the integral term."
+)
 def _(K, T, delay, Kc, Ti):
-    return {"phase_margin": _phase_margin(K, T, 0, Kc, Ti)}
+    without, lag, _ = _margins_without_one(K, T, delay, Kc, Ti)
+    return {"phase_margin": without} if abs(lag / without - 1) < 0.02 else {}
+
+
+def _without(which):
+    def wrong(K, T, delay, Kc, Ti):
+        return {"phase_margin": _margins_without_one(K, T, delay, Kc, Ti)[which]}
+
+    return wrong
+
+
+for _which, _sentence in enumerate(
+    (
+        "The dead time turns the phase, too: by $\\omega\\theta$ radians. How many degrees are that?",
+        "The lag turns the phase, too. By how much at this frequency?",
+        "The dead time turns by $\\omega\\theta$ in radians. How many degrees are that?",
+    )
+):
+    four_points.mistake(_sentence)(_without(_which))
 
 
 @four_points.mistake("That is the ISE after a step of the load.")
@@ -416,6 +531,25 @@ def _(K, T, delay, Kc, Ti):
 def _(K, T, delay, Kc, Ti):
     w, _ = _crossover(K, T, Kc, Ti)
     return {"phase_margin": 180 - math.degrees(math.atan(w * float(T)) + w * float(delay))}
+
+
+@four_points.mistake("That is $\\sigma$, from the positive root. The frequency belongs to the negative one.")
+def _(K, T, Kc, Ti):
+    w, _ = _crossover(K, T, Kc, Ti)
+    sigma = float(K * Kc) / (float(T * Ti) * w)
+    return {"crossover": sigma} if _differs(sigma, w) else {}
+
+
+@four_points.mistake("That is the root of the equation in $s^2$. The frequency is the square root of its size.")
+def _(K, T, Kc, Ti):
+    w, _ = _crossover(K, T, Kc, Ti)
+    return {"crossover": w**2} if _differs(w, 1) else {}
+
+
+@four_points.mistake("That would be a loop as fast as a lag of $T$ behind the dead time. Here the formula decides.")
+def _(K, T, delay, Kc, Ti):
+    wrong = float(delay + T / 2)
+    return {"ISE": wrong} if _differs(wrong, _ISE(K, T, delay, Kc, Ti)) else {}
 
 
 four_points.hints(
@@ -540,6 +674,17 @@ def _(K, T, delay):
 @nearly_least.mistake("That asks the loop to have no time constant of its own. How robust can it be then?")
 def _(K, T, delay):
     return {"controller": PID(T / (K * delay), T)}
+
+
+@nearly_least.mistake("The two settings are interchanged: which of them is a time, and which a gain?")
+def _(K, T, delay):
+    wrong = PID(T, Rational(57, 100) * T / (K * delay))
+    return {"controller": wrong} if K * delay >= 2 else {}
+
+
+@nearly_least.mistake("The gain of the process is missing: the loop has the product of both gains.")
+def _(K, T, delay):
+    return {"controller": PID(Rational(57, 100) * T / delay, T)} if K >= 2 or K <= Rational(1, 2) else {}
 
 
 nearly_least.hints(
@@ -667,7 +812,10 @@ def _(wait, fall, down, up, depth):
     return {"ISE": (wait + fall / 2 + depth * (down + up) / 2) ** 2}
 
 
-@areas.mistake("While the error stays at one, its product with time is a triangle, not a rectangle.")
+@areas.mistake(
+    "While the error stays at one, its product with time is a triangle, not a rectangle. And then it falls: its centre "
+    "of gravity is nearer to the upright side."
+)
 def _(wait, fall, down, up, depth):
     times, e = _corners(wait, fall, down, up, depth)
     return {"ITAE": _criteria(times, e)[2] + float(wait) ** 2 / 2}
@@ -696,6 +844,44 @@ for _name, _question in {
     "ITAE": "The time makes late errors count more, and early ones hardly. Are those that were added late?",
 }.items():
     areas.mistake(_question)(_instead(_name))
+
+
+def _parts(wait, fall, down, up, depth):
+    """IAE, ISE and ITAE of the part above zero, and of the one below."""
+    times, e = _corners(wait, fall, down, up, depth)
+    return _criteria(times[:3], e[:3]), _criteria(times[2:], e[2:])
+
+
+def _apart(wrong, *corners):
+    """Those of three wrong values that a ruler can tell from the right ones."""
+    both = zip(_NAMES, wrong, _criteria(*_corners(*corners)), strict=True)
+    return {name: value for name, value, right in both if value is not None and abs(float(value) / right - 1) > 0.1}
+
+
+@areas.mistake("The part below zero is missing: it is an error, too.")
+def _(wait, fall, down, up, depth):
+    return _apart(_parts(wait, fall, down, up, depth)[0], wait, fall, down, up, depth)
+
+
+@areas.mistake("The part below zero is subtracted here. Squares and absolute values are never negative.")
+def _(wait, fall, down, up, depth):
+    above, below = _parts(wait, fall, down, up, depth)
+    return _apart(np.subtract(above, below), wait, fall, down, up, depth)
+
+
+@areas.mistake("A triangle is half of its rectangle.")
+def _(wait, fall, down, up, depth):
+    return {"IAE": wait + fall + depth * (down + up)}
+
+
+@areas.mistake("Below zero the depth has to be squared as well.")
+def _(wait, fall, down, up, depth):
+    return _apart((None, wait + fall / 3 + depth * (down + up) / 3, None), wait, fall, down, up, depth)
+
+
+@areas.mistake("That belongs to the dashed line. Asked is first the error before the change.")
+def _(wait, fall, down, up, depth, change):
+    return _apart(_criteria(*_changed(wait, fall, down, up, depth, change)), wait, fall, down, up, depth)
 
 
 areas.hints(

@@ -72,7 +72,9 @@ def _(K, T, delay, Kc):
     return {"gain_margin": 20 * math.log10(math.pi * float(T / (K * Kc * delay)) / 2)}
 
 
-@three_margins.mistake("That is the phase shift of the dead time. The margin is what is left of half a turn.")
+@three_margins.mistake(
+    "By that angle the dead time turns the phase. The margin is what is left of the right angle behind the integrator."
+)
 def _(K, T, delay, Kc):
     x = math.degrees(float(K * Kc * delay / T))
     return {"phase_margin": x} if abs(x - 45) > 2 else {}
@@ -81,6 +83,24 @@ def _(K, T, delay, Kc):
 @three_margins.mistake("The integrator has turned the phase by a right angle already.")
 def _(K, T, delay, Kc):
     return {"phase_margin": 180 - math.degrees(float(K * Kc * delay / T))}
+
+
+@three_margins.mistake("That is the phase margin in radians. Which frequency makes a time of it?")
+def _(K, T, delay, Kc):
+    wrong = math.pi / 2 - float(K * Kc * delay / T)
+    return {"delay_margin": wrong} if abs(float(K * Kc / T) - 1) > 0.03 else {}
+
+
+@three_margins.mistake("The delay margin is read where the phase margin is: at the frequency where $|L|$ is one.")
+def _(K, T, delay, Kc):
+    x = float(K * Kc * delay / T)
+    wrong, right = (math.pi / 2 - x) / (math.pi / 2), (math.pi / 2 - x) / x
+    return {"delay_margin": float(delay) * wrong} if abs(wrong / right - 1) > 0.03 else {}
+
+
+@three_margins.mistake("An angle in radians was taken from one in degrees.")
+def _(K, T, delay, Kc):
+    return {"phase_margin": 90 - float(K * Kc * delay / T)}
 
 
 three_margins.hints(
@@ -158,7 +178,7 @@ def unstable_poles(
     delay=between(2, 12, "s", reference=8),
     Kc=between(0.5, 5, "", reference=2),
 ):
-    r"""Someone has exchanged the settings of two loops. Now a PI controller with the gain {Kc} controls a process
+    r"""Someone has changed the settings of a loop. Now a PI controller with the gain {Kc} controls a process
     with the gain {K}, a lag of {T} and a dead time of {delay}; the integral time equals the lag.
 
     With which gain of the controller would the loop be on the limit of stability, and at which frequency would it
@@ -197,6 +217,35 @@ def _(delay):
     return {"frequency": math.pi / float(delay)}
 
 
+def _number_if_wrong(value):
+    def wrong(K, T, delay, Kc):
+        return {"unstable": value} if 2 * _turns(float(K * Kc * delay / T)) != value else {}
+
+    return wrong
+
+
+for _count, _sentence in {
+    0: "Compare the present gain with the gain on the limit: has no pair crossed the axis yet?",
+    1: "Poles cross the axis in pairs. And has the first pair crossed it with the present gain?",
+    2: "Compare the present gain with those at which pairs cross. Has just one of them been passed?",
+}.items():
+    unstable_poles.mistake(_sentence)(_number_if_wrong(_count))
+
+
+@unstable_poles.mistake("There $L$ is $+1$, on the other side. The first crossing is at a lower frequency.")
+def _(K, T, delay):
+    return {
+        "limit": 3 * math.pi * float(T / (2 * K * delay)),
+        "frequency": 3 * math.pi / float(2 * delay),
+    }
+
+
+@unstable_poles.mistake("That is the period of the oscillation. Which frequency in rad/s is that?")
+def _(delay):
+    wrong = 4 * float(delay)
+    return {"frequency": wrong}
+
+
 unstable_poles.hints(
     "A pole crosses the imaginary axis at $s = j\\omega$ where $L(j\\omega) = -1$. What does that say of size and "
     "phase?",
@@ -219,7 +268,7 @@ def _(K, T, delay, Kc):
 
     Further pairs cross when the dead time has turned once more around, at frequencies and gains that are 5, 9, 13 and
     so on times the first ones. (At 3, 7, 11 times, $L$ is $+1$, and nothing crosses.) The present gain of {Kc} is
-    {times} times the first limit: {crossed}. These are {unstable} poles in the right half-plane.
+    {times} times the first limit: {crossed}. So the number of poles in the right half-plane is {unstable}.
     """
     times, pairs = float(K * Kc * delay / T) / (math.pi / 2), _turns(float(K * Kc * delay / T))
     crossed = {0: "no pair has crossed", 1: "one pair has crossed"}.get(pairs, f"{pairs} pairs have crossed")
@@ -309,6 +358,24 @@ def _(T, Ti, period):
     return {"delay": (math.pi + math.atan(w * float(Ti)) - math.atan(w * float(T))) / w}
 
 
+@diagnosis.mistake("The phase of the controller is missing: it turns by $-90° + \\arctan\\omega T_i$.")
+def _(T, Ti, period):
+    w = 2 * math.pi / float(period)
+    wrong, right = (math.pi - math.atan(w * float(T))) / w, _delay_on_limit(T, Ti, w)
+    return {"delay": wrong} if abs(wrong / right - 1) > 0.02 else {}
+
+
+@diagnosis.mistake("A quarter of a period belongs to an integrator. What do lag and controller turn besides?")
+def _(T, Ti, period):
+    wrong, right = float(period) / 4, _delay_on_limit(T, Ti, 2 * math.pi / float(period))
+    return {"delay": wrong} if abs(wrong / right - 1) > 0.02 else {}
+
+
+@diagnosis.mistake("Half a period belongs to a dead time alone. What do lag and controller turn besides?")
+def _(period):
+    return {"delay": period / 2}
+
+
 diagnosis.hints(
     "The amplitude neither grows nor shrinks. What does that say of $L(j\\omega)$ at the frequency that is seen?",
     "$L(j\\omega) = -1$: its size is one, and its phase is $-180°$. The size does not depend on the dead time, the "
@@ -332,7 +399,7 @@ def _(T, Kc, Ti, period):
     controller by $+\arctan {wTi}$, the lag by $-\arctan {wT}$, and the dead time has to turn by the rest of $-\pi$:
     $\omega\theta = \frac{\pi}{2} + \arctan {wTi} - \arctan {wT} = {rest}$ rad, so that $\theta =$ {delay}.
 
-    Neither of them alone would have been enough: an old setting of the controller tells both, because it is known.
+    The period alone would not have been enough: with it and the settings of the controller, both are known.
     """
     w = 2 * math.pi / float(period)
     return {"wTi": w * float(Ti), "wT": w * float(T), "rest": w * _delay_on_limit(T, Ti, w)}
@@ -430,11 +497,42 @@ def _(K, T, delay, Kc, Ti, k):
 
 
 @gain_changes.mistake(
-    "The product of the two ratios is what counts at the corners only. Is the point above or below the line of the "
-    "window at this gain ratio?"
+    "The upper side of the window falls with the gain ratio beyond one, and rises with it below. How high is it at "
+    "this gain ratio, and where is your delay ratio?"
 )
 def _(K, T, delay, Kc, Ti, k):
     return {"limit": "inside" if _ratio(K, T, delay, Kc, Ti, k) > _window(float(k)) else "outside"}
+
+
+@gain_changes.mistake("The delay ratio has the present dead time in its denominator, and not the lag.")
+def _(K, T, delay, Kc, Ti, k):
+    right = _ratio(K, T, delay, Kc, Ti, k)
+    return {"ratio": right * float(delay / T)} if abs(T / delay - 1) > Rational(1, 20) else {}
+
+
+@gain_changes.mistake("The integral term turns by a right angle: only the other one and the two arc tangents are left.")
+def _(K, T, Kc, Ti, k):
+    w = _frequency(K, T, Kc, Ti, k)
+    return {"longest": _delay_on_limit(T, Ti, w) + math.pi / 2 / w}
+
+
+@gain_changes.mistake("The two arc tangents, of the zero of the controller and of the lag, are missing.")
+def _(K, T, Kc, Ti, k):
+    w = _frequency(K, T, Kc, Ti, k)
+    wrong, right = math.pi / 2 / w, _delay_on_limit(T, Ti, w)
+    return {"longest": wrong} if abs(wrong / right - 1) > 0.03 else {}
+
+
+@gain_changes.mistake("The new gain is the old one *times* the ratio.")
+def _(K, T, Kc, Ti, k):
+    return {"omega": _frequency(K, T, Kc, Ti, 1 / k)}
+
+
+@gain_changes.mistake(
+    "The gain ratio takes the place of the gain here. The loop has the product of both, and of $K_c$."
+)
+def _(K, T, Kc, Ti, k):
+    return {"omega": _frequency(1, T, Kc, Ti, k)} if abs(K - 1) > Rational(1, 10) else {}
 
 
 gain_changes.hints(
@@ -517,7 +615,8 @@ def in_the_window(
     integral of the squared error (ISE) should be at most {limit}, with the gain and the dead time as above. Design a
     PI controller that does both. Many do, and any that does is right.
 
-    (The response says how far the limit of stability is from the window: 1 if it touches, 2 if it is twice as high.)
+    (The response says how far the limit of stability is from the window: 1 if it touches, 2 if it is twice as far in
+    gain or dead time.)
     """
     return answers(
         controller=design(
@@ -616,7 +715,7 @@ def _(K, T, delay):
 
     So take the load back sooner. With $x = 0.6$ and an integral time of four dead times (or the lag, if that is
     shorter), $K_c = {Kp}$ and $T_i =$ {Ti}, the distance is {distance} and the ISE {ISE}; at most {limit} is allowed.
-    Both demands are met, and neither with much to spare.
+    Both demands are met.
     """
     calm, good = PID(T / (2 * K * delay), T), PID(Rational(3, 5) * T / (K * delay), min(T, 4 * delay))
     return {
@@ -798,13 +897,20 @@ def _(k, r, more):
     return {"unstable": 2} if _encirclements(k, r, more) == 4 else {}
 
 
+@nyquist.mistake("A phase margin in radians over a frequency is a time. Is this the margin, or the whole phase?")
+def _(k, r, delay):
+    w, phase = _crossover(k, r)
+    return {"delay_margin": -phase / w * float(delay)} if abs(math.pi / -phase - 2) > 0.2 else {}
+
+
 nyquist.hints(
     "The loop is on the limit of stability if its curve goes through $-1$. More gain stretches the curve, more dead "
     "time "
     "turns its points clockwise. Which point of the curve comes to $-1$ each time?",
     "The gain margin is one over the distance from the origin at which the curve crosses the negative real axis. The "
     "phase margin is the angle between that axis and the point on the unit circle. Dead time turns this point by "
-    "$\\omega\\,\\Delta\\theta$. And each time the whole curve goes around $-1$, there is one unstable pole.",
+    "$\\omega\\,\\Delta\\theta$. And each time the whole curve, with its mirror image, goes around $-1$, there is one "
+    "unstable pole.",
     "The curve crosses the negative real axis first at about $-{read}$. Stretch this crossing, and the next one on the "
     "same side, by the factor {times}: which are beyond $-1$ then?",
 )
@@ -918,8 +1024,8 @@ def short_model(
 
     With the process's $\theta$ and the model's $\theta_m$ the characteristic equation of this loop is
     $T_Cs + 1 + M(s) = 0$. Derive the term $M$ that the wrong dead time adds (type `theta` and `theta_m`). On the
-    imaginary axis its size is at most $\omega$ times something. With which least time constant $T_C$ can it therefore
-    never reach the size of $T_Cs + 1$, whatever $\theta$ and $\theta_m$ are otherwise?
+    imaginary axis its size is at most $\omega$ times something. With which least time constant $T_C$, given this
+    error of the dead time, can it therefore never reach the size of $T_Cs + 1$?
 
     (For those who cannot see the picture: `t, y, u = exercise("19.7").given("t", "y", "u")` are the curves.)
     """
@@ -1022,6 +1128,17 @@ def _(delay, model):
     return {"T_safe": double} if all(abs(double - other) > delay / 6 for other in (delay, model)) else {}
 
 
+@short_model.mistake("That holds for small $s$ only: the exponentials have more terms than these.")
+def _():
+    theta, theta_m = symbols("theta theta_m", positive=True)
+    return {"M": (theta_m - theta) * s}
+
+
+@short_model.mistake("The 1 is in the equation already: $T_Cs + 1 + M$. What comes besides it?")
+def _():
+    return {"M": 1 + _mismatch()}
+
+
 short_model.hints(
     "A predictor compares the measurement with what its model says that it should be by now. When do the two differ "
     "for "
@@ -1053,7 +1170,7 @@ def _(delay, model, step):
 
     **A safe time constant.** On the axis $|M| = 2\,|\sin\frac{\omega(\theta - \theta_m)}{2}| \le \omega\,(\theta -
     \theta_m)$, while $|1 + j\omega T_C| > \omega T_C$. With $T_C \ge \theta - \theta_m =$ {T_safe} the term never
-    reaches the other two, and no pole can ever have crossed the axis. (The present $T_C$ of {T_c} is shorter: the loop
+    reaches the other two, and no pole crosses the axis. (The present $T_C$ of {T_c} is shorter: the loop
     may be stable, but nothing guarantees it.)
     """
     return {"missing": (delay - model, "min"), "side": "lower" if step > 0 else "higher"}
