@@ -1177,7 +1177,7 @@ def _(start, T_f):
 
 @gauge.mistake("By then the filter has nearly arrived. One time constant is the time to 63 % of the way only.")
 def _(start, T_f):
-    return {"T_f": 3.3 * T_f} if start + T_f < 2.8 * T_f else {}
+    return {"T_f": 3.3 * T_f} if start + T_f < 2.95 * T_f else {}
 
 
 @gauge.mistake("By then the filter has nearly arrived. One time constant is the time to 63 % of the way only.")
