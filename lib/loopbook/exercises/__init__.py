@@ -78,7 +78,7 @@ def student(name: str | EllipsisType | None = ...) -> naming.Student:
 
     >>> student("")
     Traceback (most recent call last):
-    loopbook.exercises.ExerciseError: student is an empty text: expected a name, as in student('Mira')
+    loopbook.exercises.errors.ExerciseError: student is an empty text: expected a name, as in student('Mira')
     """
     try:
         if name is None:

@@ -451,7 +451,7 @@ def in_general(answer: float, case: Case) -> Finding:
 
     Sizes are compared in powers of two that do not depend on the key, so that asking again does not narrow it down.
 
-    >>> in_general(19, Case(12, "s", "the time, in s")).says
+    >>> in_general(15, Case(12, "s", "the time, in s")).says
     'not right, though of about the right size; asked: the time, in s'
     """
     key = case.key

@@ -286,6 +286,7 @@ class TimeFunction(Expression):
     Arguments:
         until: the end of the times at which it is compared, in the unit of t.
 
+    >>> from loopbook.expressions import t
     >>> y = TimeFunction(1 - sympy.exp(-t / 5), until=25, what="the response")
     >>> y.agrees(y.read("1 - exp(-0.2*t)")[0])
     True
