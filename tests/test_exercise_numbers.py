@@ -383,3 +383,13 @@ def test_judging(kind, given, status, says):
 
 def test_the_mistakes_of_an_exercise_come_before_the_general_ones():
     assert judge("x", TI, 2, [("Look again.", 2)]).says == "Look again."
+
+
+@pytest.mark.parametrize("text", ["[1/2 -3; 4 0]", "[[0.5, -3], [4, 0]]", "1/2, -3; 4, 0"])
+def test_a_table_in_a_text(text):
+    table = numbers([[0.5, -3], [4, 0]])
+    assert table.agrees(table.read(text)[0])
+
+
+def test_a_mixed_fraction_is_no_row():
+    assert numbers([1.5, 3]).read("1 1/2; 3")[0].tolist() == [1.5, 3]

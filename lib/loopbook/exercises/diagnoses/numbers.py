@@ -244,9 +244,9 @@ _FREQUENCIES = tuple(f"rad/{unit}" for unit in _TIMES)
 def _inverse(case):
     if case.key:
         yield 1 / case.key, "that is the inverse: one divided by the answer"
-        if case.unit in _TIMES:
+        if case.unit in _TIMES and "period" in case.asked:
             yield 2 * math.pi / case.key, "that is 2π divided by the answer: an angular frequency instead of a period"
-        if case.unit in _FREQUENCIES:
+        if case.unit in _FREQUENCIES and "frequency" in case.asked:
             yield 2 * math.pi / case.key, "that is 2π divided by the answer: a period instead of an angular frequency"
 
 
@@ -314,7 +314,6 @@ _RARE_FACTORS = (
     (math.e, "it is off by a factor of e"),
     (math.sqrt(2), "it is off by a factor of √2"),
     *((share, "it is off by a factor of 0.63: that is the share reached after one time constant") for share in _SHARES),
-    ((math.pi / 4) ** 2, "it is off by a factor of (π/4)²: is a 4/π upside down?"),
 )
 
 

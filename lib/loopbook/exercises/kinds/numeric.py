@@ -465,8 +465,10 @@ def _rows(given):
 def _row_of_text(row):
     """The numbers of a row that is a text, between commas or between spaces."""
     parts = listed_in(row)
-    in_spaces = len(parts) == 1 and re.fullmatch(r"[-+−]?[\d.]+(?: +[-+−]?[\d.]+)+", parts[0])
-    return re.split(" +", parts[0]) if in_spaces and not re.fullmatch(r"\S+( \d{3})+", parts[0]) else parts
+    in_spaces = len(parts) == 1 and re.fullmatch(r"[-+−]?[\d./]+(?: +[-+−]?[\d./]+)+", parts[0])
+    if in_spaces and not re.fullmatch(r"\S+( \d{3})+|[-+−]?\d+ \d+/\d+", parts[0]):  # which are 12 000, or 1 1/2
+        return re.split(" +", parts[0])
+    return parts
 
 
 def _allowed(key, within, least):
