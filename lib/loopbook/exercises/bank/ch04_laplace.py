@@ -386,6 +386,13 @@ def _(T, bath, rest):
     return {"t_near": T * log(bath / rest)}
 
 
+@thermometer.mistake("By then the reading is {rest} away from where it began. How far is it still from the water?")
+def _(T, start, bath, rest):
+    way = bath - start
+    wrong = T * log(way / (way - rest))
+    return {"t_near": wrong} if _apart(wrong, log(way / rest) / T) else {}
+
+
 @thermometer.mistake("After three time constants 5 % of the difference are left. Which part of it is asked for here?")
 def _(T, start, bath, rest):
     return {"t_near": 3 * T} if _apart(3, log((bath - start) / rest), log(bath / rest)) else {}
@@ -882,13 +889,17 @@ def _(T):
 
 
 @pole_by_ruler.mistake(
-    "That is the time after which half of the way is covered. How much is covered after a time constant?"
+    "By the time from which that comes, about half of the way is covered. How much is it after a time constant, and "
+    "counted from where?"
 )
 def _(T):
     return {"pole": -1 / (T * log(2))}
 
 
-@pole_by_ruler.mistake("After that time 37 % of the way are covered. How much is covered after a time constant?")
+@pole_by_ruler.mistake(
+    "By the time from which that comes, about 37 % of the way are covered. How much is it after a time constant, and "
+    "counted from where?"
+)
 def _(start, end, T):
     return _with_pole(1 / (T * log(0.632)), start, end)
 

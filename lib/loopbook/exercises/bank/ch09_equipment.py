@@ -606,6 +606,15 @@ def _(full):
     return {"mean": full}
 
 
+@oven.mistake(
+    "That is the middle between the highest and the lowest value. Is the oven above it for as long as below it?"
+)
+def _(full, T, D, P):
+    a, b = (math.exp(-share * P / T) for share in (D, 1 - D))
+    middle = (1 - a) * (1 + b) / (1 - a * b) / 2
+    return {"mean": full * middle} if _differs(middle, D, by=0.013) else {}
+
+
 @oven.mistake("That formula holds for cycles that are short compared with the time constant. This one is not.")
 def _(full, T, D, P):
     return {"ripple": full * D * (1 - D) * P / T}

@@ -340,7 +340,7 @@ def _(K, T_1, T_2, delay):
 
 
 @heat_exchanger.mistake(
-    "The integral time is $T_1$ itself here. With the factor in the question, the other limit is shorter."
+    "Your serial integral time is $T_1$. With the factor in the question, the other limit is shorter."
 )
 def _(K, T_1, T_2, delay):
     return {"pid": PID(T_1 / (K * 2 * delay), T_1, T_2, form="serial").parallel()}
@@ -1296,6 +1296,16 @@ def _(P_u):
 @four_gains.mistake("That is the period itself. What does the formula do with it?")
 def _(P_u):
     return {"Ti": P_u}
+
+
+@four_gains.mistake("That is several periods together. How many of them lie between those tops?")
+def _(P_u):
+    return {"Pu": 2 * P_u, "Ti": 2 * P_u / Rational(12, 10)}
+
+
+@four_gains.mistake("That is several periods together. How many of them lie between those tops?")
+def _(P_u):
+    return {"Pu": 3 * P_u, "Ti": 3 * P_u / Rational(12, 10)}
 
 
 @four_gains.mistake("That is several periods together. How many of them lie between those tops?")

@@ -114,6 +114,16 @@ def _(part):
     return {"factor": 100 / part - 1} if part != 50 else {}
 
 
+@lemonade.mistake("That holds for pure sugar in the place of the syrup. How much sugar is in a kilogram of syrup?")
+def _(x_L, F_S):
+    return {"K": 100 / x_L - 1, "F_W": (100 / x_L - 1) * F_S}
+
+
+@lemonade.mistake("There the flow of syrup falls *by* {part}. It falls *to* {part}: how much of it is left?")
+def _(part):
+    return {"factor": 100 / (100 - part)} if part != 50 else {}
+
+
 lemonade.hints(
     "Sugar is neither made nor lost: which balances hold for the place where the two streams meet?",
     "Of the sugar $x_S F_S = x_L (F_S + F_W)$; put $F_W = K F_S$ in. For the last question, write the gain of the "
@@ -965,7 +975,7 @@ def _(K_1, T_1, K_2, T_2, delay):
 def _(K_1, T_1, delay):
     late = delay + delay / 2
     wrong = PID(T_1 / (2 * K_1 * late), Min(T_1, 8 * late))
-    return {"primary": wrong} if delay / 2 > T_1 / 25 else {}
+    return {"primary": wrong} if delay / 2 > T_1 / 45 else {}
 
 
 @inside_out.mistake("There all of the secondary loop's time constant has become dead time. How much of it should?")

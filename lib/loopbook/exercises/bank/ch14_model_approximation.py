@@ -827,6 +827,17 @@ def _():
     return {"moment": 0, "lowest": 0}
 
 
+@before_the_dead_time.mistake("There the response is back at zero. What is zero where it is lowest?")
+def _(K, tau, theta):
+    low, high = _lowest_point(K, tau, theta)[0], 5 * float(tau)
+    tau, a = float(tau), float(theta) / 2
+    for _ in range(40):  # halve the range in which the response comes back
+        middle = (low + high) / 2
+        is_below = tau - a + 2 * a * math.exp(-middle / a) < (tau + a) * math.exp(-middle / tau)
+        low, high = (middle, high) if is_below else (low, middle)
+    return {"moment": low}
+
+
 before_the_dead_time.hints(
     "Write the approximation as a transfer function with a zero and two poles. What are they?",
     "$Y(s) = \\frac{{K}}{s}\\,\\frac{1 - a s}{(1 + a s)(\\tau s + 1)}$ with $a = \\theta/2$. Partial fractions make it "

@@ -230,6 +230,14 @@ def _(K, load):
 
 
 @level_offset.mistake(
+    "At rest the slope of the tank does not count any more. Which valve position must the gain make of the offset?"
+)
+def _(K, delay, Tc, load):
+    gain = 1 / (K * (Tc + delay))
+    return {"offset": K * load / gain} if abs(gain - 1) > Rational(1, 20) else {}
+
+
+@level_offset.mistake(
     "That is the offset behind a lag with the gain 1. Here the tank integrates, until the gain takes all of the load "
     "back."
 )
@@ -557,6 +565,21 @@ def _(beta, Tc):
 @inverse_response.mistake("That is the process alone, as in the picture, and the share of its final value.")
 def _(T1, T2, beta):
     return {"undershoot": _undershoot_of_the_process(T1, T2, beta)}
+
+
+def _undershoot_in_the_picture(read):
+    def wrong(K, T1, T2, beta, Tc):
+        a = float(1 + beta / Tc)
+        depth, right = read(float(K) * _undershoot_of_the_process(T1, T2, beta)), 100 * (a * math.exp(1 / a - 1) - 1)
+        return {"undershoot": depth} if K != 1 and abs(depth / right - 1) > 0.03 else {}
+
+    return wrong
+
+
+for _read in (float, lambda depth: float(f"{depth:.1g}")):  # exactly, and as it is read off
+    inverse_response.mistake("That is the process alone, as in the picture. How far down does the loop itself go?")(
+        _undershoot_in_the_picture(_read)
+    )
 
 
 @inverse_response.mistake("That is after one $T_c$. The lowest point is where the derivative vanishes.")
@@ -987,6 +1010,14 @@ def _(step, K, T, delay, Tc):
     return {"K": K * step, "controller": PID(T / (K * step * (Tc + delay)), T)}
 
 
+def _with_wish(read, step, K, T, delay, Tc):
+    """A time constant of the wish that was read wrongly, and the controller for it where that is told from others."""
+    total, right = float(read + delay), float(Tc + delay)
+    others = (right, float(Tc), float(step) * right, right / float(K))
+    is_another = all(abs(total / other - 1) > 0.15 for other in others)
+    return {"Tc": read} | ({"controller": PID(T / (K * (read + delay)), T)} if is_another else {})
+
+
 def _are_alike(T, delay, Tc):
     """Whether the wish has covered 63 % of its way after about the lag of the process."""
     return abs(Tc + delay - T) <= T / 5
@@ -999,11 +1030,11 @@ def _(K, T, delay, Tc):
 
 
 @wish_as_a_picture.mistake(
-    "So long is the lag of the process above, and so long it takes below from the step to 63 %. Where does the wish "
-    "begin, and how long is it from there?"
+    "About so long is the lag of the process above, and about so long it takes below from the step to 63 %. Where does "
+    "the wish begin, and how long is it from there?"
 )
-def _(T, delay, Tc):
-    return {"Tc": T} if _are_alike(T, delay, Tc) else {}
+def _(step, K, T, delay, Tc):
+    return _with_wish(T, step, K, T, delay, Tc) if _are_alike(T, delay, Tc) else {}
 
 
 @wish_as_a_picture.mistake("In the gain, the dead time is added to the time constant of the wish.")
@@ -1017,13 +1048,13 @@ def _(K, T, delay, Tc):
 
 
 @wish_as_a_picture.mistake("After one time constant a lag has covered 63 % of the way, not half of it.")
-def _(delay, Tc):
-    return {"Tc": float(Tc) * math.log(2)}
+def _(step, K, T, delay, Tc):
+    return _with_wish(float(Tc) * math.log(2), step, K, T, delay, Tc)
 
 
 @wish_as_a_picture.mistake("From the start to 95 % three time constants go by, and the dead time before them.")
-def _(Tc):
-    return {"Tc": 3 * Tc}
+def _(step, K, T, delay, Tc):
+    return _with_wish(3 * Tc, step, K, T, delay, Tc)
 
 
 @wish_as_a_picture.mistake(

@@ -62,9 +62,13 @@ def _(K, T, Kc):
     return {"delay_margin": math.pi * float(T / (K * Kc)) / 2}
 
 
-@three_margins.mistake("That is the gain on the limit. By which factor is it larger than the present one?")
+@three_margins.mistake("That would be the margin with a controller whose gain is 1. Here it is {Kc} already.")
 def _(K, T, delay, Kc):
-    return {"gain_margin": math.pi * float(T / (K * delay)) / 2} if Kc != 1 else {}
+    x, time = float(K * delay / T), float(T / K)
+    wrong = {"gain_margin": math.pi / (2 * x), "phase_margin": 90 - math.degrees(x), "delay_margin": math.pi / 2 - x}
+    if x >= 1.4 or abs(Kc - 1) < 0.1:  # no margin is left, or hardly another one
+        return {"gain_margin": wrong["gain_margin"]} if Kc != 1 else {}
+    return wrong | {"delay_margin": wrong["delay_margin"] * time}
 
 
 @three_margins.mistake("That is the margin in decibels. Give the factor itself.")
@@ -853,6 +857,12 @@ def _(k, r, delay):
 def _(k, r, delay):
     w, phase = _crossover(k, r)
     return {"delay_margin": 2 * math.pi * (math.pi + phase) / w * float(delay)}
+
+
+@nyquist.mistake("That takes the frequency for turns per minute. It is in rad/min: which unit must the angle have?")
+def _(k, r, delay):
+    w, phase = _crossover(k, r)
+    return {"delay_margin": (math.pi + phase) / (2 * math.pi * w) * float(delay)}
 
 
 @nyquist.mistake("That is the dead time that a loop with a phase of zero could have. What is left of half a turn here?")

@@ -79,7 +79,7 @@ behind the panel, rear of the panel, back of the panel
 own instrument, separate instrument, discrete instrument, stand alone instrument, instrument of its own
 shared display, shared control, shared display and control
 electrical signal, electric signal, electric, electrical
-process connection, connection to the process
+process connection, connection to the process, measuring line, impulse line
 pipe, pipeline, piping
 heating, heats, heat, heater is on
 cooling, cools, cool
