@@ -302,6 +302,11 @@ def _(low, high, I, p_SP):
     return _with_pressure(p, low, high, I, p_SP) if _apart(p, from_zero) else {}
 
 
+@error_in_units.mistake("At the lower end of the range the current is not zero. How far has it come from there?")
+def _(low, high, I, p_SP):
+    return _with_pressure(low + I * (high - low) / 16, low, high, I, p_SP)
+
+
 @error_in_units.mistake("Your line goes through zero bar. Through which two points does that of the transmitter go?")
 def _(low, high, I, p_SP):
     p, others = high * (I - 4) / 16, [low + I * (high - low) / 20, low + (I - 4) * (high - low) / 20]
@@ -599,16 +604,26 @@ def _(A, h_0, h_low, q, more):
 
 def _is_told_twice(h_0, h_low, q, more):
     """Whether the way down to the alarm at a wrong rate takes as long as that to the bottom at the right one."""
-    return not _apart(h_0 / more * (q - more), h_0 - h_low)
+    return not _apart(h_0 / more * abs(q - more), h_0 - h_low)
 
 
-@left_alone.mistake("What the pump delivers was drawn already before. By how much do the two flows differ now?")
-def _(A, h_0, h_low, q, more):
-    if q == more or not _apart(q - more, more, q):
-        return {}
-    rate = (q - more) / 1000 / A
-    minutes = {} if _is_told_twice(h_0, h_low, q, more) else {"t_alarm": (h_0 - h_low) / rate / 60}
-    return {"h": h_0 - rate * t} | minutes
+def _without_the_old_outflow(sign):
+    """The balance of the pump and the new hydrant alone, with either sign."""
+
+    def wrong(A, h_0, h_low, q, more):
+        rate = abs(q - more) / 1000 / A
+        if rate == 0 or not _apart(abs(q - more), more, q):
+            return {}
+        minutes = {} if _is_told_twice(h_0, h_low, q, more) else {"t_alarm": (h_0 - h_low) / rate / 60}
+        return {"h": h_0 + sign * rate * t} | minutes
+
+    return wrong
+
+
+for _sign in (-1, 1):
+    left_alone.mistake("What the pump delivers was drawn already before. By how much do the two flows differ now?")(
+        _without_the_old_outflow(_sign)
+    )
 
 
 @left_alone.mistake(
@@ -1317,6 +1332,19 @@ def _(h_1, h_2, zeta, Kp, per_percent):
 @new_level.mistake("That is control signal for one metre of error. The controller sees percent of the range.")
 def _(reach, Kp):
     return {"Kp": 100 * Kp / reach}
+
+
+def _error_as_a_part_of(whole):
+    def wrong(h_1, h_2, reach, Kp):
+        return {"Kp": Kp * {"old": h_1, "new": h_2, "metre": 1}[whole] / reach}
+
+    return wrong
+
+
+for _whole in ("old", "new", "metre"):
+    new_level.mistake("The controller sees percent of the measurement range. Of what are your percent of the error?")(
+        _error_as_a_part_of(_whole)
+    )
 
 
 @new_level.mistake("That is the jump of the control signal in percent. By how many percent has the error jumped?")

@@ -101,6 +101,11 @@ def _apart(value, *others):
     return all(abs(value - other) > abs(other) / 30 for other in others)
 
 
+@two_meters.mistake("That came out before anything flowed. When the flow stops, does an integrator go back?")
+def _(K, y_0):
+    return {"y_A": y_0, "y_B": K * y_0}
+
+
 @two_meters.mistake("There is a gain in the meter, too. What does it multiply?")
 def _(K, y_0, a, t_1, t_2):
     volume = a * (t_2 - t_1)

@@ -394,7 +394,7 @@ def _(V, q, k, c_in):
     return found | ({"c": c_s * (1 - sympy.exp(-t / T))} if T > 0 else {})
 
 
-@pond.mistake("That is the time constant of the bacteria alone. What else carries waste out of the pond?")
+@pond.mistake("Outflow and bacteria both take waste out of the pond. Does your $T$ have both, with the same sign?")
 def _(V, q, k, c_in):
     _, share = _decay(V, q, k)
     c = share * c_in * (1 - sympy.exp(-k * t))

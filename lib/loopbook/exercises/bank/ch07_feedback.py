@@ -1165,9 +1165,18 @@ def _(T_f, rate):
     return {"behind": T_f * rate}
 
 
-@gauge.mistake("The 63 % belong to a step. Behind a ramp, a lag stays by a fixed time: by how many seconds?")
-def _(T_f, rate):
-    return {"behind": 4 * T_f * rate * (1 - math.exp(-1))}
+def _behind_by(share):
+    def wrong(T_f, rate):
+        return {"behind": 4 * T_f * rate * share}
+
+    return wrong
+
+
+# 63 % of the way, and a time constant read halfway: the values are close, and the sentence holds for both
+for _share in (1 - math.exp(-1), math.log(2)):
+    gauge.mistake(
+        "That is too short a time behind the ramp: is the time constant too short, or is this a share of it?"
+    )(_behind_by(_share))
 
 
 @gauge.mistake("Nine tenths of the way are behind it at that moment. Which share belongs to one $T_f$?")

@@ -109,7 +109,13 @@ def _(T_SP):
     return {"T_without": T_SP}
 
 
-@wash_water.mistake("This is how much more hot water is needed. How large is the whole hot flow?")
+@wash_water.mistake("The cold flow rises by {more}, from {before}. How large is it now?")
+def _(T_SP, T_c, T_h, before, more):
+    hot = before * (T_SP - T_c) / (T_h - T_SP)
+    return {"T_without": (hot * T_h + more * T_c) / (hot + more)}
+
+
+@wash_water.mistake("That is the hot water for {more} of cold water. How large is the whole cold flow now?")
 def _(T_SP, T_c, T_h, before, more):
     return {"w_new": _hot_flows(T_SP, T_c, T_h, before, more)[3]}
 

@@ -237,6 +237,20 @@ def _(rule, band, P_u):
     return {"pid": _by_cycle(rule, 100 / band, P_u / 2)}
 
 
+def _with_miscounted_periods(share):
+    def wrong(rule, band, P_u):
+        return {"pid": _by_cycle(rule, 100 / band, share * P_u)}
+
+    return wrong
+
+
+# the whole picture over four or five periods, and the way between the outer peaks over their number
+for _share in (Rational(9, 8), Rational(9, 10), Rational(4, 5)):
+    panel.mistake("The gain is right. How far apart are the first and the last peak, and how many periods is that?")(
+        _with_miscounted_periods(_share)
+    )
+
+
 @panel.mistake("That is the ultimate gain itself: at it the loop oscillates. Which share of it does the rule take?")
 def _(rule, band, P_u):
     return {"pid": PID(100 / band, _by_cycle(rule, 1, P_u).Ti)}
@@ -479,7 +493,19 @@ def relay_with_hysteresis(
 
 @relay_with_hysteresis.mistake("That is the oscillation without hysteresis. The relay switches later now.")
 def _():
-    return {"a": _K * _d * _theta, "P": 4 * _theta, "Kcu": 4 / (pi * _K * _theta), "share": 800 / pi**2}
+    return {"a": _K * _d * _theta, "P": 4 * _theta, "Kcu": 4 / (pi * _K * _theta)}
+
+
+def _share_of_two_experiments(q):
+    """The estimate with hysteresis as a share [%] of the one without."""
+    return 100 / (1 + q / 100)
+
+
+# The true gain with the wrong estimate, and the wrong gain: the numbers may be close, and the sentence holds for both.
+for _share in (lambda: {"share": 800 / pi**2}, lambda q: {"share": _share_of_two_experiments(q)}):
+    relay_with_hysteresis.mistake(
+        "The share compares the estimate with hysteresis and the true ultimate gain. Which two have you compared?"
+    )(_share)
 
 
 @relay_with_hysteresis.mistake("From switch to switch is half a period. A period has two switches.")
@@ -536,7 +562,8 @@ def _(q):
 @relay_with_hysteresis.mistake("By so much the estimate is off. How many percent of the true gain is it?")
 def _(q):
     wrong = abs(100 - 800 / pi**2 / (1 + q / 100))
-    return {"share": wrong} if abs(wrong - 50) > 3 else {}
+    is_told = abs(wrong - 50) > 3 and abs(wrong - _share_of_two_experiments(q)) > 2
+    return {"share": wrong} if is_told else {}
 
 
 relay_with_hysteresis.hints(
@@ -802,8 +829,19 @@ def _(T, tau, n, zeta):
 
 
 @factor_for_a_damping.mistake("Here the loop need not be as fast as the dead time: look at $T_C$.")
-def _(K, T, tau, n):
-    return {"Kp": T / (K * 2 * tau)} if n != 2 else {}
+def _(K, T, tau, n, zeta):
+    if n == 2:  # the same as without the dead time, see below
+        return {}
+    right, wrong = Min(T, 4 * zeta**2 * (1 + n) * tau), Min(T, 8 * zeta**2 * tau)
+    return {"Kp": T / (K * 2 * tau)} | ({"Ti": wrong} if abs(wrong / right - 1) > Rational(1, 20) else {})
+
+
+@factor_for_a_damping.mistake("A factor of 1.44 belongs to another damping. Which one is asked here?")
+def _(T, tau, n, zeta):
+    if abs(zeta - Rational(6, 10)) < Rational(4, 100):
+        return {}
+    right, wrong = Min(T, 4 * zeta**2 * (1 + n) * tau), Min(T, Rational(144, 100) * (1 + n) * tau)
+    return {"k_1": 1.44} | ({"Ti": wrong} if wrong < T and abs(wrong / right - 1) > Rational(1, 20) else {})
 
 
 @factor_for_a_damping.mistake("Compare the coefficients once more: the damping is half of the root of the factor.")
@@ -811,7 +849,7 @@ def _(zeta):
     return {"k_1": zeta**2}
 
 
-@factor_for_a_damping.mistake("In the gain the dead time is added to $T_C$.")
+@factor_for_a_damping.mistake("In the gain stands $T_C$ with one dead time more, and $T_C$ is {n} times the dead time.")
 def _(K, T, tau, n):
     return {"Kp": T / (K * n * tau)}
 
@@ -827,7 +865,9 @@ def _(T, tau, n, zeta):
     return {"Ti": wrong} if abs(wrong / Min(T, 4 * zeta**2 * wrong) - 1) > Rational(1, 20) else {}
 
 
-@factor_for_a_damping.mistake("The factor multiplies $T_C$ and the dead time together.")
+@factor_for_a_damping.mistake(
+    "The factor multiplies $T_C$ and one dead time more, and $T_C$ is {n} times the dead time."
+)
 def _(T, tau, n, zeta):
     right, wrong = Min(T, 4 * zeta**2 * (1 + n) * tau), 4 * zeta**2 * n * tau
     return {"Ti": wrong} if abs(wrong / right - 1) > Rational(1, 20) else {}

@@ -423,6 +423,17 @@ def _(K, T, delay, Kc, Ti):
     return {"predictor": _predictor(K, T, Kc, Ti, 1) * first_order(K, T, delay)}
 
 
+@one_block.mistake("The gain of a PI controller multiplies its integral term as well. What does yours have there?")
+def _(K, T, delay, Kc, Ti):
+    if abs(Kc - 1) < 0.1:
+        return {}
+    parallel = Kc + 1 / (Ti * s)
+    predictor = parallel / (1 + parallel * K / (T * s + 1) * (1 - exp(-delay * s)))
+    wrong = np.roots([float(T * Ti), float((1 + K * Kc) * Ti), float(K)])
+    # with a gain near one the two predictors are nearly the same
+    return {"poles": [complex(p) for p in wrong]} | ({"predictor": predictor} if abs(Kc - 1) >= 0.5 else {})
+
+
 @one_block.mistake("The gain multiplies the integral term as well: look at the last term of the polynomial.")
 def _(K, T, Kc, Ti):
     wrong = np.roots([float(T * Ti), float((1 + K * Kc) * Ti), 1.0])
@@ -918,8 +929,8 @@ def _(delay, model):
 
 
 @surprise.mistake(
-    "If the model expects a response that does not come, the controller thinks that a load pushes the other way, and "
-    "acts more. Does the valve first open or close?"
+    "Which of the two dead times is the longer one, the model's or the process's? Where the model expects a response "
+    "that does not come, the controller acts more: does the valve first open or close?"
 )
 def _(delay, model):
     return {"model": "too long" if model < delay else "too short"}

@@ -513,6 +513,11 @@ for _which, _sentence in enumerate(
     four_points.mistake(_sentence)(_without(_which))
 
 
+@four_points.mistake("That is how far the phase of the loop lags. The margin is what the lag leaves of half a turn.")
+def _(K, T, delay, Kc, Ti):
+    return {"phase_margin": 180 - _phase_margin(K, T, delay, Kc, Ti)}
+
+
 @four_points.mistake("That is the ISE after a step of the load.")
 def _(K, T, delay, Kc, Ti):
     settings_ = K, T, delay, Kc, Ti
