@@ -1,7 +1,5 @@
 """Charts as readers write them: read in many forms, run on the plant, and told what happens."""
 
-import time
-
 import pytest
 
 from loopbook.exercises import bank
@@ -9,7 +7,6 @@ from loopbook.exercises.charts.notation import read_chart
 from loopbook.exercises.charts.running import SCAN
 from loopbook.exercises.charts.signals import Signals
 from loopbook.exercises.judging import MISTAKE, RIGHT, UNJUDGED, WRONG, judge
-from loopbook.exercises.kinds import SequentialChart
 from loopbook.exercises.reading import Unreadable
 from loopbook.plants import BatchTank
 from loopbook.sequence import Chart, Transition
@@ -282,21 +279,6 @@ def test_a_chart_that_fails_as_a_mistake_does_has_its_sentence_whatever_its_name
     found = judge("chart", kind, given, mistakes)
     assert found.status == MISTAKE
     assert found.says.startswith("The heater comes on in the nearly empty tank")
-
-
-CHARTS = [one for one in bank.exercises("12").values() if isinstance(one.question().key.get("chart"), SequentialChart)]
-
-
-@pytest.mark.parametrize("exercise", CHARTS, ids=str)
-def test_responses_are_quick(exercise):
-    question = exercise.question("Ada")
-    kind = question.key["chart"]
-    kind.picture(kind.key).png()  # which imports what draws
-    for chart in (kind.key, *(wrong for _, wrong in question.mistakes["chart"])):
-        start = time.process_time()
-        question.check(chart=chart)
-        assert kind.picture(kind.read(chart)[0]).png()
-        assert time.process_time() - start < 1
 
 
 def test_the_picture_shows_the_run_and_the_chart(batch):

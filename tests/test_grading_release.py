@@ -49,9 +49,16 @@ def test_cells_are_short(tuning):
         for cell in code(notebook(Assignment.of(text, "chapter"), *students("Ada"))):
             lines = cell.split("\n")
             assert max(map(len, lines)) <= 88
-            assert len(lines) <= 12
-            ast.parse(cell)
-            _says_nothing(cell)
+            if not _is_data(cell):
+                assert len(lines) <= 12
+                _says_nothing(cell)
+
+
+def _is_data(cell):
+    """Whether a cell does nothing but hand out what an exercise measured."""
+    return all(
+        isinstance(line, ast.Assign) and isinstance(ast.literal_eval(line.value), list) for line in ast.parse(cell).body
+    )
 
 
 def _says_nothing(cell):

@@ -518,11 +518,11 @@ def test_complaints_are_in_the_summary():
 
 
 def test_what_was_not_judged_is_in_the_summary():
-    unreadable = {"2": {"action": "rev"}, "1": {"H": "K | $x$"}}
+    unreadable = {"2": {"action": "either"}, "1": {"H": "K | $x$"}}
     results = [result_of(BOB, unreadable), RIGHT_ALL]
     assert [one[:4] for one in Findings(CLASS, results).unjudged] == [
         ("1", "H", "s1002", "K | $x$"),
-        ("2", "action", "s1002", "rev"),
+        ("2", "action", "s1002", "either"),
     ]
     assert "## Not judged" not in summary_markdown(TITLE, CLASS, [RIGHT_ALL])
     for text in (summary_html(TITLE, CLASS, results), summary_markdown(TITLE, CLASS, results)):
