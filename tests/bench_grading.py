@@ -90,7 +90,7 @@ def stages(course):
             start = perf_counter()
             exercises = judge.judge(student.id, outcome.answers)
             judged.append(perf_counter() - start)
-            if sum(one["earned"] for one in exercises) != course.assignment.points:
+            if sum(one.earned for one in exercises) != course.assignment.points:
                 raise SystemExit(f"{student.id} has not all points: {exercises}")
     return {"jail, start": started, "judge, start": judge_started, "in the jail": run, "before the judge": judged}
 

@@ -18,10 +18,11 @@ from loopbook.__main__ import app
 from loopbook.grading import GradingError, NoJail, jail
 from loopbook.grading.assignment import load
 from loopbook.grading.cluster import connected
+from loopbook.grading.events import Outcome
 from loopbook.grading.grade import grade, here
 from loopbook.grading.judge import Judge
 from loopbook.grading.release import release
-from loopbook.grading.results import Results
+from loopbook.grading.results import Results, result
 from loopbook.grading.roster import read_roster
 from needs import needs_jail
 
@@ -131,7 +132,7 @@ class TestAClass:
     def test_the_key_is_for_the_instructor(self, course, graded):
         kind = course.assignment.question("s1", "1").key["p"]
         kept = json.loads((graded[1] / "results" / "s1.json").read_text(encoding="utf-8"))
-        assert kept["exercises"][0]["verdicts"][1]["key"] == kind.solution
+        assert kept["exercises"][0]["answers"][1]["key"] == kind.solution
         shown = files(graded[1] / "feedback" / "s1")
         assert not any(f"{kind.key:.4g}".encode() in content for content in shown.values())
 
@@ -219,11 +220,12 @@ def test_what_is_written_does_not_lie_among_the_submissions(course, inside):
 
 def test_another_assignment_has_another_folder(course):
     other = dataclasses.replace(course.assignment, name="other")
-    results = Results(course.folder / "taken" / "results")
-    results.keep({"student": "s1", "assignment": "lag"})
+    results = Results(course.folder / "taken" / "results", course.assignment.secret)
+    lag = result("lag", "s1", "s1.ipynb", "", True, Outcome(), ())
+    results.keep(lag)
     with pytest.raises(GradingError, match="holds results of the assignment 'lag': expected a folder of its own for"):
         grade(other, course.students, course.submissions, course.folder / "taken", jailed=False)
-    assert results.of("s1") == {"student": "s1", "assignment": "lag"}
+    assert results.of("s1") == lag
 
 
 def test_a_system_without_locks_is_refused(course, monkeypatch):
@@ -286,10 +288,10 @@ def traps():
 '''
     with Judge("traps", source) as judge:
         (one,) = judge.judge("s1", {"1": {"a": 5, "b": 2, "c": 5}})
-        assert [verdict["status"] for verdict in one["verdicts"]] == ["not judged", "right", "not judged"]
-        assert one["earned"] == 1
+        assert [answer.status for answer in one.answers] == ["not judged", "right", "not judged"]
+        assert one.earned == 1
         (one,) = judge.judge("s1", {"1": {"a": 1, "b": {"unreadable": "this is a $lambda$"}}})
-        assert [verdict["status"] for verdict in one["verdicts"]] == ["right", "not judged", "open"]
+        assert [answer.status for answer in one.answers] == ["right", "not judged", "open"]
 
 
 def test_an_assignment_that_fails_says_where():

@@ -126,7 +126,7 @@ class Siege:
         grade(
             self.assignment, students or self.students, submissions, self.folder / to, place=place, limits=LIMITS
         )  # fmt: skip
-        return Results(self.folder / to / "results")
+        return Results(self.folder / to / "results", self.assignment.secret)
 
 
 @pytest.fixture(scope="module")
@@ -160,7 +160,7 @@ def test_it_has_a_definite_verdict_and_gains_nothing(siege, attack):
 def test_everybody_else_is_graded_as_if_nothing_had_happened(siege):
     for student in HONEST:
         result = siege.results.of(student)
-        assert (result["status"], result["earned"], result["looks"]) == ("complete", 3, [])
+        assert (result.status, result.earned, result.looks) == ("complete", 3, ())
         assert result == siege.undisturbed.of(student)
 
 
@@ -209,4 +209,4 @@ def test_an_archive_harms_nobody(siege, place, attack, tmp_path):
         assert str(path) in refused
     else:
         assert attack.complaints(results.of("s0001"), siege.target("s0001")) == []
-        assert results.of("s1002")["earned"] == 0
+        assert results.of("s1002").earned == 0

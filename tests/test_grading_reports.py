@@ -7,6 +7,7 @@ import json
 import random
 import re
 import time
+from dataclasses import replace
 
 import pytest
 from typer.testing import CliRunner
@@ -19,6 +20,7 @@ from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
 from loopbook.exercises.response import MARKS
 from loopbook.expressions import s
 from loopbook.grading import GradingError, reports
+from loopbook.grading.marking import Marked, MarkedExercise
 from loopbook.grading.reports import page
 from loopbook.grading.reports.equal_answers import equal_answers, significant_digits
 from loopbook.grading.reports.findings import Findings
@@ -28,6 +30,7 @@ from loopbook.grading.reports.outputs.grades import grades_csv
 from loopbook.grading.reports.outputs.gradescope import results_json
 from loopbook.grading.reports.outputs.summary import summary_html, summary_markdown
 from loopbook.grading.reports.wording import NO_JAIL, answer_in_words, in_markdown, sentence_in_markdown
+from loopbook.grading.results import CellError, JudgedAnswer, JudgedExercise, Result
 from loopbook.grading.roster import Student
 
 TITLE = "Tuning the air heater"
@@ -72,37 +75,24 @@ def key_in_words(kind):
 
 
 def result_of(student, given, course=(gain, action), **more):
-    """A result, made by the exercises themselves: their judging of the answers of a student."""
+    """A marked result, made by the exercises themselves: their judging of the answers of a student."""
     done = []
     for one in course:
         question = one.question(student.id)
         mine = given(question) if callable(given) else given.get(one.number, {})
-        response = question.check(**mine)
-        verdicts = [
-            {
-                "name": v.name,
-                "status": v.status,
-                "says": v.says,
-                "answer": mine.get(v.name),
-                "key": key_in_words(question.key[v.name]),
-            }
-            for v in response.verdicts
-        ]
-        part = {"number": one.number, "title": one.title, "points": one.points}
-        done.append(part | {"earned": response.earned, "verdicts": verdicts})
-    return {
-        "student": student.id,
-        "file": f"{student.id}/heater.ipynb",
-        "jailed": True,
-        "fingerprint": "0" * 64,
-        "status": "complete",
-        "says": "",
-        "errors": [],
-        "looks": [],
-        "exercises": done,
-        "points": sum(part["points"] for part in done),
-        "earned": sum(part["earned"] for part in done),
-    } | more
+        answers_ = tuple(
+            JudgedAnswer(v.name, v.status, v.says, mine.get(v.name), key_in_words(question.key[v.name]))
+            for v in question.check(**mine).verdicts
+        )
+        done.append(JudgedExercise(one.number, one.title, one.points, question.statement, (), answers_))
+    file = f"{student.id}/heater.ipynb"
+    usual = Result("heater", student.id, file, True, "0" * 64, "complete", "", (), (), tuple(done))
+    return Marked.of(replace(usual, **more))
+
+
+def changed(mark, **fields):
+    """The same with other fields of its result."""
+    return Marked.of(replace(mark.result, **fields))
 
 
 def right(question):
@@ -121,15 +111,15 @@ STOPPED = result_of(
     {"1": {"K": HOSTILE.replace("\ud800", ""), "T": 1.234}},
     status="stopped",
     says="stopped in cell 4: it took longer than 60 s",
-    errors=[{"cell": 3, "says": f"NameError: {HOSTILE}"}],
-    looks=["wrote to the answers' stream"],
+    errors=(CellError(3, f"NameError: {HOSTILE}"),),
+    looks=("wrote to the answers' stream",),
 )
 MISSING = result_of(ZOE, {}, status="missing", file="")
 RESULTS = [RIGHT_ALL, NAMED, STOPPED, MISSING]
 
 
 def test_the_example_has_every_kind_of_verdict():
-    statuses = {v["status"] for r in RESULTS for e in r["exercises"] for v in e["verdicts"]}
+    statuses = {v.status for mark in RESULTS for e in mark.result.exercises for v in e.answers}
     assert statuses == {RIGHT, MISTAKE, WRONG, UNJUDGED, OPEN}
 
 
@@ -164,14 +154,14 @@ def test_a_roster_without_identifications_of_an_lms_is_known_by_its_own():
 
 @pytest.mark.parametrize("name", ["=1+1", "+1", "-1", "@SUM(A1)", " =1", "\t=1", "\r\n=1", "Doe;=1", "＝1", "Doe; -1"])
 def test_no_name_is_a_formula(name):
-    cell = rows(grades_csv(TITLE, [Student("s1", name)], [RIGHT_ALL | {"student": "s1"}]))[1][0]
+    cell = rows(grades_csv(TITLE, [Student("s1", name)], [changed(RIGHT_ALL, student="s1")]))[1][0]
     assert all(not part.strip().startswith(("=", "+", "-", "@", "＝")) for part in cell.split(";"))
     assert "\n" not in cell
 
 
 @pytest.mark.parametrize("name", ["Anne-Marie O'Hara", "Doe, Jane", 'Jane "J" Doe', "李 小龙", "Ünal"])
 def test_other_names_stay_as_they_are(name):
-    text = grades_csv(TITLE, [Student("s1", name)], [RIGHT_ALL | {"student": "s1"}])
+    text = grades_csv(TITLE, [Student("s1", name)], [changed(RIGHT_ALL, student="s1")])
     assert rows(text)[1][0] == name
 
 
@@ -211,7 +201,7 @@ class Checker(html.parser.HTMLParser):
 
 def pages(results):
     by_id = {student.id: student for student in CLASS}
-    found = [feedback_html(TITLE, by_id[result["student"]], result) for result in results]
+    found = [feedback_html(TITLE, by_id[mark.result.student], mark) for mark in results]
     return [*found, summary_html(TITLE, CLASS, results, ["two notebooks: a.ipynb and <b>.ipynb; keep one"])]
 
 
@@ -277,16 +267,18 @@ def test_an_output_is_one_file_or_one_for_each_student(one):
 def test_keys_are_shown_only_where_they_are_revealed(one, reveal):
     """And to students alone: who grades the class has them."""
     result = result_of(ADA, {"1": {"K": 1.5}})
-    for exercise_ in result["exercises"]:
-        for verdict in exercise_["verdicts"]:
-            verdict["key"] = f"KEY{verdict['name']}"
+    exercises_ = tuple(
+        replace(one, answers=tuple(replace(answer, key=f"KEY{answer.name}") for answer in one.answers))
+        for one in result.result.exercises
+    )
+    result = changed(result, exercises=exercises_)
     (text,) = texts(one, [result], reveal=reveal)
     assert text.count("KEY") == (4 if reveal and one.is_for_each_student else 0)
 
 
 @each_output
 def test_without_a_jail_an_output_says_so(one):
-    assert all("without a jail" in text for text in texts(one, [result | {"jailed": False} for result in RESULTS]))
+    assert all("without a jail" in text for text in texts(one, [changed(mark, jailed=False) for mark in RESULTS]))
     assert not any("without a jail" in text for text in texts(one))
 
 
@@ -307,15 +299,15 @@ def test_the_command_lists_every_output():
 @pytest.mark.parametrize(
     ("file", "what", "makes", "says"),
     [
-        ("grades.csv", "the grades", lambda results: "", "two outputs have the file 'grades.csv'"),
-        ("", "the grades", lambda results: "", "an output has the file ''"),
-        ("/grades.csv", "the grades", lambda results: "", "expected a place in the folder of the grades"),
-        ("a/../../grades.csv", "the grades", lambda results: "", "expected a place in the folder of the grades"),
-        ("new.csv", "", lambda results: "", "it is not said what it is"),
-        ("new.csv", None, lambda results: "", "it is not said what it is"),
-        ("new.csv", "the grades", lambda course: "", "asks for 'course': expected some of title, students, results"),
-        ("new.csv", "the grades", lambda student: "", "asks for 'student': expected some of title, students, results"),
-        ("{student}.csv", "the grade", lambda results: "", "asks for 'results': expected some of title, student, res"),
+        ("grades.csv", "the grades", lambda marks: "", "two outputs have the file 'grades.csv'"),
+        ("", "the grades", lambda marks: "", "an output has the file ''"),
+        ("/grades.csv", "the grades", lambda marks: "", "expected a place in the folder of the grades"),
+        ("a/../../grades.csv", "the grades", lambda marks: "", "expected a place in the folder of the grades"),
+        ("new.csv", "", lambda marks: "", "it is not said what it is"),
+        ("new.csv", None, lambda marks: "", "it is not said what it is"),
+        ("new.csv", "the grades", lambda course: "", "asks for 'course': expected some of title, students, marks"),
+        ("new.csv", "the grades", lambda student: "", "asks for 'student': expected some of title, students, marks"),
+        ("{student}.csv", "the grade", lambda marks: "", "asks for 'marks': expected some of title, student, mark"),
     ],
 )
 def test_what_an_output_lacks_is_said(file, what, makes, says):
@@ -332,11 +324,11 @@ def test_the_output_that_contributors_are_shown_is_one(monkeypatch):
 
 def test_what_is_no_text_is_refused():
     with pytest.raises(GradingError, match=r"the output 'new\.csv' returns None: expected a text"):
-        list(reports.Output("new.csv", "the grades", lambda results: None).files(TITLE, CLASS, RESULTS))
+        list(reports.Output("new.csv", "the grades", lambda marks: None).files(TITLE, CLASS, RESULTS))
 
 
 def test_a_module_of_the_folder_that_registers_nothing_is_named(tmp_path, monkeypatch):
-    (tmp_path / "lectern_of_nobody.py").write_text("def grades(results):\n    return ''\n")
+    (tmp_path / "lectern_of_nobody.py").write_text("def grades(marks):\n    return ''\n")
     monkeypatch.setattr(reports.outputs, "__path__", [*reports.outputs.__path__, str(tmp_path)])
     with pytest.raises(GradingError, match="lectern_of_nobody registers no output: expected a function with @output"):
         registered()
@@ -574,10 +566,16 @@ def test_a_mistake_is_one_whatever_the_numbers_in_its_sentence():
     assert Findings(CLASS, hours[:1]).mistakes[0][2].startswith("The 40\N{NO-BREAK SPACE}s are")
 
 
+def summing(points, earned):
+    """A marked result of so many points of those possible."""
+    exercise_ = JudgedExercise("1", "Gain", points, "", (), (JudgedAnswer("K", WRONG, "", 1, "2"),))
+    return Marked(replace(RIGHT_ALL.result, exercises=(exercise_,)), (MarkedExercise(exercise_, earned),))
+
+
 @pytest.mark.parametrize("points", [0.5, 1, 3, 5, 10, 24, 37, 100, 250])
 def test_every_sum_has_its_place_in_the_distribution(points):
     earned = [points * k / 30 for k in range(31)]
-    steps = Findings(CLASS, [RIGHT_ALL | {"points": points, "earned": sum_} for sum_ in earned]).steps
+    steps = Findings(CLASS, [summing(points, sum_) for sum_ in earned]).steps
     assert sum(count for _, _, count in steps) == 31
     assert steps[0][0] == 0
     assert steps[-1][1] == points
@@ -592,7 +590,7 @@ def test_the_distribution_has_the_colours_of_its_page():
 
 
 def test_a_sum_of_thirds_is_not_below_its_step():
-    steps = Findings(CLASS, [RIGHT_ALL | {"earned": 1 / 3 + 1 / 3 + 1 / 3 - 1e-16}]).steps
+    steps = Findings(CLASS, [summing(5, 1 / 3 + 1 / 3 + 1 / 3 - 1e-16)]).steps
     assert [count for _, _, count in steps if count] == [1]
     assert next(lower for lower, _, count in steps if count) == 1
 
@@ -604,22 +602,26 @@ def given(student, K, H="", way=""):
     return result_of(student, {"1": {"K": K, "H": H or None}, "2": {"action": way or None}})
 
 
+def equal(marks):
+    return equal_answers([mark.result for mark in marks])
+
+
 def test_an_answer_that_is_right_for_another_student_is_reported():
     copied = 2 * float(gain.question(ADA.id).values["K"])
-    (found,) = equal_answers([given(ADA, copied), given(BOB, f"{copied} K/%"), given(BOB, copied), given(ZOE, 1.0)])
+    (found,) = equal([given(ADA, copied), given(BOB, f"{copied} K/%"), given(BOB, copied), given(ZOE, 1.0)])
     assert (found.number, found.name, found.right, found.others) == ("1", "K", (ADA.id,), (BOB.id,))
 
 
 def test_an_equal_wrong_expression_is_reported_in_any_spacing():
-    (found,) = equal_answers([given(ADA, None, "3.217/(s + 1)"), given(BOB, None, "3.217 / (s+1)")])
+    (found,) = equal([given(ADA, None, "3.217/(s + 1)"), given(BOB, None, "3.217 / (s+1)")])
     assert (found.name, found.right, found.others) == ("H", (), (ADA.id, BOB.id))
 
 
 def test_equal_answers_that_mean_little_are_not_reported():
-    assert equal_answers([given(ADA, 100), given(BOB, 100)]) == []  # few digits
-    assert equal_answers([given(ADA, None, way="direct"), given(BOB, None, way="direct")]) == []  # words
-    assert equal_answers([given(ADA, 123.4), given(ADA, 123.4)]) == []  # the same numbers
-    assert equal_answers([given(ADA, None), given(BOB, None)]) == []  # nothing
+    assert equal([given(ADA, 100), given(BOB, 100)]) == []  # few digits
+    assert equal([given(ADA, None, way="direct"), given(BOB, None, way="direct")]) == []  # words
+    assert equal([given(ADA, 123.4), given(ADA, 123.4)]) == []  # the same numbers
+    assert equal([given(ADA, None), given(BOB, None)]) == []  # nothing
 
 
 def test_reactions_to_equal_answers_are_in_the_summary():
@@ -700,14 +702,14 @@ def test_results_of_others_are_left_out_and_nothing_is_deleted(tmp_path):
     kept = tmp_path / "feedback" / "s0" / "feedback.md"
     kept.parent.mkdir(parents=True)
     kept.write_text("mine")
-    reports.write_all(tmp_path, TITLE, [ADA], [*RESULTS, RIGHT_ALL | {"student": "../../x"}])
+    reports.write_all(tmp_path, TITLE, [ADA], [*RESULTS, changed(RIGHT_ALL, student="../../x")])
     assert sorted(path.name for path in (tmp_path / "feedback").iterdir()) == ["s0", "s1001"]
     assert kept.read_text() == "mine"
 
 
 def test_a_large_class_takes_a_moment(tmp_path):
     students = [Student(f"s{k:04}", f"Student {k}") for k in range(200)]
-    results = [RESULTS[k % 3] | {"student": student.id} for k, student in enumerate(students)]
+    results = [changed(RESULTS[k % 3], student=student.id) for k, student in enumerate(students)]
     start = time.process_time()
     reports.write_all(tmp_path, TITLE, students, results)
     assert time.process_time() - start < 2

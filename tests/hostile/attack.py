@@ -6,7 +6,7 @@ import os
 import re
 import string
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 #: What a test plants where no submission may look; the attacks hunt for it and put what they find into an answer.
@@ -154,16 +154,14 @@ class Attack:
             target: what the attack was given.
         """
         found = []
-        if result["status"] not in self.expects.statuses:
-            found.append(f"the status is {result['status']!r} ({result['says']}), not {sorted(self.expects.statuses)}")
-        for one in result["exercises"]:
-            if one["number"] in self.expects.counts and one["earned"] != one["points"]:
-                found.append(
-                    f"exercise {one['number']} brings {one['earned']} of {one['points']}: its answers are lost"
-                )
-            if one["number"] not in self.expects.counts | self.expects.may and one["earned"]:
-                found.append(f"exercise {one['number']} brings {one['earned']} that nobody has earned")
-        found += leaks(json.dumps(result, ensure_ascii=False))
+        if result.status not in self.expects.statuses:
+            found.append(f"the status is {result.status!r} ({result.says}), not {sorted(self.expects.statuses)}")
+        for one in result.exercises:
+            if one.number in self.expects.counts and one.earned != one.points:
+                found.append(f"exercise {one.number} brings {one.earned} of {one.points}: its answers are lost")
+            if one.number not in self.expects.counts | self.expects.may and one.earned:
+                found.append(f"exercise {one.number} brings {one.earned} that nobody has earned")
+        found += leaks(json.dumps(asdict(result), ensure_ascii=False))
         return [f"{self.name}: {sentence}" for sentence in found]
 
 

@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-def write(path: Path, text: str) -> bool:
-    """Make a text the content of a file, in one step; the folders on the way are made.
+def write(path: Path, content: str | bytes) -> bool:
+    """Make a text, or bytes, the content of a file, in one step; the folders on the way are made.
 
     Returns whether that changed the file: the same bytes are not written again. Raises GradingError where the file
     cannot be written.
@@ -24,7 +24,7 @@ def write(path: Path, text: str) -> bool:
     ...     write(path, "a,b"), write(path, "a,b")
     (True, False)
     """
-    content = text.encode()
+    content = content.encode() if isinstance(content, str) else content
     partial = path.with_name(f".{path.name}.partial")
     try:
         if path.is_file() and path.read_bytes() == content:

@@ -13,14 +13,15 @@ from concurrent.futures import FIRST_COMPLETED, Executor, ThreadPoolExecutor, wa
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from loopbook.grading import GradingError, NoJail
 from loopbook.grading.events import Outcome
 from loopbook.grading.jail import USUAL, Jail, Limits, demand_hidden
 from loopbook.grading.judge import Judge
+from loopbook.grading.marking import Marked
 from loopbook.grading.reports import registered, write_all
-from loopbook.grading.results import Results, fingerprint, result
+from loopbook.grading.results import Result, Results, fingerprint, result
 from loopbook.grading.submissions import collect
 
 if TYPE_CHECKING:
@@ -45,6 +46,7 @@ class Task:
     jailed: bool
     limits: Limits
     fingerprint: str
+    numbers: dict[str, dict[str, str]]
 
 
 class Desk:
@@ -56,13 +58,13 @@ class Desk:
         self.jailed, self.limits = task.jailed, task.limits
         self.judge, self.jail = Judge(task.name, task.source, task.path), None
 
-    def graded(self, task: Task) -> dict[str, Any]:
+    def graded(self, task: Task) -> Result:
         """Return the result of a task. Raises GradingError where it has none, through no fault of the student."""
         outcome = Outcome(refused=task.problem)
         if task.label and not task.problem:
             self.jail = self.jail or Jail(self.jailed, self.limits)
             outcome = self.jail.run(task.content)
-        exercises = self.judge.judge(task.student, outcome.answers)
+        exercises = self.judge.judge(task.student, outcome.answers, task.numbers)
         return result(task.name, task.student, task.label, task.fingerprint, task.jailed, outcome, exercises)
 
     def close(self) -> None:
@@ -76,7 +78,7 @@ _desks = threading.local()
 _all_desks = []
 
 
-def graded(task: Task) -> dict[str, Any] | str:
+def graded(task: Task) -> Result | str:
     """Grade a task on this thread's desk; returns the result, or a sentence where there is none."""
     wanted = (task.name, task.source, task.path, task.jailed, task.limits)
     try:
@@ -155,7 +157,8 @@ def grade(
     if jailed:
         demand_hidden(*filter(None, [assignment.path, submissions, folder]))
     collection = collect(submissions, students, assignment.name)
-    results = Results(folder / "results")
+    notes: list[str] = []
+    results = Results(folder / "results", assignment.secret)
     with _alone(folder):
         results.demand_of(assignment.name, [student.id for student in students])
         found = {one.student.id: one for one in collection.submissions}
@@ -177,9 +180,10 @@ def grade(
                 results.keep(outcome)
             follow(len(wanted), done)
         stored = {student.id: one for student in students if (one := results.of(student.id))}
-        write_all(folder, assignment.title, students, stored.values(), collection.complaints, reveal)
+        marks = [Marked.of(one) for one in stored.values()]
+        write_all(folder, assignment.title, students, marks, collection.complaints, notes, reveal)
         others = [student for student in students if student not in wanted and student.id in stored]
-        outdated = [one.id for one in others if stored[one.id]["fingerprint"] != task(one).fingerprint]
+        outdated = [one.id for one in others if stored[one.id].fingerprint != task(one).fingerprint]
         missing = sum(student.id not in found for student in wanted)
     return Summary(graded, kept, missing, tuple(outdated), collection.complaints, tuple(sorted(failures)))
 
@@ -200,10 +204,11 @@ def _task(assignment, student, submission, jailed, limits):
                 content = submission.read()
             except GradingError as why:
                 problem = str(why)
-    mark = fingerprint(assignment, content, label, problem, jailed, limits)
+    numbers: dict[str, dict[str, str]] = {}
+    mark = fingerprint(assignment, numbers, content, label, problem, jailed, limits)
     return Task(
         assignment.name, assignment.source, str(assignment.path or ""), student.id, label, content, problem, jailed,
-        limits, mark,
+        limits, mark, numbers,
     )  # fmt: skip
 
 
@@ -214,7 +219,7 @@ def _outcomes(tasks, results, regrade, place):
         try:
             for task in tasks:
                 stored = None if regrade else results.of(task.student)
-                if stored and stored["fingerprint"] == task.fingerprint:
+                if stored and stored.fingerprint == task.fingerprint:
                     yield task.student, None
                     continue
                 running[executor.submit(graded, task)] = task.student

@@ -12,12 +12,15 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable, Collection, Mapping
+from dataclasses import asdict
 from multiprocessing.connection import wait
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from loopbook.exercises.judging import RIGHT, SECONDS, UNJUDGED, earned
+from loopbook.exercises.judging import SECONDS, UNJUDGED
+from loopbook.exercises.parameters import written
 from loopbook.grading import GradingError
+from loopbook.grading.results import JudgedAnswer, JudgedExercise
 
 if TYPE_CHECKING:
     from loopbook.exercises.question import Question
@@ -65,28 +68,35 @@ class Judge:
         line, self._left = self._left.split(b"\n", 1)
         return json.loads(line)
 
-    def judge(self, student: str, given: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
-        """Judge answers; returns the part "exercises" of a result.
+    def judge(
+        self,
+        student: str,
+        given: Mapping[str, Mapping[str, Any]],
+        numbers: Mapping[str, Mapping[str, str]] | None = None,
+    ) -> list[JudgedExercise]:
+        """Judge answers; returns a `JudgedExercise` for each exercise.
 
         Arguments:
             student: id.
             given: {exercise: {name: plain data}}.
+            numbers: that were released, {exercise: {parameter: text}}; others are drawn.
         Raises:
             GradingError: where the assignment has no variant for the student.
         """
-        exercises, hopeless = [], []
+        hopeless: list[list[str]] = []
         while True:
             if self.process is None:
                 self._start()
-            self._say({"student": student, "given": given, "hopeless": hopeless})
-            exercises, at = [], None
+            self._say({"student": student, "given": given, "numbers": numbers or {}, "hopeless": hopeless})
+            exercises: list[JudgedExercise] = []
+            at = None
             while reply := self._heard(STARTING if at is None else PATIENCE):
                 if "failed" in reply:
                     raise GradingError(reply["failed"])
                 if "done" in reply:
                     return exercises
                 if "exercise" in reply:
-                    exercises.append(reply["exercise"])
+                    exercises.append(JudgedExercise.of_data(reply["exercise"]))
                 at = reply.get("at")
             self.close()
             if at is None or at in hopeless:
@@ -112,8 +122,8 @@ def judged(
     given: Mapping[str, Any],
     hopeless: Collection[str] = (),
     at: Callable[[str], object] = lambda name: None,
-) -> dict[str, Any]:
-    """Return the result of one exercise, as JSON data.
+) -> JudgedExercise:
+    """Return what becomes of the answers to one exercise.
 
     Arguments:
         question: the student's variant.
@@ -124,7 +134,7 @@ def judged(
     from loopbook.exercises.judging import Verdict, judge
     from loopbook.grading.plain import unreadable
 
-    verdicts = []
+    answers = []
     for name, kind in question.key.items():
         answer = given.get(name)
         at(name)
@@ -134,18 +144,10 @@ def judged(
             verdict = Verdict(name, UNJUDGED, says)
         else:
             verdict = judge(name, kind, answer, question.mistakes[name], question.background.of(name, given))
-        verdicts.append(
-            {"name": name, "status": verdict.status, "says": verdict.says, "answer": answer, "key": kind.solution}
-        )
+        answers.append(JudgedAnswer(name, verdict.status, verdict.says, answer, kind.solution))
     exercise = question.exercise
-    right = sum(verdict["status"] == RIGHT for verdict in verdicts)
-    return {
-        "number": exercise.number,
-        "title": exercise.title,
-        "points": exercise.points,
-        "earned": earned(exercise.points, right, len(verdicts)),
-        "verdicts": verdicts,
-    }
+    numbers = tuple((name, written(value, exercise.parameters[name].unit)) for name, value in question.values.items())
+    return JudgedExercise(exercise.number, exercise.title, exercise.points, question.statement, numbers, tuple(answers))
 
 
 def main() -> None:
@@ -175,7 +177,8 @@ def main() -> None:
                 question = assignment.question(job["student"], number)
                 hopeless = [name for one, name in job["hopeless"] if one == number]
                 given = job["given"].get(number, {})
-                say({"exercise": judged(question, given, hopeless, lambda name, n=number: say({"at": [n, name]}))})
+                found = judged(question, given, hopeless, lambda name, n=number: say({"at": [n, name]}))
+                say({"exercise": asdict(found)})
         except (GradingError, ValueError) as problem:
             say({"failed": f"exercise {number} for student {job['student']}: {problem}"})
         else:

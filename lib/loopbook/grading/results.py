@@ -1,18 +1,20 @@
 """The result of a submission: what the reports are written from, and what a resumed run does not grade again.
 
-Each is a file of its own, which is there whole or not at all. It carries a fingerprint of all that it depends on.
+Each is a file of its own, which is there whole or not at all. It carries a fingerprint of all that it depends on, and a
+seal, by which a file that was changed since is told from one as the grader wrote it.
 """
 
 from __future__ import annotations
 
 import hashlib
+import hmac
 import json
 import re
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, Self
 
-from loopbook.exercises.judging import harmless
+from loopbook.exercises.judging import RIGHT, earned, harmless
 from loopbook.grading import GradingError
 from loopbook.grading.files import write
 
@@ -22,16 +24,153 @@ if TYPE_CHECKING:
     from loopbook.grading.assignment import Assignment
     from loopbook.grading.events import Outcome
     from loopbook.grading.jail import Limits
+    from loopbook.grading.plain import Plain
 
+#: What became of a submission: nothing handed in, nothing that could be run, run in part, run to its end.
+MISSING, NOT_RUN, STOPPED, COMPLETE = "missing", "not run", "stopped", "complete"
 #: An address of memory, in an error's text, differs from run to run.
 ADDRESS = re.compile(r"\b0x[0-9a-fA-F]{6,}\b")
 
 
-def fingerprint(assignment: Assignment, content: bytes, label: str, problem: str, jailed: bool, limits: Limits) -> str:
-    """Return a text that differs where a result might: by the assignment, the submission, the jail, or its limits."""
+@dataclass(frozen=True)
+class JudgedAnswer:
+    """What became of the answer to one asked quantity.
+
+    Attributes:
+        name: of the quantity.
+        status, says: of the `Verdict`.
+        answer: as it came, as plain data.
+        key: the right answer, as a text for people.
+        weight: what it counts among the quantities of its exercise.
+        look: why an instructor should see it; empty where there is no need.
+    """
+
+    name: str
+    status: str
+    says: str
+    answer: Plain
+    key: str
+    weight: float = 1
+    look: str = ""
+
+
+@dataclass(frozen=True)
+class JudgedExercise:
+    """What became of the answers to one exercise.
+
+    Attributes:
+        number, title, points: of the exercise.
+        statement: the question as the student saw it, in Markdown.
+        given: the student's own numbers, pairs of a name and a value with its unit.
+        answers: a `JudgedAnswer` for each asked quantity.
+
+    >>> answers = (JudgedAnswer("K", "right", "right", 2, "2"), JudgedAnswer("T", "wrong", "not right", 3, "4 s"))
+    >>> JudgedExercise("1", "Gain", 4, "", (), answers).earned
+    2.0
+    """
+
+    number: str
+    title: str
+    points: float
+    statement: str
+    given: tuple[tuple[str, str], ...]
+    answers: tuple[JudgedAnswer, ...]
+
+    @property
+    def earned(self) -> float:
+        """The points that its right answers bring."""
+        right = sum(one.weight for one in self.answers if one.status == RIGHT)
+        return earned(self.points, right, sum(one.weight for one in self.answers))
+
+    @classmethod
+    def of_data(cls, data: dict[str, Any]) -> Self:
+        """Return the exercise that JSON data says."""
+        given = tuple((name, value) for name, value in data["given"])
+        return cls(**data | {"given": given, "answers": tuple(JudgedAnswer(**one) for one in data["answers"])})
+
+
+@dataclass(frozen=True)
+class CellError:
+    """An error that ended a cell: its number, counted from one, and a sentence."""
+
+    cell: int
+    says: str
+
+
+@dataclass(frozen=True)
+class Result:
+    """The result of a submission.
+
+    Attributes:
+        assignment, student: its name, and the student's id.
+        file: what was graded, by its name among the submissions; empty where there is nothing.
+        jailed: whether it ran in a jail.
+        fingerprint: of all that it depends on.
+        status, says: "missing", "not run", "stopped" or "complete", and why.
+        errors: of cells.
+        looks: why an instructor should look at the submission, in sentences.
+        exercises: a `JudgedExercise` for each.
+        owner: the student whom the notebook itself names; empty where it names none.
+    """
+
+    assignment: str
+    student: str
+    file: str
+    jailed: bool
+    fingerprint: str
+    status: str
+    says: str
+    errors: tuple[CellError, ...]
+    looks: tuple[str, ...]
+    exercises: tuple[JudgedExercise, ...]
+    owner: str = ""
+
+    @property
+    def points(self) -> float:
+        """The points of all exercises."""
+        return sum(one.points for one in self.exercises)
+
+    @property
+    def earned(self) -> float:
+        """The points that the right answers bring."""
+        return sum(one.earned for one in self.exercises)
+
+    def as_json(self, secret: str) -> str:
+        """Return it as JSON with a seal that this secret makes; `of_json` reads it."""
+        data = json.loads(json.dumps(asdict(self)))  # tuples are lists there
+        return json.dumps(data | {"seal": _seal(data, secret)}, indent=1, sort_keys=True) + "\n"
+
+    @classmethod
+    def of_json(cls, text: str, secret: str) -> Self:
+        """Return the result that a text of `as_json` holds. Raises ValueError for any other text."""
+        data = json.loads(text)
+        if not isinstance(data, dict) or not hmac.compare_digest(str(data.pop("seal", "")), _seal(data, secret)):
+            raise ValueError("its seal is broken")
+        return cls(
+            **data
+            | {
+                "errors": tuple(CellError(**one) for one in data["errors"]),
+                "looks": tuple(data["looks"]),
+                "exercises": tuple(map(JudgedExercise.of_data, data["exercises"])),
+            }
+        )
+
+
+def _seal(data, secret):
+    text = json.dumps(data, sort_keys=True)
+    return hmac.new(secret.encode(), text.encode(), hashlib.sha256).hexdigest()
+
+
+def fingerprint(
+    assignment: Assignment, numbers: object, content: bytes, label: str, problem: str, jailed: bool, limits: Limits
+) -> str:
+    """Return a text that differs where a result might.
+
+    That is by the assignment, the numbers that were released, the submission, the jail, or its limits.
+    """
     amounts = {name: float(amount) for name, amount in asdict(limits).items()}  # 60 s are 60.0 s
-    parts = [assignment.fingerprint, hashlib.sha256(content).hexdigest(), label, problem, jailed, amounts]
-    return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
+    parts = [assignment.fingerprint, numbers, hashlib.sha256(content).hexdigest(), label, problem, jailed, amounts]
+    return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
 
 
 def result(
@@ -41,9 +180,9 @@ def result(
     mark: str,
     jailed: bool,
     outcome: Outcome,
-    exercises: Sequence[Mapping[str, Any]],
-) -> dict[str, Any]:
-    """Return the result of a submission, as JSON data.
+    exercises: Sequence[JudgedExercise],
+) -> Result:
+    """Return the result of a submission.
 
     Arguments:
         assignment: its name.
@@ -53,24 +192,17 @@ def result(
         outcome: `events.Outcome`.
         exercises: as `judge.Judge.judge` returns them.
     """
-    status = "missing" if not label else "not run" if outcome.refused else "stopped" if outcome.stopped else "complete"
-    return {
-        "assignment": assignment,
-        "student": student,
-        "file": label,
-        "jailed": jailed,
-        "fingerprint": mark,
-        "status": status,
-        "says": _same_each_time(outcome.refused or outcome.stopped),
-        "errors": [{"cell": cell, "says": _same_each_time(says)} for cell, says in outcome.errors],
-        "looks": looks(student, outcome, exercises),
-        "exercises": exercises,
-        "points": sum(one["points"] for one in exercises),
-        "earned": sum(one["earned"] for one in exercises),
-    }
+    status = MISSING if not label else NOT_RUN if outcome.refused else STOPPED if outcome.stopped else COMPLETE
+    errors = tuple(CellError(cell, _same_each_time(says)) for cell, says in outcome.errors)
+    says = _same_each_time(outcome.refused or outcome.stopped)
+    found = tuple(looks(student, outcome, exercises))
+    owner = outcome.named[0] if outcome.named else ""
+    return Result(
+        assignment, student, label, jailed, mark, status, says, errors, found, tuple(exercises), harmless(owner)
+    )
 
 
-def looks(student: str, outcome: Outcome, exercises: Sequence[Mapping[str, Any]]) -> list[str]:
+def looks(student: str, outcome: Outcome, exercises: Sequence[JudgedExercise]) -> list[str]:
     """Return why an instructor should look at a submission, in sentences."""
     found = []
     others = [name for name in outcome.named if name != student]
@@ -78,7 +210,7 @@ def looks(student: str, outcome: Outcome, exercises: Sequence[Mapping[str, Any]]
         found.append(f"it names another student: {', '.join(map(harmless, others[:3]))}")
     if outcome.odd:
         found.append(f"it told {outcome.odd} lines that are not answers")
-    asked = {one["number"]: {verdict["name"] for verdict in one["verdicts"]} for one in exercises}
+    asked = {one.number: {answer.name for answer in one.answers} for one in exercises}
     for number, given in outcome.answers.items():
         if number not in asked:
             found.append(f"it answers {harmless(repr(number))}, which is not an exercise of this assignment")
@@ -92,34 +224,49 @@ def _same_each_time(says):
 
 
 class Results:
-    """The results in a folder, a file a student."""
+    """The results in a folder, a file a student.
 
-    def __init__(self, folder: Path):
-        self.folder = folder
+    Arguments:
+        folder: where they are.
+        secret: of the assignment, for the seals.
+    """
+
+    def __init__(self, folder: Path, secret: str):
+        self.folder, self.secret = folder, secret
 
     def _path(self, student):
         return self.folder / f"{student}.json"
 
-    def of(self, student: str) -> dict[str, Any] | None:
-        """Return the result of a student; None where there is none that is whole."""
+    def of(self, student: str) -> Result | None:
+        """Return the result of a student; None where there is none.
+
+        Raises GradingError for a file that cannot be read, or is not as the grader wrote it.
+        """
         try:
-            stored = json.loads(self._path(student).read_text(encoding="utf-8"))
+            return Result.of_json(self._path(student).read_text(encoding="utf-8"), self.secret)
         except FileNotFoundError:
             return None
-        except (OSError, ValueError) as problem:
-            raise GradingError(f"{self._path(student)} cannot be read ({problem}): remove it") from None
-        return stored
+        except OSError as problem:
+            raise GradingError(f"{self._path(student)} cannot be read: {problem.strerror}") from None
+        except (ValueError, TypeError, KeyError, RecursionError):
+            raise GradingError(
+                f"{self._path(student)} is not as the grader of this assignment wrote it: grade again with --regrade; "
+                "points that you give yourself belong into marks.csv"
+            ) from None
 
     def demand_of(self, assignment: str, students: Iterable[str]) -> None:
         """Raise GradingError where a student's result is that of another assignment, which would be lost."""
         for student in students:
-            other = (self.of(student) or {}).get("assignment", assignment)
+            try:
+                other = json.loads(self._path(student).read_text(encoding="utf-8")).get("assignment", assignment)
+            except (OSError, ValueError, AttributeError, RecursionError):  # `of` says what is wrong with it
+                continue
             if other != assignment:
                 raise GradingError(
                     f"{self.folder} holds results of the assignment {other!r}: expected a folder of its own for "
                     f"{assignment!r}"
                 )
 
-    def keep(self, found: Mapping[str, Any]) -> None:
+    def keep(self, found: Result) -> None:
         """Store a result."""
-        write(self._path(found["student"]), json.dumps(found, indent=1, sort_keys=True) + "\n")
+        write(self._path(found.student), found.as_json(self.secret))

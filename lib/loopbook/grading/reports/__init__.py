@@ -5,14 +5,15 @@ Each output is a text made of results alone, so that it is the same whenever and
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from loopbook.grading import files
 from loopbook.grading.reports.outputs import Output, output, registered
 
 if TYPE_CHECKING:
+    from loopbook.grading.marking import Marked
     from loopbook.grading.roster import Student
 
 __all__ = ["Output", "output", "registered", "write_all"]
@@ -22,8 +23,9 @@ def write_all(
     folder: str | Path,
     title: str,
     students: Sequence[Student],
-    results: Iterable[Mapping[str, Any]],
+    marks: Iterable[Marked],
     complaints: Sequence[str] = (),
+    notes: Sequence[str] = (),
     reveal: bool = False,
 ) -> None:
     """Write all that is `registered` into a folder; nothing is deleted, and what is the same is not written again.
@@ -31,15 +33,16 @@ def write_all(
     Arguments:
         folder: where to write.
         title: of the assignment.
-        students: the roster; outputs keep its order, and a result of nobody in it is left out.
-        results: of submissions, as data, in any order.
+        students: the roster; outputs keep its order, and what belongs to nobody in it is left out.
+        marks: a `Marked` for each submission, in any order.
         complaints: sentences on what was handed in and could not be assigned to a student.
+        notes: sentences on how the class was graded.
         reveal: whether students see the keys.
     Raises:
         GradingError: where a file cannot be written.
     """
-    by_student = {result["student"]: result for result in results}
-    results = [by_student[student.id] for student in students if student.id in by_student]
+    by_student = {mark.result.student: mark for mark in marks}
+    marks = [by_student[student.id] for student in students if student.id in by_student]
     for one in registered():
-        for file, text in one.files(title, students, results, complaints, reveal):
-            files.write(Path(folder, file), text)
+        for file, content in one.files(title, students, marks, complaints, notes, reveal):
+            files.write(Path(folder, file), content)

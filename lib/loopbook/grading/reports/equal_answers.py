@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from loopbook.exercises.judging import MISTAKE, RIGHT, WRONG
 from loopbook.grading.reports.wording import answer_in_words
 
 if TYPE_CHECKING:
     from loopbook.grading.plain import Plain
+    from loopbook.grading.results import Result
 
 #: Equal wrong answers are a coincidence when they have fewer significant digits.
 DIGITS = 3
@@ -37,33 +38,33 @@ class EqualAnswers:
     others: tuple[str, ...]
 
 
-def equal_answers(results: Iterable[Mapping[str, Any]]) -> list[EqualAnswers]:
+def equal_answers(results: Iterable[Result]) -> list[EqualAnswers]:
     """Return the equal answers that are worth a look, in the order of the exercises.
 
     They are those that are right for one student and not for another, whose key differs; and those that are wrong with
     at least three significant digits for several students, whose keys differ. Words and choices are never among them.
 
     Arguments:
-        results: of submissions, as data.
+        results: of submissions.
     """
     groups, order = {}, {}
     for result in results:
-        for place, exercise in enumerate(result["exercises"]):
-            for verdict in exercise["verdicts"]:
-                asked = exercise["number"], verdict["name"]
+        for place, exercise in enumerate(result.exercises):
+            for verdict in exercise.answers:
+                asked = exercise.number, verdict.name
                 order.setdefault(asked, (place, len(order)))
-                if verdict["status"] in (RIGHT, MISTAKE, WRONG) and (digits := significant_digits(verdict["answer"])):
-                    group = groups.setdefault((asked, _one_form(verdict["answer"])), (digits, []))
-                    group[1].append((result["student"], verdict))
+                if verdict.status in (RIGHT, MISTAKE, WRONG) and (digits := significant_digits(verdict.answer)):
+                    group = groups.setdefault((asked, _one_form(verdict.answer)), (digits, []))
+                    group[1].append((result.student, verdict))
     found = []
     for (asked, _), (digits, given) in groups.items():
-        right = [(student, verdict["key"]) for student, verdict in given if verdict["status"] == RIGHT]
-        others = [(student, verdict["key"]) for student, verdict in given if verdict["status"] != RIGHT]
+        right = [(student, verdict.key) for student, verdict in given if verdict.status == RIGHT]
+        others = [(student, verdict.key) for student, verdict in given if verdict.status != RIGHT]
         keys_of_right, keys_of_others = {key for _, key in right}, {key for _, key in others}
         crossed = any(key not in keys_of_right for key in keys_of_others) and bool(right)
         shared = len(keys_of_others) > 1 and digits >= DIGITS
         if crossed or shared:
-            answer = answer_in_words(given[0][1]["answer"])
+            answer = answer_in_words(given[0][1].answer)
             found.append(EqualAnswers(*asked, answer, tuple(s for s, _ in right), tuple(s for s, _ in others)))
     return sorted(found, key=lambda one: (order[one.number, one.name], one.answer))
 

@@ -5,15 +5,16 @@ from __future__ import annotations
 import re
 import statistics
 from collections import Counter
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from loopbook.exercises.judging import MISTAKE, RIGHT, UNJUDGED
 from loopbook.grading.reports.equal_answers import equal_answers
 from loopbook.grading.reports.wording import STATUSES, answer_in_words, explained, remarks, without_jail
 
 if TYPE_CHECKING:
+    from loopbook.grading.marking import Marked
     from loopbook.grading.roster import Student
 
 #: So many of the named mistakes are told.
@@ -59,11 +60,11 @@ class Findings:
 
     Arguments:
         students: the roster.
-        results: of submissions, as data.
+        marks: a `Marked` for each submission.
         complaints: sentences on what was handed in and could not be assigned to a student.
 
     Attributes:
-        handed_in: the results of those who handed something in; means are over these.
+        handed_in: the results of those who handed something in; means are over those of them that count.
         missing: the ids of those who did not, and `ungraded` of those without any result.
         looks: pairs of an id and the reasons why somebody should look at the submission.
         mistakes: number of exercise, quantity, sentence and count, the most common first.
@@ -71,20 +72,19 @@ class Findings:
         unjudged: number of exercise, quantity, id, answer in words and sentence of each answer that was not judged.
     """
 
-    def __init__(
-        self, students: Sequence[Student], results: Collection[Mapping[str, Any]], complaints: Iterable[object] = ()
-    ):
+    def __init__(self, students: Sequence[Student], marks: Collection[Marked], complaints: Iterable[object] = ()):
+        results = [mark.result for mark in marks]
         self.names = {student.id: student.name for student in students}
         self.complaints = tuple(map(str, complaints))
         self.no_jail = without_jail(results)
-        self.handed_in = [result for result in results if result["status"] != "missing"]
-        self.missing: list[str] = [result["student"] for result in results if result["status"] == "missing"]
-        graded = {result["student"] for result in results}
+        self.handed_in = [result for result in results if result.status != "missing"]
+        self.missing: list[str] = [result.student for result in results if result.status == "missing"]
+        graded = {result.student for result in results}
         self.ungraded = [student.id for student in students if student.id not in graded]
-        self.points: float = max((result["points"] for result in results), default=0)
-        self.sums: list[float] = [result["earned"] for result in self.handed_in]
+        self.points: float = max((result.points for result in results), default=0)
+        self.sums: list[float] = [mark.total for mark in marks if mark.total is not None]
         self.looks: list[tuple[str, list[str]]] = [
-            (result["student"], reasons) for result in self.handed_in if (reasons := _reasons(result))
+            (result.student, reasons) for result in self.handed_in if (reasons := _reasons(result))
         ]
         self.exercises: list[Exercise] = _exercises(self.handed_in)
         self.mistakes: list[tuple[str, str, str, int]] = _mistakes(self.handed_in)
@@ -135,24 +135,24 @@ def _width(points):
 
 
 def _reasons(result):
-    return [*result["looks"], *remarks(result)]
+    return [*result.looks, *remarks(result)]
 
 
 def _exercises(results):
     """The exercises, the hardest first; equal ones in their own order."""
     found = {}
     for result in results:
-        for exercise in result["exercises"]:
-            found.setdefault(exercise["number"], []).append(exercise)
+        for exercise in result.exercises:
+            found.setdefault(exercise.number, []).append(exercise)
     exercises = []
     for number, given in found.items():
         counts = {}
         for exercise in given:
-            for verdict in exercise["verdicts"]:
-                counts.setdefault(verdict["name"], Counter(dict.fromkeys(STATUSES, 0)))[verdict["status"]] += 1
+            for verdict in exercise.answers:
+                counts.setdefault(verdict.name, Counter(dict.fromkeys(STATUSES, 0)))[verdict.status] += 1
         asked = tuple(Asked(number, name, count) for name, count in counts.items())
-        mean = statistics.fmean(exercise["earned"] for exercise in given)
-        exercises.append(Exercise(number, given[0]["title"], given[0]["points"], mean, asked))
+        mean = statistics.fmean(exercise.earned for exercise in given)
+        exercises.append(Exercise(number, given[0].title, given[0].points, mean, asked))
     return sorted(exercises, key=lambda exercise: exercise.fraction)
 
 
@@ -160,13 +160,13 @@ def _unjudged(results):
     """The answers that were not judged, in the order of the exercises."""
     found, order = [], {}
     for result in results:
-        for exercise in result["exercises"]:
-            for verdict in exercise["verdicts"]:
-                asked = exercise["number"], verdict["name"]
+        for exercise in result.exercises:
+            for verdict in exercise.answers:
+                asked = exercise.number, verdict.name
                 place = order.setdefault(asked, len(order))
-                if verdict["status"] == UNJUDGED:
-                    answer = answer_in_words(verdict["answer"])
-                    found.append((place, (*asked, result["student"], answer, explained(verdict))))
+                if verdict.status == UNJUDGED:
+                    answer = answer_in_words(verdict.answer)
+                    found.append((place, (*asked, result.student, answer, explained(verdict))))
     return [one for _, one in sorted(found, key=lambda pair: pair[0])]
 
 
@@ -174,10 +174,10 @@ def _mistakes(results):
     """The mistakes: one whose sentence names a student's own numbers is the same with those of another one."""
     sentences = {}
     for result in results:
-        for exercise in result["exercises"]:
-            for verdict in exercise["verdicts"]:
-                if verdict["status"] == MISTAKE:
-                    kind = exercise["number"], verdict["name"], _NUMBER.sub("…", verdict["says"])
-                    sentences.setdefault(kind, []).append(verdict["says"])
+        for exercise in result.exercises:
+            for verdict in exercise.answers:
+                if verdict.status == MISTAKE:
+                    kind = exercise.number, verdict.name, _NUMBER.sub("…", verdict.says)
+                    sentences.setdefault(kind, []).append(verdict.says)
     most = sorted(sentences.items(), key=lambda item: (-len(item[1]), item[0]))[:MOST_MISTAKES]
     return [(*asked, says[0] if len(set(says)) == 1 else general, len(says)) for (*asked, general), says in most]

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
 from loopbook.exercises.reading import shortened
@@ -13,6 +13,7 @@ from loopbook.figures.picture import plain_words
 
 if TYPE_CHECKING:
     from loopbook.grading.plain import Plain
+    from loopbook.grading.results import JudgedAnswer, Result
 
 #: The line that every output carries where student code ran with nothing around it.
 NO_JAIL = "Graded without a jail: nothing kept the code of the notebook from the grader, and results can be forged."
@@ -120,30 +121,31 @@ def _in_decimals(value):
     return f"{float(Fraction(value)):.8g}" if is_fraction else _in_words(value)
 
 
-def remarks(result: Mapping[str, Any]) -> list[str]:
+def remarks(result: Result) -> list[str]:
     """Return what became of a notebook besides its answers, as sentences of which students may have written parts."""
-    if result["status"] == "missing":
-        return [result["says"] or "no notebook was handed in"]
-    found = [result["says"]] if result["says"] else []
-    if not found and result["status"] != "complete":
-        found = [f"the notebook was {result['status']}"]
-    found += [f"cell {error['cell']}: {error['says']}" for error in result["errors"]]
+    if result.status == "missing":
+        return [result.says or "no notebook was handed in"]
+    found = [result.says] if result.says else []
+    if not found and result.status != "complete":
+        found = [f"the notebook was {result.status}"]
+    found += [f"cell {error.cell}: {error.says}" for error in result.errors]
     more = [f"and {len(found) - MOST_REMARKS} more"] if len(found) > MOST_REMARKS else []
     return [shortened(visible(text), LONGEST_REMARK) for text in found[:MOST_REMARKS]] + more
 
 
-def explained(verdict: Mapping[str, Any]) -> str:
-    """Return the sentence of a verdict without the word that its status says already.
+def explained(verdict: JudgedAnswer) -> str:
+    """Return the sentence on an answer without the word that its status says already.
 
     One on an answer that could not be judged may quote it: it holds no formulas.
 
-    >>> explained({"status": "right", "says": "right, converted from min"})
+    >>> from loopbook.grading.results import JudgedAnswer
+    >>> explained(JudgedAnswer("Ti", "right", "right, converted from min", "2 min", "120 s"))
     'converted from min'
     """
-    says = verdict["says"]
-    if verdict["status"] == UNJUDGED:
+    says = verdict.says
+    if verdict.status == UNJUDGED:
         return says.replace("$", "")
-    return says.removeprefix("right").removeprefix(", ") if verdict["status"] == RIGHT else says
+    return says.removeprefix("right").removeprefix(", ") if verdict.status == RIGHT else says
 
 
 def parts(sentence: str) -> list[str]:
@@ -202,6 +204,6 @@ def code_in_markdown(text: str) -> str:
     return f"{fence}{room}{line}{room}{fence}"
 
 
-def without_jail(results: Iterable[Mapping[str, Any]]) -> bool:
+def without_jail(results: Iterable[Result]) -> bool:
     """Whether a submission of these ran without a jail."""
-    return any(not result["jailed"] for result in results)
+    return any(not result.jailed for result in results)

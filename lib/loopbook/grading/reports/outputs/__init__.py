@@ -9,14 +9,15 @@ from __future__ import annotations
 import importlib
 import inspect
 import pkgutil
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, TypeVar
 
 from loopbook.grading import GradingError
 
 if TYPE_CHECKING:
+    from loopbook.grading.marking import Marked
     from loopbook.grading.roster import Student
 
 __all__ = ["Output", "output", "registered"]
@@ -24,10 +25,11 @@ __all__ = ["Output", "output", "registered"]
 #: What stands in the name of a file that is made for each student.
 STUDENT = "{student}"
 #: What a function may ask for, by the names of its parameters.
-OF_CLASS = ("title", "students", "results", "complaints", "reveal")
-OF_STUDENT = ("title", "student", "result", "reveal")
+OF_CLASS = ("title", "students", "marks", "complaints", "notes", "reveal")
+OF_STUDENT = ("title", "student", "mark", "reveal")
 
 _REGISTERED: dict[str, Output] = {}
+_Function = TypeVar("_Function", bound="Callable[..., str | bytes]")
 
 
 @dataclass(frozen=True)
@@ -37,12 +39,12 @@ class Output:
     Attributes:
         file: its place in the folder of the grades; where it holds "{student}", there is one for each, named by the id.
         what: it is, and for whom, in some words.
-        text: makes its content; what it takes it asks for by name.
+        content: makes what it holds, a text or bytes; what it takes it asks for by name.
     """
 
     file: str
     what: str
-    text: Callable[..., str]
+    content: Callable[..., str | bytes]
 
     @property
     def is_for_each_student(self) -> bool:
@@ -53,42 +55,47 @@ class Output:
         self,
         title: str,
         students: Sequence[Student],
-        results: Sequence[Mapping[str, Any]],
-        complaints: Iterable[object] = (),
+        marks: Sequence[Marked],
+        complaints: Iterable[str] = (),
+        notes: Iterable[str] = (),
         reveal: bool = False,
-    ) -> Iterator[tuple[str, str]]:
+    ) -> Iterator[tuple[str, str | bytes]]:
         """Yield the places of the files and their contents.
 
         Arguments:
             title: of the assignment.
             students: the roster.
-            results: of submissions of these students, as data, in the order of the roster.
+            marks: a `Marked` for each submission of these students, in the order of the roster.
             complaints: sentences on what was handed in and could not be assigned to a student.
+            notes: sentences on how the class was graded.
             reveal: whether students see the keys.
         Raises:
-            GradingError: where what the function returns is not text.
+            GradingError: where what the function returns is neither text nor bytes.
         """
-        known = {"title": title, "students": students, "results": results, "complaints": complaints, "reveal": reveal}
+        known = {
+            "title": title, "students": students, "marks": marks, "complaints": complaints, "notes": notes,
+            "reveal": reveal,
+        }  # fmt: skip
         if not self.is_for_each_student:
             yield self.file, self._made_of(known)
             return
         by_id = {student.id: student for student in students}
-        for result in results:
-            student = by_id[result["student"]]
-            yield self.file.replace(STUDENT, student.id), self._made_of(known | {"student": student, "result": result})
+        for mark in marks:
+            student = by_id[mark.result.student]
+            yield self.file.replace(STUDENT, student.id), self._made_of(known | {"student": student, "mark": mark})
 
     def _made_of(self, known):
-        text = self.text(**{name: known[name] for name in inspect.signature(self.text).parameters})
-        if not isinstance(text, str):
-            raise GradingError(f"the output {self.file!r} returns {text!r:.50}: expected a text")
-        return text
+        made = self.content(**{name: known[name] for name in inspect.signature(self.content).parameters})
+        if not isinstance(made, str | bytes):
+            raise GradingError(f"the output {self.file!r} returns {made!r:.50}: expected a text or bytes")
+        return made
 
 
-def output(file: str, what: str) -> Callable[[Callable[..., str]], Callable[..., str]]:
-    """Register a function as what makes a file; it returns the text that the file holds.
+def output(file: str, what: str) -> Callable[[_Function], _Function]:
+    """Register a function as what makes a file; it returns the text, or the bytes, that the file holds.
 
-    The parameters of the function say what it takes: any of title, students, results, complaints and reveal; where a
-    file is made for each student, any of title, student, result and reveal. `Output.files` says what these are.
+    The parameters of the function say what it takes: any of title, students, marks, complaints, notes and reveal; where
+    a file is made for each student, any of title, student, mark and reveal. `Output.files` says what these are.
 
     Arguments:
         file: its place in the folder of the grades, with "{student}" in it for a file for each student.
@@ -117,11 +124,11 @@ def output(file: str, what: str) -> Callable[[Callable[..., str]], Callable[...,
         raise GradingError(f"two outputs have the file {file!r}: expected one")
     may_ask = OF_STUDENT if STUDENT in file else OF_CLASS
 
-    def register(text):
-        if unknown := [name for name in inspect.signature(text).parameters if name not in may_ask]:
+    def register(content):
+        if unknown := [name for name in inspect.signature(content).parameters if name not in may_ask]:
             raise GradingError(f"the output {file!r} asks for {unknown[0]!r}: expected some of {', '.join(may_ask)}")
-        _REGISTERED[file] = Output(file, what, text)
-        return text
+        _REGISTERED[file] = Output(file, what, content)
+        return content
 
     return register
 
@@ -136,6 +143,6 @@ def registered() -> tuple[Output, ...]:
     """
     for module in pkgutil.iter_modules(__path__, f"{__name__}."):
         importlib.import_module(module.name)
-        if not any(one.text.__module__ == module.name for one in _REGISTERED.values()):
+        if not any(one.content.__module__ == module.name for one in _REGISTERED.values()):
             raise GradingError(f"{module.name} registers no output: expected a function with @output(file, what)")
     return tuple(sorted(_REGISTERED.values(), key=lambda one: one.file))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Collection, Iterable, Sequence
+from typing import TYPE_CHECKING
 
 from loopbook.grading.reports import page
 from loopbook.grading.reports.findings import Findings
@@ -22,6 +22,7 @@ from loopbook.grading.reports.wording import (
 )
 
 if TYPE_CHECKING:
+    from loopbook.grading.marking import Marked
     from loopbook.grading.roster import Student
 
 _EQUAL = "The numbers of these students differ, so that their answers should. That is a reason to look, and no proof."
@@ -35,17 +36,17 @@ _NONE = "Nothing."
 
 @output("summary.html", "the summary for the instructor")
 def summary_html(
-    title: str, students: Sequence[Student], results: Collection[Mapping[str, Any]], complaints: Iterable[object] = ()
+    title: str, students: Sequence[Student], marks: Collection[Marked], complaints: Iterable[object] = ()
 ) -> str:
     """Return the summary as a page that needs nothing but itself.
 
     Arguments:
         title: of the assignment.
         students: the roster.
-        results: of submissions, as data.
+        marks: a `Marked` for each submission.
         complaints: sentences on what was handed in and could not be assigned to a student.
     """
-    found = Findings(students, results, complaints)
+    found = Findings(students, marks, complaints)
     body = [f"<h1>{page.sentence(title)}: summary</h1>"]
     if found.no_jail:
         body.append(f'<p class="warning">{NO_JAIL}</p>')
@@ -124,17 +125,17 @@ def summary_html(
 
 @output("summary.md", "the same as Markdown")
 def summary_markdown(
-    title: str, students: Sequence[Student], results: Collection[Mapping[str, Any]], complaints: Iterable[object] = ()
+    title: str, students: Sequence[Student], marks: Collection[Marked], complaints: Iterable[object] = ()
 ) -> str:
     """Return the summary as Markdown, with the distribution in text.
 
     Arguments:
         title: of the assignment.
         students: the roster.
-        results: of submissions, as data.
+        marks: a `Marked` for each submission.
         complaints: sentences on what was handed in and could not be assigned to a student.
     """
-    found = Findings(students, results, complaints)
+    found = Findings(students, marks, complaints)
     lines = [f"# {sentence_in_markdown(title)}: summary", ""]
     if found.no_jail:
         lines += [f"**{NO_JAIL}**", ""]
