@@ -4,10 +4,12 @@ import subprocess
 import sys
 
 import pytest
+import sympy
 from hypothesis import given
 from hypothesis import strategies as st
 
-from loopbook.exercises.authoring import answers, between, choice, design, number, settings
+from loopbook.exercises.authoring import answers, between, choice, design, exercise, number, settings
+from loopbook.exercises.parameters import as_text, of_text
 from loopbook.pid import PID
 
 
@@ -17,6 +19,39 @@ def test_the_draws_are_the_same_on_every_machine():
     program = "from loopbook.exercises.authoring import between; print([str(between(2, 6).draw(x)) for x in 'abcd'])"
     result = subprocess.run([sys.executable, "-R", "-c", program], capture_output=True, encoding="utf-8", check=True)
     assert result.stdout.strip() == str(DRAWN)
+
+
+@pytest.mark.parametrize(
+    "value",
+    [sympy.Rational(-5, 2), sympy.Integer(3), sympy.sqrt(2) * sympy.pi, sympy.Symbol("K", positive=True), "5/2"],
+)
+def test_a_value_is_a_text_and_comes_back(value):
+    again = of_text(as_text(value))
+    assert again == value
+    assert type(again) is type(value)
+
+
+def test_values_of_before_hold_and_others_are_drawn_for_them():
+    @exercise("1", title="Dead time", where=lambda T, delay: delay < T)
+    def lag(T=between(2, 9, "s"), delay=between(1, 9, "s")):
+        "It is {T} and {delay}."
+        return answers(y=T + delay)
+
+    before = {"T": sympy.Integer(12), "delay": sympy.Integer(20), "gone": sympy.Integer(1)}
+    assert lag.question_with("Ada", before).values == {"T": 12, "delay": 20}
+    assert {lag.question_with(f"s{k}", {"T": sympy.Integer(3)}).values["delay"] < 3 for k in range(20)} == {True}
+    with pytest.raises(ValueError, match="holds in none of 1000 draws"):
+        lag.question_with("Ada", {"delay": sympy.Integer(20)})
+
+
+def test_without_parameters_no_values_are_told():
+    @exercise("6", title="Nothing")
+    def nothing():
+        "No number is given."
+        return answers(y=1 / sympy.Integer(0) + 1 // 0)
+
+    with pytest.raises(ValueError, match="^the key of exercise 6 fails: integer division or modulo by zero"):
+        _ = nothing.question().key
 
 
 DRAWN = ["11/2", "11/2", "3", "3"]

@@ -181,3 +181,42 @@ def test_a_reader_is_told_what_there_is(make, says):
     with pytest.raises(exercises.ExerciseError) as caught:
         make()
     assert says in str(caught.value)
+
+
+@exercise("99.2", title="An action", points=1)
+def action(K=between(1, 9)):
+    "Which action does the controller need, and what is done, and in which order?"
+    return answers(
+        action=word("reverse", ["direct", "reverse"], "the action"),
+        steps=authoring.words(["fill", "heat", "drain"], ["drain", "stir", "fill", "heat"], "the steps", ordered=True),
+        others=authoring.words(["heat", "drain"], ["drain", "stir", "fill", "heat"], "those with a valve"),
+        valve=word("V2", ["V2", "V10", "V1"], "the valve"),
+        stable=word("no", ["no", "yes"], "whether it is stable"),
+    )
+
+
+def test_the_place_of_a_word_says_nothing_about_it():
+    questions = [action.question(f"s{k}") for k in range(200)]
+    for name, orders in (("action", 2), ("steps", 24)):
+        firsts = [one.key[name].among[0] for one in questions]
+        expected = 200 / len(set(firsts))
+        assert all(abs(firsts.count(one) - expected) < 40 for one in firsts)
+        assert len({one.key[name].among for one in questions}) == orders
+    for one in questions[:5]:
+        among = one.key["action"].among
+        assert f"the action: {among[0]} or {among[1]}" in one.statement
+        assert one.key["action"].asking == f'word(["{among[0]}", "{among[1]}"])'
+        assert one.key["action"].expected == f"{among[0]} or {among[1]}"
+        assert one.key["valve"].among == ("V1", "V2", "V10")
+        assert one.key["stable"].among == ("yes", "no")
+        assert "- `others`: those with a valve, out of the same list" in one.statement
+        right = {"action": "Reverse", "steps": "fill, heat, drain", "others": ["drain", "heat"], "valve": "V2"}
+        assert one.check(stable=False, **right).is_right
+
+
+def test_the_order_is_that_of_the_variant():
+    assert action.question("Ada").key["steps"].among == action.question_with("Ada", {}).key["steps"].among
+    assert action.question("Ada").key["steps"].among == ORDER
+
+
+ORDER = ("heat", "drain", "stir", "fill")

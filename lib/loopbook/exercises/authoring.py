@@ -28,7 +28,7 @@ import functools
 import inspect
 import textwrap
 import unicodedata
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import sympy
@@ -38,7 +38,8 @@ from loopbook.exercises.kinds import MAKERS, Criterion, Kind, Number
 from loopbook.exercises.parameters import Parameter, between, call, choice
 from loopbook.exercises.question import Question
 
-if TYPE_CHECKING:  # editors read no registry
+if TYPE_CHECKING:
+    # editors read no registry
     from loopbook.exercises.kinds import Design as design  # noqa: F401, N813
     from loopbook.exercises.kinds import Expression as expression  # noqa: F401, N813
     from loopbook.exercises.kinds import InstrumentDiagram as instrument_diagram  # noqa: F401, N813
@@ -51,6 +52,7 @@ if TYPE_CHECKING:  # editors read no registry
     from loopbook.exercises.kinds import TransferFunction as transfer_function  # noqa: F401, N813
     from loopbook.exercises.kinds import Word as word  # noqa: F401, N813
     from loopbook.exercises.kinds import Words as words  # noqa: F401, N813
+    from loopbook.exercises.parameters import Value
 
 __all__ = [
     "Exercise", "answers", "between", "choice", "criterion", "exercise", "largest_sensitivity", "pi_controller",
@@ -186,11 +188,37 @@ class Exercise:
             if not call(self.where, values):
                 raise ValueError(f"the reference variant of exercise {self.number} does not satisfy its condition")
             return Question(self, student, values)
+        return Question(self, student, self._drawn(student, {}))
+
+    def question_with(self, student: str, values: Mapping[str, Value]) -> Question:
+        """Return the variant of a student to whom values were given before: they hold, whatever the ranges are now.
+
+        Arguments:
+            student: for whom what is not among the values is drawn.
+            values: {name: value}; of a name that is no parameter, the value is of no use.
+        Raises:
+            ValueError: where something has to be drawn and the condition hardly ever holds.
+
+        >>> @exercise("1.1", title="Twice")
+        ... def twice(x=between(1, 9, "m")):
+        ...     "What is twice {x}?"
+        ...     return answers(y=2 * x)
+        >>> twice.question_with("Ada", {"x": sympy.Integer(12)}).key["y"].key
+        24.0
+        """
+        kept = {name: values[name] for name in self.parameters if name in values}
+        return Question(self, student, kept if len(kept) == len(self.parameters) else self._drawn(student, kept))
+
+    def _drawn(self, student, kept):
+        """The values of a student: some that are kept, and for the others the first draw that fulfils the condition."""
         for attempt in range(MOST_DRAWS):
             text = unicodedata.normalize("NFC", f"{self.number}|{student}|{attempt}")
-            values = {name: one.draw(f"{text}|{name}") for name, one in self.parameters.items()}
+            values = {
+                name: kept[name] if name in kept else one.draw(f"{text}|{name}")
+                for name, one in self.parameters.items()
+            }
             if call(self.where, values):
-                return Question(self, student, values)
+                return values
         raise ValueError(f"the condition of exercise {self.number} holds in none of {MOST_DRAWS} draws: widen it")
 
     def __repr__(self) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import inspect
 import math
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -134,6 +135,29 @@ def written(value: Number | str, unit: str = "") -> str:
     if float(text) != float(value):
         text = f"{float(value):.6g}"
     return f"{text}\N{NO-BREAK SPACE}{unit}" if unit else text
+
+
+def as_text(value: Value) -> str:
+    """Return a value as a text that `of_text` reads back exactly; a word stands in quotes.
+
+    >>> as_text(sympy.Rational(5, 2)), as_text(sympy.sqrt(2)), as_text("heating")
+    ('5/2', 'sqrt(2)', "'heating'")
+    """
+    if isinstance(value, str):
+        return f"'{value}'"
+    text = str(value)
+    return text if of_text(text) == value else sympy.srepr(value)
+
+
+def of_text(text: str) -> Value:
+    """Return the value that `as_text` wrote. It evaluates the text: take none from others.
+
+    >>> of_text("5/2") == sympy.Rational(5, 2), of_text("'5/2'")
+    (True, '5/2')
+    """
+    if text.startswith("'"):
+        return text[1:-1]
+    return sympy.Rational(text) if re.fullmatch(r"-?[0-9]+(/[0-9]+)?", text) else sympy.sympify(text)
 
 
 def call(function: Callable[..., Any], values: Mapping[str, Any]) -> Any:

@@ -74,7 +74,8 @@ class Question(Showing):
         key = self._called(self.exercise.key, "the key")
         if not (isinstance(key, dict) and key and all(isinstance(kind, Kind) for kind in key.values())):
             raise ValueError(f"exercise {self.exercise.number} returns {key!r}: expected answers(...)")
-        return key
+        # the order in which an author lists words says something about the right one, so each variant has its own
+        return {name: kind.shuffled(f"{self.exercise.number}|{self.student}") for name, kind in key.items()}
 
     @functools.cached_property
     def mistakes(self) -> dict[str, list[tuple[str, Any]]]:
@@ -107,8 +108,13 @@ class Question(Showing):
         try:
             return call(function, self.values)
         except Exception as error:
-            values = ", ".join(f"{name} = {value}" for name, value in self.values.items())
-            raise ValueError(f"{what} of exercise {self.exercise.number} fails for {values}: {error}") from error
+            raise ValueError(f"{what} of exercise {self.exercise.number} fails{self.with_values}: {error}") from error
+
+    @property
+    def with_values(self) -> str:
+        """The values of this variant, as the end of a sentence about it; empty where there are no parameters."""
+        values = ", ".join(f"{name} = {value}" for name, value in self.values.items())
+        return f" for {values}" if values else ""
 
     @functools.cached_property
     def _shows(self):

@@ -16,12 +16,14 @@ import secrets
 import sys
 import traceback
 import types
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from loopbook.exercises.authoring import Exercise
 from loopbook.exercises.bank import collected
+from loopbook.exercises.parameters import of_text
 from loopbook.grading import GradingError
 from loopbook.validation import did_you_mean
 
@@ -99,8 +101,19 @@ class Assignment:
         version = importlib.metadata.version("loopbook")
         return hashlib.sha256(f"{version}\n{self.source}".encode("utf-8", "surrogatepass")).hexdigest()
 
-    def question(self, student_id: str, number: str) -> Question:
+    @property
+    def record(self) -> Path | None:
+        """Where the numbers of its releases are kept: beside the module; None where it was made from a text."""
+        return self.path and self.path.with_name(f"{self.name}.released.json")
+
+    def question(self, student_id: str, number: str, values: Mapping[str, str] | None = None) -> Question:
         """Return a student's variant of an exercise, a `Question`, the same every time.
+
+        Arguments:
+            student_id: of the student.
+            number: of the exercise.
+            values: with which it was released, {parameter: text}, as `released.Released.numbers` has them; what is not
+                among them is drawn from the secret.
 
         Raises GradingError for an unknown exercise, and where the author's functions fail.
         """
@@ -109,8 +122,11 @@ class Assignment:
                 f"there is no exercise {number!r} in {self.name}: {did_you_mean(number, self.exercises)}"
             )
         drawn_from = hmac.new(self.secret.encode(), str(student_id).encode(), hashlib.sha256).hexdigest()
+        exercise = self.exercises[number]
         try:
-            return self.exercises[number].question(drawn_from)
+            if values is None:
+                return exercise.question(drawn_from)
+            return exercise.question_with(drawn_from, {name: of_text(text) for name, text in values.items()})
         except Exception as problem:  # the condition is the author's
             raise GradingError(f"exercise {number} of {self.name} for student {student_id}: {problem}") from problem
 

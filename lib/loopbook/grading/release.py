@@ -133,18 +133,16 @@ def _check_places(question):
 def _check_key(question):
     """Raise GradingError for a key that would not be right, and for a mistake that is not a possible answer."""
     number = question.exercise.number
-    values = ", ".join(f"{name} = {value}" for name, value in question.values.items())
     for name, kind in question.key.items():
         if not kind.agrees(kind.key):
-            raise GradingError(
-                f"the key of {name} in exercise {number} would not be right for {values}: {kind.hint(kind.key)}"
-            )
+            says = f"the key of {name} in exercise {number} would not be right{question.with_values}"
+            raise GradingError(f"{says}: {kind.hint(kind.key)}")
         for sentence, wrong in question.mistakes[name]:
             try:
                 kind.like(wrong)
             except ValueError as problem:
-                says = f'the mistake "{sentence}" of {name} in exercise {number} is not a possible answer for {values}'
-                raise GradingError(f"{says}: {problem}") from problem
+                says = f'the mistake "{sentence}" of {name} in exercise {number} is not a possible answer'
+                raise GradingError(f"{says}{question.with_values}: {problem}") from problem
 
 
 def bare(cells: list[NotebookNode]) -> NotebookNode:

@@ -137,6 +137,10 @@ class Kind:
         other.key = other.read(value)[0]
         return other
 
+    def shuffled(self, text: str) -> Self:
+        """Return the quantity with what it offers to choose from in an order drawn from a text; most offer nothing."""
+        return self
+
     @property
     def asked(self) -> str:
         """The quantity with its unit, as in a sentence."""

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 from collections.abc import Iterable, Iterator
+from typing import Self
 
 import sympy
 from sympy.logic.boolalg import BooleanAtom
@@ -14,6 +16,7 @@ from loopbook.exercises.reading import Unreadable, alone, answered, in_a_row, sh
 
 _NONE = re.compile(r"none(?: of them| of these)?|nothing|no one|not any|[-–∅]|\[\]", re.IGNORECASE)
 _ONLY = re.compile(r"^(?:only|just|solely) ", re.IGNORECASE)
+_COUNTED = re.compile(r"(\D*)(\d+(?:\.\d+)?)(\D*)")
 _TRUTH = {True: "yes", False: "no"}
 _SEPARATOR = re.compile(r"[,;&\n]|[-=]>|→|\b(?:and|then|und|plus)\b|(?<=\w)\s?/\s?(?=\w)|(?<=\w)\s?\+\s?(?=\w)")
 
@@ -42,6 +45,10 @@ class Word(Kind):
 
     accuracy = ""
     FORM = ("among",)
+
+    def shuffled(self, text: str) -> Self:
+        """Return the quantity with its words in an order drawn from a text."""
+        return _shuffled(self, text)
 
     def read(self, given: object) -> tuple[str, str]:
         """Return the word as it stands in the list, and a remark where another one was given for it."""
@@ -81,6 +88,10 @@ class Words(Kind):
 
     accuracy = ""
     FORM = ("among", "ordered")
+
+    def shuffled(self, text: str) -> Self:
+        """Return the quantity with its words in an order drawn from a text."""
+        return _shuffled(self, text)
 
     def read(self, given: object) -> tuple[list[str], str]:
         """Return the words as they stand in the list, and a remark where others were given for them."""
@@ -125,6 +136,34 @@ class Words(Kind):
             yield "the words are right, in the opposite order", self.key[::-1]
 
 
+def in_drawn_order(words: Iterable[str], text: str) -> tuple[str, ...]:
+    """Return words in an order drawn from a text; the one in which they come leaves no trace.
+
+    Words that count, as numbers, letters, or S1, S2, S3, count up, and yes comes before no.
+
+    >>> in_drawn_order(["direct", "reverse"], "Ada") == in_drawn_order(["reverse", "direct"], "Ada")
+    True
+    >>> in_drawn_order(["S10", "S2"], "Ada"), in_drawn_order(["no", "yes"], "Ada")
+    (('S2', 'S10'), ('yes', 'no'))
+    """
+    words = tuple(words)
+    if set(words) == set(_TRUTH.values()):
+        return tuple(_TRUTH.values())
+    parts = [_COUNTED.fullmatch(word) for word in words]
+    if all(parts) and len({(part[1], part[3]) for part in parts}) == 1:
+        return tuple(sorted(words, key=lambda word: float(_COUNTED.fullmatch(word)[2])))
+    if all(len(word) == 1 for word in words):
+        return tuple(sorted(words))
+    return tuple(sorted(words, key=lambda word: hashlib.sha256(f"{text}|{word}".encode()).digest()))
+
+
+def _shuffled(kind, text):
+    other = kind.like(kind.key)
+    other.among = in_drawn_order(kind.among, text)
+    other.key = other.read(kind.key)[0]  # a list of words follows the order in which they are listed
+    return other
+
+
 def _word(given, among, expected):
     given = alone(given)
     if isinstance(given, bool | BooleanAtom):
@@ -132,7 +171,7 @@ def _word(given, among, expected):
             raise Unreadable(f"{given} is a truth value: expected {expected}")
         given = _TRUTH[bool(given)]
     elif isinstance(given, int | float | sympy.Number) and (
-        (number := f"{float(given):g}") in among or synonyms.found(number, among)
+        (number := f"{float(given):g}") in among or synonyms.found(number, sorted(among))
     ):
         given = number
     if not isinstance(given, str):
@@ -141,7 +180,7 @@ def _word(given, among, expected):
     for word in among:
         if _bare(word) == wanted:
             return word, ""
-    if meant := synonyms.found(given, among):
+    if meant := synonyms.found(given, sorted(among)):
         return meant, f'read as "{meant}"'
     raise Unreadable(f"{shortened(given, 40)!r} is none of the words: expected {expected}")
 
