@@ -176,6 +176,48 @@ def release(
     console.print(f"{len(paths)} notebook{'' if len(paths) == 1 else 's'} of {given.title!r} in {to}", markup=False)
 
 
+@app.command("try")
+def try_out(
+    assignment: Annotated[Path, typer.Argument(help="The assignment, before it is released.")],
+    students: Annotated[
+        Path | None, typer.Option(help=f"{ROSTER} Their variants are tried first; there need not be one.")
+    ] = None,
+    variants: Annotated[int, typer.Option(min=1, help="Variants of each exercise.")] = 200,
+    seconds: Annotated[float, typer.Option(min=1, help="What an exercise may take.")] = 20,
+    exercise: Annotated[list[str] | None, typer.Option(help="Number of an exercise; try this one alone.")] = None,
+    student: Annotated[
+        str | None, typer.Option(help="Id; show what this student sees, and what each answer is told.")
+    ] = None,
+) -> None:
+    """Answer each exercise with its key, its mistakes and others, over many variants, and say what would surprise."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    from loopbook.grading import GradingError, trial
+    from loopbook.grading.assignment import load
+    from loopbook.grading.roster import read_roster
+
+    try:
+        given = trial.only(load(assignment), exercise or ())
+        if student:
+            for number in given.exercises:
+                console.print(trial.one_variant(given, student, number), end="\n\n", markup=False)
+            return
+        there = students or assignment.with_name("roster.csv")
+        ids = trial.ids([one.id for one in read_roster(there)] if students or there.exists() else [], variants)
+        columns = TextColumn("trying"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
+        with Progress(*columns, console=errors, transient=True, disable=not errors.is_terminal) as progress:
+            bar = progress.add_task("", total=len(ids) * len(given.exercises))
+            found = list(trial.try_all(given, ids, seconds, lambda done: progress.update(bar, completed=done)))
+    except GradingError as error:
+        fail(str(error))
+    except KeyboardInterrupt:
+        fail("interrupted")
+    console.print(trial.report(found), markup=False)
+    if any(one.level == trial.WRONG for one in found):
+        name = assignment if not students else f"{assignment} --students {students}"
+        fail(f"something is wrong; loopbook try {name} --student ID --exercise N shows a variant")
+
+
 class Grade(typer.core.TyperCommand):
     """A command that lists, where its help is asked for, what it writes."""
 
