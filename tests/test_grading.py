@@ -155,7 +155,7 @@ class TestAClass:
             assert (summary.graded, summary.kept) == (1, 3)
             key = course.assignment.question("s2", "1").key["y"].solution.replace("\N{NO-BREAK SPACE}", " ")
             page = (graded[1] / "feedback" / "s2" / "feedback.md").read_text(encoding="utf-8")
-            assert f"key: `{key}`" in page
+            assert f"Key: `{key}`" in page
         finally:
             path.write_bytes(before)
             course.grade("graded")

@@ -28,6 +28,10 @@ if TYPE_CHECKING:
 
 #: What became of a submission: nothing handed in, nothing that could be run, run in part, run to its end.
 MISSING, NOT_RUN, STOPPED, COMPLETE = "missing", "not run", "stopped", "complete"
+#: Kinds of `Look`.
+OWNER, ODD, EXTRA = "owner", "odd lines", "extra"
+#: So many answers to what is not asked are told.
+MOST_EXTRA = 20
 #: An address of memory, in an error's text, differs from run to run.
 ADDRESS = re.compile(r"\b0x[0-9a-fA-F]{6,}\b")
 
@@ -98,6 +102,20 @@ class CellError:
 
 
 @dataclass(frozen=True)
+class Look:
+    """Why an instructor should look at a submission.
+
+    Attributes:
+        kind: OWNER where it names another student, ODD where it told lines that are not answers, EXTRA where it answers
+            what is not asked, which is harmless.
+        says: the reason, in a sentence.
+    """
+
+    kind: str
+    says: str
+
+
+@dataclass(frozen=True)
 class Result:
     """The result of a submission.
 
@@ -108,7 +126,7 @@ class Result:
         fingerprint: of all that it depends on.
         status, says: "missing", "not run", "stopped" or "complete", and why.
         errors: of cells.
-        looks: why an instructor should look at the submission, in sentences.
+        looks: why an instructor should look at the submission.
         exercises: a `JudgedExercise` for each.
         owner: the student whom the notebook itself names; empty where it names none.
     """
@@ -121,7 +139,7 @@ class Result:
     status: str
     says: str
     errors: tuple[CellError, ...]
-    looks: tuple[str, ...]
+    looks: tuple[Look, ...]
     exercises: tuple[JudgedExercise, ...]
     owner: str = ""
 
@@ -150,7 +168,7 @@ class Result:
             **data
             | {
                 "errors": tuple(CellError(**one) for one in data["errors"]),
-                "looks": tuple(data["looks"]),
+                "looks": tuple(Look(**one) for one in data["looks"]),
                 "exercises": tuple(map(JudgedExercise.of_data, data["exercises"])),
             }
         )
@@ -202,21 +220,22 @@ def result(
     )
 
 
-def looks(student: str, outcome: Outcome, exercises: Sequence[JudgedExercise]) -> list[str]:
-    """Return why an instructor should look at a submission, in sentences."""
+def looks(student: str, outcome: Outcome, exercises: Sequence[JudgedExercise]) -> list[Look]:
+    """Return why an instructor should look at a submission, what is harmless last."""
     found = []
     others = [name for name in outcome.named if name != student]
     if others:
-        found.append(f"it names another student: {', '.join(map(harmless, others[:3]))}")
+        found.append(Look(OWNER, f"it names another student: {', '.join(map(harmless, others[:3]))}"))
     if outcome.odd:
-        found.append(f"it told {outcome.odd} lines that are not answers")
-    asked = {one.number: {answer.name for answer in one.answers} for one in exercises}
+        lines = f"{outcome.odd} line{'s' if outcome.odd > 1 else ''}"
+        found.append(Look(ODD, f"it told {lines} that could not be read as answers"))
+    more, asked = [], {one.number: {answer.name for answer in one.answers} for one in exercises}
     for number, given in outcome.answers.items():
         if number not in asked:
-            found.append(f"it answers {harmless(repr(number))}, which is not an exercise of this assignment")
+            more.append(f"it answers {harmless(repr(number))}, which is not an exercise of this assignment")
         elif extra := [name for name in given if name not in asked[number]]:
-            found.append(f"in exercise {number} it answers {harmless(repr(extra[0]))}, which is not asked")
-    return sorted(found)[:20]
+            more.append(f"in exercise {number} it answers {harmless(repr(extra[0]))}, which is not asked")
+    return [*found, *(Look(EXTRA, says) for says in sorted(more)[:MOST_EXTRA])]
 
 
 def _same_each_time(says):

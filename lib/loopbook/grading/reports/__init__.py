@@ -43,6 +43,7 @@ def write_all(
     """
     by_student = {mark.result.student: mark for mark in marks}
     marks = [by_student[student.id] for student in students if student.id in by_student]
+    notebooks = {path.stem for path in Path(folder, "notebooks").glob("*.html")}
     for one in registered():
-        for file, content in one.files(title, students, marks, complaints, notes, reveal):
+        for file, content in one.files(title, students, marks, complaints, notes, reveal, notebooks):
             files.write(Path(folder, file), content)

@@ -1,17 +1,17 @@
-"""What the results of a class say: sums, hard exercises, common mistakes, submissions that need a look."""
+"""What the results of a class say: sums, hard exercises, common mistakes."""
 
 from __future__ import annotations
 
 import re
 import statistics
 from collections import Counter
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from loopbook.exercises.judging import MISTAKE, RIGHT, UNJUDGED
-from loopbook.grading.reports.equal_answers import equal_answers
-from loopbook.grading.reports.wording import STATUSES, answer_in_words, explained, remarks, without_jail
+from loopbook.exercises.judging import MISTAKE, RIGHT
+from loopbook.grading.reports.wording import STATUSES
+from loopbook.grading.results import MISSING, NOT_RUN
 
 if TYPE_CHECKING:
     from loopbook.grading.marking import Marked
@@ -41,55 +41,47 @@ class Asked:
 
 @dataclass(frozen=True)
 class Exercise:
-    """An exercise with its mean points."""
+    """An exercise with its mean points, None while all of them wait for a mark."""
 
     number: str
     title: str
     points: float
-    mean: float
+    mean: float | None
     asked: tuple[Asked, ...]
 
     @property
     def fraction(self) -> float:
         """The mean as a fraction of the points."""
-        return self.mean / self.points if self.points else 0.0
+        return (self.mean or 0.0) / self.points if self.points else 0.0
 
 
 class Findings:
-    """All that a summary tells.
+    """What a summary tells of the points.
 
     Arguments:
         students: the roster.
         marks: a `Marked` for each submission.
-        complaints: sentences on what was handed in and could not be assigned to a student.
 
     Attributes:
-        handed_in: the results of those who handed something in; means are over those of them that count.
+        handed_in: the marks of those who handed something in.
         missing: the ids of those who did not, and `ungraded` of those without any result.
-        looks: pairs of an id and the reasons why somebody should look at the submission.
+        points: of the assignment.
+        sums: the points of those who have a grade; means are over these.
+        exercises: the hardest first.
         mistakes: number of exercise, quantity, sentence and count, the most common first.
-        equal: equal answers where the keys differ.
-        unjudged: number of exercise, quantity, id, answer in words and sentence of each answer that was not judged.
     """
 
-    def __init__(self, students: Sequence[Student], marks: Collection[Marked], complaints: Iterable[object] = ()):
-        results = [mark.result for mark in marks]
+    def __init__(self, students: Sequence[Student], marks: Collection[Marked]):
         self.names = {student.id: student.name for student in students}
-        self.complaints = tuple(map(str, complaints))
-        self.no_jail = without_jail(results)
-        self.handed_in = [result for result in results if result.status != "missing"]
-        self.missing: list[str] = [result.student for result in results if result.status == "missing"]
-        graded = {result.student for result in results}
+        self.handed_in = [mark for mark in marks if mark.result.status != MISSING]
+        self.missing: list[str] = [mark.result.student for mark in marks if mark.result.status == MISSING]
+        graded = {mark.result.student for mark in marks}
         self.ungraded = [student.id for student in students if student.id not in graded]
-        self.points: float = max((result.points for result in results), default=0)
+        self.points: float = max((mark.result.points for mark in marks), default=0)
         self.sums: list[float] = [mark.total for mark in marks if mark.total is not None]
-        self.looks: list[tuple[str, list[str]]] = [
-            (result.student, reasons) for result in self.handed_in if (reasons := _reasons(result))
-        ]
-        self.exercises: list[Exercise] = _exercises(self.handed_in)
-        self.mistakes: list[tuple[str, str, str, int]] = _mistakes(self.handed_in)
-        self.equal = equal_answers(self.handed_in)
-        self.unjudged: list[tuple[str, str, str, str, str]] = _unjudged(self.handed_in)
+        run = [mark for mark in self.handed_in if mark.result.status != NOT_RUN]
+        self.exercises: list[Exercise] = _exercises(run)
+        self.mistakes: list[tuple[str, str, str, int]] = _mistakes([mark.result for mark in run])
 
     def name(self, student: str) -> str:
         """The name of a student, by the id."""
@@ -134,40 +126,25 @@ def _width(points):
     return points
 
 
-def _reasons(result):
-    return [*result.looks, *remarks(result)]
-
-
-def _exercises(results):
+def _exercises(marks):
     """The exercises, the hardest first; equal ones in their own order."""
     found = {}
-    for result in results:
-        for exercise in result.exercises:
-            found.setdefault(exercise.number, []).append(exercise)
+    for mark in marks:
+        for exercise in mark.exercises:
+            found.setdefault(exercise.judged.number, []).append(exercise)
     exercises = []
     for number, given in found.items():
         counts = {}
         for exercise in given:
-            for verdict in exercise.answers:
-                counts.setdefault(verdict.name, Counter(dict.fromkeys(STATUSES, 0)))[verdict.status] += 1
+            for answer in exercise.judged.answers:
+                counts.setdefault(answer.name, Counter(dict.fromkeys(STATUSES, 0)))[answer.status] += 1
         asked = tuple(Asked(number, name, count) for name, count in counts.items())
-        mean = statistics.fmean(exercise.earned for exercise in given)
-        exercises.append(Exercise(number, given[0].title, given[0].points, mean, asked))
+        earned = [exercise.earned for exercise in given if exercise.earned is not None]
+        first = given[0].judged
+        exercises.append(
+            Exercise(number, first.title, first.points, statistics.fmean(earned) if earned else None, asked)
+        )
     return sorted(exercises, key=lambda exercise: exercise.fraction)
-
-
-def _unjudged(results):
-    """The answers that were not judged, in the order of the exercises."""
-    found, order = [], {}
-    for result in results:
-        for exercise in result.exercises:
-            for verdict in exercise.answers:
-                asked = exercise.number, verdict.name
-                place = order.setdefault(asked, len(order))
-                if verdict.status == UNJUDGED:
-                    answer = answer_in_words(verdict.answer)
-                    found.append((place, (*asked, result.student, answer, explained(verdict))))
-    return [one for _, one in sorted(found, key=lambda pair: pair[0])]
 
 
 def _mistakes(results):

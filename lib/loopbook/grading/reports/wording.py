@@ -1,4 +1,4 @@
-"""Words and numbers of the outputs, and texts of students made harmless for text and for Markdown."""
+"""Words and numbers of the outputs, and texts of students made harmless."""
 
 from __future__ import annotations
 
@@ -27,8 +27,6 @@ MOST_REMARKS = 20
 _JOINERS = "\u200c\u200d"
 _SETTINGS = ("Kp", "Ti", "Td", "Tf")
 _FRACTION = re.compile(r"-?[0-9]{1,300}/[1-9][0-9]{0,6}")
-#: What Markdown would take for more than text: signs anywhere, addresses, and what begins a list.
-_MARKDOWN = re.compile(r"[\\`*_{}\[\]<>#|~$&^@]|:(?=//)|(?<=www)\.|^[-+=]|(?<=^\d)[.)]|(?<=^\d\d)[.)]")
 
 
 def visible(text: str) -> str:
@@ -41,6 +39,16 @@ def visible(text: str) -> str:
     if line.isprintable():
         return line
     return "".join(c if c.isprintable() or c in _JOINERS else _escaped(c) for c in line)
+
+
+def spaced(text: str) -> str:
+    """Return a text as `visible` does, with a space at each end where it had one: there stands more beside it.
+
+    >>> spaced(" of \\n"), spaced("\\n"), spaced("")
+    (' of ', ' ', '')
+    """
+    line = visible(text)
+    return f"{' ' * text[:1].isspace()}{line}{' ' * text[-1:].isspace()}" if line else " " * bool(text)
 
 
 def _escaped(character):
@@ -165,43 +173,6 @@ def in_text(sentence: str) -> str:
     'here T_c = tau is asked'
     """
     return "".join(plain_words(piece) if place % 2 else piece for place, piece in enumerate(parts(sentence)))
-
-
-def in_markdown(text: str) -> str:
-    r"""Return a text that Markdown shows as it is, whatever is in it.
-
-    >>> print(in_markdown("<b>*x*</b> | $y$"))
-    \<b\>\*x\*\</b\> \| \$y\$
-    """
-    return _with_backslashes(visible(text))
-
-
-def _with_backslashes(line):
-    return _MARKDOWN.sub(r"\\\g<0>", line)
-
-
-def sentence_in_markdown(sentence: str) -> str:
-    r"""Return a sentence for Markdown in which formulas stay formulas.
-
-    >>> print(sentence_in_markdown("here $K < 4$ is *asked*"))
-    here $K \lt 4$ is \*asked\*
-    """
-    pieces = parts(sentence)
-    pieces[::2] = map(_with_backslashes, pieces[::2])
-    pieces[1::2] = [re.sub("[<>]", lambda sign: {"<": r"\lt", ">": r"\gt"}[sign[0]], piece) for piece in pieces[1::2]]
-    return "$".join(pieces)
-
-
-def code_in_markdown(text: str) -> str:
-    """Return a text as code for Markdown.
-
-    >>> code_in_markdown("a`b"), code_in_markdown("`")
-    ('``a`b``', '`` ` ``')
-    """
-    line = visible(text)
-    fence = "`" * (1 + max((len(run) for run in re.findall("`+", line)), default=0))
-    room = " " if line.startswith("`") or line.endswith("`") else ""
-    return f"{fence}{room}{line}{room}{fence}"
 
 
 def without_jail(results: Iterable[Result]) -> bool:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import importlib
 import inspect
 import pkgutil
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, TypeVar
@@ -25,8 +25,8 @@ __all__ = ["Output", "output", "registered"]
 #: What stands in the name of a file that is made for each student.
 STUDENT = "{student}"
 #: What a function may ask for, by the names of its parameters.
-OF_CLASS = ("title", "students", "marks", "complaints", "notes", "reveal")
-OF_STUDENT = ("title", "student", "mark", "reveal")
+OF_CLASS = ("title", "students", "marks", "complaints", "notes", "notebooks", "reveal")
+OF_STUDENT = ("title", "student", "mark", "notebooks", "reveal")
 
 _REGISTERED: dict[str, Output] = {}
 _Function = TypeVar("_Function", bound="Callable[..., str | bytes]")
@@ -59,6 +59,7 @@ class Output:
         complaints: Iterable[str] = (),
         notes: Iterable[str] = (),
         reveal: bool = False,
+        notebooks: Collection[str] = (),
     ) -> Iterator[tuple[str, str | bytes]]:
         """Yield the places of the files and their contents.
 
@@ -69,12 +70,13 @@ class Output:
             complaints: sentences on what was handed in and could not be assigned to a student.
             notes: sentences on how the class was graded.
             reveal: whether students see the keys.
+            notebooks: the ids of the students whose notebook was kept as it ran, ``notebooks/{student}.html``.
         Raises:
             GradingError: where what the function returns is neither text nor bytes.
         """
         known = {
             "title": title, "students": students, "marks": marks, "complaints": complaints, "notes": notes,
-            "reveal": reveal,
+            "reveal": reveal, "notebooks": notebooks,
         }  # fmt: skip
         if not self.is_for_each_student:
             yield self.file, self._made_of(known)
@@ -94,8 +96,9 @@ class Output:
 def output(file: str, what: str) -> Callable[[_Function], _Function]:
     """Register a function as what makes a file; it returns the text, or the bytes, that the file holds.
 
-    The parameters of the function say what it takes: any of title, students, marks, complaints, notes and reveal; where
-    a file is made for each student, any of title, student, mark and reveal. `Output.files` says what these are.
+    The parameters of the function say what it takes: any of title, students, marks, complaints, notes, notebooks and
+    reveal; where a file is made for each student, any of title, student, mark, notebooks and reveal. `Output.files`
+    says what these are.
 
     Arguments:
         file: its place in the folder of the grades, with "{student}" in it for a file for each student.

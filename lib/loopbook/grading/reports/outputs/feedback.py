@@ -1,98 +1,153 @@
-"""A page for each student: the points, what became of each answer, and what failed in the notebook."""
+"""A page for each student: the points, what became of each answer, and all that a complaint has to name."""
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import TYPE_CHECKING
 
-from loopbook.exercises.response import MARKS
-from loopbook.grading.reports import page
-from loopbook.grading.reports.outputs import output
+from loopbook.grading.reports import statement
+from loopbook.grading.reports.document import (
+    Block,
+    Caution,
+    Code,
+    Details,
+    Document,
+    Heading,
+    Judged,
+    Link,
+    Listing,
+    Paragraph,
+    Quiet,
+    Said,
+    Sentence,
+    Strong,
+    Verdicts,
+    person,
+)
+from loopbook.grading.reports.publishing import published
 from loopbook.grading.reports.wording import (
     NO_JAIL,
     answer_in_words,
-    code_in_markdown,
     explained,
-    in_markdown,
     in_text,
+    number,
     of_points,
     remarks,
-    sentence_in_markdown,
     visible,
-    without_jail,
 )
+from loopbook.grading.results import COMPLETE, MISSING, NOT_RUN
 
 if TYPE_CHECKING:
-    from loopbook.grading.marking import Marked
+    from loopbook.grading.marking import Marked, MarkedExercise
+    from loopbook.grading.results import JudgedAnswer
     from loopbook.grading.roster import Student
 
+_COMPLAIN = (
+    "Say which exercise and which quantity you mean, what you think is right, and why; show this page. It has the "
+    "question with your numbers, your answer as it was read, and the file that was graded."
+)
 
-@output("feedback/{student}/feedback.html", "the page of a student")
-def feedback_html(title: str, student: Student, mark: Marked, reveal: bool = False) -> str:
-    """Return a student's page as HTML that needs nothing but itself.
+
+@published("feedback/{student}/feedback", "the page of a student")
+def feedback(
+    title: str, student: Student, mark: Marked, reveal: bool = False, notebooks: Collection[str] = ()
+) -> Document:
+    """Return a student's page.
 
     Arguments:
         title: of the assignment.
         student: whose page it is.
         mark: of the submission.
         reveal: whether the keys are shown.
+        notebooks: the ids of the students whose notebook was kept as it ran.
     """
+    blocks = [Paragraph(person(student.name, student.id)), *_sums(mark), *_notebook(mark, student)]
+    for exercise in mark.exercises:
+        blocks += _exercise(exercise, reveal)
+    if mark.result.status != MISSING:
+        blocks += [Heading("If you disagree"), Paragraph(_COMPLAIN)]
+        if student.id in notebooks:
+            link = Link("notebook as it ran", f"../../notebooks/{student.id}.html")
+            blocks.append(Paragraph(("Your instructor has kept the ", link, ".")))
+    return Document(Sentence(title), f"{in_text(title)} · {visible(student.name)}", tuple(blocks))
+
+
+def _sums(mark: Marked) -> list[Block]:
+    """The points, and what was taken off or is to come."""
+    result, total = mark.result, mark.total
+    known = sum(one.earned for one in mark.exercises if one.earned is not None) - mark.deduction
+    if total is not None:
+        blocks: list[Block] = [Paragraph(Strong(of_points(total, result.points)))]
+    elif result.status in (MISSING, NOT_RUN):
+        blocks = [Paragraph(Strong(f"no points yet, of {number(result.points)}"))]
+    else:
+        blocks = [
+            Paragraph((Strong(f"{of_points(max(0.0, known), result.points)} so far"), ": a part waits for a mark."))
+        ]
+    if mark.late:
+        blocks.append(Paragraph(Said(mark.late)))
+    if mark.comments:
+        blocks += [Heading("From your instructor"), Listing(tuple(map(Said, mark.comments)))]
+    return blocks
+
+
+def _notebook(mark: Marked, student: Student) -> list[Block]:
+    """The file that was graded, and what became of it besides its answers."""
     result = mark.result
-    body = [f"<h1>{page.sentence(title)}</h1>"]
-    body.append(f'<p>{page.of_student(student.name)} <span class="quiet">{page.escaped(student.id)}</span></p>')
-    body.append(f"<p><strong>{of_points(mark.total or 0, result.points)}</strong></p>")
-    if without_jail([result]):
-        body.append(f'<p class="warning">{NO_JAIL}</p>')
-    if notes := remarks(result):
-        body.append("<h2>The notebook</h2>")
-        body += ["<ul>", *(f"<li>{page.of_student(note)}</li>" for note in notes), "</ul>"]
-    for exercise in result.exercises:
-        earned = of_points(exercise.earned, exercise.points)
-        heading = f"Exercise {page.escaped(exercise.number)} · {page.sentence(exercise.title)}"
-        body.append(f'<h2>{heading} <span class="quiet">({earned})</span></h2>')
-        body += page.listed((verdict.status, _line(verdict, reveal)) for verdict in exercise.answers)
-    return page.page(f"{in_text(title)} · {visible(student.name)}", body)
+    blocks: list[Block] = [] if result.jailed else [Caution(NO_JAIL)]
+    if result.owner and result.owner != student.id:
+        owner, own = Code(result.owner), Code(student.id)
+        blocks.append(
+            Caution(
+                (
+                    "This is somebody else's notebook: it was made for ",
+                    owner,
+                    ", and graded by the numbers of ",
+                    own,
+                    ".",
+                )
+            )
+        )
+    notes = remarks(result)
+    if not (notes or result.file):
+        return blocks
+    blocks.append(Heading("The notebook"))
+    if result.file:
+        verb = "Graded was" if result.status == COMPLETE else "Handed in was"
+        blocks.append(Paragraph((f"{verb} the file ", Code(result.file), ".")))
+    return [*blocks, Listing(tuple(map(Said, notes)))] if notes else blocks
 
 
-def _line(verdict, reveal):
-    """A verdict as HTML."""
-    line = page.marked(verdict.status, f"<code>{page.escaped(verdict.name)}</code> ")
-    if says := explained(verdict):
-        line += f": {page.sentence(says)}"
-    if answer := answer_in_words(verdict.answer):
-        line += f'<div class="answer">Your answer: <code>{page.of_student(answer)}</code></div>'
+def _exercise(marked: MarkedExercise, reveal: bool) -> list[Block]:
+    judged = marked.judged
+    earned = "waits for a mark" if marked.earned is None else of_points(marked.earned, judged.points)
+    heading = (f"Exercise {judged.number} · ", Sentence(judged.title), " ", Quiet(f"({earned})"))
+    blocks: list[Block] = [Heading(heading), Verdicts(tuple(_line(one, reveal) for one in judged.answers))]
+    if marked.comments:
+        blocks.append(Listing(tuple(("Your instructor: ", Said(one)) for one in marked.comments)))
+    if marked.history:
+        blocks.append(Details("How these points came about", (Listing(tuple(map(Said, marked.history))),)))
+    if question := _question(judged):
+        blocks.append(Details("The question, with your numbers", question))
+    return blocks
+
+
+def _question(judged):
+    """The statement, without its heading, and the numbers."""
+    asked = judged.statement
+    if asked.startswith("**Exercise "):  # the heading above says it
+        asked = asked.partition("\n")[2]
+    blocks = statement.blocks(asked)
+    if judged.given:
+        given = [part for name, value in judged.given for part in (", ", Code(name), f" = {value}")]
+        blocks = (*blocks, Paragraph(("Your numbers: ", *given[1:], ".")))
+    return blocks
+
+
+def _line(judged: JudgedAnswer, reveal: bool) -> Judged:
+    below = []
+    if answer := answer_in_words(judged.answer):
+        below.append(("Your answer: ", Code(answer)))
     if reveal:
-        line += f'<div class="answer">Key: <code>{page.escaped(verdict.key)}</code></div>'
-    return line
-
-
-@output("feedback/{student}/feedback.md", "the same as Markdown")
-def feedback_markdown(title: str, student: Student, mark: Marked, reveal: bool = False) -> str:
-    """Return a student's page as Markdown.
-
-    Arguments:
-        title: of the assignment.
-        student: whose page it is.
-        mark: of the submission.
-        reveal: whether the keys are shown.
-    """
-    result = mark.result
-    lines = [f"# {sentence_in_markdown(title)}", ""]
-    lines += [f"{in_markdown(student.name)} ({in_markdown(student.id)})", ""]
-    lines += [f"**{of_points(mark.total or 0, result.points)}**", ""]
-    if without_jail([result]):
-        lines += [f"**{NO_JAIL}**", ""]
-    if notes := remarks(result):
-        lines += ["## The notebook", "", *(f"- {in_markdown(note)}" for note in notes), ""]
-    for exercise in result.exercises:
-        heading = f"Exercise {in_markdown(exercise.number)} · {sentence_in_markdown(exercise.title)}"
-        lines += [f"## {heading} ({of_points(exercise.earned, exercise.points)})", ""]
-        for verdict in exercise.answers:
-            status, says = verdict.status, explained(verdict)
-            line = f"- {MARKS[status][0]} {code_in_markdown(verdict.name)} **{status}**"
-            lines.append(line + (f": {sentence_in_markdown(says)}" if says else ""))
-            if answer := answer_in_words(verdict.answer):
-                lines.append(f"  - your answer: {code_in_markdown(answer)}")
-            if reveal:
-                lines.append(f"  - key: {code_in_markdown(verdict.key)}")
-        lines.append("")
-    return "\n".join(lines)
+        below.append(("Key: ", Code(judged.key)))
+    return Judged(judged.status, judged.name, Sentence(explained(judged)) if explained(judged) else "", tuple(below))

@@ -1,255 +1,197 @@
-"""The summary for the instructor, as HTML and as Markdown."""
+"""The summary for the instructor: what to look at first, and then how the class did."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
-from loopbook.grading.reports import page
+from loopbook.grading.reports.concerns import Case, Concern, concerns
+from loopbook.grading.reports.document import (
+    Block,
+    Caution,
+    Code,
+    Details,
+    Document,
+    Heading,
+    Histogram,
+    Lines,
+    Link,
+    Listing,
+    Paragraph,
+    Said,
+    Sentence,
+    Status,
+    Table,
+    Text,
+    person,
+)
 from loopbook.grading.reports.findings import Findings
-from loopbook.grading.reports.histogram import histogram_svg, histogram_text, histogram_words
-from loopbook.grading.reports.outputs import output
+from loopbook.grading.reports.outputs import registered
+from loopbook.grading.reports.publishing import published
 from loopbook.grading.reports.wording import (
     NO_JAIL,
     STATUSES,
-    code_in_markdown,
     counted,
-    in_markdown,
     in_text,
     number,
     percent,
-    sentence_in_markdown,
+    without_jail,
 )
+from loopbook.grading.results import NOT_RUN
 
 if TYPE_CHECKING:
     from loopbook.grading.marking import Marked
     from loopbook.grading.roster import Student
 
-_EQUAL = "The numbers of these students differ, so that their answers should. That is a reason to look, and no proof."
-_LEFT_ALONE = "Files that were left alone"
-_UNJUDGED = "Not judged"
-_WHY_UNJUDGED = "These answers earn nothing, because they could not be judged. You may see what was meant."
-#: So many of the answers that were not judged are told.
-MOST_UNJUDGED = 100
-_NONE = "Nothing."
+#: So many cases of one kind are told.
+MOST_CASES = 100
 
 
-@output("summary.html", "the summary for the instructor")
-def summary_html(
-    title: str, students: Sequence[Student], marks: Collection[Marked], complaints: Iterable[object] = ()
-) -> str:
-    """Return the summary as a page that needs nothing but itself.
-
-    Arguments:
-        title: of the assignment.
-        students: the roster.
-        marks: a `Marked` for each submission.
-        complaints: sentences on what was handed in and could not be assigned to a student.
-    """
-    found = Findings(students, marks, complaints)
-    body = [f"<h1>{page.sentence(title)}: summary</h1>"]
-    if found.no_jail:
-        body.append(f'<p class="warning">{NO_JAIL}</p>')
-    body += [f"<p>{line}</p>" for line in _overview(found)]
-    if found.sums and found.points:
-        body += ["<h2>Points</h2>", histogram_svg(found.steps, histogram_words(found.steps))]
-
-    body.append("<h2>To look at</h2>")
-    rows = [(_student(found, one), "<br>".join(map(page.of_student, reasons))) for one, reasons in found.looks]
-    body += page.table("Submissions to look at", ["student", "why"], rows) if rows else [f"<p>{_NONE}</p>"]
-    if found.complaints:
-        body += [f"<h2>{_LEFT_ALONE}</h2>", "<ul>"]
-        body += [*(f"<li>{page.of_student(complaint)}</li>" for complaint in found.complaints), "</ul>"]
-    for heading, ids in _absent(found):
-        body += [f"<h2>{heading}</h2>", f"<p>{', '.join(_student(found, one) for one in ids)}</p>"]
-
-    body.append("<h2>Equal answers where the numbers differ</h2>")
-    body.append(f"<p>{_EQUAL if found.equal else _NONE}</p>")
-    if found.equal:
-        rows = [
-            (
-                page.escaped(one.number),
-                f"<code>{page.escaped(one.name)}</code>",
-                f"<code>{page.of_student(one.answer)}</code>",
-                *(", ".join(_student(found, student) for student in ids) for ids in (one.right, one.others)),
-            )
-            for one in found.equal
-        ]
-        body += page.table("Equal answers", ["exercise", "quantity", "answer", "right for", "not right for"], rows)
-
-    if found.exercises:
-        rows = [
-            (
-                f"{page.escaped(one.number)} · {page.sentence(one.title)}",
-                percent(one.fraction),
-                f"{number(one.mean)} of {number(one.points)}",
-            )
-            for one in found.exercises
-        ]
-        body.append("<h2>Exercises, the hardest first</h2>")
-        body += page.table("Exercises", ["exercise", "mean", "points"], rows, counts=(1, 2))
-        rows = [
-            (
-                page.escaped(asked.number),
-                f"<code>{page.escaped(asked.name)}</code>",
-                percent(asked.fraction),
-                *(str(asked.counts[status]) for status in STATUSES),
-            )
-            for one in found.exercises
-            for asked in one.asked
-        ]
-        head = ["exercise", "quantity", "in percent", *map(page.marked, STATUSES)]
-        body += ["<h2>Answers</h2>", *page.table("Answers", head, rows, counts=range(2, len(head)))]
-    if found.unjudged:
-        rows = [
-            (
-                page.escaped(exercise),
-                f"<code>{page.escaped(name)}</code>",
-                _student(found, student),
-                f"<code>{page.of_student(answer)}</code>" if answer else "",
-                page.of_student(says),
-            )
-            for exercise, name, student, answer, says in found.unjudged[:MOST_UNJUDGED]
-        ]
-        body += [f"<h2>{_UNJUDGED}</h2>", f"<p>{_WHY_UNJUDGED}{_more(found)}</p>"]
-        body += page.table(_UNJUDGED, ["exercise", "quantity", "student", "answer", "why"], rows)
-    if found.mistakes:
-        rows = [
-            (page.escaped(exercise), f"<code>{page.escaped(name)}</code>", str(count), page.sentence(says))
-            for exercise, name, says, count in found.mistakes
-        ]
-        head = ["exercise", "quantity", "how often", "mistake"]
-        body += ["<h2>Most common mistakes</h2>", *page.table("Most common mistakes", head, rows, counts=(2,))]
-    return page.page(f"{in_text(title)}: summary", body)
-
-
-@output("summary.md", "the same as Markdown")
-def summary_markdown(
-    title: str, students: Sequence[Student], marks: Collection[Marked], complaints: Iterable[object] = ()
-) -> str:
-    """Return the summary as Markdown, with the distribution in text.
+@published("summary", "the summary for the instructor")
+def summary(
+    title: str,
+    students: Sequence[Student],
+    marks: Collection[Marked],
+    complaints: Sequence[str] = (),
+    notes: Sequence[str] = (),
+    notebooks: Collection[str] = (),
+) -> Document:
+    """Return the summary.
 
     Arguments:
         title: of the assignment.
         students: the roster.
         marks: a `Marked` for each submission.
         complaints: sentences on what was handed in and could not be assigned to a student.
+        notes: sentences on how the class was graded.
+        notebooks: the ids of the students whose notebook was kept as it ran.
     """
-    found = Findings(students, marks, complaints)
-    lines = [f"# {sentence_in_markdown(title)}: summary", ""]
-    if found.no_jail:
-        lines += [f"**{NO_JAIL}**", ""]
-    for line in _overview(found):
-        lines += [line, ""]
+    found = Findings(students, marks)
+    graded, names = {mark.result.student for mark in marks}, {student.id: student.name for student in students}
+
+    def named(id: str) -> Text:
+        """A student, with links to what there is of the submission."""
+        if id not in graded:
+            return person(names.get(id, id), id)
+        shown: Text = Link(person(names.get(id, id), id), f"feedback/{id}/feedback.html")
+        return (shown, " · ", Link("notebook", f"notebooks/{id}.html")) if id in notebooks else shown
+
+    blocks: list[Block] = []
+    if without_jail(mark.result for mark in marks):
+        blocks.append(Caution(NO_JAIL))
+    blocks += [Paragraph(line) for line in _overview(found)]
+    if notes:
+        blocks += [Heading("How the class was graded"), Listing(tuple(map(Said, notes)))]
     if found.sums and found.points:
-        lines += ["## Points", "", "```text", *histogram_text(found.steps), "```", ""]
-
-    lines += ["## To look at", ""]
-    lines += [f"- {_named(found, one)}: {'; '.join(map(in_markdown, reasons))}" for one, reasons in found.looks]
-    lines += [""] if found.looks else [_NONE, ""]
-    if found.complaints:
-        lines += [f"## {_LEFT_ALONE}", ""]
-        lines += [*(f"- {in_markdown(complaint)}" for complaint in found.complaints), ""]
-    for heading, ids in _absent(found):
-        lines += [f"## {heading}", "", ", ".join(_named(found, one) for one in ids), ""]
-
-    lines += ["## Equal answers where the numbers differ", "", _EQUAL if found.equal else _NONE, ""]
-    if found.equal:
-        rows = [
-            (
-                in_markdown(one.number),
-                _code(one.name),
-                _code(one.answer),
-                *(", ".join(_named(found, student) for student in ids) for ids in (one.right, one.others)),
-            )
-            for one in found.equal
-        ]
-        lines += _table(["exercise", "quantity", "answer", "right for", "not right for"], rows)
-
-    if found.exercises:
-        rows = [
-            (
-                f"{in_markdown(one.number)} · {_cell(one.title)}",
-                percent(one.fraction),
-                f"{number(one.mean)} of {number(one.points)}",
-            )
-            for one in found.exercises
-        ]
-        lines += ["## Exercises, the hardest first", "", *_table(["exercise", "mean", "points"], rows)]
-        rows = [
-            (
-                in_markdown(asked.number),
-                _code(asked.name),
-                percent(asked.fraction),
-                *(str(asked.counts[status]) for status in STATUSES),
-            )
-            for one in found.exercises
-            for asked in one.asked
-        ]
-        lines += ["## Answers", "", *_table(["exercise", "quantity", "in percent", *STATUSES], rows)]
-    if found.unjudged:
-        rows = [
-            (
-                in_markdown(exercise),
-                _code(name),
-                _named(found, student),
-                _code(answer) if answer else "",
-                in_markdown(says),
-            )
-            for exercise, name, student, answer, says in found.unjudged[:MOST_UNJUDGED]
-        ]
-        lines += [f"## {_UNJUDGED}", "", f"{_WHY_UNJUDGED}{_more(found)}", ""]
-        lines += _table(["exercise", "quantity", "student", "answer", "why"], rows)
-    if found.mistakes:
-        rows = [
-            (in_markdown(exercise), _code(name), str(count), _cell(says))
-            for exercise, name, says, count in found.mistakes
-        ]
-        lines += ["## Most common mistakes", "", *_table(["exercise", "quantity", "how often", "mistake"], rows)]
-    return "\n".join(lines)
+        blocks += [Heading("Points"), Histogram(tuple(found.steps))]
+    blocks += _to_look_at(*concerns(marks, complaints), named)
+    for heading, ids in (("Missing", found.missing), ("Not graded yet", found.ungraded)):
+        if ids:
+            blocks += [Heading(heading), Listing(tuple(map(named, ids)))]
+    blocks += [*_late(marks, named), *_by_hand(marks, named), *_exercises(found), *_files()]
+    return Document((Sentence(title), ": summary"), f"{in_text(title)}: summary", tuple(blocks))
 
 
 def _overview(found):
     """Lines on how many there are, and how they did."""
     many = [counted(len(found.handed_in), "submission")]
-    many += [f"{len(found.missing)} missing"] if found.missing else []
-    many += [f"{len(found.ungraded)} not graded yet"] if found.ungraded else []
-    lines = [", ".join(many) + "."]
+    not_run = sum(mark.result.status == NOT_RUN for mark in found.handed_in)
+    waiting = len(found.handed_in) - len(found.sums) - not_run
+    counts = {"missing": len(found.missing), "not graded yet": len(found.ungraded), "not run": not_run}
+    counts["waiting for a mark"] = waiting
+    lines = [", ".join([*many, *(f"{count} {what}" for what, count in counts.items() if count)]) + "."]
     if found.sums:
         mean = f"Mean {number(found.mean)}, median {number(found.median)}"
-        lines.append(f"{mean} of {number(found.points)} points, over the submissions.")
+        lines.append(f"{mean} of {number(found.points)} points, over {counted(len(found.sums), 'grade')}.")
     return lines
 
 
-def _more(found):
-    """What is said where not all of the answers that were not judged are told."""
-    more = len(found.unjudged) - MOST_UNJUDGED
-    return f" There are {more} more, on the pages of the students." if more > 0 else ""
+def _to_look_at(costly: list[Concern], harmless: list[Case], named) -> list[Block]:
+    blocks: list[Block] = [Heading("To look at")]
+    if costly:
+        blocks.append(Paragraph("In the order of the points that may hang on it, for each student."))
+    for concern in costly:
+        blocks += [Heading(concern.title, level=3), Paragraph(concern.advice)]
+        blocks += _cases(concern.title, concern.cases, named)
+    if not costly:
+        blocks.append(Paragraph("Nothing." if not harmless else "Nothing on which points hang."))
+    if harmless:
+        count = counted(len(harmless), "remark")
+        blocks.append(Details(f"{count} on which no points hang", tuple(_cases("Harmless", harmless, named))))
+    return blocks
 
 
-def _absent(found):
-    """Headings with the ids of those of whom there is nothing to judge."""
-    return [pair for pair in (("Missing", found.missing), ("Not graded yet", found.ungraded)) if pair[1]]
+def _cases(caption: str, cases: Sequence[Case], named) -> list[Block]:
+    rows = [
+        (Lines(tuple(map(named, case.students))) if case.students else "nobody", number(case.points), case.what)
+        for case in cases[:MOST_CASES]
+    ]
+    more = len(cases) - MOST_CASES
+    table = Table(caption, ["student", "points", "what"], rows, counts=frozenset({1}))
+    return [table, Paragraph(f"There are {more} more, on the pages of the students.")] if more > 0 else [table]
 
 
-def _student(found, student):
-    return f'{page.of_student(found.name(student))} <span class="quiet">{page.escaped(student)}</span>'
+def _late(marks, named) -> list[Block]:
+    rows = [(named(mark.result.student), number(mark.deduction), Said(mark.late)) for mark in marks if mark.late]
+    if not rows:
+        return []
+    return [Heading("Late"), Table("Late", ["student", "points off", "why"], rows, counts=frozenset({1}))]
 
 
-def _named(found, student):
-    return f"{in_markdown(found.name(student))} ({in_markdown(student)})"
+def _by_hand(marks, named) -> list[Block]:
+    rows = [
+        (
+            named(mark.result.student),
+            one.judged.number,
+            number(one.judged.earned),
+            "" if one.earned is None else number(one.earned),
+            Lines(tuple(map(Said, (*one.comments, *one.history)))),
+        )
+        for mark in marks
+        for one in mark.exercises
+        if one.comments or one.history or one.earned not in (None, one.judged.earned)
+    ]
+    if not rows:
+        return []
+    head = ["student", "exercise", "by the grader", "by hand", "comments and history"]
+    return [Heading("Marks by hand"), Table("Marks by hand", head, rows, counts=frozenset({2, 3}))]
 
 
-def _cell(sentence):
-    """A sentence with formulas in a table: a bar in a formula would end the cell."""
-    return sentence_in_markdown(sentence.replace("|", r"\vert ") if "$" in sentence else sentence)
+def _exercises(found: Findings) -> list[Block]:
+    if not found.exercises:
+        return []
+    rows = [
+        (
+            (f"{one.number} · ", Sentence(one.title)),
+            *(("", "") if one.mean is None else (percent(one.fraction), f"{number(one.mean)} of {number(one.points)}")),
+        )
+        for one in found.exercises
+    ]
+    head: list[Text] = ["exercise", "mean", "points"]
+    blocks: list[Block] = [
+        Heading("Exercises, the hardest first"),
+        Table("Exercises", head, rows, counts=frozenset({1, 2})),
+    ]
+    answers = [
+        (asked.number, Code(asked.name), percent(asked.fraction), *(str(asked.counts[status]) for status in STATUSES))
+        for one in found.exercises
+        for asked in one.asked
+    ]
+    head = ["exercise", "quantity", "in percent", *map(Status, STATUSES)]
+    blocks += [Heading("Answers"), Table("Answers", head, answers, counts=frozenset(range(2, len(head))))]
+    if found.mistakes:
+        mistakes = [(place, Code(name), str(count), Sentence(says)) for place, name, says, count in found.mistakes]
+        head = ["exercise", "quantity", "how often", "mistake"]
+        blocks += [
+            Heading("Most common mistakes"),
+            Table("Most common mistakes", head, mistakes, counts=frozenset({2})),
+        ]
+    return blocks
 
 
-def _code(text):
-    """Code in a table: a bar would end the cell even there."""
-    return code_in_markdown(text).replace("|", "\\|")
-
-
-def _table(head, rows):
-    lines = [head, ["---"] * len(head), *rows]
-    return [*("| " + " | ".join(line) + " |" for line in lines), ""]
+def _files() -> list[Block]:
+    rows = [(Code(one.file), one.what) for one in registered()]
+    return [
+        Heading("Files"),
+        Details("What was written, and what for", (Table("Files", ["file", "what it is"], rows),)),
+    ]

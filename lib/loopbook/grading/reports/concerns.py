@@ -1,0 +1,177 @@
+"""What an instructor should look at, in the order of the points that may hang on it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from loopbook.exercises.judging import OPEN, UNJUDGED
+from loopbook.grading.reports.document import Code, Lines, Said, Sentence, Text
+from loopbook.grading.reports.equal_answers import equal_answers
+from loopbook.grading.reports.wording import answer_in_words, explained, remarks
+from loopbook.grading.results import MISSING, NOT_RUN, ODD, OWNER
+
+if TYPE_CHECKING:
+    from loopbook.grading.marking import Marked
+    from loopbook.grading.results import JudgedAnswer, JudgedExercise
+
+_BY_HAND = "To give points, enter them in marks.csv and grade again."
+
+
+@dataclass(frozen=True)
+class Case:
+    """One reason to look.
+
+    Attributes:
+        students: the ids of those whom it concerns; none for a file of nobody.
+        points: that may hang on it, for each of them.
+        what: there is.
+    """
+
+    students: tuple[str, ...]
+    points: float
+    what: Text
+
+
+@dataclass(frozen=True)
+class Concern:
+    """Reasons of one kind.
+
+    Attributes:
+        title: of them.
+        advice: what the instructor can do.
+        cases: the costliest first, in the order of the roster.
+    """
+
+    title: str
+    advice: str
+    cases: tuple[Case, ...] = field(default=())
+
+    @property
+    def points(self) -> float:
+        """The points that may hang on one of its cases, at most."""
+        return max((case.points for case in self.cases), default=0)
+
+
+NOBODYS = Concern(
+    "Files that were not graded",
+    "Somebody is missing, and one of these may be what was handed in: give the file a name or a folder that says whose "
+    "it is, and grade again.",
+)
+NOT_RUNNING = Concern(
+    "Notebooks that could not be run",
+    f"The grade is an empty cell. Repair the file or ask for another one, and grade again. {_BY_HAND}",
+)
+WAITING = Concern("Answers that wait for a mark", "The grade is an empty cell until there are points in marks.csv.")
+CUT_SHORT = Concern(
+    "Notebooks that failed before all answers were in",
+    "What is open brings nothing. More time or memory may help (--cell-seconds, --seconds, --megabytes). " + _BY_HAND,
+)
+UNREAD = Concern("Answers that could not be judged", f"They bring nothing, and you may see what was meant. {_BY_HAND}")
+FLAGGED = Concern(
+    "Answers that were judged and are unusual", "The verdict stands unless you say otherwise in marks.csv."
+)
+OF_ANOTHER = Concern(
+    "Somebody else's notebooks",
+    "They were graded by the numbers of the student who handed them in. Ask whose work they are.",
+)
+TELLS_TOO_MUCH = Concern(
+    "Notebooks that wrote where answers are told",
+    "Nothing is gained by it: what could not be read does not count. Look at the notebook for what was tried.",
+)
+EQUAL = Concern(
+    "Equal answers where the numbers differ",
+    "Keys differ there, so that answers should. That is a reason to ask, and no proof.",
+)
+
+
+def concerns(marks: Collection[Marked], complaints: Sequence[str] = ()) -> tuple[list[Concern], list[Case]]:
+    """Return what an instructor should look at, the costliest first, and the cases on which no points hang.
+
+    Arguments:
+        marks: a `Marked` for each submission.
+        complaints: sentences on what was handed in and could not be assigned to a student.
+    """
+    found: dict[Concern, list[Case]] = {}
+    harmless: list[Case] = []
+    for concern, case in _cases(marks, complaints):
+        if case.points > 0 and concern:
+            found.setdefault(concern, []).append(case)
+        else:
+            harmless.append(case)
+    costly = [
+        Concern(one.title, one.advice, tuple(sorted(found[one], key=lambda case: -case.points)))
+        for one in _ORDER
+        if one in found
+    ]
+    return sorted(costly, key=lambda one: -one.points), harmless
+
+
+#: Where equal points hang on two of them, this is their order.
+_ORDER = (NOT_RUNNING, NOBODYS, WAITING, CUT_SHORT, UNREAD, FLAGGED, OF_ANOTHER, TELLS_TOO_MUCH, EQUAL)
+
+
+def share(exercise: JudgedExercise, answer: JudgedAnswer) -> float:
+    """Return the points that one answer brings where it is right."""
+    return exercise.points * answer.weight / sum(one.weight for one in exercise.answers)
+
+
+def _cases(marks, complaints) -> Iterator[tuple[Concern | None, Case]]:
+    results = [mark.result for mark in marks]
+    points = max((result.points for result in results), default=0)
+    somebody_is_missing = any(result.status == MISSING for result in results)
+    told = {f"{result.file}: {result.says}" for result in results if result.status == NOT_RUN}
+    for complaint in complaints:
+        if complaint not in told:
+            yield NOBODYS, Case((), points if somebody_is_missing else 0, Said(complaint))
+    for mark in marks:
+        if mark.result.status == MISSING:
+            continue
+        for concern, at_stake, what in _of_one(mark):
+            yield concern, Case((mark.result.student,), at_stake, what)
+    yield from ((EQUAL, case) for case in _equal(results))
+
+
+def _of_one(mark):
+    """The cases of one submission, without its student."""
+    result, judged = mark.result, [one.judged for one in mark.exercises]
+    notes = Lines(tuple(map(Said, remarks(result))))
+    if result.status == NOT_RUN:
+        yield NOT_RUNNING, result.points, notes
+        return
+    if notes.texts:
+        yield (
+            CUT_SHORT,
+            sum(share(one, answer) for one in judged for answer in one.answers if answer.status == OPEN),
+            notes,
+        )
+    waiting = set(mark.waiting)
+    for exercise in judged:
+        for answer in exercise.answers:
+            at_stake, place = share(exercise, answer), (f"{exercise.number} · ", Code(answer.name))
+            shown = answer_in_words(answer.answer)
+            given = (": ", Code(shown)) if shown else ""
+            if (exercise.number, answer.name) in waiting:
+                yield WAITING, at_stake, (place, given)
+            elif answer.status == UNJUDGED:
+                yield UNREAD, at_stake, (place, given, "; ", Said(explained(answer)))
+            if answer.look:
+                yield FLAGGED, at_stake, (place, given, f"; judged {answer.status}: ", Sentence(answer.look))
+    for look in result.looks:
+        at_stake = {OWNER: result.points, ODD: result.earned}.get(look.kind, 0)
+        yield {OWNER: OF_ANOTHER, ODD: TELLS_TOO_MUCH}.get(look.kind), at_stake, Said(look.says)
+
+
+def _equal(results):
+    """The cases of equal answers."""
+    shares = {
+        (exercise.number, answer.name): share(exercise, answer)
+        for result in results
+        for exercise in result.exercises
+        for answer in exercise.answers
+    }
+    for one in equal_answers(results):
+        right = f"; right for {', '.join(one.right)}, not for {', '.join(one.others)}" if one.right else "; wrong"
+        what = (f"{one.number} · ", Code(one.name), ": ", Code(one.answer), right)
+        yield Case((*one.right, *one.others), shares[one.number, one.name], what)

@@ -1,0 +1,476 @@
+"""The pages of students and the summary: what they say, as HTML and as Markdown."""
+
+import re
+from dataclasses import replace
+
+import pytest
+
+from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
+from loopbook.grading.marking import Marked, MarkedExercise
+from loopbook.grading.reports import markdown, page
+from loopbook.grading.reports.concerns import concerns
+from loopbook.grading.reports.equal_answers import equal_answers, significant_digits
+from loopbook.grading.reports.findings import Findings
+from loopbook.grading.reports.outputs import registered
+from loopbook.grading.reports.outputs.feedback import feedback
+from loopbook.grading.reports.outputs.summary import summary
+from loopbook.grading.reports.wording import answer_in_words
+from loopbook.grading.results import CellError, JudgedAnswer, JudgedExercise, Look
+from loopbook.grading.roster import Student
+from small_class import (
+    ADA,
+    BOB,
+    CLASS,
+    EVE,
+    HOSTILE,
+    MISSING,
+    NAMED,
+    RESULTS,
+    RIGHT_ALL,
+    STOPPED,
+    TITLE,
+    ZOE,
+    changed,
+    gain,
+    own_mistake,
+    result_of,
+)
+from whole_pages import Checker, assert_whole
+
+on_page, in_markdown = page.written, markdown.written
+
+
+def read(document):
+    """What a reader of the page sees."""
+    return Checker(on_page(document)).text
+
+
+def both(document):
+    """What stands on the page, and in the Markdown without its backslashes."""
+    return read(document), re.sub(r"\\(?=[^A-Za-z0-9\s])", "", in_markdown(document))
+
+
+def waiting(mark, number, *, earned=None, **more):
+    """The same with an exercise that has other points, none where it waits."""
+    exercises = tuple(
+        replace(one, earned=earned, **more) if one.judged.number == number else one for one in mark.exercises
+    )
+    return replace(mark, exercises=exercises)
+
+
+def with_answer(mark, number, name, **fields):
+    """The same with other fields of one answer."""
+    exercises = tuple(
+        replace(one, answers=tuple(replace(a, **fields) if a.name == name else a for a in one.answers))
+        if one.number == number
+        else one
+        for one in mark.result.exercises
+    )
+    return changed(mark, exercises=exercises)
+
+
+NOT_RUN = result_of(BOB, {}, status="not run", says="two notebooks: a.ipynb and <b>.ipynb; keep one")
+
+
+def documents():
+    by_id = {student.id: student for student in CLASS}
+    found = [
+        feedback(TITLE, by_id[mark.result.student], mark, True, ["s1001", "s1002"]) for mark in [*RESULTS, NOT_RUN]
+    ]
+    complaints = ["two notebooks: a.ipynb and <b>.ipynb; keep one"]
+    return [*found, summary(TITLE, CLASS, RESULTS, complaints, [HOSTILE], ["s1001"]), summary(TITLE, CLASS, [])]
+
+
+@pytest.mark.parametrize("document", documents(), ids=lambda one: one.name)
+def test_pages_are_whole_and_need_nothing_else(document):
+    assert_whole(on_page(document))
+
+
+# The page of a student.
+
+
+def test_a_students_texts_are_shown_and_not_run():
+    text = on_page(feedback(TITLE, Student("s1003", HOSTILE), STOPPED))
+    assert Checker(text).text.count("<script>alert(1)</script>") >= 3
+    assert "<script" not in text
+    assert "\\x1b[31m" in text
+    assert "\\u202e" in text
+
+
+def test_the_page_says_what_became_of_each_answer():
+    text = read(feedback(TITLE, BOB, NAMED))
+    assert "3.67 of 5 points" in text
+    assert "(2.67 of 4 points)" in text
+    assert "≈ K mistake: That is the gain itself" in text
+    assert f"Your answer: {float(gain.question(BOB.id).values['K']):.12g}" in text
+
+
+def test_the_page_in_markdown():
+    text = in_markdown(feedback(TITLE, BOB, NAMED))
+    assert text.startswith(f"# {TITLE}\n\nBob Bode (s1002)\n\n**3.67 of 5 points**\n")
+    assert r"- ≈ `K` **mistake**: That is the gain itself, $\frac{K}{1}$, not twice of it." in text
+
+
+def test_the_page_says_what_stopped_and_what_failed():
+    for text in both(feedback(TITLE, EVE, STOPPED)):
+        assert "stopped in cell 4: it took longer than 60 s" in text
+        assert "cell 3: NameError" in text
+        assert "stream" not in text  # what makes the instructor look is for the instructor
+
+
+def test_the_page_names_the_question_the_numbers_and_the_file():
+    given = (("K", "2 K/%"), ("T", "30 s"))
+    exercises = tuple(replace(one, given=given) for one in NAMED.result.exercises[:1])
+    for text in both(feedback(TITLE, BOB, changed(NAMED, exercises=exercises))):
+        values = gain.question(BOB.id).values
+        assert "The question, with your numbers" in text
+        assert re.search(rf"A lag of {values['T']}.s with the gain", text)
+        assert "Your numbers: " in text
+        assert text.count("Gain below") == 1  # the heading of the statement is that of the exercise
+        assert "s1002/heater.ipynb" in text
+
+
+def test_the_page_says_whose_notebook_it_is():
+    for text in both(feedback(TITLE, BOB, changed(NAMED, owner="s1001"))):
+        assert "This is somebody else's notebook: it was made for" in text
+    for owner in ("", "s1002"):
+        assert "somebody else" not in read(feedback(TITLE, BOB, changed(NAMED, owner=owner)))
+    assert "<script" not in on_page(feedback(TITLE, BOB, changed(NAMED, owner=HOSTILE)))
+
+
+def test_the_page_says_what_waits_and_what_was_given_by_hand():
+    mark = waiting(NAMED, "1", comments=("the plot has *no* axes",), history=("3 points before",))
+    for text in both(feedback(TITLE, BOB, mark)):
+        assert "1 of 5 points so far" in text
+        assert "(waits for a mark)" in text
+        assert "Your instructor: the plot has *no* axes" in text
+        assert "3 points before" in text
+    for text in both(feedback(TITLE, BOB, waiting(NAMED, "1", earned=3.5))):
+        assert "4.5 of 5 points" in text
+        assert "(3.5 of 4 points)" in text
+
+
+def test_the_page_says_what_being_late_cost():
+    mark = replace(NAMED, late="2 days late: 20 % off, 0.73 points", deduction=0.7333, comments=("See me.",))
+    for text in both(feedback(TITLE, BOB, mark)):
+        assert "2.93 of 5 points" in text
+        assert "2 days late: 20 % off, 0.73 points" in text
+        assert "See me." in text
+
+
+def test_who_has_no_points_yet_is_not_told_zero():
+    for mark in (NOT_RUN, MISSING):
+        for text in both(feedback(TITLE, BOB, mark)):
+            assert "no points yet, of 5" in text
+    assert "If you disagree" not in read(feedback(TITLE, ZOE, MISSING))
+    assert "two notebooks: a.ipynb and <b>.ipynb; keep one" in read(feedback(TITLE, BOB, NOT_RUN))
+
+
+def test_the_page_leads_to_the_notebook_that_was_kept():
+    link = 'href="../../notebooks/s1002.html"'
+    assert link in on_page(feedback(TITLE, BOB, NAMED, notebooks=["s1002"]))
+    assert link not in on_page(feedback(TITLE, BOB, NAMED, notebooks=["s1001"]))
+    assert "](../../notebooks/s1002.html)" in in_markdown(feedback(TITLE, BOB, NAMED, notebooks=["s1002"]))
+
+
+# What to look at.
+
+
+def told(marks, complaints=()):
+    """The concerns by their titles: pairs of the students and the points of each case; and the harmless ones."""
+    costly, harmless = concerns(marks, complaints)
+    cases = {one.title: [(*case.students, round(case.points, 3)) for case in one.cases] for one in costly}
+    return cases, [case.students for case in harmless]
+
+
+def test_nothing_is_to_look_at_where_all_is_well():
+    assert told([RIGHT_ALL, NAMED, MISSING]) == ({}, [])
+    for text in both(summary(TITLE, CLASS, [RIGHT_ALL])):
+        assert "Nothing." in text
+
+
+def test_what_may_cost_most_comes_first():
+    waits = replace(with_answer(RIGHT_ALL, "2", "action", weight=1), exercises=RIGHT_ALL.exercises)
+    flagged = with_answer(NAMED, "1", "T", look="it has no value at $t = 0$")
+    cases, harmless = told([waits, flagged, STOPPED, NOT_RUN])
+    assert list(cases) == [
+        "Notebooks that could not be run",
+        "Notebooks that failed before all answers were in",
+        "Answers that could not be judged",
+        "Answers that were judged and are unusual",
+    ]
+    assert cases["Notebooks that could not be run"] == [("s1002", 5)]
+    assert cases["Notebooks that failed before all answers were in"] == [("s1003", 2.333)]  # H and the action are open
+    assert cases["Answers that were judged and are unusual"] == [("s1002", 1.333)]
+    assert harmless == [("s1003",)]  # nothing earned that an odd line could have brought
+
+
+def test_the_costliest_case_of_a_kind_comes_first():
+    many = [changed(result_of(one, {"2": {"action": "either"}}), student=one.id) for one in CLASS[:2]]
+    many.append(result_of(EVE, {"1": {"H": "K | $x$"}}))
+    cases, _ = told(many)
+    assert cases == {"Answers that could not be judged": [("s1003", 1.333), ("s1001", 1), ("s1002", 1)]}
+
+
+def test_weights_say_what_hangs_on_an_answer():
+    heavy = with_answer(result_of(BOB, {"1": {"H": "K | x"}}), "1", "H", weight=2)
+    assert told([heavy])[0] == {"Answers that could not be judged": [("s1002", 2)]}
+
+
+def test_a_notebook_of_somebody_else_and_odd_lines():
+    looks = (Look("owner", "it names another student: s1001"), Look("odd lines", "it told 3 lines"))
+    cases, harmless = told([changed(NAMED, looks=(*looks, Look("extra", "it answers '9'")))])
+    assert cases == {
+        "Somebody else's notebooks": [("s1002", 5)],
+        "Notebooks that wrote where answers are told": [("s1002", 3.667)],
+    }
+    assert harmless == [("s1002",)]
+
+
+def test_what_failed_after_the_answers_were_in_is_harmless():
+    errors = (CellError(9, "NameError: x"),)
+    assert told([changed(RIGHT_ALL, errors=errors)]) == ({}, [("s1001",)])
+    unanswered = result_of(BOB, {"1": {"K": 1.0}}, errors=errors)
+    assert told([unanswered]) == ({"Notebooks that failed before all answers were in": [("s1002", 3.667)]}, [])
+    text = read(summary(TITLE, CLASS, [changed(RIGHT_ALL, errors=errors)]))
+    assert "1 remark on which no points hang" in text
+    assert "cell 9: NameError: x" in text
+
+
+def test_a_file_of_nobody_costs_where_somebody_is_missing():
+    complaint = "x_<y>.ipynb: is named after no student of the roster"
+    assert told([RIGHT_ALL], [complaint]) == ({}, [()])
+    assert told([RIGHT_ALL, MISSING], [complaint]) == ({"Files that were not graded": [(5,)]}, [])
+    for marks in ([], [RIGHT_ALL], [MISSING]):
+        for text in both(summary(TITLE, CLASS, marks, [complaint])):
+            assert complaint in text
+
+
+def test_what_was_not_run_is_told_once():
+    complaint = f"{NOT_RUN.result.file}: {NOT_RUN.result.says}"
+    assert told([NOT_RUN, MISSING], [complaint]) == ({"Notebooks that could not be run": [("s1002", 5)]}, [])
+    assert read(summary(TITLE, CLASS, [NOT_RUN, MISSING], [complaint])).count("keep one") == 1
+
+
+def test_equal_answers_are_told():
+    marks = [given(ADA, 123.4), given(BOB, "123.4")]
+    assert told(marks)[0] == {"Equal answers where the numbers differ": [("s1001", "s1002", 1.333)]}
+    (line,) = [line for line in in_markdown(summary(TITLE, CLASS, marks)).splitlines() if "123.4" in line]
+    assert line.endswith(" | 1.33 | 1 · `K`: `123.4`; wrong |")
+    copied = 2 * float(gain.question(ADA.id).values["K"])
+    text = read(summary(TITLE, CLASS, [given(ADA, copied), given(BOB, copied)]))
+    assert "; right for s1001, not for s1002" in text
+
+
+# The summary.
+
+
+def test_the_summary_counts():
+    for text in both(summary(TITLE, CLASS, RESULTS)):
+        assert "3 submissions, 1 missing." in text
+        assert "Mean 2.89, median 3.67 of 5 points, over 3 grades." in text
+        assert "wrote to the answers" in text
+        assert "stopped in cell 4" in text
+
+
+def test_means_are_over_those_who_have_a_grade():
+    marks = [RIGHT_ALL, NOT_RUN, waiting(changed(NAMED, student="s1003"), "1")]
+    for text in both(summary(TITLE, CLASS, marks)):
+        assert "3 submissions, 1 not graded yet, 1 not run, 1 waiting for a mark." in text
+        assert "Mean 5, median 5 of 5 points, over 1 grade." in text
+    means = {one.number: one.mean for one in Findings(CLASS, marks).exercises}
+    assert means == {"1": 4, "2": 1}
+    for text in both(summary(TITLE, CLASS, [waiting(RIGHT_ALL, "1")])):
+        assert "Mean" not in text
+
+
+def test_the_summary_of_nothing():
+    for students, marks in [((), []), (CLASS, []), (CLASS, [MISSING])]:
+        assert "0 submissions" in read(summary(TITLE, students, marks))
+        assert "0 submissions" in in_markdown(summary(TITLE, students, marks))
+
+
+def test_many_cases_of_one_kind_are_cut():
+    many = [result_of(Student(f"s{k}", "A"), {"1": {"H": "K | $x$"}}) for k in range(103)]
+    for text in both(summary(TITLE, CLASS, many)):
+        assert "There are 3 more, on the pages of the students." in text
+
+
+def test_the_summary_leads_to_the_pages_and_to_the_notebooks_that_were_kept():
+    document = summary(TITLE, CLASS, RESULTS, notebooks=["s1003"])
+    text = on_page(document)
+    assert '<a href="feedback/s1003/feedback.html"><bdi>=HYPERLINK(1)</bdi>' in text
+    assert '<a href="notebooks/s1003.html">notebook</a>' in text
+    assert "[notebook](notebooks/s1003.html)" in in_markdown(document)
+    assert "notebooks/s1003" not in on_page(summary(TITLE, CLASS, RESULTS))
+
+
+def test_who_has_no_page_has_no_link():
+    text = on_page(summary(TITLE, CLASS, [RIGHT_ALL, MISSING]))
+    assert 'href="feedback/s1004/feedback.html"' in text
+    assert "feedback/s1002" not in text
+
+
+def test_how_the_class_was_graded_is_told():
+    note = "exercise 1: the numbers of the release are not those that the module draws for 3 students"
+    for text in both(summary(TITLE, CLASS, RESULTS, notes=[note])):
+        assert note in text
+    assert "How the class was graded" not in read(summary(TITLE, CLASS, RESULTS))
+
+
+def test_late_hand_ins_and_marks_by_hand_are_in_the_summary():
+    late = replace(NAMED, late="2 days late: 20 % off", deduction=0.7)
+    by_hand = waiting(RIGHT_ALL, "1", earned=3.5, comments=("no axes",), history=("the grader's points were 2 before",))
+    document = summary(TITLE, CLASS, [late, by_hand])
+    for text in both(document):
+        assert "no axes" in text
+        assert "the grader's points were 2 before" in text
+    lines = in_markdown(document).splitlines()
+    assert any(re.search(r"Bob Bode \(s1002\).* \| 0.7 \| 2 days late: 20 % off \|", line) for line in lines)
+    assert any(re.search(r"Ada Lovelace .* \| 1 \| 4 \| 3.5 \| no axes; the grader's", line) for line in lines)
+
+
+def test_every_file_is_said_what_it_is_for():
+    for text in both(summary(TITLE, CLASS, RESULTS)):
+        for one in registered():
+            assert one.file in text
+            assert one.what in text
+
+
+def test_the_tables_of_the_summary_in_markdown_have_equal_rows():
+    widths, text = set(), in_markdown(summary(TITLE, CLASS, RESULTS))
+    for block in re.findall(r"(?:^\|.*\n)+", text, re.MULTILINE):
+        counts = {len(re.findall(r"(?<!\\)\|", line)) for line in block.splitlines()}
+        assert len(counts) == 1
+        widths |= counts
+    assert widths == {4, 5, 9}
+
+
+def test_the_words_of_a_verdict_are_those_of_its_status():
+    statuses = {answer.status for mark in RESULTS for one in mark.result.exercises for answer in one.answers}
+    text = read(summary(TITLE, CLASS, RESULTS))
+    assert statuses == {RIGHT, MISTAKE, WRONG, UNJUDGED, OPEN}
+    assert all(status in text for status in statuses)
+
+
+@pytest.mark.parametrize(
+    ("settings", "says"),
+    [
+        ({"Kp": 2, "Ti": "inf", "Td": 0, "Tf": 0, "form": "parallel"}, "Kp = 2"),
+        (
+            {"Kp": "1/3", "Ti": "2 min", "Td": 1.5, "form": "serial"},
+            "Kp = 0.33333333, Ti = 2 min, Td = 1.5, serial form",
+        ),
+        ({"Kp": "1/0", "Ti": [HOSTILE[:5]], "form": {}}, "Kp = 1/0, Ti = [</cod]"),
+        ({"Kp": 2, "form": "parallel", "more": 1}, "{Kp: 2, form: parallel, more: 1}"),
+        ({"Kp": "9" * 400 + "/7", "form": ""}, "Kp = 9999"),
+    ],
+)
+def test_a_controller_in_words(settings, says):
+    assert answer_in_words(settings).startswith(says)
+
+
+def test_the_hardest_exercise_comes_first():
+    found = Findings(CLASS, RESULTS)
+    assert [one.number for one in found.exercises] == ["1", "2"]
+    assert found.exercises[0].fraction == pytest.approx((4 + 8 / 3 + 0) / 12)
+    assert {asked.name: asked.fraction for asked in found.exercises[0].asked} == {
+        "K": pytest.approx(1 / 3),
+        "T": pytest.approx(2 / 3),
+        "H": pytest.approx(2 / 3),
+    }
+
+
+def test_mistakes_are_counted():
+    third = result_of(EVE, own_mistake)
+    (most, *_) = Findings(CLASS, [RIGHT_ALL, NAMED, third]).mistakes
+    assert most[:2] == ("1", "K")
+    assert most[2].startswith("That is the gain itself")
+    assert most[3] == 2
+
+
+def test_a_mistake_is_one_whatever_the_numbers_in_its_sentence():
+    hours = [result_of(one, {"1": {"T": gain.question(one.id).given("T") / 3600.0}}) for one in CLASS]
+    assert Findings(CLASS, hours).mistakes == [("1", "T", "The …\N{NO-BREAK SPACE}s are not in hours.", 4)]
+    assert Findings(CLASS, hours[:1]).mistakes[0][2].startswith("The 40\N{NO-BREAK SPACE}s are")
+
+
+def summing(points, earned):
+    """A marked result of so many points of those possible."""
+    exercise_ = JudgedExercise("1", "Gain", points, "", (), (JudgedAnswer("K", WRONG, "", 1, "2"),))
+    return Marked(replace(RIGHT_ALL.result, exercises=(exercise_,)), (MarkedExercise(exercise_, earned),))
+
+
+@pytest.mark.parametrize("points", [0.5, 1, 3, 5, 10, 24, 37, 100, 250])
+def test_every_sum_has_its_place_in_the_distribution(points):
+    earned = [points * k / 30 for k in range(31)]
+    steps = Findings(CLASS, [summing(points, sum_) for sum_ in earned]).steps
+    assert sum(count for _, _, count in steps) == 31
+    assert steps[0][0] == 0
+    assert steps[-1][1] == points
+    assert 1 <= len(steps) <= 12
+
+
+def test_the_distribution_has_the_colours_of_its_page():
+    drawing = re.search(r"<svg.*</svg>", on_page(summary(TITLE, CLASS, RESULTS)), re.DOTALL)[0]
+    colours = set(re.findall(r"(?:fill|stroke): (#\w+|\w+)", drawing))
+    assert colours == {"#0072b2", "#888888", "currentColor", "none"}
+    assert 'aria-label="Distribution of the points: 0 to 0.5: 1 submission;' in drawing
+
+
+def test_a_sum_of_thirds_is_not_below_its_step():
+    steps = Findings(CLASS, [summing(5, 1 / 3 + 1 / 3 + 1 / 3 - 1e-16)]).steps
+    assert [count for _, _, count in steps if count] == [1]
+    assert next(lower for lower, _, count in steps if count) == 1
+
+
+# Equal answers.
+
+
+def given(student, K, H="", way=""):
+    return result_of(student, {"1": {"K": K, "H": H or None}, "2": {"action": way or None}})
+
+
+def equal(marks):
+    return equal_answers([mark.result for mark in marks])
+
+
+def test_an_answer_that_is_right_for_another_student_is_reported():
+    copied = 2 * float(gain.question(ADA.id).values["K"])
+    (found,) = equal([given(ADA, copied), given(BOB, f"{copied} K/%"), given(BOB, copied), given(ZOE, 1.0)])
+    assert (found.number, found.name, found.right, found.others) == ("1", "K", (ADA.id,), (BOB.id,))
+
+
+def test_an_equal_wrong_expression_is_reported_in_any_spacing():
+    (found,) = equal([given(ADA, None, "3.217/(s + 1)"), given(BOB, None, "3.217 / (s+1)")])
+    assert (found.name, found.right, found.others) == ("H", (), (ADA.id, BOB.id))
+
+
+def test_equal_answers_that_mean_little_are_not_reported():
+    assert equal([given(ADA, 100), given(BOB, 100)]) == []  # few digits
+    assert equal([given(ADA, None, way="direct"), given(BOB, None, way="direct")]) == []  # words
+    assert equal([given(ADA, 123.4), given(ADA, 123.4)]) == []  # the same numbers
+    assert equal([given(ADA, None), given(BOB, None)]) == []  # nothing
+
+
+@pytest.mark.parametrize(
+    ("answer", "digits"),
+    [
+        (0, 1),
+        (2.0, 1),
+        (0.00250, 2),
+        (1e-7, 1),
+        (2.345e10, 4),
+        (1200, 2),
+        (True, 0),
+        (None, 0),
+        ("S12, S13", 0),
+        ("K/(T*s + 1)", 1),
+        ("2.50 min", 2),
+        (".125", 3),
+        ([1, 2.345], 4),
+        ({"unreadable": "it has no form"}, 0),
+    ],
+)
+def test_significant_digits(answer, digits):
+    assert significant_digits(answer) == digits
