@@ -219,8 +219,8 @@ FAULTS = {
         (ODD, "a place of the solution has no value"),
     ),
     "a slow key": (
-        exercise('y=number(3 * K, "K", "it")', shown="time.sleep(0.3)\n    "),
-        (ODD, "the key takes 0.3 s a variant"),
+        exercise('y=number(3 * K, "K", "it")', shown="sum(range(10**8 // 5))\n    "),
+        (ODD, "the key takes 0."),
     ),
 }
 

@@ -12,7 +12,7 @@ import itertools
 import re
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
-from time import perf_counter
+from time import perf_counter, process_time
 from typing import TYPE_CHECKING
 
 from loopbook.exercises.parameters import written
@@ -20,7 +20,7 @@ from loopbook.exercises.reading import listed, shortened
 from loopbook.exercises.timeout import limited
 from loopbook.grading import GradingError
 from loopbook.grading.release import asked
-from loopbook.grading.trial.answers import forms, others
+from loopbook.grading.trial.answers import as_given, forms, others
 from loopbook.grading.trial.checks import LEVELS, NOTE, ODD, OF_ALL, OF_ONE, WRONG, Seen, Variant, in_short
 from loopbook.validation import did_you_mean
 
@@ -28,19 +28,9 @@ if TYPE_CHECKING:
     from loopbook.grading.assignment import Assignment
 
 __all__ = [
-    "LEVELS",
-    "NOTE",
-    "ODD",
-    "WRONG",
-    "Surprise",
-    "Trial",
-    "as_text",
-    "ids",
-    "one_variant",
-    "only",
-    "report",
-    "try_all",
-]
+    "LEVELS", "NOTE", "ODD", "WRONG", "Surprise", "Trial", "Variant", "as_given", "as_text", "ids", "one_variant",
+    "only", "report", "try_all",
+]  # fmt: skip
 
 #: What an exercise may take (s), and the functions of its author for one variant.
 PATIENCE, PATIENCE_WITH_KEY = 20.0, 10.0
@@ -139,7 +129,7 @@ class _Attempt:
 
     def variant(self, student, place):
         """The variant of a student; None where a function of the author fails."""
-        begin = perf_counter()
+        begin = process_time()
         try:
             question = limited(PATIENCE_WITH_KEY, self.complete, student)
         except TimeoutError:
@@ -149,7 +139,7 @@ class _Attempt:
             what = re.sub(r" (?:for|of \w+ for student) [^:]*(?=:)", "", str(problem), count=1)
             self.note(Seen(WRONG, shortened(what, LONGEST_PROBLEM)), student)
         else:
-            return Variant(student, place, question, perf_counter() - begin)
+            return Variant(student, place, question, process_time() - begin)
         return None
 
     def complete(self, student):

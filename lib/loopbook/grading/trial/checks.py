@@ -33,8 +33,10 @@ if TYPE_CHECKING:
 WRONG, ODD, NOTE = LEVELS = ("wrong", "surprising", "note")
 #: What happens in a smaller part of the variants is chance, and surprises nobody.
 RARE = 0.1
-#: An answer that is the same in so large a part of the variants is guessed; all those of an exercise are copied.
-USUAL, COPIED = 0.9, 0.5
+#: An answer that is the same in so large a part of the variants is guessed.
+USUAL = 0.9
+#: What is so in every other variant is no chance any more: answers that can be copied, or a sentence that is not heard.
+OFTEN = 0.5
 #: A given changes by this fraction where it is rounded in its fourth digit.
 ROUNDING = sympy.Rational(5, 10_000)
 #: In so many variants the givens are changed, and pictures and solutions made: each takes its time.
@@ -190,7 +192,7 @@ def declared_mistakes(variant: Variant) -> Iterator[Seen]:
             elif told.status != MISTAKE or not told.says.startswith(text):
                 other = next((one for one in texts if told.says.startswith(one)), "")
                 gets = f'that of "{shortened(texts[other], LONGEST_ANSWER)}"' if other else "another sentence"
-                yield Seen(ODD, f"{mistake} gets {gets}", f"{in_short(value)}: {told.says}", RARE)
+                yield Seen(ODD, f"{mistake} gets {gets}", f"{in_short(value)}: {told.says}", OFTEN)
             elif type(variant.key[name]) is kinds.Number and variant.is_right(name, rounded(float(value))):
                 yield Seen(ODD, f"{mistake} is right when it is rounded", example, RARE)
 
@@ -216,7 +218,7 @@ def quantities_with_one_answer(variant: Variant) -> Iterator[Seen]:
     numbers = variant.of_kind(kinds.Number)
     for one, other in itertools.combinations(numbers, 2):
         if numbers[one].unit == numbers[other].unit and numbers[one].agrees(numbers[other].key):
-            yield Seen(ODD, f"{one} and {other} have the same answer", variant.solution(one), COPIED)
+            yield Seen(ODD, f"{one} and {other} have the same answer", variant.solution(one), OFTEN)
     for name, given in itertools.product(numbers, variant.numbers.keys() & variant.question.background.parameters):
         is_given = variant.exercise.parameters[given].unit == numbers[name].unit
         if is_given and numbers[name].key and numbers[name].agrees(float(variant.numbers[given])):
@@ -292,7 +294,7 @@ def equal_answers(variants: Sequence[Variant]) -> Iterator[Seen]:
         yield Seen(ODD, f"there are only {different} different variants")
     pairs = [pair for pair in itertools.pairwise(variants) if pair[0].question.values != pair[1].question.values]
     copied = [pair for pair in pairs if pair[1].all_right({name: as_given(kind) for name, kind in pair[0].key.items()})]
-    if len(copied) >= COPIED * len(pairs) > 0:
+    if len(copied) >= OFTEN * len(pairs) > 0:
         one, other = copied[0]
         says = f"the answers of one student are right for another one, {len(copied)} of {len(pairs)} times"
         yield Seen(ODD, says, f"{one.student} and {other.student}")

@@ -1,0 +1,47 @@
+"""The author's guide is true: its calls are those of the functions, and a class can have its assignments."""
+
+import pytest
+
+import authors_guide
+from loopbook.exercises.judging import RIGHT
+from loopbook.grading import trial
+from loopbook.grading.answer_sheet import FORMS
+from loopbook.grading.assignment import Assignment
+from loopbook.grading.release import notebook
+from loopbook.grading.roster import Student
+
+ASSIGNMENTS = authors_guide.assignments()
+STUDENTS = [f"s{number:03}" for number in range(12)]
+
+
+@pytest.mark.parametrize("name", [*authors_guide.TOOLS, *authors_guide.METHODS, *authors_guide.kinds()])
+def test_a_call_is_as_the_guide_says(name):
+    said, words = authors_guide.rows()[name]
+    assert said == authors_guide.call(name), "python tests/authors_guide.py prints the rows as they are now"
+    assert words
+
+
+def test_each_kind_of_answers_has_an_assignment():
+    assert sorted(ASSIGNMENTS) == sorted(authors_guide.kinds())
+
+
+@pytest.mark.parametrize("kind", ASSIGNMENTS)
+def test_an_assignment_of_the_guide_asks_for_its_kind_and_surprises_nobody(kind):
+    assignment = Assignment.of(ASSIGNMENTS[kind], kind)
+    asked = [one.maker for number in assignment.exercises for one in assignment.question("s1", number).key.values()]
+    assert kind in asked
+    for found in trial.try_all(assignment, STUDENTS, seconds=60):
+        assert not [one for one in found.surprises if one.level != trial.NOTE], trial.as_text(found)
+
+
+@pytest.mark.parametrize("kind", ASSIGNMENTS)
+def test_an_assignment_of_the_guide_can_be_released_and_answered(kind):
+    assignment = Assignment.of(ASSIGNMENTS[kind], kind)
+    made = notebook(assignment, Student("s1", "Ada"))
+    assert any("sheet.answer(" in cell.source for cell in made.cells)
+    for number in assignment.exercises:
+        variant = trial.Variant("s1", 0, assignment.question("s1", number), 0.0)
+        for name, one in variant.key.items():
+            form = eval(one.asking, dict(FORMS))
+            assert variant.judged(name, trial.as_given(one)).status == RIGHT
+            assert form.read(trial.as_given(one))
