@@ -1,12 +1,14 @@
 """Grading a class from end to end: release, submissions, grades; interrupted, resumed, on a cluster, without a jail."""
 
 import dataclasses
+import io
 import json
 import os
 import signal
 import subprocess
 import sys
 import time
+import zipfile
 from pathlib import Path
 
 import nbformat
@@ -121,8 +123,8 @@ class TestAClass:
     def test_everybody_has_what_is_due(self, graded):
         summary, folder = graded
         assert (summary.graded, summary.kept, summary.missing, summary.failures) == (4, 0, 1, ())
-        rows = (folder / "grades.csv").read_text(encoding="utf-8").splitlines()
-        assert [row.split(",")[-1] for row in rows] == ["A lag", "5", "0", "5", "5", ""]
+        rows = (folder / "grades.csv").read_text(encoding="utf-8-sig").splitlines()
+        assert [row.split(",")[-1] for row in rows] == ["points", "5", "0", "5", "5", ""]
 
     def test_a_mistake_is_named_and_an_error_told(self, graded):
         page = (graded[1] / "feedback" / "s1" / "feedback.md").read_text(encoding="utf-8")
@@ -263,7 +265,11 @@ def test_without_a_jail_every_output_says_so(course):
     assert "graded without a jail" in done.stderr
     for name, content in files(course.folder / "open").items():
         if name != ".lock":
-            assert b"without a jail" in content or b'"jailed": false' in content, name
+            told = [content]
+            if name.endswith(".zip"):
+                with zipfile.ZipFile(io.BytesIO(content)) as archive:
+                    told = [archive.read(member) for member in archive.namelist()]
+            assert all(b"without a jail" in one or b'"jailed": false' in one for one in told), name
 
 
 def test_what_the_judge_cannot_finish_is_not_judged(tmp_path, monkeypatch):

@@ -1,10 +1,9 @@
-"""Rosters of our own, of Canvas and of Moodle, and the submissions that belong to their students."""
+"""The submissions that belong to the students of a roster, in folders and in zip files."""
 
 import io
 import os
 import pickle
 import stat
-import string
 import sys
 import zipfile
 
@@ -13,8 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from loopbook.grading import GradingError, entries, submissions
-from loopbook.grading.owners import Owners
-from loopbook.grading.roster import POSSIBLE_ID, Student, read_roster
+from loopbook.grading.roster import Student
 from loopbook.grading.submissions import LARGEST, collect
 
 JANE = Student("s1001", "Jane Doe", "Doe, Jane", canvas_id="123", moodle_id="77001")
@@ -32,218 +30,6 @@ def attempted(function, *arguments):
         return function(*arguments), ""
     except GradingError as problem:
         return None, str(problem)
-
-
-# Rosters.
-
-
-@pytest.fixture
-def roster(tmp_path):
-    """Writes a roster and reads it."""
-
-    def read(content, encoding="utf-8"):
-        path = tmp_path / "roster.csv"
-        path.write_bytes(content if isinstance(content, bytes) else content.encode(encoding))
-        return read_roster(path)
-
-    return read
-
-
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig"])
-@pytest.mark.parametrize("delimiter", [",", ";", "\t"])
-def test_our_own_roster(roster, delimiter, encoding):
-    lines = ["Name,ID,e-mail,Email,canvas_id,Sortable", '"Zoë  Ünal",s2,,z@x.org,7,', "", '"O\'Brien",s1,,,,O Brien']
-    text = "\r\n".join(lines).replace(",", delimiter)
-    assert roster(text, encoding) == (
-        Student("s2", "Zoë Ünal", email="z@x.org", canvas_id="7"),
-        Student("s1", "O'Brien", sortable="O Brien"),
-    )
-
-
-CANVAS = """\
-Student,ID,SIS User ID,SIS Login ID,Section,Heater (11),Current Score
-,,,,,Manual Posting,
-    Points Possible,,,,,10,(read only)
-"Doe, Jane",123,A17,jane,"C1, C2",9.00,
-"Roe, John, Jr.",124,{sis},john,C1,,
-"Nguyễn, Thị, Anh",125,A19,{login},C1,,
-"=""=1+1""\",126,A20,odd,C1,,
-"Student, Test",999,,4f3c2a,C1,,
-"""
-
-
-@pytest.mark.parametrize(
-    ("sis", "login", "ids"),
-    [
-        ("A18", "anh", ["A17", "A18", "A19", "A20"]),
-        ("", "anh", ["jane", "john", "anh", "odd"]),
-        ("", "", ["123", "124", "125", "126"]),
-    ],
-)
-def test_the_gradebook_of_canvas(roster, sis, login, ids):
-    students = roster(CANVAS.format(sis=sis, login=login))
-    assert [student.id for student in students] == ids
-    assert [student.name for student in students] == ["Jane Doe", "John Roe Jr.", "Thị Anh Nguyễn", "=1+1"]
-    jane = Student(ids[0], "Jane Doe", "Doe, Jane", canvas_id="123", sis_id="A17", login="jane", section="C1, C2")
-    assert students[0] == jane
-
-
-def test_the_gradebook_of_canvas_with_first_and_last_names(roster):
-    header = "LastName;FirstName;ID;SIS Login ID;Section\n    Points Possible;;;;\n"
-    (jane,) = roster(header + "Doe;Jane;123;jane;C1\nStudent;Test;9;x;C1\n")
-    assert (jane.name, jane.sortable, jane.id, jane.canvas_id) == ("Jane Doe", "Doe, Jane", "jane", "123")
-
-
-def test_the_grading_worksheet_of_moodle(roster):
-    header = 'Identifier,"Full name","Email address",Status,Grade,"Maximum Grade","Last modified (grade)"\n'
-    jane = '"Participant 77001","Jane Doe",jane@x.org,"No submission",,10.00,-\n'
-    john = '"Participant 77002","John Roe",john@x.org,,,,\n'
-    assert roster(header + jane + john) == (
-        Student("77001", "Jane Doe", email="jane@x.org", moodle_id="77001"),
-        Student("77002", "John Roe", email="john@x.org", moodle_id="77002"),
-    )
-    (anonymous,) = roster("Identifier,Status,Grade\nParticipant 77001,,\n")
-    assert anonymous == Student("77001", "Participant 77001", moodle_id="77001")
-
-
-def test_the_participants_and_grades_of_moodle(roster):
-    (jane, john) = roster(
-        '"First name",Surname,"ID number","Email address",Groups\nJane,Doe,,j@x.org,"A, B"\nJohn,,17,r@x.org,\n'
-    )
-    assert jane == Student("j@x.org", "Jane Doe", "Doe, Jane", email="j@x.org", section="A, B")
-    assert john == Student("r@x.org", "John", "John", email="r@x.org", sis_id="17")
-    (jane,) = roster('"First name","Last name","ID number",Username,"Assignment: Heater (Real)"\nJane,Doe,,jane,9.0\n')
-    assert jane == Student("jane", "Jane Doe", "Doe, Jane", login="jane")
-
-
-@pytest.mark.parametrize(
-    ("content", "says"),
-    [
-        ("", "line 1: no header of a roster"),
-        ("Vorname,Nachname\na,b\n", "an export in English of Canvas's"),
-        ("id,name\n", "a header and no student"),
-        ("Student,ID\n    Points Possible,\n", "a header and no student"),
-        ("id,name\ns1,A\n\ns1,B\n", "line 4: the id 's1' is already that of line 2"),
-        ("id,name\ns1,A\nS1,B\n", "line 3: the id 'S1' is already that of line 2"),
-        ('id,name\ns1,"A\nB"\n,C\n', "line 4: a student without an id"),
-        (
-            "Student,ID,SIS User ID\nA,,\n",
-            "line 2: a student without an id; ids come from the first full of: SIS User ID",
-        ),
-        ("id,name\nNul.a,A\n", "line 2: 'Nul.a' cannot be an id"),
-        ("id,name\ncom1,A\n", "line 2: 'com1' cannot be an id"),
-        ("id,name\ns1.,A\n", "line 2: 's1.' cannot be an id"),
-        ("id,name\n../x,A\n", "line 2: '../x' cannot be an id"),
-        ("id,name\n.x,A\n", "line 2: '.x' cannot be an id"),
-        ("id,name\n2.3E+08,A\n", "line 2: '2.3E+08' cannot be an id"),
-        (f"id,name\n{'x' * 101},A\n", "at most 100 characters"),
-        ("id,name\nmüller,A\n", "line 2: 'müller' cannot be an id"),
-        ('id,name\ns1,"A\ns2,B\n', "no table"),
-        (f"id,name\ns1,{'x' * 200_000}\n", "line 2: no table"),
-        (b"id,name\ns1,M\xfcller\n", "line 2: no text in UTF-8"),
-        (b"PK\x03\x04\x14\x00\x06\x00", "line 1: no text"),
-        ("id,name\n".encode("utf-16"), "line 1: no text"),
-    ],
-)
-def test_a_roster_that_is_none(roster, content, says):
-    with pytest.raises(GradingError) as raised:
-        roster(content)
-    assert says in str(raised.value)
-    assert str(raised.value).startswith("roster.csv")
-    assert "\n" not in str(raised.value)
-
-
-def test_a_name_that_only_begins_like_a_device_is_an_id(roster):
-    assert [student.id for student in roster("id,name\nconrad,A\ncom10,B\ns.con,C\n")] == ["conrad", "com10", "s.con"]
-
-
-def test_a_roster_that_is_missing(tmp_path):
-    for path in (tmp_path / "none.csv", tmp_path):
-        with pytest.raises(GradingError, match="cannot be read"):
-            read_roster(path)
-
-
-@given(st.binary(max_size=60) | st.text(alphabet="id,name;\t\n\r\"'s1 \ufeff", max_size=60).map(str.encode))
-def test_any_bytes_are_a_roster_or_one_sentence(tmp_path_factory, content):
-    path = tmp_path_factory.getbasetemp() / "any.csv"
-    path.write_bytes(b"id,name\n" + content)
-    students, problem = attempted(read_roster, path)
-    assert all(POSSIBLE_ID.fullmatch(student.id) for student in students or ())
-    assert bool(students) != bool(problem)
-    assert "\n" not in problem
-
-
-# Owners.
-
-
-@pytest.mark.parametrize(
-    ("name", "student"),
-    [
-        ("s1001", JANE),
-        ("s1001.ipynb", JANE),
-        ("s1001.IPYNB", JANE),
-        ("doejane_123_456_heater.ipynb", JANE),
-        ("doejane_LATE_123_456_heater-1.ipynb", JANE),
-        ("müllerlüdenscheidtanne_125_456_a_b.ipynb", ANNE),
-        ("mu\u0308llerlu\u0308denscheidtanne_LATE_125_456_heater.ipynb", ANNE),
-        ("doejane_123_456_124_789_x.ipynb", JANE),  # a file's own name is the student's to choose
-        ("Jane Doe_77001_assignsubmission_file", JANE),
-        ("Jane Doe_77001_assignsubmission_file_", JANE),
-        ("Jane Doe_77001_assignsubmission_file_heater.ipynb", JANE),
-        ("Jane Doe_5_assignsubmission_file_John Roe_77002_assignsubmission_file_x.ipynb", JANE),
-        ("Participant_77002_assignsubmission_file_", JOHN),
-        ("Anne Müller-Lüdenscheidt_5_assignsubmission_file", ANNE),  # the number is that of another assignment
-    ],
-)
-def test_whose_it_is(name, student):
-    assert Owners(CLASS).of(name) == (student, "")
-
-
-@pytest.mark.parametrize(
-    ("name", "says"),
-    [
-        ("S1001", "no student"),
-        ("s1001 ", "no student"),
-        ("s100", "no student"),
-        ("Jane Doe", "no student"),
-        ("heater.ipynb", "no student"),
-        ("doejane_999_456_heater.ipynb", "999"),
-        ("roejohn_123_456_heater.ipynb", "has Canvas's number of s1001 and another name"),
-        ("x_9_123_456_heater.ipynb", "Canvas's number 9"),
-        ("doejane_123_124_777_x.ipynb", None),
-        ("anon_Ab3dE_456_heater.ipynb", "anonymous"),
-        ("LATE_anon_12345_456_heater.ipynb", "anonymous"),
-        ("anon_00123_123_456_x.ipynb", "anonymous"),
-        ("Group A_12_assignsubmission_file", "of Moodle that the roster does not have"),
-        ("Default group_assignsubmission_file", "no student"),
-        ("Participant_5_assignsubmission_file", "of Moodle"),
-    ],
-)
-def test_whose_it_is_not(name, says):
-    student, reason = Owners(CLASS).of(name)
-    assert (student, says) == (JANE, None) or (student is None and says in reason)
-
-
-def test_what_may_be_that_of_two():
-    twins = [Student("a", "Jane Doe"), Student("b", "Jané  Doe"), Student("c", "C", canvas_id="3", moodle_id="5")]
-    owners = Owners([*twins, Student("d", "D", canvas_id="3"), Student("e", "E", canvas_id="4")])
-    for name in ("Jane Doe_1_assignsubmission_file", "janedoe_1_2_x.ipynb", "c_3_4_x.ipynb", "x_4_8_3_9_y.ipynb"):
-        student, reason = owners.of(name)
-        assert student is None
-        assert reason.startswith("may be that of ")
-
-
-def test_a_name_decides_only_where_there_is_no_number():
-    owners = Owners([Student("a", "Jane Doe", "Doe, Jane"), JOHN])
-    assert owners.of("doejane_7_8_x.ipynb")[0].id == "a"
-    assert owners.of("roejohn_7_8_x.ipynb")[0] is None
-
-
-@given(st.text(alphabet=string.ascii_letters + string.digits + "_ -.ü", max_size=30))
-def test_the_name_of_a_file_stands_for_nobody_else(own):
-    """What a student chooses never makes a file that of another student."""
-    for written in (f"doejane_123_456_{own}.ipynb", f"Jane Doe_77001_assignsubmission_file_{own}.ipynb"):
-        assert Owners(CLASS).of(written) == (JANE, "")
 
 
 # Submissions in folders.

@@ -142,7 +142,8 @@ def ledger(
 
 
 ROSTER = (
-    "The class as CSV: id and name, or an export of Canvas or Moodle; if not given, roster.csv beside the assignment."
+    "The class as CSV: id and name, or an export of Canvas, Moodle or Gradescope; if not given, roster.csv beside the "
+    "assignment."
 )
 
 
@@ -167,10 +168,14 @@ def release(
             paths = [to / f"{given.name}.ipynb"]
             write(paths[0], notebooks.as_text(source(given)))
         else:
+            from loopbook.grading import lms
             from loopbook.grading.release import release
             from loopbook.grading.roster import read_roster
 
-            paths = release(given, read_roster(students or assignment.with_name("roster.csv")), to)
+            roster = read_roster(students or assignment.with_name("roster.csv"))
+            paths = release(given, roster, to)
+            for remark in lms.remarks(roster):
+                errors.print(remark, style="yellow", markup=False)
     except GradingError as error:
         fail(str(error))
     console.print(f"{len(paths)} notebook{'' if len(paths) == 1 else 's'} of {given.title!r} in {to}", markup=False)
@@ -293,8 +298,8 @@ def grade(
         os._exit(130)
     if without_jail:
         errors.print("graded without a jail: submissions ran with your own rights", style="bold red")
-    for complaint in done.complaints:
-        errors.print(complaint, style="yellow", markup=False)
+    for sentence in (*done.notes, *done.complaints):
+        errors.print(sentence, style="yellow", markup=False)
     for student, why in done.failures:
         errors.print(f"{student}: {why}", style="bold red", markup=False)
     if done.outdated:

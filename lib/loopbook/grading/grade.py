@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from loopbook.grading import GradingError, NoJail
+from loopbook.grading import GradingError, NoJail, lms
 from loopbook.grading.events import Outcome
 from loopbook.grading.jail import USUAL, Jail, Limits, demand_hidden
 from loopbook.grading.judge import Judge
@@ -103,6 +103,7 @@ class Summary:
         outdated: ids of students who were not to be graded and whose result is another one by now: the assignment, the
             submission or the limits have changed.
         complaints: sentences on files that are nobody's, or cannot be.
+        notes: sentences on the roster, and on the grades as the system takes them.
         failures: pairs of a student's id and a sentence: these have no result.
     """
 
@@ -111,6 +112,7 @@ class Summary:
     missing: int
     outdated: tuple[str, ...]
     complaints: tuple[str, ...]
+    notes: tuple[str, ...]
     failures: tuple[tuple[str, str], ...]
 
 
@@ -181,11 +183,12 @@ def grade(
             follow(len(wanted), done)
         stored = {student.id: one for student in students if (one := results.of(student.id))}
         marks = [Marked.of(one) for one in stored.values()]
+        notes += lms.remarks(students, assignment.title, marks)
         write_all(folder, assignment.title, students, marks, collection.complaints, notes, reveal)
         others = [student for student in students if student not in wanted and student.id in stored]
         outdated = [one.id for one in others if stored[one.id].fingerprint != task(one).fingerprint]
         missing = sum(student.id not in found for student in wanted)
-    return Summary(graded, kept, missing, tuple(outdated), collection.complaints, tuple(sorted(failures)))
+    return Summary(graded, kept, missing, tuple(outdated), collection.complaints, tuple(notes), tuple(sorted(failures)))
 
 
 def _demand_apart(folder, submissions):

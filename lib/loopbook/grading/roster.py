@@ -1,32 +1,21 @@
-"""Rosters: who takes part, from a list of one's own or from what Canvas and Moodle export.
-
-The columns are those that the systems write, in English. Canvas: Student (or LastName and FirstName), ID, SIS User ID,
-SIS Login ID, Section, then the assignments; below the header a row without a student where marks are posted by hand,
-and the row "Points Possible"; the test student last (lib/gradebook_exporter.rb and gradebook_importer.rb in
-https://github.com/instructure/canvas-lms). Moodle's grading worksheet: Identifier ("Participant 12345"), Full name, ID
-number or Email address ... (mod/assign/gradingtable.php and mod/assign/feedback/offline/importgradeslib.php in
-https://github.com/moodle/moodle). Moodle's grades and participants: First name, Last name or Surname, ID number,
-Username, Email address, Groups (grade/export/txt/grade_export_txt.php in the same).
-"""
+"""Rosters: who takes part, from a list of one's own or from what a learning management system exports."""
 
 from __future__ import annotations
 
-import csv
-import io
+import datetime
 import re
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from loopbook.grading import GradingError
+from loopbook.grading import GradingError, lms, tables
 
 #: What an id may be: it is the name of a folder on any system, and part of a web address.
 POSSIBLE_ID = re.compile(
     r"(?!(?i:con|prn|aux|nul|com\d|lpt\d)(?:\.|$))[A-Za-z0-9][A-Za-z0-9._@-]{0,99}(?<!\.)", re.ASCII
 )
-
-#: A name ending in one of these is read as Canvas does: "Doe, John, Jr." is John Doe Jr.
-_SUFFIX = re.compile(r"(?i)(sn?r\.?|senior|jn?r\.?|junior|ii|iii|iv|v|vi|esq\.?|esquire)")
+#: So many faults of a roster are told.
+MOST_FAULTS = 20
 
 
 @dataclass(frozen=True)
@@ -38,13 +27,18 @@ class Student:
         name: as it is shown.
         sortable: as it is sorted, "Doe, Jane"; Canvas puts it into the names of files.
         canvas_id: Canvas's number.
-        sis_id: the number in the student information system; Moodle's "ID number".
+        sis_id: the number in the student information system; Moodle's "ID number", Gradescope's "SID".
         login: the name to log in with.
         section: section or groups.
         email: the address.
         moodle_id: the number in Moodle's "Participant 12345", which belongs to one assignment.
+        handed_in: when the student handed in, where the roster says it.
+        id_from: the column from which the id is.
+        system: the `lms.System` of the roster.
+        row: the student's row, as the roster has it.
+        table: the whole roster, as it is.
 
-    What is not known is the empty text.
+    What is not known is the empty text, or None.
 
     >>> Student("s1001", "Jane Doe").email
     ''
@@ -59,27 +53,24 @@ class Student:
     section: str = ""
     email: str = ""
     moodle_id: str = ""
-
-
-@dataclass(frozen=True)
-class _Format:
-    """A kind of roster: the columns that tell it, what a row says, and the fields that give an id, the best first."""
-
-    recognised: tuple
-    fields: Callable
-    ids: dict
+    handed_in: datetime.datetime | None = None
+    id_from: str = field(default="", compare=False)
+    system: str = field(default="", compare=False)
+    row: tuple[str, ...] = field(default=(), compare=False, repr=False)
+    table: tables.Table | None = field(default=None, compare=False, repr=False)
 
 
 def read_roster(path: str | Path) -> tuple[Student, ...]:
-    """The students of a roster, in its order: a file of comma-, semicolon- or tab-separated values in UTF-8.
+    """The students of a roster, in its order: a file of comma-, semicolon- or tab-separated values.
 
-    It is one of your own with the columns id and name, and any of email, login, section, sis_id, canvas_id, moodle_id,
-    sortable; or an export of Canvas's gradebook, a Moodle grading worksheet, or Moodle's grades or participants. Of an
-    export, the id is the first that every student has: in Canvas SIS User ID, SIS Login ID, ID; in Moodle ID number,
-    Username, the number in Identifier, Email address.
+    It is one of your own with the columns id and name (`lms.own` says which others, and by which words), or an export
+    of a system in `lms`. `tables.read` says in which encodings. Of an export, the id of each student is in the first of
+    the system's columns that is full in this row: in Canvas SIS User ID, SIS Login ID, ID; in Moodle ID number,
+    Username, the number in Identifier, Email address. `lms.remarks` says where ids come from different columns.
 
-    Raises GradingError, with the line, for a file that is missing or no text, an unknown header, a roster without
-    students, and an id that is empty, impossible or not unique.
+    Raises GradingError with all that is wrong, a line for each fault, at most MOST_FAULTS: a file that is missing or no
+    text, an unknown header, a roster without students; an id that is missing, impossible or not unique, a row with more
+    cells than the header, a time that cannot be read.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -89,151 +80,81 @@ def read_roster(path: str | Path) -> tuple[Student, ...]:
     ['Jane Doe']
     """
     path = Path(path)
-    kind, rows = _rows(path, _text(path))
-    found = [(line, fields) for line, row in rows if (fields := kind.fields(row)) is not None]
-    if not found:
-        raise GradingError(f"{path.name} has a header and no student")
-    field = next((field for field in kind.ids if all(fields[field] for _, fields in found)), None)
-    if field is None:
-        last = list(kind.ids)[-1]
-        line = next(line for line, fields in found if not fields[last])
-        columns = f"; ids come from the first full of: {', '.join(kind.ids.values())}" if len(kind.ids) > 1 else ""
-        raise GradingError(f"{path.name}, line {line}: a student without an id{columns}")
-    students, lines = [], {}
-    for line, fields in found:
-        student = Student(**{**fields, "id": fields[field]})
-        if not POSSIBLE_ID.fullmatch(student.id):
-            raise GradingError(
-                f"{path.name}, line {line}: {student.id[:120]!r} cannot be an id, which is made of letters without "
-                "accents, digits and . _ @ -, begins with a letter or a digit, does not end in a dot, has at most 100 "
-                "characters and is not a name of a device, as con"
-            )
+    table, system, columns = _recognised(path)
+    students, faults, lines = [], [], {}
+    for line, row in table.rows:
+        cells = {name: " ".join(row[index].split()) for name, index in columns.items()}
+        fields = system.student(cells)
+        if fields is None:
+            continue
+        student, wrong = _student(system, fields, row, table)
         first = lines.setdefault(student.id.casefold(), line)
-        if first != line:
-            raise GradingError(f"{path.name}, line {line}: the id {student.id!r} is already that of line {first}")
+        if student.id and first != line:
+            wrong.append(f"the id {student.id!r} is already that of line {first}")
+        faults += [f"{path.name}, line {line}: {fault}" for fault in wrong]
         students.append(student)
+    if faults:
+        more = [f"and {len(faults) - MOST_FAULTS} more"] if len(faults) > MOST_FAULTS else []
+        raise GradingError("\n".join(faults[:MOST_FAULTS] + more))
+    if not students:
+        raise GradingError(f"{path.name} has a header and no student")
     return tuple(students)
 
 
-def _text(path):
-    """The text of the file."""
-    try:
-        content = path.read_bytes()
-    except OSError as problem:
-        raise GradingError(f"the roster {path} cannot be read: {problem.strerror}") from None
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError as problem:
-        line = content.count(b"\n", 0, problem.start) + 1
-        raise GradingError(f"{path.name}, line {line}: no text in UTF-8; save the roster as CSV in UTF-8") from None
-    if "\0" in text:
-        raise GradingError(
-            f"{path.name}, line {text[: text.index(chr(0))].count(chr(10)) + 1}: no text; save it as CSV"
-        )
-    return text
+def _recognised(path):
+    """The table of a file, the system whose roster it is, and the places of the fields."""
+    first = None
+    for table in tables.read(path):
+        first = first or table
+        exports = [one for one in lms.registered() if one.name != lms.OWN]
+        own = [one for one in lms.registered() if one.name == lms.OWN]  # an export has heads that one's own might have
+        try:
+            found = _fitting(exports, table) or _fitting(own, table)
+        except GradingError as problem:
+            raise GradingError(f"{path.name}, {problem}") from None
+        if len(found) > 1:
+            titles = " and of ".join(one.title for one, _ in found)
+            raise GradingError(f"{path.name}, line 1: the header is that of {titles}: expected that of one of them")
+        if found:
+            return table, *found[0]
+    heads = [head for head in first.header if head] if first else []
+    says = f", {_listed(map(repr, heads))}" if heads else ""
+    kinds = _listed([one.roster for one in lms.registered()], 9)
+    raise GradingError(f"{path.name}, line 1: no header of a roster{says}; expected {kinds}")
 
 
-def _rows(path, text):
-    """The format, and the rows that are not blank as (line, {column: cell})."""
-    for delimiter in ",;\t":
-        reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
-        try:
-            header = [_column(cell) for cell in next(reader, [])]
-        except csv.Error:
-            continue
-        kind = next((kind for kind in _FORMATS if any(columns <= set(header) for columns in kind.recognised)), None)
-        if kind is None:
-            continue
-        try:
-            return kind, _cells(reader, header)
-        except csv.Error as problem:
-            raise GradingError(f"{path.name}, line {reader.line_num}: no table, {problem}") from None
-    raise GradingError(
-        f"{path.name}, line 1: no header of a roster; expected the columns id and name, or an export in English of "
-        "Canvas's gradebook or of Moodle's grading worksheet, grades or participants"
+def _fitting(systems, table):
+    """Pairs of a system whose roster it is, and the places of the fields."""
+    return [(one, columns) for one in systems if (columns := one.columns(table.header)) is not None]
+
+
+def _student(system, fields, row, table):
+    """The student of a row, and what is wrong with it."""
+    wrong = []
+    known = {name: text for name, text in fields.items() if name in Student.__dataclass_fields__}
+    id_from, known["id"] = next(
+        ((words, fields[name]) for name, words in system.ids.items() if fields.get(name)), ("", "")
     )
+    if not known["id"]:
+        wrong.append(f"a student without an id; ids come from the first full of: {', '.join(system.ids.values())}")
+    elif not POSSIBLE_ID.fullmatch(known["id"]):
+        wrong.append(
+            f"{known['id'][:120]!r} cannot be an id, which is made of letters without accents, digits and . _ @ -, "
+            "begins with a letter or a digit, does not end in a dot, has at most 100 characters and is not a name of a "
+            "device, as con"
+        )
+    if any(cell.strip() for cell in row[len(table.header) :]):
+        wrong.append(f"{len(row)} cells, and the header has {len(table.header)}; put a name with a comma in quotes")
+    try:
+        known["handed_in"] = tables.moment(fields.get("handed_in", ""))
+    except ValueError as problem:
+        wrong.append(str(problem))
+        known["handed_in"] = None
+    known["name"] = known.get("name") or known["id"]
+    return Student(**known, id_from=id_from, system=system.name, row=row, table=table), wrong
 
 
-def _cells(reader, header):
-    """The rows below the header; of two columns with one name the first counts."""
-    rows, line = [], reader.line_num + 1
-    for row in reader:
-        cells = [" ".join(cell.split()) for cell in row]
-        if any(cells):
-            cells += [""] * (len(header) - len(cells))
-            rows.append((line, dict(reversed(list(zip(header, cells, strict=False))))))
-        line = reader.line_num + 1  # a cell may have several lines: the next row begins below the last of them
-    return rows
-
-
-def _column(cell):
-    """A column's name, where capitals and the kind of space do not matter."""
-    return "_".join(cell.casefold().split())
-
-
-def _canvas(row):
-    """What a row of Canvas's gradebook says; None where it is not a student's."""
-    if "student" in row:
-        sortable = _unquoted(row["student"])
-    else:
-        sortable = ", ".join(filter(None, (_unquoted(row["lastname"]), _unquoted(row["firstname"]))))
-    known = {"canvas_id": "id", "sis_id": "sis_user_id", "login": "sis_login_id", "section": "section"}
-    fields = {field: row.get(column, "") for field, column in known.items()}
-    if sortable.startswith("Points Possible") or sortable == "Student, Test" or not any((sortable, *fields.values())):
-        return None
-    return {**fields, "email": "", "sortable": sortable, "name": _spoken(sortable) or fields["canvas_id"]}
-
-
-def _unquoted(name):
-    """A name that begins with an equals sign is exported as ="=...", lest a spreadsheet computes it."""
-    return name[2:-1] if name.startswith('="') and name.endswith('"') and len(name) > 2 else name
-
-
-def _spoken(sortable):
-    """Doe, Jane as Jane Doe."""
-    surname, *given = (part.strip() for part in sortable.split(",", 2))
-    if len(given) == 2 and not _SUFFIX.fullmatch(given[1]):
-        given = [" ".join(given)]
-    return " ".join(filter(None, [*given[:1], surname, *given[1:]]))
-
-
-def _worksheet(row):
-    """What a row of Moodle's grading worksheet says."""
-    number = re.search(r"[0-9]+$", row["identifier"])
-    fields = _moodle(row)
-    return {**fields, "name": row.get("full_name") or row["identifier"], "moodle_id": number[0] if number else ""}
-
-
-def _participant(row):
-    """What a row of Moodle's grades or participants says."""
-    first, last = row["first_name"], row.get("last_name") or row.get("surname", "")
-    fields = _moodle(row)
-    name = " ".join(filter(None, (first, last))) or fields["login"] or fields["email"]
-    return {**fields, "name": name, "sortable": ", ".join(filter(None, (last, first)))}
-
-
-def _moodle(row):
-    known = {"sis_id": "id_number", "login": "username", "email": "email_address"}
-    groups = row.get("groups") or row.get("group", "")
-    return {field: row.get(column, "") for field, column in known.items()} | {"section": groups, "moodle_id": ""}
-
-
-def _own(row):
-    """What a row of a roster of one's own says."""
-    fields = {field: row.get(field, "") for field in Student.__dataclass_fields__}
-    return {**fields, "name": fields["name"] or fields["id"]}
-
-
-_MOODLE_IDS = {"sis_id": "ID number", "login": "Username", "moodle_id": "Identifier", "email": "Email address"}
-
-#: The first that is recognised counts.
-_FORMATS = (
-    _Format(
-        ({"student", "id"}, {"lastname", "firstname", "id"}),
-        _canvas,
-        {"sis_id": "SIS User ID", "login": "SIS Login ID", "canvas_id": "ID"},
-    ),
-    _Format(({"identifier"},), _worksheet, _MOODLE_IDS),
-    _Format(({"first_name", "last_name"}, {"first_name", "surname"}), _participant, _MOODLE_IDS),
-    _Format(({"id", "name"},), _own, {"id": "id"}),
-)
+def _listed(words: Iterable[str], most: int = 6) -> str:
+    """Words as a list in a sentence."""
+    words = list(words)
+    return ", ".join(words[:most]) + (", ..." if len(words) > most else "")

@@ -91,11 +91,12 @@ def collect(path: str | Path, students: Sequence[Student], assignment_name: str)
     ([('s1001.ipynb', b'{}')], ('s10002.ipynb: is named after no student of the roster',))
     """
     lying = entries(Path(path), assignment_name, [student.id for student in students])
-    owners, complaints, notebooks = Owners(students), _Complaints(), defaultdict(list)
+    owners, complaints, notebooks = Owners(students, assignment_name), _Complaints(), defaultdict(list)
     for entry in lying:
         student, fault = None, entry.fault or ("" if is_notebook(entry.parts[-1]) else "is not a notebook (.ipynb)")
         if not fault:
-            student, fault = owners.of(entry.parts[0])
+            found = owners.of(entry.parts[0])
+            student, fault = found.student, found.reason
         if fault:
             complaints.add(entry.parts[0], entry.label, fault)
         else:

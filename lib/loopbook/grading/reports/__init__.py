@@ -44,6 +44,6 @@ def write_all(
     by_student = {mark.result.student: mark for mark in marks}
     marks = [by_student[student.id] for student in students if student.id in by_student]
     notebooks = {path.stem for path in Path(folder, "notebooks").glob("*.html")}
-    for one in registered():
-        for file, content in one.files(title, students, marks, complaints, notes, reveal, notebooks):
+    for one in sorted(registered(), key=lambda one: not one.is_for_each_student):  # some of the others read them
+        for file, content in one.files(title, students, marks, complaints, notes, reveal, notebooks, Path(folder)):
             files.write(Path(folder, file), content)

@@ -1,6 +1,6 @@
-"""The files that grading leaves behind. Each module of this folder makes one, and registers it by `output`.
+"""The files that grading leaves behind. Each module of this folder makes some, and registers them by `output`.
 
-A new learning management system is a new module here and nothing else: what is registered is written, is listed by
+So do the learning management systems in `loopbook.grading.lms`. What is registered is written, is listed by
 ``loopbook grade --help``, and is tested.
 """
 
@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING, TypeVar
 from loopbook.grading import GradingError
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from loopbook.grading.marking import Marked
     from loopbook.grading.roster import Student
 
@@ -24,12 +26,14 @@ __all__ = ["Output", "output", "registered"]
 
 #: What stands in the name of a file that is made for each student.
 STUDENT = "{student}"
+#: The packages whose modules register outputs, and whether each of them has to.
+PACKAGES = {__name__: True, "loopbook.grading.lms": False}
 #: What a function may ask for, by the names of its parameters.
-OF_CLASS = ("title", "students", "marks", "complaints", "notes", "notebooks", "reveal")
+OF_CLASS = ("title", "students", "marks", "complaints", "notes", "notebooks", "reveal", "folder")
 OF_STUDENT = ("title", "student", "mark", "notebooks", "reveal")
 
 _REGISTERED: dict[str, Output] = {}
-_Function = TypeVar("_Function", bound="Callable[..., str | bytes]")
+_Function = TypeVar("_Function", bound="Callable[..., str | bytes | None]")
 
 
 @dataclass(frozen=True)
@@ -39,12 +43,13 @@ class Output:
     Attributes:
         file: its place in the folder of the grades; where it holds "{student}", there is one for each, named by the id.
         what: it is, and for whom, in some words.
-        content: makes what it holds, a text or bytes; what it takes it asks for by name.
+        content: makes what it holds, a text or bytes, or None where there is no such file for this roster; what it
+            takes it asks for by name.
     """
 
     file: str
     what: str
-    content: Callable[..., str | bytes]
+    content: Callable[..., str | bytes | None]
 
     @property
     def is_for_each_student(self) -> bool:
@@ -60,6 +65,7 @@ class Output:
         notes: Iterable[str] = (),
         reveal: bool = False,
         notebooks: Collection[str] = (),
+        folder: Path | None = None,
     ) -> Iterator[tuple[str, str | bytes]]:
         """Yield the places of the files and their contents.
 
@@ -71,24 +77,27 @@ class Output:
             notes: sentences on how the class was graded.
             reveal: whether students see the keys.
             notebooks: the ids of the students whose notebook was kept as it ran, ``notebooks/{student}.html``.
+            folder: of the grades, where the files for each student are already.
         Raises:
             GradingError: where what the function returns is neither text nor bytes.
         """
         known = {
             "title": title, "students": students, "marks": marks, "complaints": complaints, "notes": notes,
-            "reveal": reveal, "notebooks": notebooks,
+            "reveal": reveal, "notebooks": notebooks, "folder": folder,
         }  # fmt: skip
         if not self.is_for_each_student:
-            yield self.file, self._made_of(known)
+            if (made := self._made_of(known)) is not None:
+                yield self.file, made
             return
         by_id = {student.id: student for student in students}
         for mark in marks:
             student = by_id[mark.result.student]
-            yield self.file.replace(STUDENT, student.id), self._made_of(known | {"student": student, "mark": mark})
+            if (made := self._made_of(known | {"student": student, "mark": mark})) is not None:
+                yield self.file.replace(STUDENT, student.id), made
 
     def _made_of(self, known):
         made = self.content(**{name: known[name] for name in inspect.signature(self.content).parameters})
-        if not isinstance(made, str | bytes):
+        if not isinstance(made, str | bytes | None):
             raise GradingError(f"the output {self.file!r} returns {made!r:.50}: expected a text or bytes")
         return made
 
@@ -96,9 +105,9 @@ class Output:
 def output(file: str, what: str) -> Callable[[_Function], _Function]:
     """Register a function as what makes a file; it returns the text, or the bytes, that the file holds.
 
-    The parameters of the function say what it takes: any of title, students, marks, complaints, notes, notebooks and
-    reveal; where a file is made for each student, any of title, student, mark, notebooks and reveal. `Output.files`
-    says what these are.
+    It returns None where there is no such file for this roster. The parameters of the function say what it takes: any
+    of title, students, marks, complaints, notes, notebooks, reveal and folder; where a file is made for each student,
+    any of title, student, mark, notebooks and reveal. `Output.files` says what these are.
 
     Arguments:
         file: its place in the folder of the grades, with "{student}" in it for a file for each student.
@@ -142,10 +151,11 @@ def registered() -> tuple[Output, ...]:
     Raises GradingError for a module of this folder that registers nothing.
 
     >>> next(one.what for one in registered() if one.file == "grades.csv")
-    'the grades, as Canvas and Moodle import them'
+    'the grades by id, for any table'
     """
-    for module in pkgutil.iter_modules(__path__, f"{__name__}."):
-        importlib.import_module(module.name)
-        if not any(one.content.__module__ == module.name for one in _REGISTERED.values()):
-            raise GradingError(f"{module.name} registers no output: expected a function with @output(file, what)")
+    for package, has_to in PACKAGES.items():
+        for module in pkgutil.iter_modules(importlib.import_module(package).__path__, f"{package}."):
+            importlib.import_module(module.name)
+            if has_to and not any(one.content.__module__ == module.name for one in _REGISTERED.values()):
+                raise GradingError(f"{module.name} registers no output: expected a function with @output(file, what)")
     return tuple(sorted(_REGISTERED.values(), key=lambda one: one.file))

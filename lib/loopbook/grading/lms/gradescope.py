@@ -1,12 +1,21 @@
-"""The result of a submission in the format of Gradescope's autograders."""
+"""Gradescope: its roster, and results in the format of its autograders.
+
+The roster ("Download Roster") has First Name, Last Name, SID, Email and Role; the grades have the first four, and
+Sections. Its downloads of submissions do not say in their names whose they are; its autograders are run for one
+submission, see examples/autograder. It cannot hand each student an own file.
+"""
 
 from __future__ import annotations
 
 import json
+import re
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from loopbook.exercises.judging import RIGHT
 from loopbook.exercises.response import MARKS
+from loopbook.grading import lms
+from loopbook.grading.lms import Claim, Known, System
 from loopbook.grading.reports.outputs import output
 from loopbook.grading.reports.wording import (
     NO_JAIL,
@@ -18,9 +27,46 @@ from loopbook.grading.reports.wording import (
     visible,
     without_jail,
 )
+from loopbook.grading.tables import letters
 
 if TYPE_CHECKING:
     from loopbook.grading.marking import Marked
+
+_HEADS = {
+    "firstname": "first", "lastname": "last", "sid": "sis_id", "email": "email", "role": "role", "section": "section",
+    "sections": "section", "submissiontime": "handed_in",
+}  # fmt: skip
+
+
+@lms.system
+class Gradescope(System):
+    """Gradescope."""
+
+    name, title = "gradescope", "Gradescope"
+    roster = "an export of Gradescope's roster or grades"
+    ids = {"sis_id": "SID", "email": "Email"}  # noqa: RUF012 - read and never changed
+
+    def columns(self, header: Sequence[str]) -> Mapping[str, int] | None:
+        """Return where the fields are, the first column of a head for each."""
+        found: dict[str, int] = {}
+        for index, head in enumerate(header):
+            if field := _HEADS.get(letters(head)):
+                found.setdefault(field, index)
+        return found if {"first", "last", "sis_id", "email"} <= found.keys() else None
+
+    def student(self, cells: Mapping[str, str]) -> Mapping[str, str] | None:
+        """Return what a row says; None for instructors and assistants."""
+        if cells.get("role", "Student").casefold() not in ("student", ""):
+            return None
+        first, last = cells["first"], cells["last"]
+        sortable = ", ".join(filter(None, (last, first)))
+        return {**cells, "name": " ".join(filter(None, (first, last))), "sortable": sortable}
+
+    def claim(self, name: str, known: Known, assignment: str) -> Claim | None:
+        """Return that nobody can tell."""
+        if not re.fullmatch(r"submission_[0-9]+(?:\..*)?", name):
+            return None
+        return Claim(reason="is from a download of Gradescope, which does not say whose it is")
 
 
 @output("feedback/{student}/results.json", "the result of a student, as Gradescope takes it from an autograder")
