@@ -19,7 +19,7 @@ import numpy as np
 import sympy
 
 from loopbook.exercises import kinds
-from loopbook.exercises.judging import MISTAKE, OPEN, UNJUDGED, Verdict, is_right, judge
+from loopbook.exercises.judging import MISTAKE, OPEN, SECONDS, UNJUDGED, Verdict, is_right, judge
 from loopbook.exercises.parameters import call, written
 from loopbook.exercises.reading import shortened
 from loopbook.grading.plain import Plain, plain, unreadable
@@ -74,11 +74,17 @@ class Variant:
         place: of the student among those with whom the exercise is tried.
         question: the `Question`.
         seconds: that the key took.
+
+    Attributes:
+        key: of what is judged.
+        by_hand: the names of what a person marks.
     """
 
     def __init__(self, student: str, place: int, question: Question, seconds: float):
         self.student, self.place, self.question, self.seconds = student, place, question, seconds
-        self.exercise, self.key, self.mistakes = question.exercise, question.key, question.mistakes
+        self.exercise, self.mistakes = question.exercise, question.mistakes
+        self.by_hand = [name for name, kind in question.key.items() if getattr(kind, "by_hand", False)]
+        self.key = {name: kind for name, kind in question.key.items() if name not in self.by_hand}
         numbers = {name: value for name, value in question.values.items() if not isinstance(value, str)}
         self.numbers: dict[str, sympy.Expr] = numbers
 
@@ -96,7 +102,7 @@ class Variant:
 
     def all_right(self, answers: dict[str, Any]) -> bool:
         """Whether answers to all quantities are right."""
-        return answers.keys() == self.key.keys() and all(self.is_right(*one) for one in answers.items())
+        return 0 < len(self.key) == len(answers) and all(itertools.starmap(self.is_right, answers.items()))
 
     def solution(self, name: str) -> str:
         """The key in words, in short."""
@@ -133,8 +139,13 @@ def keys_in_their_forms(variant: Variant) -> Iterator[Seen]:
             yield Seen(WRONG, f"{name}: the key is {kind.key}")
             continue
         for how, answer in forms(kind):
-            if variant.is_right(name, answer) or "may be" in (told := variant.judged(name, answer)).says:
-                continue  # what may mean two things is asked about before it is handed in
+            if variant.is_right(name, answer):
+                continue
+            told = variant.judged(name, answer)
+            if told.is_right:  # by chance it was in time
+                yield Seen(ODD, f"{name}: judging the key takes nearly {SECONDS} s", in_short(answer))
+            if told.is_right or "may be" in told.says:  # what may mean two things is asked before it is handed in
+                continue
             is_usual = how == AS_IT_IS or not isinstance(kind, kinds.Design)
             says = f"{name}: the key is not right" + ("" if how == AS_IT_IS else f" {how}")
             yield Seen(
@@ -144,6 +155,12 @@ def keys_in_their_forms(variant: Variant) -> Iterator[Seen]:
             )
             if how == AS_IT_IS:
                 break
+
+
+def marked_by_hand(variant: Variant) -> Iterator[Seen]:
+    """What nobody but a person can mark is named."""
+    for name in variant.by_hand:
+        yield Seen(NOTE, f"{name}: a person marks it")
 
 
 def words_of_a_list(variant: Variant) -> Iterator[Seen]:
@@ -232,7 +249,7 @@ def rounded_givens(variant: Variant) -> Iterator[Seen]:
     """An answer from givens that are rounded on the way, in their fourth digit, is right as well."""
     if variant.place >= MOST_CHANGED:
         return
-    quantities = variant.of_kind(*_ROUNDED)
+    quantities = {name: kind for name, kind in variant.of_kind(*_ROUNDED).items() if kind.within or _is_word(kind)}
     for given, value in variant.numbers.items():
         if len(variant.exercise.parameters[given].values) < FEWEST_VALUES:
             continue
@@ -246,6 +263,10 @@ def rounded_givens(variant: Variant) -> Iterator[Seen]:
                 unit = variant.exercise.parameters[given].unit
                 example = f"{variant.solution(name)}; for {written(near, unit)} {shortened(key[name].solution, 70)}"
                 yield Seen(ODD, f"{name}: {given} rounded to four digits makes it wrong", example, RARE)
+
+
+def _is_word(kind):
+    return isinstance(kind, kinds.Word | kinds.Words)
 
 
 def texts_and_pictures(variant: Variant) -> Iterator[Seen]:
@@ -271,8 +292,8 @@ def texts_and_pictures(variant: Variant) -> Iterator[Seen]:
 
 
 OF_ONE: tuple[Callable[[Variant], Iterator[Seen]], ...] = (
-    keys_in_their_forms, words_of_a_list, other_answers, declared_mistakes, statements, quantities_with_one_answer,
-    rounded_givens, texts_and_pictures,
+    keys_in_their_forms, marked_by_hand, words_of_a_list, other_answers, declared_mistakes, statements,
+    quantities_with_one_answer, rounded_givens, texts_and_pictures,
 )  # fmt: skip
 
 
@@ -283,7 +304,7 @@ def equal_answers(variants: Sequence[Variant]) -> Iterator[Seen]:
     """An answer is not the same for nearly all, and those of one student are not right for others."""
     if len(variants) < FEWEST_VARIANTS:
         return
-    for name, kind in variants[0].key.items():
+    for name, kind in variants[0].key.items():  # what a person marks is not among them
         said = Counter(variant.key[name].solution for variant in variants if name in variant.key)
         (most, count), *_ = said.most_common(1)
         if count >= USUAL * len(variants) and not _is_in_symbols(kind):
