@@ -9,8 +9,9 @@ import sympy
 
 from loopbook import s
 from loopbook.deadtime import System
-from loopbook.exercises import formulas
+from loopbook.exercises.agreement import agree
 from loopbook.exercises.formulas import Formula
+from loopbook.exercises.points import points_for
 from loopbook.exercises.reading import Unreadable
 
 READABLE = {
@@ -91,10 +92,11 @@ BOMBS = [
 @pytest.mark.parametrize("text", BOMBS)
 def test_no_formula_hangs_or_fills_the_memory(text):
     key = Formula("2/(10*s + 1)", "s")
-    assert not formulas.agree(key, Formula(text, "s"), formulas.points_for("s"), 0.01)
+    assert not agree(key, Formula(text, "s"), points_for(key), 0.01)
 
 
 KEY = Formula("2*exp(-10*s/3)/(10*s + 1)", "s")
+POINTS = points_for(KEY)
 
 
 @pytest.mark.parametrize(
@@ -109,7 +111,7 @@ KEY = Formula("2*exp(-10*s/3)/(10*s + 1)", "s")
     ],
 )
 def test_rounded_numbers_and_other_forms_agree(given):
-    assert formulas.agree(KEY, Formula(given, "s"), formulas.points_for("s"), 0.01)
+    assert agree(KEY, Formula(given, "s"), POINTS, 0.01)
 
 
 @pytest.mark.parametrize(
@@ -130,18 +132,7 @@ def test_rounded_numbers_and_other_forms_agree(given):
     ],
 )
 def test_other_formulas_do_not(given):
-    assert not formulas.agree(KEY, Formula(given, "s"), formulas.points_for("s"), 0.01)
-
-
-def test_a_formula_must_have_values_at_many_points():
-    expected, found = np.ones(10), np.full(10, np.nan)
-    found[:2] = 1
-    assert not formulas.near_everywhere(expected, found, 0.1 * expected)
-    found[:4] = 1
-    assert formulas.near_everywhere(expected, found, 0.1 * expected)
-    nothing = np.full(10, np.nan)
-    assert not formulas.near_everywhere(expected, nothing, 0.1 * expected)
-    assert not formulas.near_everywhere(nothing, nothing, nothing)
+    assert not agree(KEY, Formula(given, "s"), POINTS, 0.01)
 
 
 @pytest.mark.parametrize(
@@ -153,9 +144,9 @@ def test_a_formula_must_have_values_at_many_points():
     ],
 )
 def test_an_exact_answer_may_have_another_form(key, given):
-    points = formulas.points_for("s")
-    assert formulas.agree(Formula(key, "s"), Formula(given, "s"), points, within=0)
-    assert not formulas.agree(Formula(key, "s"), Formula(f"({given})*1.0000001", "s"), points, within=0)
+    points = points_for(Formula(key, "s"))
+    assert agree(Formula(key, "s"), Formula(given, "s"), points, within=0)
+    assert not agree(Formula(key, "s"), Formula(f"({given})*1.0000001", "s"), points, within=0)
 
 
 def test_a_piece_counts_only_where_it_holds():
@@ -166,7 +157,7 @@ def test_a_piece_counts_only_where_it_holds():
 
 def test_a_system_of_python_control_is_a_formula():
     key = Formula("2/(10*s + 1)", "s")
-    assert formulas.agree(key, Formula(control.tf([2], [10, 1]), "s"), formulas.points_for("s"), 0.01)
+    assert agree(key, Formula(control.tf([2], [10, 1]), "s"), points_for(key), 0.01)
 
 
 def test_a_long_chain_of_functions_is_no_formula():

@@ -2,10 +2,11 @@
 
 import pytest
 
-from loopbook.exercises import formulas
+from loopbook.exercises.agreement import agree
 from loopbook.exercises.authoring import expression
 from loopbook.exercises.formulas import Formula
 from loopbook.exercises.judging import RIGHT, judge
+from loopbook.exercises.points import points_for
 from loopbook.exercises.reading import Unreadable, listed_in
 
 LAG = "2*exp(-3*s)/(10*s + 1)"
@@ -167,8 +168,8 @@ FORMS = [(form, text, symbols) for symbols, rows in READ.items() for form, texts
 
 @pytest.mark.parametrize(("form", "text", "symbols"), FORMS, ids=[text for _, text, _ in FORMS])
 def test_a_formula_is_read_as_it_is_meant(form, text, symbols):
-    points = formulas.points_for(symbols)
-    assert formulas.agree(Formula(form, symbols), Formula(text, symbols), points, within=0)
+    key = Formula(form, symbols)
+    assert agree(key, Formula(text, symbols), points_for(key), within=0)
 
 
 @pytest.mark.parametrize(("form", "text", "symbols"), FORMS, ids=[text for _, text, _ in FORMS])
@@ -237,7 +238,8 @@ LITERAL = {
 def test_pythons_notation_stays_what_it_is(text):
     formula = Formula(text, "s")
     assert formula.remark == ""
-    assert not formulas.agree(Formula(LITERAL[text], "s"), formula, formulas.points_for("s"), within=0)
+    key = Formula(LITERAL[text], "s")
+    assert not agree(key, formula, points_for(key), within=0)
 
 
 #: What may look alike and is not the same, as written and as it must not be read.
@@ -251,13 +253,14 @@ DIFFERENT = [
 
 @pytest.mark.parametrize(("text", "other"), DIFFERENT)
 def test_what_looks_alike_is_not_mixed_up(text, other):
-    assert not formulas.agree(Formula(other, "s"), Formula(text, "s"), formulas.points_for("s"), within=0.001)
+    key = Formula(other, "s")
+    assert not agree(key, Formula(text, "s"), points_for(key), within=0.001)
 
 
 @pytest.mark.parametrize("made", ["\frac{1}{\tau s}", "\frac{1}{\tau \times s}", "1/(\tau s)"])
 def test_latex_in_a_text_that_is_not_raw_is_latex_all_the_same(made):
-    points = formulas.points_for("tau s")
-    assert formulas.agree(Formula("1/(tau*s)", "tau s"), Formula(made, "tau s"), points, within=0)
+    key = Formula("1/(tau*s)", "tau s")
+    assert agree(key, Formula(made, "tau s"), points_for(key), within=0)
 
 
 LONG = [

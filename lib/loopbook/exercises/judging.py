@@ -32,6 +32,8 @@ class Verdict:
     says: str
     #: Whether it says little more than that the answer is not right: then a hint may help.
     is_bare: bool = field(default=False, repr=False)
+    #: Why an instructor should see the answer; empty where there is no need.
+    look: str = field(default="", repr=False)
 
     @property
     def is_right(self) -> bool:
@@ -88,14 +90,22 @@ def is_right(kind: Kind, given: object) -> bool:
     (True, False)
     """
     try:
-        return limited(SECONDS, lambda: kind.agrees(kind.read(given)[0]))
+        return limited(SECONDS, _agrees, kind, given)
     except Exception:  # the answer may be an object that fails in any way
         return False
 
 
+def _agrees(kind, given):
+    answer, _ = kind.read(given)
+    return not any(kind.incomparable(answer)) and kind.agrees(answer)
+
+
 def _judged(kind, given, mistakes, background):
-    """Status, sentence, and whether the sentence is bare."""
+    """Status, sentence, whether the sentence is bare, and why an instructor should look."""
     answer, remark = kind.read(given)
+    says, look = kind.incomparable(answer)
+    if says:
+        return WRONG, harmless(says), False, harmless(look)
     if kind.agrees(answer):
         return RIGHT, "right" + (f", {remark}" if remark else "")
     if named := _in_its_unit(kind, answer, remark):

@@ -75,7 +75,10 @@ class Question(Showing):
         if not (isinstance(key, dict) and key and all(isinstance(kind, Kind) for kind in key.values())):
             raise ValueError(f"exercise {self.exercise.number} returns {key!r}: expected answers(...)")
         # the order in which an author lists words says something about the right one, so each variant has its own
-        return {name: kind.shuffled(f"{self.exercise.number}|{self.student}") for name, kind in key.items()}
+        key = {name: kind.shuffled(f"{self.exercise.number}|{self.student}") for name, kind in key.items()}
+        for name, kind in key.items():  # in an assignment, `student` is drawn from its secret
+            kind.draw_from(f"{self.exercise.number}|{self.student}|{name}")
+        return key
 
     @functools.cached_property
     def mistakes(self) -> dict[str, list[tuple[str, Any]]]:

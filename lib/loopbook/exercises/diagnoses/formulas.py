@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from loopbook.exercises import formulas
+from loopbook.exercises import agreement, formulas
 from loopbook.exercises.diagnoses import facts
 from loopbook.exercises.diagnoses.background import Background
 from loopbook.exercises.diagnoses.finding import Finding, explained, recomputed
@@ -107,7 +107,7 @@ def changed_in_one_place(kind: Expression, answer: Any, changes: Callable[..., I
             continue
         wrong = copy.copy(kind)
         wrong.key = other
-        if not formulas.agree(kind.key, other, points, 1e-9) and wrong.agrees(answer):
+        if not agreement.agree(kind.key, other, points, 1e-9) and wrong.agrees(answer):
             return Finding(says)
     return None
 

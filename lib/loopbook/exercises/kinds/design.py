@@ -92,6 +92,11 @@ class Design(Kind):
         """A design by the same criteria."""
         return Design(self.example.like(value), *self.criteria, draws=self.draws)
 
+    def draw_from(self, seed: str) -> None:
+        """As the quantity's kind."""
+        super().draw_from(seed)
+        self.example.draw_from(seed)
+
     def picture(self, answer: Any) -> Any:
         """The answer's own response, where the author draws it."""
         return self.draws(answer) if self.draws else None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import random
 import re
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Self
@@ -10,11 +9,13 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 import sympy
 
-from loopbook.exercises import formulas, units
-from loopbook.exercises.formulas import Formula
+from loopbook.exercises import units
+from loopbook.exercises.agreement import agree, agree_in_time
+from loopbook.exercises.formulas import Formula, is_number
 from loopbook.exercises.kinds.kind import Kind, literal, with_unit
-from loopbook.exercises.kinds.numeric import ROUNDED, in_unit
+from loopbook.exercises.kinds.numeric import in_unit
 from loopbook.exercises.kinds.settings import Settings
+from loopbook.exercises.points import points_for, times_for
 from loopbook.exercises.reading import Unreadable, alone, answered, listed, shortened, symbols_in
 from loopbook.expressions import exact, parse, s
 
@@ -56,6 +57,7 @@ class Expression(Kind):
     #: Without a key, any symbol may occur.
     symbols: Sequence[str] | None = None
     _told = ""
+    _points: dict[str, np.ndarray] | None = None
 
     @classmethod
     def without_key(cls, *parts: Any, symbols: str = "", **named: Any) -> Self:
@@ -92,7 +94,8 @@ class Expression(Kind):
         return literal(formula.text)
 
     def like(self, value: Any) -> Self:
-        """The same quantity with another key."""
+        """The same quantity with another key, compared at the same points."""
+        self.points()
         other = super().like(value)
         other.expr = None if isinstance(value, Formula) else _expression(value)
         return other
@@ -177,18 +180,51 @@ class Expression(Kind):
         """The key as an expression."""
         return self.solution if self.expr is None else self.expr
 
+    def draw_from(self, seed: str) -> None:
+        """Draw the points of comparison from a text."""
+        super().draw_from(seed)
+        self._points = None
+
     def points(self) -> dict[str, np.ndarray]:
-        """The values of the symbols at which formulas are compared."""
-        return formulas.points_for(self.symbols)
+        """The values of the symbols at which formulas are compared, the same for other keys, as mistakes have them."""
+        if self._points is None:
+            self._points = self._drawn_points()
+        return self._points
+
+    def _drawn_points(self):
+        return points_for(self.key, self.seed)
 
     def _demand_values(self, formula):
-        points = self.points() if self.symbols is not None else formulas.points_for(formula.symbols)
-        if not np.isfinite(formula(**points)).any():
+        points = points_for(formula)
+        if not (np.isfinite(formula(**points)).any() or np.isfinite(formula.values_at(points)).any()):
             raise Unreadable(f"this has no finite value: expected {self.expected}")
 
+    def incomparable(self, answer: Any) -> tuple[str, str]:
+        """Say where an answer has no value though the key has one, or that it is no function of s as the key is."""
+        if not isinstance(answer, Formula):
+            return "", ""
+        function = answer.decides if "s" in self.symbols and not self.key.decides else ""
+        if function:
+            says = f"{function} of s is in it, which is in no transfer function"
+            return says, f"{says}: {shortened(answer.text, LONGEST_SHOWN)}"
+        points = self.points()
+        found, told = answer.told_at(points)
+        missing = np.isfinite(self.key.values_at(points)) & told & np.isnan(found)
+        if not missing.any():
+            return "", ""
+        place = tuple(np.argwhere(missing)[missing.sum() // 2])
+        at = [f"{name} = {_number(np.broadcast_to(values, missing.shape)[place])}" for name, values in points.items()]
+        says = f"this has no value at {', '.join(at)}, where the answer has one" if at else "this has no value"
+        return says, f"{says} (at {missing.sum()} of {told.sum()} points): {shortened(answer.text, LONGEST_SHOWN)}"
+
     def agrees(self, answer: Any) -> bool:
-        """Whether both have the same values."""
-        return formulas.agree(self.key, answer, self.points(), self.within)
+        """Whether both have the same values, but for the rounding of numbers."""
+        return agree(self.key, answer, self.points(), self.within)
+
+    def is_value(self, answer: Any, wrong: Any) -> bool:
+        """Whether an answer is the formula of a mistake; a number is none that has s, t or another symbol in it."""
+        other = self.like(wrong)
+        return not (_is_constant(answer) and not is_number(other.key.tree)) and other.agrees(answer)
 
     def mistakes(self) -> Iterator[tuple[str, Any]]:
         """Wrong sign, the inverse."""
@@ -202,6 +238,17 @@ class Expression(Kind):
         for unit, converted in units.neighbours(self.unit).items():
             if converted(0) == 0:
                 yield f"those would be the values {in_unit(unit)}; asked: {self.asked}", self.expr * exact(converted(1))
+
+
+def _is_constant(answer):
+    """Whether an answer, a formula or the values of a function, is a number."""
+    return bool(np.all(answer == answer[0])) if isinstance(answer, np.ndarray) else is_number(answer.tree)
+
+
+def _number(value):
+    """A number in a sentence."""
+    value = complex(value)
+    return f"{value:.3g}" if value.imag else f"{value.real:.3g}"
 
 
 def _with_units(text):
@@ -321,14 +368,11 @@ class TimeFunction(Expression):
 
     @property
     def times(self) -> np.ndarray:
-        """The grid, finer in the beginning and uneven: no simple number, at which a step might stand, is on it."""
-        dice = random.Random(7)
-        early = [10 ** dice.uniform(-4, -2) for _ in range(20)]
-        return self.until * np.array(early + [(k + dice.random()) / 120 for k in range(120)])
+        """The times at which functions are compared."""
+        return self.points()["t"]
 
-    def points(self) -> dict[str, np.ndarray]:
-        """The times; without a key, any."""
-        return super().points() if self.until is None else {"t": self.times}
+    def _drawn_points(self):
+        return {"t": times_for(self.key, self.until, self.seed)}
 
     def _of_function(self, given):
         try:
@@ -356,33 +400,5 @@ class TimeFunction(Expression):
         yield from _in_other_time(self, "t")
 
     def agrees(self, answer: Any) -> bool:
-        """Whether the values, and their changes, differ by no more than a fraction of the largest one.
-
-        Numbers of the key that are wrong by that fraction may explain a larger difference. The changes are those from
-        the mean value: a response that is small beside its offset is compared as well.
-        """
-        values = [one if isinstance(one, np.ndarray) else one(**self.points()) for one in (self.key, answer)]
-        expected, found = np.broadcast_arrays(*values, self.times)[:2]
-        if not np.isfinite(expected).any():
-            return False
-        if not self._near(expected, found, np.asarray, 1):
-            return False
-        return self._near(np.where(np.isfinite(found), expected, np.nan), found, _changes, 2)
-
-    def is_value(self, answer: Any, wrong: Any) -> bool:
-        """Whether an answer is the function of a mistake; not what its numbers, rounded, could grow to in time."""
-        other = self.like(wrong)
-        expected, found = (one if isinstance(one, np.ndarray) else one(**self.points()) for one in (other.key, answer))
-        known = np.broadcast_to(expected, self.times.shape)
-        allowed = ROUNDED * np.nanmax(np.abs(known), initial=0.0)
-        return other.agrees(answer) and bool(np.nanmax(np.abs(known - found), initial=0.0) <= allowed)
-
-    def _near(self, expected, found, seen, times):
-        within = times * self.within
-        allowed = formulas.rounding(self.key, expected, self.points(), within, seen)
-        allowed = np.maximum(allowed, within * np.nanmax(np.abs(seen(expected))))
-        return formulas.near_everywhere(seen(expected), seen(found), allowed + 1e-12)
-
-
-def _changes(values):
-    return values - np.nanmean(values)
+        """Whether both have the same values, but for the rounding of numbers."""
+        return agree_in_time(self.key, answer, self.points(), self.within)

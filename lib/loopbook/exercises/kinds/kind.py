@@ -42,6 +42,8 @@ class Kind:
     FORM: tuple[str, ...] = ("unit",)
     key: Any
     within: float
+    #: What is drawn for comparing an answer is drawn from this text, which no author of answers knows.
+    seed = ""
     key, unit, what = None, "", "the value"
 
     def __init_subclass__(cls) -> None:
@@ -141,6 +143,10 @@ class Kind:
         """Return the quantity with what it offers to choose from in an order drawn from a text; most offer nothing."""
         return self
 
+    def draw_from(self, seed: str) -> None:
+        """Draw what is drawn for comparing an answer, as the points of a formula, from a text."""
+        self.seed = seed
+
     @property
     def asked(self) -> str:
         """The quantity with its unit, as in a sentence."""
@@ -183,6 +189,13 @@ class Kind:
     def agrees(self, answer: Any) -> bool:
         """Whether an answer, as it was read, is right."""
         raise NotImplementedError
+
+    def incomparable(self, answer: Any) -> tuple[str, str]:
+        """Return why an answer that was read cannot be right whatever the key is.
+
+        That is a sentence for its author, and one on why an instructor should see it; both are empty for most answers.
+        """
+        return "", ""
 
     def mistakes(self) -> Iterable[tuple[str, Any]]:
         """The mistakes that can be recognised in every exercise: pairs of a sentence and a wrong value, as read."""
