@@ -274,6 +274,13 @@ def test_a_statement_is_paragraphs_lists_tables_and_formulas():
     )
 
 
+def test_a_number_and_its_unit_stay_in_one_line():
+    (paragraph,) = statement.blocks("the time\nis 30\N{NO-BREAK SPACE}s")
+    assert page.block(paragraph) == ["<p>the time is 30\N{NO-BREAK SPACE}s</p>"]
+    assert markdown.block(paragraph)[0] == "the time is 30\N{NO-BREAK SPACE}s"
+    assert page.sentence("in 30\N{NO-BREAK SPACE}s") == "in 30\N{NO-BREAK SPACE}s"
+
+
 @each_attack
 def test_a_statement_brings_no_markup_of_its_own(attack):
     blocks = statement.blocks(f"{attack}\n\n- {attack}\n\n`{attack}` and {attack}")

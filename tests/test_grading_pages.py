@@ -105,6 +105,18 @@ def test_the_page_says_what_became_of_each_answer():
     assert f"Your answer: {float(gain.question(BOB.id).values['K']):.12g}" in text
 
 
+def test_the_page_says_how_an_answer_was_read_where_that_is_not_what_was_typed():
+    mark = with_answer(RIGHT_ALL, "1", "T", answer="2 min", says="right, converted from min")
+    mark = with_answer(mark, "1", "K", answer=2, status="wrong", says="not right; asked: the gain · read as 2")
+    mark = with_answer(mark, "1", "H", answer="2/s", status="mistake", says="no $T$ · read as 2.0/s")
+    for text in both(feedback(TITLE, ADA, mark)):
+        lines = [line.strip(" -`").replace("`", "") for line in re.split("\n|(?=Your answer)", text)]
+        assert any(line.startswith("Your answer: 2 min, converted from min") for line in lines)
+        assert any(line.startswith("Your answer: 2/s, read as 2.0/s") for line in lines)
+        assert "read as 2\n" not in text
+        assert "not right; asked: the gain" in text
+
+
 def test_the_page_in_markdown():
     text = in_markdown(feedback(TITLE, BOB, NAMED))
     assert text.startswith(f"# {TITLE}\n\nBob Bode (s1002)\n\n**3.67 of 5 points**\n")
@@ -195,14 +207,18 @@ def test_what_may_cost_most_comes_first():
     cases, harmless = told([waits, flagged, STOPPED, NOT_RUN])
     assert list(cases) == [
         "Notebooks that could not be run",
-        "Notebooks that failed before all answers were in",
+        "Notebooks that were stopped before all answers were in",
         "Answers that could not be judged",
         "Answers that were judged and are unusual",
+        "Notebooks that wrote where answers are told",
     ]
     assert cases["Notebooks that could not be run"] == [("s1002", 5)]
-    assert cases["Notebooks that failed before all answers were in"] == [("s1003", 2.333)]  # H and the action are open
+    assert cases["Notebooks that were stopped before all answers were in"] == [
+        ("s1003", 2.333)
+    ]  # H and the action are open
     assert cases["Answers that were judged and are unusual"] == [("s1002", 1.333)]
-    assert harmless == [("s1003",)]  # nothing earned that an odd line could have brought
+    assert cases["Notebooks that wrote where answers are told"] == [("s1003", 0)]  # and they brought nothing
+    assert harmless == []
 
 
 def test_the_costliest_case_of_a_kind_comes_first():
@@ -231,7 +247,7 @@ def test_what_failed_after_the_answers_were_in_is_harmless():
     errors = (CellError(9, "NameError: x"),)
     assert told([changed(RIGHT_ALL, errors=errors)]) == ({}, [("s1001",)])
     unanswered = result_of(BOB, {"1": {"K": 1.0}}, errors=errors)
-    assert told([unanswered]) == ({"Notebooks that failed before all answers were in": [("s1002", 3.667)]}, [])
+    assert told([unanswered]) == ({"Cells that failed, with answers left open": [("s1002", 3.667)]}, [])
     text = read(summary(TITLE, CLASS, [changed(RIGHT_ALL, errors=errors)]))
     assert "1 remark on which no points hang" in text
     assert "cell 9: NameError: x" in text
@@ -256,10 +272,12 @@ def test_equal_answers_are_told():
     marks = [given(ADA, 123.4), given(BOB, "123.4")]
     assert told(marks)[0] == {"Equal answers where the numbers differ": [("s1001", "s1002", 1.333)]}
     (line,) = [line for line in in_markdown(summary(TITLE, CLASS, marks)).splitlines() if "123.4" in line]
-    assert line.endswith(" | 1.33 | 1 · `K`: `123.4`; wrong |")
+    assert line.endswith(" | 1.33 | 1 · `K`: `123.4`; wrong for all |")
     copied = 2 * float(gain.question(ADA.id).values["K"])
+    cases, _ = told([given(ADA, copied, "3.217/(s + 1)"), given(BOB, copied, "3.217/(s + 1)")])
+    assert [one[:2] for one in cases["Equal answers where the numbers differ"]] == [("s1001", "s1002")] * 2
     text = read(summary(TITLE, CLASS, [given(ADA, copied), given(BOB, copied)]))
-    assert "; right for s1001, not for s1002" in text
+    assert "right for s1001, not for s1002" in text
 
 
 # The summary.
@@ -392,7 +410,7 @@ def test_mistakes_are_counted():
 def test_a_mistake_is_one_whatever_the_numbers_in_its_sentence():
     hours = [result_of(one, {"1": {"T": gain.question(one.id).given("T") / 3600.0}}) for one in CLASS]
     assert Findings(CLASS, hours).mistakes == [("1", "T", "The …\N{NO-BREAK SPACE}s are not in hours.", 4)]
-    assert Findings(CLASS, hours[:1]).mistakes[0][2].startswith("The 40\N{NO-BREAK SPACE}s are")
+    assert Findings(CLASS, hours[:1]).mistakes[0][2] == "The 40\N{NO-BREAK SPACE}s are not in hours."
 
 
 def summing(points, earned):

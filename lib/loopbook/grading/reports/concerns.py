@@ -7,16 +7,16 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from loopbook.exercises.judging import OPEN, UNJUDGED
-from loopbook.grading.reports.document import Code, Lines, Said, Sentence, Text
+from loopbook.grading.reports.document import Code, Lines, Said, Text
 from loopbook.grading.reports.equal_answers import equal_answers
 from loopbook.grading.reports.wording import answer_in_words, explained, remarks
-from loopbook.grading.results import MISSING, NOT_RUN, ODD, OWNER
+from loopbook.grading.results import MISSING, NOT_RUN, ODD, OWNER, STOPPED
 
 if TYPE_CHECKING:
     from loopbook.grading.marking import Marked
     from loopbook.grading.results import JudgedAnswer, JudgedExercise
 
-_BY_HAND = "To give points, enter them in marks.csv and grade again."
+_BY_HAND = ("To give points, enter them in ", Code("marks.csv"), " and grade again.")
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Concern:
     """
 
     title: str
-    advice: str
+    advice: Text
     cases: tuple[Case, ...] = field(default=())
 
     @property
@@ -61,16 +61,30 @@ NOBODYS = Concern(
 )
 NOT_RUNNING = Concern(
     "Notebooks that could not be run",
-    f"The grade is an empty cell. Repair the file or ask for another one, and grade again. {_BY_HAND}",
+    ("The grade is an empty cell. Repair the file or ask for another one, and grade again. ", *_BY_HAND),
 )
-WAITING = Concern("Answers that wait for a mark", "The grade is an empty cell until there are points in marks.csv.")
+WAITING = Concern(
+    "Answers that wait for a mark",
+    ("The grade is an empty cell until there are points in ", Code("marks.csv"), "."),
+)
 CUT_SHORT = Concern(
-    "Notebooks that failed before all answers were in",
-    "What is open brings nothing. More time or memory may help (--cell-seconds, --seconds, --megabytes). " + _BY_HAND,
+    "Notebooks that were stopped before all answers were in",
+    (
+        "What is open brings nothing. More time or memory may help (",
+        *(Code("--cell-seconds"), ", ", Code("--seconds"), ", ", Code("--megabytes"), "). "),
+        *_BY_HAND,
+    ),
 )
-UNREAD = Concern("Answers that could not be judged", f"They bring nothing, and you may see what was meant. {_BY_HAND}")
+FAILED = Concern(
+    "Cells that failed, with answers left open",
+    ("What is open brings nothing. The student may have missed that the cell fails on its own. ", *_BY_HAND),
+)
+UNREAD = Concern(
+    "Answers that could not be judged", ("They bring nothing, and you may see what was meant. ", *_BY_HAND)
+)
 FLAGGED = Concern(
-    "Answers that were judged and are unusual", "The verdict stands unless you say otherwise in marks.csv."
+    "Answers that were judged and are unusual",
+    ("The verdict stands unless you say otherwise. ", *_BY_HAND),
 )
 OF_ANOTHER = Concern(
     "Somebody else's notebooks",
@@ -82,8 +96,12 @@ TELLS_TOO_MUCH = Concern(
 )
 EQUAL = Concern(
     "Equal answers where the numbers differ",
-    "Keys differ there, so that answers should. That is a reason to ask, and no proof.",
+    "Their keys differ, so that the answers should. That is a reason to ask, and no proof.",
 )
+#: Where equal points hang on two of them, this is their order.
+_ORDER = (
+    NOT_RUNNING, NOBODYS, WAITING, CUT_SHORT, FAILED, UNREAD, FLAGGED, OF_ANOTHER, TELLS_TOO_MUCH, EQUAL,
+)  # fmt: skip
 
 
 def concerns(marks: Collection[Marked], complaints: Sequence[str] = ()) -> tuple[list[Concern], list[Case]]:
@@ -96,7 +114,7 @@ def concerns(marks: Collection[Marked], complaints: Sequence[str] = ()) -> tuple
     found: dict[Concern, list[Case]] = {}
     harmless: list[Case] = []
     for concern, case in _cases(marks, complaints):
-        if case.points > 0 and concern:
+        if concern:
             found.setdefault(concern, []).append(case)
         else:
             harmless.append(case)
@@ -108,10 +126,6 @@ def concerns(marks: Collection[Marked], complaints: Sequence[str] = ()) -> tuple
     return sorted(costly, key=lambda one: -one.points), harmless
 
 
-#: Where equal points hang on two of them, this is their order.
-_ORDER = (NOT_RUNNING, NOBODYS, WAITING, CUT_SHORT, UNREAD, FLAGGED, OF_ANOTHER, TELLS_TOO_MUCH, EQUAL)
-
-
 def share(exercise: JudgedExercise, answer: JudgedAnswer) -> float:
     """Return the points that one answer brings where it is right."""
     return exercise.points * answer.weight / sum(one.weight for one in exercise.answers)
@@ -120,11 +134,12 @@ def share(exercise: JudgedExercise, answer: JudgedAnswer) -> float:
 def _cases(marks, complaints) -> Iterator[tuple[Concern | None, Case]]:
     results = [mark.result for mark in marks]
     points = max((result.points for result in results), default=0)
-    somebody_is_missing = any(result.status == MISSING for result in results)
+    somebody_is_missing = not results or any(result.status == MISSING for result in results)
     told = {f"{result.file}: {result.says}" for result in results if result.status == NOT_RUN}
     for complaint in complaints:
         if complaint not in told:
-            yield NOBODYS, Case((), points if somebody_is_missing else 0, Said(complaint))
+            what = Said(complaint)
+            yield (NOBODYS, Case((), points, what)) if somebody_is_missing else (None, Case((), 0, what))
     for mark in marks:
         if mark.result.status == MISSING:
             continue
@@ -141,11 +156,9 @@ def _of_one(mark):
         yield NOT_RUNNING, result.points, notes
         return
     if notes.texts:
-        yield (
-            CUT_SHORT,
-            sum(share(one, answer) for one in judged for answer in one.answers if answer.status == OPEN),
-            notes,
-        )
+        at_stake = sum(share(one, answer) for one in judged for answer in one.answers if answer.status == OPEN)
+        concern = CUT_SHORT if result.status == STOPPED else FAILED
+        yield concern if at_stake else None, at_stake, notes
     waiting = set(mark.waiting)
     for exercise in judged:
         for answer in exercise.answers:
@@ -157,7 +170,7 @@ def _of_one(mark):
             elif answer.status == UNJUDGED:
                 yield UNREAD, at_stake, (place, given, "; ", Said(explained(answer)))
             if answer.look:
-                yield FLAGGED, at_stake, (place, given, f"; judged {answer.status}: ", Sentence(answer.look))
+                yield FLAGGED, at_stake, (place, given, f"; judged {answer.status}: ", Said(answer.look))
     for look in result.looks:
         at_stake = {OWNER: result.points, ODD: result.earned}.get(look.kind, 0)
         yield {OWNER: OF_ANOTHER, ODD: TELLS_TOO_MUCH}.get(look.kind), at_stake, Said(look.says)
@@ -171,7 +184,11 @@ def _equal(results):
         for exercise in result.exercises
         for answer in exercise.answers
     }
+    found: dict[tuple[tuple[str, ...], tuple[str, ...]], list[tuple[float, Text]]] = {}
     for one in equal_answers(results):
-        right = f"; right for {', '.join(one.right)}, not for {', '.join(one.others)}" if one.right else "; wrong"
-        what = (f"{one.number} · ", Code(one.name), ": ", Code(one.answer), right)
-        yield Case((*one.right, *one.others), shares[one.number, one.name], what)
+        what = (f"{one.number} · ", Code(one.name), ": ", Code(one.answer))
+        found.setdefault((one.right, one.others), []).append((shares[one.number, one.name], what))
+    for (right, others), given in found.items():
+        whose = f"right for {', '.join(right)}, not for {', '.join(others)}" if right else "wrong for all"
+        points, lines = zip(*given, strict=True)
+        yield Case((*right, *others), sum(points), Lines((*lines, whose)))

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from loopbook.exercises.judging import MISTAKE, RIGHT
-from loopbook.grading.reports.wording import STATUSES
+from loopbook.grading.reports.wording import STATUSES, verdict_and_reading
 from loopbook.grading.results import MISSING, NOT_RUN
 
 if TYPE_CHECKING:
@@ -154,7 +154,8 @@ def _mistakes(results):
         for exercise in result.exercises:
             for verdict in exercise.answers:
                 if verdict.status == MISTAKE:
-                    kind = exercise.number, verdict.name, _NUMBER.sub("…", verdict.says)
-                    sentences.setdefault(kind, []).append(verdict.says)
+                    says, _ = verdict_and_reading(verdict)
+                    kind = exercise.number, verdict.name, _NUMBER.sub("…", says)
+                    sentences.setdefault(kind, []).append(says)
     most = sorted(sentences.items(), key=lambda item: (-len(item[1]), item[0]))[:MOST_MISTAKES]
     return [(*asked, says[0] if len(set(says)) == 1 else general, len(says)) for (*asked, general), says in most]

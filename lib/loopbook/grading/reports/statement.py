@@ -28,6 +28,8 @@ _INLINE = re.compile(
     r"|\*\*(?P<strong>\S(?:.*?\S)?)\*\*(?!\*)|\*(?P<stressed>[^\s*](?:[^*]*[^\s*])?)\*"
     r"|\\(?P<sign>[!-/:-@\[-`{-~])"
 )
+#: White space, but for what keeps a number and its unit in one line.
+_SPACE = re.compile(r"[^\S\N{NO-BREAK SPACE}]+")
 _ITEM = re.compile(r"(?:[-*+]|(?P<number>\d{1,9}[.)]))(?:\s+|$)")
 #: What begins a list below a line of text; another number than 1 is one of the text.
 _FIRST = re.compile(r"(?:[-*+]|1[.)])\s+")
@@ -49,7 +51,7 @@ def text(markdown: str) -> Text:
     >>> text("a *lag* with $T < 4$ s, `a*b*c`")
     ('a ', Emphasis(text=('lag',)), ' with ', Formula(latex='T < 4', is_displayed=False), ' s, ', Code(text='a*b*c'))
     """
-    return tuple(_pieces(" ".join(markdown.split())))
+    return tuple(_pieces(_SPACE.sub(" ", markdown.strip())))
 
 
 def _pieces(line: str) -> Iterator[str | Inline]:

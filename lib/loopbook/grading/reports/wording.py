@@ -44,10 +44,12 @@ def visible(text: str) -> str:
 def spaced(text: str) -> str:
     """Return a text as `visible` does, with a space at each end where it had one: there stands more beside it.
 
+    A space at which no line may be broken, as between a number and its unit, stays one.
+
     >>> spaced(" of \\n"), spaced("\\n"), spaced("")
     (' of ', ' ', '')
     """
-    line = visible(text)
+    line = "\N{NO-BREAK SPACE}".join(map(visible, text.split("\N{NO-BREAK SPACE}")))
     return f"{' ' * text[:1].isspace()}{line}{' ' * text[-1:].isspace()}" if line else " " * bool(text)
 
 
@@ -141,7 +143,7 @@ def remarks(result: Result) -> list[str]:
     return [shortened(visible(text), LONGEST_REMARK) for text in found[:MOST_REMARKS]] + more
 
 
-def explained(verdict: JudgedAnswer) -> str:
+def explained(answer: JudgedAnswer) -> str:
     """Return the sentence on an answer without the word that its status says already.
 
     One on an answer that could not be judged may quote it: it holds no formulas.
@@ -150,10 +152,26 @@ def explained(verdict: JudgedAnswer) -> str:
     >>> explained(JudgedAnswer("Ti", "right", "right, converted from min", "2 min", "120 s"))
     'converted from min'
     """
-    says = verdict.says
-    if verdict.status == UNJUDGED:
+    says = answer.says
+    if answer.status == UNJUDGED:
         return says.replace("$", "")
-    return says.removeprefix("right").removeprefix(", ") if verdict.status == RIGHT else says
+    return says.removeprefix("right").removeprefix(", ") if answer.status == RIGHT else says
+
+
+def verdict_and_reading(answer: JudgedAnswer) -> tuple[str, str]:
+    """Return what `explained` says in two parts: on the answer, and how it was read.
+
+    >>> from loopbook.grading.results import JudgedAnswer
+    >>> verdict_and_reading(JudgedAnswer("Ti", "wrong", "not right; asked: the time · read as 60 s", "1 min", "120 s"))
+    ('not right; asked: the time', 'read as 60 s')
+    >>> verdict_and_reading(JudgedAnswer("Ti", "right", "right, converted from min", "2 min", "120 s"))
+    ('', 'converted from min')
+    """
+    says = explained(answer)
+    if answer.status == RIGHT:
+        return "", says
+    before, dot, behind = says.rpartition(" · ")
+    return (before, behind) if dot and answer.status != UNJUDGED else (says, "")
 
 
 def parts(sentence: str) -> list[str]:
@@ -162,7 +180,7 @@ def parts(sentence: str) -> list[str]:
     >>> parts("here $c = 4$ is asked"), parts("5 $ each")
     (['here ', 'c = 4', ' is asked'], ['5 $ each'])
     """
-    pieces = visible(sentence).split("$")
+    pieces = spaced(sentence).split("$")
     return pieces if len(pieces) % 2 else ["$".join(pieces)]
 
 

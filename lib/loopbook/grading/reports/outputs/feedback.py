@@ -28,11 +28,11 @@ from loopbook.grading.reports.publishing import published
 from loopbook.grading.reports.wording import (
     NO_JAIL,
     answer_in_words,
-    explained,
     in_text,
     number,
     of_points,
     remarks,
+    verdict_and_reading,
     visible,
 )
 from loopbook.grading.results import COMPLETE, MISSING, NOT_RUN
@@ -145,9 +145,14 @@ def _question(judged):
 
 
 def _line(judged: JudgedAnswer, reveal: bool) -> Judged:
-    below = []
-    if answer := answer_in_words(judged.answer):
-        below.append(("Your answer: ", Code(answer)))
+    says, reading = verdict_and_reading(judged)
+    answer, below = answer_in_words(judged.answer), []
+    if reading == f"read as {answer}":
+        reading = ""
+    if answer:
+        below.append(("Your answer: ", Code(answer), ", " if reading else "", Said(reading)))
+    elif reading:
+        below.append(Said(reading))
     if reveal:
         below.append(("Key: ", Code(judged.key)))
-    return Judged(judged.status, judged.name, Sentence(explained(judged)) if explained(judged) else "", tuple(below))
+    return Judged(judged.status, judged.name, Sentence(says) if says else "", tuple(below))

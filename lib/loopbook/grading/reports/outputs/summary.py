@@ -82,13 +82,14 @@ def summary(
     blocks += [Paragraph(line) for line in _overview(found)]
     if notes:
         blocks += [Heading("How the class was graded"), Listing(tuple(map(Said, notes)))]
-    if found.sums and found.points:
-        blocks += [Heading("Points"), Histogram(tuple(found.steps))]
     blocks += _to_look_at(*concerns(marks, complaints), named)
     for heading, ids in (("Missing", found.missing), ("Not graded yet", found.ungraded)):
         if ids:
             blocks += [Heading(heading), Listing(tuple(map(named, ids)))]
-    blocks += [*_late(marks, named), *_by_hand(marks, named), *_exercises(found), *_files()]
+    blocks += [*_late(marks, named), *_by_hand(marks, named)]
+    if found.sums and found.points:
+        blocks += [Heading("Points"), Histogram(tuple(found.steps))]
+    blocks += [*_exercises(found), *_files()]
     return Document((Sentence(title), ": summary"), f"{in_text(title)}: summary", tuple(blocks))
 
 
