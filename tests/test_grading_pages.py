@@ -7,7 +7,7 @@ import pytest
 
 from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
 from loopbook.grading.marking import Marked, MarkedExercise
-from loopbook.grading.reports import markdown, page
+from loopbook.grading.reports import markdown, page, write_all
 from loopbook.grading.reports.concerns import concerns
 from loopbook.grading.reports.equal_answers import equal_answers, significant_digits
 from loopbook.grading.reports.findings import Findings
@@ -351,8 +351,17 @@ def test_late_hand_ins_and_marks_by_hand_are_in_the_summary():
 def test_every_file_is_said_what_it_is_for():
     for text in both(summary(TITLE, CLASS, RESULTS)):
         for one in registered():
-            assert one.file in text
-            assert one.what in text
+            assert (one.file in text and one.what in text) or one.file.startswith("summary.")
+
+
+def test_a_file_that_was_not_written_is_not_told(tmp_path):
+    write_all(tmp_path, TITLE, CLASS, RESULTS)
+    text = (tmp_path / "summary.md").read_text(encoding="utf-8")
+    told = {one.file for one in registered() if not one.is_for_each_student and f"`{one.file}`" in text}
+    there = {path.name for path in tmp_path.iterdir() if path.is_file()}
+    assert told == there - {"summary.html", "summary.md"}
+    assert "grades.csv" in told
+    assert len(told) < len([one for one in registered() if not one.is_for_each_student]) - 2
 
 
 def test_the_tables_of_the_summary_in_markdown_have_equal_rows():

@@ -44,6 +44,11 @@ def write_all(
     by_student = {mark.result.student: mark for mark in marks}
     marks = [by_student[student.id] for student in students if student.id in by_student]
     notebooks = {path.stem for path in Path(folder, "notebooks").glob("*.html")}
-    for one in sorted(registered(), key=lambda one: not one.is_for_each_student):  # some of the others read them
+    for one in sorted(registered(), key=_turn):
         for file, content in one.files(title, students, marks, complaints, notes, reveal, notebooks, Path(folder)):
             files.write(Path(folder, file), content)
+
+
+def _turn(one):
+    """The pages of the students first, which other files hold; the summary last, which tells what is there."""
+    return 0 if one.is_for_each_student else 2 if one.file.startswith("summary.") else 1

@@ -40,11 +40,15 @@ from loopbook.grading.reports.wording import (
 from loopbook.grading.results import NOT_RUN
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from loopbook.grading.marking import Marked
     from loopbook.grading.roster import Student
 
 #: So many cases of one kind are told.
 MOST_CASES = 100
+#: The files of this summary.
+OWN = ("summary.html", "summary.md")
 
 
 @published("summary", "the summary for the instructor")
@@ -55,6 +59,7 @@ def summary(
     complaints: Sequence[str] = (),
     notes: Sequence[str] = (),
     notebooks: Collection[str] = (),
+    folder: Path | None = None,
 ) -> Document:
     """Return the summary.
 
@@ -65,6 +70,7 @@ def summary(
         complaints: sentences on what was handed in and could not be assigned to a student.
         notes: sentences on how the class was graded.
         notebooks: the ids of the students whose notebook was kept as it ran.
+        folder: of the grades; where it is given, files that are not there are not told.
     """
     found = Findings(students, marks)
     graded, names = {mark.result.student for mark in marks}, {student.id: student.name for student in students}
@@ -89,7 +95,7 @@ def summary(
     blocks += [*_late(marks, named), *_by_hand(marks, named)]
     if found.sums and found.points:
         blocks += [Heading("Points"), Histogram(tuple(found.steps))]
-    blocks += [*_exercises(found), *_files()]
+    blocks += [*_exercises(found), *_files(folder)]
     return Document((Sentence(title), ": summary"), f"{in_text(title)}: summary", tuple(blocks))
 
 
@@ -190,8 +196,9 @@ def _exercises(found: Findings) -> list[Block]:
     return blocks
 
 
-def _files() -> list[Block]:
-    rows = [(Code(one.file), one.what) for one in registered()]
+def _files(folder: Path | None) -> list[Block]:
+    there = [one for one in registered() if folder is None or one.is_for_each_student or (folder / one.file).exists()]
+    rows = [(Code(one.file), one.what) for one in there if one.file not in OWN]
     return [
         Heading("Files"),
         Details("What was written, and what for", (Table("Files", ["file", "what it is"], rows),)),
