@@ -37,17 +37,20 @@ from loopbook.exercises.criteria import largest_sensitivity, pi_controller, stab
 from loopbook.exercises.kinds import MAKERS, Criterion, Kind, Number
 from loopbook.exercises.parameters import Parameter, between, call, choice
 from loopbook.exercises.question import Question
+from loopbook.validation import is_number
 
 if TYPE_CHECKING:
     # editors read no registry
     from loopbook.exercises.kinds import Design as design  # noqa: F401, N813
     from loopbook.exercises.kinds import Expression as expression  # noqa: F401, N813
+    from loopbook.exercises.kinds import Figure as figure  # noqa: F401, N813
     from loopbook.exercises.kinds import InstrumentDiagram as instrument_diagram  # noqa: F401, N813
     from loopbook.exercises.kinds import Number as number  # noqa: F401, N813
     from loopbook.exercises.kinds import Numbers as numbers  # noqa: F401, N813
     from loopbook.exercises.kinds import Poles as poles  # noqa: F401, N813
     from loopbook.exercises.kinds import SequentialChart as sequential_chart  # noqa: F401, N813
     from loopbook.exercises.kinds import Settings as settings  # noqa: F401, N813
+    from loopbook.exercises.kinds import Text as text  # noqa: F401, N813
     from loopbook.exercises.kinds import TimeFunction as time_function  # noqa: F401, N813
     from loopbook.exercises.kinds import TransferFunction as transfer_function  # noqa: F401, N813
     from loopbook.exercises.kinds import Word as word  # noqa: F401, N813
@@ -80,18 +83,24 @@ def answers(**kinds: Kind | float | sympy.Expr) -> dict[str, Kind]:
 
 
 def exercise(
-    number: str, title: str, points: float = 1, where: Callable[..., object] = lambda: True, insight: str = ""
+    number: str,
+    title: str,
+    points: float = 1,
+    where: Callable[..., object] = lambda: True,
+    insight: str = "",
+    weights: Mapping[str, float] | None = None,
 ) -> Callable[[Callable[..., dict[str, Kind]]], Exercise]:
     """Make an exercise of a function that returns its key.
 
     Arguments:
         number: chapter and place in it, as "10.2".
         title: a few words.
-        points: of the whole exercise; each asked quantity brings the same part.
+        points: of the whole exercise; each asked quantity brings the same part, if weights do not say otherwise.
         where: a condition on the parameters that it names; other draws are discarded.
         insight: what one knows after a right answer, in one sentence.
+        weights: {name of a quantity: what it counts}; the others count 1.
     """
-    return functools.partial(Exercise, number, title, points, where, insight=insight)
+    return functools.partial(Exercise, number, title, points, where, insight=insight, weights=weights)
 
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
@@ -101,7 +110,7 @@ class Exercise:
     """An exercise, with all its variants.
 
     Attributes:
-        number, title, points, insight: as given.
+        number, title, points, insight, weights: as given.
         parameters: {name: `Parameter`}.
     """
 
@@ -113,9 +122,14 @@ class Exercise:
         where: Callable[..., object],
         key: Callable[..., dict[str, Kind]],
         insight: str = "",
+        weights: Mapping[str, float] | None = None,
     ):
         self.number, self.title, self.points, self.where, self.key = number, title, points, where, key
         self.insight, self.then = insight, ""  # the heading of the next exercise, which a collection knows
+        self.weights = dict(weights or {})
+        for name, weight in self.weights.items():
+            if not is_number(weight) or not weight > 0:
+                raise ValueError(f"the weight of {name} in exercise {number} is {weight!r}: expected a positive number")
         self.statement = textwrap.dedent(" " * 4 + (key.__doc__ or "")).strip()
         self.parameters: dict[str, Parameter] = {
             name: item.default for name, item in inspect.signature(key).parameters.items()

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from loopbook.exercises.kinds import Kind
 
 RIGHT, MISTAKE, WRONG, UNJUDGED, OPEN = "right", "mistake", "wrong", "not judged", "open"
+#: What is taken down for a person, who says what it is worth.
+WAITING = "to be marked"
 #: Reading and comparing may take so many seconds: an answer may be a function, or an object with methods of its own.
 SECONDS = 5
 
@@ -41,8 +43,12 @@ class Verdict:
         return self.status == RIGHT
 
 
-def earned(points: float, right: int, asked: int) -> float:
-    """Return what some right answers bring of the points of an exercise, where each asked quantity brings the same.
+def earned(points: float, right: float, asked: float) -> float:
+    """Return what some right answers bring of the points of an exercise.
+
+    Arguments:
+        points: of the exercise.
+        right, asked: what the right ones and all of them weigh; where each brings the same, how many they are.
 
     >>> earned(4, right=2, asked=3)
     2.6666666666666665
@@ -103,6 +109,8 @@ def _agrees(kind, given):
 def _judged(kind, given, mistakes, background):
     """Status, sentence, whether the sentence is bare, and why an instructor should look."""
     answer, remark = kind.read(given)
+    if kind.by_hand:
+        return WAITING, "a person marks this" + (f" · {remark}" if remark else ""), False
     says, look = kind.incomparable(answer)
     if says:
         return WRONG, harmless(says), False, harmless(look)

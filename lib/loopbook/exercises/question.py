@@ -14,7 +14,7 @@ from loopbook.exercises import filling
 from loopbook.exercises.asked_names import as_asked, by_name
 from loopbook.exercises.diagnoses import Background
 from loopbook.exercises.errors import ExerciseError
-from loopbook.exercises.judging import OPEN, UNJUDGED, Verdict, harmless, is_right, judge
+from loopbook.exercises.judging import OPEN, UNJUDGED, WAITING, Verdict, harmless, is_right, judge
 from loopbook.exercises.kinds import Expression, Kind, Number, Numbers, Poles, Settings
 from loopbook.exercises.parameters import call
 from loopbook.exercises.progress import is_answered, note, students
@@ -74,6 +74,8 @@ class Question(Showing):
         key = self._called(self.exercise.key, "the key")
         if not (isinstance(key, dict) and key and all(isinstance(kind, Kind) for kind in key.values())):
             raise ValueError(f"exercise {self.exercise.number} returns {key!r}: expected answers(...)")
+        if unknown := [name for name in self.exercise.weights if name not in key]:
+            raise ValueError(f"exercise {self.exercise.number} weighs {unknown[0]!r}: {did_you_mean(unknown[0], key)}")
         # the order in which an author lists words says something about the right one, so each variant has its own
         key = {name: kind.shuffled(f"{self.exercise.number}|{self.student}") for name, kind in key.items()}
         for name, kind in key.items():  # in an assignment, `student` is drawn from its secret
@@ -169,9 +171,10 @@ class Question(Showing):
             else Verdict(name, OPEN, NOT_ANSWERED)
             for name, kind in self.key.items()
         )
-        judged = {one.name: one for one in verdicts if one.status not in (OPEN, UNJUDGED)}
+        judged = {one.name: one for one in verdicts if one.status not in (OPEN, UNJUDGED, WAITING)}
         drawings = tuple(functools.partial(_drawn, self.key[name], given[name]) for name in judged)
-        response = Response(self.exercise.heading, verdicts, self.exercise.points, tuple(notes), drawings)
+        exercise = self.exercise
+        response = Response(exercise.heading, verdicts, exercise.points, tuple(notes), drawings, exercise.weights)
         if all(verdict.status == OPEN for verdict in verdicts):
             return response
         self._answered += 1
@@ -288,7 +291,8 @@ class Question(Showing):
         listed = set()
         for name, kind in self.key.items():
             among = getattr(kind, "among", None)
-            lines.append(f"- `{name}`: " + (f"{kind.what}, out of the same list" if among in listed else kind.asked))
+            asked = f"{kind.what}, out of the same list" if among in listed else kind.asked
+            lines.append(f"- `{name}`: {asked}{_weighted(self.exercise.weights.get(name, 1))}")
             listed.add(among or name)
         return "\n".join(lines + self._accuracy())
 
@@ -309,6 +313,12 @@ class Question(Showing):
 
     def __repr__(self) -> str:
         return self.statement
+
+
+def _weighted(weight):
+    """How much a quantity counts, in words; empty where it counts once."""
+    usual = {1: "", 2: " (counts double)", 0.5: " (counts half)"}
+    return usual.get(weight, f" (counts {weight:g} times)")
 
 
 def _listed(names):

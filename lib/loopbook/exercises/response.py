@@ -5,11 +5,11 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import html
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG, earned
+from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WAITING, WRONG, earned
 from loopbook.exercises.showing import Showing
 from loopbook.exercises.timeout import limited
 
@@ -29,6 +29,7 @@ MARKS = {
     WRONG: ("✗", "#b33c00"),
     UNJUDGED: ("?", "#5a5a5a"),
     OPEN: ("…", "#5a5a5a"),
+    WAITING: ("✎", "#3b4fa8"),
 }
 
 
@@ -39,7 +40,8 @@ class Response(Showing):
     Attributes:
         heading: number and title of the exercise.
         verdicts: one for each asked quantity, in their order.
-        points: of the whole exercise; each asked quantity brings the same part.
+        points: of the whole exercise.
+        weights: {name: weight} of quantities that do not count once.
         notes: sentences on the answers as a whole.
         drawings: functions that return figures of the answers, or None.
     """
@@ -49,6 +51,7 @@ class Response(Showing):
     points: float
     notes: tuple[str, ...] = ()
     drawings: tuple[Callable[[], Any], ...] = ()
+    weights: Mapping[str, float] = field(default_factory=dict)
 
     def with_notes(self, *notes: str) -> Response:
         """The response with more sentences."""
@@ -73,7 +76,8 @@ class Response(Showing):
     @property
     def earned(self) -> float:
         """The points earned."""
-        return earned(self.points, self._right, len(self.verdicts))
+        weights = {one: self.weights.get(one.name, 1) for one in self.verdicts}
+        return earned(self.points, sum(weights[one] for one in weights if one.is_right), sum(weights.values()))
 
     @property
     def _right(self):
@@ -84,7 +88,7 @@ class Response(Showing):
     def _status(self):
         """The status that the whole box shows."""
         statuses = {verdict.status for verdict in self.verdicts}
-        order = (WRONG, MISTAKE, UNJUDGED, OPEN, RIGHT)
+        order = (WRONG, MISTAKE, UNJUDGED, OPEN, WAITING, RIGHT)
         return next(status for status in order if status in statuses)
 
     @property
@@ -97,7 +101,13 @@ class Response(Showing):
             return "not answered yet"
         if self.is_right:
             return "right"
-        return f"{self._right} of {len(self.verdicts)} right" if len(self.verdicts) > 1 else "not right yet"
+        waiting = sum(verdict.status == WAITING for verdict in self.verdicts)
+        if waiting == len(self.verdicts):
+            return "taken down"
+        to_be_marked = f", {waiting} to be marked" if waiting else ""
+        return (
+            f"{self._right} of {len(self.verdicts)} right{to_be_marked}" if len(self.verdicts) > 1 else "not right yet"
+        )
 
     @property
     def data(self) -> dict[str, Any]:

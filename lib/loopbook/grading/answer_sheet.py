@@ -12,6 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from loopbook.exercises import png
 from loopbook.exercises.judging import harmless
 from loopbook.exercises.kinds import MAKERS
 from loopbook.exercises.reading import NOT_ANSWERED, Unreadable, shortened
@@ -72,7 +73,9 @@ class AnswerSheet:
             with contextlib.suppress(Exception):  # what becomes of the answers is no matter of the student's cell
                 deliver(self.student, name, data)
         rows = [self._row(name, quantity) for quantity in dict.fromkeys([*self._forms.get(name, ()), *given])]
-        return Box(f"Exercise {name}" if name else "Which exercise?", tuple(rows), self._notes(name, alone, data))
+        pictures = [(harmless(one), value["png"]) for one, value in data.items() if png.is_data(value)]
+        heading = f"Exercise {name}" if name else "Which exercise?"
+        return Box(heading, tuple(rows), self._notes(name, alone, data), tuple(pictures))
 
     def taken(self, exercise: object) -> dict[str, Plain]:
         """Return what is taken down of an exercise: {quantity: plain data}."""
@@ -132,11 +135,12 @@ class AnswerSheet:
 
 @dataclass(frozen=True)
 class Box:
-    """What a sheet shows: a heading, rows of a mark, a name and a sentence, and notes."""
+    """What a sheet shows: a heading, rows of a mark, a name and a sentence, notes, and figures as they were taken."""
 
     heading: str
     rows: tuple[tuple[str, str, str], ...]
     notes: tuple[str, ...] = ()
+    pictures: tuple[tuple[str, str], ...] = ()
 
     @property
     def _mark(self):
@@ -152,7 +156,12 @@ class Box:
         rows = [f"<div>{mark} <code>{_escape(name)}</code>: {_escape(says)}</div>" for mark, name, says in self.rows]
         notes = [f"<div>{_escape(note)}</div>" for note in self.notes]
         heading = f"<strong>{self._mark} {_escape(self.heading)}</strong>"
-        return "\n".join([f'<div role="status" style="{style}">', heading, *rows, *notes, "</div>"])
+        look = "max-width: 24em; background: #ffffff"
+        pictures = [
+            f'<img style="{look}" alt="{html.escape(name)}" src="data:image/png;base64,{html.escape(data)}">'
+            for name, data in self.pictures
+        ]
+        return "\n".join([f'<div role="status" style="{style}">', heading, *rows, *pictures, *notes, "</div>"])
 
 
 def _named(exercise):

@@ -73,8 +73,8 @@ class Limits:
     processes: int = 64
     file: int = 32 * MEGA
     disk: int = 64 * MEGA
-    line: int = MEGA // 8
-    events: int = 4 * MEGA
+    line: int = MEGA // 2
+    events: int = 16 * MEGA
 
 
 USUAL = Limits()

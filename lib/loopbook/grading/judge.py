@@ -144,7 +144,8 @@ def judged(
             verdict = Verdict(name, UNJUDGED, says)
         else:
             verdict = judge(name, kind, answer, question.mistakes[name], question.background.of(name, given))
-        answers.append(JudgedAnswer(name, verdict.status, verdict.says, answer, kind.solution, look=verdict.look))
+        weight = question.exercise.weights.get(name, 1)
+        answers.append(JudgedAnswer(name, verdict.status, verdict.says, answer, kind.solution, weight, verdict.look))
     exercise = question.exercise
     numbers = tuple((name, written(value, exercise.parameters[name].unit)) for name, value in question.values.items())
     return JudgedExercise(exercise.number, exercise.title, exercise.points, question.statement, numbers, tuple(answers))

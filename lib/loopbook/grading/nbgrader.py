@@ -35,7 +35,7 @@ def source(assignment: Assignment, student_id: str | None = None) -> NotebookNod
 
     An exercise is a locked statement, a cell with the solution between nbgrader's marks, and a locked cell whose
     hidden tests judge and end in the points. What cannot be written into a cell is graded by hand: designs, whose
-    criteria are functions, and formulas with pieces.
+    criteria are functions, and formulas with pieces; so are figures and texts.
 
     Arguments:
         student_id: whose variant; the reference variant if not given, as all students of nbgrader get one source.
@@ -55,16 +55,19 @@ def source(assignment: Assignment, student_id: str | None = None) -> NotebookNod
     return made
 
 
-def earned(taken: Mapping[str, Any], points: float, **key: Kind) -> float:
+def earned(
+    taken: Mapping[str, Any], points: float, weights: Mapping[str, float] | None = None, /, **key: Kind
+) -> float:
     """Return the points that answers earn, and print what became of each; the hidden tests end in this call.
 
     Arguments:
         taken: {quantity: plain data}, from `AnswerSheet.taken`.
-        points: of these quantities together; each brings the same part.
+        points: of these quantities together.
+        weights: {quantity: what it counts}; the others count 1.
         key: a kind with its key for each quantity.
 
     >>> from loopbook.exercises.authoring import number
-    >>> earned({"Ti": 10, "Kp": "much"}, points=4, Ti=number(10, "s"), Kp=number(2))
+    >>> earned({"Ti": 10, "Kp": "much"}, 4, Ti=number(10, "s"), Kp=number(2))
     Ti: right
     Kp: 'much' is a text that is not a number: expected a number
     2.0
@@ -72,7 +75,13 @@ def earned(taken: Mapping[str, Any], points: float, **key: Kind) -> float:
     verdicts = [judging.judge(name, kind, taken.get(name)) for name, kind in key.items()]
     for one in verdicts:
         print(f"{one.name}: {unreadable(taken.get(one.name)) or one.says}")
-    return judging.earned(points, sum(verdict.is_right for verdict in verdicts), len(verdicts))
+    right = _weight([verdict.name for verdict in verdicts if verdict.is_right], weights or {})
+    return judging.earned(points, right, _weight(key, weights or {}))
+
+
+def _weight(names, weights):
+    """What some quantities count together."""
+    return sum(weights.get(name, 1) for name in names)
 
 
 def _question(assignment, student_id, number):
@@ -88,14 +97,16 @@ def _cells(grade_id, number, question):
     calls = {name: kind.making and f"authoring.{kind.making}" for name, kind in question.key.items()}
     judged = {name: kind for name, kind in question.key.items() if calls[name]}
     others = {name: kind for name, kind in question.key.items() if not calls[name]}
-    points = question.exercise.points
+    points, weights = question.exercise.points, question.exercise.weights
+    asked = _weight(question.key, weights)
     if judged:
-        part = judging.earned(points, len(judged), len(question.key))
+        part = judging.earned(points, _weight(judged, weights), asked)
         yield v4.new_code_cell(_solved(number, judged)), _marks(grade_id, solution=True)
-        test = v4.new_code_cell(_hidden_tests(number, {name: calls[name] for name in judged}, part))
+        counted = {name: weights[name] for name in judged if name in weights}
+        test = v4.new_code_cell(_hidden_tests(number, {name: calls[name] for name in judged}, part, counted))
         yield test, _marks(f"{grade_id}-test", grade=True, locked=True, points=part)
     if others:
-        part = judging.earned(points, len(others), len(question.key))
+        part = judging.earned(points, _weight(others, weights), asked)
         by_hand = _marks(f"{grade_id}-by-hand", grade=True, solution=True, points=part)
         yield v4.new_code_cell(_solved(number, others)), by_hand
 
@@ -120,10 +131,11 @@ def _solved(number, key):
     return "\n".join(lines)
 
 
-def _hidden_tests(number, calls, points):
+def _hidden_tests(number, calls, points, weights):
     lines = [f"# The answers to exercise {number} are judged here.", "### BEGIN HIDDEN TESTS"]
     # by its module: the student may have a number or poles of another meaning
     lines.append("from loopbook.exercises import authoring")
     lines.append("from loopbook.grading.nbgrader import earned")
-    arguments = [f"sheet.taken({literal(number)})", f"points={points!r}", *(f"{n}={call}" for n, call in calls.items())]
+    arguments = [f"sheet.taken({literal(number)})", repr(points), *([literal(weights)] if weights else [])]
+    arguments += [f"{name}={call}" for name, call in calls.items()]
     return "\n".join([*lines, wrapped(f"earned({', '.join(arguments)})"), "### END HIDDEN TESTS"])

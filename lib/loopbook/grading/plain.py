@@ -1,7 +1,7 @@
 """Answers as plain data: what of an answer leaves the student's process.
 
 A judge reads the data as it would read the answer itself: numbers are numbers, expressions and systems are the text
-that spells them, and what has no such form is a sentence that says so.
+that spells them, a figure is the picture, and what has no such form is a sentence that says so.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from typing import TypeAlias
 import numpy as np
 import sympy
 
+from loopbook.exercises import png
 from loopbook.exercises.formulas import Formula
 from loopbook.exercises.judging import harmless
 from loopbook.exercises.reading import Unreadable, alone, spelled
@@ -36,9 +37,10 @@ Plain: TypeAlias = "bool | int | float | str | list[Plain] | dict[str, Plain] | 
 def plain(answer: object) -> Plain:
     """Return an answer as JSON data: None, truth values, numbers, texts, lists, and dictionaries with texts as keys.
 
-    Numbers that JSON does not know are texts, as "(1+2j)", "1/3" or "nan". What has no plain form becomes
-    ``{"unreadable": sentence}``, all of it. The data is bounded: 2000 values, 8 levels, 50 000 characters. No
-    exception leaves this function, but the methods of an object may run as long as they like.
+    Numbers that JSON does not know are texts, as "(1+2j)", "1/3" or "nan". A figure is ``{"png": base64}``. What has no
+    plain form becomes ``{"unreadable": sentence}``, all of it. The data is bounded: 2000 values, 8 levels, 50 000
+    characters; a picture of 300 kB and 2000 pixels along a side. No exception leaves this function, but the methods of
+    an object may run as long as they like.
 
     >>> import sympy
     >>> plain([sympy.Rational(5, 2), sympy.Rational(1, 3), 1 + 2j, float("nan"), ...])
@@ -47,7 +49,9 @@ def plain(answer: object) -> Plain:
     ('2/s', 3, 'a function cannot be handed in: give')
     """
     try:
-        return _Reader().read(answer, 0)
+        if picture := png.of_figure(answer):
+            return png.as_data(picture)
+        return png.as_data(png.checked(answer)) if png.is_data(answer) else _Reader().read(answer, 0)
     except Unreadable as problem:
         return {_UNREADABLE: harmless(str(problem))}
     except Exception as problem:  # objects of others may fail in any way

@@ -106,8 +106,8 @@ class Background:
         return other
 
     def answered(self, name: str) -> Answered | None:
-        """What the reader has for a quantity; None where that is nothing that can be judged."""
-        if name not in self.answers:
+        """What the reader has for a quantity; None where that is nothing that can be judged, or a person marks it."""
+        if name not in self.answers or self.key[name].by_hand:
             return None
         try:
             return Answered(name, self.key[name], self.key[name].read(self.answers[name])[0])

@@ -40,6 +40,8 @@ class Kind:
     expected: str = "an answer"
     #: The arguments that say how an answer looks. None of them comes from the key.
     FORM: tuple[str, ...] = ("unit",)
+    #: Whether a person marks it, so that nothing is compared.
+    by_hand: ClassVar[bool] = False
     key: Any
     within: float
     #: What is drawn for comparing an answer is drawn from this text, which no author of answers knows.

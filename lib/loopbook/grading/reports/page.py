@@ -8,14 +8,21 @@ import urllib.parse
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterable
 
-from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
+from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WAITING, WRONG
 from loopbook.exercises.response import MARKS
 from loopbook.grading.reports import document as of
 from loopbook.grading.reports.histogram import histogram_svg, histogram_words
 from loopbook.grading.reports.wording import parts, spaced, visible
 
 #: The colours of the statuses on a dark ground; those on a light one are the response's.
-ON_DARK = {RIGHT: "#5fd3ae", MISTAKE: "#e8b04a", WRONG: "#ff9a6b", UNJUDGED: "#b8b8b8", OPEN: "#b8b8b8"}
+ON_DARK = {
+    RIGHT: "#5fd3ae",
+    MISTAKE: "#e8b04a",
+    WRONG: "#ff9a6b",
+    UNJUDGED: "#b8b8b8",
+    OPEN: "#b8b8b8",
+    WAITING: "#a3b4ff",
+}
 
 _TAGS = {
     "math", "mrow", "mi", "mn", "mo", "mtext", "mspace", "mfrac", "msqrt", "mroot", "msub", "msup", "msubsup",
@@ -26,6 +33,9 @@ _ATTRIBUTES = {
     "linethickness", "width", "columnalign", "minsize", "maxsize", "lspace", "rspace", "accent", "accentunder",
     "movablelimits", "notation",
 }  # fmt: skip
+
+#: Nothing runs and nothing is fetched; pictures are in the page itself.
+_ALLOWED = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
 
 _STYLE = """
 :root { color-scheme: light dark; --ink: #1a1a1a; --ground: #ffffff; --quiet: #555555; --line: #cccccc; --box: #f4f4f4;
@@ -88,7 +98,7 @@ def page(title: str, body: Iterable[str]) -> str:
         "<head>",
         '<meta charset="utf-8">',
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
-        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">",
+        f'<meta http-equiv="Content-Security-Policy" content="{_ALLOWED}">',
         f"<title>{escaped(title)}</title>",
         f"<style>{style}</style>",
         "</head>",

@@ -7,7 +7,8 @@ from collections.abc import Iterable
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
+from loopbook.exercises import png
+from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WAITING, WRONG
 from loopbook.exercises.reading import shortened
 from loopbook.figures.picture import plain_words
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 #: The line that every output carries where student code ran with nothing around it.
 NO_JAIL = "Graded without a jail: nothing kept the code of the notebook from the grader, and results can be forged."
 #: The statuses of a verdict, from good to bad.
-STATUSES = (RIGHT, MISTAKE, WRONG, UNJUDGED, OPEN)
+STATUSES = (RIGHT, MISTAKE, WRONG, UNJUDGED, WAITING, OPEN)
 
 LONGEST_ANSWER = 200
 LONGEST_REMARK = 400
@@ -103,6 +104,8 @@ def answer_in_words(answer: Plain) -> str:
     """
     if isinstance(answer, dict) and [*answer] == ["unreadable"]:
         return ""
+    if png.is_data(answer):
+        return "a figure"
     return shortened(visible(_in_words(answer)), LONGEST_ANSWER)
 
 
