@@ -244,6 +244,14 @@ def test_the_worst_is_said_first_with_a_student_and_an_answer():
     assert f"wrong       {first.says}\n{'':14}{first.student}: {first.example}" in trial.as_text(found)
 
 
+def test_what_a_person_marks_is_named():
+    found = tried(exercise('y=number(3 * K, "K", "it"), plot=figure("it"), why=text("why")'))
+    assert [(one.level, one.says) for one in found.surprises] == [(NOTE, "a person marks plot and why")]
+    alone = tried(exercise('why=text("why")', parameters="K=choice(1, 2)", statement="{K}."))
+    assert [(one.level, one.says) for one in alone.surprises] == [(NOTE, "a person marks why")]
+    assert trial.report([alone]).splitlines()[2] == "nothing surprising"
+
+
 def test_the_time_is_bounded_and_it_says_how_far_it_came():
     found = tried(exercise('y=number(3 * K, "K", "it")', shown="time.sleep(0.2)\n    "), seconds=0.5)
     assert 1 <= found.variants < 8

@@ -199,9 +199,9 @@ def report(trials: Sequence[Trial]) -> str:
     """Return what came of trying an assignment, as lines: the exercises with the worst surprises first."""
     order = sorted(trials, key=lambda one: LEVELS.index(one.level) if one.level else len(LEVELS))
     lines = [as_text(trial) for trial in order if trial.surprises]
-    fine = [trial.number for trial in trials if not trial.surprises]
+    fine = [trial.number for trial in trials if trial.level not in (WRONG, ODD)]
     if fine:
-        lines.append(f"nothing surprising{f' in {listed(fine)}' if lines else ''}")
+        lines.append("nothing surprising" + (f" in {listed(fine)}" if len(fine) < len(trials) else ""))
     for what in ("hints", "a solution"):
         if without := [trial.number for trial in trials if what in trial.lacks]:
             lines.append(f"without {what}: {listed(without)}")

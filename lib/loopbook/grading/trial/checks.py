@@ -21,7 +21,7 @@ import sympy
 from loopbook.exercises import kinds
 from loopbook.exercises.judging import MISTAKE, OPEN, SECONDS, UNJUDGED, Verdict, is_right, judge
 from loopbook.exercises.parameters import call, written
-from loopbook.exercises.reading import shortened
+from loopbook.exercises.reading import listed, shortened
 from loopbook.grading.plain import Plain, plain, unreadable
 from loopbook.grading.trial.answers import AS_IT_IS, as_given, forms, others, rounded
 
@@ -45,7 +45,7 @@ MOST_CHANGED, MOST_SHOWN = 40, 3
 SPREAD, SMALL, LARGE = 1000, 1e-4, 1e6
 #: A key that takes so many seconds is slow; a class waits for it when it is released and when it is graded.
 SLOW = 0.2
-#: A parameter with fewer values is a choice, and nothing that is rounded; an exercise with fewer variants is copied.
+#: A parameter with fewer values is a choice and nothing that is rounded; an exercise with fewer variants is copied.
 FEWEST_VALUES, FEWEST_VARIANTS = 6, 8
 #: So many characters of an answer, and of a sentence, are shown.
 LONGEST_ANSWER, LONGEST_SENTENCE = 70, 200
@@ -82,9 +82,10 @@ class Variant:
 
     def __init__(self, student: str, place: int, question: Question, seconds: float):
         self.student, self.place, self.question, self.seconds = student, place, question, seconds
-        self.exercise, self.mistakes = question.exercise, question.mistakes
-        self.by_hand = [name for name, kind in question.key.items() if getattr(kind, "by_hand", False)]
+        self.exercise = question.exercise
+        self.by_hand = [name for name, kind in question.key.items() if kind.by_hand]
         self.key = {name: kind for name, kind in question.key.items() if name not in self.by_hand}
+        self.mistakes = {name: question.mistakes[name] for name in self.key}
         numbers = {name: value for name, value in question.values.items() if not isinstance(value, str)}
         self.numbers: dict[str, sympy.Expr] = numbers
 
@@ -155,12 +156,6 @@ def keys_in_their_forms(variant: Variant) -> Iterator[Seen]:
             )
             if how == AS_IT_IS:
                 break
-
-
-def marked_by_hand(variant: Variant) -> Iterator[Seen]:
-    """What nobody but a person can mark is named."""
-    for name in variant.by_hand:
-        yield Seen(NOTE, f"{name}: a person marks it")
 
 
 def words_of_a_list(variant: Variant) -> Iterator[Seen]:
@@ -251,7 +246,7 @@ def rounded_givens(variant: Variant) -> Iterator[Seen]:
         return
     quantities = {name: kind for name, kind in variant.of_kind(*_ROUNDED).items() if kind.within or _is_word(kind)}
     for given, value in variant.numbers.items():
-        if len(variant.exercise.parameters[given].values) < FEWEST_VALUES:
+        if not _is_measured(variant.exercise.parameters[given]):
             continue
         for near in (value * (1 + ROUNDING), value * (1 - ROUNDING)):
             try:
@@ -263,6 +258,12 @@ def rounded_givens(variant: Variant) -> Iterator[Seen]:
                 unit = variant.exercise.parameters[given].unit
                 example = f"{variant.solution(name)}; for {written(near, unit)} {shortened(key[name].solution, 70)}"
                 yield Seen(ODD, f"{name}: {given} rounded to four digits makes it wrong", example, RARE)
+
+
+def _is_measured(parameter):
+    """Whether a given is a number that may be rounded, and neither a choice nor a count."""
+    numbers = [value for value in parameter.values if not isinstance(value, str)]
+    return len(numbers) >= FEWEST_VALUES and bool(parameter.unit or not all(one.is_integer for one in numbers))
 
 
 def _is_word(kind):
@@ -292,7 +293,7 @@ def texts_and_pictures(variant: Variant) -> Iterator[Seen]:
 
 
 OF_ONE: tuple[Callable[[Variant], Iterator[Seen]], ...] = (
-    keys_in_their_forms, marked_by_hand, words_of_a_list, other_answers, declared_mistakes, statements,
+    keys_in_their_forms, words_of_a_list, other_answers, declared_mistakes, statements,
     quantities_with_one_answer, rounded_givens, texts_and_pictures,
 )  # fmt: skip
 
@@ -311,7 +312,7 @@ def equal_answers(variants: Sequence[Variant]) -> Iterator[Seen]:
             how_often = "for all" if count == len(variants) else f"in {count} of {len(variants)} variants"
             yield Seen(ODD, f"{name}: the answer is the same {how_often}, {shortened(most, LONGEST_ANSWER)}")
     different = len({tuple(map(str, variant.question.values.values())) for variant in variants})
-    if different < FEWEST_VARIANTS:
+    if different < FEWEST_VARIANTS and variants[0].key:
         yield Seen(ODD, f"there are only {different} different variants")
     pairs = [pair for pair in itertools.pairwise(variants) if pair[0].question.values != pair[1].question.values]
     copied = [pair for pair in pairs if pair[1].all_right({name: as_given(kind) for name, kind in pair[0].key.items()})]
@@ -324,6 +325,12 @@ def equal_answers(variants: Sequence[Variant]) -> Iterator[Seen]:
 def _is_in_symbols(kind):
     """Whether the answer is a formula in symbols, which is the same for all by its nature."""
     return isinstance(kind, kinds.Expression) and bool({*kind.symbols} - kind.always)
+
+
+def marked_by_hand(variants: Sequence[Variant]) -> Iterator[Seen]:
+    """What a person marks is named."""
+    if names := variants[0].by_hand:
+        yield Seen(NOTE, f"a person marks {listed(names)}")
 
 
 def sizes(variants: Sequence[Variant]) -> Iterator[Seen]:
@@ -372,5 +379,5 @@ def slow_keys(variants: Sequence[Variant]) -> Iterator[Seen]:
 
 
 OF_ALL: tuple[Callable[[Sequence[Variant]], Iterator[Seen]], ...] = (
-    equal_answers, sizes, mistakes_that_do_not_occur, parameters_that_nobody_sees, slow_keys,
+    equal_answers, marked_by_hand, sizes, mistakes_that_do_not_occur, parameters_that_nobody_sees, slow_keys,
 )  # fmt: skip
