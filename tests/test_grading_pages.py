@@ -1,12 +1,16 @@
 """The pages of students and the summary: what they say, as HTML and as Markdown."""
 
+import base64
 import re
 from dataclasses import replace
 
 import pytest
 
-from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
+from loopbook.exercises import png
+from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WAITING, WRONG
+from loopbook.grading.lateness import Lateness
 from loopbook.grading.marking import Marked, MarkedExercise
+from loopbook.grading.overrides import Mark
 from loopbook.grading.reports import markdown, page, write_all
 from loopbook.grading.reports.concerns import concerns
 from loopbook.grading.reports.equal_answers import equal_answers, significant_digits
@@ -37,6 +41,9 @@ from small_class import (
 )
 from whole_pages import Checker, assert_whole
 
+PICTURE = base64.b64decode(
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5ErkJggg=="
+)
 on_page, in_markdown = page.written, markdown.written
 
 
@@ -162,6 +169,41 @@ def test_the_page_says_what_waits_and_what_was_given_by_hand():
         assert "(3.5 of 4 points)" in text
 
 
+def by_hand(marks=None, key="it begins after the dead time", **more):
+    """A result with a figure and a text that a person marks, with these marks by hand."""
+    sketch = JudgedAnswer("sketch", WAITING, "a person marks this", png.as_data(PICTURE), key, 3)
+    long = f"the dead time is long\n\n<b>so</b> {'it oscillates ' * 40}!"
+    why = JudgedAnswer("why", WAITING, "a person marks this · 9 words, where at most 5 are asked for", long, "")
+    one = JudgedExercise("3", "A sketch", 4, "Sketch it.", (), (sketch, why))
+    return Marked.of(replace(RIGHT_ALL.result, exercises=(*RIGHT_ALL.result.exercises, one)), marks, **more)
+
+
+def test_what_a_person_marks_is_shown_whole():
+    text = on_page(feedback(TITLE, ADA, by_hand()))
+    assert text.count("<img") == 1
+    assert 'alt="your figure for sketch"' in text
+    assert "<bdi>the dead time is long</bdi><br><bdi>&lt;b&gt;so&lt;/b&gt; it oscillates" in text
+    for said in both(feedback(TITLE, ADA, by_hand())):
+        assert "oscillates !" in said
+        assert "to be marked: a person marks this" in re.sub(r"\*", "", said)
+        assert "9 words, where at most 5 are asked for" in said
+        assert "5 of 9 points so far" in said
+        assert "begins after" not in said
+    assert "Key: it begins after the dead time" in read(feedback(TITLE, ADA, by_hand(), reveal=True))
+
+
+def test_what_a_person_has_marked_waits_no_more():
+    marks = {("3", "sketch"): Mark(2, "no *axes*"), ("3", "why"): Mark(None, "and why?")}
+    for text in both(feedback(TITLE, ADA, by_hand(marks))):
+        assert re.search(r"sketch\W+marked by hand", text)
+        assert re.search(r"why\W+to be marked", text)
+        assert 'sketch: 2 of 3 points by hand: "no *axes*"' in text
+        assert "Your instructor: why: and why?" in text
+    for text in both(feedback(TITLE, ADA, by_hand(marks | {("3", "why"): Mark(1)}))):
+        assert "8 of 9 points" in text
+        assert "so far" not in text
+
+
 def test_the_page_says_what_being_late_cost():
     mark = replace(NAMED, late="2 days late: 20 % off, 0.73 points", deduction=0.7333, comments=("See me.",))
     for text in both(feedback(TITLE, BOB, mark)):
@@ -253,6 +295,21 @@ def test_what_failed_after_the_answers_were_in_is_harmless():
     assert "cell 9: NameError: x" in text
 
 
+def test_what_waits_for_a_person_is_told_with_what_to_look_for():
+    cases, _ = told([by_hand({("3", "why"): Mark(1)})])
+    assert cases == {"Answers that wait for a mark": [("s1001", 3)]}
+    for text in both(summary(TITLE, CLASS, [by_hand()])):
+        assert re.search("3 · .?sketch.?: .?a figure.?; to look for: .?it begins after the dead time", text)
+
+
+def test_marks_and_times_that_need_a_decision():
+    look = "exercise 1, K: marked by hand with 1, and the answer has changed since"
+    cases, _ = told([Marked.of(NAMED.result, looks=(look,)), Marked.of(MISSING.result, looks=("late",))])
+    assert cases == {"Marks and times that need a decision": [("s1002", 5), ("s1004", 5)]}
+    for text in both(summary(TITLE, CLASS, [Marked.of(NAMED.result, looks=(look,))])):
+        assert look in text
+
+
 def test_a_file_of_nobody_costs_where_somebody_is_missing():
     complaint = "x_<y>.ipynb: is named after no student of the roster"
     assert told([RIGHT_ALL], [complaint]) == ({}, [()])
@@ -337,15 +394,23 @@ def test_how_the_class_was_graded_is_told():
 
 
 def test_late_hand_ins_and_marks_by_hand_are_in_the_summary():
-    late = replace(NAMED, late="2 days late: 20 % off", deduction=0.7)
-    by_hand = waiting(RIGHT_ALL, "1", earned=3.5, comments=("no axes",), history=("the grader's points were 2 before",))
-    document = summary(TITLE, CLASS, [late, by_hand])
-    for text in both(document):
-        assert "no axes" in text
-        assert "the grader's points were 2 before" in text
-    lines = in_markdown(document).splitlines()
-    assert any(re.search(r"Bob Bode \(s1002\).* \| 0.7 \| 2 days late: 20 % off \|", line) for line in lines)
-    assert any(re.search(r"Ada Lovelace .* \| 1 \| 4 \| 3.5 \| no axes; the grader's", line) for line in lines)
+    late = Marked.of(NAMED.result, lateness=Lateness(0.2, "2 days late: 20 % of the points are deducted"))
+    marked = Marked.of(RIGHT_ALL.result, {("1", ""): Mark(3.5, "no axes"), ("2", "action"): Mark(None, "good")})
+    of_all = Marked.of(NOT_RUN.result, {("", ""): Mark(4, "on paper")})
+    lines = in_markdown(summary(TITLE, CLASS, [late, marked])).splitlines()
+    assert any(re.search(r"Bob Bode \(s1002\).* \| 0.73 \| 2 days late: 20 % of the points", line) for line in lines)
+    assert any(re.search(r'Ada Lovelace .* \| 1 \| 4 \| 3.5 \| .*3.5 by hand: "no axes" \|', line) for line in lines)
+    assert any(re.search(r"Ada Lovelace .* \| 2 \| 1 \| 1 \| action: good \|", line) for line in lines)
+    text = in_markdown(summary(TITLE, CLASS, [of_all]))
+    assert re.search(r'\| all of it \| 0 \| 4 \| 0 of 5 points before, 4 by hand for all of it: "on paper" \|', text)
+    assert "by hand" not in in_markdown(summary(TITLE, CLASS, [RIGHT_ALL, NAMED]))
+
+
+def test_answers_to_be_marked_have_a_column_where_there_are_any():
+    text = in_markdown(summary(TITLE, CLASS, [by_hand()]))
+    assert "| exercise | quantity | in percent | right | mistake | wrong | not judged | to be marked | open |" in text
+    assert "| 3 | `sketch` |  | 0 | 0 | 0 | 0 | 1 | 0 |" in text
+    assert "to be marked" not in in_markdown(summary(TITLE, CLASS, [RIGHT_ALL]))
 
 
 def test_every_file_is_said_what_it_is_for():

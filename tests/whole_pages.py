@@ -7,7 +7,7 @@ import re
 class Checker(html.parser.HTMLParser):
     """Complains about what is no valid page of ours; collects tags, attributes and text."""
 
-    VOID = ("meta", "br", "path", "use")
+    VOID = ("meta", "br", "img", "path", "use")
 
     def __init__(self, text):
         super().__init__()
@@ -45,9 +45,12 @@ def assert_whole(text):
     checked = Checker(text)
     assert text.startswith('<!DOCTYPE html>\n<html lang="en">')
     assert checked.tags.count("title") == checked.tags.count("h1") == checked.tags.count("main") == 1
-    assert not {"script", "link", "img", "iframe", "object", "form", "base"} & set(checked.tags)
+    assert not {"script", "link", "iframe", "object", "form", "base"} & set(checked.tags)
     assert not [name for name, _ in checked.attributes if name.startswith("on")]
-    addresses = [value for name, value in checked.attributes if name in ("href", "src", "xlink:href", "action")]
+    pictures = [value for name, value in checked.attributes if name == "src"]
+    assert all(re.fullmatch(r"data:image/png;base64,[\w+/]+=*", value) for value in pictures)
+    assert len(pictures) == checked.tags.count("img") == [name for name, _ in checked.attributes].count("alt")
+    addresses = [value for name, value in checked.attributes if name in ("href", "xlink:href", "action")]
     assert all(re.fullmatch(r"#[\w-]+|(?!/)[\w%@./~-]+", value) for value in addresses), addresses
     identifiers = [value for name, value in checked.attributes if name == "id"]
     assert len(set(identifiers)) == len(identifiers)

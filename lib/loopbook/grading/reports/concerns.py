@@ -63,9 +63,13 @@ NOT_RUNNING = Concern(
     "Notebooks that could not be run",
     ("The grade is an empty cell. Repair the file or ask for another one, and grade again. ", *_BY_HAND),
 )
-WAITING = Concern(
+TO_MARK = Concern(
     "Answers that wait for a mark",
     ("The grade is an empty cell until there are points in ", Code("marks.csv"), "."),
+)
+TO_DECIDE = Concern(
+    "Marks and times that need a decision",
+    ("What is said here holds until you say otherwise: in ", Code("marks.csv"), ", or in the file that is named."),
 )
 CUT_SHORT = Concern(
     "Notebooks that were stopped before all answers were in",
@@ -100,7 +104,7 @@ EQUAL = Concern(
 )
 #: Where equal points hang on two of them, this is their order.
 _ORDER = (
-    NOT_RUNNING, NOBODYS, WAITING, CUT_SHORT, FAILED, UNREAD, FLAGGED, OF_ANOTHER, TELLS_TOO_MUCH, EQUAL,
+    NOT_RUNNING, NOBODYS, TO_MARK, TO_DECIDE, CUT_SHORT, FAILED, UNREAD, FLAGGED, OF_ANOTHER, TELLS_TOO_MUCH, EQUAL,
 )  # fmt: skip
 
 
@@ -141,8 +145,6 @@ def _cases(marks, complaints) -> Iterator[tuple[Concern | None, Case]]:
             what = Said(complaint)
             yield (NOBODYS, Case((), points, what)) if somebody_is_missing else (None, Case((), 0, what))
     for mark in marks:
-        if mark.result.status == MISSING:
-            continue
         for concern, at_stake, what in _of_one(mark):
             yield concern, Case((mark.result.student,), at_stake, what)
     yield from ((EQUAL, case) for case in _equal(results))
@@ -151,7 +153,11 @@ def _cases(marks, complaints) -> Iterator[tuple[Concern | None, Case]]:
 def _of_one(mark):
     """The cases of one submission, without its student."""
     result, judged = mark.result, [one.judged for one in mark.exercises]
+    for look in mark.looks:
+        yield TO_DECIDE, result.points, Said(look)
     notes = Lines(tuple(map(Said, remarks(result))))
+    if result.status == MISSING:
+        return
     if result.status == NOT_RUN:
         yield NOT_RUNNING, result.points, notes
         return
@@ -166,7 +172,7 @@ def _of_one(mark):
             shown = answer_in_words(answer.answer)
             given = (": ", Code(shown)) if shown else ""
             if (exercise.number, answer.name) in waiting:
-                yield WAITING, at_stake, (place, given)
+                yield TO_MARK, at_stake, (place, given, ("; to look for: ", Code(answer.key)) if answer.key else "")
             elif answer.status == UNJUDGED:
                 yield UNREAD, at_stake, (place, given, "; ", Said(explained(answer)))
             if answer.look:

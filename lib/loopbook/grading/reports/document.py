@@ -98,6 +98,19 @@ class Link(Inline):
 
 
 @dataclass(frozen=True)
+class Picture(Inline):
+    """A picture, which a page holds and a text only names.
+
+    Attributes:
+        content: a PNG file, of `loopbook.exercises.png`.
+        alt: what it is, in words.
+    """
+
+    content: bytes = field(repr=False)
+    alt: str
+
+
+@dataclass(frozen=True)
 class Lines(Inline):
     """Texts of one place, each on a line of its own."""
 
@@ -165,12 +178,14 @@ class Judged:
         name: of the quantity.
         says: why; empty where there is nothing to say.
         below: more, each on a line of its own.
+        word: for the status, where its own one does not hold any more.
     """
 
     status: str
     name: str
     says: Text = ""
     below: tuple[Text, ...] = ()
+    word: str = ""
 
 
 @dataclass(frozen=True)

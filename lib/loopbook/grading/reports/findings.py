@@ -9,7 +9,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from loopbook.exercises.judging import MISTAKE, RIGHT
+from loopbook.exercises.judging import MISTAKE, RIGHT, WAITING
 from loopbook.grading.reports.wording import STATUSES, verdict_and_reading
 from loopbook.grading.results import MISSING, NOT_RUN
 
@@ -34,9 +34,9 @@ class Asked:
     counts: Counter[str]
 
     @property
-    def fraction(self) -> float:
-        """The fraction of right answers."""
-        return self.counts[RIGHT] / self.counts.total()
+    def fraction(self) -> float | None:
+        """The fraction of right answers; None where a person marks them."""
+        return None if self.counts[WAITING] else self.counts[RIGHT] / self.counts.total()
 
 
 @dataclass(frozen=True)

@@ -62,7 +62,7 @@ def _(verdicts: of.Verdicts) -> list[str]:
     lines = []
     for one in verdicts.answers:
         says = f": {inline(one.says)}" if one.says else ""
-        lines.append(f"- {MARKS[one.status][0]} {inline(of.Code(one.name))} **{one.status}**{says}")
+        lines.append(f"- {MARKS[one.status][0]} {inline(of.Code(one.name))} **{one.word or one.status}**{says}")
         lines += [f"  - {_line(text)}" for text in one.below]
     return [*lines, ""]
 
@@ -152,6 +152,11 @@ def _(status: of.Status, in_table: bool = False) -> str:
 @inline.register
 def _(link: of.Link, in_table: bool = False) -> str:
     return f"[{inline(link.text, in_table)}]({urllib.parse.quote(link.to)})"
+
+
+@inline.register
+def _(picture: of.Picture, in_table: bool = False) -> str:
+    return inline(f"{picture.alt} (a picture, on the page)")
 
 
 @inline.register

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import base64
 import functools
 import html
 import urllib.parse
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterable
 
+from loopbook.exercises import png
 from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WAITING, WRONG
 from loopbook.exercises.response import MARKS
 from loopbook.grading.reports import document as of
@@ -66,11 +68,12 @@ th, td { border-bottom: 1px solid var(--line); padding: 0.25rem 1rem 0.25rem 0; 
 .count { text-align: right; white-space: nowrap; }
 details { margin: 0.5rem 0; border-left: 0.3rem solid var(--line); padding: 0 0.8rem; }
 summary { cursor: pointer; color: var(--quiet); }
-svg { max-width: 100%; height: auto; }
+svg, img { max-width: 100%; height: auto; }
+img { display: block; background: #ffffff; margin: 0.4rem 0; }
 @media print {
   main { max-width: none; padding: 0; }
   h2 { break-after: avoid; }
-  li, tr, svg { break-inside: avoid; }
+  li, tr, svg, img { break-inside: avoid; }
   details::details-content { content-visibility: visible; }
 }
 """
@@ -167,7 +170,9 @@ def _(verdicts: of.Verdicts) -> list[str]:
 
 
 def _judged(one):
-    line = _marked(one.status, f"{inline(of.Code(one.name))} ") + (f": {inline(one.says)}" if one.says else "")
+    line = _marked(one.status, f"{inline(of.Code(one.name))} ", one.word) + (
+        f": {inline(one.says)}" if one.says else ""
+    )
     line += "".join(f'<div class="answer">{inline(text)}</div>' for text in one.below)
     return f'<li class="{_class(one.status)}">{line}</li>'
 
@@ -250,14 +255,24 @@ def _(link: of.Link) -> str:
 
 
 @inline.register
+def _(picture: of.Picture) -> str:
+    width, height = png.size(picture.content)
+    data = base64.b64encode(picture.content).decode()
+    shape = f'width="{width}" height="{height}"'
+    return f'<img src="data:image/png;base64,{data}" {shape} alt="{escaped(picture.alt)}">'
+
+
+@inline.register
 def _(lines: of.Lines) -> str:
     return "<br>".join(map(inline, lines.texts))
 
 
-def _marked(status, between=""):
-    """The sign of a status, some HTML, and its word."""
+def _marked(status, between="", word=""):
+    """The sign of a status, some HTML, and its word or another one."""
     sign, kind = MARKS[status][0], f"status {_class(status)}"
-    return f'<span class="{kind}" aria-hidden="true">{sign}</span> {between}<span class="{kind}">{status}</span>'
+    return (
+        f'<span class="{kind}" aria-hidden="true">{sign}</span> {between}<span class="{kind}">{word or status}</span>'
+    )
 
 
 def escaped(text: str) -> str:

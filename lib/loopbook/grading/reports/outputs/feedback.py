@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import TYPE_CHECKING
 
+from loopbook.exercises import png
+from loopbook.exercises.judging import WAITING
 from loopbook.grading.reports import statement
 from loopbook.grading.reports.document import (
     Block,
@@ -14,13 +16,16 @@ from loopbook.grading.reports.document import (
     Document,
     Heading,
     Judged,
+    Lines,
     Link,
     Listing,
     Paragraph,
+    Picture,
     Quiet,
     Said,
     Sentence,
     Strong,
+    Text,
     Verdicts,
     person,
 )
@@ -39,6 +44,7 @@ from loopbook.grading.results import COMPLETE, MISSING, NOT_RUN
 
 if TYPE_CHECKING:
     from loopbook.grading.marking import Marked, MarkedExercise
+    from loopbook.grading.plain import Plain
     from loopbook.grading.results import JudgedAnswer
     from loopbook.grading.roster import Student
 
@@ -122,7 +128,8 @@ def _exercise(marked: MarkedExercise, reveal: bool) -> list[Block]:
     judged = marked.judged
     earned = "waits for a mark" if marked.earned is None else of_points(marked.earned, judged.points)
     heading = (f"Exercise {judged.number} · ", Sentence(judged.title), " ", Quiet(f"({earned})"))
-    blocks: list[Block] = [Heading(heading), Verdicts(tuple(_line(one, reveal) for one in judged.answers))]
+    lines = tuple(_line(one, one.name in marked.waiting, reveal) for one in judged.answers)
+    blocks: list[Block] = [Heading(heading), Verdicts(lines)]
     if marked.comments:
         blocks.append(Listing(tuple(("Your instructor: ", Said(one)) for one in marked.comments)))
     if marked.history:
@@ -144,15 +151,26 @@ def _question(judged):
     return blocks
 
 
-def _line(judged: JudgedAnswer, reveal: bool) -> Judged:
+def _line(judged: JudgedAnswer, waits: bool, reveal: bool) -> Judged:
     says, reading = verdict_and_reading(judged)
     answer, below = answer_in_words(judged.answer), []
-    if reading == f"read as {answer}":
-        reading = ""
-    if answer:
+    if judged.status == WAITING:
+        below.append(("Your answer: ", whole(judged.answer, judged.name)))
+        says = says if waits else ""
+    elif answer:
+        reading = "" if reading == f"read as {answer}" else reading
         below.append(("Your answer: ", Code(answer), ", " if reading else "", Said(reading)))
-    elif reading:
+        reading = ""
+    if reading:
         below.append(Said(reading))
-    if reveal:
+    if reveal and judged.key:
         below.append(("Key: ", Code(judged.key)))
-    return Judged(judged.status, judged.name, Sentence(says) if says else "", tuple(below))
+    word = "marked by hand" if judged.status == WAITING and not waits else ""
+    return Judged(judged.status, judged.name, Sentence(says) if says else "", tuple(below), word)
+
+
+def whole(answer: Plain, name: str) -> Text:
+    """Return what a person marks, as it was handed in: a figure, or a text with its lines."""
+    if png.is_data(answer):
+        return Picture(png.checked(answer), f"your figure for {name}")
+    return Lines(tuple(Said(line) for line in str(answer).splitlines() if line.strip()))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
+from loopbook.exercises.judging import WAITING
 from loopbook.grading.reports.concerns import Case, Concern, concerns
 from loopbook.grading.reports.document import (
     Block,
@@ -142,25 +143,24 @@ def _late(marks, named) -> list[Block]:
     rows = [(named(mark.result.student), number(mark.deduction), Said(mark.late)) for mark in marks if mark.late]
     if not rows:
         return []
-    return [Heading("Late"), Table("Late", ["student", "points off", "why"], rows, counts=frozenset({1}))]
+    head = ["student", "points off", "why"]
+    return [Heading("Late, and extensions"), Table("Late, and extensions", head, rows, counts=frozenset({1}))]
 
 
 def _by_hand(marks, named) -> list[Block]:
-    rows = [
-        (
-            named(mark.result.student),
-            one.judged.number,
-            number(one.judged.earned),
-            "" if one.earned is None else number(one.earned),
-            Lines(tuple(map(Said, (*one.comments, *one.history)))),
-        )
-        for mark in marks
-        for one in mark.exercises
-        if one.comments or one.history or one.earned not in (None, one.judged.earned)
-    ]
+    rows = []
+    for mark in marks:
+        student = named(mark.result.student)
+        for one in mark.exercises:
+            if said := (*one.comments, *one.history):
+                grader, counts = number(one.judged.earned), "" if one.earned is None else number(one.earned)
+                rows.append((student, one.judged.number, grader, counts, Lines(tuple(map(Said, said)))))
+        if mark.comments or mark.by_hand is not None:
+            grader, counts = number(mark.result.earned), "" if mark.total is None else number(mark.total)
+            rows.append((student, "all of it", grader, counts, Lines(tuple(map(Said, mark.comments)))))
     if not rows:
         return []
-    head = ["student", "exercise", "by the grader", "by hand", "comments and history"]
+    head = ["student", "exercise", "by the grader", "counts", "marks and comments"]
     return [Heading("Marks by hand"), Table("Marks by hand", head, rows, counts=frozenset({2, 3}))]
 
 
@@ -179,12 +179,18 @@ def _exercises(found: Findings) -> list[Block]:
         Heading("Exercises, the hardest first"),
         Table("Exercises", head, rows, counts=frozenset({1, 2})),
     ]
+    asked = [asked for one in found.exercises for asked in one.asked]
+    statuses = [status for status in STATUSES if status != WAITING or any(one.counts[status] for one in asked)]
     answers = [
-        (asked.number, Code(asked.name), percent(asked.fraction), *(str(asked.counts[status]) for status in STATUSES))
-        for one in found.exercises
-        for asked in one.asked
+        (
+            one.number,
+            Code(one.name),
+            "" if one.fraction is None else percent(one.fraction),
+            *(str(one.counts[status]) for status in statuses),
+        )
+        for one in asked
     ]
-    head = ["exercise", "quantity", "in percent", *map(Status, STATUSES)]
+    head = ["exercise", "quantity", "in percent", *map(Status, statuses)]
     blocks += [Heading("Answers"), Table("Answers", head, answers, counts=frozenset(range(2, len(head))))]
     if found.mistakes:
         mistakes = [(place, Code(name), str(count), Sentence(says)) for place, name, says, count in found.mistakes]
