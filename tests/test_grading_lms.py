@@ -14,6 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import contributing
 from loopbook.grading import GradingError, lms, reports, tables
 from loopbook.grading.lms import moodle, own
 from loopbook.grading.lms.canvas import canvas_grades
@@ -319,6 +320,11 @@ def test_the_roster_of_gradescope(roster):
     )
     assert jane == Student("s1001", "Jane Doe", "Doe, Jane", sis_id="s1001", section="A", email="jane@x.org")
     assert (john.id, john.id_from) == ("john@x.org", "Email")
+    (jane,) = roster(
+        "First Name,Last Name,SID,Email,Sections,Heater,Heater - Max Points,Submission Time,Lateness (H:M:S)\n"
+        "Jane,Doe,s1001,jane@x.org,A,8,10,2025-11-03 23:59:30 -0700,00:00:00\n"
+    )
+    assert jane.handed_in == datetime.datetime(2025, 11, 3, 23, 59, 30)
 
 
 # What is wrong with a roster.
@@ -808,23 +814,18 @@ def test_what_a_system_lacks_is_said(tmp_path, monkeypatch):
         lms.registered()
 
 
-def test_a_new_system_is_one_class(monkeypatch, roster):
+def test_the_system_that_contributors_are_shown_is_one(monkeypatch, roster):
     monkeypatch.setattr(lms, "_REGISTERED", dict(lms._REGISTERED))
-
-    @lms.system
-    class Lectern(lms.System):
-        name, title, roster = "lectern", "Lectern", "an export of Lectern"
-        ids = {"login": "Badge"}  # noqa: RUF012
-
-        def columns(self, header):
-            return {"login": header.index("Badge"), "name": 0} if "Badge" in header else None
-
-        def claim(self, name, known, assignment):
-            badge = re.fullmatch(r"badge (\w+)\.ipynb", name)
-            return lms.Claim(tuple(known.by("login", badge[1]))) if badge else None
-
-    (jane,) = students = roster("Whoever,Badge\nJane Doe,b7\n")
-    assert (jane.id, jane.id_from, jane.system) == ("b7", "Badge", "lectern")
-    assert Owners(students).of("badge b7.ipynb").student == jane
-    with pytest.raises(GradingError, match="an export of Lectern"):
+    monkeypatch.setattr(reports.outputs, "_REGISTERED", dict(reports.outputs._REGISTERED))
+    contributing.run("Add a learning management system")
+    jane, john = students = roster("Person;Badge\nJane Doe;b7\nJohn Roe;b8\n")
+    assert (jane.id, jane.name, jane.id_from, jane.system) == ("b7", "Jane Doe", "Badge", "lectern")
+    assert Owners(students).of("badge b8 late.ipynb").student == john
+    assert Owners(students).of("badge b8 late.ipynb").late is True
+    assert Owners(students).of("badge b7.ipynb").late is None
+    assert "not on the roster" in Owners(students).of("badge b9.ipynb").reason
+    (one,) = [one for one in reports.registered() if one.file == "lectern_grades.csv"]
+    assert dict(one.files("Heater", students, [mark("b7", 2.5)])) == {"lectern_grades.csv": "Badge;Points\nb7;2.5\n"}
+    assert dict(one.files("Heater", CLASS, [])) == {}
+    with pytest.raises(GradingError, match="an export of Lectern's participants"):
         roster("a,b\n")

@@ -108,7 +108,7 @@ def test_what_an_output_lacks_is_said(file, what, makes, says):
 
 def test_the_output_that_contributors_are_shown_is_one(monkeypatch):
     monkeypatch.setattr(reports.outputs, "_REGISTERED", dict(reports.outputs._REGISTERED))
-    contributing.run("Add an output for an LMS")
+    contributing.run("Add an output")
     (one,) = [one for one in registered() if one.file == "names.txt"]
     assert dict(one.files(TITLE, CLASS, RESULTS)) == {"names.txt": "\n".join(student.name for student in CLASS)}
 

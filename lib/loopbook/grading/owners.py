@@ -51,11 +51,11 @@ class Owners:
 
     def __init__(self, students: Iterable[Student], assignment: str = ""):
         """Take the students of the roster, and the name of the assignment."""
-        self._known, self._assignment = lms.Known(students), assignment
+        self._known, self._assignment, self._systems = lms.Known(students), assignment, lms.registered()
 
     def of(self, name: str) -> Owner:
         """Return whose the submission with this name at the top is."""
-        claims = [claim for one in lms.registered() if (claim := one.claim(name, self._known, self._assignment))]
+        claims = [claim for one in self._systems if (claim := one.claim(name, self._known, self._assignment))]
         found = list({student.id: student for claim in claims for student in claim.students}.values())
         if len(found) > 1:
             return Owner(None, f"may be that of {found[0].id} or of {found[1].id}")

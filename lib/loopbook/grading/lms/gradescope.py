@@ -1,8 +1,9 @@
 """Gradescope: its roster, and results in the format of its autograders.
 
-The roster ("Download Roster") has First Name, Last Name, SID, Email and Role; the grades have the first four, and
-Sections. Its downloads of submissions do not say in their names whose they are; its autograders are run for one
-submission, see examples/autograder. It cannot hand each student an own file.
+The roster ("Download Roster") has First Name, Last Name, SID, Email and Role; the grades have the first four, Sections,
+and Submission Time, which is that of the course's zone, as is the due date. Its downloads of submissions do not say in
+their names whose they are; its autograders are run for one submission, see examples/autograder. It cannot hand each
+student an own file.
 """
 
 from __future__ import annotations
@@ -60,7 +61,8 @@ class Gradescope(System):
             return None
         first, last = cells["first"], cells["last"]
         sortable = ", ".join(filter(None, (last, first)))
-        return {**cells, "name": " ".join(filter(None, (first, last))), "sortable": sortable}
+        time = re.sub(r" *(?:[+-][0-9]{4}|UTC)$", "", cells.get("handed_in", ""))
+        return {**cells, "name": " ".join(filter(None, (first, last))), "sortable": sortable, "handed_in": time}
 
     def claim(self, name: str, known: Known, assignment: str) -> Claim | None:
         """Return that nobody can tell."""
@@ -89,10 +91,15 @@ def results_json(mark: Marked, reveal: bool = False) -> str:
     >>> json.loads(results_json(Marked.of(result)))["tests"][0]["output"]
     '✓ K: right. Answer: 2'
     """
-    result, total = mark.result, mark.total or 0
+    result, total = mark.result, mark.total
+    if total is None:  # while something waits for a person, the rest counts already
+        total = max(0.0, sum(one.earned or 0 for one in mark.exercises) - mark.deduction) if mark.waiting else 0.0
     visibility = "after_published" if reveal else "visible"
     lines = [NO_JAIL] if without_jail([result]) else []
-    lines += [of_points(total, result.points), *remarks(result)]
+    lines += [of_points(total, result.points), *remarks(result), *filter(None, [mark.late]), *mark.comments]
+    if mark.waiting:
+        where = dict.fromkeys(number for number, _ in mark.waiting)
+        lines.append(f"Waiting for a mark by hand: exercise {', '.join(where)}.")
     data = {
         "score": round(total, 2),
         "output": "\n".join(lines),
@@ -100,20 +107,20 @@ def results_json(mark: Marked, reveal: bool = False) -> str:
         "test_output_format": "text",
         "test_name_format": "text",
         "visibility": visibility,
-        "tests": [_test(exercise, visibility, reveal) for exercise in result.exercises],
+        "tests": [_test(exercise, visibility, reveal) for exercise in mark.exercises],
     }
     return json.dumps(data, ensure_ascii=False, allow_nan=False, indent=1) + "\n"
 
 
-def _test(exercise, visibility, reveal):
-    verdicts = exercise.answers
+def _test(marked, visibility, reveal):
+    exercise, verdicts = marked.judged, marked.judged.answers
     return {
         "number": exercise.number,
         "name": in_text(exercise.title),
-        "score": round(exercise.earned, 2),
+        "score": round(marked.earned or 0, 2),
         "max_score": round(exercise.points, 2),
         "status": "passed" if all(verdict.status == RIGHT for verdict in verdicts) else "failed",
-        "output": "\n".join(_line(verdict, reveal) for verdict in verdicts),
+        "output": "\n".join([*(_line(verdict, reveal) for verdict in verdicts), *marked.comments]),
         "output_format": "text",
         "visibility": visibility,
     }
