@@ -431,12 +431,15 @@ def test_times(text, time):
     assert tables.moment(text) == datetime.datetime(*time)
 
 
+def test_a_time_keeps_the_zone_that_it_says():
+    assert tables.moment("2025-11-03T23:59+01:00").isoformat() == "2025-11-03T23:59:00+01:00"
+
+
 @pytest.mark.parametrize(
     "text",
     [
         "2025-11-03",
         "2025-13-03 10:00",
-        "2025-11-03T23:59Z",
         "3 Foo 2025, 10:00",
         "31 April 2025, 10:00",
         "3 May 2025, 25:00",
@@ -447,7 +450,7 @@ def test_times(text, time):
     ],
 )
 def test_what_is_no_time(text):
-    with pytest.raises(ValueError, match=r"expected (one|it) as|due date"):
+    with pytest.raises(ValueError, match="expected one as"):
         tables.moment(text)
 
 

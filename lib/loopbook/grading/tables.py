@@ -166,7 +166,7 @@ def _plain(cell):
 
 
 def moment(text: str) -> datetime.datetime | None:
-    """Return the time that a text says, to the second and without a zone; None where it is empty or a dash.
+    """Return the time that a text says, to the second, with a zone where it says one; None for no text, or a dash.
 
     It is of the form of ISO 8601, or the long form of Moodle, with the month as a word in one of the languages of
     `_MONTHS`; forms in which day and month could be mistaken are not read.
@@ -184,12 +184,9 @@ def moment(text: str) -> datetime.datetime | None:
     expected = f"{text!r} is no time: expected one as 2025-11-03 23:59"
     if re.match(r"\d{4}-\d\d-\d\d[ T]\d", text):
         try:
-            found = datetime.datetime.fromisoformat(text)
+            return datetime.datetime.fromisoformat(text).replace(microsecond=0)
         except ValueError:
             raise ValueError(expected) from None
-        if found.tzinfo:
-            raise ValueError(f"{text!r} is a time of some zone: expected it as the due date is, 2025-11-03 23:59")
-        return found.replace(microsecond=0)
     if long := _DAY_FIRST.fullmatch(text):
         day, word, year, *clock = long.groups()
         month = _MONTHS.get(letters(word), 0)
