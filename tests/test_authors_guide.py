@@ -11,7 +11,7 @@ from loopbook.grading.release import notebook
 from loopbook.grading.roster import Student
 
 ASSIGNMENTS = authors_guide.assignments()
-STUDENTS = [f"s{number:03}" for number in range(12)]
+STUDENTS = [f"s{number:03}" for number in range(24)]
 
 
 @pytest.mark.parametrize("name", [*authors_guide.TOOLS, *authors_guide.METHODS, *authors_guide.kinds()])

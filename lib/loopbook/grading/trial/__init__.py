@@ -10,6 +10,7 @@ from __future__ import annotations
 import dataclasses
 import itertools
 import re
+from collections import defaultdict
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from time import perf_counter, process_time
@@ -202,9 +203,10 @@ def report(trials: Sequence[Trial]) -> str:
     fine = [trial.number for trial in trials if trial.level not in (WRONG, ODD)]
     if fine:
         lines.append("nothing surprising" + (f" in {listed(fine)}" if len(fine) < len(trials) else ""))
-    for what in ("hints", "a solution"):
-        if without := [trial.number for trial in trials if what in trial.lacks]:
-            lines.append(f"without {what}: {listed(without)}")
+    lacking: dict[tuple[str, ...], list[str]] = defaultdict(list)
+    for trial in trials:
+        lacking[trial.lacks].append(trial.number)
+    lines += [f"without {listed(what)}: {listed(numbers)}" for what, numbers in lacking.items() if what]
     return "\n".join([*lines, f"{min(trial.variants for trial in trials)} variants of each exercise were tried"])
 
 

@@ -47,6 +47,8 @@ SPREAD, SMALL, LARGE = 1000, 1e-4, 1e6
 SLOW = 0.2
 #: A parameter with fewer values is a choice and nothing that is rounded; an exercise with fewer variants is copied.
 FEWEST_VALUES, FEWEST_VARIANTS = 6, 8
+#: In fewer variants than these, what never or always happens may do so by chance.
+ENOUGH = 20
 #: So many characters of an answer, and of a sentence, are shown.
 LONGEST_ANSWER, LONGEST_SENTENCE = 70, 200
 
@@ -303,7 +305,7 @@ OF_ONE: tuple[Callable[[Variant], Iterator[Seen]], ...] = (
 
 def equal_answers(variants: Sequence[Variant]) -> Iterator[Seen]:
     """An answer is not the same for nearly all, and those of one student are not right for others."""
-    if len(variants) < FEWEST_VARIANTS:
+    if len(variants) < ENOUGH:
         return
     for name, kind in variants[0].key.items():  # what a person marks is not among them
         said = Counter(variant.key[name].solution for variant in variants if name in variant.key)
@@ -355,7 +357,8 @@ def mistakes_that_do_not_occur(variants: Sequence[Variant]) -> Iterator[Seen]:
     """Each declared mistake occurs."""
     texts = {(place, text) for place, one in enumerate(variants) for made in one.mistakes.values() for text, _ in made}
     for sentence, _ in variants[0].exercise.mistakes:
-        if not any((place, one.question.filled_in(sentence)) in texts for place, one in enumerate(variants)):
+        told = any((place, one.question.filled_in(sentence)) in texts for place, one in enumerate(variants))
+        if not told and len(variants) >= ENOUGH:
             yield Seen(
                 ODD, f'the mistake "{shortened(sentence, LONGEST_ANSWER)}" occurs in none of {len(variants)} variants'
             )
