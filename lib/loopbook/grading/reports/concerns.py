@@ -147,6 +147,7 @@ def _cases(marks, complaints) -> Iterator[tuple[Concern | None, Case]]:
     for mark in marks:
         for concern, at_stake, what in _of_one(mark):
             yield concern, Case((mark.result.student,), at_stake, what)
+    yield from ((TO_MARK, case) for case in _to_mark(marks))
     yield from ((EQUAL, case) for case in _equal(results))
 
 
@@ -165,21 +166,33 @@ def _of_one(mark):
         at_stake = sum(share(one, answer) for one in judged for answer in one.answers if answer.status == OPEN)
         concern = CUT_SHORT if result.status == STOPPED else FAILED
         yield concern if at_stake else None, at_stake, notes
-    waiting = set(mark.waiting)
     for exercise in judged:
         for answer in exercise.answers:
             at_stake, place = share(exercise, answer), (f"{exercise.number} · ", Code(answer.name))
             shown = answer_in_words(answer.answer)
             given = (": ", Code(shown)) if shown else ""
-            if (exercise.number, answer.name) in waiting:
-                yield TO_MARK, at_stake, (place, given, ("; to look for: ", Code(answer.key)) if answer.key else "")
-            elif answer.status == UNJUDGED:
+            if answer.status == UNJUDGED:
                 yield UNREAD, at_stake, (place, given, "; ", Said(explained(answer)))
             if answer.look:
                 yield FLAGGED, at_stake, (place, given, f"; judged {answer.status}: ", Said(answer.look))
     for look in result.looks:
         at_stake = {OWNER: result.points, ODD: result.earned}.get(look.kind, 0)
         yield {OWNER: OF_ANOTHER, ODD: TELLS_TOO_MUCH}.get(look.kind), at_stake, Said(look.says)
+
+
+def _to_mark(marks):
+    """The cases of what waits for a mark: one for each quantity, whoever's answers these are."""
+    found: dict[tuple[str, str], tuple[float, Text, list[str]]] = {}
+    for mark in marks:
+        waiting = set(mark.waiting)
+        for exercise in mark.result.exercises:
+            for answer in exercise.answers:
+                if (place := (exercise.number, answer.name)) in waiting:
+                    looks_for = ("; to look for: ", Said(answer.key)) if answer.key else ""
+                    what = (f"{exercise.number} · ", Code(answer.name), looks_for)
+                    found.setdefault(place, (share(exercise, answer), what, []))[2].append(mark.result.student)
+    for points, what, students in found.values():
+        yield Case(tuple(students), points, what)
 
 
 def _equal(results):

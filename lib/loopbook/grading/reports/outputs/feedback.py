@@ -52,6 +52,7 @@ _COMPLAIN = (
     "Say which exercise and which quantity you mean, what you think is right, and why; show this page. It has the "
     "question with your numbers, your answer as it was read, and the file that was graded."
 )
+_COMPLAIN_OF_NOTHING = "Show this page: it names the file that was handed in, and what kept it from being graded."
 
 
 @published("feedback/{student}/feedback", "the page of a student")
@@ -68,13 +69,15 @@ def feedback(
         notebooks: the ids of the students whose notebook was kept as it ran.
     """
     blocks = [Paragraph(person(student.name, student.id)), *_sums(mark), *_notebook(mark, student)]
+    is_judged = mark.result.status not in (MISSING, NOT_RUN)
     for exercise in mark.exercises:
-        blocks += _exercise(exercise, reveal)
+        if is_judged or exercise.comments or exercise.history:
+            blocks += _exercise(exercise, reveal)
     if mark.result.status != MISSING:
-        blocks += [Heading("If you disagree"), Paragraph(_COMPLAIN)]
-        if student.id in notebooks:
-            link = Link("notebook as it ran", f"../../notebooks/{student.id}.html")
-            blocks.append(Paragraph(("Your instructor has kept the ", link, ".")))
+        blocks += [Heading("If you disagree"), Paragraph(_COMPLAIN if is_judged else _COMPLAIN_OF_NOTHING)]
+    if student.id in notebooks:
+        link = Link("notebook as it ran", f"../../notebooks/{student.id}.html")
+        blocks.append(Paragraph(("Your instructor has kept the ", link, ".")))
     return Document(Sentence(title), f"{in_text(title)} · {visible(student.name)}", tuple(blocks))
 
 
@@ -91,7 +94,8 @@ def _sums(mark: Marked) -> list[Block]:
             Paragraph((Strong(f"{of_points(max(0.0, known), result.points)} so far"), ": a part waits for a mark."))
         ]
     if mark.late:
-        blocks.append(Paragraph(Said(mark.late)))
+        cost = f" ({number(mark.deduction)} points)" if mark.deduction else ""
+        blocks.append(Paragraph((Said(f"{mark.late[0].upper()}{mark.late[1:]}"), f"{cost}.")))
     if mark.comments:
         blocks += [Heading("From your instructor"), Listing(tuple(map(Said, mark.comments)))]
     return blocks
@@ -130,10 +134,8 @@ def _exercise(marked: MarkedExercise, reveal: bool) -> list[Block]:
     heading = (f"Exercise {judged.number} · ", Sentence(judged.title), " ", Quiet(f"({earned})"))
     lines = tuple(_line(one, one.name in marked.waiting, reveal) for one in judged.answers)
     blocks: list[Block] = [Heading(heading), Verdicts(lines)]
-    if marked.comments:
-        blocks.append(Listing(tuple(("Your instructor: ", Said(one)) for one in marked.comments)))
-    if marked.history:
-        blocks.append(Details("How these points came about", (Listing(tuple(map(Said, marked.history))),)))
+    if said := (*marked.comments, *marked.history):
+        blocks += [Paragraph("From your instructor:"), Listing(tuple(map(Said, said)))]
     if question := _question(judged):
         blocks.append(Details("The question, with your numbers", question))
     return blocks

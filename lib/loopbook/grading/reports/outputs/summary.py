@@ -117,26 +117,29 @@ def _overview(found):
 def _to_look_at(costly: list[Concern], harmless: list[Case], named) -> list[Block]:
     blocks: list[Block] = [Heading("To look at")]
     if costly:
-        blocks.append(Paragraph("In the order of the points that may hang on it, for each student."))
+        blocks.append(Paragraph("In the order of the points at stake for a student."))
     for concern in costly:
         blocks += [Heading(concern.title, level=3), Paragraph(concern.advice)]
-        blocks += _cases(concern.title, concern.cases, named)
+        rows = [(_whose(case, named), number(case.points), case.what) for case in concern.cases[:MOST_CASES]]
+        blocks.append(Table(concern.title, ["student", "at stake", "what"], rows, counts=frozenset({1})))
+        blocks += _more(concern.cases)
     if not costly:
         blocks.append(Paragraph("Nothing." if not harmless else "Nothing on which points hang."))
     if harmless:
+        rows = [(_whose(case, named), case.what) for case in harmless[:MOST_CASES]]
+        table = Table("Harmless", ["student", "what"], rows)
         count = counted(len(harmless), "remark")
-        blocks.append(Details(f"{count} on which no points hang", tuple(_cases("Harmless", harmless, named))))
+        blocks.append(Details(f"{count} on which no points hang", (table, *_more(harmless))))
     return blocks
 
 
-def _cases(caption: str, cases: Sequence[Case], named) -> list[Block]:
-    rows = [
-        (Lines(tuple(map(named, case.students))) if case.students else "nobody", number(case.points), case.what)
-        for case in cases[:MOST_CASES]
-    ]
+def _whose(case: Case, named) -> Text:
+    return Lines(tuple(map(named, case.students))) if case.students else "nobody"
+
+
+def _more(cases: Sequence[Case]) -> list[Block]:
     more = len(cases) - MOST_CASES
-    table = Table(caption, ["student", "points", "what"], rows, counts=frozenset({1}))
-    return [table, Paragraph(f"There are {more} more, on the pages of the students.")] if more > 0 else [table]
+    return [Paragraph(f"There are {more} more, on the pages of the students.")] if more > 0 else []
 
 
 def _late(marks, named) -> list[Block]:
