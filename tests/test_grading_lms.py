@@ -179,6 +179,12 @@ def test_a_number_that_is_the_login_of_another_is_a_fault(roster):
         roster(header + '"Doe, Jane",1,A17,jane,C\n"Guest, Gus",2,,a17,C\n'.replace("a17", "A17"))
 
 
+def test_a_student_who_is_called_test_student_takes_part(roster):
+    header = "Student,ID,SIS User ID,SIS Login ID,Section\n"
+    (tess,) = roster(header + '"Student, Test",1,A17,test,C\n"Student, Test",2,,4f3c2a,C\n')
+    assert (tess.id, tess.name) == ("A17", "Test Student")
+
+
 def test_the_gradebook_of_canvas_with_first_and_last_names(roster):
     header = "LastName;FirstName;ID;SIS Login ID;Section\n    Points Possible;;;;\n"
     (jane,) = roster(header + "Doe;Jane;123;jane;C1\nStudent;Test;9;x;C1\n")
@@ -603,8 +609,8 @@ def test_canvas_asks_where_it_cannot_know_and_that_is_said(roster):
     table = rows(canvas_grades("Tank", students, marks))
     assert [row[-1] for row in table] == ["Tank", "17", "10"]
     assert lms.remarks(students, "Tank", marks) == (
-        "canvas_grades.csv: the gradebook of the roster has no assignment called 'Tank', so that Canvas will ask where "
-        "the grades go; export it again once there is one",
+        "canvas_grades.csv: the gradebook of the roster has no assignment called 'Tank' but 'Heater', so that Canvas "
+        "will ask where the grades go; export it again once there is one",
     )
     assert lms.remarks(students, "Heater", marks) == (
         "canvas_grades.csv: Heater (11) has 10 points in Canvas and 17 here, and grades are not scaled: change it in "

@@ -86,7 +86,8 @@ class Canvas(System):
         else:
             sortable = ", ".join(filter(None, (_unquoted(cells["last"]), _unquoted(cells["first"]))))
         fields = {field: cells.get(field, "") for field in ("canvas_id", "sis_id", "login", "section")}
-        if sortable.startswith(_POINTS) or sortable == "Student, Test" or not any((sortable, *fields.values())):
+        is_test = sortable == "Student, Test" and not fields["sis_id"]
+        if sortable.startswith(_POINTS) or is_test or not any((sortable, *fields.values())):
             return None
         return {**fields, "sortable": sortable, "name": _spoken(sortable) or fields["canvas_id"]}
 
@@ -126,9 +127,11 @@ class Canvas(System):
         heads = _of_title(table.header, title) if table else []
         if len(heads) != 1:
             how_many = "two assignments or more" if heads else "no assignment"
+            there = [said[1] for head in table.header if (said := _TITLE.fullmatch(head))] if table else []
+            others = f" but {', '.join(map(repr, there[:5]))}{' ...' * (len(there) > 5)}" if there and not heads else ""
             return (
-                f"canvas_grades.csv: the gradebook of the roster has {how_many} called {title!r}, so that Canvas will "
-                "ask where the grades go; export it again once there is one",
+                f"canvas_grades.csv: the gradebook of the roster has {how_many} called {title!r}{others}, so that "
+                "Canvas will ask where the grades go; export it again once there is one",
             )
         said = _possible(table, heads[0])
         try:
