@@ -1,6 +1,7 @@
 """The submissions that belong to the students of a roster, in folders and in zip files."""
 
 import io
+import json
 import os
 import pickle
 import stat
@@ -13,7 +14,7 @@ from hypothesis import strategies as st
 
 from loopbook.grading import GradingError, entries, submissions
 from loopbook.grading.roster import Student
-from loopbook.grading.submissions import LARGEST, collect
+from loopbook.grading.submissions import collect
 
 JANE = Student("s1001", "Jane Doe", "Doe, Jane", canvas_id="123", moodle_id="77001")
 JOHN = Student("s1002", "John Roe", "Roe, John", canvas_id="124", moodle_id="77002")
@@ -35,11 +36,23 @@ def attempted(function, *arguments):
 # Submissions in folders.
 
 
+def notebook(source):
+    """A notebook of one cell, as text."""
+    cell = {"cell_type": "code", "metadata": {}, "outputs": [], "source": source}
+    return json.dumps({"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": [cell]})
+
+
+def source(submission):
+    """The source of the one cell of what was handed in."""
+    (cell,) = json.loads(submission.read())["cells"]
+    return cell["source"]
+
+
 def lay(root, **files):
     for name, content in files.items():
         path = root / name.replace("__", "/").replace("_ipynb", ".ipynb")
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(content)
+        path.write_text(notebook(content) if path.suffix == ".ipynb" else content)
 
 
 def labels(collection):
@@ -52,10 +65,10 @@ def test_a_folder_for_each_student(tmp_path):
         (tmp_path / passed).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / passed).write_text("?")
     found = collect(tmp_path, CLASS, "heater")
-    assert [(item.student, item.label, item.problem, item.read()) for item in found.submissions] == [
-        (JANE, "s1001/inner/heater.ipynb", "", b"1"),
-        (JOHN, "s1002.ipynb", "", b"2"),
-        (ANNE, "s1003/heater.ipynb", "", b"3"),
+    assert [(item.student, item.label, item.problem, source(item)) for item in found.submissions] == [
+        (JANE, "s1001/inner/heater.ipynb", "", "1"),
+        (JOHN, "s1002.ipynb", "", "2"),
+        (ANNE, "s1003/heater.ipynb", "", "3"),
     ]
     assert found.complaints == ()
     assert pickle.loads(pickle.dumps(found)) == found
@@ -128,12 +141,13 @@ def test_what_may_not_be_read_is_said(tmp_path, monkeypatch):
     "becomes",
     [pytest.param("link", marks=has_pipes), pytest.param("pipe", marks=has_pipes), "folder", "gone", "larger"],
 )
-def test_a_file_that_has_changed_since(tmp_path, becomes):
+def test_a_file_that_has_changed_since(tmp_path, becomes, monkeypatch):
+    monkeypatch.setattr(submissions, "LARGEST", 2**20)
     lay(tmp_path, s1001_ipynb="")
     (found,) = collect(tmp_path, CLASS, "a").submissions
     path = tmp_path / "s1001.ipynb"
     if becomes == "larger":
-        path.write_bytes(b" " * (LARGEST + 1))
+        path.write_bytes(b" " * (2**20 + 1))
     else:
         path.unlink()
     if becomes == "link":
@@ -142,17 +156,32 @@ def test_a_file_that_has_changed_since(tmp_path, becomes):
         os.mkfifo(path)
     elif becomes == "folder":
         path.mkdir()
-    with pytest.raises(GradingError, match=r"^s1001.ipynb: (cannot be read|is larger than 10 MiB)"):
+    with pytest.raises(GradingError, match=r"^the file (cannot be read: |is larger than 1 MiB)"):
         found.read()
 
 
-def test_a_notebook_that_is_too_large(tmp_path):
-    (tmp_path / "s1001.ipynb").write_bytes(b" " * LARGEST)
-    with open(tmp_path / "s1002.ipynb", "wb") as file:
-        file.truncate(100 * 2**20)
+def test_a_notebook_that_is_too_large(tmp_path, monkeypatch):
+    monkeypatch.setattr(submissions, "LARGEST", 2**20)
+    (tmp_path / "s1001.ipynb").write_bytes(notebook("1").encode().ljust(2**20))
+    (tmp_path / "s1002.ipynb").write_bytes(notebook("1").encode().ljust(2**20 + 1))
     fits, large = collect(tmp_path, CLASS, "a").submissions
-    assert len(fits.read()) == LARGEST
-    assert large.problem == "is larger than 10 MiB"
+    assert source(fits) == "1"
+    assert large.problem == "the file is larger than 1 MiB"
+
+
+def test_a_notebook_full_of_pictures_is_read(tmp_path):
+    picture = '"outputs": [{"data": {"image/png": "' + "A" * 30 * 2**20 + '"}}]'
+    (tmp_path / "s1001.ipynb").write_text(notebook("1").replace('"outputs": []', picture))
+    (found,) = collect(tmp_path, CLASS, "a").submissions
+    assert (found.problem, source(found)) == ("", "1")
+    assert len(found.read()) < 1000
+
+
+def test_what_is_not_a_notebook_says_so(tmp_path):
+    (tmp_path / "s1001.ipynb").write_bytes(b"%PDF-1.7")
+    (found,) = collect(tmp_path, CLASS, "a").submissions
+    with pytest.raises(GradingError, match=r"^the file is not a notebook that can be read: at character 1: expected {"):
+        found.read()
 
 
 @takes_any_name
@@ -161,10 +190,10 @@ def test_names_that_cannot_be_shown_are_spelled_out(tmp_path):
         path = os.path.join(os.fsencode(tmp_path), name)
         os.makedirs(os.path.dirname(path), exist_ok=True)
         with open(path, "wb") as file:
-            file.write(b"{}")
+            file.write(notebook("1").encode())
     found = collect(tmp_path, CLASS, "a")
     assert found.submissions[0].label == r"s1001/\udcff\x1b[31m.ipynb"
-    assert found.submissions[0].read() == b"{}"
+    assert source(found.submissions[0]) == "1"
     assert found.complaints == (r"line\nbreak.ipynb: is named after no student of the roster",)
 
 
@@ -204,7 +233,7 @@ def packed(tmp_path):
         memory = io.BytesIO()
         with zipfile.ZipFile(memory, "w", compression) as archive:
             for name, content in members:
-                archive.writestr(name, content)
+                archive.writestr(name, notebook(content) if content.isalnum() else content)
         path = tmp_path / "heater submissions.zip"
         path.write_bytes(change(memory.getvalue()) if change else memory.getvalue())
         return collect(path, CLASS, "heater")
@@ -224,12 +253,12 @@ def test_downloads_of_both_systems(packed):
         ("__MACOSX/._doejane_123_8_heater.ipynb", "?"),
     )
     assert [item.student for item in found.submissions] == [*CLASS]
-    assert [item.read() for item in reversed(found.submissions)] == [b"3", b"2", b"1"]
+    assert [source(item) for item in reversed(found.submissions)] == ["3", "2", "1"]
     assert found.complaints == (
         "doejane_123_7_notes.pdf: is not a notebook (.ipynb)",
         "anon_Ab3dE_456_heater.ipynb: is from an anonymous download of Canvas, which does not say whose it is",
     )
-    assert pickle.loads(pickle.dumps(found)).submissions[1].read() == b"2"
+    assert source(pickle.loads(pickle.dumps(found)).submissions[1]) == "2"
 
 
 def test_names_that_are_utf_8_without_saying_so(packed):
@@ -239,7 +268,7 @@ def test_names_that_are_utf_8_without_saying_so(packed):
     plain = "x" * len(raw)
     found = packed((plain, "3"), change=lambda content: content.replace(plain.encode(), raw))
     assert labels(found) == {"s1003": name}
-    assert found.submissions[0].read() == b"3"
+    assert source(found.submissions[0]) == "3"
     found = packed((plain, "3"), change=lambda content: content.replace(plain.encode(), b"\xff" * len(raw)))
     assert len(found.complaints) == 1
 
@@ -307,7 +336,7 @@ def test_two_members_of_one_name(packed):
 def test_a_zip_bomb_is_known_by_what_is_read(packed, monkeypatch):
     monkeypatch.setattr(submissions, "LARGEST", 2**20)
     bomb = ("s1001.ipynb", b" " * (2**20 + 1))
-    assert packed(bomb).submissions[0].problem == "is larger than 1 MiB"
+    assert packed(bomb).submissions[0].problem == "the file is larger than 1 MiB"
 
     def smaller(content):
         """The same, announced as a thousand bytes."""
@@ -316,7 +345,7 @@ def test_a_zip_bomb_is_known_by_what_is_read(packed, monkeypatch):
 
     (found,) = packed(bomb, change=smaller).submissions
     assert found.problem == ""
-    with pytest.raises(GradingError, match=r"^s1001.ipynb: (is larger than|cannot be read: )"):
+    with pytest.raises(GradingError, match=r"^the file (is larger than|cannot be read: )"):
         found.read()
 
 
@@ -326,7 +355,7 @@ def test_damaged_zip_files(packed, tmp_path):
         return content[:place] + b"Jupiter" + content[place + 7 :]
 
     (found,) = packed(("s1001.ipynb", "Jupyter"), compression=zipfile.ZIP_STORED, change=torn).submissions
-    with pytest.raises(GradingError, match=r"s1001.ipynb: cannot be read: Bad CRC-32"):
+    with pytest.raises(GradingError, match=r"the file cannot be read: Bad CRC-32"):
         found.read()
     for change in (lambda content: content[:-30], lambda content: b"", lambda content: b"{}"):
         with pytest.raises(GradingError, match="is not a zip file, or it is damaged"):

@@ -6,6 +6,7 @@ All attacks are one class, with honest students among them; each archive is a cl
 import os
 import socket
 import time
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -164,10 +165,18 @@ def test_everybody_else_is_graded_as_if_nothing_had_happened(siege):
         assert result == siege.undisturbed.of(student)
 
 
+def _files(path):
+    """A file that was written, or those packed in it, as names and contents."""
+    if path.suffix != ".zip":
+        return [(path.name, path.read_bytes())]
+    with zipfile.ZipFile(path) as archive:
+        return [(f"{path.name}, {name}", archive.read(name)) for name in archive.namelist()]
+
+
 def test_nothing_got_out(siege):
     for path in sorted((siege.folder / "graded").rglob("*")):
-        if path.is_file():
-            assert hostile.leaks(path.read_text(encoding="utf-8")) == [], path.name
+        for name, content in _files(path) if path.is_file() else ():
+            assert hostile.leaks(content.decode("utf-8")) == [], name
     assert [path.name for path in siege.folder.glob("outside.*")] == []
 
 

@@ -193,6 +193,7 @@ def _cut(student, right):
 
 
 _TRAVERSAL, _BOMB, _LINKS, _JSON = "zip path traversal", "zip bomb", "symbolic links", "malformed JSON"
+_OUTPUTS = b'"outputs": []'
 _NONE, _LARGE, _MISSING = "not a notebook", "100 MB notebook", "missing file"
 
 ATTACKS = (
@@ -200,8 +201,8 @@ ATTACKS = (
     _file(_JSON, "empty file", b""),
     _file(_JSON, "zeros", bytes(10**6)),
     _file(_JSON, "no UTF-8", b'{"cells": [\xff\xfe]}'),
-    _file(_JSON, "UTF-16", lambda cells: notebook(cells).decode().encode("utf-16"), _EITHER),
-    _file(_JSON, "byte order mark", lambda cells: b"\xef\xbb\xbf" + notebook(cells), _EITHER),
+    _file(_JSON, "UTF-16", lambda cells: notebook(cells).decode().encode("utf-16"), _RIGHT),
+    _file(_JSON, "byte order mark", lambda cells: b"\xef\xbb\xbf" + notebook(cells), _RIGHT),
     _file(_JSON, "nests of 100,000", _DEEP),
     _file(
         _JSON, "nests of 100,000 in the metadata", _replaced(b'"metadata": {}', b'"metadata": {"x": ' + _DEEP + b"}")
@@ -230,7 +231,11 @@ ATTACKS = (
     _file("wrong kernel", "R", _changed(metadata=_KERNEL)),
     _file("wrong kernel", "a path", _changed(metadata=_EVIL), _EITHER),
     _file("wrong kernel", "none", _changed(metadata={}), _EITHER),
-    _file(_LARGE, "spaces", lambda cells: notebook(cells) + b" " * 10**8),
+    _file(_LARGE, "spaces", lambda cells: notebook(cells) + b" " * 10**8, _RIGHT),
+    _file(_LARGE, "a picture of 100 MB", _replaced(_OUTPUTS, b'"outputs": ["' + b"A" * 10**8 + b'"]'), _RIGHT),
+    _file(_LARGE, "an output without an end", _replaced(_OUTPUTS, b'"outputs": ["' + b"A" * 10**8)),
+    _file(_LARGE, "pictures beyond all", lambda cells: notebook(cells) + b" " * (200 * 2**20)),
+    _file(_LARGE, "outputs of brackets", _replaced(_OUTPUTS, b'"outputs": [' + b"[[[]]]," * 10**6 + b"{}]")),
     _file(_LARGE, "one cell of 10 MB", lambda cells: notebook([*cells, "x = '" + "y" * 10**7 + "'"]), _EITHER),
     _file(_LARGE, "comments of 9 MB", lambda cells: notebook([*cells, "#" * 9 * 10**6]), _EITHER),
     _file(_LARGE, "100,000 cells", lambda cells: notebook([*cells, *["pass"] * 100_000]), _EITHER),

@@ -12,7 +12,6 @@ import signal
 from collections.abc import Callable
 from typing import Any
 
-import nbformat
 import numpy as np
 from IPython.core.displayhook import DisplayHook
 from IPython.core.displaypub import DisplayPublisher
@@ -74,28 +73,18 @@ def shell() -> InteractiveShell:
     return made
 
 
-def cells(content: bytes) -> tuple[list[str], dict[str, Any]]:
-    """Return the sources of the code cells of a notebook, and its metadata.
+def _cells(content):
+    """The sources of the code cells of a notebook, and the student whom it names; raises ValueError where it is none.
 
-    Arguments:
-        content: the file, as bytes.
-    Raises:
-        ValueError: for what is not a notebook, or one of another language, in a sentence.
+    `sources.sources` has looked at it before; this is for whoever runs anything else.
     """
     try:
-        notebook = json.loads(content.decode("utf-8-sig"))
-        if notebook["nbformat"] < 4:
-            notebook = nbformat.convert(nbformat.from_dict(notebook), 4)
-        sources = [cell["source"] for cell in notebook["cells"] if cell["cell_type"] == "code"]
-        sources = [source if isinstance(source, str) else "".join(source) for source in sources]
-        metadata = notebook.get("metadata", {})
-        language = metadata.get("kernelspec", {}).get("language") or metadata.get("language_info", {}).get("name")
-    except Exception as problem:  # a file can be malformed in many ways
-        says = harmless(f"{type(problem).__name__}: {problem}")
-        raise ValueError(f"the file is not a notebook that can be read ({says})") from None
-    if language not in (None, "python"):
-        raise ValueError(f"the notebook is written in {harmless(str(language))}: expected Python")
-    return sources, metadata
+        notebook = json.loads(content)
+        found = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
+        named = notebook.get("metadata", {}).get("loopbook")
+    except (ValueError, TypeError, LookupError, AttributeError, RecursionError):
+        raise ValueError("the file is not a notebook that can be read") from None
+    return found, named.get("student") if isinstance(named, dict) else None
 
 
 def run(
@@ -104,7 +93,7 @@ def run(
     """Run a notebook, cell after cell; after an error the next cell follows.
 
     Arguments:
-        content: the file, as bytes.
+        content: a notebook as `sources.sources` returns it, or another one of nbformat 4, as bytes.
         interpreter: the shell.
         tell: a function that takes an event, a dictionary with one entry: "refused" with a sentence, "made for" with
             the student that the notebook names, "cell" with the number of a code cell that begins, "error" with the
@@ -112,13 +101,12 @@ def run(
         seconds: that a cell may take.
     """
     try:
-        sources, metadata = cells(content)
+        sources, student = _cells(content)
     except ValueError as problem:
         tell({"refused": str(problem)})
         return
-    named = metadata.get("loopbook")
-    if isinstance(named, dict) and isinstance(named.get("student"), str):
-        tell({"made for": named["student"]})
+    if isinstance(student, str):
+        tell({"made for": student})
     answer_sheet.deliver = lambda student, exercise, given: tell(
         {"answer": {"student": student, "exercise": exercise, "given": given}}
     )

@@ -5,7 +5,7 @@ What is not clearly one student's one notebook is left alone and said.
 
 from __future__ import annotations
 
-import functools
+import io
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -16,17 +16,26 @@ from loopbook.grading import GradingError
 from loopbook.grading.entries import FAILURES, entries, shown, why
 from loopbook.grading.owners import Owners, is_notebook
 from loopbook.grading.roster import Student
+from loopbook.grading.sources import sources
 
-#: The largest notebook that is read, in bytes.
-LARGEST = 10 * 2**20
+#: The largest file that is read, in bytes; most of a notebook is pictures, which are passed over.
+LARGEST = 200 * 2**20
 #: The most complaints about what lies in one folder.
 MOST_COMPLAINTS = 10
 
-_CHUNK = 2**20
 
+class _Limited(io.RawIOBase):
+    """A file of which at most LARGEST bytes are read, whatever was announced."""
 
-class _TooLargeError(Exception):
-    """More than LARGEST bytes."""
+    def __init__(self, stream):
+        self._stream, self._left = stream, LARGEST
+
+    def read(self, size=-1):
+        piece = self._stream.read(size)
+        self._left -= len(piece)
+        if self._left < 0:
+            raise GradingError(_too_large())
+        return piece
 
 
 @dataclass(frozen=True)
@@ -45,20 +54,17 @@ class Submission:
     _source: Any = field(default=None, repr=False)
 
     def read(self) -> bytes:
-        """The content, at most LARGEST bytes, whatever was announced.
+        """The notebook without its outputs, as `sources.sources` returns it.
 
-        Raises GradingError where there is a problem, and where it can no longer be read.
+        Raises GradingError where there is a problem, and where it is not a notebook or can no longer be read.
         """
         if self.problem:
-            raise GradingError(f"{self.label}: {self.problem}")
+            raise GradingError(self.problem)
         try:
             with self._source.open() as stream:
-                content = b"".join(iter(functools.partial(_next, stream, [LARGEST]), b""))
-        except _TooLargeError:
-            raise GradingError(f"{self.label}: {_too_large()}") from None
+                return sources(_Limited(stream))
         except FAILURES as problem:
-            raise GradingError(f"{self.label}: cannot be read: {why(problem)}") from None
-        return content
+            raise GradingError(f"the file cannot be read: {why(problem)}") from None
 
 
 @dataclass(frozen=True)
@@ -87,8 +93,8 @@ def collect(path: str | Path, students: Sequence[Student], assignment_name: str)
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     _ = Path(folder, "s1001.ipynb").write_text("{}"), Path(folder, "s10002.ipynb").write_text("{}")
     ...     found = collect(folder, [Student("s1001", "Jane Doe")], "heater")
-    ...     [(submission.label, submission.read()) for submission in found.submissions], found.complaints
-    ([('s1001.ipynb', b'{}')], ('s10002.ipynb: is named after no student of the roster',))
+    ...     [submission.label for submission in found.submissions], found.complaints
+    (['s1001.ipynb'], ('s10002.ipynb: is named after no student of the roster',))
     """
     lying = entries(Path(path), assignment_name, [student.id for student in students])
     owners, complaints, notebooks = Owners(students, assignment_name), _Complaints(), defaultdict(list)
@@ -123,7 +129,7 @@ def _submission(student, notebooks):
 
 
 def _too_large():
-    return f"is larger than {LARGEST // 2**20} MiB"
+    return f"the file is larger than {LARGEST // 2**20} MiB"
 
 
 class _Complaints:
@@ -143,12 +149,3 @@ class _Complaints:
         for top, number in self._unsaid.items():
             self._said[top].append(f"{shown(top)}: has {number} more that cannot be used")
         return tuple(sentence for sentences in self._said.values() for sentence in sentences)
-
-
-def _next(stream, left):
-    """The next piece of what is read; `left` holds the number of bytes that may still come."""
-    piece = stream.read(min(_CHUNK, left[0] + 1))
-    left[0] -= len(piece)
-    if left[0] < 0:
-        raise _TooLargeError
-    return piece
