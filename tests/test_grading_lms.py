@@ -9,6 +9,7 @@ import re
 import string
 import zipfile
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -115,6 +116,12 @@ def test_no_word_is_a_synonym_of_two_fields():
             assert tables.letters(word)
             assert fields.setdefault(tables.letters(word), field) == field
     assert {"id", "name", "email", "login", "section", "sis_id", "canvas_id", "moodle_id"} <= own.SYNONYMS.keys()
+
+
+def test_the_instructors_guide_has_all_synonyms():
+    guide = (Path(__file__).parents[1] / "docs" / "instructors.md").read_text(encoding="utf-8")
+    for words in own.SYNONYMS.values():
+        assert f"| {words} |" in guide
 
 
 def test_two_columns_for_one_field_are_a_sentence(roster):
