@@ -255,14 +255,16 @@ def test_what_may_cost_most_comes_first():
         "Notebooks that were stopped before all answers were in",
         "Answers that could not be judged",
         "Answers that were judged and are unusual",
-        "Notebooks that wrote where answers are told",
+        "Notebooks that sent the grader something else than answers",
     ]
     assert cases["Notebooks that could not be run"] == [("s1002", 5)]
     assert cases["Notebooks that were stopped before all answers were in"] == [
         ("s1003", 2.333)
     ]  # H and the action are open
     assert cases["Answers that were judged and are unusual"] == [("s1002", 1.333)]
-    assert cases["Notebooks that wrote where answers are told"] == [("s1003", 0)]  # and they brought nothing
+    assert cases["Notebooks that sent the grader something else than answers"] == [
+        ("s1003", 0)
+    ]  # and they brought nothing
     assert harmless == []
 
 
@@ -283,7 +285,7 @@ def test_a_notebook_of_somebody_else_and_odd_lines():
     cases, harmless = told([changed(NAMED, looks=(*looks, Look("extra", "it answers '9'")))])
     assert cases == {
         "Somebody else's notebooks": [("s1002", 5)],
-        "Notebooks that wrote where answers are told": [("s1002", 3.667)],
+        "Notebooks that sent the grader something else than answers": [("s1002", 3.667)],
     }
     assert harmless == [("s1002",)]
 
@@ -294,7 +296,7 @@ def test_what_failed_after_the_answers_were_in_is_harmless():
     unanswered = result_of(BOB, {"1": {"K": 1.0}}, errors=errors)
     assert told([unanswered]) == ({"Cells that failed, with answers left open": [("s1002", 3.667)]}, [])
     text = read(summary(TITLE, CLASS, [changed(RIGHT_ALL, errors=errors)]))
-    assert "1 remark on which no points hang" in text
+    assert "1 remark that costs nothing" in text
     assert "cell 9: NameError: x" in text
 
 

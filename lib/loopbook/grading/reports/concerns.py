@@ -1,4 +1,4 @@
-"""What an instructor should look at, in the order of the points that may hang on it."""
+"""What an instructor should look at, in the order of the points at stake."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Case:
 
     Attributes:
         students: the ids of those whom it concerns; none for a file of nobody.
-        points: that may hang on it, for each of them.
+        points: at stake for each of them.
         what: there is.
     """
 
@@ -50,14 +50,14 @@ class Concern:
 
     @property
     def points(self) -> float:
-        """The points that may hang on one of its cases, at most."""
+        """The points at stake in the costliest of its cases."""
         return max((case.points for case in self.cases), default=0)
 
 
 NOBODYS = Concern(
     "Files that were not graded",
-    "Somebody is missing, and one of these may be what was handed in: give the file a name or a folder that says whose "
-    "it is, and grade again.",
+    "Somebody is missing, and one of these files may be theirs: give it a name or a folder that says whose it is, and "
+    "grade again.",
 )
 NOT_RUNNING = Concern(
     "Notebooks that could not be run",
@@ -69,47 +69,45 @@ TO_MARK = Concern(
 )
 TO_DECIDE = Concern(
     "Marks and times that need a decision",
-    ("What is said here holds until you say otherwise: in ", Code("marks.csv"), ", or in the file that is named."),
+    ("It stays as it is until you say otherwise, in ", Code("marks.csv"), " or in the file that is named."),
 )
 CUT_SHORT = Concern(
     "Notebooks that were stopped before all answers were in",
     (
-        "What is open brings nothing. More time or memory may help (",
+        "Open answers earn nothing. More time or memory may help (",
         *(Code("--cell-seconds"), ", ", Code("--seconds"), ", ", Code("--megabytes"), "). "),
         *_BY_HAND,
     ),
 )
 FAILED = Concern(
     "Cells that failed, with answers left open",
-    ("What is open brings nothing. The student may have missed that the cell fails on its own. ", *_BY_HAND),
+    ("Open answers earn nothing. The cell may have worked only after another one that is gone. ", *_BY_HAND),
 )
-UNREAD = Concern(
-    "Answers that could not be judged", ("They bring nothing, and you may see what was meant. ", *_BY_HAND)
-)
+UNREAD = Concern("Answers that could not be judged", ("They earn nothing, but you may see what was meant. ", *_BY_HAND))
 FLAGGED = Concern(
     "Answers that were judged and are unusual",
     ("The verdict stands unless you say otherwise. ", *_BY_HAND),
 )
 OF_ANOTHER = Concern(
     "Somebody else's notebooks",
-    "They were graded by the numbers of the student who handed them in. Ask whose work they are.",
+    "They were graded with the numbers of the student who handed them in. Ask whose work they are.",
 )
 TELLS_TOO_MUCH = Concern(
-    "Notebooks that wrote where answers are told",
-    "Nothing is gained by it: what could not be read does not count. Look at the notebook for what was tried.",
+    "Notebooks that sent the grader something else than answers",
+    "They gain nothing by it: what could not be read does not count. Look at the notebook to see what it tried.",
 )
 EQUAL = Concern(
     "Equal answers where the numbers differ",
-    "Their keys differ, so that the answers should. That is a reason to ask, and no proof.",
+    "The right answers of these students differ, so theirs should differ too. It is a reason to ask, not evidence.",
 )
-#: Where equal points hang on two of them, this is their order.
+#: Where equal points are at stake in two of them, this is their order.
 _ORDER = (
     NOT_RUNNING, NOBODYS, TO_MARK, TO_DECIDE, CUT_SHORT, FAILED, UNREAD, FLAGGED, OF_ANOTHER, TELLS_TOO_MUCH, EQUAL,
 )  # fmt: skip
 
 
 def concerns(marks: Collection[Marked], complaints: Sequence[str] = ()) -> tuple[list[Concern], list[Case]]:
-    """Return what an instructor should look at, the costliest first, and the cases on which no points hang.
+    """Return what an instructor should look at, the costliest first, and the cases that cost nothing.
 
     Arguments:
         marks: a `Marked` for each submission.

@@ -12,11 +12,11 @@ from dataclasses import dataclass, field
 
 
 class Inline:
-    """What stands in a line."""
+    """A part of a line."""
 
 
 class Block:
-    """What stands below another."""
+    """A part of a page: one block is shown below the other."""
 
 
 #: Plain words, typed ones, or several of these, one behind the other.
@@ -68,7 +68,7 @@ class Emphasis(Inline):
 
 @dataclass(frozen=True)
 class Quiet(Inline):
-    """What may be passed over."""
+    """What may be skipped."""
 
     text: Text
 

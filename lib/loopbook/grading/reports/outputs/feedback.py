@@ -40,7 +40,7 @@ from loopbook.grading.reports.wording import (
     verdict_and_reading,
     visible,
 )
-from loopbook.grading.results import COMPLETE, MISSING, NOT_RUN
+from loopbook.grading.results import MISSING, NOT_RUN
 
 if TYPE_CHECKING:
     from loopbook.grading.marking import Marked, MarkedExercise
@@ -91,7 +91,12 @@ def _sums(mark: Marked) -> list[Block]:
         blocks = [Paragraph(Strong(f"no points yet, of {number(result.points)}"))]
     else:
         blocks = [
-            Paragraph((Strong(f"{of_points(max(0.0, known), result.points)} so far"), ": a part waits for a mark."))
+            Paragraph(
+                (
+                    Strong(f"{of_points(max(0.0, known), result.points)} so far"),
+                    ": part of it waits for a mark by hand.",
+                )
+            )
         ]
     if mark.late:
         cost = f" ({number(mark.deduction)} points)" if mark.deduction else ""
@@ -112,7 +117,7 @@ def _notebook(mark: Marked, student: Student) -> list[Block]:
                 (
                     "This is somebody else's notebook: it was made for ",
                     owner,
-                    ", and graded by the numbers of ",
+                    ", and graded with the numbers of ",
                     own,
                     ".",
                 )
@@ -123,8 +128,8 @@ def _notebook(mark: Marked, student: Student) -> list[Block]:
         return blocks
     blocks.append(Heading("The notebook"))
     if result.file:
-        verb = "Graded was" if result.status == COMPLETE else "Handed in was"
-        blocks.append(Paragraph((f"{verb} the file ", Code(result.file), ".")))
+        done = "handed in" if result.status == NOT_RUN else "graded"
+        blocks.append(Paragraph((f"The file that was {done}: ", Code(result.file))))
     return [*blocks, Listing(tuple(map(Said, notes)))] if notes else blocks
 
 

@@ -124,12 +124,17 @@ def _to_look_at(costly: list[Concern], harmless: list[Case], named) -> list[Bloc
         blocks.append(Table(concern.title, ["student", "at stake", "what"], rows, counts=frozenset({1})))
         blocks += _more(concern.cases)
     if not costly:
-        blocks.append(Paragraph("Nothing." if not harmless else "Nothing on which points hang."))
+        blocks.append(Paragraph("Nothing." if not harmless else "Nothing that may cost points."))
     if harmless:
         rows = [(_whose(case, named), case.what) for case in harmless[:MOST_CASES]]
         table = Table("Harmless", ["student", "what"], rows)
         count = counted(len(harmless), "remark")
-        blocks.append(Details(f"{count} on which no points hang", (table, *_more(harmless))))
+        blocks.append(
+            Details(
+                f"{count} that cost nothing" if len(harmless) > 1 else f"{count} that costs nothing",
+                (table, *_more(harmless)),
+            )
+        )
     return blocks
 
 
