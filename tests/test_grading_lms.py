@@ -371,6 +371,7 @@ def test_the_roster_of_gradescope(roster):
         ("id,name\ns1,Doe, Jane\n", "line 2: 3 cells, and the header has 2; put a name with a comma in quotes"),
         ("id,name,handed_in\ns1,A,03/11/2025\n", "line 2: '03/11/2025' is no time: expected one as 2025-11-03 23:59"),
         ('id,name\ns1,"A\ns2,B\n', "no table"),
+        ('Foo;Bar\n1;"x";2\n', "line 1: no header of a roster, 'Foo', 'Bar'; expected"),
         ('sep=;\nid;name\ns1;"A\ns2;B\n', "line 4: no table"),
         (f"id,name\ns1,{'x' * 200_000}\n", "line 2: no table"),
         (b"id,name\ns1,M\x81ller\n", "line 2: no text in UTF-8"),

@@ -103,9 +103,9 @@ def read_roster(path: str | Path) -> tuple[Student, ...]:
 
 def _recognised(path):
     """The table of a file, the system whose roster it is, and the places of the fields."""
-    first = None
+    seen: tuple[str, ...] = ()
     for table in tables.read(path):
-        first = first or table
+        seen = max(seen, table.header, key=len)
         exports = [one for one in lms.registered() if one.name != lms.OWN]
         own = [one for one in lms.registered() if one.name == lms.OWN]  # an export has heads that one's own might have
         try:
@@ -115,9 +115,11 @@ def _recognised(path):
         if len(found) > 1:
             titles = " and of ".join(one.title for one, _ in found)
             raise GradingError(f"{path.name}, line 1: the header is that of {titles}: expected that of one of them")
+        if found and table.fault:
+            raise GradingError(table.fault)
         if found:
             return table, *found[0]
-    heads = [head for head in first.header if head] if first else []
+    heads = [head for head in seen if head]
     says = f", {_listed(map(repr, heads))}" if heads else ""
     kinds = _listed([one.roster for one in lms.registered()], 9)
     raise GradingError(f"{path.name}, line 1: no header of a roster{says}; expected {kinds}")

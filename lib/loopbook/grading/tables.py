@@ -71,6 +71,7 @@ class Table:
         delimiter: between the cells.
         bom: whether the file begins with the mark by which Excel knows UTF-8.
         remarks: sentences on how it was read.
+        fault: why the rows are no table with this delimiter, in a sentence; empty where they are one.
     """
 
     file: str
@@ -79,6 +80,7 @@ class Table:
     delimiter: str = ","
     bom: bool = False
     remarks: tuple[str, ...] = ()
+    fault: str = ""
 
 
 def read(path: Path) -> Iterator[Table]:
@@ -88,27 +90,24 @@ def read(path: Path) -> Iterator[Table]:
     Windows-1252, in which Excel saves, if all letters then are printable, which a remark says. A first line "sep=;", as
     Excel reads it, is skipped.
 
-    Raises GradingError for a file that cannot be read, is no text, or no table.
+    Raises GradingError for a file that cannot be read, or is no text.
     """
     text, bom, remarks = _text(path)
     above = 0
     if said := re.match(r"sep=(.)\r?\n", text):
         text, above = text[said.end() :], 1
-    problem = None
     for delimiter in said[1] if said else DELIMITERS:
         reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
         try:
             header = tuple(_plain(cell) for cell in next(reader, []))
         except csv.Error:
             continue
+        rows, fault = (), ""
         try:
             rows = tuple(_rows(reader, len(header), above))
         except csv.Error as why:
-            problem = problem or f"{path.name}, line {reader.line_num + above}: no table, {why}"
-            continue
-        yield Table(path.name, header, rows, delimiter, bom, remarks)
-    if problem:
-        raise GradingError(problem)
+            fault = f"{path.name}, line {reader.line_num + above}: no table, {why}"
+        yield Table(path.name, header, rows, delimiter, bom, remarks, fault)
 
 
 def _rows(reader, width, above):
