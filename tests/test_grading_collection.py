@@ -1,5 +1,7 @@
 """The submissions that belong to the students of a roster, in folders and in zip files."""
 
+import dataclasses
+import datetime
 import io
 import json
 import os
@@ -96,6 +98,62 @@ def test_two_notebooks_of_one_student_are_not_run(tmp_path):
     lay(tmp_path, s1001__c_ipynb="", s1001__d_ipynb="", s1001__e_ipynb="")
     problem = collect(tmp_path, CLASS, "a").submissions[0].problem
     assert problem == "5 notebooks: s1001/a.ipynb, s1001/b.ipynb, s1001/c.ipynb and 2 more; keep one"
+
+
+def chosen(collection):
+    """The file that counts for the one student who handed in, its problem, and what is said of it."""
+    (found,) = collection.submissions
+    (complaint,) = collection.complaints
+    return found.label, found.problem, complaint
+
+
+def test_the_latest_counts_where_the_instructor_says_so(tmp_path):
+    names = ("doejane_123_9_heater.ipynb", "doejane_LATE_123_11_heater-1.ipynb", "doejane_123_10_notes.ipynb")
+    for name in names:
+        (tmp_path / name).write_text(notebook(name))
+    assert chosen(collect(tmp_path, CLASS, "heater"))[1].startswith("3 notebooks: doejane_123_10_notes.ipynb, ")
+    found = collect(tmp_path, CLASS, "heater", latest=True)
+    label, problem, says = chosen(found)
+    assert (label, problem, source(found.submissions[0])) == (names[1], "", names[1])
+    assert says.startswith(f"{names[1]}: counts as the latest, by the numbers of the files in Canvas, of 3 notebooks: ")
+    assert found.submissions[0].late is True
+
+
+def test_the_latest_is_told_by_the_times_of_files_or_not_at_all(tmp_path):
+    lay(tmp_path, s1001__a_ipynb="1", s1001__b_ipynb="2")
+    for name, seconds in (("a", 1_000_000_100), ("b", 1_000_000_000)):
+        os.utime(tmp_path / "s1001" / f"{name}.ipynb", (seconds, seconds))
+    found = collect(tmp_path, CLASS, "heater", latest=True)
+    assert chosen(found)[2] == (
+        "s1001/a.ipynb: counts as the latest, by the times of the files, of two notebooks: s1001/a.ipynb and "
+        "s1001/b.ipynb"
+    )
+    assert (found.submissions[0].handed_in, found.submissions[0].late) == (
+        None,
+        None,
+    )  # of a file's time nothing is late
+    os.utime(tmp_path / "s1001" / "b.ipynb", (1_000_000_099, 1_000_000_099))
+    problem = chosen(collect(tmp_path, CLASS, "heater", latest=True))[1]
+    assert problem == (
+        "two notebooks: s1001/a.ipynb and s1001/b.ipynb; which is the latest is not known, because their times are the "
+        "same; keep one"
+    )
+
+
+def test_the_latest_in_a_zip_file_that_may_not_tell_times(packed):
+    old, new, untold = (zipfile.ZipInfo(f"s1001/{name}.ipynb", time) for name, time in (
+        ("a", (2026, 12, 1, 10, 0, 0)), ("b", (2026, 12, 1, 10, 0, 4)), ("c", (1980, 1, 1, 0, 0, 0)),
+    ))  # fmt: skip
+    assert chosen(packed((old, "1"), (new, "2"), latest=True))[:2] == ("s1001/b.ipynb", "")
+    problem = chosen(packed((old, "1"), (untold, "2"), latest=True))[1]
+    assert "not known, because a file has no time" in problem
+
+
+def test_what_the_roster_knows_of_the_time_comes_along(tmp_path):
+    when = datetime.datetime(2026, 12, 1, 23, 59)
+    lay(tmp_path, s1001_ipynb="1")
+    (found,) = collect(tmp_path, [dataclasses.replace(JANE, handed_in=when)], "heater").submissions
+    assert (found.handed_in, found.late) == (when, None)
 
 
 @has_pipes
@@ -229,14 +287,14 @@ def test_where_there_is_nothing(tmp_path):
 def packed(tmp_path):
     """Writes a zip file of (name or ZipInfo, content) and collects from it."""
 
-    def pack(*members, compression=zipfile.ZIP_DEFLATED, change=None):
+    def pack(*members, compression=zipfile.ZIP_DEFLATED, change=None, latest=False):
         memory = io.BytesIO()
         with zipfile.ZipFile(memory, "w", compression) as archive:
             for name, content in members:
                 archive.writestr(name, notebook(content) if content.isalnum() else content)
         path = tmp_path / "heater submissions.zip"
         path.write_bytes(change(memory.getvalue()) if change else memory.getvalue())
-        return collect(path, CLASS, "heater")
+        return collect(path, CLASS, "heater", latest)
 
     yield pack
     entries._archive.cache_clear()  # closes it

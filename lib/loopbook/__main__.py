@@ -251,6 +251,9 @@ def grade(
     only: Annotated[list[str] | None, typer.Option(help="Id of a student; grade this one and keep the others.")] = None,
     regrade: Annotated[bool, typer.Option("--regrade", help="Grade again what is graded.")] = False,
     reveal: Annotated[bool, typer.Option("--reveal", help="Show the right answers in the feedback.")] = False,
+    latest: Annotated[
+        bool, typer.Option("--latest", help="Of several notebooks of a student, grade the latest instead of none.")
+    ] = False,
     workers: Annotated[int, typer.Option(min=1, help="Submissions at a time on this machine.")] = os.cpu_count() or 1,
     cell_seconds: Annotated[float, typer.Option(min=1, help="What a cell may take.")] = 60,
     seconds: Annotated[float, typer.Option(min=1, help="What a notebook may take.")] = 180,
@@ -288,6 +291,7 @@ def grade(
                 jailed=not without_jail,
                 limits=Limits(cell=cell_seconds, total=seconds, memory=megabytes * MEGA),
                 reveal=reveal,
+                latest=latest,
                 follow=lambda total, count: progress.update(bar, total=total, completed=count),
             )
     except GradingError as error:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+import datetime
 import functools
 import os
 import stat
@@ -28,13 +30,17 @@ FAILURES = (OSError, EOFError, RuntimeError, ValueError, struct.error, zipfile.B
 
 @dataclass(frozen=True)
 class Entry:
-    """A file, or whatever else lies there; `parts` are its names from the top, `fault` is why it is none of ours."""
+    """A file, or whatever else lies there; `parts` are its names from the top, `fault` is why it is none of ours.
+
+    When it was `changed`, in local time, is what the disk or the zip file says: copying and unpacking may change it.
+    """
 
     label: str
     parts: tuple[str, ...]
     fault: str = ""
     size: int = 0
     source: _File | _Member | None = None
+    changed: datetime.datetime | None = None
 
 
 class _TooManyError(Exception):
@@ -144,7 +150,8 @@ def _below(item, parts, within):
         state = item.stat(follow_symlinks=False)
         if not stat.S_ISDIR(state.st_mode):
             fault = _kind(state.st_mode) or ("" if os.access(item.path, os.R_OK) else "cannot be read: no permission")
-            yield Entry(label, parts, fault, state.st_size, _File(item.path))
+            changed = datetime.datetime.fromtimestamp(state.st_mtime)
+            yield Entry(label, parts, fault, state.st_size, _File(item.path), changed)
         elif len(parts) > DEEPEST:
             yield Entry(label, parts, _too_deep())
         else:
@@ -212,7 +219,7 @@ def _in_zip(path, wrappers):
             if not fault and member.is_dir():
                 continue
         source = _Member(str(path), state, number)
-        found.append(Entry(shown(name), parts or (name,), fault, member.file_size, source))
+        found.append(Entry(shown(name), parts or (name,), fault, member.file_size, source, _changed(member)))
     return _unwrapped(found, wrappers)
 
 
@@ -221,7 +228,16 @@ def _unwrapped(found, wrappers):
     tops = {entry.parts[0] for entry in found}
     if len(tops) != 1 or not tops <= wrappers or any(len(entry.parts) == 1 for entry in found):
         return found
-    return [Entry(entry.label, entry.parts[1:], entry.fault, entry.size, entry.source) for entry in found]
+    return [dataclasses.replace(entry, parts=entry.parts[1:]) for entry in found]
+
+
+def _changed(member):
+    """When a member was changed; None where the zip file does not say, or says what cannot be."""
+    try:
+        changed = datetime.datetime(*member.date_time)
+    except ValueError:
+        return None
+    return changed if changed.year > 1980 else None
 
 
 def _name(member):

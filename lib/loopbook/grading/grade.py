@@ -127,6 +127,7 @@ def grade(
     regrade: bool = False,
     jailed: bool = True,
     reveal: bool = False,
+    latest: bool = False,
     limits: Limits = USUAL,
     follow: Callable[[int, int], object] = lambda total, done: None,
 ) -> Summary:
@@ -143,6 +144,7 @@ def grade(
         regrade: grade again what has a result.
         jailed: without a jail, submissions run with the rights of whoever grades, and every output says so.
         reveal: show the key in the feedback.
+        latest: of several notebooks of a student the latest counts, as `submissions.collect` tells it.
         limits: `jail.Limits`.
         follow: is called with the number of submissions and how many are done.
     Returns:
@@ -158,7 +160,7 @@ def grade(
     _demand_apart(folder, submissions)
     if jailed:
         demand_hidden(*filter(None, [assignment.path, submissions, folder]))
-    collection = collect(submissions, students, assignment.name)
+    collection = collect(submissions, students, assignment.name, latest)
     notes: list[str] = []
     results = Results(folder / "results", assignment.secret)
     with _alone(folder):

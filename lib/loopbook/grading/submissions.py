@@ -5,6 +5,7 @@ What is not clearly one student's one notebook is left alone and said.
 
 from __future__ import annotations
 
+import datetime
 import io
 from collections import defaultdict
 from collections.abc import Sequence
@@ -13,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from loopbook.grading import GradingError
-from loopbook.grading.entries import FAILURES, entries, shown, why
-from loopbook.grading.owners import Owners, is_notebook
+from loopbook.grading.entries import FAILURES, Entry, entries, shown, why
+from loopbook.grading.owners import Owner, Owners, is_notebook
 from loopbook.grading.roster import Student
 from loopbook.grading.sources import sources
 
@@ -22,6 +23,9 @@ from loopbook.grading.sources import sources
 LARGEST = 200 * 2**20
 #: The most complaints about what lies in one folder.
 MOST_COMPLAINTS = 10
+
+#: Zip files tell times in steps of two seconds.
+_SAME_TIME = datetime.timedelta(seconds=2)
 
 
 class _Limited(io.RawIOBase):
@@ -46,11 +50,16 @@ class Submission:
         student: whose it is.
         label: its name in the folder or zip file, with slashes; signs that cannot be shown are spelled out.
         problem: "", or a sentence why it cannot be run.
+        handed_in: when, as the roster says; None where it does not. The time of a file is no such time: it is that of
+            a download, of unpacking, or what the student's machine said.
+        late: whether its name says that it came late; None where it says nothing.
     """
 
     student: Student
     label: str
     problem: str = ""
+    handed_in: datetime.datetime | None = None
+    late: bool | None = None
     _source: Any = field(default=None, repr=False)
 
     def read(self) -> bytes:
@@ -73,19 +82,26 @@ class Collection:
 
     Attributes:
         submissions: in the order of the roster, at most one a student.
-        complaints: sentences on what was left alone, each with the name of the file.
+        complaints: sentences on what was left alone, and on what was chosen, each with the name of the file.
     """
 
     submissions: tuple[Submission, ...]
     complaints: tuple[str, ...]
 
 
-def collect(path: str | Path, students: Sequence[Student], assignment_name: str) -> Collection:
+def collect(path: str | Path, students: Sequence[Student], assignment_name: str, latest: bool = False) -> Collection:
     """The submissions of the students in a folder or a zip file, and complaints about what is none.
 
     A student's notebook lies in the folder named by the id, or is named by it, or has the name that Canvas or Moodle
     gave it. Where all lies in one folder named like the folder or zip file itself or like the assignment, that one is
     meant. Jupyter's and the system's own files are skipped: names that begin with a dot, and __MACOSX.
+
+    Arguments:
+        path: of the folder or zip file.
+        students: the roster.
+        assignment_name: by which its notebooks were released.
+        latest: of several notebooks of a student the latest counts: by the number that Canvas gives to each file, else
+            by the times of the files. If not given, or where these do not decide, none of them counts.
 
     Raises GradingError where there is neither a folder nor a whole zip file.
 
@@ -101,31 +117,66 @@ def collect(path: str | Path, students: Sequence[Student], assignment_name: str)
     for entry in lying:
         student, fault = None, entry.fault or ("" if is_notebook(entry.parts[-1]) else "is not a notebook (.ipynb)")
         if not fault:
-            found = owners.of(entry.parts[0])
-            student, fault = found.student, found.reason
+            owner = owners.of(entry.parts[0])
+            student, fault = owner.student, owner.reason
         if fault:
             complaints.add(entry.parts[0], entry.label, fault)
         else:
-            notebooks[student.id].append(entry)
-    submissions = tuple(_submission(student, notebooks[student.id]) for student in students if notebooks[student.id])
-    for submission in submissions:
-        if submission.problem:
-            complaints.add(submission.student.id, submission.label, submission.problem)
-    return Collection(submissions, complaints.all())
+            notebooks[student.id].append(_Notebook(entry, owner))
+    submissions = []
+    for student in students:
+        if found := notebooks[student.id]:
+            submission, chosen = _submission(student, found, latest)
+            submissions.append(submission)
+            if submission.problem or chosen:
+                complaints.add(student.id, submission.label, submission.problem or chosen)
+    return Collection(tuple(submissions), complaints.all())
 
 
-def _submission(student, notebooks):
-    """The submission of a student with at least one notebook."""
-    first = notebooks[0]
-    if len(notebooks) > 1:
-        names = [entry.label for entry in notebooks[:3]] + [f"{len(notebooks) - 3} more"] * (len(notebooks) > 3)
-        number = {2: "two"}.get(len(notebooks), len(notebooks))
-        return Submission(
-            student, first.label, f"{number} notebooks: {', '.join(names[:-1])} and {names[-1]}; keep one"
-        )
-    if first.size > LARGEST:
-        return Submission(student, first.label, _too_large())
-    return Submission(student, first.label, "", first.source)
+@dataclass(frozen=True)
+class _Notebook:
+    """A notebook of a student, as it lies there, and what its name says."""
+
+    entry: Entry
+    owner: Owner
+
+
+def _submission(student, notebooks, latest):
+    """The submission of a student with at least one notebook, and a sentence where it was chosen from several."""
+    one, chosen = notebooks[0], ""
+    problem = "" if len(notebooks) == 1 else f"{_several(notebooks)}; keep one"
+    if problem and latest:
+        last, why = _latest(notebooks)
+        if last:
+            one, problem = last, ""
+            chosen = f"counts as the latest, by {why}, of {_several(notebooks)}"
+        else:
+            problem = f"{_several(notebooks)}; {why}; keep one"
+    entry = one.entry
+    if not problem and entry.size > LARGEST:
+        problem = _too_large()
+    source = None if problem else entry.source
+    return Submission(student, entry.label, problem, student.handed_in, one.owner.late, source), chosen
+
+
+def _several(notebooks):
+    """That there are several, in words."""
+    names = [one.entry.label for one in notebooks[:3]] + [f"{len(notebooks) - 3} more"] * (len(notebooks) > 3)
+    number = {2: "two"}.get(len(notebooks), len(notebooks))
+    return f"{number} notebooks: {', '.join(names[:-1])} and {names[-1]}"
+
+
+def _latest(notebooks):
+    """The latest of several notebooks and what tells that; or None, and why nothing tells it."""
+    uploads = {one.owner.upload: one for one in notebooks}
+    if None not in uploads and len(uploads) == len(notebooks):
+        return uploads[max(uploads)], "the numbers of the files in Canvas"
+    if any(one.entry.changed is None for one in notebooks):
+        return None, "which is the latest is not known, because a file has no time"
+    *_, last_but_one, last = sorted(notebooks, key=lambda one: one.entry.changed)
+    if last.entry.changed - last_but_one.entry.changed <= _SAME_TIME:
+        return None, "which is the latest is not known, because their times are the same"
+    return last, "the times of the files"
 
 
 def _too_large():
