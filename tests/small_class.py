@@ -1,8 +1,11 @@
 """A class of four with two exercises, for the tests of the reports: right, mistaken, stopped, missing."""
 
+import base64
 from dataclasses import replace
 
+from loopbook.exercises import png
 from loopbook.exercises.authoring import answers, between, choice, exercise, expression, number, word
+from loopbook.exercises.judging import WAITING
 from loopbook.expressions import s
 from loopbook.grading.marking import Marked
 from loopbook.grading.results import CellError, JudgedAnswer, JudgedExercise, Look, Result
@@ -43,6 +46,11 @@ def action(way=choice("heating", "cooling")):
     """What action does a controller for {way} need?"""
     key = "reverse" if way == "heating" else "direct"
     return answers(action=word(key, ["reverse", "direct"], "the action"))
+
+
+PICTURE = base64.b64decode(
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5ErkJggg=="
+)
 
 
 def key_in_words(kind):
@@ -91,3 +99,12 @@ STOPPED = result_of(
 )
 MISSING = result_of(ZOE, {}, status="missing", file="")
 RESULTS = [RIGHT_ALL, NAMED, STOPPED, MISSING]
+
+
+def by_hand(marks=None, key="it begins after the dead time", **more):
+    """A result with a figure and a text that a person marks, with these marks by hand."""
+    sketch = JudgedAnswer("sketch", WAITING, "a person marks this", png.as_data(PICTURE), key, 3)
+    long = f"the dead time is long\n\n<b>so</b> {'it oscillates ' * 40}!"
+    why = JudgedAnswer("why", WAITING, "a person marks this · 9 words, where at most 5 are asked for", long, "")
+    one = JudgedExercise("3", "A sketch", 4, "Sketch it.", (), (sketch, why))
+    return Marked.of(replace(RIGHT_ALL.result, exercises=(*RIGHT_ALL.result.exercises, one)), marks, **more)

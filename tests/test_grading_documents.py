@@ -13,12 +13,9 @@ from loopbook.exercises.bank import chapters, exercises
 from loopbook.exercises.response import MARKS
 from loopbook.grading.reports import document as of
 from loopbook.grading.reports import markdown, page, statement
-from small_class import HOSTILE
+from small_class import HOSTILE, PICTURE
 from whole_pages import Checker, assert_whole
 
-PICTURE = base64.b64decode(
-    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5ErkJggg=="
-)
 #: Texts that would be more than text in HTML, in Markdown, or in both, in a line and at its beginning.
 ATTACKS = (
     HOSTILE,

@@ -1,13 +1,11 @@
 """The pages of students and the summary: what they say, as HTML and as Markdown."""
 
-import base64
 import re
 from dataclasses import replace
 
 import pytest
 
-from loopbook.exercises import png
-from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WAITING, WRONG
+from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
 from loopbook.grading.lateness import Lateness
 from loopbook.grading.marking import Marked, MarkedExercise
 from loopbook.grading.overrides import Mark
@@ -34,6 +32,7 @@ from small_class import (
     STOPPED,
     TITLE,
     ZOE,
+    by_hand,
     changed,
     gain,
     own_mistake,
@@ -41,9 +40,6 @@ from small_class import (
 )
 from whole_pages import Checker, assert_whole
 
-PICTURE = base64.b64decode(
-    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5ErkJggg=="
-)
 on_page, in_markdown = page.written, markdown.written
 
 
@@ -170,15 +166,6 @@ def test_the_page_says_what_waits_and_what_was_given_by_hand():
         assert "(3.5 of 4 points)" in text
 
 
-def by_hand(marks=None, key="it begins after the dead time", **more):
-    """A result with a figure and a text that a person marks, with these marks by hand."""
-    sketch = JudgedAnswer("sketch", WAITING, "a person marks this", png.as_data(PICTURE), key, 3)
-    long = f"the dead time is long\n\n<b>so</b> {'it oscillates ' * 40}!"
-    why = JudgedAnswer("why", WAITING, "a person marks this · 9 words, where at most 5 are asked for", long, "")
-    one = JudgedExercise("3", "A sketch", 4, "Sketch it.", (), (sketch, why))
-    return Marked.of(replace(RIGHT_ALL.result, exercises=(*RIGHT_ALL.result.exercises, one)), marks, **more)
-
-
 def test_what_a_person_marks_is_shown_whole():
     text = on_page(feedback(TITLE, ADA, by_hand()))
     assert text.count("<img") == 1
@@ -293,6 +280,8 @@ def test_a_notebook_of_somebody_else_and_odd_lines():
 def test_what_failed_after_the_answers_were_in_is_harmless():
     errors = (CellError(9, "NameError: x"),)
     assert told([changed(RIGHT_ALL, errors=errors)]) == ({}, [("s1001",)])
+    latest = result_of(BOB, {"1": {"K": 1.0}}, says="of two notebooks the latest")
+    assert told([latest]) == ({}, [("s1002",)])
     unanswered = result_of(BOB, {"1": {"K": 1.0}}, errors=errors)
     assert told([unanswered]) == ({"Cells that failed, with answers left open": [("s1002", 3.667)]}, [])
     text = read(summary(TITLE, CLASS, [changed(RIGHT_ALL, errors=errors)]))

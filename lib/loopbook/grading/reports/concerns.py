@@ -162,7 +162,7 @@ def _of_one(mark):
         return
     if notes.texts:
         at_stake = sum(share(one, answer) for one in judged for answer in one.answers if answer.status == OPEN)
-        concern = CUT_SHORT if result.status == STOPPED else FAILED
+        concern = CUT_SHORT if result.status == STOPPED else FAILED if result.errors else None
         yield concern if at_stake else None, at_stake, notes
     for exercise in judged:
         for answer in exercise.answers:
