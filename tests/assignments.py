@@ -1,8 +1,7 @@
 """An assignment to release and to grade, whose text a test may change."""
 
-from types import SimpleNamespace
-
 from loopbook.grading.assignment import Assignment
+from loopbook.grading.roster import Student
 
 SOURCE = '''"""Tuning $K$
 
@@ -22,7 +21,7 @@ def first(K=between(2, 6, "K/%"), T=between(15, 40, "s")):
     return answers(
         Kp=number(<gain> * K * T, "%/K", "the gain"<within>),
         H=transfer_function(<gain> * K * s / (T + <letter>), symbols="q z"),
-        y=time_function(<gain> * sympy.exp(-t / T), <gain> * T, "K"),
+        y=time_function(<gain> * sympy.exp(-t / T), 7 * T, "K"),
         A=numbers([<gain> * K, T], what="the matrix"),
         p=poles([-<gain>, -T]),
     )
@@ -54,7 +53,7 @@ def written(gain="7.125", within="", letter="z", word="direct", text=SOURCE):
 
 
 def students(*names):
-    return [SimpleNamespace(id=f"s{1001 + k}", name=name) for k, name in enumerate(names)]
+    return [Student(f"s{1001 + k}", name) for k, name in enumerate(names)]
 
 
 def tuning():

@@ -50,12 +50,16 @@ class Class:
     """A class of so many students, who all hand in an ordinary notebook: five right answers and the way to them."""
 
     def __init__(self, folder, size):
-        self.folder, self.assignment = folder, load(ROOT / "examples" / "course" / "air_heater.py")
+        self.folder, self.path = folder, folder / "air_heater.py"
+        folder.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / "examples" / "course" / "air_heater.py", self.path)
+        self.assignment = load(self.path)
         self.students = tuple(Student(f"s{number:04}", f"Student {number}") for number in range(size))
         self.submissions = folder / "submissions"
         rows = [f"{student.id},{student.name}\n" for student in self.students]
         (folder / "roster.csv").write_text("id,name\n" + "".join(rows), encoding="utf-8")
-        for student, path in zip(self.students, release(self.assignment, self.students, self.submissions), strict=True):
+        released = release(self.assignment, self.students, self.submissions)
+        for student, path in zip(self.students, released.paths, strict=True):
             notebook = json.loads(path.read_text(encoding="utf-8"))
             fill_in_all(notebook, lambda number, student=student: self.assignment.question(student.id, number))
             for number, source in zip("1234", (IMPORTS, STEPS, PLOT, SYMBOLS), strict=True):
@@ -67,7 +71,7 @@ class Class:
 
     def command(self, to, workers):
         return [
-            sys.executable, "-m", "loopbook", "grade", ROOT / "examples" / "course" / "air_heater.py", self.submissions,
+            sys.executable, "-m", "loopbook", "grade", self.path, self.submissions,
             "--students", self.folder / "roster.csv", "--to", self.folder / to, "--workers", str(workers),
         ]  # fmt: skip
 

@@ -50,7 +50,7 @@ def test_without_parameters_no_values_are_told():
         "No number is given."
         return answers(y=1 / sympy.Integer(0) + 1 // 0)
 
-    with pytest.raises(ValueError, match="^the key of exercise 6 fails: integer division or modulo by zero"):
+    with pytest.raises(ValueError, match=r"^the key of exercise 6 fails: integer division or modulo by zero"):
         _ = nothing.question().key
 
 

@@ -22,9 +22,10 @@ from loopbook.grading.assignment import load
 from loopbook.grading.cluster import connected
 from loopbook.grading.events import Outcome
 from loopbook.grading.grade import grade, here
+from loopbook.grading.imprint import peek
 from loopbook.grading.judge import Judge
 from loopbook.grading.release import release
-from loopbook.grading.results import Results, result
+from loopbook.grading.results import OWNER, Look, Results, result
 from loopbook.grading.roster import read_roster
 from needs import needs_jail
 
@@ -120,6 +121,47 @@ def graded(course):
 
 @needs_jail
 class TestAClass:
+    def test_numbers_are_those_of_the_release(self, course, graded):
+        text = course.path.read_text(encoding="utf-8")
+        try:
+            course.path.write_text(text.replace("K=between(2, 6,", "K=between(20, 60,"), encoding="utf-8")
+            later = grade(
+                load(course.path), course.students, course.submissions, course.folder / "mended", place=course.place()
+            )
+        finally:
+            course.path.write_text(text, encoding="utf-8")
+        says = "other ranges than at the release: K in exercise 1, K in exercise 2; those who were released to keep"
+        assert later.notes[0].startswith(says)
+        before, after = (
+            [row.split(",")[-1] for row in (folder / "grades.csv").read_text(encoding="utf-8").splitlines()]
+            for folder in (graded[1], course.folder / "mended")
+        )
+        assert before == after
+
+    def test_most_notebooks_of_others_are_not_graded(self, course, tmp_path):
+        ids = [student.id for student in course.students[:-1]]
+        for own, other in zip(ids, [*ids[1:], ids[0]], strict=True):
+            (tmp_path / "in" / own).mkdir(parents=True)
+            content = (course.submissions / other / "lag.ipynb").read_bytes()
+            (tmp_path / "in" / own / "lag.ipynb").write_bytes(content)
+        with pytest.raises(GradingError, match="4 of 4 notebooks are not those of the release to these students"):
+            grade(course.assignment, course.students, tmp_path / "in", tmp_path / "out", place=course.place())
+        assert not (tmp_path / "out" / "grades.csv").exists()
+
+    def test_a_notebook_of_somebody_else_is_told(self, course, tmp_path):
+        (tmp_path / "in" / "s0").mkdir(parents=True)
+        (tmp_path / "in" / "s3").mkdir(parents=True)
+        content = (course.submissions / "s3" / "lag.ipynb").read_bytes()
+        proof = peek(content).numbers["2"].encode()
+        (tmp_path / "in" / "s3" / "lag.ipynb").write_bytes(content.replace(proof, b"of an earlier release"))
+        content = (course.submissions / "s2" / "lag.ipynb").read_bytes()
+        (tmp_path / "in" / "s0" / "lag.ipynb").write_bytes(content.replace(b'student=\\"s2\\"', b'student=\\"s0\\"'))
+        grade(course.assignment, course.students, tmp_path / "in", tmp_path / "out", place=course.place())
+        results = Results(tmp_path / "out" / "results", course.assignment.secret)
+        assert results.of("s3").looks == (Look(OWNER, "it was released with other numbers in exercise 2"),)
+        found = results.of("s0")
+        assert (found.looks, found.owner) == ((Look(OWNER, "it names another student: s2"),), "s2")
+
     def test_everybody_has_what_is_due(self, graded):
         summary, folder = graded
         assert (summary.graded, summary.kept, summary.missing, summary.failures) == (4, 0, 1, ())

@@ -92,30 +92,44 @@ def test_another_key_gives_the_same_code(tuning, other):
 
 def test_releasing_twice_writes_the_same_bytes(tuning, tmp_path):
     class_list = students("Ada", "Norbert")
-    paths = release(tuning, class_list, tmp_path)
+    paths = release(tuning, class_list, tmp_path).paths
     assert [path.relative_to(tmp_path).as_posix() for path in paths] == ["s1001/tuning.ipynb", "s1002/tuning.ipynb"]
     before = [(path.read_bytes(), path.stat().st_mtime_ns) for path in paths]
-    assert release(tuning, class_list, tmp_path) == paths
+    done = release(tuning, class_list, tmp_path)
+    assert (done.paths, done.kept, done.record) == (paths, ("s1001", "s1002"), None)
     assert [(path.read_bytes(), path.stat().st_mtime_ns) for path in paths] == before
     assert not notebooks.unfit(notebooks.read(paths[0]))
-    # an assignment that was mended takes the place of its former notebooks
+    # an assignment that was mended takes the place of its former notebooks where that is asked for
     changed = Assignment.of(written().replace("An introduction.", "Another one."), "tuning")
-    release(changed, class_list, tmp_path)
+    with pytest.raises(GradingError, match="would be others in the introduction: --replace puts"):
+        release(changed, class_list, tmp_path)
+    assert [(path.read_bytes(), path.stat().st_mtime_ns) for path in paths] == before
+    assert release(changed, class_list, tmp_path, replace=True).replaced == ("s1001", "s1002")
     assert "Another one." in paths[0].read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("content", ["work", "edited", "no notebook", "{}"])
-def test_work_of_a_student_is_not_overwritten(tuning, tmp_path, content):
-    path = release(tuning, students("Ada"), tmp_path)[0]
-    if content == "edited":
-        content = path.read_text(encoding="utf-8").replace("Kp=...", "Kp=2")
+@pytest.mark.parametrize("content", ["work", "of another", "no notebook", "{}"])
+@pytest.mark.parametrize("replace", [False, True])
+def test_what_is_in_the_way_is_not_overwritten(tuning, tmp_path, content, replace):
+    path = release(tuning, students("Ada"), tmp_path).paths[0]
+    if content == "of another":
+        content = path.read_text(encoding="utf-8").replace("s1001", "s1009")
     elif content == "work":
         content = notebooks.as_text(nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell("1")]))
     path.write_text(content, encoding="utf-8")
-    with pytest.raises(GradingError, match=r"tuning\.ipynb is in the way and not as it was released"):
-        release(tuning, students("Ada", "Norbert"), tmp_path)
+    with pytest.raises(GradingError, match=r"tuning\.ipynb is in the way and no notebook of this release"):
+        release(tuning, students("Ada", "Norbert"), tmp_path, replace=replace)
     assert path.read_text(encoding="utf-8") == content
     assert not (tmp_path / "s1002").exists()
+
+
+def test_work_of_a_student_stays(tuning, tmp_path):
+    path = release(tuning, students("Ada"), tmp_path).paths[0]
+    content = path.read_text(encoding="utf-8").replace("Kp=...", "Kp=2")
+    path.write_text(content, encoding="utf-8")
+    done = release(tuning, students("Ada", "Norbert"), tmp_path)
+    assert (done.kept, done.added) == (("s1001",), ("s1002",))
+    assert path.read_text(encoding="utf-8") == content
 
 
 @pytest.mark.parametrize(

@@ -28,6 +28,10 @@ mkdir "$folder/course" "$folder/loopbook"
 cp "${files[0]}" "$folder/course/"
 basename "${files[0]}" > "$folder/course/assignment"
 cp "${files[1]}" "$folder/course/roster.csv"
+record="${files[0]%.py}.released.json"  # the numbers that were released
+if [ -e "$record" ]; then
+    cp "$record" "$folder/course/"
+fi
 if [ ${#files[@]} -gt 2 ]; then
     cp "${files[@]:2}" "$folder/course/"
 fi

@@ -26,7 +26,7 @@ def main(folder):
     for name in ("released", "submissions"):
         shutil.rmtree(folder / name, ignore_errors=True)
     names = [student.id for student in students]
-    released = dict(zip(names, release(assignment, students, folder / "released"), strict=True))
+    released = dict(zip(names, release(assignment, students, folder / "released").paths, strict=True))
     for name, make in zip(names, SUBMISSIONS, strict=True):
         notebook = json.loads(released[name].read_text(encoding="utf-8"))
         path = make(notebook, lambda number, name=name: assignment.question(name, number), assignment)

@@ -152,9 +152,20 @@ def release(
     assignment: Annotated[Path, typer.Argument(help="The assignment, a Python module in the exercise format.")],
     to: Annotated[Path, typer.Option(help="Folder for the notebooks, a folder a student.")],
     students: Annotated[Path | None, typer.Option(help=ROSTER)] = None,
+    replace: Annotated[
+        bool, typer.Option("--replace", help="Put mended notebooks in the place of those in which nobody has worked.")
+    ] = False,
+    new_numbers: Annotated[
+        bool, typer.Option("--new-numbers", help="With --replace, draw numbers anew from ranges that have changed.")
+    ] = False,
     nbgrader: Annotated[bool, typer.Option(help="Write one source assignment for nbgrader instead.")] = False,
 ) -> None:
-    """Write one notebook per student: own numbers, places for answers, nothing of the key."""
+    """Write one notebook per student: own numbers, places for answers, nothing of the key.
+
+    The numbers are kept in a record beside the assignment, as heater.released.json. Released again, for students who
+    joined later or with a statement that was mended, everybody keeps the numbers of the record, whatever the ranges
+    are by then, and no notebook is replaced unless --replace says so.
+    """
     from loopbook.grading import GradingError
     from loopbook.grading.assignment import load
 
@@ -165,20 +176,29 @@ def release(
             from loopbook.grading.files import write
             from loopbook.grading.nbgrader import source
 
-            paths = [to / f"{given.name}.ipynb"]
-            write(paths[0], notebooks.as_text(source(given)))
-        else:
-            from loopbook.grading import lms
-            from loopbook.grading.release import release
-            from loopbook.grading.roster import read_roster
+            path = to / f"{given.name}.ipynb"
+            write(path, notebooks.as_text(source(given)))
+            console.print(f"the source notebook of {given.title!r} is {path}", markup=False)
+            return
+        from loopbook.grading import lms
+        from loopbook.grading.release import release
+        from loopbook.grading.roster import read_roster
 
-            roster = read_roster(students or assignment.with_name("roster.csv"))
-            paths = release(given, roster, to)
-            for remark in lms.remarks(roster):
-                errors.print(remark, style="yellow", markup=False)
+        roster = read_roster(students or assignment.with_name("roster.csv"))
+        done = release(given, roster, to, replace=replace, new_numbers=new_numbers)
+        remarks = [*lms.remarks(roster), *done.remarks]
     except GradingError as error:
         fail(str(error))
-    console.print(f"{len(paths)} notebook{'' if len(paths) == 1 else 's'} of {given.title!r} in {to}", markup=False)
+    for remark in remarks:
+        errors.print(remark, style="yellow", markup=False)
+    counts = [(done.added, "new"), (done.replaced, "replaced"), (done.kept, "unchanged")]
+    said = ", ".join(f"{len(ids)} {what}" for ids, what in counts if ids)
+    count = f"{len(done.paths)} notebook{'' if len(done.paths) == 1 else 's'}"
+    console.print(f"{count} of {given.title!r} in {to}{f': {said}' if said else ''}", markup=False)
+    for student in done.worked_in:
+        says = f"{to / student}: somebody has worked in this notebook; it stays, without what was mended"
+        errors.print(says, style="yellow", markup=False)
+    console.print(f"{done.record} has their numbers: keep it with the assignment, grade needs it", markup=False)
 
 
 @app.command("try")

@@ -11,17 +11,19 @@ import threading
 from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, ThreadPoolExecutor, wait
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from loopbook.grading import GradingError, NoJail, lms
 from loopbook.grading.events import Outcome
+from loopbook.grading.imprint import peek
 from loopbook.grading.jail import USUAL, Jail, Limits, demand_hidden
 from loopbook.grading.judge import Judge
 from loopbook.grading.marking import Marked
+from loopbook.grading.released import Released
 from loopbook.grading.reports import registered, write_all
-from loopbook.grading.results import Result, Results, fingerprint, result
+from loopbook.grading.results import OWNER, Look, Result, Results, fingerprint, result
 from loopbook.grading.submissions import collect
 
 if TYPE_CHECKING:
@@ -47,6 +49,7 @@ class Task:
     limits: Limits
     fingerprint: str
     numbers: dict[str, dict[str, str]]
+    doubts: tuple[str, ...]
 
 
 class Desk:
@@ -65,7 +68,10 @@ class Desk:
             self.jail = self.jail or Jail(self.jailed, self.limits)
             outcome = self.jail.run(task.content)
         exercises = self.judge.judge(task.student, outcome.answers, task.numbers)
-        return result(task.name, task.student, task.label, task.fingerprint, task.jailed, outcome, exercises)
+        found = result(task.name, task.student, task.label, task.fingerprint, task.jailed, outcome, exercises)
+        is_said = any(look.kind == OWNER for look in found.looks)
+        looks = () if is_said else tuple(Look(OWNER, says) for says in task.doubts)
+        return replace(found, looks=(*looks, *found.looks))
 
     def close(self) -> None:
         """End both processes."""
@@ -154,6 +160,11 @@ def grade(
             works in, that lies among the submissions or holds another assignment, or where there is no jail.
     """
     registered()  # what is wrong with one of them is said before an hour of grading, and not after it
+    released = Released.of(assignment)
+    on_roster = students
+    students, changes = released.identified(on_roster)
+    kept_ids = {own.id: student.id for own, student in zip(on_roster, students, strict=True)}
+    only = [kept_ids.get(one, one) for one in only]
     unknown = sorted(set(only) - {student.id for student in students})
     if unknown:
         raise GradingError(f"there is no student {unknown[0]!r} on the roster")
@@ -161,15 +172,16 @@ def grade(
     if jailed:
         demand_hidden(*filter(None, [assignment.path, submissions, folder]))
     collection = collect(submissions, students, assignment.name, latest)
-    notes: list[str] = []
+    notes = [*changes, *released.differences(assignment, [one.student for one in collection.submissions])]
     results = Results(folder / "results", assignment.secret)
     with _alone(folder):
         results.demand_of(assignment.name, [student.id for student in students])
+        released.demand_fitting(assignment, collection.submissions)
         found = {one.student.id: one for one in collection.submissions}
         wanted = [student for student in students if not only or student.id in only]
 
         def task(student):
-            return _task(assignment, student, found.get(student.id), jailed, limits)
+            return _task(assignment, released, student, found.get(student.id), jailed, limits)
 
         graded, kept, failures = 0, 0, []
         for done, (student, outcome) in enumerate(
@@ -199,7 +211,7 @@ def _demand_apart(folder, submissions):
         raise GradingError(f"{folder} lies among the submissions in {submissions}: expected a folder beside them")
 
 
-def _task(assignment, student, submission, jailed, limits):
+def _task(assignment, released, student, submission, jailed, limits):
     """The task of one student; without a submission, one without a label."""
     label, content, problem = "", b"", ""
     if submission:
@@ -209,11 +221,11 @@ def _task(assignment, student, submission, jailed, limits):
                 content = submission.read()
             except GradingError as why:
                 problem = str(why)
-    numbers: dict[str, dict[str, str]] = {}
+    numbers, doubts = released.numbers(student.id), released.doubts(assignment, student.id, peek(content))
     mark = fingerprint(assignment, numbers, content, label, problem, jailed, limits)
     return Task(
         assignment.name, assignment.source, str(assignment.path or ""), student.id, label, content, problem, jailed,
-        limits, mark, numbers,
+        limits, mark, numbers, doubts,
     )  # fmt: skip
 
 

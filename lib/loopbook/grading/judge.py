@@ -175,7 +175,7 @@ def main() -> None:
         job = json.loads(line)
         try:
             for number in assignment.exercises:
-                question = assignment.question(job["student"], number)
+                question = assignment.question(job["student"], number, job["numbers"].get(number))
                 hopeless = [name for one, name in job["hopeless"] if one == number]
                 given = job["given"].get(number, {})
                 found = judged(question, given, hopeless, lambda name, n=number: say({"at": [n, name]}))

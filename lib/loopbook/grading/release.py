@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import base64
-import hashlib
+import enum
 import html
+import importlib.metadata
 import io
 import itertools
-import json
 import re
 import tokenize
 from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import dataclass
+from dataclasses import replace as replaced
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,12 +23,15 @@ from loopbook.exercises.kinds.kind import literal
 from loopbook.exercises.parameters import call
 from loopbook.grading import GradingError, files
 from loopbook.grading.assignment import check_names
+from loopbook.grading.imprint import Imprint, cells_of, proofs
+from loopbook.grading.released import Released, in_short, texts
 
 if TYPE_CHECKING:
     from nbformat import NotebookNode
 
     from loopbook.exercises.question import Question
     from loopbook.grading.assignment import Assignment
+    from loopbook.grading.released import Numbers
     from loopbook.grading.roster import Student
 
 MOST_LINES, MOST_COLUMNS = 12, 88
@@ -34,6 +39,8 @@ MOST_LINES, MOST_COLUMNS = 12, 88
 _NOT_FILLED_IN = re.compile(r"\$\$.*?\$\$|\$.*?\$|`.*?`", re.DOTALL)
 #: The place of a value; in front of it is none of what LaTeX has before a brace.
 _PLACE = re.compile(r"(?<![\w\\{}])\{([^\W\d]\w*)\}(?!\})")
+#: How a statement begins.
+_STATEMENT = re.compile(r"\*\*Exercise (\S+) ·")
 _HOW_TO_ANSWER = (
     "Put your answers in the places of the dots and run the cells: each shows how your answer is read, and nothing "
     "about right or wrong. You can answer as often as you like before you save this notebook and hand it in; the last "
@@ -41,31 +48,209 @@ _HOW_TO_ANSWER = (
 )
 
 
-def release(assignment: Assignment, students: Iterable[Student], folder: str | Path) -> list[Path]:
-    """Write the notebooks of the students, ``folder/<student's id>/<assignment's name>.ipynb``; return their paths.
+@dataclass(frozen=True)
+class Release:
+    """What a release did.
 
-    The same call writes the same bytes. All notebooks are made before the first one is written.
+    Attributes:
+        paths: of the notebooks of all students, in the order of the roster.
+        added, replaced, kept: ids of those whose notebook is new, takes the place of another, or was there as it is.
+        worked_in: ids of those whose notebook stays though it would be another one now: somebody has worked in it.
+        record: where the numbers are kept; None for an assignment that was made from a text.
+        remarks: sentences on what is no longer as at earlier releases.
+    """
+
+    paths: tuple[Path, ...]
+    added: tuple[str, ...]
+    replaced: tuple[str, ...]
+    kept: tuple[str, ...]
+    worked_in: tuple[str, ...]
+    record: Path | None
+    remarks: tuple[str, ...]
+
+
+def release(
+    assignment: Assignment,
+    students: Iterable[Student],
+    folder: str | Path,
+    *,
+    replace: bool = False,
+    new_numbers: bool = False,
+) -> Release:
+    """Write the notebooks of the students, ``folder/<student's id>/<assignment's name>.ipynb``, and the record.
+
+    Numbers that were released before, by the record beside the assignment, stay. The same call writes the same bytes.
+    All notebooks are made before the first one is written; where one is there that would change, none is written.
 
     Arguments:
         assignment: `Assignment`.
         students: each with `id` and `name`.
         folder: where to; made if it is not there.
+        replace: put new notebooks in the place of others; those in which somebody has worked stay.
+        new_numbers: with `replace`, draw the numbers anew from the ranges as they are now.
     Raises:
-        GradingError: where a variant fails, and for a file in the way that is not as it was released.
+        GradingError: where a variant fails, for notebooks that would change, for a file in the way, and for a record
+            that does not belong to the assignment.
     """
-    texts = {}
-    for student in students:
-        path = Path(folder, student.id, f"{assignment.name}.ipynb")
-        texts[path] = notebooks.as_text(notebook(assignment, student))
-        _check_replaceable(path, texts[path])
-    for path, text in texts.items():
-        files.write(path, text)
-    return list(texts)
+    if new_numbers and not replace:
+        raise GradingError("new numbers are for notebooks that are replaced: expected --replace beside --new-numbers")
+    before = Released.of(assignment)
+    students, remarks = before.identified(students)
+    plans = [_plan(assignment, student, Path(folder), before, new_numbers) for student in students]
+    _demand_allowed(plans, folder, replace, new_numbers, before)
+    record = before
+    for plan in plans:
+        if plan.what is not _What.WORKED_IN or plan.student.id not in before.holders:
+            record = record.with_release(plan.student, plan.numbers)
+    if assignment.record:
+        record.write(assignment.record, assignment.secret)
+    for plan in plans:
+        if plan.what in (_What.ADDED, _What.TEXT, _What.NUMBERS):
+            files.write(plan.path, plan.text)
+
+    def ids(*which):
+        return tuple(plan.student.id for plan in plans if plan.what in which)
+
+    known = [student for student in students if student.id in before.holders]
+    if before.path and not new_numbers:
+        remarks += before.differences(assignment, known)
+    return Release(
+        tuple(plan.path for plan in plans), ids(_What.ADDED), ids(_What.TEXT, _What.NUMBERS), ids(_What.SAME),
+        ids(_What.WORKED_IN), assignment.record, remarks,
+    )  # fmt: skip
 
 
-def notebook(assignment: Assignment, student: Student) -> NotebookNode:
-    """Return the notebook of a student. Raises GradingError where a variant fails."""
-    questions = {number: asked(assignment, student.id, number) for number in assignment.exercises}
+class _What(enum.Enum):
+    """What a release would do to the place of a notebook."""
+
+    ADDED = "nothing is there"
+    SAME = "it is there"
+    TEXT = "another text is there, with the same numbers"
+    NUMBERS = "others are there, with other numbers"
+    WORKED_IN = "another one is there, in which somebody has worked"
+    FOREIGN = "something else is there"
+
+
+@dataclass(frozen=True)
+class _Plan:
+    """The notebook of a student: where, which, with which numbers, and what of it would be another."""
+
+    student: Student
+    path: Path
+    text: str
+    numbers: dict[str, dict[str, str]]
+    what: _What
+    parts: tuple[str, ...] = ()
+
+
+def _plan(assignment, student, folder, record, new_numbers):
+    released = {} if new_numbers else record.numbers(student.id)
+    questions = {n: asked(assignment, student.id, n, released.get(n)) for n in assignment.exercises}
+    numbers = {number: texts(question) for number, question in questions.items()}
+    path = folder / student.id / f"{assignment.name}.ipynb"
+    made = _notebook(assignment, student, questions)
+    content = notebooks.as_text(made)
+    there, imprint = _there(path)
+    if there is None:
+        return _Plan(student, path, content, numbers, _What.ADDED)
+    if there == content:
+        return _Plan(student, path, content, numbers, _What.SAME)
+    if imprint is None or (imprint.assignment, imprint.student) != (assignment.name, student.id):
+        return _Plan(student, path, content, numbers, _What.FOREIGN)
+    new = Imprint.of(made.metadata)
+    as_before = notebooks.as_text(_notebook(assignment, student, questions, imprint.version))
+    if there == as_before:
+        return _Plan(student, path, there, numbers, _What.SAME)
+    old = notebooks.read(path)
+    is_same = replaced(imprint, version="") == replaced(new, version="")
+    base = record.numbers(student.id) or numbers
+    proof = proofs(assignment.secret, student.id, base)
+    has_numbers = bool(imprint.numbers) and all(proof.get(n, one) == one for n, one in imprint.numbers.items())
+    if cells_of(old) != imprint.cells:
+        what = _What.SAME if is_same else _What.WORKED_IN if has_numbers else _What.FOREIGN
+    else:
+        what = _What.TEXT if has_numbers else _What.NUMBERS
+    return _Plan(student, path, content, numbers, what, _changed(old, made))
+
+
+def _there(path):
+    """The text of a notebook that is there, and its imprint; None for each of them that there is not."""
+    try:
+        text = path.read_bytes().decode("utf-8", "replace")
+        return text, Imprint.of(notebooks.read(path).metadata)
+    except FileNotFoundError:
+        return None, None
+    except OSError as problem:
+        raise GradingError(f"{path} cannot be read: {problem.strerror}") from None
+    except notebooks.NotebookError:
+        return text, None
+
+
+def _changed(old, new):
+    """The parts of a notebook whose text differs from that of another one, by their names."""
+    parts = [{}, {}]
+    for found, made in zip(parts, (old, new), strict=True):
+        for cell in made.cells:
+            if cell.cell_type == "markdown":
+                begins = _STATEMENT.match(cell.source)
+                found.setdefault(f"exercise {begins[1]}" if begins else "the introduction", []).append(cell.source)
+    one, other = parts
+    return tuple(part for part in dict.fromkeys([*other, *one]) if one.get(part) != other.get(part))
+
+
+def _demand_allowed(plans, folder, replace, new_numbers, record):
+    """Raise GradingError where something is in the way, or would change without being asked for."""
+    foreign = [plan for plan in plans if plan.what is _What.FOREIGN]
+    if foreign:
+        raise GradingError(
+            f"{foreign[0].path} is in the way and no notebook of this release: move it away, or release to another "
+            f"folder; nothing is written{_besides(foreign)}"
+        )
+    numbers = [plan for plan in plans if plan.what is _What.NUMBERS and not new_numbers]
+    if numbers:
+        whose = (
+            f"of {record.path.name}" if record.path else "that are drawn today, and no record says which were released"
+        )
+        raise GradingError(
+            f"nothing is written: the notebooks of {in_short(_ids(numbers))} in {folder} have other numbers than those "
+            f"{whose}: put the record of their release beside the assignment, or say --replace --new-numbers"
+        )
+    others = [plan for plan in plans if plan.what in (_What.TEXT, _What.NUMBERS, _What.WORKED_IN)]
+    if others and not replace:
+        parts = list(dict.fromkeys(part for plan in others for part in plan.parts))
+        what = f" in {in_short(parts)}" if parts else ""
+        raise GradingError(
+            f"nothing is written: the notebooks of {in_short(_ids(others))} in {folder} would be others{what}: "
+            "--replace puts them in place, with the numbers of the release, except where somebody has worked in one"
+        )
+
+
+def _ids(plans):
+    return [plan.student.id for plan in plans]
+
+
+def _besides(plans):
+    return f" ({len(plans) - 1} more are in the way)" if plans[1:] else ""
+
+
+def notebook(assignment: Assignment, student: Student, numbers: Numbers | None = None) -> NotebookNode:
+    """Return the notebook of a student.
+
+    Arguments:
+        assignment: `Assignment`.
+        student: whose.
+        numbers: that were released before, {exercise: {parameter: text}}; others are drawn.
+    Raises:
+        GradingError: where a variant fails.
+    """
+    released = numbers or {}
+    questions = {n: asked(assignment, student.id, n, released.get(n)) for n in assignment.exercises}
+    return _notebook(assignment, student, questions)
+
+
+def _notebook(assignment, student, questions, version=None):
+    """The notebook of a student; one of an earlier version of loopbook where nothing else has changed."""
+    version = importlib.metadata.version("loopbook") if version is None else version
     person = f"**{as_markdown(student.name or student.id)}** (`{student.id}`)"
     introduction = [f"# {assignment.title}", person, assignment.introduction, _HOW_TO_ANSWER]
     cells = [v4.new_markdown_cell("\n\n".join(part for part in introduction if part))]
@@ -75,18 +260,19 @@ def notebook(assignment: Assignment, student: Student) -> NotebookNode:
         cells.append(v4.new_code_cell(answer_call(number, dict.fromkeys(question.key, "..."))))
     cells.append(v4.new_code_cell("sheet"))
     made = bare(cells)
-    made.metadata.loopbook = {
-        "assignment": assignment.name,
-        "released": _digest(made),
-        "student": student.id,
-    }
+    numbers = proofs(assignment.secret, student.id, {number: texts(one) for number, one in questions.items()})
+    made.metadata.loopbook = Imprint(assignment.name, student.id, version, cells_of(made), numbers).as_metadata()
     return made
 
 
-def asked(assignment: Assignment, student_id: str, number: str) -> Question:
-    """Return a student's question, with all that will be needed of it. Raises GradingError where that fails."""
+def asked(assignment: Assignment, student_id: str, number: str, values: Mapping[str, str] | None = None) -> Question:
+    """Return a student's question, with all that will be needed of it. Raises GradingError where that fails.
+
+    Arguments:
+        assignment, student_id, number, values: as `Assignment.question` takes them.
+    """
     label = f"exercise {number} of {assignment.name} for student {student_id}"
-    return checked(lambda: assignment.question(student_id, number), label)
+    return checked(lambda: assignment.question(student_id, number, values), label)
 
 
 def checked(make: Callable[[], Question], label: str) -> Question:
@@ -241,28 +427,3 @@ def as_markdown(text: str) -> str:
 
 def _harmless_sign(match):
     return f"<span>&#{ord(match[0])};</span>" if match[0] in "$\\" else f"\\{match[0]}"
-
-
-def _check_replaceable(path, text):
-    """Raise GradingError where a file is in the way that is neither this text nor a notebook as it was released."""
-    if not path.exists():
-        return
-    try:
-        if path.read_bytes() == text.encode():
-            return
-        there = notebooks.read(path)
-    except OSError as problem:
-        raise GradingError(f"{path} cannot be read: {problem.strerror}") from None
-    except notebooks.NotebookError:
-        there = None
-    released = there.metadata.get("loopbook", {}).get("released") if there else None
-    if released is None or released != _digest(there):
-        raise GradingError(
-            f"{path} is in the way and not as it was released: move it away, or release to another folder"
-        )
-
-
-def _digest(released):
-    """A text that changes with the cells of a notebook."""
-    sources = [(cell.cell_type, cell.source) for cell in released.cells]
-    return hashlib.sha256(json.dumps(sources).encode()).hexdigest()
