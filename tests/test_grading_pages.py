@@ -7,7 +7,7 @@ import pytest
 
 from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
 from loopbook.grading.lateness import Lateness
-from loopbook.grading.marking import Marked, MarkedExercise
+from loopbook.grading.marking import Marked, MarkedExercise, Notice
 from loopbook.grading.overrides import Mark
 from loopbook.grading.reports import markdown, page, write_all
 from loopbook.grading.reports.concerns import concerns
@@ -301,9 +301,10 @@ def test_what_waits_for_a_person_is_told_with_what_to_look_for():
 
 def test_marks_and_times_that_need_a_decision():
     look = "exercise 1, K: marked by hand with 1, and the answer has changed since"
-    cases, _ = told([Marked.of(NAMED.result, looks=(look,)), Marked.of(MISSING.result, looks=("late",))])
-    assert cases == {"Marks and times that need a decision": [("s1002", 5), ("s1004", 5)]}
-    for text in both(summary(TITLE, CLASS, [Marked.of(NAMED.result, looks=(look,))])):
+    named = Marked.of(NAMED.result, looks=(Notice(2, look),))
+    cases, _ = told([named, Marked.of(MISSING.result, looks=(Notice(5, "late"),))])
+    assert cases == {"Marks and times that need a decision": [("s1004", 5), ("s1002", 2)]}
+    for text in both(summary(TITLE, CLASS, [named])):
         assert look in text
 
 

@@ -268,6 +268,12 @@ def grade(
     submissions: Annotated[Path, typer.Argument(help="Their folder, or the zip file of Canvas or Moodle.")],
     to: Annotated[Path, typer.Option(help="Folder for grades and feedback; after an interruption, the same one.")],
     students: Annotated[Path | None, typer.Option(help=ROSTER)] = None,
+    extensions: Annotated[
+        Path | None,
+        typer.Option(
+            help="Extensions as CSV: student, until, assignment; if not given, extensions.csv beside the roster."
+        ),
+    ] = None,
     only: Annotated[list[str] | None, typer.Option(help="Id of a student; grade this one and keep the others.")] = None,
     regrade: Annotated[bool, typer.Option("--regrade", help="Grade again what is graded.")] = False,
     reveal: Annotated[bool, typer.Option("--reveal", help="Show the right answers in the feedback.")] = False,
@@ -296,7 +302,9 @@ def grade(
         from loopbook.grading.jail import MEGA, Limits
         from loopbook.grading.roster import read_roster
 
-        given, roster = load(assignment), read_roster(students or assignment.with_name("roster.csv"))
+        class_list = students or assignment.with_name("roster.csv")
+        given, roster = load(assignment), read_roster(class_list)
+        beside = class_list.with_name("extensions.csv")
         columns = TextColumn("grading"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
         with Progress(*columns, console=errors, transient=True, disable=not errors.is_terminal) as progress:
             bar = progress.add_task("", total=None)
@@ -306,6 +314,7 @@ def grade(
                 submissions,
                 to,
                 place=connected(cluster) if cluster else here(workers),
+                extensions=extensions or (beside if beside.exists() else None),
                 only=only or (),
                 regrade=regrade,
                 jailed=not without_jail,

@@ -25,6 +25,7 @@ from loopbook.exercises.authoring import Exercise
 from loopbook.exercises.bank import collected
 from loopbook.exercises.parameters import of_text
 from loopbook.grading import GradingError
+from loopbook.grading.lateness import Policy, policy_of, without_dates
 from loopbook.validation import did_you_mean
 
 if TYPE_CHECKING:
@@ -45,6 +46,7 @@ class Assignment:
         exercises: {number: `Exercise`}, in their order.
         source: the text of the module.
         path: of the module; None where it was made from a text.
+        policy: when it is due and what it costs to be late, from `DUE` and `LATE`; None where there is no `DUE`.
     """
 
     name: str
@@ -54,6 +56,7 @@ class Assignment:
     exercises: dict[str, Exercise]
     source: str
     path: Path | None = None
+    policy: Policy | None = None
 
     @classmethod
     def of(cls, source: str, name: str, path: Path | None = None) -> Self:
@@ -88,7 +91,7 @@ class Assignment:
             raise GradingError(f"{name}.py has no exercise: expected at least one, a function with @exercise(...)")
         for exercise in exercises.values():
             _check(exercise, name)
-        return cls(name, title.strip(), introduction.strip(), secret, exercises, source, path)
+        return cls(name, title.strip(), introduction.strip(), secret, exercises, source, path, policy_of(module, name))
 
     @property
     def points(self) -> float:
@@ -97,9 +100,12 @@ class Assignment:
 
     @property
     def fingerprint(self) -> str:
-        """A text that changes with the module and with loopbook's version; modules beside it are not part of it."""
-        version = importlib.metadata.version("loopbook")
-        return hashlib.sha256(f"{version}\n{self.source}".encode("utf-8", "surrogatepass")).hexdigest()
+        """A text that changes with the module and with loopbook's version; modules beside it are not part of it.
+
+        Lines that say when it is due are not part of it either: nothing is judged by them.
+        """
+        version, source = importlib.metadata.version("loopbook"), without_dates(self.source)
+        return hashlib.sha256(f"{version}\n{source}".encode("utf-8", "surrogatepass")).hexdigest()
 
     @property
     def record(self) -> Path | None:

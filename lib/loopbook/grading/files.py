@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 from typing import TYPE_CHECKING
 
@@ -40,3 +41,19 @@ def write(path: Path, content: str | bytes) -> bool:
             partial.unlink(missing_ok=True)
         raise GradingError(f"{path} cannot be written: {problem.strerror}") from None
     return True
+
+
+def append(path: Path, content: bytes) -> None:
+    """Write bytes behind what is in a file, all of them or none. Raises GradingError where that is not possible."""
+    try:
+        with open(path, "ab", buffering=0) as file:
+            size = file.tell()
+            try:
+                if file.write(content) != len(content):
+                    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+                os.fsync(file.fileno())
+            except OSError:
+                file.truncate(size)
+                raise
+    except OSError as problem:
+        raise GradingError(f"{path} cannot be written: {problem.strerror}") from None

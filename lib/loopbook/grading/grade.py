@@ -20,7 +20,7 @@ from loopbook.grading.events import Outcome
 from loopbook.grading.imprint import peek
 from loopbook.grading.jail import USUAL, Jail, Limits, demand_hidden
 from loopbook.grading.judge import Judge
-from loopbook.grading.marking import Marked
+from loopbook.grading.marking import Marking
 from loopbook.grading.released import Released
 from loopbook.grading.reports import registered, write_all
 from loopbook.grading.results import OWNER, Look, Result, Results, fingerprint, result
@@ -129,6 +129,7 @@ def grade(
     folder: Path,
     *,
     place: AbstractContextManager[tuple[Executor, int]] | None = None,
+    extensions: Path | None = None,
     only: Collection[str] = (),
     regrade: bool = False,
     jailed: bool = True,
@@ -146,6 +147,7 @@ def grade(
         folder: where results and reports go.
         place: where submissions are graded, ``here(workers)`` or ``cluster.connected(address)``; ``here(1)`` if not
             given.
+        extensions: the file that grants them to single students, if there is one.
         only: ids of the students to grade; all if empty.
         regrade: grade again what has a result.
         jailed: without a jail, submissions run with the rights of whoever grades, and every output says so.
@@ -156,8 +158,9 @@ def grade(
     Returns:
         The `Summary`.
     Raises:
-        GradingError: for submissions that cannot be read, ids that are on no roster, a folder that another grader
-            works in, that lies among the submissions or holds another assignment, or where there is no jail.
+        GradingError: for submissions, marks by hand or extensions that cannot be read, ids that are on no roster, a
+            folder that another grader works in, that lies among the submissions or holds another assignment, or where
+            there is no jail.
     """
     registered()  # what is wrong with one of them is said before an hour of grading, and not after it
     released = Released.of(assignment)
@@ -173,10 +176,12 @@ def grade(
         demand_hidden(*filter(None, [assignment.path, submissions, folder]))
     collection = collect(submissions, students, assignment.name, latest)
     notes = [*changes, *released.differences(assignment, [one.student for one in collection.submissions])]
+    marking = Marking(folder, assignment, students, extensions)
     results = Results(folder / "results", assignment.secret)
     with _alone(folder):
         results.demand_of(assignment.name, [student.id for student in students])
         released.demand_fitting(assignment, collection.submissions)
+        marking.read(results.if_whole)  # before anything is graded again: a mark by hand is one of what was there
         found = {one.student.id: one for one in collection.submissions}
         wanted = [student for student in students if not only or student.id in only]
 
@@ -196,8 +201,9 @@ def grade(
                 results.keep(outcome)
             follow(len(wanted), done)
         stored = {student.id: one for student in students if (one := results.of(student.id))}
-        marks = [Marked.of(one) for one in stored.values()]
-        notes += lms.remarks(students, assignment.title, marks)
+        marking.read(stored.get)
+        marks = marking.marked(list(stored.values()), found)
+        notes += [*marking.notes(marks), *lms.remarks(students, assignment.title, marks)]
         write_all(folder, assignment.title, students, marks, collection.complaints, notes, reveal)
         others = [student for student in students if student not in wanted and student.id in stored]
         outdated = [one.id for one in others if stored[one.id].fingerprint != task(one).fingerprint]

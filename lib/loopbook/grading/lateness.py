@@ -13,6 +13,7 @@ as the due date; where that names none either, all of them are of one place, and
 
 from __future__ import annotations
 
+import ast
 import datetime
 import math
 import re
@@ -31,6 +32,8 @@ _LENGTHS = {
     "minute": timedelta(minutes=1), "hour": timedelta(hours=1), "day": timedelta(days=1), "week": timedelta(weeks=1),
 }  # fmt: skip
 _SHORT = {"min": "minute", "h": "hour", "d": "day", "w": "week"}
+#: How the sentence on an extension begins.
+IN_TIME = "in time by"
 _END = datetime.time(23, 59, 59, 999999)
 _DATES = (
     r"(?P<year>\d{4})-(?P<month>\d\d?)-(?P<day>\d\d?)",
@@ -119,7 +122,7 @@ def _zone(name):
         return datetime.timezone(timedelta(hours=hours, minutes=minutes) * (-1 if name[0] == "-" else 1))
     try:
         return zoneinfo.ZoneInfo(name)
-    except (OSError, ValueError):
+    except (KeyError, OSError, ValueError):
         known = zoneinfo.available_timezones()
     if not known:
         raise ValueError(f"this machine has no list of time zones, in which {name} would be: install tzdata")
@@ -209,6 +212,40 @@ class Policy:
         return f"due {written(self.due)}; late: {', '.join(parts) or 'costs nothing'}"
 
 
+def policy_of(module: object, name: str) -> Policy | None:
+    """Return the policy of an assignment's module; None where it says nothing of it.
+
+    Raises GradingError for texts that cannot be read, and for a `LATE` without a `DUE`.
+    """
+    due, late = (getattr(module, one, None) for one in ("DUE", "LATE"))
+    if due is None and late is None:
+        return None
+    if due is None:
+        raise GradingError(f'{name}.py has LATE and no DUE: expected one, as DUE = "2026-12-01 23:59 Europe/Berlin"')
+    try:
+        return Policy.of(due, "none" if late is None else late)
+    except GradingError as problem:
+        raise GradingError(f"{name}.py: {problem}") from None
+
+
+def without_dates(source: str) -> str:
+    """Return the text of a module without the lines that say when it is due, where nothing else in it reads them.
+
+    >>> without_dates('x = 1\\nDUE = "2026-12-01"  # a Tuesday\\ny = 2\\n')
+    'x = 1\\ny = 2\\n'
+    """
+    tree, lines = ast.parse(source), source.splitlines(keepends=True)
+    named = [node.id for node in ast.walk(tree) if isinstance(node, ast.Name)]
+    for node in tree.body:
+        is_text = isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant) and len(node.targets) == 1
+        name = node.targets[0] if is_text else None
+        if isinstance(name, ast.Name) and name.id in ("DUE", "LATE") and named.count(name.id) == 1:
+            at, text = slice(node.lineno - 1, node.end_lineno), ast.get_source_segment(source, node)
+            if re.fullmatch(re.escape(text or "") + r"\s*(?:#.*)?\s*", "".join(lines[at])):
+                lines[at] = [""] * (at.stop - at.start)
+    return "".join(lines)
+
+
 def _terms(late):
     """What a text of LATE says, as arguments of `Policy`. Raises ValueError."""
     found = {}
@@ -295,7 +332,7 @@ def lateness(
     handed_in = handed_in.replace(tzinfo=due.tzinfo) if handed_in.tzinfo is None else handed_in.astimezone(due.tzinfo)
     if _instant(handed_in) <= _instant(due):
         if _instant(handed_in) > _instant(policy.due):
-            return Lateness(0, f"in time by an extension to {written(until)}")
+            return Lateness(0, f"{IN_TIME} an extension to {written(until)}")
         return Lateness()
     if policy.unit == "hour":
         by = _instant(handed_in) - _instant(due)

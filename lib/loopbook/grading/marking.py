@@ -1,17 +1,40 @@
-"""Marks: what a result counts, with what a person has marked and what is deducted; the reports show these."""
+"""Marks: what a result counts, with what a person has marked and what is deducted; the reports show these.
+
+`Marking` brings together what they come from: results, ``marks.csv``, the due date, extensions.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import datetime
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Self
+from pathlib import Path
+from typing import TYPE_CHECKING, Self
 
 from loopbook.exercises.judging import RIGHT, WAITING, earned
-from loopbook.grading.lateness import Lateness
-from loopbook.grading.overrides import Mark, points
+from loopbook.grading.lateness import IN_TIME, Extensions, Lateness, lateness, read_extensions
+from loopbook.grading.overrides import Asked, Mark, Overrides, points
 from loopbook.grading.results import MISSING, NOT_RUN, JudgedExercise, Result
 
+if TYPE_CHECKING:
+    from loopbook.grading.assignment import Assignment
+    from loopbook.grading.roster import Student
+    from loopbook.grading.submissions import Submission
+
 _NONE = Mark()
+
+
+@dataclass(frozen=True)
+class Notice:
+    """Why an instructor should see to a mark: it has lost its ground, or nobody knows how late something is.
+
+    Attributes:
+        points: that may hang on it.
+        says: the reason, in a sentence.
+    """
+
+    points: float
+    says: str
 
 
 @dataclass(frozen=True)
@@ -49,9 +72,10 @@ class MarkedExercise:
             mark, part = marks[one.name], earned(judged.points, one.weight, asked)
             if mark.points is not None:
                 sum_ += mark.points
-                was = f"{points(part if one.status == RIGHT else 0)} by the grader, "
-                was = "" if one.status == WAITING else was
-                history.append(f"{one.name}: {was}{_of(mark.points, part)} by hand{_quoted(mark)}")
+                said = f"{_of(mark.points, part)} by hand{_quoted(mark)}"
+                if one.status != WAITING:
+                    said = f"{points(part if one.status == RIGHT else 0)} by the grader, {said}"
+                history.append(f"{one.name}: {said}")
             elif one.status == WAITING:
                 waiting.append(one.name)
             else:
@@ -78,7 +102,7 @@ class Marked:
         late: how late it is and what that costs, in a sentence; empty where it is on time.
         deduction: what that costs, in points.
         comments: of the instructor on the whole of it.
-        looks: why an instructor should see to it, in sentences, besides what the result says.
+        looks: why an instructor should see to it, besides what the result says.
         by_hand: the points of the whole, where a person has marked it; nothing is deducted from these.
     """
 
@@ -87,7 +111,7 @@ class Marked:
     late: str = ""
     deduction: float = 0
     comments: tuple[str, ...] = ()
-    looks: tuple[str, ...] = ()
+    looks: tuple[Notice, ...] = ()
     by_hand: float | None = None
 
     @classmethod
@@ -96,7 +120,7 @@ class Marked:
         result: Result,
         by_hand: Mapping[tuple[str, str], Mark] | None = None,
         lateness: Lateness | None = None,
-        looks: tuple[str, ...] = (),
+        looks: tuple[Notice, ...] = (),
     ) -> Self:
         """Return a result with what was added to it.
 
@@ -119,7 +143,8 @@ class Marked:
         if whole.points is not None and lateness.part:
             late += "; the points by hand for all of it stay as they are"
         deduction = 0.0 if whole.points is not None else lateness.part * sum_
-        looks = (*looks, lateness.look) if lateness.look else looks
+        if lateness.look and whole.points is None:
+            looks = (*looks, Notice(max(sum_, result.earned), lateness.look))
         return cls(result, exercises, late, deduction, tuple(comments), looks, whole.points)
 
     @property
@@ -142,6 +167,110 @@ class Marked:
         if any(one.earned is None for one in self.exercises):
             return None
         return max(0.0, sum(one.earned or 0 for one in self.exercises) - self.deduction)
+
+
+class Marking:
+    """What results are marked with: the marks by hand in a folder of grades, the due date, and extensions.
+
+    Arguments:
+        folder: of the grades.
+        assignment: `Assignment`.
+        students: the roster.
+        extensions: the file that grants them; None where there is none.
+    Raises:
+        GradingError: with all faults of the extensions.
+    """
+
+    def __init__(
+        self, folder: Path, assignment: Assignment, students: Sequence[Student], extensions: Path | None = None
+    ):
+        self.assignment = assignment
+        ids = tuple(student.id for student in students)
+        of = read_extensions(extensions, ids, assignment.name, assignment.policy) if extensions else Extensions({})
+        self.extensions: Extensions = of
+        self._at: dict[str, datetime.datetime | None] = {}
+        self._names: dict[str, dict[str, float]] = {}
+        exercises = {number: exercise.points for number, exercise in assignment.exercises.items()}
+        self.overrides = Overrides(folder, Asked(ids, exercises, self._quantities))
+
+    def _quantities(self, student, number):
+        """{quantity: points} of an exercise; the names are the same for all students."""
+        if number not in self._names:
+            question = self.assignment.question(student, number)
+            weights = {name: question.exercise.weights.get(name, 1) for name in question.key}
+            of_all = sum(weights.values())
+            parts = {name: earned(question.exercise.points, weight, of_all) for name, weight in weights.items()}
+            self._names[number] = parts
+        return self._names[number]
+
+    def read(self, result_of: Callable[[str], Result | None]) -> None:
+        """Read the marks by hand, and note what has changed; `Overrides.read` says more."""
+        self.overrides.read(result_of)
+
+    def marked(self, results: Sequence[Result], submissions: Mapping[str, Submission]) -> list[Marked]:
+        """Return the results with what they count, and add a row to ``marks.csv`` for each answer that waits.
+
+        Arguments:
+            results: in the order of the roster.
+            submissions: {student: submission}.
+        Raises:
+            GradingError: where the file cannot be written.
+        """
+        self._at = {student: submission.handed_in for student, submission in submissions.items()}
+        marks = [self._marked(result, submissions.get(result.student)) for result in results]
+        waiting = [(number, name) for number, parts in self._asked(results) for name in parts]
+        places = {(mark.result.student, *place) for mark in marks for place in mark.waiting}
+        rows = [(mark.result.student, *place) for place in waiting for mark in marks]
+        self.overrides.add(row for row in rows if row in places)
+        return marks
+
+    def _asked(self, results):
+        """The exercises with their quantities, in their order."""
+        names: dict[str, dict[str, bool]] = {number: {} for number in self.assignment.exercises}
+        for result in results:
+            for exercise in result.exercises:
+                names[exercise.number] |= dict.fromkeys((one.name for one in exercise.answers), True)
+        return names.items()
+
+    def _marked(self, result, submission):
+        late = Lateness()
+        if result.status != MISSING:
+            at, named_late = (submission.handed_in, submission.late) if submission else (None, None)
+            until = self.extensions.until.get(result.student)
+            late = lateness(self.assignment.policy, at, named_late, until)
+        changed = tuple(Notice(*one) for one in self.overrides.changed_since(result))
+        return Marked.of(result, self.overrides.of(result.student), late, changed)
+
+    def notes(self, marks: Sequence[Marked]) -> list[str]:
+        """Return sentences on what was applied."""
+        found, policy = [], self.assignment.policy
+        handed_in = [mark for mark in marks if mark.result.status != MISSING]
+        if policy is not None:
+            late = [mark for mark in handed_in if mark.late and not mark.late.startswith(IN_TIME)]
+            unknown = [one for mark in handed_in if not mark.late and self._at.get(one := mark.result.student) is None]
+            found.append(f"D{str(policy)[1:]}. {_counted(len(late), 'submission')} came late.")
+            if until := self.extensions.until:
+                found[-1] += f" {_counted(len(until), 'student')} {'has' if len(until) == 1 else 'have'} an extension."
+            if unknown:
+                found.append(
+                    f"Of {_counted(len(unknown), 'submission')} nothing says when it was handed in: it counts as in "
+                    "time. A column handed_in in the roster says it."
+                )
+        found += self.extensions.notes
+        by_hand = sum(mark.points is not None for mark in self.overrides.marks.values())
+        if by_hand:
+            found.append(f"{_counted(by_hand, 'mark')} by hand in marks.csv.")
+        if waiting := sum(len(mark.waiting) for mark in marks):
+            found.append(
+                f"{_counted(waiting, 'answer')} to be marked: to_mark.html shows them, marks.csv has a row for each."
+            )
+        if self.overrides.withdrawn:
+            found.append(f"{_counted(self.overrides.withdrawn, 'mark')} by hand withdrawn since the last time.")
+        return found
+
+
+def _counted(count, noun):
+    return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
 def _of(value, most):

@@ -81,13 +81,13 @@ class Overrides:
         self._sheet = Sheet.new(self.path, COLUMNS)
         self._noted: dict[Place, dict[str, str]] = {}
 
-    def read(self, results: Mapping[str, Result]) -> None:
+    def read(self, result_of: Callable[[str], Result | None]) -> None:
         """Read the marks, and note in the history what has changed since they were noted last.
 
-        Changes of students without a result are noted later, when there is one.
+        Changes for students without a result are noted later, when there is one.
 
         Arguments:
-            results: {student: result}, as they are now.
+            result_of: returns the result of a student as it is now; None where there is none.
         Raises:
             GradingError: with all faults of the file, each with its line; and where the file is gone and the history
                 knows of marks in it.
@@ -97,14 +97,14 @@ class Overrides:
             self._sheet = spreadsheet.read(self.path, COLUMNS[:4], COLUMNS[4:])
             changed = _changed_at(self.path)
         else:
-            if known := sum(row["to"] != "" for row in self._noted.values()):
+            if known := sum(bool(row["to"] or row["comment"]) for row in self._noted.values()):
                 raise GradingError(
-                    f"{self.path} is gone, and marks_history.csv knows {known} mark{'s' * (known > 1)} in it: put the "
+                    f"{self.path} is gone, and marks_history.csv knows {known} row{'s' * (known > 1)} of it: put the "
                     "file back, or move the history away as well"
                 )
             self._sheet, changed = Sheet.new(self.path, COLUMNS), ""
         self.marks = self._marks()
-        if rows := self._changes(changed, results):
+        if rows := self._changes(changed, result_of):
             files.write(self.history_path, history.continued(rows))
             self._read_history()
 
@@ -112,34 +112,38 @@ class Overrides:
         """Return the marks of a student: {(exercise, quantity): mark}."""
         return {place[1:]: mark for place, mark in self.marks.items() if place[0] == student}
 
-    def changed_since(self, result: Result) -> list[str]:
-        """Return sentences on places of a student that are marked by hand, and of which the grader says another thing
-        than when that was done, or where the student has given another answer since."""
+    def changed_since(self, result: Result) -> list[tuple[float, str]]:
+        """Return where a mark by hand has lost its ground: the points of the place, and a sentence.
+
+        That is where the student has given another answer since, and where the grader now says another thing of it.
+        """
         found = []
         for (exercise, quantity), mark in self.of(result.student).items():
             noted = self._noted.get((result.student, exercise, quantity))
             if mark.points is None or not noted or not noted["grader"]:
                 continue
             says, answer = judged(result, exercise, quantity)
+            most = self._most((result.student, exercise, quantity))
             about = f"{where(exercise, quantity)}: marked by hand with {points(mark.points)}"
             if answer != noted["answer"]:
-                found.append(f"{about}, and the answer has changed since")
+                found.append((most, f"{about}, and the answer has changed since"))
             elif says != noted["grader"]:
-                found.append(f"{about} when the grader said {noted['grader']!r}; now it says {says!r}")
+                found.append((most, f"{about} when the grader said {noted['grader']!r}; now it says {says!r}"))
         return found
 
     def add(self, waiting: Iterable[Place]) -> int:
-        """Add a row without points for each place that has none yet; returns how many were added.
+        """Add a row without points for each place that has none yet; returns how many there are.
 
-        What is in the file stays as it is, byte for byte. A file that is saved meanwhile is not touched: the next run
-        adds the rows.
+        What is in the file stays as it is, byte for byte: the rows are written behind it. A file that is saved
+        meanwhile is not touched: the next run adds the rows.
         """
-        there = {place for _, place, _ in self._placed()}
-        rows = [dict(zip(COLUMNS, place, strict=False)) for place in waiting if place not in there]
-        text = self._sheet.continued(rows)
-        if self.path.exists() and self.path.read_bytes() != self._sheet.text.encode():
-            return 0
-        files.write(self.path.resolve(), text)
+        have = {place for _, place, _ in self._placed()}
+        rows = [dict(zip(COLUMNS, place, strict=False)) for place in waiting if place not in have]
+        there, text = self._sheet.text.encode(), self._sheet.continued(rows).encode()
+        if not self.path.exists():
+            files.write(self.path, text.decode())
+        elif rows and self.path.read_bytes() == there:
+            files.append(self.path, text[len(there) :])
         return len(rows)
 
     # ------------------------------------------------------------------------------------------------- the file
@@ -203,15 +207,15 @@ class Overrides:
         self._noted = {(row["student"], row["exercise"], row["quantity"]): row for _, row in sheet.rows}
         return sheet
 
-    def _changes(self, when, results):
+    def _changes(self, when, result_of):
         """The rows of the history for what has changed; counts what was withdrawn."""
-        rows, self.withdrawn = [], 0
+        rows = []
         for place in dict.fromkeys([*self.marks, *self._noted]):
             before, mark = self._noted.get(place, {"to": "", "comment": ""}), self.marks.get(place, Mark())
             was = spreadsheet.number(before["to"])
             if (was, before["comment"]) == (_rounded(mark.points), mark.comment):
                 continue
-            result = results.get(place[0])
+            result = result_of(place[0])
             if result is None and place in self.marks:
                 continue
             self.withdrawn += was is not None and mark.points is None

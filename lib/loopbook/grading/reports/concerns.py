@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from loopbook.exercises.judging import OPEN, UNJUDGED
-from loopbook.grading.reports.document import Code, Lines, Said, Text
+from loopbook.grading.reports.document import Code, Lines, Link, Said, Text
 from loopbook.grading.reports.equal_answers import equal_answers
 from loopbook.grading.reports.wording import answer_in_words, explained, remarks
 from loopbook.grading.results import MISSING, NOT_RUN, ODD, OWNER, STOPPED
@@ -65,7 +65,10 @@ NOT_RUNNING = Concern(
 )
 TO_MARK = Concern(
     "Answers that wait for a mark",
-    ("The grade is an empty cell until there are points in ", Code("marks.csv"), "."),
+    (
+        *("The grade is an empty cell until there are points in ", Code("marks.csv"), ". They are all on "),
+        *(Link("one page", "to_mark.html"), ", those to one question below each other."),
+    ),
 )
 TO_DECIDE = Concern(
     "Marks and times that need a decision",
@@ -153,7 +156,7 @@ def _of_one(mark):
     """The cases of one submission, without its student."""
     result, judged = mark.result, [one.judged for one in mark.exercises]
     for look in mark.looks:
-        yield TO_DECIDE, result.points, Said(look)
+        yield TO_DECIDE, look.points, Said(look.says)
     notes = Lines(tuple(map(Said, remarks(result))))
     if result.status == MISSING:
         return
