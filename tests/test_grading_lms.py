@@ -14,8 +14,10 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from typer.testing import CliRunner
 
 import contributing
+from loopbook.__main__ import app
 from loopbook.grading import GradingError, lms, reports, tables
 from loopbook.grading.lms import moodle, own
 from loopbook.grading.lms.canvas import canvas_grades
@@ -802,10 +804,34 @@ def test_notebooks_for_a_drive_come_back_from_there(released):
     assert [Owners([JANE, odd]).of(folder).student for folder in folders] == [JANE, odd]
 
 
+def test_the_command_packs_what_it_releases(tmp_path):
+    module = tmp_path / "heater.py"
+    module.write_text(
+        '"""Heater\n"""\nfrom loopbook.exercises.authoring import answers, between, exercise, number\n'
+        'SECRET = "a secret of some length"\n@exercise("1", title="Gain", points=1)\n'
+        'def gain(K=between(1, 9, reference=2)):\n    """A gain {K}."""\n'
+        '    return answers(G=number(2 * K, what="twice the gain"))\n'
+    )
+    (tmp_path / "roster.csv").write_text(WORKSHEET)
+    command = ["release", str(module), "--to", str(tmp_path / "released"), "--for"]
+    done = CliRunner().invoke(app, [*command, "moodle"])
+    assert done.exit_code == 0, done.output
+    assert "Upload multiple feedback files in a zip" in " ".join(done.output.split())
+    files = members((tmp_path / "released_for_moodle" / "heater_for_moodle.zip").read_bytes())
+    assert files["John Roe_77002_assignsubmission_file_heater.ipynb"] == (
+        tmp_path / "released" / "s1002" / "heater.ipynb"
+    ).read_text(encoding="utf-8")
+    before = (tmp_path / "released_for_moodle" / "heater_for_moodle.zip").read_bytes()
+    assert CliRunner().invoke(app, [*command, "moodle"]).exit_code == 0
+    assert (tmp_path / "released_for_moodle" / "heater_for_moodle.zip").read_bytes() == before
+    done = CliRunner().invoke(app, ["release", str(module), "--to", str(tmp_path / "other"), "--for", "nowhere"])
+    assert done.exit_code == 1
+    assert "notebooks cannot be packed for 'nowhere': expected one of canvas, drive, moodle" in done.output
+    assert not (tmp_path / "other").exists()
+
+
 def test_what_cannot_be_handed_out_is_said(released):
-    with pytest.raises(
-        GradingError, match="cannot be handed out for 'gradescope': expected one of canvas, moodle, drive"
-    ):
+    with pytest.raises(GradingError, match="cannot be packed for 'gradescope': expected one of canvas, drive, moodle"):
         lms.packed("gradescope", released, CLASS)
     with pytest.raises(GradingError, match="has no notebook of s9: expected a folder for each student"):
         lms.packed("drive", released, [*CLASS, Student("s9", "N")])

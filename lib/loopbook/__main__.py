@@ -158,6 +158,12 @@ def release(
     new_numbers: Annotated[
         bool, typer.Option("--new-numbers", help="With --replace, draw numbers anew from ranges that have changed.")
     ] = False,
+    place: Annotated[
+        str | None,
+        typer.Option(
+            "--for", help="Pack them, too, as students get them there: canvas, moodle or drive, a shared one."
+        ),
+    ] = None,
     nbgrader: Annotated[bool, typer.Option(help="Write one source assignment for nbgrader instead.")] = False,
 ) -> None:
     """Write one notebook per student: own numbers, places for answers, nothing of the key.
@@ -168,12 +174,12 @@ def release(
     """
     from loopbook.grading import GradingError
     from loopbook.grading.assignment import load
+    from loopbook.grading.files import write
 
     try:
         given = load(assignment)
         if nbgrader:
             from loopbook import notebooks
-            from loopbook.grading.files import write
             from loopbook.grading.nbgrader import source
 
             path = to / f"{given.name}.ipynb"
@@ -182,11 +188,21 @@ def release(
             return
         from loopbook.grading import lms
         from loopbook.grading.release import release
+        from loopbook.grading.released import Released
         from loopbook.grading.roster import read_roster
 
         roster = read_roster(students or assignment.with_name("roster.csv"))
+        if place:
+            lms.demand_place(place)
         done = release(given, roster, to, replace=replace, new_numbers=new_numbers)
         remarks = [*lms.remarks(roster), *done.remarks]
+        packed = None
+        if place:
+            known, _ = Released.of(given).identified(roster)
+            packed = lms.packed(place, to, known, given.name, given.secret)
+            beside = to.resolve().with_name(f"{to.resolve().name}_for_{place}")
+            for name, content in packed.files.items():
+                write(beside / name, content)
     except GradingError as error:
         fail(str(error))
     for remark in remarks:
@@ -199,6 +215,8 @@ def release(
         says = f"{to / student}: somebody has worked in this notebook; it stays, without what was mended"
         errors.print(says, style="yellow", markup=False)
     console.print(f"{done.record} has their numbers: keep it with the assignment, grade needs it", markup=False)
+    if packed:
+        console.print(f"{beside} is for {place}. {packed.says}", markup=False)
 
 
 @app.command("try")

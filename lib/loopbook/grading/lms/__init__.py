@@ -25,7 +25,20 @@ if TYPE_CHECKING:
     from loopbook.grading.marking import Marked
     from loopbook.grading.roster import Student
 
-__all__ = ["Claim", "Known", "Packed", "System", "of", "packed", "pages", "registered", "remarks", "system", "zipped"]
+__all__ = [
+    "Claim",
+    "Known",
+    "Packed",
+    "System",
+    "demand_place",
+    "of",
+    "packed",
+    "pages",
+    "registered",
+    "remarks",
+    "system",
+    "zipped",
+]
 
 #: The name of the system that is none: rosters of one's own.
 OWN = "own"
@@ -232,6 +245,18 @@ def remarks(students: Sequence[Student], title: str = "", marks: Iterable[Marked
     return tuple(said)
 
 
+def demand_place(place: str) -> System:
+    """Return the system that hands out notebooks at a place. Raises GradingError where there is none.
+
+    >>> demand_place("moodle").title
+    'Moodle'
+    """
+    places = {one.place: one for one in registered() if one.place}
+    if place not in places:
+        raise GradingError(f"notebooks cannot be packed for {place!r}: expected one of {', '.join(sorted(places))}")
+    return places[place]
+
+
 def packed(place: str, released: Path, students: Sequence[Student], assignment: str = "", secret: str = "") -> Packed:
     """Return released notebooks in the form in which a system hands each student an own one.
 
@@ -253,9 +278,7 @@ def packed(place: str, released: Path, students: Sequence[Student], assignment: 
     ...     sorted(packed("drive", pathlib.Path(folder), [Student("s1", "Jane Doe")]).files)
     ['Jane Doe (s1)/heater.ipynb', 'folders.csv']
     """
-    places = {one.place: one for one in registered() if one.place}
-    if place not in places:
-        raise GradingError(f"notebooks cannot be handed out for {place!r}: expected one of {', '.join(places)}")
+    system_there = demand_place(place)
     notebooks, missing = {}, []
     for student in students:
         found = _files(released / student.id)
@@ -268,7 +291,7 @@ def packed(place: str, released: Path, students: Sequence[Student], assignment: 
             "folder for each student of the roster, as released"
         )
     names = {name.removesuffix(".ipynb") for found in notebooks.values() for name in found}
-    return places[place].pack(notebooks, assignment or min(names, default="notebook"), secret)
+    return system_there.pack(notebooks, assignment or min(names, default="notebook"), secret)
 
 
 def _files(folder):
