@@ -116,6 +116,7 @@ def test_the_latest_counts_where_the_instructor_says_so(tmp_path):
     label, problem, says = chosen(found)
     assert (label, problem, source(found.submissions[0])) == (names[1], "", names[1])
     assert says.startswith(f"{names[1]}: counts as the latest, by the numbers of the files in Canvas, of 3 notebooks: ")
+    assert says == f"{names[1]}: {found.submissions[0].chosen}"
     assert found.submissions[0].late is True
 
 

@@ -145,6 +145,14 @@ def test_the_page_names_the_question_the_numbers_and_the_file():
         assert "s1002/heater.ipynb" in text
 
 
+def test_the_page_says_how_the_file_was_chosen_of_several():
+    chosen = "counts as the latest, by the times of the files, of two notebooks: a<b>.ipynb and b.ipynb"
+    for text in both(feedback(TITLE, BOB, changed(NAMED, chosen=chosen))):
+        assert f"It {chosen}." in text
+    mark = changed(NAMED, chosen=chosen)
+    assert told([mark, MISSING], [f"s1002/heater.ipynb: {chosen}"]) == ({}, [("s1002",)])
+
+
 def test_the_page_says_whose_notebook_it_is():
     for text in both(feedback(TITLE, BOB, changed(NAMED, owner="s1001"))):
         assert "This is somebody else's notebook: it was made for" in text

@@ -50,6 +50,7 @@ class Task:
     fingerprint: str
     numbers: dict[str, dict[str, str]]
     doubts: tuple[str, ...]
+    chosen: str
 
 
 class Desk:
@@ -71,7 +72,7 @@ class Desk:
         found = result(task.name, task.student, task.label, task.fingerprint, task.jailed, outcome, exercises)
         is_said = any(look.kind == OWNER for look in found.looks)
         looks = () if is_said else tuple(Look(OWNER, says) for says in task.doubts)
-        return replace(found, looks=(*looks, *found.looks))
+        return replace(found, looks=(*looks, *found.looks), chosen=task.chosen)
 
     def close(self) -> None:
         """End both processes."""
@@ -219,19 +220,19 @@ def _demand_apart(folder, submissions):
 
 def _task(assignment, released, student, submission, jailed, limits):
     """The task of one student; without a submission, one without a label."""
-    label, content, problem = "", b"", ""
+    label, content, problem, chosen = "", b"", "", ""
     if submission:
-        label, problem = submission.label, submission.problem
+        label, problem, chosen = submission.label, submission.problem, submission.chosen
         if not problem:
             try:
                 content = submission.read()
             except GradingError as why:
                 problem = str(why)
     numbers, doubts = released.numbers(student.id), released.doubts(assignment, student.id, peek(content))
-    mark = fingerprint(assignment, numbers, content, label, problem, jailed, limits)
+    mark = fingerprint(assignment, numbers, content, label, problem or chosen, jailed, limits)
     return Task(
         assignment.name, assignment.source, str(assignment.path or ""), student.id, label, content, problem, jailed,
-        limits, mark, numbers, doubts,
+        limits, mark, numbers, doubts, chosen,
     )  # fmt: skip
 
 

@@ -129,6 +129,7 @@ class Result:
         looks: why an instructor should look at the submission.
         exercises: a `JudgedExercise` for each.
         owner: the student whom the notebook itself names; empty where it names none.
+        chosen: how the file was chosen where there were several; empty where there was one.
     """
 
     assignment: str
@@ -142,6 +143,7 @@ class Result:
     looks: tuple[Look, ...]
     exercises: tuple[JudgedExercise, ...]
     owner: str = ""
+    chosen: str = ""
 
     @property
     def points(self) -> float:

@@ -53,6 +53,7 @@ class Submission:
         handed_in: when, as the roster says; None where it does not. The time of a file is no such time: it is that of
             a download, of unpacking, or what the student's machine said.
         late: whether its name says that it came late; None where it says nothing.
+        chosen: "", or a sentence where it was chosen from several notebooks.
     """
 
     student: Student
@@ -60,6 +61,7 @@ class Submission:
     problem: str = ""
     handed_in: datetime.datetime | None = None
     late: bool | None = None
+    chosen: str = ""
     _source: Any = field(default=None, repr=False)
 
     def read(self) -> bytes:
@@ -126,10 +128,10 @@ def collect(path: str | Path, students: Sequence[Student], assignment_name: str,
     submissions = []
     for student in students:
         if found := notebooks[student.id]:
-            submission, chosen = _submission(student, found, latest)
+            submission = _submission(student, found, latest)
             submissions.append(submission)
-            if submission.problem or chosen:
-                complaints.add(student.id, submission.label, submission.problem or chosen)
+            if says := submission.problem or submission.chosen:
+                complaints.add(student.id, submission.label, says)
     return Collection(tuple(submissions), complaints.all())
 
 
@@ -142,7 +144,7 @@ class _Notebook:
 
 
 def _submission(student, notebooks, latest):
-    """The submission of a student with at least one notebook, and a sentence where it was chosen from several."""
+    """The submission of a student with at least one notebook."""
     one, chosen = notebooks[0], ""
     problem = "" if len(notebooks) == 1 else f"{_several(notebooks)}; keep one"
     if problem and latest:
@@ -156,7 +158,7 @@ def _submission(student, notebooks, latest):
     if not problem and entry.size > LARGEST:
         problem = _too_large()
     source = None if problem else entry.source
-    return Submission(student, entry.label, problem, student.handed_in, one.owner.late, source), chosen
+    return Submission(student, entry.label, problem, student.handed_in, one.owner.late, chosen, source)
 
 
 def _several(notebooks):

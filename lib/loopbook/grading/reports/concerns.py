@@ -141,9 +141,12 @@ def _cases(marks, complaints) -> Iterator[tuple[Concern | None, Case]]:
     points = max((result.points for result in results), default=0)
     somebody_is_missing = not results or any(result.status == MISSING for result in results)
     told = {f"{result.file}: {result.says}" for result in results if result.status == NOT_RUN}
+    chosen = {f"{one.file}: {one.chosen}": one.student for one in results if one.chosen}
     for complaint in complaints:
-        if complaint not in told:
-            what = Said(complaint)
+        what = Said(complaint)
+        if complaint in chosen:
+            yield None, Case((chosen[complaint],), 0, what)
+        elif complaint not in told:
             yield (NOBODYS, Case((), points, what)) if somebody_is_missing else (None, Case((), 0, what))
     for mark in marks:
         for concern, at_stake, what in _of_one(mark):

@@ -130,6 +130,8 @@ def _notebook(mark: Marked, student: Student) -> list[Block]:
     if result.file:
         done = "handed in" if result.status == NOT_RUN else "graded"
         blocks.append(Paragraph((f"The file that was {done}: ", Code(result.file))))
+        if result.chosen:
+            blocks.append(Paragraph(Said(f"It {result.chosen}.")))
     return [*blocks, Listing(tuple(map(Said, notes)))] if notes else blocks
 
 
