@@ -8,6 +8,7 @@ from IPython.core.inputtransformer2 import TransformerManager
 
 import hostile
 from hostile import ATTACKS, Attack, Target
+from loopbook.grading.results import JudgedAnswer, JudgedExercise, Result
 
 TARGET = Target(
     answers={"1": 'sheet.answer("1", K=1)', "2": 'sheet.answer("2", H=1)'},
@@ -51,17 +52,20 @@ def test_what_would_harm_this_machine_looks_for_a_jail_first():
 
 
 def test_a_result_is_judged_by_what_counts_and_by_what_could_get_out():
-    def result(**changes):
-        exercises = [{"number": n, "points": 2, "earned": 2 * (n in "12"), "verdicts": []} for n in "123"]
-        return {"status": "complete", "says": "", "exercises": exercises} | changes
+    def exercise(number, right):
+        answers = (JudgedAnswer("x", "right" if right else "wrong", "", 1, "1"),)
+        return JudgedExercise(number, "", 2, "", (), answers)
+
+    def result(status="complete", says="", right=(True, True, False)):
+        exercises = tuple(map(exercise, "123", right))
+        return Result("target", "s1", "a.ipynb", True, "", status, says, (), (), exercises)
 
     attack = Attack("an attack", "an item")
     assert attack.complaints(result(), TARGET) == []
     assert "the status is 'not run'" in attack.complaints(result(status="not run"), TARGET)[0]
     assert "could get out: canary-key-" in attack.complaints(result(says=hostile.canary("key")), TARGET)[0]
     assert "could get out: ESCAPED: x" in attack.complaints(result(says="ESCAPED: x"), TARGET)[0]
-    lost = [{"number": "1", "points": 2, "earned": 0}, {"number": "3", "points": 2, "earned": 1}]
-    first, second = attack.complaints(result(exercises=lost), TARGET)
+    first, second = attack.complaints(result(right=(False, True, True)), TARGET)
     assert first.endswith("its answers are lost")
     assert second.endswith("that nobody has earned")
 

@@ -1,5 +1,6 @@
 """No mask makes a wrong answer right, and honest answers stay right in any form."""
 
+import shutil
 import zlib
 from pathlib import Path
 from typing import NamedTuple
@@ -33,7 +34,8 @@ from loopbook.grading.roster import Student
 from loopbook.pid import PID
 from needs import needs_jail
 
-COURSE = load(Path(__file__).parents[1] / "examples" / "course" / "air_heater.py")
+AIR_HEATER = Path(__file__).parents[1] / "examples" / "course" / "air_heater.py"
+COURSE = load(AIR_HEATER)
 
 
 class Target(NamedTuple):
@@ -225,10 +227,11 @@ IN_NOTEBOOKS = {
 
 @needs_jail
 def test_masks_earn_nothing_from_release_to_grades(tmp_path):
+    course = load(Path(shutil.copy(AIR_HEATER, tmp_path)))
     roster = [Student(f"s{k}", name) for k, name in enumerate(IN_NOTEBOOKS)]
-    release(COURSE, roster, tmp_path / "submissions")
+    release(course, roster, tmp_path / "submissions")
     for student, answers in zip(roster, IN_NOTEBOOKS.values(), strict=True):
-        K, T, delay, K_p = COURSE.question(student.id, "2").given("K", "T", "delay", "K_p")
+        K, T, delay, K_p = course.question(student.id, "2").given("K", "T", "delay", "K_p")
         wrong, right = f"{K}*exp(-{T}*s)/({delay}*s + 1)", f"{K}*exp(-{delay}*s)/({T}*s + 1)"
         filled = {name: hedged(text, right, wrong) for name, text in answers.items()}
         imports = f"import control, numpy, sympy\nK, K_p = {float(K)}, {float(K_p)}\n"
@@ -237,8 +240,8 @@ def test_masks_earn_nothing_from_release_to_grades(tmp_path):
         (cell,) = (cell for cell in made.cells if cell.source.startswith('sheet.answer("2"'))
         cell.source = imports + answer_call("2", filled)
         nbformat.write(made, path)
-    grade(COURSE, roster, tmp_path / "submissions", tmp_path / "graded", place=here(2))
-    results = Results(tmp_path / "graded" / "results", COURSE.secret)
+    grade(course, roster, tmp_path / "submissions", tmp_path / "graded", place=here(2))
+    results = Results(tmp_path / "graded" / "results", course.secret)
     for student in roster:
         result = results.of(student.id)
         answers = result.exercises[1].answers

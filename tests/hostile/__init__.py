@@ -20,7 +20,7 @@ student's notebook, in a file of results, in the environment of the grader, in a
 in a file that it holds open. Attacks hunt for them, and for other ways out, and answer what they have found;
 `complaints(...)`, or `leaks(...)` on any other text that was written, finds that.
 
-Wrong answers that are written so that the judging might be blind to them are in `hostile.masked`: they attack no machine.
+Wrong answers that are written so that the judging might be blind to them are in `hostile.masked`; no machine is harmed.
 
 The attack "traces of the submission before" wants two students who both submit it. The files in `target.reads` should
 have names of their own, because some attacks look for them by name.
