@@ -12,6 +12,7 @@ formula, however large or nested, can take long or fill the memory:
 from __future__ import annotations
 
 import ast
+import functools
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
@@ -113,8 +114,9 @@ class Decimals:
         return value
 
     def number(self, value: complex) -> Any:
-        """A number that stands in the formula."""
-        return np.complex128(value)
+        """A number that stands in the formula; a real one is not complex, or its negative has another root."""
+        value = complex(value)
+        return np.complex128(value) if value.imag else np.float64(value.real)
 
     def named(self, name: str) -> Any:
         """The values of a symbol, or a constant."""
@@ -185,7 +187,7 @@ class Bounded(Decimals):
 
     def number(self, value: complex) -> Any:
         """A number that stands in the formula."""
-        return np.complex128(value), 0.0
+        return super().number(value), 0.0
 
     def named(self, name: str) -> Any:
         """The values of a symbol, or a constant."""
@@ -258,6 +260,12 @@ def _product(error, factor):
     return np.where(error == 0, 0.0, error * factor)
 
 
+@functools.cache
+def _numbers(digits):
+    """The numbers of so many digits; they are nobody else's, whose own digits stay as they are."""
+    return mpmath.MPContext()
+
+
 class Digits:
     """Single numbers of so many digits, without a largest one.
 
@@ -269,7 +277,7 @@ class Digits:
     """
 
     def __init__(self, values: Mapping[str, complex], digits: int):
-        self.many = mpmath.MPContext()
+        self.many = _numbers(digits)
         self.many.dps = digits
         self.values = {name: self.number(value) for name, value in values.items()}
 
@@ -382,7 +390,7 @@ def in_digits(
         except (ArithmeticError, TypeError, ValueError, RecursionError, MemoryError):
             raise NoValue from None
         off, size = abs(one - other), abs(other)
-        if off <= 1e-12 * size:
+        if size and off <= 1e-12 * size:
             return _decimal(other)
         is_zero = bool(size * 10 ** ((more - few) // 2) <= abs(one))  # if more digits tell nothing else
     if is_zero:

@@ -16,7 +16,7 @@ from loopbook.exercises.reading import CONSTANTS, Unreadable, shortened, spelled
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-#: A value is as it should be where its error is no more than this fraction of it.
+#: A value is as it should be where its error is no more than this fraction of it; in time, of the largest one.
 SURE = 1e-10
 #: Of points that are worked out in many digits, so many parts of the formula, all points together.
 MOST_IN_DIGITS = 30_000
@@ -81,34 +81,35 @@ class Formula:
         with np.errstate(all="ignore"):
             return np.asarray(self._tried(Decimals(values), factors), complex)
 
-    def values_at(self, points: Mapping[str, np.ndarray], least: float = 0.0) -> np.ndarray:
+    def values_at(self, points: Mapping[str, np.ndarray]) -> np.ndarray:
         """Return its values at points, as many digits as it takes; NaN where it has none, infinite where it is huge.
 
         Arguments:
             points: {symbol: array}; they are not to be changed, as the values are kept.
-            least: an error up to this does not matter.
 
         >>> import numpy as np
         >>> Formula("1 + 0*exp(1e9*s)", "s").values_at({"s": np.array([-1.0, 0.5])})
         array([1.+0.j, 1.+0.j])
         """
-        return self._told_at(points, least, MOST_IN_DIGITS)[0]
+        return self._told_at(points, MOST_IN_DIGITS)[0]
 
-    def told_at(self, points: Mapping[str, np.ndarray], least: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+    def told_at(self, points: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """Return the same, where it takes many digits at a few of the points alone; and at which points that is.
 
         Other points have the value NaN as well.
         """
-        return self._told_at(points, least, 0)
+        return self._told_at(points, 0)
 
-    def _told_at(self, points, least, most):
+    def _told_at(self, points, most):
         kept = next((one for one in self._kept if one[0] is points), None)
         if kept is None:
             shape = np.broadcast_shapes(*(np.shape(values) for values in points.values()))
             found, error = (np.broadcast_to(one, shape) for one in self.with_errors(points))
             with np.errstate(all="ignore"):
-                told = np.isfinite(found) & (error <= SURE * np.abs(found) + least)
-            kept = points, np.where(told, found, np.nan), told
+                size = np.abs(np.where(np.isfinite(found), found, 0))
+                size = np.max(size) if [*self.symbols] == ["t"] else size  # a function of time is seen as a whole
+                told = np.asarray(np.isfinite(found) & (error <= SURE * size))
+            kept = points, np.asarray(np.where(told, found, np.nan)), told
             unsure = np.argwhere(~told)
             self._work_out(*kept, unsure[:: max(1, len(unsure) // FEW_IN_DIGITS)][:FEW_IN_DIGITS])
             self._kept = [*self._kept[1 - MOST_KEPT :], kept]

@@ -20,7 +20,7 @@ class Freedom:
 
     Attributes:
         node: what is multiplied by a factor where the number is.
-        beside: the terms of the sum that it is a term of; empty where it is in a function, or a factor of a sum.
+        beside: the terms of the sum that it is a term of; none where that is a sum in a function, or below a bar.
         decides: whether it stands where a step, a limiter, or a piece begins.
     """
 
@@ -43,15 +43,16 @@ def freedoms(tree: ast.expr) -> list[Freedom]:
     return list(_of(tree, (), False))
 
 
-def _of(node: ast.expr, beside: tuple[ast.expr, ...], decides: bool) -> Iterator[Freedom]:
+def _of(node: ast.expr, beside: tuple[ast.expr, ...] | None, decides: bool) -> Iterator[Freedom]:
+    """The numbers of a part; beside it are no other terms yet, or there is None that counts."""
     match node:
         case _ if is_number(node):
             if _says(node):
-                yield Freedom(node, beside, decides)
+                yield Freedom(node, beside or (), decides)
         case ast.BinOp(op=ast.Add() | ast.Sub()):
             terms = terms_of(node)
             for term in terms:
-                yield from _of(term, tuple(terms), decides)
+                yield from _of(term, None if beside is None else tuple(terms), decides)
         case ast.BinOp(op=ast.Mult() | ast.Div()) | ast.UnaryOp():
             yield from _of_product(node, beside, decides)
         case ast.BinOp(op=ast.Pow()) if is_number(node.right):
@@ -60,22 +61,21 @@ def _of(node: ast.expr, beside: tuple[ast.expr, ...], decides: bool) -> Iterator
             for piece in node.args:
                 value, condition = piece.elts
                 yield from _of(value, beside, decides)
-                yield from _of(condition, (), True)
+                yield from _of(condition, None, True)
         case ast.Call():
             for argument in node.args:
-                yield from _of(argument, (), decides or node.func.id in _SWITCHES)
+                yield from _of(argument, None, decides or node.func.id in _SWITCHES)
         case ast.Compare():
-            yield from _of(node.left, (), True)
-            yield from _of(node.comparators[0], (), True)
+            yield from _of(node.left, None, True)
+            yield from _of(node.comparators[0], None, True)
         case ast.BinOp():
-            yield from _of(node.left, (), decides)
-            yield from _of(node.right, (), decides)
+            yield from _of(node.left, None, decides)
+            yield from _of(node.right, None, decides)
 
 
 def _of_product(node, beside, decides):
     """The numbers in the factors of a product, and its own one."""
     has_number, factors = False, list(_factors(node))
-    sums = [one for one in factors if _is_sum(one)]
     for factor in factors:
         if is_number(factor):
             has_number = has_number or _says(factor)
@@ -83,16 +83,14 @@ def _of_product(node, beside, decides):
             terms = terms_of(factor)
             fixed = _fixed(terms)
             has_number = has_number or fixed is not None
-            above = tuple(terms) if len(sums) == 1 and beside == () and _is_above(node, factor) else ()
+            inside = tuple(terms) if beside == () and _is_above(node, factor) else None
             for term in terms:
-                if term is not fixed:
-                    yield from _of(term, above, decides)
-                elif not is_number(term):  # its own number is fixed, and not what is within it
-                    yield from (one for one in _of(term, above, decides) if one.node is not term)
+                found = _of(term, inside, decides)
+                yield from (one for one in found if term is not fixed or one.node is not term)
         else:
-            yield from _of(factor, (), decides)
+            yield from _of(factor, None, decides)
     if has_number:
-        yield Freedom(node, beside, decides)
+        yield Freedom(node, beside or (), decides)
 
 
 def _fixed(terms):

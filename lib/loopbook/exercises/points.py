@@ -124,16 +124,16 @@ def times_for(key: Formula, until: float, seed: str = "") -> np.ndarray:
 
     >>> times = times_for(Formula("Heaviside(t - 3)", "t"), until=10)
     >>> bool(times.min() > 0), bool(times.max() < 10), times.shape
-    (True, True, (164,))
+    (True, True, (168,))
     """
     dice = random.Random(f"{seed}\n{key.text}")
     early = [10 ** dice.uniform(-4, -2) for _ in range(20)]
     times = [until * share for share in early + [(k + dice.random()) / 120 for k in range(120)]]
     grid = until * np.linspace(0, 1, 2001)
     for switch in switches(key.tree):
-        signs = np.sign(np.real(worked_out(switch, Decimals({"t": grid}))))
+        signs = np.real(worked_out(switch, Decimals({"t": grid}))) > 0
         for moment in grid[1:][np.diff(np.broadcast_to(signs, grid.shape)) != 0]:
-            beside = [math.exp(dice.uniform(math.log(0.005), math.log(0.1))) * sign for sign in [1, -1] * 6]
-            times += [moment * (1 + share) for share in beside]
+            shares = [0.004 * 1.28 ** (k + dice.random()) for k in range(14)]
+            times += [moment * (1 + sign * share) for share in shares for sign in (1, -1)]
     times = [one for one in times if 0 < one < until]
     return np.array(sorted(times[:MOST_TIMES]))

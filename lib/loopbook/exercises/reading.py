@@ -228,6 +228,12 @@ def understood(text: str, symbols: Collection[str]) -> tuple[str, ast.expr]:
     >>> understood("0 for t < 3, 2t for t > 3", ["t"])[0]
     'Piecewise((0, t < 3), (2*t, True))'
     """
+    if "#" in text:  # which Python does not read on from
+        raise Unreadable("there is a # in the formula: expected the formula alone")
+    for side in re.split(r"(?<![<>=!])=(?!=)", text)[:-1]:
+        names = set(re.findall(r"[^\W\d]\w*'*", side)) - {"s", "t"}
+        if names and names <= set(symbols):
+            raise Unreadable("there is a formula on either side of =: expected one of them")
     if "t" in symbols and (pieces := _in_pieces(text)):
         source = _piecewise(pieces, symbols)
         return source, parsed(source, symbols)

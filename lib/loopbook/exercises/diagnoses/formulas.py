@@ -34,6 +34,8 @@ Change = tuple[ast.expr, str]
 
 @explained.register
 def _(kind: Expression, answer: Any, background: Background) -> Finding | None:
+    if _is_nothing(kind, answer):  # which comes out of many a mistake
+        return facts.of(kind, answer, background) or Finding("that is 0, and the right one is not", is_mistake=False)
     return (
         with_a_number(kind, answer)
         or changed_in_one_place(kind, answer, _likely)
@@ -41,6 +43,10 @@ def _(kind: Expression, answer: Any, background: Background) -> Finding | None:
         or changed_in_one_place(kind, answer, _possible)
         or facts.of(kind, answer, background)
     )
+
+
+def _is_nothing(kind, answer):
+    return not np.any(answer if isinstance(answer, np.ndarray) else answer.values_at(kind.points()))
 
 
 def with_a_number(kind: Expression, answer: Any) -> Finding | None:

@@ -52,6 +52,7 @@ class Expression(Kind):
             raise ValueError(f"the key has the symbol {beyond[0]}: expected only {listed(self.symbols)}")
         super().__init__(self.expr, unit, what, within)
 
+    ANY_FORM, EACH = "in any form, ", "each number in it "
     expr: sympy.Expr | None
     always: frozenset[str] = frozenset()
     #: Without a key, any symbol may occur.
@@ -145,7 +146,7 @@ class Expression(Kind):
 
     def _in_asked_unit(self, formula, unit):
         """A formula whose text ends in a unit, in the asked one."""
-        if not self.unit and re.search("[/%]", unit):
+        if not self.unit and "/" in unit:
             return formula, f"read without {unit}, {formula.text}"
         if not self.unit:  # a letter may be a gain
             raise Unreadable(f"the text ends in {unit}: expected {self.expected}, without a unit")
@@ -298,7 +299,8 @@ class TransferFunction(Expression):
         """Those of an expression, a forgotten dead time, its sign, and an s too many or too few."""
         yield from super().mistakes()
         if self.expr.has(sympy.exp):
-            yield "the dead time is missing", self.expr.replace(sympy.exp, lambda _: sympy.S.One)
+            if without := self.expr.replace(sympy.exp, lambda _: sympy.S.One):
+                yield "the dead time is missing", without
             yield (
                 "the sign in the exponent of the dead time is wrong: a delay is exp of something negative times s",
                 self.expr.replace(sympy.exp, lambda x: sympy.exp(-x)),
@@ -361,6 +363,12 @@ class TimeFunction(Expression):
         if self.until is not None and is_function and not hasattr(given, "expr"):
             return self._of_function(given), ""
         return super().read(given)
+
+    @property
+    def precision(self) -> str:
+        """As of an expression, and that numbers which are added may be rounded alike."""
+        added = ", or to the decimal of the largest that is added" if self.within else ""
+        return super().precision + added
 
     def written(self, answer: Any) -> str:
         """The expression with its unit, or that it is a function."""

@@ -42,6 +42,8 @@ class Kind:
     FORM: tuple[str, ...] = ("unit",)
     #: Whether a person marks it, so that nothing is compared.
     by_hand: ClassVar[bool] = False
+    #: What `precision` says before the accuracy: of the form of an answer, and of its numbers.
+    ANY_FORM = EACH = ""
     key: Any
     within: float
     #: What is drawn for comparing an answer is drawn from this text, which no author of answers knows.
@@ -176,6 +178,18 @@ class Kind:
     def accuracy(self) -> str:
         """How near an answer must be, in words; empty where that is no question."""
         return "exact" if self.within == 0 else f"{100 * self.within:g}\N{NO-BREAK SPACE}%"
+
+    @property
+    def precision(self) -> str:
+        """How an answer is compared, in words that tell nothing of the key; empty where that is no question.
+
+        >>> from loopbook.exercises.kinds import Number, Numbers
+        >>> Number(120, "s").precision, Numbers([1, 2]).precision, Number(3, within=0).precision
+        ('to 1\xa0%', 'each number to 1\xa0%', 'exact')
+        """
+        if not self.accuracy:
+            return ""
+        return self.ANY_FORM + ("exact" if self.within == 0 else f"{self.EACH}to {self.accuracy}")
 
     def read(self, given: object) -> tuple[Any, str]:
         """Return the answer as it is compared, and a remark on how it was understood, which may be empty.

@@ -128,6 +128,8 @@ class Numbers(Kind):
     True
     """
 
+    EACH = "each number "
+
     @property
     def expected(self) -> str:
         """A row or a table of numbers."""
@@ -207,6 +209,8 @@ class Poles(Kind):
     >>> poles.agrees(poles.read({-1: 2, -2: 1})[0])
     True
     """
+
+    EACH = "each number "
 
     def __init__(self, key: object, unit: str = "rad/s", what: str = "the poles", within: float = 0.01):
         super().__init__(key, unit, what, within)
@@ -389,7 +393,7 @@ def _number_of_text(text, unit, expected):
             continue
         try:
             formula = Formula(line[:end])
-            value = complex(formula())
+            value = complex(formula.values_at({}))
         except Unreadable as problem:
             says = says or str(problem)
             continue

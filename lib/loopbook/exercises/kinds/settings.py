@@ -38,6 +38,7 @@ class Settings(Kind):
     """
 
     FORM = ("gain", "time", "form")
+    EACH = "each number "
 
     def __init__(
         self,

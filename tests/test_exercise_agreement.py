@@ -1,0 +1,294 @@
+"""When two formulas are the same but for rounding: each number counts, and no value is no agreement."""
+
+import ast
+import math
+import random
+
+import numpy as np
+import pytest
+import sympy
+
+from draws import draws
+from loopbook import s
+from loopbook.exercises.agreement import agree
+from loopbook.exercises.arithmetic import NoValue, in_digits
+from loopbook.exercises.authoring import answers, exercise, expression, number, time_function, transfer_function
+from loopbook.exercises.formulas import Formula
+from loopbook.exercises.freedoms import freedoms
+from loopbook.exercises.judging import UNJUDGED, WRONG, is_right, judge
+from loopbook.exercises.points import points_for
+
+DELAYED = "2*exp(-8*s)/(10*s + 1)"
+LAGS = "3*exp(-2*s)/((20*s + 1)*(5*s + 1))"
+PREDICTOR = "(4*s + 1)*(10*s + 1)/(4*s*(10*s + 1) + (1 - exp(-8*s))*(8*s + 2))"
+
+RIGHT_FORMS = [
+    (DELAYED, "2*exp(-8.01*s)/(10*s + 1)"),
+    (DELAYED, "2.019*exp(-7.93*s)/(10.09*s + 1)"),
+    (DELAYED, "0.2*exp(-8*s)/(s + 0.1)"),
+    (DELAYED, "0.201*exp(-8*s)/(s + 0.0995)"),
+    (DELAYED, "200*exp(-8*s)/(1000*s + 100)"),
+    (LAGS, "3*exp(-2*s)/(100*s**2 + 25*s + 1)"),
+    (LAGS, "0.03*exp(-2*s)/(s**2 + 0.25*s + 0.01)"),
+    (LAGS, "exp(-2*s)*(4/(20*s + 1) - 1/(5*s + 1))"),
+    (LAGS, "3*exp(-2*s)/((19.9*s + 1)*(5.04*s + 1))"),
+    ("2/(20*s + 1)**2", "2/((20.2*s + 1)*(19.8*s + 1))"),
+    ("2/(20*s + 1)**4", "2/(160000*s**4 + 32000*s**3 + 2400*s**2 + 80*s + 1)"),
+    ("2.5*(1 + 1/(12*s) + 3*s)", "2.5 + 0.208/s + 7.5*s"),
+    ("4/3*exp(-10*s/3)", "1.33*exp(-3.33*s)"),
+    (PREDICTOR, "(4.02*s + 1)*(9.95*s + 1)/(4.02*s*(9.95*s + 1) + (1 - exp(-8.05*s))*(8*s + 2))"),
+]
+WRONG_FORMS = [
+    (DELAYED, "2*exp(-8.2*s)/(10*s + 1)"),
+    (DELAYED, "2*exp(-8*s)/(10.3*s + 1)"),
+    (DELAYED, "2*exp(-8*s)/(9.8*s + 1)"),
+    (DELAYED, "2.03*exp(-8*s)/(10*s + 1)"),
+    (DELAYED, "0.2*exp(-8*s)/(s + 0.103)"),
+    (DELAYED, "2*exp(-8*s)"),
+    (DELAYED, "2*exp(-8*s)/(1000*s - 987*s + 1)"),
+    (DELAYED, "0*s"),
+    (LAGS, "3*exp(-2*s)/(100*s**2 + 25.6*s + 1)"),
+    (LAGS, "3*exp(-7*s)/(20*s + 1)"),
+    ("2.5*(1 + 1/(12*s))", "2.5*(1 + 1/(12.3*s))"),
+    (PREDICTOR, "1 + 1/(4*s)"),
+    (PREDICTOR, "(10*s + 1)/(10*s)"),
+    ("(80*s + 3)/(s*(s + 0.1))", "(80*s + 3)/(s*(s + 0.12))"),
+]
+
+
+@pytest.mark.parametrize(("key", "given"), RIGHT_FORMS)
+def test_each_number_may_be_rounded_in_any_form(key, given):
+    kind = transfer_function(key)
+    for seed in range(5):
+        kind.draw_from(f"{seed}")
+        assert is_right(kind, given)
+
+
+@pytest.mark.parametrize(("key", "given"), WRONG_FORMS)
+def test_one_wrong_number_is_wrong_wherever_the_points_are(key, given):
+    kind = transfer_function(key)
+    for seed in range(5):
+        kind.draw_from(f"{seed}")
+        assert not is_right(kind, given)
+
+
+def test_the_accuracy_is_that_of_the_author():
+    given = "2*exp(-8.2*s)/(10*s + 1)"
+    assert is_right(transfer_function(DELAYED, within=0.03), given)
+    assert not is_right(transfer_function(DELAYED, within=0.02), given)
+    assert not is_right(transfer_function(DELAYED, within=0), "2*exp(-8.00001*s)/(10*s + 1)")
+    assert is_right(transfer_function(DELAYED, within=0), "1/(5*s + 1/2)*exp(-s)**8")
+
+
+def _lags(dice):
+    """A transfer function with gain, lags and dead time of two digits, and its parameters."""
+    gain, lag = (math.exp(dice.uniform(-2, 5)) for _ in range(2))
+    other, delay = lag * math.exp(dice.uniform(-3, -0.5)), lag * math.exp(dice.uniform(-3, 2))
+    return tuple(float(f"{value:.2g}") for value in (gain, lag, other, delay))
+
+
+def _in_forms(gain, lag, other, delay):
+    """The same with numbers of three digits, in five forms."""
+    gain_of_s, delayed = gain / lag / other, f"exp(-{delay:.3g}*s)"
+    yield f"{gain:.3g}*{delayed}/(({lag:.3g}*s + 1)*({other:.3g}*s + 1))"
+    yield f"{gain:.3g}*{delayed}/({lag * other:.3g}*s**2 + {lag + other:.3g}*s + 1)"
+    yield f"{gain_of_s:.3g}*{delayed}/((s + {1 / lag:.3g})*(s + {1 / other:.3g}))"
+    yield f"{gain_of_s:.3g}*{delayed}/(s**2 + {1 / lag + 1 / other:.3g}*s + {1 / lag / other:.3g})"
+    yield f"{100 * gain:.3g}/100/({lag:.3g}*s + 1)/(1 + {other:.3g}*s)*{delayed}"
+
+
+@pytest.mark.parametrize("seed", range(draws(90)))
+def test_random_keys_are_right_in_three_digits_and_wrong_with_one_number_off(seed):
+    dice = random.Random(seed)
+    numbers = _lags(dice)
+    gain, lag, other, delay = map(sympy.Rational, map(str, numbers))
+    key = transfer_function(gain * sympy.exp(-delay * s) / ((lag * s + 1) * (other * s + 1)))
+    key.draw_from(f"{seed}")
+    for text in _in_forms(*numbers):
+        assert is_right(key, text), text
+    for place in range(4):
+        off = [*numbers]
+        off[place] *= 1 + dice.choice((-1, 1)) * dice.uniform(0.02, 0.03)
+        first, *_ = _in_forms(*off)
+        assert not is_right(key, first), first
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("5*x/(2*y)", ["5 * x / (2 * y)"]),
+        ("1/(40*s + 4)", ["40 * s", "1 / (40 * s + 4)"]),
+        ("(2*s + 1)**2", ["2 * s"]),
+        ("sqrt(2)*s**3", ["sqrt(2) * s ** 3"]),
+        ("x - 3*exp(y/4 - 0.5)", ["y / 4", "0.5", "3 * exp(y / 4 - 0.5)"]),
+        ("pi*x**2 + (1000 - 998)*y", ["(1000 - 998) * y"]),
+    ],
+)
+def test_what_belongs_together_is_one_number(text, found):
+    assert [ast.unparse(one.node) for one in freedoms(Formula(text, "s x y").tree)] == found
+
+
+# Functions of time.
+
+STEP = time_function("3*(1 - exp(-(t - 4)/10))*Heaviside(t - 4)", until=60)
+SUM = time_function("2*exp(-t/20) + 0.0337*exp(-t/3)", until=60)
+READING = time_function("60 + 3*(1 - exp(-t/5))", until=25)
+
+
+@pytest.mark.parametrize(
+    ("kind", "given", "right"),
+    [
+        (STEP, "3.02*(1 - exp(-(t - 3.97)/10.05))*Heaviside(t - 3.97)", True),
+        (STEP, "Heaviside(t - 4)*(3 - 4.48*exp(-t/10))", True),
+        (STEP, "0 for t < 4, 3 - 3*exp(-0.1*(t - 4)) for t > 4", True),
+        (STEP, "3*(1 - exp(-(t - 4)/10.3))*Heaviside(t - 4)", False),
+        (STEP, "3*(1 - exp(-(t - 4.1)/10))*Heaviside(t - 4.1)", False),
+        (STEP, "3*(1 - exp(-(t - 4)/10))", False),
+        (STEP, "3.06*(1 - exp(-(t - 4)/10))*Heaviside(t - 4)", False),
+        (STEP, lambda times: np.where(times < 4, 0, 3 * (1 - np.exp(-(times - 4) / 10.02))), True),
+        (STEP, lambda times: np.where(times < 4, 0, 3 * (1 - np.exp(-(times - 4) / 10.4))), False),
+        (SUM, "2*exp(-t/20) + 0.03*exp(-t/3)", True),
+        (SUM, "2*exp(-t/20) + 0.04*exp(-t/3)", False),
+        (SUM, "2*exp(-t/20)", False),
+        (READING, "60.3 + 3*(1 - exp(-t/5))", True),
+        (READING, "60 + 3.1*(1 - exp(-t/5))", False),
+    ],
+)
+def test_functions_of_time(kind, given, right):
+    for seed in range(3):
+        kind.draw_from(f"{seed}")
+        assert is_right(kind, given) is right
+
+
+@pytest.mark.parametrize("constant", ["0", "3", "1.5", 0, lambda times: 0 * times])
+def test_a_constant_is_no_mistake_of_units_or_numbers(constant):
+    assert judge("y", STEP, constant).status == WRONG
+    assert judge("H", transfer_function(DELAYED), "0").status == WRONG
+
+
+# Values.
+
+
+@pytest.mark.parametrize(
+    "mask",
+    [
+        "W + 0*exp(3e5*s)", "W + 0*exp(1e9/s)", "W*exp(3e5*s)/exp(3e5*s)", "W*exp(3e5*s)**0", "W + 1/exp(3e5*s**2 + 9)",
+        "W + 0*sinh(1e5*s)", "(W) + 1e30 - 1e30", "W + 1e-300*s",
+    ],
+)  # fmt: skip
+def test_a_mask_does_not_make_a_wrong_formula_right_nor_a_right_one_wrong(mask):
+    kind = transfer_function("1.9*exp(-30*s)/(7*s + 1)")
+    wrong = ("1.9*exp(-7*s)/(30*s + 1)", "1.9/(7*s + 1)", "1.9*exp(-33*s)/(7*s + 1)")
+    assert not any(is_right(kind, mask.replace("W", one)) for one in wrong)
+    if "1/exp" not in mask:
+        assert is_right(kind, mask.replace("W", "1.9*exp(-30*s)/(7*s + 1)"))
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        ("1.9*exp(-30*s)/(7*s + 1) + 0*exp(exp(exp(exp(9 + s**2))))", "this has no value at s = "),
+        ("1.9*exp(-30*s)/(7*s + 1)/(0*s + 1 - 1)", "no finite value"),
+        ("1.9*exp(-30*s)/(7*s + 1) + 0*Abs(s)", "Abs of s is in it, which is in no transfer function"),
+        ("Piecewise((1.9*exp(-30*s)/(7*s + 1), s < 1), (0, True))", "Piecewise of s is in it"),
+        ("1.9*exp(-30*s)/(7*s + 1)*Heaviside(s + 1e9)", "Heaviside of s"),
+    ],
+)
+def test_what_cannot_be_compared_is_not_right_and_is_looked_at(given, says):
+    verdict = judge("H", transfer_function("1.9*exp(-30*s)/(7*s + 1)"), given)
+    assert verdict.status in (WRONG, UNJUDGED)
+    assert says in verdict.says
+    assert bool(verdict.look) is (verdict.status == WRONG)
+
+
+def test_an_ordinary_verdict_is_not_looked_at():
+    for given in ("1.9*exp(-30*s)/(7*s + 1)", "1.9/(7*s + 1)", "Abs(-1.9)*exp(-30*s)/(7*s + 1)", "K"):
+        assert judge("H", transfer_function("1.9*exp(-30*s)/(7*s + 1)"), given).look == ""
+
+
+def test_digits_are_worked_out_until_they_tell():
+    def value(text):
+        return in_digits(Formula(text).tree, {})
+
+    assert value("1e300 + 2 - 1e300") == 2
+    assert value("exp(1e6)*exp(-1e6 + 1)") == pytest.approx(math.e)
+    assert value("exp(1e6) - exp(5e5)**2") == 0
+    assert value("exp(1e6)") == math.inf
+    assert value("sin(1e22)") == pytest.approx(math.sin(1e22))
+    assert value("Piecewise((exp(exp(exp(9))), 2 < 1), (Max(3, 2), True))") == 3
+    for text in ("1/0", "0**-1", "log(0)", "exp(exp(exp(exp(9))))", "0*exp(exp(exp(exp(9))))", "9.0**9**9**9**9"):
+        with pytest.raises(NoValue):
+            value(text)
+
+
+@pytest.mark.parametrize("text", ["0*log(0)", "tan(pi/2)*0", "sqrt(-4)", "atan(2) + asin(0.3)", "sign(-3)*Min(4, 5)"])
+def test_both_arithmetics_have_the_same_values(text):
+    formula = Formula(text)
+    try:
+        exact = in_digits(formula.tree, {})
+    except NoValue:
+        exact = math.nan
+    assert complex(formula()) == pytest.approx(exact, nan_ok=True, abs=1e-12)
+
+
+# Points.
+
+
+def test_points_are_those_of_the_seed_and_the_key_has_values_there():
+    for text in (DELAYED, LAGS, PREDICTOR, "exp(-3000*s)/s", "1e-4/(1e4*s + 1)", "exp(-s*T)/(T*s + K)"):
+        key = Formula(text, "s K T")
+        points = points_for(key, "a secret")
+        assert np.isfinite(key(**points)).all()
+        assert len(points["s"]) == 120
+        assert np.array_equal(points["s"], points_for(key, "a secret")["s"])
+        assert not np.isin(points["s"], points_for(key, "another")["s"]).any()
+
+
+def test_the_points_of_a_graded_question_come_from_what_its_student_is_drawn_from():
+    @exercise("1.1", title="A lag", points=1)
+    def lag():
+        """What is it?"""
+        return answers(H=transfer_function("2/(3*s + 1)"))
+
+    def points(text):
+        return lag.question(text).key["H"].points()["s"]
+
+    assert np.array_equal(points("drawn from a secret"), points("drawn from a secret"))
+    assert not np.isin(points("drawn from a secret"), points("drawn from another")).any()
+
+
+@pytest.mark.parametrize("text", ["0", "4 + 0*s", "exp(1e9*s)*exp(-1e9*s)", "s**40", "sqrt(s)*1e180"])
+def test_a_key_without_ordinary_points_agrees_with_itself(text):
+    key = Formula(text, "s")
+    points = points_for(key)
+    assert agree(key, Formula(text, "s"), points, within=0.01)
+    assert not agree(key, Formula(f"1.1*({text}) + s**3", "s"), points, within=0.01)
+
+
+# What is read, and what is said.
+
+
+@pytest.mark.parametrize(
+    ("kind", "given"),
+    [
+        (number(4), "4 # 3"),
+        (expression("K/T"), "K/T # K/Kp"),
+        (expression("K/T", symbols="K Kp T"), "K/Kp = K/T"),
+        (expression("K", symbols="K Kp"), "x = Kp = K"),
+        (transfer_function(DELAYED), f"{DELAYED}%"),
+    ],
+)
+def test_of_two_answers_in_one_none_is_chosen(kind, given):
+    assert judge("x", kind, given).status == UNJUDGED
+
+
+def test_numbers_lose_no_digits():
+    assert not is_right(number(0), "1 + 1e30 - 1e30")
+    assert is_right(number(1), "1 + 1e30 - 1e30")
+    assert judge("x", number(1), "1 + 0*nan").status == UNJUDGED
+
+
+def test_the_accuracy_is_said_in_words():
+    assert transfer_function(DELAYED).precision == "in any form, each number in it to 1\N{NO-BREAK SPACE}%"
+    assert expression("K/T", within=0).precision == "in any form, exact"
+    assert "to the decimal of the largest that is added" in STEP.precision
