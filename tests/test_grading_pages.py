@@ -177,7 +177,7 @@ def test_the_page_says_what_waits_and_what_was_given_by_hand():
 def test_what_a_person_marks_is_shown_whole():
     text = on_page(feedback(TITLE, ADA, by_hand()))
     assert text.count("<img") == 1
-    assert 'alt="your figure for sketch"' in text
+    assert 'alt="the figure that was handed in for sketch"' in text
     assert "<bdi>the dead time is long</bdi><br><bdi>&lt;b&gt;so&lt;/b&gt; it oscillates" in text
     for said in both(feedback(TITLE, ADA, by_hand())):
         assert "oscillates !" in said

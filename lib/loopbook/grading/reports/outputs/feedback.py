@@ -181,5 +181,5 @@ def _line(judged: JudgedAnswer, waits: bool, reveal: bool) -> Judged:
 def whole(answer: Plain, name: str) -> Text:
     """Return what a person marks, as it was handed in: a figure, or a text with its lines."""
     if png.is_data(answer):
-        return Picture(png.checked(answer), f"your figure for {name}")
+        return Picture(png.checked(answer), f"the figure that was handed in for {name}")
     return Lines(tuple(Said(line) for line in str(answer).splitlines() if line.strip()))
