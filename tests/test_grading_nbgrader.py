@@ -8,6 +8,7 @@ import pytest
 import assignments
 from loopbook.exercises import bank, kinds
 from loopbook.grading import nbgrader
+from loopbook.grading.assignment import Assignment
 
 
 @pytest.fixture
@@ -57,3 +58,26 @@ def test_what_is_graded_by_hand_for_nbgrader():
                 if not kind.making and not isinstance(kind, kinds.Design):
                     by_hand.append(f"{exercise.number} {name}")
     assert by_hand == ["9.5 y"]  # it has pieces
+
+
+BY_HAND = '''
+@exercise("1", title="A lag", points=6, weights={"T": 2})
+def lag(T=between(15, 40, "s"), K=between(2, 6)):
+    """It is {T} and {K}."""
+    return answers(T=number(T, "s"), K=number(K), sketch=figure("a sketch"), why=text("why", key="one lag"))
+'''
+
+
+def test_figures_and_texts_are_graded_by_hand_and_weights_count_for_nbgrader(capsys):
+    made = nbgrader.source(Assignment.of(assignments.HEAD + BY_HAND, "lag"))
+    nbformat.validate(made)
+    (test, by_hand) = [cell for cell in made.cells if cell.metadata.nbgrader.grade]
+    assert (test.metadata.nbgrader.points, by_hand.metadata.nbgrader.points) == (pytest.approx(3.6), pytest.approx(2.4))
+    assert (by_hand.metadata.nbgrader.solution, by_hand.metadata.nbgrader.locked) == (True, False)
+    assert 'sketch = ...\nwhy = "one lag"\n' in by_hand.source
+    assert '{"T": 2}' in test.source
+    taken = {"T": 1, "K": 2}
+    key = {"T": kinds.Number(1), "K": kinds.Number(3)}
+    assert nbgrader.earned(taken, 3.6, {"T": 2}, **key) == pytest.approx(2.4)
+    assert nbgrader.earned(taken, 3.6, **key) == pytest.approx(1.8)
+    assert "T: right" in capsys.readouterr().out

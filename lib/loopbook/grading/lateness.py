@@ -368,7 +368,7 @@ class Extensions:
 
 
 def read_extensions(path: str | Path, students: Iterable[str], assignment: str, policy: Policy | None) -> Extensions:
-    """Return the extensions that a file grants: student, until, and perhaps assignment, a row each.
+    """Return the extensions that a file grants: student, until, and perhaps assignment, one row for each.
 
     A row without an assignment is for every one.
 

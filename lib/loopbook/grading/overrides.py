@@ -177,7 +177,7 @@ class Overrides:
         return marks
 
     def _fault(self, place):
-        """A sentence on a place that there is not; empty for one that there is."""
+        """A sentence on an unknown place; empty for a known one."""
         student, number, quantity = place
         asked = self.asked
         if student not in asked.students:
