@@ -21,9 +21,10 @@ from loopbook.__main__ import app
 from loopbook.grading import GradingError, lms, reports, tables
 from loopbook.grading.lms import moodle, own
 from loopbook.grading.lms.canvas import canvas_grades
+from loopbook.grading.lms.gradescope import results_json
 from loopbook.grading.lms.moodle import moodle_grades
 from loopbook.grading.lms.own import grades_csv
-from loopbook.grading.marking import Marked
+from loopbook.grading.marking import Marked, MarkedExercise
 from loopbook.grading.owners import Owners
 from loopbook.grading.results import JudgedAnswer, JudgedExercise, Result
 from loopbook.grading.roster import MOST_FAULTS, POSSIBLE_ID, Student, read_roster
@@ -607,7 +608,7 @@ def test_canvas_gets_its_own_columns_with_the_number_of_the_assignment(roster):
         ["Nguyễn, Thị, Anh", "125", "A19", "anh", "C1", "EX"],  # who is excused stays so
         ["'=1+1", "126", "A20", "odd", "C1", "2.5"],
     ]
-    assert lms.remarks(students, "heater", marks)[1:] == ()
+    assert lms.remarks(students, "heater", marks)[1:] == ("canvas_grades.csv: A19 is excused in Canvas, and so left",)
     kept = canvas_grades("Heater", students, [mark("A17", None, 10, "not run")])
     assert rows(kept)[-1][-1] == "9.00"  # what stands in Canvas
     assert not kept.startswith("\ufeff")
@@ -622,7 +623,7 @@ def test_canvas_asks_where_it_cannot_know_and_that_is_said(roster):
         "canvas_grades.csv: the gradebook of the roster has no assignment called 'Tank' but 'Heater', so that Canvas "
         "will ask where the grades go; export it again once there is one",
     )
-    assert lms.remarks(students, "Heater", marks) == (
+    assert lms.remarks(students, "Heater", marks)[1:] == (
         "canvas_grades.csv: Heater (11) has 10 points in Canvas and 17 here, and grades are not scaled: change it in "
         "Canvas",
     )
@@ -646,10 +647,10 @@ def test_canvas_with_semicolons_has_decimal_commas(roster):
 
 def test_the_worksheet_of_moodle_is_filled_in_and_nothing_else_changes(roster):
     students = roster(WORKSHEET)
-    marks = [replace(mark("s1001", 4.5), comments=("See me.",)), mark("s1002", None, status="missing")]
+    marks = [replace(mark("s1001", 4.5), comments=("- See me.",)), mark("s1002", None, status="missing")]
     before, after = rows(WORKSHEET), rows(moodle_grades("Heater", students, marks))
     assert after[0] == before[0]
-    assert (after[1][5], after[1][10]) == ("4.5", "See me.")
+    assert (after[1][5], after[1][10]) == ("4.5", "- See me.")
     assert [cell for k, cell in enumerate(after[1]) if k not in (5, 10)] == [
         cell for k, cell in enumerate(before[1]) if k not in (5, 10)
     ]
@@ -662,6 +663,41 @@ def test_the_worksheet_of_moodle_is_filled_in_and_nothing_else_changes(roster):
     unsafe = rows(moodle_grades("Heater", students, [mark("s1001", 4, jailed=False)]))
     assert unsafe[0][-1] == "Heater (graded without a jail)"
     assert unsafe[1] == ["Participant 77001", "Jane Doe", "s1001", "jane@x.org", "4"]
+
+
+def by_hand(earned, waiting=()):
+    """A late submission with what a person has added to it."""
+    one = mark("s1001", 4)
+    exercise = MarkedExercise(
+        one.result.exercises[0], earned, ("K < 0: look at the sign",), ("4 by the grader, 5 by hand",)
+    )
+    return replace(one, exercises=(replace(exercise, waiting=waiting),), late="A day late: 10 %.", deduction=0.5)
+
+
+def test_what_a_person_says_goes_to_moodle_and_gradescope(roster):
+    filled = rows(moodle_grades("Heater", roster(WORKSHEET), [by_hand(5)]))[1]
+    said = "A day late: 10 %. · Exercise 1: 4 by the grader, 5 by hand · Exercise 1: K &lt; 0: look at the sign"
+    assert (filled[5], filled[10]) == ("4.5", said)
+    data = json.loads(results_json(by_hand(5)))
+    assert (data["score"], data["tests"][0]["score"]) == (4.5, 5)
+    assert "A day late" in data["output"]
+    assert data["tests"][0]["output"].endswith("4 by the grader, 5 by hand\nK < 0: look at the sign")
+
+
+def test_what_waits_for_a_person_is_no_grade_and_gradescope_says_so(roster):
+    waits = by_hand(None, ("K",))
+    assert rows(moodle_grades("Heater", roster(WORKSHEET), [waits]))[1][5] == ""
+    data = json.loads(results_json(waits))
+    assert data["score"] == 0
+    assert data["output"].endswith("Waiting for a mark by hand: exercise 1.")
+
+
+def test_what_students_write_into_the_worksheet_is_no_formula(roster):
+    students = roster(WORKSHEET.replace("Jane Doe", "=1+1").replace("<p>Good", "-Good"))
+    after = rows(moodle_grades("Heater", students, [mark("s1001", 4)]))
+    assert after[1][1] == "'=1+1"
+    assert after[1][9] == "-"
+    assert after[2][10].startswith("-Good")  # the instructor's own
 
 
 def test_other_tables_of_moodle_get_a_table_for_the_gradebook(roster):

@@ -133,17 +133,22 @@ class Canvas(System):
                 f"canvas_grades.csv: the gradebook of the roster has {how_many} called {title!r}{others}, so that "
                 "Canvas will ask where the grades go; export it again once there is one",
             )
-        said = _possible(table, heads[0])
+        said, excused = [], [one.id for one in students if one.row[heads[0]].strip().upper() == EXCUSED]
+        if excused:
+            who = ", ".join(excused[:5]) + (f" and {len(excused) - 5} more" if len(excused) > 5 else "")
+            said.append(
+                f"canvas_grades.csv: {who} {'is' if len(excused) == 1 else 'are'} excused in Canvas, and so left"
+            )
         try:
-            there = float(said.replace(",", "."))
+            there = float(_possible(table, heads[0]).replace(",", "."))
         except ValueError:
-            return ()
-        if abs(there - points) < 0.005:
-            return ()
-        return (
-            f"canvas_grades.csv: {table.header[heads[0]]} has {number(there)} points in Canvas and {number(points)} "
-            "here, and grades are not scaled: change it in Canvas",
-        )
+            return said
+        if abs(there - points) >= 0.005:
+            said.append(
+                f"canvas_grades.csv: {table.header[heads[0]]} has {number(there)} points in Canvas and "
+                f"{number(points)} here, and grades are not scaled: change it in Canvas"
+            )
+        return said
 
     def pack(self, notebooks: Mapping[Student, Mapping[str, bytes]], assignment: str, secret: str) -> Packed:
         """Return a tree of folders whose names nobody can guess, and a table of links to them."""

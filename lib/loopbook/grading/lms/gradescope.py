@@ -120,7 +120,7 @@ def _test(marked, visibility, reveal):
         "score": round(marked.earned or 0, 2),
         "max_score": round(exercise.points, 2),
         "status": "passed" if all(verdict.status == RIGHT for verdict in verdicts) else "failed",
-        "output": "\n".join([*(_line(verdict, reveal) for verdict in verdicts), *marked.comments]),
+        "output": "\n".join([*(_line(verdict, reveal) for verdict in verdicts), *marked.history, *marked.comments]),
         "output_format": "text",
         "visibility": visibility,
     }

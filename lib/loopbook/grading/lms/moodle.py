@@ -27,6 +27,7 @@ feedback type "Feedback files" hands out notebooks, too.
 
 from __future__ import annotations
 
+import html
 import re
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
@@ -230,9 +231,9 @@ def _prefix(student, identifier):
 def moodle_grades(title: str, students: Sequence[Student], marks: Collection[Marked]) -> str | None:
     """Return the grading worksheet of the roster, filled in; of another table of Moodle, one for its gradebook.
 
-    In the worksheet, what has no grade here, and all other cells, are as they were; comments are added where the
-    instructor has given some. Where a submission ran without a jail, there is no worksheet, whose columns cannot say
-    so, and the column of the other table does.
+    In the worksheet, what has no grade here, and all other cells, are as they were; what the instructor has said, and
+    what lateness costs, takes the place of the comments, which are HTML there. Where a submission ran without a jail,
+    there is no worksheet, whose columns cannot say so, and the column of the other table does.
 
     Arguments:
         title: of the assignment.
@@ -249,7 +250,7 @@ def moodle_grades(title: str, students: Sequence[Student], marks: Collection[Mar
     if "grade" in columns and "moodle_id" in columns and not unsafe:
         comma = any("," in row[columns.get("maximum", columns["grade"])] for _, row in table.rows)
         rows = [_filled(student.row, by_student.get(student.id), columns, comma) for student in students]
-        return as_text([table.header, *rows], table.delimiter, table.bom)
+        return as_text([table.header, *rows], table.delimiter, table.bom, {columns.get("comments", -1)})
     places = sorted(columns[field] for field in columns if field in ("moodle_id", "name", "first", "last", *Moodle.ids))
     rows = [[*(table.header[place] for place in places), f"{title} (graded without a jail)" if unsafe else title]]
     for student in students:
@@ -265,9 +266,14 @@ def _filled(row, mark, columns, comma):
     if mark and mark.total is not None:
         row[columns["grade"]] = number(mark.total).replace(".", "," if comma else ".")
     if mark and "comments" in columns:
-        said = [*mark.comments, *(comment for exercise in mark.exercises for comment in exercise.comments)]
+        said = [*filter(None, [mark.late]), *mark.comments]
+        said += [
+            f"Exercise {exercise.judged.number}: {sentence}"
+            for exercise in mark.exercises
+            for sentence in (*exercise.history, *exercise.comments)
+        ]
         if said:
-            row[columns["comments"]] = " ".join(said)
+            row[columns["comments"]] = html.escape(" · ".join(said), quote=False)
     return row
 
 
