@@ -166,6 +166,18 @@ def test_the_gradebook_of_canvas(roster, sis, login, ids):
     assert students[0] == jane
 
 
+def test_an_export_may_have_a_column_of_when_each_handed_in(roster):
+    time = datetime.datetime(2025, 11, 3, 23, 59)
+    students = roster(
+        "Student,ID,SIS User ID,SIS Login ID,Section,Heater (11),Handed in\n"
+        '"Doe, Jane",123,A17,jane,C1,,2025-11-03 23:59\n"Roe, John",124,A18,john,C1,,\n'
+    )
+    assert [student.handed_in for student in students] == [time, None]
+    assert rows(canvas_grades("Heater", students, []))[0][-1] == "Heater (11)"
+    with pytest.raises(GradingError, match="line 2: 'yes' is no time"):
+        roster('"First name","Last name","ID number","handed in"\nJane,Doe,s1,yes\n')
+
+
 def test_a_guest_without_a_number_changes_nobody_elses_id_and_is_told(roster):
     rows = [f'"N{k}, Anna",{1000 + k},SIS{k},login{k},C1' for k in range(60)]
     header = "Student,ID,SIS User ID,SIS Login ID,Section\n"

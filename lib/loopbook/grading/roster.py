@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from loopbook.grading import GradingError, lms, tables
+from loopbook.grading.lms import own
 
 #: What an id may be: it is the name of a folder on any system, and part of a web address.
 POSSIBLE_ID = re.compile(
@@ -64,9 +65,10 @@ def read_roster(path: str | Path) -> tuple[Student, ...]:
     """The students of a roster, in its order: a file of comma-, semicolon- or tab-separated values.
 
     It is one of your own with the columns id and name (`lms.own` says which others, and by which words), or an export
-    of a system in `lms`. `tables.read` says in which encodings. Of an export, the id of each student is in the first of
-    the system's columns that is full in this row: in Canvas SIS User ID, SIS Login ID, ID; in Moodle ID number,
-    Username, the number in Identifier, Email address. `lms.remarks` says where ids come from different columns.
+    of a system in `lms`, to which a column "handed in" may be added. `tables.read` says in which encodings. Of an
+    export, the id of each student is in the first of the system's columns that is full in this row: in Canvas SIS User
+    ID, SIS Login ID, ID; in Moodle ID number, Username, the number in Identifier, Email address. `lms.remarks` says
+    where ids come from different columns.
 
     Raises GradingError with all that is wrong, a line for each fault, at most MOST_FAULTS: a file that is missing or no
     text, an unknown header, a roster without students; an id that is missing, impossible or not unique, a row with more
@@ -107,9 +109,9 @@ def _recognised(path):
     for table in tables.read(path):
         seen = max(seen, table.header, key=len)
         exports = [one for one in lms.registered() if one.name != lms.OWN]
-        own = [one for one in lms.registered() if one.name == lms.OWN]  # an export has heads that one's own might have
+        others = [one for one in lms.registered() if one.name == lms.OWN]  # its heads may be in an export, too
         try:
-            found = _fitting(exports, table) or _fitting(own, table)
+            found = _fitting(exports, table) or _fitting(others, table)
         except GradingError as problem:
             raise GradingError(f"{path.name}, {problem}") from None
         if len(found) > 1:
@@ -118,7 +120,8 @@ def _recognised(path):
         if found and table.fault:
             raise GradingError(table.fault)
         if found:
-            return table, *found[0]
+            system, columns = found[0]
+            return table, system, {**own.added(table.header), **columns}
     heads = [head for head in seen if head]
     says = f", {_listed(map(repr, heads))}" if heads else ""
     kinds = _listed([one.roster for one in lms.registered()], 9)

@@ -89,7 +89,8 @@ class Canvas(System):
         is_test = sortable == "Student, Test" and not fields["sis_id"]
         if sortable.startswith(_POINTS) or is_test or not any((sortable, *fields.values())):
             return None
-        return {**fields, "sortable": sortable, "name": _spoken(sortable) or fields["canvas_id"]}
+        name = _spoken(sortable) or fields["canvas_id"]
+        return {**fields, "sortable": sortable, "name": name, "handed_in": cells.get("handed_in", "")}
 
     def claim(self, name: str, known: Known, assignment: str) -> Claim | None:
         """Return whose a file of a download is.

@@ -74,6 +74,15 @@ def is_id(head: str) -> bool:
     return _FIELDS.get(letters(head)) == "id"
 
 
+def added(header: Sequence[str]) -> Mapping[str, int]:
+    """Return where the columns are that an instructor may add to any export: when each student handed in.
+
+    >>> added(["Student", "ID", "Section", "handed in"])
+    {'handed_in': 3}
+    """
+    return {field: index for index, head in enumerate(header) if (field := _FIELDS.get(letters(head))) == "handed_in"}
+
+
 @lms.system
 class Own(System):
     """A roster of one's own, and folders by id."""
