@@ -122,7 +122,7 @@ def test_no_two_texts_side_by_side_make_more_than_themselves():
         (line, _) = markdown.block(of.Paragraph(texts))
         tags, text = seen(rendered(line))
         assert tags <= {"p"}, some
-        assert text == words("".join(" " * (one == " ") + one.strip() for one in some)) or " " in "".join(some), some
+        assert text.replace(" ", "") == "".join(some).replace(" ", ""), some
 
 
 def everywhere(text, formula="K"):

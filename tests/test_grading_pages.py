@@ -316,6 +316,17 @@ def test_marks_and_times_that_need_a_decision():
         assert look in text
 
 
+def test_what_a_person_has_decided_is_not_to_look_at():
+    unread = result_of(BOB, {"1": {"H": "K | x", "K": 1.0}}, errors=(CellError(9, "NameError: x"),))
+    assert set(told([unread])[0]) == {"Cells that failed, with answers left open", "Answers that could not be judged"}
+    one = Marked.of(unread.result, {("1", "H"): Mark(1)})
+    assert told([one])[0] == {"Cells that failed, with answers left open": [("s1002", 2.333)]}
+    exercise = Marked.of(unread.result, {("1", ""): Mark(1), ("2", "action"): Mark(0)})
+    assert told([exercise]) == ({}, [("s1002",)])
+    for mark in (unread, NOT_RUN, changed(NAMED, looks=(Look("owner", "it names another student: s1001"),))):
+        assert told([Marked.of(mark.result, {("", ""): Mark(2)})]) == ({}, [("s1002",)])
+
+
 def test_a_file_of_nobody_costs_where_somebody_is_missing():
     complaint = "x_<y>.ipynb: is named after no student of the roster"
     assert told([RIGHT_ALL], [complaint]) == ({}, [()])
@@ -477,6 +488,10 @@ def test_the_hardest_exercise_comes_first():
         "T": pytest.approx(2 / 3),
         "H": pytest.approx(2 / 3),
     }
+
+
+def test_an_exercise_that_waits_is_none_of_the_hardest():
+    assert [one.number for one in Findings(CLASS, [by_hand(), changed(NAMED, student="s1003")]).exercises][-1] == "3"
 
 
 def test_mistakes_are_counted():

@@ -177,7 +177,7 @@ def grade(
         demand_hidden(*filter(None, [assignment.path, submissions, folder]))
     collection = collect(submissions, students, assignment.name, latest)
     notes = [*changes, *released.differences(assignment, [one.student for one in collection.submissions])]
-    marking = Marking(folder, assignment, students, extensions, kept_ids)
+    marking = Marking(folder, assignment, students, extensions)
     results = Results(folder / "results", assignment.secret)
     with _alone(folder):
         results.demand_of(assignment.name, [student.id for student in students])

@@ -48,6 +48,7 @@ class MarkedExercise:
         history: how the points came about, where a person has marked, in sentences.
         waiting: the quantities that wait for a person.
         is_by_hand: whether a person has marked the whole of it.
+        decided: the quantities of which a person has said what they are worth.
     """
 
     judged: JudgedExercise
@@ -56,6 +57,7 @@ class MarkedExercise:
     history: tuple[str, ...] = ()
     waiting: tuple[str, ...] = ()
     is_by_hand: bool = False
+    decided: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, judged: JudgedExercise, by_hand: Mapping[tuple[str, str], Mark] | None = None) -> Self:
@@ -86,10 +88,12 @@ class MarkedExercise:
             history.append(
                 f"{_of(judged.earned, judged.points)} by the grader, {points(whole.points)} by hand{_quoted(whole)}"
             )
-            return cls(judged, whole.points, tuple(comments), tuple(history), (), True)
+            return cls(judged, whole.points, tuple(comments), tuple(history), (), True, tuple(marks))
         if whole.comment:
             comments.append(whole.comment)
-        return cls(judged, None if waiting else sum_, tuple(comments), tuple(history), tuple(waiting))
+        decided = tuple(name for name, mark in marks.items() if mark.points is not None)
+        sum_or_none = None if waiting else sum_
+        return cls(judged, sum_or_none, tuple(comments), tuple(history), tuple(waiting), decided=decided)
 
 
 @dataclass(frozen=True)
@@ -177,28 +181,21 @@ class Marking:
         assignment: `Assignment`.
         students: the roster.
         extensions: the file that grants them; None where there is none.
-        also: {another id of a student, as the roster may have it: id}.
     Raises:
         GradingError: with all faults of the extensions.
     """
 
     def __init__(
-        self,
-        folder: Path,
-        assignment: Assignment,
-        students: Sequence[Student],
-        extensions: Path | None = None,
-        also: Mapping[str, str] | None = None,
+        self, folder: Path, assignment: Assignment, students: Sequence[Student], extensions: Path | None = None
     ):
         self.assignment = assignment
         ids = tuple(student.id for student in students)
-        self.extensions = Extensions({})
-        if extensions:
-            self.extensions = read_extensions(extensions, ids, assignment.name, assignment.policy, also)
+        of = read_extensions(extensions, ids, assignment.name, assignment.policy) if extensions else Extensions({})
+        self.extensions: Extensions = of
         self._at: dict[str, datetime.datetime | None] = {}
         self._names: dict[str, dict[str, float]] = {}
         exercises = {number: exercise.points for number, exercise in assignment.exercises.items()}
-        self.overrides = Overrides(folder, Asked(ids, exercises, self._quantities, also or {}))
+        self.overrides = Overrides(folder, Asked(ids, exercises, self._quantities))
 
     def _quantities(self, student, number):
         """{quantity: points} of an exercise; the names are the same for all students."""

@@ -156,32 +156,38 @@ def _cases(marks, complaints) -> Iterator[tuple[Concern | None, Case]]:
 
 
 def _of_one(mark):
-    """The cases of one submission, without its student."""
-    result, judged = mark.result, [one.judged for one in mark.exercises]
+    """The cases of one submission, without its student. What a person has decided is none."""
+    result, is_decided = mark.result, mark.by_hand is not None
     for look in mark.looks:
         yield TO_DECIDE, look.points, Said(look.says)
-    notes = Lines(tuple(map(Said, remarks(result))))
     if result.status == MISSING:
         return
+    notes = Lines(tuple(map(Said, remarks(result))))
     if result.status == NOT_RUN:
-        yield NOT_RUNNING, result.points, notes
+        yield None if mark.total is not None else NOT_RUNNING, result.points, notes
         return
+    left = [
+        (one.judged, answer)
+        for one in mark.exercises
+        for answer in one.judged.answers
+        if not is_decided and answer.name not in one.decided
+    ]
     if notes.texts:
-        at_stake = sum(share(one, answer) for one in judged for answer in one.answers if answer.status == OPEN)
+        at_stake = sum(share(exercise, answer) for exercise, answer in left if answer.status == OPEN)
         concern = CUT_SHORT if result.status == STOPPED else FAILED if result.errors else None
         yield concern if at_stake else None, at_stake, notes
-    for exercise in judged:
-        for answer in exercise.answers:
-            at_stake, place = share(exercise, answer), (f"{exercise.number} · ", Code(answer.name))
-            shown = answer_in_words(answer.answer)
-            given = (": ", Code(shown)) if shown else ""
-            if answer.status == UNJUDGED:
-                yield UNREAD, at_stake, (place, given, "; ", Said(explained(answer)))
-            if answer.look:
-                yield FLAGGED, at_stake, (place, given, f"; judged {answer.status}: ", Said(answer.look))
+    for exercise, answer in left:
+        at_stake, place = share(exercise, answer), (f"{exercise.number} · ", Code(answer.name))
+        shown = answer_in_words(answer.answer)
+        given = (": ", Code(shown)) if shown else ""
+        if answer.status == UNJUDGED:
+            yield UNREAD, at_stake, (place, given, "; ", Said(explained(answer)))
+        if answer.look:
+            yield FLAGGED, at_stake, (place, given, f"; judged {answer.status}: ", Said(answer.look))
     for look in result.looks:
         at_stake = {OWNER: result.points, ODD: result.earned}.get(look.kind, 0)
-        yield {OWNER: OF_ANOTHER, ODD: TELLS_TOO_MUCH}.get(look.kind), at_stake, Said(look.says)
+        concern = None if is_decided else {OWNER: OF_ANOTHER, ODD: TELLS_TOO_MUCH}.get(look.kind)
+        yield concern, at_stake, Said(look.says)
 
 
 def _to_mark(marks):

@@ -144,7 +144,7 @@ def _exercises(marks):
         exercises.append(
             Exercise(number, first.title, first.points, statistics.fmean(earned) if earned else None, asked)
         )
-    return sorted(exercises, key=lambda exercise: exercise.fraction)
+    return sorted(exercises, key=lambda exercise: (exercise.mean is None, exercise.fraction))
 
 
 def _mistakes(results):

@@ -12,7 +12,7 @@ from loopbook.grading.reports.histogram import histogram_text
 from loopbook.grading.reports.wording import parts, spaced, visible
 
 #: What Markdown would take for more than text, wherever it stands: signs, and parts of addresses.
-_SIGN = re.compile(r"[\\`*_{}\[\]<>#|~$&^@]|:(?=//|$)|^\.(?=\w)|(?<=www)\.")
+_SIGN = re.compile(r"[\\`*_{}\[\]<>#|~$&^@]|:(?=//)|^/|^\.(?=\w)|(?<=www)\.")
 #: What begins a list or underlines a heading, at the beginning of a line.
 _BEGINNING = re.compile(r"^(?=[-+=])|(?<=^)(\d{1,9})(?=[.)])")
 
