@@ -128,7 +128,7 @@ def asked():
         ({"T": "150"}, "· T: 150 s"),
         ({"T": "two"}, "· T: 2 s, read as 2"),
         ({"T": "long"}, "? T: 'long' is a text that is not a number: expected a number, in s"),
-        ({"T": ...}, "… T: not answered yet"),
+        ({"T": ...}, "… T: not answered yet: expected a number, in s"),
         ({"T": lambda t: t}, "? T: a function cannot be handed in"),
         ({"H": "K*exp(-2*s)/(T*s + 1)"}, "· H: K*exp(-2*s)/(T*s + 1), an expression in K, T and s"),
         ({"H": 2 / (s + X)}, "· H: 2/(s + x), an expression in s and x"),
@@ -154,7 +154,7 @@ def test_the_last_answer_counts(asked):
     assert asked.taken("1") == {"K": 1, "T": "3 min"}
     overview = repr(asked)
     assert "· 1  K: 1" in overview
-    assert "… 2  action: not answered yet" in overview
+    assert "… 2  action: not answered yet: expected direct or reverse" in overview
     assert "2 of 4 not answered yet" in overview
 
 

@@ -1,6 +1,7 @@
 """Released notebooks: a notebook for each student, in which nothing tells of the key."""
 
 import ast
+import importlib.metadata
 import re
 
 import nbformat
@@ -31,7 +32,13 @@ def test_a_released_notebook(tuning):
     nbformat.validate(made)
     texts = [cell.source for cell in made.cells if cell.cell_type == "markdown"]
     assert texts[0].startswith("# Tuning $K$\n\n**Zoë \\*Ng\\*** (`s1001`)\n\nAn introduction.\n\n")
-    assert texts[1:] == [tuning.question("s1001", one).statement for one in "12"]
+    for text, number in zip(texts[1:], "12", strict=True):
+        statement = tuning.question("s1001", number).statement
+        assert text.startswith(f"{statement}\n\n<details><summary>How your answers are read</summary>\n\n- `")
+    assert "- `Kp`: a number, in %/K; compared to 1\N{NO-BREAK SPACE}%\n" in texts[1]
+    assert "- `H`: an expression" in texts[1]
+    assert "    %pip install git+https://github.com/loopbook/loopbook\n" in texts[0]
+    assert f"released with loopbook {importlib.metadata.version('loopbook')}." in texts[0]
     assert code(made)[-3:] == [
         'sheet.answer("1", Kp=..., H=..., y=..., A=..., p=...)', 'sheet.answer("2", C=..., w=..., W=...)', "sheet"
     ]  # fmt: skip

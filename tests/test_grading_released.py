@@ -5,8 +5,10 @@ import re
 from dataclasses import replace
 
 import pytest
+from typer.testing import CliRunner
 
 from assignments import ONE, written
+from loopbook.__main__ import app
 from loopbook.grading import GradingError
 from loopbook.grading.assignment import load
 from loopbook.grading.imprint import Imprint, peek
@@ -364,10 +366,12 @@ def test_without_its_record_a_release_is_not_replaced_by_other_numbers(course):
 
 def test_another_version_of_loopbook_is_no_reason_to_replace(course, monkeypatch):
     course.release()
+    _work(course.to / "s2" / "tuning.ipynb")
     before = course.bytes()
     monkeypatch.setattr("importlib.metadata.version", lambda name: "9.9")
     assert course.release().kept == ("s1", "s2", "s3")
     assert course.bytes() == before
+    assert b"loopbook 9.9." in course.release([*CLASS, Student("s4", "Late")]).paths[-1].read_bytes()
 
 
 def test_an_exercise_that_is_added_later_needs_a_word(course):
@@ -381,6 +385,31 @@ def test_an_exercise_that_is_added_later_needs_a_word(course):
     found = course.released.numbers("s1")
     assert found.pop("3")
     assert found == numbers
+
+
+# The command.
+
+
+def run(course, *options):
+    return CliRunner().invoke(app, ["release", str(course.path), "--to", str(course.to), *options])
+
+
+def test_the_command_says_what_it_did(course):
+    roster = course.path.with_name("roster.csv")
+    roster.write_text("id,name\ns1,Ada\ns2,Bob\n", encoding="utf-8")
+    first = run(course).output.splitlines()
+    assert first[0] == f"2 notebooks of 'Tuning $K$' in {course.to}: 2 new"
+    assert first[1] == f"{course.record} has their numbers: keep it with the assignment, grade needs it"
+    roster.write_text("id,name\ns1,Ada\ns2,Bob\ns3,Eve\n", encoding="utf-8")
+    assert run(course).output.splitlines()[0].endswith(": 1 new, 2 unchanged")
+    _work(course.to / "s2" / "tuning.ipynb")
+    course.mend("It is {K} and {T}.", "The gain is {K}, the time {T}.")
+    refused = run(course)
+    assert (refused.exit_code, refused.output.count("\n")) == (1, 1)
+    assert "--replace puts them in place" in refused.output
+    said = run(course, "--replace").output
+    assert ": 2 replaced\n" in said
+    assert f"{course.to / 's2'}: somebody has worked in this notebook; it stays, without what was mended\n" in said
 
 
 # What notebooks say themselves.

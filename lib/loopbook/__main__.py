@@ -188,7 +188,6 @@ def release(
             return
         from loopbook.grading import lms
         from loopbook.grading.release import release
-        from loopbook.grading.released import Released
         from loopbook.grading.roster import read_roster
 
         roster = read_roster(students or assignment.with_name("roster.csv"))
@@ -198,8 +197,7 @@ def release(
         remarks = [*lms.remarks(roster), *done.remarks]
         packed = None
         if place:
-            known, _ = Released.of(given).identified(roster)
-            packed = lms.packed(place, to, known, given.name, given.secret)
+            packed = lms.packed(place, to, done.students, given.name, given.secret)
             beside = to.resolve().with_name(f"{to.resolve().name}_for_{place}")
             for name, content in packed.files.items():
                 write(beside / name, content)

@@ -89,7 +89,7 @@ class AnswerSheet:
         """A mark and a sentence on what is taken down of a quantity."""
         data, forms = self._taken.get(exercise, {}).get(quantity), self._forms.get(exercise, {})
         if data is None:
-            return OPEN, NOT_ANSWERED
+            return OPEN, f"{NOT_ANSWERED}: expected {forms[quantity].expected}" if quantity in forms else NOT_ANSWERED
         if sentence := unreadable(data):
             return UNREAD, sentence
         if quantity not in forms:

@@ -12,7 +12,6 @@ import re
 import tokenize
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
-from dataclasses import replace as replaced
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -58,6 +57,7 @@ class Release:
         worked_in: ids of those whose notebook stays though it would be another one now: somebody has worked in it.
         record: where the numbers are kept; None for an assignment that was made from a text.
         remarks: sentences on what is no longer as at earlier releases.
+        students: the roster, with the ids of the record.
     """
 
     paths: tuple[Path, ...]
@@ -67,6 +67,7 @@ class Release:
     worked_in: tuple[str, ...]
     record: Path | None
     remarks: tuple[str, ...]
+    students: tuple[Student, ...]
 
 
 def release(
@@ -116,7 +117,7 @@ def release(
         remarks += before.differences(assignment, known)
     return Release(
         tuple(plan.path for plan in plans), ids(_What.ADDED), ids(_What.TEXT, _What.NUMBERS), ids(_What.SAME),
-        ids(_What.WORKED_IN), assignment.record, remarks,
+        ids(_What.WORKED_IN), assignment.record, remarks, students,
     )  # fmt: skip
 
 
@@ -157,12 +158,11 @@ def _plan(assignment, student, folder, record, new_numbers):
         return _Plan(student, path, content, numbers, _What.SAME)
     if imprint is None or (imprint.assignment, imprint.student) != (assignment.name, student.id):
         return _Plan(student, path, content, numbers, _What.FOREIGN)
-    new = Imprint.of(made.metadata)
-    as_before = notebooks.as_text(_notebook(assignment, student, questions, imprint.version))
-    if there == as_before:
+    as_before = _notebook(assignment, student, questions, imprint.version)
+    if there == notebooks.as_text(as_before):
         return _Plan(student, path, there, numbers, _What.SAME)
     old = notebooks.read(path)
-    is_same = replaced(imprint, version="") == replaced(new, version="")
+    is_same = imprint == Imprint.of(as_before.metadata)
     base = record.numbers(student.id) or numbers
     proof = proofs(assignment.secret, student.id, base)
     has_numbers = bool(imprint.numbers) and all(proof.get(n, one) == one for n, one in imprint.numbers.items())
@@ -252,17 +252,41 @@ def _notebook(assignment, student, questions, version=None):
     """The notebook of a student; one of an earlier version of loopbook where nothing else has changed."""
     version = importlib.metadata.version("loopbook") if version is None else version
     person = f"**{as_markdown(student.name or student.id)}** (`{student.id}`)"
-    introduction = [f"# {assignment.title}", person, assignment.introduction, _HOW_TO_ANSWER]
+    introduction = [f"# {assignment.title}", person, assignment.introduction, _HOW_TO_ANSWER, _needs(version)]
     cells = [v4.new_markdown_cell("\n\n".join(part for part in introduction if part))]
     cells += map(v4.new_code_cell, set_up(assignment.title, student.id, questions))
     for number, question in questions.items():
-        cells += statement_cells(question)
+        statement, *data = statement_cells(question)
+        statement.source += f"\n\n{_reading(question)}"
+        cells += [statement, *data]
         cells.append(v4.new_code_cell(answer_call(number, dict.fromkeys(question.key, "..."))))
     cells.append(v4.new_code_cell("sheet"))
     made = bare(cells)
     numbers = proofs(assignment.secret, student.id, {number: texts(one) for number, one in questions.items()})
     made.metadata.loopbook = Imprint(assignment.name, student.id, version, cells_of(made), numbers).as_metadata()
     return made
+
+
+def _needs(version):
+    """What a student needs to run the notebook, folded."""
+    links = (one.split(", ") for one in importlib.metadata.metadata("loopbook").get_all("Project-URL"))
+    address = dict(links)["Repository"]
+    return (
+        "<details><summary>If the first cell fails with <code>No module named 'loopbook'</code></summary>\n\n"
+        "This notebook needs Python 3.11 or newer and loopbook, which is installed once, by running this in a cell "
+        f"and then restarting the kernel:\n\n    %pip install git+{address}\n\n"
+        f"On a computer of your own without Jupyter, [{address.removeprefix('https://')}]({address}) says how to "
+        f"begin. The notebook was released with loopbook {version}.\n\n</details>"
+    )
+
+
+def _reading(question):
+    """How the answers to a question are read and how exactly they are compared, folded; nothing of it is of the key."""
+    lines = [
+        f"- `{name}`: {kind.keyless.expected}{f'; compared {kind.precision}' if kind.precision else ''}"
+        for name, kind in question.key.items()
+    ]
+    return "\n".join(["<details><summary>How your answers are read</summary>", "", *lines, "", "</details>"])
 
 
 def asked(assignment: Assignment, student_id: str, number: str, values: Mapping[str, str] | None = None) -> Question:

@@ -121,6 +121,11 @@ class Design(Kind):
     making = ""  # the criteria are functions
 
     @property
+    def keyless(self) -> Kind:
+        """That of the quantity's kind."""
+        return self.example.keyless
+
+    @property
     def asking(self) -> str:
         """As of the quantity's kind: the criteria stay here."""
         return self.example.asking

@@ -96,6 +96,16 @@ class Kind:
         return {name: parameters[name].default for name in cls.FORM}
 
     @property
+    def keyless(self) -> Kind:
+        """What of this kind says how an answer looks: the same without its key.
+
+        >>> from loopbook.exercises.kinds import Number
+        >>> Number(2.5, "K/%", "the gain").keyless.expected
+        'a number, in K/%'
+        """
+        return self.without_key(**{name: getattr(self, name) for name in self.FORM})
+
+    @property
     def asking(self) -> str:
         """The call, as code, that makes a kind of this form without the key; nothing in it comes from the key.
 
