@@ -35,8 +35,8 @@ def test_a_released_notebook(tuning):
     for text, number in zip(texts[1:], "12", strict=True):
         statement = tuning.question("s1001", number).statement
         assert text.startswith(f"{statement}\n\n<details><summary>How your answers are read</summary>\n\n- `")
-    assert "- `Kp`: a number, in %/K; compared to 1\N{NO-BREAK SPACE}%\n" in texts[1]
-    assert "- `H`: an expression" in texts[1]
+    assert "- `Kp`: a number, in %/K (to 1\N{NO-BREAK SPACE}%)\n" in texts[1]
+    assert "- `H`: an expression (in any form, each number in it" in texts[1]
     assert "    %pip install git+https://github.com/loopbook/loopbook\n" in texts[0]
     assert f"released with loopbook {importlib.metadata.version('loopbook')}." in texts[0]
     assert code(made)[-3:] == [

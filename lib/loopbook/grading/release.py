@@ -283,7 +283,7 @@ def _needs(version):
 def _reading(question):
     """How the answers to a question are read and how exactly they are compared, folded; nothing of it is of the key."""
     lines = [
-        f"- `{name}`: {kind.keyless.expected}{f'; compared {kind.precision}' if kind.precision else ''}"
+        f"- `{name}`: {kind.keyless.expected}{f' ({kind.precision})' if kind.precision else ''}"
         for name, kind in question.key.items()
     ]
     return "\n".join(["<details><summary>How your answers are read</summary>", "", *lines, "", "</details>"])
