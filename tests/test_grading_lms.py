@@ -364,7 +364,7 @@ def test_the_roster_of_gradescope(roster):
         ("", "line 1: no header of a roster"),
         (
             "Vorname,Nachname\na,b\n",
-            "line 1: no header of a roster, 'Vorname', 'Nachname'; expected an export of Canvas's",
+            "line 1: no header of a roster, 'Vorname', 'Nachname'; expected the columns id and name",
         ),
         ("id,name\n", "a header and no student"),
         ("Student,ID,Section\n    Points Possible,,\n", "a header and no student"),

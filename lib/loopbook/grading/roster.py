@@ -124,8 +124,8 @@ def _recognised(path):
             return table, system, {**own.added(table.header), **columns}
     heads = [head for head in seen if head]
     says = f", {_listed(map(repr, heads))}" if heads else ""
-    kinds = _listed([one.roster for one in lms.registered()], 9)
-    raise GradingError(f"{path.name}, line 1: no header of a roster{says}; expected {kinds}")
+    *kinds, last = [one.roster for one in sorted(lms.registered(), key=lambda one: one.name != lms.OWN)]
+    raise GradingError(f"{path.name}, line 1: no header of a roster{says}; expected {', '.join(kinds)} or {last}")
 
 
 def _fitting(systems, table):
@@ -141,7 +141,8 @@ def _student(system, fields, row, table):
         ((words, fields[name]) for name, words in system.ids.items() if fields.get(name)), ("", "")
     )
     if not known["id"]:
-        wrong.append(f"a student without an id; ids come from the first full of: {', '.join(system.ids.values())}")
+        columns = f"; ids come from the first full of: {', '.join(system.ids.values())}" if len(system.ids) > 1 else ""
+        wrong.append(f"a student without an id{columns}")
     elif not POSSIBLE_ID.fullmatch(known["id"]):
         wrong.append(
             f"{known['id'][:120]!r} cannot be an id, which is made of letters without accents, digits and . _ @ -, "
@@ -159,7 +160,7 @@ def _student(system, fields, row, table):
     return Student(**known, id_from=id_from, system=system.name, row=row, table=table), wrong
 
 
-def _listed(words: Iterable[str], most: int = 6) -> str:
-    """Words as a list in a sentence."""
+def _listed(words: Iterable[str]) -> str:
+    """The first of some words, as a list in a sentence."""
     words = list(words)
-    return ", ".join(words[:most]) + (", ..." if len(words) > most else "")
+    return ", ".join(words[:6]) + (", ..." if len(words) > 6 else "")

@@ -88,7 +88,7 @@ class Own(System):
     """A roster of one's own, and folders by id."""
 
     name, title, place = lms.OWN, "your own roster", "drive"
-    roster = "the columns id and name"
+    roster = "the columns id and name, or words for them as Student ID and First name"
     ids = {"id": "id"}  # noqa: RUF012 - read and never changed
 
     def columns(self, header: Sequence[str]) -> Mapping[str, int] | None:
