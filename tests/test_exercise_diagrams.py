@@ -100,6 +100,8 @@ def test_what_is_wrong_is_named(text, says):
         ("vessel -> LT11\nboiler -> TT12", "connection 2, .*: 'boiler' is neither a tag nor a place"),
         ("inlet -> vessel", "connection 1, .*: inlet and vessel are both parts of the process"),
         ("LT11 -> LT-11", "connection 1, .*: LT11 is connected to itself"),
+        (KEY + "\nFC12 -> FV12", "the signal from FC12 to FV12 is of two kinds: expected one of them"),
+        (KEY + "\nFC12 -//-> FV12 (electrical)", "connection 4, .*: its arrow is that of a pneumatic signal"),
         ("", "the diagram is empty"),
         ("vessel -> LT11 " * 400, "the text is very long"),
         (3, "this is not a diagram: expected connections such as"),

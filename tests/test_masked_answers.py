@@ -25,7 +25,6 @@ from loopbook.exercises.kinds import (
     Words,
 )
 from loopbook.exercises.kinds.instrument_diagram import InstrumentDiagram
-from loopbook.exercises.kinds.sequential_chart import SequentialChart
 from loopbook.grading.assignment import load
 from loopbook.grading.grade import grade, here
 from loopbook.grading.release import answer_call, release
@@ -167,11 +166,6 @@ def test_a_masked_controller_earns_nothing(mask):
         assert_nothing_earned(kind, mask.wears(Kp, Ti))
 
 
-FILLING = SequentialChart(
-    "Wait -> Fill: start; Fill: inlet on; Fill -> Full: level >= 0.9; Full: inlet off; Full -> Wait: 30 s",
-    {"start": "", "level": "m"}, ["inlet"],
-    [("the inlet is open, although the level has reached 0.9 m", "inlet", "Full")], [("", 1, {"start": "Wait.X"})],
-)  # fmt: skip
 LEVEL = InstrumentDiagram("vessel -> LT1 -> LC1 -> LV1 -> out", {"vessel": "vessel", "in": "pipe", "out": "pipe"})
 #: Kinds, with a right and a wrong answer.
 PAIRS = [
@@ -183,13 +177,16 @@ PAIRS = [
     (Settings(PID(2, 10)), "Kp = 2, Ti = 10", "Kp = 3, Ti = 10"),
     (Word("reverse", ["reverse", "direct"]), "reverse", "direct"),
     (Word("yes", ["yes", "no"]), "yes", "no"),
+    (Word("no", ["yes", "no"]), "no", "yes"),
     (Word("V2", ["V1", "V2", "V3"]), "V2", "V1"),
     (Words(["S2", "S4"], ["S1", "S2", "S3", "S4"]), "S2, S4", "S1"),
     (Words(["A", "B"], ["A", "B", "C"], ordered=True), "A, B", "B, A"),
     (TransferFunction("2*exp(-3*s)/(10*s + 1)"), "2*exp(-3*s)/(10*s + 1)", "2/(10*s + 1)"),
     (Expression("K*Kp/(1 + K*Kp)"), "K*Kp/(1 + K*Kp)", "1/(1 + K*Kp)"),
+    (Expression("K/T", symbols="K T Kp"), "K/T", "K/Kp"),
     (TimeFunction("3*t", until=10), "3*t", "2*t"),
     (LEVEL, "vessel -> LT1 -> LC1 -> LV1 -> out", "vessel -> LT1 -> LC1 -> LV1 -> in"),
+    (LEVEL, "vessel -> LT1 -> LC1 -> LV1 -> out", "vessel -> LT1 -> LC1 -//-> LV1 -> out"),
 ]
 
 

@@ -492,10 +492,27 @@ _DATA = [
     }.items()
 ]
 
+
+def _stretched(difference):
+    """A mask that writes each number as a difference of large ones, of which one percent is more than the number."""
+    return lambda w, x: re.sub(r"(?<![\w.])\d+(?:\.\d+)?(?![\w.])", lambda one: difference(float(one[0]), x), w)
+
+
+_STRETCHED = [
+    Mask(f"stretched numbers: {name}", "a number may be rounded, and a large one is then off by a lot", _stretched(way))
+    for name, way in {
+        "times the symbol": lambda v, x: f"(({101 * v:g}*{x} - {100 * v:g}*{x})/{x})",
+        "as products": lambda v, x: f"({101 * v:g}*{x}/{x} - {100 * v:g})",
+        "with exponentials": lambda v, x: f"({101 * v:g}*exp(0*{x}) - {100 * v:g})",
+        "of many terms": lambda v, x: "(" + " + ".join([f"{v / 9:.12g}*{x}/{x}"] * 9) + ")",
+        "in an exponent": lambda v, x: f"(exp({np.log(max(v, 1e-9)) + 5:.12g} - 5*{x}/{x}))",
+    }.items()
+]
+
 #: Masks of formulas.
 MASKS = (
     *_OVERFLOW, *_INVALID, *_UNDERFLOW, *_DIGITS, *_PARTS, *_GROWING, *_BRANCHES, *_PIECES, *_LONG, *_LITERALS,
-    *_WRITING, *_KNOWN, *_EXPRESSIONS, *_DATA,
+    *_WRITING, *_KNOWN, *_STRETCHED, *_EXPRESSIONS, *_DATA,
 )  # fmt: skip
 
 _NUMBERS = [
@@ -681,7 +698,7 @@ HEDGES = (
     "W to R", "between W and R", "W < x < R", "R, maybe W", "not R", "not R but W", "R, no, W", "W -> R", "W\nR",
     "R\nW", "R | W", "R || W", "R & W", "R == W", "R != W", "1. W 2. R", "a) R b) W", "if a: R else: W",
     "R if 1 else W", "either R or W", "neither R nor W", "R, W?", "everything but R", "the opposite of R", "R W", "W R",
-    "R\tW",
+    "R\tW", "R # W", "W # R",
 )  # fmt: skip
 
 

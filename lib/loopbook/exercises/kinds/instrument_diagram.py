@@ -98,7 +98,10 @@ class InstrumentDiagram(Kind):
             raise Unreadable(f"the diagram is empty: expected {self.expected}")
         if len(found) > MOST_CONNECTIONS:
             raise Unreadable(f"there are {len(found)} connections: expected at most {MOST_CONNECTIONS}")
-        kinds = {(one.start, one.end): one.kind for one in found}
+        kinds: dict[tuple[str, str], str] = {}
+        for one in found:
+            if kinds.setdefault((one.start, one.end), one.kind) != one.kind:
+                raise Unreadable(f"the signal from {one.start} to {one.end} is of two kinds: expected one of them")
         return "; ".join(str(Connection(*pair, kind)) for pair, kind in sorted(kinds.items())), ""
 
     def _line(self, number, part):
@@ -115,10 +118,7 @@ class InstrumentDiagram(Kind):
                 texts = [part[begin:end] for begin, end in zip(bounds[::2], bounds[1::2], strict=True)]
                 notes = [_NOTE.search(text) for text in texts]
                 names = [self._name(_NOTE.sub("", text)) for text in texts]
-                kinds = [
-                    PNEUMATIC if arrow["pneumatic"] or (note and note[1] == "pneumatic") else ELECTRICAL
-                    for arrow, note in zip(arrows, notes[1:], strict=True)
-                ]
+                kinds = [_kind(arrow, note and note[1]) for arrow, note in zip(arrows, notes[1:], strict=True)]
             return [self._connection(*pair) for pair in zip(names, names[1:], kinds, strict=False)]
         except Unreadable as problem:
             raise Unreadable(f"connection {number}, '{shortened(part, 50)}': {problem}") from None
@@ -349,6 +349,13 @@ def _article(tag):
 def _bare(text):
     words = re.sub(r"[\s_-]+", " ", text.casefold()).strip(" .:()[]'\"`").removeprefix("the ")
     return re.sub(r"\b(pipe|line)\b", "", words).strip() or words
+
+
+def _kind(arrow, note):
+    """The kind of a signal by its arrow and by what is said behind it."""
+    if arrow["pneumatic"] and note == ELECTRICAL:
+        raise Unreadable("its arrow is that of a pneumatic signal, and it is called electrical: expected one of them")
+    return PNEUMATIC if arrow["pneumatic"] or note == PNEUMATIC else ELECTRICAL
 
 
 def _from_pair(line):

@@ -128,7 +128,10 @@ _DENIES = {
     "not", "no", "never", "none", "neither", "nor", "without", "instead", "rather", "than", "but", "or", "unlike",
     "hardly", "barely", "except", "opposite", "cannot", "false", "wrong", "if", "unless", "non", "isnt", "doesnt",
     "marginally", "almost", "nearly", "conditionally", "maybe", "perhaps", "either", "both", "depends", "less", "least",
+    "un",
 }  # fmt: skip
+#: What denies a denial.
+_TWICE_NO = re.compile(r"\b(?:not|never|n't) (?:an? )?no\b")
 #: An option without one of these is another thing.
 _TELLS = {
     "less", "more", "well", "poorly", "not", "no", "low", "high", "noise", "inverse", "dead", "twice", "as", "was",
@@ -230,13 +233,14 @@ def found(given: str, among: Sequence[str]) -> str | None:
         said = re.findall(r"\w+", re.sub(r"(?<=\w) ?\([^()]*\)$", "", given))  # without an explanation in brackets
         letters = [word for word in said if word in options]
         words = {word.casefold() for word in said}
-        return letters[0] if len(letters) == 1 and len(words) <= 4 and not words & _DENIES else None
+        denied = words & _DENIES or "n't" in given
+        return letters[0] if len(letters) == 1 and len(words) <= 4 and not denied else None
     if len(text) == 1 and len(options) <= MOST_INITIALS and all(re.fullmatch("[A-Za-z]{2,}", one) for one in options):
         begun = {option[0].casefold(): option for option in options}
         return begun.get(text) if len(begun) == len(options) else None  # d for direct, beside r for reverse
     forms = _forms(options)
     words = re.findall(r"[\w'+]+", text)
-    if not words or len(words) > MOST_WORDS:
+    if not words or len(words) > MOST_WORDS or _TWICE_NO.search(text):
         return None
     for form in (text, re.sub(r"[\W_]", "", text), *(_joined(words, k) for k in range(1, len(words)))):
         if form in forms:
