@@ -213,7 +213,7 @@ def _as_people_write(text, symbols):
     if not {"i", "j"} & {symbol[0] for symbol in known}:
         text = re.sub(r"(?<![\w.])[ij](\d+(?:\.\d+)?)(?![\w.])", r"\1j", text)
     text = re.sub(r"\b(np|numpy|math|cmath|sympy|sp)\.(?=[A-Za-z])", "", text).replace("^", "**")
-    if not re.search(rf"\b({'|'.join(SEVERAL_VALUES)})\b", text):
+    if not re.search(rf"\b({'|'.join(name for name in SEVERAL_VALUES if name != 'Heaviside')})\b", text):
         text = notation.decimal_points(text)
     return notation.in_python(text, symbols, (*ONE_VALUE, *SEVERAL_VALUES), CONSTANTS)
 
@@ -440,6 +440,13 @@ def _check_call(node, source):
         raise Unreadable(f"{_quoted(source, node)} cannot be read: expected pairs of a value and a condition")
     if not node.args:
         raise Unreadable(f"{node.func.id} has no arguments: expected at least one")
+    if node.func.id == "Heaviside" and len(node.args) > 1 and not _is_value_at_zero(node.args[1]):
+        raise NotPython(f"{_quoted(source, node)} has a comma in it: expected one value, with a decimal point")
+
+
+def _is_value_at_zero(node):
+    """Whether this may be the second value of a step, as SymPy has one: where it is 0."""
+    return not isinstance(node, ast.Constant) or node.value in (0, 0.5, 1)
 
 
 def spelled(given: object) -> str:
