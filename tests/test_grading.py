@@ -4,6 +4,7 @@ import dataclasses
 import io
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -222,6 +223,35 @@ class TestAClass:
         finally:
             path.write_bytes(before)
             course.grade("graded")
+
+    def test_executed_notebooks_are_kept_where_asked_and_change_no_grade(self, course, graded):
+        folder = course.folder / "kept"
+        shutil.copytree(graded[1], folder)
+        summary = course.grade("kept", keep_notebooks=True)
+        assert (summary.graded, summary.failures) == (4, ())
+        once = files(folder)
+        pages = {f"notebooks/s{number}.{kind}" for number in range(4) for kind in ("html", "ipynb")}
+        assert once.keys() - files(graded[1]).keys() == pages
+        for name, content in files(graded[1]).items():
+            if name.startswith(("results/", "grades")):
+                assert once[name] == content
+        assert b"../../notebooks/s1.html" in once["feedback/s1/feedback.html"]
+        assert b"ZeroDivisionError" in once["notebooks/s1.html"]
+        nbformat.validate(nbformat.reads(once["notebooks/s1.ipynb"].decode(), as_version=4))
+        assert course.grade("kept").kept == 4
+        assert files(folder) == once
+
+    def test_a_kept_notebook_is_that_of_the_result(self, course, graded):
+        folder, path = course.folder / "kept of one", course.submissions / "s2" / "lag.ipynb"
+        course.grade("kept of one", keep_notebooks=True, only=["s2"])
+        before = path.read_bytes()
+        try:
+            path.write_bytes(before.replace(b"* 2,", b"* 3,"))
+            course.grade("kept of one", only=["s2"])  # without being asked again
+        finally:
+            path.write_bytes(before)
+        assert b"* 3," in (folder / "notebooks" / "s2.html").read_bytes()
+        assert b"* 3," in (folder / "notebooks" / "s2.ipynb").read_bytes()
 
     def test_a_dask_cluster(self, course, graded):
         distributed = pytest.importorskip("distributed")

@@ -296,6 +296,9 @@ def grade(
     latest: Annotated[
         bool, typer.Option("--latest", help="Of several notebooks of a student, grade the latest instead of none.")
     ] = False,
+    keep_notebooks: Annotated[
+        bool, typer.Option("--keep-notebooks", help="Keep each notebook as executed, as a page without any script.")
+    ] = False,
     workers: Annotated[int, typer.Option(min=1, help="Submissions at a time on this machine.")] = os.cpu_count() or 1,
     cell_seconds: Annotated[float, typer.Option(min=1, help="What a cell may take.")] = 60,
     seconds: Annotated[float, typer.Option(min=1, help="What a notebook may take.")] = 180,
@@ -337,6 +340,7 @@ def grade(
                 limits=Limits(cell=cell_seconds, total=seconds, memory=megabytes * MEGA),
                 reveal=reveal,
                 latest=latest,
+                keep_notebooks=keep_notebooks,
                 follow=lambda total, count: progress.update(bar, total=total, completed=count),
             )
     except GradingError as error:

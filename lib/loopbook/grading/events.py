@@ -11,7 +11,7 @@ import math
 import signal
 from dataclasses import dataclass, field
 from time import monotonic
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, ClassVar
 
 from loopbook.exercises.judging import harmless
 from loopbook.grading.plain import DEEPEST, MOST_DIGITS
@@ -20,6 +20,8 @@ from loopbook.grading.plain import DEEPEST, MOST_DIGITS
 MOST = 200
 #: No notebook has more cells.
 MOST_CELLS = 10**6
+#: What a cell, and a notebook, may show (characters).
+LONGEST_SHOWN, MOST_SHOWN = 500_000, 3_000_000
 
 
 @dataclass(frozen=True)
@@ -53,6 +55,11 @@ class Story:
         cell_began: when the running cell began (s, of the monotonic clock).
         too_long: a sentence where it told more than it may.
     """
+
+    kinds: ClassVar[dict[str, str]] = {
+        "refused": "_refused", "made for": "_named", "cell": "_cell", "error": "_error", "answer": "_answer",
+        "end": "_end",
+    }  # fmt: skip
 
     def __init__(self, longest: int, most: int):
         self.longest, self.most = longest, most
@@ -88,7 +95,7 @@ class Story:
         try:
             event = json.loads(line.decode(), parse_constant=_no_number)
             ((what, value),) = event.items()
-            getattr(self, _KINDS[what])(value)
+            getattr(self, self.kinds[what])(value)
         except Exception:  # whatever it is, it is not what a notebook's answers look like
             self.odd += 1
 
@@ -136,9 +143,46 @@ class Story:
         return Outcome(self.answers, tuple(self.errors), tuple(self.named), stopped, self.refused, self.odd)
 
 
-_KINDS = {
-    "refused": "_refused", "made for": "_named", "cell": "_cell", "error": "_error", "answer": "_answer", "end": "_end",
-}  # fmt: skip
+@dataclass(frozen=True)
+class Shown:
+    """What a cell has shown: its number, "text", "error" or "png", and the data, a text or a picture in base64."""
+
+    cell: int
+    kind: str
+    data: str
+
+
+class Scene(Story):
+    """The events of a submission that is run to be shown; its answers count for nothing.
+
+    Attributes:
+        shown: so much as MOST_SHOWN allows, in the order in which it came.
+    """
+
+    kinds: ClassVar[dict[str, str]] = Story.kinds | {"shown": "_show"}
+
+    def __init__(self):
+        super().__init__(4 * LONGEST_SHOWN, 4 * MOST_SHOWN)
+        self.shown: list[Shown] = []
+        self._room, self._in_cell = MOST_SHOWN, {}
+
+    def _error(self, error):
+        super()._error(error)
+        self._take_in(Shown(_place(error["cell"]), "error", harmless(error["says"])))
+
+    def _show(self, shown):
+        cell, kind, data = _place(shown["cell"]), shown["kind"], shown["data"]
+        if kind not in ("text", "png") or not isinstance(data, str):
+            raise ValueError(kind)
+        self._take_in(Shown(cell, kind, data))
+
+    def _take_in(self, shown):
+        self._room -= len(shown.data) + 10
+        self._in_cell[shown.cell] = self._in_cell.get(shown.cell, 0) + len(shown.data) + 10
+        if self._room >= 0 and self._in_cell[shown.cell] <= LONGEST_SHOWN:
+            self.shown.append(shown)
+
+
 _SIGNALS = {
     "SIGSEGV": "a segmentation fault",
     "SIGXCPU": "too much processor time",

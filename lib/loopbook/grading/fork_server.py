@@ -35,8 +35,9 @@ KILL = b"kill\n"
 def main(jailed: bool) -> None:
     """Answer the grader at the socket that is standard input, until it goes.
 
-    A job is a line of JSON with the limits, and two descriptors: the notebook's and the events'. While a submission
-    runs, the line "kill" ends it. The reply is a line of JSON: how the process ended, and whether for its memory.
+    A job is a line of JSON with the limits and whether to show the notebook, and two descriptors: the notebook's and
+    the events'. While a submission runs, the line "kill" ends it. The reply is a line of JSON: how the process ended,
+    and whether for its memory.
     """
     control = socket.socket(fileno=os.dup(0))
     try:
@@ -210,7 +211,7 @@ def _submission(shell, call_filter, limits, size, notebook, events, folder):
             if os.getpid() == first:  # a copy of it, which it forked, runs on through the same cells
                 _tell(4, event)
 
-        runner.run(content, shell, tell, limits["cell"])
+        runner.run(content, shell, tell, limits["cell"], limits["show"])
     finally:
         os._exit(0)
 

@@ -20,6 +20,7 @@ from loopbook.grading.events import Outcome
 from loopbook.grading.imprint import peek
 from loopbook.grading.jail import USUAL, Jail, Limits, demand_hidden
 from loopbook.grading.judge import Judge
+from loopbook.grading.keeping import Kept, executed, source
 from loopbook.grading.marking import Marking
 from loopbook.grading.released import Released
 from loopbook.grading.reports import registered, write_all
@@ -51,6 +52,16 @@ class Task:
     numbers: dict[str, dict[str, str]]
     doubts: tuple[str, ...]
     chosen: str
+    show: bool
+
+
+@dataclass(frozen=True)
+class Graded:
+    """What a worker returns: the result, and if asked the page of the executed notebook, and its source."""
+
+    result: Result
+    page: str = ""
+    source: str = ""
 
 
 class Desk:
@@ -62,8 +73,8 @@ class Desk:
         self.jailed, self.limits = task.jailed, task.limits
         self.judge, self.jail = Judge(task.name, task.source, task.path), None
 
-    def graded(self, task: Task) -> Result:
-        """Return the result of a task. Raises GradingError where it has none, through no fault of the student."""
+    def graded(self, task: Task) -> Graded:
+        """Return what becomes of a task. Raises GradingError where it has none, through no fault of the student."""
         outcome = Outcome(refused=task.problem)
         if task.label and not task.problem:
             self.jail = self.jail or Jail(self.jailed, self.limits)
@@ -72,7 +83,11 @@ class Desk:
         found = result(task.name, task.student, task.label, task.fingerprint, task.jailed, outcome, exercises)
         is_said = any(look.kind == OWNER for look in found.looks)
         looks = () if is_said else tuple(Look(OWNER, says) for says in task.doubts)
-        return replace(found, looks=(*looks, *found.looks), chosen=task.chosen)
+        found = replace(found, looks=(*looks, *found.looks), chosen=task.chosen)
+        if not task.show:
+            return Graded(found)
+        shown, stopped = self.jail.show(task.content) if self.jail and task.content else ((), "")
+        return Graded(found, executed(found, task.content, shown, stopped), source(task.content))
 
     def close(self) -> None:
         """End both processes."""
@@ -85,8 +100,8 @@ _desks = threading.local()
 _all_desks = []
 
 
-def graded(task: Task) -> Result | str:
-    """Grade a task on this thread's desk; returns the result, or a sentence where there is none."""
+def graded(task: Task) -> Graded | str:
+    """Grade a task on this thread's desk; returns what becomes of it, or a sentence where there is no result."""
     wanted = (task.name, task.source, task.path, task.jailed, task.limits)
     try:
         if getattr(_desks, "wanted", None) != wanted:
@@ -136,6 +151,7 @@ def grade(
     jailed: bool = True,
     reveal: bool = False,
     latest: bool = False,
+    keep_notebooks: bool = False,
     limits: Limits = USUAL,
     follow: Callable[[int, int], object] = lambda total, done: None,
 ) -> Summary:
@@ -154,6 +170,7 @@ def grade(
         jailed: without a jail, submissions run with the rights of whoever grades, and every output says so.
         reveal: show the key in the feedback.
         latest: of several notebooks of a student the latest counts, as `submissions.collect` tells it.
+        keep_notebooks: keep each notebook as executed; a page that is there is kept up to date in any case.
         limits: `jail.Limits`.
         follow: is called with the number of submissions and how many are done.
     Returns:
@@ -178,7 +195,7 @@ def grade(
     collection = collect(submissions, students, assignment.name, latest)
     notes = [*changes, *released.differences(assignment, [one.student for one in collection.submissions])]
     marking = Marking(folder, assignment, students, extensions)
-    results = Results(folder / "results", assignment.secret)
+    results, pages = Results(folder / "results", assignment.secret), Kept(folder / "notebooks")
     with _alone(folder):
         results.demand_of(assignment.name, [student.id for student in students])
         released.demand_fitting(assignment, collection.submissions)
@@ -187,7 +204,9 @@ def grade(
         wanted = [student for student in students if not only or student.id in only]
 
         def task(student):
-            return _task(assignment, released, student, found.get(student.id), jailed, limits)
+            one = _task(assignment, released, student, found.get(student.id), jailed, limits)
+            asked = bool(one.label) and (keep_notebooks or pages.is_there(student.id))
+            return replace(one, show=asked and not pages.is_there(student.id, one.fingerprint))
 
         graded, kept, failures = 0, 0, []
         for done, (student, outcome) in enumerate(
@@ -199,7 +218,9 @@ def grade(
                 kept += student in found
             else:
                 graded += student in found
-                results.keep(outcome)
+                if outcome.page:  # before the result: where that is there, so is the page
+                    pages.keep(student, outcome.page, outcome.source)
+                results.keep(outcome.result)
             follow(len(wanted), done)
         stored = {student.id: one for student in students if (one := results.of(student.id))}
         marking.read(stored.get)
@@ -232,7 +253,7 @@ def _task(assignment, released, student, submission, jailed, limits):
     mark = fingerprint(assignment, numbers, content, label, problem or chosen, jailed, limits)
     return Task(
         assignment.name, assignment.source, str(assignment.path or ""), student.id, label, content, problem, jailed,
-        limits, mark, numbers, doubts, chosen,
+        limits, mark, numbers, doubts, chosen, show=False,
     )  # fmt: skip
 
 
@@ -243,7 +264,7 @@ def _outcomes(tasks, results, regrade, place):
         try:
             for task in tasks:
                 stored = None if regrade else results.of(task.student)
-                if stored and stored.fingerprint == task.fingerprint:
+                if stored and stored.fingerprint == task.fingerprint and not task.show:
                     yield task.student, None
                     continue
                 running[executor.submit(graded, task)] = task.student

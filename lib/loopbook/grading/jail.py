@@ -24,11 +24,11 @@ from typing import TYPE_CHECKING, Self
 
 from loopbook.grading import GradingError, NoJail
 from loopbook.grading.confinement import HOME
-from loopbook.grading.events import Story
+from loopbook.grading.events import Scene, Story
 from loopbook.grading.fork_server import KILL
 
 if TYPE_CHECKING:
-    from loopbook.grading.events import Outcome
+    from loopbook.grading.events import Outcome, Shown
 
 MEGA = 2**20
 #: What libraries may take to be imported (s).
@@ -199,13 +199,29 @@ class Jail:
                 self.close()
         return story.outcome("the process around it ended", -signal.SIGKILL)
 
-    def _run(self, content, story):
+    def show(self, content: bytes) -> tuple[list[Shown], str]:
+        """Run a notebook to see what its cells show; returns that, and why it did not run to its end.
+
+        It is a run of its own, so that looking at it changes no answer. Raises NoJail as the start.
+        """
+        if self.process.poll() is not None:
+            self.close()
+            self._start()
+        scene = Scene()
+        try:
+            outcome = self._run(content, scene, show=True)
+        except ConnectionError:
+            self.close()
+            return scene.shown, "the process around it ended"
+        return scene.shown, outcome.refused or outcome.stopped
+
+    def _run(self, content, story, show=False):
         reader, writer = os.pipe()
         with tempfile.TemporaryFile() as notebook, open(reader, "rb", buffering=0) as events:
             try:
                 notebook.write(content)
                 notebook.seek(0)
-                job = json.dumps(asdict(self.limits)).encode() + b"\n"
+                job = json.dumps(asdict(self.limits) | {"show": show}).encode() + b"\n"
                 socket.send_fds(self._control, [job], [notebook.fileno(), writer])
             finally:
                 os.close(writer)

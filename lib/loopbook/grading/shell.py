@@ -28,13 +28,16 @@ class _Quiet(DisplayHook):
     def __call__(self, result=None):
         if result is not None and not self.quiet():
             self.update_user_ns(result)
+            if showing := getattr(self.shell, "showing", None):
+                showing.value(result)
 
 
 class _Unseen(DisplayPublisher):
-    """What a cell displays is seen by nobody."""
+    """What a cell displays is seen by nobody, unless the notebook is run to be shown."""
 
-    def publish(self, *arguments, **options):
-        pass
+    def publish(self, data, *arguments, **options):
+        if showing := getattr(self.shell, "showing", None):
+            showing.data(data)
 
 
 class _Shell(InteractiveShell):
@@ -88,7 +91,11 @@ def _cells(content):
 
 
 def run(
-    content: bytes, interpreter: InteractiveShell, tell: Callable[[dict[str, Any]], object], seconds: float
+    content: bytes,
+    interpreter: InteractiveShell,
+    tell: Callable[[dict[str, Any]], object],
+    seconds: float,
+    show: bool = False,
 ) -> None:
     """Run a notebook, cell after cell; after an error the next cell follows.
 
@@ -99,6 +106,7 @@ def run(
             the student that the notebook names, "cell" with the number of a code cell that begins, "error" with the
             cell and a sentence, "answer" with student, exercise and what was given, "end".
         seconds: that a cell may take.
+        show: tell also what the cells show, as `showing.Showing` does.
     """
     try:
         sources, student = _cells(content)
@@ -113,9 +121,18 @@ def run(
     signal.signal(signal.SIGALRM, _out_of_time)
     asyncio.set_event_loop(asyncio.new_event_loop())
     random.seed(0), np.random.seed(0)  # the same numbers each time it is graded
+    showing = None
+    if show:
+        from loopbook.grading.showing import Showing
+
+        showing = Showing(interpreter, tell)
     for number, source in enumerate(sources, start=1):
         tell({"cell": number})
+        if showing:
+            showing.begin(number)
         says = _error(interpreter, source, seconds)
+        if showing:
+            showing.end()
         if says:
             tell({"error": {"cell": number, "says": says}})
     tell({"end": True})
