@@ -45,10 +45,8 @@ book: .venv/ready ## make the site of the collection, build/book/index.html
 pictures: .venv/ready ## make the README's pictures again
 	$(python) docs/pictures.py
 
-grade: .venv/ready ## release the example course, collect a dozen submissions, and grade them
-	$(python) examples/course/make_submissions.py
-	$(python) -m loopbook grade examples/course/air_heater.py examples/course/build/submissions \
-		--to examples/course/build/graded --cell-seconds 5
+grade: .venv/ready ## live through the term of the example course: release, collect, grade, mend, grade again
+	$(python) examples/course/term.py
 
 execute: .venv/ready ## run every notebook again, store its outputs and write ERRATA.md
 	$(python) -m loopbook execute

@@ -20,7 +20,7 @@ from desk import Desk, jupyterlab  # noqa: E402
 
 CHAPTER = "10_tuning"
 LESSON, ITS_CHAPTER = "smith", "17_dead_time_compensation"
-GRADED = ROOT / "examples" / "course" / "build" / "graded"
+GRADED = ROOT / "examples" / "course" / "build" / "grades" / "air_heater"
 STUDENT = "s1002"
 SHARPNESS = 1.5  # pixels of the picture for one of the page
 LARGEST = 150_000  # bytes

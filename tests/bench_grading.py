@@ -34,7 +34,7 @@ from loopbook.grading.roster import Student
 
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "examples" / "course"))
-from make_submissions import fill_in_all, insert  # noqa: E402 - it lies beside the course that it belongs to
+from hand_in import fill_in_all, insert  # noqa: E402 - it lies beside the course that it belongs to
 
 IMPORTS = "import control\nimport matplotlib.pyplot as plt\nimport numpy as np\nimport sympy"
 STEPS = "times = np.linspace(0, 200, 401)\nresponse = control.step_response(control.tf([2], [30, 1]), times)"

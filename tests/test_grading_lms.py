@@ -626,6 +626,15 @@ def test_canvas_gets_its_own_columns_with_the_number_of_the_assignment(roster):
     assert not kept.startswith("\ufeff")
 
 
+def test_a_time_that_an_instructor_adds_to_the_gradebook_is_read_and_not_sent_back(roster):
+    students = roster(
+        "Student,ID,SIS User ID,SIS Login ID,Section,Heater (41),Handed in\n    Points Possible,,,,,17,\n"
+        '"Doe, Jane",123,s1001,jane,A,,2026-11-20 21:40\n'
+    )
+    assert students[0].handed_in == datetime.datetime(2026, 11, 20, 21, 40)
+    assert "Handed in" not in canvas_grades("Heater", students, [mark("s1001", 2)])
+
+
 def test_canvas_asks_where_it_cannot_know_and_that_is_said(roster):
     students = roster(CANVAS.format(sis="A18", login="anh"))
     marks = [mark("A17", 10)]

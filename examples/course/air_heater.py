@@ -31,6 +31,8 @@ from loopbook.pid import PID
 
 # Whoever knows it can compute the variants: an assignment that counts has a secret of its own, and stays secret itself.
 SECRET = "an-example-that-everybody-may-read"
+DUE = "2026-11-20 23:59"
+LATE = "10 % a day, 15 min grace, at most 50 %"
 
 
 @exercise(

@@ -56,6 +56,7 @@ _TITLE = re.compile(r"(.*\S)\s*\(([0-9]+)\)")
 _HEADS = {
     "student": "sortable", "lastname": "last", "firstname": "first", "id": "canvas_id", "sisuserid": "sis_id",
     "sisloginid": "login", "integrationid": "integration", "rootaccount": "account", "section": "section",
+    "handedin": "handed_in",  # a column that instructors add: Canvas does not export when
 }  # fmt: skip
 _POINTS = "Points Possible"
 #: What stands in the cell of a student who is excused.
@@ -85,7 +86,7 @@ class Canvas(System):
             sortable = _unquoted(cells["sortable"])
         else:
             sortable = ", ".join(filter(None, (_unquoted(cells["last"]), _unquoted(cells["first"]))))
-        fields = {field: cells.get(field, "") for field in ("canvas_id", "sis_id", "login", "section")}
+        fields = {field: cells.get(field, "") for field in ("canvas_id", "sis_id", "login", "section", "handed_in")}
         is_test = sortable == "Student, Test" and not fields["sis_id"]
         if sortable.startswith(_POINTS) or is_test or not any((sortable, *fields.values())):
             return None
@@ -236,7 +237,7 @@ def canvas_grades(title: str, students: Sequence[Student], marks: Collection[Mar
     if not isinstance(found, Canvas) or table is None:
         return None
     columns = found.columns(table.header) or {}
-    places = sorted(columns.values())
+    places = sorted(place for field, place in columns.items() if field != "handed_in")
     unsafe = without_jail(mark.result for mark in marks)
     heads = [] if unsafe else _of_title(table.header, title)
     own = heads[0] if len(heads) == 1 else None
