@@ -15,7 +15,7 @@ from loopbook.exercises.arithmetic import NoValue, in_digits
 from loopbook.exercises.authoring import answers, exercise, expression, number, time_function, transfer_function
 from loopbook.exercises.formulas import Formula
 from loopbook.exercises.freedoms import freedoms
-from loopbook.exercises.judging import UNJUDGED, WRONG, is_right, judge
+from loopbook.exercises.judging import RIGHT, UNJUDGED, WRONG, is_right, judge
 from loopbook.exercises.points import points_for
 
 DELAYED = "2*exp(-8*s)/(10*s + 1)"
@@ -199,6 +199,18 @@ def test_what_cannot_be_compared_is_not_right_and_is_looked_at(given, says):
     assert verdict.status in (WRONG, UNJUDGED)
     assert says in verdict.says
     assert bool(verdict.look) is (verdict.status == WRONG)
+
+
+def test_a_product_that_is_nearly_zero_is_worked_out_in_digits():
+    key = "3*exp(-60*s)/(10*s + 1)"
+    assert is_right(transfer_function(key), f"({key})*({key})/({key})")
+    assert not is_right(transfer_function(key), f"{key} + 5*1e-200*1e-200*1e200*1e200")
+
+
+def test_a_power_of_zero_is_zero_for_positive_exponents_alone():
+    for exponent in ("I", "(-1/2)", "(-2)"):
+        assert judge("H", transfer_function(DELAYED), f"{DELAYED} + 0*(s - s)**{exponent}").status != RIGHT
+    assert is_right(transfer_function(DELAYED), f"{DELAYED} + (s - s)**0.5")
 
 
 def test_an_ordinary_verdict_is_not_looked_at():

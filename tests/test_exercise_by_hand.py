@@ -172,6 +172,7 @@ def test_a_text(given, status, says):
 
 def test_a_text_is_bounded():
     assert "5001 characters" in unreadable(plain("x" * (LONGEST_TEXT + 1)))
+    assert_judged(WHY, "x" * (LONGEST_TEXT + 1), UNJUDGED, "5001 characters: expected at most 5000")
 
 
 # In an exercise.

@@ -271,6 +271,12 @@ def test_of_an_extension_for_all_and_one_for_this_assignment_the_later_counts(ex
     )  # fmt: skip
 
 
+def test_an_extension_by_another_id_of_the_student(tmp_path):
+    path = tmp_path / "extensions.csv"
+    path.write_text("student,until\nA17,2026-12-05\n", encoding="utf-8")
+    assert [*read_extensions(path, ["s1001"], "heater", Policy.of(DUE), {"a17": "s1001"}).until] == ["s1001"]
+
+
 def test_extensions_of_an_assignment_that_is_never_due(extensions):
     assert extensions("student,until\ns1001,2026-12-05\n", due=None).notes == (
         "extensions.csv, of no effect here: heater has no DUE",

@@ -248,6 +248,13 @@ def test_a_table_without_its_columns_is_refused(folder, head, says):
     assert says in folder.faults("s1,1,T,1", head=head)[0]
 
 
+def test_an_id_of_the_roster_stands_for_the_one_that_was_released(folder):
+    folder.write("A17,1,sketch,1,", "s1,1,why,1,")
+    marking = Marking(folder.path, ASSIGNMENT, CLASS, also={"a17": "s1", "s1": "s1"})
+    marking.read({"s1": result("s1")}.get)
+    assert not marking.marked([result("s1")], {})[0].waiting
+
+
 def test_so_many_faults_are_told(folder):
     faults = folder.faults(*["s9,1,,1,"] * 100)
     assert len(faults) == spreadsheet.MOST_FAULTS + 1

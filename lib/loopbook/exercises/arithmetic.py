@@ -23,7 +23,7 @@ from loopbook.exercises.reading import CONSTANTS, Unreadable
 
 #: The last digit of a decimal number.
 LAST_DIGIT = 2.0**-52
-#: An exponential below this has lost its digits.
+#: An exponential, or a product, below this has lost its digits.
 SMALLEST = 1e-300
 #: The argument of an exponential, or of a sine, has so many binary digits before its point at most.
 MOST_BITS = 1100
@@ -218,6 +218,9 @@ class Bounded(Decimals):
             logarithm = np.abs(np.log(np.where(x == 0, 1, x).astype(complex)))
             relative = _product(dx / np.where(bottom == 0, 1, bottom), np.abs(y)) + _product(dy, logarithm)
             error = _product(relative + LAST_DIGIT * (1 + np.abs(y) * logarithm), size)
+        if operator not in (ast.Add, ast.Sub):  # a product that is nearly zero has lost its digits
+            is_zero = (x == 0) | ((y == 0) & (operator is ast.Mult))
+            error = error + np.where((size < SMALLEST) & ~is_zero, SMALLEST, 0)
         return found, np.where(np.isfinite(found), error, np.inf)
 
     def both(self, operator: type[ast.operator], left: Any, right: Any) -> Any:
@@ -324,6 +327,8 @@ class Digits:
                 raise NoValue
             return base ** int(self.many.re(exponent))
         if base == 0:
+            if self.many.re(exponent) <= 0:
+                raise NoValue
             return self.many.zero
         return self.called("exp", [exponent * self.many.log(base)])
 

@@ -162,9 +162,8 @@ def _drawn(figure):
         file = io.BytesIO()
         how = {"bbox_inches": "tight"} if is_near else {}
         figure.savefig(file, format="png", dpi=pixels, metadata={"Software": None}, **how)
-        for content in (file.getvalue(), _with_few_colours(file.getvalue())):
-            if _is_small(content):
-                return content
+        if content := _small(file.getvalue()):
+            return content
         pixels *= _FEWER
     raise Unreadable("this figure cannot be made small enough: expected one with less in it")
 
@@ -182,16 +181,19 @@ def _smaller(content):
         raise Unreadable("this picture is damaged: expected a PNG file") from None
     for _ in range(_TRIES):
         image.thumbnail((LONGEST_SIDE, LONGEST_SIDE))
-        content = _stored(image)
-        for one in (content, _with_few_colours(content)):
-            if _is_small(one):
-                return one
+        if content := _small(_stored(image)):
+            return content
         image = image.resize([max(1, round(_FEWER * side)) for side in image.size])
     raise Unreadable("this picture cannot be made small enough: expected one with less in it")
 
 
-def _is_small(content):
-    return len(content) <= LARGEST and max(size(content)) <= LONGEST_SIDE
+def _small(content):
+    """A PNG file as it is, or with fewer colours, if one of them is small enough; None otherwise."""
+    if max(size(content)) > LONGEST_SIDE:
+        return None
+    if len(content) > LARGEST:
+        content = _with_few_colours(content)
+    return content if len(content) <= LARGEST else None
 
 
 def _with_few_colours(content):

@@ -194,7 +194,7 @@ def grade(
         demand_hidden(*filter(None, [assignment.path, submissions, folder]))
     collection = collect(submissions, students, assignment.name, latest)
     notes = [*changes, *released.differences(assignment, [one.student for one in collection.submissions])]
-    marking = Marking(folder, assignment, students, extensions)
+    marking = Marking(folder, assignment, students, extensions, kept_ids)
     results, pages = Results(folder / "results", assignment.secret), Kept(folder / "notebooks")
     with _alone(folder):
         results.demand_of(assignment.name, [student.id for student in students])

@@ -367,7 +367,13 @@ class Extensions:
     notes: tuple[str, ...] = ()
 
 
-def read_extensions(path: str | Path, students: Iterable[str], assignment: str, policy: Policy | None) -> Extensions:
+def read_extensions(
+    path: str | Path,
+    students: Iterable[str],
+    assignment: str,
+    policy: Policy | None,
+    also: Mapping[str, str] | None = None,
+) -> Extensions:
     """Return the extensions that a file grants: student, until, and perhaps assignment, one row for each.
 
     A row without an assignment is for every one.
@@ -377,12 +383,14 @@ def read_extensions(path: str | Path, students: Iterable[str], assignment: str, 
         students: the ids of the roster.
         assignment: the name of this one.
         policy: its policy.
+        also: {another id of a student: id}.
     Raises:
         GradingError: with all faults, each with its line: a student who is not on the roster, what is no time, a time
             before the due date, two rows for one student.
     """
     sheet = read(path, ["student", "until"], ["assignment"])
-    known = {student.casefold(): student for student in students}
+    known = {other.casefold(): student for other, student in (also or {}).items()}
+    known |= {student.casefold(): student for student in students}
     faults, until, lines, others, early = Faults(sheet.path.name), {}, {}, {}, []
     for line, row in sheet.rows:
         of = row.get("assignment", "")

@@ -181,21 +181,28 @@ class Marking:
         assignment: `Assignment`.
         students: the roster.
         extensions: the file that grants them; None where there is none.
+        also: {another id of a student, as the roster may have it: id}.
     Raises:
         GradingError: with all faults of the extensions.
     """
 
     def __init__(
-        self, folder: Path, assignment: Assignment, students: Sequence[Student], extensions: Path | None = None
+        self,
+        folder: Path,
+        assignment: Assignment,
+        students: Sequence[Student],
+        extensions: Path | None = None,
+        also: Mapping[str, str] | None = None,
     ):
         self.assignment = assignment
         ids = tuple(student.id for student in students)
-        of = read_extensions(extensions, ids, assignment.name, assignment.policy) if extensions else Extensions({})
-        self.extensions: Extensions = of
+        self.extensions = Extensions({})
+        if extensions:
+            self.extensions = read_extensions(extensions, ids, assignment.name, assignment.policy, also)
         self._at: dict[str, datetime.datetime | None] = {}
         self._names: dict[str, dict[str, float]] = {}
         exercises = {number: exercise.points for number, exercise in assignment.exercises.items()}
-        self.overrides = Overrides(folder, Asked(ids, exercises, self._quantities))
+        self.overrides = Overrides(folder, Asked(ids, exercises, self._quantities, also or {}))
 
     def _quantities(self, student, number):
         """{quantity: points} of an exercise; the names are the same for all students."""

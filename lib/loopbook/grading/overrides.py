@@ -14,7 +14,7 @@ import datetime
 import hashlib
 import json
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -52,14 +52,16 @@ class Asked:
     """What can be marked, and with how many points.
 
     Attributes:
-        students: the ids of the roster.
+        students: their ids.
         exercises: {number: points}.
         quantities: returns {quantity: points} for a student and an exercise.
+        also: {another id of a student: id}.
     """
 
     students: tuple[str, ...]
     exercises: Mapping[str, float]
     quantities: Callable[[str, str], Mapping[str, float]]
+    also: Mapping[str, str] = field(default_factory=dict)
 
 
 class Overrides:
@@ -150,7 +152,8 @@ class Overrides:
 
     def _placed(self):
         """The rows that are about somebody: line, place and cells, in the words of the roster and the assignment."""
-        by_id = {student.casefold(): student for student in self.asked.students}
+        by_id = {also.casefold(): student for also, student in self.asked.also.items()}
+        by_id |= {student.casefold(): student for student in self.asked.students}
         numbers = {number.casefold(): number for number in self.asked.exercises}
         for line, row in self._sheet.rows:
             student, number = row["student"], row["exercise"]

@@ -10,6 +10,9 @@ from loopbook.exercises.kinds.kind import Kind
 from loopbook.exercises.reading import NOT_ANSWERED, Unreadable, answered
 from loopbook.validation import whole
 
+#: Characters of a text.
+LONGEST = 5000
+
 
 class _ByHand:
     """What the kinds that a person marks have in common. Their key is a text for the marker, and may be empty."""
@@ -128,6 +131,8 @@ class Text(_ByHand, Kind):
         text = str(given).strip()
         if not text:
             raise Unreadable(NOT_ANSWERED)
+        if len(text) > LONGEST:
+            raise Unreadable(f"this text has {len(text)} characters: expected at most {LONGEST}")
         count = len(text.split())
         return text, f"{count} words, where at most {self.words} are asked for" if 0 < self.words < count else ""
 

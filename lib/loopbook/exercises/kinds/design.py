@@ -53,7 +53,8 @@ class Criterion:
         """Return a sentence on what an answer does not achieve; empty where it does."""
         value = self.measure(answer)
         if not self.limits():
-            return "" if value else self.otherwise or f"asked is that {self.what}, and it is not so"
+            holds = bool(value) and not (isinstance(value, float) and math.isnan(value))
+            return "" if holds else self.otherwise or f"asked is that {self.what}, and it is not so"
         value = float(value)
         low = -math.inf if self.above is None else float(self.above)
         high = math.inf if self.below is None else float(self.below)

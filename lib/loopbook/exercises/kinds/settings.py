@@ -310,8 +310,8 @@ def _by_our_names(given):
     return found, f"read {listed(others)}" if others else ""
 
 
-#: Values of s, at which each of three terms and a filter shows itself beside the others.
-_POINTS = np.geomspace(1e-6, 1e3, 30)
+#: Values of s in the whole plane, at which each of three terms and a filter shows itself beside the others.
+_POINTS = np.geomspace(1e-6, 1e3, 30) * np.exp(1j * np.linspace(-3, 3, 30))
 
 
 def _of_transfer_function(given):
@@ -325,16 +325,19 @@ def _of_transfer_function(given):
         formula = Formula(given, "s")
     except Unreadable:
         return None
-    if not re.search(r"\bs\b", formula.text):  # a number alone tells no controller
+    if formula.decides or not re.search(r"\bs\b", formula.text):  # a number alone tells no controller
         return None
     times_s = _POINTS * formula(s=_POINTS)
-    if not np.isfinite(times_s).all() or np.any(times_s.imag) or not np.all(times_s):
+    if not np.isfinite(times_s).all() or not np.all(times_s):
         return None
-    terms = np.stack([_POINTS**0, _POINTS, _POINTS**2, -_POINTS * times_s.real]) / times_s.real
+    terms = np.stack([_POINTS**0, _POINTS, _POINTS**2, -_POINTS * times_s]) / times_s
     for count in (3, 4):  # without a filter, or with one
         size = np.abs(terms[:count]).max(axis=1)
-        parts = np.linalg.lstsq((terms[:count].T / size), np.ones(len(_POINTS)), rcond=None)[0]
-        if np.allclose(terms[:count].T @ (parts / size), 1, rtol=0, atol=1e-8):
+        scaled = terms[:count].T / size
+        system = np.concatenate([scaled.real, scaled.imag])
+        ones = np.concatenate([np.ones(len(_POINTS)), np.zeros(len(_POINTS))])
+        parts = np.linalg.lstsq(system, ones, rcond=None)[0]
+        if np.allclose(system @ parts, ones, rtol=0, atol=1e-8):
             parts[np.abs(parts) < 1e-8] = 0
             return _with_terms(*map(float, parts / size), *[0.0][: 4 - count])
     return None
