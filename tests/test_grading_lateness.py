@@ -277,6 +277,13 @@ def test_an_extension_by_another_id_of_the_student(tmp_path):
     assert [*read_extensions(path, ["s1001"], "heater", Policy.of(DUE), {"a17": "s1001"}).until] == ["s1001"]
 
 
+def test_an_extension_of_one_who_has_left_the_class(tmp_path):
+    path = tmp_path / "extensions.csv"
+    path.write_text("student,until\ns9,2026-12-05\n", encoding="utf-8")
+    found = read_extensions(path, ["s1001"], "heater", Policy.of(DUE), former={"s9"})
+    assert found.notes == ("extensions.csv, of no effect here: s9: no longer on the roster",)
+
+
 def test_extensions_of_an_assignment_that_is_never_due(extensions):
     assert extensions("student,until\ns1001,2026-12-05\n", due=None).notes == (
         "extensions.csv, of no effect here: heater has no DUE",

@@ -255,6 +255,19 @@ def test_an_id_of_the_roster_stands_for_the_one_that_was_released(folder):
     assert not marking.marked([result("s1")], {})[0].waiting
 
 
+def test_who_has_left_the_class_stops_nobody(folder):
+    folder.write("s1,1,sketch,1,", "s2,1,sketch,1,")
+    folder.run(result("s1"), result("s2"))
+    (folder.path / "results").mkdir()
+    (folder.path / "results" / "s2.json").touch()
+    marking = Marking(folder.path, ASSIGNMENT, CLASS[:1])
+    marking.read({"s1": result("s1")}.get)
+    marks = marking.marked([result("s1")], {})
+    assert "marks.csv has rows of s2, no longer on the roster: they stay there." in marking.notes(marks)
+    assert len(folder.changes()) == 2
+    assert folder.run(result("s1"), result("s2"))["s2"].waiting == (("1", "why"),)
+
+
 def test_so_many_faults_are_told(folder):
     faults = folder.faults(*["s9,1,,1,"] * 100)
     assert len(faults) == spreadsheet.MOST_FAULTS + 1

@@ -18,7 +18,7 @@ import datetime
 import math
 import re
 import zoneinfo
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from datetime import timedelta
 from pathlib import Path
@@ -373,6 +373,7 @@ def read_extensions(
     assignment: str,
     policy: Policy | None,
     also: Mapping[str, str] | None = None,
+    former: Collection[str] = (),
 ) -> Extensions:
     """Return the extensions that a file grants: student, until, and perhaps assignment, one row for each.
 
@@ -384,6 +385,7 @@ def read_extensions(
         assignment: the name of this one.
         policy: its policy.
         also: {another id of a student: id}.
+        former: the ids of those who have left the roster.
     Raises:
         GradingError: with all faults, each with its line: a student who is not on the roster, what is no time, a time
             before the due date, two rows for one student.
@@ -391,13 +393,16 @@ def read_extensions(
     sheet = read(path, ["student", "until"], ["assignment"])
     known = {other.casefold(): student for other, student in (also or {}).items()}
     known |= {student.casefold(): student for student in students}
-    faults, until, lines, others, early = Faults(sheet.path.name), {}, {}, {}, []
+    faults, until, lines, others, early, left = Faults(sheet.path.name), {}, {}, {}, [], []
     for line, row in sheet.rows:
         of = row.get("assignment", "")
         if of and of.casefold() != assignment.casefold():
             others[of] = others.get(of, 0) + 1
             continue
         student = known.get(row["student"].casefold())
+        if not student and row["student"] in former:
+            left.append(row["student"])
+            continue
         if not student:
             known_ids = did_you_mean(row["student"], known.values(), "expected an id")
             faults.add(line, f"there is no student {row['student']!r} on the roster: {known_ids}")
@@ -426,6 +431,7 @@ def read_extensions(
     faults.demand_none()
     notes = [f"{count} for the assignment {name!r}" for name, count in others.items()]
     notes += [f"{', '.join(early)}: before the due date"] if early else []
+    notes += [f"{', '.join(left)}: no longer on the roster"] if left else []
     if policy is None and sheet.rows:
         notes.append(f"{assignment} has no DUE")
     return Extensions(until, tuple(f"{sheet.path.name}, of no effect here: {note}" for note in notes))

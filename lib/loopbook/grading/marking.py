@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Self
 
 from loopbook.exercises.judging import RIGHT, WAITING, earned
 from loopbook.grading.lateness import IN_TIME, Extensions, Lateness, lateness, read_extensions
-from loopbook.grading.overrides import Asked, Mark, Overrides, points
+from loopbook.grading.overrides import Asked, Mark, Overrides, graded, points
 from loopbook.grading.results import MISSING, NOT_RUN, JudgedExercise, Result
 
 if TYPE_CHECKING:
@@ -198,7 +198,8 @@ class Marking:
         ids = tuple(student.id for student in students)
         self.extensions = Extensions({})
         if extensions:
-            self.extensions = read_extensions(extensions, ids, assignment.name, assignment.policy, also)
+            former = graded(folder).difference(ids)
+            self.extensions = read_extensions(extensions, ids, assignment.name, assignment.policy, also, former)
         self._at: dict[str, datetime.datetime | None] = {}
         self._names: dict[str, dict[str, float]] = {}
         exercises = {number: exercise.points for number, exercise in assignment.exercises.items()}
@@ -274,6 +275,10 @@ class Marking:
         if waiting := sum(len(mark.waiting) for mark in marks):
             found.append(
                 f"{_counted(waiting, 'answer')} to be marked: to_mark.html shows them, marks.csv has a row for each."
+            )
+        if former := self.overrides.former:
+            found.append(
+                f"marks.csv has rows of {', '.join(sorted(former))}, no longer on the roster: they stay there."
             )
         if self.overrides.withdrawn:
             found.append(f"{_counted(self.overrides.withdrawn, 'mark')} by hand withdrawn since the last time.")

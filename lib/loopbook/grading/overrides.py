@@ -74,12 +74,14 @@ class Overrides:
     Attributes:
         marks: {place: `Mark`}, as `read` found them.
         withdrawn: how many marks were there before, and are not there now.
+        former: those of whom there are marks and results, and who are no longer on the roster.
     """
 
     def __init__(self, folder: Path, asked: Asked):
         self.path, self.history_path, self.asked = folder / "marks.csv", folder / "marks_history.csv", asked
         self.marks: dict[Place, Mark] = {}
-        self.withdrawn = 0
+        self.withdrawn, self.former = 0, set[str]()
+        self._graded = graded(folder)
         self._sheet = Sheet.new(self.path, COLUMNS)
         self._noted: dict[Place, dict[str, str]] = {}
 
@@ -164,6 +166,9 @@ class Overrides:
         """The marks that count. Raises GradingError with all faults."""
         faults, marks = Faults(self.path.name), {}
         for line, place, row in self._placed():
+            if place[0] not in self.asked.students and place[0] in self._graded:
+                self.former.add(place[0])
+                continue
             says = self._fault(place)
             if not says:
                 given, most = spreadsheet.number(row["points"]), self._most(place)
@@ -215,6 +220,8 @@ class Overrides:
         rows = []
         for place in dict.fromkeys([*self.marks, *self._noted]):
             before, mark = self._noted.get(place, {"to": "", "comment": ""}), self.marks.get(place, Mark())
+            if place[0] not in self.asked.students:
+                continue
             was = spreadsheet.number(before["to"])
             if (was, before["comment"]) == (_rounded(mark.points), mark.comment):
                 continue
@@ -227,6 +234,11 @@ class Overrides:
             cells = when, *place, before["to"], to, mark.comment, says, answer
             rows.append(dict(zip(HISTORY, cells, strict=True)))
         return rows
+
+
+def graded(folder: Path) -> set[str]:
+    """Return the ids of the students of whom there are results in a folder of grades."""
+    return {path.stem for path in (folder / "results").glob("*.json")}
 
 
 def judged(result: Result, exercise: str, quantity: str) -> tuple[str, str]:
