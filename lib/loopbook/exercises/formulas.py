@@ -158,6 +158,14 @@ def is_number(node: ast.expr) -> bool:
     >>> is_number(Formula("sqrt(2)/3").tree), is_number(Formula("0*s", "s").tree)
     (True, False)
     """
-    functions = {id(one.func) for one in ast.walk(node) if isinstance(one, ast.Call)}
-    names = {one.id for one in ast.walk(node) if isinstance(one, ast.Name) and id(one) not in functions}
-    return names <= CONSTANTS.keys()
+    found = getattr(node, "is_number", None)
+    if found is None:
+        match node:
+            case ast.Name():
+                found = node.id in CONSTANTS
+            case ast.Call():
+                found = all(map(is_number, node.args))
+            case _:
+                found = all(is_number(part) for part in ast.iter_child_nodes(node) if isinstance(part, ast.expr))
+        node.is_number = found  # it is asked of each part of a part
+    return found
