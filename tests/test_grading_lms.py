@@ -839,7 +839,7 @@ def test_notebooks_for_moodle_are_feedback_files(released):
 
 def test_notebooks_for_canvas_are_links_that_nobody_can_guess(released):
     made = lms.packed("canvas", released, CLASS, "heater", "a secret of some length")
-    assert "Canvas cannot hand each student an own file" in made.says
+    assert "Canvas cannot give each student a file of their own" in made.says
     (head, *links) = rows(made.files["links.csv"].decode())
     assert head == ["id", "name", "email", "login", "link"]
     assert [row[0] for row in links] == ["s1001", "s1002", "s1003"]

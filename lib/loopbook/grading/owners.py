@@ -24,7 +24,7 @@ class Owner:
         student: whose it is; None where that is not clear.
         reason: where it is not, why.
         late: whether the name says that it came late; None where it says nothing.
-        attempt: the how manieth of this name it is, counted from one; None where it does not say.
+        attempt: which file of this name it is, 1 for the first; None where it does not say.
         upload: a number that is larger for what the same student handed in later; None where it does not say.
     """
 

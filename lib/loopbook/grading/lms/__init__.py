@@ -1,8 +1,8 @@
 """Learning management systems: what their rosters and downloads say, and the files that they take.
 
-Each module of this folder is one, a class with `@system`, and with `output` for the files in its form. A new one is a
-new module here and nothing else: rosters are then recognised, the names in its downloads are read, and its files are
-written and listed by ``loopbook grade --help``.
+Each module of this folder is one: a class with ``@system``, and functions with ``@output`` for the files in its form. A
+new one is a new module here and nothing else: rosters are then recognised, the names in its downloads are read, and its
+files are written and listed by ``loopbook grade --help``.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ class Claim:
         students: who may be meant.
         reason: where nobody is, why.
         late: whether it says that the file came late; None where it says nothing.
-        attempt: the how manieth file of this name it is, counted from one; None where it does not say.
+        attempt: which file of this name it is, 1 for the first; None where it does not say.
         upload: a number that is larger for what the same student handed in later; None where it does not say.
     """
 
@@ -99,7 +99,7 @@ class Claim:
 
 @dataclass(frozen=True)
 class Packed:
-    """Released notebooks in the form in which a system hands each student an own one.
+    """Released notebooks in the form in which a system gives each student their own.
 
     Attributes:
         files: what is to be written, as places and contents.
@@ -258,7 +258,7 @@ def demand_place(place: str) -> System:
 
 
 def packed(place: str, released: Path, students: Sequence[Student], assignment: str = "", secret: str = "") -> Packed:
-    """Return released notebooks in the form in which a system hands each student an own one.
+    """Return released notebooks in the form in which a system gives each student their own.
 
     Arguments:
         place: of a `System`, "canvas", "drive" or "moodle".

@@ -7,11 +7,11 @@ FirstName; ID, SIS User ID, SIS Login ID, Section; then the assignments, each as
 without a student where marks are posted by hand, and the row "Points Possible"; the test student comes last. The
 delimiter is a semicolon where the decimal sign is a comma.
 
-**Names** (lib/content_zipper.rb). `doejane_123_456_heater.ipynb`, or `doejane_LATE_123_456_heater.ipynb`: the sortable
-name in small letters without spaces and signs, the number of the student, the number of the file, and the file's own
-name. Numbers of files grow. A student who hands in `heater.ipynb` again has `heater-1.ipynb`, as in any folder of
+**Names** (lib/content_zipper.rb). ``doejane_123_456_heater.ipynb``, or ``doejane_LATE_123_456_heater.ipynb``: the
+sortable name in small letters without spaces and signs, the number of the student, the number of the file, and the
+file's own name. Numbers of files grow. A student who hands in ``heater.ipynb`` again has ``heater-1.ipynb``, as in any folder of
 Canvas (make_unique_filename in app/models/attachment.rb). From an anonymous assignment the name is
-`anon_Ab3dE_456_heater.ipynb`.
+``anon_Ab3dE_456_heater.ipynb``.
 
 **Grades** (lib/gradebook_importer.rb). A student is found by ID, then SIS User ID, SIS Login ID and name; an
 assignment by the number in its head, then by its title; if there is none, Canvas asks. Delimiters and decimal signs are
@@ -22,8 +22,8 @@ one only where the export has one, and no LastName.
 of files with the names of the download, and attaches each to a comment. The attachment gets the name that the student
 handed in, whatever it is: so it is a notebook here, too, with the feedback in it.
 
-**Notebooks.** Canvas has no way to hand each student an own file: files belong to a course, a group or an assignment,
-and a comment with a file can only answer a file that was handed in.
+**Notebooks.** Canvas has no way to give each student a file of their own: files belong to a course, a group or an
+assignment, and a comment with a file can only answer a file that was handed in.
 """
 
 from __future__ import annotations
@@ -163,13 +163,13 @@ class Canvas(System):
         files["links.csv"] = as_text(rows, bom=True).encode()
         return Packed(
             files,
-            "Canvas cannot hand each student an own file: put the folder links on a web space that does not list its "
-            "folders, and send each student the link of links.csv behind its address, as by mail merge.",
+            "Canvas cannot give each student a file of their own: put the folder links on a web space that does not "
+            "list its folders, and send each student the link of links.csv behind its address, as by mail merge.",
         )
 
 
 def _attempt(own, assignment):
-    """The how manieth file of the assignment's name it is."""
+    """Which file of the assignment's name it is, 1 for the first."""
     again = re.fullmatch(rf"(?i){re.escape(assignment)}(?:-([1-9][0-9]?))?\.ipynb", own) if assignment else None
     return int(again[1] or 0) + 1 if again else None
 

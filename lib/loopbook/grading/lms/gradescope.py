@@ -2,8 +2,8 @@
 
 The roster ("Download Roster") has First Name, Last Name, SID, Email and Role; the grades have the first four, Sections,
 and Submission Time, which is that of the course's zone, as is the due date. Its downloads of submissions do not say in
-their names whose they are; its autograders are run for one submission, see examples/autograder. It cannot hand each
-student an own file.
+their names whose they are; its autograders are run for one submission, see examples/autograder. It cannot give each
+student a file of their own.
 """
 
 from __future__ import annotations

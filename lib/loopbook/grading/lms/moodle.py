@@ -187,7 +187,7 @@ class Moodle(System):
         return Packed(
             {f"{assignment}_for_moodle.zip": lms.zipped(zipped)},
             "In the assignment whose worksheet is the roster, with Feedback files among its feedback types, choose "
-            '"Upload multiple feedback files in a zip": each student finds the own notebook there.',
+            '"Upload multiple feedback files in a zip": each student finds their own there.',
         )
 
 
