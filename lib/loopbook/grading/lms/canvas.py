@@ -9,8 +9,8 @@ delimiter is a semicolon where the decimal sign is a comma.
 
 **Names** (lib/content_zipper.rb). ``doejane_123_456_heater.ipynb``, or ``doejane_LATE_123_456_heater.ipynb``: the
 sortable name in small letters without spaces and signs, the number of the student, the number of the file, and the
-file's own name. Numbers of files grow. A student who hands in ``heater.ipynb`` again has ``heater-1.ipynb``, as in any folder of
-Canvas (make_unique_filename in app/models/attachment.rb). From an anonymous assignment the name is
+file's own name. Numbers of files grow. A student who hands in ``heater.ipynb`` again has ``heater-1.ipynb``, as in any
+folder of Canvas (make_unique_filename in app/models/attachment.rb). From an anonymous assignment the name is
 ``anon_Ab3dE_456_heater.ipynb``.
 
 **Grades** (lib/gradebook_importer.rb). A student is found by ID, then SIS User ID, SIS Login ID and name; an
