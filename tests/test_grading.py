@@ -145,7 +145,7 @@ class TestAClass:
             (tmp_path / "in" / own).mkdir(parents=True)
             content = (course.submissions / other / "lag.ipynb").read_bytes()
             (tmp_path / "in" / own / "lag.ipynb").write_bytes(content)
-        with pytest.raises(GradingError, match="4 of 4 notebooks are not those of the release to these students"):
+        with pytest.raises(GradingError, match="4 of 4 notebooks are not those that were released to these students"):
             grade(course.assignment, course.students, tmp_path / "in", tmp_path / "out", place=course.place())
         assert not (tmp_path / "out" / "grades.csv").exists()
 

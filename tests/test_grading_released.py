@@ -483,7 +483,10 @@ def test_most_notebooks_of_others_are_not_graded(course, tmp_path, size, wrong, 
         return
     with pytest.raises(GradingError, match=rf"^{wrong} of {size} notebooks are not those") as problem:
         course.released.demand_fitting(course.assignment, found)
-    assert "it was released to another student" in str(problem.value)
+    assert ": it was released to another student: s" in str(problem.value)
+    assert str(problem.value).endswith(
+        ". Take the roster of the release: this one gives other ids, or is of another class"
+    )
 
 
 def test_most_notebooks_of_another_release_are_not_graded(course, tmp_path):
@@ -493,5 +496,5 @@ def test_most_notebooks_of_another_release_are_not_graded(course, tmp_path):
     course.record.unlink()
     course.released.demand_fitting(course.assignment, found)
     course.mend(RANGE, 'K=between(20, 60, "K/%"), T')
-    with pytest.raises(GradingError, match=r"5 of 5 notebooks .* it was released with other numbers in exercise 1"):
+    with pytest.raises(GradingError, match=r"other numbers in exercise 1. Put tuning.released.json of their release"):
         course.released.demand_fitting(course.assignment, found)

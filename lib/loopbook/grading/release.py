@@ -174,7 +174,7 @@ def _plan(assignment, student, folder, record, new_numbers):
 
 
 def _there(path):
-    """The text of a notebook that is there, and its imprint; None for each of them that there is not."""
+    """The text of a notebook that is there, and its imprint; None for each that is missing."""
     try:
         text = path.read_bytes().decode("utf-8", "replace")
         return text, Imprint.of(notebooks.read(path).metadata)

@@ -44,6 +44,14 @@ _IN_WORDS = {
 SAMPLE = 25
 #: So many are never most of a class: what a few hand in is their own matter.
 FEW = 3
+_OTHER_ASSIGNMENT = "it was released for the assignment"
+_OTHER_STUDENT = "it was released to another student:"
+_OTHER_NUMBERS = "it was released with other numbers in"
+_ADVICE = {
+    _OTHER_ASSIGNMENT: "Take the submissions of {0}",
+    _OTHER_STUDENT: "Take the roster of the release: this one gives other ids, or is of another class",
+    _OTHER_NUMBERS: "Put {0}.released.json of their release beside {0}.py, or the ranges of then back into it",
+}
 _PUT_BACK = "put the one of the release back, from a copy"
 
 
@@ -239,12 +247,12 @@ class Released:
         if imprint is None:
             return ()
         if imprint.assignment != assignment.name:
-            return (f"it was released for the assignment {harmless(imprint.assignment)}",)
+            return (f"{_OTHER_ASSIGNMENT} {harmless(imprint.assignment)}",)
         if imprint.student != student:
-            return (f"it was released to another student: {harmless(imprint.student)}",)
+            return (f"{_OTHER_STUDENT} {harmless(imprint.student)}",)
         others = self.misfits(assignment, imprint)
         which = f"exercise{'' if len(others) == 1 else 's'} {_listed(others)}" if others else ""
-        return (f"it was released with other numbers in {which}",) if others else ()
+        return (f"{_OTHER_NUMBERS} {which}",) if others else ()
 
     def demand_fitting(self, assignment: Assignment, submissions: Sequence[Submission]) -> None:
         """Raise GradingError where most notebooks are others': of other students, of another assignment or release.
@@ -261,11 +269,10 @@ class Released:
         doubtful = {label: says for label, says in doubted.items() if says}
         if len(doubtful) >= FEW and 2 * len(doubtful) > len(doubted):
             label, says = next(iter(doubtful.items()))
+            advice = next(advice for begins, advice in _ADVICE.items() if says.startswith(begins))
             raise GradingError(
-                f"{len(doubtful)} of {len(doubted)} notebooks are not those of the release to these students, and "
-                f"nothing is graded: of {label}, for example, {says}. Either the roster gives other ids than at the "
-                f"release, or these are other submissions, or {assignment.name}.released.json is not that of their "
-                "release"
+                f"{len(doubtful)} of {len(doubted)} notebooks are not those that were released to these students, and "
+                f"nothing is graded. Of {label}, for example: {says}. {advice.format(assignment.name)}"
             )
 
     def _doubted(self, assignment, submissions):
