@@ -1,5 +1,6 @@
 """Marks by hand: the table that an instructor keeps, its history, and what results count with them."""
 
+import datetime
 import multiprocessing
 import os
 import signal
@@ -23,6 +24,7 @@ from loopbook.grading.reports.concerns import concerns
 from loopbook.grading.reports.outputs.to_mark import to_mark
 from loopbook.grading.results import JudgedAnswer, JudgedExercise, Result
 from loopbook.grading.roster import Student
+from loopbook.grading.submissions import Submission
 from needs import needs_jail
 from test_exercise_by_hand import stored
 
@@ -391,6 +393,41 @@ def test_what_a_mark_may_cost_is_among_what_to_look_at():
     late = marked(result("s1", sketch=OPEN, why=OPEN), Lateness(0, "late", "by how much?"))
     (concern,) = [one for one in concerns([late])[0] if one.title == "Marks and times that need a decision"]
     assert concern.points == 5
+
+
+# What is late.
+
+
+def handed_in(student, at, late=None):
+    return Submission(student, f"{student.id}.ipynb", "", at, late)
+
+
+def test_submissions_are_late_by_the_roster_or_by_their_names(tmp_path):
+    due = 'DUE = "2026-12-01 23:59 Europe/Berlin"\nLATE = "10 % a day"\n'
+    marking = Marking(tmp_path, Assignment.of(SOURCE + due, "responses"), CLASS)
+    late = datetime.datetime(2026, 12, 2, 12, 0)
+    submissions = {
+        one.student.id: one
+        for one in (handed_in(CLASS[0], late), handed_in(CLASS[1], None, True), handed_in(CLASS[2], None))
+    }
+    marking.demand_comparable(submissions.values())
+    results = [result(student.id, sketch=OPEN, why=OPEN) for student in CLASS]
+    marking.read({one.student: one for one in results}.get)
+    marks = marking.marked(results, submissions)
+    assert [mark.total for mark in marks] == [pytest.approx(4.5), 5, 5]
+    assert [len(mark.looks) for mark in marks] == [0, 1, 0]
+    assert marking.notes(marks) == [
+        "Due 2026-12-01 23:59 Europe/Berlin; late: 10 % a day. 2 submissions came late.",
+        "Of 1 submission nothing says when it was handed in: it counts as in time. A column handed_in in the roster "
+        "says it.",
+    ]
+
+
+def test_a_time_that_cannot_be_compared_is_said_before_anything_is_graded(tmp_path):
+    marking = Marking(tmp_path, Assignment.of(SOURCE + 'DUE = "2026-12-01"\n', "responses"), CLASS)
+    at = datetime.datetime(2026, 12, 2, 12, 0, tzinfo=datetime.UTC)
+    with pytest.raises(GradingError, match="DUE names no time zone: expected one"):
+        marking.demand_comparable([handed_in(CLASS[0], at)])
 
 
 # From end to end.

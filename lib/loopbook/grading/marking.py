@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import datetime
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
@@ -219,6 +219,15 @@ class Marking:
         """Read the marks by hand, and note what has changed; `Overrides.read` says more."""
         self.overrides.read(result_of)
 
+    def demand_comparable(self, submissions: Iterable[Submission]) -> None:
+        """Raise GradingError where a time of a submission cannot be compared with the due date: one has no zone."""
+        for submission in submissions:
+            self._lateness(submission)
+
+    def _lateness(self, submission):
+        until = self.extensions.until.get(submission.student.id)
+        return lateness(self.assignment.policy, submission.handed_in, submission.late, until)
+
     def marked(self, results: Sequence[Result], submissions: Mapping[str, Submission]) -> list[Marked]:
         """Return the results with what they count, and add a row to ``marks.csv`` for each answer that waits.
 
@@ -245,11 +254,7 @@ class Marking:
         return names.items()
 
     def _marked(self, result, submission):
-        late = Lateness()
-        if result.status != MISSING:
-            at, named_late = (submission.handed_in, submission.late) if submission else (None, None)
-            until = self.extensions.until.get(result.student)
-            late = lateness(self.assignment.policy, at, named_late, until)
+        late = self._lateness(submission) if submission and result.status != MISSING else Lateness()
         changed = tuple(Notice(*one) for one in self.overrides.changed_since(result))
         return Marked.of(result, self.overrides.of(result.student), late, changed)
 
