@@ -128,6 +128,11 @@ def test_an_honest_form_stays_right(form):
         assert is_right(one.kind, answer), (one.kind.solution, answer)
 
 
+def test_what_is_too_small_for_decimals_on_the_way_is_worked_out():
+    kind = TransferFunction("K*exp(-tau*s)/(T*s + 1)")
+    assert is_right(kind, f"({kind.key.text})*({kind.key.text})/({kind.key.text})")
+
+
 @pytest.mark.parametrize("mask", NUMBER_MASKS, ids=lambda mask: mask.name)
 def test_a_masked_number_earns_nothing(mask):
     for kind, wrong in (

@@ -111,6 +111,8 @@ _INVALID = _family(
         "the logarithm of 0 without the symbol": "W + 0*log(0)",
         "0 to the power -1": "W + 0*(X - X)**(-1)",
         "0 to a negative power": "W + 0**(-Abs(X))",
+        "0 to an imaginary power": "W + 0**I",
+        "one over the root of 0": "W + (X - X)**(-0.5)",
         "arctan of i": "W + 0*atan(I)",
         "a fraction without its lower half": "W/(1/(1/(X - X)))",
         "Max with no number": "Max(re(W), 0/0)",
@@ -136,6 +138,7 @@ _UNDERFLOW = _family(
         "one over it": "W + 0/exp(-3e5*Abs(X))",
         "literals that multiply": "W + 1e-200*1e-200*X",
         "there and back": "W*1e-200*1e-200*1e200*1e200",
+        "a part there and back": "W + X*1e-200*1e-200*1e200*1e200",
         "an exponential there and back": "W*exp(-1e4)*exp(1e4)",
         "a tiny literal": "W + 1e-320*X",
         "a literal that is 0": "W + 1e-400",
@@ -710,6 +713,7 @@ def hedged(template: str, right: str, wrong: str) -> str:
 #: Right answers in other words, R is the right one: they have its value everywhere.
 HONEST = (
     "R + 0", "1*R", "R/1", "-(-R)", "R + 0*X", "2*R - R", "R + X - X", "R*X/X", "(R)**1", "1/(1/(R + 1)) - 1",
-    "R - 0*exp(-X)",    "R + 0*exp(X)", "R + 0*sin(X)", "R*exp(X)*exp(-X)", "R + 1e-300*X", "R*1.0", "R*(1/3)*3",
-    "R^1", "R·1", "y = R", "y(X) = R", " R ", "R.", "(R)", "[R]", "R*1.002", "0.998*R",
+    "R*(R + 1)/(R + 1)", "(R**2 + R)/(R + 1)", "R - 0*exp(-X)", "R + 0*exp(X)", "R + 0*sin(X)", "R*exp(X)*exp(-X)",
+    "R + 1e-300*X", "R*1.0", "R*(1/3)*3", "R^1", "R·1", "y = R", "y(X) = R", " R ", "R.", "(R)", "[R]", "R*1.002",
+    "0.998*R",
 )  # fmt: skip
