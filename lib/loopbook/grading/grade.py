@@ -7,6 +7,7 @@ a Dask cluster; on both, the student's code is in a child, behind the jail's wal
 from __future__ import annotations
 
 import contextlib
+import os
 import threading
 from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, ThreadPoolExecutor, wait
@@ -77,7 +78,10 @@ class Desk:
         """Return what becomes of a task. Raises GradingError where it has none, through no fault of the student."""
         outcome = Outcome(refused=task.problem)
         if task.label and not task.problem:
-            self.jail = self.jail or Jail(self.jailed, self.limits)
+            if self.jail is None:
+                with _starting:
+                    self.judge.begin()
+                    self.jail = Jail(self.jailed, self.limits)
             outcome = self.jail.run(task.content)
         exercises = self.judge.judge(task.student, outcome.answers, task.numbers)
         found = result(task.name, task.student, task.label, task.fingerprint, task.jailed, outcome, exercises)
@@ -97,6 +101,8 @@ class Desk:
 
 
 _desks = threading.local()
+#: A jail and a judge take a processor each to start: the first of them are ready early, rather than all of them late.
+_starting = threading.BoundedSemaphore(max(1, (os.cpu_count() or 1) // 2))
 _all_desks = []
 
 

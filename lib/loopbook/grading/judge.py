@@ -43,15 +43,25 @@ class Judge:
         self.assignment = {"name": name, "source": source, "path": path}
         self.process: subprocess.Popen[bytes] | None = None
 
+    def begin(self) -> None:
+        """Start the process, if there is none, and do not wait for it: there may be something else to start."""
+        if self.process is None:
+            self.process = subprocess.Popen(
+                [sys.executable, "-m", "loopbook.grading.judge"],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                bufsize=0,
+            )
+            self._left, self._is_ready = b"", False
+            self._say(self.assignment)
+
     def _start(self):
-        self.process = subprocess.Popen(
-            [sys.executable, "-m", "loopbook.grading.judge"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0
-        )
-        self._say(self.assignment)
-        self._left = b""
-        if "ready" not in (reply := self._heard(STARTING)):
+        """Start the process, if there is none, and wait until it is ready."""
+        self.begin()
+        if not self._is_ready and "ready" not in (reply := self._heard(STARTING)):
             self.close()
             raise GradingError(reply.get("failed", "the judge does not start"))
+        self._is_ready = True
 
     def _say(self, data):
         with contextlib.suppress(BrokenPipeError):  # then it says nothing, which is noticed
@@ -85,8 +95,7 @@ class Judge:
         """
         hopeless: list[list[str]] = []
         while True:
-            if self.process is None:
-                self._start()
+            self._start()
             self._say({"student": student, "given": given, "numbers": numbers or {}, "hopeless": hopeless})
             exercises: list[JudgedExercise] = []
             at = None
