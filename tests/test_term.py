@@ -101,3 +101,7 @@ class TestATerm:
         }  # fmt: skip
         with zipfile.ZipFile(folder / "moodle_feedback.zip") as archive:
             assert any("Océane Lefèvre" in name for name in archive.namelist())
+
+    def test_the_notebook_of_the_complaint_is_kept(self, term):
+        kept = (term[0] / "grades" / "air_heater" / "notebooks" / "s1005.html").read_text(encoding="utf-8")
+        assert "NameError" in kept
