@@ -30,9 +30,10 @@ EXACT = 1e-9
 LEFT, LEFT_IN_TIME, LEFT_OF_VALUES = 0.02, 0.005, 0.1
 #: The key of a mistake must have a value at this part of the points.
 ENOUGH = 0.3
-#: With its numbers off, an answer may differ from the key by so many times what those of the key may change; and all of
-#: its numbers together may change it by so many times that, or a difference of two large ones would be any number.
-MORE_THAN_KEY, MORE_IN_REACH = 1.5, 2.5
+#: An answer may differ from the key by so many times what the numbers of the key may change, and `within`; and all of
+#: its own numbers together may change it by no more than so many times each of these, or a difference of two large ones
+#: would be any number.
+MORE_THAN_KEY, REACH_OF_KEY, REACH_OF_WITHIN = 1.5, 2, 4
 
 
 @np.errstate(all="ignore")
@@ -129,11 +130,10 @@ class Comparison:
         if key.reaches(found, known, self.left):
             return True
         near = known & self.alike & key.calm
-        may = key.reach[near] + self.within
-        if given is None or np.any(off[near] > MORE_THAN_KEY * may):
+        if given is None or np.any(off[near] > MORE_THAN_KEY * (key.reach[near] + self.within)):
             return False
-        answer = self._rounded(given)
-        return bool(np.all(answer.reach[near] <= MORE_IN_REACH * may)) and answer.reaches(expected, known, self.left)
+        answer, most = self._rounded(given), REACH_OF_KEY * key.reach[near] + REACH_OF_WITHIN * self.within
+        return bool(np.all(answer.reach[near] <= most)) and answer.reaches(expected, known, self.left)
 
     def _of_key(self):
         """Its values, in many digits only where it has too few without them."""
