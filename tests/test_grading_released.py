@@ -249,6 +249,19 @@ def test_ids_of_a_whole_class_are_kept(course):
     assert said.endswith("those of the release are kept: s1 (now ada), s2 (now bob) and s3 (now eve)")
 
 
+def test_submissions_are_found_by_both_ids(course, tmp_path):
+    course.release()
+    kept, _ = course.released.identified([replace(one, id=one.login) for one in CLASS])
+    for name in ("s1", "bob"):
+        (tmp_path / "in" / name).mkdir(parents=True)
+        (tmp_path / "in" / name / "tuning.ipynb").write_text("{}", encoding="utf-8")
+    found = collect(tmp_path / "in", kept, "tuning")
+    assert [(one.student.id, one.label) for one in found.submissions] == [
+        ("s1", "s1/tuning.ipynb"),
+        ("s2", "bob/tuning.ipynb"),
+    ]
+
+
 def test_an_id_that_was_all_that_was_known_is_found_in_other_columns(course):
     course.release(NAMES_ALONE)
     (one,), _ = course.released.identified([Student("ada", "Ada Lovelace", sis_id="S1", login="ada")])

@@ -14,7 +14,9 @@ import tempfile
 from pathlib import Path
 
 from loopbook.grading import GradingError
+from loopbook.grading.assignment import load
 from loopbook.grading.jail import Jail
+from loopbook.grading.released import Released
 from loopbook.grading.roster import read_roster
 
 
@@ -36,7 +38,8 @@ def graded(base):
     course = base / "source" / "course"
     assignment = course / (course / "assignment").read_text(encoding="utf-8").strip()
     metadata = json.loads((base / "submission_metadata.json").read_text(encoding="utf-8"))
-    student = submitter(metadata, read_roster(course / "roster.csv"))
+    roster, _ = Released.of(load(assignment)).identified(read_roster(course / "roster.csv"))
+    student = submitter(metadata, roster)
     with tempfile.TemporaryDirectory() as folder:
         handed_in = Path(folder, "submissions", student.id)
         handed_in.mkdir(parents=True)

@@ -142,7 +142,7 @@ class Released:
         students, index = tuple(students), self._index()
         found = [self._holder_of(student, index) for student in students]
         kept = tuple(
-            replace(student, id=holder.id) if holder else student
+            replace(student, id=holder.id, roster_id=student.id) if holder and holder.id != student.id else student
             for student, holder in zip(students, found, strict=True)
         )
         rows: dict[str, Student] = {}

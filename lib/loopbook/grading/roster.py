@@ -34,6 +34,7 @@ class Student:
         email: the address.
         moodle_id: the number in Moodle's "Participant 12345", which belongs to one assignment.
         handed_in: when the student handed in, where the roster says it.
+        roster_id: the id on the roster, where another one is kept from the release.
         id_from: the column from which the id is.
         system: the `lms.System` of the roster.
         row: the student's row, as the roster has it.
@@ -55,6 +56,7 @@ class Student:
     email: str = ""
     moodle_id: str = ""
     handed_in: datetime.datetime | None = None
+    roster_id: str = field(default="", compare=False)
     id_from: str = field(default="", compare=False)
     system: str = field(default="", compare=False)
     row: tuple[str, ...] = field(default=(), compare=False, repr=False)

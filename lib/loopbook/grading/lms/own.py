@@ -124,7 +124,8 @@ class Own(System):
 
     def claim(self, name: str, known: Known, assignment: str) -> Claim | None:
         """Return whose a folder, or a notebook, named by an id is."""
-        students = known.by("id", name) or known.by("id", re.sub(r"(?i)\.ipynb$", "", name))
+        own = re.sub(r"(?i)\.ipynb$", "", name)
+        students = known.by("id", name) or known.by("id", own) or known.by("roster_id", own)
         if not students and (drive := re.fullmatch(r"(.*)\(([^()]+)\)", name)):
             students = [one for one in known.by("id", drive[2]) if _folder(one) == name]
         return Claim(tuple(students)) if students else None
