@@ -1,6 +1,6 @@
 """What counts of a notebook, its sources, read from a file of any usual size in little memory.
 
-Outputs, attachments and the state of widgets are passed over while they are read, so that a notebook may be full of
+Outputs, attachments and the state of widgets are skipped while they are read, so that a notebook may be full of
 pictures, and running it again changes nothing here. What is left is JSON of one form.
 
 The reader is our own because those of others hold what it passes over: `json.loads` all of it, ijson the longest text,
@@ -21,7 +21,7 @@ from loopbook.grading import GradingError
 
 #: The most characters of sources, and brackets one in another.
 MOST, DEEPEST = 10 * 2**20, 200
-#: The most values that are passed over one by one; most come in runs, as a list of points does.
+#: The most values that are skipped one by one; most come in runs, as a list of points does.
 MOST_VALUES = 1_000_000
 
 #: The size of a piece (bytes).
@@ -202,7 +202,7 @@ class _Text:
         return True
 
     def _keep(self):
-        """Take what was passed over since the last time, unless it is too much by now."""
+        """Take what was skipped since the last time, unless it is too much by now."""
         if self._room is not None:
             self._taken.append(self._text[self._from : self._at])
             self._room -= self._at - self._from
@@ -240,7 +240,7 @@ class _Text:
         """Yield the names in a dictionary; whoever asks passes over the value of each before the next.
 
         Arguments:
-            only: names to yield, all if empty; the values of others are passed over.
+            only: names to yield, all if empty; the values of others are skipped.
         """
         self._sign("{")
         if self.next() == "}":

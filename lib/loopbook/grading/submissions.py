@@ -19,7 +19,7 @@ from loopbook.grading.owners import Owner, Owners, is_notebook
 from loopbook.grading.roster import Student
 from loopbook.grading.sources import sources
 
-#: The largest file that is read, in bytes; most of a notebook is pictures, which are passed over.
+#: The largest file that is read, in bytes; most of a notebook is pictures, which are skipped.
 LARGEST = 200 * 2**20
 #: The most complaints about what lies in one folder.
 MOST_COMPLAINTS = 10
