@@ -3,7 +3,7 @@
 Outputs, attachments and the state of widgets are skipped while they are read, so that a notebook may be full of
 pictures, and running it again changes nothing here. What is left is JSON of one form.
 
-The reader is our own because those of others hold what it passes over: `json.loads` all of it, ijson the longest text,
+The reader is our own because those of others hold what it skips: `json.loads` all of it, ijson the longest text,
 which is the largest picture; and ijson refuses NaN, which Jupyter writes into outputs. It takes what `json.loads`
 takes, with fewer brackets one in another and an end to everything.
 """
@@ -229,7 +229,7 @@ class _Text:
                 return ""
 
     def _sign(self, *signs: str) -> str:
-        """Pass over one of these signs."""
+        """skip one of these signs."""
         sign = self.next()
         if sign not in signs:
             raise self.broken(f"expected {' or '.join(signs)}, found {sign!r}")
@@ -237,7 +237,7 @@ class _Text:
         return sign
 
     def members(self, only: tuple[str, ...] = ()) -> Iterator[str | None]:
-        """Yield the names in a dictionary; whoever asks passes over the value of each before the next.
+        """Yield the names in a dictionary; whoever asks skips the value of each before the next.
 
         Arguments:
             only: names to yield, all if empty; the values of others are skipped.
@@ -258,7 +258,7 @@ class _Text:
                 return
 
     def elements(self) -> Iterator[None]:
-        """Yield once for each value of a list; whoever asks passes over it before the next."""
+        """Yield once for each value of a list; whoever asks skips it before the next."""
         self._sign("[")
         if self.next() == "]":
             self._at += 1
@@ -269,13 +269,13 @@ class _Text:
                 return
 
     def value(self) -> Any:
-        """Pass over a value, and return it. Raises ValueError where too much is kept by now."""
+        """Skip a value, and return it. Raises ValueError where too much is kept by now."""
         written = self._passed(self.skip, self._left)
         self.take(len(written) if written is not None else self._left + 1)
         return json.loads(written)
 
     def skip(self) -> None:
-        """Pass over a value."""
+        """Skip a value."""
         inside = []
         while True:
             self._values += 1
@@ -306,7 +306,7 @@ class _Text:
                 return
 
     def _to_value(self, sign):
-        """Pass over short values in a list or a dictionary, as many as there are, and a name."""
+        """skip short values in a list or a dictionary, as many as there are, and a name."""
         self.next()
         self._at = _RUNS[sign].match(self._text, self._at).end()
         if sign == "{":
@@ -314,7 +314,7 @@ class _Text:
             self._sign(":")
 
     def _string(self):
-        """Pass over a text."""
+        """Skip a text."""
         self._sign('"')
         while True:
             self._at = _TEXT.match(self._text, self._at).end()
@@ -327,7 +327,7 @@ class _Text:
                 raise self.broken("a sign that no text has")
 
     def _atom(self):
-        """Pass over a number or a word."""
+        """Skip a number or a word."""
         while True:
             match = _ATOM.match(self._text, self._at)
             end = match.end() if match else self._at
