@@ -261,6 +261,21 @@ class TestAClass:
             course.grade("cluster", place=connected(cluster.scheduler_address))
         assert files(course.folder / "cluster") == files(graded[1])
 
+    @pytest.mark.parametrize("bytes_of_a_file", [1000, 20_000])
+    def test_a_disk_that_is_full_is_a_sentence_and_later_goes_on(self, course, graded, bytes_of_a_file):
+        import resource
+
+        def filled():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (bytes_of_a_file, resource.RLIM_INFINITY))
+
+        command = course.command(f"full {bytes_of_a_file}")
+        done = subprocess.run(command, preexec_fn=filled, capture_output=True, encoding="utf-8")
+        assert done.returncode == 1
+        assert "File too large" in done.stderr
+        assert "Traceback" not in done.stderr
+        subprocess.run(command, check=True, capture_output=True)
+        assert files(course.folder / f"full {bytes_of_a_file}") == files(graded[1])
+
     def test_killed_at_any_moment_it_goes_on(self, course, graded):
         for seconds in (2.5, 4.5):
             process = subprocess.Popen(
