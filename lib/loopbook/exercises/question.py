@@ -98,15 +98,17 @@ class Question(Showing):
     @functools.cached_property
     def background(self) -> Background:
         """What the diagnoses of a wrong answer may know: the givens of the statement, and the key for others."""
-        parameters = {name: one for name, one in self.exercise.parameters.items() if self._states(name)}
+        parameters = {name: one for name, one in self.exercise.parameters.items() if name in self.stated}
         stated = {float(text) for text in _NUMBERS.findall(self.filled_in(self.exercise.statement))}
         given = {float(self.values[name]) for name, one in parameters.items() if not isinstance(self.values[name], str)}
         shown = [value for value in sorted(stated - given) if len(f"{value:g}".strip("0.").replace(".", "")) > 1]
         return Background(self.key, self.values, parameters, self.exercise.key, shown[:MOST_SHOWN])
 
-    def _states(self, name):
-        """Whether the statement shows a value in the place of a name."""
-        return bool(re.search(rf"(?<!{{)\{{{name}\}}(?!}})", self.exercise.statement))
+    @functools.cached_property
+    def stated(self) -> dict[str, Value]:
+        """The values of the parameters that the statement shows in the places of their names."""
+        text = self.exercise.statement
+        return {name: value for name, value in self.values.items() if re.search(rf"(?<!{{)\{{{name}\}}(?!}})", text)}
 
     def _called(self, function, what):
         """What a function of the author returns for this variant; raises ValueError where it fails."""

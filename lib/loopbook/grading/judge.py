@@ -156,7 +156,7 @@ def judged(
         weight = question.exercise.weights.get(name, 1)
         answers.append(JudgedAnswer(name, verdict.status, verdict.says, answer, kind.solution, weight, verdict.look))
     exercise = question.exercise
-    numbers = tuple((name, written(value, exercise.parameters[name].unit)) for name, value in question.values.items())
+    numbers = tuple((name, written(value, exercise.parameters[name].unit)) for name, value in question.stated.items())
     return JudgedExercise(exercise.number, exercise.title, exercise.points, question.statement, numbers, tuple(answers))
 
 

@@ -65,7 +65,7 @@ class JudgedExercise:
     Attributes:
         number, title, points: of the exercise.
         statement: the question as the student saw it, in Markdown.
-        given: the student's own numbers, pairs of a name and a value with its unit.
+        given: the student's own numbers that the statement shows, pairs of a name and a value with its unit.
         answers: a `JudgedAnswer` for each asked quantity.
 
     >>> answers = (JudgedAnswer("K", "right", "right", 2, "2"), JudgedAnswer("T", "wrong", "not right", 3, "4 s"))
