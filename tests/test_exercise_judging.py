@@ -139,3 +139,15 @@ def test_a_limited_computation_raises_what_it_raises():
         limited(1, lambda: 1 / 0)
     with pytest.raises(RuntimeError, match="stopped by SystemExit"):
         limited(1, sys.exit)
+
+
+def test_what_counts_is_the_time_of_the_processor(monkeypatch):
+    """Whoever waits for the processor is not slow; who sleeps for long, or computes, is."""
+    spent = iter([0.0, 0.01, 0.02])
+    monkeypatch.setattr(time, "process_time", lambda: next(spent, 0.02))
+    assert limited(0.2, lambda: time.sleep(0.4) or "done") == "done"
+    with pytest.raises(TimeoutError):
+        limited(0.1, lambda: [time.sleep(0.001) for _ in iter(int, 1)])
+    monkeypatch.undo()
+    with pytest.raises(TimeoutError):
+        limited(0.1, lambda: [None for _ in iter(int, 1)])

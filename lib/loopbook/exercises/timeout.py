@@ -4,10 +4,16 @@ from __future__ import annotations
 
 import ctypes
 import threading
+import time
 from collections.abc import Callable
 from typing import Any, TypeVar
 
 _Found = TypeVar("_Found")
+
+#: A computation ends, too, when so many times its limit have passed on the clock: it may sleep, or wait for something.
+WAITING = 4
+#: How often (s) the time is looked at.
+_LOOK = 0.25
 
 
 class TooSlow(BaseException):
@@ -15,9 +21,10 @@ class TooSlow(BaseException):
 
 
 def limited(seconds: float, function: Callable[..., _Found], *arguments: Any) -> _Found:
-    """Return ``function(*arguments)``, which may take that many seconds.
+    """Return ``function(*arguments)``, which may take that many seconds of this process.
 
-    The computation runs in a thread of its own, which is stopped at its next step in Python when the time is over.
+    What counts is the processor's time, so that a busy machine changes no result. The computation runs in a thread of
+    its own, which is stopped at its next step in Python when the time is over.
 
     Raises:
         TimeoutError: when the time is over.
@@ -39,8 +46,11 @@ def limited(seconds: float, function: Callable[..., _Found], *arguments: Any) ->
             failure.append(RuntimeError(f"stopped by {type(error).__name__}"))
 
     worker = threading.Thread(target=work, daemon=True)
+    began, end = time.process_time(), time.monotonic() + WAITING * seconds
     worker.start()
-    worker.join(seconds)
+    worker.join(min(_LOOK, seconds))
+    while worker.is_alive() and time.process_time() - began < seconds and time.monotonic() < end:
+        worker.join(_LOOK)
     if worker.is_alive():
         ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(worker.ident), ctypes.py_object(TooSlow))
         raise TimeoutError(f"not done after {seconds:g} s")

@@ -17,8 +17,10 @@ from multiprocessing.connection import wait
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
+from loopbook.exercises import units
 from loopbook.exercises.judging import SECONDS, UNJUDGED
 from loopbook.exercises.parameters import written
+from loopbook.exercises.timeout import WAITING
 from loopbook.grading import GradingError
 from loopbook.grading.results import JudgedAnswer, JudgedExercise
 
@@ -27,7 +29,7 @@ if TYPE_CHECKING:
 
 MEMORY = 2 * 2**30
 #: What comparing one answer may take (s). The comparison itself has a limit; this one is for what does not heed it.
-PATIENCE = SECONDS + 5
+PATIENCE = WAITING * SECONDS + 5
 #: What loading the assignment, and working out the keys of a variant, may take (s).
 STARTING = 120
 
@@ -51,6 +53,7 @@ class Judge:
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 bufsize=0,
+                start_new_session=True,  # who interrupts the command does not interrupt what it has started
             )
             self._left, self._is_ready = b"", False
             self._say(self.assignment)
@@ -170,7 +173,10 @@ def main() -> None:
     os.dup2(2, 1)  # what the assignment prints
 
     def say(data):
-        print(json.dumps(data), file=out, flush=True)
+        try:
+            print(json.dumps(data), file=out, flush=True)
+        except BrokenPipeError:  # the grader is gone, and nobody listens any more
+            os._exit(1)
 
     said = json.loads(sys.stdin.readline())
     try:
@@ -178,6 +184,7 @@ def main() -> None:
     except GradingError as problem:
         say({"failed": str(problem)})
         return
+    units.convert(1, "min", to="s")  # loads what the first answer with a unit would wait for
     say({"ready": True})
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     for line in sys.stdin:
