@@ -317,6 +317,29 @@ def test_another_assignment_has_another_folder(course):
     assert results.of("s1") == lag
 
 
+def test_the_result_of_somebody_else_is_not_hers(course, tmp_path):
+    results = Results(tmp_path, course.assignment.secret)
+    results.keep(result("lag", "s1", "s1.ipynb", "", True, Outcome(), ()))
+    (tmp_path / "s2.json").write_bytes((tmp_path / "s1.json").read_bytes())
+    with pytest.raises(GradingError, match=r"s2\.json is not as the grader of this assignment wrote it"):
+        results.of("s2")
+
+
+def test_where_most_submissions_are_gone_nothing_is_graded(course, tmp_path):
+    folder, empty = course.folder / "gone", tmp_path / "empty"
+    course.grade("gone")
+    before = files(folder)
+    empty.mkdir()
+    with pytest.raises(GradingError, match=r"4 of 4 students who were graded have no submission in .*: s0, s1"):
+        grade(course.assignment, course.students, empty, folder, place=course.place())
+    assert files(folder) == before
+    shutil.copytree(course.submissions / "s0", empty / "s0")
+    shutil.copytree(course.submissions / "s1", empty / "s1")
+    shutil.copytree(course.submissions / "s2", empty / "s2")
+    done = grade(course.assignment, course.students, empty, folder, place=course.place())
+    assert "Graded before, and without a submission now: s3." in done.notes
+
+
 def test_a_system_without_locks_is_refused(course, monkeypatch):
     monkeypatch.setitem(sys.modules, "fcntl", None)
     with pytest.raises(GradingError, match="this system cannot lock a folder: grade on Linux"):

@@ -25,13 +25,15 @@ from loopbook.grading.keeping import Kept, executed, source
 from loopbook.grading.marking import Marking
 from loopbook.grading.released import Released
 from loopbook.grading.reports import registered, write_all
-from loopbook.grading.results import OWNER, Look, Result, Results, fingerprint, result
+from loopbook.grading.results import MISSING, OWNER, Look, Result, Results, fingerprint, result
 from loopbook.grading.submissions import collect
 
 if TYPE_CHECKING:
     from loopbook.grading.assignment import Assignment
     from loopbook.grading.roster import Student
 
+#: Where so many submissions that were graded before are gone, and most of them, something else has happened.
+FEWEST_GONE = 3
 #: Tasks that wait for each worker: none is idle, and the notebooks of a large class are not all in memory.
 WAITING = 2
 
@@ -209,6 +211,7 @@ def grade(
         marking.read(results.if_whole)  # before anything is graded again: a mark by hand is one of what was there
         found = {one.student.id: one for one in collection.submissions}
         wanted = [student for student in students if not only or student.id in only]
+        notes += _gone(results, wanted, found, submissions)
 
         def task(student):
             one = _task(assignment, released, student, found.get(student.id), jailed, limits)
@@ -238,6 +241,22 @@ def grade(
         outdated = [one.id for one in others if stored[one.id].fingerprint != task(one).fingerprint]
         missing = sum(student.id not in found for student in wanted)
     return Summary(graded, kept, missing, tuple(outdated), collection.complaints, tuple(notes), tuple(sorted(failures)))
+
+
+def _gone(results, students, found, submissions):
+    """Return a sentence on those whose submission was graded before, and is not there any more.
+
+    Raises GradingError where that is most of the class: then it is not the students who took something back.
+    """
+    before = [one.id for one in students if (kept := results.if_whole(one.id)) and kept.status != MISSING]
+    gone = [student for student in before if student not in found]
+    who = f"{', '.join(gone[:3])}{f' and {len(gone) - 3} more' if len(gone) > 3 else ''}"
+    if len(gone) >= FEWEST_GONE and 2 * len(gone) > len(before):
+        raise GradingError(
+            f"{len(gone)} of {len(before)} students who were graded have no submission in {submissions} any more: "
+            f"{who}; nothing is graded; look whether this is the right place and the right roster, or grade into another folder"
+        )
+    return [f"Graded before, and without a submission now: {who}."] if gone else []
 
 
 def _demand_apart(folder, submissions):

@@ -263,17 +263,23 @@ class Results:
 
         Raises GradingError for a file that cannot be read, or is not as the grader wrote it.
         """
+        path = self._path(student)
+        if path.exists() and not path.is_file():
+            raise GradingError(f"{path} is not a file: move it away")
         try:
-            return Result.of_json(self._path(student).read_text(encoding="utf-8"), self.secret)
+            found = Result.of_json(path.read_text(encoding="utf-8"), self.secret)
+            if found.student != student:
+                raise ValueError("it is the result of somebody else")
         except FileNotFoundError:
             return None
         except OSError as problem:
-            raise GradingError(f"{self._path(student)} cannot be read: {problem.strerror}") from None
+            raise GradingError(f"{path} cannot be read: {problem.strerror}") from None
         except (ValueError, TypeError, KeyError, RecursionError):
             raise GradingError(
-                f"{self._path(student)} is not as the grader of this assignment wrote it: grade again with --regrade; "
+                f"{path} is not as the grader of this assignment wrote it: grade again with --regrade; "
                 "points that you give yourself belong into marks.csv"
             ) from None
+        return found
 
     def if_whole(self, student: str) -> Result | None:
         """Return the result of a student; None where there is none, and where it is not as the grader wrote it."""

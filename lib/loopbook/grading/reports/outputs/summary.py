@@ -104,7 +104,7 @@ def _overview(found):
     """Lines on how many there are, and how they did."""
     many = [counted(len(found.handed_in), "submission")]
     not_run = sum(mark.result.status == NOT_RUN for mark in found.handed_in)
-    waiting = len(found.handed_in) - len(found.sums) - not_run
+    waiting = sum(mark.total is None and mark.result.status != NOT_RUN for mark in found.handed_in)
     counts = {"missing": len(found.missing), "not graded yet": len(found.ungraded), "not run": not_run}
     counts["waiting for a mark"] = waiting
     lines = [", ".join([*many, *(f"{count} {what}" for what, count in counts.items() if count)]) + "."]
