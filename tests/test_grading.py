@@ -163,6 +163,30 @@ class TestAClass:
         found = results.of("s0")
         assert (found.looks, found.owner) == ((Look(OWNER, "it names another student: s2"),), "s2")
 
+    def test_answers_under_another_name_or_in_no_code_cell_are_told(self, course, tmp_path):
+        wrong = {"1": 'sheet.answer("1", Y={K} * 2, P=-1 / {T}, **{{"p": None}})'}
+        for student in ("s0", "s3"):
+            (tmp_path / "in" / student).mkdir(parents=True)
+            shutil.copy(course.submissions / student / "lag.ipynb", tmp_path / "in" / student)
+        notebook = nbformat.read(tmp_path / "in" / "s3" / "lag.ipynb", as_version=4)
+        for cell in notebook.cells:
+            if 'sheet.answer("2"' in cell.source:
+                cell.cell_type = "markdown"
+                del cell["outputs"], cell["execution_count"]
+        nbformat.write(notebook, tmp_path / "in" / "s3" / "lag.ipynb")
+        notebook = nbformat.read(tmp_path / "in" / "s0" / "lag.ipynb", as_version=4)
+        for cell in notebook.cells:
+            if cell.source.startswith('sheet.answer("1"'):
+                cell.source = wrong["1"].format(K=1, T=2)
+        nbformat.write(notebook, tmp_path / "in" / "s0" / "lag.ipynb")
+        grade(course.assignment, course.students, tmp_path / "in", tmp_path / "out", place=course.place())
+        results = Results(tmp_path / "out" / "results", course.assignment.secret)
+        says = "in exercise 1 it answers 'Y' and 'P', which are not asked"
+        assert results.of("s0").looks == (Look("unasked", says, "1"),)
+        says = "a cell that answers exercise 2 is no code cell, and is not run"
+        assert results.of("s3").looks == (Look("no code", says, "2"),)
+        assert says in (tmp_path / "out" / "feedback" / "s3" / "feedback.md").read_text(encoding="utf-8")
+
     def test_everybody_has_what_is_due(self, graded):
         summary, folder = graded
         assert (summary.graded, summary.kept, summary.missing, summary.failures) == (4, 0, 1, ())

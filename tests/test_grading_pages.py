@@ -7,6 +7,7 @@ import pytest
 
 from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
 from loopbook.grading.lateness import Lateness
+from loopbook.grading.lms.gradescope import results_json
 from loopbook.grading.marking import Marked, MarkedExercise, Notice
 from loopbook.grading.overrides import Mark
 from loopbook.grading.reports import markdown, page, write_all
@@ -279,10 +280,30 @@ def test_a_notebook_of_somebody_else_and_odd_lines():
     looks = (Look("owner", "it names another student: s1001"), Look("odd lines", "it told 3 lines"))
     cases, harmless = told([changed(NAMED, looks=(*looks, Look("extra", "it answers '9'")))])
     assert cases == {
-        "Somebody else's notebooks": [("s1002", 5)],
+        "Notebooks that say they are somebody else's": [("s1002", 5)],
         "Notebooks that sent the grader something else than answers": [("s1002", 3.667)],
     }
     assert harmless == [("s1002",)]
+
+
+@pytest.mark.parametrize("kind", ["unasked", "no code"])
+def test_answers_that_do_not_count_where_they_stand_cost_what_is_open(kind):
+    mark = changed(result_of(BOB, {"1": {"K": 1.0}}), looks=(Look(kind, "in exercise 1 it answers 'k'", "1"),))
+    title = "Answers that do not count where they stand"
+    assert told([mark]) == ({title: [("s1002", 2.667)]}, [])
+    anywhere = changed(mark, looks=(Look(kind, "it answers '11'"),))
+    assert told([anywhere]) == ({title: [("s1002", 3.667)]}, [])
+    decided = Marked.of(mark.result, {("1", ""): Mark(4)})
+    assert told([decided]) == ({}, [("s1002",)])
+    for text in both(feedback(TITLE, BOB, mark)):
+        assert "in exercise 1 it answers 'k'" in text
+    assert "in exercise 1 it answers 'k'" in results_json(mark)
+
+
+def test_the_page_says_what_the_summary_says_of_another_name():
+    mark = changed(RIGHT_ALL, owner="s1001", looks=(Look("owner", "it names another student: s1002"),))
+    for text in both(feedback(TITLE, ADA, mark)):
+        assert "Of this notebook: it names another student: s1002. It was graded with the numbers of" in text
 
 
 def test_what_failed_after_the_answers_were_in_is_harmless():

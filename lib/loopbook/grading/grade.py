@@ -23,6 +23,7 @@ from loopbook.grading.jail import USUAL, Jail, Limits, demand_hidden
 from loopbook.grading.judge import Judge
 from loopbook.grading.keeping import Kept, executed, source
 from loopbook.grading.marking import Marking
+from loopbook.grading.outside_code import answered
 from loopbook.grading.released import Released
 from loopbook.grading.reports import registered, write_all
 from loopbook.grading.results import MISSING, OWNER, Look, Result, Results, fingerprint, result
@@ -86,7 +87,10 @@ class Desk:
                     self.jail = Jail(self.jailed, self.limits)
             outcome = self.jail.run(task.content)
         exercises = self.judge.judge(task.student, outcome.answers, task.numbers)
-        found = result(task.name, task.student, task.label, task.fingerprint, task.jailed, outcome, exercises)
+        found = result(
+            task.name, task.student, task.label, task.fingerprint, task.jailed, outcome, exercises,
+            answered(task.content),
+        )  # fmt: skip
         is_said = any(look.kind == OWNER for look in found.looks)
         looks = () if is_said else tuple(Look(OWNER, says) for says in task.doubts)
         found = replace(found, looks=(*looks, *found.looks), chosen=task.chosen)

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, Self
 
-from loopbook.exercises.judging import RIGHT, earned, harmless
+from loopbook.exercises.judging import OPEN, RIGHT, earned, harmless
 from loopbook.grading import GradingError
 from loopbook.grading.files import write
 
@@ -29,9 +29,9 @@ if TYPE_CHECKING:
 #: What became of a submission: nothing handed in, nothing that could be run, run in part, run to its end.
 MISSING, NOT_RUN, STOPPED, COMPLETE = "missing", "not run", "stopped", "complete"
 #: Kinds of `Look`.
-OWNER, ODD, EXTRA = "owner", "odd lines", "extra"
-#: So many answers to what is not asked are told.
-MOST_EXTRA = 20
+OWNER, ODD, UNASKED, NO_CODE, EXTRA = "owner", "odd lines", "unasked", "no code", "extra"
+#: So many answers to what is not asked are told, and so many names in one of them.
+MOST_EXTRA, MOST_NAMES = 20, 5
 #: An address of memory, in an error's text, differs from run to run.
 ADDRESS = re.compile(r"\b0x[0-9a-fA-F]{6,}\b")
 
@@ -106,13 +106,16 @@ class Look:
     """Why an instructor should look at a submission.
 
     Attributes:
-        kind: OWNER where it names another student, ODD where it told lines that are not answers, EXTRA where it answers
-            what is not asked, which is harmless.
+        kind: OWNER where it names another student, ODD where it told lines that are not answers, UNASKED where it
+            answers what is not asked and leaves open what is, NO_CODE where what is left open stands in a cell that is
+            not run, EXTRA where it answers what is not asked besides, which is harmless.
         says: the reason, in a sentence.
+        exercise: the one whose open answers may be meant; empty where it may be any.
     """
 
     kind: str
     says: str
+    exercise: str = ""
 
 
 @dataclass(frozen=True)
@@ -201,6 +204,7 @@ def result(
     jailed: bool,
     outcome: Outcome,
     exercises: Sequence[JudgedExercise],
+    outside_code: Sequence[str] = (),
 ) -> Result:
     """Return the result of a submission.
 
@@ -211,18 +215,21 @@ def result(
         mark: the fingerprint.
         outcome: `events.Outcome`.
         exercises: as `judge.Judge.judge` returns them.
+        outside_code: the exercises that are answered in cells that are not run.
     """
     status = MISSING if not label else NOT_RUN if outcome.refused else STOPPED if outcome.stopped else COMPLETE
     errors = tuple(CellError(cell, _same_each_time(says)) for cell, says in outcome.errors)
     says = _same_each_time(outcome.refused or outcome.stopped)
-    found = tuple(looks(student, outcome, exercises))
+    found = tuple(looks(student, outcome, exercises, outside_code))
     owner = outcome.named[0] if outcome.named else ""
     return Result(
         assignment, student, label, jailed, mark, status, says, errors, found, tuple(exercises), harmless(owner)
     )
 
 
-def looks(student: str, outcome: Outcome, exercises: Sequence[JudgedExercise]) -> list[Look]:
+def looks(
+    student: str, outcome: Outcome, exercises: Sequence[JudgedExercise], outside_code: Sequence[str] = ()
+) -> list[Look]:
     """Return why an instructor should look at a submission, what is harmless last."""
     found = []
     others = [name for name in outcome.named if name != student]
@@ -231,13 +238,33 @@ def looks(student: str, outcome: Outcome, exercises: Sequence[JudgedExercise]) -
     if outcome.odd:
         lines = f"{outcome.odd} line{'s' if outcome.odd > 1 else ''}"
         found.append(Look(ODD, f"it told {lines} that could not be read as answers"))
-    more, asked = [], {one.number: {answer.name for answer in one.answers} for one in exercises}
+    asked = {one.number: {answer.name for answer in one.answers} for one in exercises}
+    left = {one.number for one in exercises if any(answer.status == OPEN for answer in one.answers)}
+    for number in outside_code:
+        if number in left:
+            says = f"a cell that answers exercise {number} is no code cell, and is not run"
+            found.append(Look(NO_CODE, says, number))
+    more = []
     for number, given in outcome.answers.items():
         if number not in asked:
-            more.append(f"it answers {harmless(repr(number))}, which is not an exercise of this assignment")
+            says = f"it answers {harmless(repr(number))}, which is not an exercise of this assignment"
+            more.append(Look(UNASKED if left and given else EXTRA, says))
         elif extra := [name for name in given if name not in asked[number]]:
-            more.append(f"in exercise {number} it answers {harmless(repr(extra[0]))}, which is not asked")
-    return [*found, *(Look(EXTRA, says) for says in sorted(more)[:MOST_EXTRA])]
+            says = f"in exercise {number} it answers {_named(extra)}, which {_is(extra)} not asked"
+            more.append(Look(UNASKED, says, number) if number in left else Look(EXTRA, says))
+    more.sort(key=lambda look: (look.kind == EXTRA, look.says))
+    return [*found, *more[:MOST_EXTRA]]
+
+
+def _named(names):
+    """Names that a student chose, in words."""
+    shown = [harmless(repr(name)) for name in names[:MOST_NAMES]]
+    shown += [f"{len(names) - MOST_NAMES} more"] * (len(names) > MOST_NAMES)
+    return f"{', '.join(shown[:-1])} and {shown[-1]}" if shown[1:] else shown[0]
+
+
+def _is(names):
+    return "are" if names[1:] else "is"
 
 
 def _same_each_time(says):

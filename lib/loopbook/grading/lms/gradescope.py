@@ -22,6 +22,7 @@ from loopbook.grading.reports.wording import (
     NO_JAIL,
     answer_in_words,
     explained,
+    hints,
     in_text,
     of_points,
     remarks,
@@ -96,7 +97,13 @@ def results_json(mark: Marked, reveal: bool = False) -> str:
         total = max(0.0, sum(one.earned or 0 for one in mark.exercises) - mark.deduction) if mark.waiting else 0.0
     visibility = "after_published" if reveal else "visible"
     lines = [NO_JAIL] if without_jail([result]) else []
-    lines += [of_points(total, result.points), *remarks(result), *filter(None, [mark.late]), *mark.comments]
+    lines += [
+        of_points(total, result.points),
+        *remarks(result),
+        *hints(result),
+        *filter(None, [mark.late]),
+        *mark.comments,
+    ]
     if mark.waiting:
         where = dict.fromkeys(number for number, _ in mark.waiting)
         lines.append(f"Waiting for a mark by hand: exercise {', '.join(where)}.")

@@ -10,7 +10,7 @@ from loopbook.exercises.judging import OPEN, UNJUDGED
 from loopbook.grading.reports.document import Code, Lines, Link, Said, Text
 from loopbook.grading.reports.equal_answers import equal_answers
 from loopbook.grading.reports.wording import answer_in_words, explained, remarks
-from loopbook.grading.results import MISSING, NOT_RUN, ODD, OWNER, STOPPED
+from loopbook.grading.results import MISSING, NO_CODE, NOT_RUN, ODD, OWNER, STOPPED, UNASKED
 
 if TYPE_CHECKING:
     from loopbook.grading.marking import Marked
@@ -86,13 +86,21 @@ FAILED = Concern(
     "Cells that failed, with answers left open",
     ("Open answers earn nothing. The cell may have worked only after another one that is gone. ", *_BY_HAND),
 )
+MISPLACED = Concern(
+    "Answers that do not count where they stand",
+    (
+        "They have a name that is not asked, or are in a cell that is not run; what is asked was left open and earns "
+        "nothing. ",
+        *_BY_HAND,
+    ),
+)
 UNREAD = Concern("Answers that could not be judged", ("They earn nothing, but you may see what was meant. ", *_BY_HAND))
 FLAGGED = Concern(
     "Answers that were judged and are unusual",
     ("The verdict stands unless you say otherwise. ", *_BY_HAND),
 )
 OF_ANOTHER = Concern(
-    "Somebody else's notebooks",
+    "Notebooks that say they are somebody else's",
     "They were graded with the numbers of the student who handed them in. Ask whose work they are.",
 )
 TELLS_TOO_MUCH = Concern(
@@ -105,7 +113,8 @@ EQUAL = Concern(
 )
 #: Where equal points are at stake in two of them, this is their order.
 _ORDER = (
-    NOT_RUNNING, NOBODYS, TO_MARK, TO_DECIDE, CUT_SHORT, FAILED, UNREAD, FLAGGED, OF_ANOTHER, TELLS_TOO_MUCH, EQUAL,
+    NOT_RUNNING, NOBODYS, TO_MARK, TO_DECIDE, CUT_SHORT, FAILED, MISPLACED, UNREAD, FLAGGED, OF_ANOTHER, TELLS_TOO_MUCH,
+    EQUAL,
 )  # fmt: skip
 
 
@@ -185,9 +194,18 @@ def _of_one(mark):
         if answer.look:
             yield FLAGGED, at_stake, (place, given, f"; judged {answer.status}: ", Said(answer.look))
     for look in result.looks:
-        at_stake = {OWNER: result.points, ODD: result.earned}.get(look.kind, 0)
-        concern = None if is_decided else {OWNER: OF_ANOTHER, ODD: TELLS_TOO_MUCH}.get(look.kind)
-        yield concern, at_stake, Said(look.says)
+        left_open = sum(
+            share(exercise, answer)
+            for exercise, answer in left
+            if answer.status == OPEN and look.exercise in ("", exercise.number)
+        )
+        concern, at_stake = {
+            OWNER: (OF_ANOTHER, result.points),
+            ODD: (TELLS_TOO_MUCH, result.earned),
+            UNASKED: (MISPLACED if left_open else None, left_open),
+            NO_CODE: (MISPLACED if left_open else None, left_open),
+        }.get(look.kind, (None, 0))
+        yield None if is_decided else concern, at_stake, Said(look.says)
 
 
 def _to_mark(marks):

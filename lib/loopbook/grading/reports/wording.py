@@ -11,6 +11,7 @@ from loopbook.exercises import png
 from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WAITING, WRONG
 from loopbook.exercises.reading import shortened
 from loopbook.figures.picture import plain_words
+from loopbook.grading.results import NO_CODE, UNASKED
 
 if TYPE_CHECKING:
     from loopbook.grading.plain import Plain
@@ -144,6 +145,11 @@ def remarks(result: Result) -> list[str]:
     found += [f"cell {error.cell}: {error.says}" for error in result.errors]
     more = [f"and {len(found) - MOST_REMARKS} more"] if len(found) > MOST_REMARKS else []
     return [shortened(visible(text), LONGEST_REMARK) for text in found[:MOST_REMARKS]] + more
+
+
+def hints(result: Result) -> list[str]:
+    """Return what a student should know of answers that do not count where they stand, as `remarks` are."""
+    return [shortened(visible(look.says), LONGEST_REMARK) for look in result.looks if look.kind in (UNASKED, NO_CODE)]
 
 
 def explained(answer: JudgedAnswer) -> str:

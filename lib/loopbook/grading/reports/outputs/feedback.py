@@ -33,6 +33,7 @@ from loopbook.grading.reports.publishing import published
 from loopbook.grading.reports.wording import (
     NO_JAIL,
     answer_in_words,
+    hints,
     in_text,
     number,
     of_points,
@@ -40,7 +41,7 @@ from loopbook.grading.reports.wording import (
     verdict_and_reading,
     visible,
 )
-from loopbook.grading.results import MISSING, NOT_RUN
+from loopbook.grading.results import MISSING, NOT_RUN, OWNER
 
 if TYPE_CHECKING:
     from loopbook.grading.marking import Marked, MarkedExercise
@@ -123,7 +124,12 @@ def _notebook(mark: Marked, student: Student) -> list[Block]:
                 )
             )
         )
-    notes = remarks(result)
+    elif doubts := [look.says for look in result.looks if look.kind == OWNER]:
+        own = Code(student.id)
+        blocks.append(
+            Caution(("Of this notebook: ", Said("; ".join(doubts)), ". It was graded with the numbers of ", own, "."))
+        )
+    notes = [*remarks(result), *hints(result)]
     if not (notes or result.file):
         return blocks
     blocks.append(Heading("The notebook"))
