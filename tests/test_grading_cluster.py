@@ -1,6 +1,7 @@
 """A Dask cluster that fails under the grader: each time one sentence, and no wait without an end."""
 
 import os
+import socket
 import subprocess
 import sys
 import time
@@ -112,3 +113,17 @@ def _not_there():
         return "1"
 
     return mark
+
+
+@pytest.mark.parametrize("address", ["", "nonsense", "http://127.0.0.1:1", "tcp://127.0.0.1:port"])
+def test_an_address_that_is_none_is_told(address):
+    with pytest.raises(GradingError, match="is not the address of a scheduler"), connected(address):
+        pass
+
+
+def test_something_else_at_the_address_is_told(monkeypatch):
+    monkeypatch.setattr("loopbook.grading.cluster.ANSWER", 1)
+    with socket.create_server(("127.0.0.1", 0)) as other:  # it listens, and says nothing
+        address = f"tcp://127.0.0.1:{other.getsockname()[1]}"
+        with pytest.raises(GradingError, match="no Dask scheduler answers at"), connected(address):
+            pass

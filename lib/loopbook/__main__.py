@@ -332,7 +332,7 @@ def grade(
                 roster,
                 submissions,
                 to,
-                place=connected(cluster) if cluster else here(workers),
+                place=here(workers) if cluster is None else connected(cluster),
                 extensions=extensions or (beside if beside.exists() else None),
                 only=only or (),
                 regrade=regrade,

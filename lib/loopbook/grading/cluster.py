@@ -40,10 +40,7 @@ def connected(address: str) -> Iterator[tuple[Executor, int]]:
     except ImportError:
         raise GradingError("a cluster needs Dask: install the extra loopbook[cluster]") from None
     with _quiet():
-        try:
-            client = Client(address, timeout=ANSWER, set_as_default=False)
-        except (OSError, ValueError, TimeoutError) as problem:
-            raise GradingError(f"no Dask scheduler answers at {address}: {problem}") from None
+        client = _client(Client, address)
         try:
             threads = _threads(client)
             if not threads:
@@ -55,6 +52,39 @@ def connected(address: str) -> Iterator[tuple[Executor, int]]:
             # a scheduler that is gone makes this wait, and complain
             with contextlib.suppress(Exception):
                 client.close(timeout=ANSWER)
+
+
+def _client(make, address):
+    """A client of the scheduler at an address. Raises GradingError where none answers in time.
+
+    It is made in a thread: where something else answers, the library waits for ever for the next word.
+    """
+    from distributed.comm.addressing import parse_address, parse_host_port
+    from distributed.comm.registry import get_backend
+
+    made: list[Any] = []
+    failed: list[BaseException] = []
+
+    def connect():
+        try:
+            made.append(make(address, timeout=ANSWER, set_as_default=False))
+        except (OSError, ValueError, TimeoutError) as problem:
+            failed.append(problem)
+
+    try:
+        scheme, place = parse_address(address)
+        get_backend(scheme), parse_host_port(place)
+    except ValueError as problem:
+        raise GradingError(
+            f"{address!r} is not the address of a scheduler ({problem}): expected one such as tcp://10.0.0.5:8786"
+        ) from None
+    thread = threading.Thread(target=connect, daemon=True)
+    thread.start()
+    thread.join(2 * ANSWER)
+    if not made:
+        why = failed[0] if failed else "what answers there is something else"
+        raise GradingError(f"no Dask scheduler answers at {address}: {why}")
+    return made[0]
 
 
 @contextlib.contextmanager

@@ -136,6 +136,8 @@ def limit(limits: Mapping[str, int], size: int | None, jailed: bool) -> None:
         # some users may go before all others, up to the machine's standstill
         bounds[resource.RLIMIT_RTPRIO] = bounds[resource.RLIMIT_NICE] = 0
     for which, bound in bounds.items():
+        most = resource.getrlimit(which)[1]  # nobody goes beyond what this machine allows already
+        bound = bound if most == resource.RLIM_INFINITY else min(bound, most)
         resource.setrlimit(which, (bound, bound))
 
 

@@ -258,7 +258,7 @@ def _gone(results, students, found, submissions):
     if len(gone) >= FEWEST_GONE and 2 * len(gone) > len(before):
         raise GradingError(
             f"{len(gone)} of {len(before)} students who were graded have no submission in {submissions} any more: "
-            f"{who}; nothing is graded; look whether this is the right place and the right roster, or grade into another folder"
+            f"{who}; nothing is graded; look whether place and roster are the right ones, or grade into another folder"
         )
     return [f"Graded before, and without a submission now: {who}."] if gone else []
 
