@@ -9,7 +9,7 @@ import nbformat
 import pytest
 
 from draws import draws
-from hostile.masked import CONTROLLER_MASKS, HEDGES, HONEST, MASKS, NUMBER_MASKS, ROW_MASKS, hedged
+from hostile.masked import CONTROLLER_MASKS, HEDGES, HONEST, MASKS, NUMBER_MASKS, ROW_MASKS, SPOILED, hedged
 from loopbook.exercises.bank import chapters, exercises
 from loopbook.exercises.judging import RIGHT, UNJUDGED, is_right, judge
 from loopbook.exercises.kinds import (
@@ -121,6 +121,13 @@ def test_an_answer_without_a_value_is_never_right_and_is_looked_at(mask):
     assert verdict.look or verdict.status == UNJUDGED, verdict
 
 
+@pytest.mark.parametrize("name", SPOILED)
+def test_a_right_answer_that_is_spoiled_unseen_earns_nothing(name):
+    for one in (OF_COURSE[0], OWN[0], OWN[1]):
+        answer = SPOILED[name].replace("R", f"({one.right})").replace("X", one.x)
+        assert not is_right(one.kind, answer), (one.kind.solution, answer)
+
+
 @pytest.mark.parametrize("form", HONEST)
 def test_an_honest_form_stays_right(form):
     for one in (*OF_COURSE, *OWN):
@@ -176,6 +183,8 @@ LEVEL = InstrumentDiagram("vessel -> LT1 -> LC1 -> LV1 -> out", {"vessel": "vess
 PAIRS = [
     (Number(120, "s"), "120", "90"),
     (Number(2.5), "2.5", "4"),
+    (Number(-5), "-5", "5"),
+    (Number(5), "5", "-5"),
     (Numbers([1, 2, 3]), "[1, 2, 3]", "[1, 2, 4]"),
     (Poles([-1, -2]), "[-1, -2]", "[-1, -3]"),
     (Poles([-1.5]), "-1.5", "-4"),

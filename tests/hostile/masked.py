@@ -710,6 +710,28 @@ def hedged(template: str, right: str, wrong: str) -> str:
     return re.sub(r"\b[RW]\b", lambda found: {"R": right, "W": wrong}[found[0]], template)
 
 
+#: 1, and 0 in decimal numbers.
+_ONE = "((1e40 + 1) - 1e40)"
+#: Right answers, spoiled by what decimal numbers do not show: where a function is flat, an error seems to be none.
+SPOILED = {
+    "a product of two that cancel": f"R + ((1e40 + 1e40*I + X) - 1e40 - 1e40*I)*{_ONE}",
+    "a square": f"R + {_ONE}**2",
+    "a power of 1": f"R + {_ONE}**1",
+    "a root": f"R + {_ONE}**0.5",
+    "a cosine": "R*cos((1e40 + pi) - 1e40)",
+    "a hyperbolic cosine": f"R*cosh(X*{_ONE})",
+    "a sine": "R*sin(pi/2 + ((E**40 + pi) - E**40))",
+    "tanh": "R*tanh(50 + ((1e18 - 60) - 1e18))",
+    "arctan": "R*atan(1e15 + ((1e32 - 5e15) - 1e32))*2/pi",
+    "a step of a complex number": "R*2*Heaviside(1e20*I + ((1e30 - 1) - 1e30))",
+    "the sign of a complex number": "R*sign(10 + I*((3e16 + 1.9) - 3e16))",
+    "a size": f"R + Abs({_ONE})**2",
+    "a limiter": f"R + Max(0, {_ONE})*{_ONE}",
+    "a branch": "R*sqrt(-1 - 1e-10*I + 1e8*I - 1e8*I)/I",
+    "a sine of pi": "R*sin(pi)/1.2246467991473532e-16",
+    "many digits where the points are large": "R*(1 + ((E**70*(1+I) + (X/30)**8) - E**70*(1+I)))",
+}
+
 #: Right answers in other words, R is the right one: they have its value everywhere.
 HONEST = (
     "R + 0", "1*R", "R/1", "-(-R)", "R + 0*X", "2*R - R", "R + X - X", "R*X/X", "(R)**1", "1/(1/(R + 1)) - 1",

@@ -130,7 +130,11 @@ class Comparison:
         if key.reaches(found, known, self.left):
             return True
         near = known & self.alike & key.calm
-        if given is None or np.any(off[near] > MORE_THAN_KEY * (key.reach[near] + self.within)):
+        if (
+            given is None
+            or not given.in_decimals_at(self.points, np.isfinite(expected))
+            or np.any(off[near] > MORE_THAN_KEY * (key.reach[near] + self.within))
+        ):
             return False
         answer, most = self._rounded(given), REACH_OF_KEY * key.reach[near] + REACH_OF_WITHIN * self.within
         return bool(np.all(answer.reach[near] <= most)) and answer.reaches(expected, known, self.left)

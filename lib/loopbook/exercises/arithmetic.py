@@ -13,7 +13,9 @@ from __future__ import annotations
 
 import ast
 import functools
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from fractions import Fraction
 from typing import Any
 
 import mpmath
@@ -23,6 +25,8 @@ from loopbook.exercises.reading import CONSTANTS, Unreadable
 
 #: The last digit of a decimal number.
 LAST_DIGIT = 2.0**-52
+#: A slope tells the error of a curved function, a power or a fraction while its argument is known to this.
+KNOWN = 1e-6
 #: An exponential, or a product, below this has lost its digits.
 SMALLEST = 1e-300
 #: The argument of an exponential, or of a sine, has so many binary digits before its point at most.
@@ -99,6 +103,11 @@ _SLOPES: dict[str, Callable[..., Any]] = {
 }  # fmt: skip
 
 
+#: Functions that turn within the same distance everywhere, and those that have another branch or end beside a value.
+_TURNING = frozenset({"exp", "sin", "cos", "tan", "sinh", "cosh", "tanh"})
+_BRANCHING = frozenset({"log", "log10", "sqrt", "asin", "acos", "atan"})
+
+
 class Decimals:
     """Arrays of complex decimal numbers.
 
@@ -173,6 +182,8 @@ class Decimals:
 class Bounded(Decimals):
     """The same with an error beside each value, as pairs; a condition has one where it cannot be told.
 
+    An error is a bound: it is not finite where a slope does not tell it, as with an argument of which little is known.
+
     Arguments:
         in_s: an exponential that is nearly zero has lost its digits; in time, what has died away is zero.
     """
@@ -186,12 +197,15 @@ class Bounded(Decimals):
         return value, 0.0
 
     def number(self, value: complex) -> Any:
-        """A number that stands in the formula."""
-        return super().number(value), 0.0
+        """A number that stands in the formula, as it is written: few decimals are numbers of a machine."""
+        value = complex(value)
+        is_exact = all(not math.isfinite(one) or Fraction(repr(one)) == one for one in (value.real, value.imag))
+        return super().number(value), 0.0 if is_exact else LAST_DIGIT * abs(value)
 
     def named(self, name: str) -> Any:
         """The values of a symbol, or a constant."""
-        return super().named(name), 0.0
+        is_exact = name in self.values or CONSTANTS[name] == 1j
+        return super().named(name), 0.0 if is_exact else LAST_DIGIT * abs(CONSTANTS[name])
 
     def negative(self, value: Any) -> Any:
         """A value with the other sign."""
@@ -209,19 +223,31 @@ class Bounded(Decimals):
         if operator in (ast.Add, ast.Sub):
             error = dx + dy + LAST_DIGIT * size
         elif operator is ast.Mult:
-            error = dx * np.abs(y) + dy * np.abs(x) + LAST_DIGIT * size
+            error = _product(dx, np.abs(y)) + _product(dy, np.abs(x)) + _product(dx, dy) + LAST_DIGIT * size
         elif operator is ast.Div:
             below = np.abs(y)
             error = dx / below + dy * np.abs(x) / below / below + LAST_DIGIT * size
+            error = np.where(_vague(y, dy), np.inf, error)
         else:
-            bottom = np.abs(x)
-            logarithm = np.abs(np.log(np.where(x == 0, 1, x).astype(complex)))
-            relative = _product(dx / np.where(bottom == 0, 1, bottom), np.abs(y)) + _product(dy, logarithm)
-            error = _product(relative + LAST_DIGIT * (1 + np.abs(y) * logarithm), size)
+            error = self._of_power(left, right, size)
         if operator not in (ast.Add, ast.Sub):  # a product that is nearly zero has lost its digits
             is_zero = (x == 0) | ((y == 0) & (operator is ast.Mult))
             error = error + np.where((size < SMALLEST) & ~is_zero, SMALLEST, 0)
         return found, np.where(np.isfinite(found), error, np.inf)
+
+    @staticmethod
+    def _of_power(left, right, size):
+        """The error of a power; a whole one has a bound even where little is known of what it is a power of."""
+        (x, dx), (y, dy) = left, right
+        bottom = np.abs(x)
+        logarithm = np.abs(np.log(np.where(x == 0, 1, x).astype(complex)))
+        rounding = _product(LAST_DIGIT * (1 + np.abs(y) * logarithm), size)
+        relative = _product(dx / np.where(bottom == 0, 1, bottom), np.abs(y)) + _product(dy, logarithm)
+        is_whole = (dy == 0) & (np.imag(y) == 0) & (np.real(y) == np.round(np.real(y)))
+        lost = _vague(x, dx) | _vague(y, dy) | (relative > KNOWN) | (~is_whole & _on_cut("log", x, dx))
+        whole = _product(dx, np.abs(y) * (bottom + dx) ** np.maximum(np.abs(y) - 1, 0))
+        error = np.where(lost, np.inf, _product(relative, size))
+        return np.where(is_whole & (np.real(y) >= 1), whole, error) + rounding
 
     def both(self, operator: type[ast.operator], left: Any, right: Any) -> Any:
         """Two conditions, both or one of which hold."""
@@ -237,18 +263,27 @@ class Bounded(Decimals):
         """The value of a function; steps and limiters look at real parts."""
         name = _OTHER_NAMES.get(name, name)
         found = super().called(name, [value for value, _ in parts])
-        (x, error), *others = parts
+        (x, off), *others = parts
+        size = np.abs(found)
         if name in _SLOPES:
-            error = np.where(error == 0, 0.0, error * np.abs(_SLOPES[name](x, found)))
-            error = error + LAST_DIGIT * np.abs(found)
-        elif name in ("sign", "Heaviside"):
-            error = np.where((np.abs(x) > error) | (error == 0), 0.0, np.inf)
+            error = _product(off, np.abs(_SLOPES[name](x, found))) + LAST_DIGIT * size
+            if name in _TURNING:
+                steep = off * size if name in ("tan", "tanh") else 0  # they have poles
+                bend = size if name == "exp" else 1 + size
+                error = np.where((off > KNOWN) | (steep > KNOWN), np.inf, error + off * off * bend)
+            elif name in _BRANCHING:
+                error = np.where(_vague(x, off) | _on_cut(name, x, off), np.inf, error)
+        elif name == "sign":
+            turned = 2 * off / np.abs(x) if np.iscomplexobj(x) else 0.0
+            error = np.where(off == 0, 0.0, np.where(np.abs(x) > off, turned, np.inf))
+        elif name == "Heaviside":
+            error = np.where((np.abs(np.real(x)) > off) | (off == 0), 0.0, np.inf)
         else:
-            error = error + sum(one for _, one in others)
-        lost = ~np.isfinite(found)
-        if name == "exp" and self.in_s:
-            lost = lost | (np.abs(found) < SMALLEST)
-        return found, np.where(lost, np.inf, error)
+            error = off + sum(one for _, one in others)
+        if name == "exp":  # what has died away is nothing in time
+            gone = (size < SMALLEST) & (off <= -KNOWN * np.real(x))
+            error = np.where(gone, np.inf if self.in_s else SMALLEST, error)
+        return found, np.where(np.isfinite(found), error, np.inf)
 
     def in_pieces(self, pieces: Sequence[tuple[ast.expr, ...]], value: Callable[[ast.expr], Any]) -> Any:
         """The piece that holds at each point; its error counts, and those of the conditions."""
@@ -261,6 +296,21 @@ class Bounded(Decimals):
 def _product(error, factor):
     """An error times a factor; of no error, nothing."""
     return np.where(error == 0, 0.0, error * factor)
+
+
+def _vague(value, error):
+    """Where little is known of a value."""
+    return error > KNOWN * np.abs(value)
+
+
+def _on_cut(name, x, error):
+    """Where the other branch of a function may count; a real number is on the side that everybody means."""
+    if not np.iscomplexobj(x):
+        return np.False_
+    if name == "atan":
+        return (error > 0) & (np.abs(np.real(x)) <= error) & (np.abs(np.imag(x)) >= 1 - error)
+    beyond = np.abs(np.real(x)) >= 1 - error if name in ("asin", "acos") else np.real(x) <= error
+    return (error > 0) & (np.abs(np.imag(x)) <= error) & beyond
 
 
 @functools.cache

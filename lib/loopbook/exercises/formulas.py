@@ -53,7 +53,7 @@ class Formula:
         source, tree = understood(self.text, self.symbols)
         self.text, self.remark = (source, f"read as {source}") if source else (self.text, "")
         self.tree = tree
-        self._kept: list[tuple[Mapping[str, np.ndarray], np.ndarray, np.ndarray]] = []
+        self._kept: list[tuple[Mapping[str, np.ndarray], np.ndarray, np.ndarray, np.ndarray]] = []
         self.rounded: list[Any] = []
 
     def with_tree(self, tree: ast.expr) -> Formula:
@@ -100,6 +100,17 @@ class Formula:
         """
         return self._told_at(points, 0)
 
+    def in_decimals_at(self, points: Mapping[str, np.ndarray], places: np.ndarray) -> bool:
+        """Whether decimal numbers tell its values at all of some places: elsewhere, `changed` is not to be trusted.
+
+        Arguments:
+            points: {symbol: array}, as of `told_at`.
+            places: where, of the shape of the values.
+        """
+        self.told_at(points)
+        (sure,) = (one[3] for one in self._kept if one[0] is points)
+        return bool(sure[places].all())
+
     def _told_at(self, points, most):
         kept = next((one for one in self._kept if one[0] is points), None)
         if kept is None:
@@ -109,13 +120,13 @@ class Formula:
                 size = np.abs(np.where(np.isfinite(found), found, 0))
                 size = np.max(size) if [*self.symbols] == ["t"] else size  # a function of time is seen as a whole
                 told = np.asarray(np.isfinite(found) & (error <= SURE * size))
-            kept = points, np.asarray(np.where(told, found, np.nan)), told
+            kept = points, np.asarray(np.where(told, found, np.nan)), told, told.copy()
             unsure = np.argwhere(~told)
-            self._work_out(*kept, unsure[:: max(1, len(unsure) // FEW_IN_DIGITS)][:FEW_IN_DIGITS])
+            self._work_out(*kept[:3], unsure[:: max(1, len(unsure) // FEW_IN_DIGITS)][:FEW_IN_DIGITS])
             self._kept = [*self._kept[1 - MOST_KEPT :], kept]
-        _, found, told = kept
+        _, found, told, _ = kept
         if most and not told.all():
-            self._work_out(*kept, np.argwhere(~told)[: most // sum(1 for _ in ast.walk(self.tree))])
+            self._work_out(*kept[:3], np.argwhere(~told)[: most // sum(1 for _ in ast.walk(self.tree))])
             told[...] = True
         return found, told
 

@@ -21,7 +21,7 @@ class Freedom:
     Attributes:
         node: what is multiplied by a factor where the number is.
         beside: the terms of the sum that it is a term of; none where that is a sum in a function, or below a bar.
-        decides: whether it stands where a step, a limiter, or a piece begins.
+        decides: whether it stands where a step or a piece begins; what a limiter compares are values.
     """
 
     node: ast.expr
@@ -29,7 +29,9 @@ class Freedom:
     decides: bool = False
 
 
-_SWITCHES = {"Heaviside", "sign", "Min", "Max", "min", "max", "Abs", "abs"}
+#: What jumps; and what has a kink, and the values of its arguments beside it.
+_STEPS = {"Heaviside", "sign"}
+_SWITCHES = _STEPS | {"Min", "Max", "min", "max", "Abs", "abs"}
 
 
 def freedoms(tree: ast.expr) -> list[Freedom]:
@@ -64,7 +66,7 @@ def _of(node: ast.expr, beside: tuple[ast.expr, ...] | None, decides: bool) -> I
                 yield from _of(condition, None, True)
         case ast.Call():
             for argument in node.args:
-                yield from _of(argument, None, decides or node.func.id in _SWITCHES)
+                yield from _of(argument, None, decides or node.func.id in _STEPS)
         case ast.Compare():
             yield from _of(node.left, None, True)
             yield from _of(node.comparators[0], None, True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import random
 import re
 from collections.abc import Iterator
 from typing import Any
@@ -74,7 +75,7 @@ class Settings(Kind):
         books. The gains Ki and Kd of a controller whose terms are added become times. A transfer function with numbers,
         2*(1 + 1/(10*s)), is recognised as well.
         """
-        if controller := _of_transfer_function(answered(given)):
+        if controller := _of_transfer_function(answered(given), self.seed):
             controller = self._in_asked_form(controller)
             return controller, f"read as {self.written(controller)}"
         parts, remark = parts_of(given)
@@ -310,11 +311,19 @@ def _by_our_names(given):
     return found, f"read {listed(others)}" if others else ""
 
 
-#: Values of s in the whole plane, at which each of three terms and a filter shows itself beside the others.
-_POINTS = np.geomspace(1e-6, 1e3, 30) * np.exp(1j * np.linspace(-3, 3, 30))
+#: So many values of s tell the settings of a formula, and as many others confirm them.
+_MOST_POINTS = 30
 
 
-def _of_transfer_function(given):
+def _points(text):
+    """Values of s in the whole plane, at which each of three terms and a filter shows itself beside the others."""
+    dice = random.Random(text)
+    sizes = np.geomspace(1e-6, 1e3, _MOST_POINTS) * [dice.uniform(0.8, 1.25) for _ in range(_MOST_POINTS)]
+    return sizes * np.exp(1j * np.array([dice.uniform(-3, 3) for _ in sizes]))
+
+
+@np.errstate(all="ignore")
+def _of_transfer_function(given, seed):
     """The settings, in parallel form, of a transfer function with numbers; None where it is no PID controller.
 
     Times s and with the filter's denominator it is a polynomial, c0 + c1 s + c2 s².
@@ -327,17 +336,21 @@ def _of_transfer_function(given):
         return None
     if formula.decides or not re.search(r"\bs\b", formula.text):  # a number alone tells no controller
         return None
-    times_s = _POINTS * formula(s=_POINTS)
+    # drawn from what nobody knows who wrote the formula, and from the formula
+    points = {"s": np.concatenate([_points(f"{seed}\n{formula.text}\n{k}") for k in range(2)])}
+    at = points["s"]
+    times_s = at * formula.values_at(points)
     if not np.isfinite(times_s).all() or not np.all(times_s):
         return None
-    terms = np.stack([_POINTS**0, _POINTS, _POINTS**2, -_POINTS * times_s]) / times_s
+    terms = np.stack([at**0, at, at**2, -at * times_s]) / times_s
+    first = np.arange(len(at)) < _MOST_POINTS
     for count in (3, 4):  # without a filter, or with one
-        size = np.abs(terms[:count]).max(axis=1)
+        size = np.abs(terms[:count, first]).max(axis=1)
         scaled = terms[:count].T / size
-        system = np.concatenate([scaled.real, scaled.imag])
-        ones = np.concatenate([np.ones(len(_POINTS)), np.zeros(len(_POINTS))])
+        system = np.concatenate([scaled[first].real, scaled[first].imag])
+        ones = np.concatenate([np.ones(_MOST_POINTS), np.zeros(_MOST_POINTS)])
         parts = np.linalg.lstsq(system, ones, rcond=None)[0]
-        if np.allclose(system @ parts, ones, rtol=0, atol=1e-8):
+        if np.allclose(system @ parts, ones, rtol=0, atol=1e-8) and np.allclose(scaled @ parts, 1, rtol=0, atol=1e-7):
             parts[np.abs(parts) < 1e-8] = 0
             return _with_terms(*map(float, parts / size), *[0.0][: 4 - count])
     return None
