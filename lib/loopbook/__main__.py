@@ -333,7 +333,7 @@ def grade(
                 submissions,
                 to,
                 place=here(workers) if cluster is None else connected(cluster),
-                extensions=extensions or (beside if beside.exists() else None),
+                extensions=extensions or (beside if os.path.lexists(beside) else None),
                 only=only or (),
                 regrade=regrade,
                 jailed=not without_jail,

@@ -102,7 +102,7 @@ def results_json(mark: Marked, reveal: bool = False) -> str:
         *remarks(result),
         *hints(result),
         *filter(None, [mark.late]),
-        *mark.comments,
+        *map(visible, mark.comments),
     ]
     if mark.waiting:
         where = dict.fromkeys(number for number, _ in mark.waiting)
@@ -121,13 +121,14 @@ def results_json(mark: Marked, reveal: bool = False) -> str:
 
 def _test(marked, visibility, reveal):
     exercise, verdicts = marked.judged, marked.judged.answers
+    by_hand = map(visible, [*marked.history, *marked.comments])
     return {
         "number": exercise.number,
         "name": in_text(exercise.title),
         "score": round(marked.earned or 0, 2),
         "max_score": round(exercise.points, 2),
         "status": "passed" if all(verdict.status == RIGHT for verdict in verdicts) else "failed",
-        "output": "\n".join([*(_line(verdict, reveal) for verdict in verdicts), *marked.history, *marked.comments]),
+        "output": "\n".join([*(_line(verdict, reveal) for verdict in verdicts), *by_hand]),
         "output_format": "text",
         "visibility": visibility,
     }

@@ -36,7 +36,7 @@ from typing import TYPE_CHECKING
 from loopbook.grading import GradingError, lms
 from loopbook.grading.lms import Claim, Known, Packed, System, own
 from loopbook.grading.reports.outputs import output
-from loopbook.grading.reports.wording import number, without_jail
+from loopbook.grading.reports.wording import number, visible, without_jail
 from loopbook.grading.tables import as_text, letters
 
 if TYPE_CHECKING:
@@ -273,7 +273,7 @@ def _filled(row, mark, columns, comma):
             for sentence in (*exercise.history, *exercise.comments)
         ]
         if said:
-            row[columns["comments"]] = html.escape(" · ".join(said), quote=False)
+            row[columns["comments"]] = html.escape(" · ".join(map(visible, said)), quote=False)
     return row
 
 
