@@ -343,6 +343,13 @@ def test_of_two_answers_in_one_none_is_chosen(kind, given):
     assert judge("x", kind, given).status == UNJUDGED
 
 
+def test_two_sides_of_a_number_are_one_number_with_its_sign():
+    assert is_right(number(64, "min"), "3840 s = 64 min")
+    assert is_right(number(-5), "-10/2 = -5")
+    for given in ("5 = -5", "-5 = 5"):
+        assert "two sides that differ" in judge("x", number(5), given).says
+
+
 def test_numbers_lose_no_digits():
     assert not is_right(number(0), "1 + 1e30 - 1e30")
     assert is_right(number(1), "1 + 1e30 - 1e30")

@@ -371,7 +371,8 @@ def _number_of_text(text, unit, expected):
     before = [part for part in before if re.search(r"\d", part)]  # theta - theta_m = 4 min
     if before:  # 3840 s = 64 min
         found = [_number_of_text(part, unit, expected) for part in (*before, line)]
-        if all(near(value, found[-1][0], ROUNDED) for value, _ in found):
+        value = found[-1][0]
+        if all(abs(one - value) <= ROUNDED * (abs(value) or 1) for one, _ in found):
             return found[-1]
         raise Unreadable(f"{shortened(text, 40)!r} has two sides that differ: expected {expected}")
     line, remark = _in_digits_only(_BEHIND_IT.sub("", line) if not unit else line)
