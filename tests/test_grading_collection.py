@@ -172,7 +172,7 @@ def test_what_is_no_notebook_of_a_student_is_said(tmp_path):
         "link: is a symbolic link, which is not followed",
         "mallory/a.ipynb: is named after no student of the roster",
         "s1001/notes: is not a notebook (.ipynb)",
-        "s1001/secret.ipynb: is a symbolic link, which is not followed",
+        "s1001/secret.ipynb: is a symbolic link, which is not followed, beside s1001/notes",
         "s1003.ipynb: is not a file but a device, a pipe or a socket",
     }
 
@@ -189,7 +189,10 @@ def test_what_may_not_be_read_is_said(tmp_path, monkeypatch):
     monkeypatch.setattr(entries.os, "access", lambda path, mode: False)
     monkeypatch.setattr(entries.os, "scandir", refuses)
     found = collect(tmp_path, CLASS, "a")
-    assert found.submissions == ()
+    assert [one.problem for one in found.submissions] == [
+        "the file cannot be read: no permission",
+        "the file cannot be read: Permission denied",
+    ]
     assert found.complaints == (
         "s1001.ipynb: cannot be read: no permission",
         "s1002: cannot be read: Permission denied",
@@ -314,10 +317,21 @@ def test_downloads_of_both_systems(packed):
     assert [item.student for item in found.submissions] == [*CLASS]
     assert [source(item) for item in reversed(found.submissions)] == ["3", "2", "1"]
     assert found.complaints == (
-        "doejane_123_7_notes.pdf: is not a notebook (.ipynb)",
         "anon_Ab3dE_456_heater.ipynb: is from an anonymous download of Canvas, which does not say whose it is",
+        "doejane_123_7_notes.pdf: is not a notebook (.ipynb), beside doejane_123_8_heater.ipynb",
     )
     assert source(pickle.loads(pickle.dumps(found)).submissions[1]) == "2"
+
+
+def test_what_is_no_notebook_is_the_one_of_its_student(packed):
+    found = packed(("doejane_123_7_homework.zip", "?"), ("doejane_123_8_notes.pdf", "?"))
+    (one,) = found.submissions
+    assert (one.student, one.label) == (JANE, "doejane_123_7_homework.zip")
+    assert one.problem == "the file is not a notebook (.ipynb)"
+    assert found.complaints == (
+        "doejane_123_7_homework.zip: is not a notebook (.ipynb)",
+        "doejane_123_8_notes.pdf: is not a notebook (.ipynb), beside doejane_123_7_homework.zip",
+    )
 
 
 def test_names_that_are_utf_8_without_saying_so(packed):

@@ -352,6 +352,8 @@ def test_a_file_of_nobody_costs_where_somebody_is_missing():
     complaint = "x_<y>.ipynb: is named after no student of the roster"
     assert told([RIGHT_ALL], [complaint]) == ({}, [()])
     assert told([RIGHT_ALL, MISSING], [complaint]) == ({"Files that were not graded": [(5,)]}, [])
+    beside = f"notes.pdf: is not a notebook (.ipynb), beside {RIGHT_ALL.result.file}"
+    assert told([RIGHT_ALL, MISSING], [beside]) == ({}, [(ADA.id,)])
     for marks in ([], [RIGHT_ALL], [MISSING]):
         for text in both(summary(TITLE, CLASS, marks, [complaint])):
             assert complaint in text

@@ -24,6 +24,10 @@ LARGEST = 200 * 2**20
 #: The most complaints about what lies in one folder.
 MOST_COMPLAINTS = 10
 
+#: What stands between the fault of a file and the notebook of the same student.
+BESIDE = ", beside "
+#: How a problem begins that is the fault of one file.
+FILE = "the file "
 #: Zip files tell times in steps of two seconds.
 _SAME_TIME = datetime.timedelta(seconds=2)
 
@@ -115,23 +119,35 @@ def collect(path: str | Path, students: Sequence[Student], assignment_name: str,
     (['s1001.ipynb'], ('s10002.ipynb: is named after no student of the roster',))
     """
     lying = entries(Path(path), assignment_name, [student.id for student in students])
-    owners, complaints, notebooks = Owners(students, assignment_name), _Complaints(), defaultdict(list)
+    owners, complaints = Owners(students, assignment_name), _Complaints()
+    notebooks, others = defaultdict(list), defaultdict(list)
     for entry in lying:
-        student, fault = None, entry.fault or ("" if is_notebook(entry.parts[-1]) else "is not a notebook (.ipynb)")
-        if not fault:
-            owner = owners.of(entry.parts[0])
-            student, fault = owner.student, owner.reason
-        if fault:
-            complaints.add(entry.parts[0], entry.label, fault)
+        owner = owners.of(entry.parts[0])
+        fault = entry.fault or ("" if is_notebook(entry.parts[-1]) else "is not a notebook (.ipynb)")
+        if owner.student is None:
+            complaints.add(entry.parts[0], entry.label, fault or owner.reason)
+        elif fault:
+            others[owner.student.id].append((_Notebook(entry, owner), fault))
         else:
-            notebooks[student.id].append(_Notebook(entry, owner))
+            notebooks[owner.student.id].append(_Notebook(entry, owner))
     submissions = []
     for student in students:
         if found := notebooks[student.id]:
             submission = _submission(student, found, latest)
-            submissions.append(submission)
-            if says := submission.problem or submission.chosen:
-                complaints.add(student.id, submission.label, says)
+            rest = others[student.id]
+        elif others[student.id]:
+            (one, fault), *rest = others[student.id]
+            complaints.add(student.id, one.entry.label, fault)
+            problem = f"{FILE}{fault}"
+            submission = Submission(student, one.entry.label, problem, student.handed_in, one.owner.late)
+        else:
+            continue
+        submissions.append(submission)
+        says = submission.problem or submission.chosen
+        if says and notebooks[student.id]:
+            complaints.add(student.id, submission.label, says)
+        for one, fault in rest:
+            complaints.add(student.id, one.entry.label, f"{fault}{BESIDE}{submission.label}")
     return Collection(tuple(submissions), complaints.all())
 
 
@@ -182,7 +198,7 @@ def _latest(notebooks):
 
 
 def _too_large():
-    return f"the file is larger than {LARGEST // 2**20} MiB"
+    return f"{FILE}is larger than {LARGEST // 2**20} MiB"
 
 
 class _Complaints:

@@ -11,6 +11,7 @@ from loopbook.grading.reports.document import Code, Lines, Link, Said, Text
 from loopbook.grading.reports.equal_answers import equal_answers
 from loopbook.grading.reports.wording import answer_in_words, explained, remarks
 from loopbook.grading.results import MISSING, NO_CODE, NOT_RUN, ODD, OWNER, STOPPED, UNASKED
+from loopbook.grading.submissions import BESIDE, FILE
 
 if TYPE_CHECKING:
     from loopbook.grading.marking import Marked
@@ -149,12 +150,16 @@ def _cases(marks, complaints) -> Iterator[tuple[Concern | None, Case]]:
     results = [mark.result for mark in marks]
     points = max((result.points for result in results), default=0)
     somebody_is_missing = not results or any(result.status == MISSING for result in results)
-    told = {f"{result.file}: {result.says}" for result in results if result.status == NOT_RUN}
+    not_run = [(one.file, one.says) for one in results if one.status == NOT_RUN]
+    told = {f"{file}: {one}" for file, says in not_run for one in (says, says.removeprefix(FILE))}
+    owner = {one.file: one.student for one in results if one.file}
     chosen = {f"{one.file}: {one.chosen}": one.student for one in results if one.chosen}
     for complaint in complaints:
         what = Said(complaint)
         if complaint in chosen:
             yield None, Case((chosen[complaint],), 0, what)
+        elif student := owner.get(complaint.rpartition(BESIDE)[2]):
+            yield None, Case((student,), 0, what)
         elif complaint not in told:
             yield (NOBODYS, Case((), points, what)) if somebody_is_missing else (None, Case((), 0, what))
     for mark in marks:
