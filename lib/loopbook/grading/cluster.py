@@ -57,9 +57,9 @@ def connected(address: str) -> Iterator[tuple[Executor, int]]:
 def _client(make, address):
     """A client of the scheduler at an address. Raises GradingError where none answers in time.
 
-    It is made in a thread: where something else answers, the library waits for ever for the next word.
+    It is made in a thread: where something else answers, the library waits forever for the next word.
     """
-    from distributed.comm.addressing import parse_address, parse_host_port
+    from distributed.comm.addressing import parse_address
     from distributed.comm.registry import get_backend
 
     made: list[Any] = []
@@ -73,7 +73,7 @@ def _client(make, address):
 
     try:
         scheme, place = parse_address(address)
-        get_backend(scheme), parse_host_port(place)
+        get_backend(scheme).get_address_host(place)
     except ValueError as problem:
         raise GradingError(
             f"{address!r} is not the address of a scheduler ({problem}): expected one such as tcp://10.0.0.5:8786"

@@ -24,7 +24,7 @@ LARGEST = 200 * 2**20
 #: The most complaints about what lies in one folder.
 MOST_COMPLAINTS = 10
 
-#: What stands between the fault of a file and the notebook of the same student.
+#: The words after the fault of a file, and before the notebook of the same student.
 BESIDE = ", beside "
 #: How a problem begins that is the fault of one file.
 FILE = "the file "
