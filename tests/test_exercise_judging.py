@@ -2,13 +2,14 @@
 
 import itertools
 import sys
+import threading
 import time
 
 import pytest
 import sympy
 
 from loopbook import s, t
-from loopbook.exercises import judging
+from loopbook.exercises import judging, timeout
 from loopbook.exercises.authoring import (
     criterion,
     design,
@@ -135,6 +136,16 @@ def test_a_limited_computation_is_stopped():
 
 
 def test_a_limited_computation_raises_what_it_raises():
+    with pytest.raises(ZeroDivisionError):
+        limited(1, lambda: 1 / 0)
+    with pytest.raises(RuntimeError, match="stopped by SystemExit"):
+        limited(1, sys.exit)
+
+
+def test_without_threads_it_is_computed_directly(monkeypatch):
+    """As in a browser, whose page ends what takes too long."""
+    monkeypatch.setattr(timeout, "HAS_THREADS", False)
+    assert limited(1, threading.get_ident) == threading.get_ident()
     with pytest.raises(ZeroDivisionError):
         limited(1, lambda: 1 / 0)
     with pytest.raises(RuntimeError, match="stopped by SystemExit"):

@@ -50,6 +50,7 @@ from loopbook.laplace import (
     roots,
     solve_ode,
     transform,
+    zero_between,
 )
 
 k, k_1, k_2, K, T, T_1, T_2, T_3, tau, w, zeta, a = symbols("k k_1 k_2 K T T_1 T_2 T_3 tau omega zeta a", positive=True)
@@ -566,6 +567,12 @@ def test_roots():
     for what in (1 / s, exp(s)):
         with pytest.raises(ValueError, match="expected a polynomial in s"):
             roots(what)
+
+
+@pytest.mark.parametrize("rounding", [-1e-17, 0.0, 1e-17])
+def test_a_zero_is_found_where_rounding_decides_about_the_sign_at_an_end(rounding):
+    assert zero_between(lambda x: rounding if x == 1 else x, 1, 2, 1e-12) == pytest.approx(1, abs=1e-11)
+    assert zero_between(lambda x: rounding if x == 2 else x - 3, 1, 2, 1e-12) == pytest.approx(2, abs=1e-11)
 
 
 # ------------------------------------------------------------------------------------------------ values

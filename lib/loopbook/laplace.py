@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import functools
 import itertools
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, overload
 
 import numpy as np
@@ -563,6 +563,28 @@ def evaluate(f: Number, times: ArrayLike) -> np.ndarray:
         if here.any():
             values[here] = _values(between, times[here])
     return values
+
+
+def zero_between(function: Callable[[float], float], before: float, after: float, accuracy: float) -> float:
+    """Return where a function that is seen to be negative `before` and positive `after` is zero, to an accuracy.
+
+    What is seen in an array of values need not hold of a single one: NumPy computes many at once otherwise than one,
+    and another machine otherwise again. Where a value at an end is rounding alone, so that its sign is the other one
+    there, that end is the zero.
+
+    >>> round(zero_between(lambda x: x * x - 2, 1, 2, 1e-12), 9)
+    1.414213562
+    >>> zero_between(lambda x: x - 2 - 1e-16, 1, 2, 1e-12)
+    2.0
+    """
+    from scipy.optimize import brentq
+
+    before, after = float(before), float(after)
+    if function(before) >= 0:
+        return before
+    if function(after) <= 0:
+        return after
+    return brentq(function, before, after, xtol=accuracy, rtol=1e-14)
 
 
 def between_steps(f: sympy.Expr) -> Iterator[tuple[float, float, sympy.Expr]]:

@@ -23,6 +23,7 @@ from loopbook.laplace import (
     transform,
     transformed,
     without_delays,
+    zero_between,
 )
 from loopbook.types import Number, TransferFunctionLike
 from loopbook.validation import exact_not_negative, number
@@ -492,8 +493,6 @@ def response_time(H: TransferFunctionLike, share: Number = _ONE_LAG) -> float:
     >>> round(response_time(second_order(1, 1, 1)), 4)
     2.1462
     """
-    from scipy.optimize import brentq
-
     number("share", share, "a number between 0 and 1", lambda x: 0 < x < 1)
     share = exact(share)
     if hasattr(H, "response_time"):  # a `System`, whose dead times may stand anywhere
@@ -515,9 +514,9 @@ def response_time(H: TransferFunctionLike, share: Number = _ONE_LAG) -> float:
     start, end = 0.0, 1 / max(rates) if rates else float(max(parts)) or 1.0
     while still_missing(start) < 0:
         times = np.linspace(start, end, int(min(max(2000, 10 * max(rates, default=0) * (end - start)), 1e6)) + 1)
-        reached = evaluate(missing, times) >= 0
+        reached = evaluate(missing, times[1:]) >= 0
         if reached.any():
-            before, after = times[reached.argmax() - 1], times[reached.argmax()]
-            return brentq(still_missing, before, after, xtol=1e-15 * after, rtol=1e-14)
+            before, after = times[reached.argmax() :][:2]
+            return zero_between(still_missing, before, after, 1e-15 * after)
         start, end = end, 2 * end
     return start

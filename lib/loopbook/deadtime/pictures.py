@@ -167,7 +167,7 @@ def _crossing(H, curve, size) -> float | None:
     turns = np.floor((curve.phase + 180) / 360)
     nearest, found = 0.01 * size, None
     for k in np.flatnonzero(np.diff(turns)):
-        a, b = curve.omega[k : k + 2]
+        a, b = curve.omega[k : k + 2].tolist()  # as brentq takes them: an array's item is computed otherwise
         if np.isfinite(turns[k : k + 2]).all() and H(1j * a).imag * H(1j * b).imag < 0:
             w = brentq(lambda w: H(1j * w).imag, a, b, xtol=1e-15 * b)
             if abs(abs(H(1j * w)) - size) < nearest:

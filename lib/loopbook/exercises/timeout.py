@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -14,6 +15,8 @@ _Found = TypeVar("_Found")
 WAITING = 4
 #: How often (s) the time is looked at.
 _LOOK = 0.25
+#: A browser's Python has one thread, and the page ends it where it takes too long.
+HAS_THREADS = sys.platform != "emscripten"
 
 
 class TooSlow(BaseException):
@@ -24,7 +27,8 @@ def limited(seconds: float, function: Callable[..., _Found], *arguments: Any) ->
     """Return ``function(*arguments)``, which may take that many seconds of this process.
 
     What counts is the processor's time, so that a busy machine changes no result. The computation runs in a thread of
-    its own, which is stopped at its next step in Python when the time is over.
+    its own, which is stopped at its next step in Python when the time is over. In a browser there are no threads: there
+    it runs to its end, and whoever shows the page ends all of Python.
 
     Raises:
         TimeoutError: when the time is over.
@@ -45,6 +49,17 @@ def limited(seconds: float, function: Callable[..., _Found], *arguments: Any) ->
         except BaseException as error:
             failure.append(RuntimeError(f"stopped by {type(error).__name__}"))
 
+    if HAS_THREADS:
+        _in_time(seconds, work)
+    else:
+        work()
+    if failure:
+        raise failure[0]
+    return result[0]
+
+
+def _in_time(seconds, work):
+    """Run the work in a thread, and stop it when the time is over."""
     worker = threading.Thread(target=work, daemon=True)
     began, end = time.process_time(), time.monotonic() + WAITING * seconds
     worker.start()
@@ -54,6 +69,3 @@ def limited(seconds: float, function: Callable[..., _Found], *arguments: Any) ->
     if worker.is_alive():
         ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(worker.ident), ctypes.py_object(TooSlow))
         raise TimeoutError(f"not done after {seconds:g} s")
-    if failure:
-        raise failure[0]
-    return result[0]

@@ -35,9 +35,9 @@ class PlanePlot(Picture):
         >>> plane_plot({"limit": ([1, 2], [2, 1])}, "$x$", "$y$").area([0, 1, 1], [0, 0, 1], "window")
         <limit: y against x; area: window>
         """
-        (patch,) = self.axes.fill(x, y, facecolor="#eeeeee", edgecolor=GREY, linewidth=1, label=label, zorder=0.5)
-        patch.set_hatch("///")
-        patch.set_hatch_linewidth(0.4)
+        plain = {"facecolor": "#eeeeee", "edgecolor": GREY, "linewidth": 1, "zorder": 0.5}
+        with styled():  # whose thin hatching belongs to the patch in Matplotlib 3.10, and to the drawing before
+            self.axes.fill(x, y, hatch="///", label=label, **plain)
         return self._explained(f"; area: {plain_words(label)}")
 
     def region(self, x: Values, y: Values, words: str) -> Self:

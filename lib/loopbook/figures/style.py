@@ -35,6 +35,7 @@ STYLE: dict[str, Any] = {
     "axes.ymargin": 0.1,
     "grid.color": "#dddddd",
     "grid.linewidth": 0.6,
+    "hatch.linewidth": 0.4,
     "xtick.direction": "out",
     "ytick.direction": "out",
     "legend.frameon": True,

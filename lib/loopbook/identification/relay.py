@@ -15,6 +15,7 @@ import numpy as np
 
 from loopbook.deadtime import System
 from loopbook.identification.records import record
+from loopbook.laplace import zero_between
 from loopbook.stability import ultimate
 from loopbook.types import Number, TransferFunctionLike
 from loopbook.validation import not_negative, number, positive
@@ -171,8 +172,6 @@ def _settled(switches):
 
 def _next_switch(distance, since, period):
     """The first moment after a switch at which the distance to the next one becomes positive."""
-    from scipy.optimize import brentq
-
     for stretch in itertools.count():
         t = since + period * (stretch + np.linspace(0, 1, POINTS + 1))
         beyond = distance(t) > 0
@@ -183,10 +182,7 @@ def _next_switch(distance, since, period):
             k = int(beyond.argmax())
             if distance(t[k - 1]) == 0:  # at rest up to the end of a dead time
                 return _last(lambda x: distance(x) <= 0, t[k - 1], t[k])
-            for end, is_there in ((t[k - 1], distance(t[k - 1]) > 0), (t[k], distance(t[k]) <= 0)):
-                if is_there:  # the distance is rounding alone: alone and among others a moment is not computed alike
-                    return end
-            return brentq(distance, t[k - 1], t[k], xtol=1e-14 * max(t[k], period), rtol=1e-14)
+            return zero_between(distance, t[k - 1], t[k], 1e-14 * max(t[k], period))
         if stretch > 1000:
             raise ValueError(
                 "the measurement does not come to the next switch: expected a process with positive gain, "
