@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import contextvars
 import json
 import os
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -16,9 +17,27 @@ LARGEST = 10**6
 SWITCH = "LOOPBOOK_PROGRESS"
 
 
+_forgetting = contextvars.ContextVar("_forgetting", default=False)
+
+
 def are_off() -> bool:
     """Whether nothing is remembered."""
-    return os.environ.get(SWITCH) == "off"
+    return _forgetting.get() or os.environ.get(SWITCH) == "off"
+
+
+@contextlib.contextmanager
+def off() -> Iterator[None]:
+    """Remember nothing for a while, and read no file.
+
+    >>> with off():
+    ...     are_off()
+    True
+    """
+    before = _forgetting.set(True)
+    try:
+        yield
+    finally:
+        _forgetting.reset(before)
 
 
 def read(file: Path, key: str, valid: Callable[[Any], bool], otherwise: str) -> Any:

@@ -192,8 +192,13 @@ class Question(Showing):
         if name := self._whose(given):
             return [f"With the numbers of {name} all of that is right. Yours are those of {_person(self.student)}."]
         if self._bare >= BARE and self.exercise.rungs:
-            return [f'A hint is one call away: exercise("{self.exercise.number}").hint()']
+            return [self.offer_of_a_hint]
         return []
+
+    @property
+    def offer_of_a_hint(self) -> str:
+        """What is said after responses that name no mistake, in a notebook."""
+        return f'A hint is one call away: exercise("{self.exercise.number}").hint()'
 
     def _whose(self, given):
         """Who has the numbers with which all answers would be right, of those for whom the exercise was shown.
@@ -251,6 +256,12 @@ class Question(Showing):
                 f"The solution of exercise {self.exercise.number} comes after your first attempt: answer with "
                 f'`check(...)`, or begin with `exercise("{self.exercise.number}").hint()`.'
             )
+        return self.solved()
+
+    def solved(self) -> Page:
+        """Return the solution, whether there was an attempt or not."""
+        if not self.exercise.worked:
+            return Page(f"Exercise {self.exercise.number} has no solution here.")
         text = FADES.sub("", self._worked_text)
         return Page(f"**Solution** · {self.exercise.heading}\n\n{text}", self._draws(self.exercise.drawn_in_solution))
 

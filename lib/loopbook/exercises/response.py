@@ -96,7 +96,8 @@ class Response(Showing):
         return self.heading if self.heading.endswith("?") else f"{self.heading}:"
 
     @property
-    def _sum(self):
+    def summary(self) -> str:
+        """How much of it is right, in a few words."""
         if all(verdict.status == OPEN for verdict in self.verdicts):
             return "not answered yet"
         if self.is_right:
@@ -116,7 +117,7 @@ class Response(Showing):
         return {"exercise": self.heading, "right": self.is_right, "verdicts": verdicts}
 
     def __repr__(self) -> str:
-        lines = [f"{MARKS[self._status][0]} {self._heading} {self._sum}"]
+        lines = [f"{MARKS[self._status][0]} {self._heading} {self.summary}"]
         lines += [f"  {MARKS[v.status][0]} {v.name}: {v.says}" for v in self.verdicts]
         return "\n".join([*lines, *(f"  {note}" for note in self.notes)])
 
@@ -125,7 +126,7 @@ class Response(Showing):
         box = f"border-left: 4px solid {colour}; background: {colour}14; padding: 0.4em 0.8em; margin: 0.3em 0"
         lines = [
             f'<div role="status" style="{box}">',
-            f'<strong><span style="color: {colour}">{mark}</span> {_escape(self._heading)} {self._sum}</strong>',
+            f'<strong><span style="color: {colour}">{mark}</span> {_escape(self._heading)} {self.summary}</strong>',
         ]
         for verdict in self.verdicts:
             mark, colour = MARKS[verdict.status]
