@@ -15,8 +15,8 @@ version = release = repository.VERSION
 language = "en"
 
 extensions = [
-    "myst_nb", "stored", "mathml", "readme", "lazy_figures", "library", "repository_pages", "command_options",
-    "ledger_page", "cheat_sheet_page", "front_page", "lesson_directive", "accessible",
+    "myst_nb", "stored", "exercise_forms", "mathml", "readme", "lazy_figures", "library", "repository_pages",
+    "command_options", "ledger_page", "cheat_sheet_page", "front_page", "lesson_directive", "accessible",
 ]  # fmt: skip
 exclude_patterns = ["lessons", "**/.ipynb_checkpoints"]
 

@@ -1,6 +1,7 @@
 """Mathematics as MathML, made when the site is built; the translation is that of the forms of the exercises."""
 
 from docutils import nodes
+
 from loopbook.exercises.forms.mathml import convert, formulas, in_html
 
 __all__ = ["convert", "formulas", "in_html", "setup"]

@@ -1,6 +1,6 @@
 """Chapters and solutions become pages: the notebooks as stored are copied into docs/, with what a page needs.
 
-A copy differs from its notebook in this: exercises have headings and boxes, solutions are folded, formulas within
+A copy differs from its notebook in this: exercises are forms, solutions are folded, formulas within
 tables are MathML, checks have a place of their own and a link to the ledger, sections name the functions that they
 use, and every page says where else it can be opened. The notebooks themselves are not touched, and nothing is run.
 """
@@ -11,6 +11,7 @@ from html import escape
 from pathlib import Path
 
 import checks
+import exercise_forms
 import functions_used
 import launch
 import mathml
@@ -29,6 +30,7 @@ FOLDED = "hide-input"
 EVERYWHERE = ("loopbook.tables.", "loopbook.sliders.")  # what no section needs to name
 RESPONSE = "application/vnd.loopbook.response+json"
 SHOWN = ("image/png", "text/html", "text/latex", "text/markdown", "text/plain")  # the first of these that there is
+PROGRESS = re.compile(r"What (?:you have|is) right so far .*:")  # above the cell that shows it
 STATEMENT = re.compile(r"\*\*Exercise ([\dA-Z]+\.\d+) · (.*?)\*\*( \(\d+ points?\))?\s*(.*)", re.DOTALL)
 
 
@@ -78,12 +80,24 @@ def opening(folder, name):
 def in_markdown(cell):
     """A cell of text; the headings of the solutions are places to link to."""
     lines = []
-    for line in cell["source"].splitlines():
+    for line in with_forms(cell["source"]).splitlines():
         exercise = re.match(r"## Exercise ([\dA-Z]+\.\d+)", line)
         if exercise:  # in the solutions
             lines.append(f"(solution-{slugs.slug(exercise[1])})=")
         lines.append(line)
     return [markdown("\n".join(lines))]
+
+
+def with_forms(source):
+    """What a chapter says of its exercises, for a page in which they are forms."""
+    source = re.sub(r"(?m)^Replace the dots .*?(?=\n|$)", said_of_forms, source)
+    return "" if PROGRESS.fullmatch(source) else source
+
+
+def said_of_forms(found):
+    """How the forms are answered, and what a chapter says besides, which begins with the number of an exercise."""
+    besides = re.search(r"(?<= )Exercise [\dA-Z]+\.\d+ needs .*", found[0])
+    return " ".join(filter(None, [exercise_forms.HOW_TO, besides and besides[0]]))
 
 
 def noted(cells):
@@ -127,11 +141,17 @@ def in_code(cell, folder, name):
     statement = next(
         (STATEMENT.match(o["data"]["text/markdown"]) for o in outputs if "text/markdown" in o.get("data", {})), None
     )
+    if statement and folder == "chapters":
+        number, title, points, _ = statement.groups()
+        head = f"(exercise-{slugs.slug(number)})=\n### Exercise {number} · {title}\n\n"
+        solutions = f"../solutions/{name}.html"
+        return [markdown(head + exercise_forms.form(number, (points or "").strip(" ()"), pictures(outputs), solutions))]
     if statement:
-        return [markdown(exercise(folder, *statement.groups(), pictures(outputs)))]
-    response = any(RESPONSE in output.get("data", {}) for output in cell["outputs"])
-    if folder == "chapters" and (response or cell["source"].startswith("progress(")):
-        outputs = []  # of dots in the place of an answer there is nothing to say yet
+        return [markdown(exercise(*statement.groups(), pictures(outputs)))]
+    if folder == "chapters" and any(RESPONSE in output.get("data", {}) for output in cell["outputs"]):
+        return []  # dots in the place of answers: the page has a form
+    if folder == "chapters" and (asked := re.fullmatch(r'progress\("(\w+)"\)', cell["source"])):
+        return [markdown(exercise_forms.progress(asked[1]))]
     metadata = {"mystnb": {"image": {"alt": alt}}} if (alt := alternative(outputs)) else {}
     imports = all(line.startswith(("from ", "import ", " ", ")")) for line in cell["source"].splitlines())
     if imports or FOLDED in cell["metadata"].get("tags", []):
@@ -194,15 +214,13 @@ def pictures(outputs):
     )
 
 
-def exercise(folder, number, title, points, statement, pictures):
-    """The statement of an exercise in a box, in the chapter under a heading, with the way to its solution or back."""
-    here, there = ("exercise", "solution") if folder == "chapters" else ("solution", "exercise")
-    link = f"{{ref}}`{'Solution' if there == 'solution' else 'In the chapter'} <{there}-{slugs.slug(number)}>`"
+def exercise(number, title, points, statement, pictures):
+    """The statement of an exercise in a box, in the solutions, with the way back to the chapter."""
     points = (points or "").strip(" ()")
-    head = f"({here}-{slugs.slug(number)})=\n### Exercise {number} · {title}\n\n" if folder == "chapters" else ""
+    link = f"{{ref}}`In the chapter <exercise-{slugs.slug(number)}>`"
     last = f"{{.exercise-links}}\n{' · '.join(filter(None, [points, link]))}"
     body = "\n\n".join(filter(None, [statement.rstrip(), pictures, last]))
-    return f"{head}:::::{{container}} exercise\n{body}\n:::::"
+    return f":::::{{container}} exercise\n{body}\n:::::"
 
 
 def folded(cells):

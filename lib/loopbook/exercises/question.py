@@ -174,7 +174,8 @@ class Question(Showing):
             for name, kind in self.key.items()
         )
         judged = {one.name: one for one in verdicts if one.status not in (OPEN, UNJUDGED, WAITING)}
-        drawings = tuple(functools.partial(_drawn, self.key[name], given[name]) for name in judged)
+        drawn = [name for name in judged if self.key[name].draws]
+        drawings = tuple(functools.partial(_drawn, self.key[name], given[name]) for name in drawn)
         exercise = self.exercise
         response = Response(exercise.heading, verdicts, exercise.points, tuple(notes), drawings, exercise.weights)
         if all(verdict.status == OPEN for verdict in verdicts):

@@ -9,6 +9,10 @@ from loopbook.exercises.forms.text import escaped
 
 #: Up to so many words are buttons beside each other, and up to so many where no other field has the same words.
 FEW, MORE = 4, 6
+#: A row of words that is no longer leaves room for another field beside it; each word has a button of so many letters.
+SHORT, ROOM = 28, 5
+#: The kinds of answers that a short line holds.
+SHORT_KINDS = ("number",)
 #: No keyboard of a phone may correct a formula.
 _PLAIN = 'autocomplete="off" autocapitalize="off" autocorrect="off" spellcheck="false"'
 
@@ -43,8 +47,9 @@ def html(number: str, field: Field, beside: Sequence[Field] = ()) -> str:
     help_ = f'<p class="help" id="{place}-help">{field.help}</p>' if field.help else ""
     said = f'<p class="verdict" id="{place}-verdict"></p>'
     body = _BODIES[field.control](place, field, beside)
+    wide = " wide" if _is_wide(field, is_group) else ""
     return (
-        f'<{tag} class="field {field.control}" data-name="{escaped(field.name)}" data-control="{field.control}">'
+        f'<{tag} class="field {field.control}{wide}" data-name="{escaped(field.name)}" data-control="{field.control}">'
         f"{head}{demands}{body}{help_}{said}</{tag}>"
     )
 
@@ -64,6 +69,13 @@ def _is_list(field, beside):
     return len(field.words) > MORE or alike > 1 or sum(map(len, field.words)) > 90
 
 
+def _is_wide(field, is_group):
+    """Whether a field takes the width of the form; the others stand beside each other."""
+    if field.control == ONE:
+        return is_group and sum(len(word) + ROOM for word in field.words) > SHORT
+    return field.control != LINE or field.kind not in SHORT_KINDS
+
+
 def _described(place, field, *more):
     """What a field is described by."""
     names = [*(f"{place}-help" for _ in [0] if field.help), *more, f"{place}-verdict"]
@@ -71,16 +83,12 @@ def _described(place, field, *more):
 
 
 def _unit(place, unit):
-    return (
-        f'<span class="unit" id="{place}-unit"><span class="quiet-word">in </span>{escaped(unit)}</span>'
-        if unit
-        else ""
-    )
+    return f'<span class="unit" id="{place}-unit">{escaped(unit)}</span>' if unit else ""
 
 
 def _line(place, field, beside):
     unit = [f"{place}-unit"] if field.unit else []
-    size = "short" if field.kind in ("number", "word") else "long"
+    size = "short" if field.kind in SHORT_KINDS else "long"
     return (
         f'<span class="box"><input type="text" id="{place}" class="{size}" {_PLAIN} '
         f"{_described(place, field, *unit)}>{_unit(place, field.unit)}</span>"

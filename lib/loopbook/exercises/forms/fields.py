@@ -109,7 +109,7 @@ def _(kind: Word) -> dict[str, Any]:
 @_looks.register
 def _(kind: Words) -> dict[str, Any]:
     if kind.ordered:
-        return {"control": ORDER, "words": kind.among, "help": "in their order"}
+        return {"control": ORDER, "words": kind.among, "help": "in their order, with commas between them"}
     none = () if NONE in kind.among else (NONE,)
     return {"control": SEVERAL, "words": (*kind.among, *none), "help": "one, several, or none of them"}
 

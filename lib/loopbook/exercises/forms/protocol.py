@@ -21,7 +21,8 @@ def answer(text: str) -> str:
 
     The requests by what they ``do``, each with an ``exercise`` and a ``student``, who is null without a name:
 
-    - show: ``{html, fields, controls, rungs, heading}``, the statement, and what is asked as data and as HTML;
+    - show: ``{heading, html, fields, controls, accuracy, rungs}``: the statement, and what is asked as data and as
+      HTML;
     - check, with ``answers``: ``{right, says, html, verdicts: [{name, status, says, html}], notes}``;
     - hint, with a ``rung`` from 1: ``{html, rung, of}``;
     - solution: ``{html}``. Whether an attempt comes first is for the page to say.
@@ -60,6 +61,7 @@ def _show(sheet: Sheet, request: dict[str, Any]) -> dict[str, Any]:
         "html": sheet.statement,
         "fields": [field.data for field in sheet.fields],
         "controls": sheet.controls,
+        "accuracy": sheet.accuracy,
         "rungs": sheet.rungs,
     }
 

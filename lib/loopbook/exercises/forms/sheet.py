@@ -100,7 +100,7 @@ class Sheet:
     @property
     def statement(self) -> str:
         """All that stands above the fields, as HTML: text, picture, data, and the list for print."""
-        return "\n".join(filter(None, [self.text, self.pictures, self.download(), self.asked, self.accuracy]))
+        return "\n".join(filter(None, [self.text, self.pictures, self.download(), self.asked]))
 
     # ------------------------------------------------------------------------------------------------- help and answers
 
@@ -117,8 +117,12 @@ class Sheet:
     @property
     def solution(self) -> str:
         """The solution as HTML, with its picture."""
-        page = self.question.solved()
-        return "\n".join([html(page.text.partition("\n\n")[2]), *map(image, page.pictures)])
+        return "\n".join([self.solution_text, *map(image, self.question.solved().pictures)])
+
+    @property
+    def solution_text(self) -> str:
+        """The same without the picture."""
+        return html(self.question.solved().text.partition("\n\n")[2])
 
     def check(self, answers: Mapping[str, Any]) -> dict[str, Any]:
         """Return the response to what was typed and chosen.

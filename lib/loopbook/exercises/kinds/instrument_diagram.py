@@ -63,6 +63,7 @@ class InstrumentDiagram(Kind):
     FORM = ("places", "also")
     expected = "connections such as 'vessel -> LT1 -> LC1 -> LV1 -> outlet'"
     accuracy = ""
+    draws = True
 
     def __init__(
         self,

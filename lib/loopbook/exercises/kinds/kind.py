@@ -42,6 +42,8 @@ class Kind:
     FORM: tuple[str, ...] = ("unit",)
     #: Whether a person marks it, so that nothing is compared.
     by_hand: ClassVar[bool] = False
+    #: Whether there is a picture of what an answer does.
+    draws: Any = False
     #: What `precision` says before the accuracy: of the form of an answer, and of its numbers.
     ANY_FORM = EACH = ""
     key: Any

@@ -47,6 +47,7 @@ class SequentialChart(Kind):
     FORM = ("inputs", "outputs", "also")
     expected = "lines such as 'Fill: inlet on' and 'Fill -> Heat: level >= 0.9'"
     accuracy = ""
+    draws = True
 
     def __init__(
         self,
