@@ -80,6 +80,8 @@ def mend(parent, large):
     if parent.tag in {"mi", "mo"} and is_name(parent):
         parent.tag = "mi"
         parent.attrib.clear()
+    if parent.tag == "mtext" and parent.text:
+        parent.text = parent.text.replace(r"\%", "%")  # a percent sign alone would begin a comment
     if parent.tag == "msub" and large and parent[0].text in BIG:
         parent.tag = "munder"
     if parent.tag in {"msup", "msubsup"} and parent[-1].text in PRIMES:

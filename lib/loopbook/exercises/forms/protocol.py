@@ -33,17 +33,24 @@ def answer(text: str) -> str:
     '{"problem": "there is no exercise \\'7.77\\': did you mean \\'7.7\\'?"}'
     """
     try:
-        request = json.loads(text)
+        request = _read(text)
         if not isinstance(request, dict):
             raise ExerciseError("the request is no table: expected one with do and exercise")
         do = request.get("do")
-        if do not in _REPLIES:
+        if not isinstance(do, str) or do not in _REPLIES:
             raise ExerciseError(f"the request asks to do {do!r}: {did_you_mean(str(do), _REPLIES)}")
         with notes.off():
             reply = _REPLIES[do](_sheet(request.get("exercise"), _name(request.get("student"))), request)
     except (ExerciseError, ValueError) as problem:
         reply = {"problem": str(problem)}
     return json.dumps(reply, ensure_ascii=False)
+
+
+def _read(text):
+    try:
+        return json.loads(text)
+    except ValueError as problem:
+        raise ExerciseError(f"the request is no JSON: {problem}") from None
 
 
 def _name(student):
