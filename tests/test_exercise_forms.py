@@ -214,7 +214,7 @@ class TestFields:
             "time_function": "line", "word": ONE, "words": controls["words"], "settings": PARTS,
             "sequential_chart": LINES, "instrument_diagram": LINES, "text": LINES, "figure": ELSEWHERE,
         }  # fmt: skip
-        assert set(controls) | {"text", "figure", "design"} == set(MAKERS)
+        assert set(controls) | {"text", "figure", "design"} <= set(MAKERS)
 
     def test_a_field_says_nothing_of_the_key(self):
         for number in NUMBERS:

@@ -70,7 +70,7 @@ def _is_list(field, beside):
 
 
 def _is_wide(field, is_group):
-    """Whether a field takes the width of the form; the others stand beside each other."""
+    """Whether a field takes the width of the form; the others are beside each other."""
     if field.control == ONE:
         return is_group and sum(len(word) + ROOM for word in field.words) > SHORT
     return field.control != LINE or field.kind not in SHORT_KINDS

@@ -16,7 +16,7 @@ from loopbook.exercises.kinds.instrument_diagram import InstrumentDiagram
 from loopbook.exercises.kinds.sequential_chart import SequentialChart
 
 #: How a field is filled in: a line of text, several lines, one word or several of a list, words of a list in an order,
-#: parts with a line each; or not in a page.
+#: parts, each with its own line; or not in a page.
 LINE, LINES, ONE, SEVERAL, ORDER, PARTS, ELSEWHERE = "line", "lines", "one", "several", "order", "parts", "elsewhere"
 #: What stands for no word of a list, where several may be chosen.
 NONE = "none"

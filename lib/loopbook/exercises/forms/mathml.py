@@ -41,12 +41,12 @@ def convert(latex: str, display: bool = False) -> str:
     large = source.startswith(r"\displaystyle")
     source = source.removeprefix(r"\displaystyle").strip()
     try:
-        tree = ET.fromstring(translate(prepared(source), display="block" if display or large else "inline"))
+        tree = ET.fromstring(translate(_prepared(source), display="block" if display or large else "inline"))
     except Exception as problem:
         raise ValueError(f"{latex!r} cannot be written as MathML: {type(problem).__name__} {problem}") from problem
     for element in tree.iter():
         element.tag = element.tag.removeprefix(NAMESPACE)
-    mend(tree, large=display or large)
+    _mend(tree, large=display or large)
     tree.attrib.clear()
     if display:
         tree.set("display", "block")
@@ -55,29 +55,29 @@ def convert(latex: str, display: bool = False) -> str:
     return ET.tostring(tree, encoding="unicode")
 
 
-def prepared(latex):
+def _prepared(latex):
     r"""Return a formula in the words that the translator knows.
 
-    >>> prepared(r"\mathrm{kg}"), prepared(r"\text{remains, $D$ here}")
+    >>> _prepared(r"\mathrm{kg}"), _prepared(r"\text{remains, $D$ here}")
     ('\\text{kg}', '\\text{remains, }D\\text{ here}')
     """
     latex = re.sub(r"\\mathrm\s*\{([^{}\\]*)\}", r"\\text{\1}", latex)
     return re.sub(r"\\text\{([^{}$]*)\$((?:[^{}$]|\{[^{}]*\})*)\$([^{}$]*)\}", r"\\text{\1}\2\\text{\3}", latex)
 
 
-def mend(parent, large):
+def _mend(parent, large):
     """Set right, in place, what the translator leaves to be wished."""
     for child in list(parent):
-        mend(child, large)
+        _mend(child, large)
     for place, child in reversed(list(enumerate(list(parent)))):
-        if is_function(child):
+        if _is_function(child):
             after = parent[place + 1] if place + 1 < len(parent) else None
             script_base = parent.tag in {"msub", "msup", "msubsup", "munder", "mover", "munderover"}
             if not script_base and after is not None and after.tag != "mo":
-                if not is_bracketed(after):
-                    parent.insert(place + 1, made("mspace", width="0.167em"))
-                parent.insert(place + 1, made("mo", APPLY))
-    if parent.tag in {"mi", "mo"} and is_name(parent):
+                if not _is_bracketed(after):
+                    parent.insert(place + 1, _made("mspace", width="0.167em"))
+                parent.insert(place + 1, _made("mo", APPLY))
+    if parent.tag in {"mi", "mo"} and _is_name(parent):
         parent.tag = "mi"
         parent.attrib.clear()
     if parent.tag == "mtext" and parent.text:
@@ -85,13 +85,13 @@ def mend(parent, large):
     if parent.tag == "msub" and large and parent[0].text in BIG:
         parent.tag = "munder"
     if parent.tag in {"msup", "msubsup"} and parent[-1].text in PRIMES:
-        prime(parent)
+        _prime(parent)
     if parent.tag == "mover" and parent[1].tag == "mo":
         parent.set("accent", "true")
     if parent.tag == "mo":
-        slim(parent)
+        _slim(parent)
     if parent.tag == "mrow" and len(parent) > 1:
-        keep_small(parent)
+        _keep_small(parent)
     for before, child in pairwise(parent):
         if child.tag == before.tag == "mo" and child.text in SIGNS and before.text not in CLOSING:
             child.set("form", "prefix")  # the sign of a number, not an operation
@@ -103,32 +103,32 @@ def mend(parent, large):
         parent[:] = list(inner)
 
 
-def prime(element):
+def _prime(element):
     """Put a prime beside its letter: the font raises it already."""
     letter, *index, sign = element
     element[:] = []
-    marked = made("mrow")
-    marked[:] = [letter, made("mo", sign.text, lspace="0", rspace="0")]
+    marked = _made("mrow")
+    marked[:] = [letter, _made("mo", sign.text, lspace="0", rspace="0")]
     element.tag = "msub" if index else "mrow"
     element[:] = [marked, *index] if index else list(marked)
 
 
-def is_name(element):
+def _is_name(element):
     return bool(element.text) and len(element.text) > 1 and element.text.replace(" ", "").isalpha()
 
 
-def is_function(element):
+def _is_function(element):
     base = element[0] if element.tag in {"msub", "msup", "msubsup", "munder"} and len(element) else element
-    return base.tag == "mi" and is_name(base)
+    return base.tag == "mi" and _is_name(base)
 
 
-def is_bracketed(element):
+def _is_bracketed(element):
     while element.tag == "mrow" and len(element):
         element = element[0]
     return element.tag == "mo" and element.text in BRACKETS | {"|"}
 
 
-def slim(operator):
+def _slim(operator):
     """Leave away what a browser assumes of a bracket, and the air around a bar that belongs to a pair."""
     if operator.get("stretchy") == "true" and operator.text in BRACKETS:
         for name in ("stretchy", "fence", "form"):
@@ -138,7 +138,7 @@ def slim(operator):
         operator.set("rspace", "0")
 
 
-def keep_small(row):
+def _keep_small(row):
     """Brackets about what is no higher than a letter stay as they are: a browser would take the next larger ones."""
     pair = [child for child in (row[0], row[-1]) if child.tag == "mo" and child.text in BRACKETS]
     if len(pair) == 2 and not HIGH & {element.tag for element in row.iter()}:
@@ -146,7 +146,7 @@ def keep_small(row):
             bracket.set("stretchy", "false")
 
 
-def made(tag, text=None, **attributes):
+def _made(tag, text=None, **attributes):
     element = ET.Element(tag, attributes)
     element.text = text
     return element

@@ -99,7 +99,7 @@ class Sheet:
 
     @property
     def statement(self) -> str:
-        """All that stands above the fields, as HTML: text, picture, data, and the list for print."""
+        """All that is above the fields, as HTML: text, picture, data, and the list for print."""
         return "\n".join(filter(None, [self.text, self.pictures, self.download(), self.asked]))
 
     # ------------------------------------------------------------------------------------------------- help and answers
@@ -110,7 +110,7 @@ class Sheet:
         return len(self.question.rungs)
 
     def hint(self, rung: int) -> str:
-        """Return a hint as HTML. Raises ExerciseError for one that there is not."""
+        """Return a hint as HTML. Raises ExerciseError for an unknown one."""
         text = self.question.hint(rung).text
         return html(text.partition("\n\n")[2])
 
