@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-import scipy.optimize
 
 from loopbook.exercises.arithmetic import Decimals, worked_out
 from loopbook.exercises.formulas import Formula
@@ -151,4 +150,6 @@ def _within_bounds(system, wanted):
     best = np.linalg.lstsq(system, wanted, rcond=1e-10)[0]
     if np.all(np.abs(best) <= 1):
         return best
-    return scipy.optimize.lsq_linear(system, wanted, (-1, 1), method="bvls", tol=1e-12).x
+    from scipy.optimize import lsq_linear
+
+    return lsq_linear(system, wanted, (-1, 1), method="bvls", tol=1e-12).x

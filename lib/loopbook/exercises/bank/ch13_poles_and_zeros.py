@@ -6,7 +6,6 @@ from math import sin as sine
 
 import numpy as np
 import sympy
-from scipy.special import lambertw
 from sympy import Rational, exp, log, symbols
 
 from loopbook import diagrams
@@ -772,6 +771,8 @@ def _(rate, K, tau):
 
 def _back(rate, K, tau):
     """When the level is back where it began."""
+    from scipy.special import lambertw
+
     x = float(K / (rate * tau))
     return float(tau) * (x + float(lambertw(-x * exponential(-x)).real))
 
