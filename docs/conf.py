@@ -17,6 +17,7 @@ language = "en"
 extensions = [
     "myst_nb", "stored", "exercise_forms", "mathml", "readme", "lazy_figures", "library", "repository_pages",
     "command_options", "ledger_page", "cheat_sheet_page", "front_page", "lesson_directive", "accessible",
+    "python_in_pages",
 ]  # fmt: skip
 exclude_patterns = ["lessons", "**/.ipynb_checkpoints"]
 

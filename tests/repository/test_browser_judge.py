@@ -1,0 +1,373 @@
+"""Python in the page: what it consists of, that it answers as on a desk, outlives an answer without end, and needs no
+network once it was there."""
+
+import contextlib
+import doctest
+import hashlib
+import json
+import shutil
+import subprocess
+import sys
+import threading
+import zipfile
+from importlib import metadata
+from pathlib import Path
+
+import pytest
+from docs.browser import judge, runtime, site, wheels
+
+import browser
+import browser_runtime
+from loopbook.exercises.forms import answer
+
+ROOT = Path(__file__).parents[2]
+STATIC = ROOT / "docs" / "_static"
+ASKED = {"do": "check", "exercise": "7.1", "student": None, "answers": {"I": "14.4 mA", "p": "0.85 MPa", "K_p": "2"}}
+#: A word in an answer with which the judge of these tests never comes to an end.
+ENDLESS = "endless"
+
+
+# What the site consists of.
+
+
+@pytest.mark.parametrize("module", [runtime, wheels, judge, site])
+def test_the_examples_run(module):
+    assert doctest.testmod(module).failed == 0
+
+
+def test_the_parts_are_those_that_their_authors_published():
+    folder = browser_runtime.required()
+    published = browser_runtime.published(folder)
+    known = runtime.known()
+    assert {name for name in known if name.endswith((".whl", ".zip"))} - {"python_stdlib.zip"} <= published.keys()
+    assert {name: known[name].sha256 for name in known.keys() & published.keys()} == {
+        name: published[name] for name in known.keys() & published.keys()
+    }
+
+
+def test_a_wheel_holds_what_is_installed_but_its_tests(tmp_path):
+    wheel = wheels.make("mpmath", tmp_path)
+    assert wheel.name == f"mpmath-{metadata.version('mpmath')}-py3-none-any.whl"
+    names = zipfile.ZipFile(wheel).namelist()
+    assert "mpmath/calculus/quadrature.py" in names
+    assert [name for name in names if "tests" in name or name.endswith(".pyc")] == []
+    again = wheels.make("mpmath", tmp_path / "again")
+    assert again.read_bytes() == wheel.read_bytes()
+
+
+def test_pip_installs_the_wheel_of_the_library(tmp_path):
+    wheel = wheels.make("loopbook", tmp_path)
+    command = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps"]
+    subprocess.run([*command, "--target", str(tmp_path / "there"), str(wheel)], check=True)
+    assert (tmp_path / "there" / "loopbook" / "exercises" / "bank" / "ch07_feedback.py").is_file()
+
+
+def test_compiled_code_is_no_pure_package(tmp_path):
+    with pytest.raises(ValueError, match=r"numpy holds compiled code, as .*: expected pure Python"):
+        wheels.make("numpy", tmp_path)
+
+
+def test_a_site_without_a_network_holds_each_part_once_and_believes_nobody(tmp_path):
+    names, folder = ["pyodide.mjs", "cycler-0.12.1-py3-none-any.whl"], tmp_path / "runtime"
+    runtime.place(names, folder, browser_runtime.required())
+    assert sorted(path.name for path in folder.iterdir()) == sorted(names)
+    with pytest.raises(runtime.MissingError, match=r"six-1.16.0-py2.py3-none-any.whl is not in .*: expected the parts"):
+        runtime.place(["six-1.16.0-py2.py3-none-any.whl"], tmp_path / "other", folder)
+    (folder / "pyodide.mjs").write_bytes(b"something else")
+    with pytest.raises(runtime.MissingError, match=r"pyodide.mjs from .* has another SHA-256"):
+        runtime.place(["pyodide.mjs"], tmp_path / "other", folder)
+    assert not (tmp_path / "other" / "pyodide.mjs").exists()
+
+
+def test_a_part_that_cannot_be_fetched_says_what_helps(tmp_path, monkeypatch):
+    monkeypatch.setattr(runtime, "CDN", "http://127.0.0.1:9/")
+    with pytest.raises(runtime.MissingError, match=r"cannot be fetched from .* name their folder, as PARTS=FOLDER"):
+        runtime.place(["pyodide.mjs"], tmp_path)
+
+
+def test_a_site_lists_its_parts_and_knows_itself_by_its_content(tmp_path):
+    (tmp_path / "index.html").write_text("<h1>One</h1>", encoding="utf-8")
+    site.write(tmp_path, offline=False)
+    listed = json.loads((tmp_path / "wheels" / "parts.json").read_text(encoding="utf-8"))
+    assert listed["later"] == {
+        "scipy": "scipy", "matplotlib": "pictures", "PIL": "pictures", "schemdraw": "pictures"
+    }  # fmt: skip
+    files = [file for part in listed["parts"].values() for file in part["files"]]
+    for file in files:
+        if not file["url"].startswith(runtime.CDN):
+            content = (tmp_path / "wheels" / file["url"].partition("?")[0]).read_bytes()
+            assert (file["bytes"], file["sha256"]) == (len(content), hashlib.sha256(content).hexdigest())
+    first = (tmp_path / "service-worker.js").read_text(encoding="utf-8")
+    (tmp_path / "index.html").write_text("<h1>Two</h1>", encoding="utf-8")
+    site.write(tmp_path, offline=False)
+    assert (tmp_path / "service-worker.js").read_text(encoding="utf-8") != first
+
+
+# Python's side of it.
+
+
+@pytest.fixture
+def finder(tmp_path, monkeypatch):
+    """A finder of late packages, of which one, `late_package`, comes to a folder when a test puts it there."""
+    monkeypatch.syspath_prepend(tmp_path)
+    finder = judge.Later({"late_package": "late"})
+    monkeypatch.setattr(sys, "meta_path", [finder, *sys.meta_path])
+    yield finder
+    sys.modules.pop("late_package", None)
+
+
+def test_an_import_says_which_part_it_lacks_and_nobody_goes_on_without_it(finder, tmp_path):
+    def optional():
+        try:
+            import late_package
+        except ImportError:
+            return None
+        return late_package
+
+    with pytest.raises(judge.Lacking):
+        optional()
+    assert finder.lacks == "late"
+    (tmp_path / "late_package.py").write_text("here = True", encoding="utf-8")
+    finder.arrived("late")
+    assert optional().here
+
+
+def test_a_request_that_lacks_a_part_is_answered_when_it_is_there(finder, tmp_path):
+    def reply(text):
+        import late_package
+
+        return json.dumps({"here": late_package.here})
+
+    asked = judge.Judge({})
+    asked.later, asked._answer = finder, reply
+    assert asked.prepare('{"do": "check", "exercise": "7.1"}') == "late"
+    assert asked.reply("{}") == ["", "late"]
+    (tmp_path / "late_package.py").write_text("here = 1", encoding="utf-8")
+    finder.arrived("late")
+    assert asked.reply("{}") == ['{"here": 1}', ""]
+
+
+def test_the_judge_answers_what_it_cannot_answer():
+    def reply(text):
+        raise RecursionError("too deep")
+
+    asked = judge.Judge({})
+    asked._answer = reply
+    assert json.loads(asked.reply("{}")[0]) == {"problem": "this cannot be answered (RecursionError: too deep)"}
+
+
+#: Imports a module from a folder and one from an archive, and prints what an archive of both holds when it is kept.
+KEEPS = """
+import sys
+sys.path[:0] = [{docs!r}, {folder!r}, {archive!r}]
+sys.dont_write_bytecode = False
+import judge
+judge.sys.path[:] = [path for path in sys.path if not path.endswith(".zip") or path == {archive!r}]
+kept = judge.Judge({{}})
+import of_a_folder, of_the_archive
+ready = []
+while (name := kept.compile()) != "nothing":
+    if name:
+        open({target!r} + "/" + name, "wb").write(kept.take(name))
+        ready.append(name)
+print(ready)
+"""
+
+
+def test_what_was_compiled_need_not_be_compiled_again(tmp_path):
+    folder, archive = tmp_path / "folder", tmp_path / "library.zip"
+    folder.mkdir()
+    (folder / "of_a_folder.py").write_text("value = 'compiled'", encoding="utf-8")
+    with zipfile.ZipFile(archive, "w") as members:
+        members.writestr("of_the_archive.py", "value = 'compiled'")
+    places = {"docs": str(ROOT / "docs" / "browser"), "folder": str(folder), "archive": str(archive)}
+    program = KEEPS.format(**places, target=str(tmp_path))
+    ran = subprocess.run([sys.executable, "-c", program], capture_output=True, encoding="utf-8")
+    assert ran.stdout == "['packages', 'standard library']\n", ran.stderr
+
+    # the sources change, and what was compiled counts: it is not compared with them
+    (folder / "of_a_folder.py").write_text("value = 'read again, and much longer'", encoding="utf-8")
+    shutil.rmtree(folder / "__pycache__")
+    asked = judge.Judge({})
+    asked.restore((tmp_path / "packages").read_bytes())
+    program = f"import sys; sys.path[:0] = [{str(folder)!r}, {str(tmp_path / 'standard library')!r}]\n"
+    program += "import of_a_folder, of_the_archive; print(of_a_folder.value, of_the_archive.value)"
+    ran = subprocess.run([sys.executable, "-c", program], capture_output=True, encoding="utf-8")
+    assert ran.stdout == "compiled compiled\n", ran.stderr
+
+
+# In the browser.
+
+
+class Site:
+    """A small site with the judge, on a server that can be stopped, and a list of what it was asked for."""
+
+    def __init__(self, folder):
+        self.folder, self.asked = folder, []
+        handler = self.handler()
+        self.server = browser.Patient(("127.0.0.1", 0), handler)
+        self.address = f"http://127.0.0.1:{self.server.server_port}/book/"
+        threading.Thread(target=self.server.serve_forever, daemon=True).start()
+
+    def handler(self):
+        site = self
+
+        class Handler(browser.Silent):
+            def __init__(self, *arguments):
+                super().__init__(*arguments, directory=str(site.folder.parent))
+
+            def do_GET(self):
+                site.asked.append(self.path.removeprefix("/book/"))
+                super().do_GET()
+
+            def end_headers(self):
+                self.send_header("Cache-Control", "no-store")  # so that what is kept is kept by us
+                super().end_headers()
+
+        return Handler
+
+    def stop(self):
+        self.server.shutdown()
+        self.server.server_close()
+
+
+@pytest.fixture
+def small(tmp_path):
+    """A site of two pages with the judge in it, one that never comes to an end for some answers."""
+    folder = tmp_path / "book"
+    (folder / "_static").mkdir(parents=True)
+    for name in ("judge.js", "judge-worker.js", "offline.js", "favicon.svg"):
+        shutil.copyfile(STATIC / name, folder / "_static" / name)
+    for name in ("one", "two"):
+        head = '<link rel="icon" href="_static/favicon.svg"><script defer src="_static/offline.js"></script>'
+        page = f'<!doctype html><html lang="en"><meta charset="utf-8"><title>{name}</title>{head}<h1>{name}</h1>'
+        (folder / f"{name}.html").write_text(page, encoding="utf-8")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(site, "HERE", with_an_endless_judge(tmp_path / "browser"))
+        site.place(folder, True, browser_runtime.required())
+        site.write(folder, True)
+    small = Site(folder)
+    yield small
+    with contextlib.suppress(OSError):
+        small.stop()
+
+
+def with_an_endless_judge(folder):
+    shutil.copytree(site.HERE, folder)
+    endless = f"""
+_reply = Judge.reply
+def _endless(self, text):
+    while {ENDLESS!r} in text:
+        pass
+    return _reply(self, text)
+Judge.reply = _endless
+"""
+    with (folder / "judge.py").open("a", encoding="utf-8") as module:
+        module.write(endless)
+    return folder
+
+
+ASK = """async (request) => {
+    const { Judge } = await import("./_static/judge.js");
+    window.said ??= [];
+    window.judge ??= new Judge({ onProgress: ({ share, says }) => window.said.push([share, says]) });
+    try { return await judge.ask(request); } catch (error) { return error.message; }
+}"""
+#: All that the browser keeps for the site, names of caches and addresses, as soon as a condition holds for it.
+UNTIL = """async ([condition, patience]) => {
+    const holds = new Function("all", `return ${condition}`);
+    for (const end = Date.now() + patience; Date.now() < end; ) {
+        const names = await caches.keys();
+        const kept = await Promise.all(names.map(async (name) => (await caches.open(name)).keys()));
+        const all = [...names, ...kept.flat().map(({ url }) => url)];
+        if (holds(all)) return all;
+        await new Promise((resolve) => setTimeout(resolve, 100));
+    }
+    throw new Error(`never: ${condition}`);
+}"""
+
+
+def ask(page, **request):
+    return page.evaluate(ASK, ASKED | request)
+
+
+def wait_until_kept(page, ending):
+    page.evaluate(UNTIL, [f"all.some((one) => one.endsWith({json.dumps(ending)}))", browser.PATIENCE])
+
+
+class TestInTheBrowser:
+    def test_it_answers_as_on_a_desk_and_without_a_network_and_outlives_an_answer_without_end(self, chromium, small):
+        context = chromium.new_context()
+        page = context.new_page()
+        complaints = browser.Complaints(page)
+        page.goto(small.address + "one.html")
+        assert ask(page) == json.loads(answer(json.dumps(ASKED)))
+        assert ask(page, exercise="7.77") == json.loads(answer('{"do": "check", "exercise": "7.77"}'))
+
+        # it says what it loads, and how far it is
+        said = page.evaluate("said")
+        shares = [share for share, _ in said]
+        assert shares == sorted(shares)
+        assert shares[-1] < 1
+        assert any("of 23 MB" in says for _, says in said), said
+        assert [one for one in small.asked if "scipy" in one or "matplotlib" in one] == []
+        loaded = [one for one in small.asked if one.startswith(("wheels", "runtime"))]
+        assert len(loaded) == len(set(loaded)), "something was loaded twice"
+
+        # a picture is asked for: Matplotlib comes now
+        shown = ask(page, do="show", exercise="7.1", student="Mira")
+        assert "<img" in shown["html"] or "<svg" in shown["html"]
+        assert [one for one in small.asked if "matplotlib" in one] != []
+
+        version = json.loads((small.folder / "wheels" / "parts.json").read_text(encoding="utf-8"))["version"]
+        for ending in ("one.html", f"{version}/python_stdlib.zip", f"{version}/0"):
+            wait_until_kept(page, ending)
+        page.close()
+        small.stop()
+
+        # nothing is there any more, and all works
+        page = context.new_page()
+        page.goto(small.address + "one.html")
+        assert page.inner_text("h1") == "one"
+        assert ask(page) == json.loads(answer(json.dumps(ASKED)))
+        assert any("remembers" in says for _, says in page.evaluate("said"))
+
+        # an answer without end takes its Python with it, and the next one has a new one
+        assert ask(page, answers={"p": ENDLESS}).startswith("ended after 3 s: ")
+        assert ask(page) == json.loads(answer(json.dumps(ASKED)))
+
+        # what was not visited says so, and leads to what was
+        page.goto(small.address + "two.html")
+        assert page.inner_text("h1") == "No network"
+        assert page.eval_on_selector_all("li a", "links => links.map(link => link.innerText)") == ["one.html"]
+        assert complaints == []
+        context.close()
+
+    def test_what_is_missing_or_changed_is_told_and_tried_again(self, chromium, small):
+        page = chromium.new_page()
+        page.goto(small.address + "one.html")
+        wheel = next((small.folder / "wheels").glob("pint-*.whl"))
+        content = wheel.read_bytes()
+        wheel.unlink()
+        assert ask(page) == (
+            f"{wheel.name} could not be loaded from {small.address.split('/')[2]} (404): is there a network?"
+        )
+        wheel.write_bytes(content[:-1] + b"?")
+        assert ask(page).startswith(f"{wheel.name} is not the file that was expected")
+        page.close()
+
+    def test_a_new_site_takes_the_place_of_the_old_one(self, chromium, small):
+        context = chromium.new_context()
+        page = context.new_page()
+        page.goto(small.address + "one.html")
+        wait_until_kept(page, "one.html")
+        (small.folder / "one.html").write_text(
+            (small.folder / "one.html").read_text(encoding="utf-8").replace("<h1>one", "<h1>new"), encoding="utf-8"
+        )
+        site.write(small.folder, True)
+        page.reload()
+        assert page.inner_text("h1") == "new"
+        pages, version = 'all.filter((one) => one.startsWith("loopbook pages"))', site.content(small.folder)
+        condition = f"{pages}.length === 1 && {pages}[0].endsWith({json.dumps(version)})"
+        page.evaluate(UNTIL, [condition, browser.PATIENCE])
+        context.close()
