@@ -39,7 +39,7 @@ bench: .venv/ready ## measure what the collection costs beside what it stands on
 	$(python) tests/bench_grading.py
 	$(python) tests/repository/bench_book.py
 
-book: .venv/ready ## make the site of the collection, build/book/index.html
+book: .venv/ready ## make the site of the collection, build/book/index.html; OFFLINE=1 puts Python into it as well
 	$(python) docs build/book
 
 pictures: .venv/ready ## make the README's pictures again

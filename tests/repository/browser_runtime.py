@@ -7,6 +7,7 @@ for Python, exactly as Pyodide's authors published them; what is not so is not u
 import functools
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tarfile
@@ -62,8 +63,11 @@ def parts() -> Path:
 
 def _fetch(temporary, folder):
     names = runtime.known().keys()
+    npm = shutil.which("npm")
+    if npm is None:
+        raise FileNotFoundError("there is no npm: install Node.js")
     for command in (
-        ["npm", "pack", "--silent", "--pack-destination", str(temporary), NPM],
+        [npm, "pack", "--silent", "--pack-destination", str(temporary), NPM],
         [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-deps", "--dest",
          str(temporary), WHEELS],
     ):  # fmt: skip
