@@ -26,7 +26,7 @@ PATIENCE = 60
 
 
 class MissingError(Exception):
-    """A part cannot be had."""
+    """A part is not available."""
 
 
 @dataclass(frozen=True)

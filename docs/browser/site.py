@@ -46,7 +46,7 @@ def place(site: Path, offline: bool, source: str | Path | None = None) -> None:
         offline: whether the site holds Pyodide.
         source: a folder with Pyodide's parts; if not given, they are fetched.
     Raises:
-        runtime.MissingError: a part cannot be had.
+        runtime.MissingError: a part is not available.
     """
     if not offline:
         shutil.rmtree(site / RUNTIME, ignore_errors=True)

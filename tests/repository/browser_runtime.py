@@ -31,7 +31,7 @@ PATIENCE = 600
 
 
 def required() -> Path:
-    """Return the folder with the parts. Where they cannot be had, skip loudly; in continuous integration that fails."""
+    """Return the folder with the parts. Without them skip loudly; in continuous integration that fails."""
     try:
         return parts()
     except (OSError, subprocess.SubprocessError, LookupError) as problem:
