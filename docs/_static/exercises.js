@@ -24,12 +24,16 @@
 
   function remembered() {
     try {
-      memory = JSON.parse(localStorage.getItem(KEY)) || memory;
+      memory = JSON.parse(localStorage.getItem(KEY)) ?? memory;
     } catch {
       // private windows may have no storage, and somebody else may have written there
     }
-    const { student = null, answered = {}, tried = {} } = memory;
-    return { student, answered, tried };
+    const { student, answered, tried } = memory;
+    return { student: typeof student === "string" ? student : null, answered: table(answered), tried: table(tried) };
+  }
+
+  function table(value) {
+    return value && typeof value === "object" && !Array.isArray(value) ? value : {};
   }
 
   function remember(change) {
@@ -142,11 +146,11 @@
     }
 
     get tried() {
-      return remembered().tried[this.key] ?? {};
+      return table(remembered().tried[this.key]);
     }
 
     try(change) {
-      remember((all) => (all.tried[this.key] = { ...all.tried[this.key], ...change }));
+      remember((all) => (all.tried[this.key] = { ...table(all.tried[this.key]), ...change }));
     }
 
     // One thing at a time, and whatever fails is said in one sentence.
@@ -208,13 +212,13 @@
       return found;
     }
 
-    fillIn(answers = {}) {
+    fillIn(answers) {
       for (const [name, field] of this.places()) {
         const answer = answers[name];
         if (answer === undefined) continue;
         for (const input of field.querySelectorAll("input, textarea, select")) {
-          if (input.dataset.part) input.value = answer[input.dataset.part] ?? input.value;
-          else if (input.type === "checkbox") input.checked = answer.includes(input.value);
+          if (input.dataset.part) input.value = answer?.[input.dataset.part] ?? input.value;
+          else if (input.type === "checkbox") input.checked = [answer].flat().includes(input.value);
           else if (input.type === "radio") input.checked = input.value === answer;
           else input.value = answer;
         }
@@ -260,7 +264,7 @@
       const reply = await ask({ do: "check", exercise: this.number, student: this.student, answers });
       remember((all) => {
         all.answered[this.key] = reply.right || all.answered[this.key] === true; // what was right once stays so
-        const tried = all.tried[this.key] ?? {};
+        const tried = table(all.tried[this.key]);
         all.tried[this.key] = { ...tried, answers, attempts: (tried.attempts ?? 0) + 1 };
       });
       this.showVerdicts(reply);
@@ -379,7 +383,7 @@
 
     // What was typed and how far it went, after a reload and with other numbers.
     begin() {
-      this.fillIn(this.tried.answers);
+      this.fillIn(table(this.tried.answers));
       if (this.hintButton) {
         this.hintButton.textContent = "Hint";
         this.hintButton.removeAttribute("aria-disabled");
