@@ -17,7 +17,7 @@ import launch
 import mathml
 import nbformat
 import slugs
-from lessons import places
+from lessons import of_cell, places
 from nbformat.v4.rwbase import rejoin_lines
 from sphinx import addnodes
 
@@ -25,7 +25,6 @@ DOCS = Path(__file__).parents[1]
 ROOT = DOCS.parent
 FOLDERS = ("chapters", "solutions")
 START = ROOT / launch.FIRST  # what it leads to is the site's own front page
-SLIDERS = "nbval-ignore-output"
 FOLDED = "hide-input"
 EVERYWHERE = ("loopbook.tables.", "loopbook.sliders.")  # what no section needs to name
 RESPONSE = "application/vnd.loopbook.response+json"
@@ -54,7 +53,7 @@ def page(path):
     folder, name = path.parent.name, path.stem
     whole = content["cells"]
     if folder == "chapters":
-        whole = with_functions(noted(places.with_lessons(whole, name)))
+        whole = with_functions(places.with_lessons(whole, name))
     cells = []
     for cell in whole:
         cells += in_markdown(cell) if cell["cell_type"] == "markdown" else in_code(cell, folder, name)
@@ -100,18 +99,6 @@ def said_of_forms(found):
     return " ".join(filter(None, [exercise_forms.HOW_TO, besides and besides[0]]))
 
 
-def noted(cells):
-    """After each cell with sliders, which show nothing in a page, a line that says where they can be turned."""
-    result = []
-    for number, cell in enumerate(cells):
-        result.append(cell)
-        if SLIDERS in cell["metadata"].get("tags", []):
-            below = cells[number + 1 : number + 2]
-            here = ", and one like it is below" if below and "{lesson}" in below[0]["source"] else ""
-            result.append(markdown(f"{{.slider-note}}\nIn JupyterLab this cell has sliders{here}."))
-    return result
-
-
 def with_functions(cells):
     """Put at the end of each section the functions of the library that its code uses."""
     sections = functions_used.of_sections(cells)
@@ -136,7 +123,7 @@ def line_of_functions(used):
 
 
 def in_code(cell, folder, name):
-    """A cell of code: an exercise becomes a heading and a box, anything else keeps its code and its output."""
+    """A cell of code: an exercise becomes a heading and a box, sliders a lesson, others keep their code and output."""
     outputs = [shown for output in cell["outputs"] if (shown := one_way(output))]
     statement = next(
         (STATEMENT.match(o["data"]["text/markdown"]) for o in outputs if "text/markdown" in o.get("data", {})), None
@@ -158,8 +145,9 @@ def in_code(cell, folder, name):
         word = "Imports" if imports else "Code"
         prompts = {"code_prompt_show": word, "code_prompt_hide": word}
         metadata = {"tags": [FOLDED], "mystnb": metadata.get("mystnb", {}) | prompts}
-    code = nbformat.from_dict({**cell, "metadata": metadata, "outputs": outputs})
-    return [code]
+    lesson = of_cell(name, cell["source"]) if folder == "chapters" else None
+    code = nbformat.from_dict({**cell, "metadata": metadata, "outputs": [] if lesson else outputs})
+    return [markdown(f"```{{lesson}} {lesson.name}\n:cell:\n```"), code] if lesson else [code]
 
 
 def alternative(outputs):

@@ -1,5 +1,5 @@
 """The live lessons of the book: what a slider does to a loop, computed by the library and shown by the page alone."""
 
-from lessons.store import NAMES, PLACES, data, load
+from lessons.store import PLACES, data, load, names, of_cell, recorded, titles
 
-__all__ = ["NAMES", "PLACES", "data", "load"]
+__all__ = ["PLACES", "data", "load", "names", "of_cell", "recorded", "titles"]

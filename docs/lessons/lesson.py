@@ -6,19 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loopbook.figures.style import RESPONSE_COLOURS, RESPONSE_LINES, ROLES
+from lessons import moving, reading, shapes
+from lessons.look import look_of
 
-ALPHABET = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_"
-TOP = len(ALPHABET) ** 2 - 1  # a value is two letters: finer than a screen, and a third of what decimals would take
-ROOM = 0.5  # beyond the axis on either side, in heights of it; what is farther out does not come back into the picture
-LARGEST = 300_000  # characters in the file of a lesson
-
-# The colours of the figures in a dark page: as far apart, and light enough.
-IN_THE_DARK = {
-    "#000000": "#ffffff", "#0072B2": "#56B4E9", "#D55E00": "#ff9248", "#CC79A7": "#e6a3c8",
-    "#009E73": "#2fc79a", "#C88600": "#f2b632", "#3F9BD6": "#8fd0f5", "#555555": "#b0b0b0",
-    "#6A3D9A": "#c9a6ee", "#8A3324": "#f0a898", "#8C8C8C": "#8c8c8c",
-}  # fmt: skip
+LARGEST = 200_000  # characters of a lesson
+HIGH = 210  # pixels of a panel
 
 
 @dataclass(frozen=True)
@@ -74,19 +66,6 @@ class Curve:
     panel: int = 0
     role: object = "measurement"
 
-    @property
-    def look(self):
-        """Colour in a light and in a dark page, dashes and width in pixels."""
-        if self.role in ROLES:
-            look = ROLES[self.role]
-        else:
-            look = {"color": RESPONSE_COLOURS[self.role], "linestyle": RESPONSE_LINES[self.role], "linewidth": 2.0}
-        dashes = [] if look["linestyle"] == "-" else [round(4 / 3 * points, 1) for points in look["linestyle"][1]]
-        colour = look["color"]
-        return {
-            "light": colour, "dark": IN_THE_DARK[colour], "dash": dashes, "width": round(look["linewidth"] * 4 / 3, 1),
-        }  # fmt: skip
-
 
 @dataclass(frozen=True)
 class Panel:
@@ -95,6 +74,10 @@ class Panel:
     axis: str
     low: float
     high: float
+
+    def share(self, values):
+        """Values as shares of the height."""
+        return (np.asarray(values, dtype=float) - self.low) / (self.high - self.low)
 
 
 @dataclass(frozen=True)
@@ -149,50 +132,61 @@ class Lesson:
 
         Raises ValueError where that is more than a page should have to load.
         """
-        lines, places, answers = [], {"": -1}, []
-        for values in self.settings():
-            answer = self.respond(**values)
-            which = []
-            for curve in self.curves:
-                text = self._encoded(answer.signals.get(curve.name), self.panels[curve.panel])
-                if text not in places:  # curves that do not depend on all the sliders are kept once
-                    places[text] = len(lines)
-                    lines.append(text)
-                which.append(places[text])
-            marks = [[panel, rounded(time), rounded(value), label] for panel, time, value, label in answer.marks]
-            answers.append([answer.verdict, list(answer.results.values()), which, marks])
-        found = {
-            "start": [slider.first for slider in self.sliders],
-            "counts": [len(slider.values) for slider in self.sliders],
-            "time": {"from": float(self.times[0]), "to": float(self.times[-1]), "count": len(self.times)},
-            "clock": self.clock,
-            "panels": [{"axis": p.axis, "low": p.low, "high": p.high} for p in self.panels],
-            "curves": [{"panel": c.panel, "label": c.name, **c.look} for c in self.curves],
-            "results": list(answer.results),
-            "answers": answers,
-            "lines": lines,
-        }
-        size = sum(map(len, lines)) + len(str(answers))
+        answers = [(a.verdict, a.results, self.scene(a), "") for a in (self.respond(**x) for x in self.settings())]
+        counts, start = [len(slider.values) for slider in self.sliders], [slider.first for slider in self.sliders]
+        found = moving.told(answers, counts, start)
+        size = len(str(found))
         if size > LARGEST:
             raise ValueError(f"the lesson {self.title!r} takes {size} characters: expected {LARGEST} at most")
         return found
 
-    @staticmethod
-    def _encoded(values, panel):
-        """Values as letters, two each: 0 is half a height below the axis, and `TOP` half a height above it."""
-        if values is None:
-            return ""
-        height = panel.high - panel.low
-        share = (np.asarray(values, dtype=float) - panel.low + ROOM * height) / ((1 + 2 * ROOM) * height)
-        steps = np.rint(np.clip(share, 0, 1) * TOP).astype(int)
-        return "".join(ALPHABET[step // 64] + ALPHABET[step % 64] for step in steps)
+    def scene(self, answer):
+        """What the pictures show of an answer."""
+        begin, end = float(self.times[0]), float(self.times[-1])
+        shares = (self.times - begin) / (end - begin)
+        scene = reading.Scene()
+        for number, panel in enumerate(self.panels):
+            last = panel is self.panels[-1]
+            y = ticks(panel.low, panel.high, 6)
+            scene.panels.append(
+                reading.Panel(panel.axis, self.clock if last else "", HIGH, True, ticks(begin, end, 9), y)
+            )
+            for place, curve in enumerate(self.curves):
+                values = answer.signals.get(curve.name)
+                if curve.panel == number:
+                    corners = np.column_stack([shares, panel.share(values)]) if values is not None else None
+                    pieces = shapes.inside(corners) if values is not None else []
+                    scene.parts.append(
+                        reading.Part(number, "line", look_of(curve.role), curve.label, pieces, 10 * number + place / 10)
+                    )
+        for panel, time, value, label in answer.marks:
+            x, y = (time - begin) / (end - begin), self.panels[panel].share(value)
+            way = np.array([[x, y], [x, 0]])
+            ink = {"colour": "#000000"}
+            scene.parts += [
+                reading.Part(panel, "line", {**ink, "dash": [3, 3], "width": 1}, "", shapes.inside(way), 100),
+                reading.Part(panel, "dots", {**ink, "width": 8}, "", shapes.inside(way[:1]), 101),
+            ]
+            below = label.startswith("under")
+            scene.words.append(reading.Words(panel, x, y, 7, 6 if below else -4, 0, 0 if below else -100, label))
+        return scene
+
+    def record(self):
+        """Return the lesson as a recorded one is stored: its sliders and its data."""
+        sliders = [
+            {"name": s.name, "label": s.label, "shown": s.shown, "first": s.first, "list": bool(s.words)}
+            for s in self.sliders
+        ]  # fmt: skip
+        return {"sliders": sliders, "data": self.data()}
 
 
-def decoded(text, panel):
-    """Values of a curve from the letters of the page's data, as the page itself reads them."""
-    steps = np.array([64 * ALPHABET.index(a) + ALPHABET.index(b) for a, b in zip(text[::2], text[1::2], strict=True)])
-    height = panel.high - panel.low
-    return panel.low - ROOM * height + steps / TOP * (1 + 2 * ROOM) * height
+def ticks(low, high, most):
+    """The round numbers of an axis, as [(share, text)]."""
+    from matplotlib.ticker import MaxNLocator
+
+    places = MaxNLocator(most, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
+    inside = [place for place in places if low - 1e-9 <= place <= high + 1e-9]
+    return [(round((p - low) / (high - low), 4), f"{round(p, 9):g}".replace("-", "−")) for p in inside]
 
 
 def rounded(number, digits=3):

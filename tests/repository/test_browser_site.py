@@ -15,6 +15,12 @@ KINDS = {
 }
 
 
+#: Pages with lessons of each kind: curves, marks, bars, a map, a drawing.
+LESSONS = [f"chapters/{name}.html" for name in (
+    "06_dynamics", "07_feedback", "12_sequential_control", "19_robustness", "A_instrument_symbols",
+)]  # fmt: skip
+
+
 def pages(book):
     """The addresses of all pages, seen from the front page."""
     return sorted(path.relative_to(book).as_posix() for path in book.rglob("*.html") if "_static" not in path.parts)
@@ -153,32 +159,89 @@ class TestSite:
             seen.add(reader.page.evaluate("getComputedStyle(document.body).backgroundColor"))
         assert len(seen) == 2
 
-    @pytest.mark.parametrize("way", ["http", "file"])
-    def test_the_knobs_of_every_lesson_move_its_plot(self, chromium, addresses, book, way):
-        """By mouse from a server, by keyboard from a file; and all goes back to the start."""
-        reader = Reader(chromium, addresses[way])
+    def test_every_slider_of_every_lesson_moves_its_picture(self, reader, book):
+        """At some value of each, with the others at the start; and all goes back to the start."""
         idle, moved = [], 0
         for page in with_lessons(book):
             reader.go(page)
             for lesson in reader.page.locator(".lesson").all():
-                name = lesson.get_attribute("data-lesson")
-                lesson.scroll_into_view_if_needed()
-                start = before = drawn(lesson)
-                for knob in lesson.locator("input[type=range], select").all():
-                    move(knob, "mouse" if way == "http" else "keyboard")
-                    moved += 1
-                    if (after := drawn(lesson, other_than=before)) == before:
-                        idle.append(f"{name}: {knob.get_attribute('id')}")
-                    before = after
-                if way == "http":
-                    lesson.screenshot(path=SCREENSHOTS / f"site_lesson_{name}.png")
-                lesson.get_by_role("button", name="Back to the start").click()
-                if drawn(lesson, until=start) != start:
-                    idle.append(f"{name}: back to the start")
-        reader.page.close()
-        assert moved >= 12, "there are six lessons, most with two knobs or more"
+                begin(lesson)
+                found = lesson.evaluate(EVERY_KNOB)
+                idle += found["idle"]
+                moved += found["moved"]
         assert idle == []
+        assert moved > 50, "most lessons have two sliders or more"
+
+    def test_a_lesson_obeys_the_mouse_and_keeps_curves_for_comparison(self, reader):
+        reader.go("chapters/10_tuning.html")
+        lesson = reader.page.locator("#lesson-by_hand")
+        begin(lesson)
+        start = drawn(lesson)
+        for knob in lesson.locator("input[type=range]").all():
+            before = drawn(lesson)
+            box = knob.bounding_box()
+            knob.click(position={"x": 0.7 * box["width"], "y": box["height"] / 2})
+            assert drawn(lesson) != before
+        lesson.get_by_role("button", name="Keep these curves in grey").click()
+        assert grey(lesson) == ""
+        lesson.locator("input[type=range]").first.press("Home")
+        assert grey(lesson).startswith("M")
+        reader.page.screenshot(path=SCREENSHOTS / "site_lesson_by_hand.png")
+        lesson.get_by_role("button", name="Back to the start").click()
+        assert drawn(lesson) == start
+        assert grey(lesson) == ""
+
+    def test_a_lesson_obeys_the_keyboard_in_a_page_from_a_disk(self, chromium, addresses):
+        reader = Reader(chromium, addresses["file"])
+        reader.go("chapters/16_tuning_relations.html")
+        lesson = reader.page.locator("#lesson-at_work")
+        begin(lesson)
+        for knob, key in ((lesson.locator("select"), "ArrowDown"), (lesson.locator("input"), "ArrowRight")):
+            before, said = drawn(lesson), lesson.locator(".lesson-result").inner_text()
+            knob.first.press(key)
+            assert drawn(lesson) != before
+            assert lesson.locator(".lesson-result").inner_text() != said
+        reader.page.close()
         assert reader.complaints == []
+
+    def test_a_lesson_obeys_a_finger(self, chromium, addresses):
+        reader = Reader(chromium, addresses["http"], has_touch=True, is_mobile=True)
+        reader.page.set_viewport_size(PHONE)
+        reader.go("chapters/13_poles_and_zeros.html")
+        lesson = reader.page.locator("#lesson-zero_to_move")
+        begin(lesson)
+        before, box = drawn(lesson), lesson.locator("input").first.bounding_box()
+        assert box["height"] >= 32, "of a finger"
+        reader.page.touchscreen.tap(box["x"] + 0.8 * box["width"], box["y"] + box["height"] / 2)
+        assert drawn(lesson) != before
+        reader.screenshot("phone_lesson")
+        reader.page.close()
+        assert reader.complaints == []
+
+    def test_a_page_loads_the_lessons_that_the_reader_comes_near(self, reader):
+        reader.go("chapters/10_tuning.html")
+        begin(reader.page.locator(".lesson").first)
+        count = "[...document.scripts].filter(script => script.src.includes('/lessons/')).length"
+        assert reader.page.evaluate(count) < reader.page.locator(".lesson").count()
+
+    def test_a_lesson_is_seen_without_a_script_and_nothing_moves_when_it_comes(self, chromium, addresses):
+        def look(scripts):
+            reader = Reader(chromium, addresses["http"], java_script_enabled=scripts)
+            reader.go("chapters/10_tuning.html")
+            lesson = reader.page.locator("#lesson-by_hand")
+            if scripts:
+                begin(lesson)
+            plots = [plot.bounding_box() for plot in lesson.locator(".lesson-plot").all()]
+            paths = [path.get_attribute("d") for path in lesson.locator("path[data-item]").all()]
+            said = lesson.locator("noscript p").is_visible()
+            reader.page.close()
+            return [plot["height"] for plot in plots], plots[1]["y"] - plots[0]["y"], paths, said
+
+        *still, said = look(scripts=False)
+        *live, silent = look(scripts=True)
+        assert still == live
+        assert said
+        assert not silent
 
     @pytest.mark.parametrize("scheme", ["light", "dark"])
     def test_nobody_is_kept_from_reading(self, chromium, addresses, book, scheme):
@@ -191,37 +254,49 @@ class TestSite:
             reader.go(page)
             reader.screenshot(f"{name}_{scheme}")
             found += [f"{page}: {problem}" for problem in serious(reader.page, **rules)]
-        for page in with_lessons(book):
+        for page in LESSONS:
             reader.go(page)
+            begin(reader.page.locator(".lesson").first)
             found += [f"{page}: {problem}" for problem in serious(reader.page, ".lesson", **rules)]
         reader.page.close()
         assert not found, "\n".join(found)
 
 
-def drawn(lesson, other_than=None, until=None, frames=200):
-    """What the plots of a lesson show, once they have been drawn; after some frames also what is not as expected."""
-    for _ in range(frames):
-        shown = lesson.evaluate(
-            """async part => {
-                await new Promise(done => requestAnimationFrame(() => setTimeout(done, 30)));
-                return [...part.querySelectorAll("canvas")].map(plot => plot.toDataURL());
-            }"""
-        )
-        if shown != other_than and until in (None, shown):
-            break
-    return shown
+#: Moves every slider and list of a lesson, and says which of them moved nothing.
+EVERY_KNOB = """lesson => {
+    const seen = () => lesson.querySelector(".lesson-desk").innerHTML.replace(/ (aria-valuetext|value)="[^"]*"/g, "")
+        .replace(/<output.*?<[/]output>/g, "");
+    const turn = (knob, value) => { knob.value = value; knob.dispatchEvent(new Event("input")); };
+    const start = seen();
+    const idle = [];
+    const knobs = [...lesson.querySelectorAll("input[type=range], select")];
+    for (const knob of knobs) {
+        const first = knob.value;
+        const last = knob.options ? knob.options.length - 1 : Number(knob.max);
+        let found = false;
+        for (let value = 0; value <= last && !found; value++) {
+            turn(knob, value);
+            found = seen() !== start;
+        }
+        if (!found) idle.push(knob.id);
+        turn(knob, first);
+    }
+    if (seen() !== start) idle.push(`${lesson.id}: back to the start`);
+    return { idle, moved: knobs.length };
+}"""
 
 
-def move(knob, way):
-    """Set a slider or a list to another value."""
-    if knob.evaluate("knob => knob.tagName") == "SELECT":
-        if way == "keyboard":
-            knob.press("ArrowDown")
-        else:
-            knob.select_option(index=knob.locator("option").count() - 1)
-    elif way == "keyboard":
-        knob.press("End" if knob.evaluate("knob => knob.value != knob.max") else "Home")
-    else:
-        box = knob.bounding_box()
-        share = 0.2 if knob.evaluate("knob => knob.value - knob.min > (knob.max - knob.min) / 2") else 0.8
-        knob.click(position={"x": share * box["width"], "y": box["height"] / 2})
+def begin(lesson):
+    """Bring a lesson into the window, and wait until its sliders do something."""
+    lesson.scroll_into_view_if_needed()
+    expect(lesson).to_contain_class("lesson-live")
+
+
+def drawn(lesson):
+    """What the pictures of a lesson show."""
+    return lesson.locator("path[data-item]").evaluate_all("paths => paths.map(path => path.getAttribute('d')).join()")
+
+
+def grey(lesson):
+    """What a lesson shows of the curves that were kept."""
+    return lesson.locator("path[data-kept]").evaluate_all("paths => paths.map(path => path.getAttribute('d')).join('')")
