@@ -1,5 +1,6 @@
 """How Sphinx makes the site."""
 
+import os
 import sys
 from pathlib import Path
 
@@ -17,7 +18,7 @@ language = "en"
 extensions = [
     "myst_nb", "stored", "exercise_forms", "mathml", "readme", "lazy_figures", "library", "repository_pages",
     "command_options", "ledger_page", "cheat_sheet_page", "front_page", "lesson_directive", "accessible",
-    "python_in_pages",
+    "permanent", "single_figures", "search_index", "previews", "here", "python_in_pages",
 ]  # fmt: skip
 exclude_patterns = ["lessons", "**/.ipynb_checkpoints"]
 
@@ -49,9 +50,9 @@ html_static_path = ["_static"]
 templates_path = ["_templates"]
 html_css_files = ["loopbook.css"]
 html_favicon = "_static/favicon.svg"
+html_baseurl = os.environ.get("LOOPBOOK_SITE", "")  # where the site is going to be, for previews of links
 html_copy_source = False
 html_show_sourcelink = False
-html_show_search_summary = False  # excerpts are fetched, and a page opened from a file may fetch nothing
 pygments_style = "a11y-high-contrast-light"
 pygments_dark_style = "a11y-high-contrast-dark"
 html_theme_options = {

@@ -1,4 +1,4 @@
-"""The pictures of the README, made by what they show: `make pictures`.
+"""The pictures of the README, and the one that a link to the site shows, made by what they show: `make pictures`.
 
 JupyterLab, the site and a graded course are opened in a browser as the tests do it, and what matters is cut out.
 """
@@ -22,6 +22,7 @@ CHAPTER = "10_tuning"
 LESSON, ITS_CHAPTER = "smith", "17_dead_time_compensation"
 GRADED = ROOT / "examples" / "course" / "build" / "grades" / "air_heater"
 STUDENT = "s1002"
+PREVIEW = DOCS / "_static" / "preview.png"
 SHARPNESS = 1.5  # pixels of the picture for one of the page
 LARGEST = 150_000  # bytes
 
@@ -83,6 +84,30 @@ def of_the_site(chromium) -> None:
         bring_into_view(page, lesson)
         save("lesson.png", page, [lesson])
         page.close()
+        the_preview(chromium, site)
+
+
+def the_preview(chromium, site: Path) -> None:
+    """What is shown where somebody shares a link to the site: its name, and the lesson of the front page."""
+    page = chromium.new_page(viewport={"width": 1000, "height": 525}, device_scale_factor=1.2)
+    page.goto((site / "index.html").as_uri())
+    page.evaluate(
+        """() => {
+            const desk = document.querySelector(".lesson"), title = document.createElement("h1");
+            title.textContent = "loopbook · process control, computed";
+            title.style.margin = "0 0 0.6rem";
+            const whole = document.createElement("div");
+            whole.style.cssText = "position: fixed; inset: 0; z-index: 1000; padding: 1.2rem 2rem; background: white";
+            whole.append(title, desk);
+            document.body.append(whole);
+            for (const part of desk.querySelectorAll(".lesson > p, .lesson > ol, .lesson-buttons")) part.remove();
+        }"""
+    )
+    page.wait_for_timeout(1000)
+    page.screenshot(path=PREVIEW)
+    Image.open(PREVIEW).convert("RGB").quantize(64, dither=Image.Dither.NONE).save(PREVIEW, optimize=True)
+    print(f"{PREVIEW.relative_to(ROOT)}: {PREVIEW.stat().st_size / 1000:.0f} kB")
+    page.close()
 
 
 def of_a_graded_course(chromium) -> None:

@@ -4,6 +4,7 @@ import html
 import re
 from xml.etree import ElementTree
 
+import permanent
 from mathml import in_html
 from slugs import check_anchor, ledger_anchor
 
@@ -53,11 +54,12 @@ def cells(verdict, formulas=in_html, equations=True):
     return "".join([*parts, f'<td class="value">{_framed(computed) or "–"}'])
 
 
-def check(data):
+def check(data, taken):
     """Return the check of an entry as one line that opens, with its place and its link to the ledger.
 
     Arguments:
         data: what a notebook stores.
+        taken: the names of the page's places; what has none yet gets its name here: the entry, and its equations.
     """
     place, heading = ledger_anchor(data["source"], data["entry"]), html.escape(data["heading"], quote=False)
     equations = any("equation" in verdict for verdict in data["verdicts"])
@@ -65,19 +67,43 @@ def check(data):
     wide = {"claim": ' colspan="2"'}
     head = "".join(f'<th scope="col"{wide.get(name, "")}>{name}' for name in columns if equations or name != "equation")
     sign = "✓" if all(verdict["holds"] for verdict in data["verdicts"]) else "✗"
+    entry, rows = fresh(permanent.names_of(data["entry"]), taken), []
+    for verdict in data["verdicts"]:
+        names = fresh(permanent.names_of(f"Equation {verdict.get('equation', '-')}"), taken)
+        rows.append(f"<tr{numbered(cells(verdict, equations=equations), names)}")
     return "\n".join(
         [
+            *(f'<span id="{name}"></span>' for name in entry),
             f'<details class="check" id="{check_anchor(data["source"], data["entry"])}">',
             f"<summary>{sign} <strong>{heading}</strong>: {html.escape(data['counts'])}</summary>",
             '<div class="table" tabindex="0">',
             f"<table><thead><tr>{head}</thead><tbody>",
-            *(f"<tr>{cells(verdict, equations=equations)}" for verdict in data["verdicts"]),
+            *rows,
             "</table></div>",
             *(f"<p>{code(note)}</p>" for note in data["notes"]),
             f'<p><a href="../ledger.html#{place}">In the ledger</a></p>',
             "</details>",
         ]
     )
+
+
+def fresh(names, taken):
+    """Those of some names that are not taken; now they are."""
+    found = [name for name in names if name not in taken]
+    taken.update(found)
+    return found
+
+
+def numbered(cells, names):
+    """The rest of a row: its names, and a number that is a link to it."""
+    if not names:
+        return f">{cells}"
+    first, *others = names
+    more = "".join(f'<span id="{name}"></span>' for name in others)
+    cells = re.sub(
+        r'<td class="equation">(\([^<]*\))', rf'<td class="equation">{more}<a href="#{first}">\1</a>', cells, count=1
+    )
+    return f' id="{first}">{cells}'
 
 
 def code(text):

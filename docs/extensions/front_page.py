@@ -1,8 +1,21 @@
-"""The directive ``lesson-links``: the live lessons by their titles, each with the way to its place in its chapter."""
+"""What the front page shows of the book: the live lessons by title, an exercise, and one result of the ledger.
 
+Directives: ``lesson-links``, ``front-exercise 10.1``, and ``checked-result haugen; Example 7.4; T_i_in_minutes``.
+"""
+
+import html
+import re
+
+import exercise_forms
+import ledger_page
+import stored
+from checks import COLUMNS, cells, code
 from docutils import nodes
-from lessons import PLACES, load
+from lessons import titles
+from slugs import check_anchor, ledger_anchor, slug
 from sphinx.util.docutils import SphinxDirective
+
+from loopbook.ledger import sources
 
 
 class LessonLinks(SphinxDirective):
@@ -10,15 +23,71 @@ class LessonLinks(SphinxDirective):
 
     def run(self):
         links = nodes.bullet_list(classes=["lesson-links"])
-        for name, place in PLACES.items():
-            title = load(name).title.removeprefix("Live: ")
-            link = nodes.reference(
-                "", title[0].upper() + title[1:], refuri=f"chapters/{place.chapter}.html#lesson-{name}"
-            )
+        for chapter, name, title in titles():
+            link = nodes.reference("", title, refuri=f"chapters/{chapter}.html#lesson-{name}")
             links += nodes.list_item("", nodes.paragraph("", "", link))
         return [links]
 
 
+class FrontExercise(SphinxDirective):
+    """An exercise that answers, by its number."""
+
+    required_arguments = 1
+
+    def run(self):
+        number = self.arguments[0]
+        chapter, outputs = self.found(number)
+        texts = [o["data"]["text/markdown"] for o in outputs if "text/markdown" in o.get("data", {})]
+        title, points = next((m[2], m[3]) for text in texts if (m := stored.STATEMENT.match(text)))
+        pictures = stored.pictures(outputs).replace("<img ", '<img loading="lazy" ')
+        form = exercise_forms.form(number, (points or "").strip(" ()"), pictures, f"solutions/{chapter}.html")
+        link = f"[In its chapter](chapters/{chapter}.ipynb#exercise-{slug(number)})"
+        return self.parse_text_to_nodes(f"**Exercise {number} · {title}.** {link}\n\n{form}")
+
+    def found(self, number):
+        """The chapter of an exercise, and what its cell shows."""
+        for file in sorted((stored.ROOT / "chapters").glob("*.ipynb")):
+            for cell in stored.stored(file)["cells"]:
+                if cell["cell_type"] == "code" and re.match(rf'exercise\("{re.escape(number)}"\)$', cell["source"]):
+                    self.env.note_dependency(str(file))
+                    return file.stem, cell["outputs"]
+        raise self.error(f"no chapter shows exercise {number}")
+
+
+class CheckedResult(SphinxDirective):
+    """One result of the ledger with its verdict: source, entry and result, with semicolons between."""
+
+    required_arguments = 1
+    final_argument_whitespace = True
+
+    def run(self):
+        source, entry, name = (part.strip() for part in self.arguments[0].split(";"))
+        try:
+            chapter, verdicts = ledger_page.stored()[source, entry]
+            verdict = verdicts[name]
+        except KeyError as missing:
+            raise self.error(f"the chapters store no check of {source}; {entry}; {name}: {missing}") from None
+        result = next(one for one in sources()[source][entry].results if one.name == name)
+        head = "".join(f'<th scope="col">{column}' for column in COLUMNS if column != "equation")
+        title = html.escape(f"{sources()[source].title}, {entry}")
+        text = f"""<div class="table checked" tabindex="0" role="region" aria-label="A checked result">
+<table><caption>{title}</caption><thead><tr>{head}</thead><tbody>
+<tr>{cells(verdict, equations=False)}
+</tbody></table></div>
+<p>{code(ledger_page.note(result))} <a href="chapters/{chapter}.html#{check_anchor(source, entry)}">In its chapter</a> ·
+<a href="ledger.html#{ledger_anchor(source, entry, name)}">in the ledger</a></p>"""
+        return [nodes.raw("", text, format="html")]
+
+
+def add_files(app, pagename, templatename, context, doctree):
+    """The look of the front page, for this page alone."""
+    if pagename == app.config.root_doc:
+        app.add_css_file("front.css")
+
+
 def setup(app):
     app.add_directive("lesson-links", LessonLinks)
+    app.add_directive("front-exercise", FrontExercise)
+    app.add_directive("checked-result", CheckedResult)
+    app.connect("html-page-context", add_files)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

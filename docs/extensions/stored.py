@@ -16,6 +16,7 @@ import functions_used
 import launch
 import mathml
 import nbformat
+import permanent
 import slugs
 from lessons import of_cell, places
 from nbformat.v4.rwbase import rejoin_lines
@@ -52,11 +53,12 @@ def page(path):
     content = stored(path)
     folder, name = path.parent.name, path.stem
     whole = content["cells"]
+    figures, taken = permanent.figures(whole), permanent.taken(whole)
     if folder == "chapters":
         whole = with_functions(places.with_lessons(whole, name))
     cells = []
     for cell in whole:
-        cells += in_markdown(cell) if cell["cell_type"] == "markdown" else in_code(cell, folder, name)
+        cells += in_markdown(cell) if cell["cell_type"] == "markdown" else in_code(cell, folder, name, figures, taken)
     cells.insert(1, markdown(opening(folder, name)))
     if folder == "solutions":
         cells = folded(cells)
@@ -122,9 +124,16 @@ def line_of_functions(used):
     return [markdown(f"{{.functions}}\nFunctions used here: {text}")] if names else []
 
 
-def in_code(cell, folder, name):
-    """A cell of code: an exercise becomes a heading and a box, sliders a lesson, others keep their code and output."""
-    outputs = [shown for output in cell["outputs"] if (shown := one_way(output))]
+def in_code(cell, folder, name, figures, taken):
+    """A cell of code: an exercise becomes a form, sliders a lesson, others keep their code and output.
+
+    Arguments:
+        cell: of the notebook.
+        folder, name: of the notebook.
+        figures: the places of the figures of a chapter, by the ids of their cells.
+        taken: the places of the page that have their names already.
+    """
+    outputs = [shown for output in cell["outputs"] if (shown := one_way(output, taken))]
     statement = next(
         (STATEMENT.match(o["data"]["text/markdown"]) for o in outputs if "text/markdown" in o.get("data", {})), None
     )
@@ -146,8 +155,15 @@ def in_code(cell, folder, name):
         prompts = {"code_prompt_show": word, "code_prompt_hide": word}
         metadata = {"tags": [FOLDED], "mystnb": metadata.get("mystnb", {}) | prompts}
     lesson = of_cell(name, cell["source"]) if folder == "chapters" else None
+    names = figures.get(cell.get("id")) if folder == "chapters" else None
+    if names and not lesson:
+        label = f"{permanent.title_of(alt)}: alone, with its code"
+        metadata = metadata | {permanent.FIGURE: {"names": names, "label": escape(label)}}
     code = nbformat.from_dict({**cell, "metadata": metadata, "outputs": [] if lesson else outputs})
-    return [markdown(f"```{{lesson}} {lesson.name}\n:cell:\n```"), code] if lesson else [code]
+    if not lesson:
+        return [code]
+    before, after = permanent.frame(names, name, f"{lesson.title}: alone, with its code") if names else ("", "")
+    return [markdown(f"{before}\n\n```{{lesson}} {lesson.name}\n:cell:\n```\n\n{after}"), code]
 
 
 def alternative(outputs):
@@ -155,8 +171,13 @@ def alternative(outputs):
     return next((o["metadata"]["image/png"].get("alt") for o in outputs if "image/png" in o.get("data", {})), None)
 
 
-def one_way(output):
-    """Return an output in the one form that the page shows, or nothing if it has none."""
+def one_way(output, taken):
+    """Return an output in the one form that the page shows, or nothing if it has none.
+
+    Arguments:
+        output: of a cell.
+        taken: the places of the page that have their names already; those of a check are added.
+    """
     if "data" not in output:
         return output
     mime = next((mime for mime in SHOWN if mime in output["data"]), None)
@@ -167,7 +188,7 @@ def one_way(output):
         mime, content = "text/html", f'<div class="math" tabindex="0">{mathml.in_html(content)}</div>'
     elif mime == "text/html":
         data = output["data"].get(checks.MIME_TYPE)
-        content = checks.check(data) if data else html(content)
+        content = checks.check(data, taken) if data else html(content)
     return {**output, "data": {mime: content}}
 
 

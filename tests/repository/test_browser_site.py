@@ -1,4 +1,4 @@
-"""The site in a browser: its pages, its search, its links and switches, its live lessons; and an audit."""
+"""The site in a browser: its pages, its links and switches, its live lessons; and an audit."""
 
 import pytest
 from playwright.sync_api import expect
@@ -12,6 +12,9 @@ KINDS = {
     "solution": "solutions/05_transfer_functions.html",
     "ledger": "ledger.html?chapter=10_tuning",
     "reference": "reference/deadtime.html",
+    "figures": "figures/04_laplace.html",
+    "gallery": "figures.html",
+    "schools": "schools.html",
 }
 
 
@@ -102,20 +105,6 @@ class TestSite:
         reader.page.close()
         assert reader.complaints == []
 
-    @pytest.mark.parametrize("way", ["http", "file"])
-    def test_the_search_finds_the_smith_predictor(self, chromium, addresses, way):
-        reader = Reader(chromium, addresses[way])
-        reader.go("index.html")
-        reader.page.locator("input[name=q]").first.fill("Smith predictor")
-        reader.page.keyboard.press("Enter")
-        found = reader.page.locator("ul.search li a")
-        expect(found.filter(has_text="Dead-time compensation").first).to_be_visible()
-        reader.screenshot(f"search_{way}")
-        found.filter(has_text="Dead-time compensation").first.click()
-        expect(reader.page.locator("h1")).to_contain_text("Dead-time compensation")
-        reader.page.close()
-        assert reader.complaints == []
-
     def test_a_reader_gets_around(self, reader):
         """From the front page to a chapter, by the links in the text, at the side and at the foot."""
         reader.go("index.html")
@@ -127,6 +116,30 @@ class TestSite:
         expect(reader.page.locator("h1")).to_contain_text("Feedforward control")
         reader.page.locator(".sidebar-brand").click()
         expect(reader.page.locator("h1")).to_contain_text("loopbook")
+
+    def test_the_front_page_stands_still_while_it_loads(self, reader):
+        """And so does a chapter, with its figures and its lessons."""
+        for screen in (DESKTOP, PHONE):
+            reader.page.set_viewport_size(screen)
+            for page in (KINDS["front"], KINDS["chapter"]):
+                reader.go(page)
+                reader.page.wait_for_load_state("networkidle")
+                assert moved(reader.page) < 0.01, (page, screen)
+
+    def test_one_sees_where_one_is(self, reader):
+        """In the list at the side, the section that is being read is marked, whatever is scrolled to."""
+        reader.go(KINDS["chapter"])
+        links = reader.page.locator(".here a")
+        for number in (1, links.count() - 1):
+            link = links.nth(number)
+            place = link.get_attribute("href")
+            reader.page.evaluate("id => document.getElementById(id).scrollIntoView({behavior: 'instant'})", place[1:])
+            expect(link).to_have_attribute("aria-current", "location")
+        assert reader.page.locator(".here a[aria-current]").count() == 1
+
+    def test_a_link_to_something_folded_opens_it(self, reader):
+        reader.go("chapters/10_tuning.html#equation-10-15")
+        expect(reader.page.locator("#equation-10-15")).to_be_in_viewport()
 
     def test_a_phone_opens_the_list_of_chapters(self, reader):
         reader.page.set_viewport_size(PHONE)
@@ -260,6 +273,20 @@ class TestSite:
             found += [f"{page}: {problem}" for problem in serious(reader.page, ".lesson", **rules)]
         reader.page.close()
         assert not found, "\n".join(found)
+
+
+def moved(page):
+    """By how much what had been shown has moved: the cumulative layout shift."""
+    return page.evaluate(
+        """() => new Promise(resolve => {
+            let sum = 0;
+            const watch = list => list.getEntries().forEach(one => { if (!one.hadRecentInput) sum += one.value; });
+            const watcher = new PerformanceObserver(watch);
+            watcher.observe({type: "layout-shift", buffered: true});
+            const end = () => (watch({getEntries: () => watcher.takeRecords()}), resolve(sum));
+            requestAnimationFrame(() => setTimeout(end));
+        })"""
+    )
 
 
 #: Moves every slider and list of a lesson, and says which of them moved nothing.
