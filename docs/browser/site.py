@@ -90,11 +90,14 @@ def write(site: Path, offline: bool) -> None:
 
 
 def content(site: Path) -> str:
-    """Return a short hash of all that a site consists of; of Pyodide the list of the parts tells the version."""
+    """Return a short hash of all that a site consists of.
+
+    Of Pyodide the list of the parts tells the version, and JupyterLite keeps its files by itself.
+    """
     found = hashlib.sha256()
     for path in sorted(site.rglob("*")):
         inside = path.relative_to(site)
-        if path.is_file() and inside.parts[0] not in (RUNTIME, SERVICE, ".doctrees"):
+        if path.is_file() and inside.parts[0] not in (RUNTIME, SERVICE, "lite", ".doctrees"):
             found.update(f"{inside.as_posix()} {runtime.digest(path.read_bytes())}\n".encode())
     return found.hexdigest()[:12]
 

@@ -1,4 +1,4 @@
-"""Where a notebook can be opened and run without an installation: Binder, Colab and Codespaces.
+"""Where a notebook can be opened and run without an installation: in the page, on Binder, Colab and Codespaces.
 
 The repository's address stands in pyproject.toml and nowhere else; a branch other than main follows it, as in
 https://github.com/loopbook/loopbook/tree/next.
@@ -14,6 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 ADDRESS = re.compile(r"https://github\.com/(?P<name>[\w.-]+/[\w.-]+?)(?:\.git)?(?:/tree/(?P<branch>[\w./-]+))?/?")
 COPIES = "colab"  # the branch where the workflow colab.yml puts the notebooks with a cell that installs loopbook
 FIRST = "chapters/00_start.ipynb"  # what is opened of the whole collection
+IN_PAGE = "lite/notebooks/index.html?path="  # JupyterLite's place on the site, which browser/lite.py makes
 
 
 def of_repository(address=repository.ADDRESS):
@@ -29,6 +30,21 @@ def of_repository(address=repository.ADDRESS):
     return found["name"], found["branch"] or "main"
 
 
+def in_page(path="", root=""):
+    """Return the address on the site at which a notebook, or without one the collection, runs in the reader's browser.
+
+    Arguments:
+        path: of a notebook from the root of the repository.
+        root: how the site's root is seen from the page with the link, as "../".
+    Raises:
+        ValueError: for a path at which there is nothing.
+
+    >>> in_page("chapters/01_introduction.ipynb", "../")
+    '../lite/notebooks/index.html?path=chapters/01_introduction.ipynb'
+    """
+    return f"{root}{IN_PAGE}{quote(_existing(path) or FIRST)}"
+
+
 def links(path=""):
     """Return name and address of each place that opens a notebook, or without one the collection.
 
@@ -42,8 +58,7 @@ def links(path=""):
     >>> [name for name, address in links("chapters/01_introduction.ipynb")]
     ['Binder', 'Colab', 'Codespaces']
     """
-    if not (ROOT / path).exists():
-        raise ValueError(f"there is no {path}: expected the path of a notebook from the root of the repository")
+    _existing(path)
     name, branch = of_repository()
     on_binder = quote(f"lab/tree/{path or FIRST}", safe="")
     return (
@@ -51,3 +66,9 @@ def links(path=""):
         ("Colab", f"https://colab.research.google.com/github/{name}/blob/{COPIES}/{quote(path or FIRST)}"),
         ("Codespaces", f"https://codespaces.new/{name}/tree/{quote(branch)}?quickstart=1"),
     )
+
+
+def _existing(path):
+    if not (ROOT / path).exists():
+        raise ValueError(f"there is no {path}: expected the path of a notebook from the root of the repository")
+    return path

@@ -69,11 +69,14 @@ def page(path):
 
 
 def opening(folder, name):
-    """The line below a page's title: its other half, and where else it can be opened."""
+    """The line below a page's title: where it runs in the browser, its other half, and where else it can be opened."""
+    what = {"chapters": "this chapter", "solutions": "these solutions"}[folder]
+    here = launch.in_page(f"{folder}/{name}.ipynb", root="../")
+    run = f'<a class="run" href="{here}">Run {what} in the browser</a>'
     other = {"chapters": "solutions", "solutions": "chapters"}[folder]
     word = {"chapters": "Solutions", "solutions": "Chapter"}[folder]
     places = " · ".join(f"[{place}]({address})" for place, address in launch.links(f"{folder}/{name}.ipynb"))
-    return f"{{.opening}}\n[{word} of this chapter](/{other}/{name}.ipynb) · Open in: {places}".replace(
+    return f"{{.opening}}\n{run} · [{word} of this chapter](/{other}/{name}.ipynb) · Open in: {places}".replace(
         "Chapter of this chapter", "The chapter"
     )
 

@@ -32,12 +32,15 @@ def build(folder: Path) -> tuple[Path, float]:
 
 
 def the_pages(site: Path, seconds: float) -> Table:
-    sizes = {page.relative_to(site).as_posix(): page.stat().st_size for page in site.rglob("*.html")}
-    whole = sum(file.stat().st_size for file in site.rglob("*") if file.is_file() and ".doctrees" not in file.parts)
+    files = {path.relative_to(site): path.stat().st_size for path in site.rglob("*") if path.is_file()}
+    in_the_page = sum(size for path, size in files.items() if path.parts[0] == "lite")
+    whole = sum(size for path, size in files.items() if path.parts[0] != ".doctrees")
+    sizes = {str(path): size for path, size in files.items() if path.suffix == ".html" and path.parts[0] != "lite"}
     table = Table("", "", title=f"{len(sizes)} pages, built in {seconds:.0f} s")
     for page in sorted(sizes, key=sizes.get, reverse=True)[:5]:
         table.add_row(page, f"{sizes[page] / 1000:.0f} kB")
     table.add_row("median page", f"{statistics.median(sizes.values()) / 1000:.0f} kB")
+    table.add_row("the notebooks in the page", f"{in_the_page / 1e6:.1f} MB")
     table.add_row("the whole site", f"{whole / 1e6:.1f} MB")
     return table
 

@@ -6,7 +6,7 @@ import sys
 from functools import cached_property
 from html.parser import HTMLParser
 from pathlib import Path
-from urllib.parse import unquote, urlsplit
+from urllib.parse import parse_qs, unquote, urlsplit
 
 import nbformat
 import pytest
@@ -66,7 +66,9 @@ class Page(HTMLParser):
 
 @pytest.fixture(scope="module")
 def pages(book):
-    return {path: Page(path) for path in sorted(book.rglob("*.html")) if "_static" not in path.parts}
+    """The pages that Sphinx made; those below lite/ are JupyterLite's."""
+    made = [path for path in sorted(book.rglob("*.html")) if not {"_static", "lite"} & set(path.parts)]
+    return {path: Page(path) for path in made}
 
 
 def extension(name):
@@ -103,6 +105,16 @@ def test_every_link_leads_to_a_page_and_a_place_of_the_site(book, pages):
                 if not target.is_file() or (place and target in pages and place not in pages[target].ids):
                     dead.append((name(book, path), link))
     assert not dead, f"{len(dead)} dead links: {dead[:8]}"
+
+
+def test_every_chapter_and_every_solution_leads_to_its_notebook_in_the_page(book, pages):
+    for path, page in pages.items():
+        if path.parent.name in ("chapters", "solutions"):
+            (link,) = [urlsplit(a["href"]) for a in page.all("a") if a.get("class") == "run"]
+            assert (path.parent / link.path).resolve() == book / "lite" / "notebooks" / "index.html"
+            (notebook,) = parse_qs(link.query)["path"]
+            assert notebook == f"{path.parent.name}/{path.stem}.ipynb"
+            assert (book / "lite" / "files" / notebook).is_file()
 
 
 def test_a_place_has_one_name(book, pages):

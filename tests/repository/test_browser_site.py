@@ -26,7 +26,8 @@ LESSONS = [f"chapters/{name}.html" for name in (
 
 def pages(book):
     """The addresses of all pages, seen from the front page."""
-    return sorted(path.relative_to(book).as_posix() for path in book.rglob("*.html") if "_static" not in path.parts)
+    made = [path for path in book.rglob("*.html") if not {"_static", "lite"} & set(path.parts)]  # by Sphinx
+    return sorted(path.relative_to(book).as_posix() for path in made)
 
 
 def with_lessons(book):

@@ -165,6 +165,12 @@ def test_a_repository_elsewhere_is_refused(address):
         launch.of_repository(address)
 
 
-def test_a_notebook_that_is_not_there_is_refused():
+@pytest.mark.parametrize("place", [launch.links, launch.in_page])
+def test_a_notebook_that_is_not_there_is_refused(place):
     with pytest.raises(ValueError, match="there is no chapters/99"):
-        launch.links("chapters/99_nothing.ipynb")
+        place("chapters/99_nothing.ipynb")
+
+
+def test_in_the_page_a_link_leads_to_the_notebook_or_to_the_first_one():
+    assert launch.in_page("solutions/10_tuning.ipynb", "../").endswith("=solutions/10_tuning.ipynb")
+    assert launch.in_page().endswith(f"={launch.FIRST}")
