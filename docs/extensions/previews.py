@@ -16,7 +16,7 @@ LONGEST = 300  # letters of a description
 DEFAULT = (
     "Process control from the books, computed: chapters with live lessons, exercises that answer, checked results."
 )
-PICTURE = ("_static/preview.png", "loopbook: a lesson with sliders, and two responses of a loop", 1200, 630)
+PICTURE = ("_static/preview.png", "loopbook: the lesson of the front page, an oven to tune by two sliders", 1200, 630)
 
 
 def description(doctree):
