@@ -15,7 +15,7 @@ const PACKAGES = "/lib/python3.12/site-packages";
 const LIBRARY = "python_stdlib.zip";
 const MEGABYTE = 1e6;
 
-/** Seconds that may pass: until the key of an exercise is computed, and until an answer is judged. */
+/** Seconds that may pass on a usual computer: until the key of an exercise is computed, and until an answer is judged. */
 const LIMIT = { prepare: 60, check: 3 };
 
 /** After so many milliseconds without a question there is time to keep what Python has compiled. */
@@ -185,7 +185,7 @@ class Python {
     serveLoaded(this.loader);
     this.pyodide = await loadPyodide({
       indexURL: new URL(".", PARTS).href,
-      env: { HOME: "/home", MPLBACKEND: "agg" },
+      env: { HOME: "/home", MPLBACKEND: "agg", MPLCONFIGDIR: `${PACKAGES}/fonts` }, // kept with the packages
       stdout: console.debug,
       stderr: console.debug, // warnings of packages are not for readers
     });
@@ -193,7 +193,7 @@ class Python {
     await this.unpack(this.parts.parts[FIRST]);
     const module = this.pyodide.toPy({});
     this.pyodide.runPython(new TextDecoder().decode(this.loader.take("judge.py")), { globals: module });
-    this.judge = module.get("Judge")(this.pyodide.toPy(this.parts.later));
+    this.judge = module.get("Judge")(this.pyodide.toPy(this.parts.later), PACKAGES);
     for (this.batches = 0; ; this.batches += 1) {
       const batch = await this.kept.get(this.kept.compiled(this.batches));
       if (!batch) break;
@@ -233,12 +233,17 @@ class Python {
     }
   }
 
+  /** Tell the page that something begins now which may take so long; on a slow device longer. */
+  begin(id, seconds) {
+    self.postMessage({ begun: id, limit: Math.round(seconds * this.judge.slowness()) });
+  }
+
   async answer(id, request) {
-    self.postMessage({ begun: id, limit: LIMIT.prepare });
+    this.begin(id, LIMIT.prepare);
     await this.complete(() => ["", this.judge.prepare(request)]);
     const { do: what } = JSON.parse(request);
     return this.complete(() => {
-      self.postMessage({ begun: id, limit: LIMIT[what] ?? LIMIT.prepare });
+      this.begin(id, LIMIT[what] ?? LIMIT.prepare);
       const reply = this.judge.reply(request);
       try {
         return reply.toJs();

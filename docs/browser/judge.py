@@ -11,6 +11,7 @@ import importlib.util
 import io
 import json
 import marshal
+import os
 import sys
 import time
 import zipfile
@@ -23,6 +24,10 @@ _MAGIC, _HEADER = 4, 16
 _UNCHECKED = (1).to_bytes(4, "little") + bytes(8)
 #: What takes the time of importing a package, where that is not the package itself.
 _HEART = {"matplotlib": "matplotlib.backends.backend_agg", "scipy": "scipy.optimize", "PIL": "PIL.Image"}
+
+
+#: So many steps of a loop take so many seconds in the browser of a usual computer that has nothing else to do.
+_STEPS, _USUAL = 50_000, 0.012
 
 
 class Lacking(BaseException):
@@ -60,13 +65,15 @@ class Judge:
 
     Arguments:
         later: {package: part} of what is loaded when it is needed.
+        packages: the folder of the packages; what is compiled in it is kept.
     """
 
-    def __init__(self, later: Mapping[str, str]):
+    def __init__(self, later: Mapping[str, str], packages: str = ""):
         self.later = Later(later)
         self._answer = None
+        self._paces: list[float] = []
         self._keyed: set[tuple[str, str | None]] = set()
-        self._packages = _Packages()
+        self._packages = _Packages(Path(packages))
         self._archives = (self._packages, _StandardLibrary())
 
     def begin(self) -> None:
@@ -90,6 +97,18 @@ class Judge:
         if not lacks:
             self._keyed.add(wanted)
         return lacks
+
+    def slowness(self) -> float:
+        """Return how many times longer than usual something takes here, from 1 to 10.
+
+        A telephone is slower than a desk's computer, and a computer that has other things to do is slower than one that
+        has none: neither makes an answer one without end.
+        """
+        begin, total = time.perf_counter(), 0
+        for step in range(_STEPS):
+            total += step * step % 7
+        self._paces = [*self._paces[-2:], (time.perf_counter() - begin) / _USUAL]
+        return min(max(1.0, *self._paces), 10.0)
 
     def reply(self, text: str) -> list[str]:
         """Return the reply to a request and the part that it lacks: then it is asked again with that part."""
@@ -122,39 +141,46 @@ class Judge:
         """Return the archive that `compile` has said is ready."""
         return next(archive.taken() for archive in self._archives if archive.name == name)
 
-    def restore(self, archive: bytes, root: str = "/") -> None:
+    def restore(self, archive: bytes) -> None:
         """Unpack an archive of packages that an earlier visit has kept."""
         with zipfile.ZipFile(io.BytesIO(archive)) as members:
-            members.extractall(root)
-            self._packages.known.update(f"/{name}" for name in members.namelist())
+            members.extractall(self._packages.folder)
+            self._packages.known.update(self._packages.folder / name for name in members.namelist())
 
 
 class _Packages:
     """The compiled modules of the packages, as Python has written them beside the sources; later more of them.
 
+    Arguments:
+        folder: of the packages.
     Attributes:
         known: the paths that need not be kept again.
     """
 
     name = "packages"
 
-    def __init__(self):
-        self.known: set[str] = set()
+    def __init__(self, folder: Path):
+        self.folder, self.known = folder, set()
         self._content = io.BytesIO()
 
     def gather(self, end):
-        paths = {getattr(getattr(module, "__spec__", None), "cached", None) for module in list(sys.modules.values())}
-        if "matplotlib" in sys.modules:  # it has looked through its fonts for seconds, and keeps what it found, too
-            paths |= {str(path) for path in Path(sys.modules["matplotlib"].get_cachedir()).glob("fontlist*.json")}
-        fresh = [path for path in sorted(paths - self.known - {None}) if Path(path).is_file()]
         with zipfile.ZipFile(self._content, "a") as members:
-            for path in fresh:
+            for path in self._fresh():
                 if time.monotonic() > end:
                     return False
-                content = Path(path).read_bytes()
-                members.writestr(path.lstrip("/"), _unchecked(content) if path.endswith(".pyc") else content)
+                content = path.read_bytes()
+                if path.suffix == ".pyc":
+                    content = content[:_MAGIC] + _UNCHECKED + content[_HEADER:]
+                members.writestr(path.relative_to(self.folder).as_posix(), content)
                 self.known.add(path)
             return bool(members.namelist())
+
+    def _fresh(self):
+        compiled = {getattr(getattr(module, "__spec__", None), "cached", None) for module in list(sys.modules.values())}
+        paths = {Path(path) for path in compiled if path}
+        if "matplotlib" in sys.modules:  # it has looked through its fonts for seconds, and keeps what it found, too
+            paths |= set(Path(sys.modules["matplotlib"].get_cachedir()).glob("fontlist*.json"))
+        return [path for path in sorted(paths - self.known) if path.is_relative_to(self.folder) and path.is_file()]
 
     def taken(self):
         content, self._content = self._content.getvalue(), io.BytesIO()
@@ -175,7 +201,7 @@ class _StandardLibrary:
     def gather(self, end):
         if self._is_taken:
             return False
-        home = f"{self._path}/"
+        home = f"{self._path}{os.sep}"
         for module in list(sys.modules.values()):
             spec = getattr(module, "__spec__", None)
             origin = (spec and spec.origin) or ""
@@ -196,8 +222,3 @@ class _StandardLibrary:
                 members.writestr(name, code)
         self._code.clear()
         return content.getvalue()
-
-
-def _unchecked(code):
-    """The content of a .pyc file that is not compared with its source."""
-    return code[:_MAGIC] + _UNCHECKED + code[_HEADER:]

@@ -1,7 +1,8 @@
 """What the site costs: `make bench` prints how long it takes to build, how large its pages are, and how soon they show.
 
 A page counts without its figures. It shows when something of it is first painted, from a server on the same machine,
-to a browser that comes for the first time, and to one that comes again.
+to a browser that comes for the first time, and to one that comes again. The same is measured of the first answer to an
+exercise, with all parts of Python on that server, and of the answers after it.
 """
 
 import shutil
@@ -12,10 +13,12 @@ import tempfile
 import time
 from pathlib import Path
 
+from docs.browser import site as parts
 from rich.console import Console
 from rich.table import Table
 
 import browser
+import browser_runtime
 
 ROOT = Path(__file__).parents[2]
 RUNS = 5
@@ -61,6 +64,28 @@ def the_first_paint(site: Path) -> Table:
     return table
 
 
+def the_answers(site: Path) -> Table:
+    parts.place(site, True, browser_runtime.parts())
+    parts.write(site, True)
+    asked = {"do": "check", "exercise": "7.1", "student": None, "answers": {"I": "14.4 mA", "p": "0.85 MPa"}}
+    found = {"first visit, nothing kept": [], "second visit": [], "the answers after it": []}
+    with browser.opened() as chromium, browser.served(site) as address:
+        for _ in range(RUNS):
+            visitor = chromium.new_context()
+            for first in list(found)[:2]:
+                page = visitor.new_page()
+                page.goto(f"{address}index.html")
+                found[first].append(browser_runtime.ask(page, asked)["seconds"])
+                found["the answers after it"] += [browser_runtime.ask(page, asked)["seconds"] for _ in range(RUNS)]
+                browser_runtime.wait_until_compiled(page, site)
+                page.close()
+            visitor.close()
+    table = Table("", "", title=f"Until an exercise is answered, median of {RUNS}")
+    for name, seconds in found.items():
+        table.add_row(name, f"{statistics.median(seconds):.2f} s")
+    return table
+
+
 if __name__ == "__main__":
     console = Console()
     folder = Path(tempfile.mkdtemp())
@@ -68,5 +93,6 @@ if __name__ == "__main__":
         site, seconds = build(folder)
         console.print(the_pages(site, seconds))
         console.print(the_first_paint(site) if browser.chromium() else browser.MISSING)
+        console.print(the_answers(site) if browser.chromium() else "")
     finally:
         shutil.rmtree(folder)

@@ -18,6 +18,8 @@ from pathlib import Path
 
 import pytest
 
+import browser
+
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT))
 
@@ -93,3 +95,47 @@ def published(folder: Path) -> dict[str, str]:
     """Return what the list of the parts in a folder says: {file: SHA-256}."""
     lock = json.loads((folder / runtime.LOCK).read_text(encoding="utf-8"))
     return {package["file_name"]: package["sha256"] for package in lock["packages"].values()}
+
+
+#: Asks the judge of a page, which it makes at the first question, and measures how long that took (s).
+ASK = """async (request) => {
+    const { Judge } = await import("./_static/judge.js");
+    window.said ??= [];
+    window.judge ??= new Judge({ onProgress: ({ share, says }) => window.said.push([share, says]) });
+    const begin = performance.now();
+    const reply = await judge.ask(request).catch((error) => error.message);
+    return { reply, seconds: (performance.now() - begin) / 1000 };
+}"""
+#: Waits until a condition holds for all that the browser keeps, names of caches and addresses.
+UNTIL = """async ([condition, patience]) => {
+    const holds = new Function("all", `return ${condition}`);
+    for (const end = Date.now() + patience; Date.now() < end; ) {
+        const names = await caches.keys();
+        const kept = await Promise.all(names.map(async (name) => (await caches.open(name)).keys()));
+        if (holds([...names, ...kept.flat().map(({ url }) => url)])) return;
+        await new Promise((resolve) => setTimeout(resolve, 100));
+    }
+    throw new Error(`never: ${condition}`);
+}"""
+
+
+def ask(page, request: dict) -> dict:
+    """Return what the judge of a page at the site's root replies, and after how many seconds: {reply, seconds}."""
+    return page.evaluate(ASK, request)
+
+
+def wait_until(page, condition: str) -> None:
+    """Wait until a condition in JavaScript holds for `all` names of caches and addresses in them."""
+    page.evaluate(UNTIL, [condition, browser.PATIENCE])
+
+
+def wait_until_kept(page, ending: str) -> None:
+    """Wait until something is kept whose address ends so."""
+    wait_until(page, f"all.some((one) => one.endsWith({json.dumps(ending)}))")
+
+
+def wait_until_compiled(page, site: Path) -> None:
+    """Wait until the browser keeps what Python has compiled for the first answer."""
+    version = json.loads((site / "wheels" / "parts.json").read_text(encoding="utf-8"))["version"]
+    for name in ("python_stdlib.zip", "0"):
+        wait_until_kept(page, f"{version}/{name}")
