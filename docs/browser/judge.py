@@ -26,6 +26,8 @@ _UNCHECKED = (1).to_bytes(4, "little") + bytes(8)
 _HEART = {"matplotlib": "matplotlib.backends.backend_agg", "scipy": "scipy.optimize", "PIL": "PIL.Image"}
 
 
+#: What can be said of an archive: it can be taken, there is more to gather for it, or there is nothing to be kept.
+READY, MORE, NOTHING = "ready", "more", "nothing"
 #: So many steps of a loop take so many seconds in the browser of a usual computer that has nothing else to do.
 _STEPS, _USUAL = 50_000, 0.012
 
@@ -131,11 +133,10 @@ class Judge:
         """
         end = time.monotonic() + seconds
         for archive in self._archives:
-            if archive.gather(end):
-                return archive.name
-            if time.monotonic() > end:
-                return ""
-        return "nothing"
+            state = archive.gather(end)
+            if state != NOTHING:
+                return archive.name if state == READY else ""
+        return NOTHING
 
     def take(self, name: str) -> bytes:
         """Return the archive that `compile` has said is ready."""
@@ -161,19 +162,21 @@ class _Packages:
 
     def __init__(self, folder: Path):
         self.folder, self.known = folder, set()
-        self._content = io.BytesIO()
+        self._content, self._pending = io.BytesIO(), []
 
     def gather(self, end):
+        self._pending = self._pending or self._fresh()
         with zipfile.ZipFile(self._content, "a") as members:
-            for path in self._fresh():
-                if time.monotonic() > end:
-                    return False
+            while self._pending:
+                path = self._pending.pop()
                 content = path.read_bytes()
                 if path.suffix == ".pyc":
                     content = content[:_MAGIC] + _UNCHECKED + content[_HEADER:]
                 members.writestr(path.relative_to(self.folder).as_posix(), content)
                 self.known.add(path)
-            return bool(members.namelist())
+                if time.monotonic() > end:
+                    return MORE
+            return READY if members.namelist() else NOTHING
 
     def _fresh(self):
         compiled = {getattr(getattr(module, "__spec__", None), "cached", None) for module in list(sys.modules.values())}
@@ -200,19 +203,19 @@ class _StandardLibrary:
 
     def gather(self, end):
         if self._is_taken:
-            return False
+            return NOTHING
         home = f"{self._path}{os.sep}"
         for module in list(sys.modules.values()):
             spec = getattr(module, "__spec__", None)
             origin = (spec and spec.origin) or ""
             name = origin.removeprefix(home) + "c"
             if origin.startswith(home) and origin.endswith(".py") and name not in self._known:
-                if time.monotonic() > end:
-                    return False
                 code = spec.loader.get_code(spec.name)
                 self._code[name] = importlib.util.MAGIC_NUMBER + _UNCHECKED + marshal.dumps(code)
                 self._known.add(name)
-        return bool(self._code)
+                if time.monotonic() > end:
+                    return MORE
+        return READY if self._code else NOTHING
 
     def taken(self):
         self._is_taken = True

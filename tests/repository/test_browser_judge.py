@@ -176,7 +176,7 @@ judge.sys.path[:] = [path for path in sys.path if not path.endswith(".zip") or p
 kept = judge.Judge({{}}, {folder!r})
 import of_a_folder, of_the_archive
 ready = []
-while (name := kept.compile()) != "nothing":
+while (name := kept.compile(0)) != "nothing":  # a step at a time
     if name:
         open({target!r} + "/" + name, "wb").write(kept.take(name))
         ready.append(name)
