@@ -67,7 +67,7 @@
       judge ??= new Judge({ onProgress: (news) => waiting.forEach((exercise) => exercise.showLoading(news)) });
     }
     const reply = await judge.ask(request);
-    if (reply.problem) throw new Error(sentence(reply.problem));
+    if (reply.problem) throw new Error(reply.problem);
     return reply;
   }
 
@@ -162,7 +162,7 @@
       try {
         await what();
       } catch (problem) {
-        this.say("problem", problem.message);
+        this.say("problem", sentence(problem.message));
       }
       waiting.delete(this);
       this.loading.hidden = true;
@@ -174,7 +174,7 @@
       if (!this.bar) {
         this.bar = made("progress", { max: 1, ariaLabel: "Loading Python" });
         this.words = made("span");
-        const once = "The first answer needs Python, which is fetched once. Later ones come at once.";
+        const once = "What is loaded stays in this browser: later answers come at once, also without a network.";
         this.loading.replaceChildren(this.bar, this.words, made("p", { role: "status" }, once));
       }
       this.bar.value = share;

@@ -1,16 +1,19 @@
 """The exercises in the page: how a reader fills them in, what she is told, and what her browser remembers.
 
-What answers is the library in this process, in the place of the Python in the page: the tests are about the page. That
-the page's own Python answers as well is the matter of test_browser_python.py.
+What answers most of them is the library in this process, in the place of the Python in the page: these tests are about
+the page. In the last class the page's own Python answers.
 """
 
 import json
+import shutil
 import sys
 from pathlib import Path
 
 import pytest
+from docs.browser import site
 from playwright.sync_api import expect
 
+import browser_runtime
 from browser import DESKTOP, PATIENCE, PHONE, SCREENSHOTS, Complaints, serious, served
 from loopbook.exercises import exercise
 from loopbook.exercises.forms import answer
@@ -39,13 +42,16 @@ class Reader:
 
     def __init__(self, chromium, address, **habits):
         self.address = address
-        self.context = chromium.new_context(**({"viewport": DESKTOP} | habits))
+        self.context = chromium.new_context(**({"viewport": DESKTOP, "service_workers": "block"} | habits))
         self.page = self.context.new_page()
         self.page.set_default_timeout(PATIENCE)
-        self.complaints = Complaints(self.page)
+        self.complaints = Complaints(self.page, noise=("Service Worker registration blocked",))
         self.requests, self.fails = [], None
+
+    def with_python_here(self):
         self.page.route("**/_static/judge.js", lambda r: r.fulfill(body=JUDGE, content_type="text/javascript"))
         self.page.route("**/ask", self.reply)
+        return self
 
     def reply(self, route):
         request = json.loads(route.request.post_data)
@@ -108,7 +114,7 @@ def address(book):
 
 @pytest.fixture
 def reader(chromium, address):
-    reader = Reader(chromium, address)
+    reader = Reader(chromium, address).with_python_here()
     yield reader
     reader.context.close()
     assert reader.complaints == []
@@ -180,7 +186,7 @@ class TestAnAnswer:
         reader.go()
         form, reader.fails = reader.exercise("10.1"), "ended after 3 s: such an answer takes too long."
         form.check(K="1.5")
-        expect(form.says).to_have_text("ended after 3 s: such an answer takes too long.")
+        expect(form.says).to_have_text("Ended after 3 s: such an answer takes too long.")
         reader.fails = None
         form.check(K="1.5")
         expect(form.verdict("K")).to_have_text("✓right")
@@ -475,7 +481,7 @@ class TestForEverybody:
     @pytest.mark.parametrize("scheme", ["light", "dark"])
     def test_nothing_serious_is_found(self, chromium, address, scheme):
         """With every kind of field, verdicts, a hint and a solution on the page."""
-        reader = Reader(chromium, address, color_scheme=scheme)
+        reader = Reader(chromium, address, color_scheme=scheme).with_python_here()
         reader.go(SEQUENCES)
         form = reader.exercise("12.8")
         form.get_by_label("Hold").check()
@@ -512,3 +518,43 @@ class TestForEverybody:
         form.screenshot(path=SCREENSHOTS / f"exercise_phone_{page[9:11]}.png")
         reader.context.close()
         assert reader.complaints == []
+
+
+class TestPythonInThePage:
+    @pytest.fixture
+    def small(self, book, tmp_path):
+        """A chapter with all that it needs, Python as well."""
+        folder = tmp_path / "book"
+        shutil.copytree(book / "_static", folder / "_static", ignore=shutil.ignore_patterns("_images"))
+        (folder / "chapters").mkdir()
+        shutil.copyfile(book / TUNING, folder / TUNING)
+        site.place(folder, True, browser_runtime.required())
+        site.write(folder, True)
+        return folder
+
+    def test_a_reader_answers_comes_back_and_has_her_own_numbers(self, chromium, small):
+        """A number, a controller that is drawn, numbers of her own; and all of it again without a network."""
+        with served(small.parent) as server:
+            reader = Reader(chromium, server + small.name, service_workers="allow")
+            reader.go()
+            form = reader.exercise("10.1")
+            form.check(K="1.5", T="1.25 min", tau="15")
+            expect(form.says).to_contain_text("Right.")
+            form = reader.exercise("10.7")
+            form.field("pid", "Kp").fill("2")
+            form.field("pid", "Ti").fill("10 min")
+            form.check()
+            expect(form.verdict("pid")).to_contain_text("the overshoot is")
+            expect(form.says.locator("img")).to_be_visible()
+            form = reader.exercise("10.2")
+            form.locator("button.own").click()
+            reader.page.get_by_label("Your name").fill("Mira")
+            reader.page.get_by_role("button", name="Use my numbers").click()
+            expect(form.says).to_have_text("These are the numbers of Mira.")
+            expect(reader.page.locator(".known.right")).to_have_count(0)
+        key = exercise("10.2", "Mira").key
+        reader.page.reload()
+        form = reader.exercise("10.2")
+        form.check(**{name: f"{kind.key:.8g}" for name, kind in key.items()})
+        expect(form.says).to_contain_text("Right.")
+        reader.context.close()
