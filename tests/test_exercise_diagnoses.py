@@ -453,3 +453,12 @@ def test_settings_may_be_interchanged():
 def test_a_unit_that_was_given_is_the_one_that_is_wrong():
     says = judge("Ti", number(18, "min", "the integral time"), "18 s").says
     assert says == "the number is right, but in min: you have given it in s"
+
+
+def test_rounding_does_not_choose_between_two_corners_that_change_a_formula_alike():
+    said = set()
+    for gain in range(1, 8):
+        kind = transfer_function(f"{gain}*(480*s + 12)*exp(-6*s)/(20*s + 4/5)")
+        says = judge("F", kind, f"35*{gain} + 5*{gain}*(480*s + 12)*exp(-6*s)/(20*s + 4/5)").says
+        said.add(says.partition(" · ")[0])
+    assert len(said) == 1

@@ -294,7 +294,8 @@ def _scale(formulas: Iterable[Callable[[Any], Any]], delay: float) -> float:
             change = np.abs(np.gradient(np.gradient(np.log(np.abs(values(1j * frequencies))))))
         change = np.where(np.isfinite(change), change, 0)
         if np.max(change) > 1e-4:
-            return float(1 / frequencies[np.argmax(change)])
+            # a zero and a pole change it alike: of the two the slower one, whatever rounding says
+            return float(1 / frequencies[np.argmax(change > (1 - 1e-6) * np.max(change))])
     return delay or 1.0
 
 
