@@ -29,6 +29,8 @@ _GREEK = {"alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", 
 _LEFT = 'style="text-align:left"'  # JupyterLab would centre the heads and align texts to the right
 _LARGEST_DENOMINATOR = 12  # a fraction with a larger one says less than a decimal number
 _RIGHT = 'style="text-align:right"'
+#: A number that is off from a whole one by this share has come to it by a computation, which ends otherwise elsewhere.
+_ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
@@ -202,6 +204,8 @@ def rounded(value: float, digits: int = 3) -> str:
 
     >>> rounded(2 / 3), rounded(1236.3), rounded(25.0), rounded(0.0), rounded(1.2e-7), rounded(-math.inf)
     ('0.667', '1236', '25', '0', '1.2e-7', '-∞')
+    >>> rounded(10.999999999999998), rounded(10.99999)
+    ('11', '11.0')
     """
     if math.isnan(value):
         return "not a number"
@@ -209,7 +213,7 @@ def rounded(value: float, digits: int = 3) -> str:
         return "∞" if value > 0 else "-∞"
     if value == 0:
         return "0"
-    if value == int(value) and abs(value) < 10**6:
+    if abs(value - round(value)) <= _ROUNDING * abs(value) and abs(value) < 10**6:
         return f"{value:.0f}"
     size = math.floor(math.log10(abs(float(f"{value:.{digits - 1}e}"))))
     if not -4 <= size < 6:
