@@ -48,8 +48,9 @@ pictures: .venv/ready ## make the README's pictures again
 grade: .venv/ready ## live through the term of the example course: release, collect, grade, mend, grade again
 	$(python) examples/course/term.py
 
-execute: .venv/ready ## run every notebook again, store its outputs and write ERRATA.md
+execute: .venv/ready ## run every notebook again, store its outputs, record the lessons that changed and write ERRATA.md
 	$(python) -m loopbook execute
+	$(python) docs/lessons
 	$(python) -m loopbook ledger
 
 # The stamp holds the folder it was made in, because an editable install does not survive a move, and the Python it was

@@ -66,7 +66,7 @@
       this.frames = [...section.querySelectorAll(".lesson-frame")];
       this.image = section.querySelector(".lesson-image img");
       this.result = section.querySelector(".lesson-result");
-      this.keep = section.querySelector(".lesson-keep");
+      this.keep = section.querySelector(".lesson-keep"); // not where there are no curves
       const each = (sign) => data.items.map((item, k) => section.querySelector(sign.replace("#", k)));
       this.paths = each('path[data-item="#"]');
       this.legends = each('li[data-item="#"]');
@@ -74,7 +74,7 @@
       this.kept = null; // the position whose lines stay for comparison
       for (const input of this.inputs) input.addEventListener("input", () => this.show());
       section.querySelector(".lesson-reset").addEventListener("click", () => this.reset());
-      this.keep.addEventListener("click", () => this.toggleKept());
+      this.keep?.addEventListener("click", () => this.toggleKept());
       section.classList.add("lesson-live");
       this.show();
     }
@@ -179,7 +179,7 @@
     reset() {
       this.inputs.forEach((input, k) => (input.value = this.data.start[k]));
       this.kept = null;
-      this.keep.setAttribute("aria-pressed", "false");
+      this.keep?.setAttribute("aria-pressed", "false");
       this.show();
     }
   }

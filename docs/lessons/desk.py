@@ -26,13 +26,15 @@ def desk(name, record):
     if seen.image:
         source = f'alt="{html.escape(told)}" src="data:image/png;base64,{seen.image}"'
         pictures += f'<div class="lesson-image"><img class="lesson-drawing" {source}></div>'
+    keep = '<button type="button" class="lesson-keep" aria-pressed="false">Keep these curves in grey</button>'
+    keep = keep if data["panels"] else ""
     silent = "" if said or any(data["verdicts"]) else " hidden"
     lines = any(data["verdicts"]) + (len(data["labels"]) + 1) // 2
     return f"""<div class="lesson-desk">
 <div class="lesson-controls">
 {sliders}
 <div class="lesson-buttons">
-<button type="button" class="lesson-keep" aria-pressed="false">Keep these curves in grey</button>
+{keep}
 <button type="button" class="lesson-reset">Back to the start</button>
 </div>
 </div>

@@ -15,6 +15,7 @@ from loopbook.figures.style import styled
 
 PIXELS = 4 / 3  # of a point of print
 HIGH = 105  # pixels of an inch of a panel: a little more than a browser's inch
+NARROW = 2  # pixels of a stair
 SIDE = {"left": 0, "center": -50, "right": -100}
 LEVEL = {"top": 0, "center": -50, "bottom": -100, "baseline": -80}
 
@@ -151,7 +152,7 @@ def lines_of(axes, panel, explained):
     for line in axes.lines:
         if not line.get_visible():
             continue
-        x, y = STEP_LOOKUP_MAP[line.get_drawstyle()](line.get_xdata(), line.get_ydata())
+        x, y = corners_of(line, axes)
         x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
         with np.errstate(all="ignore"):
             shares = (line.get_transform() - axes.transAxes).transform(np.column_stack([x, y]))
@@ -177,6 +178,14 @@ def lines_of(axes, panel, explained):
             look = {"colour": colour, "dash": [], "width": width}
             found.append(Part(panel, "line", look, "", pieces, lines.get_zorder()))
     return found
+
+
+def corners_of(line, axes):
+    """The corners of a line; stairs that are narrower than the eye sees are none."""
+    x, y = line.get_xdata(), line.get_ydata()
+    low, high = sorted(axes.get_xlim())
+    stair = np.median(np.diff(x)) / (high - low) * shapes.WIDE * shapes.STEP[0] if len(x) > 1 else 0
+    return (x, y) if stair < NARROW else STEP_LOOKUP_MAP[line.get_drawstyle()](x, y)
 
 
 def areas_of(axes, panel, explained, figure):

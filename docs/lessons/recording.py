@@ -31,8 +31,8 @@ from loopbook.sliders import _control
 from loopbook.tables import Table, is_symbol, symbol
 
 ROOT = Path(__file__).resolve().parents[2]
-POSITIONS = 300  # of all sliders of a lesson together, at most
-LARGEST = 110_000  # characters of a recording
+POSITIONS = 500  # of all sliders of a lesson together, at most
+LARGEST = 140_000  # characters of a recording
 FEWEST = 40  # positions, whatever they take
 
 

@@ -45,8 +45,7 @@ QUICK = (
     "in_a_ratio", "one_loop_or_two", "first_feedforward", "along_the_row", "four_criteria", "wish_and_loop",
 )  # fmt: skip
 SEED = 24
-DONE = [name for name in QUICK if name in lessons.recorded()]
-CHOSEN = [*lessons.recorded()] if os.environ.get("LOOPBOOK_ALL") else random.Random(SEED).sample(DONE, 3)
+CHOSEN = [*lessons.recorded()] if os.environ.get("LOOPBOOK_ALL") else random.Random(SEED).sample(QUICK, 3)
 
 
 def at_the_start(name):
@@ -242,6 +241,18 @@ def test_mathematics_that_has_no_letters_is_refused():
 # ------------------------------------------------------------------------------------------------ the recordings
 
 
+def test_every_cell_with_sliders_is_a_lesson():
+    """The 43 cells of the chapters move in the page, and each lesson has its cell."""
+    of_cells = [
+        lessons.of_cell(path.stem, cell.source)
+        for path in sorted((ROOT / "chapters").glob("*.ipynb"))
+        for cell in nbformat.read(path, as_version=4).cells
+        if cell.cell_type == "code" and "nbval-ignore-output" in cell.metadata.get("tags", [])
+    ]
+    assert None not in of_cells
+    assert [lesson.name for lesson in of_cells] == [*lessons.recorded()]
+
+
 @pytest.mark.parametrize("name", lessons.recorded())
 def test_a_recording_is_of_its_cell_as_it_is(name):
     """Otherwise: ``python docs/lessons`` records what has changed."""
@@ -297,6 +308,15 @@ def test_every_lesson_has_a_title_and_asks_for_something():
         if not re.search(r"\?|\b([Mm]ove|[Cc]hoose|[Ww]atch|[Ss]lider)\b", above.split("\n\n")[-1]):
             silent.append(one.name)
     assert silent == []
+
+
+def test_each_chapter_opens_with_a_lesson():
+    """Before its first section."""
+    for path in sorted((ROOT / "chapters").glob("*.ipynb")):
+        cells = nbformat.read(path, as_version=4).cells
+        section = next(k for k, cell in enumerate(cells) if any(level == 2 for level, _ in places.headings(cell)))
+        opens = any(lessons.of_cell(path.stem, cell.source) for cell in cells[:section] if cell.cell_type == "code")
+        assert opens or path.stem == "00_start", path.stem
 
 
 # ------------------------------------------------------------------------------------------------ the data
