@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import shutil
+from collections.abc import Sequence
 from pathlib import Path
 
 from . import runtime, wheels
@@ -38,21 +39,24 @@ PARTS = {
 RUNTIME = "runtime"
 
 
-def place(site: Path, offline: bool, source: str | Path | None = None) -> None:
-    """Put Pyodide itself into a site that is to need no network; take it out of one that may need it.
+def place(names: Sequence[str], site: Path, source: str | Path | None = None) -> None:
+    """Put files of Pyodide into a site that is to need no network; take them out of one that may need it.
 
     Arguments:
+        names: of the files; none for a site that may need a network.
         site: its folder.
-        offline: whether the site holds Pyodide.
-        source: a folder with Pyodide's parts; if not given, they are fetched.
+        source: a folder with the files; if not given, they are fetched.
     Raises:
-        runtime.MissingError: a part is not available.
+        runtime.MissingError: a file is not available.
     """
-    if not offline:
-        shutil.rmtree(site / RUNTIME, ignore_errors=True)
-        return
-    names = [name for part in PARTS for name in of_pyodide(part)]
-    runtime.place(names, site / RUNTIME, Path(source) if source else None)
+    shutil.rmtree(site / RUNTIME, ignore_errors=True)
+    if names:
+        runtime.place(dict.fromkeys(names), site / RUNTIME, Path(source) if source else None)
+
+
+def of_all() -> list[str]:
+    """Return the files of Pyodide of which all parts consist."""
+    return [name for part in PARTS for name in of_pyodide(part)]
 
 
 def of_pyodide(part: str) -> list[str]:

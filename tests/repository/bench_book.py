@@ -65,7 +65,7 @@ def the_first_paint(site: Path) -> Table:
 
 
 def the_answers(site: Path) -> Table:
-    parts.place(site, True, browser_runtime.parts())
+    parts.place(parts.of_all(), site, browser_runtime.parts())
     parts.write(site, True)
     asked = {"do": "check", "exercise": "7.1", "student": None, "answers": {"I": "14.4 mA", "p": "0.85 MPa"}}
     found = {"first visit, nothing kept": [], "second visit": [], "the answers after it": []}

@@ -5,6 +5,7 @@ import contextlib
 import doctest
 import hashlib
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -84,6 +85,18 @@ def test_a_part_that_cannot_be_fetched_says_what_helps(tmp_path, monkeypatch):
     monkeypatch.setattr(runtime, "CDN", "http://127.0.0.1:9/")
     with pytest.raises(runtime.MissingError, match=r"cannot be fetched from .* name their folder, as PARTS=FOLDER"):
         runtime.place(["pyodide.mjs"], tmp_path)
+
+
+def test_a_site_that_cannot_hold_python_says_so_in_one_sentence_and_is_not_begun(tmp_path):
+    ran = subprocess.run(
+        [sys.executable, "docs", str(tmp_path / "site")],
+        cwd=ROOT, env=os.environ | {"OFFLINE": "1", "PARTS": str(tmp_path)}, capture_output=True, encoding="utf-8",
+    )  # fmt: skip
+    assert ran.returncode == 1
+    assert ran.stderr == (
+        f"OFFLINE=1: pyodide.mjs is not in {tmp_path}: expected the parts of Pyodide {runtime.VERSION} there\n"
+    )
+    assert not (tmp_path / "site" / "index.html").exists()
 
 
 def test_a_site_lists_its_parts_and_knows_itself_by_its_content(tmp_path):
@@ -258,7 +271,7 @@ def small(tmp_path):
         (folder / f"{name}.html").write_text(page, encoding="utf-8")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(site, "HERE", with_an_endless_judge(tmp_path / "browser"))
-        site.place(folder, True, browser_runtime.required())
+        site.place(site.of_all(), folder, browser_runtime.required())
         site.write(folder, True)
     small = Site(folder)
     yield small
