@@ -13,7 +13,7 @@ unexport MPLBACKEND
 # Each of the fifty kernels of the tests would compile the library again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help lab fresh edit test test-all bench book pictures grade execute
+.PHONY: help lab fresh edit test test-all bench book pdf pictures grade execute
 
 help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' Makefile
@@ -41,6 +41,9 @@ bench: .venv/ready ## measure what the collection costs beside what it stands on
 
 book: .venv/ready ## make the site of the collection, build/book/index.html; OFFLINE=1 puts Python into it as well
 	$(python) docs build/book
+
+pdf: book ## make the whole book as a PDF beside the site, build/book/loopbook.pdf (needs Chromium)
+	$(python) docs/pdf build/book
 
 pictures: .venv/ready ## make the README's pictures again
 	$(python) docs/pictures.py

@@ -2,7 +2,7 @@
 "use strict";
 
 (() => {
-  const parts = document.querySelectorAll("pre");
+  const parts = document.querySelectorAll("pre, div.cell_output, div.picture");
 
   function reach() {
     for (const part of parts) {

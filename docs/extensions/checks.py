@@ -5,9 +5,10 @@ import re
 from xml.etree import ElementTree
 
 import permanent
-from mathml import in_html
+from mathml import in_html, width
 from slugs import check_anchor, ledger_anchor
 
+from loopbook.ledger import sources
 from loopbook.ledger.statuses import STATUSES
 
 MIME_TYPE = "application/vnd.loopbook.check+json"
@@ -61,6 +62,7 @@ def check(data, taken):
         data: what a notebook stores.
         taken: the names of the page's places; what has none yet gets its name here: the entry, and its equations.
     """
+    chapter = sources()[data["source"]][data["entry"]].chapter
     place, heading = ledger_anchor(data["source"], data["entry"]), html.escape(data["heading"], quote=False)
     equations = any("equation" in verdict for verdict in data["verdicts"])
     columns = CLAIMS if all(verdict["kind"] == "claim" for verdict in data["verdicts"]) else COLUMNS
@@ -81,7 +83,7 @@ def check(data, taken):
             *rows,
             "</table></div>",
             *(f"<p>{code(note)}</p>" for note in data["notes"]),
-            f'<p><a href="../ledger.html#{place}">In the ledger</a></p>',
+            f'<p><a href="../ledger/{chapter}.html#{place}">In the ledger</a></p>',
             "</details>",
         ]
     )
@@ -114,13 +116,5 @@ def code(text):
 def _framed(cell):
     """A cell whose formula scrolls within itself where it is wide; it is then reached by the keyboard too."""
     found = re.findall(r"<math.*?</math>", cell, re.DOTALL)
-    wide = any(_width(ElementTree.fromstring(formula)) > WIDE for formula in found)
+    wide = any(width(ElementTree.fromstring(formula)) > WIDE for formula in found)
     return f'<div class="wide" tabindex="0">{cell}</div>' if wide else cell
-
-
-def _width(formula):
-    """About how many letters wide a formula is."""
-    widths = [_width(part) for part in formula]
-    if formula.tag == "mfrac":
-        return max(widths)
-    return len((formula.text or "").strip()) + (0.75 if formula.tag in ("msub", "msup") else 1) * sum(widths)

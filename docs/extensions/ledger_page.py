@@ -1,12 +1,14 @@
-"""The ledger as a page: every result that a book prints, what a computation makes of it, and the cell that shows it.
+"""The ledger as pages: every result that a book prints, what a computation makes of it, and the cell that shows it.
 
-The directive `ledger-table` writes a table for each source, `ledger-totals` counts. Both are in the page without a
-script; `_static/ledger.js` adds the search. What is computed is the data that the chapters store with their checks.
+The results of a chapter are a page, `ledger/10_tuning.html`, a table for each source: whole without a script. The page
+`ledger.html` counts them, leads to them, and searches all of them. For the search, `_static/ledger.js` fetches the
+rows as data when it is first used. What is computed is the data that the chapters store with their checks.
 """
 
 import functools
 import html
 import json
+from itertools import pairwise
 from pathlib import Path
 
 import checks
@@ -56,53 +58,113 @@ def note(result):
     return f"{text[:1].upper()}{text[1:]}." if text else ""
 
 
-def row(entry, result, verdict, formulas=in_html, shared=False):
-    """Return the lines of a table for a result; a note that it shares with the result after it is below that one."""
-    # what a search finds the row by that its cells do not say: the name and formulas as they are typed
+@functools.cache
+def rows(formulas=in_html):
+    """Return what the pages and the search show of all entries, in the order of the sources.
+
+    Arguments:
+        formulas: what writes those of a text as HTML.
+
+    An entry is a dictionary: its `source`, `chapter` and `place`, the address of its `cell` within the chapter's page,
+    its `name` and `title`, its `results` as tuples (name, status, words that a search finds it by besides its cells,
+    cells, note), and the `slips` of its print.
+    """
+    made = []
+    for source in sources().values():
+        for entry in source:
+            if not entry.results:
+                continue
+            chapter, verdicts = stored()[entry.source, entry.name]
+            slips = [f"Misprint: the book {checks.code(slip.sentence)}." for slip in entry.misprints]
+            slips += [f"Damaged: our copy {checks.code(slip.sentence)}." for slip in entry.damage]
+            made.append(
+                {
+                    "source": source.name,
+                    "chapter": chapter,
+                    "place": ledger_anchor(entry.source, entry.name),
+                    "cell": check_anchor(entry.source, entry.name),
+                    "name": entry.name,
+                    "title": entry.title,
+                    "results": [row(result, verdicts[result.name], formulas) for result in entry.results],
+                    "slips": slips,
+                }
+            )
+    return made
+
+
+def row(result, verdict, formulas):
+    """Return a result as `rows` has it."""
+    # what its cells do not say: the name, and formulas as they are typed
     typed = (verdict["book"], verdict["computed"]) if "tex" in verdict else ()
-    words = html.escape(" ".join(dict.fromkeys([result.name, *typed])))
-    about = note(result)
-    place = ledger_anchor(entry.source, entry.name, result.name)
-    line = f'<tr id="{place}" data-f="{words}"{" data-w" if about else ""}>{checks.cells(verdict, formulas)}'
-    return line + (f'\n<tr class="why"><td colspan="5">{checks.code(about)}' if about and not shared else "")
+    words = " ".join(dict.fromkeys([result.name, *typed]))
+    return result.name, verdict["status"], words, checks.cells(verdict, formulas), checks.code(note(result))
 
 
-def table(source, stored_checks, address, formulas=in_html):
-    """Return the table of a source. `address` makes a chapter's name the address of its page."""
+def table(source, entries):
+    """Return the table of a source's entries in one chapter; a note that results share is below the last of them."""
     head = "".join(f'<th scope="col">{name}' for name in checks.COLUMNS)
     parts = [
         f'<div class="ledger-frame" tabindex="0" role="region" aria-labelledby="ledger-{source.name}">',
-        f'<table class="ledger" data-source="{source.name}">',
-        f'<caption id="ledger-{source.name}">{html.escape(source.citation)}</caption>',
+        f'<table class="ledger"><caption id="ledger-{source.name}">{html.escape(source.citation)}</caption>',
         f"<thead><tr>{head}</thead>",
     ]
-    for entry in source:
-        if not entry.results:
-            continue
-        chapter, verdicts = stored_checks[entry.source, entry.name]
-        cell = f"{address(chapter)}#{check_anchor(entry.source, entry.name)}"
-        notes = [note(result) for result in entry.results]
-        shared = [one == other for one, other in zip(notes, [*notes[1:], ""], strict=True)]
+    for entry in entries:
+        cell = f"../chapters/{entry['chapter']}.html#{entry['cell']}"
         parts += [
-            f'<tbody id="{ledger_anchor(entry.source, entry.name)}" data-chapter="{chapter}">',
-            f'<tr class="entry"><th scope="rowgroup" colspan="5"><a href="{cell}">{html.escape(entry.name)}</a>'
-            f" · {html.escape(entry.title)} <small>chapter {titles()[chapter].partition(' ')[0]}</small>",
-            *(
-                row(entry, result, verdicts[result.name], formulas, same)
-                for result, same in zip(entry.results, shared, strict=True)
-            ),
-            *(
-                f'<tr class="slip"><td colspan="5">Misprint: the book {checks.code(s.sentence)}.'
-                for s in entry.misprints
-            ),
-            *(f'<tr class="slip"><td colspan="5">Damaged: our copy {checks.code(s.sentence)}.' for s in entry.damage),
-            "</tbody>",
+            f'<tbody id="{entry["place"]}">',
+            f'<tr class="entry"><th scope="rowgroup" colspan="5"><a href="{cell}">{html.escape(entry["name"])}</a>'
+            f" · {html.escape(entry['title'])}",
         ]
+        for (name, _, _, cells, why), after in pairwise([*entry["results"], ("",) * 5]):
+            parts.append(f'<tr id="{entry["place"]}.{name}"{" class=noted" if why else ""}>{cells}')
+            if why and why != after[-1]:
+                parts.append(f'<tr class="why"><td colspan="5">{why}')
+        parts += [*(f'<tr class="slip"><td colspan="5">{slip}' for slip in entry["slips"]), "</tbody>"]
     return "\n".join([*parts, "</table>", "</div>"])
 
 
+def page(chapter, formulas=in_html):
+    """Return the page of the results of a chapter."""
+    entries = [entry for entry in rows(formulas) if entry["chapter"] == chapter]
+    tables = [
+        table(source, own)
+        for source in sources().values()
+        if (own := [entry for entry in entries if entry["source"] == source.name])
+    ]
+    return "\n".join(
+        [
+            f"<section><h1>Results of chapter {html.escape(titles()[chapter])}</h1>",
+            f"<p>What the books print, {pages_with_results()[chapter]} results, beside what "
+            f'<a href="../chapters/{chapter}.html">the chapter</a> computes. '
+            f'<a href="../{PAGE}.html">The ledger</a> has those of all chapters and says what the words mean.</p>',
+            *tables,
+            "</section>",
+        ]
+    )
+
+
+def pages_with_results():
+    """Return the chapters that have results, with their numbers: {chapter: number}."""
+    counted = dict.fromkeys(titles(), 0)
+    for source in sources().values():
+        for entry in source:
+            counted[entry.chapter] += len(entry.results)
+    return {chapter: number for chapter, number in counted.items() if number}
+
+
+def data(formulas=in_html):
+    """Return what the search looks through, as a script, because a page opened from a disk may load no other data."""
+    entries = [list(entry.values()) for entry in rows(formulas)]
+    known = {
+        "sources": {source.name: source.citation for source in sources().values()},
+        "columns": checks.COLUMNS,
+        "entries": entries,
+    }
+    return f"window.loopbookLedger = {json.dumps(known, ensure_ascii=False, separators=(',', ':'))};\n"
+
+
 def controls():
-    """Return the form that narrows the tables; a page without its script does not show it."""
+    """Return the form that searches; a page without its script does not show it."""
 
     def choice(label, name, options):
         made = "".join(f'<option value="{value}">{html.escape(text)}</option>' for value, text in options)
@@ -111,16 +173,29 @@ def controls():
     names = [(source.name, source.citation) for source in sources().values()]
     return "\n".join(
         [
-            '<form id="ledger-search" role="search" aria-label="the ledger" hidden>',
+            '<form id="ledger-search" role="search" aria-label="the ledger">',
             '<label class="wide">Search <input type="search" name="q" autocomplete="off" '
             'placeholder="10.2, Ziegler, exp(-tau*s)"></label>',
             choice("Source", "source", names),
             choice("What was done", "status", [(status, status) for status in STATUSES]),
-            choice("Chapter", "chapter", titles().items()),
-            '<p aria-live="polite"><output></output> <button type="reset">Show all</button></p>',
+            choice("Chapter", "chapter", [(name, titles()[name]) for name in pages_with_results()]),
+            '<p aria-live="polite"><output></output> <button type="reset">Start again</button></p>',
             "</form>",
+            "<noscript><style>#ledger-search { display: none; }</style></noscript>",
+            # room for what an address asks for, so that nothing moves when it comes
+            '<div id="ledger-found"></div>',
+            '<script>if (location.search) document.getElementById("ledger-found").className = "coming";</script>',
         ]
     )
+
+
+def ways():
+    """Return the list of the pages."""
+    lines = [
+        f'<li><a href="{PAGE}/{chapter}.html">{html.escape(titles()[chapter])}</a> <small>{number}</small>'
+        for chapter, number in pages_with_results().items()
+    ]
+    return "\n".join(['<ul class="ledger-ways">', *lines, "</ul>"])
 
 
 def totals():
@@ -149,7 +224,7 @@ def totals():
 def criteria():
     """Return the criteria for words as a table: the word, what it means, and why."""
     head = "".join(f'<th scope="col">{name}' for name in ("word", "means", "because"))
-    rows = [
+    lines = [
         f'<tr><th scope="row">{html.escape(c.word)}<td>{html.escape(c.meaning)}<td>{html.escape(c.reason)}'
         for c in CRITERIA
     ]
@@ -158,64 +233,50 @@ def criteria():
             '<div class="ledger-frame" tabindex="0" role="region" aria-label="criteria">',
             '<table class="criteria"><caption>What words mean</caption>',
             f"<thead><tr>{head}</thead><tbody>",
-            *rows,
+            *lines,
             "</tbody></table></div>",
         ]
     )
 
 
-class LedgerNode(nodes.General, nodes.Element):
-    """The place of the tables, which are written when the addresses of the pages are known."""
+PARTS = {"search": controls, "pages": ways, "totals": totals, "criteria": criteria}
 
 
 class Ledger(SphinxDirective):
-    """`ledger-table`: the search, and all results."""
+    """`{ledger} totals`: one of the parts of the ledger's page."""
+
+    required_arguments = 1
 
     def run(self):
-        for source in sources().values():
-            for file in {CHAPTERS / f"{entry.chapter}.ipynb" for entry in source}:
-                self.env.note_dependency(str(file))
-        return [LedgerNode()]
+        for file in {CHAPTERS / f"{entry.chapter}.ipynb" for source in sources().values() for entry in source}:
+            self.env.note_dependency(str(file))
+        return [nodes.raw("", PARTS[self.arguments[0]](), format="html")]
 
 
-class Totals(SphinxDirective):
-    """`ledger-totals`: the numbers of results by what was done and by source."""
-
-    def run(self):
-        return [nodes.raw("", totals(), format="html")]
-
-
-class Criteria(SphinxDirective):
-    """`ledger-criteria`: what the words mean that evidence rests on."""
-
-    def run(self):
-        return [nodes.raw("", criteria(), format="html")]
-
-
-def visit(translator, node):
-    """Write the search and the tables."""
-    builder = translator.builder
-
-    def address(chapter):
-        return builder.get_relative_uri(builder.current_docname, f"chapters/{chapter}")
-
-    translator.body.append(controls())
-    translator.body += [table(source, stored(), address) for source in sources().values()]
-    raise nodes.SkipNode
+def the_pages(app):
+    """Make the pages of the chapters, and beside them what the search looks through."""
+    folder = Path(app.outdir, "_static")
+    folder.mkdir(exist_ok=True)
+    (folder / "ledger-rows.js").write_text(data(), encoding="utf-8")
+    for chapter in pages_with_results():
+        yield (
+            f"{PAGE}/{chapter}",
+            {"title": f"Results of chapter {titles()[chapter]}", "body": page(chapter)},
+            "page.html",
+        )
 
 
 def add_assets(app, pagename, templatename, context, doctree):
-    """The script and the look of the page, for this page alone."""
-    if pagename == PAGE:
+    """The look of these pages and the script of the search, for no other page."""
+    if pagename == PAGE or pagename.startswith(f"{PAGE}/"):
         app.add_css_file("ledger.css")
+    if pagename == PAGE:
         app.add_js_file("ledger.js", loading_method="defer")
 
 
 def setup(app):
     """Join Sphinx."""
-    app.add_node(LedgerNode, html=(visit, None))
-    app.add_directive("ledger-table", Ledger)
-    app.add_directive("ledger-totals", Totals)
-    app.add_directive("ledger-criteria", Criteria)
+    app.add_directive("ledger", Ledger)
+    app.connect("html-collect-pages", the_pages)
     app.connect("html-page-context", add_assets)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -18,6 +18,7 @@ import mathml
 import nbformat
 import permanent
 import slugs
+from lazy_figures import is_wide
 from lessons import of_cell, places
 from nbformat.v4.rwbase import rejoin_lines
 from sphinx import addnodes
@@ -220,8 +221,8 @@ def pictures(outputs):
     """The pictures among outputs, as HTML with their sizes and their descriptions."""
     shown = [(o["data"]["image/png"], o["metadata"]["image/png"]) for o in outputs if "image/png" in o.get("data", {})]
     return "\n\n".join(
-        f'<img src="data:image/png;base64,{image.strip()}" alt="{escape(said["alt"])}" '
-        f'width="{said["width"]}" height="{said["height"]}">'
+        f'<div class="picture"><img src="data:image/png;base64,{image.strip()}" alt="{escape(said["alt"])}" '
+        f'width="{said["width"]}" height="{said["height"]}"{" class=wide" if is_wide(said["width"]) else ""}></div>'
         for image, said in shown
     )
 

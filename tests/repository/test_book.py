@@ -216,7 +216,7 @@ def test_every_check_of_a_chapter_has_its_place_and_a_link_to_the_ledger(book, p
                 if check := output.get("data", {}).get("application/vnd.loopbook.check+json"):
                     of = check["source"], check["entry"]
                     assert slugs.check_anchor(*of) in page.ids
-                    assert f"../ledger.html#{slugs.ledger_anchor(*of)}" in links
+                    assert f"../ledger/{stored.stem}.html#{slugs.ledger_anchor(*of)}" in links
 
 
 def test_sections_lead_to_the_reference_of_the_functions_that_they_use(book, pages):

@@ -54,13 +54,15 @@ class Table(html.parser.HTMLParser):
         elif tag in ("td", "th"):
             self.row["cells"].append("")
             self.row["classes"].append(attrs.get("class"))
-        elif tag == "a":
+        elif tag == "a" and self.body:
             assert self.body not in self.links
             self.links[self.body] = attrs["href"]
 
     def handle_endtag(self, tag):
         if tag == "tbody":
             self.row = None
+        elif tag == "section":
+            self.body = ""
 
     def handle_data(self, data):
         if self.row and self.row["cells"]:
@@ -70,10 +72,13 @@ class Table(html.parser.HTMLParser):
 @pytest.fixture(scope="module")
 def page():
     table = Table()
-    for source in sources().values():
-        made = ledger_page.table(source, ledger_page.stored(), "../chapters/{}.html".format, formulas=lambda cell: cell)
-        table.feed(made)
+    for chapter in ledger_page.pages_with_results():
+        table.feed(ledger_page.page(chapter, formulas=as_written))
     return table
+
+
+def as_written(cell):
+    return cell
 
 
 def row_of(page, entry, result):
@@ -159,9 +164,24 @@ def test_what_words_mean_is_on_the_page():
 def test_the_search_offers_all_sources_statuses_and_chapters():
     form = ledger_page.controls()
     offered = re.findall(r'<option value="([^"]+)"', form)
-    chapters = sorted(file.stem for file in (ROOT / "chapters").glob("*.ipynb"))
+    chapters = sorted({entry.chapter for source in sources().values() for entry in source if entry.results})
     assert offered == [*sources(), *STATUSES, *chapters]
     assert form.count("<label") == form.count("<select") + form.count("<input")
+
+
+def test_the_search_looks_through_the_rows_of_the_pages():
+    script = ledger_page.data(as_written)
+    known = json.loads(script.removeprefix("window.loopbookLedger = ").removesuffix(";\n"))
+    found = {(entry[2], row[0], row[1]) for entry in known["entries"] for row in entry[6]}
+    assert found == {
+        (slugs.ledger_anchor(entry.source, entry.name), result.name, result.status.word) for entry, result in RESULTS
+    }
+
+
+def test_each_page_is_listed_with_its_number_of_results():
+    listed = dict(re.findall(r'href="ledger/(\w+)\.html">[^<]*</a> <small>(\d+)', ledger_page.ways()))
+    assert {chapter: int(number) for chapter, number in listed.items()} == ledger_page.pages_with_results()
+    assert sum(map(int, listed.values())) == len(RESULTS)
 
 
 def test_the_totals_add_up():

@@ -5,12 +5,13 @@ from playwright.sync_api import expect
 
 from browser import DESKTOP, PATIENCE, PHONE, SCREENSHOTS, Complaints, serious, served
 
-#: A page of each kind. Of the ledger a few results of each status: the others look alike, and axe takes its time.
+#: A page of each kind.
 KINDS = {
     "front": "index.html",
     "chapter": "chapters/05_transfer_functions.html",
     "solution": "solutions/05_transfer_functions.html",
-    "ledger": "ledger.html?chapter=10_tuning",
+    "ledger": "ledger.html?chapter=10_tuning&status=corrected",
+    "results": "ledger/10_tuning.html",
     "reference": "reference/deadtime.html",
     "figures": "figures/04_laplace.html",
     "gallery": "figures.html",
@@ -80,6 +81,40 @@ class TestSite:
         reader.page.set_viewport_size({"width": 1200, "height": 900})
         reader.go("ledger.html")
         assert reader.page.evaluate("document.documentElement.scrollWidth") <= 1200
+
+    @pytest.mark.parametrize("way", ["http", "file"])
+    def test_the_ledger_is_searched_and_old_addresses_of_results_lead_on(self, chromium, addresses, way):
+        reader = Reader(chromium, addresses[way])
+        reader.go("ledger.html")
+        rows, said = reader.page.locator("#ledger-found tr[data-result]"), reader.page.locator("#ledger-search output")
+        assert rows.count() == 0
+        reader.page.get_by_label("Search", exact=True).last.fill("10.2 Skogestad")
+        expect(said).to_contain_text(" of ")
+        first = rows.count()
+        assert first
+        reader.page.get_by_label("What was done").select_option("corrected")
+        reader.page.get_by_label("Search", exact=True).last.fill("exp(-tau*s)")
+        expect(rows).not_to_have_count(first)
+        reader.page.get_by_role("button", name="Start again").click()
+        expect(rows).to_have_count(0)
+        reader.page.locator(".totals td a").last.click()
+        reader.page.get_by_role("button", name="Show").click()
+        assert reader.page.evaluate("document.activeElement.dataset.result")
+        place = rows.last.get_attribute("data-result")
+        reader.go("index.html")
+        reader.go(f"ledger.html#{place}")
+        reader.page.wait_for_url("**/ledger/*.html#*")
+        assert reader.page.evaluate("document.querySelector(':target').id") == place
+        reader.page.close()
+        assert reader.complaints == []
+
+    def test_the_ledger_is_whole_without_a_script(self, chromium, addresses):
+        reader = Reader(chromium, addresses["file"], java_script_enabled=False)
+        reader.go("ledger.html")
+        expect(reader.page.locator("#ledger-search")).to_be_hidden()
+        reader.page.locator(".ledger-ways a", has_text="Tuning of PID controllers").click()
+        expect(reader.page.locator("table.ledger td.verdict").first).to_be_visible()
+        reader.page.close()
 
     @pytest.mark.parametrize("by", ["the switch", "the system"])
     def test_a_figure_is_turned_over_on_a_dark_page_and_not_on_paper(self, chromium, addresses, by):
