@@ -32,7 +32,7 @@ def width(formula):
     r"""Return about how many letters wide a formula is, an element of MathML.
 
     >>> width(ElementTree.fromstring(convert(r"\frac{K}{T s + 1}")))
-    4.0
+    4
     """
     widths = [width(part) for part in formula]
     if formula.tag == "mfrac":

@@ -8,8 +8,8 @@ import re
 
 from docutils import nodes
 
-#: The last section of a chapter is further reading too, by its title.
-FURTHER = "How we know"
+#: What a chapter ends with is further reading too, by its title.
+LAST = "How we know"
 #: Where `docs/pdf` puts the link to the PDF of the whole book, once that is there.
 WHOLE_BOOK = "<!--the whole book-->"
 CHOICE = (
@@ -22,7 +22,7 @@ def is_further(section):
     """Whether a section says that it is further reading: its text begins with an emphasised "Further"."""
     first = next((part for part in section if isinstance(part, nodes.paragraph)), None)
     begins = first is not None and isinstance(first[0], nodes.emphasis) and first[0].astext().startswith("Further")
-    return section[0].astext() == FURTHER or begins
+    return begins or section[0].astext().startswith(LAST)
 
 
 def mark(app, doctree):
