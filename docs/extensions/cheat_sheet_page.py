@@ -1,5 +1,6 @@
 """The directive `cheat-sheet`: all formulas of the cheat sheet as a page of the site, with the PDF to download."""
 
+import functools
 import logging
 import re
 from pathlib import Path
@@ -11,6 +12,7 @@ from slugs import slug
 from sphinx import addnodes
 from sphinx.util.docutils import SphinxDirective
 
+PAGE = "cheat_sheet"
 FILE = "cheat_sheet.pdf"
 
 
@@ -38,13 +40,16 @@ def table_row(cells):
     return nodes.row("", *(nodes.entry("", paragraph(cell)) for cell in cells))
 
 
+parts = functools.cache(sections)
+
+
 class CheatSheet(SphinxDirective):
     """Sections with their tables, and from each the way to its chapter."""
 
     def run(self):
         download = nodes.reference("", f"{TITLE}: the sheet as a PDF, A4", refuri=FILE, classes=["download"])
         letters = [nodes.list_item("", paragraph(line)) for line in LETTERS]
-        return [nodes.paragraph("", "", download), nodes.bullet_list("", *letters), *map(self.section, sections())]
+        return [nodes.paragraph("", "", download), nodes.bullet_list("", *letters), *map(self.section, parts())]
 
     def section(self, part):
         words = re.sub(r"\$.*?\$", "", part.title).strip(" ,")
@@ -61,15 +66,28 @@ class CheatSheet(SphinxDirective):
         return addnodes.pending_xref("", nodes.inline("", name), **target, refexplicit=False, refwarn=True)
 
 
-def write_file(app, exception):
+def draw_file(app):
     """Put the PDF beside the page that links to it."""
-    if exception is None and app.builder.format == "html":
+    if app.builder.format == "html":
         logging.getLogger("fontTools").setLevel(logging.WARNING)  # which else tells of every table of every font
-        draw(sections(), TITLE, LETTERS, Path(app.outdir) / FILE)
+        draw(parts(), TITLE, LETTERS, Path(app.outdir) / FILE)
+
+
+def with_the_page(app, doctree):
+    """Draw the PDF in the process that has read the page: it knows the formulas, and others read meanwhile."""
+    if app.env.docname == PAGE:
+        draw_file(app)
+
+
+def if_missing(app, exception):
+    """Draw the PDF for a page that was not read again."""
+    if exception is None and not (Path(app.outdir) / FILE).exists():
+        draw_file(app)
 
 
 def setup(app):
     """Tell Sphinx of the directive and of the file."""
     app.add_directive("cheat-sheet", CheatSheet)
-    app.connect("build-finished", write_file)
+    app.connect("doctree-read", with_the_page)
+    app.connect("build-finished", if_missing)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -4,6 +4,7 @@ Nothing is run: imports say what a name means, and a name that the notebook give
 """
 
 import ast
+import functools
 import importlib
 import inspect
 from types import ModuleType
@@ -26,15 +27,15 @@ class Names:
         >>> names.used("settings = tuning.simc(process)")
         {'loopbook.tuning.simc': 'simc'}
         """
-        tree, found = ast.parse(code), {}
-        for node in ordered(tree):
+        nodes, found = ordered(code), {}
+        for node in nodes:
             if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "loopbook":
                 self.learn(node)
             elif isinstance(node, ast.Attribute | ast.Name) and isinstance(node.ctx, ast.Load):
                 address, thing = self.meant(node)
                 if (inspect.isfunction(thing) or inspect.isclass(thing)) and offered(address, thing):
                     found[address] = address.rpartition(".")[2]
-        for node in ast.walk(tree):
+        for node in nodes:
             if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
                 self.known.pop(node.id, None)
         return {address: name for address, name in found.items() if name not in HIDDEN}
@@ -66,9 +67,12 @@ def offered(address, thing):
     return thing.__module__ == module if names is None else name in names
 
 
-def ordered(tree):
-    """The nodes of a tree in the order of the code."""
-    return sorted(ast.walk(tree), key=lambda node: (getattr(node, "lineno", 0), getattr(node, "col_offset", 0)))
+@functools.cache
+def ordered(code):
+    """The nodes of a piece of code in its order: the chapters are read for their pages and for the reference."""
+    return sorted(
+        ast.walk(ast.parse(code)), key=lambda node: (getattr(node, "lineno", 0), getattr(node, "col_offset", 0))
+    )
 
 
 def of_sections(cells):

@@ -1,8 +1,9 @@
 """What the site costs: `make bench` prints how long it takes to build, how large its pages are, and how soon they show.
 
-A page counts without its figures. It shows when something of it is first painted, from a server on the same machine,
-to a browser that comes for the first time, and to one that comes again. The same is measured of the first answer to an
-exercise, with all parts of Python on that server, and of the answers after it.
+A page counts without its figures. Each kind of page is opened by a browser that comes for the first time: from a server
+on the same machine, and as a phone has it, behind slow 4G with a processor that is four times as slow.
+The first answer to an exercise is timed as well, with all parts of Python on that server, and the answers after it.
+``python tests/repository/bench_book.py build/book`` measures the pages of a site that is there.
 """
 
 import shutil
@@ -21,9 +22,23 @@ import browser
 import browser_runtime
 
 ROOT = Path(__file__).parents[2]
-RUNS = 5
-#: The front page, the largest pages, and one with a live lesson.
-VISITED = ["index", "ledger", "chapters/16_tuning_relations", "chapters/17_dead_time_compensation"]
+RUNS = 3
+#: A page of each kind, and the largest.
+VISITED = [
+    "index.html",
+    "chapters/05_transfer_functions.html",
+    "chapters/11_control_structures.html",
+    "chapters/13_poles_and_zeros.html",
+    "solutions/16_tuning_relations.html",
+    "ledger.html",
+    "ledger.html?q=Skogestad",
+    "ledger/13_poles_and_zeros.html",
+    "reference/exercises.html",
+    "cheat_sheet.html",
+    "search.html?q=Smith+predictor",
+]
+#: Round trip in ms, and bytes per second, as browsers' tools name it.
+SLOW_4G = {"offline": False, "latency": 150, "downloadThroughput": 1.6e6 / 8, "uploadThroughput": 0.75e6 / 8}
 
 
 def build(folder: Path) -> tuple[Path, float]:
@@ -39,7 +54,7 @@ def the_pages(site: Path, seconds: float) -> Table:
     in_the_page = sum(size for path, size in files.items() if path.parts[0] == "lite")
     whole = sum(size for path, size in files.items() if path.parts[0] != ".doctrees")
     sizes = {str(path): size for path, size in files.items() if path.suffix == ".html" and path.parts[0] != "lite"}
-    table = Table("", "", title=f"{len(sizes)} pages, built in {seconds:.0f} s")
+    table = Table("", "", title=f"{len(sizes)} pages" + (f", built in {seconds:.0f} s" if seconds else ""))
     for page in sorted(sizes, key=sizes.get, reverse=True)[:5]:
         table.add_row(page, f"{sizes[page] / 1000:.0f} kB")
     table.add_row("median page", f"{statistics.median(sizes.values()) / 1000:.0f} kB")
@@ -48,20 +63,37 @@ def the_pages(site: Path, seconds: float) -> Table:
     return table
 
 
-def the_first_paint(site: Path) -> Table:
-    table = Table("page", "first visit", "second visit", title=f"First paint, median of {RUNS}")
+def the_visits(site: Path) -> Table:
+    table = Table("page", title=f"Median of {RUNS} first visits: here, and on a phone behind slow 4G")
+    for name in ("elements", "here: painted", "moved", "longest task", "phone: painted", "moved", "longest task"):
+        table.add_column(name, justify="right")
     with browser.opened() as chromium, browser.served(site.parent) as address:
-        for name in VISITED:
-            found = [[], []]
-            for _ in range(RUNS):
-                visitor = chromium.new_context(viewport=browser.DESKTOP)
-                page = visitor.new_page()
-                for times in found:
-                    page.goto(f"{address}{site.name}/{name}.html")
-                    times.append(browser.first_paint(page))
-                visitor.close()
-            table.add_row(name, *(f"{1000 * statistics.median(times):.0f} ms" for times in found))
+        for name in (name for name in VISITED if (site / name.partition("?")[0]).exists()):
+            here = [visit(chromium, f"{address}{site.name}/{name}", phone=False) for _ in range(RUNS)]
+            phone = [visit(chromium, f"{address}{site.name}/{name}", phone=True) for _ in range(RUNS)]
+            cells = [f"{here[0]['nodes']}"]
+            for found in (here, phone):
+                middle = {key: statistics.median(each[key] for each in found) for key in found[0]}
+                cells += [f"{middle['painted']:.0f} ms", f"{middle['moved']:.3f}", f"{middle['busy']:.0f} ms"]
+            table.add_row(name, *cells)
     return table
+
+
+def visit(chromium, address: str, phone: bool) -> dict[str, float]:
+    """What a browser sees that comes for the first time."""
+    visitor = chromium.new_context(viewport=browser.PHONE if phone else browser.DESKTOP)
+    page = visitor.new_page()
+    page.set_default_timeout(browser.PATIENCE)
+    page.add_init_script(browser.WATCH)
+    if phone:
+        tools = visitor.new_cdp_session(page)
+        tools.send("Network.enable")
+        tools.send("Network.emulateNetworkConditions", SLOW_4G)
+        tools.send("Emulation.setCPUThrottlingRate", {"rate": 4})
+    page.goto(address, wait_until="networkidle")
+    found = browser.seen(page)
+    visitor.close()
+    return found
 
 
 def the_answers(site: Path) -> Table:
@@ -87,12 +119,13 @@ def the_answers(site: Path) -> Table:
 
 
 if __name__ == "__main__":
-    console = Console()
+    console = Console(width=140)
     folder = Path(tempfile.mkdtemp())
     try:
-        site, seconds = build(folder)
+        site, seconds = (Path(sys.argv[1]).resolve(), 0) if sys.argv[1:] else build(folder)
         console.print(the_pages(site, seconds))
-        console.print(the_first_paint(site) if browser.chromium() else browser.MISSING)
-        console.print(the_answers(site) if browser.chromium() else "")
+        console.print(the_visits(site) if browser.chromium() else browser.MISSING)
+        if browser.chromium() and not sys.argv[1:]:  # it puts Python into the site
+            console.print(the_answers(site))
     finally:
         shutil.rmtree(folder)

@@ -100,12 +100,25 @@ def served(folder: Path, prefix: str = "some/prefix") -> Iterator[str]:
         server.shutdown()
 
 
-def first_paint(page) -> float:
-    """When something was first to be seen of the page, in seconds after it was asked for."""
-    script = """() => new Promise(resolve => new PerformanceObserver(list =>
-        resolve(list.getEntriesByName("first-contentful-paint")[0].startTime)
-    ).observe({type: "paint", buffered: true}))"""
-    return page.evaluate(script) / 1000
+#: Notes, from the beginning of a page, when its largest part was painted, what moved, and what kept it busy.
+WATCH = """(() => {
+    window.seen = {painted: 0, moved: 0, busy: 0};
+    const watch = (type, note) =>
+        new PerformanceObserver(list => list.getEntries().forEach(note)).observe({type, buffered: true});
+    watch("largest-contentful-paint", entry => { seen.painted = entry.startTime; });
+    watch("layout-shift", entry => { if (!entry.hadRecentInput) seen.moved += entry.value; });
+    watch("longtask", entry => { seen.busy = Math.max(seen.busy, entry.duration); });
+})()"""
+
+
+def seen(page) -> dict[str, float]:
+    """What has been noted of a page for which WATCH is an init script.
+
+    ``painted``, when its largest part was, and ``busy``, its longest task, are in milliseconds; ``moved`` is the
+    cumulative layout shift, and ``nodes`` the number of its elements.
+    """
+    page.evaluate("() => new Promise(done => requestAnimationFrame(() => setTimeout(done)))")
+    return page.evaluate("({...seen, nodes: document.getElementsByTagName('*').length})")
 
 
 def serious(page, part: str | None = None, **options) -> list[str]:

@@ -3,7 +3,7 @@
 import pytest
 from playwright.sync_api import expect
 
-from browser import DESKTOP, PATIENCE, PHONE, SCREENSHOTS, Complaints, serious, served
+from browser import DESKTOP, PATIENCE, PHONE, SCREENSHOTS, WATCH, Complaints, seen, serious, served
 
 #: A page of each kind.
 KINDS = {
@@ -33,6 +33,10 @@ def pages(book):
 
 def with_lessons(book):
     return [page for page in pages(book) if 'type="range"' in (book / page).read_text(encoding="utf-8")]
+
+
+MOST_MOVED = 0.05  # cumulative layout shift
+MOST_ELEMENTS = 16_000
 
 
 class Reader:
@@ -69,13 +73,18 @@ def reader(chromium, addresses):
 
 class TestSite:
     def test_every_page_loads_in_full_and_fits_a_phone(self, reader, book):
-        """Nothing fails, nothing is said on the console, and no page has to be pushed sideways."""
+        """Nothing fails, nothing is said on the console, no page has to be pushed sideways, none moves or is heavy."""
         reader.page.set_viewport_size(PHONE)
-        widths = {}
+        reader.page.add_init_script(WATCH)
+        wide, moving, heavy = {}, {}, {}
         for page in pages(book):
             reader.go(page)
-            widths[page] = reader.page.evaluate("document.documentElement.scrollWidth")
-        assert {page: width for page, width in widths.items() if width > PHONE["width"]} == {}
+            found = seen(reader.page)
+            wide[page] = reader.page.evaluate("document.documentElement.scrollWidth")
+            moving[page], heavy[page] = found["moved"], found["nodes"]
+        assert {page: width for page, width in wide.items() if width > PHONE["width"]} == {}
+        assert {page: shift for page, shift in moving.items() if shift >= MOST_MOVED} == {}
+        assert {page: count for page, count in heavy.items() if count > MOST_ELEMENTS} == {}
 
     def test_the_ledger_fits_a_window_of_middle_width(self, reader):
         reader.page.set_viewport_size({"width": 1200, "height": 900})
