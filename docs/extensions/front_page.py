@@ -75,7 +75,7 @@ class CheckedResult(SphinxDirective):
 <tr>{cells(verdict, equations=False)}
 </tbody></table></div>
 <p>{code(ledger_page.note(result))} <a href="chapters/{chapter}.html#{check_anchor(source, entry)}">In its chapter</a> ·
-<a href="ledger.html#{ledger_anchor(source, entry, name)}">in the ledger</a></p>"""
+<a href="ledger/{chapter}.html#{ledger_anchor(source, entry, name)}">in the ledger</a></p>"""
         return [nodes.raw("", text, format="html")]
 
 
