@@ -7,9 +7,11 @@ c = get_config()  # noqa: F821 - Jupyter's, where it reads this
 ANNOUNCEMENTS = "@jupyterlab/apputils-extension:announcements"
 
 
-def without_news(handler, page_config):
-    """Take away the question whether to be told news of Jupyter, and the look for a newer version."""
+def calm(handler, page_config):
+    """Take away the question whether to be told news of Jupyter, and what is JupyterLite's, which fails here."""
     page_config["disabledExtensions"] = [*page_config["disabledExtensions"], ANNOUNCEMENTS]
+    extensions = page_config["federated_extensions"]
+    page_config["federated_extensions"] = [one for one in extensions if not one["name"].startswith("@jupyterlite/")]
     return page_config
 
 
@@ -19,6 +21,6 @@ c.ServerApp.allow_root = hasattr(os, "getuid") and os.getuid() == 0
 # figures that suit the dark theme, for this JupyterLab only: whoever has a custom.css of their own keeps it elsewhere
 c.LabApp.custom_css = True
 c.ServerApp.tornado_settings = {
-    "page_config_hook": without_news,
+    "page_config_hook": calm,
     "static_custom_path": [str(Path(__file__).parent / "docs" / "jupyterlab")],
 }

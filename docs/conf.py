@@ -19,7 +19,7 @@ extensions = [
     "myst_nb", "stored", "exercise_forms", "mathml", "readme", "lazy_figures", "library", "repository_pages",
     "command_options", "ledger_page", "cheat_sheet_page", "front_page", "lesson_directive", "accessible",
     "permanent", "single_figures", "search_index", "previews", "here", "python_in_pages", "notebooks_in_pages",
-    "on_paper",
+    "on_paper", "light_code",
 ]  # fmt: skip
 exclude_patterns = ["lessons", "**/.ipynb_checkpoints"]
 

@@ -203,6 +203,15 @@ def test_the_record_of_an_exercise_is_a_table():
     assert Sheet("7.1").download() == Sheet("7.1").csv == ""
 
 
+def test_the_order_of_curves_tells_nothing():
+    assert Sheet("14.7").csv.splitlines()[0] == Sheet("14.7", "Mira").csv.splitlines()[0] == "t,y,A,B,C,D"
+
+
+def test_a_page_names_the_file_and_not_what_a_notebook_calls():
+    assert "<code>t, h</code> in the file below are its times" in Sheet("1.5").text
+    assert not [number for number in NUMBERS if "given(" in Sheet(number).text]
+
+
 class TestFields:
     def test_every_kind_has_a_field_of_its_own(self):
         """A kind that a form does not know is typed in lines; of those that there are, each is known."""

@@ -30,6 +30,8 @@ JUDGED = [
     (PI, {"Kp": 2, "Ki": 0}, UNJUDGED, "from Ki follows no Ti"),
     (PI, {"Kp": 2, "Ti": 10, "Ki": 3}, UNJUDGED, "Ki is not a setting"),
     (PI, {"Kp": 2, "PB": 50}, UNJUDGED, "PB is not a setting"),
+    (PI, {2, 10}, UNJUDGED, "a set has no order"),
+    (PI, {"Kp = 2", "Ti = 10"}, UNJUDGED, "a set has no order"),
     (PI, {"Kp": 2, "Kc": 2, "Ti": 10}, UNJUDGED, "two values for Kp"),
     # as people write settings
     *(

@@ -6,7 +6,7 @@
 // What is remembered stays in this browser, under one key of its storage:
 //   student    a name, for numbers of one's own
 //   answered   {"7.1": true, "7.1 Mira": false}, as the notebooks keep it in .loopbook-progress.json
-//   tried      {"7.1": {answers, attempts, hints}}, what was typed and how far it went
+//   tried      {"7.1": {answers, attempts, hints, response}}, what was typed, how far it went, and what was said of it
 "use strict";
 
 (() => {
@@ -74,6 +74,13 @@
   function sentence(text) {
     const whole = text[0].toUpperCase() + text.slice(1);
     return /[.!?]$/.test(whole) ? whole : `${whole}.`;
+  }
+
+  // What is kept of a response: its words. A picture would fill the storage of the browser.
+  function wordsOf(response) {
+    const parts = made("div", { innerHTML: response.html });
+    for (const picture of parts.querySelectorAll("img")) picture.remove();
+    return { ...response, html: parts.innerHTML };
   }
 
   const helps = new Map(); // hints and solutions of a chapter with the numbers of everybody
@@ -237,7 +244,7 @@
       field.removeAttribute("data-status");
       for (const one of field.querySelectorAll("[aria-invalid]")) one.removeAttribute("aria-invalid");
       clearTimeout(this.later);
-      this.later = setTimeout(() => this.try({ answers: this.answers() }), 200);
+      this.later = setTimeout(() => this.try({ answers: this.answers(), response: null }), 200);
     }
 
     // A word in a list that has an order: its button writes it behind what is there.
@@ -265,7 +272,8 @@
       remember((all) => {
         all.answered[this.key] = reply.right || all.answered[this.key] === true; // what was right once stays so
         const tried = table(all.tried[this.key]);
-        all.tried[this.key] = { ...tried, answers, attempts: (tried.attempts ?? 0) + 1 };
+        const response = { ...reply, version: known.version };
+        all.tried[this.key] = { ...tried, answers, attempts: (tried.attempts ?? 0) + 1, response: wordsOf(response) };
       });
       this.showVerdicts(reply);
     }
@@ -292,14 +300,24 @@
       this.say(look, `${reply.right ? "✓ " : ""}${sentence(reply.says)}`, heard, more);
     }
 
+    // Of an earlier visit: it is there to be read, and not said aloud before anybody has pressed a button.
+    showAgain(response) {
+      this.answer.setAttribute("aria-live", "off");
+      this.showVerdicts(response);
+      setTimeout(() => this.answer.setAttribute("aria-live", "polite"), 1000);
+    }
+
     async hint() {
       if (await this.renewed()) this.say("quiet", `These are the numbers of ${this.student}.`);
-      const seen = this.hints.children.length;
-      const rung = Math.min(seen + 1, this.rungs);
-      if (rung === seen) return;
-      const reply = await this.helped({ do: "hint", rung }, ({ hints }) => ({ html: hints[rung - 1] }));
-      this.showHint(rung, reply.html);
-      this.try({ hints: Math.max(this.tried.hints ?? 0, rung) });
+      const shown = this.hints.children.length;
+      const before = Math.min(this.tried.hints ?? 0, this.rungs);
+      // those of an earlier visit come together
+      const last = Math.min(shown || !before ? shown + 1 : before, this.rungs);
+      for (let rung = shown + 1; rung <= last; rung++) {
+        const reply = await this.helped({ do: "hint", rung }, ({ hints }) => ({ html: hints[rung - 1] }));
+        this.showHint(rung, reply.html);
+      }
+      this.try({ hints: Math.max(before, last) });
     }
 
     showHint(rung, html) {
@@ -384,8 +402,10 @@
     // What was typed and how far it went, after a reload and with other numbers.
     begin() {
       this.fillIn(table(this.tried.answers));
+      const { hints, response } = this.tried;
+      if (response?.version === known.version) this.showAgain(response);
       if (this.hintButton) {
-        this.hintButton.textContent = "Hint";
+        this.hintButton.textContent = hints > 1 ? `The ${hints} hints again` : hints ? "The hint again" : "Hint";
         this.hintButton.removeAttribute("aria-disabled");
       }
       this.solveButton.setAttribute("aria-expanded", "false");

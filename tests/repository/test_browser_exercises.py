@@ -528,7 +528,7 @@ class TestPythonInThePage:
         shutil.copytree(book / "_static", folder / "_static", ignore=shutil.ignore_patterns("_images"))
         (folder / "chapters").mkdir()
         shutil.copyfile(book / TUNING, folder / TUNING)
-        site.place(folder, True, browser_runtime.required())
+        site.place(site.of_all(), folder, browser_runtime.required())
         site.write(folder, True)
         return folder
 

@@ -94,6 +94,15 @@ def in_a_row(given: object) -> list[Any] | None:
     return None
 
 
+def members(given: Iterable[Any]) -> list[Any]:
+    """Return the members of a set in an order that is the same in each run of Python, numbers before texts.
+
+    >>> members({"S4", "S2", 1})
+    [1, 'S2', 'S4']
+    """
+    return sorted(given, key=lambda one: (isinstance(one, str), str(one)))
+
+
 def alone(given: object) -> Any:
     """Return the value that stands alone in a row, a set, an array, or an equation for a symbol; others as they are.
 
@@ -105,7 +114,7 @@ def alone(given: object) -> Any:
     if isinstance(given, dict) and len(given) == 1 and isinstance(next(iter(given)), sympy.Symbol | AppliedUndef):
         return next(iter(given.values()))
     if isinstance(given, set | frozenset | sympy.FiniteSet):
-        given = list(given)
+        given = members(given)
     elif getattr(given, "ndim", None) == 0 and hasattr(given, "tolist") and not hasattr(given, "units"):
         return given.tolist()
     row = in_a_row(given)

@@ -1654,8 +1654,8 @@ def written_chart(
     Bright -> Dark: Bright.T >= 60
     ```
 
-    Your chart is run on the tank in several situations; whatever meets the demands is right. Give it as a text in three
-    quotes, or as a list of lines.
+    Your chart is run on the tank in several situations; whatever meets the demands is right. In a notebook, lines stand
+    between three quotes, or in a list.
     """
     return answers(chart=asked_chart(full, T_SP, hold, low))
 

@@ -8,6 +8,8 @@ import urllib.parse
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from loopbook.exercises import exercise
 from loopbook.exercises.errors import ExerciseError
 from loopbook.exercises.forms import controls
@@ -17,6 +19,10 @@ from loopbook.exercises.question import Question
 
 #: Longer ones are no answers that somebody typed.
 LONGEST = 20_000
+#: Of the largest value of a record, a smaller part is zero.
+_TRACE = 1e-12
+#: What a notebook calls for the arrays of an exercise; a page has them as a file.
+_CALL = re.compile(r'`([^`=]+?)\s*=\s*exercise\("[^`]*`')
 
 
 class Sheet:
@@ -47,6 +53,7 @@ class Sheet:
     def _texts(self):
         """The text of the statement, the list of what is asked, and the line on accuracy, in Markdown."""
         _, text = self.question.statement.split("\n", 1)
+        text = _CALL.sub(r"`\1` in the file below", text)
         text, _, accuracy = text.partition("\n\n*Accuracy: ")
         lines = text.rstrip().splitlines()
         first = len(lines) - len(self.question.key)
@@ -73,10 +80,20 @@ class Sheet:
         return "\n".join(controls.html(self.number, field, self.fields) for field in self.fields)
 
     @property
+    def columns(self) -> dict[str, Any]:
+        """The arrays that the exercise hands out, by their names; curves A, B, C in this order, whatever they are."""
+        data = self.question.data
+        letters = iter(sorted(name for name in data if _is_letter(name)))
+        order = [next(letters) if _is_letter(name) else name for name in data]
+        return {name: data[name] for name in order}
+
+    @property
     def csv(self) -> str:
         """The arrays that the exercise hands out as a table in CSV; empty where there are none."""
-        data = self.question.data
-        rows = zip(*data.values(), strict=True)
+        data = self.columns
+        # what rounding leaves of a zero is another number in another Python
+        columns = [np.where(np.abs(one) < _TRACE * np.max(np.abs(one)), 0.0, one) for one in data.values()]
+        rows = zip(*columns, strict=True)
         return "\n".join([",".join(data), *(",".join(f"{value:.6g}" for value in row) for row in rows)]) if data else ""
 
     def download(self, address: str = "") -> str:
@@ -88,7 +105,7 @@ class Sheet:
         if not self.csv:
             return ""
         address = address or f"data:text/csv;charset=utf-8,{urllib.parse.quote(self.csv, safe=',.-')}"
-        names = ", ".join(f"<code>{escaped(name)}</code>" for name in self.question.data)
+        names = ", ".join(f"<code>{escaped(name)}</code>" for name in self.columns)
         file = f"exercise-{controls.slug(self.number)}.csv"
         return f'<p class="data"><a href="{address}" download="{file}">The record as a file</a> (CSV: {names})</p>'
 
@@ -176,6 +193,10 @@ class Sheet:
             number = re.match(r"Exercise (\S+)", following)[1]
             return f'Next: <a href="#exercise-{controls.slug(number)}">{escaped(following)}</a>'
         return sentence(note)
+
+
+def _is_letter(name):
+    return len(name) == 1 and name.isupper()
 
 
 def _is_typed(name, text):

@@ -21,6 +21,7 @@ from loopbook.exercises.reading import (
     answered,
     in_a_row,
     listed_in,
+    members,
     plain,
     shortened,
 )
@@ -228,7 +229,7 @@ class Poles(Kind):
         if isinstance(answered(given), dict) and alone(given) is given:
             given = [pole for pole, times in given.items() for _ in range(self._times(times))]
         elif isinstance(given, set | frozenset | sympy.FiniteSet):
-            given = list(given)
+            given = members(given)
         elif isinstance(given, str) and re.fullmatch(
             r"(?:there are )?(?:none|no (?:finite )?(?:poles|zeros?))\.?", given.strip().lower()
         ):

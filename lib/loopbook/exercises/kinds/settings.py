@@ -78,6 +78,8 @@ class Settings(Kind):
         if controller := _of_transfer_function(answered(given), self.seed):
             controller = self._in_asked_form(controller)
             return controller, f"read as {self.written(controller)}"
+        if isinstance(given, set | frozenset | sympy.FiniteSet) and len(given) > 1:
+            raise Unreadable(f"a set has no order: expected {self.expected}")
         parts, remark = parts_of(given)
         if parts is None or "Kp" not in parts:
             raise Unreadable(_doubt(given) or f"this is no controller: expected {self.expected}")

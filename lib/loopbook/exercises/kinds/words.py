@@ -12,7 +12,7 @@ from sympy.logic.boolalg import BooleanAtom
 
 from loopbook.exercises.kinds import synonyms
 from loopbook.exercises.kinds.kind import Kind
-from loopbook.exercises.reading import Unreadable, alone, answered, in_a_row, shortened
+from loopbook.exercises.reading import Unreadable, alone, answered, in_a_row, members, shortened
 
 _NONE = re.compile(r"none(?: of them| of these)?|nothing|no one|not any|[-–∅]|\[\]", re.IGNORECASE)
 _ONLY = re.compile(r"^(?:only|just|solely) ", re.IGNORECASE)
@@ -100,7 +100,7 @@ class Words(Kind):
         elif isinstance(given, str):
             given = [part for part in self._parts(_ONLY.sub("", given.strip(" []{}"))) if part.strip()]
         is_set = isinstance(given, set | frozenset)
-        row = list(given) if is_set else in_a_row(given)
+        row = members(given) if is_set else in_a_row(given)
         if row is None:
             raise Unreadable(f"this is not a list: expected {self.expected}")
         if self.ordered and is_set:
