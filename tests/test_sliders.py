@@ -46,6 +46,11 @@ def test_sliders_carry_words_units_and_decimals(shown):
     assert view.value == "<p>0.5 3 PID False</p>"
 
 
+def test_a_start_between_the_steps_is_shown_as_it_is(shown):
+    sliders({"zero": (0, 4, 1)})(lambda zero=0.5: f"{zero}")
+    assert shown[1][0].children[0].readout_format == ".1f"
+
+
 def test_a_move_shows_what_the_function_returns_then(shown):
     sliders({"T [s]": (1, 10, 1)})(picture)
     slider, view = shown[1][0].children

@@ -11,12 +11,12 @@ const OTHERS = ["wheels/", "runtime/", "lite/"].map((folder) => new URL(folder, 
 /** Pictures and fonts come from the cache first. Of pages and scripts the newest counts, if it comes in time (ms). */
 const LASTING = /\.(png|svg|jpe?g|webp|gif|woff2?)$/;
 const IN_TIME = 4000;
-/** What a page asks for only when an exercise is answered. */
-const ASKED_LATE = ["_static/judge.js", "_static/judge-worker.js"].map((file) => new URL(file, SCOPE).href);
+/** The front page, and what a page asks for only when an exercise is answered. */
+const ALWAYS = ["", "index.html", "_static/judge.js", "_static/judge-worker.js"].map((file) => new URL(file, SCOPE).href);
 
 self.addEventListener("install", (event) => {
   self.skipWaiting();
-  event.waitUntil(keep(ASKED_LATE));
+  event.waitUntil(keep(ALWAYS));
 });
 
 self.addEventListener("activate", (event) => event.waitUntil(takeOver()));

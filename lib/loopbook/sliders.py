@@ -8,6 +8,8 @@ import inspect
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, TypeVar
 
+import numpy as np
+
 from loopbook.figures import Picture
 from loopbook.tables import marked
 
@@ -83,6 +85,8 @@ def _control(label: str, given: Any, default: Any) -> Widget:
 
     if isinstance(given, bool) and isinstance(default, bool):
         given = default
+    if isinstance(given, tuple) and isinstance(default, float):
+        given = tuple(map(float, given))  # a slider of whole numbers would begin at another one
     control = given if isinstance(given, ValueWidget) else interactive.widget_from_abbrev(given, default)
     if control is None:
         raise ValueError(
@@ -93,8 +97,17 @@ def _control(label: str, given: Any, default: Any) -> Widget:
     control.layout.width = "34em"
     control.layout.max_width = "100%"
     if "readout_format" in control.traits() and "step" in control.traits() and isinstance(control.step, float):
-        control.readout_format = f".{len(f'{control.step:f}'.rstrip('0').partition('.')[2])}f"
+        control.readout_format = f".{max(map(_decimals, (control.step, *np.ravel(control.value))))}f"
     return control
+
+
+def _decimals(number: float) -> int:
+    """How many decimals a number needs.
+
+    >>> _decimals(0.5), _decimals(2.0)
+    (1, 0)
+    """
+    return len(f"{number:f}".rstrip("0").partition(".")[2])
 
 
 def _parts(shown: Any) -> list[Any]:

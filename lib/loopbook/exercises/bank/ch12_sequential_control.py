@@ -1654,8 +1654,8 @@ def written_chart(
     Bright -> Dark: Bright.T >= 60
     ```
 
-    Your chart is run on the tank in several situations; whatever meets the demands is right. In a notebook, lines stand
-    between three quotes, or in a list.
+    Your chart is run on the tank in several situations; whatever meets the demands is right. In a notebook, put the
+    lines between three quotes, or in a list.
     """
     return answers(chart=asked_chart(full, T_SP, hold, low))
 

@@ -1307,7 +1307,7 @@ def drawing(
 
     Here `->` between two instruments is an electrical signal and `-//->` a pneumatic one. A place before an instrument
     says where it measures, and one behind a valve where it acts; the places are `inlet`, `vessel` and `outlet`. The
-    response draws what you have written. In a notebook, lines stand between three quotes, or in a list.
+    response draws what you have written. In a notebook, put the lines between three quotes, or in a list.
     """
     return answers(diagram=asked_diagram(quantity, pipe, a, side))
 
