@@ -91,10 +91,10 @@ class Sheet:
     def csv(self) -> str:
         """The arrays that the exercise hands out as a table in CSV; empty where there are none."""
         data = self.columns
-        # what rounding leaves of a zero is another number in another Python
+        # the last digits, and what rounding leaves of a zero, are others in another Python
         columns = [np.where(np.abs(one) < _TRACE * np.max(np.abs(one)), 0.0, one) for one in data.values()]
-        rows = zip(*columns, strict=True)
-        return "\n".join([",".join(data), *(",".join(f"{value:.6g}" for value in row) for row in rows)]) if data else ""
+        rows = (",".join(f"{type(value)(f'{value:.12g}'):.6g}" for value in row) for row in zip(*columns, strict=True))
+        return "\n".join([",".join(data), *rows]) if data else ""
 
     def download(self, address: str = "") -> str:
         """Return the link to the arrays of the exercise, as HTML; empty where there are none.
