@@ -82,8 +82,9 @@ async function kept(request) {
 /** The page instead of one that was never visited and cannot be fetched: a list of those that were. */
 async function notVisited() {
   const requests = await (await caches.open(KEPT)).keys();
-  const pages = requests.map(({ url }) => url.split(/[?#]/)[0]).filter((url) => /(\/|\.html)$/.test(url));
-  const links = [...new Set(pages)].map((url) => `<li><a href="${url}">${url.slice(SCOPE.length) || "The front page"}</a>`);
+  const addresses = requests.map(({ url }) => url.split(/[?#]/)[0].replace(/\/index\.html$/, "/"));
+  const pages = new Set(addresses.filter((url) => /(\/|\.html)$/.test(url)));
+  const links = [...pages].map((url) => `<li><a href="${url}">${url.slice(SCOPE.length) || "The front page"}</a>`);
   const body = `<!doctype html><html lang="en"><meta charset="utf-8"><title>No network</title>
     <meta name="viewport" content="width=device-width"><meta name="color-scheme" content="light dark">
     <body style="font: 1.1em/1.5 sans-serif; max-width: 40em; margin: 2em auto; padding: 0 1em"><h1>No network</h1>
