@@ -5,6 +5,7 @@ the folder that ``PARTS`` names, or, without it, fetched ones.
 """
 
 import os
+import shutil
 import sys
 from pathlib import Path
 
@@ -27,4 +28,8 @@ def place(folder: Path) -> None:
 if __name__ == "__main__":
     folder, *more = sys.argv[1:]
     place(Path(folder))
-    sys.exit(main([*OPTIONS, *more, str(Path(__file__).parent), folder]))
+    (Path(folder) / "loopbook.pdf").unlink(missing_ok=True)  # of an earlier state of the book
+    shutil.rmtree(Path(folder) / ".doctrees", ignore_errors=True)
+    # what Sphinx remembers, with paths of this machine, is no part of the site
+    remembered = Path(folder).with_name(f"{Path(folder).name}.doctrees")
+    sys.exit(main([*OPTIONS, "-d", str(remembered), *more, str(Path(__file__).parent), folder]))

@@ -212,6 +212,17 @@ def test_a_page_names_the_file_and_not_what_a_notebook_calls():
     assert not [number for number in NUMBERS if "given(" in Sheet(number).text]
 
 
+def test_a_whole_controller_is_read_in_the_place_of_a_setting():
+    whole = asked(do="check", exercise="7.3", answers={"pid": {"Kp": "PID(1.25, 40)"}})
+    assert (
+        whole["verdicts"] == asked(do="check", exercise="7.3", answers={"pid": {"Kp": "1.25", "Ti": "40"}})["verdicts"]
+    )
+
+
+def test_what_nobody_sees_is_not_read():
+    assert asked(do="check", exercise="10.1", answers={"K": "1.5\u200b"})["verdicts"][0]["status"] == "right"
+
+
 class TestFields:
     def test_every_kind_has_a_field_of_its_own(self):
         """A kind that a form does not know is typed in lines; of those that there are, each is known."""
@@ -271,6 +282,9 @@ class TestFields:
 class TestTexts:
     def test_a_dollar_within_braces_ends_no_formula(self):
         assert "$" not in inline(r"so $\text{for $D$ here}$ it is")
+
+    def test_a_formula_holds_no_elements_of_a_page(self):
+        assert html_of(r"$\text{<b>x</b>}$") == r"<p><code>\text{&lt;b&gt;x&lt;/b&gt;}</code></p>"
 
     def test_a_formula_alone_is_no_paragraph_and_one_in_a_text_is(self):
         assert html_of("$$x$$").startswith('<div class="math block"')

@@ -26,7 +26,7 @@ JUDGED = [
     (STEPS, {"s2", "s4"}, RIGHT, "right"),
     (STEPS, "S2", WRONG, "missing"),
     (STEPS, ["S2", "S4", "S1"], WRONG, "but also something that does not belong there"),
-    (STEPS, [], WRONG, "empty"),
+    (STEPS, [], WRONG, "at least one belongs here"),
     (STEPS, ["S2", "S9"], UNJUDGED, "none of the words"),
     (ROUTE, ["empty", "heat", "fill"], MISTAKE, "opposite order"),
     (ROUTE, ["heat", "fill", "empty"], WRONG, "order"),
@@ -54,7 +54,7 @@ JUDGED = [
     (STEPS, "S2 & S4", RIGHT, "right"),
     (STEPS, "S2 und S4", RIGHT, "right"),
     (STEPS, "only S2 and S4", RIGHT, "right"),
-    (STEPS, "none", WRONG, "empty"),
+    (STEPS, "none", WRONG, "at least one belongs here"),
     *(
         (ACTION, one, RIGHT, 'read as "reverse"')
         for one in ("r", "R", "rev", "increase-decrease", "reverse-acting controller")

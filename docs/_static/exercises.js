@@ -20,16 +20,22 @@
 
   // ------------------------------------------------------------------------------------------------ what is remembered
 
-  let memory = {}; // where a browser keeps nothing, at least this page does
+  let memory = {};
+  let isKept = true; // where a browser keeps nothing, or no more, at least this page does
 
   function remembered() {
     try {
-      memory = JSON.parse(localStorage.getItem(KEY)) ?? memory;
+      if (isKept) memory = table(JSON.parse(localStorage.getItem(KEY)));
     } catch {
       // private windows may have no storage, and somebody else may have written there
     }
     const { student, answered, tried } = memory;
-    return { student: typeof student === "string" ? student : null, answered: table(answered), tried: table(tried) };
+    return { student: isName(student) ? student : null, answered: table(answered), tried: table(tried) };
+  }
+
+  // As loopbook.exercises.student takes it: one line, without signs that nobody sees.
+  function isName(text) {
+    return typeof text === "string" && text.trim() !== "" && text.length <= 100 && !/[\p{C}\p{Zl}\p{Zp}]/u.test(text);
   }
 
   function table(value) {
@@ -41,8 +47,9 @@
     change(memory);
     try {
       localStorage.setItem(KEY, JSON.stringify(memory));
+      isKept = true;
     } catch {
-      // it is kept as long as the page is open
+      isKept = false;
     }
     for (const show of [...exercises, ...summaries]) show.showProgress();
   }
@@ -67,12 +74,16 @@
       judge ??= new Judge({ onProgress: (news) => waiting.forEach((exercise) => exercise.showLoading(news)) });
     }
     const reply = await judge.ask(request);
+    if (judge.library && judge.library !== known.version) {
+      throw new Error("There is a new version of the book: reload this page. What you have typed stays.");
+    }
     if (reply.problem) throw new Error(reply.problem);
     return reply;
   }
 
   function sentence(text) {
-    const whole = text[0].toUpperCase() + text.slice(1);
+    const isFile = /^\S+\.\w/.test(text);
+    const whole = isFile ? text : text.slice(0, 1).toUpperCase() + text.slice(1);
     return /[.!?]$/.test(whole) ? whole : `${whole}.`;
   }
 
@@ -99,7 +110,7 @@
   }
 
   async function shown(number, student) {
-    const place = new URL(`exercises/${known.version}/${number}/${encodeURIComponent(student)}`, here);
+    const place = new URL(`exercises/${known.version}/${number}?${encodeURIComponent(student)}`, here);
     const cache = await globalThis.caches?.open(SHOWN).catch(() => null);
     return {
       kept: async () => (await cache?.match(place))?.json(),
@@ -156,6 +167,10 @@
       return table(remembered().tried[this.key]);
     }
 
+    get seenHints() {
+      return Math.min(Number.isInteger(this.tried.hints) ? this.tried.hints : 0, this.rungs);
+    }
+
     try(change) {
       remember((all) => (all.tried[this.key] = { ...table(all.tried[this.key]), ...change }));
     }
@@ -181,7 +196,9 @@
       if (!this.bar) {
         this.bar = made("progress", { max: 1, ariaLabel: "Loading Python" });
         this.words = made("span");
-        const once = "What is loaded stays in this browser: later answers come at once, also without a network.";
+        const once = isSecureContext
+          ? "What is loaded stays in this browser: the next visit needs no network."
+          : "This address has no https: a browser keeps nothing of it, and loads this again at each visit.";
         this.loading.replaceChildren(this.bar, this.words, made("p", { role: "status" }, once));
       }
       this.bar.value = share;
@@ -281,7 +298,7 @@
     showVerdicts(reply) {
       const spoken = [];
       const places = new Map(this.places());
-      for (const { name, status, says, html } of reply.verdicts) {
+      for (const { name, status, html } of reply.verdicts) {
         const field = places.get(name);
         if (!field) continue;
         field.dataset.status = status;
@@ -291,7 +308,8 @@
           if (status === "right" || status === "open") input.removeAttribute("aria-invalid");
           else input.setAttribute("aria-invalid", "true");
         }
-        if (status !== "right") spoken.push(`${name}: ${says}`);
+        const words = field.querySelector(".verdict").lastChild.textContent; // formulas without their dollars
+        if (status !== "right") spoken.push(`${name}: ${words}`);
       }
       const look = reply.right ? "right" : reply.verdicts.some(({ status }) => status === "right") ? "partly" : "wrong";
       // a reader who hears the page hears the verdicts here, one who sees it has them beside the fields
@@ -310,7 +328,7 @@
     async hint() {
       if (await this.renewed()) this.say("quiet", `These are the numbers of ${this.student}.`);
       const shown = this.hints.children.length;
-      const before = Math.min(this.tried.hints ?? 0, this.rungs);
+      const before = this.seenHints;
       // those of an earlier visit come together
       const last = Math.min(shown || !before ? shown + 1 : before, this.rungs);
       for (let rung = shown + 1; rung <= last; rung++) {
@@ -402,8 +420,9 @@
     // What was typed and how far it went, after a reload and with other numbers.
     begin() {
       this.fillIn(table(this.tried.answers));
-      const { hints, response } = this.tried;
-      if (response?.version === known.version) this.showAgain(response);
+      const { response } = this.tried;
+      const hints = this.seenHints;
+      if (response?.version === known.version && Array.isArray(response.verdicts)) this.showAgain(response);
       if (this.hintButton) {
         this.hintButton.textContent = hints > 1 ? `The ${hints} hints again` : hints ? "The hint again" : "Hint";
         this.hintButton.removeAttribute("aria-disabled");
@@ -483,6 +502,10 @@
         problem.textContent = "Nothing is there yet: type a name, as Mira.";
         return;
       }
+      if (!isName(name)) {
+        problem.textContent = "This holds a sign that nobody sees: type the name, in one line.";
+        return;
+      }
       element.close();
       useName(name, parts.asking);
     });
@@ -511,7 +534,12 @@
   }
 
   async function others(first) {
-    for (const exercise of exercises.filter((one) => one !== first)) await exercise.act(() => exercise.renewed());
+    for (const exercise of exercises.filter((one) => one !== first)) {
+      await exercise.act(async () => {
+        const typed = Object.values(exercise.answers()).some(isFilledIn);
+        if ((await exercise.renewed()) && typed) exercise.say("quiet", "The numbers are others now, and so are the answers.");
+      });
+    }
   }
 
   // -------------------------------------------------------------------------------------------------------- progress
@@ -570,9 +598,10 @@
     }
 
     save() {
-      const { answered } = remembered();
+      const { answered, student, tried } = remembered();
       const sorted = Object.fromEntries(Object.entries(answered).sort(([one], [other]) => (one < other ? -1 : 1)));
-      const file = new Blob([`${JSON.stringify({ answered: sorted }, null, 1)}\n`], { type: "application/json" });
+      const all = { answered: sorted, student, tried };
+      const file = new Blob([`${JSON.stringify(all, null, 1)}\n`], { type: "application/json" });
       const link = made("a", { href: URL.createObjectURL(file), download: FILE });
       link.click();
       setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
@@ -584,11 +613,15 @@
       input.value = ""; // so that the same file can be read again
       if (!file) return;
       try {
-        const answered = file.size <= LARGEST && JSON.parse((await file.text()).replace(/^\ufeff/, "")).answered;
+        const text = file.size <= LARGEST ? await file.text() : "null";
+        const { answered, student, tried } = JSON.parse(text.replace(/^\ufeff/, ""));
         const isTable = answered && typeof answered === "object" && !Array.isArray(answered);
         if (!isTable || !Object.values(answered).every((right) => typeof right === "boolean")) throw new TypeError();
         remember((all) => {
           for (const [key, right] of Object.entries(answered)) all.answered[key] = right || all.answered[key] === true;
+          if (isName(student)) all.student ??= student;
+          // what was typed here comes before what was typed elsewhere
+          all.tried = { ...typedIn(tried), ...all.tried };
         });
         const count = Object.values(answered).filter(Boolean).length;
         this.note.textContent = `Read from ${file.name}: ${count} right. What was right here before stays so.`;
@@ -603,6 +636,16 @@
       globalThis.caches?.delete(SHOWN).catch(() => {});
       location.reload();
     }
+  }
+
+  // Of what was typed, as a file has it: the answers and how far they went. What was said of them is this book's to say.
+  function typedIn(tried) {
+    const found = {};
+    for (const [key, one] of Object.entries(table(tried))) {
+      const { answers, attempts, hints } = table(one);
+      found[key] = { answers: table(answers), attempts: Number(attempts) || 0, hints: Number(hints) || 0 };
+    }
+    return found;
   }
 
   const exercises = [];

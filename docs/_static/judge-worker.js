@@ -5,7 +5,7 @@
 // What came once is kept in the browser's Cache storage, where the page's address allows that (https or localhost).
 //
 // Messages from the page: {id, request}. To the page: {progress: {share, says}}, {begun: id, limit}, {id, reply} and
-// {id, failed}, where id is missing if it is not about one request. Requests and replies are texts of JSON.
+// {id, failed, isDead}, where id is missing if it is not about one request; and {library}, its version, once it is there. Requests and replies are texts of JSON.
 
 const SITE = new URL("..", self.location);
 const PARTS = new URL("wheels/parts.json", SITE);
@@ -17,6 +17,9 @@ const MEGABYTE = 1e6;
 
 /** Seconds that may pass on a usual computer: until the key of an exercise is computed, and until an answer is judged. */
 const LIMIT = { prepare: 60, check: 3 };
+
+/** Seconds after which a download of which nothing more comes is given up. */
+const PATIENCE = 30;
 
 /** After so many milliseconds without a question there is time to keep what Python has compiled. */
 const REST = 1000;
@@ -73,6 +76,9 @@ function nameOf(url) {
   return new URL(url, PARTS).pathname.split("/").pop();
 }
 
+/** A file that cannot be had now; Python is none the worse for it. */
+class Missing extends Error {}
+
 /** Loads files of parts, and tells how far it is. */
 class Loader {
   constructor(kept) {
@@ -94,13 +100,14 @@ class Loader {
 
   async file({ url, bytes, sha256 }, more) {
     const kept = await this.kept.get(address(url));
-    if (kept) {
+    // another version of the site may have kept another file at this address, and a disk may fail
+    if (kept && (await isAsExpected(kept, sha256))) {
       more(bytes);
       return kept;
     }
     const fetched = await download(url, more);
     if (!(await isAsExpected(fetched, sha256))) {
-      throw new Error(`${nameOf(url)} is not the file that was expected: reload the page, or tell whoever runs the site`);
+      throw new Missing(`${nameOf(url)} is not the file that was expected: reload the page, or tell whoever runs the site`);
     }
     await this.kept.put(address(url), fetched);
     return fetched;
@@ -115,8 +122,15 @@ class Loader {
 }
 
 async function download(url, more) {
+  const stalled = new AbortController();
+  let timer;
+  const wait = () => {
+    clearTimeout(timer);
+    timer = setTimeout(() => stalled.abort(new Error(`nothing came for ${PATIENCE} s`)), PATIENCE * 1000);
+  };
   try {
-    const response = await fetch(address(url));
+    wait();
+    const response = await fetch(address(url), { signal: stalled.signal });
     if (!response.ok) throw new Error(response.status);
     const pieces = [];
     for (let reader = response.body.getReader(); ; ) {
@@ -124,10 +138,13 @@ async function download(url, more) {
       if (done) return new Uint8Array(await new Blob(pieces).arrayBuffer());
       pieces.push(value);
       more(value.length);
+      wait();
     }
   } catch (error) {
     const { host } = new URL(url, PARTS);
-    throw new Error(`${nameOf(url)} could not be loaded from ${host} (${error.message}): is there a network?`);
+    throw new Missing(`${nameOf(url)} could not be loaded from ${host} (${error.message}): is there a network?`);
+  } finally {
+    clearTimeout(timer);
   }
 }
 
@@ -277,8 +294,10 @@ async function listed() {
   try {
     const response = await fetch(PARTS, { cache: "no-cache" });
     if (!response.ok) throw new Error(response.status);
-    await cache?.put(PARTS, response.clone()).catch(() => undefined);
-    return await response.json();
+    const copy = response.clone();
+    const parts = await response.json(); // what is none, as the page of a network that asks to log in, is not kept
+    await cache?.put(PARTS, copy).catch(() => undefined);
+    return parts;
   } catch (error) {
     const kept = await cache?.match(PARTS);
     if (kept) return kept.json();
@@ -289,7 +308,7 @@ async function listed() {
 let rest; // the timer until then
 const started = Python.started();
 started.then(
-  () => self.postMessage({ started: true }),
+  ({ parts }) => self.postMessage({ library: parts.library }),
   (error) => self.postMessage({ failed: error.message }),
 );
 
@@ -302,7 +321,9 @@ self.onmessage = ({ data: { id, request } }) => {
     try {
       self.postMessage({ id, reply: await python.answer(id, request) });
     } catch (error) {
-      self.postMessage({ id, failed: error.message });
+      // what Python raises it survives; an overflow of the stack below it, it does not
+      const isDead = !(error instanceof python.pyodide.ffi.PythonError) && !(error instanceof Missing);
+      self.postMessage({ id, failed: error.message, isDead });
     }
     questions -= 1;
     clearTimeout(rest);

@@ -11,6 +11,7 @@ export class Judge {
   #waiting = []; // questions in their order; the first is with the worker
   #timer;
   #onProgress;
+  library = null; // the version of the library that answers, once it is known
 
   /** onProgress is called with {share: 0 to 1, says: "Python, 5 of 25 MB"} while an answer waits for something to load. */
   constructor({ onProgress = () => {} } = {}) {
@@ -52,13 +53,18 @@ export class Judge {
     }
   }
 
-  #hear({ progress, begun, limit, id, reply, failed }) {
+  #hear({ progress, begun, limit, id, reply, failed, isDead, library }) {
     if (progress) {
       clearTimeout(this.#timer); // what loads may take its time
       if (this.#waiting.length) this.#onProgress(progress);
     } else if (begun) {
       clearTimeout(this.#timer);
       this.#timer = setTimeout(() => this.#tooSlow(limit), limit * 1000);
+    } else if (library) {
+      this.library = library;
+    } else if (isDead) {
+      console.warn(failed);
+      this.#anew("Python cannot go on from this answer, and begins anew: write the answer in a simpler form");
     } else if (id) {
       this.#settle(({ resolve, reject }) => (failed ? reject(new Error(failed)) : resolve(JSON.parse(reply))));
     } else if (failed) {
@@ -75,9 +81,12 @@ export class Judge {
 
   /** An answer that does not come to its end takes the worker with it; a new one begins at once, from the cache. */
   #tooSlow(limit) {
+    this.#anew(`ended after ${limit} s: judging this takes too long; write the answer in a simpler form`);
+  }
+
+  #anew(says) {
     this.#stop();
     this.#start();
-    const says = `ended after ${limit} s: judging this takes too long; write the answer in a simpler form`;
     this.#settle(({ reject }) => reject(new Error(says)));
   }
 

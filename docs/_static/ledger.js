@@ -108,6 +108,14 @@
     }
   }
 
+  function decoded(text) {
+    try {
+      return decodeURIComponent(text);
+    } catch {
+      return text; // no place is named so
+    }
+  }
+
   async function moved(place) {
     const row = (await loaded()).find(({ entry }) => entry.place === place.split(".")[0]);
     if (row) location.replace(`ledger/${row.entry.chapter}.html#${place}`);
@@ -122,5 +130,5 @@
     if (form.elements[key]) form.elements[key].value = value;
   }
   if (location.search) search();
-  if (location.hash.startsWith("#ledger-")) moved(decodeURIComponent(location.hash.slice(1)));
+  if (location.hash.startsWith("#ledger-")) moved(decoded(location.hash.slice(1)));
 })();

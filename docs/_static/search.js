@@ -67,7 +67,7 @@
   // As in search_index.py.
   function words(text) {
     const plain = [...text].map((letter) => (GREEK[letter] ? ` ${GREEK[letter]} ` : letter)).join("");
-    const cut = plain.normalize("NFKD").replace(/[^\x00-\x7f]/g, "").toLowerCase().match(/\d+(?:\.\d+)+[a-z]?|[a-z0-9]+/g);
+    const cut = plain.replace(/(?<=\d)-(?=\d)/g, ".").normalize("NFKD").replace(/[^\x00-\x7f]/g, "").toLowerCase().match(/\d+(?:\.\d+)+[a-z]?|[a-z0-9]+/g);
     return (cut || []).map((word) => (/^..+[^sui0-9]s$/.test(word) && word.length > 3 ? word.slice(0, -1) : word));
   }
 
@@ -125,7 +125,7 @@
 
   // The places of the book that a number names, as "10.15", "Eq. (10.15)" or "table 12.3".
   function numbered(text) {
-    const asked = text.trim().match(/^([a-z]*)\.?\s*\(?((?:[a-z]\.)?\d+(?:\.\d+)*[a-z]?)\)?$/i);
+    const asked = text.trim().replace(/(?<=\d)-(?=\d)/g, ".").match(/^([a-z]*)\.?\s*\(?((?:[a-z]\.)?\d+(?:\.\d+)*[a-z]?)\)?$/i);
     if (!asked) return [];
     const [, kind, number] = asked;
     const kinds = kind ? KINDS.filter((one) => one.startsWith(kind.toLowerCase().replace(/^(eqn|eqs)$/, "eq"))) : KINDS;

@@ -90,12 +90,12 @@ class Judge:
         self._answer = importlib.import_module("loopbook.exercises.forms").answer
 
     def prepare(self, text: str) -> str:
-        """Compute the key of the exercise of a request, once: that may take longer than to judge an answer."""
+        """Compute the key of the exercise of a request and judge it, once: that may take longer than an answer."""
         request = json.loads(text)
         wanted = request.get("exercise"), request.get("student")
         if request.get("do") != "check" or wanted in self._keyed:
             return ""
-        lacks = self._asked(json.dumps(request | {"answers": {}}))[1]
+        lacks = self._asked(json.dumps(request | {"do": "prepare"}))[1]
         if not lacks:
             self._keyed.add(wanted)
         return lacks

@@ -44,7 +44,9 @@ async function takeOver() {
 async function keep(urls) {
   const cache = await caches.open(KEPT);
   for (const url of urls.filter(isOurs)) {
-    if (!(await cache.match(url))) await cache.add(url).catch(() => undefined);
+    if (await cache.match(url)) continue;
+    const response = await fetch(url).catch(() => undefined);
+    if (response?.ok) await keepAnew(url, response).catch(() => undefined);
   }
 }
 
@@ -68,10 +70,16 @@ async function networkFirst(event) {
 async function fetched(event) {
   const response = await fetch(event.request);
   if (response.ok && response.type === "basic" && !response.redirected) {
-    const copy = response.clone();
-    event.waitUntil(caches.open(KEPT).then((cache) => cache.put(event.request, copy)).catch(() => undefined));
+    event.waitUntil(keepAnew(event.request, response.clone()).catch(() => undefined));
   }
   return response;
+}
+
+/** Keep what came, unless it is a page that is none of the site's: that of a network which asks to log in. */
+async function keepAnew(request, response) {
+  const isPage = response.headers.get("Content-Type")?.includes("html");
+  if (isPage && !(await response.clone().text()).includes("_static/offline.js")) return;
+  await (await caches.open(KEPT)).put(request, response);
 }
 
 async function kept(request) {

@@ -8,6 +8,8 @@ import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
+from loopbook.exercises.forms import version
+
 from . import runtime, wheels
 
 HERE = Path(__file__).parent
@@ -86,9 +88,9 @@ def write(site: Path, offline: bool) -> None:
         files += [_ours(folder / "judge.py")] if name == FIRST else []
         parts[name] = {"says": says, "files": files}
         later |= dict.fromkeys(packages, name)
-    listed = {"parts": parts, "later": later}
-    version = runtime.digest(json.dumps(listed, sort_keys=True).encode())[:12]
-    (folder / "parts.json").write_text(json.dumps({"version": version, **listed}, indent=1), encoding="utf-8")
+    listed = {"library": version(), "parts": parts, "later": later}
+    parts_version = runtime.digest(json.dumps(listed, sort_keys=True).encode())[:12]
+    (folder / "parts.json").write_text(json.dumps({"version": parts_version, **listed}, indent=1), encoding="utf-8")
     worker = (HERE / SERVICE).read_text(encoding="utf-8").replace('"VERSION"', f'"{content(site)}"')
     (site / SERVICE).write_text(worker, encoding="utf-8")
 
@@ -101,7 +103,7 @@ def content(site: Path) -> str:
     found = hashlib.sha256()
     for path in sorted(site.rglob("*")):
         inside = path.relative_to(site)
-        if path.is_file() and inside.parts[0] not in (RUNTIME, SERVICE, "lite", ".doctrees"):
+        if path.is_file() and inside.parts[0] not in (RUNTIME, SERVICE, "lite"):
             found.update(f"{inside.as_posix()} {runtime.digest(path.read_bytes())}\n".encode())
     return found.hexdigest()[:12]
 

@@ -7,7 +7,6 @@ of all exercises, from which the progress is shown.
 """
 
 import functools
-import hashlib
 import html
 import json
 import re
@@ -16,10 +15,9 @@ from pathlib import Path
 import slugs
 
 from loopbook.exercises import bank, notes
-from loopbook.exercises.forms import Sheet
+from loopbook.exercises.forms import Sheet, version
 
 ROOT = Path(__file__).parents[2]
-LIBRARY = ROOT / "lib" / "loopbook"
 FOLDER = "exercises"  # of what is beside the pages, in _static
 MEGABYTES = 25  # of Python, fetched once
 
@@ -129,15 +127,6 @@ def table():
         }
         for chapter in bank.chapters()
     ]
-
-
-@functools.cache
-def version():
-    """A text that is another one when the library is."""
-    digest = hashlib.sha256()
-    for path in sorted(LIBRARY.rglob("*.py")):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:12]
 
 
 def of_all(to_root=""):

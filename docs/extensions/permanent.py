@@ -26,10 +26,12 @@ def names_of(title):
     (['example-7-4'], ['example-3-1-further'])
     >>> names_of("Equations (4) and (5) · Marginal stability"), names_of("Equations 7.89 to 7.91")
     (['equation-4', 'equation-5'], ['equation-7-89', 'equation-7-90', 'equation-7-91'])
+    >>> names_of("Equations (12-5) and (12-6) · The controller"), names_of("Equations (5-50) to (5-52)")
+    (['equation-12-5', 'equation-12-6'], ['equation-5-50', 'equation-5-51', 'equation-5-52'])
     >>> names_of("How much damping?")
     []
     """
-    head = title.partition(" · ")[0]
+    head = re.sub(r"(?<=\d)-(?=\d)", ".", title.partition(" · ")[0])  # Seborg writes 12-5
     kind = HEAD.match(head)
     if not kind:
         return []

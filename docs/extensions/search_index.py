@@ -53,6 +53,7 @@ def words(text):
     """
     text = "".join(f" {GREEK[letter]} " if letter in GREEK else letter for letter in text)
     plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode().lower()
+    plain = re.sub(r"(?<=\d)-(?=\d)", ".", plain)  # Seborg writes 12-5
     return [singular(word) for word in re.findall(r"\d+(?:\.\d+)+[a-z]?|[a-z0-9]+", plain)]
 
 

@@ -102,6 +102,29 @@ async function serve() {
     button.addEventListener("click", does[button.dataset.does]);
     button.disabled = false;
   }
+  keepWork(app);
+}
+
+/** Save a moment after each change and when the page is left; JupyterLab's own rhythm may take half a minute. */
+async function keepWork(app) {
+  while (!app.shell.currentWidget?.context) await new Promise((resolve) => setTimeout(resolve, 100));
+  const { context } = app.shell.currentWidget;
+  await context.ready;
+  let timer;
+  const save = () => {
+    clearTimeout(timer);
+    if (context.model.dirty) context.save().catch((problem) => (says.textContent = `Not kept: ${problem.message}`));
+  };
+  context.model.contentChanged.connect(() => {
+    clearTimeout(timer);
+    timer = setTimeout(save, 1000);
+  });
+  document.addEventListener("visibilitychange", save);
+  window.addEventListener("beforeunload", (event) => {
+    if (!context.model.dirty) return;
+    save();
+    event.preventDefault(); // the browser asks, and meanwhile it is saved
+  });
 }
 
 async function jupyterApp() {

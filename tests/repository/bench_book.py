@@ -52,7 +52,7 @@ def build(folder: Path) -> tuple[Path, float]:
 def the_pages(site: Path, seconds: float) -> Table:
     files = {path.relative_to(site): path.stat().st_size for path in site.rglob("*") if path.is_file()}
     in_the_page = sum(size for path, size in files.items() if path.parts[0] == "lite")
-    whole = sum(size for path, size in files.items() if path.parts[0] != ".doctrees")
+    whole = sum(files.values())
     sizes = {str(path): size for path, size in files.items() if path.suffix == ".html" and path.parts[0] != "lite"}
     table = Table("", "", title=f"{len(sizes)} pages" + (f", built in {seconds:.0f} s" if seconds else ""))
     for page in sorted(sizes, key=sizes.get, reverse=True)[:5]:

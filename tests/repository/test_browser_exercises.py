@@ -520,6 +520,61 @@ class TestForEverybody:
         assert reader.complaints == []
 
 
+class TestWhatMayHappen:
+    def test_a_response_and_hints_are_there_after_a_reload(self, reader):
+        reader.go()
+        form = reader.exercise("10.1")
+        form.check(K="1.5", T="1.25", tau="90")
+        form.press("Hint")
+        form.press("Next hint")
+        expect(form.box.locator(".one-hint")).to_have_count(2)
+        reader.page.reload()
+        form = reader.exercise("10.1")
+        expect(form.says).to_contain_text("1 of 3 right")
+        expect(form.verdict("K")).to_contain_text("right")
+        form.press("The 2 hints again")
+        expect(form.box.locator(".one-hint")).to_have_count(2)
+        form.fill_in(tau="15")
+        reader.page.wait_for_function("JSON.parse(localStorage.loopbook).tried['10.1'].response === null")
+        reader.page.reload()
+        expect(reader.exercise("10.1").says).to_be_empty()
+
+    def test_another_version_of_the_book_judges_nothing(self, reader):
+        other = JUDGE.replace("{ this.on", '{ this.library = "another"; this.on', 1)
+        reader.page.route("**/_static/judge.js", lambda r: r.fulfill(body=other, content_type="text/javascript"))
+        reader.go()
+        form = reader.exercise("10.1")
+        form.check(K="1.5")
+        expect(form.says).to_contain_text("There is a new version of the book: reload this page.")
+        assert not reader.remembered["answered"]
+
+    def test_where_nothing_more_can_be_stored_the_page_remembers(self, reader):
+        reader.go()
+        reader.page.evaluate("""() => {
+            localStorage.loopbook = "{}";
+            Storage.prototype.setItem = () => { throw new DOMException("full", "QuotaExceededError"); };
+        }""")
+        form = reader.exercise("10.1")
+        form.check(K="15")
+        expect(form.box.locator(".known")).to_have_text("tried")
+        form.press("Solution")
+        expect(form.box.locator(".solved")).to_contain_text("Solution")
+
+    def test_a_name_of_dots_is_a_name_and_one_with_a_sign_that_nobody_sees_is_none(self, reader):
+        reader.go()
+        form = reader.exercise("10.1")
+        form.locator("button.own").click()
+        reader.page.get_by_label("Your name").fill("Mira\u202e")
+        reader.page.get_by_role("button", name="Use my numbers").click()
+        expect(reader.page.locator(".exercise-dialog .problem")).to_contain_text("a sign that nobody sees")
+        reader.page.get_by_label("Your name").fill("..")
+        reader.page.get_by_role("button", name="Use my numbers").click()
+        expect(reader.exercise("10.2").says).to_have_text("")
+        expect(reader.page.locator("[aria-busy]")).to_have_count(0)
+        texts = [reader.exercise(number).locator(".statement").inner_text() for number in ("10.1", "10.2", "10.3")]
+        assert len(set(texts)) == 3
+
+
 class TestPythonInThePage:
     @pytest.fixture
     def small(self, book, tmp_path):

@@ -298,6 +298,19 @@ def ask(page, **request):
     return browser_runtime.ask(page, ASKED | request)["reply"]
 
 
+#: Cuts a file that the browser keeps to its half.
+DAMAGE = """async (ending) => {
+    for (const name of await caches.keys()) {
+        const cache = await caches.open(name);
+        for (const request of await cache.keys()) {
+            if (!request.url.endsWith(ending)) continue;
+            const whole = await (await cache.match(request)).arrayBuffer();
+            await cache.put(request, new Response(whole.slice(0, whole.byteLength / 2)));
+        }
+    }
+}"""
+
+
 class TestInTheBrowser:
     def test_it_answers_as_on_a_desk_and_without_a_network_and_outlives_an_answer_without_end(self, chromium, small):
         context = chromium.new_context()
@@ -325,6 +338,15 @@ class TestInTheBrowser:
         browser_runtime.wait_until_kept(page, "one.html")
         browser_runtime.wait_until_compiled(page, small.folder)
         page.close()
+
+        # what a disk has damaged is fetched again
+        page = context.new_page()
+        page.goto(small.address + "one.html")
+        page.evaluate(DAMAGE, "pyodide.asm.wasm")
+        small.asked.clear()
+        assert ask(page) == json.loads(answer(json.dumps(ASKED)))
+        assert [one.split("/")[-1].split("?")[0] for one in small.asked if "wasm" in one] == ["pyodide.asm.wasm"]
+        page.close()
         small.stop()
 
         # nothing is there any more, and all works
@@ -336,6 +358,10 @@ class TestInTheBrowser:
 
         # an answer without end takes its Python with it, and the next one has a new one
         assert re.match(r"ended after \d+ s: ", ask(page, answers={"p": ENDLESS}))
+        assert ask(page) == json.loads(answer(json.dumps(ASKED)))
+
+        # nor does one that Python cannot survive end more than itself
+        assert "begins anew" in ask(page, exercise="4.1", answers={"F": "-" * 3900 + "s"})
         assert ask(page) == json.loads(answer(json.dumps(ASKED)))
 
         # what was not visited says so, and leads to what was

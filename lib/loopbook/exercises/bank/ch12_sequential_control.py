@@ -1908,8 +1908,8 @@ def chart_of_alarm(
     `reset` does nothing else, and `start` does nothing but begin. The tank must not run over, not even when the level
     transmitter gets stuck, and inlet and outlet are never open together.
 
-    The notation is that of 12.9: a line for each step, `Fill: inlet on`, one for each transition, `Fill -> Empty: level
-    >= ...`, and `Fill.T` is the time for which a step has been active.
+    The notation is that of 12.9: a line for each step, `Fill: inlet on`, one for each transition,
+    `Fill -> Empty: level >= ...`, and `Fill.T` is the time for which a step has been active.
     """
     return answers(chart=asked_alarm(full, low, limit))
 

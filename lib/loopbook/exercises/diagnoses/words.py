@@ -39,7 +39,7 @@ def _(kind: Word, answer: str, background: Background) -> Finding | None:
 @explained.register
 def _(kind: Words, answer: list[str], background: Background) -> Finding | None:
     if not answer:
-        return Finding("the list is empty", is_mistake=False)
+        return Finding("not right: at least one belongs here", is_mistake=False)
     common = Counter(answer) & Counter(kind.key)
     right = [word for word in dict.fromkeys(answer) if word in common]
     wrong = [word for word in dict.fromkeys(answer) if word not in common]

@@ -10,7 +10,7 @@ A page asks in JSON, and `answer` answers in JSON, in a program on a desk as in 
 Nothing is judged here: a text goes to the same ``check`` to which a notebook hands it.
 """
 
-from loopbook.exercises.forms.protocol import answer
+from loopbook.exercises.forms.protocol import answer, version
 from loopbook.exercises.forms.sheet import Sheet
 
-__all__ = ["Sheet", "answer"]
+__all__ = ["Sheet", "answer", "version"]

@@ -46,6 +46,8 @@ def convert(latex: str, display: bool = False) -> str:
         raise ValueError(f"{latex!r} cannot be written as MathML: {type(problem).__name__} {problem}") from problem
     for element in tree.iter():
         element.tag = element.tag.removeprefix(NAMESPACE)
+        if not element.tag.startswith("m"):  # the translator takes what is between < and > for an element
+            raise ValueError(f"{latex!r} cannot be written as MathML: it holds <{element.tag}>")
     _mend(tree, large=display or large)
     tree.attrib.clear()
     if display:

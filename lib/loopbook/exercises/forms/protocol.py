@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import functools
+import hashlib
 import json
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
+import loopbook
 from loopbook.exercises import naming, notes
 from loopbook.exercises.errors import ExerciseError
 from loopbook.exercises.forms.sheet import Sheet
@@ -24,6 +27,7 @@ def answer(text: str) -> str:
     - show: ``{heading, html, fields, controls, accuracy, rungs}``: the statement, and what is asked as data and as
       HTML;
     - check, with ``answers``: ``{right, says, html, verdicts: [{name, status, says, html}], notes}``;
+    - prepare: ``{}``; the key is computed and judged, so that the first answer takes no longer than the next one;
     - hint, with a ``rung`` from 1: ``{html, rung, of}``;
     - solution: ``{html}``. Whether an attempt comes first is for the page to say.
 
@@ -44,6 +48,15 @@ def answer(text: str) -> str:
     except (ExerciseError, ValueError) as problem:
         reply = {"problem": str(problem)}
     return json.dumps(reply, ensure_ascii=False)
+
+
+@functools.cache
+def version() -> str:
+    """Return a short hash of the library: a page and the Python that answers in it must have the same."""
+    found = hashlib.sha256()
+    for path in sorted(Path(loopbook.__file__).parent.rglob("*.py")):
+        found.update(path.read_bytes())
+    return found.hexdigest()[:12]
 
 
 def _read(text):
@@ -77,6 +90,11 @@ def _check(sheet: Sheet, request: dict[str, Any]) -> dict[str, Any]:
     return sheet.check(request.get("answers", {}))
 
 
+def _prepare(sheet: Sheet, request: dict[str, Any]) -> dict[str, Any]:
+    sheet.rehearse()
+    return {}
+
+
 def _hint(sheet: Sheet, request: dict[str, Any]) -> dict[str, Any]:
     rung = request.get("rung", 1)
     return {"html": sheet.hint(rung), "rung": rung, "of": sheet.rungs}
@@ -89,6 +107,7 @@ def _solution(sheet: Sheet, request: dict[str, Any]) -> dict[str, Any]:
 _REPLIES: dict[str, Callable[[Sheet, dict[str, Any]], dict[str, Any]]] = {
     "show": _show,
     "check": _check,
+    "prepare": _prepare,
     "hint": _hint,
     "solution": _solution,
 }

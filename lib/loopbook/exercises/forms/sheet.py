@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import functools
 import re
 import urllib.parse
@@ -21,6 +22,9 @@ from loopbook.exercises.question import Question
 LONGEST = 20_000
 #: Of the largest value of a record, a smaller part is zero.
 _TRACE = 1e-12
+#: What comes along where somebody copies, and nobody sees.
+_UNSEEN = re.compile("[\u200b-\u200f\u2060-\u2064\ufeff]")
+_CONTROLLER = re.compile(r"\s*[A-Za-z]+\s*\(")
 #: What a notebook calls for the arrays of an exercise; a page has them as a file.
 _CALL = re.compile(r'`([^`=]+?)\s*=\s*exercise\("[^`]*`')
 
@@ -164,16 +168,23 @@ class Sheet:
             "notes": list(response.notes),
         }
 
+    def rehearse(self) -> None:
+        """Judge the key, and forget it: what that needs for the first time takes longer, and an answer need not."""
+        copy.copy(self.question).check(**{name: kind.key for name, kind in self.question.key.items()})
+
     def _given(self, answers):
         """The answers as the exercise takes them."""
         if not isinstance(answers, Mapping):
             raise ExerciseError(f"the answers are {answers!r:.60}: expected texts by the names of the fields")
         several = {field.name for field in self.fields if field.control == SEVERAL}
         given = {}
-        for name, answer in answers.items():
+        for name, typed in answers.items():
+            answer = _UNSEEN.sub("", typed) if isinstance(typed, str) else typed
             if isinstance(answer, Mapping):
                 answer = {part: text for part, text in answer.items() if _is_typed(part, text)}
                 answer = {} if answer.keys() == {"form"} else answer  # a form alone is no controller
+                # in the place of one setting somebody may write the whole controller, as PID(5, 3)
+                answer = next((text for text in answer.values() if _CONTROLLER.match(text)), answer)
             elif isinstance(answer, list):
                 answer = [word for word in answer if _is_typed(name, word)]
                 # a box of its own says that none is chosen
