@@ -406,7 +406,8 @@ class TestProgressOfAll:
 
     def test_it_is_saved_and_read_as_the_notebooks_keep_it(self, reader, front, tmp_path):
         answered = {"10.1": True, "10.1 Mira": False, "9.2": True}
-        front.evaluate("answered => (localStorage.loopbook = JSON.stringify({ answered }))", answered)
+        tried = {"10.1": {"answers": {"K": "1.5"}, "attempts": 2, "hints": 1}}
+        front.evaluate("all => (localStorage.loopbook = JSON.stringify(all))", {"answered": answered, "tried": tried})
         front.reload()
         expect(front.locator("li[data-chapter='10'] .count")).to_have_text("1 of 10")
         expect(front.locator(".sum")).to_contain_text("2 of ")
@@ -415,7 +416,11 @@ class TestProgressOfAll:
             front.get_by_role("button", name="Save my progress as a file").click()
         file = tmp_path / ".loopbook-progress.json"
         saved.value.save_as(file)
-        assert file.read_text() == json.dumps({"answered": answered}, indent=1, sort_keys=True) + "\n"
+        assert json.loads(file.read_text()) == {"answered": answered, "student": None, "tried": tried}
+        front.evaluate("localStorage.clear()")
+        front.get_by_label("Read it from a file").set_input_files(file)
+        expect(front.locator(".progress-note")).to_contain_text("2 right")
+        assert reader.remembered == {"answered": answered, "student": None, "tried": tried}
         file.write_text('{"answered": {"10.1": false, "10.2": true, "1.1": false}}')
         front.get_by_label("Read it from a file").set_input_files(file)
         expect(front.locator(".progress-note")).to_contain_text("1 right")

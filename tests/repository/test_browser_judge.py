@@ -361,16 +361,14 @@ class TestInTheBrowser:
         assert ask(page) == json.loads(answer(json.dumps(ASKED)))
 
         # nor does one that Python cannot survive end more than itself
-        assert "begins anew" in ask(page, exercise="4.1", answers={"F": "-" * 3900 + "s"})
+        says = ask(page, exercise="4.1", answers={"F": "-" * 3900 + "s"})
+        assert re.match(r"Python cannot go on from this answer, and begins anew|ended after \d+ s", says)
         assert ask(page) == json.loads(answer(json.dumps(ASKED)))
 
         # what was not visited says so, and leads to what was
         page.goto(small.address + "two.html")
         assert page.inner_text("h1") == "No network"
-        assert page.eval_on_selector_all("li a", "links => links.map(link => link.innerText)") == [
-            "The front page",
-            "one.html",
-        ]
+        assert page.eval_on_selector_all("li a", "links => links.map(link => link.innerText)") == ["one.html"]
         assert complaints == []
         context.close()
 
