@@ -206,6 +206,7 @@ class Python {
       stdout: console.debug,
       stderr: console.debug, // warnings of packages are not for readers
     });
+    this.PythonError = this.pyodide.ffi.PythonError; // a Python that has ended cannot be asked for it
     progress(0.75, "Python reads the packages");
     await this.unpack(this.parts.parts[FIRST]);
     const module = this.pyodide.toPy({});
@@ -322,7 +323,7 @@ self.onmessage = ({ data: { id, request } }) => {
       self.postMessage({ id, reply: await python.answer(id, request) });
     } catch (error) {
       // what Python raises it survives; an overflow of the stack below it, it does not
-      const isDead = !(error instanceof python.pyodide.ffi.PythonError) && !(error instanceof Missing);
+      const isDead = !(error instanceof python.PythonError) && !(error instanceof Missing);
       self.postMessage({ id, failed: error.message, isDead });
     }
     questions -= 1;

@@ -361,8 +361,7 @@ class TestInTheBrowser:
         assert ask(page) == json.loads(answer(json.dumps(ASKED)))
 
         # nor does one that Python cannot survive end more than itself
-        says = ask(page, exercise="4.1", answers={"F": "-" * 3900 + "s"})
-        assert re.match(r"Python cannot go on from this answer, and begins anew|ended after \d+ s", says)
+        assert "begins anew" in ask(page, exercise="4.1", answers={"F": "-" * 3900 + "s"})
         assert ask(page) == json.loads(answer(json.dumps(ASKED)))
 
         # what was not visited says so, and leads to what was
