@@ -451,8 +451,18 @@ def test_a_narrow_resonance_is_not_stepped_over():
     # exp(-t) + damping exp(-damping t) sin(10 t)
     a = float(damping)
     known = 0.5 + 2 * a * 10 / ((1 + a) ** 2 + 100) + a**2 * (1 / (4 * a) - a / (4 * (a**2 + 100)))
-    for method in ("boundary value", "quadrature", None):
+    for method in ("quadrature", None):
         assert integral_of_square(E, method) == pytest.approx(known, rel=1e-9)
+    # its digits leave room for a verdict with one kernel of linear algebra and not with another
+    assert declined_or(known, lambda: integral_of_square(E, "boundary value"), rel=1e-9)
+
+
+def declined_or(known, integral, rel):
+    """Whether a method finds the known value, or says that it does not apply."""
+    try:
+        return integral() == pytest.approx(known, rel=rel)
+    except ValueError:
+        return True
 
 
 @pytest.mark.parametrize(
@@ -468,12 +478,9 @@ def test_a_narrow_resonance_is_not_stepped_over():
 )
 def test_near_the_limit_a_method_declines_or_is_right(process, settings, known):
     """Against the residues with 120 digits; two solutions of the boundary value problem agreed, and were both wrong."""
+    controller = PID(*map(sympy.Rational, settings.split()))
     for method in METHODS[:2]:
-        try:
-            value = ise(process, PID(*map(sympy.Rational, settings.split())), method=method)
-        except ValueError:
-            continue
-        assert value == pytest.approx(known, rel=2e-10), method
+        assert declined_or(known, lambda method=method: ise(process, controller, method=method), rel=2e-10), method
 
 
 def test_it_says_why_every_method_declines():
