@@ -35,9 +35,9 @@ test-all: .venv/ready ## the same with all variants of the exercises, as once a 
 
 bench: .venv/ready ## measure what the collection costs beside what it stands on
 	$(python) tests/bench.py
-	$(python) tests/bench_deadtime.py
-	$(python) tests/bench_grading.py
-	$(python) tests/repository/bench_book.py
+	$(python) tests/library/bench_deadtime.py
+	$(python) tests/grading/bench_grading.py
+	$(python) tests/site/bench_book.py
 
 book: .venv/ready ## make the site of the collection, build/book/index.html; OFFLINE=1 puts Python into it as well
 	$(python) docs build/book

@@ -13,9 +13,9 @@ from PIL import Image
 
 DOCS = Path(__file__).parent
 ROOT = DOCS.parent
-sys.path.insert(0, str(ROOT / "tests" / "repository"))
+sys.path.insert(0, str(ROOT / "tests" / "site"))
 
-import browser  # noqa: E402 - tests/repository/ has just become a place to import from
+import browser  # noqa: E402 - tests/site/ has just become a place to import from
 from desk import Desk, jupyterlab  # noqa: E402
 
 CHAPTER = "10_tuning"

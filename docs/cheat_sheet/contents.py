@@ -1,7 +1,7 @@
 """The contents of the cheat sheet: formulas as SymPy expressions, each of them what a function of the library returns.
 
 What no function derives with symbols (a relay's ultimate gain, the margins of one loop) stands in stated.py, and
-tests/repository/test_cheat_sheet.py compares it with the numbers of the library.
+tests/site/test_cheat_sheet.py compares it with the numbers of the library.
 """
 
 from cheat_sheet import dynamics, rules

@@ -3,7 +3,7 @@
 `example-7-4`, `equation-10-15`, `figure-2-8`, `table-12-3` and `section-7-5` come from the numbers of the book, and
 belong to the first place of a page that shows them: a figure before a section that is named after it, a section before
 a row of a check. A figure without a number has the id of its cell, which a cell keeps for life. The titles of sections
-are addresses, too, as everywhere on the web. tests/repository/permanent_links.txt holds those that must not vanish.
+are addresses, too, as everywhere on the web. tests/site/permanent_links.txt holds those that must not vanish.
 """
 
 import re

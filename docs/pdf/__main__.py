@@ -14,11 +14,11 @@ import pypdf
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
-sys.path[:0] = [str(ROOT / "tests" / "repository"), str(HERE.parent / "extensions")]
+sys.path[:0] = [str(ROOT / "tests" / "site"), str(HERE.parent / "extensions")]
 
 from on_paper import WHOLE_BOOK  # noqa: E402
 
-import browser  # noqa: E402 - of tests/repository/, which has just become a place to import from
+import browser  # noqa: E402 - of tests/site/, which has just become a place to import from
 import repository  # noqa: E402 - of docs/extensions/
 
 FILE = "loopbook.pdf"

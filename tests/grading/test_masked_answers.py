@@ -33,7 +33,7 @@ from loopbook.grading.roster import Student
 from loopbook.pid import PID
 from needs import needs_jail
 
-AIR_HEATER = Path(__file__).parents[1] / "examples" / "course" / "air_heater.py"
+AIR_HEATER = Path(__file__).parents[2] / "examples" / "course" / "air_heater.py"
 COURSE = load(AIR_HEATER)
 
 

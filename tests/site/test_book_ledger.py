@@ -26,9 +26,10 @@ sys.path.insert(0, str(DOCS / "extensions"))
 pytest.importorskip("sphinx", reason="the book's extra is not installed")
 import checks  # noqa: E402  (of docs/extensions)
 import ledger_page  # noqa: E402  (of docs/extensions)
-import library  # noqa: E402
 import repository_pages  # noqa: E402
 import slugs  # noqa: E402
+
+import library  # noqa: E402
 
 RESULTS = [(entry, row) for source in sources().values() for entry in source for row in entry.results]
 

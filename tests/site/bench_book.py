@@ -3,7 +3,7 @@
 A page counts without its figures. Each kind of page is opened by a browser that comes for the first time: from a server
 on the same machine, and as a phone has it, behind slow 4G with a processor that is four times as slow.
 The first answer to an exercise is timed as well, with all parts of Python on that server, and the answers after it.
-``python tests/repository/bench_book.py build/book`` measures the pages of a site that is there.
+``python tests/site/bench_book.py build/book`` measures the pages of a site that is there.
 """
 
 import shutil

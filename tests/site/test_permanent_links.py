@@ -1,6 +1,6 @@
 """Permanent links: places of the chapters keep their addresses; and each figure can be had alone, with its program.
 
-`python tests/repository/test_permanent_links.py build/book` puts new places into the list, and takes none away.
+`python tests/site/test_permanent_links.py build/book` puts new places into the list, and takes none away.
 """
 
 import base64

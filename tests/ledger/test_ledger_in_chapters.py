@@ -38,7 +38,7 @@ from loopbook.ledger import Source, sources
 from loopbook.ledger.statuses import STATUSES
 from loopbook.tables import is_symbol
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 LEDGER = ROOT / "lib" / "loopbook" / "ledger"
 CHAPTERS = ROOT / "chapters"
 MIME_TYPE = "application/vnd.loopbook.check+json"

@@ -17,7 +17,7 @@ STUDENTS = [f"s{number:03}" for number in range(24)]
 @pytest.mark.parametrize("name", [*authors_guide.TOOLS, *authors_guide.METHODS, *authors_guide.kinds()])
 def test_a_call_is_as_the_guide_says(name):
     said, words = authors_guide.rows()[name]
-    assert said == authors_guide.call(name), "python tests/authors_guide.py prints the rows as they are now"
+    assert said == authors_guide.call(name), "python tests/grading/authors_guide.py prints the rows as they are now"
     assert words
 
 

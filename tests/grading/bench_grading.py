@@ -33,7 +33,7 @@ from loopbook.grading.judge import Judge
 from loopbook.grading.release import release
 from loopbook.grading.roster import Student
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "examples" / "course"))
 from hand_in import fill_in_all, insert  # noqa: E402 - it lies beside the course that it belongs to
 
@@ -240,7 +240,7 @@ def killed(table, course, times=20):
 
 def besieged(table):
     """The hostile corpus: its tests are that nothing got out, no mark was gained, and nobody else was touched."""
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "tests/test_grading_hostile.py"]
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "tests/grading/test_grading_hostile.py"]
     *_, said = subprocess.run(command, cwd=ROOT, capture_output=True, encoding="utf-8").stdout.strip().splitlines()
     table.add_row("hostile corpus", f"{len(ATTACKS)} attacks", said)
 

@@ -84,7 +84,8 @@ def of_exercise(number: str, name: str) -> Iterator[tuple]:
 def of_all(folder: Path) -> list[tuple]:
     """Return all answers that the tests of exercises give and that another Python can have; it takes minutes."""
     files = sorted(
-        {*TESTS.glob("test_exercise*.py"), TESTS / "test_masked_answers.py"} - {TESTS / "test_exercise_forms.py"}
+        {*TESTS.glob("exercises/test_*.py"), TESTS / "grading" / "test_masked_answers.py"}
+        - {TESTS / "exercises" / "test_exercise_forms.py"}
     )
     places = os.pathsep.join([str(Path(__file__).parent), str(TESTS)])
     environment = os.environ | {RECORD: str(folder / "recorded"), "PYTHONPATH": places}

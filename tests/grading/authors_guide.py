@@ -1,6 +1,6 @@
 """The author's guide, as the tests read it: its tables of calls, and its assignments.
 
-``python tests/authors_guide.py`` prints the rows of both tables with the calls as they are now.
+``python tests/grading/authors_guide.py`` prints the rows of both tables with the calls as they are now.
 """
 
 import inspect
@@ -10,7 +10,7 @@ from pathlib import Path
 from loopbook.exercises import authoring
 from loopbook.exercises.kinds import MAKERS, Kind
 
-PAGE = Path(__file__).parents[1] / "docs" / "authors.md"
+PAGE = Path(__file__).parents[2] / "docs" / "authors.md"
 TOOLS = ("exercise", "between", "choice", "answers", "criterion", "pi_controller", "stable", "largest_sensitivity")
 METHODS = ("mistake", "shows", "hints", "solution", "picture", "solution_picture")
 

@@ -32,7 +32,7 @@ from loopbook.plants import WoodChipTank
 from loopbook.signals import stepwise
 from loopbook.simulation import simulate
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 TIMES = np.linspace(0, 25, 501)
 LAG = 2 * (1 - exp(-t / 5))
 

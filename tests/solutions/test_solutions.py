@@ -13,7 +13,7 @@ from draws import THOROUGH
 from loopbook.exercises import exercise
 from loopbook.exercises.question import Question
 
-SOLUTIONS = sorted((Path(__file__).parents[1] / "solutions").glob("*.ipynb"))
+SOLUTIONS = sorted((Path(__file__).parents[2] / "solutions").glob("*.ipynb"))
 #: Its parts are told from the story of one plant, not computed.
 ONLY_FOR_THE_REFERENCE = {"1.1"}
 

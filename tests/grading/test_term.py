@@ -13,7 +13,7 @@ import pytest
 
 from needs import needs_jail
 
-COURSE = Path(__file__).parents[1] / "examples" / "course"
+COURSE = Path(__file__).parents[2] / "examples" / "course"
 
 
 def table(path):
