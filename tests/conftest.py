@@ -3,6 +3,7 @@
 Linear algebra keeps to one thread: the tests themselves run in parallel, and many threads for small matrices only wait.
 """
 
+import gc
 import os
 import shutil
 import sys
@@ -13,7 +14,7 @@ import pytest
 from hypothesis import settings
 
 import forked_kernels
-from draws import NEW, THOROUGH, draws
+from draws import DAY, NEW, THOROUGH, draws
 
 ROOT = Path(__file__).parents[1]
 
@@ -33,6 +34,16 @@ def pytest_configure(config):
         folder = Path(tempfile.mkdtemp(prefix="loopbook-kernels-"))
         server = forked_kernels.start(folder)
         config.add_cleanup(lambda: (server.communicate(), shutil.rmtree(folder)))
+
+
+def pytest_report_header():
+    return "all variants" if THOROUGH else f"variants of {DAY}; LOOPBOOK_DAY={DAY} draws them again"
+
+
+def pytest_collection_finish():
+    """Leave the tests themselves out of Python's collections of garbage, whose pauses look like a slow answer."""
+    gc.collect()
+    gc.freeze()
 
 
 #: What takes long begins first, so that no process works alone at the end; before all, what builds the site for others.

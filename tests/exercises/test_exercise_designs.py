@@ -2,8 +2,6 @@
 
 import time
 
-import pytest
-
 from judged import assert_judged
 from loopbook.exercises.authoring import criterion, design, number, settings
 from loopbook.exercises.judging import RIGHT, UNJUDGED, WRONG, judge
@@ -34,9 +32,10 @@ JUDGED = [
 ]
 
 
-@pytest.mark.parametrize(("kind", "given", "status", "says"), JUDGED, ids=range(len(JUDGED)))
-def test_judging(kind, given, status, says):
-    assert_judged(kind, given, status, says)
+def test_judging(subtests):
+    for kind, given, status, says in JUDGED:
+        with subtests.test(f"{given!r:.60}"):
+            assert_judged(kind, given, status, says)
 
 
 def test_a_design_that_takes_too_long_is_not_judged():

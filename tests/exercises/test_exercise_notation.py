@@ -168,19 +168,13 @@ READ = {
 FORMS = [(form, text, symbols) for symbols, rows in READ.items() for form, texts in rows.items() for text in texts]
 
 
-@pytest.mark.parametrize(("form", "text", "symbols"), FORMS, ids=[text for _, text, _ in FORMS])
-def test_a_formula_is_read_as_it_is_meant(form, text, symbols):
-    key = Formula(form, symbols)
-    assert agree(key, Formula(text, symbols), points_for(key), within=0)
-
-
-@pytest.mark.parametrize(("form", "text", "symbols"), FORMS, ids=[text for _, text, _ in FORMS])
-def test_what_was_read_is_said_in_pythons_notation(form, text, symbols):
-    formula = Formula(text, symbols)
-    assert formula.remark in ("", f"read as {formula.text}")
-    again = Formula(formula.text, symbols)
-    assert again.remark == ""
-    assert again.text == formula.text
+def test_a_formula_is_read_as_it_is_meant_and_said_in_pythons_notation():
+    for form, text, symbols in FORMS:
+        key, formula = Formula(form, symbols), Formula(text, symbols)
+        assert agree(key, formula, points_for(key), within=0), text
+        assert formula.remark in ("", f"read as {formula.text}"), text
+        again = Formula(formula.text, symbols)
+        assert (again.remark, again.text) == ("", formula.text), text
 
 
 #: What may mean two things, or none: {symbols: {text: words of the sentence}}.
@@ -217,12 +211,13 @@ NOT_READ = [
 ]
 
 
-@pytest.mark.parametrize(("text", "symbols", "says"), NOT_READ, ids=[text for text, _, _ in NOT_READ])
-def test_what_may_mean_two_things_is_not_read(text, symbols, says):
-    with pytest.raises(Unreadable) as caught:
-        Formula(text, symbols)
-    assert says in str(caught.value)
-    assert len(str(caught.value)) < 250
+def test_what_may_mean_two_things_is_not_read(subtests):
+    for text, symbols, says in NOT_READ:
+        with subtests.test(text):
+            with pytest.raises(Unreadable) as caught:
+                Formula(text, symbols)
+            assert says in str(caught.value)
+            assert len(str(caught.value)) < 250
 
 
 #: What is Python's notation, and is read as Python reads it: {text: what it is not}.

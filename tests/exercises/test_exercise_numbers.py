@@ -376,9 +376,10 @@ JUDGED = [
 ]
 
 
-@pytest.mark.parametrize(("kind", "given", "status", "says"), JUDGED, ids=range(len(JUDGED)))
-def test_judging(kind, given, status, says):
-    assert_judged(kind, given, status, says)
+def test_judging(subtests):
+    for kind, given, status, says in JUDGED:
+        with subtests.test(f"{given!r:.60}"):
+            assert_judged(kind, given, status, says)
 
 
 def test_the_mistakes_of_an_exercise_come_before_the_general_ones():

@@ -1,7 +1,6 @@
 """Answers that are settings of a controller, in the form that is asked."""
 
 import numpy as np
-import pytest
 
 from judged import assert_judged
 from loopbook import s
@@ -171,6 +170,7 @@ JUDGED = [
 ]
 
 
-@pytest.mark.parametrize(("kind", "given", "status", "says"), JUDGED, ids=range(len(JUDGED)))
-def test_judging(kind, given, status, says):
-    assert_judged(kind, given, status, says)
+def test_judging(subtests):
+    for kind, given, status, says in JUDGED:
+        with subtests.test(f"{given!r:.60}"):
+            assert_judged(kind, given, status, says)

@@ -532,24 +532,21 @@ TYPED = {
         "smaller": ["less", "it is smaller", "lower"],
     },
 }  # fmt: skip
-WAYS = [
-    (options, option, text)
-    for options, rows in (*SAID.items(), *TYPED.items())
-    for option, texts in rows.items()
-    for text in texts
-]
 
 
-@pytest.mark.parametrize(("options", "option", "text"), WAYS, ids=[f"{text}-{option}" for _, option, text in WAYS])
-def test_a_word_is_found_in_what_people_write(options, option, text):
-    kind = word(options[0], options)
-    if option is None:
-        with pytest.raises(Unreadable, match="none of the words"):
-            kind.read(text)
-    else:
-        meant, remark = kind.read(text)
-        assert meant == option
-        assert remark in ("", f'read as "{option}"')
+def test_a_word_is_found_in_what_people_write(subtests):
+    for options, rows in (*SAID.items(), *TYPED.items()):
+        kind = word(options[0], options)
+        for option, texts in rows.items():
+            with subtests.test(f"{option} of {options}"):
+                for text in texts:
+                    if option is None:
+                        with pytest.raises(Unreadable, match="none of the words"):
+                            kind.read(text)
+                    else:
+                        meant, remark = kind.read(text)
+                        assert meant == option, text
+                        assert remark in ("", f'read as "{option}"')
 
 
 LISTS = sorted(
@@ -563,9 +560,8 @@ LISTS = sorted(
 )
 
 
-@pytest.mark.parametrize("among", LISTS, ids=[among[0] for among in LISTS])
-def test_no_option_of_the_bank_is_read_as_another_one(among):
-    for option in among:
+def test_no_option_of_the_bank_is_read_as_another_one():
+    for among, option in ((words, option) for words in LISTS for option in words):
         assert synonyms.found(option, among) in (option, None)
         for text in (
             f"the {option}",
@@ -591,6 +587,7 @@ def test_no_option_of_the_bank_is_read_as_another_one(among):
                 }
 
 
-@pytest.mark.parametrize(("kind", "given", "status", "says"), JUDGED, ids=range(len(JUDGED)))
-def test_judging(kind, given, status, says):
-    assert_judged(kind, given, status, says)
+def test_judging(subtests):
+    for kind, given, status, says in JUDGED:
+        with subtests.test(f"{given!r:.60}"):
+            assert_judged(kind, given, status, says)

@@ -112,35 +112,39 @@ def drawn_alone(symbol, way, taps=()):
     return drawing.picture(None, ""), node.width + node.room[0], node.height + node.room[1]
 
 
-@pytest.mark.parametrize("way", WAYS)
-@pytest.mark.parametrize("name", SYMBOLS)
-def test_a_symbol_with_its_tag_keeps_to_its_room(name, way):
-    picture, width, height = drawn_alone(SYMBOLS[name](), WAYS[way])
+def assert_it_keeps_to_its_room(symbol, way, taps=()):
+    picture, width, height = drawn_alone(symbol, way, taps)
     left, right, bottom, top = extent(picture, of_texts=True)
     assert -width / 2 <= left <= right <= width / 2
     assert -height / 2 <= bottom <= top <= height / 2
 
 
 @pytest.mark.parametrize("way", WAYS)
-@pytest.mark.parametrize("name", [name for name in TAGGED if "valve" in name])
-def test_a_valve_keeps_to_its_room_wherever_its_signal_comes_from(name, way):
-    for tap in WAYS.values():
-        if (tap[0] == 0) != (WAYS[way][0] == 0):  # across the flow
-            picture, width, height = drawn_alone(SYMBOLS[name](), WAYS[way], (tap,))
-            left, right, bottom, top = extent(picture, of_texts=True)
-            assert -width / 2 <= left <= right <= width / 2
-            assert -height / 2 <= bottom <= top <= height / 2
+def test_a_symbol_with_its_tag_keeps_to_its_room(way, subtests):
+    for name, make in SYMBOLS.items():
+        with subtests.test(name):
+            assert_it_keeps_to_its_room(make(), WAYS[way])
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_valve_keeps_to_its_room_wherever_its_signal_comes_from(way, subtests):
+    across = [tap for tap in WAYS.values() if (tap[0] == 0) != (WAYS[way][0] == 0)]
+    for name in [name for name in TAGGED if "valve" in name]:
+        with subtests.test(name):
+            for tap in across:
+                assert_it_keeps_to_its_room(SYMBOLS[name](), WAYS[way], (tap,))
 
 
 @pytest.mark.parametrize("way", LAYOUTS)
-@pytest.mark.parametrize("name", SYMBOLS)
-def test_a_symbol_can_stand_in_a_diagram_in_each_direction(name, way):
-    picture = instrumentation_diagram(LAYOUTS[way], "a x b", equipment={"x": SYMBOLS[name]()})
-    assert misplaced_texts(picture) == []
-    pipes = [line.get_xydata() for line in picture.figure.axes[0].lines if line.get_linewidth() == 1.7]
+def test_a_symbol_can_stand_in_a_diagram_in_each_direction(way, subtests):
     axis = int(way in ("up", "down"))
-    along = [pipe for pipe in pipes if len(pipe) == 2 and abs(pipe[1, axis] - pipe[0, axis]) > 0.1]
-    assert along, "no pipe"
+    for name, make in SYMBOLS.items():
+        with subtests.test(name):
+            picture = instrumentation_diagram(LAYOUTS[way], "a x b", equipment={"x": make()})
+            assert misplaced_texts(picture) == []
+            pipes = [line.get_xydata() for line in picture.figure.axes[0].lines if line.get_linewidth() == 1.7]
+            along = [pipe for pipe in pipes if len(pipe) == 2 and abs(pipe[1, axis] - pipe[0, axis]) > 0.1]
+            assert along, "no pipe"
 
 
 def shape(picture):

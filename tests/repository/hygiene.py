@@ -321,9 +321,10 @@ def checks_are_computed(stored: Stored) -> list[str]:
     cells = [(label, tree(cell)) for label, cell in code(stored.notebook)]
     modules = [module for _, module in cells]
     literal, printed = CONSTANTS | names_of_literals(modules), names_of_printed_values(modules)
+    imported = imported_evidence(modules)
     found = []
     for label, module in cells:
-        compared = evidence_in(module, modules)  # a claim may be about printed values
+        compared = evidence_in(module, imported)  # a claim may be about printed values
         calls = [n for n in ast.walk(module) if isinstance(n, ast.Call) and getattr(n.func, "attr", "") == "check"]
         uses = [n for n in ast.walk(module) if isinstance(n, ast.Attribute) and n.attr == "check"]
         if len(uses) > len(calls):
@@ -339,9 +340,9 @@ def checks_are_computed(stored: Stored) -> list[str]:
 
 def names_of_printed_values(modules: list[ast.Module]) -> set[str]:
     """The method `printed_value`, and the names that are bound to what it returns, or to an expression with it."""
-    found = {"printed_value"}
+    found, imported = {"printed_value"}, imported_evidence(modules)
     for module in modules:
-        compared = evidence_in(module, modules)
+        compared = evidence_in(module, imported)
         for node in ast.walk(module):
             if isinstance(node, ast.Assign) and names(node.value, compared) & {"printed_value"}:
                 found |= {name for target in node.targets for name in names(target)}
@@ -380,6 +381,7 @@ def evidence_can_fail(stored: Stored) -> list[str]:
     cells = [(label, tree(cell)) for label, cell in code(stored.notebook)]
     modules = [module for _, module in cells]
     literal, same = CONSTANTS | names_of_literals(modules), other_names(modules)
+    offered = imported_evidence(modules)
     found = []
     for label, module in cells:
         for node in ast.walk(module):
@@ -388,11 +390,11 @@ def evidence_can_fail(stored: Stored) -> list[str]:
                     for alias in imported:
                         if alias.asname or alias.name not in OFFERED:
                             found.append(f"{label}: {ast.unparse(alias)} is evidence under another name, or its making")
-                case ast.IfExp(body=one, orelse=other) if all(evidence_in(choice, modules) for choice in (one, other)):
+                case ast.IfExp(body=one, orelse=other) if all(evidence_in(choice, offered) for choice in (one, other)):
                     found.append(f"{label}: {ast.unparse(node)} chooses among evidence")
                 case ast.Attribute(attr="turned"):
                     found.append(f"{label}: {ast.unparse(node)} turns evidence around")
-    for label, call in ((label, call) for label, module in cells for call in evidence_in(module, modules)):
+    for label, call in ((label, call) for label, module in cells for call in evidence_in(module, offered)):
         of = f"{label}: {ast.unparse(call)}"
         starred = [side.value for side in call.args if isinstance(side, ast.Starred)]
         named = [keyword.value for keyword in call.keywords if keyword.arg not in ("quantity", None)]
@@ -427,14 +429,18 @@ def called(call: ast.Call) -> str:
     return getattr(call.func, "id", getattr(call.func, "attr", ""))
 
 
-def evidence_in(module: ast.Module, modules: list[ast.Module]) -> list[ast.Call]:
-    """The calls in a cell of what the notebook imports from `loopbook.evidence`."""
-    imported = {
+def imported_evidence(modules: list[ast.Module]) -> set[str]:
+    """The names that a notebook imports from `loopbook.evidence`."""
+    return {
         alias.name
-        for node in (n for m in modules for n in ast.walk(m))
+        for node in (n for module in modules for n in ast.walk(module))
         if isinstance(node, ast.ImportFrom) and node.module == "loopbook.evidence"
         for alias in node.names
     }
+
+
+def evidence_in(module: ast.AST, imported: Collection[str]) -> list[ast.Call]:
+    """The calls of evidence in a piece of code, by the names that the notebook imports."""
     calls = [node for node in ast.walk(module) if isinstance(node, ast.Call) and called(node) in SIDES]
     return [
         call

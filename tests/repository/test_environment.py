@@ -161,12 +161,14 @@ def upward(name, source, module=("loopbook",)):
 MODULES = [path for path in sorted(LIBRARY.rglob("*.py")) if path != LIBRARY / "__init__.py"]
 
 
-@pytest.mark.parametrize("path", MODULES, ids=lambda path: path.relative_to(LIBRARY).as_posix())
-def test_a_module_imports_only_what_stands_above_it(path):
-    inside = path.relative_to(LIBRARY)
-    name = inside.parts[0].removesuffix(".py")
-    assert name in LEVEL, f"{name} has no place in the order of the modules"
-    assert upward(name, path.read_text(encoding="utf-8"), ("loopbook", *inside.parts[:-1])) == set()
+def test_a_module_imports_only_what_stands_above_it():
+    found = {}
+    for path in MODULES:
+        inside = path.relative_to(LIBRARY)
+        name = inside.parts[0].removesuffix(".py")
+        assert name in LEVEL, f"{name} has no place in the order of the modules"
+        found[inside.as_posix()] = upward(name, path.read_text(encoding="utf-8"), ("loopbook", *inside.parts[:-1]))
+    assert {path: wrong for path, wrong in found.items() if wrong} == {}
 
 
 @pytest.mark.parametrize(

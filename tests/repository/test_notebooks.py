@@ -2,7 +2,6 @@
 
 import copy
 import difflib
-import functools
 import re
 import shutil
 import subprocess
@@ -22,13 +21,10 @@ from loopbook.__main__ import app
 STORED = [path for folder in ("chapters", "solutions") for path in sorted((ROOT / folder).glob("*.ipynb"))]
 
 
-read = functools.cache(Stored.at)
-
-
-@pytest.mark.parametrize("check", CHECKS, ids=lambda check: check.__name__)
 @pytest.mark.parametrize("path", STORED, ids=lambda path: f"{path.parent.name}/{path.stem}")
-def test_the_stored_notebooks(path, check):
-    found = check(read(path))
+def test_the_stored_notebooks(path):
+    stored = Stored.at(path)
+    found = [f"{check.__name__}: {complaint}" for check in CHECKS for complaint in check(stored)]
     assert not found, "\n" + "\n".join(found)
 
 
@@ -278,18 +274,19 @@ def test_a_name_within_a_comprehension_or_a_function_is_another_one(later):
 
 @pytest.mark.usefixtures("small_ledger")
 class TestTheRules:
-    @pytest.mark.parametrize("check", CHECKS, ids=lambda check: check.__name__)
-    def test_accept_a_good_notebook(self, check):
-        assert check(stored(*GOOD)) == []
+    def test_accept_a_good_notebook(self):
+        assert [complaint for check in CHECKS for complaint in check(stored(*GOOD))] == []
 
-    @pytest.mark.parametrize(("check", "notebook"), ACCEPTED)
-    def test_accept_what_looks_alike(self, check, notebook):
-        assert check(notebook) == []
+    def test_accept_what_looks_alike(self, subtests):
+        for check, notebook in ACCEPTED:
+            with subtests.test(check=check.__name__):
+                assert check(notebook) == []
 
-    @pytest.mark.parametrize(("check", "words", "notebook"), BROKEN)
-    def test_refuse_a_broken_notebook(self, check, words, notebook):
-        complaints = check(notebook)
-        assert any(words in complaint for complaint in complaints), complaints
+    def test_refuse_a_broken_notebook(self, subtests):
+        for check, words, notebook in BROKEN:
+            with subtests.test(check=check.__name__, words=words):
+                complaints = check(notebook)
+                assert any(words in complaint for complaint in complaints), complaints
 
     def test_have_all_been_seen_to_refuse(self):
         assert {check for check, _, _ in BROKEN} == set(CHECKS)

@@ -77,10 +77,13 @@ def complaints(text):
     ]
 
 
-@pytest.mark.parametrize("path", TEXTS, ids=lambda path: path.relative_to(ROOT).as_posix())
-def test_a_text_uses_none_of_the_worst_words(path):
-    found = complaints(READ[path.suffix](path.read_text(encoding="utf-8")))
-    assert not found, f"{path.relative_to(ROOT)}\n" + "\n".join(found)
+def test_no_text_uses_one_of_the_worst_words():
+    found = [
+        f"{path.relative_to(ROOT)}: {complaint}"
+        for path in TEXTS
+        for complaint in complaints(READ[path.suffix](path.read_text(encoding="utf-8")))
+    ]
+    assert not found, "\n".join(found)
 
 
 @pytest.mark.parametrize(
