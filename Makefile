@@ -13,10 +13,10 @@ unexport MPLBACKEND
 # Each of the fifty kernels of the tests would compile the library again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help lab fresh edit test test-all bench book pdf pictures grade execute
+.PHONY: help lab fresh edit test test-site test-grading test-solutions test-all bench book pdf pictures grade execute
 
 help: ## list the commands
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
 
 lab: .venv/ready ## open the start page in JupyterLab, in a copy of the notebooks that is yours
 	$(python) -m loopbook lab
@@ -27,11 +27,20 @@ fresh: .venv/ready ## put a fresh notebook into your copy and keep yours beside 
 edit: .venv/ready ## open the stored notebooks themselves in JupyterLab, to change the collection
 	$(python) -m jupyterlab --config jupyter_lab_config.py
 
-test: .venv/ready ## prove everything: the library, the ledger and every cell of every notebook
+test: .venv/ready ## prove the library, the ledger, every exercise and every cell of every chapter
 	$(python) -m pytest -n $(workers)
 
-test-all: .venv/ready ## the same with all variants of the exercises, as once a week
-	LOOPBOOK_ALL=1 $(python) -m pytest -n $(workers)
+test-site: .venv/ready ## prove the site: its pages, in a browser, with Python in them, and on paper
+	$(python) -m pytest -n $(workers) tests/site
+
+test-grading: .venv/ready ## prove the grader: jail, judge, reports, attacks, a term
+	$(python) -m pytest -n $(workers) tests/grading
+
+test-solutions: .venv/ready ## prove the solutions, for other students too
+	$(python) -m pytest -n $(workers) tests/solutions solutions
+
+test-all: .venv/ready ## prove everything with all variants and all draws, as once a week
+	LOOPBOOK_ALL=1 $(python) -m pytest -n $(workers) tests lib chapters solutions README.md
 
 bench: .venv/ready ## measure what the collection costs beside what it stands on
 	$(python) tests/bench.py

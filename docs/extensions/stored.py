@@ -22,6 +22,7 @@ from lazy_figures import is_wide
 from lessons import of_cell, places
 from nbformat.v4.rwbase import rejoin_lines
 from sphinx import addnodes
+from sphinx.util.matching import Matcher
 
 DOCS = Path(__file__).parents[1]
 ROOT = DOCS.parent
@@ -252,11 +253,12 @@ def folded(cells):
 
 def copy(app, config):
     """Write the copies that have changed, and take away those whose notebook is gone."""
+    is_left_out = Matcher(config.exclude_patterns)
     for folder in FOLDERS:
         target = DOCS / folder
         target.mkdir(exist_ok=True)
         paths = [path for path in sorted((ROOT / folder).glob("*.ipynb")) if path != START]
-        for path in paths:
+        for path in (path for path in paths if not is_left_out(f"{folder}/{path.name}")):
             text = json.dumps(page(path), ensure_ascii=False, indent=1)
             write(target / path.name, text)
         for stale in {file.name for file in target.glob("*.ipynb")} - {path.name for path in paths}:

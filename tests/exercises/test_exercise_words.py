@@ -561,7 +561,7 @@ LISTS = sorted(
 
 
 def test_no_option_of_the_bank_is_read_as_another_one():
-    for among, option in ((words, option) for words in LISTS for option in words):
+    for among, option in ((row, option) for row in LISTS for option in row):
         assert synonyms.found(option, among) in (option, None)
         for text in (
             f"the {option}",

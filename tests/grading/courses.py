@@ -1,0 +1,81 @@
+"""A small course to grade: an assignment of two exercises, and a class that has handed in."""
+
+import sys
+
+import nbformat
+
+from loopbook.grading.assignment import load
+from loopbook.grading.grade import grade
+from loopbook.grading.release import release
+from loopbook.grading.roster import read_roster
+
+ASSIGNMENT = '''"""A lag
+
+With its controller.
+"""
+
+from loopbook.exercises.authoring import answers, between, exercise, number, settings
+from loopbook.transfer import first_order
+from loopbook.tuning import simc
+
+SECRET = "a secret of the tests"
+
+
+@exercise("1", title="The response", points=2)
+def response(K=between(2, 6, "K/%"), T=between(15, 40, "s")):
+    """A process has the gain {K} and the time constant {T}."""
+    return answers(y=number(2 * K, "K", "the response to 2 %"), p=number(-1 / T, "rad/s", "the pole"))
+
+
+@response.mistake("That is the gain.")
+def _(K):
+    return {"y": K}
+
+
+@exercise("2", title="Settings", points=3)
+def tuned(K=between(2, 6, "K/%"), T=between(15, 40, "s"), delay=between(2, 6, "s")):
+    """A lag has the gain {K}, the time constant {T} and the dead time {delay}."""
+    return answers(C=settings(simc(first_order(K, T, delay), Tc=delay, c=2), gain="%/K"))
+'''
+SOLUTION = {
+    "1": 'sheet.answer("1", y={K} * 2, p=-1 / {T})',
+    "2": 'from loopbook.pid import PID\nsheet.answer("2", C=PID({T} / (2 * {K} * {delay}), Ti=min({T}, 4 * {delay})))',
+}
+
+
+class Course:
+    """A class of a few students, in a folder: who has solved all of it, one who stopped halfway, one who is missing."""
+
+    def __init__(self, folder, students=5):
+        self.folder = folder
+        self.path = folder / "lag.py"
+        self.path.write_text(ASSIGNMENT, encoding="utf-8")
+        rows = [f"s{number},Student {number}\n" for number in range(students)]
+        (folder / "roster.csv").write_text("id,name\n" + "".join(rows), encoding="utf-8")
+        self.assignment = load(self.path)
+        self.students = read_roster(folder / "roster.csv")
+        self.submissions = folder / "submissions"
+        release(self.assignment, self.students[:-1], self.submissions)
+        for student in self.students[:-1]:
+            halfway = {"1": 'sheet.answer("1", y={K})', "2": "1 / 0"}
+            self.fill_in(student.id, halfway if student.id == "s1" else SOLUTION)
+
+    def fill_in(self, student, cells):
+        path = self.submissions / student / "lag.ipynb"
+        notebook = nbformat.read(path, as_version=4)
+        for cell in notebook.cells:
+            for number, source in cells.items():
+                if cell.source.startswith(f'sheet.answer("{number}"'):
+                    values = self.assignment.question(student, number).values
+                    cell.source = source.format(**{name: float(value) for name, value in values.items()})
+        nbformat.write(notebook, path)
+
+    def grade(self, to, **options):
+        options.setdefault("place", self.place())
+        return grade(self.assignment, self.students, self.submissions, self.folder / to, **options)
+
+    def command(self, to):
+        return [
+            sys.executable, "-m", "loopbook", "grade", str(self.path), str(self.submissions),
+            "--to", str(self.folder / to), "--workers", "1",
+        ]  # fmt: skip
