@@ -13,6 +13,11 @@ def example(heading, language="python"):
     return textwrap.dedent(re.search(rf"```{language}\n(.*?)```", section, re.DOTALL)[1])
 
 
+def ledger():
+    """The source that contributors are shown, as TOML: how a book begins, and an entry."""
+    return example("Add a book", "toml") + example("Add an example", "toml")
+
+
 def run(heading, known=()):
     """The names that the example under a heading makes."""
     names = dict(known)
