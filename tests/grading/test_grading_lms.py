@@ -731,27 +731,26 @@ def test_other_tables_of_moodle_get_a_table_for_the_gradebook(roster):
     assert lms.remarks(students, "Heater", marks)[0].startswith("moodle_grades.csv is for the import of the gradebook")
 
 
-def written(folder, students, marks):
-    reports.write_all(folder, "Heater", students, marks)
-    return {path.name for path in folder.iterdir() if path.suffix in (".csv", ".zip")}
+FITTING = {
+    "own": {"grades.csv", "feedback.zip", "moodle_feedback.zip"},
+    "canvas": {"grades.csv", "canvas_grades.csv", "canvas_feedback.zip"},
+    "moodle": {"grades.csv", "moodle_grades.csv", "moodle_feedback.zip"},
+    "gradescope": {"grades.csv"},
+}
 
 
 def test_only_what_fits_the_roster_is_written(roster, tmp_path):
-    assert written(tmp_path / "own", CLASS, [mark("s1001", 2)]) == {"grades.csv", "feedback.zip", "moodle_feedback.zip"}
-    students = roster(CANVAS.format(sis="", login=""))
     file = "doejane_LATE_123_456_heater-1.ipynb"
-    assert written(tmp_path / "canvas", students, [mark("A17", 2, file=file)]) == {
-        "grades.csv",
-        "canvas_grades.csv",
-        "canvas_feedback.zip",
+    classes = {
+        "own": (CLASS, mark("s1001", 2)),
+        "canvas": (roster(CANVAS.format(sis="", login="")), mark("A17", 2, file=file)),
+        "moodle": (roster(WORKSHEET), mark("s1001", 2)),
+        "gradescope": (roster("First Name,Last Name,SID,Email\nJane,Doe,s1001,jane@x.org\n"), mark("s1001", 2)),
     }
-    assert written(tmp_path / "moodle", roster(WORKSHEET), [mark("s1001", 2)]) == {
-        "grades.csv",
-        "moodle_grades.csv",
-        "moodle_feedback.zip",
-    }
-    students = roster("First Name,Last Name,SID,Email\nJane,Doe,s1001,jane@x.org\n")
-    assert written(tmp_path / "gradescope", students, [mark("s1001", 2)]) == {"grades.csv"}
+    for system, (students, one) in classes.items():
+        reports.write_all(tmp_path / system, "Heater", students, [one])
+        written = {path.name for path in (tmp_path / system).iterdir()}
+        assert written & set().union(*FITTING.values()) == FITTING[system]
 
 
 # Feedback.
@@ -883,12 +882,12 @@ def test_the_command_packs_what_it_releases(tmp_path):
     assert (tmp_path / "released_for_moodle" / "heater_for_moodle.zip").read_bytes() == before
     done = CliRunner().invoke(app, ["release", str(module), "--to", str(tmp_path / "other"), "--for", "nowhere"])
     assert done.exit_code == 1
-    assert "notebooks cannot be packed for 'nowhere': expected one of canvas, drive, moodle" in done.output
+    assert re.search("notebooks cannot be packed for 'nowhere': expected one of .*canvas.* moodle", done.output)
     assert not (tmp_path / "other").exists()
 
 
 def test_what_cannot_be_handed_out_is_said(released):
-    with pytest.raises(GradingError, match="cannot be packed for 'gradescope': expected one of canvas, drive, moodle"):
+    with pytest.raises(GradingError, match=r"cannot be packed for 'gradescope': expected one of .*canvas.* moodle"):
         lms.packed("gradescope", released, CLASS)
     with pytest.raises(GradingError, match="has no notebook of s9: expected a folder for each student"):
         lms.packed("drive", released, [*CLASS, Student("s9", "N")])
@@ -915,8 +914,10 @@ def test_what_a_system_lacks_is_said(tmp_path, monkeypatch):
 
 
 def test_the_system_that_contributors_are_shown_is_one(monkeypatch, roster):
-    monkeypatch.setattr(lms, "_REGISTERED", dict(lms._REGISTERED))
-    monkeypatch.setattr(reports.outputs, "_REGISTERED", dict(reports.outputs._REGISTERED))
+    """Beside those of the library, of which one may be the same by now."""
+    monkeypatch.setattr(lms, "__path__", [])
+    monkeypatch.setattr(lms, "_REGISTERED", {name: lms._REGISTERED[name] for name in ("canvas", "moodle", "own")})
+    monkeypatch.setattr(reports.outputs, "_REGISTERED", {})
     contributing.run("Add a learning management system")
     jane, john = students = roster("Person;Badge\nJane Doe;b7\nJohn Roe;b8\n")
     assert (jane.id, jane.name, jane.id_from, jane.system) == ("b7", "Jane Doe", "Badge", "lectern")
@@ -924,7 +925,7 @@ def test_the_system_that_contributors_are_shown_is_one(monkeypatch, roster):
     assert Owners(students).of("badge b8 late.ipynb").late is True
     assert Owners(students).of("badge b7.ipynb").late is None
     assert "not on the roster" in Owners(students).of("badge b9.ipynb").reason
-    (one,) = [one for one in reports.registered() if one.file == "lectern_grades.csv"]
+    one = reports.outputs._REGISTERED["lectern_grades.csv"]
     assert dict(one.files("Heater", students, [mark("b7", 2.5)])) == {"lectern_grades.csv": "Badge;Points\nb7;2.5\n"}
     assert dict(one.files("Heater", CLASS, [])) == {}
     with pytest.raises(GradingError, match="an export of Lectern's participants"):

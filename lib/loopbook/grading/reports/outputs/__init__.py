@@ -9,6 +9,7 @@ from __future__ import annotations
 import importlib
 import inspect
 import pkgutil
+import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
@@ -79,7 +80,7 @@ class Output:
             notebooks: the ids of the students whose notebook was kept as it ran, ``notebooks/{student}.html``.
             folder: of the grades, where the files for each student are already.
         Raises:
-            GradingError: where what the function returns is neither text nor bytes.
+            GradingError: where what the function returns is neither text nor bytes, or a text that no file can hold.
         """
         known = {
             "title": title, "students": students, "marks": marks, "complaints": complaints, "notes": notes,
@@ -99,6 +100,11 @@ class Output:
         made = self.content(**{name: known[name] for name in inspect.signature(self.content).parameters})
         if not isinstance(made, str | bytes | None):
             raise GradingError(f"the output {self.file!r} returns {made!r:.50}: expected a text or bytes")
+        if isinstance(made, str) and (torn := re.search("[\ud800-\udfff]", made)):
+            raise GradingError(
+                f"the output {self.file!r} has {torn[0]!r}, half a character that no file can hold: expected what "
+                "students wrote as reports.wording.visible returns it"
+            )
         return made
 
 
