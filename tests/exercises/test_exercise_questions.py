@@ -1,11 +1,13 @@
 """An exercise as an author writes it and a reader meets it: statement, variants, response."""
 
+import inspect
 import types
 
 import pytest
 import sympy
 
 import contributing
+import test_exercises
 from loopbook import exercises, s
 from loopbook.exercises import authoring, bank
 from loopbook.exercises.authoring import Exercise, answers, between, choice, exercise, number, transfer_function, word
@@ -41,9 +43,19 @@ def test_a_question():
         question.given("V")
 
 
+HEATER = contributing.run("Add an exercise", vars(authoring))["air_heater"]
+CLAIMS = [one for one in vars(test_exercises).values() if inspect.isfunction(one) and hasattr(one, "pytestmark")
+          and [*inspect.signature(one).parameters] == ["chapter", "subtests"]]  # fmt: skip
+
+
+@pytest.mark.parametrize("claim", CLAIMS, ids=lambda claim: claim.__name__)
+def test_the_exercise_that_contributors_are_shown_is_as_those_of_the_bank(claim, monkeypatch, subtests):
+    monkeypatch.setattr(bank, "exercises", lambda chapter: {HEATER.number: HEATER})
+    claim("10", subtests)
+
+
 def test_the_exercise_that_contributors_are_shown_is_one():
-    heater = contributing.run("Add an exercise", vars(authoring))["air_heater"]
-    question = heater.question()
+    question = HEATER.question()
     assert "a gain of 3\N{NO-BREAK SPACE}K/%, a time constant of 25\N{NO-BREAK SPACE}s" in question.statement
     assert [one.status for one in question.check(Kp=25 / 24, Ti=16).verdicts] == [RIGHT, RIGHT]
     assert question.rungs[2] == "With $T_c = \\tau$ there is $K_p = 25/(3 \\cdot 2 \\cdot 4)$."
