@@ -110,8 +110,9 @@ def columns(blocks, room):
         if best is None or tallest < best[0]:
             best = tallest, parts
     tallest, parts = best
-    if tallest + 4 * max(len(part) - 1 for part in parts) > room:
-        raise ValueError(f"a column is {tallest:.0f} points high: expected at most {room:.0f}")
+    needed = tallest + 4 * max(len(part) - 1 for part in parts)
+    if needed > room:
+        raise ValueError(f"a column is {needed:.0f} points high: expected at most {room:.0f}")
     return parts
 
 
