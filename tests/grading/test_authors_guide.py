@@ -24,7 +24,7 @@ def test_a_call_is_as_the_guide_says(name):
 
 @pytest.mark.parametrize("kind", sorted({*ASSIGNMENTS, *authors_guide.kinds()}))
 def test_each_kind_of_answers_has_an_assignment(kind):
-    assert kind in ASSIGNMENTS, f"docs/authors.md has no assignment for {kind}: expected one below a line ### {kind}"
+    assert kind in [*ASSIGNMENTS], f"docs/authors.md has no assignment for {kind}: expected one below a line ### {kind}"
     assert kind in authors_guide.kinds(), f"docs/authors.md has an assignment for {kind}, which is no kind of answers"
 
 
