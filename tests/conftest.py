@@ -32,8 +32,24 @@ def pytest_configure(config):
     is_first = not hasattr(config, "workerinput") and config.getoption("numprocesses", None)
     if is_first and sys.platform == "linux" and not THOROUGH:
         folder = Path(tempfile.mkdtemp(prefix="loopbook-kernels-"))
-        server = forked_kernels.start(folder)
-        config.add_cleanup(lambda: (server.communicate(), shutil.rmtree(folder)))
+        config.pluginmanager.register(Kernels(folder))
+        config.add_cleanup(lambda: shutil.rmtree(folder))
+
+
+class Kernels:
+    """The process that forks kernels. Where it has failed the run ends at once, before each notebook says so."""
+
+    def __init__(self, folder):
+        self.folder, self.server = folder, forked_kernels.start(folder)
+
+    @pytest.hookimpl(optionalhook=True)
+    def pytest_xdist_node_collection_finished(self):
+        if why := forked_kernels.failure(self.folder):
+            pytest.exit(f"there are no kernels for the notebooks: {why}", returncode=1)
+
+    def pytest_unconfigure(self):
+        self.server.stdin.close()
+        self.server.wait()
 
 
 def pytest_report_header():

@@ -11,6 +11,7 @@ import os
 import socket
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -36,7 +37,25 @@ def start(folder):
     kernel.write_text(json.dumps(description), encoding="utf-8")
     os.environ["JUPYTER_PATH"] = str(folder / "jupyter")
     command = [sys.executable, str(Path(__file__)), str(address)]
-    return subprocess.Popen(command, stdin=subprocess.PIPE, start_new_session=True)
+    server = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
+    threading.Thread(target=_report, args=(server, folder), daemon=True).start()
+    return server
+
+
+def _report(server, folder):
+    """Hand on what the server says, and keep the last line where the kernels look if it ends without being asked to."""
+    said = [line.decode(errors="replace") for line in server.stderr]
+    sys.stderr.writelines(said)
+    if server.wait():
+        partial = folder / "failed.partial"
+        partial.write_text("".join(said[-1:]) or f"it ended with {server.returncode}", encoding="utf-8")
+        partial.rename(folder / "failed")
+
+
+def failure(folder):
+    """Why there is no server, None as long as it has not failed."""
+    told = folder / "failed"
+    return told.read_text(encoding="utf-8").strip() if told.exists() else None
 
 
 # ---- The program that Jupyter starts.
@@ -47,14 +66,13 @@ def ask(address, *arguments):
     import signal
 
     server = socket.socket(socket.AF_UNIX)
-    end = time.monotonic() + 60
     while True:
         try:
             server.connect(address)
             break
-        except OSError:  # the server is still importing
-            if time.monotonic() > end:
-                raise
+        except OSError:  # the server is still importing, or has failed
+            if why := failure(Path(address).parent):
+                sys.exit(f"there are no kernels: {why}")
             time.sleep(0.05)
     signal.signal(signal.SIGINT, lambda *_: server.sendall(INTERRUPT))
     signal.signal(signal.SIGTERM, lambda *_: server.sendall(END))
