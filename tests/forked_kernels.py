@@ -87,10 +87,13 @@ def ask(address, *arguments):
 
 def serve(address):
     """Import the libraries, then fork a process for each that asks; end when standard input is closed."""
+    import gc
     import selectors
     import signal
 
     _import_libraries()
+    gc.collect()
+    gc.freeze()  # no kernel looks through what all of them share
     listening = socket.socket(socket.AF_UNIX)
     listening.bind(address)
     listening.listen(64)

@@ -8,6 +8,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.patches import Circle, Polygon
 
+from draws import of_the_day
 from loopbook.diagrams import (
     ACTUATORS,
     COMPRESSORS,
@@ -119,28 +120,30 @@ def assert_it_keeps_to_its_room(symbol, way, taps=()):
     assert -height / 2 <= bottom <= top <= height / 2
 
 
-@pytest.mark.parametrize("way", WAYS)
-def test_a_symbol_with_its_tag_keeps_to_its_room(way, subtests):
-    for name, make in SYMBOLS.items():
-        with subtests.test(name):
-            assert_it_keeps_to_its_room(make(), WAYS[way])
+def each_way(symbols):
+    """Each symbol with one of the ways of a flow, another one each day; in a thorough run with all."""
+    return [(name, way) for name in symbols for way in of_the_day([*WAYS], 1, name)]
 
 
-@pytest.mark.parametrize("way", WAYS)
-def test_a_valve_keeps_to_its_room_wherever_its_signal_comes_from(way, subtests):
-    across = [tap for tap in WAYS.values() if (tap[0] == 0) != (WAYS[way][0] == 0)]
-    for name in [name for name in TAGGED if "valve" in name]:
-        with subtests.test(name):
-            for tap in across:
-                assert_it_keeps_to_its_room(SYMBOLS[name](), WAYS[way], (tap,))
+def test_a_symbol_with_its_tag_keeps_to_its_room(subtests):
+    for name, way in each_way(SYMBOLS):
+        with subtests.test(name, way=way):
+            assert_it_keeps_to_its_room(SYMBOLS[name](), WAYS[way])
 
 
-@pytest.mark.parametrize("way", LAYOUTS)
-def test_a_symbol_can_stand_in_a_diagram_in_each_direction(way, subtests):
-    axis = int(way in ("up", "down"))
-    for name, make in SYMBOLS.items():
-        with subtests.test(name):
-            picture = instrumentation_diagram(LAYOUTS[way], "a x b", equipment={"x": make()})
+def test_a_valve_keeps_to_its_room_wherever_its_signal_comes_from(subtests):
+    for name, way in each_way([name for name in TAGGED if "valve" in name]):
+        with subtests.test(name, way=way):
+            for tap in WAYS.values():
+                if (tap[0] == 0) != (WAYS[way][0] == 0):  # across the flow
+                    assert_it_keeps_to_its_room(SYMBOLS[name](), WAYS[way], (tap,))
+
+
+def test_a_symbol_can_stand_in_a_diagram_in_each_direction(subtests):
+    for name, way in each_way(SYMBOLS):
+        with subtests.test(name, way=way):
+            axis = int(way in ("up", "down"))
+            picture = instrumentation_diagram(LAYOUTS[way], "a x b", equipment={"x": SYMBOLS[name]()})
             assert misplaced_texts(picture) == []
             pipes = [line.get_xydata() for line in picture.figure.axes[0].lines if line.get_linewidth() == 1.7]
             along = [pipe for pipe in pipes if len(pipe) == 2 and abs(pipe[1, axis] - pipe[0, axis]) > 0.1]

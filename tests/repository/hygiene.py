@@ -581,10 +581,15 @@ def quotient(parts: list[Fraction | None]) -> Fraction | None:
 
 
 @cache
+def written(path: Path) -> dict:
+    """What a ledger says; nothing where there is none."""
+    return tomllib.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+
+
+@cache
 def printed_numbers(ledger: Path, source: str, entry: str) -> frozenset[Fraction]:
     """The magnitudes that an entry of the ledger prints, 0 and 1 excepted."""
-    path = ledger / f"{source}.toml"
-    content = tomllib.loads(path.read_text(encoding="utf-8")).get(entry, {}) if path.exists() else {}
+    content = written(ledger / f"{source}.toml").get(entry, {})
     texts = [str(value) for value in content.get("given", {}).values()]
     for result in content.get("result", []):
         texts += [str(result[key]) for key in ("printed", "correct", "computed") if key in result]
