@@ -1,7 +1,5 @@
 """Answers for which a design is asked: whatever meets the criteria is right."""
 
-import time
-
 from judged import assert_judged
 from loopbook.exercises.authoring import criterion, design, number, settings
 from loopbook.exercises.judging import RIGHT, UNJUDGED, WRONG, judge
@@ -38,10 +36,12 @@ def test_judging(subtests):
             assert_judged(kind, given, status, says)
 
 
-def test_a_design_that_takes_too_long_is_not_judged():
+def test_a_design_that_takes_too_long_is_not_judged(monkeypatch):
     def slow(_):
         while True:
-            time.sleep(0.01)
+            pass
+
+    monkeypatch.setattr("loopbook.exercises.kinds.design.SECONDS", 0.1)
 
     verdict = judge("x", design(number(1), criterion("the overshoot", slow, below=1)), 2)
     assert verdict.status == UNJUDGED

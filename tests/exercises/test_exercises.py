@@ -244,13 +244,12 @@ def test_wrong_answers_are_wrong(exercise):
         assert len(answers) >= 3 or by_itself or isinstance(kind, kinds.Word | kinds.Design)
         for answer in answers:
             assert judge(name, kind, answer).status in (WRONG, MISTAKE), f"{name} = {answer!r}"
-        assert not _verdict(question, name, answers[0]).is_right  # with all that is said of it
 
 
 @each_exercise
 def test_an_answer_that_cannot_be_judged_says_what_is_expected(exercise):
     question = exercise.question()
-    for label, answer in NOT_TO_BE_JUDGED.items():
+    for label, answer in of_the_day([*NOT_TO_BE_JUDGED.items()], 5, exercise.number):
         response = question.check(**dict.fromkeys(question.key, answer))
         for verdict in response.verdicts:
             kind = question.key[verdict.name]

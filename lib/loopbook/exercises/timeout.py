@@ -11,8 +11,10 @@ from typing import Any, TypeVar
 
 _Found = TypeVar("_Found")
 
-#: A computation ends, too, when so many times its limit have passed on the clock: it may sleep, or wait for something.
+#: A computation ends, too, when it has slept, or waited for something, for so many times its limit.
 WAITING = 4
+#: Who has less than this part of a processor waits for something else than the processor, however busy the machine is.
+_IDLE = 0.1
 #: How often (s) the time is looked at.
 _LOOK = 0.25
 #: A browser's Python has one thread, and the page ends it where it takes too long.
@@ -61,11 +63,14 @@ def limited(seconds: float, function: Callable[..., _Found], *arguments: Any) ->
 def _in_time(seconds, work):
     """Run the work in a thread, and stop it when the time is over."""
     worker = threading.Thread(target=work, daemon=True)
-    began, end = time.process_time(), time.monotonic() + WAITING * seconds
     worker.start()
-    worker.join(min(_LOOK, seconds))
-    while worker.is_alive() and time.process_time() - began < seconds and time.monotonic() < end:
-        worker.join(_LOOK)
+    worked = waited = 0.0
+    while worker.is_alive() and worked < seconds and waited < WAITING * seconds:
+        began, clock = time.process_time(), time.monotonic()
+        worker.join(min(_LOOK, seconds))
+        work, passed = time.process_time() - began, time.monotonic() - clock
+        worked += work
+        waited += passed if work < _IDLE * passed else 0
     if worker.is_alive():
         ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(worker.ident), ctypes.py_object(TooSlow))
         raise TimeoutError(f"not done after {seconds:g} s")
