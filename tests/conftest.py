@@ -14,7 +14,7 @@ import pytest
 from hypothesis import settings
 
 import forked_kernels
-from draws import DAY, NEW, THOROUGH, draws
+from draws import DAY, NEW, THOROUGH, draws, of_the_day
 
 ROOT = Path(__file__).parents[1]
 
@@ -73,8 +73,16 @@ for name in (*FIRST, *LAST):
     assert any(ROOT.glob(f"{name}*")), f"the order of the tests names {name}: expected the beginning of a path"
 
 
-def pytest_collection_modifyitems(items):
-    """Sort whole files, as `--no-loadscope-reorder` hands them out."""
+def pytest_collection_modifyitems(config, items):
+    """Draw the cases of the day, and sort whole files, as `--no-loadscope-reorder` hands them out."""
+    cases = {}
+    for item in items:
+        if marker := item.get_closest_marker("daily"):
+            cases.setdefault((item.nodeid.partition("[")[0], *marker.args), []).append(item)
+    drawn = {id(item) for (test, count), of_test in cases.items() for item in of_the_day(of_test, count, test)}
+    left_out = {id(item): item for of_test in cases.values() for item in of_test if id(item) not in drawn}
+    config.hook.pytest_deselected(items=[*left_out.values()])
+    items[:] = [item for item in items if id(item) not in left_out]
 
     def place(item):
         for number, name in enumerate(FIRST):

@@ -232,6 +232,7 @@ def test_what_is_no_chart_is_refused(draw):
 
 @pytest.mark.parametrize("name", CHARTS)
 @pytest.mark.parametrize("names", [False, True])
+@pytest.mark.daily(7)
 def test_a_function_chart_shows_everything_and_nothing_overlaps(name, names):
     picture = sequential_function_chart(CHARTS[name], title="Figure 12.3", names=names)
     nothing_overlaps(picture)

@@ -179,6 +179,7 @@ def test_every_symbol_differs_from_every_other_one():
 
 @pytest.mark.parametrize("kind", [kind for kind in SIGNALS if kind != "electrical"])
 @pytest.mark.parametrize("layout", ["LC b", "b LC", "LC\n b", "b\n LC", "LC 1\n . b"])
+@pytest.mark.daily(12)
 def test_each_kind_of_line_leads_wherever_a_signal_can_lead(kind, layout):
     path = "LC 1 b" if "1" in layout else "LC b"
     electrical = instrumentation_diagram(layout, "", path)

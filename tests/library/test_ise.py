@@ -363,6 +363,7 @@ def test_all_methods_agree_on_random_loops():
 @pytest.mark.parametrize(
     "settings", ["2 0.7 1.4 0.35 1.2", "2 0.7 1.4 0.3 0.7", "1 1 1000 0.3 400", "1 50 1 20 4", "1 1 0 2 1"]
 )
+@pytest.mark.daily(4)
 def test_all_methods_find_the_closed_form(mode, settings):
     """Among them Ti = T, a delay of 1000 lags, and none."""
     exact = [sympy.Rational(x) for x in settings.split()]

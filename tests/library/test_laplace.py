@@ -274,6 +274,7 @@ def test_inverse_is_that_of_sympy(image):
     ],
     ids=str,
 )
+@pytest.mark.daily(8)
 def test_inverse_and_transform_undo_each_other(image):
     signal = inverse(image)
     impulses = {DiracDelta(t): 1} | {DiracDelta(t, order): s**order for order in (1, 2)}

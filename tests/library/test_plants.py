@@ -50,6 +50,7 @@ named = pytest.mark.parametrize("cls", PLANTS, ids=lambda cls: cls.__name__)
 
 
 @named
+@pytest.mark.daily(7)
 def test_the_operating_point_is_a_steady_state(cls):
     plant = cls()
     rest = [plant.numbers(plant._in_constants(rate)) for rate in plant.state_equations().values()]
@@ -69,6 +70,7 @@ def test_where_a_plant_is_linear_its_transfer_functions_are_those_of_its_equatio
 
 
 @named
+@pytest.mark.daily(7)
 def test_where_a_plant_regulates_itself_a_static_gain_is_the_slope_of_the_static_response(cls):
     plant = cls()
     if not plant.is_self_regulating:
@@ -82,6 +84,7 @@ def test_where_a_plant_regulates_itself_a_static_gain_is_the_slope_of_the_static
 
 
 @named
+@pytest.mark.daily(7)
 def test_a_plant_regulates_itself_if_all_its_modes_die_out(cls):
     """By the eigenvalues of the linear model, which are numbers; a level has one at zero."""
     plant = cls()
@@ -101,6 +104,7 @@ def delayed_states(plant, formula):
 
 
 @named
+@pytest.mark.daily(7)
 def test_the_linear_model_is_that_of_small_changes(cls):
     """Rates with one signal changed a little, numerically, against the matrices."""
     plant = cls()

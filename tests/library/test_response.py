@@ -401,6 +401,7 @@ SYSTEMS = {
 @pytest.mark.parametrize("name", SYSTEMS)
 @pytest.mark.parametrize("hold", ["zero order", "first order"])
 @pytest.mark.parametrize("spacing", ["even", "jitter", "growing", "from another time"])
+@pytest.mark.daily(16)
 def test_samples_are_summed_exactly(name, hold, spacing):
     rng = np.random.default_rng(7)
     times = np.linspace(0, 40, 257)

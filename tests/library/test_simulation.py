@@ -53,6 +53,7 @@ WAYS = [(plant, name_of(x)) for plant in OPEN for x in plant.inputs]
 
 
 @pytest.mark.parametrize(("plant", "source"), WAYS, ids=[f"{type(plant).__name__}-{x}" for plant, x in WAYS])
+@pytest.mark.daily(25)
 def test_where_an_input_acts_linearly_a_step_response_is_the_analytic_one(plant, source):
     if not plant.is_linear(source):
         return
@@ -137,6 +138,7 @@ def test_dead_time_anywhere_is_exact(H):
 
 
 @INSIDE
+@pytest.mark.daily(3)
 def test_dead_time_anywhere_is_exact_under_a_sampled_controller(H):
     run = simulate(Process(H), Controller(PID(0.5, Ti=4), step=0.3), until=30, setpoint=stepwise(1, {12: 0.5}))
     assert np.abs(run["y"] - System(H).response(run.times, run["u"])).max() < 1e-8
@@ -163,6 +165,7 @@ def recycle_loop(step):
 
 @pytest.mark.parametrize("tau", [7, 0.3, 0])
 @pytest.mark.parametrize("step", [1, 0.7])
+@pytest.mark.daily(3)
 def test_a_dead_time_in_a_balance_is_exact(tau, step):
     plant = Recycle(tau=tau, tau_m=3 if tau > 1 else 0.4)  # also shorter than a step
     run = simulate(plant, recycle_loop(step), until=70, setpoint=1)

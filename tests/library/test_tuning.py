@@ -182,6 +182,7 @@ def test_a_rule_gives_the_kind_of_controller_that_it_says(registered):
 @of_all_rules
 @settings(max_examples=draws(20), deadline=None)
 @given(K=GAINS, T=POSITIVE, ratio=RATIOS, k=RANGE_OF_HANG, scale=GAINS, slower=POSITIVE)
+@pytest.mark.daily(11)
 def test_units(name, K, T, ratio, k, scale, slower):
     values = {"K": K, "T": T, "delay": ratio * T, "Ku": k / K, "Pu": T, "KpGG": k / K, "Tou": T}
     scaled = {one: x * scale ** DIMENSIONS[one][0] * slower ** DIMENSIONS[one][1] for one, x in values.items()}
@@ -411,6 +412,7 @@ def least_itae(process, start, mode, measured):
         ("PID", "servo", True, 1.05),
     ],
 )
+@pytest.mark.daily(2)
 def test_the_itae_rule_is_near_the_minimum(kind, mode, measured, most):
     process = first_order(1, 1, Rational(1, 2))
     settings = tuning.itae(process, kind, mode)
