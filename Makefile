@@ -28,7 +28,7 @@ edit: .venv/ready ## open the stored notebooks themselves in JupyterLab, to chan
 	$(python) -m jupyterlab --config jupyter_lab_config.py
 
 test: .venv/ready ## prove the library, the ledger, every exercise and every cell of every chapter
-	$(python) -m pytest -n logical
+	$(python) -m pytest -n $(workers)
 
 test-site: .venv/ready ## prove the site: its pages, in a browser, with Python in them, and on paper
 	$(python) -m pytest -n $(workers) tests/site
