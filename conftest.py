@@ -1,5 +1,6 @@
-"""What pytest is told of notebooks, wherever in the repository they lie."""
+"""What pytest is told of notebooks and of examples in texts, wherever in the repository they lie."""
 
+import pytest
 from nbval.plugin import IPyNbCell
 
 
@@ -10,3 +11,11 @@ def pytest_itemcollected(item):
     """
     if isinstance(item, IPyNbCell):
         item.cell.execution_count = item.cell_num + 1
+
+
+def pytest_runtest_setup(item):
+    """An example in a text begins without the attempts at its exercise that other tests have made."""
+    if isinstance(item, pytest.DoctestItem):
+        from loopbook.exercises.authoring import Exercise
+
+        Exercise.question.cache_clear()
