@@ -1,8 +1,8 @@
 """What exact dead time costs and gives: `make bench` prints this library beside its peers, and errors beside times.
 
 The peers are in `peers.py`: python-control with Pade approximations of order 10, the same in NumPy's arrays where that
-is quicker, grids of frequencies, filters, and JiTCDDE where that is installed, which is not a part of the environment.
-Errors are those beside independent references: series of delays with many digits, closed forms, quadrature.
+is quicker, grids of frequencies and filters. Errors are those beside independent references: series of delays with
+many digits, closed forms, quadrature.
 
 A ratio below one is a peer that is quicker. Many are, and some are as exact; what they do not give is a proof: that the
 loop is stable, that a margin is the nearest one, how many digits are right. With ``--quick`` there are three rounds.
@@ -172,19 +172,10 @@ def the_responses(runs: int) -> Table:
                     *given, (len(times) - 1) * every + 1
                 )[::every]
             )
-            if times[1] < delay and (respond := compiled(*case.settings)):
-                tasks["  JiTCDDE, compiled before, tolerance 1e-8"] = lambda respond=respond, t=times: respond(t, 1e-8)
         errors = {name: float(abs(task()[some] - expected).max()) for name, task in tasks.items()}
         compared(table, runs, tasks, errors)
         table.add_section()
     return table
-
-
-def compiled(*settings: float) -> Callable[[np.ndarray, float], np.ndarray] | None:
-    try:
-        return peers.compiled_pi_step(*settings)
-    except ImportError:
-        return None
 
 
 # ------------------------------------------------------------------------------------------------ margins

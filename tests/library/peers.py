@@ -13,7 +13,6 @@ from __future__ import annotations
 import functools
 import itertools
 import math
-import warnings
 from collections.abc import Callable, Iterable
 from types import SimpleNamespace
 from typing import NamedTuple
@@ -170,39 +169,6 @@ def held_late(above: list[float], below: list[float], delay: float, h: float, u:
         taps, rest = signal.ss2tf(full, effect, C, np.zeros((1, 1)))
         y[k:] += signal.lfilter(taps[0], rest, u[: len(u) - k])
     return y
-
-
-def compiled_pi_step(
-    K: float, T: float, delay: float, Kp: float, Ti: float
-) -> Callable[[np.ndarray, float], np.ndarray]:
-    """The step response of a PI loop from JiTCDDE, which compiles the equations: for rising times and a tolerance.
-
-    Raises:
-        ImportError: where it is not installed.
-    """
-    from jitcdde import jitcdde, t, y
-
-    control_signal = Kp * (1 - y(0, t - delay) + y(1, t - delay) / Ti)
-    equations = jitcdde([(K * control_signal - y(0)) / T, 1 - y(0)], max_delay=delay, verbose=False)
-    equations.compile_C(simplify=False)
-
-    def respond(times: np.ndarray, tolerance: float) -> np.ndarray:
-        # until the dead time is over, the output is 0 and the integral of the error is t; then the slope jumps
-        equations.purge_past()
-        for time, slope in ((0.0, 0.0), (delay * (1 - 1e-7), 0.0), (delay, K * Kp / T)):
-            equations.add_past_point(time, np.array([0.0, time]), np.array([slope, 1.0]))
-        equations.set_integration_parameters(rtol=tolerance, atol=tolerance, first_step=delay / 100, max_step=delay / 2)
-        values = np.zeros(len(times))
-        for k in np.flatnonzero(times > delay):  # with steps of its own it would not see the kinks of the first delays
-            with warnings.catch_warnings(
-                action="ignore"
-            ):  # times between two steps are interpolated, as they should be
-                early = times[k] <= 6 * delay
-                state = equations.integrate_blindly(times[k], delay / 100) if early else equations.integrate(times[k])
-            values[k] = state[0]
-        return values
-
-    return respond
 
 
 # ------------------------------------------------------------------------------------------------ integrals and margins

@@ -3,6 +3,7 @@
 import ast
 import functools
 import importlib
+import pkgutil
 import tomllib
 from pathlib import Path
 
@@ -48,39 +49,17 @@ def without_hints(name, node):
     return found + ["the result"] * (node.returns is None and node.name != "__init__")
 
 
-def home(module):
-    """The file of a module of the library."""
-    place = LIBRARY.parent.joinpath(*module.split("."))
-    return place / "__init__.py" if place.is_dir() else place.with_suffix(".py")
-
-
-def defined(body):
-    """The names that the statements of a module give to something, also those that only a type checker sees."""
-    for node in body:
-        match node:
-            case ast.ImportFrom(module, [ast.alias("*")]):
-                yield from defined(parsed(home(module)).body)
-            case ast.Import(aliases) | ast.ImportFrom(names=aliases):
-                yield from (alias.asname or alias.name.split(".")[0] for alias in aliases)
-            case ast.FunctionDef(name) | ast.ClassDef(name):
-                yield name
-            case ast.Assign() | ast.AnnAssign() | ast.For() | ast.With():
-                yield from (part.id for part in ast.walk(node) if isinstance(part, ast.Name))
-            case ast.If(body=inner, orelse=other):
-                yield from defined([*inner, *other])
-
-
 def missing_in_library(tree):
     """What a module imports, perhaps for a type checker alone, out of modules of the library that do not have it."""
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "loopbook":
-            place, source = LIBRARY.parent.joinpath(*node.module.split(".")), home(node.module)
-            there = {"*", *(defined(parsed(source).body) if source.exists() else ())}
-            for alias in node.names:
-                is_there = alias.name in there or list(place.glob(f"{alias.name}*"))
-                # what a registry puts there
-                if not (is_there or hasattr(importlib.import_module(node.module), alias.name)):
-                    yield f"{node.module}.{alias.name}"
+            module = importlib.import_module(node.module)
+            submodules = {part.name for part in pkgutil.iter_modules(getattr(module, "__path__", []))}
+            yield from (
+                f"{node.module}.{alias.name}"
+                for alias in node.names
+                if not (alias.name in {"*", *submodules} or hasattr(module, alias.name))
+            )
 
 
 def is_api(path):

@@ -26,8 +26,8 @@ from loopbook.grading.plain import Plain, plain, unreadable
 from loopbook.grading.trial.answers import AS_IT_IS, as_given, forms, others, rounded
 
 if TYPE_CHECKING:
-    from loopbook.exercises import Question
     from loopbook.exercises.kinds import Kind
+    from loopbook.exercises.question import Question
 
 #: How bad it is: marks would be wrong, or a student stopped; a student would wonder; worth knowing.
 WRONG, ODD, NOTE = LEVELS = ("wrong", "surprising", "note")
