@@ -36,8 +36,8 @@ test-site: .venv/ready ## prove the site: its pages, in a browser, with Python i
 test-grading: .venv/ready ## prove the grader: jail, judge, reports, attacks, a term
 	$(python) -m pytest -n $(workers) tests/grading
 
-test-solutions: .venv/ready ## prove the solutions, for other students too
-	$(python) -m pytest -n $(workers) tests/solutions solutions
+test-solutions: .venv/ready ## prove every cell of the solutions
+	$(python) -m pytest -n $(workers) solutions
 
 test-all: .venv/ready ## prove everything with all variants and all draws, as once a week
 	LOOPBOOK_ALL=1 $(python) -m pytest -n $(workers) tests lib chapters solutions README.md

@@ -1,6 +1,7 @@
 """What is late and what it costs: due dates, policies, extensions, zones."""
 
 import datetime
+import itertools
 from datetime import timedelta
 
 import pytest
@@ -212,6 +213,11 @@ def test_an_extension_is_another_due_date():
     assert found.part == pytest.approx(0.1)
     assert "(extended to 2026-12-04 23:59 Europe/Berlin)" in found.says
     assert late("2026-12-01 12:00", until="2026-12-04").says == ""
+    for policy, delay in itertools.product(("10 % a day", "4 % an hour"), (0.5, 1, 1.5, 30, 99)):
+        policy, by = Policy.of(DUE, policy), datetime.timedelta(hours=delay)
+        until = policy.due + datetime.timedelta(days=3)
+        parts = lateness(policy, until + by, until=until).part, lateness(policy, policy.due + by).part
+        assert parts[0] == parts[1] > 0
 
 
 def test_what_is_not_accepted_any_more():

@@ -649,6 +649,7 @@ def test_canvas_asks_where_it_cannot_know_and_that_is_said(roster):
         "Canvas",
     )
     two = roster(CANVAS.format(sis="A18", login="anh").replace("Current Score", "Heater (12)"))
+    assert {row[-1] for row in rows(canvas_grades("Heater", two, marks))} == {"Heater", "17", "10"}
     assert "two assignments or more called 'Heater'" in lms.remarks(two, "Heater", marks)[0]
     unsafe = [mark("A17", 10, jailed=False)]
     assert rows(canvas_grades("Heater", students, unsafe))[0][-1] == "Heater (graded without a jail)"

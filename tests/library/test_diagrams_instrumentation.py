@@ -232,6 +232,7 @@ def test_the_description_tells_pipes_and_signals():
         (lambda: instrumentation_diagram("a b", "a tank"), "tank is not in the layout, which has a, b"),
         (lambda: instrumentation_diagram("a b", equipment={"a": 3}), "a is 3, which is not equipment of a plant"),
         (lambda: instrumentation_diagram("a LT b", "a b"), "the way from a to b runs through LT"),
+        (lambda: instrumentation_diagram("FC2 FT2", signals="FC2 FT2"), "a signal goes from FC2 to FT2"),
         (lambda: tank(filled=2), "a tank is filled between 0 and 1, not 2"),
         (lambda: vessel(filled=-1), "a vessel is filled between 0 and 1, not -1"),
         (lambda: instrument("level"), "a tag has capital letters and then perhaps a loop number"),

@@ -281,6 +281,10 @@ def test_inverse_and_transform_undo_each_other(image):
     back = transform(signal.subs(dict.fromkeys(impulses, 0))) + sum(signal.coeff(d) * impulses[d] for d in impulses)
     for point in (7 + I, Rational(17, 2) - 3 * I):
         assert complex(back.subs(s, point)) == pytest.approx(complex(image.subs(s, point)), rel=1e-9)
+    late = inverse(exp(-3 * s) * image).replace(DiracDelta, lambda *_: 0)
+    assert late.subs(t, 1) == 0, "nothing before the dead time is over"
+    before = signal.replace(DiracDelta, lambda *_: 0)
+    assert complex(late.subs(t, Rational(71, 10))) == pytest.approx(complex(before.subs(t, Rational(41, 10))), rel=1e-9)
 
 
 def test_inverse_at_high_order_against_the_exact_sum_of_residues():

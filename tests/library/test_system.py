@@ -142,6 +142,17 @@ def test_step_information_with_dead_time_and_jumps():
     assert System(1 / (s + 1)).step_info(settling=0.05, rise=(0, 0.5)).rise_time == pytest.approx(math.log(2))
 
 
+@pytest.mark.parametrize("H", [1 / (s + 1), s * DELAY / (s + 1) ** 2, (1 - 2 * s) / (s**2 + s + 1)], ids=str)
+def test_step_information_follows_the_sign_and_the_unit_of_time(H):
+    info = System(H).step_info()
+    values, times = ("peak", "final_value"), ("rise_time", "settling_time", "peak_time")
+    turned = {name: -getattr(info, name) for name in values}
+    slower = {name: 7 * getattr(info, name) for name in times}
+    for other, changed in ((System(-H), turned), (System(H.subs(s, 7 * s)), slower)):
+        expected = info._asdict() | changed
+        assert other.step_info()._asdict() == pytest.approx(expected, rel=1e-9, nan_ok=True)
+
+
 def test_the_response_time_of_any_system():
     assert System(1 / (5 * s + 1)).response_time() == pytest.approx(5)
     assert System(first_order(2, 5, 4)).response_time(0.9) == pytest.approx(4 + 5 * math.log(10))

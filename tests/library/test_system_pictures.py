@@ -296,6 +296,7 @@ def test_the_marks_of_nyquist_are_where_the_margins_are():
     arc = labelled(plot.axes, "phase margin 61.4° (delay margin 2.14 s)").get_xydata()
     np.testing.assert_allclose(np.hypot(*arc.T), 1)
     np.testing.assert_allclose(arc[0], [-1, 0], atol=1e-12)
+    assert np.hypot(*np.diff(arc, axis=0).T).sum() == pytest.approx(math.radians(61.4), rel=1e-3), "the short way"
     crossing = System(INTEGRATOR).frequency(0.5)
     np.testing.assert_allclose(arc[-1], [crossing.real, crossing.imag])
     circle = labelled(plot.axes, "$M_s$ = 1.59").get_xydata()

@@ -18,7 +18,7 @@ LANES = {
         "lib/loopbook/grading/*", "lib/loopbook/exercises/*.py", "lib/loopbook/exercises/kinds/*", "tests/grading/*",
         "examples/*", "docs/authors.md", "docs/instructors.md", "environment.txt",
     ],
-    "test-solutions": ["solutions/*", "tests/solutions/*", "lib/loopbook/exercises/*", "environment.txt"],
+    "test-solutions": ["solutions/*", "lib/loopbook/exercises/*", "environment.txt"],
 }  # fmt: skip
 
 

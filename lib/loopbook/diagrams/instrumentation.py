@@ -87,7 +87,15 @@ class _Plan:
         self.kinds = {"pipes": pipes, "ducts": ducts, "shafts": shafts, "signals": signals, **of_kinds}
         self.edges = {kind: connections(text) for kind, text in self.kinds.items()}
         self.entering, self.leaving = neighbours([edge for edges in self.edges.values() for edge in edges])
+        for start, end in (edge for kind in ("signals", *of_kinds) for edge in self.edges[kind]):
+            if self._function(start).endswith("C") and self._function(end).endswith("T"):
+                raise ValueError(f"a signal goes from {start} to {end}: expected one from transmitter to controller")
         self.told = neighbours([edge for kind in ("signals", *of_kinds) for edge in self.edges[kind]])[0]
+
+    def _function(self, name):
+        """The letters of an instrument; none for anything else."""
+        own = name in self.names or name in self.equipment or not TAG.fullmatch(name)
+        return "" if own else re.match("[A-Z]+", name)[0]
 
     def node(self, name, meetings):
         """What stands in the place of a name, with what it learns from its neighbours."""

@@ -736,9 +736,9 @@ def _(K, T, delay):
 
 
 def _crossings(r):
-    """Where the phase of exp(-s)/(r s + 1) is -180° and -540°, and where it is -360°: pairs of frequency and size."""
+    """Where the phase of exp(-s)/(r s + 1) is -180°, -540°, -900°, and -360°: pairs of frequency and size."""
     found = []
-    for phase in (math.pi, 3 * math.pi, 2 * math.pi):
+    for phase in (math.pi, 3 * math.pi, 5 * math.pi, 2 * math.pi):
         low, high = phase - math.pi / 2, phase
         for _ in range(60):
             middle = (low + high) / 2
@@ -754,15 +754,16 @@ def _crossover(k, r):
 
 
 def _is_read_from_nyquist(k, r, more):
-    first, second, _ = (float(k) * size for _, size in _crossings(float(r)))
+    first, *later = (float(k) * size for _, size in _crossings(float(r))[:3])
     margin = math.pi + _crossover(k, r)[1]
-    far = all(abs(math.log(float(more) * size)) > 0.18 for size in (first, second))
+    # the third crossing stays inside, and with it all further ones, which no ruler tells apart
+    far = all(abs(math.log(float(more) * size)) > 0.18 for size in (first, *later)) and float(more) * later[-1] < 1
     return 0.35 <= first <= 0.7 and math.radians(18) <= margin <= math.radians(78) and far
 
 
 def _encirclements(k, r, more):
     """How often the whole curve, negative frequencies included, goes around -1 with more gain."""
-    return 2 * sum(float(more * k) * size > 1 for _, size in _crossings(float(r))[:2])
+    return 2 * sum(float(more * k) * size > 1 for _, size in _crossings(float(r))[:3])
 
 
 @exercise(
@@ -778,7 +779,7 @@ def nyquist(
     k=between(1.2, 3, "", step=0.1, reference=1.7),
     r=choice(0.8, 1, 1.25, 1.5, 2, reference=1.25),
     delay=choice(0.5, 1, 1.5, 2, 3, 4, 5, reference=2, unit="min"),
-    more=choice(1.2, 1.4, 1.6, 2.5, 3, 4, 5, 16, 20, 24, reference=4),
+    more=choice(1.2, 1.4, 1.6, 2.5, 3, 4, 5, 7, 8, reference=4),
 ):
     r"""The curve is the Nyquist curve of a temperature loop, measured with sine waves, for frequencies from zero on.
     (It begins far on the right, on the real axis; the process is stable and its P controller has no poles.) Where the
@@ -833,7 +834,7 @@ def _(k, r):
 
 @nyquist.mistake("There the curve crosses the positive real axis, on the other side. Where is $-1$?")
 def _(k, r):
-    return {"gain_margin": 1 / (float(k) * _crossings(float(r))[2][1])}
+    return {"gain_margin": 1 / (float(k) * _crossings(float(r))[-1][1])}
 
 
 @nyquist.mistake("That is the phase itself, without its sign. How much is missing to half a turn?")
@@ -881,8 +882,8 @@ def _(k, r, more):
     "The crossings of the positive real axis do not count: they are not beyond $-1$, they are on the other side."
 )
 def _(k, r, more):
-    first, second, positive = (float(more * k) * size > 1 for _, size in _crossings(float(r)))
-    return {"unstable": 2 * (first + second + positive)} if positive else {}
+    *negative, positive = (float(more * k) * size > 1 for _, size in _crossings(float(r)))
+    return {"unstable": 2 * (sum(negative) + positive)} if positive else {}
 
 
 @nyquist.mistake(
@@ -941,7 +942,7 @@ def _(k, r, delay, more):
     $-{new_second}$. {count} The open loop has no unstable poles, so that as many poles of the closed loop are unstable
     as the curve goes around $-1$, with its mirror image for negative frequencies: {unstable}.
     """
-    first, second, _ = (float(k) * size for _, size in _crossings(float(r)))
+    first, second, *_ = (float(k) * size for _, size in _crossings(float(r)))
     phase = _crossover(k, r)[1]
     point = complex(math.cos(phase), math.sin(phase))
     counts = {

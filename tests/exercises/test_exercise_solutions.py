@@ -9,7 +9,7 @@ from pathlib import Path
 import matplotlib.pyplot
 import pytest
 
-from draws import THOROUGH
+from draws import STUDENTS, of_the_day
 from loopbook.exercises import exercise
 from loopbook.exercises.question import Question
 
@@ -27,17 +27,23 @@ def _no_windows():
     matplotlib.use(backend)
 
 
-@pytest.mark.parametrize("student", ["Ada", "Norbert"] if THOROUGH else ["Ada"])
 @pytest.mark.parametrize("path", SOLUTIONS, ids=lambda path: path.stem)
-def test_a_solution_is_right_for_another_student(path, student, monkeypatch):
+def test_a_solution_is_right_for_other_students(path, monkeypatch, subtests):
     responses = []
     check = Question.check
     monkeypatch.setattr(Question, "check", lambda *args, **named: responses.append(check(*args, **named)))
     cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
-    names = {"__name__": path.stem}
-    for source in ("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"):
-        exec(compile(source, path.name, "exec"), names)
-        names["exercise"] = lambda number: exercise(number, None if number in ONLY_FOR_THE_REFERENCE else student)
-    assert responses
-    for response in responses:
-        assert response.is_right, response
+    imports, *sources = ("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code")
+    for student in of_the_day(STUDENTS, 3, path.stem):
+        with subtests.test(student):
+            responses.clear()
+            names = {"__name__": path.stem}
+            exec(compile(imports, path.name, "exec"), names)
+            names["exercise"] = lambda number, name=student: exercise(
+                number, None if number in ONLY_FOR_THE_REFERENCE else name
+            )
+            for source in sources:
+                exec(compile(source, path.name, "exec"), names)
+            assert responses
+            for response in responses:
+                assert response.is_right, response
