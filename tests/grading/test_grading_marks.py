@@ -7,11 +7,8 @@ import signal
 import time
 from pathlib import Path
 
-import nbformat
 import pytest
-from typer.testing import CliRunner
 
-from loopbook.__main__ import app
 from loopbook.exercises import png
 from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, WAITING, WRONG
 from loopbook.grading import GradingError, spreadsheet
@@ -25,7 +22,6 @@ from loopbook.grading.reports.outputs.to_mark import to_mark
 from loopbook.grading.results import JudgedAnswer, JudgedExercise, Result
 from loopbook.grading.roster import Student
 from loopbook.grading.submissions import Submission
-from needs import needs_jail
 from test_exercise_by_hand import stored
 
 SOURCE = '''"""Responses"""
@@ -428,61 +424,6 @@ def test_a_time_that_cannot_be_compared_is_said_before_anything_is_graded(tmp_pa
     at = datetime.datetime(2026, 12, 2, 12, 0, tzinfo=datetime.UTC)
     with pytest.raises(GradingError, match="DUE names no time zone: expected one"):
         marking.demand_comparable([handed_in(CLASS[0], at)])
-
-
-# From end to end.
-
-CELLS = """
-import numpy as np
-from matplotlib import pyplot
-pyplot.plot(np.arange(5))
-sheet.answer("1", T=1, sketch=pyplot.gcf(), why="It is late.\\nSecond line.")
-"""
-
-
-@needs_jail
-def test_marks_by_hand_and_lateness_from_end_to_end(tmp_path):
-    """Released, handed in, graded, marked, and all of it graded again."""
-    due = 'DUE = "2026-12-01 23:59 Europe/Berlin"\nLATE = "10 % a day"\n'
-    assignment = tmp_path / "responses.py"
-    assignment.write_text(SOURCE + due, encoding="utf-8")
-    roster = "id,name,handed_in\ns1,Ada,2026-12-01 12:00\ns2,Ben,2026-12-03 12:00\ns3,Cy,2026-12-03 12:00\n"
-    (tmp_path / "roster.csv").write_text(roster, encoding="utf-8")
-    (tmp_path / "extensions.csv").write_text("student,until\ns3,2026-12-04\n", encoding="utf-8")
-    run = CliRunner()
-    done = run.invoke(app, ["release", str(assignment), "--to", str(tmp_path / "released")])
-    assert done.exit_code == 0, done.output
-    for student in ("s1", "s2", "s3"):
-        notebook = nbformat.read(tmp_path / "released" / student / "responses.ipynb", as_version=4)
-        notebook.cells.append(nbformat.v4.new_code_cell(CELLS))
-        (tmp_path / "handed_in" / student).mkdir(parents=True)
-        nbformat.write(notebook, tmp_path / "handed_in" / student / "responses.ipynb")
-    graded = tmp_path / "graded"
-    command = ["grade", str(assignment), str(tmp_path / "handed_in"), "--to", str(graded)]
-    done = run.invoke(app, command)
-    assert done.exit_code == 0, done.output
-    table = (graded / "marks.csv").read_text(encoding="utf-8-sig")
-    rows = [f"s{k},1,{name},," for name in ("sketch", "why") for k in (1, 2, 3)]
-    assert table.splitlines() == ["student,exercise,quantity,points,comment", *rows]
-    grades = (graded / "grades.csv").read_text(encoding="utf-8-sig")
-    assert [line.rpartition(",")[2] for line in grades.splitlines()[1:]] == ["", "", ""]
-    marked = table.replace("sketch,,", "sketch,1.5,").replace("why,,", 'why,0.5,"short, but right"')
-    (graded / "marks.csv").write_text(marked + "s3,2,y,0.5,a slip\n", encoding="utf-8-sig")
-    for more in ([], ["--regrade"]):
-        done = run.invoke(app, [*command, *more])
-        assert done.exit_code == 0, done.output
-        grades = (graded / "grades.csv").read_text(encoding="utf-8-sig")
-        assert [line.rpartition(",")[2] for line in grades.splitlines()[1:]] == ["2", "1.6", "2.5"]
-    assert "1 submission came late. 1 student has an extension." in done.output
-    assert (graded / "marks.csv").read_text(encoding="utf-8-sig") == marked + "s3,2,y,0.5,a slip\n"
-    feedback = (graded / "feedback/s2/feedback.md").read_text(encoding="utf-8")
-    assert "anded in 1 day 12 h late (due 2026-12-01 23:59 Europe/Berlin): 20 % of the points are deducted" in feedback
-    assert "sketch: 1.5 of 1.5 points by hand" in feedback
-    (graded / "marks.csv").write_text(marked + "s9,2,y,0.5,\ns3,2,y,5,\n", encoding="utf-8-sig")
-    done = run.invoke(app, command)
-    assert done.exit_code == 1
-    assert "marks.csv, line 8: there is no student 's9'" in done.output
-    assert "marks.csv, line 9: the points are 5: expected 0 to 0.67 for exercise 2, y" in done.output
 
 
 # Interrupted.
