@@ -8,42 +8,16 @@ import time
 import pytest
 import sympy
 
-from loopbook import s, t
+from judged import EVERY_KIND
+from loopbook import t
 from loopbook.exercises import judging, timeout
-from loopbook.exercises.authoring import (
-    criterion,
-    design,
-    expression,
-    number,
-    numbers,
-    poles,
-    settings,
-    time_function,
-    transfer_function,
-    word,
-    words,
-)
+from loopbook.exercises.authoring import number, time_function
 from loopbook.exercises.judging import UNJUDGED, judge
 from loopbook.exercises.timeout import limited
-from loopbook.pid import PID
 
-#: One of each kind, and a number without a unit.
 TI = number(120, "s", "the integral time")
 Y = time_function(1 - sympy.exp(-t / 5), until=25, what="the response")
-ALL = (
-    TI,
-    Y,
-    number(0.25, "", "the gain"),
-    numbers([[0, 1], [-2, -3]], what="the matrix"),
-    poles([-1 + 2j, -1 - 2j, -3]),
-    expression(sympy.Symbol("K") * 2),
-    transfer_function(3 * sympy.exp(-2 * s) / (5 * s + 1)),
-    settings(PID(2, Ti=10), gain="%/K", what="the settings"),
-    word("reverse", ["reverse", "direct"], "the action"),
-    words(["S2", "S4"], ["S1", "S2", "S3", "S4"], "the active steps"),
-    design(number(2, what="a gain"), criterion("the offset", lambda K: 1 / (1 + K), below=0.4)),
-)
-each_kind = pytest.mark.parametrize("kind", ALL, ids=lambda kind: type(kind).__name__)
+each_kind = pytest.mark.parametrize("kind", EVERY_KIND.values(), ids=EVERY_KIND)
 
 
 class Liar:

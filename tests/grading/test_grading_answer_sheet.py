@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 import sympy
 
-from loopbook import s, t
+from judged import EVERY_KIND, K, X
+from loopbook import s
 from loopbook.exercises.authoring import (
     criterion,
     design,
@@ -13,7 +14,6 @@ from loopbook.exercises.authoring import (
     numbers,
     poles,
     settings,
-    time_function,
     transfer_function,
     word,
     words,
@@ -25,34 +25,12 @@ from loopbook.grading.plain import plain
 from loopbook.pid import PID
 from test_grading_plain import CIRCLE, Odd
 
-X, K = sympy.symbols("x K")
-
 
 @pytest.mark.parametrize("text", ["0,5", "0,5 %/K"])
 def test_a_decimal_comma_is_read(text):
     value, remark = number(0.5, "%/K").read(text)
     assert value == 0.5
     assert remark.startswith("read as 0.5")
-
-
-EVERY_KIND = {
-    'number("K/%")': number(2.5, "K/%", "the gain", within=0.02),
-    "number()": number(2),
-    'numbers("s")': numbers([[1, 2], [3, 4]], "s", "the matrix"),
-    "poles()": poles([-1, -2]),
-    'poles("1/min")': poles([-1, -2], "1/min"),
-    'expression("m³")': expression(X**2 * K, "the volume", unit="m³"),
-    'expression("m³", symbols="K x y")': expression(X**2 * K, "the volume", symbols="K x y", unit="m³"),
-    'transfer_function(symbols="K T")': transfer_function(K / (5 * s + 1), symbols="K T"),
-    "transfer_function()": transfer_function(K / (X * s + 1)),
-    'time_function("°C")': time_function(1 - sympy.exp(-t / 7), 35, "°C", "the response"),
-    "settings()": settings(PID(2, Ti=10)),
-    'settings("%/K", time="min", form="serial")': settings(PID(2, Ti=10), "%/K", "min", form="serial"),
-    'word(["direct", "reverse"])': word("reverse", ["direct", "reverse"]),
-    'words(["a", "b"])': words(["b"], "ab"),
-    'words(["a", "b"], ordered=True)': words(["b", "a"], "ab", ordered=True),
-    'settings("%")': design(settings(PID(2), "%"), criterion("the gain", lambda pid: pid.Kp, below=3)),
-}
 
 
 @pytest.mark.parametrize("code", EVERY_KIND)

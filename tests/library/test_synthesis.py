@@ -523,13 +523,6 @@ def test_zeros_on_one_side_stay_exact():
     assert sympy.expand(made.remaining) == 1 - s + 2 * s**2 / 5 - s**3 / 15
 
 
-def test_example_12_1():
-    process, wrong = (second_order(gain, 10, 5, delay=1) for gain in (2, 0.9))
-    assert [imc(process, slow).Kp for slow in (1, 3, 10)] == [Rational(15, 4), Rational(15, 8), Rational(15, 22)]
-    assert [imc(wrong, slow).Kp for slow in (1, 3, 10)] == [Rational(25, 3), Rational(25, 6), Rational(50, 33)]
-    assert {imc(p, slow).Td for p in (process, wrong) for slow in (1, 3, 10)} == {Rational(10, 3)}
-
-
 def test_both_roads_of_the_slides():
     """The dead time approximated in the controller, (12-11), or in model and wish alike, rows G and I."""
     for model in (first_order(K, T, delay), second_order(K, T1, T2, delay)):

@@ -13,7 +13,6 @@ from sympy import (
     Function,
     Heaviside,
     I,
-    Integral,
     Rational,
     cancel,
     exp,
@@ -95,19 +94,6 @@ by_name = pytest.mark.parametrize("name", SYSTEMS)
 
 
 # ------------------------------------------------------------------------------------------------ from equations
-
-
-def test_section_5_2_two_inputs():
-    b_1, b_2 = symbols("b_1 b_2")
-    u_1, u_2 = Function("u_1"), Function("u_2")
-    model = Eq(y(t).diff(t), a * y(t) + b_1 * u_1(t) + b_2 * u_2(t))
-    assert transfer_functions(model, output=y(t), inputs=[u_1(t), u_2(t)]) == (b_1 / (s - a), b_2 / (s - a))
-
-
-def test_section_6_2_integrator_from_its_integral():
-    theta = symbols("theta", positive=True)
-    model = Eq(y(t), K * Integral(u(theta), (theta, 0, t)))
-    assert transfer_functions(model, y(t), u(t)) == (K / s,)
 
 
 def test_states_become_internal():
