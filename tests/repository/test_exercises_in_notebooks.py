@@ -3,6 +3,7 @@
 import ast
 import json
 import re
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -67,8 +68,10 @@ def test_a_chapter_has_one_title(chapter):
 
 @each_chapter
 def test_a_chapter_asks_each_of_its_exercises_in_one_notebook(chapter):
-    numbers = [number for name, own in NOTEBOOKS.items() if own == chapter for number in asked(name)]
-    assert sorted(numbers) == sorted(bank.exercises(chapter))
+    times = Counter(number for name, own in NOTEBOOKS.items() if own == chapter for number in asked(name))
+    for number in bank.exercises(chapter) | times:
+        assert number in bank.exercises(chapter), f"a notebook asks exercise {number}, which the bank does not have"
+        assert times[number] == 1, f"exercise {number} is asked in {times[number]} notebooks: expected one"
 
 
 @each_chapter
