@@ -435,7 +435,9 @@
     async comeBack() {
       const { student } = remembered();
       if (!student || !this.element.dataset.own) return this.begin();
-      const reply = await (await shown(this.number, student)).kept();
+      this.form.inert = true; // what is typed under everybody's numbers would go with them
+      const reply = await shown(this.number, student).then(({ kept }) => kept()).catch(() => null);
+      this.form.inert = false;
       if (reply) return this.become(student, reply);
       this.begin();
       this.askToRenew(student);

@@ -110,18 +110,31 @@ async function keepWork(app) {
   while (!app.shell.currentWidget?.context) await new Promise((resolve) => setTimeout(resolve, 100));
   const { context } = app.shell.currentWidget;
   await context.ready;
-  let timer;
-  const save = () => {
+  // JupyterLab calls a notebook saved that was changed while it was being saved: what is kept is counted here.
+  let changes = 0, kept = 0, isSaving = false, timer;
+  async function save() {
     clearTimeout(timer);
-    if (context.model.dirty) context.save().catch((problem) => (says.textContent = `Not kept: ${problem.message}`));
-  };
+    if (isSaving) return;
+    isSaving = true;
+    try {
+      while (kept < changes) {
+        const upTo = changes;
+        await context.save();
+        kept = upTo;
+      }
+    } catch (problem) {
+      says.textContent = `Not kept: ${problem.message}`;
+    }
+    isSaving = false;
+  }
   context.model.contentChanged.connect(() => {
+    changes += 1;
     clearTimeout(timer);
     timer = setTimeout(save, 1000);
   });
   document.addEventListener("visibilitychange", save);
   window.addEventListener("beforeunload", (event) => {
-    if (!context.model.dirty) return;
+    if (kept === changes) return;
     save();
     event.preventDefault(); // the browser asks, and meanwhile it is saved
   });

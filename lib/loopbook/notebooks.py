@@ -8,6 +8,7 @@ never imports this module; ``python -m loopbook execute`` does.
 
 import ast
 import copy
+import functools
 import json
 import math
 import os
@@ -282,6 +283,7 @@ def folded(cells: Iterable[NotebookNode]) -> list[NotebookNode]:
     return [code[n] for n in sorted(hidden)]
 
 
+@functools.lru_cache(maxsize=1000)
 def _parsed(source: str) -> ast.Module:
     """The syntax tree of a cell, empty where it is no Python, such as a magic of IPython."""
     try:

@@ -84,6 +84,7 @@ class Form:
         return self.box.locator(f'[id="{place}{part and "-" + part}"]')
 
     def fill_in(self, **texts):
+        expect(self.box.locator("form")).not_to_have_attribute("inert", "")  # her own numbers are on their way
         for name, text in texts.items():
             self.field(name).fill(text)
 

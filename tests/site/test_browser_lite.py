@@ -9,6 +9,7 @@ from axe_playwright_python.sync_playwright import Axe
 import browser
 import browser_runtime
 from browser import PATIENCE, ROOT
+from desk import until
 
 sys.path.insert(0, str(ROOT))
 
@@ -18,6 +19,8 @@ CHAPTER = "chapters/05_transfer_functions.ipynb"
 SAYS = "#loopbook .says"
 #: The notebook as JupyterLite holds it.
 NOTEBOOK = "jupyterapp.shell.currentWidget.content.model.toJSON()"
+#: The notebook as the browser keeps it.
+KEPT = f"jupyterapp.serviceManager.contents.get('{CHAPTER}', {{content: true}})"
 CHANGED = "The zero is on the right."
 
 
@@ -72,7 +75,7 @@ class TestAChapterInThePage:
             page.evaluate(
                 f"jupyterapp.shell.currentWidget.content.model.cells.get(0).sharedModel.setSource('{CHANGED}')"
             )
-            page.wait_for_function("!jupyterapp.shell.currentWidget.context.model.dirty")  # it is saved by itself
+            until(lambda: page.evaluate(KEPT)["content"]["cells"][0]["source"] == CHANGED)  # it is saved by itself
             page.get_by_role("link", name="Back to the page").click()
             page.wait_for_url(f"**/{CHAPTER.replace('.ipynb', '.html')}")
         # the server is gone: what the browser keeps is all there is
