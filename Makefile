@@ -5,8 +5,9 @@ PYTHON ?= $(shell for python in python3 python3.14 python3.13 python3.12 python3
 	$$python -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$python && break; done)
 python := .venv/bin/python
 
-# One process more than there are cores, because some tests wait: for a browser, or for the end of a submission.
-workers = $(shell $(python) -c "import os; print(1 + (os.cpu_count() or 1))")
+cores = $(shell $(python) -c "import os; print(os.cpu_count() or 1)")
+# One process more, where tests wait: for a browser, or for the end of a submission.
+more = $(shell $(python) -c "import os; print(1 + (os.cpu_count() or 1))")
 
 # A backend meant for other programs would keep the figures out of the notebooks.
 unexport MPLBACKEND
@@ -28,19 +29,19 @@ edit: .venv/ready ## open the stored notebooks themselves in JupyterLab, to chan
 	$(python) -m jupyterlab --config jupyter_lab_config.py
 
 test: .venv/ready ## prove the library, the ledger, every exercise and every cell of every chapter
-	$(python) -m pytest -n $(workers)
+	$(python) -m pytest -n $(cores)
 
 test-site: .venv/ready ## prove the site: its pages, in a browser, with Python in them, and on paper
-	$(python) -m pytest -n $(workers) tests/site
+	$(python) -m pytest -n $(more) tests/site
 
 test-grading: .venv/ready ## prove the grader: jail, judge, reports, attacks, a term
-	$(python) -m pytest -n $(workers) tests/grading
+	$(python) -m pytest -n $(more) tests/grading
 
 test-solutions: .venv/ready ## prove every cell of the solutions
-	$(python) -m pytest -n $(workers) solutions
+	$(python) -m pytest -n $(more) solutions
 
 test-all: .venv/ready ## prove everything with all variants and all draws, as once a week
-	LOOPBOOK_ALL=1 $(python) -m pytest -n $(workers) tests lib chapters solutions README.md
+	LOOPBOOK_ALL=1 $(python) -m pytest -n $(more) tests lib chapters solutions README.md
 
 bench: .venv/ready ## measure what the collection costs beside what it stands on
 	$(python) tests/bench.py

@@ -1,7 +1,7 @@
 """How many random draws a test makes, and which.
 
 Each week, and by ``make test-all``, all of them are made; each week there are new ones. In an ordinary run the examples
-of hypothesis are a fifth and the same each time; of the variants of exercises, all of which are proved each week, the
+of hypothesis are a tenth and the same each time; of the variants of exercises, all of which are proved each week, the
 day draws a few, so that no reader's test fails by luck and a fault that one variant in ten shows is found within days.
 """
 
@@ -19,7 +19,7 @@ STUDENTS = [f"student {k}" for k in range(200)]
 
 def draws(count: int) -> int:
     """How many of so many draws this run makes."""
-    return count if THOROUGH else math.ceil(count / 5)
+    return count if THOROUGH else math.ceil(count / 10)
 
 
 def of_the_day(many: list, count: int, what: object = "") -> list:

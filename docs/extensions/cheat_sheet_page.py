@@ -81,7 +81,7 @@ def with_the_page(app, doctree):
 
 def if_missing(app, exception):
     """Draw the PDF for a page that was not read again."""
-    if exception is None and not (Path(app.outdir) / FILE).exists():
+    if exception is None and PAGE in app.env.found_docs and not (Path(app.outdir) / FILE).exists():
         draw_file(app)
 
 

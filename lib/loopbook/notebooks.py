@@ -250,7 +250,7 @@ def _ids(cells: list[NotebookNode]) -> list[str]:
 
 def has_sliders(source: str) -> bool:
     """Whether the code of a cell makes sliders, with `sliders` or ipywidgets' `interact` or one like it."""
-    nodes = [*ast.walk(_parsed(source))]
+    nodes = _walked(source)
     names = {node.id for node in nodes if isinstance(node, ast.Name)}
     return not INTERACT.isdisjoint(names.union(node.attr for node in nodes if isinstance(node, ast.Attribute)))
 
@@ -281,6 +281,11 @@ def folded(cells: Iterable[NotebookNode]) -> list[NotebookNode]:
     while more := {n for n in range(len(code)) if serves_hidden_cells(n)}:
         hidden |= more
     return [code[n] for n in sorted(hidden)]
+
+
+@functools.lru_cache(maxsize=1000)
+def _walked(source: str) -> list[ast.AST]:
+    return [*ast.walk(_parsed(source))]
 
 
 @functools.lru_cache(maxsize=1000)
@@ -317,16 +322,16 @@ def bound_in(source: str) -> set[str]:
 
 
 def _used_in(source: str) -> set[str]:
-    return {n.id for n in ast.walk(_parsed(source)) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)}
+    return {n.id for n in _walked(source) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)}
 
 
 def _imports(source: str) -> bool:
-    return any(isinstance(node, ast.Import | ast.ImportFrom) for node in ast.walk(_parsed(source)))
+    return any(isinstance(node, ast.Import | ast.ImportFrom) for node in _walked(source))
 
 
 def _checks(source: str) -> bool:
     """Whether a cell compares results with the ledger; an answer to an exercise is none."""
-    for node in ast.walk(_parsed(source)):
+    for node in _walked(source):
         match node:
             case ast.Call(func=ast.Attribute(value=ast.Call(func=ast.Name("exercise")), attr="check")):
                 pass

@@ -191,7 +191,7 @@ def test_a_key_that_never_ends_for_other_givens_is_given_up():
 
 def test_no_diagnosis_stumbles():
     bank_ = [one for chapter in bank.chapters() for one in bank.exercises(chapter).values()]
-    for one in of_the_day(bank_, len(bank_) // 3):
+    for one in of_the_day(bank_, len(bank_) // 6):
         question = one.question()
         for name, kind in question.key.items():
             if isinstance(kind, Expression):
@@ -231,7 +231,7 @@ def case_of(question, name, kind, monkeypatch=None):
 def test_each_mistake_is_answered_by_its_own_sentence(part, monkeypatch):
     """Or by that of another mistake with the same value in this variant, one that comes before it."""
     many = [*itertools.islice(cases(STUDENTS if THOROUGH else STUDENTS[:1]), part, None, 4)]
-    for place, (question, name, kind) in enumerate(of_the_day(many, len(many) // 3, part)):
+    for place, (question, name, kind) in enumerate(of_the_day(many, len(many) // 6, part)):
         case = case_of(question, name, kind, monkeypatch)
         before = []
         for mistake in (
@@ -276,7 +276,7 @@ def test_hardly_any_other_number_is_taken_for_a_mistake():
 
 def test_no_sentence_tells_the_key(monkeypatch):
     many = [*cases([None])]
-    for question, name, kind in of_the_day(many, len(many) // 3, "key"):
+    for question, name, kind in of_the_day(many, len(many) // 6, "key"):
         case = case_of(question, name, kind, monkeypatch)
         known = (
             {amount.value for amount in case.givens}

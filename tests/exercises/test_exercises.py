@@ -342,7 +342,7 @@ def test_hints_and_the_solution_are_complete(exercise):
 
 #: Each picture of the reference is drawn in its chapter; those of students, here, of a third of the exercises a day.
 NUMBERS = [number for chapter in bank.chapters() for number in bank.exercises(chapter)]
-PICTURED = {*of_the_day(NUMBERS, len(NUMBERS) // 3, "pictures")}
+PICTURED = {*of_the_day(NUMBERS, len(NUMBERS) // 6, "pictures")}
 
 
 @each_exercise

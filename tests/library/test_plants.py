@@ -104,7 +104,7 @@ def delayed_states(plant, formula):
 
 
 @named
-@pytest.mark.daily(7)
+@pytest.mark.daily(4)
 def test_the_linear_model_is_that_of_small_changes(cls):
     """Rates with one signal changed a little, numerically, against the matrices."""
     plant = cls()

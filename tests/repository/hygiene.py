@@ -87,6 +87,12 @@ def parsed(source: str) -> ast.Module | None:
         return None
 
 
+@cache
+def walk(module: ast.Module) -> list[ast.AST]:
+    """Every node of a cell, of which each rule asks something."""
+    return [*ast.walk(module)]
+
+
 def names(node: ast.AST, without: Collection[ast.AST] = ()) -> set[str]:
     """The names and attributes used in an expression, but for some of its parts."""
     if node in without:
@@ -144,7 +150,7 @@ def plain_python(stored: Stored) -> list[str]:
 def without_tricks(stored: Stored) -> list[str]:
     found = []
     for label, cell in code(stored.notebook):
-        for node in ast.walk(tree(cell)):
+        for node in walk(tree(cell)):
             match node:
                 case ast.Attribute(value=ast.Name("sys"), attr="path"):
                     found.append(f"{label}: sys.path")
@@ -165,7 +171,7 @@ def one_import_cell(stored: Stored) -> list[str]:
         if not isinstance(statement, ast.Import | ast.ImportFrom)
     ]
     for label, module in others:
-        if any(isinstance(node, ast.Import | ast.ImportFrom) for node in ast.walk(module)):
+        if any(isinstance(node, ast.Import | ast.ImportFrom) for node in walk(module)):
             found.append(f"{label}: an import outside the first cell")
     return found
 
@@ -325,8 +331,8 @@ def checks_are_computed(stored: Stored) -> list[str]:
     found = []
     for label, module in cells:
         compared = evidence_in(module, imported)  # a claim may be about printed values
-        calls = [n for n in ast.walk(module) if isinstance(n, ast.Call) and getattr(n.func, "attr", "") == "check"]
-        uses = [n for n in ast.walk(module) if isinstance(n, ast.Attribute) and n.attr == "check"]
+        calls = [n for n in walk(module) if isinstance(n, ast.Call) and getattr(n.func, "attr", "") == "check"]
+        uses = [n for n in walk(module) if isinstance(n, ast.Attribute) and n.attr == "check"]
         if len(uses) > len(calls):
             found.append(f"{label}: a check under another name")
         of_ledger = [call for call in calls if not answers_an_exercise(call)]
@@ -343,7 +349,7 @@ def names_of_printed_values(modules: list[ast.Module]) -> set[str]:
     found, imported = {"printed_value"}, imported_evidence(modules)
     for module in modules:
         compared = evidence_in(module, imported)
-        for node in ast.walk(module):
+        for node in walk(module):
             if isinstance(node, ast.Assign) and names(node.value, compared) & {"printed_value"}:
                 found |= {name for target in node.targets for name in names(target)}
     return found
@@ -360,7 +366,7 @@ def answers_an_exercise(call: ast.Call) -> bool:
 def names_of_literals(modules: list[ast.Module]) -> set[str]:
     """The names that are bound to nothing but literals, directly or through other such names."""
     bindings: list[tuple[set[str], set[str]]] = []  # what is bound, and what it is made of
-    for node in (n for module in modules for n in ast.walk(module)):
+    for node in (n for module in modules for n in walk(module)):
         match node:
             case ast.Assign(targets=targets, value=value):
                 bindings += [(names(target), names(value)) for target in targets]
@@ -384,7 +390,7 @@ def evidence_can_fail(stored: Stored) -> list[str]:
     offered = imported_evidence(modules)
     found = []
     for label, module in cells:
-        for node in ast.walk(module):
+        for node in walk(module):
             match node:
                 case ast.ImportFrom(module="loopbook.evidence", names=imported):
                     for alias in imported:
@@ -433,7 +439,7 @@ def imported_evidence(modules: list[ast.Module]) -> set[str]:
     """The names that a notebook imports from `loopbook.evidence`."""
     return {
         alias.name
-        for node in (n for module in modules for n in ast.walk(module))
+        for node in (n for module in modules for n in walk(module))
         if isinstance(node, ast.ImportFrom) and node.module == "loopbook.evidence"
         for alias in node.names
     }
@@ -441,7 +447,7 @@ def imported_evidence(modules: list[ast.Module]) -> set[str]:
 
 def evidence_in(module: ast.AST, imported: Collection[str]) -> list[ast.Call]:
     """The calls of evidence in a piece of code, by the names that the notebook imports."""
-    calls = [node for node in ast.walk(module) if isinstance(node, ast.Call) and called(node) in SIDES]
+    calls = [node for node in walk(module) if isinstance(node, ast.Call) and called(node) in SIDES]
     return [
         call
         for call in calls
@@ -452,7 +458,7 @@ def evidence_in(module: ast.AST, imported: Collection[str]) -> list[ast.Call]:
 def other_names(modules: list[ast.Module]) -> dict[str, str]:
     """Names that are bound once, and to nothing but another name."""
     bound: dict[str, list[str]] = {}
-    for node in (n for module in modules for n in ast.walk(module)):
+    for node in (n for module in modules for n in walk(module)):
         match node:
             case ast.Assign(targets=[ast.Name(name)], value=ast.Name(other)):
                 bound.setdefault(name, []).append(other)
@@ -484,7 +490,7 @@ def no_truth_value_becomes_a_word(stored: Stored) -> list[str]:
     for label, cell in code(stored.notebook):
         if notebooks.SLIDERS in cell.metadata.get("tags", []):
             continue
-        for node in ast.walk(tree(cell)):
+        for node in walk(tree(cell)):
             match node:
                 case ast.IfExp(body=one, orelse=other) if is_text(one) and is_text(other):
                     found.append(f"{label}: {ast.unparse(node)} turns a truth value into a word")
@@ -513,13 +519,13 @@ def no_number_of_the_book(stored: Stored) -> list[str]:
     """In a section, no literal is a given or a result of the ledger's entries that the section uses."""
     sources = {}
     for _, cell in code(stored.notebook):
-        for node in ast.walk(tree(cell)):
+        for node in walk(tree(cell)):
             if isinstance(node, ast.ImportFrom) and node.module == "loopbook.ledger":
                 sources |= {alias.asname or alias.name: alias.name for alias in node.names}
     found = []
     for section in sections(stored.notebook):
         book: dict[Fraction, str] = {}
-        for node in (n for _, cell in section for n in ast.walk(tree(cell))):
+        for node in (n for _, cell in section for n in walk(tree(cell))):
             match node:
                 case ast.Subscript(value=ast.Name(name), slice=ast.Constant(str(entry))) if name in sources:
                     book |= dict.fromkeys(printed_numbers(LEDGER, sources[name], entry), f"{name} {entry}")

@@ -47,7 +47,7 @@ def site(tmp_path_factory):
     chapters = (path.stem for path in sorted((ROOT / "chapters").glob("*.ipynb")) if path.stem != CHAPTER)
     others = [f"{part}/{name}.ipynb" for name in chapters for part in ("chapters", "solutions")]
     command = [sys.executable, "-m", "sphinx", "-q", "-b", "html", "-d", str(folder / "doctrees")]
-    left_out = ",".join(["lessons", "reference", "cheat_sheet.md", *others])
+    left_out = ",".join(["lessons", "reference", "ledger*", "figures*", "cheat_sheet.md", *others])
     command += ["-D", f"exclude_patterns={left_out}", "docs", str(folder / "book")]
     sphinx = subprocess.run(command, cwd=ROOT, capture_output=True, encoding="utf-8")
     assert sphinx.returncode == 0, sphinx.stderr
