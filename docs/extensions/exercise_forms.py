@@ -163,8 +163,8 @@ def add_files(app, pagename, templatename, context, doctree):
         app.add_js_file("exercises.js", loading_method="defer")
 
 
-def write_data(app):
-    """Write what is beside the pages."""
+def write_data(app, env):
+    """Write what is beside the pages that are there."""
     if app.builder.format != "html":
         return
     folder = Path(app.outdir, "_static", FOLDER)
@@ -173,6 +173,8 @@ def write_data(app):
     script = f"window.loopbookExercises = {json.dumps(known, ensure_ascii=False)};\n"
     (folder / "table.js").write_text(script, encoding="utf-8")
     for chapter in table():
+        if chapter["exercises"][0]["page"].removesuffix(".html") not in env.found_docs:
+            continue
         helps = {}
         for number in (one["number"] for one in chapter["exercises"]):
             one = sheet(number)
@@ -188,6 +190,6 @@ def write_data(app):
 
 def setup(app):
     """Tell Sphinx what is here."""
-    app.connect("builder-inited", write_data)
+    app.connect("env-updated", write_data)
     app.connect("html-page-context", add_files, priority=600)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

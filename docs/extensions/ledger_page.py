@@ -256,6 +256,8 @@ class Ledger(SphinxDirective):
 
 def the_pages(app):
     """Make the pages of the chapters, and beside them what the search looks through."""
+    if PAGE not in app.env.found_docs:
+        return
     folder = Path(app.outdir, "_static")
     folder.mkdir(exist_ok=True)
     (folder / "ledger-rows.js").write_text(data(), encoding="utf-8")

@@ -10,6 +10,7 @@ import sympy
 from scipy.special import stdtrit
 from scipy.stats import binom
 
+from draws import draws
 from loopbook import s
 from loopbook.deadtime import System
 from loopbook.identification import first_order_from_step, fit
@@ -79,7 +80,7 @@ CASES = {  # kind, lags, dead time, noise; the lags are equal or one is hardly s
     "a lag that is not seen": ("second order", [9.0, 0.1], 1.0, 0.1),
     "an integrator with lag": ("integrator with lag", [6.0], 1.5, 0.05),
 }
-RECORDS = 6
+RECORDS = draws(30)
 
 
 def test_intervals_hold_the_true_values_as_often_as_they_say():
