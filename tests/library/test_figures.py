@@ -24,6 +24,7 @@ from loopbook.deadtime import Loop
 from loopbook.deadtime.pictures import nyquist_plot
 from loopbook.diagrams import block, block_diagram
 from loopbook.figures import PlanePlot, TimePlot, half_rule_plot, level_plot, map_plot, plane_plot, time_plot, trends
+from loopbook.figures.labels import free_place
 from loopbook.figures.picture import plain_words, with_few_colours
 from loopbook.figures.style import DOTS_PER_INCH, GREY, INPUTS, LOOKS, MODELS, ROLES, STYLE, TINTS, WIDTH, look
 from loopbook.laplace import s, t
@@ -576,6 +577,15 @@ def test_a_legend_over_levels_is_where_no_level_is(corner):
     )
     assert box.count_contains(levels) == 0
     assert not box.overlaps(plot.axes.texts[0].get_window_extent())
+
+
+@pytest.mark.parametrize("point", [(x, y) for x in (0.2, 5, 9.8) for y in (-0.9, 0, 0.9)])
+def test_words_beside_a_point_stay_within_their_panel(point):
+    plot = plane_plot({"": ([0, 10], [-1, 1])}, "x", "y")
+    words = free_place(plot.axes, "phase margin 61°", point).get_window_extent()
+    panel = plot.axes.get_window_extent()
+    assert panel.x0 <= words.x0 < words.x1 <= panel.x1
+    assert panel.y0 <= words.y0 < words.y1 <= panel.y1
 
 
 def test_a_legend_below_stays_there_with_its_columns():

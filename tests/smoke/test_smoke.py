@@ -7,9 +7,11 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+from matplotlib import pyplot
 
 from courses import Course
 from loopbook.exercises.bank import exercises
+from loopbook.grading.rehearsal import rehearse
 from needs import needs_jail
 from test_book import Page
 
@@ -38,6 +40,11 @@ def test_a_class_is_graded_and_who_spies_gains_nothing(tmp_path):
     assert points == {"s0": "5", "s1": "0", "s2": "3", "s3": "5", "s4": ""}
     page = (tmp_path / "graded" / "feedback" / "s1" / "feedback.html").read_text(encoding="utf-8")
     assert "That is the gain." in page
+
+
+def test_a_rehearsal_leaves_no_figure_for_the_submission_behind_it():
+    rehearse()
+    assert not pyplot.get_fignums()
 
 
 @pytest.fixture(scope="module")
