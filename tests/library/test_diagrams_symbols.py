@@ -177,6 +177,17 @@ def test_every_symbol_differs_from_every_other_one():
     assert len(set(words)) == len(words)
 
 
+@pytest.mark.parametrize(
+    "symbol",
+    [*(tank(roof=roof, jacket=True) for roof in ROOFS), vessel(), vessel(jacket=True, filled=0.5), vessel(packings=2)],
+    ids=repr,
+)
+def test_an_upright_container_is_its_own_mirror_image(symbol):
+    picture, *_ = drawn_alone(symbol, WAYS["right"])
+    points = {(x, y) for line in picture.figure.axes[0].lines for x, y in np.round(line.get_xydata(), 3)}
+    assert points == {(-x, y) for x, y in points}
+
+
 @pytest.mark.parametrize("kind", [kind for kind in SIGNALS if kind != "electrical"])
 @pytest.mark.parametrize("layout", ["LC b", "b LC", "LC\n b", "b\n LC", "LC 1\n . b"])
 @pytest.mark.daily(12)
