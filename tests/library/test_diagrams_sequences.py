@@ -306,6 +306,16 @@ def test_the_words_say_what_is_drawn():
     )
 
 
+def test_a_long_condition_beside_a_state_diagram_reads_downwards():
+    condition = "level_low AND heater_is_hot OR NOT pump_is_off AND NOT operator_stops"
+    names = "level_low heater_is_hot pump_is_off operator_stops"
+    picture = state_diagram(Chart(names, {}, {"A": {}, "B": {}}, "A", [("A", "B", condition), ("B", "A", "level_low")]))
+    lines = [text for text in picture.figure.axes[0].texts if len(text.get_text()) > 1 and text.get_text() in condition]
+    downwards = sorted(lines, key=lambda line: (-line.get_position()[0], -line.get_position()[1]))
+    assert len(lines) > 2
+    assert " ".join(line.get_text() for line in downwards).startswith(condition)
+
+
 def test_a_state_diagram_of_too_many_states_is_refused():
     branches = [(f"P{n}", f"Q{n}") for n in range(5)]
     ways = [("A", tuple(p for p, _ in branches)), *((p, q, "a") for p, q in branches)]

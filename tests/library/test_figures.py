@@ -435,6 +435,9 @@ def test_the_half_rule_as_bars_is_the_half_rule(order):
     }
     kept = [name for name in ("lag", "second lag") if name in lengths]
     assert len(kept) == order
+    line = next(line for line in axes.lines if line.get_color() == GREY)  # the process above it, the model below it
+    homes = {*kept, "dead time"}
+    assert all((y < line.get_ydata()[0]) == (name in homes) for name, y in zip(names, axes.get_yticks(), strict=True))
     assert [lengths[name] for name in kept] == pytest.approx([float(T) for T in (model.T1, model.T2)][:order])
     assert lengths["dead time"] == pytest.approx(float(model.delay))
     assert sum(lengths[name] for name in (*kept, "dead time")) == pytest.approx(sum(lags.values()) + theta)

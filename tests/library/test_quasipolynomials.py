@@ -87,6 +87,8 @@ def test_loops_around_loops_cancel_to_what_is_derived_by_hand():
         1 + sympy.exp(-2 * s) + sympy.exp(-4 * s)
     )
     assert read(1) == (1 - S) / T
+    for most in (2, 60):  # the average over so many samples has no denominator
+        assert len(read((1 - sympy.exp(-most * s)) / (1 - sympy.exp(-s))).denominator) == 1
 
 
 def test_irrational_dead_times_keep_their_sums():

@@ -516,6 +516,10 @@ def test_the_boundary_without_filter():
     assert boundary_pid(process, [[1], [2]], [0, 0.5, 1], 0.1)[1, 1] == pytest.approx(
         boundary_pid(process, 2, 0.5, 0.1), rel=1e-14
     )
+    late = DELAY**2 / (10 * s + 1)
+    assert boundary_pid(late, [4, 8, 20], 1) == pytest.approx(
+        [boundary_pid(late, Ti, 1) for Ti in (4, 8, 20)], rel=1e-12
+    )
 
 
 @pytest.mark.parametrize(("T", "delay", "K"), [(0.7, 1.4, 2), (1, 0.2, 1), (3, 1, 0.5)])

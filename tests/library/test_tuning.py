@@ -490,6 +490,8 @@ LAG, LATE = first_order(1, 2), first_order(1, 2, 1)
 @pytest.mark.parametrize(
     ("call", "message"),
     [
+        (lambda: tuning.adjusted(PID(1, 2), SOPDT(1, 10, 3, 1), SOPDT(1, 10, delay=1)), "process of the same kind"),
+        (lambda: tuning.adjusted(PID(1, 2), SOPDT(1, 10, delay=1), SOPDT(1, 10, 3, 1)), "process of the same kind"),
         (lambda: tuning.simc(LAG), "no dead time to take Tc from: choose Tc"),
         (lambda: tuning.simc(LAG, Tc=0), "both 0: expected a positive Tc"),
         (lambda: tuning.simc(LAG, Tc=-1), "Tc is -1"),
