@@ -94,6 +94,7 @@ def serve(address):
     _import_libraries()
     gc.collect()
     gc.freeze()  # no kernel looks through what all of them share
+    gc.set_threshold(50_000)
     listening = socket.socket(socket.AF_UNIX)
     listening.bind(address)
     listening.listen(64)

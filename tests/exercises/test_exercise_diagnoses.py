@@ -262,7 +262,8 @@ def test_each_mistake_is_answered_by_its_own_sentence(part, monkeypatch):
 def test_hardly_any_other_number_is_taken_for_a_mistake():
     dice = random.Random(22)
     taken, count = 0, 0
-    for question, name, kind in cases([None]):
+    many = [*cases([None])]
+    for question, name, kind in many if THOROUGH else many[::3]:
         for _ in range(6 if THOROUGH else 2):
             answer = kind.key * math.exp(dice.uniform(-2, 2))
             answer = float(f"{answer:.{dice.choice((2, 3))}e}")
@@ -270,7 +271,7 @@ def test_hardly_any_other_number_is_taken_for_a_mistake():
                 found = explained(kind, answer, question.background.of(name, {}))
                 count += 1
                 taken += found.is_mistake
-    assert count > 300
+    assert count > 150
     assert taken <= 0.04 * count
 
 

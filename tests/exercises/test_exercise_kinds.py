@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import contributing
-from draws import THOROUGH
+from draws import THOROUGH, of_the_day
 from loopbook.exercises import authoring, bank
 from loopbook.exercises.formulas import Formula
 from loopbook.exercises.kinds import MAKERS, Kind
@@ -96,12 +96,16 @@ def test_the_kind_that_contributors_are_shown_is_one():
 # Answers as code.
 
 
+JUDGED = [name for name, kind in MAKERS.items() if not kind.by_hand]
+
+
 @functools.cache
-def questions():
-    """Variants of all exercises: the reference, and in a thorough run those of two students."""
+def questions(name):
+    """Questions that ask for a kind: five others each day, and in a thorough run all, as three readers have them."""
     made = [one for chapter in bank.chapters() for one in bank.exercises(chapter).values()]
-    students = (None, "Ada", "Norbert") if THOROUGH else (None,)
-    return [one.question(student) for one in made for student in students]
+    asking = [one for one in made if any(kind.maker == name for kind in one.question().key.values())]
+    readers = (None, "Ada", "Norbert") if THOROUGH else (None,)
+    return [one.question(reader) for one in of_the_day(asking, 5, f"as code {name}") for reader in readers]
 
 
 def alike(one, other):
@@ -117,14 +121,11 @@ def assert_reads_back(kind, answer):
     assert alike(kind.read(ast.literal_eval(code))[0], answer), code
 
 
-JUDGED = [name for name, kind in MAKERS.items() if not kind.by_hand]
-
-
 @pytest.mark.parametrize("name", JUDGED)
 def test_answers_as_code_read_back_as_the_same_answers(name):
     """The key, the mistakes of the exercise, and those that the kind knows by itself."""
     count = 0
-    for question in questions():
+    for question in questions(name):
         for quantity, kind in question.key.items():
             if kind.maker == name:
                 count += 1
@@ -137,7 +138,7 @@ def test_answers_as_code_read_back_as_the_same_answers(name):
 @pytest.mark.parametrize("name", JUDGED)
 def test_a_kind_is_made_again_from_its_code(name):
     calls = set()
-    for kind in itertools.chain.from_iterable(question.key.values() for question in questions()):
+    for kind in itertools.chain.from_iterable(question.key.values() for question in questions(name)):
         if kind.maker == name and kind.making and kind.making not in calls:
             calls.add(kind.making)
             made = eval(kind.making, vars(authoring))
