@@ -1,5 +1,6 @@
 """Answers that are meant to break the judge: they fail, end the program, never end, or carry code."""
 
+import contextlib
 import itertools
 import sys
 import threading
@@ -93,10 +94,8 @@ def test_what_is_quoted_of_an_answer_is_harmless(kind, given):
 def test_a_limited_computation_is_stopped():
     def endless():
         while True:
-            try:
+            with contextlib.suppress(Exception):  # it does not want to be stopped
                 time.sleep(0.001)
-            except Exception:  # it does not want to be stopped
-                pass
 
     before = {*threading.enumerate()}
     with pytest.raises(TimeoutError):

@@ -27,7 +27,7 @@ def rate_of_change(plant, content):
 
 
 @every
-@pytest.mark.daily(16)
+@pytest.mark.daily(8)
 def test_the_equations_say_so(cls, name):
     balance = cls.balances[name]
     assert sympy.simplify(rate_of_change(cls(), balance.content) - balance.inflow) == 0
@@ -65,7 +65,7 @@ def imbalances(run):
 
 
 @pytest.mark.parametrize("cls", BALANCED, ids=lambda cls: cls.__name__)
-@pytest.mark.daily(7)
+@pytest.mark.daily(4)
 def test_a_run_gains_and_loses_nothing(cls):
     """All inputs jump at random every 20 s."""
     plant = with_totals(cls)(**{name_of(x): value for x, value in cls.at_work.items()})

@@ -1,5 +1,6 @@
 """Plants with their instruments: symbols, pipes and signals, and that nothing lies on anything else."""
 
+import functools
 import itertools
 
 import pytest
@@ -107,6 +108,7 @@ EXAMPLES = {
         {name: control_valve(name) for name in ("V1", "V2", "V3")} | {"drum": vessel(filled=0.5, lying=True)},
     ),
 }
+EXAMPLES = {name: functools.cache(make) for name, make in EXAMPLES.items()}
 
 
 @pytest.mark.parametrize("name", EXAMPLES)

@@ -206,6 +206,7 @@ def step_records(noise, count=60):
 @pytest.mark.parametrize(
     ("noise", "bias", "spread"), [(0.001, 0.5, 1), (0.01, 1.5, 3), (0.03, 2.5, 6.5), (0.05, 4, 10)]
 )
+@pytest.mark.daily(3)
 def test_noise_does_little_to_what_is_read_off(delay_by, noise, bias, spread):
     """Bias and spread of lag and dead time in per cent of lag and sum; of the tangent these were 31 and 34 at 0.03."""
     found = []

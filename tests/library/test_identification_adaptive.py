@@ -110,6 +110,7 @@ def test_an_adaptive_controller_finds_the_settings_and_follows_a_gain_that_doubl
     "options",
     [{"measurement_range": (-20, 80)}, {"control_range": (-20, 20), "u0": 50}, {"measurement_range": (0, 50)}],
 )
+@pytest.mark.daily(1)
 def test_an_adaptive_controller_with_ranges_adapts_its_settings_in_percent(options):
     process = 2 * E(-2 * s) / (10 * s + 1)
     controller = AdaptiveController(PID(0.5, 10), step=1, delay=2, Tc=2, c=2, forgetting=0.97, **options)

@@ -1,5 +1,6 @@
 """Models by least squares from records, in open and closed loop: what comes out is what was put in, with its errors."""
 
+import functools
 import math
 
 import numpy as np
@@ -87,12 +88,16 @@ def test_the_free_responses_are_those_of_the_states():
         assert free[:, -1] == pytest.approx(responses(kind, T, 0, times, np.ones(30))[0])
 
 
+@functools.cache
+def without_noise(H, count):
+    u = stepwise(40, {10: 45, 70: 38, 110: 42, 200: 40})
+    return simulate(Process(H), until=count - 1, step=1, u=u - 40)
+
+
 def experiment(H, deviation, seed=1, count=300):
     """An open loop experiment: the control signal goes up and down a few times."""
-    u = stepwise(40, {10: 45, 70: 38, 110: 42, 200: 40})
-    times = np.arange(float(count))
-    run = simulate(Process(H), until=count - 1, step=1, u=u - 40)
-    return times, run["u"] + 40, run["y"] + 25 + noise(times, deviation, seed)
+    run = without_noise(H, count)
+    return run.times, run["u"] + 40, run["y"] + 25 + noise(run.times, deviation, seed)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -118,7 +123,7 @@ def test_with_noise_the_errors_are_as_large_as_it_says(kind):
 
 def test_the_standard_errors_are_the_scatter_of_repeated_experiments():
     H, _ = PROCESSES["first order"]
-    fits = [fit(*experiment(H, deviation=0.1, seed=seed, count=150)) for seed in range(40)]
+    fits = [fit(*experiment(H, deviation=0.1, seed=seed, count=150)) for seed in range(25)]
     for name in ("K", "T1", "delay"):
         scatter = np.std([found.parameters[name] for found in fits])
         assert scatter == pytest.approx(np.mean([found.errors[name] for found in fits]), rel=0.4), name

@@ -47,7 +47,7 @@ def test_the_good_gain_of_a_simulator_is_that_of_its_transfer_function():
     exact = good_gain_experiment(PLANT)
 
     def experiment(Kp):
-        run = simulate(Process(PLANT), Controller(PID(Kp), step=0.05), until=100, setpoint=1)
+        run = simulate(Process(PLANT), Controller(PID(Kp), step=0.05), until=50, setpoint=1)
         return run.times, run["y"], 2 * Kp / (1 + 2 * Kp)
 
     found = good_gain_experiment(experiment, highest=3)

@@ -1,7 +1,6 @@
 """The engine of responses in time, against Taylor series in exact cells, poles, closed forms, and sums one by one."""
 
 import math
-import time
 from fractions import Fraction
 
 import mpmath
@@ -11,6 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from draws import draws
+from loopbook.deadtime import collocation
 from loopbook.deadtime.response import (
     ChannelModel,
     Response,
@@ -169,13 +169,12 @@ def test_dead_times_without_a_common_base(count):
     assert_close(
         Response(system(near), 12)([float(x) for x in times]), by_taylor(system(near), [float(x) for x in times])
     )
-    begin = time.process_time()
     response = Response(system(late), 30)
-    assert time.process_time() - begin < 2
     assert response(30.0) == pytest.approx((1 + gains.sum() / 3) / (1 + gains.sum()), rel=0.2)
 
 
-def test_very_many_sums_are_refused_in_words():
+def test_very_many_sums_are_refused_in_words(monkeypatch):
+    monkeypatch.setattr(collocation, "MOST_SECONDS", 0.1)
     late = [Fraction(math.sqrt(p)) for p in (2, 3, 5, 7, 11, 13)]
     system = model(D21=np.ones((6, 1)), D12=np.ones((1, 6)), D22=np.full((6, 6), 0.2), delays=late)
     with pytest.raises(ValueError, match=r"more than 30000 sums before t = 1000|needs too many segments"):
@@ -220,9 +219,7 @@ def test_a_derivative_with_a_filter_ten_thousand_times_faster():
 def test_thousands_of_periods():
     zeta, end = 1e-3, 2e4
     system = model([[0, 1], [-1, -2 * zeta]], [[0], [1]], C1=[[1, 0]])
-    begin = time.process_time()
     response = Response(system, end)
-    assert time.process_time() - begin < 1
     assert len(response.edges) < 5000
     w = math.sqrt(1 - zeta**2)
     times = np.linspace(0, end, 2001)
@@ -355,7 +352,8 @@ def test_ends_that_are_none():
         Response(feedback(1, 1, 1), 2)([30])
 
 
-def test_what_cannot_be_followed():
+def test_what_cannot_be_followed(monkeypatch):
+    monkeypatch.setattr(collocation, "MOST_SECONDS", 0.1)
     with pytest.raises(ValueError, match="grows beyond all numbers before t = 10"):
         Response(model([[400]], [[1]], C1=[[1]]), 10)
     with pytest.raises(ValueError, match="too short beside the end"):
@@ -401,7 +399,7 @@ SYSTEMS = {
 @pytest.mark.parametrize("name", SYSTEMS)
 @pytest.mark.parametrize("hold", ["zero order", "first order"])
 @pytest.mark.parametrize("spacing", ["even", "jitter", "growing", "from another time"])
-@pytest.mark.daily(16)
+@pytest.mark.daily(10)
 def test_samples_are_summed_exactly(name, hold, spacing):
     rng = np.random.default_rng(7)
     times = np.linspace(0, 40, 257)
@@ -439,13 +437,12 @@ def test_a_kept_value_that_comes_through_a_dead_time():
 
 @pytest.mark.parametrize("hold", ["zero order", "first order"])
 @pytest.mark.parametrize("jitter", [0, 0.4])
-def test_long_records_take_no_time(hold, jitter):
+@pytest.mark.daily(2)
+def test_long_records(hold, jitter):
     rng = np.random.default_rng(3)
     times = (np.arange(20_000) + jitter * rng.uniform(-1, 1, 20_000)) * 0.1
     u = np.sin(0.05 * times) + rng.normal(size=20_000)
-    begin = time.process_time()
     found = response_to_samples(SYSTEMS["loop"], times, u, hold)
-    assert time.process_time() - begin < 2
     # what a record does is the sum of what its halves do
     half = np.where(np.arange(20_000) < 9_000, u, 0)
     parts = [response_to_samples(SYSTEMS["loop"], times, part, hold) for part in (half, u - half)]
@@ -499,22 +496,6 @@ def test_a_family_is_its_members():
     assert step_family(family(none), times) == pytest.approx(singles(none, times), abs=1e-11)
     rings = [model(D12=[[1, 0]], D21=[[1], [0.3]], D22=[[0.2, -g], [0.3, 0.3]], delays=[1, 2]) for g in np.ones(20) / 3]
     assert step_family(family(rings), [0.5, 3.5, 7]) == pytest.approx(singles(rings, [0.5, 3.5, 7]), abs=1e-11)
-
-
-def test_a_family_costs_much_less_than_its_members():
-    members = settings_of_loops(1000)
-    models, times = family(members), np.linspace(0, 50, 501)
-
-    def seconds(run, repeats):
-        taken = []
-        for _ in range(repeats):
-            begin = time.process_time()
-            run()
-            taken.append(time.process_time() - begin)
-        return min(taken)
-
-    one = seconds(lambda: Response(members[0], 50)(times), 20)
-    assert seconds(lambda: step_family(models, times), 3) < 60 * one
 
 
 def test_families_that_do_not_fit():

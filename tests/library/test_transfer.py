@@ -313,6 +313,7 @@ def test_step_responses_are_those_of_python_control(name):
 
 
 @by_name
+@pytest.mark.daily(8)
 def test_impulse_responses_are_those_of_scipy(name):
     H, times = SYSTEMS[name], np.linspace(0, 8, 33)
     ours = impulse_response(H)
@@ -327,11 +328,10 @@ def test_impulse_responses_are_those_of_scipy(name):
     "signal", [t, sin(2 * t), exp(-0.3 * t), 5 * Heaviside(t - 1) - 3 * Heaviside(t - 4), t * Heaviside(t - 2)], ids=str
 )
 def test_responses_to_other_inputs(signal):
-    H, times = SYSTEMS["third order"], np.linspace(0, 10, 20001)
+    H, times = SYSTEMS["third order"], np.linspace(0, 10, 10001)
     expected = control.forced_response(numeric(H), times, evaluate(signal, times)).outputs
-    assert evaluate(response(H, signal), times) == pytest.approx(
-        expected, abs=1e-3
-    )  # which joins the values by lines, jumps too
+    found = evaluate(response(H, signal), times[::50])
+    assert found == pytest.approx(expected[::50], abs=1e-3)  # which joins the values by lines, jumps too
 
 
 def test_dead_time_makes_a_response_late():

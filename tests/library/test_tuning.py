@@ -412,7 +412,7 @@ def least_itae(process, start, mode, measured):
         ("PID", "servo", True, 1.05),
     ],
 )
-@pytest.mark.daily(2)
+@pytest.mark.daily(1)
 def test_the_itae_rule_is_near_the_minimum(kind, mode, measured, most):
     process = first_order(1, 1, Rational(1, 2))
     settings = tuning.itae(process, kind, mode)
