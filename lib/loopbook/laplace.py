@@ -208,6 +208,8 @@ def by_delay(F: Number) -> dict[sympy.Expr, sympy.Expr]:
 
     >>> by_delay((1 - sympy.exp(-2 * s)) / s)
     {0: 1/s, 2: -1/s}
+    >>> by_delay((1 + sympy.exp(-s)) * (sympy.exp(-s) + sympy.exp(-2 * s)) / s)
+    {1: 1/s, 2: 2/s, 3: 1/s}
     """
     F = function_of(s, F)
     rational, delays = without_delays(F)
@@ -602,14 +604,20 @@ def between_steps(f: sympy.Expr) -> Iterator[tuple[float, float, sympy.Expr]]:
 
 def _values(f, times):
     """The real values of f(t), which has no steps, at an array of times."""
-    # NumPy divides floats: a fraction of integers that are too long for one becomes one here
-    long = {q: sympy.Float(q, 17) for q in f.atoms(sympy.Rational) if max(abs(q.p), q.q) > 2**53}
     try:
         with np.errstate(invalid="ignore"):
-            values = np.asarray(sympy.lambdify(t, f.xreplace(long), "numpy")(times))
+            values = np.asarray(_compiled(f)(times))
         values = values.astype(complex if np.iscomplexobj(values) else float)
     except (NameError, NotImplementedError, OverflowError, TypeError):
         raise ValueError(f"cannot evaluate {f}: NumPy has no such function or number") from None
     if np.isnan(values).any() or np.any(abs(values.imag) > 1e-9 * (1 + abs(values))):
         raise ValueError(f"cannot evaluate {f}: its values are not real numbers")
     return values.real
+
+
+@functools.lru_cache(maxsize=64)  # whoever searches asks for one moment after the other
+def _compiled(f):
+    """A function of time for f(t)."""
+    # NumPy divides floats: a fraction of integers that are too long for one becomes one here
+    long = {q: sympy.Float(q, 17) for q in f.atoms(sympy.Rational) if max(abs(q.p), q.q) > 2**53}
+    return sympy.lambdify(t, f.xreplace(long), "numpy")

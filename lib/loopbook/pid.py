@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import functools
 import math
 import numbers
 from collections.abc import Sequence
@@ -75,7 +76,7 @@ class PID:
             raise ValueError("Ti is 0: expected a positive integral time, or oo for a controller without integral term")
         one_of("form", self.form, FORMS)
 
-    @property
+    @functools.cached_property
     def expr(self) -> sympy.Expr:
         """The transfer function from control error to control signal, an expression in `s`.
 

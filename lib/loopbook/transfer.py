@@ -161,9 +161,7 @@ def transfer_function(value: TransferFunctionLike) -> sympy.Expr:
     """
     if str(type(value).__module__).split(".")[0] == "control":  # None for a function as G(s)
         return _from_control(value)
-    if not isinstance(value, sympy.Basic) and hasattr(value, "expr"):
-        value = value.expr
-    return function_of(s, value)
+    return function_of(s, value if isinstance(value, sympy.Basic) else getattr(value, "expr", value))
 
 
 def _from_control(system):
@@ -215,7 +213,9 @@ def simplified(H: TransferFunctionLike) -> sympy.Expr:
     except ValueError:  # with a dead time in a denominator, as in a loop around one
         dead_times = {symbol: sympy.exp(-delay * s) for symbol, delay in delays.items()}
         return sympy.factor(sympy.cancel(rational)).xreplace(dead_times)
-    return sympy.Add(*(sympy.factor(sympy.cancel(part)) * sympy.exp(-delay * s) for delay, part in parts.items()))
+    # put together first, or `cancel` multiplies out what the terms have in common
+    parts = {delay: sympy.factor(sympy.cancel(sympy.together(part))) for delay, part in parts.items()}
+    return sympy.Add(*(part * sympy.exp(-delay * s) for delay, part in parts.items()))
 
 
 def series(*blocks: TransferFunctionLike) -> sympy.Expr:
@@ -374,12 +374,14 @@ def initial_slope(H: TransferFunctionLike) -> sympy.Expr:
     1/5
     """
     H = transfer_function(H)
-    for part in by_delay(H).values():
-        above, below = sympy.cancel(part).as_numer_denom()
-        if sympy.degree(above, s) > sympy.degree(below, s):
+    slope = sympy.S.Zero
+    for delay, part in by_delay(H).items():
+        above, below = (sympy.Poly(x, s) for x in sympy.cancel(part).as_numer_denom())
+        if above.degree() > below.degree():
             raise ValueError(f"{H} is improper: expected no more zeros than poles")
-    at_once = by_delay(H).get(0, sympy.S.Zero)
-    return sympy.limit(sympy.cancel(s * (at_once - initial_gain(at_once))), s, sympy.oo)
+        if not delay:
+            slope = (above.rem(below) * s).nth(below.degree()) / below.LC()
+    return slope
 
 
 def zero_pole_gain(H: TransferFunctionLike) -> sympy.Expr:

@@ -424,8 +424,9 @@ def test_the_half_rule_as_bars_is_the_half_rule(order):
     lags, theta = {"a": 3.0, "b": 8.0, "c": 1.0, "d": 0.4}, 0.5
     process = exp(-theta * s) / sympy.prod(value * s + 1 for value in lags.values())
     model = half_rule(process, order=order)
-    plot = half_rule_plot(lags, {"theta": theta}, order=order)
+    plot = half_rule_plot(lags, {"theta": theta}, order=order, unit="min")
     axes = plot.figure.axes[0]
+    assert axes.get_xlabel() == "[min]"
     rows = {}
     for bar in axes.patches:
         rows.setdefault(round(bar.get_y(), 3), []).append(bar)

@@ -44,6 +44,8 @@ def test_the_asymptote_of_an_integrator_with_lag_leaves_the_level_a_lag_later():
     times = np.linspace(0, 100, 1001)
     model = integrator_from_step(times, System(2 * E(-3 * s) / (s * (4 * s + 1))).step(times))
     assert values(model, "K", "delay") == pytest.approx([2, 3 + 4], rel=1e-4)
+    late = integrator_from_step(times, 3 * np.maximum(times - 75, 0), part=0.2)
+    assert values(late, "K", "delay") == pytest.approx([3, 75], rel=1e-9)
 
 
 def test_the_tangent_of_a_chain_of_lags_puts_the_smaller_ones_into_the_dead_time():

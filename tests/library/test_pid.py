@@ -70,6 +70,7 @@ def test_complex_zeros_have_no_serial_form():
 def test_the_panel_goes_there_and_back(Kp, repeats):
     pid = PID.from_panel(100 / Kp, repeats)
     assert (pid.Kp, pid.proportional_band, pid.repeats_per_minute()) == (Kp, 100 / Kp, repeats)
+    assert pid.repeats_per_minute(1) == repeats / 60  # Ti in minutes, as many as there were seconds
 
 
 @pytest.mark.parametrize(

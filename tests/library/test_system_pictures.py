@@ -334,8 +334,8 @@ def test_a_given_window_stays_and_more_can_be_added():
 
 def test_step_plot_of_a_system_marks_what_characterises_it():
     H = System(exp(-s) / (s**2 + s + 1))
-    info = H.step_info()
-    plot = step_plot(H, info=info)
+    info = H.step_info(settling=0.05, rise=(0.2, 0.8))
+    plot = step_plot(H, info=info, unit="min", settling=0.05, rise=(0.2, 0.8))
     assert isinstance(plot, TimePlot)
     times, values = plot.lines["$y(t)$"].get_data()
     np.testing.assert_allclose(values, H.step(times), atol=1e-12)
@@ -344,8 +344,8 @@ def test_step_plot_of_a_system_marks_what_characterises_it():
     np.testing.assert_allclose(bar, [[info.peak_time, 1], [info.peak_time, info.peak]])
     (rise,) = [line.get_xdata() for line in plot.figure.axes[0].lines if line.get_marker() == "|"]
     assert rise[1] - rise[0] == pytest.approx(info.rise_time, rel=0.02)
-    assert plot.alt == "y(t) against t [s]; overshoot 16.3 %, rise time 1.64 s, settling time 9.08 s"
-    assert set(texts(plot)) == {"overshoot 16.3 %", "rise time 1.64 s", "settling time 9.08 s"}
+    assert plot.alt == "y(t) against t [min]; overshoot 16.3 %, rise time 1.16 min, settling time 6.29 min"
+    assert set(texts(plot)) == {"overshoot 16.3 %", "rise time 1.16 min", "settling time 6.29 min"}
 
 
 def test_step_plot_of_a_loop_has_setpoint_y_and_u():

@@ -97,7 +97,7 @@ class Loop:
         self._given = process, controller, controller if from_setpoint is None else from_setpoint
         try:
             self.process_fraction, self.controller_fraction, self.setpoint_fraction = (
-                DelayFraction(x.numerator, x.denominator) for x in map(read, self._given)
+                DelayFraction.coprime(x.numerator, x.denominator) for x in map(read, self._given)
             )
         except ValueError:
             blocks = [transfer_function(x) for x in self._given]

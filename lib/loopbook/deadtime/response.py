@@ -107,10 +107,9 @@ class Response:
         ((10, 20), 5.0)
         """
         pieces = np.ceil(np.diff(self.edges) / longest).astype(int).clip(1)
-        parts = zip(self.edges[:-1], self.edges[1:], pieces, strict=True)
-        inner = [np.linspace(a, b, n, endpoint=False) for a, b, n in parts]
-        edges = np.concatenate([*inner, self.edges[-1:]])
-        nodes, weights = np.polynomial.legendre.leggauss(NODES)
+        begin, step = np.repeat([self.edges[:-1], np.diff(self.edges) / pieces], pieces, axis=1)
+        edges = np.append(begin + step * np.concatenate([*map(np.arange, pieces)]), self.edges[-1])
+        nodes, weights = legendre.leggauss(NODES)
         half = np.diff(edges)[:, None] / 2
         return edges[:-1, None] + half * (nodes + 1), half * weights
 

@@ -223,7 +223,7 @@ class System(DelayFraction):
         times = times_from_zero(times)
         if hasattr(u, "__len__") and not isinstance(u, str):
             return response_to_samples(self.state_space(), times, u, hold)
-        forced = DelayFraction(self.numerator, self.denominator) * read(transform(function_of(t, u)))
+        forced = DelayFraction.coprime(self.numerator, self.denominator) * read(transform(function_of(t, u)))
         return System(forced).impulse(times)
 
     def step_info(self, settling: float = 0.02, rise: tuple[float, float] = (0.1, 0.9)) -> StepInfo:
@@ -406,7 +406,7 @@ def closed_loop(G: object, H: object = 1) -> System:
     >>> closed_loop(2 * sympy.exp(-s) / s, sympy.Rational(1, 2))
     System(2*exp(-s)/(s + exp(-s)))
     """
-    G, H = (DelayFraction(x.numerator, x.denominator) for x in map(read, (G, H)))
+    G, H = (DelayFraction.coprime(x.numerator, x.denominator) for x in map(read, (G, H)))
     return System(G / return_difference(G * H))
 
 

@@ -93,8 +93,8 @@ class _Problem:
         total += _square_of_expansion(expansion)
 
         def integrand(w):
-            turns = {delay: np.exp(-1j * w * delay) for delay, _ in expansion}
-            falls = {k: (1j * w + 1) ** -k for _, k in expansion}
+            turns = {delay: np.exp(-1j * w * delay) for delay in {delay for delay, _ in expansion}}
+            falls = {k: (1j * w + 1) ** -k for k in {k for _, k in expansion}}
             asymptotic = sum(c * falls[k] * turns[delay] for (delay, k), c in expansion.items())
             E = self.E(w) - sum(c / (1j * w - p) for c, p in zip(residues, poles, strict=True))
             return abs(E) ** 2 - abs(asymptotic) ** 2

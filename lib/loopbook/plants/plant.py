@@ -414,6 +414,7 @@ def _table(quantities):
         yield f"        {name_of(x)}: {meaning}, {amount}{'' if unit == '1' else f' {unit}'}"
 
 
+@functools.lru_cache(maxsize=4096)
 def _symbol(x):
     """The symbol that stands for a signal at its operating point."""
     return x if x.is_Symbol else sympy.Symbol(name_of(x), real=True)

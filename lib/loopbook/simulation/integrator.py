@@ -45,7 +45,10 @@ class CompiledModel:
         formulas = [formula.xreplace(symbols) for formula in formulas]
         found = sorted({x for formula in formulas for x in formula.atoms(AppliedUndef)}, key=str)
         others = {x: sympy.Dummy() for x in found}
-        function = sympy.lambdify([*symbols.values(), *others.values()], [f.xreplace(others) for f in formulas], "math")
+        formulas = [formula.xreplace(others) for formula in formulas]
+        # a case of a Piecewise that does not hold is not to be computed beforehand
+        cse = not any(formula.has(sympy.Piecewise) for formula in formulas)
+        function = sympy.lambdify([*symbols.values(), *others.values()], formulas, "math", cse=cse)
         return function, [(name_of(x), float(t - x.args[0])) for x in found]
 
 
