@@ -9,7 +9,7 @@ import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from draws import draws
+from draws import THOROUGH, draws
 from loopbook import s
 from loopbook.deadtime import System
 from loopbook.identification import fit
@@ -123,7 +123,7 @@ def test_with_noise_the_errors_are_as_large_as_it_says(kind):
 
 def test_the_standard_errors_are_the_scatter_of_repeated_experiments():
     H, _ = PROCESSES["first order"]
-    fits = [fit(*experiment(H, deviation=0.1, seed=seed, count=150)) for seed in range(25)]
+    fits = [fit(*experiment(H, deviation=0.1, seed=seed, count=150)) for seed in range(40 if THOROUGH else 25)]
     for name in ("K", "T1", "delay"):
         scatter = np.std([found.parameters[name] for found in fits])
         assert scatter == pytest.approx(np.mean([found.errors[name] for found in fits]), rel=0.4), name
