@@ -10,11 +10,12 @@ import contributing
 from draws import of_the_day
 from loopbook.exercises import ExerciseError, bank, exercise
 from loopbook.exercises.forms import Sheet, answer
-from loopbook.exercises.forms.fields import ELSEWHERE, LINE, LINES, ONE, ORDER, PARTS, SEVERAL, field_of
+from loopbook.exercises.forms.fields import field_of
 from loopbook.exercises.forms.text import html as html_of
 from loopbook.exercises.forms.text import inline, sentence
 from loopbook.exercises.kinds import Design, Number, Settings, Words
 from loopbook.exercises.kinds.by_hand import Figure, Text
+from loopbook.exercises.kinds.kind import ELSEWHERE, LINE, LINES, ONE, ORDER, PARTS, SEVERAL
 from loopbook.pid import PID
 
 NUMBERS = [number for chapter in bank.chapters() for number in bank.exercises(chapter)]

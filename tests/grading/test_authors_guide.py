@@ -46,5 +46,5 @@ def test_an_assignment_of_the_guide_can_be_released_and_answered(kind):
         variant = trial.Variant("s1", 0, assignment.question("s1", number), 0.0)
         for name, one in variant.key.items():
             form = eval(one.asking, dict(FORMS))
-            assert variant.judged(name, trial.as_given(one)).status == RIGHT
-            assert form.read(trial.as_given(one))
+            assert variant.judged(name, one.as_given).status == RIGHT
+            assert form.read(one.as_given)

@@ -6,35 +6,25 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from loopbook.exercises.kinds.settings import NAMES, Settings, parts_of, setting
 from loopbook.exercises.notation import bare
 from loopbook.exercises.reading import Unreadable
-from loopbook.pid import PID
+from loopbook.exercises.wholes import WHOLES
 
 if TYPE_CHECKING:
     from loopbook.exercises.kinds import Kind
 
-#: Names of one quantity in different books, without case and underscores. A name in two rows may be either.
-SYNONYMS = (
-    "k kp kc gain",
-    "kp kc kprop proportionalgain controllergain",
-    "ti taui integraltime resettime",
-    "td taud derivativetime",
-    "tau theta delay deadtime timedelay",
-    "tau t tau1 t1 lag timeconstant",
-    "tc tauc lambda",
-    "ku kcu kcr ultimategain",
-    "pu tu pcr ultimateperiod period p",
-    "omega w frequency crossover",
-    "zeta xi damping dampingratio",
-    "gainmargin gm",
-    "phasemargin pm",
-    "delaymargin dm",
-    "pole poles p",
-    "zero zeros z",
-    "settings controller pid pi c",
-    "h g m tf transferfunction",
-)
+#: Names of one quantity in different books, a row for each, without case and underscores. A name in two rows may be
+#: either.
+SYNONYMS: list[str] = []
+
+
+def also_called(*rows: str) -> None:
+    """Say which names are those of one quantity in different books.
+
+    Arguments:
+        rows: names with spaces between them, in small letters and without underscores.
+    """
+    SYNONYMS.extend(rows)
 
 
 def matched(given: Iterable[str], asked: Iterable[str]) -> dict[str, str]:
@@ -65,8 +55,8 @@ def matched(given: Iterable[str], asked: Iterable[str]) -> dict[str, str]:
 def as_asked(given: Mapping[str, Any], key: Mapping[str, Kind]) -> dict[str, Any]:
     """Return answers under the names that are asked; one that may mean none or several keeps its own.
 
-    The settings of a controller may be given one by one where a controller is asked, and as a controller where they
-    are asked one by one.
+    The parts of a `Whole`, as a controller's settings, may be given one by one where it is asked, and as a whole where
+    they are asked one by one.
 
     >>> from loopbook.exercises.kinds import Number, Settings
     >>> from loopbook.pid import PID
@@ -75,7 +65,7 @@ def as_asked(given: Mapping[str, Any], key: Mapping[str, Kind]) -> dict[str, Any
     >>> as_asked({"pid": PID(2, Ti=10)}, {"Kp": Number(2), "Ti": Number(10)})
     {'Kp': 2, 'Ti': 10}
     """
-    given = _with_a_controller(given, key)
+    given = _put_together(given, key)
     meant = matched(given, key)
     return _one_by_one({meant.get(name, name): answer for name, answer in given.items()}, key)
 
@@ -91,42 +81,44 @@ def by_name(alone: object, key: Mapping[str, Kind]) -> dict[str, Any]:
         return dict.fromkeys(key, alone)
     if isinstance(alone, dict) and all(isinstance(name, str) for name in alone):
         return alone if set(as_asked(alone, key)) & set(key) else {}
-    if isinstance(alone, PID) or (isinstance(alone, str) and re.search("[=:]|^ *PI", alone)):
-        return {name: value for name, value in _one_by_one({"pid": alone}, key).items() if name in key}
+    for whole in WHOLES:
+        if whole.is_one(alone) or (isinstance(alone, str) and re.search("[=:]", alone)):
+            return {name: value for name, value in _one_by_one({whole.called: alone}, key).items() if name in key}
     return {}
 
 
-def _with_a_controller(given, key):
-    """Answers in which the settings of the one controller that is asked are put together."""
-    [controller, *others] = [name for name, kind in key.items() if _is_controller(kind)] or [None]
-    parts = {name: setting(name) for name in given if setting(name) and name not in key}
+def _put_together(given, key):
+    """Answers in which the parts of the one whole that is asked are put together."""
+    [name, *others] = [name for name, kind in key.items() if kind.whole] or [None]
+    if name in (None, *given) or others:
+        return given
+    whole = key[name].whole
+    parts = {other: whole.part(other) for other in given if whole.part(other) and other not in key}
     several = len(set(parts.values())) > 1 or (parts and not parts.keys() & matched(given, key).keys())
-    if controller in (None, *given) or others or not several or "Kp" not in parts.values():
+    if not several or whole.parts[0] not in parts.values():
         return given
-    if len(set(parts.values())) < len(parts):  # two names for one setting
+    if len(set(parts.values())) < len(parts):  # two names for one part
         return given
-    return {name: answer for name, answer in given.items() if name not in parts} | {
-        controller: {parts[name]: given[name] for name in parts}
+    return {other: answer for other, answer in given.items() if other not in parts} | {
+        name: {parts[other]: given[other] for other in parts}
     }
 
 
 def _one_by_one(given, key):
-    """Answers in which a controller becomes its settings, where two or more of them are asked one by one."""
-    asked = {setting(name): name for name, kind in key.items() if setting(name) in NAMES and not _is_controller(kind)}
-    for name, answer in given.items():
-        if len(asked) > 1 and name not in key and _same_quantity(name, "pid"):
-            try:
-                parts = parts_of(answer)[0]
-            except Unreadable:
-                continue
-            if parts:
-                settings = {asked[part]: value for part, value in parts.items() if part in asked}
-                return settings | {other: value for other, value in given.items() if other != name}
+    """Answers in which a whole becomes its parts, where two or more of them are asked one by one."""
+    for whole in WHOLES:
+        asked = {whole.part(name): name for name, kind in key.items() if not kind.whole}
+        asked = {part: asked[part] for part in whole.parts if part in asked}
+        for name, answer in given.items():
+            if len(asked) > 1 and name not in key and _same_quantity(name, whole.called):
+                try:
+                    parts = whole.parts_of(answer)[0]
+                except Unreadable:
+                    continue
+                if parts:
+                    one_by_one = {asked[part]: value for part, value in parts.items() if part in asked}
+                    return one_by_one | {other: value for other, value in given.items() if other != name}
     return dict(given)
-
-
-def _is_controller(kind: Kind) -> bool:
-    return isinstance(getattr(kind, "example", kind), Settings)
 
 
 def _same_spelling(one: str, other: str) -> bool:

@@ -15,13 +15,12 @@ from loopbook.exercises.asked_names import as_asked, by_name
 from loopbook.exercises.diagnoses import Background
 from loopbook.exercises.errors import ExerciseError
 from loopbook.exercises.judging import OPEN, UNJUDGED, WAITING, Verdict, harmless, is_right, judge
-from loopbook.exercises.kinds import Expression, Kind, Number, Numbers, Poles, Settings
+from loopbook.exercises.kinds import Kind, Number
 from loopbook.exercises.parameters import call
 from loopbook.exercises.progress import is_answered, note, students
 from loopbook.exercises.reading import NOT_ANSWERED
 from loopbook.exercises.response import Response
 from loopbook.exercises.showing import Page, Showing
-from loopbook.figures import Picture
 from loopbook.validation import did_you_mean
 
 if TYPE_CHECKING:
@@ -222,7 +221,7 @@ class Question(Showing):
         return self._is_specific(name) and not is_right(self.key[name], given)
 
     def _is_specific(self, name):
-        return isinstance(self.key[name], Number | Numbers | Poles | Settings | Expression)
+        return self.key[name].is_personal
 
     @property
     def rungs(self) -> list[str]:
@@ -290,7 +289,7 @@ class Question(Showing):
             if function is None:
                 return None
             picture = self._called(function, "a picture")
-            if isinstance(picture, Picture) and (words := inspect.getdoc(function)):
+            if hasattr(picture, "alt") and (words := inspect.getdoc(function)):
                 picture.alt = " ".join(self.filled_in(words, also={}).replace("$", "").split())
             return picture
 

@@ -22,7 +22,7 @@ from loopbook.exercises import png
 from loopbook.exercises.formulas import Formula
 from loopbook.exercises.judging import harmless
 from loopbook.exercises.reading import Unreadable, alone, spelled
-from loopbook.pid import PID
+from loopbook.exercises.wholes import WHOLES
 
 DEEPEST, MOST_VALUES, LONGEST_TEXT, MOST_TEXT, MOST_DIGITS = 8, 2000, 5000, 50_000, 300
 #: Up to this denominator a fraction is written as one; others are the nearest decimal number, to 16 digits.
@@ -98,12 +98,13 @@ class _Reader:
                 return self.read(alone(value), depth + 1)
             case Mapping():
                 return self._dictionary(value, depth)
-            case PID():
-                return self._controller(value, depth)
         if value is Ellipsis:
             return None
         if hasattr(value, "magnitude") and hasattr(value, "units"):
             return self._quantity(value, depth)
+        for whole in WHOLES:
+            if (data := whole.as_data(value)) is not None:
+                return {name: self.read(one, depth + 1) for name, one in data.items()}
         if hasattr(value, "tolist") and hasattr(value, "ndim"):
             return self._array(value, depth)
         return self._number(value) if _is_number(value) else self._spelled(value)
@@ -128,12 +129,6 @@ class _Reader:
                 raise Unreadable(f"the dictionary has two keys {name}: expected one")
             found[name] = self.read(one, depth + 1)
         return found
-
-    def _controller(self, pid, depth):
-        parts = {name: getattr(pid, name) for name in ("Kp", "Ti", "Td", "Tf")}
-        if any(part.free_symbols for part in parts.values()):
-            return self._spelled(pid)
-        return {name: self.read(part, depth + 1) for name, part in parts.items()} | {"form": pid.form}
 
     def _quantity(self, value, depth):
         """A quantity of Pint, as text with its unit."""

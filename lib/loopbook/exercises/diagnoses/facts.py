@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -16,14 +16,11 @@ import sympy
 
 from loopbook.exercises.diagnoses.background import Background
 from loopbook.exercises.diagnoses.finding import Finding
-from loopbook.exercises.formulas import Formula
-from loopbook.exercises.kinds import Expression, TimeFunction, TransferFunction
+from loopbook.exercises.kinds import Expression, TimeFunction
 from loopbook.exercises.reading import listed
 
 #: Two facts are the same up to this fraction, or what is asked if that is more.
 SAME = 0.01
-#: A rational function is one up to so many poles, if it leaves no more than this.
-MOST_POLES, LEFT = 4, 1e-7
 #: A part of a function of time counts where it goes over this share of the whole way.
 SEEN = 0.1
 #: Values of symbols, none of them simple.
@@ -33,43 +30,26 @@ _USUAL = np.array([0.61, 0.83, 1.12, 1.34, 1.71])
 @functools.singledispatch
 def of(kind: Expression, answer: Any, background: Background) -> Finding | None:
     """Return what is right and what is not in a wrong formula."""
-    return _constant(kind, answer, background) or _dependence(kind, answer)
-
-
-@of.register
-def _(kind: TransferFunction, answer: Any, background: Background) -> Finding | None:
-    if constant := _constant(kind, answer, background):
-        return constant
-    key, found = facts_of(kind.key, kind), facts_of(answer, kind)
-    if found and key and found.get("poles") is not None and key.get("poles") is not None:
-        poles, right = found["poles"], key["poles"]
-        if poles.size == right.size > 0 and np.all(right != 0) and not _same(poles, right, kind):
-            if _same(poles, _in_order(1 / right), kind):
-                return Finding("its poles are one divided by those that it should have: a lag of $T$ is $Ts + 1$")
-            if _same(poles, _in_order(-right), kind):
-                return Finding("its poles are on the other side of the imaginary axis: look at the signs below")
-    if not key.get("dead time") and not found.get("dead time"):
-        key.pop("dead time", None)
-    return _listed(kind, {name: (found.get(name), value) for name, value in key.items()})
+    return constant(kind, answer, background) or _dependence(kind, answer)
 
 
 @of.register
 def _(kind: TimeFunction, answer: Any, background: Background) -> Finding | None:
-    if constant := _constant(kind, answer, background):
-        return constant
+    if found := constant(kind, answer, background):
+        return found
     if part := _right_part(kind, answer):
         return part
     if isinstance(answer, np.ndarray):
         return None
     pairs = _in_time(kind, answer)
     time_constants = "on the way from the one to the other it is not right: look at the time constants"
-    return _listed(kind, pairs, time_constants if len(pairs) > 1 else "")
+    return facts_listed(kind, pairs, time_constants if len(pairs) > 1 else "")
 
 
-def _listed(kind, pairs, otherwise=""):
-    """A sentence on facts, pairs of found and right by their names."""
+def facts_listed(kind: Expression, pairs: Mapping[str, tuple[Any, Any]], otherwise: str = "") -> Finding | None:
+    """Return a sentence on facts, pairs of found and right by their names."""
     known = {name: pair for name, pair in pairs.items() if all(one is not None for one in pair)}
-    right = [name for name, (found, key) in known.items() if _same(found, key, kind)]
+    right = [name for name, (found, key) in known.items() if same(found, key, kind)]
     wrong = [name for name in known if name not in right]
     right = [name for name in right if np.size(known[name][0])]  # no zeros at all are nothing to speak of
     if not right and not wrong:
@@ -87,7 +67,8 @@ def _are(names):
     return "are" if len(names) > 1 or names[0] in ("poles", "zeros") else "is"
 
 
-def _same(one, other, kind):
+def same(one: Any, other: Any, kind: Expression) -> bool:
+    """Return whether two facts, numbers or rows of them, are the same but for what rounding leaves."""
     one, other = np.atleast_1d(one), np.atleast_1d(other)
     if one.shape != other.shape:
         return False
@@ -99,8 +80,8 @@ def _same(one, other, kind):
 # --------------------------------------------------------------------------------------------------------- constants
 
 
-def _constant(kind, answer, background):
-    """Whether a formula is right but for a factor or a term without symbols, s and t."""
+def constant(kind: Expression, answer: Any, background: Background) -> Finding | None:
+    """Return whether a formula is right but for a factor or a term without symbols, s and t."""
     with np.errstate(all="ignore"):
         key, found = _values(kind, answer)
         known = np.isfinite(key) & np.isfinite(found) & (key != 0)
@@ -241,7 +222,7 @@ def _in_time(kind, answer):
             continue
         facts[name] = tuple(None if one is None else _rounded(one, size) for one in pair)
     begins = facts.get("initial value")
-    if begins and not _same(*begins, kind):  # then the slope says little
+    if begins and not same(*begins, kind):  # then the slope says little
         facts.pop("initial slope", None)
     return facts
 
@@ -249,99 +230,3 @@ def _in_time(kind, answer):
 def _rounded(value, size):
     """A value, zero where it is no more than a trace beside the size of the function."""
     return 0.0 if abs(value) < 1e-6 * size else value
-
-
-# ---------------------------------------------------------------------------------------- facts of transfer functions
-
-
-def facts_of(formula: Formula, kind: Expression) -> dict[str, Any]:
-    """Dead time, static gain, poles and zeros; of symbols other than s, some values are taken."""
-    others = {name: 0.7 + 0.37 * place for place, name in enumerate(sorted(kind.symbols)) if name != "s"}
-
-    def values(s):
-        return np.broadcast_to(formula(s=np.asarray(s, complex), **others), np.shape(s))
-
-    def of_key(s):
-        return np.broadcast_to(kind.key(s=np.asarray(s, complex), **others), np.shape(s))
-
-    delay = _delay(values)
-    if delay is None:
-        return {}
-    scale = _scale((of_key, values), delay)
-    rest = []
-    for exact in dict.fromkeys([0.0 if delay == 0 else float(f"{delay:.{digits}g}") for digits in range(1, 7)]):
-        above, below = _rational(lambda s, exact=exact: values(s) * np.exp(exact * s), scale)
-        if below is not None and (exact == 0) == (delay == 0):
-            rest.append((exact, above, below))
-    if not rest:
-        return {"dead time": delay}
-    # what a rounded dead time leaves has many poles and zeros that are none
-    exact, above, below = min(rest, key=lambda one: len(one[2]))
-    poles, zeros = _roots(below, scale), _roots(above, scale)
-    small = 1e-6 / scale
-    integrators = int(np.sum(np.abs(poles) < small)) - int(np.sum(np.abs(zeros) < small))
-    low = np.array([1e-7 / scale])
-    gain = (values(low) * low**integrators)[0].real
-    name = "static gain" if integrators == 0 else "gain at low frequencies"
-    return {name: gain, "dead time": exact, "poles": poles, "zeros": zeros}
-
-
-def _scale(formulas: Iterable[Callable[[Any], Any]], delay: float) -> float:
-    """A time in the range of theirs: where the size of one of them changes most with the frequency, or the delay."""
-    frequencies = np.geomspace(1e-6, 1e6, 241)
-    for values in formulas:
-        with np.errstate(all="ignore"):
-            change = np.abs(np.gradient(np.gradient(np.log(np.abs(values(1j * frequencies))))))
-        change = np.where(np.isfinite(change), change, 0)
-        if np.max(change) > 1e-4:
-            # a zero and a pole change it alike: of the two the slower one, whatever rounding says
-            return float(1 / frequencies[np.argmax(change > (1 - 1e-6) * np.max(change))])
-    return delay or 1.0
-
-
-def _delay(values: Callable[[Any], Any]) -> float | None:
-    """The dead time, from what is left where s is large; powers of s fall out of the second difference.
-
-    >>> round(_delay(lambda s: np.exp(-3 * s) / (5 * s + 1)), 3)
-    3.0
-    """
-    for step in np.geomspace(1e7, 1e-7, 141):
-        with np.errstate(all="ignore"):
-            logs = np.log(np.abs(values(np.array([1, 2, 4]) * step)))
-        if np.isfinite(logs).all():
-            size = abs(logs[2] - 2 * logs[1] + logs[0])  # of which a lag leaves next to nothing
-            return float(-(logs[2] - 2 * logs[1] + logs[0]) / step) if size > 1 else 0.0
-    return None
-
-
-def _rational(values, scale):
-    """Numerator and denominator, in scaled s, of a rational function; None where it is none of so many poles."""
-    s = 1.7 * np.exp(1j * np.linspace(-1.3, 1.3, 41)) * np.geomspace(0.2, 5, 41)
-    found = values(s / scale)
-    if not np.isfinite(found).all():
-        return None, None
-    size = np.max(np.abs(found))
-    for order in range(MOST_POLES + 1):
-        powers = s[:, None] ** np.arange(order + 1)
-        system = np.hstack([powers, -found[:, None] / size * powers])
-        system = np.vstack([system.real, system.imag])
-        widths = np.linalg.norm(system, axis=0)
-        _, left, rows = np.linalg.svd(system / widths)
-        if left[-1] < LEFT * left[0]:
-            solution = rows[-1] / widths
-            return solution[: order + 1], solution[order + 1 :]
-    return None, None
-
-
-def _roots(polynomial, scale):
-    """The roots, lowest powers first, without those at infinity, in order."""
-    largest = np.max(np.abs(polynomial))
-    while polynomial.size and abs(polynomial[-1]) < 1e-6 * largest:
-        polynomial = polynomial[:-1]
-    roots = np.polynomial.polynomial.polyroots(polynomial) if polynomial.size > 1 else np.array([])
-    return _in_order(np.where(np.abs(roots) < 1e-6, 0, roots) / scale)
-
-
-def _in_order(roots):
-    size = np.max(np.abs(roots), initial=0.0) or 1.0
-    return np.array(sorted(roots, key=lambda root: (round(root.real / size, 6), root.imag)), complex)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
 from collections.abc import Iterator
@@ -9,9 +10,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from loopbook.exercises.diagnoses.background import Answered, Background
-from loopbook.exercises.diagnoses.facts import facts_of
 from loopbook.exercises.formulas import Formula
-from loopbook.exercises.kinds import Expression, TimeFunction, TransferFunction
+from loopbook.exercises.kinds import Expression, Kind, TimeFunction
 
 #: A number belongs to a formula if it is this near to what the right formula gives.
 SAME = 1e-4
@@ -30,31 +30,30 @@ def of_formulas(key: float, background: Background) -> Iterator[tuple[str, float
         if name != background.name and isinstance(kind, Expression):
             one = background.answered(name)
             if one and isinstance(one.answer, Formula) and not one.is_right:
-                for right, own in _pairs(one, background):
+                for right, own in numbers_of(one.kind, one, background):
                     if math.isfinite(own) and abs(right - key) <= SAME * abs(key):
                         yield one.words, own
 
 
-def _pairs(one: Answered, background: Background) -> Iterator[tuple[float, float]]:
-    """Numbers of the right formula, and the same ones of the reader's."""
-    kind, answer = one.kind, one.answer
-    if type(kind) is TimeFunction:
-        times = np.array([1e-9, 1e3]) * kind.until
-        yield from zip(_real(kind.key, t=times), _real(answer, t=times), strict=True)
-    elif type(kind) is TransferFunction and kind.symbols == ["s"]:
-        right, own = facts_of(kind.key, kind), facts_of(answer, kind)
-        for fact in right.keys() & own.keys():
-            first, other = (np.atleast_1d(facts[fact]) for facts in (right, own))
-            if first.size == other.size == 1 and not (first.imag or other.imag):
-                yield float(first[0].real), float(other[0].real)
-                if fact == "poles" and first[0] and other[0]:
-                    yield float(-1 / first[0].real), float(-1 / other[0].real)
-    elif type(kind) is Expression:
-        givens = [given.value for given in background.givens]
-        ways = list(itertools.islice(itertools.permutations(givens, len(kind.symbols)), MOST_WAYS))
-        if ways:
-            values = dict(zip(kind.symbols, np.array(ways, float).T, strict=True))
-            yield from zip(_real(kind.key, **values), _real(answer, **values), strict=True)
+@functools.singledispatch
+def numbers_of(kind: Kind, one: Answered, background: Background) -> Iterator[tuple[float, float]]:
+    """Yield numbers of the right formula, and the same ones of the reader's; each kind of formula registers its own."""
+    yield from ()
+
+
+@numbers_of.register
+def _(kind: TimeFunction, one: Answered, background: Background) -> Iterator[tuple[float, float]]:
+    times = np.array([1e-9, 1e3]) * kind.until
+    yield from zip(_real(kind.key, t=times), _real(one.answer, t=times), strict=True)
+
+
+@numbers_of.register
+def _(kind: Expression, one: Answered, background: Background) -> Iterator[tuple[float, float]]:
+    givens = [given.value for given in background.givens]
+    ways = list(itertools.islice(itertools.permutations(givens, len(kind.symbols)), MOST_WAYS))
+    if ways:
+        values = dict(zip(kind.symbols, np.array(ways, float).T, strict=True))
+        yield from zip(_real(kind.key, **values), _real(one.answer, **values), strict=True)
 
 
 def _real(formula, **values):

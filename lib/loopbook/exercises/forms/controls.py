@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from loopbook.exercises.forms.fields import ELSEWHERE, LINE, LINES, NONE, ONE, ORDER, PARTS, SEVERAL, Field
+from loopbook.exercises.forms.fields import Field
 from loopbook.exercises.forms.text import escaped
+from loopbook.exercises.kinds.kind import ELSEWHERE, LINE, LINES, NONE, ONE, ORDER, PARTS, SEVERAL
 
 #: Up to so many words are buttons beside each other, and up to so many where no other field has the same words.
 FEW, MORE = 4, 6

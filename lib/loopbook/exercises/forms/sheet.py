@@ -14,8 +14,9 @@ import numpy as np
 from loopbook.exercises import exercise
 from loopbook.exercises.errors import ExerciseError
 from loopbook.exercises.forms import controls
-from loopbook.exercises.forms.fields import NONE, SEVERAL, Field, field_of
+from loopbook.exercises.forms.fields import Field, field_of
 from loopbook.exercises.forms.text import escaped, html, sentence
+from loopbook.exercises.kinds.kind import NONE, SEVERAL
 from loopbook.exercises.question import Question
 
 #: Longer ones are no answers that somebody typed.

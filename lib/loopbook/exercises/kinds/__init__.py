@@ -7,10 +7,11 @@ import importlib
 import pkgutil
 
 from loopbook.exercises.kinds.design import Criterion, Design
-from loopbook.exercises.kinds.formula import Expression, TimeFunction, TransferFunction
+from loopbook.exercises.kinds.formula import Expression, TimeFunction
 from loopbook.exercises.kinds.kind import MAKERS, Kind
 from loopbook.exercises.kinds.numeric import Number, Numbers, Poles
 from loopbook.exercises.kinds.settings import Settings
+from loopbook.exercises.kinds.transfer_function import TransferFunction
 from loopbook.exercises.kinds.words import Word, Words
 
 for _module in pkgutil.iter_modules(__path__):  # a kind in a module of its own is found by itself

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Any, NoReturn
 
 from loopbook.exercises import png
-from loopbook.exercises.kinds.kind import Kind
+from loopbook.exercises.kinds.kind import ELSEWHERE, LINES, Kind
 from loopbook.exercises.reading import NOT_ANSWERED, Unreadable, answered
 from loopbook.validation import whole
 
@@ -30,6 +30,11 @@ class _ByHand:
     def making(self) -> str:
         """Nothing judges it again from code."""
         return ""
+
+    @property
+    def field(self) -> dict[str, Any]:
+        """Lines."""
+        return {"control": LINES, "asked": self.asked}
 
     def agrees(self, answer: Any) -> bool:
         """Never: a person says whether it is right."""
@@ -76,6 +81,12 @@ class Figure(_ByHand, Kind):
     def asked(self) -> str:
         """What it shows, and that it is a figure."""
         return f"{self.what}, as a figure, which a person marks"
+
+    @property
+    def field(self) -> dict[str, Any]:
+        """No place in a page."""
+        says = "A page has no place for a figure: this one is answered in JupyterLab."
+        return {"control": ELSEWHERE, "asked": self.asked, "help": says}
 
     def read(self, given: object) -> tuple[bytes, str]:
         """Return the figure as the bytes of a PNG file."""

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from loopbook.exercises.kinds.kind import Kind
+from loopbook.exercises.kinds.kind import Kind, Tried
 from loopbook.exercises.kinds.numeric import in_unit
 from loopbook.exercises.reading import Unreadable
 from loopbook.exercises.timeout import limited
 
 if TYPE_CHECKING:
+    from loopbook.exercises.wholes import Whole
     from loopbook.types import Number
 
 SECONDS = 1.5
@@ -151,6 +152,25 @@ class Design(Kind):
     def solution(self) -> str:
         """One of the designs that meet the criteria."""
         return f"for example {self.example.solution}"
+
+    @property
+    def field(self) -> dict[str, Any]:
+        """As of the quantity's kind, with what it must achieve."""
+        inner = self.example.field
+        return inner | {"more": inner.get("more", {}) | {"demands": [one.demand for one in self.criteria]}}
+
+    def right_forms(self) -> Iterator[Tried]:
+        """As of the quantity's kind."""
+        return self.example.right_forms()
+
+    def wrong_forms(self) -> Iterator[Tried]:
+        """As of the quantity's kind."""
+        return self.example.wrong_forms()
+
+    @property
+    def whole(self) -> Whole | None:
+        """That of the quantity's kind."""
+        return self.example.whole
 
     def complaints(self, answer: Any) -> list[str]:
         """Return what an answer does not achieve, in sentences; a condition that fails stands alone."""

@@ -1,4 +1,4 @@
-"""Expressions, transfer functions, and functions of time."""
+"""Expressions, and functions of time."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ import sympy
 from loopbook.exercises import units
 from loopbook.exercises.agreement import agree, agree_in_time
 from loopbook.exercises.formulas import Formula, is_number
-from loopbook.exercises.kinds.kind import Kind, literal, with_unit
+from loopbook.exercises.kinds.kind import AS_IT_IS, LINE, Kind, Tried, how_rounded, literal, rounded, with_unit
 from loopbook.exercises.kinds.numeric import in_unit
-from loopbook.exercises.kinds.settings import Settings
 from loopbook.exercises.points import points_for, times_for
 from loopbook.exercises.reading import Unreadable, alone, answered, listed, shortened, symbols_in
-from loopbook.expressions import exact, parse, s
+from loopbook.exercises.wholes import WHOLES
+from loopbook.expressions import exact, parse
 
 if TYPE_CHECKING:
     from loopbook.types import Number
@@ -113,8 +113,8 @@ class Expression(Kind):
         if isinstance(given, Formula):
             return given, ""
         given = alone(given)
-        if isinstance(given, dict) and {"Kp", "form"} <= given.keys():  # a controller, as data
-            given, _ = Settings.without_key().read(given)
+        if isinstance(given, dict):  # a controller, as data
+            given = next((one for whole in WHOLES if (one := whole.of_data(given)) is not None), given)
         used = symbols_in(given) if self.symbols is None else ()
         formula, remark = self._formula(
             given, sorted(self.always.union(used)) if self.symbols is None else self.symbols
@@ -238,11 +238,45 @@ class Expression(Kind):
             yield "that is the inverse: one divided by the answer", 1 / self.expr
         yield from self._in_other_units()
 
+    is_personal = True
+
+    @property
+    def field(self) -> dict[str, Any]:
+        """A line."""
+        says = f"an expression in {', '.join(self.symbols)}" if self.symbols else "an expression"
+        return {"control": LINE, "help": says}
+
+    def right_forms(self) -> Iterator[Tried]:
+        """The formula as an expression of SymPy, multiplied out, in one fraction, and with rounded numbers."""
+        expr = self.expr
+        yield AS_IT_IS, str(expr)
+        yield "as an expression of SymPy", expr.xreplace({one: sympy.Symbol(one.name) for one in expr.free_symbols})
+        yield "multiplied out", str(sympy.expand(expr))
+        yield "in one fraction", str(sympy.together(expr))
+        if (short := _with_rounded_numbers(expr, self.within)) != expr:
+            yield f"with its numbers {how_rounded(self.within)}", str(short)
+
+    def wrong_forms(self) -> Iterator[Tried]:
+        """Zero, one, the other sign, a factor of ten."""
+        changed = {"zero": 0, "one": 1, "with the other sign": -self.expr, "ten times as much": 10 * self.expr}
+        yield from ((how, str(answer)) for how, answer in changed.items() if answer != self.expr)
+
     def _in_other_units(self):
         """The values in other units; a temperature in another scale is no multiple."""
         for unit, converted in units.neighbours(self.unit).items():
             if converted(0) == 0:
                 yield f"those would be the values {in_unit(unit)}; asked: {self.asked}", self.expr * exact(converted(1))
+
+
+def _with_rounded_numbers(expr, within):
+    """An expression whose numbers are decimals of a few digits, except in powers, which are exact."""
+    if isinstance(expr, sympy.Rational | sympy.Float):
+        short = rounded(float(expr), within)
+        return expr if expr == short or expr.is_Integer else sympy.Float(short)
+    if isinstance(expr, sympy.Pow) and expr.exp.is_number:
+        base = _with_rounded_numbers(expr.base, within)
+        return base**expr.exp if not base.is_number else sympy.Float(rounded(float(expr), within))
+    return expr.func(*(_with_rounded_numbers(one, within) for one in expr.args)) if expr.args else expr
 
 
 @functools.cache
@@ -284,58 +318,12 @@ def _expression(key):
     return parse(key) if isinstance(key, str) else exact(key)
 
 
-class TransferFunction(Expression):
-    """A transfer function in s, with or without symbols; dead time is exact.
-
-    >>> H = TransferFunction(2 * sympy.exp(-3 * s) / (10 * s + 1))
-    >>> H.agrees(H.read("0.2*exp(-3*s)/(s + 0.1)")[0])
-    True
-    """
-
-    always = frozenset({"s"})
-
-    def __init__(
-        self,
-        key: Number | str,
-        what: str = "the transfer function",
-        symbols: str = "",
-        within: float = 0.01,
-        unit: str = "",
-    ):
-        super().__init__(key, what, symbols, within, unit)
-
-    def mistakes(self) -> Iterator[tuple[str, Any]]:
-        """Those of an expression, a forgotten dead time, its sign, and an s too many or too few."""
-        yield from super().mistakes()
-        if self.expr.has(sympy.exp):
-            if without := self.expr.replace(sympy.exp, lambda _: sympy.S.One):
-                yield "the dead time is missing", without
-            yield (
-                "the sign in the exponent of the dead time is wrong: a delay is exp of something negative times s",
-                self.expr.replace(sympy.exp, lambda x: sympy.exp(-x)),
-            )
-            for order in (1, 2):
-                yield (
-                    "that is a Pade approximation of the dead time; the exact one is asked for",
-                    self.expr.replace(sympy.exp, lambda x, n=order: _pade(x, n)),
-                )
-        yield "there is a factor s too many: compare with the transform of a response to a step", self.expr * s
-        yield "a factor s is missing in it, or it is the transform of a step response", self.expr / s
-        yield from _in_other_time(self, "s")
-
-
-def _in_other_time(kind, variable):
-    """The same with another unit of time, seconds and minutes or minutes and hours exchanged, or milliseconds."""
+def in_other_time(kind: Expression, variable: str) -> Iterator[tuple[str, Formula]]:
+    """Yield the same with another unit of time, seconds and minutes or minutes and hours exchanged, or milliseconds."""
     for factor in (60, 3600, 1000):
         for scale in (f"{factor}", f"(1/{factor})"):
             text = re.sub(rf"\b{variable}\b", f"({scale}*{variable})", kind.key.text)
             yield "its unit of time is not the one in the question", Formula(text, kind.symbols)
-
-
-def _pade(x, order):
-    if order == 1:
-        return (1 + x / 2) / (1 - x / 2)
-    return (1 + x / 2 + x**2 / 12) / (1 - x / 2 + x**2 / 12)
 
 
 class TimeFunction(Expression):
@@ -414,7 +402,7 @@ class TimeFunction(Expression):
         """Wrong sign."""
         yield "that is right except for its sign", -self.expr
         yield from self._in_other_units()
-        yield from _in_other_time(self, "t")
+        yield from in_other_time(self, "t")
 
     def agrees(self, answer: Any) -> bool:
         """Whether both have the same values, but for the rounding of numbers."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from loopbook.exercises.kinds.kind import Kind
+from loopbook.exercises.kinds.kind import AS_IT_IS, LINES, Kind, Tried
 from loopbook.exercises.reading import LONGEST, Unreadable, alone, answered, in_a_row, shortened
 from loopbook.instruments import Tag, decode
 from loopbook.validation import did_you_mean
@@ -292,6 +292,26 @@ class InstrumentDiagram(Kind):
         from loopbook.exercises.diagram_layout import drawn
 
         return drawn(connections(answer), self.places, "Your diagram, as it was read")
+
+    @property
+    def field(self) -> dict[str, Any]:
+        """Lines."""
+        says = (
+            "A line for each connection, or several in one, as `vessel -> LT1 -> LC1 -> LV1 -> outlet`; "
+            "a pneumatic signal is `-//->`."
+        )
+        return {"control": LINES, "asked": self.asked.replace(", as lines of connections", ""), "help": says}
+
+    def right_forms(self) -> Iterator[Tried]:
+        """The diagram as a list of connections."""
+        yield AS_IT_IS, self.key
+        yield "as a list of connections", self.key.split("; ")
+
+    def wrong_forms(self) -> Iterator[Tried]:
+        """The first connection alone."""
+        first, *more = self.key.split("; ")
+        if more:
+            yield "its first connection alone", first
 
 
 _DONE = {"transmitter": "measured", "controller": "controlled", "alarm": "watched", "switch": "watched"}

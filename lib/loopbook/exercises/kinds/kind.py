@@ -2,17 +2,31 @@
 
 from __future__ import annotations
 
+import ast
 import inspect
 import json
 import re
-from collections.abc import Iterable
-from typing import Any, ClassVar, Self
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
 import numpy as np
 
 from loopbook.exercises import units
 from loopbook.validation import did_you_mean
 
+if TYPE_CHECKING:
+    from loopbook.exercises.wholes import Whole
+
+#: How a field of a form is filled in: a line of text, several lines, one word or several of a list, words of a list in
+#: an order, parts, each with its own line; or not in a page.
+LINE, LINES, ONE, SEVERAL, ORDER, PARTS, ELSEWHERE = "line", "lines", "one", "several", "order", "parts", "elsewhere"
+#: What stands for no word of a list, where several may be chosen.
+NONE = "none"
+#: An answer to try an exercise with, and in words what it is.
+Tried: TypeAlias = tuple[str, Any]
+AS_IT_IS = "as it is"
+#: How many digits a careful student keeps; with a tolerance below this one, all that are needed.
+DIGITS, MANY_DIGITS, ALL_DIGITS, ROUGHEST = 3, 8, 16, 0.005
 #: Smaller whole numbers are written without a decimal point.
 EXACT = 10**15
 
@@ -42,6 +56,10 @@ class Kind:
     FORM: tuple[str, ...] = ("unit",)
     #: Whether a person marks it, so that nothing is compared.
     by_hand: ClassVar[bool] = False
+    #: Whether such an answer belongs to the numbers of one student, so that a right one to others' is recognised.
+    is_personal: ClassVar[bool] = False
+    #: What an answer is that may come in parts, under names of their own, as a controller and its settings.
+    whole: Whole | None = None
     #: Whether there is a picture of what an answer does.
     draws: Any = False
     #: What `precision` says before the accuracy: of the form of an answer, and of its numbers.
@@ -245,6 +263,27 @@ class Kind:
         """What an answer would be if it had been given in another unit: pairs of the unit and the value."""
         return ()
 
+    @property
+    def field(self) -> dict[str, Any]:
+        """How a field of a form looks, as arguments of `forms.fields.Field`, with texts in Markdown.
+
+        Nothing in it comes from the key. A kind that says nothing else is typed in lines, below what is expected.
+        """
+        return {"control": LINES, "asked": self.asked, "unit": "", "help": f"Expected: {self.expected}."}
+
+    def right_forms(self) -> Iterator[Tried]:
+        """Yield the key in forms in which students write it, each with its words, the plainest first."""
+        yield AS_IT_IS, ast.literal_eval(self.as_code())
+
+    @property
+    def as_given(self) -> Any:
+        """The key as a student would give it."""
+        return next(iter(self.right_forms()))[1]
+
+    def wrong_forms(self) -> Iterator[Tried]:
+        """Yield answers that are not the key, each with its words."""
+        yield from ()
+
 
 def literal(value: object) -> str:
     """Return plain data as code: a text, a number, a truth value, lists, arrays and dictionaries of them.
@@ -266,6 +305,20 @@ def literal(value: object) -> str:
         case float() if value.is_integer() and abs(value) < EXACT:
             return repr(int(value))
     return repr(value)
+
+
+def rounded(x: float, within: float = 0.01) -> float:
+    """Return a number as a careful student rounds it: to three digits, where the tolerance allows it.
+
+    >>> rounded(12.3456), rounded(12.3456, within=0.001)
+    (12.3, 12.3456)
+    """
+    return float(f"{x:.{DIGITS if within >= ROUGHEST else MANY_DIGITS}g}")
+
+
+def how_rounded(within: float) -> str:
+    """Return how `rounded` rounds, in words."""
+    return "rounded to three digits" if within >= ROUGHEST else "with eight digits"
 
 
 def with_unit(text: str, unit: str) -> str:

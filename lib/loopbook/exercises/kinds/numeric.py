@@ -13,7 +13,17 @@ import sympy
 
 from loopbook.exercises import notation, units
 from loopbook.exercises.formulas import Formula
-from loopbook.exercises.kinds.kind import Kind, with_unit
+from loopbook.exercises.kinds.kind import (
+    ALL_DIGITS,
+    AS_IT_IS,
+    LINE,
+    MANY_DIGITS,
+    Kind,
+    Tried,
+    how_rounded,
+    rounded,
+    with_unit,
+)
 from loopbook.exercises.reading import (
     LONGEST_BY_HAND,
     Unreadable,
@@ -63,6 +73,8 @@ _WITH_UNITS = re.compile(
 ROUNDED = 0.01
 #: A number below this fraction of the key is zero.
 NOTHING = 1e-9
+#: In so many other units the key is tried.
+MOST_UNITS = 2
 
 
 class Number(Kind):
@@ -119,6 +131,41 @@ class Number(Kind):
         """What an answer would be if it had been given in another unit: pairs of the unit and the value."""
         for unit in units.neighbours(self.unit):
             yield unit, units.convert(answer, unit, to=self.unit)
+
+    is_personal = True
+
+    @property
+    def field(self) -> dict[str, Any]:
+        """A line, with the unit beside it."""
+        return {"control": LINE}
+
+    def right_forms(self) -> Iterator[Tried]:
+        """The number rounded, as text, exact, with a decimal comma, and in other units.
+
+        >>> dict(Number(90, "s").right_forms())["in min"]
+        '1.5 min'
+        """
+        short = rounded(self.key, self.within)
+        yield AS_IT_IS, self.key
+        yield how_rounded(self.within), short
+        yield "as text with its unit", f"{short!r} {self.unit}".strip()
+        yield "as an exact number of SymPy", sympy.nsimplify(self.key, rational=True)
+        if "." in repr(short) and "e" not in repr(short):
+            yield "with a decimal comma", repr(short).replace(".", ",")
+        for unit in list(units.neighbours(self.unit))[:MOST_UNITS]:
+            # in °C a value may be a temperature or a difference
+            is_clear = not {"°C", "K"} & {self.unit, unit}
+            if unit and is_clear and units.convert(0, self.unit, to=unit) == 0:
+                digits = MANY_DIGITS if self.within else ALL_DIGITS
+                yield f"in {unit}", f"{units.convert(self.key, self.unit, to=unit):.{digits}g} {unit}"
+
+    def wrong_forms(self) -> Iterator[Tried]:
+        """Zero, the other sign, a factor of ten.
+
+        >>> [answer for _, answer in Number(90, "s").wrong_forms()]
+        [0.0, -90.0, 900.0, 9.0]
+        """
+        return _changed(self.key)
 
 
 class Numbers(Kind):
@@ -202,6 +249,28 @@ class Numbers(Kind):
         right = int(np.sum(self.near_each(answer, key)))
         return f"{right} of {key.size} numbers are right" if right else ""
 
+    is_personal = True
+
+    @property
+    def field(self) -> dict[str, Any]:
+        """A line."""
+        return {"control": LINE, "help": self.expected.removesuffix(f", in {self.unit}")}
+
+    def right_forms(self) -> Iterator[Tried]:
+        """The numbers rounded, as a matrix, an array and a text."""
+        short = np.vectorize(lambda x: rounded(x, self.within))(self.key)
+        yield AS_IT_IS, self.key.tolist()
+        yield how_rounded(self.within), short.tolist()
+        yield "as a matrix of SymPy", sympy.Matrix(self.key)
+        yield "as an array", self.key
+        yield "as text", str(short.tolist())
+
+    def wrong_forms(self) -> Iterator[Tried]:
+        """As of a number, and the opposite order."""
+        yield from _changed(self.key)
+        if not np.array_equal(self.key, self.key[::-1]):
+            yield "in the opposite order", self.key[::-1]
+
 
 class Poles(Kind):
     """Complex numbers in any order, as often as they occur, such as poles and zeros.
@@ -279,6 +348,41 @@ class Poles(Kind):
             yield "real part and imaginary part are interchanged", self.key.imag + 1j * self.key.real
         for unit, converted in units.neighbours(self.unit).items():
             yield f"those would be the values {in_unit(unit)}; asked: {self.asked}", self.key * converted(1)
+
+    is_personal = True
+
+    @property
+    def field(self) -> dict[str, Any]:
+        """A line."""
+        return {"control": LINE, "help": self.expected}
+
+    def right_forms(self) -> Iterator[Tried]:
+        """The poles rounded, in the opposite order, as expressions and as a text."""
+        short = [complex(rounded(z.real, self.within), rounded(z.imag, self.within)) for z in self.key]
+        yield AS_IT_IS, self.key.tolist()
+        yield how_rounded(self.within), short
+        yield "in the opposite order", self.key[::-1]
+        yield "as expressions of SymPy", [sympy.Float(z.real) + sympy.I * sympy.Float(z.imag) for z in self.key]
+        if short:
+            yield "as text", ", ".join(f"{z.real!r} {'-' if z.imag < 0 else '+'} {abs(z.imag)!r}j" for z in short)
+
+    def wrong_forms(self) -> Iterator[Tried]:
+        """As of a number, and one more pole."""
+        yield from _changed(self.key)
+        yield "one more pole", [*self.key, -1]
+
+
+def _changed(key):
+    """Zero, the other sign, and a factor of ten; of a row and of poles, those that are not the same once more."""
+    changed = {
+        "zero": 0 * key,
+        "with the other sign": -key,
+        "ten times as much": 10 * key,
+        "a tenth of it": key / 10,
+    }
+    for how, answer in changed.items():
+        if not np.array_equal(np.sort_complex(np.ravel(answer)), np.sort_complex(np.ravel(key))):
+            yield how, answer
 
 
 def _without_noun(text, what):

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from loopbook.exercises.charts.notation import WrittenChart, read_chart
 from loopbook.exercises.charts.signals import Signals
-from loopbook.exercises.kinds.kind import Kind
+from loopbook.exercises.kinds.kind import AS_IT_IS, LINES, Kind, Tried
 from loopbook.exercises.reading import Unreadable, alone, answered, in_a_row
 from loopbook.exercises.timeout import limited
 from loopbook.sequence import Chart
@@ -138,6 +138,22 @@ class SequentialChart(Kind):
         return stacked(plot, sequential_function_chart(chart, title=chart_title))
 
     # ----------------------------------------------------------------------------------------------- runs of a chart
+
+    @property
+    def field(self) -> dict[str, Any]:
+        """Lines."""
+        says = "A line for each step and each transition, as `Fill: inlet on` and `Fill -> Heat: level >= 0.9`."
+        return {"control": LINES, "asked": self.asked.replace(", as lines of text", ""), "help": says}
+
+    def right_forms(self) -> Iterator[Tried]:
+        """The chart as a list of lines."""
+        yield AS_IT_IS, self.key
+        yield "as a list of lines", self.key.splitlines()
+
+    def wrong_forms(self) -> Iterator[Tried]:
+        """Charts that only switch something on."""
+        for output in self.outputs:
+            yield f"a chart that only switches {output} on", f"Start: {output} on"
 
     def _chart(self, text):
         from loopbook.exercises.charts.running import SCAN

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import math
 import random
 import re
@@ -12,17 +13,50 @@ import numpy as np
 import sympy
 
 from loopbook.exercises import notation, units
+from loopbook.exercises.asked_names import also_called
 from loopbook.exercises.formulas import Formula
-from loopbook.exercises.kinds.kind import Kind, literal, with_unit
+from loopbook.exercises.kinds.kind import (
+    AS_IT_IS,
+    PARTS,
+    Kind,
+    Tried,
+    how_rounded,
+    literal,
+    rounded,
+    with_unit,
+)
 from loopbook.exercises.kinds.numeric import in_digits, near, one_number
 from loopbook.exercises.notation import bare
 from loopbook.exercises.reading import Unreadable, alone, answered, in_a_row, listed, listed_in, shortened
+from loopbook.exercises.wholes import Whole
 from loopbook.expressions import exact
 from loopbook.pid import PID
 from loopbook.validation import one_of
 
 NAMES = ("Kp", "Ti", "Td", "Tf")
 _USUAL = {"Ti": sympy.oo, "Td": 0, "Tf": 0}  # what need not be said
+
+
+also_called(
+    "k kp kc gain",
+    "kp kc kprop proportionalgain controllergain",
+    "ti taui integraltime resettime",
+    "td taud derivativetime",
+    "tau theta delay deadtime timedelay",
+    "tau t tau1 t1 lag timeconstant",
+    "tc tauc lambda",
+    "ku kcu kcr ultimategain",
+    "pu tu pcr ultimateperiod period p",
+    "omega w frequency crossover",
+    "zeta xi damping dampingratio",
+    "gainmargin gm",
+    "phasemargin pm",
+    "delaymargin dm",
+    "pole poles p",
+    "zero zeros z",
+    "settings controller pid pi c",
+    "h g m tf transferfunction",
+)
 
 
 class Settings(Kind):
@@ -40,6 +74,7 @@ class Settings(Kind):
 
     FORM = ("gain", "time", "form")
     EACH = "each number "
+    is_personal = True
 
     def __init__(
         self,
@@ -208,6 +243,62 @@ class Settings(Kind):
         """Which of the settings of a controller in the form of the key are right."""
         return self._parts_near(answer, self.key)
 
+    @property
+    def field(self) -> dict[str, Any]:
+        """A line for each setting."""
+        form = {"any": "", "parallel": ", in parallel form", "serial": ", in serial form"}[self.form]
+        parts = [("Kp", "gain", self.gain), ("Ti", "integral time", self.time)]
+        parts += [("Td", "derivative time", self.time), ("Tf", "filter time", self.time)]
+        # where both forms are right, an answer must be able to say which one it has
+        more = {"forms": ("parallel", "serial")} if self.form == "any" else {}
+        asked = {"asked": self.what + form, "help": "Leave empty what the controller does not have."}
+        return {"control": PARTS, "parts": tuple(parts), "more": more} | asked
+
+    def right_forms(self) -> Iterator[Tried]:
+        """The settings rounded, as a `PID` and as a text."""
+        yield AS_IT_IS, ast.literal_eval(self.as_code())
+        short = _with_each(self.key, lambda name, x: rounded(x, self.within))
+        yield how_rounded(self.within), short
+        yield "as a PID of SymPy's numbers", self.key
+        said = [(name, getattr(short, name)) for name in NAMES if _is_said(short, name)]
+        form = "" if short.Td == short.Tf == 0 else f" ({short.form})"
+        yield "as text", ", ".join(f"{name} = {float(value)!r}" for name, value in said) + form
+
+    def wrong_forms(self) -> Iterator[Tried]:
+        """Other gains."""
+        for how, factor in (("with the other sign", -1), ("ten times the gain", 10), ("a tenth of the gain", 0.1)):
+            yield how, _with_each(self.key, lambda name, x, by=factor: by * x if name == "Kp" else x)
+
+
+class Controller(Whole):
+    """A controller, and its settings one by one."""
+
+    called, parts = "pid", NAMES
+
+    def part(self, name: str) -> str:
+        """As `setting`."""
+        return setting(name)
+
+    def parts_of(self, given: object) -> tuple[dict[str, Any] | None, str]:
+        """As the function of this name."""
+        return parts_of(given)
+
+    def is_one(self, given: object) -> bool:
+        """Whether it is a `PID`, or a text that begins like one."""
+        return isinstance(given, PID) or (isinstance(given, str) and given.lstrip(" ").startswith("PI"))
+
+    def as_data(self, value: object) -> dict[str, Any] | None:
+        """The settings and the form of a controller with numbers."""
+        if not isinstance(value, PID) or any(getattr(value, name).free_symbols for name in NAMES):
+            return None
+        return {name: getattr(value, name) for name in NAMES} | {"form": value.form}
+
+    def of_data(self, data: dict[str, Any]) -> PID | None:
+        """The controller of settings with a form."""
+        return Settings.without_key().read(data)[0] if {"Kp", "form"} <= data.keys() else None
+
+
+Settings.whole = Controller()
 
 #: Settings in a text have so many characters.
 LONGEST = 300
@@ -401,6 +492,18 @@ def _is_infinite(value):
     if isinstance(value, str):
         return value.strip().casefold() in ("inf", "oo", "∞", "infinity", "infinite", "np.inf", "math.inf", "sympy.oo")
     return value in (math.inf, sympy.oo)
+
+
+def _is_said(pid, name):
+    return name == "Kp" or getattr(pid, name) not in (0, sympy.oo)
+
+
+def _with_each(pid, change):
+    """A controller whose settings, of those that it has, are changed by a function of their names and values."""
+    changed = {
+        name: change(name, float(getattr(pid, name))) if _is_said(pid, name) else getattr(pid, name) for name in NAMES
+    }
+    return PID(**changed, form=pid.form)
 
 
 def _said(pid):

@@ -5,13 +5,13 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Iterable, Iterator
-from typing import Self
+from typing import Any, Self
 
 import sympy
 from sympy.logic.boolalg import BooleanAtom
 
 from loopbook.exercises.kinds import synonyms
-from loopbook.exercises.kinds.kind import Kind
+from loopbook.exercises.kinds.kind import AS_IT_IS, NONE, ONE, ORDER, SEVERAL, Kind, Tried
 from loopbook.exercises.reading import Unreadable, alone, answered, in_a_row, members, shortened
 
 _NONE = re.compile(r"none(?: of them| of these)?|nothing|no one|not any|[-–∅]|\[\]", re.IGNORECASE)
@@ -61,6 +61,17 @@ class Word(Kind):
     def agrees(self, answer: str) -> bool:
         """Whether it is the word."""
         return answer == self.key
+
+    @property
+    def field(self) -> dict[str, Any]:
+        """A choice of one."""
+        return {"control": ONE, "words": self.among}
+
+    def right_forms(self) -> Iterator[Tried]:
+        """The word in capital letters, and with spaces."""
+        yield AS_IT_IS, self.key
+        yield "in capital letters", self.key.upper()
+        yield "with spaces", f" {self.key} "
 
 
 class Words(Kind):
@@ -134,6 +145,26 @@ class Words(Kind):
         """The opposite order."""
         if self.ordered and len(self.key) > 1:
             yield "the words are right, in the opposite order", self.key[::-1]
+
+    @property
+    def field(self) -> dict[str, Any]:
+        """A choice of several or of none, or a line for words in their order."""
+        if self.ordered:
+            return {"control": ORDER, "words": self.among, "help": "in their order, with commas between them"}
+        none = () if NONE in self.among else (NONE,)
+        return {"control": SEVERAL, "words": (*self.among, *none), "help": "one, several, or none of them"}
+
+    def right_forms(self) -> Iterator[Tried]:
+        """The words as a text, and in another order where that is no question."""
+        yield AS_IT_IS, self.key
+        yield "as text", ", ".join(self.key)
+        if not self.ordered:
+            yield "in another order", self.key[::-1]
+
+    def wrong_forms(self) -> Iterator[Tried]:
+        """None of the words, and all of them."""
+        found = {"no word": [], "all words": list(self.among)}
+        yield from ((how, answer) for how, answer in found.items() if answer != self.key)
 
 
 def in_drawn_order(words: Iterable[str], text: str) -> tuple[str, ...]:

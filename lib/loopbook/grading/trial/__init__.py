@@ -21,7 +21,6 @@ from loopbook.exercises.reading import listed, shortened
 from loopbook.exercises.timeout import limited
 from loopbook.grading import GradingError
 from loopbook.grading.release import asked
-from loopbook.grading.trial.answers import as_given, forms, others
 from loopbook.grading.trial.checks import LEVELS, NOTE, ODD, OF_ALL, OF_ONE, WRONG, Seen, Variant, in_short
 from loopbook.validation import did_you_mean
 
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
     from loopbook.grading.assignment import Assignment
 
 __all__ = [
-    "LEVELS", "NOTE", "ODD", "WRONG", "Surprise", "Trial", "Variant", "as_given", "as_text", "ids", "one_variant",
+    "LEVELS", "NOTE", "ODD", "WRONG", "Surprise", "Trial", "Variant", "as_text", "ids", "one_variant",
     "only", "report", "try_all",
 ]  # fmt: skip
 
@@ -235,7 +234,8 @@ def one_variant(assignment: Assignment, student: str, number: str) -> str:
     lines += [line for name in variant.by_hand for line in ("", f"{name}: a person marks it")]
     for name, kind in variant.key.items():
         lines += ["", f"{name}: the key is {kind.solution}"]
-        tried = [*forms(kind), *((f"mistake: {text}", value) for text, value in variant.mistakes[name]), *others(kind)]
+        tried = [*kind.right_forms(), *((f"mistake: {text}", value) for text, value in variant.mistakes[name])]
+        tried += kind.wrong_forms()
         for how, answer in tried:
             told = variant.judged(name, answer)
             lines += [f"  {told.status:10}  {in_short(answer)} ({how})"]

@@ -20,10 +20,10 @@ import sympy
 
 from loopbook.exercises import kinds
 from loopbook.exercises.judging import MISTAKE, OPEN, SECONDS, UNJUDGED, Verdict, is_right, judge
+from loopbook.exercises.kinds.kind import AS_IT_IS, rounded
 from loopbook.exercises.parameters import call, written
 from loopbook.exercises.reading import listed, shortened
 from loopbook.grading.plain import Plain, plain, unreadable
-from loopbook.grading.trial.answers import AS_IT_IS, as_given, forms, others, rounded
 
 if TYPE_CHECKING:
     from loopbook.exercises.kinds import Kind
@@ -139,7 +139,7 @@ def in_short(answer: object) -> str:
 def keys_in_their_forms(variant: Variant) -> Iterator[Seen]:
     """The key, as it is and as people write it, is right."""
     for name, kind in variant.key.items():
-        for how, answer in forms(kind):
+        for how, answer in kind.right_forms():
             if variant.is_right(name, answer):
                 continue
             told = variant.judged(name, answer)
@@ -168,7 +168,7 @@ def words_of_a_list(variant: Variant) -> Iterator[Seen]:
 def other_answers(variant: Variant) -> Iterator[Seen]:
     """Other answers than the key are not right, and no answer is none."""
     for name, kind in variant.key.items():
-        for how, answer in others(kind):
+        for how, answer in kind.wrong_forms():
             if not variant.is_right(name, answer):
                 continue
             example = f"{in_short(answer)}, the key is {variant.solution(name)}"
@@ -315,7 +315,7 @@ def equal_answers(variants: Sequence[Variant]) -> Iterator[Seen]:
     if different < FEWEST_VARIANTS and variants[0].key:
         yield Seen(ODD, f"there are only {different} different variants")
     pairs = [pair for pair in itertools.pairwise(variants) if pair[0].question.values != pair[1].question.values]
-    copied = [pair for pair in pairs if pair[1].all_right({name: as_given(kind) for name, kind in pair[0].key.items()})]
+    copied = [pair for pair in pairs if pair[1].all_right({name: kind.as_given for name, kind in pair[0].key.items()})]
     if len(copied) >= OFTEN * len(pairs) > 0:
         one, other = copied[0]
         says = f"the answers of one student are right for another one, {len(copied)} of {len(pairs)} times"
