@@ -146,12 +146,12 @@ def _import_libraries():
     import pkgutil
 
     import loopbook
-    from loopbook.grading import rehearsal
+    from exercisegrader.student_side import rehearsal
 
     for name in LIBRARIES:
         importlib.import_module(name)
     for module in pkgutil.walk_packages(loopbook.__path__, "loopbook."):
-        if not module.name.startswith(("loopbook.grading", "loopbook.__main__")):
+        if not module.name.startswith(("exercisegrader", "loopbook.__main__")):
             importlib.import_module(module.name)
     rehearsal.rehearse()
 

@@ -14,6 +14,8 @@ from packaging.utils import canonicalize_name
 #: What no reader imports.
 LEFT_OUT = {"__pycache__", "tests", "benchmarks"}
 LIBRARY = Path(__file__).parents[2] / "lib"
+#: What the wheel of loopbook holds in a page: all but the grader.
+OURS = ("plainmath", "bookledger", "exercisebook", "loopbook", "loopbook-books")
 #: A fixed time, so that the same content is the same file.
 EPOCH = (1980, 1, 1, 0, 0, 0)
 
@@ -39,7 +41,7 @@ def make(package: str, folder: Path) -> Path:
     members = dict(sorted(_of_library() if package == "loopbook" else _installed(package)))
     if compiled := [name for name in members if name.endswith((".so", ".pyd", ".dylib"))]:
         raise ValueError(f"{package} holds compiled code, as {compiled[0]}: expected pure Python")
-    about = next(name.partition("/")[0] for name in members if name.endswith(".dist-info/METADATA"))
+    about = f"{filename(package).removesuffix('-py3-none-any.whl')}.dist-info"
     members[f"{about}/RECORD"] = _record(members, about)
     folder.mkdir(parents=True, exist_ok=True)
     wheel = folder / filename(package)
@@ -57,13 +59,14 @@ def _installed(package) -> Iterator[tuple[str, bytes]]:
 
 
 def _of_library():
-    """The same of the library itself, which is installed as a reference to its sources."""
-    for path in LIBRARY.rglob("*"):
-        if path.is_file() and not LEFT_OUT & set(path.parts):
-            yield path.relative_to(LIBRARY).as_posix(), path.read_bytes()
-    for name, content in _installed("loopbook"):
-        if ".dist-info/" in name and not name.endswith("direct_url.json"):
-            yield name, content
+    """The same of our own packages, which are installed as references to their sources: a page fetches one file."""
+    for package in OURS:
+        for path in (LIBRARY / package).rglob("*"):
+            if path.is_file() and path.name != "pyproject.toml" and not LEFT_OUT & set(path.parts):
+                yield "/".join(path.relative_to(LIBRARY).parts[1:]), path.read_bytes()
+        for name, content in _installed(package):
+            if ".dist-info/" in name and not name.endswith("direct_url.json"):
+                yield name, content
 
 
 def _record(members, about):

@@ -8,8 +8,8 @@ import permanent
 from mathml import in_html, width
 from slugs import check_anchor, ledger_anchor
 
+from bookledger.statuses import STATUSES
 from loopbook.ledger import sources
-from loopbook.ledger.statuses import STATUSES
 
 MIME_TYPE = "application/vnd.loopbook.check+json"
 WIDE = 26  # letters of a formula that fit into a cell, on a phone too

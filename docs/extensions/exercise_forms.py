@@ -13,9 +13,10 @@ import re
 from pathlib import Path
 
 import slugs
-
-from loopbook.exercises import bank, notes
 from loopbook.exercises.forms import Sheet, version
+
+from exercisebook import notes
+from loopbook.exercises import bank
 
 ROOT = Path(__file__).parents[2]
 FOLDER = "exercises"  # of what is beside the pages, in _static

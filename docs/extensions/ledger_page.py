@@ -17,9 +17,10 @@ from mathml import in_html
 from slugs import check_anchor, ledger_anchor
 from sphinx.util.docutils import SphinxDirective
 
+from bookledger import errata
+from bookledger.statuses import STATUSES
 from loopbook.evidence import CRITERIA
-from loopbook.ledger import errata, sources
-from loopbook.ledger.statuses import STATUSES
+from loopbook.ledger import sources
 
 CHAPTERS = Path(__file__).parents[2] / "chapters"
 PAGE = "ledger"

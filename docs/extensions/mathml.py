@@ -4,7 +4,7 @@ from xml.etree import ElementTree
 
 from docutils import nodes
 
-from loopbook.exercises.forms.mathml import convert, formulas, in_html
+from exercisebook.forms.mathml import convert, formulas, in_html
 
 __all__ = ["convert", "formulas", "in_html", "setup", "width"]
 

@@ -28,7 +28,7 @@ from lessons.wording import in_html
 from loopbook.figures.picture import Picture, Stack
 from loopbook.notebooks import bound_in
 from loopbook.sliders import _control
-from loopbook.tables import Table, is_symbol, symbol
+from plainmath.tables import Table, is_symbol, symbol
 
 ROOT = Path(__file__).resolve().parents[2]
 POSITIONS = 500  # of all sliders of a lesson together, at most

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from loopbook.validation import did_you_mean
+from plainmath.validation import did_you_mean
 
 
 class Place(NamedTuple):
@@ -121,7 +121,7 @@ def titles():
 
 def code_of(name):
     """A short text that changes with the code of a lesson made by hand, and of the library."""
-    files = sorted([*(ROOT / "lib" / "loopbook").rglob("*.py"), *HERE.glob("*.py")])
+    files = sorted([*(ROOT / "lib" / "loopbook" / "loopbook").rglob("*.py"), *HERE.glob("*.py")])
     digest = hashlib.sha256(name.encode())
     for file in files:
         digest.update(file.read_bytes())

@@ -13,11 +13,11 @@ import sys
 import tempfile
 from pathlib import Path
 
-from loopbook.grading import GradingError
-from loopbook.grading.assignment import load
-from loopbook.grading.jail import Jail
-from loopbook.grading.released import Released
-from loopbook.grading.roster import read_roster
+from exercisegrader import GradingError
+from exercisegrader.assignment import load
+from exercisegrader.jail import Jail
+from exercisegrader.released import Released
+from exercisegrader.roster import read_roster
 
 
 def main(base):

@@ -17,10 +17,10 @@ import zipfile
 from datetime import datetime
 from pathlib import Path
 
-from loopbook.grading.assignment import load
-from loopbook.grading.release import answer_call
-from loopbook.grading.released import Released
-from loopbook.grading.roster import read_roster
+from exercisegrader.assignment import load
+from exercisegrader.release import answer_call
+from exercisegrader.released import Released
+from exercisegrader.roster import read_roster
 
 _ANSWERS = re.compile(r'sheet\.answer\(\s*"([^"]+)"')
 
@@ -111,7 +111,8 @@ REDEFINITIONS = """
 import builtins
 import json
 
-from loopbook.exercises import judging, kinds
+from exercisebook import judging
+from loopbook.exercises import kinds
 
 judging.judge = lambda *given: judging.Verdict("K", "right", "right")
 kinds.Number.agrees = kinds.Settings.agrees = lambda self, answer: True

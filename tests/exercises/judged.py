@@ -2,6 +2,7 @@
 
 import sympy
 
+from exercisebook.judging import judge
 from loopbook import s, t
 from loopbook.exercises.authoring import (
     criterion,
@@ -16,7 +17,6 @@ from loopbook.exercises.authoring import (
     word,
     words,
 )
-from loopbook.exercises.judging import judge
 from loopbook.pid import PID
 
 X, K = sympy.symbols("x K")

@@ -9,16 +9,16 @@ import pytest
 import sympy
 
 from draws import draws
+from exercisebook.agreement import agree
+from exercisebook.arithmetic import NoValue, in_digits
+from exercisebook.formulas import Formula
+from exercisebook.freedoms import freedoms
+from exercisebook.judging import RIGHT, UNJUDGED, WRONG, is_right, judge
+from exercisebook.points import points_for
 from loopbook import s
-from loopbook.exercises.agreement import agree
-from loopbook.exercises.arithmetic import NoValue, in_digits
 from loopbook.exercises.authoring import answers, exercise, expression, number, time_function, transfer_function
-from loopbook.exercises.formulas import Formula
-from loopbook.exercises.freedoms import freedoms
-from loopbook.exercises.judging import RIGHT, UNJUDGED, WRONG, is_right, judge
 from loopbook.exercises.kinds import Settings
 from loopbook.exercises.kinds.settings import _points
-from loopbook.exercises.points import points_for
 from loopbook.pid import PID
 
 DELAYED = "2*exp(-8*s)/(10*s + 1)"

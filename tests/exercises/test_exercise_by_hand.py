@@ -13,14 +13,15 @@ from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from draws import THOROUGH
+from exercisebook import png
+from exercisebook.judging import OPEN, UNJUDGED, WAITING
+from exercisebook.reading import Unreadable
+from exercisegrader.student_side import answer_sheet
+from exercisegrader.student_side.plain import LONGEST_TEXT, plain, unreadable
 from judged import assert_judged
-from loopbook.exercises import authoring, png
+from loopbook.exercises import authoring
 from loopbook.exercises.authoring import answers, between, exercise, figure, number, text
-from loopbook.exercises.judging import OPEN, UNJUDGED, WAITING
-from loopbook.exercises.reading import Unreadable
 from loopbook.figures import stacked, time_plot
-from loopbook.grading import answer_sheet
-from loopbook.grading.plain import LONGEST_TEXT, plain, unreadable
 
 SKETCH = figure("the response", key="it begins after the dead time")
 WHY = text("why the loop oscillates", words=5, key="dead time")

@@ -2,12 +2,12 @@
 
 import pytest
 
+from exercisebook.judging import MISTAKE, RIGHT, UNJUDGED, WRONG, judge
+from exercisebook.reading import Unreadable
 from loopbook.exercises import bank
 from loopbook.exercises.charts.notation import read_chart
 from loopbook.exercises.charts.running import SCAN
 from loopbook.exercises.charts.signals import Signals
-from loopbook.exercises.judging import MISTAKE, RIGHT, UNJUDGED, WRONG, judge
-from loopbook.exercises.reading import Unreadable
 from loopbook.plants import BatchTank
 from loopbook.sequence import Chart, Transition
 from loopbook.signals import stepwise

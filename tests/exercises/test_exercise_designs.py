@@ -1,8 +1,8 @@
 """Answers for which a design is asked: whatever meets the criteria is right."""
 
+from exercisebook.judging import RIGHT, UNJUDGED, WRONG, judge
 from judged import assert_judged
 from loopbook.exercises.authoring import criterion, design, number, settings
-from loopbook.exercises.judging import RIGHT, UNJUDGED, WRONG, judge
 from loopbook.pid import PID
 
 OFFSET = design(number(2, what="a gain"), criterion("the offset", lambda K: 1 / (1 + K), below=0.4))
@@ -41,7 +41,7 @@ def test_a_design_that_takes_too_long_is_not_judged(monkeypatch):
         while True:
             pass
 
-    monkeypatch.setattr("loopbook.exercises.kinds.design.SECONDS", 0.1)
+    monkeypatch.setattr("exercisebook.kinds.design.SECONDS", 0.1)
 
     verdict = judge("x", design(number(1), criterion("the overshoot", slow, below=1)), 2)
     assert verdict.status == UNJUDGED

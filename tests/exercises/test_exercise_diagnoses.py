@@ -11,6 +11,12 @@ import pytest
 import sympy
 
 from draws import STUDENTS, THOROUGH, of_the_day
+from exercisebook.diagnoses import Background, explained
+from exercisebook.diagnoses import numbers as in_numbers
+from exercisebook.diagnoses.background import Amount
+from exercisebook.diagnoses.numbers import FACTORS, GIVENS, MORE, TABLE, Case, found_in, in_general, is_recognised
+from exercisebook.judging import MISTAKE, WRONG, judge
+from exercisebook.reading import Unreadable
 from loopbook import s
 from loopbook.exercises import bank
 from loopbook.exercises.authoring import (
@@ -28,13 +34,7 @@ from loopbook.exercises.authoring import (
     word,
     words,
 )
-from loopbook.exercises.diagnoses import Background, explained
-from loopbook.exercises.diagnoses import numbers as in_numbers
-from loopbook.exercises.diagnoses.background import Amount
-from loopbook.exercises.diagnoses.numbers import FACTORS, GIVENS, MORE, TABLE, Case, found_in, in_general, is_recognised
-from loopbook.exercises.judging import MISTAKE, WRONG, judge
 from loopbook.exercises.kinds import Expression, Number
-from loopbook.exercises.reading import Unreadable
 from loopbook.pid import PID
 
 # An exercise with everything in it.

@@ -4,8 +4,8 @@ import re
 
 import pytest
 
+from exercisebook.judging import RIGHT, UNJUDGED, WRONG, judge
 from loopbook.exercises import bank
-from loopbook.exercises.judging import RIGHT, UNJUDGED, WRONG, judge
 from loopbook.exercises.kinds import InstrumentDiagram
 from loopbook.exercises.kinds.instrument_diagram import connections
 

@@ -10,11 +10,11 @@ import sympy.physics.control
 from hypothesis import given
 from hypothesis import strategies as st
 
+from exercisebook.judging import MISTAKE, RIGHT, UNJUDGED, WRONG, judge
 from judged import assert_judged
 from loopbook import s, t
 from loopbook.deadtime import System
 from loopbook.exercises.authoring import expression, time_function, transfer_function
-from loopbook.exercises.judging import MISTAKE, RIGHT, UNJUDGED, WRONG, judge
 
 X = sympy.Symbol("x")
 H = transfer_function(3 * sympy.exp(-2 * s) / (5 * s + 1))

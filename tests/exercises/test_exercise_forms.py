@@ -5,17 +5,17 @@ import json
 
 import pytest
 import sympy
+from loopbook.exercises.forms import Sheet, answer
 
 import contributing
 from draws import of_the_day
+from exercisebook.forms.fields import field_of
+from exercisebook.forms.text import html as html_of
+from exercisebook.forms.text import inline, sentence
+from exercisebook.kinds.by_hand import Figure, Text
+from exercisebook.kinds.kind import ELSEWHERE, LINE, LINES, ONE, ORDER, PARTS, SEVERAL
 from loopbook.exercises import ExerciseError, bank, exercise
-from loopbook.exercises.forms import Sheet, answer
-from loopbook.exercises.forms.fields import field_of
-from loopbook.exercises.forms.text import html as html_of
-from loopbook.exercises.forms.text import inline, sentence
 from loopbook.exercises.kinds import Design, Number, Settings, Words
-from loopbook.exercises.kinds.by_hand import Figure, Text
-from loopbook.exercises.kinds.kind import ELSEWHERE, LINE, LINES, ONE, ORDER, PARTS, SEVERAL
 from loopbook.pid import PID
 
 NUMBERS = [number for chapter in bank.chapters() for number in bank.exercises(chapter)]
@@ -276,7 +276,7 @@ class TestFields:
         assert field.words == kind.among
 
     def test_what_counts_more_is_said(self):
-        from loopbook.exercises.forms.controls import html
+        from exercisebook.forms.controls import html
 
         assert "counts double" in html("1.1", field_of("x", Number(2), weight=2))
         assert "counts 3 times" in html("1.1", field_of("x", Number(2), weight=3))

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 import sympy
 
+from exercisebook.agreement import agree
+from exercisebook.formulas import Formula
+from exercisebook.points import points_for
+from exercisebook.reading import Unreadable
 from loopbook import s
 from loopbook.deadtime import System
-from loopbook.exercises.agreement import agree
-from loopbook.exercises.formulas import Formula
-from loopbook.exercises.points import points_for
-from loopbook.exercises.reading import Unreadable
 
 READABLE = {
     "2*exp(-3*s)/(10*s + 1)": 2 * sympy.exp(-3 * s) / (10 * s + 1),

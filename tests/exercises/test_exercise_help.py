@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from loopbook.exercises import ExerciseError, notes
+from exercisebook import notes
+from exercisebook.progress import is_answered, note, students
+from loopbook.exercises import ExerciseError
 from loopbook.exercises.authoring import Exercise, answers, between, criterion, design, number, word
-from loopbook.exercises.progress import is_answered, note, students
 from loopbook.figures import time_plot
 
 

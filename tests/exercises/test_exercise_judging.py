@@ -9,12 +9,12 @@ import time
 import pytest
 import sympy
 
+from exercisebook import judging, timeout
+from exercisebook.judging import UNJUDGED, judge
+from exercisebook.timeout import limited
 from judged import EVERY_KIND
 from loopbook import t
-from loopbook.exercises import judging, timeout
 from loopbook.exercises.authoring import number, time_function
-from loopbook.exercises.judging import UNJUDGED, judge
-from loopbook.exercises.timeout import limited
 
 TI = number(120, "s", "the integral time")
 Y = time_function(1 - sympy.exp(-t / 5), until=25, what="the response")

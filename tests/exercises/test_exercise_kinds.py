@@ -14,11 +14,11 @@ from hypothesis import strategies as st
 
 import contributing
 from draws import THOROUGH, of_the_day
+from exercisebook.formulas import Formula
+from exercisebook.reading import Unreadable
+from exercisegrader.student_side import answer_sheet
 from loopbook.exercises import authoring, bank
-from loopbook.exercises.formulas import Formula
 from loopbook.exercises.kinds import MAKERS, Kind
-from loopbook.exercises.reading import Unreadable
-from loopbook.grading import answer_sheet
 from loopbook.pid import PID
 
 # Who has them from it.
@@ -62,7 +62,7 @@ def is_the_key(self, answer):
         (
             "Number",
             {"read": as_given, "agrees": is_the_key},
-            "the kind Number is in loopbook.exercises.kinds.numeric already: expected another name",
+            "the kind Number is in exercisebook.kinds.numeric already: expected another name",
         ),
     ],
 )

@@ -2,8 +2,8 @@
 
 import pytest
 
+from exercisebook.asked_names import as_asked, by_name, matched
 from loopbook.exercises import bank
-from loopbook.exercises.asked_names import as_asked, by_name, matched
 from loopbook.exercises.authoring import number, settings
 from loopbook.pid import PID
 

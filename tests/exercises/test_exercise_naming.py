@@ -6,9 +6,10 @@ import sys
 
 import pytest
 
+from exercisebook import progress
+from exercisebook.naming import FILE
 from loopbook import exercises
-from loopbook.exercises import bank, exercise, progress, student
-from loopbook.exercises.naming import FILE
+from loopbook.exercises import bank, exercise, student
 
 
 @pytest.fixture

@@ -2,12 +2,12 @@
 
 import pytest
 
-from loopbook.exercises.agreement import agree
+from exercisebook.agreement import agree
+from exercisebook.formulas import Formula
+from exercisebook.judging import RIGHT, judge
+from exercisebook.points import points_for
+from exercisebook.reading import Unreadable, listed_in
 from loopbook.exercises.authoring import expression
-from loopbook.exercises.formulas import Formula
-from loopbook.exercises.judging import RIGHT, judge
-from loopbook.exercises.points import points_for
-from loopbook.exercises.reading import Unreadable, listed_in
 
 LAG = "2*exp(-3*s)/(10*s + 1)"
 #: {symbols: {formula in Python's notation: the ways to write it}}.

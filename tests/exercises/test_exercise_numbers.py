@@ -10,10 +10,10 @@ import pint
 import pytest
 import sympy
 
+from exercisebook.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG, judge
 from judged import assert_judged
 from loopbook import s
 from loopbook.exercises.authoring import number, numbers, poles
-from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG, judge
 
 X = sympy.Symbol("x")
 TI = number(120, "s", "the integral time")

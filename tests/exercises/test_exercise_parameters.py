@@ -8,8 +8,8 @@ import sympy
 from hypothesis import given
 from hypothesis import strategies as st
 
+from exercisebook.parameters import as_text, of_text
 from loopbook.exercises.authoring import answers, between, choice, design, exercise, number, settings
-from loopbook.exercises.parameters import as_text, of_text
 from loopbook.pid import PID
 
 

@@ -7,8 +7,8 @@ import sys
 
 import pytest
 
+from exercisebook.progress import FILE
 from loopbook import exercises
-from loopbook.exercises.progress import FILE
 
 
 @pytest.fixture

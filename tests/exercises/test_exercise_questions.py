@@ -8,11 +8,11 @@ import sympy
 
 import contributing
 import test_exercises
+from exercisebook.judging import MISTAKE, RIGHT, WRONG, Verdict
+from exercisebook.response import Response
 from loopbook import exercises, s
 from loopbook.exercises import authoring, bank
 from loopbook.exercises.authoring import Exercise, answers, between, choice, exercise, number, transfer_function, word
-from loopbook.exercises.judging import MISTAKE, RIGHT, WRONG, Verdict
-from loopbook.exercises.response import Response
 
 
 @exercise("99.1", title="A tank", points=4, where=lambda A, q: q < A)

@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from exercisebook.judging import MISTAKE, RIGHT, UNJUDGED, WRONG
 from judged import assert_judged
 from loopbook import s
 from loopbook.exercises.authoring import settings
-from loopbook.exercises.judging import MISTAKE, RIGHT, UNJUDGED, WRONG
 from loopbook.pid import PID
 
 PI = settings(PID(2, Ti=10), gain="%/K", what="the settings")

@@ -4,7 +4,7 @@ import pytest
 from IPython.core.interactiveshell import InteractiveShell
 from IPython.utils.capture import capture_output
 
-from loopbook.exercises import slips
+from exercisebook import slips
 
 BEFORE = """
 import math

@@ -10,8 +10,8 @@ import matplotlib.pyplot
 import pytest
 
 from draws import STUDENTS, THOROUGH, of_the_day
+from exercisebook.question import Question
 from loopbook.exercises import exercise
-from loopbook.exercises.question import Question
 
 SOLUTIONS = sorted((Path(__file__).parents[2] / "solutions").glob("*.ipynb"))
 #: Its parts are told from the story of one plant, not computed.

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from loopbook.exercises import units
+from exercisebook import units
 
 
 @pytest.mark.parametrize(

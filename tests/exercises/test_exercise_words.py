@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 import sympy
 
+from exercisebook.judging import MISTAKE, RIGHT, UNJUDGED, WRONG
+from exercisebook.kinds import synonyms
+from exercisebook.reading import Unreadable
 from judged import assert_judged
 from loopbook.exercises import bank
 from loopbook.exercises.authoring import word, words
-from loopbook.exercises.judging import MISTAKE, RIGHT, UNJUDGED, WRONG
-from loopbook.exercises.kinds import Word, Words, synonyms
-from loopbook.exercises.reading import Unreadable
+from loopbook.exercises.kinds import Word, Words
 
 STEPS = words(["S2", "S4"], ["S1", "S2", "S3", "S4"], "the active steps")
 LETTERS = words(["B", "C"], ["A", "B", "C", "D"], "the curves")

@@ -15,10 +15,11 @@ import pytest
 import sympy
 
 from draws import STUDENTS, of_the_day
-from loopbook.exercises import bank, filling, kinds
-from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG, judge
-from loopbook.exercises.parameters import call
-from loopbook.grading.plain import plain
+from exercisebook import filling
+from exercisebook.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG, judge
+from exercisebook.parameters import call
+from exercisegrader.student_side.plain import plain
+from loopbook.exercises import bank, kinds
 from loopbook.pid import PID
 
 #: All exercises.

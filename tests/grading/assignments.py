@@ -1,7 +1,7 @@
 """An assignment to release and to grade, whose text a test may change."""
 
-from loopbook.grading.assignment import Assignment
-from loopbook.grading.roster import Student
+from exercisegrader.assignment import Assignment
+from exercisegrader.roster import Student
 
 SOURCE = '''"""Tuning $K$
 

@@ -23,15 +23,15 @@ from time import perf_counter
 from rich.console import Console
 from rich.table import Table
 
+from exercisegrader.assignment import load
+from exercisegrader.files import write
+from exercisegrader.grade import grade, here
+from exercisegrader.jail import Jail
+from exercisegrader.judge import Judge
+from exercisegrader.release import release
+from exercisegrader.roster import Student
 from hostile import ATTACKS
 from loopbook import notebooks
-from loopbook.grading.assignment import load
-from loopbook.grading.files import write
-from loopbook.grading.grade import grade, here
-from loopbook.grading.jail import Jail
-from loopbook.grading.judge import Judge
-from loopbook.grading.release import release
-from loopbook.grading.roster import Student
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "examples" / "course"))
@@ -137,7 +137,7 @@ def of_hundred(table, folder):
 
 def _nbgrader(course, size):
     """Seconds a notebook that nbgrader takes to autograde the same answers."""
-    from loopbook.grading.nbgrader import source
+    from exercisegrader.nbgrader import source
 
     folder = course.folder / "nbgrader"
     write(folder / "source" / "air_heater" / "air_heater.ipynb", notebooks.as_text(source(course.assignment)))

@@ -4,10 +4,10 @@ import sys
 
 import nbformat
 
-from loopbook.grading.assignment import load
-from loopbook.grading.grade import grade
-from loopbook.grading.release import release
-from loopbook.grading.roster import read_roster
+from exercisegrader.assignment import load
+from exercisegrader.grade import grade
+from exercisegrader.release import release
+from exercisegrader.roster import read_roster
 
 ASSIGNMENT = '''"""A lag
 

@@ -3,7 +3,7 @@
 import contextlib
 from concurrent.futures import ThreadPoolExecutor
 
-from loopbook.grading import grade
+from exercisegrader import grade
 
 
 @contextlib.contextmanager

@@ -3,13 +3,13 @@
 import base64
 from dataclasses import replace
 
-from loopbook.exercises import png
+from exercisebook import png
+from exercisebook.judging import WAITING
+from exercisegrader.marking import Marked
+from exercisegrader.results import CellError, JudgedAnswer, JudgedExercise, Look, Result
+from exercisegrader.roster import Student
 from loopbook.exercises.authoring import answers, between, choice, exercise, expression, number, word
-from loopbook.exercises.judging import WAITING
-from loopbook.expressions import s
-from loopbook.grading.marking import Marked
-from loopbook.grading.results import CellError, JudgedAnswer, JudgedExercise, Look, Result
-from loopbook.grading.roster import Student
+from plainmath.expressions import s
 
 TITLE = "Tuning the air heater"
 ADA, BOB, EVE, ZOE = CLASS = (

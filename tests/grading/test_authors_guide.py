@@ -3,12 +3,12 @@
 import pytest
 
 import authors_guide
-from loopbook.exercises.judging import RIGHT
-from loopbook.grading import trial
-from loopbook.grading.answer_sheet import FORMS
-from loopbook.grading.assignment import Assignment
-from loopbook.grading.release import notebook
-from loopbook.grading.roster import Student
+from exercisebook.judging import RIGHT
+from exercisegrader import trial
+from exercisegrader.assignment import Assignment
+from exercisegrader.release import notebook
+from exercisegrader.roster import Student
+from exercisegrader.student_side.answer_sheet import FORMS
 
 ASSIGNMENTS = authors_guide.assignments()
 STUDENTS = [f"s{number:03}" for number in range(24)]

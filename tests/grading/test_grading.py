@@ -18,15 +18,15 @@ from typer.testing import CliRunner
 
 from courses import Course
 from executors import lasting
+from exercisegrader import GradingError, NoJail, jail
+from exercisegrader.assignment import load
+from exercisegrader.cluster import connected
+from exercisegrader.events import Outcome
+from exercisegrader.grade import grade, here
+from exercisegrader.imprint import peek
+from exercisegrader.judge import Judge
+from exercisegrader.results import OWNER, Look, Results, result
 from loopbook.__main__ import app
-from loopbook.grading import GradingError, NoJail, jail
-from loopbook.grading.assignment import load
-from loopbook.grading.cluster import connected
-from loopbook.grading.events import Outcome
-from loopbook.grading.grade import grade, here
-from loopbook.grading.imprint import peek
-from loopbook.grading.judge import Judge
-from loopbook.grading.results import OWNER, Look, Results, result
 from needs import needs_jail
 
 
@@ -241,7 +241,7 @@ class TestAClass:
 
 
 def test_two_graders_do_not_share_a_folder(course):
-    from loopbook.grading.grade import _alone
+    from exercisegrader.grade import _alone
 
     with _alone(course.folder / "busy"), pytest.raises(GradingError, match="another grader works in"):
         course.grade("busy", jailed=False)
@@ -336,7 +336,7 @@ def test_without_a_jail_every_output_says_so(course):
 
 def test_what_the_judge_cannot_finish_is_not_judged(tmp_path, monkeypatch):
     """An author's comparison that hangs in C, and one that takes the process down."""
-    monkeypatch.setattr("loopbook.grading.judge.PATIENCE", 1)
+    monkeypatch.setattr("exercisegrader.judge.PATIENCE", 1)
     source = '''"""Traps"""
 import ctypes, os
 from loopbook.exercises.authoring import answers, criterion, design, exercise, number

@@ -4,6 +4,10 @@ import numpy as np
 import pytest
 import sympy
 
+from exercisebook.formulas import Formula
+from exercisebook.reading import Unreadable
+from exercisegrader.student_side import answer_sheet
+from exercisegrader.student_side.plain import plain
 from judged import EVERY_KIND, K, X
 from loopbook import s
 from loopbook.exercises.authoring import (
@@ -18,10 +22,6 @@ from loopbook.exercises.authoring import (
     word,
     words,
 )
-from loopbook.exercises.formulas import Formula
-from loopbook.exercises.reading import Unreadable
-from loopbook.grading import answer_sheet
-from loopbook.grading.plain import plain
 from loopbook.pid import PID
 from test_grading_plain import CIRCLE, Odd
 

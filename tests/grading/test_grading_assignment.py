@@ -7,8 +7,8 @@ import pytest
 
 import assignments
 from assignments import HEAD, ONE, written
-from loopbook.grading import GradingError
-from loopbook.grading.assignment import Assignment, load
+from exercisegrader import GradingError
+from exercisegrader.assignment import Assignment, load
 
 
 @pytest.fixture

@@ -8,8 +8,8 @@ import time
 
 import pytest
 
-from loopbook.grading import GradingError, cluster
-from loopbook.grading.cluster import connected
+from exercisegrader import GradingError, cluster
+from exercisegrader.cluster import connected
 
 pytest.importorskip("distributed")
 
@@ -122,7 +122,7 @@ def test_an_address_that_is_none_is_told(address):
 
 
 def test_something_else_at_the_address_is_told(monkeypatch):
-    monkeypatch.setattr("loopbook.grading.cluster.ANSWER", 1)
+    monkeypatch.setattr("exercisegrader.cluster.ANSWER", 1)
     with socket.create_server(("127.0.0.1", 0)) as other:  # it listens, and says nothing
         address = f"tcp://127.0.0.1:{other.getsockname()[1]}"
         with pytest.raises(GradingError, match="no Dask scheduler answers at"), connected(address):

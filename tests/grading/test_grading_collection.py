@@ -14,9 +14,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from loopbook.grading import GradingError, entries, submissions
-from loopbook.grading.roster import Student
-from loopbook.grading.submissions import collect
+from exercisegrader import GradingError, entries, submissions
+from exercisegrader.roster import Student
+from exercisegrader.submissions import collect
 
 JANE = Student("s1001", "Jane Doe", "Doe, Jane", canvas_id="123", moodle_id="77001")
 JOHN = Student("s1002", "John Roe", "Roe, John", canvas_id="124", moodle_id="77002")

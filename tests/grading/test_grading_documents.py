@@ -9,10 +9,10 @@ import re
 import markdown_it
 import pytest
 
+from exercisebook.response import MARKS
+from exercisegrader.reports import document as of
+from exercisegrader.reports import markdown, page, statement
 from loopbook.exercises.bank import chapters, exercises
-from loopbook.exercises.response import MARKS
-from loopbook.grading.reports import document as of
-from loopbook.grading.reports import markdown, page, statement
 from small_class import HOSTILE, PICTURE
 from whole_pages import Checker, assert_whole
 

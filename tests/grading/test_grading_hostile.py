@@ -13,13 +13,13 @@ import pytest
 
 import hostile
 from executors import lasting
+from exercisegrader import GradingError, jail
+from exercisegrader.assignment import load
+from exercisegrader.grade import grade
+from exercisegrader.jail import Limits
+from exercisegrader.results import Results
+from exercisegrader.roster import Student
 from hostile import ATTACKS, Target, canary, notebook
-from loopbook.grading import GradingError, jail
-from loopbook.grading.assignment import load
-from loopbook.grading.grade import grade
-from loopbook.grading.jail import Limits
-from loopbook.grading.results import Results
-from loopbook.grading.roster import Student
 from needs import needs_jail
 
 pytestmark = needs_jail

@@ -8,10 +8,10 @@ from html.parser import HTMLParser
 
 import pytest
 
-from loopbook.grading.events import LONGEST_SHOWN, MOST_SHOWN, Scene, Shown
-from loopbook.grading.jail import MEGA, Jail, Limits
-from loopbook.grading.keeping import executed
-from loopbook.grading.results import Result
+from exercisegrader.events import LONGEST_SHOWN, MOST_SHOWN, Scene, Shown
+from exercisegrader.jail import MEGA, Jail, Limits
+from exercisegrader.keeping import executed
+from exercisegrader.results import Result
 from needs import needs_jail
 
 RESULT = Result("lag", "s1", "s1/lag.ipynb", True, "f" * 64, "complete", "", (), (), ())

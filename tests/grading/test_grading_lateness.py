@@ -7,16 +7,9 @@ from datetime import timedelta
 import pytest
 
 from assignments import HEAD, ONE, written
-from loopbook.grading import GradingError
-from loopbook.grading.assignment import Assignment
-from loopbook.grading.lateness import (
-    Policy,
-    lasting,
-    lateness,
-    moment,
-    read_extensions,
-    without_dates,
-)
+from exercisegrader import GradingError
+from exercisegrader.assignment import Assignment
+from exercisegrader.lateness import Policy, lasting, lateness, moment, read_extensions, without_dates
 
 DUE = "2026-12-01 23:59 Europe/Berlin"
 UTC = datetime.UTC

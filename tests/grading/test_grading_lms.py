@@ -17,17 +17,17 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 import contributing
+from exercisegrader import GradingError, lms, reports, tables
+from exercisegrader.lms import moodle, own
+from exercisegrader.lms.canvas import canvas_grades
+from exercisegrader.lms.gradescope import results_json
+from exercisegrader.lms.moodle import moodle_grades
+from exercisegrader.lms.own import grades_csv
+from exercisegrader.marking import Marked, MarkedExercise
+from exercisegrader.owners import Owners
+from exercisegrader.results import JudgedAnswer, JudgedExercise, Result
+from exercisegrader.roster import MOST_FAULTS, POSSIBLE_ID, Student, read_roster
 from loopbook.__main__ import app
-from loopbook.grading import GradingError, lms, reports, tables
-from loopbook.grading.lms import moodle, own
-from loopbook.grading.lms.canvas import canvas_grades
-from loopbook.grading.lms.gradescope import results_json
-from loopbook.grading.lms.moodle import moodle_grades
-from loopbook.grading.lms.own import grades_csv
-from loopbook.grading.marking import Marked, MarkedExercise
-from loopbook.grading.owners import Owners
-from loopbook.grading.results import JudgedAnswer, JudgedExercise, Result
-from loopbook.grading.roster import MOST_FAULTS, POSSIBLE_ID, Student, read_roster
 
 JANE = Student("s1001", "Jane Doe", "Doe, Jane", canvas_id="123", moodle_id="77001")
 JOHN = Student("s1002", "John Roe", "Roe, John", canvas_id="124", moodle_id="77002")

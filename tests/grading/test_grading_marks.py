@@ -9,19 +9,19 @@ from pathlib import Path
 
 import pytest
 
-from loopbook.exercises import png
-from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, WAITING, WRONG
-from loopbook.grading import GradingError, spreadsheet
-from loopbook.grading.assignment import Assignment
-from loopbook.grading.lateness import Lateness
-from loopbook.grading.marking import Marked, Marking, Notice
-from loopbook.grading.overrides import HISTORY, Mark
-from loopbook.grading.reports import write_all
-from loopbook.grading.reports.concerns import concerns
-from loopbook.grading.reports.outputs.to_mark import to_mark
-from loopbook.grading.results import JudgedAnswer, JudgedExercise, Result
-from loopbook.grading.roster import Student
-from loopbook.grading.submissions import Submission
+from exercisebook import png
+from exercisebook.judging import MISTAKE, OPEN, RIGHT, WAITING, WRONG
+from exercisegrader import GradingError, spreadsheet
+from exercisegrader.assignment import Assignment
+from exercisegrader.lateness import Lateness
+from exercisegrader.marking import Marked, Marking, Notice
+from exercisegrader.overrides import HISTORY, Mark
+from exercisegrader.reports import write_all
+from exercisegrader.reports.concerns import concerns
+from exercisegrader.reports.outputs.to_mark import to_mark
+from exercisegrader.results import JudgedAnswer, JudgedExercise, Result
+from exercisegrader.roster import Student
+from exercisegrader.submissions import Submission
 from test_exercise_by_hand import stored
 
 SOURCE = '''"""Responses"""

@@ -6,9 +6,9 @@ import nbformat
 import pytest
 
 import assignments
+from exercisegrader import nbgrader
+from exercisegrader.assignment import Assignment
 from loopbook.exercises import bank, kinds
-from loopbook.grading import nbgrader
-from loopbook.grading.assignment import Assignment
 
 
 @pytest.fixture

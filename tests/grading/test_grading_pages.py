@@ -5,21 +5,21 @@ from dataclasses import replace
 
 import pytest
 
-from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
-from loopbook.grading.lateness import Lateness
-from loopbook.grading.lms.gradescope import results_json
-from loopbook.grading.marking import Marked, MarkedExercise, Notice
-from loopbook.grading.overrides import Mark
-from loopbook.grading.reports import markdown, page, write_all
-from loopbook.grading.reports.concerns import concerns
-from loopbook.grading.reports.equal_answers import equal_answers, significant_digits
-from loopbook.grading.reports.findings import Findings
-from loopbook.grading.reports.outputs import registered
-from loopbook.grading.reports.outputs.feedback import feedback
-from loopbook.grading.reports.outputs.summary import summary
-from loopbook.grading.reports.wording import answer_in_words
-from loopbook.grading.results import CellError, JudgedAnswer, JudgedExercise, Look
-from loopbook.grading.roster import Student
+from exercisebook.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
+from exercisegrader.lateness import Lateness
+from exercisegrader.lms.gradescope import results_json
+from exercisegrader.marking import Marked, MarkedExercise, Notice
+from exercisegrader.overrides import Mark
+from exercisegrader.reports import markdown, page, write_all
+from exercisegrader.reports.concerns import concerns
+from exercisegrader.reports.equal_answers import equal_answers, significant_digits
+from exercisegrader.reports.findings import Findings
+from exercisegrader.reports.outputs import registered
+from exercisegrader.reports.outputs.feedback import feedback
+from exercisegrader.reports.outputs.summary import summary
+from exercisegrader.reports.wording import answer_in_words
+from exercisegrader.results import CellError, JudgedAnswer, JudgedExercise, Look
+from exercisegrader.roster import Student
 from small_class import (
     ADA,
     BOB,

@@ -14,6 +14,11 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 import test_exercises as bank_forms
+from exercisebook.formulas import Formula
+from exercisebook.judging import OPEN, RIGHT, UNJUDGED, judge
+from exercisebook.reading import Unreadable
+from exercisegrader.student_side import answer_sheet
+from exercisegrader.student_side.plain import LONGEST_TEXT, MOST_VALUES, plain, unreadable
 from loopbook import s, t
 from loopbook.deadtime import System
 from loopbook.exercises import bank, kinds
@@ -24,11 +29,6 @@ from loopbook.exercises.authoring import (
     transfer_function,
     word,
 )
-from loopbook.exercises.formulas import Formula
-from loopbook.exercises.judging import OPEN, RIGHT, UNJUDGED, judge
-from loopbook.exercises.reading import Unreadable
-from loopbook.grading import answer_sheet
-from loopbook.grading.plain import LONGEST_TEXT, MOST_VALUES, plain, unreadable
 from loopbook.pid import PID
 
 X, K = sympy.symbols("x K")

@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 import assignments
 from assignments import HEAD, ONE, SECRET, students, written
+from exercisegrader import GradingError, nbgrader
+from exercisegrader.assignment import Assignment
+from exercisegrader.release import as_markdown, checked, notebook, release, wrapped
 from loopbook import notebooks
 from loopbook.exercises import authoring, bank
-from loopbook.grading import GradingError, nbgrader
-from loopbook.grading.assignment import Assignment
-from loopbook.grading.release import as_markdown, checked, notebook, release, wrapped
 
 
 @pytest.fixture

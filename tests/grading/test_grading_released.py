@@ -8,14 +8,14 @@ import pytest
 from typer.testing import CliRunner
 
 from assignments import ONE, written
+from exercisegrader import GradingError
+from exercisegrader.assignment import load
+from exercisegrader.imprint import Imprint, peek
+from exercisegrader.release import notebook, release
+from exercisegrader.released import FEW, Released, texts
+from exercisegrader.roster import Student
+from exercisegrader.submissions import collect
 from loopbook.__main__ import app
-from loopbook.grading import GradingError
-from loopbook.grading.assignment import load
-from loopbook.grading.imprint import Imprint, peek
-from loopbook.grading.release import notebook, release
-from loopbook.grading.released import FEW, Released, texts
-from loopbook.grading.roster import Student
-from loopbook.grading.submissions import collect
 from loopbook.notebooks import as_text, read
 
 ADA = Student("s1", "Ada Lovelace", canvas_id="101", sis_id="A1", login="ada", email="ada@x.org")

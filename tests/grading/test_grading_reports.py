@@ -11,13 +11,13 @@ import pytest
 from typer.testing import CliRunner
 
 import contributing
+from exercisebook.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
+from exercisegrader import GradingError, reports
+from exercisegrader.lms.gradescope import results_json
+from exercisegrader.reports.outputs import output, registered
+from exercisegrader.roster import Student
 from loopbook.__main__ import app
 from loopbook.exercises.bank import exercises
-from loopbook.exercises.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
-from loopbook.grading import GradingError, reports
-from loopbook.grading.lms.gradescope import results_json
-from loopbook.grading.reports.outputs import output, registered
-from loopbook.grading.roster import Student
 from small_class import (
     ADA,
     CLASS,

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from loopbook.grading import GradingError, sources
-from loopbook.grading.sources import DEEPEST, MOST
+from exercisegrader import GradingError, sources
+from exercisegrader.sources import DEEPEST, MOST
 
 
 def read(content):

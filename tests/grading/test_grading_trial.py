@@ -5,11 +5,11 @@ import re
 import pytest
 from typer.testing import CliRunner
 
+from exercisegrader import trial
+from exercisegrader.assignment import Assignment
+from exercisegrader.trial import NOTE, ODD, WRONG
 from loopbook.__main__ import app
 from loopbook.exercises.kinds import MAKERS, Kind
-from loopbook.grading import trial
-from loopbook.grading.assignment import Assignment
-from loopbook.grading.trial import NOTE, ODD, WRONG
 
 HEAD = '''"""An assignment that is tried"""
 
@@ -18,7 +18,7 @@ import time
 from sympy import exp, symbols
 
 from loopbook.exercises.authoring import *
-from loopbook.expressions import s
+from plainmath.expressions import s
 from loopbook.pid import PID
 
 SECRET = "a secret of the tests"

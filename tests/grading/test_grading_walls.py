@@ -8,9 +8,9 @@ from textwrap import dedent
 
 import pytest
 
-from loopbook.grading import NoJail
-from loopbook.grading.events import Story
-from loopbook.grading.jail import MEGA, Jail, Limits
+from exercisegrader import NoJail
+from exercisegrader.events import Story
+from exercisegrader.jail import MEGA, Jail, Limits
 from needs import needs_jail
 
 pytestmark = needs_jail

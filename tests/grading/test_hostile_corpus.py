@@ -7,8 +7,8 @@ import pytest
 from IPython.core.inputtransformer2 import TransformerManager
 
 import hostile
+from exercisegrader.results import JudgedAnswer, JudgedExercise, Result
 from hostile import ATTACKS, Attack, Target
-from loopbook.grading.results import JudgedAnswer, JudgedExercise, Result
 
 TARGET = Target(
     answers={"1": 'sheet.answer("1", K=1)', "2": 'sheet.answer("2", H=1)'},

@@ -7,9 +7,10 @@ from typing import NamedTuple
 import pytest
 
 from draws import draws
+from exercisebook.judging import RIGHT, UNJUDGED, is_right, judge
+from exercisegrader.assignment import load
 from hostile.masked import CONTROLLER_MASKS, HEDGES, HONEST, MASKS, NUMBER_MASKS, ROW_MASKS, SPOILED, hedged
 from loopbook.exercises.bank import chapters, exercises
-from loopbook.exercises.judging import RIGHT, UNJUDGED, is_right, judge
 from loopbook.exercises.kinds import (
     Expression,
     Kind,
@@ -23,7 +24,6 @@ from loopbook.exercises.kinds import (
     Words,
 )
 from loopbook.exercises.kinds.instrument_diagram import InstrumentDiagram
-from loopbook.grading.assignment import load
 from loopbook.pid import PID
 
 AIR_HEATER = Path(__file__).parents[2] / "examples" / "course" / "air_heater.py"

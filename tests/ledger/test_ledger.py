@@ -20,14 +20,14 @@ from hypothesis import strategies as st
 
 import contributing
 import loopbook.ledger
+from bookledger.kinds import Number
+from bookledger.report import MIME_TYPE
+from bookledger.statuses import STATUSES
 from draws import draws
 from loopbook import s, t
 from loopbook.evidence import Evidence, greater, increasing, much_greater, positive
 from loopbook.ledger import Disagreement, LedgerError, Source
-from loopbook.ledger.kinds import Number
-from loopbook.ledger.report import MIME_TYPE
-from loopbook.ledger.statuses import STATUSES
-from loopbook.tables import is_symbol
+from plainmath.tables import is_symbol
 
 x, K, T = sympy.symbols("x K T", positive=True)
 

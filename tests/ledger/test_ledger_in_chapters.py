@@ -27,20 +27,20 @@ import sympy
 from sympy.integrals.manualintegrate import manualintegrate
 from typer.testing import CliRunner
 
+import bookledger.errata as errata
 import contributing
 import loopbook.ledger
-import loopbook.ledger.errata as errata
+from bookledger.evidence.criteria import CRITERIA
+from bookledger.statuses import STATUSES
 from draws import THOROUGH
 from loopbook import s
 from loopbook.__main__ import app
 from loopbook.evidence import decreasing, equal, every, greater, much_greater, negligible, refused, some, unstable
-from loopbook.evidence.criteria import CRITERIA
 from loopbook.ledger import Source, sources
-from loopbook.ledger.statuses import STATUSES
-from loopbook.tables import is_symbol
+from plainmath.tables import is_symbol
 
 ROOT = Path(__file__).parents[2]
-LEDGER = ROOT / "lib" / "loopbook" / "ledger"
+LEDGER = ROOT / "lib" / "loopbook-books" / "loopbook" / "ledger"
 CHAPTERS = ROOT / "chapters"
 MIME_TYPE = "application/vnd.loopbook.check+json"
 K, T = sympy.symbols("K T", positive=True)

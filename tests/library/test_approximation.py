@@ -14,7 +14,7 @@ from draws import draws
 from loopbook import s
 from loopbook.approximation import SOPDT, half_rule, model_of, pade, repeated_pade, taylor, zero_rule
 from loopbook.deadtime import System
-from loopbook.expressions import parse
+from plainmath.expressions import parse
 
 T1, T2, T3, K, delay = symbols("T1 T2 T3 K delay", positive=True)
 TIMES = st.fractions(Rational(1, 20), 50, max_denominator=20).map(Rational)

@@ -25,7 +25,7 @@ from loopbook.diagrams import (
     parallel_paths,
     sum_of,
 )
-from loopbook.expressions import s
+from plainmath.expressions import s
 
 K, T, T1, T2, a, tau = sympy.symbols("K T T_1 T_2 a tau")
 H1, H2, H3 = (sympy.Function(f"H_{n}")(s) for n in (1, 2, 3))

@@ -7,7 +7,7 @@ import pytest
 import sympy
 
 from loopbook.diagrams import block, feedback_loop, gain, grid_diagram, integrator, switch
-from loopbook.expressions import s
+from plainmath.expressions import s
 from test_diagrams import measured, signs_near, within
 
 EXAMPLES = {

@@ -37,7 +37,7 @@ from sympy import (
 )
 
 from draws import draws
-from loopbook.expressions import agreement, exact, function_of, parse, s, t
+from plainmath.expressions import agreement, exact, function_of, parse, s, t
 
 K, T, T1, T2, a, x = symbols("K T T1 T2 a x", positive=True)
 n = symbols("n", integer=True, positive=True)
@@ -293,7 +293,7 @@ def test_function_of_knows_its_variable():
     with pytest.raises(ValueError, match=r"t/s contains t: expected a function of s"):
         function_of(s, t / s)
     for other in (symbols("t"), symbols("t", positive=True), symbols("s", positive=True)):
-        with pytest.raises(ValueError, match="is another symbol than the library's: write `from loopbook import s, t`"):
+        with pytest.raises(ValueError, match="is another symbol than plainmath's: import s and t from there"):
             function_of(t, 1 + other)
 
 

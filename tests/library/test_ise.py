@@ -12,7 +12,6 @@ import sympy
 from draws import draws
 from loopbook import s
 from loopbook.deadtime import Loop, System, collocation
-from loopbook.expressions import agreement
 from loopbook.ise import (
     UnstableLoopError,
     criteria,
@@ -26,6 +25,7 @@ from loopbook.pid import PID
 from loopbook.stability import is_closed_loop_stable
 from loopbook.transfer import first_order
 from loopbook.transfer import integrator as transfer_integrator
+from plainmath.expressions import agreement
 
 DELAY = sympy.exp(-s)
 ROOT_TWO = sympy.sqrt(2)

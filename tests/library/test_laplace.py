@@ -35,7 +35,6 @@ from sympy import (
 )
 
 from draws import draws
-from loopbook.expressions import agreement, s, t
 from loopbook.laplace import (
     by_delay,
     definition,
@@ -49,6 +48,7 @@ from loopbook.laplace import (
     transform,
     zero_between,
 )
+from plainmath.expressions import agreement, s, t
 
 k, k_1, k_2, K, T, T_1, T_2, T_3, tau, w, zeta, a = symbols("k k_1 k_2 K T T_1 T_2 T_3 tau omega zeta a", positive=True)
 n = symbols("n", integer=True, positive=True)

@@ -14,7 +14,6 @@ from sympy.core.function import AppliedUndef
 
 import contributing
 from loopbook import plants, s, t
-from loopbook.expressions import agreement
 from loopbook.plants import (
     Balance,
     BlendingTank,
@@ -42,6 +41,7 @@ from loopbook.plants import (
 )
 from loopbook.plants.plant import _symbol
 from loopbook.transfer import static_gain, transfer_functions
+from plainmath.expressions import agreement
 
 SHOWN = contributing.run("Add a plant", {name: getattr(plants, name) for name in plants.__all__})["Separator"]
 PLANTS = [cls for _, cls in inspect.getmembers(plants, inspect.isclass) if issubclass(cls, Plant) and cls.quantities]

@@ -81,7 +81,7 @@ def test_each_parameter_has_a_slider_and_each_range_is_one():
 
 
 def test_several_pictures_and_tables_are_shown_under_each_other():
-    from loopbook.tables import quantities
+    from plainmath.tables import quantities
 
     seen = module._seen([picture(), quantities(K=2), "<b>"])
     assert seen.count("<img") == 1

@@ -14,11 +14,11 @@ from draws import draws
 from loopbook import s
 from loopbook.approximation import SOPDT, pade, taylor
 from loopbook.deadtime import System
-from loopbook.expressions import agreement
 from loopbook.pid import PID
 from loopbook.stability import is_closed_loop_stable
 from loopbook.synthesis import IMC_TABLE, Match, as_pid, direct_synthesis, imc, imc_design
 from loopbook.transfer import feedback, first_order, integrator, integrator_with_lag, poles, second_order
+from plainmath.expressions import agreement
 
 K, T, T1, T2, T3, zeta, delay, beta, Tc = symbols("K T T1 T2 T3 zeta delay beta Tc", positive=True)
 x, plain = symbols("x", real=True), symbols("plain")

@@ -12,12 +12,12 @@ from sympy import Rational, exp
 from loopbook.deadtime import Loop, System
 from loopbook.deadtime.curves import frequency_curve, natural_range
 from loopbook.deadtime.pictures import bode_plot, frequency_data, nyquist_plot, step_plot
-from loopbook.expressions import s
 from loopbook.figures import Picture, PlanePlot, TimePlot
 from loopbook.figures.style import look
 from loopbook.pid import PID
 from loopbook.quasipolynomials import read
 from pictures import in_inches, overlap
+from plainmath.expressions import s
 
 INTEGRATOR = exp(-s) / (2 * s)
 LOOP = Loop(2 * exp(-s) / (4 * s + 1), PID(1, Ti=4))

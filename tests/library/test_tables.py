@@ -7,7 +7,7 @@ import pytest
 import sympy
 
 from loopbook.pid import PID
-from loopbook.tables import quantities, rounded, table
+from plainmath.tables import quantities, rounded, table
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,6 @@ from sympy import (
 )
 
 from draws import draws
-from loopbook.expressions import agreement, exact, s, t
 from loopbook.laplace import evaluate
 from loopbook.transfer import (
     characteristic_polynomial,
@@ -52,6 +51,7 @@ from loopbook.transfer import (
     zero_pole_gain,
     zeros,
 )
+from plainmath.expressions import agreement, exact, s, t
 
 K, T, T_1, T_2, tau, a, U, w, zeta = symbols("K T T_1 T_2 tau a U omega zeta", positive=True)
 y, x, u, v = (Function(name) for name in "yxuv")

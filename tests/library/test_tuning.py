@@ -21,7 +21,7 @@ from loopbook.pid import PID
 from loopbook.stability import dominant_poles
 from loopbook.transfer import double_integrator, first_order, integrator, integrator_with_lag, second_order
 from loopbook.tuning.registry import DIMENSIONS, confirm
-from loopbook.validation import one_of
+from plainmath.validation import one_of
 
 K, T, T1, T2, delay, Tc, c, Ku, Pu, x = symbols("K T T1 T2 delay Tc c Ku Pu x", positive=True)
 

@@ -11,15 +11,16 @@ import pytest
 import sympy
 from sympy import I, Rational, Symbol, nan, oo
 
-from loopbook import pid, signals, stability, transfer, tuning, validation
+from loopbook import pid, signals, stability, transfer, tuning
 from loopbook.approximation import SOPDT, zero_rule
 from loopbook.deadtime import System
-from loopbook.expressions import s
 from loopbook.figures import time_plot
 from loopbook.identification.records import record
 from loopbook.oscillation import Oscillation
 from loopbook.stability import boundary_pi, boundary_pid
-from loopbook.validation import (
+from plainmath import validation
+from plainmath.expressions import s
+from plainmath.validation import (
     did_you_mean,
     exact_in_range,
     exact_nonzero,

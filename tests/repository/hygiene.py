@@ -20,7 +20,7 @@ from nbformat import NotebookNode
 from loopbook import evidence, notebooks, working_copy
 
 ROOT = Path(__file__).parents[2]
-LEDGER = ROOT / "lib" / "loopbook" / "ledger"
+LEDGER = ROOT / "lib" / "loopbook-books" / "loopbook" / "ledger"
 
 #: The chapters that the README lists.
 NAMES = {*re.findall(r"\]\(chapters/(\w+)\.ipynb\) \|", (ROOT / "README.md").read_text(encoding="utf-8"))}

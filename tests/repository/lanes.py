@@ -10,15 +10,18 @@ import sys
 #: The paths of each lane, as git names them; a `*` may hold slashes.
 LANES = {
     "test-site": [
-        "docs/*", "tests/site/*", "chapters/*", "lib/loopbook/exercises/forms/*", "lib/loopbook/diagrams/*",
-        "lib/loopbook/figures/*", "lib/loopbook/ledger/*", "lib/loopbook/notebooks.py", "lib/loopbook/sliders.py",
-        "lib/loopbook/working_copy.py", "environment.txt", "jupyter_lab_config.py",
+        "docs/*", "tests/site/*", "chapters/*", "lib/exercisebook/exercisebook/forms/*", "lib/bookledger/*",
+        "lib/loopbook/loopbook/diagrams/*", "lib/loopbook/loopbook/figures/*", "lib/loopbook-books/loopbook/ledger/*",
+        "lib/loopbook-books/loopbook/*.py", "environment.txt", "jupyter_lab_config.py",
     ],
     "test-grading": [
-        "lib/loopbook/grading/*", "lib/loopbook/exercises/*.py", "lib/loopbook/exercises/kinds/*", "tests/grading/*",
-        "examples/*", "docs/authors.md", "docs/instructors.md", "environment.txt",
+        "lib/exercisegrader/*", "lib/exercisebook/exercisebook/*.py", "lib/exercisebook/exercisebook/kinds/*",
+        "lib/loopbook-books/loopbook/exercises/kinds/*", "tests/grading/*", "examples/*", "docs/authors.md",
+        "docs/instructors.md", "environment.txt",
     ],
-    "test-solutions": ["solutions/*", "lib/loopbook/exercises/*", "environment.txt"],
+    "test-solutions": [
+        "solutions/*", "lib/exercisebook/*", "lib/loopbook-books/loopbook/exercises/*", "environment.txt",
+    ],
 }  # fmt: skip
 
 

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 import hygiene
+from exercisebook.judging import OPEN
 from loopbook.exercises import bank
-from loopbook.exercises.judging import OPEN
 
 ROOT = Path(__file__).parents[2]
 MIME_TYPE = "application/vnd.loopbook.response+json"

@@ -15,7 +15,8 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from loopbook.exercises import bank, judging, question
+from exercisebook import judging, question
+from loopbook.exercises import bank
 
 TESTS = Path(__file__).parents[1]
 RECORD = "LOOPBOOK_RECORD"

@@ -14,7 +14,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from loopbook.exercises import authoring, bank, judging
+from exercisebook import judging
+from loopbook.exercises import authoring, bank
 from loopbook.exercises.kinds import MAKERS
 
 #: What is compared as a picture, or belongs to a kernel only.

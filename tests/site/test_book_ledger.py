@@ -14,9 +14,9 @@ from pathlib import Path
 import pytest
 import sympy
 
+from bookledger.statuses import STATUSES
 from loopbook.evidence import CRITERIA
 from loopbook.ledger import sources
-from loopbook.ledger.statuses import STATUSES
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"

@@ -14,8 +14,8 @@ import answers_of_tests
 import browser_python
 import in_browser
 from draws import THOROUGH
+from exercisebook.judging import SECONDS
 from loopbook.exercises import bank
-from loopbook.exercises.judging import SECONDS
 from test_exercise_forms import typed
 
 ROOT = browser_python.ROOT

@@ -3,11 +3,11 @@
 import pytest
 
 from browser import DESKTOP, PATIENCE, PHONE, Complaints, serious
-from loopbook.grading.lateness import Lateness
-from loopbook.grading.marking import Marked
-from loopbook.grading.overrides import Mark
-from loopbook.grading.reports import write_all
-from loopbook.grading.results import OWNER, Look
+from exercisegrader.lateness import Lateness
+from exercisegrader.marking import Marked
+from exercisegrader.overrides import Mark
+from exercisegrader.reports import write_all
+from exercisegrader.results import OWNER, Look
 from small_class import CLASS, HOSTILE, MISSING, NAMED, STOPPED, TITLE, by_hand, changed
 
 PAGES = ("summary.html", "to_mark.html", *(f"feedback/{student.id}/feedback.html" for student in CLASS))

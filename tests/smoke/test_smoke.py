@@ -10,8 +10,8 @@ import pytest
 from matplotlib import pyplot
 
 from courses import Course
+from exercisegrader.student_side.rehearsal import rehearse
 from loopbook.exercises.bank import exercises
-from loopbook.grading.rehearsal import rehearse
 from needs import needs_jail
 from test_book import Page
 

@@ -55,7 +55,9 @@ class Target:
     outside: str = "/nowhere"
     port: int = 0
     socket: str = "/nowhere.sock"
-    setup: str = 'from loopbook.grading.answer_sheet import AnswerSheet\n\nsheet = AnswerSheet("", student="")'
+    setup: str = (
+        'from exercisegrader.student_side.answer_sheet import AnswerSheet\n\nsheet = AnswerSheet("", student="")'
+    )
     megabytes: int = 4000
     processes: int = 1500
 

@@ -6,7 +6,7 @@ _FORGES = "forging the stream"
 
 #: Every way out of the process that an answer might take: the sheet's function, and all open descriptors.
 _SEND = r"""
-from loopbook.grading import answer_sheet
+from exercisegrader.student_side import answer_sheet
 
 
 def send(*lines):

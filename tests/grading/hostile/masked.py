@@ -20,8 +20,8 @@ from fractions import Fraction
 import numpy as np
 import sympy
 
-from loopbook.exercises.formulas import Formula
-from loopbook.exercises.points import points_for
+from exercisebook.formulas import Formula
+from exercisebook.points import points_for
 
 
 @dataclass(frozen=True)

@@ -135,7 +135,8 @@ sympy.Float.__float__ = sympy.Rational.__float__ = lambda self: 1.0
         _REDEFINES,
         "the library's judging",
         """
-from loopbook.exercises import judging, kinds, question
+from exercisebook import judging, question
+from loopbook.exercises import kinds
 
 judging.judge = judging._judged = lambda *given, **named: judging.Verdict("x", "right", "right")
 question.Question.check = lambda *given, **named: True
@@ -150,7 +151,7 @@ give("anything")
         _REDEFINES,
         "the library's grading",
         """
-import loopbook.grading.answer_sheet as module
+import exercisegrader.student_side.answer_sheet as module
 
 for name in dir(module):
     if name[:2] != "__":

@@ -1,0 +1,50 @@
+"""Evidence: what decides a claim in words, with its numbers.
+
+A book says "with the larger gain the response is less stable". The claim is a sentence, true or false; evidence is what
+a computation has to say about it, and a check shows both:
+
+>>> greater(2.31, 1.59, "Ms")
+holds: Ms 2.31 > 1.59
+
+What cannot fail is no evidence. A truth value is refused, because it shows no number; so is a list without cases.
+Words such as "much" or "about the same" have one meaning in all chapters, in `evidence.criteria`, and evidence that
+rests on one says so, and whether half or twice the limit would give another verdict.
+"""
+
+from bookledger.evidence.cases import Cases, decreasing, every, increasing, some
+from bookledger.evidence.comparisons import (
+    Comparison,
+    Evidence,
+    Ratio,
+    about_equal,
+    at_least,
+    at_most,
+    different,
+    equal,
+    greater,
+    less,
+    much_greater,
+    much_less,
+    negative,
+    negligible,
+    nonzero,
+    not_negligible,
+    not_substantially_less,
+    positive,
+    roughly_equal,
+    somewhat_greater,
+    somewhat_less,
+    substantially_less,
+    zero,
+)
+from bookledger.evidence.criteria import CRITERIA, Criterion
+from bookledger.evidence.refusals import Refusal, refused
+from bookledger.evidence.sides import EvidenceError
+
+__all__ = [
+    "CRITERIA", "Cases", "Comparison", "Criterion", "Evidence", "EvidenceError", "Ratio", "Refusal", "about_equal",
+    "at_least", "at_most", "decreasing", "different", "equal", "every", "greater", "increasing", "less",
+    "much_greater", "much_less", "negative", "negligible", "nonzero", "not_negligible", "not_substantially_less",
+    "positive", "refused", "roughly_equal", "some", "somewhat_greater", "somewhat_less", "substantially_less",
+    "zero",
+]  # fmt: skip

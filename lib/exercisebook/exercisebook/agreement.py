@@ -1,0 +1,162 @@
+"""Whether two formulas are the same but for the rounding of their numbers.
+
+An answer agrees with the key where it has the key's values at all points, or where it has those of the key with other
+numbers, each of them at most the fraction `within` from its own; or where the answer itself, with its numbers changed
+by no more than that, has the values of the key. So a formula of any form may have rounded numbers, and one with a wrong
+number is wrong, however little of it is seen at one point. An answer without a value where the key has one does not
+agree.
+
+In functions of time, numbers that are added may be rounded to the same decimal, that to which the largest of them is
+known: beside 2, known to 0.02, a 0.0337 may be 0.03. Near a moment at which the key jumps, as near as this moment may
+be off, the values do not count.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from exercisebook.arithmetic import Decimals, worked_out
+from exercisebook.formulas import Formula
+from exercisebook.freedoms import freedoms, switches
+from exercisebook.rounding import InRatio, InTime, Measure, Rounded
+
+#: The fraction by which forms of one expression differ: their digits may cancel.
+EXACT = 1e-9
+#: With the best numbers, values differ by no more than this share of `within`; functions of time by no more than the
+#: second of it, and one that is given by its values, which may be of a simulation, by the third.
+LEFT, LEFT_IN_TIME, LEFT_OF_VALUES = 0.02, 0.005, 0.1
+#: The key of a mistake must have a value at this part of the points.
+ENOUGH = 0.3
+#: An answer may differ from the key by so many times what the numbers of the key may change, and `within`; and all of
+#: its own numbers together may change it by no more than so many times each of these, or a difference of two large ones
+#: would be any number.
+MORE_THAN_KEY, REACH_OF_KEY, REACH_OF_WITHIN = 1.5, 2, 4
+
+
+@np.errstate(all="ignore")
+def agree(key: Formula, given: Formula, points: Mapping[str, np.ndarray], within: float) -> bool:
+    """Whether a formula is the key but for its numbers, each of which may be off by a fraction of it.
+
+    Arguments:
+        key, given: `Formula` in the same symbols.
+        points: {symbol: array of values}, where the key has values.
+        within: the fraction; 0 for an exact formula.
+
+    >>> from exercisebook.points import points_for
+    >>> key = Formula("2*exp(-8*s)/(10*s + 1)", "s")
+    >>> given = ("0.2*exp(-8.01*s)/(s + 0.1)", "2*exp(-8.2*s)/(10*s + 1)", "2*exp(-8*s)/(10.3*s + 1)")
+    >>> [agree(key, Formula(one, "s"), points_for(key), within=0.01) for one in given]
+    [True, False, False]
+    """
+    s = points.get("s")
+    alike = np.True_ if s is None else np.real(s) >= 0  # elsewhere, forms of one function cancel
+    comparison = Comparison(key, points, within, InRatio(), max(LEFT * within, EXACT), np.True_, alike)
+    return comparison.holds_for(given)
+
+
+@np.errstate(all="ignore")
+def agree_in_time(key: Formula, given: Formula | np.ndarray, points: Mapping[str, np.ndarray], within: float) -> bool:
+    """Whether a function of time is the key but for its numbers, each of which may be off by a fraction of it.
+
+    Arguments:
+        key: `Formula` in t.
+        given: the same, or the values of a function at the times.
+        points: {"t": array of times}.
+
+    >>> points = {"t": np.linspace(0.01, 20, 50)}
+    >>> key = Formula("2 - 2*exp(-t/5) + 0.0337*exp(-t)", "t")
+    >>> given = ("2 - 2*exp(-t/5.04) + 0.03*exp(-t)", "2 - 2*exp(-t/5.2) + 0.0337*exp(-t)")
+    >>> [agree_in_time(key, Formula(one, "t"), points, within=0.01) for one in given]
+    [True, False]
+    """
+    expected, _ = key.told_at(points)
+    if not np.isfinite(expected).any():
+        return False
+    largest = np.nanmax(np.abs(expected))
+    size = np.nanmax(np.abs(expected - np.nanmean(expected)))
+    measure = InTime(float(size if size > EXACT * largest else largest or 1.0))
+    left = max((LEFT_OF_VALUES if isinstance(given, np.ndarray) else LEFT_IN_TIME) * within, EXACT)
+    counts = ~near_switches(key, points, within)
+    comparison = Comparison(key, points, within, measure, left, counts, counts)
+    return comparison.holds_of_values(given) if isinstance(given, np.ndarray) else comparison.holds_for(given)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """The comparison of answers with a key.
+
+    Arguments:
+        key, points, within: as of `agree`.
+        measure: of the difference of two values.
+        left: what may be left of a difference.
+        counts: where a difference counts.
+        alike: where a rounded answer differs from the key by no more than some rounding of the key does.
+    """
+
+    key: Formula
+    points: Mapping[str, np.ndarray]
+    within: float
+    measure: Measure
+    left: float
+    counts: np.ndarray
+    alike: np.ndarray
+
+    def holds_for(self, given: Formula) -> bool:
+        """Whether a formula agrees; one that takes many digits is looked at where it takes few at first."""
+        found, told = given.told_at(self.points)
+        if not self._holds(found, told, given):
+            return False
+        return bool(told.all()) or self._holds(given.values_at(self.points), np.True_, given)
+
+    def holds_of_values(self, found: np.ndarray) -> bool:
+        """Whether the values of a function agree."""
+        return self._holds(found, np.True_, None)
+
+    def _holds(self, found, told, given):
+        expected = self._of_key()
+        known = np.isfinite(expected)
+        if np.mean(known) < ENOUGH or not np.isfinite(found[known & told]).all():
+            return False
+        known = known & told & self.counts
+        off = np.abs(self.measure(found, expected))
+        if np.all(off[known] <= self.left):
+            return True
+        if self.within == 0 or not known.any():
+            return False
+        key = self._rounded(self.key)
+        if key.reaches(found, known, self.left):
+            return True
+        near = known & self.alike & key.calm
+        if (
+            given is None
+            or not given.in_decimals_at(self.points, np.isfinite(expected))
+            or np.any(off[near] > MORE_THAN_KEY * (key.reach[near] + self.within))
+        ):
+            return False
+        answer, most = self._rounded(given), REACH_OF_KEY * key.reach[near] + REACH_OF_WITHIN * self.within
+        return bool(np.all(answer.reach[near] <= most)) and answer.reaches(expected, known, self.left)
+
+    def _of_key(self):
+        """Its values, in many digits only where it has too few without them."""
+        few, _ = self.key.told_at(self.points)
+        return few if np.mean(np.isfinite(few)) >= ENOUGH else self.key.values_at(self.points)
+
+    def _rounded(self, formula):
+        return Rounded.of(formula, self.points, self.within, self.measure)
+
+
+def near_switches(key: Formula, points: Mapping[str, np.ndarray], within: float) -> np.ndarray:
+    """Where a step, limiter or piece of a formula may begin or not, with its numbers off by a fraction."""
+    shape = np.broadcast_shapes(*(np.shape(values) for values in points.values()))
+    near = np.zeros(shape, bool)
+    for switch in switches(key.tree):
+        nominal = np.real(worked_out(switch, Decimals(points)))
+        reach = sum(
+            np.abs(np.real(worked_out(switch, Decimals(points), {id(one.node): 1 + within})) - nominal)
+            for one in freedoms(switch)
+        )
+        near = near | (np.abs(nominal) <= reach)
+    return near

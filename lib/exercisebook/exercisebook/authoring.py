@@ -1,0 +1,249 @@
+"""Writing exercises: statement, parameters, key and known mistakes in one place.
+
+So an exercise looks::
+
+    @exercise("10.2", title="Settings for the air heater", points=4, where=lambda T, delay: delay < T)
+    def air_heater(K=between(2, 6, "K/%"), T=between(15, 40, "s"), delay=between(2, 6, "s")):
+        '''The statement in Markdown, with {K}, {T} and {delay}.'''
+        return answers(
+            Kp=number(T / (2 * K * delay), "%/K", "the proportional gain"),
+            Ti=number(min(T, 4 * delay), "s", "the integral time"),
+        )
+
+    @air_heater.mistake("That is the integral time for $c = 4$; here $c = 2$ is asked.")
+    def _(T, delay):
+        return {"Ti": min(T, 8 * delay)}
+
+    air_heater.hints("Skogestad's rule ...", "With $T_C = \\tau$ ...", "The first line is ...")
+
+    @air_heater.solution
+    def _(T, delay):
+        '''The worked solution in Markdown, with {T}, {limit} and the key {Kp}.'''
+        return {"limit": (4 * delay, "s")}
+"""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import itertools
+import textwrap
+import unicodedata
+from collections.abc import Callable, Mapping
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import sympy
+
+from exercisebook import plugins
+from exercisebook.kinds import MAKERS, Criterion, Kind, Number
+from exercisebook.parameters import Parameter, between, call, choice
+from exercisebook.question import Question
+from plainmath.validation import is_number
+
+if TYPE_CHECKING:
+    # editors read no registry
+    from exercisebook.kinds import Design as design  # noqa: F401, N813
+    from exercisebook.kinds import Expression as expression  # noqa: F401, N813
+    from exercisebook.kinds import Figure as figure  # noqa: F401, N813
+    from exercisebook.kinds import Number as number  # noqa: F401, N813
+    from exercisebook.kinds import Numbers as numbers  # noqa: F401, N813
+    from exercisebook.kinds import Poles as poles  # noqa: F401, N813
+    from exercisebook.kinds import Text as text  # noqa: F401, N813
+    from exercisebook.kinds import TimeFunction as time_function  # noqa: F401, N813
+    from exercisebook.kinds import Word as word  # noqa: F401, N813
+    from exercisebook.kinds import Words as words  # noqa: F401, N813
+    from exercisebook.parameters import Value
+
+criterion = Criterion
+
+MOST_DRAWS = 1000
+
+
+def answers(**kinds: Kind | float | sympy.Expr) -> dict[str, Kind]:
+    """Return the key of an exercise: a kind for each asked quantity; a bare number is one without unit.
+
+    >>> answers(K=2, Ti=number(12, "s", "the integral time"))["K"].key
+    2.0
+    """
+    if not kinds:
+        raise ValueError("an exercise asks for nothing: expected at least one quantity")
+    return {name: kind if isinstance(kind, Kind) else Number(kind, what=name) for name, kind in kinds.items()}
+
+
+def exercise(
+    number: str,
+    title: str,
+    points: float = 1,
+    where: Callable[..., object] = lambda: True,
+    insight: str = "",
+    weights: Mapping[str, float] | None = None,
+) -> Callable[[Callable[..., dict[str, Kind]]], Exercise]:
+    """Make an exercise of a function that returns its key.
+
+    Arguments:
+        number: chapter and place in it, as "10.2".
+        title: a few words.
+        points: of the whole exercise; each asked quantity brings the same part, if weights do not say otherwise.
+        where: a condition on the parameters that it names; other draws are discarded.
+        insight: what one knows after a right answer, in one sentence.
+        weights: {name of a quantity: what it counts}; the others count 1.
+    """
+    return functools.partial(Exercise, number, title, points, where, insight=insight, weights=weights)
+
+
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+
+class Exercise:
+    """An exercise, with all its variants.
+
+    Attributes:
+        number, title, points, insight, weights: as given.
+        parameters: {name: `Parameter`}.
+    """
+
+    def __init__(
+        self,
+        number: str,
+        title: str,
+        points: float,
+        where: Callable[..., object],
+        key: Callable[..., dict[str, Kind]],
+        insight: str = "",
+        weights: Mapping[str, float] | None = None,
+    ):
+        self.number, self.title, self.points, self.where, self.key = number, title, points, where, key
+        self.insight, self.then = insight, ""  # the heading of the next exercise, which a collection knows
+        self.weights = dict(weights or {})
+        for name, weight in self.weights.items():
+            if not is_number(weight) or not weight > 0:
+                raise ValueError(f"the weight of {name} in exercise {number} is {weight!r}: expected a positive number")
+        self.statement = textwrap.dedent(" " * 4 + (key.__doc__ or "")).strip()
+        self.parameters: dict[str, Parameter] = {
+            name: item.default for name, item in inspect.signature(key).parameters.items()
+        }
+        self.mistakes: list[tuple[str, Callable[..., dict[str, Any] | None]]] = []
+        self.shown: Callable[..., dict[str, Any]] = lambda: {}
+        self.rungs: tuple[str, ...] = ()
+        self.worked: Callable[..., dict[str, Any] | None] | None = None
+        self.drawn: Callable[..., Any] | None = None
+        self.drawn_in_solution: Callable[..., Any] | None = None
+        for name, parameter in self.parameters.items():
+            if not isinstance(parameter, Parameter):
+                raise ValueError(f"{name} of exercise {number} is {parameter!r}: expected between(...) or choice(...)")
+        if not self.statement:
+            raise ValueError(f"exercise {number} has no statement: expected one as the docstring of its function")
+
+    @property
+    def heading(self) -> str:
+        """Number and title."""
+        return f"Exercise {self.number} · {self.title}"
+
+    def mistake(self, sentence: str) -> Callable[[_Function], _Function]:
+        """Declare a known mistake: a function of parameters that it names, returning {name: wrong value}."""
+
+        def declared(function):
+            self.mistakes.append((sentence, function))
+            return function
+
+        return declared
+
+    def shows(self, function: _Function) -> _Function:
+        """Declare what else the statement shows: {name: expression, equation or text}; an array is data to work on."""
+        self.shown = function
+        return function
+
+    def hints(self, *rungs: str) -> None:
+        """Declare the hints, from the law that helps to the first line; each goes one step further."""
+        self.rungs = rungs
+
+    def solution(self, function: _Function) -> _Function:
+        """Declare the solution: its text is the docstring, and the function returns what else the text shows.
+
+        What is below a line of three stars is left to the reader in the last hint.
+        """
+        self.worked = function
+        return function
+
+    def picture(self, function: _Function) -> _Function:
+        """Declare the picture of the statement; the docstring says what is in it to those who cannot see it."""
+        self.drawn = function
+        return function
+
+    def solution_picture(self, function: _Function) -> _Function:
+        """Declare the picture of the solution, as that of the statement."""
+        self.drawn_in_solution = function
+        return function
+
+    @functools.lru_cache(maxsize=64)  # noqa: B019 - the exercises live as long as the program
+    def question(self, student: str | None = None) -> Question:
+        """Return the variant of a student, or the reference variant.
+
+        Raises ValueError where the condition does not hold for the reference, or hardly ever.
+        """
+        if student is not None and not isinstance(student, str):
+            raise ValueError(f"student is {student!r}: expected a name or an identification, as text")
+        if student is not None and not student.strip():
+            raise ValueError("student is an empty text: expected a name or an identification")
+        if student is None:
+            values = {name: parameter.reference for name, parameter in self.parameters.items()}
+            if not call(self.where, values):
+                raise ValueError(f"the reference variant of exercise {self.number} does not satisfy its condition")
+            return Question(self, student, values)
+        return Question(self, student, self._drawn(student, {}))
+
+    def question_with(self, student: str, values: Mapping[str, Value]) -> Question:
+        """Return the variant of a student to whom values were given before: they hold, whatever the ranges are now.
+
+        Arguments:
+            student: for whom what is not among the values is drawn.
+            values: {name: value}; of a name that is no parameter, the value is of no use.
+        Raises:
+            ValueError: where something has to be drawn and the condition hardly ever holds.
+
+        >>> @exercise("1.1", title="Twice")
+        ... def twice(x=between(1, 9, "m")):
+        ...     "What is twice {x}?"
+        ...     return answers(y=2 * x)
+        >>> twice.question_with("Ada", {"x": sympy.Integer(12)}).key["y"].key
+        24.0
+        """
+        kept = {name: values[name] for name in self.parameters if name in values}
+        return Question(self, student, kept if len(kept) == len(self.parameters) else self._drawn(student, kept))
+
+    def _drawn(self, student, kept):
+        """The values of a student: some that are kept, and for the others the first draw that fulfils the condition."""
+        for attempt in range(MOST_DRAWS):
+            text = unicodedata.normalize("NFC", f"{self.number}|{student}|{attempt}")
+            values = {
+                name: kept[name] if name in kept else one.draw(f"{text}|{name}")
+                for name, one in self.parameters.items()
+            }
+            if call(self.where, values):
+                return values
+        raise ValueError(f"the condition of exercise {self.number} holds in none of {MOST_DRAWS} draws: widen it")
+
+    def __repr__(self) -> str:
+        return self.heading
+
+
+def collected(module: ModuleType) -> dict[str, Exercise]:
+    """Return the exercises that a module defines: {number: `Exercise`}. Raises ValueError where two have a number."""
+    found = {}
+    for one in vars(module).values():
+        if isinstance(one, Exercise):
+            if one.number in found:
+                raise ValueError(f"there are two exercises {one.number} in {module.__name__}: expected one")
+            found[one.number] = one
+    for one, following in itertools.pairwise(found.values()):
+        one.then = following.heading
+    return found
+
+
+plugins.load()
+__all__ = ["Exercise", "answers", "between", "choice", "collected", "criterion", "exercise", *MAKERS]
+if taken := MAKERS.keys() & {*__all__[: -len(MAKERS)]}:
+    raise ValueError(f"{min(taken)} is another function for authors: expected another name for this kind of answers")
+# the kinds of answers, under the names that read well in an exercise
+globals().update(MAKERS)

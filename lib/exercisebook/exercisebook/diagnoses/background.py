@@ -1,0 +1,285 @@
+"""What a diagnosis may know besides key and answer: the givens, the other asked quantities, and the other answers."""
+
+from __future__ import annotations
+
+import contextlib
+import copy
+import itertools
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import sympy
+
+from exercisebook.kinds import Number
+from exercisebook.parameters import call, written
+from exercisebook.reading import Unreadable
+from exercisebook.timeout import limited
+
+if TYPE_CHECKING:
+    from exercisebook.kinds import Kind
+    from exercisebook.parameters import Parameter, Value
+
+#: So many changes of the givens are tried at most, of the likely and of the others: a key takes a millisecond, and one
+#: with formulas several.
+MOST_CHANGES, FEWER = 30, 18
+#: All of them together may take so many seconds, of which they usually need a tenth.
+SECONDS = 1.5
+#: By these factors a given is wrong if its unit is mistaken, by what its unit contains.
+_UNIT_FACTORS = (("min", 60), ("h", 60), ("h", 3600), ("s", 60), ("%", 100), ("m", 1000), ("kg", 1000), ("mm", 1000))
+
+
+#: A given is found for a wrong number in so many steps, to this fraction.
+STEPS, FOUND = 5, 1e-5
+
+
+@dataclass(frozen=True)
+class Amount:
+    """A number with its unit and its words in a sentence: a given, or another asked quantity.
+
+    Attributes:
+        is_had: whether it is an asked quantity that the reader has right.
+    """
+
+    value: float
+    unit: str
+    words: str
+    is_had: bool = False
+
+
+@dataclass(frozen=True)
+class Answered:
+    """Another asked quantity, and what the reader has for it."""
+
+    name: str
+    kind: Kind
+    answer: Any
+
+    @property
+    def is_right(self) -> bool:
+        """Whether the answer is right."""
+        return self.kind.agrees(self.answer)
+
+    @property
+    def words(self) -> str:
+        """The quantity in a sentence."""
+        return f"{self.kind.what}, `{self.name}`"
+
+
+class Background:
+    """What is known around the asked quantities of an exercise.
+
+    Arguments:
+        key: {name: kind} of the exercise.
+        values: {name: exact value} of the parameters.
+        parameters: {name: `Parameter`}, those alone that the statement shows.
+        function: returns the key for such values.
+        shown: more numbers that the statement shows.
+
+    Attributes:
+        name: the quantity in question; `of` sets it.
+        answers: what the reader has answered, {name: answer}; `of` sets them.
+    """
+
+    name: str = ""
+    answers: Mapping[str, Any] = {}
+
+    def __init__(
+        self,
+        key: Mapping[str, Kind] | None = None,
+        values: Mapping[str, Value] | None = None,
+        parameters: Mapping[str, Parameter] | None = None,
+        function: Callable[..., Mapping[str, Kind]] | None = None,
+        shown: Sequence[float] = (),
+    ):
+        self.key, self.values, self.parameters, self.function = key or {}, values or {}, parameters or {}, function
+        self.shown = shown
+        self._keys: dict[tuple[tuple[str, Value], ...], Mapping[str, Kind]] = {}
+        self._given_up: set[str] = set()  # that a key took too long
+
+    def of(self, name: str, answers: Mapping[str, Any]) -> Background:
+        """The same around one quantity; what has been computed is kept."""
+        other = copy.copy(self)
+        other.name, other.answers = name, answers
+        return other
+
+    def answered(self, name: str) -> Answered | None:
+        """What the reader has for a quantity; None where that is nothing that can be judged, or a person marks it."""
+        if name not in self.answers or self.key[name].by_hand:
+            return None
+        try:
+            return Answered(name, self.key[name], self.key[name].read(self.answers[name])[0])
+        except Unreadable:
+            return None
+
+    @property
+    def wrong_before(self) -> list[Answered]:
+        """What is asked for before this quantity, and has a wrong answer: this one may follow from it."""
+        before = itertools.takewhile(lambda name: name != self.name, self.key)
+        found = [self.answered(name) for name in before if self.name in self.key]
+        return [one for one in found if one and not one.is_right]
+
+    def carried_on(self) -> Iterator[tuple[str, Kind]]:
+        """The key of this quantity with a given that explains a wrong number before it, and a sentence."""
+        wrong = [one for one in self.wrong_before if type(one.kind) is Number and one.answer]
+        pairs = list(itertools.product(wrong, self.numbers))
+        found: list[tuple[str, dict[str, Value]]] = []
+
+        def solve():
+            for one, given in pairs:
+                if (value := self._given_with(one, given)) is not None:
+                    found.append((follows(one.words), {given: value}))
+
+        if pairs:
+            self._in_time(solve)
+        yield from self._keys_with(found)
+
+    def _given_with(self, one, given):
+        """The value of a given with which a number would be what the reader has; None where none is found."""
+        points = [(float(self.values[given]), one.kind.key)]
+        guess = 1.25 * points[0][0]
+        for _ in range(STEPS):
+            key = self._key_with({given: sympy.Float(guess)}).get(one.name)
+            if type(key) is not Number or not np.isfinite(key.key):
+                return None
+            points.append((guess, key.key))
+            if abs(key.key - one.answer) <= FOUND * abs(one.answer):
+                return sympy.Float(guess)
+            (x, y), (x1, y1) = points[-2:]
+            if abs(y1 - y) <= 1e-9 * abs(y):
+                return None
+            ratios = [last / before for last, before in ((x1, x), (y1, y), (one.answer, y1)) if before]
+            if len(ratios) == 3 and min(ratios) > 0:  # a power of it, most often
+                guess = x1 * ratios[2] ** (np.log(ratios[0]) / np.log(ratios[1]))
+            else:
+                guess = x1 + (one.answer - y1) * (x1 - x) / (y1 - y)
+            if not 1e-3 < abs(guess / points[0][0]) < 1e3:
+                return None
+        return None
+
+    def with_twice(self) -> dict[str, Mapping[str, Kind]]:
+        """The keys of all quantities with twice each of the givens, {name of the given: keys}."""
+        changes = [{name: 2 * self.values[name]} for name in self.numbers]
+        list(self._keys_with([("", change) for change in changes]))
+        return {name: self._keys.get(_place(change), {}) for name, change in zip(self.numbers, changes, strict=True)}
+
+    @property
+    def givens(self) -> list[Amount]:
+        """The numbers among the givens, as the statement shows them."""
+        return [Amount(float(self.values[name]), self.parameters[name].unit, self.words(name)) for name in self.numbers]
+
+    @property
+    def numbers(self) -> list[str]:
+        """The names of the givens that are numbers."""
+        return [name for name in self.parameters if not isinstance(self.values[name], str)]
+
+    def words(self, name: str) -> str:
+        """A given as the statement shows it."""
+        return written(self.values[name], self.parameters[name].unit)
+
+    def changed_keys(self, likely: bool = True) -> Iterator[tuple[str, Kind]]:
+        """The key of this quantity with a given changed, and a sentence on the change.
+
+        Arguments:
+            likely: the changes that a reader may make by mistake, or those that are rarer.
+        """
+        changes = (_likely_changes if likely else _rarer_changes)(self)
+        most = FEWER if any(hasattr(kind, "expr") for kind in self.key.values()) else MOST_CHANGES
+        yield from self._keys_with(list(itertools.islice(changes, most)))
+
+    def keys_of_other_words(self) -> Iterator[tuple[str, Kind]]:
+        """The key of this quantity with another word among the givens, and a sentence on the change."""
+        yield from self._keys_with(list(_other_words(self)))
+
+    def _keys_with(self, changes):
+        """The key with each of the changes. One may never end: then those after it are left out."""
+
+        def compute():
+            for changed in missing:
+                self._key_with(changed)
+
+        if missing := [changed for _, changed in changes if _place(changed) not in self._keys]:
+            self._in_time(compute)
+        for how, changed in changes:
+            key = self._keys.get(_place(changed), {})
+            if self.name in key:
+                yield how, key[self.name]
+
+    def _in_time(self, compute):
+        """Compute keys, as long as none has taken too long."""
+        if not self._given_up:
+            try:
+                limited(SECONDS, compute)
+            except TimeoutError:
+                self._given_up.add(self.name)
+
+    def _key_with(self, changed):
+        """The keys of all quantities with other values of some givens; none where there are none."""
+        if _place(changed) not in self._keys:
+            self._keys[_place(changed)] = {}
+            # the author's function is for her own ranges: for other values it may fail in any way
+            with contextlib.suppress(Exception), np.errstate(all="ignore"):
+                self._keys[_place(changed)] = call(self.function, {**self.values, **changed})
+        return self._keys[_place(changed)]
+
+
+def follows(words: str) -> str:
+    """A sentence on a quantity that goes with a wrong one; which of the two comes first, is not known."""
+    return f"this fits what you have for {words}, which is not right either: one mistake may be behind both"
+
+
+def _place(changed):
+    return tuple(changed.items())
+
+
+def _likely_changes(background):
+    """Two givens of one unit interchanged, another word, a given left out."""
+    values, parameters, numbers, words = background.values, background.parameters, background.numbers, background.words
+    for one, other in itertools.combinations(numbers, 2):
+        if parameters[one].unit == parameters[other].unit and values[one] != values[other]:
+            how = f"that is what comes out with {words(one)} and {words(other)} interchanged"
+            yield how, {one: values[other], other: values[one]}
+    yield from _other_words(background)
+    for name in numbers:
+        # nothing of it, hardly anything where a key has no value for nothing, and as a factor
+        for nothing in (0 * values[name], values[name] / 10**6, values[name] ** 0):
+            if values[name] != nothing:
+                yield f"that is what comes out without the {words(name)}", {name: nothing}
+
+
+def _other_words(background):
+    for name, parameter in background.parameters.items():
+        value = background.values[name]
+        for other in parameter.values if isinstance(value, str) else ():
+            if other != value:
+                yield f"that would be right for '{other}' in place of '{value}'", {name: other}
+
+
+def _rarer_changes(background):
+    """A given twice or half as large, for another one, in a mistaken unit, with another sign, upside down."""
+    values, parameters, numbers, words = background.values, background.parameters, background.numbers, background.words
+    for name in numbers:
+        for much, factor in (("twice the", 2), ("half of the", sympy.S.Half)):
+            how = f"that is what comes out with {much} {words(name)}: is a factor of 2 lost, or too many, beside it?"
+            yield how, {name: factor * values[name]}
+    for one, other in itertools.combinations(numbers, 2):
+        if parameters[one].unit != parameters[other].unit and values[one] != values[other]:
+            how = f"that is what comes out with the numbers of {words(one)} and {words(other)} interchanged"
+            yield how, {one: values[other], other: values[one]}
+    for name in numbers:
+        for factor in _mistaken(parameters[name].unit):
+            for changed in (values[name] * factor, values[name] / factor):
+                how = f"that is what comes out if the unit of {words(name)} is mistaken by a factor of {factor}"
+                yield how, {name: changed}
+    for name in numbers:
+        yield f"that is what comes out with another sign of the {words(name)}", {name: -values[name]}
+    for name in numbers:
+        if values[name] not in (0, 1, -1):
+            yield f"that is what comes out with one divided by the {words(name)}", {name: 1 / values[name]}
+
+
+def _mistaken(unit):
+    parts = re.findall(r"[^\W\d_]+|%", unit)
+    return sorted({factor for part, factor in _UNIT_FACTORS if part in parts})

@@ -1,0 +1,611 @@
+"""Mistakes in a number, as a table: a sentence, and the wrong value that it makes.
+
+The order of `TABLE` decides where two mistakes make the same value: what happens more often, and what can hardly be
+true by chance, comes first. A value is recognised within half a unit of the last digit that the reader gives.
+"""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from decimal import Decimal
+
+from exercisebook import units
+from exercisebook.diagnoses.background import Amount, Background, follows
+from exercisebook.diagnoses.finding import Finding, explained
+from exercisebook.diagnoses.own_formulas import of_formulas
+from exercisebook.kinds import Kind, Number
+from exercisebook.kinds.numeric import in_unit
+
+#: A value is recognised within this fraction of it, however many digits the answer has, and never beyond the other.
+NARROWEST, WIDEST = 0.001, 0.006
+#: What is true of many numbers by chance is said of those with so many digits, and within half a unit of the last one
+#: or these fractions; of fewer digits only where it is the very value.
+ENOUGH_DIGITS, NEAREST, NEAR_ENOUGH, EXACTLY = 3, 0.0004, 0.0021, 1e-6
+#: What follows from a rounded number is recognised within this fraction at most.
+CARRIED = 0.012
+#: Whole numbers without unit up to this are taken for counts.
+MOST = 12
+#: A factor of a rule is not larger, nor one divided by it smaller.
+MOST_TIMES = 20
+#: An answer that is off by less than this is in the neighbourhood of the right one.
+NEARBY = 0.05
+#: A rounded answer is off by less than this.
+ROUNDED = 0.3
+
+
+#: A wrong value and the sentence for it.
+Wrong = tuple[float, str]
+
+
+@dataclass(frozen=True)
+class Scaling:
+    """How a number goes with others.
+
+    Attributes:
+        twice: pairs of a given in words and how many times as large the key is with twice as much of it.
+        measures: the givens and the right numbers of its unit to which the key has a fixed ratio.
+        sources: the wrong numbers before it, in words, that depend on no given on which it does not depend.
+    """
+
+    twice: list[tuple[str, float]] = field(default_factory=list)
+    measures: list[Amount] = field(default_factory=list)
+    sources: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Case:
+    """A number that is asked for, and what is around it.
+
+    Attributes:
+        key, unit, within: of the number.
+        asked: the quantity in words, with its unit.
+        others: the other numbers that are asked for.
+        givens: the numbers that are given.
+        changed: pairs of the number that comes out with a change of the givens, either a likely change (True) or
+            another one, and a sentence.
+        answered: pairs of an asked number before this one and what the reader has instead of it.
+        carried: pairs of the number that follows from a wrong one before it, and a sentence.
+        scaling: how the key goes with the givens and with other quantities.
+        shown: more numbers that the statement shows.
+    """
+
+    key: float
+    unit: str
+    asked: str
+    within: float = 0.01
+    others: list[Amount] = field(default_factory=list)
+    givens: list[Amount] = field(default_factory=list)
+    changed: Callable[[bool], Iterator[Wrong]] = lambda _: iter(())
+    answered: list[tuple[Amount, float]] = field(default_factory=list)
+    carried: Callable[[], Iterator[Wrong]] = lambda: iter(())
+    scaling: Callable[[], Scaling] = lambda: Scaling()
+    shown: Sequence[float] = ()
+
+    def is_count(self, answer: float) -> bool:
+        """Whether the number is exact, or both it and an answer look like small counts."""
+        whole = self.unit == "" and all(float(one).is_integer() and abs(one) <= MOST for one in (self.key, answer))
+        return self.within == 0 or whole
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """A mistake that can be made in any number.
+
+    Attributes:
+        name: of the mistake.
+        wrongs: function of a `Case` that gives the wrong values, each with its sentence.
+        is_rare: whether it is made so seldom that a number of two digits is more likely equal to it by chance.
+        is_rarest: whether even the very value says nothing where it has few digits.
+        is_plain: whether it is made with a number that is as near to the right one as is asked.
+    """
+
+    name: str
+    wrongs: Callable[[Case], Iterator[Wrong]]
+    is_rare: bool = False
+    is_rarest: bool = False
+    is_plain: bool = False
+
+
+def found_in(answer: float, case: Case, agrees: Callable[[float], bool] | None = None) -> Finding | None:
+    """Return the mistake in a wrong number; the nearest ones before those within its rounding.
+
+    >>> case = Case(12, "s", "the integral time, in s", givens=[Amount(4, "s", "4 s"), Amount(3, "", "3")])
+    >>> found_in(4, case).says
+    'that is the same number as the 4 s of the question: how does one get from there to the integral time, in s?'
+    >>> found_in(17.9, case)
+    """
+    agrees = agrees or (lambda wrong: abs(wrong - case.key) <= case.within * abs(case.key))
+    if case.is_count(answer):  # nearly any count is something of the givens by chance
+        return _in_tables(answer, case, agrees, (TABLE,))
+    found = (
+        _in_tables(answer, case, agrees, (TABLE,))
+        or _carried_on(answer, case, agrees)
+        or _in_tables(answer, case, agrees, (GIVENS,))
+        or _rounded(answer, case)
+        or _measured(answer, case)
+        or _in_tables(answer, case, agrees, (FACTORS,))
+        or _plain(answer, case, agrees)
+        or _in_tables(answer, case, agrees, (MORE,))
+    )
+    if not found and answer * case.key < 0:
+        beside = _in_tables(-answer, case, agrees, (TABLE, GIVENS, FACTORS))
+        return beside and Finding(f"the sign is not right; and but for the sign, {beside.says}")
+    return found
+
+
+def _in_tables(answer, case, agrees, tables):
+    for mistakes in tables:
+        wrongs = [
+            (mistake, wrong, says)
+            for mistake in mistakes
+            if answer or not (mistake.is_rare or mistake.is_rarest)
+            for wrong, says in mistake.wrongs(case)
+            if math.isfinite(wrong) and not agrees(wrong)
+        ]
+        for narrow in (True, False):
+            for mistake, wrong, says in wrongs:
+                if is_recognised(answer, wrong, mistake.is_rare, narrow, mistake.is_rarest):
+                    return Finding(says)
+    return None
+
+
+def _plain(answer, case, agrees):
+    """A sign, a unit or an inverse in a number that is only as near to the right one as is asked."""
+    for mistake in TABLE:
+        for wrong, says in mistake.wrongs(case) if mistake.is_plain else ():
+            if math.isfinite(wrong) and not agrees(wrong) and abs(answer - wrong) <= case.within * abs(wrong):
+                return Finding(says)
+    return None
+
+
+def _carried_on(answer, case, agrees):
+    """Whether a number follows, by the right way, from a wrong one before it, which may be rounded."""
+    half_units = [_digits(answered)[1] / abs(answered) for _, answered in case.answered if answered]
+    if not answer:
+        return None
+    within = min(_digits(answer)[1] / abs(answer) + max(half_units, default=0), CARRIED)
+    for wrong, says in itertools.chain(_follows(case), case.carried()):
+        if math.isfinite(wrong) and not agrees(wrong) and abs(answer - wrong) <= max(within, NARROWEST) * abs(wrong):
+            return Finding(says, is_mistake=False)
+    return None
+
+
+def _measured(answer, case):
+    """A simple factor other than that by which the key goes with a given, or with a number that is right."""
+    if answer * case.key <= 0:
+        return None
+    within = max(_digits(answer)[1] / abs(answer), NEAREST)
+    for one in case.scaling().measures:
+        of = one.words if one.is_had else f"the {one.words} of the question"
+        for ratio, says in ((answer / one.value, "{} times {}"), (one.value / answer, "{1} divided by {0}")):
+            simple = float(f"{ratio:.2g}")
+            if (
+                simple != 1
+                and 1 / MOST_TIMES < ratio < MOST_TIMES
+                and abs(simple - ratio) <= min(within, WIDEST) * ratio
+            ):
+                says = f"that is {says.format(f'{simple:g}', of)}: which factor belongs there?"
+                return Finding(says, is_mistake=False)
+    return None
+
+
+def is_recognised(
+    answer: float, wrong: float, is_rare: bool = False, narrow: bool = False, is_rarest: bool = False
+) -> bool:
+    """Whether an answer is a wrong value, as far as the digits of the answer can tell.
+
+    >>> is_recognised(0.67, 2 / 3), is_recognised(0.66, 2 / 3), is_recognised(0.7, 2 / 3)
+    (True, False, False)
+    """
+    if answer == 0 or wrong == 0:
+        return answer == wrong
+    digits, half_unit = _digits(answer)
+    within = NARROWEST if narrow else min(max(half_unit / abs(wrong), NARROWEST), WIDEST)
+    if is_rare or is_rarest:
+        within = min(max(half_unit / abs(wrong), NEAREST), NEAR_ENOUGH)
+        if digits < ENOUGH_DIGITS:
+            within = 0 if is_rarest else EXACTLY
+    return within > 0 and abs(answer - wrong) <= within * abs(wrong)
+
+
+def _digits(answer):
+    """How many digits a number is given with, and half a unit of the last one."""
+    _, digits, exponent = Decimal(repr(float(answer))).normalize().as_tuple()
+    return len(digits), 0.5 * 10.0**exponent
+
+
+# ------------------------------------------------------------------------------------------------------- the table
+
+
+def _other(case):
+    for other in case.others:
+        if other.unit == case.unit:
+            says = f", itself: asked here is {case.asked}" if other.is_had else ": have you interchanged the two?"
+            yield other.value, f"that is {other.words}{says}"
+
+
+def _sign(case):
+    yield -case.key, "the size is right, the sign is not"
+
+
+def _unit(case):
+    for unit, converted in units.neighbours(case.unit).items():
+        yield converted(case.key), f"that would be the value {in_unit(unit)}; asked: {case.asked}"
+
+
+_TIMES = ("ms", "s", "min", "h")
+_FREQUENCIES = tuple(f"rad/{unit}" for unit in _TIMES)
+
+
+def _inverse(case):
+    if case.key:
+        yield 1 / case.key, "that is the inverse: one divided by the answer"
+        if case.unit in _TIMES and "period" in case.asked:
+            yield 2 * math.pi / case.key, "that is 2π divided by the answer: an angular frequency instead of a period"
+        if case.unit in _FREQUENCIES and "frequency" in case.asked:
+            yield 2 * math.pi / case.key, "that is 2π divided by the answer: a period instead of an angular frequency"
+
+
+def _given(case):
+    for given in case.givens:
+        if given.unit == case.unit:
+            says = f"that is the same number as the {given.words} of the question"
+            says += f": how does one get from there to {case.asked}?"
+            yield given.value, says
+
+
+def _decibel(case):
+    if case.unit == "" and case.key > 0:
+        yield 20 * math.log10(case.key), "that is the value in dB; asked is the factor itself"
+
+
+def _complement(case):
+    wholes = {"deg": (90, 180, 360), "rad": (math.pi / 2, math.pi, 2 * math.pi), "%": (100,), "": (1,)}
+    for whole in wholes.get(case.unit, ()):
+        if case.unit in ("deg", "rad") or 0 < case.key < whole:
+            angle = {90: "a right angle", 180: "half a turn", 360: "a whole turn"}
+            names = angle.get(round(math.degrees(whole))) if case.unit == "rad" else angle.get(whole)
+            what = names or f"{whole}{chr(160) + case.unit if case.unit else ''}"
+            sides = "from which side does the angle count?" if names else "which of the two parts is asked for?"
+            yield whole - case.key, f"that is what is missing to {what}: {sides}"
+            if names:
+                yield case.key - whole, f"that is off by {what}: from where does the angle count?"
+
+
+def _as_large_as(given):
+    return f"it is off by a factor as large as the {given.words}: is that missing, or in it once too often?"
+
+
+def _with_given(case):
+    for given in case.givens:
+        if given.value not in (0, 1, -1):
+            yield case.key * given.value, _as_large_as(given)
+            yield case.key / given.value, _as_large_as(given)
+    for value in case.shown:
+        yield case.key * value, _as_large_as(Amount(value, "", f"{value:g}"))
+        yield case.key / value, _as_large_as(Amount(value, "", f"{value:g}"))
+    for other in case.others:
+        if other.value not in (0, 1, -1):
+            says = f"it is off by a factor as large as {other.words}: is that missing, or in it once too often?"
+            yield case.key * other.value, says
+            yield case.key / other.value, says
+
+
+_FACTORS = (
+    (2, "it is off by a factor of 2: does something count twice that counts once, or only half?"),
+    (100, "it is off by a factor of 100: look at percent and fraction, or at a prefix such as centi"),
+    (1000, "it is off by a factor of 1000: look at the units, at a prefix such as kilo or milli"),
+    (60, "it is off by a factor of 60: look at the units, at seconds and minutes"),
+    (10, "it is off by a factor of 10: look at the decimal point, and at the units"),
+    (3600, "it is off by a factor of 3600: look at the units, at seconds and hours"),
+)
+_SHARES = (1 - math.exp(-1), 0.63)
+_RARE_FACTORS = (
+    (2 * math.pi, "it is off by a factor of 2π: count in radians or in whole turns?"),
+    (4, "it is off by a factor of 4: is something halved, doubled or squared twice, or not at all?"),
+    (math.pi, "it is off by a factor of π"),
+    (180 / math.pi, "it is off by the factor between degrees and radians"),
+    (math.log(2), "it is off by a factor of ln 2: that is the way from a time constant to the time for one half"),
+    (math.log(10), "it is off by a factor of ln 10: the natural logarithm and the decimal one are interchanged"),
+    (math.e, "it is off by a factor of e"),
+    (math.sqrt(2), "it is off by a factor of √2"),
+    *((share, "it is off by a factor of 0.63: that is the share reached after one time constant") for share in _SHARES),
+)
+
+
+def _factor(case):
+    yield from _times(case, _FACTORS)
+
+
+def _rare_factor(case):
+    yield from _times(case, _RARE_FACTORS)
+
+
+def _times(case, factors):
+    for factor, says in factors:
+        for given in case.givens:  # what is in the question explains more than units
+            if factor not in (2, 4, 10) and given.value in (factor, 1 / factor):
+                says = _as_large_as(given)
+        yield case.key * factor, says
+        yield case.key / factor, says
+
+
+def _follows(case):
+    """From a wrong number before it, by the right way."""
+    for other, answered in case.answered:
+        if not other.value or not answered or abs(answered / other.value - 1) < 0.03:
+            continue
+        says = follows(other.words)
+        for power in (1, -1, 2, 0.5):
+            ratio = answered / other.value
+            if ratio > 0:
+                yield case.key * ratio**power, says
+        if other.unit == case.unit:
+            yield case.key + (answered - other.value), says
+            yield case.key - (answered - other.value), says
+
+
+def _changed(case):
+    zero = [wrong for wrong in case.changed(True) if wrong[0] == 0]
+    yield from (wrong for wrong in case.changed(True) if wrong[0] or len(zero) == 1)  # many factors make a product zero
+
+
+def _changed_otherwise(case):
+    yield from case.changed(False)
+
+
+def _beside_given(case):
+    for given in case.givens:
+        if given.unit == case.unit and given.value:
+            says = f"look at the {given.words}: is that left out, or is it there once too often?"
+            yield case.key + given.value, says
+            yield case.key - given.value, says
+
+
+def _upside_down(case):
+    """A factor between two quantities that divides where it should multiply."""
+    for one in (*case.givens, *(other for other in case.others if other.is_had)):
+        if one.unit == case.unit and one.value and case.key:
+            says = "does a factor divide where it should multiply, or the other way round?"
+            yield one.value**2 / case.key, f"look at the step between {one.words} and this: {says}"
+
+
+def _power(case):
+    if case.key > 0:
+        yield case.key**2, "that is the square of the answer"
+        yield math.sqrt(case.key), "that is the square root of the answer"
+
+
+def _two_givens(case):
+    for given in case.givens:
+        if given.value:
+            yield 1 / given.value, f"that is one divided by the {given.words}: is that {case.asked}?"
+    for one, other in itertools.permutations(case.givens, 2):
+        if other.value:
+            yield one.value / other.value, f"that is {one.words} divided by {other.words}: is that {case.asked}?"
+    for one, other in itertools.combinations(case.givens, 2):
+        yield one.value * other.value, f"that is {one.words} times {other.words}: is that {case.asked}?"
+        if one.unit == other.unit:
+            yield one.value + other.value, f"that is the sum of {one.words} and {other.words}: is that {case.asked}?"
+            says = f"that is the difference between {one.words} and {other.words}: is that {case.asked}?"
+            yield one.value - other.value, says
+            yield other.value - one.value, says
+
+
+TABLE = (
+    Mistake("interchanged", _other),
+    Mistake("sign", _sign, is_plain=True),
+    Mistake("unit", _unit, is_plain=True),
+    Mistake("inverse", _inverse, is_plain=True),
+    Mistake("decibel", _decibel),
+    Mistake("complement", _complement),
+)
+#: Then, unless it follows from a wrong number before it, what is a given.
+GIVENS = (Mistake("given", _given),)
+#: What is off by a factor.
+FACTORS = (
+    Mistake("factor", _factor),
+    Mistake("with a given", _with_given, is_rare=True),
+)
+#: After them, the rest: to change the givens takes time.
+MORE = (
+    Mistake("changed", _changed),
+    Mistake("upside down", _upside_down, is_rare=True),
+    Mistake("changed otherwise", _changed_otherwise, is_rarest=True),
+    Mistake("two givens", _two_givens, is_rarest=True),
+    Mistake("beside a given", _beside_given, is_rarest=True),
+    Mistake("power", _power, is_rare=True),
+    Mistake("rare factor", _rare_factor, is_rare=True),
+)
+
+
+# ---------------------------------------------------------------------------------------------- what is said at last
+
+
+def rounded(answer: float, key: float) -> bool:
+    """Whether an answer is the key, rounded or cut off to the digits that the answer has.
+
+    >>> rounded(0.7, 2 / 3), rounded(0.6, 2 / 3), rounded(0.65, 2 / 3)
+    (True, True, False)
+    """
+    _, half_unit = _digits(answer)
+    return abs(answer) < abs(key) + half_unit and abs(answer - key) < 2 * half_unit and answer * key > 0
+
+
+def _rounded(answer, case):
+    key, digits = case.key, _digits(answer)[0]
+    if not (key and rounded(answer, key) and abs(answer / key - 1) < ROUNDED):
+        return None
+    places = f"{digits} digit{'' if digits == 1 else 's'}"
+    says = f"that is rounded to {places}, but the accuracy asked for is {100 * case.within:g}\N{NO-BREAK SPACE}%"
+    return Finding(f"{says}: keep more digits, here and on the way", is_mistake=False)
+
+
+def in_general(answer: float, case: Case) -> Finding:
+    """Return what is true of any wrong number.
+
+    Sizes are compared in powers of two that do not depend on the key, so that asking again does not narrow it down.
+
+    >>> in_general(15, Case(12, "s", "the time, in s")).says
+    'not right, though of about the right size; asked: the time, in s'
+    """
+    key = case.key
+    if found := _rounded(answer, case):
+        return found
+    is_counted = case.unit == "" and float(key).is_integer() and float(answer).is_integer()
+    if key and not (is_counted or case.is_count(answer)) and not case.answered and abs(answer / key - 1) < NEARBY:
+        says = "that is off by a few percent, which is more than the rounding of a result"
+        says += ": is a small term missing, or a value rounded or read off too coarsely on the way?"
+        return Finding(says, is_mistake=False)
+    says = f"not right{size_of(answer, case)}; asked: {case.asked}"
+    more = to_check(case) if answer else ". What would it mean here if that were zero?"
+    return Finding(says + more, is_mistake=False, is_bare=True)
+
+
+_TIMES_AS_LARGE = {0.25: "a quarter as large", 0.5: "half as large", 4: "four times as large", 2: "twice as large"}
+
+
+def to_check(case: Case) -> str:
+    """Return what a reader can check in a wrong number: what it may follow from, or how it goes with the givens.
+
+    >>> to_check(Case(12, "s", "the time", scaling=lambda: Scaling([("3 K/%", 0.5), ("8 s", 2), ("5 s", 1.3)])))
+    '. A check: with twice the 3 K/% it is half as large, with twice the 8 s twice as large'
+    """
+    scaling = case.scaling()
+    if scaling.sources:
+        return f". What you have for {scaling.sources[0]}, is not right either: does this follow from it?"
+    found = [
+        (list(_TIMES_AS_LARGE).index(size), f"with twice the {words} {{}}{_TIMES_AS_LARGE[size]}")
+        for words, times in scaling.twice
+        for size in _TIMES_AS_LARGE
+        if abs(times / size - 1) < EXACTLY
+    ]
+    first, *others = [says for _, says in sorted(found)[:2]] or [""]
+    return ". A check: " + ", ".join([first.format("it is "), *(says.format("") for says in others)]) if first else ""
+
+
+def size_of(answer: float, case: Case) -> str:
+    """How large a wrong number is beside the right one, in words behind "not right"."""
+    key = case.key
+    if answer == 0 or key == 0 or case.within == 0:
+        return ", and not zero" if answer == 0 else ""
+    if answer * key < 0:
+        return ": the sign is not, nor is the size"
+    steps = math.floor(math.log2(abs(answer))) - math.floor(math.log2(abs(key)))
+    if steps == 0:
+        return ", though of about the right size"
+    much = "much " if abs(steps) > 3 else ""
+    return f": {much}too {'large' if steps > 0 else 'small'}"
+
+
+# -------------------------------------------------------------------------------------------------------- one number
+
+
+def others_asked(background: Background) -> list[tuple[str, Amount]]:
+    """The other numbers that are asked for, each with its name; what one is stays open until it is right."""
+    return [
+        (name, _asked_amount(name, kind, background))
+        for name, kind in background.key.items()
+        if type(kind) is Number and name != background.name
+    ]
+
+
+_ANOTHER = "another quantity that is asked for"
+
+
+def _asked_amount(name, kind, background):
+    one = background.answered(name)
+    if one and one.is_right:
+        return Amount(kind.key, kind.unit, one.words, is_had=True)
+    mine = background.key.get(background.name)
+    is_swapped = one is not None and type(mine) is Number and mine.unit == kind.unit and mine.agrees(one.answer)
+    return Amount(kind.key, kind.unit, one.words if one and is_swapped else _ANOTHER)
+
+
+def wrong_before(background: Background) -> list[tuple[Amount, float]]:
+    """The numbers asked for before this one that the reader has answered, and not rightly."""
+    return [
+        (Amount(one.kind.key, one.kind.unit, one.words), one.answer)
+        for one in background.wrong_before
+        if type(one.kind) is Number
+    ]
+
+
+def scaling(background: Background, key: float, unit: str, of: Callable[[Mapping[str, Kind]], float]) -> Scaling:
+    """How a number of a key goes with the givens, and to which of them, and of the right numbers, it has a fixed ratio.
+
+    Arguments:
+        background: with the other quantities.
+        key, unit: of the number.
+        of: returns the number for a changed key.
+    """
+
+    def times(changed, number, usual):
+        try:
+            return number(changed) / usual if usual else math.nan
+        except (KeyError, AttributeError, TypeError):  # the changed key has none
+            return math.nan
+
+    def scaled(name, value):
+        """How many times as large a number is with twice each of the givens."""
+        number = of if name == background.name else lambda found: found[name].key
+        return {given: times(keys, number, value) for given, keys in changed.items()}
+
+    changed = background.with_twice()
+    mine = scaled(background.name, key)
+    if all(abs(value - 1) < EXACTLY for value in mine.values()):
+        return Scaling()
+    twice = [(background.words(given), value) for given, value in mine.items() if math.isfinite(value)]
+    theirs = {name: scaled(name, other.value) for name, other in others_asked(background)}
+    measures = [
+        other
+        for name, other in others_asked(background)
+        if other.is_had and other.unit == unit and _are_near(mine, theirs[name])
+    ]
+    measures += [
+        one
+        for name, one in zip(background.numbers, background.givens, strict=True)
+        if one.unit == unit and one.value and _are_near(mine, {given: 1 + (given == name) for given in mine})
+    ]
+    moved = {given for given, value in mine.items() if abs(value - 1) > EXACTLY}
+    sources = [
+        one.words
+        for one in background.wrong_before
+        if one.name in theirs
+        and {given for given, value in theirs[one.name].items() if abs(value - 1) > EXACTLY} <= moved
+    ]
+    return Scaling(twice, measures, sources)
+
+
+def _are_near(some, others):
+    return all(abs(value - others[name]) < EXACTLY for name, value in some.items())
+
+
+@explained.register
+def _(kind: Number, answer: float, background: Background) -> Finding:
+    def numbers(keys):
+        return ((key.key, says) for says, key in keys if isinstance(key, Number))
+
+    case = Case(
+        kind.key,
+        kind.unit,
+        kind.asked,
+        kind.within,
+        others=[amount for _, amount in others_asked(background)],
+        givens=background.givens,
+        changed=lambda likely: numbers(background.changed_keys(likely)),
+        answered=wrong_before(background),
+        carried=lambda: itertools.chain(
+            ((own, follows(words)) for words, own in of_formulas(kind.key, background)),
+            numbers(background.carried_on()),
+        ),
+        scaling=functools.cache(
+            lambda: scaling(background, kind.key, kind.unit, lambda keys: keys[background.name].key)
+        ),
+        shown=background.shown,
+    )
+    return found_in(answer, case, kind.agrees) or in_general(answer, case)

@@ -1,0 +1,160 @@
+"""Judging an answer: right, a mistake with a name, wrong, or nothing that can be judged."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from exercisebook import diagnoses, units
+from exercisebook.kinds import Number
+from exercisebook.reading import NOT_ANSWERED, Unreadable, shortened
+from exercisebook.timeout import limited
+
+if TYPE_CHECKING:
+    from exercisebook.diagnoses import Background
+    from exercisebook.kinds import Kind
+
+RIGHT, MISTAKE, WRONG, UNJUDGED, OPEN = "right", "mistake", "wrong", "not judged", "open"
+#: What is taken down for a person, who says what it is worth.
+WAITING = "to be marked"
+#: Reading and comparing may take so many seconds: an answer may be a function, or an object with methods of its own.
+SECONDS = 5
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What became of the answer to one asked quantity: a status and a sentence."""
+
+    name: str
+    status: str
+    says: str
+    #: Whether it says little more than that the answer is not right: then a hint may help.
+    is_bare: bool = field(default=False, repr=False)
+    #: Why an instructor should see the answer; empty where there is no need.
+    look: str = field(default="", repr=False)
+
+    @property
+    def is_right(self) -> bool:
+        """Whether the answer counts."""
+        return self.status == RIGHT
+
+
+def earned(points: float, right: float, asked: float) -> float:
+    """Return what some right answers bring of the points of an exercise.
+
+    Arguments:
+        points: of the exercise.
+        right, asked: what the right ones and all of them weigh; where each brings the same, how many they are.
+
+    >>> earned(4, right=2, asked=3)
+    2.6666666666666665
+    """
+    return points * right / asked
+
+
+def judge(
+    name: str,
+    kind: Kind,
+    given: object,
+    mistakes: Iterable[tuple[str, Any]] = (),
+    background: Background | None = None,
+) -> Verdict:
+    """Return the `Verdict` on an answer. Whatever the answer is, this raises nothing.
+
+    Arguments:
+        name: of the asked quantity.
+        kind: its kind, with the key.
+        given: the answer, of any type.
+        mistakes: those of the exercise, pairs of a sentence and a wrong value; they come before the general ones.
+        background: what else is known of the exercise, for the general ones.
+
+    >>> from exercisebook.kinds import Number
+    >>> judge("Ti", Number(120, "s", "the integral time"), 2)
+    Verdict(name='Ti', status='mistake', says='that would be the value in min; asked: the integral time, in s')
+    """
+    try:
+        return Verdict(name, *limited(SECONDS, _judged, kind, given, mistakes, background))
+    except Unreadable as problem:
+        status = OPEN if str(problem) == NOT_ANSWERED else UNJUDGED
+        return Verdict(name, status, harmless(str(problem)))
+    except TimeoutError:
+        return Verdict(name, UNJUDGED, f"judging this takes too long: expected {kind.expected}")
+    except Exception as problem:  # the answer may be an object that fails in any way
+        says = f"this cannot be judged ({type(problem).__name__}): expected {kind.expected}"
+        return Verdict(name, UNJUDGED, harmless(says))
+
+
+def is_right(kind: Kind, given: object) -> bool:
+    """Whether an answer would be right, without a word on what is wrong with it. Raises nothing.
+
+    >>> from exercisebook.kinds import Number
+    >>> is_right(Number(120, "s"), "2 min"), is_right(Number(120, "s"), "two")
+    (True, False)
+    """
+    try:
+        return limited(SECONDS, _agrees, kind, given)
+    except Exception:  # the answer may be an object that fails in any way
+        return False
+
+
+def _agrees(kind, given):
+    answer, _ = kind.read(given)
+    return not any(kind.incomparable(answer)) and kind.agrees(answer)
+
+
+def _judged(kind, given, mistakes, background):
+    """Status, sentence, whether the sentence is bare, and why an instructor should look."""
+    answer, remark = kind.read(given)
+    if kind.by_hand:
+        return WAITING, "a person marks this" + (f" · {remark}" if remark else ""), False
+    says, look = kind.incomparable(answer)
+    if says:
+        return WRONG, harmless(says), False, harmless(look)
+    if kind.agrees(answer):
+        return RIGHT, "right" + (f", {remark}" if remark else "")
+    if named := _in_its_unit(kind, answer, remark):
+        return MISTAKE, f"the number is right, but in {kind.unit}: you have given it in {named}", False
+    status, says, is_bare = _explained(kind, answer, mistakes, background)
+    shown = harmless(kind.as_read(answer))
+    said = f"read as {shown}" if shown else harmless(remark)
+    return status, says + (f" · {said}" if said else ""), is_bare
+
+
+def _in_its_unit(kind, answer, remark):
+    """The unit that was given with a number that is right in the asked one; empty where it is not so."""
+    found = re.fullmatch(r"converted from (\S+)", remark)
+    if not (found and type(kind) is Number):
+        return ""
+    return found[1] if kind.agrees(units.convert(answer, kind.unit, to=found[1])) else ""
+
+
+def _explained(kind, answer, mistakes, background):
+    """The same of an answer that is not right."""
+    background = background or diagnoses.Background()
+    if found := diagnoses.swapped(kind, answer, background):
+        return MISTAKE, found.says, False
+    for known in (mistakes, kind.mistakes()):
+        near = [(kind.off_by(answer, wrong), sentence) for sentence, wrong in known if kind.is_value(answer, wrong)]
+        if near:  # the nearest one, of several the first
+            return MISTAKE, min(near, key=lambda one: one[0])[1], False
+    try:
+        with np.errstate(all="ignore"):
+            found = diagnoses.explained(kind, answer, background)
+    except Unreadable:
+        raise
+    except Exception:  # whatever a diagnosis stumbles over, the answer is wrong
+        found = None
+    if found:
+        return MISTAKE if found.is_mistake else WRONG, found.says, found.is_bare
+    hint = kind.hint(answer)
+    return WRONG, hint or f"not right; asked: {kind.asked}", not hint
+
+
+def harmless(text: str) -> str:
+    """A sentence that may quote a reader: not long, in one line, without formulas, in signs that can be printed."""
+    line = " ".join(text.replace("$", "").split())
+    return shortened(line.encode("utf-8", "backslashreplace").decode(), 400)

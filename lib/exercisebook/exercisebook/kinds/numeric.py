@@ -1,0 +1,596 @@
+"""Numbers, rows and tables of numbers, and poles in any order."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from decimal import Decimal
+from typing import Any
+
+import numpy as np
+import sympy
+
+from exercisebook import notation, units
+from exercisebook.formulas import Formula
+from exercisebook.kinds.kind import (
+    ALL_DIGITS,
+    AS_IT_IS,
+    LINE,
+    MANY_DIGITS,
+    Kind,
+    Tried,
+    how_rounded,
+    rounded,
+    with_unit,
+)
+from exercisebook.reading import (
+    LONGEST_BY_HAND,
+    Unreadable,
+    alone,
+    answered,
+    in_a_row,
+    listed_in,
+    members,
+    plain,
+    shortened,
+)
+
+_WITH_UNIT = re.compile(r"([+-]? ?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?) ?(.*)")
+#: What may be beside a number, on either side, and says nothing of its size.
+_BEFORE_IT = re.compile(
+    r"^(?:(?:at least|at most|at|after|only|loops?|exactly|(?:by )?(?:a )?factor(?: of)?|by|is|it is) |[<>]=? ?)",
+    re.IGNORECASE,
+)
+_BEHIND_IT = re.compile(
+    r" times(?: (?:larger|bigger|greater|higher|longer|faster|more|as (?:large|much|big|high|long|fast)))?$"
+)
+_WORDS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
+#: Numbers that are not written in digits alone, and how they are.
+_OTHER_NUMBERS = (
+    (re.compile(rf"^({'|'.join(_WORDS)})(?= |$)", re.IGNORECASE), lambda found: str(_WORDS.index(found[1].lower()))),
+    (re.compile(r"^none$", re.IGNORECASE), "0"),
+    (re.compile(r"^([+-]?)(\d{1,3}) (\d{1,2}/\d{1,3})(?![\d./])"), r"\1(\2 + \3)"),
+    (re.compile(r"^([+-]?)(\d{1,3})\((1/2|1/4|3/4)\)"), r"\1(\2 + \3)"),
+    (re.compile(r"^[+-]?\d{1,3}(?:[ ']\d{3})+(?![\d'])"), lambda found: re.sub("[ ']", "", found[0])),
+)
+#: Poles that occur several times: "-2 (double)", "double pole at -2".
+_TIMES = {"double": 2, "twice": 2, "triple": 3, "two times": 2, "three times": 3, "2 times": 2, "3 times": 3}
+_TIMES |= {"2x": 2, "3x": 3, "2×": 2, "3×": 3, "x2": 2, "x3": 3, "×2": 2, "×3": 3, "repeated": 2, "2 fold": 2}
+_TIMES |= {"multiplicity 2": 2, "multiplicity 3": 3, "double pole": 2, "triple pole": 3, "double root": 2}
+_MANY = "|".join(map(re.escape, sorted(_TIMES, key=len, reverse=True)))
+_SEVERAL_TIMES = re.compile(rf"^(?P<pole>.*?\S) ?[\[(,]? ?(?P<times>{_MANY})[\])]?$", re.IGNORECASE)
+_TIMES_BEFORE = re.compile(
+    rf"^(?:an? )?(?P<times>{_MANY})(?: (?:pole|zero|root))?(?: (?:at|in))? (?P<pole>.*)$", re.IGNORECASE
+)
+#: A pair in one text, and the name of several poles before it, as "s_1,2 =".
+_PAIR = re.compile(r"±|\+ ?/ ?-|\\pm\b|\+-")
+_NAMES = re.compile(r"^\w+?_?[{(]?1 ?[,/] ?2[})]? ?= ?")
+_WITH_UNITS = re.compile(
+    r"\d+ ?(?:h|hours?|min|minutes?|m|kg)(?:,? (?:and )?[\d.,]+ ?(?:min|minutes?|s|sec|seconds?|g|cm))+"
+)
+#: A mistake is recognised in a rounded value, too, by as much as its digits tell and no more than this.
+ROUNDED = 0.01
+#: A number below this fraction of the key is zero.
+NOTHING = 1e-9
+#: In so many other units the key is tried.
+MOST_UNITS = 2
+
+
+class Number(Kind):
+    """A real number with its unit; a text may name another unit, as "2 min" where seconds are asked.
+
+    >>> Ti = Number(120, "s", "the integral time")
+    >>> Ti.agrees(Ti.read("2 min")[0])
+    True
+    """
+
+    @property
+    def expected(self) -> str:
+        """A number in its unit."""
+        return f"a number, in {self.unit}" if self.unit else "a number"
+
+    def read(self, given: object) -> tuple[float, str]:
+        """Return the number in the asked unit, as a float, and a remark where it came in another one."""
+        given = answered(given)
+        if isinstance(given, str) and not self.unit and (bare := _without_noun(given, self.what)):
+            given, noun = bare, f"read as {bare}"
+        else:
+            noun = ""
+        value, remark = one_number(given, self.unit, self.expected)
+        return _real(value, self.expected), remark or noun
+
+    @property
+    def shown(self) -> tuple[float, str]:
+        """The number and its unit."""
+        return self.key, self.unit
+
+    def written(self, answer: float) -> str:
+        """The number with its unit."""
+        return with_unit(in_digits(answer), self.unit)
+
+    def agrees(self, answer: float) -> bool:
+        """Whether the number is within the tolerance."""
+        return near(answer, self.key, self.within)
+
+    def is_value(self, answer: float, wrong: Any) -> bool:
+        """Whether an answer is the value of a mistake, which a reader may have rounded."""
+        wrong = self.like(wrong).key
+        if wrong == 0:  # a small number is not nothing
+            return abs(answer) <= NOTHING * abs(self.key)
+        if self.within == 0:
+            return near(answer, wrong, 0)
+        rounding = max(_half_unit(answer, wrong), ROUNDED / 2)
+        return near(answer, wrong, rounding if self.within <= ROUNDED else self.within)
+
+    def off_by(self, answer: float, wrong: Any) -> float:
+        """How far an answer is from the value of a mistake."""
+        return abs(answer - self.like(wrong).key)
+
+    def in_other_units(self, answer: float) -> Iterator[tuple[str, float]]:
+        """What an answer would be if it had been given in another unit: pairs of the unit and the value."""
+        for unit in units.neighbours(self.unit):
+            yield unit, units.convert(answer, unit, to=self.unit)
+
+    is_personal = True
+
+    @property
+    def field(self) -> dict[str, Any]:
+        """A line, with the unit beside it."""
+        return {"control": LINE}
+
+    def right_forms(self) -> Iterator[Tried]:
+        """The number rounded, as text, exact, with a decimal comma, and in other units.
+
+        >>> dict(Number(90, "s").right_forms())["in min"]
+        '1.5 min'
+        """
+        short = rounded(self.key, self.within)
+        yield AS_IT_IS, self.key
+        yield how_rounded(self.within), short
+        yield "as text with its unit", f"{short!r} {self.unit}".strip()
+        yield "as an exact number of SymPy", sympy.nsimplify(self.key, rational=True)
+        if "." in repr(short) and "e" not in repr(short):
+            yield "with a decimal comma", repr(short).replace(".", ",")
+        for unit in list(units.neighbours(self.unit))[:MOST_UNITS]:
+            # in °C a value may be a temperature or a difference
+            is_clear = not {"°C", "K"} & {self.unit, unit}
+            if unit and is_clear and units.convert(0, self.unit, to=unit) == 0:
+                digits = MANY_DIGITS if self.within else ALL_DIGITS
+                yield f"in {unit}", f"{units.convert(self.key, self.unit, to=unit):.{digits}g} {unit}"
+
+    def wrong_forms(self) -> Iterator[Tried]:
+        """Zero, the other sign, a factor of ten.
+
+        >>> [answer for _, answer in Number(90, "s").wrong_forms()]
+        [0.0, -90.0, 900.0, 9.0]
+        """
+        return _changed(self.key)
+
+
+class Numbers(Kind):
+    """A row or a table of real numbers, in order.
+
+    >>> A = Numbers([[0, 1], [-2, -3]], what="the matrix A")
+    >>> A.agrees(A.read(sympy.Matrix([[0, 1], [-2, -3]]))[0])
+    True
+    """
+
+    EACH = "each number "
+
+    @property
+    def expected(self) -> str:
+        """A row or a table of numbers."""
+        unit = f", in {self.unit}" if self.unit else ""
+        table = getattr(getattr(self, "key", None), "ndim", 1) > 1
+        return f"a list of numbers such as {'[[1, 2], [3, 4]]' if table else '[1, 2]'}{unit}"
+
+    def read(self, given: object) -> tuple[np.ndarray, str]:
+        """Return an array of floats, and a remark where a number came in another unit."""
+        given = list(given.values()) if isinstance(answered(given), dict) and alone(given) is given else given
+        rows = _rows(given)
+        if rows is None:
+            raise Unreadable(f"this is not a list: expected {self.expected}")
+        remarks: list[str] = []
+        if isinstance(given, str):  # rows of a table in a text
+            inner_texts = [_row_of_text(row) for row in rows]
+            rows = inner_texts[0] if len(rows) == 1 else inner_texts
+            rows = [row[0] if isinstance(row, list) and len(row) == 1 else row for row in rows]
+
+        def number(value):
+            value, remark = one_number(value, self.unit, self.expected)
+            remarks.append(remark)
+            return _real(value, self.expected)
+
+        inner = [in_a_row(row) for row in rows]
+        if any(row is not None for row in inner):
+            if any(row is None or len(row) != len(inner[0]) for row in inner):
+                raise Unreadable(f"the rows are of different length: expected {self.expected}")
+            read = np.array([[number(value) for value in row] for row in inner], float)
+        else:
+            read = np.array([number(value) for value in rows], float)
+        return read, self._remark(remarks, read)
+
+    def _remark(self, remarks, read):
+        """One remark on all numbers."""
+        remark = max(remarks, default="")
+        return f"read as {self.written(read)}" if remark.startswith("read as") else remark
+
+    def written(self, answer: np.ndarray) -> str:
+        """The list, or the list of rows, with its unit."""
+        rows = [f"[{', '.join(map(in_digits, row))}]" for row in np.atleast_2d(answer)]
+        return with_unit(rows[0] if answer.ndim == 1 else f"[{', '.join(rows)}]", self.unit)
+
+    def agrees(self, answer: np.ndarray) -> bool:
+        """Whether the shape is the same and each number within the tolerance; a column is a row."""
+        answer, key = _flat(answer), _flat(self.key)
+        return answer.shape == key.shape and bool(np.all(self.near_each(answer, key)))
+
+    def near_each(self, answer: np.ndarray, key: np.ndarray) -> np.ndarray:
+        """Which numbers are within the tolerance."""
+        return np.abs(answer - key) <= _allowed(key, self.within, 1e-12)
+
+    def mistakes(self) -> Iterator[tuple[str, np.ndarray]]:
+        """Wrong sign, another unit, rows for columns, the order turned."""
+        yield "the sizes are right, the signs are not", -self.key
+        for unit, converted in units.neighbours(self.unit).items():
+            yield f"those would be the values {in_unit(unit)}; asked: {self.asked}", np.vectorize(converted)(self.key)
+        if self.key.ndim == 2 and min(self.key.shape) > 1:
+            if self.key.shape[0] == self.key.shape[1]:
+                yield "rows and columns are interchanged", self.key.T
+        else:
+            yield "the values are right, in the opposite order", self.key[::-1]
+
+    def hint(self, answer: np.ndarray) -> str:
+        """Say how many are right. Raises Unreadable for another shape."""
+        answer, key = _flat(answer), _flat(self.key)
+        if answer.shape != key.shape:
+            raise Unreadable(f"the shape is {_shape(answer)}: expected {_shape(key)}")
+        right = int(np.sum(self.near_each(answer, key)))
+        return f"{right} of {key.size} numbers are right" if right else ""
+
+    is_personal = True
+
+    @property
+    def field(self) -> dict[str, Any]:
+        """A line."""
+        return {"control": LINE, "help": self.expected.removesuffix(f", in {self.unit}")}
+
+    def right_forms(self) -> Iterator[Tried]:
+        """The numbers rounded, as a matrix, an array and a text."""
+        short = np.vectorize(lambda x: rounded(x, self.within))(self.key)
+        yield AS_IT_IS, self.key.tolist()
+        yield how_rounded(self.within), short.tolist()
+        yield "as a matrix of SymPy", sympy.Matrix(self.key)
+        yield "as an array", self.key
+        yield "as text", str(short.tolist())
+
+    def wrong_forms(self) -> Iterator[Tried]:
+        """As of a number, and the opposite order."""
+        yield from _changed(self.key)
+        if not np.array_equal(self.key, self.key[::-1]):
+            yield "in the opposite order", self.key[::-1]
+
+
+class Poles(Kind):
+    """Complex numbers in any order, as often as they occur, such as poles and zeros.
+
+    >>> poles = Poles([-1, -1, -2])
+    >>> poles.agrees(poles.read({-1: 2, -2: 1})[0])
+    True
+    """
+
+    EACH = "each number "
+
+    def __init__(self, key: object, unit: str = "rad/s", what: str = "the poles", within: float = 0.01):
+        super().__init__(key, unit, what, within)
+
+    @property
+    def expected(self) -> str:
+        """A list of numbers."""
+        return "a list of numbers such as [-1, -2 + 3j]"
+
+    def read(self, given: object) -> tuple[np.ndarray, str]:
+        """Return an array of complex numbers; a dictionary says how often each one occurs.
+
+        In a text a sign ± stands for a pair, and "double" for two.
+        """
+        if isinstance(answered(given), dict) and alone(given) is given:
+            given = [pole for pole, times in given.items() for _ in range(self._times(times))]
+        elif isinstance(given, set | frozenset | sympy.FiniteSet):
+            given = members(given)
+        elif isinstance(given, str) and re.fullmatch(
+            r"(?:there are )?(?:none|no (?:finite )?(?:poles|zeros?))\.?", given.strip().lower()
+        ):
+            given = []
+        rows = _rows(given)
+        rows = [given] if rows is None else rows
+        inner = in_a_row(rows[0]) if len(rows) == 1 else None
+        rows = _each_pole(rows if inner is None else inner)
+        read = [one_number(value, self.unit, self.expected) for value in rows]
+        remark = max((remark for _, remark in read), default="")
+        several = len(rows) > len([given] if isinstance(given, str) and len(listed_in(given)) == 1 else rows)
+        if remark.startswith("read as") or (several and not remark):
+            remark = f"read as {', '.join(in_digits(value) for value, _ in read)}"
+        return np.array([value for value, _ in read], complex), remark
+
+    def _times(self, times):
+        times = _real(one_number(times, "", self.expected)[0], self.expected)
+        if not (times == int(times) and 0 <= times <= 20):
+            raise Unreadable(f"a pole cannot occur {times:g} times: expected {self.expected}")
+        return int(times)
+
+    def written(self, answer: np.ndarray) -> str:
+        """The list with its unit."""
+        return with_unit(f"[{', '.join(map(in_digits, answer))}]", self.unit)
+
+    def agrees(self, answer: np.ndarray) -> bool:
+        """Whether each pole has its counterpart."""
+        return len(answer) == len(self.key) == len(self.matched(answer))
+
+    def matched(self, answer: np.ndarray) -> dict[int, int]:
+        """Which of the answer's values are among the key's, each taken once: {place in it: place in the key}."""
+        allowed, pairs = _allowed(self.key, self.within, 1e-9), {}
+        for place, value in enumerate(answer):
+            left = [k for k in range(len(self.key)) if k not in pairs.values()]
+            nearest = min(left, key=lambda k, value=value: abs(value - self.key[k]), default=None)
+            if nearest is not None and abs(value - self.key[nearest]) <= allowed[nearest]:
+                pairs[place] = nearest
+        return pairs
+
+    def mistakes(self) -> Iterator[tuple[str, np.ndarray]]:
+        """All signs turned, times instead of poles, another unit."""
+        yield "the sizes are right, the signs are not", -self.key
+        if np.all(self.key != 0):
+            yield "those are the inverses, the times instead of the values in s", 1 / self.key
+            yield "those are the time constants: a time constant of T makes the value -1/T", -1 / self.key
+        if np.any(self.key.imag):
+            yield "real part and imaginary part are interchanged", self.key.imag + 1j * self.key.real
+        for unit, converted in units.neighbours(self.unit).items():
+            yield f"those would be the values {in_unit(unit)}; asked: {self.asked}", self.key * converted(1)
+
+    is_personal = True
+
+    @property
+    def field(self) -> dict[str, Any]:
+        """A line."""
+        return {"control": LINE, "help": self.expected}
+
+    def right_forms(self) -> Iterator[Tried]:
+        """The poles rounded, in the opposite order, as expressions and as a text."""
+        short = [complex(rounded(z.real, self.within), rounded(z.imag, self.within)) for z in self.key]
+        yield AS_IT_IS, self.key.tolist()
+        yield how_rounded(self.within), short
+        yield "in the opposite order", self.key[::-1]
+        yield "as expressions of SymPy", [sympy.Float(z.real) + sympy.I * sympy.Float(z.imag) for z in self.key]
+        if short:
+            yield "as text", ", ".join(f"{z.real!r} {'-' if z.imag < 0 else '+'} {abs(z.imag)!r}j" for z in short)
+
+    def wrong_forms(self) -> Iterator[Tried]:
+        """As of a number, and one more pole."""
+        yield from _changed(self.key)
+        yield "one more pole", [*self.key, -1]
+
+
+def _changed(key):
+    """Zero, the other sign, and a factor of ten; of a row and of poles, those that are not the same once more."""
+    changed = {
+        "zero": 0 * key,
+        "with the other sign": -key,
+        "ten times as much": 10 * key,
+        "a tenth of it": key / 10,
+    }
+    for how, answer in changed.items():
+        if not np.array_equal(np.sort_complex(np.ravel(answer)), np.sort_complex(np.ravel(key))):
+            yield how, answer
+
+
+def _without_noun(text, what):
+    """A number without the noun of what is asked, as "4 batches" or "loop 31"; empty where there is none."""
+    nouns = "|".join(re.sub("(?:(?<=[cs]h)e)?s$", "", word) for word in re.findall(r"[a-z]{4,}", what))
+    text = re.sub(r" \([A-Za-z ]+\)$|\.$", "", text.strip())
+    if re.fullmatch(r"(?:(?:no|nr|number)\b\.? ?|# ?)?\d+", text, re.IGNORECASE):
+        return re.sub(r"\D", "", text)
+    if "loop" in what and (tag := re.fullmatch(r"[A-Z]{1,5}[- ]?(\d+)", text)):  # TC41
+        return tag[1]
+    some = r"([\w.,]+)(?: (?:full|whole|complete))?"
+    found = re.fullmatch(rf"(?:(?:the )?(?:{nouns}) ([\w.,]+)|{some} (?:{nouns})(?:e?s)?)", text) if nouns else None
+    return (found[1] or found[2]) if found else ""
+
+
+def _each_pole(rows):
+    """The values of a list, where a text may stand for a pair or for a multiple one."""
+    found, texts = [], [row.replace(" ", "") for row in rows if isinstance(row, str)]
+    for row in rows:
+        if not isinstance(row, str):
+            found.append(row)
+            continue
+        row, times = _NAMES.sub("", " ".join(row.split())).rstrip("."), 1
+        if found and row.lower() in _TIMES:  # -2, twice
+            found += found[-1:] * (_TIMES[row.lower()] - 1)
+            continue
+        several = _SEVERAL_TIMES.match(row) or _TIMES_BEFORE.match(row)
+        if several:
+            row, times = several["pole"], _TIMES[several["times"].lower()]
+        pair = _PAIR.search(row)
+        # a program writes -1+-2j for -1-2j, beside -1+2j
+        if pair and pair[0] == "+-" and row.replace(" ", "").replace("+-", "+") in texts:
+            pair = None
+        both = [_PAIR.sub(sign, row, count=1) for sign in "+-"] if pair else [row]
+        found += [re.sub(r"([+-]) ?[ij] ?(?=\d)(\d+\.?\d*|\.\d+)", r"\1 \2j", one) for one in both] * times
+    return found
+
+
+def near(answer: float, key: float, within: float) -> bool:
+    """Whether a number is within a fraction of the key; of a key of 0, within as much absolutely."""
+    return math.isfinite(answer) and abs(answer - key) <= within * (abs(key) or 1) + 1e-12 * abs(key)
+
+
+def _half_unit(answer, value):
+    """Half a unit of the last digit with which an answer is given, as a fraction of a value, and at most `ROUNDED`."""
+    _, _, exponent = Decimal(repr(float(answer))).normalize().as_tuple()
+    return min(0.5 * 10.0**exponent / abs(value), ROUNDED)
+
+
+def in_digits(value: complex | sympy.Expr) -> str:
+    """Return a number as text, to eight digits.
+
+    >>> in_digits(8 / 3), in_digits(-1 - 2.5j), in_digits(2 + 0j)
+    ('2.6666667', '-1 - 2.5j', '2')
+    """
+    value = complex(value)
+    if not value.imag:
+        return f"{value.real:.8g}"
+    return f"{value.real:.8g} {'-' if value.imag < 0 else '+'} {abs(value.imag):.8g}j"
+
+
+def one_number(given: object, unit: str, expected: str) -> tuple[complex, str]:
+    """Return a finite number, real or complex, in a unit, and a remark where it was given in another one."""
+    given = alone(given)
+    if isinstance(given, str):
+        return _number_of_text(given, unit, expected)
+    if hasattr(given, "magnitude") and hasattr(given, "units"):  # a quantity of Pint
+        value, named = one_number(given.magnitude, "", expected)[0], f"{given.units:~C}".replace("Δ°C", "K")
+        return _in_unit_asked(value, named, unit, expected)
+    row = in_a_row(given)
+    if row is not None:
+        raise Unreadable(f"there are {len(row)} values: expected {expected}")
+    if given is None or given is Ellipsis:
+        raise Unreadable(f"a value is missing: expected {expected}")
+    if isinstance(given, bool | np.bool_) or given is sympy.true or given is sympy.false:
+        raise Unreadable(f"{given} is a truth value: expected {expected}")
+    if isinstance(given, sympy.Expr) and given.free_symbols:
+        symbols = shortened(", ".join(sorted(symbol.name for symbol in given.free_symbols)))
+        raise Unreadable(f"there is still {symbols} in it: expected {expected}")
+    if (isinstance(given, dict | set) or callable(given)) and not isinstance(given, sympy.Basic):
+        raise Unreadable(f"this is of type {type(given).__name__}: expected {expected}")
+    try:
+        value = complex(given)
+    except Exception:  # objects of others may fail in any way
+        raise Unreadable(f"this is of type {type(given).__name__}: expected {expected}") from None
+    return _finite(value, expected), ""
+
+
+def _number_of_text(text, unit, expected):
+    *before, line = plain(_BEFORE_IT.sub("", text.strip())).split(" = ")
+    before = [part for part in before if re.search(r"\d", part)]  # theta - theta_m = 4 min
+    if before:  # 3840 s = 64 min
+        found = [_number_of_text(part, unit, expected) for part in (*before, line)]
+        value = found[-1][0]
+        if all(abs(one - value) <= ROUNDED * (abs(value) or 1) for one, _ in found):
+            return found[-1]
+        raise Unreadable(f"{shortened(text, 40)!r} has two sides that differ: expected {expected}")
+    line, remark = _in_digits_only(_BEHIND_IT.sub("", line) if not unit else line)
+    parts = _WITH_UNITS.fullmatch(line) and re.findall(r"([\d.,]+ ?[^\W\d_]+)", line)
+    if parts:  # 1 h 4 min
+        found = [_number_of_text(part, unit, expected)[0] for part in parts]
+        return sum(found), f"read as {' + '.join(parts)}"
+    match = _WITH_UNIT.fullmatch(line)
+    if match and match[2] and not re.search(r"\bpi\b|π", match[2]):  # Pint takes pi for a unit
+        named = f"1{match[2]}" if match[2].startswith("/") else match[2]
+        if units.is_unit(named):
+            return _with(remark, *_in_unit_asked(float(match[1].replace(" ", "")), named, unit, expected))
+    # arithmetic, and perhaps a unit after one of the spaces, or a percent sign
+    spaces = [found.start() for found in re.finditer(r" |(?<=\S)[%°]", line)] if len(line) <= LONGEST_BY_HAND else []
+    says, ends = "", [len(line), *spaces]
+    for end in ends:
+        named = line[end:].strip()
+        if named and not units.is_unit(named):
+            continue
+        try:
+            formula = Formula(line[:end])
+            value = complex(formula.values_at({}))
+        except Unreadable as problem:
+            says = says or str(problem)
+            continue
+        found = _in_unit_asked(value, named, unit, expected) if named else (_finite(value, expected), "")
+        return _with(remark or formula.remark, *found)
+    try:  # 15 K / 11 %
+        value = _finite(complex(units.worked_out(line, unit)), expected)
+        return value, f"read as {with_unit(in_digits(value), unit)}"
+    except ValueError as doubt:
+        if "do not make" in str(doubt):
+            raise Unreadable(f"{doubt}: expected {expected}") from None
+        if re.search("may be|needs? brackets", says):
+            raise Unreadable(says) from None
+    raise Unreadable(f"{shortened(text, 40)!r} is a text that is not a number: expected {expected}")
+
+
+def _with(remark, value, other):
+    """A value with two remarks in one."""
+    return value, ", ".join(one for one in (remark, other) if one)
+
+
+def _in_digits_only(line):
+    """A number in a word, a mixed one, or with spaces between its thousands, in digits, and a remark on it."""
+    for pattern, meant in _OTHER_NUMBERS:
+        read, times = pattern.subn(meant, line, count=1)
+        if times:
+            return read, f"read as {read}"
+    try:
+        read = re.sub(r"(?<=[%\w]) of (?:the |its |full )*[a-z ]+$", "", notation.decimal_points(line))
+    except notation.Ambiguous as doubt:
+        raise Unreadable(str(doubt)) from None
+    return read, "" if read == line else f"read as {read}"
+
+
+def _in_unit_asked(value, named, unit, expected):
+    """A number that was given with a unit, in the asked one."""
+    if (units.spelled(named), unit) == ("°C", "K"):
+        raise Unreadable(f"in °C, this may be a temperature or a difference of two: expected {expected}")
+    value = _finite(complex(value), expected)
+    try:
+        factor = units.convert(1, named, to=unit)
+        converted = value * factor if value.imag else complex(units.convert(value.real, named, to=unit))
+    except ValueError as error:
+        raise Unreadable(f"{error}: expected {expected}") from None
+    return _finite(converted, expected), "" if factor == 1 else f"converted from {named}"
+
+
+def _finite(value, expected):
+    if math.isnan(value.real) or math.isnan(value.imag):
+        raise Unreadable(f"this is not a number (NaN): expected {expected}")
+    if math.isinf(value.real) or math.isinf(value.imag):
+        raise Unreadable(f"this is infinite: expected {expected}")
+    return value
+
+
+def _real(value, expected):
+    # roots of polynomials keep a trace of an imaginary part
+    if abs(value.imag) > 1e-9 * abs(value):
+        raise Unreadable(f"this is a complex number: expected {expected}")
+    return value.real
+
+
+def in_unit(unit: str) -> str:
+    """A unit in a sentence."""
+    return {"": "as a fraction", "%": "in percent"}.get(unit, f"in {unit}")
+
+
+def _rows(given):
+    """The values of a list in a text too."""
+    return listed_in(given) if isinstance(given, str) else in_a_row(given)
+
+
+def _row_of_text(row):
+    """The numbers of a row that is a text, between commas or between spaces."""
+    parts = listed_in(row)
+    in_spaces = len(parts) == 1 and re.fullmatch(r"[-+−]?[\d./]+(?: +[-+−]?[\d./]+)+", parts[0])
+    if in_spaces and not re.fullmatch(r"\S+( \d{3})+|[-+−]?\d+ \d+/\d+", parts[0]):  # which are 12 000, or 1 1/2
+        return re.split(" +", parts[0])
+    return parts
+
+
+def _allowed(key, within, least):
+    """By how much each number may be off: a fraction of it, where it is 0 of the smallest other one."""
+    sizes = np.abs(key)
+    smallest = min(sizes[sizes > 0], default=1.0)
+    return within * np.where(sizes == 0, smallest, sizes) + least * np.max(sizes, initial=0.0)
+
+
+def _flat(array):
+    return array.ravel() if array.ndim == 2 and 1 in array.shape else array
+
+
+def _shape(array):
+    return " by ".join(map(str, array.shape)) if array.ndim > 1 else f"a row of {array.size}"

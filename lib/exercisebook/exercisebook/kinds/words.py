@@ -1,0 +1,225 @@
+"""Words from a list, one or several."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Iterable, Iterator
+from typing import Any, Self
+
+import sympy
+from sympy.logic.boolalg import BooleanAtom
+
+from exercisebook.kinds import synonyms
+from exercisebook.kinds.kind import AS_IT_IS, NONE, ONE, ORDER, SEVERAL, Kind, Tried
+from exercisebook.reading import Unreadable, alone, answered, in_a_row, members, shortened
+
+_NONE = re.compile(r"none(?: of them| of these)?|nothing|no one|not any|[-–∅]|\[\]", re.IGNORECASE)
+_ONLY = re.compile(r"^(?:only|just|solely) ", re.IGNORECASE)
+_COUNTED = re.compile(r"(\D*)(\d+(?:\.\d+)?)(\D*)")
+_TRUTH = {True: "yes", False: "no"}
+_SEPARATOR = re.compile(r"[,;&\n]|[-=]>|→|\b(?:and|then|und|plus)\b|(?<=\w)\s?/\s?(?=\w)|(?<=\w)\s?\+\s?(?=\w)")
+
+
+class Word(Kind):
+    """One word of several; upper and lower case are alike, and other words for it are read.
+
+    >>> action = Word("reverse", ["reverse", "direct"], "the action of the controller")
+    >>> action.agrees(action.read(" Reverse")[0])
+    True
+    """
+
+    def __init__(self, key: object, among: Iterable[str], what: str = "the word"):
+        self.among = tuple(among)
+        super().__init__(key, "", what, 0)
+
+    @property
+    def asked(self) -> str:
+        """The quantity with its words."""
+        return f"{self.what}: {_either(self.among)}"
+
+    @property
+    def expected(self) -> str:
+        """The words."""
+        return _either(self.among)
+
+    accuracy = ""
+    FORM = ("among",)
+
+    def shuffled(self, text: str) -> Self:
+        """Return the quantity with its words in an order drawn from a text."""
+        return _shuffled(self, text)
+
+    def read(self, given: object) -> tuple[str, str]:
+        """Return the word as it stands in the list, and a remark where another one was given for it."""
+        return _word(answered(given), self.among, self.expected)
+
+    def written(self, answer: str) -> str:
+        """The word."""
+        return answer
+
+    def agrees(self, answer: str) -> bool:
+        """Whether it is the word."""
+        return answer == self.key
+
+    @property
+    def field(self) -> dict[str, Any]:
+        """A choice of one."""
+        return {"control": ONE, "words": self.among}
+
+    def right_forms(self) -> Iterator[Tried]:
+        """The word in capital letters, and with spaces."""
+        yield AS_IT_IS, self.key
+        yield "in capital letters", self.key.upper()
+        yield "with spaces", f" {self.key} "
+
+
+class Words(Kind):
+    """Several words of a list, in any order or in one.
+
+    >>> steps = Words(["S2", "S4"], ["S1", "S2", "S3", "S4"], "the active steps")
+    >>> steps.agrees(steps.read("s4, s2")[0])
+    True
+    """
+
+    def __init__(self, key: Iterable[object], among: Iterable[str], what: str = "the words", ordered: bool = False):
+        self.among, self.ordered = tuple(among), ordered
+        super().__init__(list(key), "", what, 0)
+
+    @property
+    def asked(self) -> str:
+        """The quantity with its words."""
+        order = "in their order, out of" if self.ordered else "those of"
+        return f"{self.what}, {order} {', '.join(self.among)}"
+
+    @property
+    def expected(self) -> str:
+        """A list of words."""
+        return f"a list of words out of {', '.join(self.among)}"
+
+    accuracy = ""
+    FORM = ("among", "ordered")
+
+    def shuffled(self, text: str) -> Self:
+        """Return the quantity with its words in an order drawn from a text."""
+        return _shuffled(self, text)
+
+    def read(self, given: object) -> tuple[list[str], str]:
+        """Return the words as they stand in the list, and a remark where others were given for them."""
+        if isinstance(answered(given), str) and _NONE.fullmatch(given.strip()) and "none" not in self.among:
+            given = []
+        elif isinstance(given, str):
+            given = [part for part in self._parts(_ONLY.sub("", given.strip(" []{}"))) if part.strip()]
+        is_set = isinstance(given, set | frozenset)
+        row = members(given) if is_set else in_a_row(given)
+        if row is None:
+            raise Unreadable(f"this is not a list: expected {self.expected}")
+        if self.ordered and is_set:
+            raise Unreadable(f"a set has no order: expected {self.expected}")
+        read = [_word(word, self.among, self.expected) for word in row]
+        words, remarks = [word for word, _ in read], [remark for _, remark in read if remark]
+        said = ", ".join([remarks[0], *(remark.removeprefix("read as ") for remark in remarks[1:])]) if remarks else ""
+        return words if self.ordered else sorted(set(words), key=self.among.index), said
+
+    def written(self, answer: list[str]) -> str:
+        """The words, or that there are none."""
+        return ", ".join(answer) or "none of them"
+
+    def _parts(self, text):
+        """The parts of a text, between separators, or one word after the other."""
+        if any(_bare(word) == _bare(text) for word in self.among):
+            return [text]
+        if _SEPARATOR.search(text):
+            return _SEPARATOR.split(text)
+        if all(len(word) == 1 for word in self.among):
+            return synonyms.listed(text, self.among) or [text]
+        return synonyms.listed(text, self.among) or (
+            [text] if any(" " in word for word in self.among) else text.split()
+        )
+
+    def agrees(self, answer: list[str]) -> bool:
+        """Whether they are the words."""
+        return answer == self.key
+
+    def mistakes(self) -> Iterator[tuple[str, list[str]]]:
+        """The opposite order."""
+        if self.ordered and len(self.key) > 1:
+            yield "the words are right, in the opposite order", self.key[::-1]
+
+    @property
+    def field(self) -> dict[str, Any]:
+        """A choice of several or of none, or a line for words in their order."""
+        if self.ordered:
+            return {"control": ORDER, "words": self.among, "help": "in their order, with commas between them"}
+        none = () if NONE in self.among else (NONE,)
+        return {"control": SEVERAL, "words": (*self.among, *none), "help": "one, several, or none of them"}
+
+    def right_forms(self) -> Iterator[Tried]:
+        """The words as a text, and in another order where that is no question."""
+        yield AS_IT_IS, self.key
+        yield "as text", ", ".join(self.key)
+        if not self.ordered:
+            yield "in another order", self.key[::-1]
+
+    def wrong_forms(self) -> Iterator[Tried]:
+        """None of the words, and all of them."""
+        found = {"no word": [], "all words": list(self.among)}
+        yield from ((how, answer) for how, answer in found.items() if answer != self.key)
+
+
+def in_drawn_order(words: Iterable[str], text: str) -> tuple[str, ...]:
+    """Return words in an order drawn from a text; the one in which they come leaves no trace.
+
+    Words that count, as numbers, letters, or S1, S2, S3, count up, and yes comes before no.
+
+    >>> in_drawn_order(["direct", "reverse"], "Ada") == in_drawn_order(["reverse", "direct"], "Ada")
+    True
+    >>> in_drawn_order(["S10", "S2"], "Ada"), in_drawn_order(["no", "yes"], "Ada")
+    (('S2', 'S10'), ('yes', 'no'))
+    """
+    words = tuple(words)
+    if set(words) == set(_TRUTH.values()):
+        return tuple(_TRUTH.values())
+    parts = [_COUNTED.fullmatch(word) for word in words]
+    if all(parts) and len({(part[1], part[3]) for part in parts}) == 1:
+        return tuple(sorted(words, key=lambda word: float(_COUNTED.fullmatch(word)[2])))
+    if all(len(word) == 1 for word in words):
+        return tuple(sorted(words))
+    return tuple(sorted(words, key=lambda word: hashlib.sha256(f"{text}|{word}".encode()).digest()))
+
+
+def _shuffled(kind, text):
+    other = kind.like(kind.key)
+    other.among = in_drawn_order(kind.among, text)
+    other.key = other.read(kind.key)[0]  # a list of words follows the order in which they are listed
+    return other
+
+
+def _word(given, among, expected):
+    given = alone(given)
+    if isinstance(given, bool | BooleanAtom):
+        if not {*_TRUTH.values()} <= {*among}:
+            raise Unreadable(f"{given} is a truth value: expected {expected}")
+        given = _TRUTH[bool(given)]
+    elif isinstance(given, int | float | sympy.Number) and (
+        (number := f"{float(given):g}") in among or synonyms.found(number, sorted(among))
+    ):
+        given = number
+    if not isinstance(given, str):
+        raise Unreadable(f"this is not text: expected {expected}")
+    wanted = _bare(given)
+    for word in among:
+        if _bare(word) == wanted:
+            return word, ""
+    if meant := synonyms.found(given, sorted(among)):
+        return meant, f'read as "{meant}"'
+    raise Unreadable(f"{shortened(given, 40)!r} is none of the words: expected {expected}")
+
+
+def _bare(word):
+    """A word without what makes no difference: case, spaces, hyphens, quotes and the full stop."""
+    return " ".join(re.sub(r"(?<=\w)-(?=\w)", " ", word).split()).strip(" '\".").casefold() or word
+
+
+def _either(words):
+    return f"{', '.join(words[:-1])} or {words[-1]}"

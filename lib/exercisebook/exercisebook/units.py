@@ -1,0 +1,247 @@
+"""Units: what an answer means in the unit that is asked, and in which other unit it may have been meant."""
+
+from __future__ import annotations
+
+import ast
+import functools
+import math
+import operator
+import re
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from plainmath.types import Number
+
+#: Units that are taken for one another.
+FAMILIES = (
+    ("s", "min", "h", "ms", "d"),
+    ("m", "km", "cm", "mm"),
+    ("kg", "g", "t"),
+    ("m³", "L", "mL"),
+    ("mol", "kmol"),
+    ("Pa", "kPa", "bar"),
+    ("W", "kW", "MW"),
+    ("J", "kJ", "MJ"),
+    ("N", "kN"),
+    ("A", "mA"),
+    ("V", "mV"),
+    ("Ω", "kΩ", "MΩ"),
+    ("F", "µF", "nF"),
+    ("rad", "deg"),
+)
+_PART = re.compile(r"[^\W\d_]+³?|%")
+#: A name and its exponent of one digit, as "m³", "s^-1", "m**2" or "m3".
+_FACTOR = re.compile(r"[^\W\d_¹²³]+\s?(?:\^|\*\*)?(?:-?[1-9]|⁻?[¹²³])?(?![\d^]|\*\*)")
+_CELSIUS = re.compile(r"\s*(°\s?C|º\s?C|℃|C|C\s?°|deg(rees?)?\.?\s?([Cc]elsius|C)|[Cc]elsius)\s*")
+_LONGEST = 40
+#: Units as people write them, and what Pint knows them by.
+_SPELLINGS = {
+    "percent": "%", "per cent": "%", "pct": "%", "percents": "%", "mins": "min", "hrs": "h", "secs": "s", "Sec": "s",
+    "Min": "min", "Nm": "N m", "kNm": "kN m", "Nms": "N m s", "Ohm": "Ω", "Ohms": "Ω", "kOhm": "kΩ", "cbm": "m³",
+    "degs": "deg", "decibel": "dB", "decibels": "dB", "KW": "kW", "Kg": "kg", "sec.": "s", "min.": "min",
+}  # fmt: skip
+_SPELLED = re.compile(
+    rf"(?<![^\W\d_])(?:{'|'.join(map(re.escape, sorted(_SPELLINGS, key=len, reverse=True)))})(?![^\W\d_])"
+)
+
+
+def _everyday():
+    """Products and quotients of names that are units, such as "1/min", "kg m²" and "K/(L/min)"."""
+    names = {"K", "Hz"}.union(*FAMILIES) - {"m³"}
+    factor = f"(?:%|(?:{'|'.join(sorted(names))})[²³]?)"
+    product, group = f"{factor}(?: {factor}){{0,2}}", f"\\({factor}[ /]{factor}\\)"
+    return re.compile(f"(?:{product})?|°C|(?:1|{product}|{group})/(?:°C|{factor}|{group})")
+
+
+_EVERYDAY = _everyday()
+
+
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit, as "m³/s", "%/K", "1/min" or "kJ/(kg K)"; nothing is one of them.
+
+    >>> [is_unit(text) for text in ("kg/min", "°C", "%", "", "apples", "s^99")]
+    [True, True, True, True, False, False]
+    """
+    if isinstance(text, str) and _EVERYDAY.fullmatch(text):  # without Pint, whose registry takes its time to load
+        return True
+    try:
+        _parsed(text)
+    except ValueError:
+        return False
+    return True
+
+
+def convert(value: Number, unit: str, to: str) -> float:
+    """Return a value in another unit.
+
+    A turn is not forgotten: 1 Hz is 2 pi rad/s. A ratio in dB is one of amplitudes. Where a temperature stands alone
+    it is one, not a difference.
+
+    Raises ValueError where one of the two is not a unit, or they measure different quantities.
+
+    >>> convert(0.5, "min", to="s"), convert(20, "°C", to="K"), convert(3, "%", to="")
+    (30.0, 293.15, 0.03)
+    >>> convert(2, "kg", to="s")
+    Traceback (most recent call last):
+    ValueError: kg is not a unit of the same quantity as s
+    """
+    import pint
+
+    if (unit, to) == ("dB", ""):  # of an amplitude, as margins are
+        return 10 ** (float(value) / 20)
+    if re.search("rad|deg", unit + to):
+        unit, to = unit.replace("Hz", "turn/s"), to.replace("Hz", "turn/s")
+    try:
+        return float(_registry().Quantity(float(value), _parsed(unit)).to(_parsed(to)).magnitude)
+    except (pint.PintError, OverflowError):
+        raise ValueError(f"{unit or 'a number without unit'} is not a unit of the same quantity as {to or 1}") from None
+
+
+def without_units(text: str, symbols: Iterable[str] = ()) -> str:
+    """Return a formula without the units behind its numbers; letters that are symbols are none.
+
+    >>> without_units("3 m - t/1600 m/s", ["t"]), without_units("e^(-t/75 s)", ["t"]), without_units("2 s + 1", ["s"])
+    ('3 - t/1600', 'e^(-t/75)', '2 s + 1')
+    """
+    symbols = {*symbols, "e", "i", "j", "pi", "exp"}
+
+    def bare(found):
+        parts = re.split(r"( ?/ ?| |·)", found["unit"])
+        while parts:
+            names = set(re.findall(r"[^\W\d_]+", unit := "".join(parts)))
+            if is_unit(unit) and not names & symbols:
+                return found["number"] + found["unit"][len(unit) :]
+            del parts[-2:]
+        return found[0]
+
+    return _QUANTITY.sub(bare, text)
+
+
+def neighbours(unit: str) -> dict[str, Callable[[Number], float]]:
+    """Return the units in which a value may have been meant: {unit: what 1 of the asked unit is in it, or a function}.
+
+    One part of the unit is exchanged for another of its family; percent and fraction, °C and K, Hz and rad/s, too.
+
+    >>> {name: round(in_it(30), 3) for name, in_it in neighbours("s").items()}
+    {'min': 0.5, 'h': 0.008, 'ms': 30000.0, 'd': 0.0}
+    """
+    names = []
+    for part in _PART.finditer(unit):
+        for family in FAMILIES:
+            if part[0] in family:
+                names += [unit[: part.start()] + other + unit[part.end() :] for other in family if other != part[0]]
+    if unit in ("", "%"):
+        names.append("%" if unit == "" else "")
+    elif unit.startswith("%/"):
+        names.append("1" + unit.removeprefix("%"))
+    elif unit.endswith("/%"):
+        names.append(unit.removesuffix("/%"))
+    names += {"°C": ["K"], "K": ["°C"], "Hz": ["rad/s"], "rad/s": ["Hz"]}.get(unit, [])
+    return {name: functools.partial(convert, unit=unit, to=name) for name in names if _compatible(unit, name)}
+
+
+def _compatible(unit, other):
+    try:
+        convert(1, unit, other)
+    except ValueError:
+        return False
+    return unit != other
+
+
+def spelled(unit: str) -> str:
+    """Return a unit as it is usually spelled: °C for "deg C", "m/s" for "m per second", % for "percent".
+
+    >>> spelled("degrees C"), spelled("kg per min"), spelled("K/percent"), spelled("Minutes")
+    ('°C', 'kg/min', 'K/%', 'minutes')
+    """
+    if not isinstance(unit, str) or len(unit) > _LONGEST:
+        return unit
+    if _CELSIUS.fullmatch(unit):
+        return "°C"
+    unit = _SPELLED.sub(lambda name: _SPELLINGS[name[0]], unit)
+    unit = re.sub(r"(?<=\S) per (?=\S)", "/", unit)
+    return re.sub(r"\b[A-Z](?=[a-z]{3})", lambda letter: letter[0].lower(), unit)
+
+
+#: A number with its unit in a text that is worked out.
+_ONE = r"(?:%|°C?|[^\W\d_]+[²³]?)"
+_QUANTITY = re.compile(
+    rf"(?P<number>(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?:/\d+(?= ?[^\W\d]))?)"
+    rf" ?(?P<unit>{_ONE}(?:(?: ?/ ?| |·)(?:{_ONE}|\({_ONE}(?:[ ·]{_ONE})*\)))*)"
+)
+_OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv}
+MOST_QUANTITIES, LONGEST_ARITHMETIC = 20, 200
+
+
+def worked_out(text: str, to: str) -> float:
+    """Return what numbers with units make together, in a unit; a temperature in °C counts in K.
+
+    Raises ValueError for a text that is none of this, and where the units do not fit.
+
+    >>> worked_out("15 K / (10 %)", to="K/%"), worked_out("8 bar - 50 kPa", to="bar"), worked_out("90° - 35°", to="°")
+    (1.5, 7.5, 55.0)
+    """
+    import pint
+
+    units: list[str] = []
+
+    def named(found):
+        parts = re.split(r"( ?/ ?| |·)", found["unit"])
+        while not is_unit(unit := "".join(parts)):
+            del parts[-2:]
+            if not parts:
+                return found[0]
+        units.append(_on_kelvin(unit))
+        return f"({found['number']}*_{len(units) - 1})" + found["unit"][len(unit) :]
+
+    source = _QUANTITY.sub(named, text[: LONGEST_ARITHMETIC + 1]).strip()
+    if not 0 < len(units) <= MOST_QUANTITIES or len(text) > LONGEST_ARITHMETIC:
+        raise ValueError(f"{text[:40]!r} is no arithmetic of numbers with units")
+
+    def value(node):
+        match node:
+            case ast.Constant(int() | float()):
+                return _registry().Quantity(float(node.value))
+            case ast.Name() if node.id[1:].isdigit() and node.id[0] == "_":
+                return _registry().Quantity(1.0, _parsed(units[int(node.id[1:])]))
+            case ast.UnaryOp(ast.USub()):
+                return -value(node.operand)
+            case ast.BinOp() if type(node.op) in _OPERATORS:
+                return _OPERATORS[type(node.op)](value(node.left), value(node.right))
+            case ast.Call(ast.Name("exp" | "sqrt"), [argument]):
+                part = value(argument)
+                return part**0.5 if node.func.id == "sqrt" else _registry().Quantity(math.exp(part.to("").magnitude))
+        raise ValueError(f"{text[:40]!r} is no arithmetic of numbers with units")
+
+    try:
+        return float(value(ast.parse(source, mode="eval").body).to(_parsed(_on_kelvin(to))).magnitude)
+    except pint.PintError:
+        raise ValueError(f"the units in {text[:40]!r} do not make {to or 'a number'}") from None
+    except (SyntaxError, ArithmeticError, RecursionError, MemoryError):
+        raise ValueError(f"{text[:40]!r} is no arithmetic of numbers with units") from None
+
+
+def _on_kelvin(unit):
+    """A unit in which °C is K: differences of temperatures, and what is added to one, are the same in both."""
+    return re.sub("° ?C", "K", spelled(unit))
+
+
+@functools.cache
+def _registry():
+    import pint
+
+    return pint.UnitRegistry(cache_folder=None)
+
+
+@functools.lru_cache(maxsize=1000)
+def _parsed(text):
+    text = spelled(text)
+    # names with exponents, and what is between them: no power of a power can be worked out for hours
+    between = _FACTOR.sub("", text) if isinstance(text, str) and len(text) <= _LONGEST else "?"
+    if not re.fullmatch(r"(\s*1\s*/)?[\s%°·*/()]*", between):
+        raise ValueError(f"{text!r} is not a unit: expected one such as 's', 'kg/min' or '%/K'")
+    try:
+        return _registry().parse_units(re.sub(r"(?<=[A-Za-z])(-?[1-9])(?!\d)", r"^\1", text))
+    except Exception:  # Pint fails in as many ways as a text can be no unit
+        raise ValueError(f"{text!r} is not a unit: expected one such as 's', 'kg/min' or '%/K'") from None

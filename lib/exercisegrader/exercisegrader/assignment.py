@@ -1,0 +1,209 @@
+"""Assignments: a Python module in the format of the exercises, and the variants that it gives to students.
+
+Its docstring is the title and, below it, an introduction in Markdown; `SECRET` is what the variants are drawn from.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import hmac
+import importlib.metadata
+import inspect
+import keyword
+import re
+import secrets
+import sys
+import traceback
+import types
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Self
+
+from exercisebook.authoring import Exercise, collected
+from exercisebook.parameters import of_text
+from exercisegrader import GradingError
+from exercisegrader.lateness import Policy, policy_of, without_dates
+from plainmath.validation import did_you_mean
+
+if TYPE_CHECKING:
+    from exercisebook.question import Question
+
+SHORTEST_SECRET = 16
+_NUMBER = re.compile(r"\w[\w.-]{0,19}")
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """An assignment; `load` reads one from a file, `Assignment.of` makes one from a text.
+
+    Attributes:
+        name: the stem of the file, which the students' notebooks have too.
+        title, introduction: from the docstring.
+        secret: what the variants are drawn from.
+        exercises: {number: `Exercise`}, in their order.
+        source: the text of the module.
+        path: of the module; None where it was made from a text.
+        policy: when it is due and what it costs to be late, from `DUE` and `LATE`; None where there is no `DUE`.
+    """
+
+    name: str
+    title: str
+    introduction: str
+    secret: str
+    exercises: dict[str, Exercise]
+    source: str
+    path: Path | None = None
+    policy: Policy | None = None
+
+    @classmethod
+    def of(cls, source: str, name: str, path: Path | None = None) -> Self:
+        """Return the assignment that the text of a module is. The text is run: it is the instructor's.
+
+        Arguments:
+            name: of the assignment.
+            path: the file that it came from; modules beside it can be imported.
+        Raises:
+            GradingError: for a text that fails, or has no title, secret or exercises; with the line.
+
+        >>> text = '"Tuning"; SECRET = "a secret of many letters"; from loopbook.exercises.bank.ch10_tuning import *'
+        >>> tuning = Assignment.of(text, "tuning")
+        >>> tuning.title, tuning.question("s1001", "10.1").values == tuning.question("s1002", "10.1").values
+        ('Tuning', False)
+        """
+        module = _run(source, name, path)
+        title, _, introduction = inspect.cleandoc(module.__doc__ or "").partition("\n")
+        if not title.strip():
+            raise GradingError(f"{name}.py has no docstring: expected the title of the assignment in its first line")
+        secret = getattr(module, "SECRET", None)
+        if not (isinstance(secret, str) and len(secret) >= SHORTEST_SECRET):
+            raise GradingError(
+                f"{name}.py has no SECRET of at least {SHORTEST_SECRET} characters, from which the variants are "
+                f'drawn: write SECRET = "{secrets.token_hex(16)}" into it'
+            )
+        try:
+            exercises = collected(module)
+        except ValueError as problem:
+            raise GradingError(f"{name}.py: {problem}") from None
+        if not exercises:
+            raise GradingError(f"{name}.py has no exercise: expected at least one, a function with @exercise(...)")
+        for exercise in exercises.values():
+            _check(exercise, name)
+        return cls(name, title.strip(), introduction.strip(), secret, exercises, source, path, policy_of(module, name))
+
+    @property
+    def points(self) -> float:
+        """The points of all exercises together."""
+        return sum(exercise.points for exercise in self.exercises.values())
+
+    @property
+    def fingerprint(self) -> str:
+        """A text that changes with the module and with loopbook's version; modules beside it are not part of it.
+
+        Lines that say when it is due are not part of it either: nothing is judged by them.
+        """
+        version, source = importlib.metadata.version("loopbook"), without_dates(self.source)
+        return hashlib.sha256(f"{version}\n{source}".encode("utf-8", "surrogatepass")).hexdigest()
+
+    @property
+    def record(self) -> Path | None:
+        """Where the numbers of its releases are kept: beside the module; None where it was made from a text."""
+        return self.path and self.path.with_name(f"{self.name}.released.json")
+
+    def question(self, student_id: str, number: str, values: Mapping[str, str] | None = None) -> Question:
+        """Return a student's variant of an exercise, a `Question`, the same every time.
+
+        Arguments:
+            student_id: of the student.
+            number: of the exercise.
+            values: with which it was released, {parameter: text}, as `released.Released.numbers` has them; what is not
+                among them is drawn from the secret.
+
+        Raises GradingError for an unknown exercise, and where the author's functions fail.
+        """
+        if number not in self.exercises:
+            raise GradingError(
+                f"there is no exercise {number!r} in {self.name}: {did_you_mean(number, self.exercises)}"
+            )
+        drawn_from = hmac.new(self.secret.encode(), str(student_id).encode(), hashlib.sha256).hexdigest()
+        exercise = self.exercises[number]
+        try:
+            if values is None:
+                return exercise.question(drawn_from)
+            return exercise.question_with(drawn_from, {name: of_text(text) for name, text in values.items()})
+        except Exception as problem:  # the condition is the author's
+            raise GradingError(f"exercise {number} of {self.name} for student {student_id}: {problem}") from problem
+
+
+def load(path: str | Path) -> Assignment:
+    """Return the assignment in a file. Raises GradingError in a sentence, with the line where the module fails."""
+    path = Path(path)
+    if path.suffix != ".py":
+        raise GradingError(f"{path} is not an assignment: expected a Python module, as heater.py")
+    try:
+        source = path.read_text(encoding="utf-8-sig")
+    except OSError as problem:
+        raise GradingError(f"{path} cannot be read: {problem.strerror}") from None
+    except UnicodeDecodeError:
+        raise GradingError(f"{path} is not text in UTF-8: expected a Python module") from None
+    return Assignment.of(source, path.stem, path)
+
+
+def _run(source, name, path):
+    """The module of a text; while it runs, modules beside its file can be imported."""
+    file = f"{name}.py"
+    module = types.ModuleType(f"assignment {name}")
+    try:
+        with _beside(path), _known(module):
+            exec(compile(source, file, "exec"), vars(module))
+    except SyntaxError as problem:
+        where = f"line {problem.lineno}" if problem.filename == file else f"{problem.filename}, line {problem.lineno}"
+        raise GradingError(f"{file}, {where}: {problem.msg}") from None
+    except (Exception, SystemExit) as problem:
+        lines = [frame.lineno for frame in traceback.extract_tb(problem.__traceback__) if frame.filename == file]
+        where = f", line {lines[-1]}" if lines else ""
+        says = " ".join(str(problem).split())
+        raise GradingError(f"{file}{where}: {type(problem).__name__}{': ' if says else ''}{says}") from problem
+    return module
+
+
+@contextlib.contextmanager
+def _beside(path):
+    folder = str(path.resolve().parent) if path else None
+    if folder:
+        sys.path.insert(0, folder)
+    try:
+        yield
+    finally:
+        if folder in sys.path:
+            sys.path.remove(folder)
+
+
+@contextlib.contextmanager
+def _known(module):
+    """While it runs, a module is among those that are imported, as data classes demand."""
+    sys.modules[module.__name__] = module
+    try:
+        yield
+    finally:
+        sys.modules.pop(module.__name__, None)
+
+
+def _check(exercise, name):
+    if not (isinstance(exercise, Exercise) and isinstance(exercise.number, str) and _NUMBER.fullmatch(exercise.number)):
+        raise GradingError(
+            f"{name}.py: the number of an exercise is {exercise.number!r}: expected a text such as '1' or '2b', of "
+            "at most 20 letters, digits, dots and hyphens"
+        )
+    points = exercise.points
+    if isinstance(points, bool) or not isinstance(points, int | float) or not 0 < points < float("inf"):
+        raise GradingError(f"{name}.py: exercise {exercise.number} has {points!r} points: expected a positive number")
+
+
+def check_names(question: Question) -> None:
+    """Raise GradingError unless each asked quantity has a name that can be written in Python."""
+    for name in question.key:
+        if not name.isidentifier() or keyword.iskeyword(name):
+            number = question.exercise.number
+            raise GradingError(f"exercise {number} asks for {name!r}: expected a name that can be written in Python")

@@ -1,0 +1,301 @@
+"""Moodle: its grading worksheet, grades and participants, the names in its downloads, feedback files for each student.
+
+All of it is as https://github.com/moodle/moodle does it, in the files named below. The heads of its tables are
+translated; `LANGUAGES` has those of the language packs of Moodle 4.
+
+**Grading worksheet** (mod/assign/gradingtable.php): Identifier ("Participant 12345", in German "Teilnehmer/in12345"),
+Full name, ID number or Email address ..., Grade, Maximum grade, Last modified (submission), Last modified (grade),
+Feedback comments. It is filled in and goes back by "Upload grading worksheet" (mod/assign/feedback/offline), which
+finds a student by the number alone; takes no grade where that is empty or above the maximum; keeps a grade that is
+newer than "Last modified (grade)"; and reads a decimal comma where the language has one, and a point always. Its reader
+(lib/csvlib.class.php) takes a byte-order mark away.
+
+**Grades and participants** (grade/export/txt/grade_export_txt.php): First name, Last name, ID number, Username, Email
+address, Groups. Grades for such a roster are a table for "Import" in the gradebook (grade/import/csv): map its column
+of identification, then the last one to the item.
+
+**Names** (mod/assign/classes/downloader.php). The folder of a submission is ``Jane Doe_12345_assignsubmission_file``,
+in older versions with one more underscore at the end, and without folders the file
+``Jane Doe_12345_assignsubmission_file_heater.ipynb``. The number is that of the grading worksheet; an underscore in the
+name becomes a space, and of an anonymous submission the name is Participant. They say nothing of lateness: the
+worksheet does.
+
+**Files for each student** (mod/assign/feedback/file/importziplib.php). "Upload multiple feedback files in a zip" takes
+files with the same names and hands each to its student, who needs to have handed in nothing: so an assignment with the
+feedback type "Feedback files" hands out notebooks, too.
+"""
+
+from __future__ import annotations
+
+import html
+import re
+from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from exercisegrader import GradingError, lms
+from exercisegrader.lms import Claim, Known, Packed, System, own
+from exercisegrader.reports.outputs import output
+from exercisegrader.reports.wording import number, visible, without_jail
+from exercisegrader.tables import as_text, letters
+
+if TYPE_CHECKING:
+    from exercisegrader.marking import Marked
+    from exercisegrader.roster import Student
+
+_NAME = re.compile(r"([^_]*)_([0-9]{1,20})_assignsubmission_[a-z]+(?:_.*)?", re.DOTALL)
+#: The fields of `LANGUAGES`, in its order.
+_FIELDS = (
+    "moodle_id", "name", "first", "last", "sis_id", "login", "email", "section", "grade", "maximum", "handed_in",
+    "graded", "comments",
+)  # fmt: skip
+#: The heads by language, where a bar parts those of several versions.
+LANGUAGES = {
+    language: dict(zip(_FIELDS, (tuple(map(letters, heads.split("|"))) for heads in line.split("; ")), strict=True))
+    for language, line in {
+        "English": "Identifier; Full name; First name; Last name|Surname; ID number; Username; Email address; "
+        "Groups|Group; Grade; Maximum grade; Last modified (submission); Last modified (grade); Feedback comments",
+        "German": "ID; Vollständiger Name; Vorname; Nachname; ID-Nummer; Anmeldename; E-Mail-Adresse; Gruppen|Gruppe; "
+        "Bewertung; Bestwertung|Bestbewertung; Zuletzt geändert (Abgabe); Zuletzt geändert (Bewertung); "
+        "Feedback als Kommentar",
+        "French": "Identifiant; Nom complet; Prénom; Nom de famille|Nom; Numéro d’identification; Nom d’utilisateur; "
+        "Adresse de courriel; Groupes|Groupe; Note; Note maximale; Dernière modification (travail remis); "
+        "Dernière modification (note); Feedback par commentaires",
+        "Spanish": "Identificador; Nombre completo; Nombre; Apellido(s); Número de ID; Nombre de usuario; "
+        "Dirección de correo|Dirección Email; Grupos|Grupo; Calificación; Calificación máxima; "
+        "Última modificación (entrega); Última modificación (calificación); Comentarios de retroalimentación",
+        "Portuguese": "Identificador|Número de identificação; Nome completo; Nome; Apelido; "
+        "Número de identificação (ID)|Número de ID; Nome de utilizador; E-mail|Endereço de e-mail; Grupos|Grupo; "
+        "Avaliação|Nota; Nota máxima|Avaliação máxima; Última atualização (submissão); Última atualização (avaliação); "
+        "Comentários de feedback",
+        "Portuguese of Brazil": "Identificador; Nome completo; Nome; Sobrenome; Número de identificação; "
+        "Identificação de usuário|Nome de usuário; Endereço de email; Grupos|Grupo; Nota; Nota máxima; "
+        "Última modificação (envio); Última modificação (nota); Comentários de feedback",
+        "Italian": "Identificativo; Nome; Nome; Cognome; Codice identificativo; Username; Indirizzo email; "
+        "Gruppi|Gruppo; Valutazione; Valutazione massima; Ultima modifica (consegna); Ultima modifica (valutazione); "
+        "Commenti",
+        "Dutch": "Identificatie; Volledige naam; Voornaam; Achternaam; Nummer (ID)|ID-nummer; Gebruikersnaam; "
+        "E-mailadres; Groepen|Groep; Cijfer|Beoordeling; Maximaal cijfer|Maximumcijfer; "
+        "Laatst gewijzigd (inzending); Laatst gewijzigd (beoordeling); Feedback tekstvak",
+        "Catalan": "Identificador; Nom complet; Nom; Cognoms; Número ID; Nom d'usuari; Adreça electrònica; Grups|Grup; "
+        "Qualificació; Qualificació màxima; Darrera modificació (tramesa); Darrera modificació (qualificació); "
+        "Comentaris de retroacció",
+        "Galician": "Identificador; Nome completo; Nome; Apelidos; Número ID; Nome de usuario; Enderezo de correo; "
+        "Grupos|Grupo; Cualificación; Cualificación máxima; Última modificación (entrega); "
+        "Última modificación (cualificación); Comentarios",
+        "Swedish": "Identifierare; Fullständigt namn; Förnamn; Efternamn; ID nummer; Användarnamn; E-postadress; "
+        "Grupper|Grupp; Betyg; Maxbetyg; Senast modifierat (inlämning); Senast modifierat (betyg); "
+        "Återkopplingskommentarer",
+        "Romanian": "Identificator; Nume complet; Prenume; Nume de familie; Număr ID; Nume de utilizator; "
+        "Adresa de e-mail; Grupuri|Grup; Notă; Notă maximă; Ultima modificare (a răspunsului); "
+        "Ultima modificare (nota); Comentarii de feedback",
+        "Turkish": "Tanımlayıcı; Tam adı; Adı; Soyadı; ID numarası; Kullanıcı adı; E-posta adresi; Gruplar|Grup; Not; "
+        "Enyüksek not; Son düzenleme (gönderim); Son düzenleme (not); Geri bildirim yorumları",
+        "Russian": "Идентификатор; Полное имя; Имя; Фамилия; Индивидуальный номер; Логин; Адрес электронной почты; "
+        "Группы|Группа; Оценка; Максимальная оценка; Последнее изменение (ответ); Последнее изменение (оценка); "
+        "Отзыв в виде комментария",
+        "Japanese": "ID; フルネーム; 名; 姓; IDナンバ; ユーザ名; メールアドレス; グループ; 評点|評定; 最大評点; "
+        "最終更新日時 (提出); 最終更新日時 (評定); フィードバックコメント",
+        "Chinese": "标识符; 全名; 名; 姓; 学号; 用户名; 电子邮件地址; 小组; 成绩; 最高分; "
+        "上次修改（作业）; 上次修改（评分）; 反馈意见",
+    }.items()
+}
+
+
+@lms.system
+class Moodle(System):
+    """Moodle."""
+
+    name, title, place = "moodle", "Moodle", "moodle"
+    roster = "an export of Moodle's grading worksheet, grades or participants"
+    ids = {  # noqa: RUF012 - read and never changed
+        "sis_id": "ID number", "login": "Username", "moodle_id": "Identifier", "email": "Email address"
+    }  # fmt: skip
+
+    def columns(self, header: Sequence[str]) -> Mapping[str, int] | None:
+        """Return where the fields are, in the language that fits the most heads."""
+        heads: dict[str, int] = {}
+        for index, head in enumerate(header):
+            heads.setdefault(letters(head), index)
+        best: dict[str, int] = {}
+        for language, names in LANGUAGES.items():
+            found = {
+                field: next(heads[word] for word in words if word in heads)
+                for field, words in names.items()
+                if not heads.keys().isdisjoint(words)
+            }
+            if (fields := _worksheet(language, found) or _table(found, header)) and len(fields) > len(best):
+                best = fields
+        return best or None
+
+    def student(self, cells: Mapping[str, str]) -> Mapping[str, str] | None:
+        """Return what a row says."""
+        if "moodle_id" in cells:
+            said = re.search(r"[0-9]+$", cells["moodle_id"])
+            return {
+                **cells,
+                "name": cells.get("name") or cells["moodle_id"],
+                "moodle_id": said[0] if said else "",
+            }
+        first, last = cells["first"], cells["last"]
+        name = " ".join(filter(None, (first, last))) or cells.get("login") or cells.get("email", "")
+        return {**cells, "name": name, "sortable": ", ".join(filter(None, (last, first)))}
+
+    def claim(self, name: str, known: Known, assignment: str) -> Claim | None:
+        """Return whose a folder or a file of a download is."""
+        parts = _NAME.fullmatch(name)
+        if parts is None:
+            return None
+        students = known.by("moodle_id", parts[2]) or known.named(parts[1])
+        return Claim(tuple(students), "has a name and a number of Moodle that the roster does not have")
+
+    def remarks(self, students: Sequence[Student], title: str, points: float) -> Sequence[str]:
+        """Return what keeps the grades from going where they belong."""
+        columns = _columns(students)
+        if "moodle_id" not in columns:
+            return (
+                "moodle_grades.csv is for the import of the gradebook: with the grading worksheet of the assignment as "
+                "the roster, it would be that worksheet, filled in",
+            )
+        if "maximum" not in columns:
+            return (
+                "moodle_grades.csv: the worksheet has no maximum grade: set the assignment in Moodle to grades in "
+                "points, because a scale takes none",
+            )
+        said = {student.row[columns["maximum"]].strip().replace(",", ".") for student in students} - {""}
+        other = sorted(there for there in said if _number(there) is not None and abs(_number(there) - points) > 0.005)
+        if not other:
+            return ()
+        return (
+            f"moodle_grades.csv: the assignment has {number(float(other[0]))} points in Moodle and {number(points)} "
+            "here, and grades are not scaled: change it in Moodle, and take its worksheet again",
+        )
+
+    def pack(self, notebooks: Mapping[Student, Mapping[str, bytes]], assignment: str, secret: str) -> Packed:
+        """Return a zip file of feedback files. Raises GradingError where a student's number is not known."""
+        unknown = [student.id for student in notebooks if not student.moodle_id]
+        if unknown:
+            raise GradingError(
+                f"Moodle hands out files by the numbers of a grading worksheet, and {', '.join(unknown[:5])}"
+                f"{' ...' if len(unknown) > 5 else ''} has none: take the worksheet of the assignment as the roster"
+            )
+        zipped = {
+            f"{_prefix(student, student.moodle_id)}_{name}": content
+            for student, files in notebooks.items()
+            for name, content in files.items()
+        }
+        return Packed(
+            {f"{assignment}_for_moodle.zip": lms.zipped(zipped)},
+            "In the assignment whose worksheet is the roster, with Feedback files among its feedback types, choose "
+            '"Upload multiple feedback files in a zip": each student finds their own there.',
+        )
+
+
+def _worksheet(language, found):
+    """The fields of a grading worksheet; empty where it is none."""
+    # what other languages call the number, people call other things, too
+    if "moodle_id" in found and ("graded" in found or (language == "English" and "grade" in found)):
+        return {field: place for field, place in found.items() if field not in ("first", "last")}
+    return {}
+
+
+def _table(found, header):
+    """The fields of grades or participants; empty where they are none, or have an id of one's own."""
+    known = found.keys() & {"sis_id", "login", "email"}
+    if {"first", "last"} <= found.keys() and known and not any(map(own.is_id, header)):
+        return {
+            field: found[field] for field in ("first", "last", "section", "sis_id", "login", "email") if field in found
+        }
+    return {}
+
+
+def _number(text):
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
+def _columns(students):
+    table = students[0].table if students else None
+    return (Moodle().columns(table.header) if table else None) or {}
+
+
+def _prefix(student, identifier):
+    """The beginning of the names of a student's files: the importer looks at the number alone."""
+    name = " ".join(re.sub(r"[\x00-\x1f\x7f_/\\:*?\"<>|]+", " ", student.name).split()).strip(" .~")
+    return f"{name[:80] or 'Participant'}_{identifier}_assignsubmission_file"
+
+
+@output("moodle_grades.csv", "the grades as Moodle takes them, where the roster is its worksheet or another table")
+def moodle_grades(title: str, students: Sequence[Student], marks: Collection[Marked]) -> str | None:
+    """Return the grading worksheet of the roster, filled in; of another table of Moodle, one for its gradebook.
+
+    In the worksheet, what has no grade here, and all other cells, are as they were; what the instructor has said, and
+    what lateness costs, takes the place of the comments, which are HTML there. Where a submission ran without a jail,
+    there is no worksheet, whose columns cannot say so, and the column of the other table does.
+
+    Arguments:
+        title: of the assignment.
+        students: the roster.
+        marks: a `Marked` for each submission.
+    Returns:
+        The file; None where the roster is not of Moodle.
+    """
+    if not isinstance(lms.of(students), Moodle) or students[0].table is None:
+        return None
+    table, columns = students[0].table, _columns(students)
+    by_student = {mark.result.student: mark for mark in marks}
+    unsafe = without_jail(mark.result for mark in marks)
+    if "grade" in columns and "moodle_id" in columns and not unsafe:
+        comma = any("," in row[columns.get("maximum", columns["grade"])] for _, row in table.rows)
+        rows = [_filled(student.row, by_student.get(student.id), columns, comma) for student in students]
+        return as_text([table.header, *rows], table.delimiter, table.bom, {columns.get("comments", -1)})
+    places = sorted(columns[field] for field in columns if field in ("moodle_id", "name", "first", "last", *Moodle.ids))
+    rows = [[*(table.header[place] for place in places), f"{title} (graded without a jail)" if unsafe else title]]
+    for student in students:
+        if mark := by_student.get(student.id):
+            grade = "" if mark.total is None else number(mark.total)
+            rows.append([*(" ".join(student.row[place].split()) for place in places), grade])
+    return as_text(rows, bom=table.bom)
+
+
+def _filled(row, mark, columns, comma):
+    """A row of the worksheet with its grade and comments."""
+    row = list(row)
+    if mark and mark.total is not None:
+        row[columns["grade"]] = number(mark.total).replace(".", "," if comma else ".")
+    if mark and "comments" in columns:
+        said = [*filter(None, [mark.late]), *mark.comments]
+        said += [
+            f"Exercise {exercise.judged.number}: {sentence}"
+            for exercise in mark.exercises
+            for sentence in (*exercise.history, *exercise.comments)
+        ]
+        if said:
+            row[columns["comments"]] = html.escape(" · ".join(map(visible, said)), quote=False)
+    return row
+
+
+@output("moodle_feedback.zip", 'the feedback as Moodle takes it by "Upload multiple feedback files in a zip"')
+def moodle_feedback(folder: Path, students: Sequence[Student], marks: Collection[Marked]) -> bytes | None:
+    """Return a zip file with a page of feedback for each student whose number in Moodle is known.
+
+    That is the number of the file that was graded, else that of the roster.
+
+    Arguments:
+        folder: of the grades, where the feedback is.
+        students: the roster.
+        marks: a `Marked` for each submission.
+    Returns:
+        The file; None where no number is known.
+    """
+    files, pages = {}, lms.pages(folder, marks, "feedback.html")
+    by_id = {student.id: student for student in students}
+    for mark in marks:
+        student = by_id[mark.result.student]
+        names = [found[2] for part in mark.result.file.split("/") if (found := _NAME.fullmatch(part))]
+        identifier = names[0] if names else student.moodle_id
+        if identifier and student.id in pages:
+            files[f"{_prefix(student, identifier)}_feedback.html"] = pages[student.id]
+    return lms.zipped(files) if files else None

@@ -1,0 +1,200 @@
+"""Your own: a roster with the columns id and name, folders named by ids, plain grades, folders on a shared drive."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from exercisegrader import GradingError, lms
+from exercisegrader.lms import Claim, Known, Packed, System
+from exercisegrader.reports.outputs import output
+from exercisegrader.reports.wording import number, without_jail
+from exercisegrader.tables import as_text, letters
+
+if TYPE_CHECKING:
+    from exercisegrader.marking import Marked
+    from exercisegrader.roster import Student
+
+#: The words by which a column is known, without regard to capitals, accents, spaces and signs.
+SYNONYMS = {
+    "id": (
+        "id, student id, student number, student no, student identifier, matriculation number, matriculation no, "
+        "registration number, university id, SID, Matrikelnummer, Matrikelnr, Matr.-Nr., Mat.-Nr., Matrikel, "
+        "numéro étudiant, n° étudiant, no étudiant, número de matrícula, matrícula, número de estudiante, "
+        "número de estudante, número de alumno, número de aluno, matricola, numero di matricola, numero matricola, "
+        "studentnummer, studienummer, studentnr, opiskelijanumero, numer albumu"
+    ),
+    "name": (
+        "name, full name, student name, student, vollständiger Name, nom complet, nombre completo, nome completo, "
+        "nominativo, naam, volledige naam, namn, navn"
+    ),
+    "first": (
+        "first name, given name, forename, Vorname, Rufname, prénom, nombre, nome, voornaam, förnamn, fornavn, imię"
+    ),
+    "last": (
+        "last name, surname, family name, Nachname, Familienname, Zuname, nom, nom de famille, apellido, apellidos, "
+        "cognome, apelido, sobrenome, achternaam, efternamn, etternavn, efternavn, nazwisko"
+    ),
+    "email": (
+        "email, e-mail, mail, email address, e-mail address, mail address, E-Mail-Adresse, Mailadresse, courriel, "
+        "adresse courriel, adresse mail, adresse e-mail, correo, correo electrónico, endereço de e-mail, "
+        "indirizzo email, indirizzo e-mail, e-mailadres, e-postadress"
+    ),
+    "login": (
+        "login, login name, username, user name, NetID, Benutzername, Anmeldename, Kennung, nom d'utilisateur, "
+        "identifiant, usuario, nombre de usuario, nome de utilizador, nome utente, gebruikersnaam, användarnamn"
+    ),
+    "section": (
+        "section, sections, group, groups, Gruppe, Gruppen, Übungsgruppe, groupe, groupes, grupo, grupos, sección, "
+        "gruppo, gruppi, groep, groepen, grupp"
+    ),
+    "handed_in": (
+        "handed in, handed in at, submitted at, submission time, submission date, last modified (submission), "
+        "abgegeben am, Abgabezeit, Abgabezeitpunkt, date de remise, fecha de entrega, data de entrega, "
+        "data di consegna"
+    ),
+    "sortable": "sortable, sortable name",
+    "sis_id": "SIS id, SIS user id",
+    "canvas_id": "Canvas id",
+    "moodle_id": "Moodle id",
+}
+_FIELDS = {letters(word): field for field, words in SYNONYMS.items() for word in words.split(", ")}
+#: What names of folders cannot have, or should not, on some drive.
+_NOT_IN_NAMES = re.compile(r"[\x00-\x1f\x7f/\\:*?\"<>|#%~]+")
+
+
+def is_id(head: str) -> bool:
+    """Whether a column with this head is one of ids.
+
+    >>> is_id("Matrikel-Nr."), is_id("ID number")
+    (True, False)
+    """
+    return _FIELDS.get(letters(head)) == "id"
+
+
+def added(header: Sequence[str]) -> Mapping[str, int]:
+    """Return where the columns are that an instructor may add to any export: when each student handed in.
+
+    >>> added(["Student", "ID", "Section", "handed in"])
+    {'handed_in': 3}
+    """
+    return {field: index for index, head in enumerate(header) if (field := _FIELDS.get(letters(head))) == "handed_in"}
+
+
+@lms.system
+class Own(System):
+    """A roster of one's own, and folders by id."""
+
+    name, title, place = lms.OWN, "your own roster", "drive"
+    roster = "the columns id and name, or words for them as Student ID and First name"
+    ids = {"id": "id"}  # noqa: RUF012 - read and never changed
+
+    def columns(self, header: Sequence[str]) -> Mapping[str, int] | None:
+        """Return where the fields are, by `SYNONYMS`.
+
+        Raises GradingError where two columns could be the same field.
+        """
+        found: dict[str, int] = {}
+        twice = {}
+        for index, head in enumerate(header):
+            field = _FIELDS.get(letters(head))
+            if field in found:
+                twice[field] = index
+            elif field:
+                found[field] = index
+        if "id" not in found or not {"name", "first", "last"} & found.keys():
+            return None
+        for field, index in twice.items():
+            first, second = header[found[field]], header[index]
+            raise GradingError(
+                f"line 1: {first!r} and {second!r} could both be the {field.replace('_', ' ')}: rename one of them"
+            )
+        return found
+
+    def student(self, cells: Mapping[str, str]) -> Mapping[str, str] | None:
+        """Return what a row says; a name beside a first name is a last name, as in "Name, Vorname"."""
+        first, last = cells.get("first", ""), cells.get("last", "")
+        name = cells.get("name", "")
+        if "first" in cells and "last" not in cells:
+            name, last = "", name
+        sortable = cells.get("sortable", "") or (f"{last}, {first}" if first and last else "")
+        return {**cells, "name": name or " ".join(filter(None, (first, last))), "sortable": sortable}
+
+    def claim(self, name: str, known: Known, assignment: str) -> Claim | None:
+        """Return whose a folder, or a notebook, named by an id is."""
+        own = re.sub(r"(?i)\.ipynb$", "", name)
+        students = known.by("id", name) or known.by("id", own) or known.by("roster_id", own)
+        if not students and (drive := re.fullmatch(r"(.*)\(([^()]+)\)", name)):
+            students = [one for one in known.by("id", drive[2]) if _folder(one) == name]
+        return Claim(tuple(students)) if students else None
+
+    def pack(self, notebooks: Mapping[Student, Mapping[str, bytes]], assignment: str, secret: str) -> Packed:
+        """Return folders named by name and id, and a table of them."""
+        files, rows = {}, [["folder", "id", "name", "email"]]
+        for student, own in notebooks.items():
+            folder = _folder(student)
+            rows.append([folder, student.id, student.name, student.email])
+            for name, content in own.items():
+                files[f"{folder}/{name}"] = content
+        files["folders.csv"] = as_text(rows, bom=True).encode()
+        return Packed(
+            files,
+            "Copy the folders to the drive and share each with its student, whom folders.csv names; filled-in "
+            "notebooks in the same folders are what loopbook grade takes.",
+        )
+
+
+def _folder(student):
+    """The name of a student's folder on a shared drive."""
+    name = " ".join(_NOT_IN_NAMES.sub(" ", student.name).split()).strip(" .")[:80]
+    return f"{name.strip(' .')} ({student.id})".strip()
+
+
+@output("grades.csv", "the grades by id, for any table")
+def grades_csv(students: Sequence[Student], marks: Collection[Marked]) -> str:
+    """Return the grades as CSV: id, name and points of each student with a result, in the roster's order.
+
+    A student who handed in nothing, or nothing that could be run, has an empty cell: what it costs is the instructor's
+    decision. It begins with the mark by which Excel knows UTF-8. Where a submission ran without a jail, the head says
+    so.
+
+    Arguments:
+        students: the roster.
+        marks: a `Marked` for each submission.
+
+    >>> from types import SimpleNamespace as Student
+    >>> from exercisegrader.marking import Marked, MarkedExercise
+    >>> from exercisegrader.results import Result
+    >>> result = Result("tuning", "s1", "s1.ipynb", True, "", "complete", "", (), (), ())
+    >>> print(grades_csv([Student(id="s1", name="Ada")], [Marked(result, (MarkedExercise(None, 8 / 3),))])[1:])
+    id,name,points
+    s1,Ada,2.67
+    <BLANKLINE>
+    """
+    totals = {mark.result.student: mark.total for mark in marks}
+    head = "points (graded without a jail)" if without_jail(mark.result for mark in marks) else "points"
+    rows = [["id", "name", head]]
+    for student in students:
+        if student.id in totals:
+            total = totals[student.id]
+            rows.append([student.id, student.name, "" if total is None else number(total)])
+    return as_text(rows, bom=True)
+
+
+@output("feedback.zip", "the page of each student as a file by id, where the roster is your own")
+def feedback_zip(folder: Path, students: Sequence[Student], marks: Collection[Marked]) -> bytes | None:
+    """Return a zip file with a page of feedback for each student, named by the id.
+
+    Arguments:
+        folder: of the grades, where the feedback is.
+        students: the roster.
+        marks: a `Marked` for each submission.
+    Returns:
+        The file; None where the roster is that of a system with a form of its own.
+    """
+    found, pages = lms.of(students), lms.pages(folder, marks, "feedback.html")
+    if not pages or (found and not isinstance(found, Own)):
+        return None
+    return lms.zipped({f"{student}.html": content for student, content in pages.items()})

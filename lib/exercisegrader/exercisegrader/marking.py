@@ -1,0 +1,302 @@
+"""Marks: what a result counts, with what a person has marked and what is deducted; the reports show these.
+
+`Marking` brings together what they come from: results, ``marks.csv``, the due date, extensions.
+"""
+
+from __future__ import annotations
+
+import datetime
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Self
+
+from exercisebook.judging import RIGHT, WAITING, earned
+from exercisegrader.lateness import IN_TIME, Extensions, Lateness, lateness, read_extensions
+from exercisegrader.overrides import Asked, Mark, Overrides, graded, points
+from exercisegrader.results import MISSING, NOT_RUN, JudgedExercise, Result
+
+if TYPE_CHECKING:
+    from exercisegrader.assignment import Assignment
+    from exercisegrader.roster import Student
+    from exercisegrader.submissions import Submission
+
+_NONE = Mark()
+
+
+@dataclass(frozen=True)
+class Notice:
+    """Why an instructor should see to a mark: it has lost its ground, or nobody knows how late something is.
+
+    Attributes:
+        points: that may hang on it.
+        says: the reason, in a sentence.
+    """
+
+    points: float
+    says: str
+
+
+@dataclass(frozen=True)
+class MarkedExercise:
+    """An exercise with what it counts.
+
+    Attributes:
+        judged: as the grader judged it.
+        earned: its points; None while something in it waits for a person.
+        comments: of the instructor, for the student.
+        history: how the points came about, where a person has marked, in sentences.
+        waiting: the quantities that wait for a person.
+        is_by_hand: whether a person has marked the whole of it.
+        decided: the quantities of which a person has said what they are worth.
+    """
+
+    judged: JudgedExercise
+    earned: float | None
+    comments: tuple[str, ...] = ()
+    history: tuple[str, ...] = ()
+    waiting: tuple[str, ...] = ()
+    is_by_hand: bool = False
+    decided: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, judged: JudgedExercise, by_hand: Mapping[tuple[str, str], Mark] | None = None) -> Self:
+        """Return an exercise with the marks by hand, {(exercise, quantity): mark}, of its student.
+
+        The mark of a whole exercise counts more than those of its quantities.
+        """
+        by_hand = by_hand or {}
+        whole = by_hand.get((judged.number, ""), _NONE)
+        marks = {one.name: by_hand.get((judged.number, one.name), _NONE) for one in judged.answers}
+        asked = sum(one.weight for one in judged.answers)
+        sum_, comments, history, waiting = 0.0, [], [], []
+        for one in judged.answers:
+            mark, part = marks[one.name], earned(judged.points, one.weight, asked)
+            if mark.points is not None:
+                sum_ += mark.points
+                said = f"{_of(mark.points, part)} by hand{_quoted(mark)}"
+                if one.status != WAITING:
+                    said = f"{points(part if one.status == RIGHT else 0)} by the grader, {said}"
+                history.append(f"{one.name}: {said}")
+            elif one.status == WAITING:
+                waiting.append(one.name)
+            else:
+                sum_ += part if one.status == RIGHT else 0
+            if mark.comment and mark.points is None:
+                comments.append(f"{one.name}: {mark.comment}")
+        if whole.points is not None:
+            history.append(
+                f"{_of(judged.earned, judged.points)} by the grader, {points(whole.points)} by hand{_quoted(whole)}"
+            )
+            return cls(judged, whole.points, tuple(comments), tuple(history), (), True, tuple(marks))
+        if whole.comment:
+            comments.append(whole.comment)
+        decided = tuple(name for name, mark in marks.items() if mark.points is not None)
+        sum_or_none = None if waiting else sum_
+        return cls(judged, sum_or_none, tuple(comments), tuple(history), tuple(waiting), decided=decided)
+
+
+@dataclass(frozen=True)
+class Marked:
+    """A result with what it counts.
+
+    Attributes:
+        result: of the grader.
+        exercises: a `MarkedExercise` for each of the result's.
+        late: how late it is and what that costs, in a sentence; empty where it is on time.
+        deduction: what that costs, in points.
+        comments: of the instructor on the whole of it.
+        looks: why an instructor should see to it, besides what the result says.
+        by_hand: the points of the whole, where a person has marked it; nothing is deducted from these.
+    """
+
+    result: Result
+    exercises: tuple[MarkedExercise, ...]
+    late: str = ""
+    deduction: float = 0
+    comments: tuple[str, ...] = ()
+    looks: tuple[Notice, ...] = ()
+    by_hand: float | None = None
+
+    @classmethod
+    def of(
+        cls,
+        result: Result,
+        by_hand: Mapping[tuple[str, str], Mark] | None = None,
+        lateness: Lateness | None = None,
+        looks: tuple[Notice, ...] = (),
+    ) -> Self:
+        """Return a result with what was added to it.
+
+        Arguments:
+            result: of the grader.
+            by_hand: {(exercise, quantity): mark} of the student; an empty quantity is the whole exercise, an empty
+                exercise the whole notebook.
+            lateness: of the submission.
+            looks: why an instructor should see to it.
+        """
+        by_hand, lateness = by_hand or {}, lateness or Lateness()
+        exercises = tuple(MarkedExercise.of(one, by_hand) for one in result.exercises)
+        whole = by_hand.get(("", ""), _NONE)
+        sum_ = sum(one.earned or 0 for one in exercises)
+        comments = [whole.comment] if whole.comment and whole.points is None else []
+        if whole.points is not None:
+            said = f"{_of(sum_, result.points)} before, {points(whole.points)} by hand for all of it{_quoted(whole)}"
+            comments.append(said)
+        late = lateness.says
+        if whole.points is not None and lateness.part:
+            late += "; the points by hand for all of it stay as they are"
+        deduction = 0.0 if whole.points is not None else lateness.part * sum_
+        if lateness.look and whole.points is None:
+            looks = (*looks, Notice(max(sum_, result.earned), lateness.look))
+        return cls(result, exercises, late, deduction, tuple(comments), looks, whole.points)
+
+    @property
+    def waiting(self) -> tuple[tuple[str, str], ...]:
+        """Pairs of the number of an exercise and a quantity that wait for a person."""
+        if self.by_hand is not None:
+            return ()
+        return tuple((one.judged.number, name) for one in self.exercises for name in one.waiting)
+
+    @property
+    def total(self) -> float | None:
+        """The points; None, an empty cell, while something waits, and where nothing was handed in or could be run.
+
+        A person may mark the whole of it, or each exercise as a whole: then these are the points.
+        """
+        if self.by_hand is not None:
+            return self.by_hand
+        if self.result.status in (MISSING, NOT_RUN) and not all(one.is_by_hand for one in self.exercises):
+            return None
+        if any(one.earned is None for one in self.exercises):
+            return None
+        return max(0.0, sum(one.earned or 0 for one in self.exercises) - self.deduction)
+
+
+class Marking:
+    """What results are marked with: the marks by hand in a folder of grades, the due date, and extensions.
+
+    Arguments:
+        folder: of the grades.
+        assignment: `Assignment`.
+        students: the roster.
+        extensions: the file that grants them; None where there is none.
+        also: {another id of a student, as the roster may have it: id}.
+    Raises:
+        GradingError: with all faults of the extensions.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        assignment: Assignment,
+        students: Sequence[Student],
+        extensions: Path | None = None,
+        also: Mapping[str, str] | None = None,
+    ):
+        self.assignment = assignment
+        ids = tuple(student.id for student in students)
+        self.extensions = Extensions({})
+        if extensions:
+            former = graded(folder).difference(ids)
+            self.extensions = read_extensions(extensions, ids, assignment.name, assignment.policy, also, former)
+        self._at: dict[str, datetime.datetime | None] = {}
+        self._names: dict[str, dict[str, float]] = {}
+        exercises = {number: exercise.points for number, exercise in assignment.exercises.items()}
+        self.overrides = Overrides(folder, Asked(ids, exercises, self._quantities, also or {}))
+
+    def _quantities(self, student, number):
+        """{quantity: points} of an exercise; the names are the same for all students."""
+        if number not in self._names:
+            question = self.assignment.question(student, number)
+            weights = {name: question.exercise.weights.get(name, 1) for name in question.key}
+            of_all = sum(weights.values())
+            parts = {name: earned(question.exercise.points, weight, of_all) for name, weight in weights.items()}
+            self._names[number] = parts
+        return self._names[number]
+
+    def read(self, result_of: Callable[[str], Result | None]) -> None:
+        """Read the marks by hand, and note what has changed; `Overrides.read` says more."""
+        self.overrides.read(result_of)
+
+    def demand_comparable(self, submissions: Iterable[Submission]) -> None:
+        """Raise GradingError where a time of a submission cannot be compared with the due date: one has no zone."""
+        for submission in submissions:
+            self._lateness(submission)
+
+    def _lateness(self, submission):
+        until = self.extensions.until.get(submission.student.id)
+        return lateness(self.assignment.policy, submission.handed_in, submission.late, until)
+
+    def marked(self, results: Sequence[Result], submissions: Mapping[str, Submission]) -> list[Marked]:
+        """Return the results with what they count, and add a row to ``marks.csv`` for each answer that waits.
+
+        Arguments:
+            results: in the order of the roster.
+            submissions: {student: submission}.
+        Raises:
+            GradingError: where the file cannot be written.
+        """
+        self._at = {student: submission.handed_in for student, submission in submissions.items()}
+        marks = [self._marked(result, submissions.get(result.student)) for result in results]
+        waiting = [(number, name) for number, parts in self._asked(results) for name in parts]
+        places = {(mark.result.student, *place) for mark in marks for place in mark.waiting}
+        rows = [(mark.result.student, *place) for place in waiting for mark in marks]
+        self.overrides.add(row for row in rows if row in places)
+        return marks
+
+    def _asked(self, results):
+        """The exercises with their quantities, in their order."""
+        names: dict[str, dict[str, bool]] = {number: {} for number in self.assignment.exercises}
+        for result in results:
+            for exercise in result.exercises:
+                names[exercise.number] |= dict.fromkeys((one.name for one in exercise.answers), True)
+        return names.items()
+
+    def _marked(self, result, submission):
+        late = self._lateness(submission) if submission and result.status != MISSING else Lateness()
+        changed = tuple(Notice(*one) for one in self.overrides.changed_since(result))
+        return Marked.of(result, self.overrides.of(result.student), late, changed)
+
+    def notes(self, marks: Sequence[Marked]) -> list[str]:
+        """Return sentences on what was applied."""
+        found, policy = [], self.assignment.policy
+        handed_in = [mark for mark in marks if mark.result.status != MISSING]
+        if policy is not None:
+            late = [mark for mark in handed_in if mark.late and not mark.late.startswith(IN_TIME)]
+            unknown = [one for mark in handed_in if not mark.late and self._at.get(one := mark.result.student) is None]
+            found.append(f"D{str(policy)[1:]}. {_counted(len(late), 'submission')} came late.")
+            if until := self.extensions.until:
+                found[-1] += f" {_counted(len(until), 'student')} {'has' if len(until) == 1 else 'have'} an extension."
+            if unknown:
+                found.append(
+                    f"Of {_counted(len(unknown), 'submission')} nothing says when it was handed in: it counts as in "
+                    "time. A column handed_in in the roster says it."
+                )
+        found += self.extensions.notes
+        by_hand = sum(mark.points is not None for mark in self.overrides.marks.values())
+        if by_hand:
+            found.append(f"{_counted(by_hand, 'mark')} by hand in marks.csv.")
+        if waiting := sum(len(mark.waiting) for mark in marks):
+            found.append(
+                f"{_counted(waiting, 'answer')} to be marked: to_mark.html shows them, marks.csv has a row for each."
+            )
+        if former := self.overrides.former:
+            found.append(
+                f"marks.csv has rows of {', '.join(sorted(former))}, no longer on the roster: they stay there."
+            )
+        if self.overrides.withdrawn:
+            found.append(f"{_counted(self.overrides.withdrawn, 'mark')} by hand withdrawn since the last time.")
+        return found
+
+
+def _counted(count, noun):
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def _of(value, most):
+    return f"{points(value)} of {points(most)} point{'' if most == 1 else 's'}"
+
+
+def _quoted(mark):
+    return f': "{mark.comment}"' if mark.comment else ""

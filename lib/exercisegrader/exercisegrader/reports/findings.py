@@ -1,0 +1,161 @@
+"""What the results of a class say: sums, hard exercises, common mistakes."""
+
+from __future__ import annotations
+
+import re
+import statistics
+from collections import Counter
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from exercisebook.judging import MISTAKE, RIGHT, WAITING
+from exercisegrader.reports.wording import STATUSES, verdict_and_reading
+from exercisegrader.results import MISSING, NOT_RUN
+
+if TYPE_CHECKING:
+    from exercisegrader.marking import Marked
+    from exercisegrader.roster import Student
+
+#: So many of the named mistakes are told.
+MOST_MISTAKES = 15
+#: A number in a sentence, but not the one in a name such as T_0.
+_NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?!\w)")
+#: Into at most so many steps the points are divided.
+MOST_STEPS = 12
+
+
+@dataclass(frozen=True)
+class Asked:
+    """An asked quantity: how many answers have which status."""
+
+    number: str
+    name: str
+    counts: Counter[str]
+
+    @property
+    def fraction(self) -> float | None:
+        """The fraction of right answers; None where a person marks them."""
+        return None if self.counts[WAITING] else self.counts[RIGHT] / self.counts.total()
+
+
+@dataclass(frozen=True)
+class Exercise:
+    """An exercise with its mean points, None while all of them wait for a mark."""
+
+    number: str
+    title: str
+    points: float
+    mean: float | None
+    asked: tuple[Asked, ...]
+
+    @property
+    def fraction(self) -> float:
+        """The mean as a fraction of the points."""
+        return (self.mean or 0.0) / self.points if self.points else 0.0
+
+
+class Findings:
+    """What a summary tells of the points.
+
+    Arguments:
+        students: the roster.
+        marks: a `Marked` for each submission.
+
+    Attributes:
+        handed_in: the marks of those who handed something in.
+        missing: the ids of those who did not, and `ungraded` of those without any result.
+        points: of the assignment.
+        sums: the points of those who have a grade; means are over these.
+        exercises: the hardest first.
+        mistakes: number of exercise, quantity, sentence and count, the most common first.
+    """
+
+    def __init__(self, students: Sequence[Student], marks: Collection[Marked]):
+        self.names = {student.id: student.name for student in students}
+        self.handed_in = [mark for mark in marks if mark.result.status != MISSING]
+        self.missing: list[str] = [mark.result.student for mark in marks if mark.result.status == MISSING]
+        graded = {mark.result.student for mark in marks}
+        self.ungraded = [student.id for student in students if student.id not in graded]
+        self.points: float = max((mark.result.points for mark in marks), default=0)
+        self.sums: list[float] = [mark.total for mark in marks if mark.total is not None]
+        run = [mark for mark in self.handed_in if mark.result.status != NOT_RUN]
+        self.exercises: list[Exercise] = _exercises(run)
+        self.mistakes: list[tuple[str, str, str, int]] = _mistakes([mark.result for mark in run])
+
+    def name(self, student: str) -> str:
+        """The name of a student, by the id."""
+        return self.names.get(student, student)
+
+    @property
+    def mean(self) -> float:
+        """The mean of the sums."""
+        return statistics.fmean(self.sums)
+
+    @property
+    def median(self) -> float:
+        """The median of the sums."""
+        return statistics.median(self.sums)
+
+    @property
+    def steps(self) -> list[tuple[float, float, int]]:
+        """The distribution: triples of lower end, upper end and how many sums are from the one up to below the other.
+
+        The last step holds the full points too.
+        """
+        width = _width(self.points)
+        count = max(1, -int(-self.points // width))
+        # rounding: three thirds of a point are one
+        places = Counter(min(count - 1, int(round(earned / width, 9))) for earned in self.sums)
+        return [(k * width, min((k + 1) * width, self.points), places[k]) for k in range(count)]
+
+
+def _width(points):
+    """The width of a step, a round number.
+
+    >>> _width(10), _width(24), _width(100)
+    (1, 2, 10)
+    """
+    scale = 0.001
+    while scale < 1e9:
+        for step in (1, 2, 5):
+            width = round(step * scale, 3)
+            if width * MOST_STEPS >= points:
+                return int(width) if width == int(width) else width
+        scale *= 10
+    return points
+
+
+def _exercises(marks):
+    """The exercises, the hardest first; equal ones in their own order."""
+    found = {}
+    for mark in marks:
+        for exercise in mark.exercises:
+            found.setdefault(exercise.judged.number, []).append(exercise)
+    exercises = []
+    for number, given in found.items():
+        counts = {}
+        for exercise in given:
+            for answer in exercise.judged.answers:
+                counts.setdefault(answer.name, Counter(dict.fromkeys(STATUSES, 0)))[answer.status] += 1
+        asked = tuple(Asked(number, name, count) for name, count in counts.items())
+        earned = [exercise.earned for exercise in given if exercise.earned is not None]
+        first = given[0].judged
+        exercises.append(
+            Exercise(number, first.title, first.points, statistics.fmean(earned) if earned else None, asked)
+        )
+    return sorted(exercises, key=lambda exercise: (exercise.mean is None, exercise.fraction))
+
+
+def _mistakes(results):
+    """The mistakes: one whose sentence names a student's own numbers is the same with those of another one."""
+    sentences = {}
+    for result in results:
+        for exercise in result.exercises:
+            for verdict in exercise.answers:
+                if verdict.status == MISTAKE:
+                    says, _ = verdict_and_reading(verdict)
+                    kind = exercise.number, verdict.name, _NUMBER.sub("…", says)
+                    sentences.setdefault(kind, []).append(says)
+    most = sorted(sentences.items(), key=lambda item: (-len(item[1]), item[0]))[:MOST_MISTAKES]
+    return [(*asked, says[0] if len(set(says)) == 1 else general, len(says)) for (*asked, general), says in most]

@@ -1,0 +1,207 @@
+"""Words and numbers of the outputs, and texts of students made harmless."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from exercisebook import png
+from exercisebook.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WAITING, WRONG
+from exercisebook.reading import shortened
+from exercisegrader.results import NO_CODE, UNASKED
+from loopbook.figures.picture import plain_words
+
+if TYPE_CHECKING:
+    from exercisegrader.results import JudgedAnswer, Result
+    from exercisegrader.student_side.plain import Plain
+
+#: The line that every output carries where student code ran with nothing around it.
+NO_JAIL = "Graded without a jail: nothing kept the code of the notebook from the grader, and results can be forged."
+#: The statuses of a verdict, from good to bad.
+STATUSES = (RIGHT, MISTAKE, WRONG, UNJUDGED, WAITING, OPEN)
+
+LONGEST_ANSWER = 200
+LONGEST_REMARK = 400
+MOST_REMARKS = 20
+#: Joiners are invisible and belong to names in several scripts, and to emoji.
+_JOINERS = "\u200c\u200d"
+_SETTINGS = ("Kp", "Ti", "Td", "Tf")
+_FRACTION = re.compile(r"-?[0-9]{1,300}/[1-9][0-9]{0,6}")
+
+
+def visible(text: str) -> str:
+    r"""Return a text in one line, with all that cannot be seen or cannot be stored written as an escape.
+
+    >>> visible("two\nlines \x1b[31m \u202e \ud800")
+    'two lines \\x1b[31m \\u202e \\ud800'
+    """
+    line = " ".join(text.split())
+    if line.isprintable():
+        return line
+    return "".join(c if c.isprintable() or c in _JOINERS else _escaped(c) for c in line)
+
+
+def spaced(text: str) -> str:
+    """Return a text as `visible` does, with a space at each end where it had one: there stands more beside it.
+
+    A space at which no line may be broken, as between a number and its unit, stays one.
+
+    >>> spaced(" of \\n"), spaced("\\n"), spaced("")
+    (' of ', ' ', '')
+    """
+    line = "\N{NO-BREAK SPACE}".join(map(visible, text.split("\N{NO-BREAK SPACE}")))
+    return f"{' ' * text[:1].isspace()}{line}{' ' * text[-1:].isspace()}" if line else " " * bool(text)
+
+
+def _escaped(character):
+    return character.encode("ascii", "backslashreplace").decode() if character > "\x7f" else f"\\x{ord(character):02x}"
+
+
+def number(value: float) -> str:
+    """Return a number with at most two decimals.
+
+    >>> number(8 / 3), number(4), number(2.5)
+    ('2.67', '4', '2.5')
+    """
+    return f"{value:.2f}".rstrip("0").rstrip(".")
+
+
+def of_points(earned: float, points: float) -> str:
+    """Return the points earned of those possible, in words.
+
+    >>> of_points(8 / 3, 4), of_points(0, 1)
+    ('2.67 of 4 points', '0 of 1 point')
+    """
+    return f"{number(earned)} of {number(points)} point{'' if points == 1 else 's'}"
+
+
+def percent(fraction: float) -> str:
+    """Return a fraction in percent.
+
+    >>> percent(2 / 3)
+    '67 %'
+    """
+    return f"{100 * fraction:.0f} %"
+
+
+def counted(count: int, noun: str) -> str:
+    """Return a number of things.
+
+    >>> counted(1, "submission"), counted(0, "student")
+    ('1 submission', '0 students')
+    """
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def answer_in_words(answer: Plain) -> str:
+    """Return an answer that came as plain data, on one line and not long; empty for none and for an unreadable one.
+
+    >>> answer_in_words([2.5, "3 min", {"-1": 2}]), answer_in_words({"unreadable": "a function"})
+    ('[2.5, 3 min, {-1: 2}]', '')
+    >>> answer_in_words({"Kp": "30303/5000", "Ti": 12, "Td": 0, "Tf": 0, "form": "parallel"})
+    'Kp = 6.0606, Ti = 12'
+    """
+    if isinstance(answer, dict) and [*answer] == ["unreadable"]:
+        return ""
+    if png.is_data(answer):
+        return "a figure"
+    return shortened(visible(_in_words(answer)), LONGEST_ANSWER)
+
+
+def _in_words(answer):
+    if isinstance(answer, dict) and {"Kp", "form"} <= {*answer} <= {"form", *_SETTINGS}:
+        return _controller(answer)
+    if isinstance(answer, dict):
+        return "{" + ", ".join(f"{name}: {_in_words(value)}" for name, value in answer.items()) + "}"
+    if isinstance(answer, list):
+        return "[" + ", ".join(map(_in_words, answer)) + "]"
+    if isinstance(answer, float):
+        return f"{answer:.12g}"
+    return "" if answer is None else str(answer)
+
+
+def _controller(settings):
+    """A controller, whose settings may be exact fractions, without those that it does not use."""
+    usual = {"Ti": "inf", "Td": 0, "Tf": 0}
+    used = [name for name in _SETTINGS if settings.get(name, usual.get(name)) != usual.get(name)]
+    form = f", {settings['form']} form" if {"Td", "Tf"} & {*used} else ""
+    return ", ".join(f"{name} = {_in_decimals(settings[name])}" for name in used) + form
+
+
+def _in_decimals(value):
+    is_fraction = isinstance(value, str) and _FRACTION.fullmatch(value)
+    return f"{float(Fraction(value)):.8g}" if is_fraction else _in_words(value)
+
+
+def remarks(result: Result) -> list[str]:
+    """Return what became of a notebook besides its answers, as sentences of which students may have written parts."""
+    if result.status == "missing":
+        return [result.says or "no notebook was handed in"]
+    found = [result.says] if result.says else []
+    if not found and result.status != "complete":
+        found = [f"the notebook was {result.status}"]
+    found += [f"cell {error.cell}: {error.says}" for error in result.errors]
+    more = [f"and {len(found) - MOST_REMARKS} more"] if len(found) > MOST_REMARKS else []
+    return [shortened(visible(text), LONGEST_REMARK) for text in found[:MOST_REMARKS]] + more
+
+
+def hints(result: Result) -> list[str]:
+    """Return what a student should know of answers that do not count where they stand, as `remarks` are."""
+    return [shortened(visible(look.says), LONGEST_REMARK) for look in result.looks if look.kind in (UNASKED, NO_CODE)]
+
+
+def explained(answer: JudgedAnswer) -> str:
+    """Return the sentence on an answer without the word that its status says already.
+
+    One on an answer that could not be judged may quote it: it holds no formulas.
+
+    >>> from exercisegrader.results import JudgedAnswer
+    >>> explained(JudgedAnswer("Ti", "right", "right, converted from min", "2 min", "120 s"))
+    'converted from min'
+    """
+    says = answer.says
+    if answer.status == UNJUDGED:
+        return says.replace("$", "")
+    return says.removeprefix("right").removeprefix(", ") if answer.status == RIGHT else says
+
+
+def verdict_and_reading(answer: JudgedAnswer) -> tuple[str, str]:
+    """Return what `explained` says in two parts: on the answer, and how it was read.
+
+    >>> from exercisegrader.results import JudgedAnswer
+    >>> verdict_and_reading(JudgedAnswer("Ti", "wrong", "not right; asked: the time · read as 60 s", "1 min", "120 s"))
+    ('not right; asked: the time', 'read as 60 s')
+    >>> verdict_and_reading(JudgedAnswer("Ti", "right", "right, converted from min", "2 min", "120 s"))
+    ('', 'converted from min')
+    """
+    says = explained(answer)
+    if answer.status == RIGHT:
+        return "", says
+    before, dot, behind = says.rpartition(" · ")
+    return (before, behind) if dot and answer.status != UNJUDGED else (says, "")
+
+
+def parts(sentence: str) -> list[str]:
+    """Return the pieces of a sentence, by turns text and formula; a dollar sign without another one is text.
+
+    >>> parts("here $c = 4$ is asked"), parts("5 $ each")
+    (['here ', 'c = 4', ' is asked'], ['5 $ each'])
+    """
+    pieces = spaced(sentence).split("$")
+    return pieces if len(pieces) % 2 else ["$".join(pieces)]
+
+
+def in_text(sentence: str) -> str:
+    r"""Return a sentence without signs of formulas.
+
+    >>> in_text(r"here $T_c = \tau$ is asked")
+    'here T_c = tau is asked'
+    """
+    return "".join(plain_words(piece) if place % 2 else piece for place, piece in enumerate(parts(sentence)))
+
+
+def without_jail(results: Iterable[Result]) -> bool:
+    """Whether a submission of these ran without a jail."""
+    return any(not result.jailed for result in results)

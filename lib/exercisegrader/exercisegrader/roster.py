@@ -1,0 +1,168 @@
+"""Rosters: who takes part, from a list of one's own or from what a learning management system exports."""
+
+from __future__ import annotations
+
+import datetime
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from exercisegrader import GradingError, lms, tables
+from exercisegrader.lms import own
+
+#: What an id may be: it is the name of a folder on any system, and part of a web address.
+POSSIBLE_ID = re.compile(
+    r"(?!(?i:con|prn|aux|nul|com\d|lpt\d)(?:\.|$))[A-Za-z0-9][A-Za-z0-9._@-]{0,99}(?<!\.)", re.ASCII
+)
+#: So many faults of a roster are told.
+MOST_FAULTS = 20
+
+
+@dataclass(frozen=True)
+class Student:
+    """One who takes part.
+
+    Attributes:
+        id: what variants are drawn from and folders are named after; unique without regard to case.
+        name: as it is shown.
+        sortable: as it is sorted, "Doe, Jane"; Canvas puts it into the names of files.
+        canvas_id: Canvas's number.
+        sis_id: the number in the student information system; Moodle's "ID number", Gradescope's "SID".
+        login: the name to log in with.
+        section: section or groups.
+        email: the address.
+        moodle_id: the number in Moodle's "Participant 12345", which belongs to one assignment.
+        handed_in: when the student handed in, where the roster says it.
+        roster_id: the id on the roster, where another one is kept from the release.
+        id_from: the column from which the id is.
+        system: the `lms.System` of the roster.
+        row: the student's row, as the roster has it.
+        table: the whole roster, as it is.
+
+    What is not known is the empty text, or None.
+
+    >>> Student("s1001", "Jane Doe").email
+    ''
+    """
+
+    id: str
+    name: str
+    sortable: str = ""
+    canvas_id: str = ""
+    sis_id: str = ""
+    login: str = ""
+    section: str = ""
+    email: str = ""
+    moodle_id: str = ""
+    handed_in: datetime.datetime | None = None
+    roster_id: str = field(default="", compare=False)
+    id_from: str = field(default="", compare=False)
+    system: str = field(default="", compare=False)
+    row: tuple[str, ...] = field(default=(), compare=False, repr=False)
+    table: tables.Table | None = field(default=None, compare=False, repr=False)
+
+
+def read_roster(path: str | Path) -> tuple[Student, ...]:
+    """The students of a roster, in its order: a file of comma-, semicolon- or tab-separated values.
+
+    It is one of your own with the columns id and name (`lms.own` says which others, and by which words), or an export
+    of a system in `lms`, to which a column "handed in" may be added. `tables.read` says in which encodings. Of an
+    export, the id of each student is in the first of the system's columns that is full in this row: in Canvas SIS User
+    ID, SIS Login ID, ID; in Moodle ID number, Username, the number in Identifier, Email address. `lms.remarks` says
+    where ids come from different columns.
+
+    Raises GradingError with all that is wrong, a line for each fault, at most MOST_FAULTS: a file that is missing or no
+    text, an unknown header, a roster without students; an id that is missing, impossible or not unique, a row with more
+    cells than the header, a time that cannot be read.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder, "roster.csv")
+    ...     _ = path.write_text("id,name\\ns1001,Jane Doe\\n", encoding="utf-8")
+    ...     [student.name for student in read_roster(path)]
+    ['Jane Doe']
+    """
+    path = Path(path)
+    table, system, columns = _recognised(path)
+    students, faults, lines = [], [], {}
+    for line, row in table.rows:
+        cells = {name: " ".join(row[index].split()) for name, index in columns.items()}
+        fields = system.student(cells)
+        if fields is None:
+            continue
+        student, wrong = _student(system, fields, row, table)
+        first = lines.setdefault(student.id.casefold(), line)
+        if student.id and first != line:
+            wrong.append(f"the id {student.id!r} is already that of line {first}")
+        faults += [f"{path.name}, line {line}: {fault}" for fault in wrong]
+        students.append(student)
+    if faults:
+        more = [f"and {len(faults) - MOST_FAULTS} more"] if len(faults) > MOST_FAULTS else []
+        raise GradingError("\n".join(faults[:MOST_FAULTS] + more))
+    if not students:
+        raise GradingError(f"{path.name} has a header and no student")
+    return tuple(students)
+
+
+def _recognised(path):
+    """The table of a file, the system whose roster it is, and the places of the fields."""
+    seen: tuple[str, ...] = ()
+    for table in tables.read(path):
+        seen = max(seen, table.header, key=len)
+        exports = [one for one in lms.registered() if one.name != lms.OWN]
+        others = [one for one in lms.registered() if one.name == lms.OWN]  # its heads may be in an export, too
+        try:
+            found = _fitting(exports, table) or _fitting(others, table)
+        except GradingError as problem:
+            raise GradingError(f"{path.name}, {problem}") from None
+        if len(found) > 1:
+            titles = " and of ".join(one.title for one, _ in found)
+            raise GradingError(f"{path.name}, line 1: the header is that of {titles}: expected that of one of them")
+        if found and table.fault:
+            raise GradingError(table.fault)
+        if found:
+            system, columns = found[0]
+            return table, system, {**own.added(table.header), **columns}
+    heads = [head for head in seen if head]
+    says = f", {_listed(map(repr, heads))}" if heads else ""
+    *kinds, last = [one.roster for one in sorted(lms.registered(), key=lambda one: one.name != lms.OWN)]
+    raise GradingError(f"{path.name}, line 1: no header of a roster{says}; expected {', '.join(kinds)} or {last}")
+
+
+def _fitting(systems, table):
+    """Pairs of a system whose roster it is, and the places of the fields."""
+    return [(one, columns) for one in systems if (columns := one.columns(table.header)) is not None]
+
+
+def _student(system, fields, row, table):
+    """The student of a row, and what is wrong with it."""
+    wrong = []
+    known = {name: text for name, text in fields.items() if name in Student.__dataclass_fields__}
+    id_from, known["id"] = next(
+        ((words, fields[name]) for name, words in system.ids.items() if fields.get(name)), ("", "")
+    )
+    if not known["id"]:
+        columns = f"; ids come from the first full of: {', '.join(system.ids.values())}" if len(system.ids) > 1 else ""
+        wrong.append(f"a student without an id{columns}")
+    elif not POSSIBLE_ID.fullmatch(known["id"]):
+        wrong.append(
+            f"{known['id'][:120]!r} cannot be an id, which is made of letters without accents, digits and . _ @ -, "
+            "begins with a letter or a digit, does not end in a dot, has at most 100 characters and is not a name of a "
+            "device, as con"
+        )
+    if any(cell.strip() for cell in row[len(table.header) :]):
+        wrong.append(f"{len(row)} cells, and the header has {len(table.header)}; put a name with a comma in quotes")
+    try:
+        known["handed_in"] = tables.moment(fields.get("handed_in", ""))
+    except ValueError as problem:
+        wrong.append(str(problem))
+        known["handed_in"] = None
+    known["name"] = known.get("name") or known["id"]
+    return Student(**known, id_from=id_from, system=system.name, row=row, table=table), wrong
+
+
+def _listed(words: Iterable[str]) -> str:
+    """The first of some words, as a list in a sentence."""
+    words = list(words)
+    return ", ".join(words[:6]) + (", ..." if len(words) > 6 else "")

@@ -1,0 +1,220 @@
+"""Submissions: the notebooks in a folder or in the zip file of a learning management system, each with its student.
+
+What is not clearly one student's one notebook is left alone and said.
+"""
+
+from __future__ import annotations
+
+import datetime
+import io
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from exercisegrader import GradingError
+from exercisegrader.entries import FAILURES, Entry, entries, shown, why
+from exercisegrader.owners import Owner, Owners, is_notebook
+from exercisegrader.roster import Student
+from exercisegrader.sources import sources
+
+#: The largest file that is read, in bytes; most of a notebook is pictures, which are skipped.
+LARGEST = 200 * 2**20
+#: The most complaints about what lies in one folder.
+MOST_COMPLAINTS = 10
+
+#: The words after the fault of a file, and before the notebook of the same student.
+BESIDE = ", beside "
+#: How a problem begins that is the fault of one file.
+FILE = "the file "
+#: Zip files tell times in steps of two seconds.
+_SAME_TIME = datetime.timedelta(seconds=2)
+
+
+class _Limited(io.RawIOBase):
+    """A file of which at most LARGEST bytes are read, whatever was announced."""
+
+    def __init__(self, stream):
+        self._stream, self._left = stream, LARGEST
+
+    def read(self, size=-1):
+        piece = self._stream.read(size)
+        self._left -= len(piece)
+        if self._left < 0:
+            raise GradingError(_too_large())
+        return piece
+
+
+@dataclass(frozen=True)
+class Submission:
+    """What one student handed in.
+
+    Attributes:
+        student: whose it is.
+        label: its name in the folder or zip file, with slashes; signs that cannot be shown are spelled out.
+        problem: "", or a sentence why it cannot be run.
+        handed_in: when, as the roster says; None where it does not. The time of a file is no such time: it is that of
+            a download, of unpacking, or what the student's machine said.
+        late: whether its name says that it came late; None where it says nothing.
+        chosen: "", or a sentence where it was chosen from several notebooks.
+    """
+
+    student: Student
+    label: str
+    problem: str = ""
+    handed_in: datetime.datetime | None = None
+    late: bool | None = None
+    chosen: str = ""
+    _source: Any = field(default=None, repr=False)
+
+    def read(self) -> bytes:
+        """The notebook without its outputs, as `sources.sources` returns it.
+
+        Raises GradingError where there is a problem, and where it is not a notebook or can no longer be read.
+        """
+        if self.problem:
+            raise GradingError(self.problem)
+        try:
+            with self._source.open() as stream:
+                return sources(_Limited(stream))
+        except FAILURES as problem:
+            raise GradingError(f"the file cannot be read: {why(problem)}") from None
+
+
+@dataclass(frozen=True)
+class Collection:
+    """What was found.
+
+    Attributes:
+        submissions: in the order of the roster, at most one a student.
+        complaints: sentences on what was left alone, and on what was chosen, each with the name of the file.
+    """
+
+    submissions: tuple[Submission, ...]
+    complaints: tuple[str, ...]
+
+
+def collect(path: str | Path, students: Sequence[Student], assignment_name: str, latest: bool = False) -> Collection:
+    """The submissions of the students in a folder or a zip file, and complaints about what is none.
+
+    A student's notebook lies in the folder named by the id, or is named by it, or has the name that Canvas or Moodle
+    gave it. Where all lies in one folder named like the folder or zip file itself or like the assignment, that one is
+    meant. Jupyter's and the system's own files are skipped: names that begin with a dot, and __MACOSX.
+
+    Arguments:
+        path: of the folder or zip file.
+        students: the roster.
+        assignment_name: by which its notebooks were released.
+        latest: of several notebooks of a student the latest counts: by the number that Canvas gives to each file, else
+            by the times of the files. If not given, or where these do not decide, none of them counts.
+
+    Raises GradingError where there is neither a folder nor a whole zip file.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = Path(folder, "s1001.ipynb").write_text("{}"), Path(folder, "s10002.ipynb").write_text("{}")
+    ...     found = collect(folder, [Student("s1001", "Jane Doe")], "heater")
+    ...     [submission.label for submission in found.submissions], found.complaints
+    (['s1001.ipynb'], ('s10002.ipynb: is named after no student of the roster',))
+    """
+    lying = entries(Path(path), assignment_name, [student.id for student in students])
+    owners, complaints = Owners(students, assignment_name), _Complaints()
+    notebooks, others = defaultdict(list), defaultdict(list)
+    for entry in lying:
+        owner = owners.of(entry.parts[0])
+        fault = entry.fault or ("" if is_notebook(entry.parts[-1]) else "is not a notebook (.ipynb)")
+        if owner.student is None:
+            complaints.add(entry.parts[0], entry.label, fault or owner.reason)
+        elif fault:
+            others[owner.student.id].append((_Notebook(entry, owner), fault))
+        else:
+            notebooks[owner.student.id].append(_Notebook(entry, owner))
+    submissions = []
+    for student in students:
+        if found := notebooks[student.id]:
+            submission = _submission(student, found, latest)
+            rest = others[student.id]
+        elif others[student.id]:
+            (one, fault), *rest = others[student.id]
+            complaints.add(student.id, one.entry.label, fault)
+            problem = f"{FILE}{fault}"
+            submission = Submission(student, one.entry.label, problem, student.handed_in, one.owner.late)
+        else:
+            continue
+        submissions.append(submission)
+        says = submission.problem or submission.chosen
+        if says and notebooks[student.id]:
+            complaints.add(student.id, submission.label, says)
+        for one, fault in rest:
+            complaints.add(student.id, one.entry.label, f"{fault}{BESIDE}{submission.label}")
+    return Collection(tuple(submissions), complaints.all())
+
+
+@dataclass(frozen=True)
+class _Notebook:
+    """A notebook of a student, as it lies there, and what its name says."""
+
+    entry: Entry
+    owner: Owner
+
+
+def _submission(student, notebooks, latest):
+    """The submission of a student with at least one notebook."""
+    one, chosen = notebooks[0], ""
+    problem = "" if len(notebooks) == 1 else f"{_several(notebooks)}; keep one"
+    if problem and latest:
+        last, why = _latest(notebooks)
+        if last:
+            one, problem = last, ""
+            chosen = f"counts as the latest, by {why}, of {_several(notebooks)}"
+        else:
+            problem = f"{_several(notebooks)}; {why}; keep one"
+    entry = one.entry
+    if not problem and entry.size > LARGEST:
+        problem = _too_large()
+    source = None if problem else entry.source
+    return Submission(student, entry.label, problem, student.handed_in, one.owner.late, chosen, source)
+
+
+def _several(notebooks):
+    """That there are several, in words."""
+    names = [one.entry.label for one in notebooks[:3]] + [f"{len(notebooks) - 3} more"] * (len(notebooks) > 3)
+    number = {2: "two"}.get(len(notebooks), len(notebooks))
+    return f"{number} notebooks: {', '.join(names[:-1])} and {names[-1]}"
+
+
+def _latest(notebooks):
+    """The latest of several notebooks and what tells that; or None, and why nothing tells it."""
+    uploads = {one.owner.upload: one for one in notebooks}
+    if None not in uploads and len(uploads) == len(notebooks):
+        return uploads[max(uploads)], "the numbers of the files in Canvas"
+    if any(one.entry.changed is None for one in notebooks):
+        return None, "which is the latest is not known, because a file has no time"
+    *_, last_but_one, last = sorted(notebooks, key=lambda one: one.entry.changed)
+    if last.entry.changed - last_but_one.entry.changed <= _SAME_TIME:
+        return None, "which is the latest is not known, because their times are the same"
+    return last, "the times of the files"
+
+
+def _too_large():
+    return f"{FILE}is larger than {LARGEST // 2**20} MiB"
+
+
+class _Complaints:
+    """Sentences, of which not too many are about what lies in one folder."""
+
+    def __init__(self):
+        self._said = defaultdict(list)
+        self._unsaid = defaultdict(int)
+
+    def add(self, top, label, fault):
+        if len(self._said[top]) < MOST_COMPLAINTS:
+            self._said[top].append(f"{label}: {fault}")
+        else:
+            self._unsaid[top] += 1
+
+    def all(self):
+        for top, number in self._unsaid.items():
+            self._said[top].append(f"{shown(top)}: has {number} more that cannot be used")
+        return tuple(sentence for sentences in self._said.values() for sentence in sentences)

@@ -1,0 +1,243 @@
+"""Trying an assignment before it is released: what in it would surprise a student, or an instructor.
+
+Each exercise is answered as a class might: with its key in many forms, with its declared mistakes, with the key of
+another student, and with answers that should be wrong; over many variants, in bounded time. An answer takes the way
+of a student's: from objects of Python to plain data, and from there to the judge. `checks` has what is checked.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+import re
+from collections import defaultdict
+from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import dataclass
+from time import perf_counter, process_time
+from typing import TYPE_CHECKING
+
+from exercisebook.parameters import written
+from exercisebook.reading import listed, shortened
+from exercisebook.timeout import limited
+from exercisegrader import GradingError
+from exercisegrader.release import asked
+from exercisegrader.trial.checks import LEVELS, NOTE, ODD, OF_ALL, OF_ONE, WRONG, Seen, Variant, in_short
+from plainmath.validation import did_you_mean
+
+if TYPE_CHECKING:
+    from exercisegrader.assignment import Assignment
+
+__all__ = [
+    "LEVELS", "NOTE", "ODD", "WRONG", "Surprise", "Trial", "Variant", "as_text", "ids", "one_variant",
+    "only", "report", "try_all",
+]  # fmt: skip
+
+#: What an exercise may take (s), and the functions of its author for one variant.
+PATIENCE, PATIENCE_WITH_KEY = 20.0, 10.0
+LONGEST_PROBLEM = 300
+
+
+@dataclass(frozen=True)
+class Surprise:
+    """Something that would surprise: how bad it is, a sentence, and with whose variant and which answer to see it."""
+
+    level: str
+    says: str
+    student: str = ""
+    example: str = ""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What came of trying an exercise.
+
+    Attributes:
+        variants: how many were tried.
+        surprises: the worst one first.
+        lacks: what the exercise does without, some of "hints" and "a solution".
+    """
+
+    number: str
+    title: str
+    variants: int
+    surprises: tuple[Surprise, ...]
+    lacks: tuple[str, ...] = ()
+
+    @property
+    def level(self) -> str:
+        """The level of the worst surprise; empty where there is none."""
+        return self.surprises[0].level if self.surprises else ""
+
+
+def try_all(
+    assignment: Assignment,
+    students: Sequence[str],
+    seconds: float = PATIENCE,
+    follow: Callable[[int], object] = lambda variants: None,
+) -> Iterator[Trial]:
+    """Yield the `Trial` of each exercise.
+
+    Arguments:
+        assignment: `Assignment`; its functions run in this process.
+        students: their ids, a variant each.
+        seconds: what an exercise may take; what was tried until then counts.
+        follow: is told how many variants are done, of all exercises together.
+
+    >>> from exercisegrader.assignment import Assignment
+    >>> text = '"Laplace"; SECRET = "a secret of many letters"; from loopbook.exercises.bank.ch04_laplace import *'
+    >>> first = next(try_all(Assignment.of(text, "laplace"), ["s1", "s2"]))
+    >>> first.number, first.variants, first.level
+    ('4.1', 2, '')
+    """
+    done = 0
+    for number in assignment.exercises:
+        yield _Attempt(assignment, number).over(students, seconds, lambda count, before=done: follow(before + count))
+        done += len(students)
+        follow(done)
+
+
+class _Attempt:
+    """An exercise that is being tried: the variants so far, and what was seen in them."""
+
+    def __init__(self, assignment, number):
+        self.assignment, self.number, self.exercise = assignment, number, assignment.exercises[number]
+        self.variants, self.asked = [], 0
+        self.seen = {}  # {(level, words): [how often, student, example, from which part on]}
+
+    def over(self, students, seconds, follow):
+        begin = perf_counter()
+        for place, student in enumerate(students):
+            if place and perf_counter() - begin > seconds:
+                says = f"only {place} of {len(students)} variants were tried in {seconds:g} s: --seconds allows more"
+                self.note(Seen(NOTE, says))
+                break
+            self.asked += 1
+            if variant := self.variant(student, place):
+                self.variants.append(variant)
+                for check in OF_ONE:
+                    for seen in check(variant):
+                        self.note(seen, student)
+            follow(place + 1)
+        for check in OF_ALL if self.variants else ():
+            for seen in check(self.variants):
+                self.note(seen)
+        if self.variants and not any(level == WRONG for level, _ in self.seen):
+            self.release(students[0])
+        lacks = {"hints": self.exercise.rungs, "a solution": self.exercise.worked}
+        missing = tuple(name for name, what in lacks.items() if not what)
+        return Trial(self.number, self.exercise.title, self.asked, self.surprises(), missing)
+
+    def variant(self, student, place):
+        """The variant of a student; None where a function of the author fails."""
+        begin = process_time()
+        try:
+            question = limited(PATIENCE_WITH_KEY, self.complete, student)
+        except TimeoutError:
+            self.note(Seen(WRONG, f"the key takes longer than {PATIENCE_WITH_KEY:g} s"), student)
+        except Exception as problem:  # the functions are the author's
+            # the values of the variant are in the sentence, between "for" and a colon
+            what = re.sub(r" (?:for|of \w+ for student) [^:]*(?=:)", "", str(problem), count=1)
+            self.note(Seen(WRONG, shortened(what, LONGEST_PROBLEM)), student)
+        else:
+            return Variant(student, place, question, process_time() - begin)
+        return None
+
+    def complete(self, student):
+        question = self.assignment.question(student, self.number)
+        question.key, question.mistakes, question.background  # noqa: B018 - they are worked out once, and may fail
+        return question
+
+    def release(self, student):
+        """Find what else would stop a release."""
+        try:
+            asked(self.assignment, student, self.number)
+        except GradingError as problem:
+            self.note(Seen(WRONG, shortened(str(problem), LONGEST_PROBLEM)), student)
+
+    def note(self, seen, student=""):
+        entry = self.seen.setdefault((seen.level, seen.says), [0, student, seen.example, seen.least])
+        entry[0] += 1
+
+    def surprises(self):
+        """What was seen often enough, the worst first, and of that what was seen most often."""
+        made = []
+        for (level, says), (count, student, example, least) in self.seen.items():
+            if count >= least * self.asked:
+                often = "" if not student else self.how_often(min(count, self.asked))
+                made.append((LEVELS.index(level), -count, Surprise(level, says + often, student, example)))
+        return tuple(surprise for *_, surprise in sorted(made, key=lambda one: one[:2]))
+
+    def how_often(self, count):
+        if self.asked == 1:
+            return ""
+        return f", in {'all' if count == self.asked else f'{count} of'} {self.asked} variants"
+
+
+def ids(known: Sequence[str], count: int) -> list[str]:
+    """Return ids for so many variants: those of a class first, and then others, s0001, s0002, ...
+
+    >>> ids(["ada", "s0002"], 4)
+    ['ada', 's0002', 's0001', 's0003']
+    """
+    made = (f"s{number:04}" for number in itertools.count(1))
+    return list(
+        itertools.islice(dict.fromkeys(itertools.chain(known, itertools.islice(made, len(known) + count))), count)
+    )
+
+
+def only(assignment: Assignment, numbers: Collection[str]) -> Assignment:
+    """Return an assignment with some of its exercises; with all, where none is named. Raises GradingError."""
+    for number in numbers:
+        if number not in assignment.exercises:
+            hint = did_you_mean(number, assignment.exercises)
+            raise GradingError(f"there is no exercise {number!r} in {assignment.name}: {hint}")
+    chosen = {number: one for number, one in assignment.exercises.items() if not numbers or number in numbers}
+    return dataclasses.replace(assignment, exercises=chosen)
+
+
+def report(trials: Sequence[Trial]) -> str:
+    """Return what came of trying an assignment, as lines: the exercises with the worst surprises first."""
+    order = sorted(trials, key=lambda one: LEVELS.index(one.level) if one.level else len(LEVELS))
+    lines = [as_text(trial) for trial in order if trial.surprises]
+    fine = [trial.number for trial in trials if trial.level not in (WRONG, ODD)]
+    if fine:
+        lines.append("nothing surprising" + (f" in {listed(fine)}" if len(fine) < len(trials) else ""))
+    lacking: dict[tuple[str, ...], list[str]] = defaultdict(list)
+    for trial in trials:
+        lacking[trial.lacks].append(trial.number)
+    lines += [f"without {listed(what)}: {listed(numbers)}" for what, numbers in lacking.items() if what]
+    return "\n".join([*lines, f"{min(trial.variants for trial in trials)} variants of each exercise were tried"])
+
+
+def as_text(trial: Trial) -> str:
+    """Return a trial as lines for people."""
+    lines = [f"Exercise {trial.number} · {trial.title}" + ("" if trial.surprises else ": nothing surprising")]
+    for one in trial.surprises:
+        lines.append(f"  {one.level:10}  {one.says}")
+        if one.student:
+            lines.append(f"{'':14}{one.student}" + (f": {one.example}" if one.example else ""))
+        elif one.example:
+            lines.append(f"{'':14}{one.example}")
+    return "\n".join(lines)
+
+
+def one_variant(assignment: Assignment, student: str, number: str) -> str:
+    """Return what a student sees and is told, as lines: the statement, and the answers of a trial with their verdicts.
+
+    Raises GradingError where the variant fails.
+    """
+    variant = Variant(student, 0, asked(assignment, student, number), 0.0)
+    question = variant.question
+    units = {name: parameter.unit for name, parameter in question.exercise.parameters.items()}
+    given = [f"{name} = {written(value, units[name])}" for name, value in question.values.items()]
+    lines = [question.statement.replace("\N{NO-BREAK SPACE}", " "), "", f"{student}: {', '.join(given)}"]
+    lines += [line for name in variant.by_hand for line in ("", f"{name}: a person marks it")]
+    for name, kind in variant.key.items():
+        lines += ["", f"{name}: the key is {kind.solution}"]
+        tried = [*kind.right_forms(), *((f"mistake: {text}", value) for text, value in variant.mistakes[name])]
+        tried += kind.wrong_forms()
+        for how, answer in tried:
+            told = variant.judged(name, answer)
+            lines += [f"  {told.status:10}  {in_short(answer)} ({how})"]
+            lines += [f"{'':14}{told.says}"] if told.says != told.status else []
+    return "\n".join(lines)

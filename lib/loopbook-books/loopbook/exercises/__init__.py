@@ -1,0 +1,18 @@
+"""The exercises of the chapters, which respond to answers.
+
+>>> from loopbook.exercises import exercise, progress
+>>> len(exercise("10.1", student="Ada").statement) > 100
+True
+>>> progress("10").right
+0
+"""
+
+from exercisebook import slips
+from exercisebook.bank import student
+from exercisebook.errors import ExerciseError
+from loopbook.exercises.bank import BANK
+
+__all__ = ["ExerciseError", "exercise", "progress", "student"]
+
+exercise, progress = BANK.exercise, BANK.progress
+slips.install()

@@ -1,0 +1,1431 @@
+"""Exercises of chapter 3, mathematical modeling."""
+
+import functools
+import itertools
+import math
+
+import numpy as np
+import sympy
+
+from exercisebook.parameters import written
+from loopbook import diagrams as draw
+from loopbook.exercises.authoring import (
+    answers,
+    between,
+    choice,
+    criterion,
+    design,
+    exercise,
+    expression,
+    number,
+    time_function,
+    word,
+)
+from loopbook.expressions import t
+from loopbook.figures import plane_plot, time_plot
+
+
+@exercise(
+    "3.1",
+    title="The cistern in the rain",
+    points=2,
+    insight="Every model begins like this: what is inside changes by what comes in, minus what goes out.",
+    where=lambda h, h_max, q_1, q_2, q_o: abs(q_1 + q_2 - q_o) >= 10 and h_max - h >= 200,
+)
+def cistern(
+    A=between(3, 12, "m²", reference=6, step=0.5),
+    h=between(300, 1500, "mm", reference=800),
+    h_max=between(1600, 2400, "mm", reference=2000),
+    q_1=between(10, 60, "L/min", reference=30, step=2),
+    q_2=between(10, 60, "L/min", reference=45, step=1),
+    q_o=between(20, 120, "L/min", reference=60, step=5),
+):
+    """Two gutters lead rain into a cistern with upright walls: {q_1} and {q_2}. A pump takes {q_o} out of it. The
+    cross-section is {A}, the water stands {h} high, and the rim is at {h_max}.
+
+    At which rate does the level change (negative if it falls)? If nothing changes, does the cistern run over or run
+    empty, and after what time?
+    """
+    rate = (q_1 + q_2 - q_o) / A
+    return answers(
+        rate=number(rate, "mm/min", "the rate of the level"),
+        end=word(
+            "runs over" if rate > 0 else "runs empty", ["runs over", "runs empty"], what="what happens in the end"
+        ),
+        time=number((h_max - h) / rate if rate > 0 else -h / rate, "min", "the time until then"),
+    )
+
+
+@cistern.picture
+def _(A, h, h_max, q_1, q_2, q_o):
+    """A tank of {A} with the level {h} and the rim at {h_max}: {q_1} and {q_2} come in, a pump takes {q_o} out."""
+    layout = """
+        first  1     2     second  .
+        .      tank  tank  rim     .
+        .      tank  tank  .       .
+        .      tank  tank  pump    out"""
+    water = draw.tank(f"${written(A)}$ m²", level=f"${written(h)}$ mm")
+    names = {
+        "first": f"${written(q_1)}$ L/min",
+        "second": f"${written(q_2)}$ L/min",
+        "rim": f"rim at\n${written(h_max)}$ mm",
+        "out": f"${written(q_o)}$ L/min",
+    }
+    pipes = "first 1 tank pump out, second 2 tank"
+    return draw.instrumentation_diagram(layout, pipes, "", {"tank": water, "pump": draw.pump()}, names)
+
+
+@cistern.mistake("Which of the three flows leave the cistern? They have the other sign in the balance.")
+def _(A, q_1, q_2, q_o):
+    return {"rate": (q_1 + q_2 + q_o) / A}
+
+
+@cistern.mistake("The pump is running all the time. What does it do to the balance?")
+def _(A, q_1, q_2):
+    return {"rate": (q_1 + q_2) / A}
+
+
+@cistern.mistake("There are two gutters, and both bring water.")
+def _(A, q_1, q_2, q_o):
+    alone, both = q_1 - q_o, q_1 + q_2 - q_o
+    return {"rate": alone / A} if abs(abs(alone / both) - 1) > 0.05 else {}
+
+
+@cistern.mistake("There are two gutters, and both bring water.")
+def _(A, q_1, q_2, q_o):
+    alone, both = q_2 - q_o, q_1 + q_2 - q_o
+    return {"rate": alone / A} if abs(abs(alone / both) - 1) > 0.05 else {}
+
+
+@cistern.mistake("Which way does the level have to go, and how far is it from where it is now?")
+def _(A, h, h_max, q_1, q_2, q_o):
+    rate = (q_1 + q_2 - q_o) / A
+    wrong, right = (h, h_max - h) if rate > 0 else (h_max - h, h)
+    return {"time": wrong / abs(rate)} if abs(wrong / right - 1) > 0.03 else {}
+
+
+@cistern.mistake("That is the flow that is left over. The level is its volume over the area.")
+def _(A, q_1, q_2, q_o):
+    flow = q_1 + q_2 - q_o
+    return {"rate": flow} if _told_apart(flow, (q_1 + q_2) / A, (q_1 + q_2 + q_o) / A, by=0.03) else {}
+
+
+@cistern.mistake("The same flow moves a wide cistern more slowly than a narrow one. What becomes of the area, then?")
+def _(A, q_1, q_2, q_o):
+    return {"rate": A * (q_1 + q_2 - q_o)}
+
+
+@cistern.mistake("That is the whole way between bottom and rim. From where does the level start?")
+def _(A, h, h_max, q_1, q_2, q_o):
+    rate = (q_1 + q_2 - q_o) / A
+    return {"time": h_max / abs(rate)} if _told_apart(h_max, h, h_max - h, by=0.03) else {}
+
+
+@cistern.mistake("Is there more coming in, or more going out? The sign of the rate tells which end comes.")
+def _(q_1, q_2, q_o):
+    return {"end": "runs empty" if q_1 + q_2 > q_o else "runs over"}
+
+
+cistern.hints(
+    "Balance of the water: the volume in the cistern changes by what comes in, minus what goes out.",
+    "The volume is area times level, and the area is constant: $A\\,\\dot h = q_1 + q_2 - q_o$. A litre on a square "
+    "metre is one millimetre high.",
+    "With your numbers ${A}\\,\\dot h = {q_1} + {q_2} - {q_o}$, with $\\dot h$ in mm/min. Its sign says which end "
+    "comes, and from {h} it is a way of a certain length to there.",
+)
+
+
+@cistern.solution
+def _(A, h, h_max, q_1, q_2, q_o):
+    r"""Two streams come in and one goes out. What remains of them is ${q_1} + {q_2} - {q_o} =$ {net}.
+
+    The volume is area times level. A litre on a square metre is one millimetre high, so with {A} the rate is
+
+    $$\dot h = \frac{ {net} }{ {A} } = {rate}$$
+
+    in mm/min.
+
+    ***
+
+    The rate is {sign}, so the level {moves}, and in the end the cistern {end}. From {h} to {where} it is a way of
+    {way}, and at a constant rate this takes ${way}/{speed} =$ {time}.
+    """
+    net = q_1 + q_2 - q_o
+    rises = net > 0
+    return {
+        "net": (net, "L/min"),
+        "sign": "positive" if rises else "negative",
+        "moves": "rises" if rises else "falls",
+        "where": "the rim" if rises else "the bottom",
+        "way": (h_max - h if rises else h, "mm"),
+        "speed": (abs(net) / A, "mm/min"),
+    }
+
+
+# Tanks that are not upright: what they look like, the area at the level z and that of the rim.
+h, z, H, R, L, W, q_i, q_o, k, rho = sympy.symbols("h z H R L W q_i q_o k rho", positive=True)
+SHAPES = {
+    "funnel": (
+        "A funnel is a cone with its tip at the bottom. At the height $H$ its radius is $R$",
+        sympy.pi * (R * z / H) ** 2,
+    ),
+    "trough": (
+        "A trough has upright ends and two sloping walls that meet at the bottom. It is $L$ long, and at the height"
+        " $H$ it is $W$ wide",
+        L * W * z / H,
+    ),
+    "bowl": (
+        "The radius of a bowl grows with the square root of the height. At the height $H$ it is $R$",
+        sympy.pi * R**2 * z / H,
+    ),
+    "pit": (
+        "A settling pit has the shape of a pyramid with its tip at the bottom. At the height $H$ it is a square with "
+        "sides of length $L$",
+        (L * z / H) ** 2,
+    ),
+    "goblet": (
+        "The radius of a goblet grows with the square of the height. At the height $H$ it is $R$",
+        sympy.pi * (R * (z / H) ** 2) ** 2,
+    ),
+}
+# With which power of the height each of them becomes wider, and half of its width at the rim.
+SECTIONS = {"funnel": (1, "R"), "trough": (1, "W/2"), "bowl": (0.5, "R"), "pit": (1, "L/2"), "goblet": (2, "R")}
+OUTLETS = {
+    "pump": ("a pump takes the volume flow $q_o$ [m³/s] out of it", q_o),
+    "hole": (r"through a hole at the bottom it loses the volume flow $k\sqrt h$ [m³/s]", k * sympy.sqrt(h)),
+}
+
+
+def _in_latex(out):
+    """An outflow with its constant in front of the root."""
+    return r"k\sqrt{h}" if out.has(k) else "q_o"
+
+
+@functools.cache
+def _volume(shape):
+    """The volume of the liquid, and its area at the level."""
+    area = SHAPES[shape][1]
+    return sympy.integrate(area, (z, 0, h)), area.subs(z, h)
+
+
+@exercise(
+    "3.2",
+    title="Walls that are not upright",
+    points=3,
+    insight="Whatever the shape, the level moves at the net flow over the area that the liquid has just now.",
+)
+def sloping_walls(shape=choice(*SHAPES, reference="funnel"), outlet=choice(*OUTLETS, reference="pump")):
+    r"""{looks}. It holds a liquid of constant density $\rho$ [kg/m³], and its level $h$ [m] is counted from the
+    bottom. All lengths are in metres. The volume flow $q_i$ [m³/s] comes in, and {loses}.
+
+    Find the volume $V$ of the liquid, and from the mass balance the rate $\dot h$ at which the level changes, both as
+    formulas in these symbols.
+    """
+    (V, area), out = _volume(shape), OUTLETS[outlet][1]
+    names = " ".join(["rho", *(symbol.name for symbol in (V + area + out + q_i).free_symbols)])
+    return answers(
+        V=expression(V, "the volume", symbols=names, unit="m³"),
+        rate=expression((q_i - out) / area, "the rate of the level", symbols=names, unit="m/s"),
+    )
+
+
+@sloping_walls.shows
+def _(shape, outlet):
+    looks, area = SHAPES[shape]
+    loses, out = OUTLETS[outlet]
+    return {"looks": looks, "loses": loses, "slice": sympy.latex(area), "out": _in_latex(out)}
+
+
+@sloping_walls.picture
+def _(shape, outlet):
+    """The tank in section, with its level h: q_i flows in above; {loses}."""
+    power, width = SECTIONS[shape]
+    return draw.widening_tank(power, width, outflow=_in_latex(OUTLETS[outlet][1]))
+
+
+@sloping_walls.mistake("The area is not the same at every height. Add it up from the bottom to the level.")
+def _(shape, outlet):
+    (_, area), net = _volume(shape), q_i - OUTLETS[outlet][1]
+    return {"V": area * h, "rate": net / (area * h).diff(h)}
+
+
+@sloping_walls.mistake("That is the area of the rim. The liquid has the area that belongs to its level.")
+def _(shape, outlet):
+    area, net = SHAPES[shape][1].subs(z, H), q_i - OUTLETS[outlet][1]
+    return {"V": area * h, "rate": net / area}
+
+
+@sloping_walls.mistake(
+    "That is the flow over the mean area, $V/h$. What is the derivative of the volume with respect to time?"
+)
+def _(shape, outlet):
+    (V, _), net = _volume(shape), q_i - OUTLETS[outlet][1]
+    return {"rate": net * h / V}
+
+
+@sloping_walls.mistake("That is a tank whose rim is as high as the level. How wide is this one there?")
+def _(shape, outlet):
+    full, net = _volume(shape)[0].subs(H, h), q_i - OUTLETS[outlet][1]
+    return {"V": full, "rate": net / full.diff(h)}
+
+
+@sloping_walls.mistake("That is how fast the volume changes. By how much does the level rise for a little more volume?")
+def _(outlet):
+    return {"rate": q_i - OUTLETS[outlet][1]}
+
+
+@sloping_walls.mistake("The density is the same inside and in both flows. Is it needed here?")
+def _(shape, outlet):
+    (V, area), net = _volume(shape), q_i - OUTLETS[outlet][1]
+    return {"V": rho * V, "rate": net / (rho * area)}
+
+
+@sloping_walls.mistake("What flows in is there. What flows out of the tank, and with which sign?")
+def _(shape, outlet):
+    (_, area), out = _volume(shape), OUTLETS[outlet][1]
+    return {"rate": (q_i + out) / area}
+
+
+sloping_walls.hints(
+    "The mass balance has the volume in it, not the level. How does the volume depend on the level?",
+    "Cut the liquid into thin slices. The one at the height $z$ has the area $A(z)$, and $V = \\int_0^h A(z)\\,dz$. "
+    "Then differentiate by the chain rule: $\\dot V = A(h)\\,\\dot h$.",
+    "The slice at the height $z$ has the area ${slice}$. The balance is $A(h)\\,\\dot h = q_i - {out}$.",
+)
+
+
+@sloping_walls.solution
+def _(shape, outlet):
+    r"""**The volume.** A thin slice at the height $z$ has the area ${slice}$. All slices from the bottom to the
+    level make
+
+    $$V = \int_0^h {slice}\,dz = {V}$$
+
+    **The balance.** The density $\rho$ is the same inside and in both streams, so it cancels: $\dot V = q_i - {out}$.
+    By the chain rule, $\dot V = \frac{dV}{dh}\,\dot h$, and $dV/dh$ is the area at the level, ${area}$. So
+
+    $$\dot h = \frac{ {below}\,(q_i - {out})}{ {above} }$$
+
+    Where the level is low, the same flow moves it faster.
+    """
+    area = _volume(shape)[1]
+    above, below = sympy.fraction(area)
+    return {"area": area, "above": above, "below": below}
+
+
+@sloping_walls.solution_picture
+def _(shape, outlet):
+    """The level of the vessel while it is filled at a constant rate: fast at first, and then more and more slowly."""
+    volume = _volume(shape)[0]
+    full = sympy.lambdify(h, (volume / volume.subs(h, H)).subs(H, 1), "numpy")
+    levels = np.linspace(0, 1, 101)
+    return plane_plot({"level": (full(levels), levels)}, "volume, as a part of $V(H)$", "$h/H$")
+
+
+def _decay(V, q, k):
+    """How fast the concentration follows, and which part of the inflow's remains."""
+    return V / (q + k * V), q / (q + k * V)
+
+
+@exercise(
+    "3.3",
+    title="A pond that cleans itself",
+    points=4,
+    where=lambda V, q, k: 0.15 <= k * V / q <= 3,
+    insight="Whatever removes more makes two things at once: the end is lower, and it comes sooner.",
+)
+def pond(
+    V=between(100, 600, "m³", reference=300),
+    q=between(4, 20, "m³/h", reference=10),
+    k=choice(0.01, 0.02, 0.04, 0.05, 0.06, 0.08, 0.1, unit="1/h", reference=0.05),
+    c_in=between(20, 80, "g/m³", reference=50, step=5),
+):
+    r"""Waste water flows through a stirred pond with the constant volume {V}: {q} in and {q} out. Bacteria eat the
+    waste. In every cubic metre of the pond they remove $kc$ grams an hour, where $c$ [g/m³] is the concentration in
+    the pond and in the outflow, and $k$ = {k}.
+
+    The pond is clean when, at $t = 0$, water with {c_in} of waste begins to flow in. Set up the balance of the waste.
+    With which time constant does the concentration follow, where does it end, and what is $c(t)$, with $t$ in hours?
+    """
+    T, share = _decay(V, q, k)
+    return answers(
+        T=number(T, "h", "the time constant"),
+        c_s=number(share * c_in, "g/m³", "the concentration in the end"),
+        c=time_function(share * c_in * (1 - sympy.exp(-t / T)), until=5 * T, unit="g/m³", what="the concentration"),
+    )
+
+
+@pond.picture
+def _(V, q, c_in):
+    """A stirred tank of {V}: {q} flow in with {c_in} of waste, and {q} flow out with the concentration c."""
+    layout = """
+        in  1     .     .
+        .   pond  pond  .
+        .   pond  pond  out"""
+    names = {"in": f"${written(q)}$ m³/h with ${written(c_in)}$ g/m³", "out": f"${written(q)}$ m³/h with $c$"}
+    water = draw.tank(f"${written(V)}$ m³", stirrer=True)
+    return draw.instrumentation_diagram(layout, "in 1 pond out", "", {"pond": water}, names)
+
+
+@pond.mistake(
+    "That is a pond without bacteria, or nearly so. They remove that much from every cubic metre: how much is it "
+    "in the whole pond?"
+)
+def _(V, q, c_in):
+    T, c_s = V / q, c_in
+    return {"T": T, "c_s": c_s, "c": c_s * (1 - sympy.exp(-t / T))}
+
+
+@pond.mistake(
+    "That is a pond without bacteria, or nearly so. They remove that much from every cubic metre: how much is it "
+    "in the whole pond?"
+)
+def _(V, q, k, c_in):
+    T, c_s = V / (q + k), q * c_in / (q + k)
+    return {"T": T, "c_s": c_s, "c": c_s * (1 - sympy.exp(-t / T))}
+
+
+@pond.mistake("The bacteria take waste out of the pond. Which sign has their term, compared with that of the outflow?")
+def _(V, q, k, c_in):
+    if abs(q - k * V) < q / 20:
+        return {}
+    T, c_s = V / (q - k * V), q * c_in / (q - k * V)
+    found = {"T": T, "c_s": c_s} if _told_apart(T, 1 / k, by=0.05) else {"c_s": c_s}
+    return found | ({"c": c_s * (1 - sympy.exp(-t / T))} if T > 0 else {})
+
+
+@pond.mistake("Outflow and bacteria both take waste out of the pond. Does your $T$ have both, with the same sign?")
+def _(V, q, k, c_in):
+    _, share = _decay(V, q, k)
+    c = share * c_in * (1 - sympy.exp(-k * t))
+    return {"T": 1 / k, "c": c} if _told_apart(1 / k, V / q, by=0.03) else {}
+
+
+@pond.mistake("Where does waste leave the pond, apart from the bacteria?")
+def _(V, q, k, c_in):
+    c_s = q * c_in / (k * V)
+    return {"c_s": c_s} if _told_apart(c_s, c_in, abs(q * c_in / (q - k * V)) if q != k * V else c_in, by=0.03) else {}
+
+
+@pond.mistake("That is what the bacteria take away. How much is left?")
+def _(V, q, k, c_in):
+    eaten = k * V * c_in / (q + k * V)
+    others = [q * c_in / (q + k * V), c_in, q * c_in / (k * V), q * c_in / (q + k)]
+    return {"c_s": eaten} if _told_apart(eaten, *others, by=0.03) else {}
+
+
+@pond.mistake("Outflow and bacteria remove waste side by side. Does that make the pond slower, or faster?")
+def _(V, q, k):
+    return {"T": V / q + 1 / k}
+
+
+@pond.mistake("Your concentration ends at that of the inflow. Do the bacteria not remove anything?")
+def _(V, q, k, c_in):
+    T, _ = _decay(V, q, k)
+    return {"c": c_in * (1 - sympy.exp(-t / T))}
+
+
+@pond.mistake("Your concentration ends where it should. How fast does it get there when the bacteria help?")
+def _(V, q, k, c_in):
+    _, share = _decay(V, q, k)
+    return {"c": share * c_in * (1 - sympy.exp(-t * q / V))}
+
+
+@pond.mistake("An exponent is a pure number: here it must be a time over a time constant.")
+def _(V, q, k, c_in):
+    T, share = _decay(V, q, k)
+    return {"c": share * c_in * (1 - sympy.exp(-t * T))}
+
+
+@pond.mistake("At first the pond is clean, and in the end it is not. It is the other way round.")
+def _(V, q, k, c_in):
+    T, share = _decay(V, q, k)
+    return {"c": share * c_in * sympy.exp(-t / T)}
+
+
+pond.hints(
+    "Balance of the waste: the grams in the pond change by what flows in, minus what flows out, minus what is eaten.",
+    "In the pond there are $Vc$ grams. The stream carries $qc_{in}$ in and $qc$ out, and the bacteria eat $kc$ in "
+    "every cubic metre, so $kVc$ in all. Collect what has $c$ in it and bring the equation to the form $T\\dot c + c "
+    "= c_s$.",
+    "The balance: ${V}\\,\\dot c = {q}\\cdot{c_in} - ({q} + {k}\\cdot{V})\\,c$. Divide by what multiplies $c$.",
+)
+
+
+@pond.solution
+def _(V, q, k, c_in):
+    r"""In the pond there are $Vc$ grams of waste. In an hour, ${q}\cdot{c_in}$ grams flow in, ${q}\,c$ grams flow
+    out, and the bacteria eat ${k}\,c$ in every cubic metre, which is ${k}\cdot{V}\,c = {eaten}\,c$ in the whole
+    pond:
+
+    $${V}\,\dot c = {brought} - ({q} + {eaten})\,c$$
+
+    Divide by ${q} + {eaten} = {both}$, so that $c$ stands alone. What is then in front of $\dot c$ is the time
+    constant, and what stands on the right is the end:
+
+    $$T = \frac{ {V} }{ {both} } = {T}, \qquad c_s = \frac{ {brought} }{ {both} } = {c_s}$$
+
+    in hours and in g/m³. From a clean pond, the concentration goes to its end like any lag: $c(t) = {response}$.
+    """
+    T, share = _decay(V, q, k)
+    return {
+        "eaten": k * V,
+        "brought": q * c_in,
+        "both": q + k * V,
+        "response": rf"{float(share * c_in):.4g}\,\left(1 - e^{{-t/{float(T):.4g}}}\right)",
+    }
+
+
+@pond.solution_picture
+def _(V, q, k, c_in):
+    """The concentration with bacteria, and what it would be without them: higher in the end, and later."""
+    T, share = _decay(V, q, k)
+    with_them, without = share * c_in * (1 - sympy.exp(-t / T)), c_in * (1 - sympy.exp(-t * q / V))
+    curves = {"with bacteria": with_them, "without": without}
+    times = np.linspace(0, 4 * float(V / q), 201)
+    return time_plot(curves, times, xlabel="$t$ [h]", ylabel="$c$ [g/m³]").mark(T, "$T$", signal="with bacteria")
+
+
+@exercise(
+    "3.4",
+    title="Milk that is kept warm",
+    points=4,
+    where=lambda T_i, T_e, T_SP, c, F, U_h: T_e - T_i >= 5 and T_e < T_SP and abs(U_h / (c * F) - 1) >= 0.06,
+    insight="What carries heat away for each kelvin decides both how warm the tank gets and how fast.",
+)
+def milk(
+    m=between(100, 500, "kg", reference=200, step=20),
+    F=choice(0.05, 0.08, 0.1, 0.12, 0.15, 0.2, unit="kg/s", reference=0.1),
+    c=choice(3900, 3950, 4000, unit="J/(kg K)", reference=3900),
+    U_h=between(50, 200, "W/K", reference=110, step=10),
+    T_i=between(4, 12, "°C", reference=6),
+    T_e=between(15, 30, "°C", reference=20),
+    T_SP=between(35, 65, "°C", reference=45),
+):
+    r"""Milk flows through a stirred vat that always holds {m}: {F} in and as much out. Its specific heat capacity is
+    {c}. It comes in at {T_i}, the dairy has {T_e}, and between vat and dairy the heat transfer coefficient is {U_h}.
+    An element heats the milk with the power $P$.
+
+    Which power holds the milk at {T_SP}? Which temperature does the milk reach in the end if the element fails? By
+    how many kelvin does the milk become warmer in the end for each kilowatt more? And with which time constant does
+    it get there? (A balance $T\,\dot y + y = \dots$ has the time constant $T$.)
+    """
+    loss = c * F + U_h
+    return answers(
+        P=number((c * F * (T_SP - T_i) + U_h * (T_SP - T_e)) / 1000, "kW", "the power"),
+        T_off=number((c * F * T_i + U_h * T_e) / loss, "°C", "the temperature without the element"),
+        warmer=number(1000 / loss, "K/kW", "the rise of the temperature for each kilowatt"),
+        T=number(c * m / loss / 60, "min", "the time constant"),
+    )
+
+
+@milk.picture
+def _(m, F, U_h, T_i, T_e):
+    """A stirred tank of {m} with a heating element of the power P: {F} come in at {T_i} and leave; through the wall, of
+    {U_h}, heat passes to the dairy at {T_e}."""
+    layout = """
+        in  1    .    .    .
+        .   vat  vat  vat  dairy
+        .   vat  vat  vat  .
+        P   vat  vat  vat  out"""
+    names = {
+        "in": f"${written(F)}$ kg/s, ${written(T_i)}$ °C",
+        "dairy": f"dairy, ${written(T_e)}$ °C,\nby ${written(U_h)}$ W/K",
+        "out": f"${written(F)}$ kg/s",
+    }
+    vat = draw.tank(f"${written(m)}$ kg", stirrer=True, heater=True)
+    return draw.instrumentation_diagram(layout, "in 1 vat out", "P vat", {"vat": vat}, names)
+
+
+@milk.mistake("Heat also passes through the wall, between the vat and the dairy.")
+def _(m, F, c, T_i, T_SP):
+    return {"P": c * F * (T_SP - T_i) / 1000, "T_off": T_i, "warmer": 1000 / (c * F), "T": m / F / 60}
+
+
+@milk.mistake("The milk that flows through carries heat, too: it comes in cold and leaves as warm as the vat.")
+def _(m, c, U_h, T_e, T_SP):
+    return {"P": U_h * (T_SP - T_e) / 1000, "T_off": T_e, "warmer": 1000 / U_h, "T": c * m / U_h / 60}
+
+
+@milk.mistake("The dairy is warmer than the milk that comes in: the two differences of temperature are not the same.")
+def _(F, c, U_h, T_i, T_SP):
+    return {"P": (c * F + U_h) * (T_SP - T_i) / 1000}
+
+
+@milk.mistake(
+    "The mean of the two temperatures would be right if stream and wall carried the same heat for one kelvin."
+)
+def _(F, c, U_h, T_i, T_e):
+    mean, right = (T_i + T_e) / 2, (c * F * T_i + U_h * T_e) / (c * F + U_h)
+    return {"T_off": mean} if abs(mean / right - 1) > 0.03 else {}
+
+
+@milk.mistake("In which direction does heat pass through the wall when the vat is warmer than the dairy?")
+def _(m, F, c, U_h, T_i, T_e, T_SP):
+    loss = c * F - U_h
+    wrong = {"P": (c * F * (T_SP - T_i) - U_h * (T_SP - T_e)) / 1000, "T": c * m / loss / 60}
+    if loss < 0:
+        return _only(wrong, "P")
+    return wrong | {"T_off": (c * F * T_i - U_h * T_e) / loss, "warmer": 1000 / loss}
+
+
+def _for_each_kilowatt(rise):
+    """A difference of temperatures over the whole power."""
+
+    def found(F, c, U_h, T_i, T_e, T_SP):
+        each = 1000 * rise(T_i, T_e, T_SP) / (c * F * (T_SP - T_i) + U_h * (T_SP - T_e))
+        others = [1000 / (c * F), 1000 / U_h, 1000 / (c * F + U_h), 1000 / abs(c * F - U_h)]
+        return {"warmer": each} if _told_apart(each, *others, by=0.012) else {}
+
+    return found
+
+
+for _rise in (lambda T_i, T_e, T_SP: T_SP, lambda T_i, T_e, T_SP: T_SP - T_i, lambda T_i, T_e, T_SP: T_SP - T_e):
+    milk.mistake("Where is the milk without the element? Only what it is warmer than that comes from the power.")(
+        _for_each_kilowatt(_rise)
+    )
+
+
+@milk.mistake("Heat is carried away by a difference of temperatures. Between which two is that of the stream?")
+def _(F, c, U_h, T_SP):
+    return {"P": (c * F + U_h) * T_SP / 1000}
+
+
+@milk.mistake("There are two ways out for the heat. At which temperature does the milk come in?")
+def _(F, c, T_e, T_SP):
+    return {"P": c * F * (T_SP - T_e) / 1000}
+
+
+@milk.mistake("The energy inside is that of the whole mass. What is the rate of the temperature multiplied by?")
+def _(F, c, U_h):
+    return {"T": c / (c * F + U_h) / 60}
+
+
+@milk.mistake(
+    "That is the temperature that a kilowatt more would give. How many kelvin does it rise, from wherever it is?"
+)
+def _(F, c, U_h, T_i, T_e):
+    reached = (c * F * T_i + U_h * T_e + 1000) / (c * F + U_h)
+    return {"warmer": reached} if _told_apart(reached, 1000 / U_h, 1000 / (c * F), by=0.03) else {}
+
+
+milk.hints(
+    "Energy balance of the vat: the energy inside changes by the power of the element, plus what the stream brings, "
+    "minus what it carries away, minus what passes through the wall.",
+    "With $\\vartheta$ for the temperature of the milk, $cm\\,\\dot\\vartheta = P + cF\\,(T_i - \\vartheta) + "
+    "U_h\\,(T_e - \\vartheta)$. At rest, the left side is zero. For the last two questions collect what has "
+    "$\\vartheta$ in it.",
+    "For each kelvin, the stream carries $cF = {c}\\cdot{F}$ watts away and the wall {U_h} more. To hold {T_SP}, the "
+    "element has to make up for ${T_SP} - {T_i}$ kelvin in the stream, and for ${T_SP} - {T_e}$ at the wall.",
+)
+
+
+@milk.solution
+def _(m, F, c, U_h, T_i, T_e, T_SP):
+    r"""With $\vartheta$ for the temperature of the milk, the energy balance of the vat is, in watts,
+
+    $$cm\,\dot\vartheta = P + cF\,(T_i - \vartheta) + U_h\,(T_e - \vartheta)$$
+
+    For each kelvin the stream carries $cF = {c}\cdot{F} =$ {stream}, and the wall {U_h}.
+
+    **The power.** At rest $\dot\vartheta = 0$. The element makes up for both losses,
+    $P = {stream}\cdot({T_SP} - {T_i}) + {U_h}\cdot({T_SP} - {T_e})$, in watts, which is {P}.
+
+    **Without it** the stream pulls the milk to {T_i} and the wall to {T_e}. The balance at rest gives the mean of the
+    two, weighted with what each of them carries:
+    $\vartheta = ({stream}\cdot{T_i} + {U_h}\cdot{T_e})/({stream} + {U_h}) =$ {T_off}.
+
+    **For each kilowatt.** Collect what has $\vartheta$ in it: $cm\,\dot\vartheta + {loss}\,\vartheta = P + \dots$
+    In the end the rate is zero, so 1000 W more raise the temperature by $1000/{loss}$ kelvin, which is {warmer}.
+
+    **The time constant.** Divide the equation by {loss}. Then $\vartheta$ is alone, and in front of its rate is
+    ${c}\cdot{m}/{loss} = {seconds}$, in seconds: a time constant of {T}.
+    """
+    loss = c * F + U_h
+    return {"stream": (c * F, "W/K"), "loss": (loss, "W/K"), "seconds": c * m / loss}
+
+
+@milk.solution_picture
+def _(m, F, c, U_h, T_i, T_e, T_SP):
+    """The temperature after the element has failed: it falls from the setpoint to where stream and dairy pull it."""
+    loss = c * F + U_h
+    off, T = (c * F * T_i + U_h * T_e) / loss, c * m / loss / 60
+    milk_temperature = off + (T_SP - off) * sympy.exp(-t / T)
+    times = np.linspace(0, 5 * float(T), 201)
+    plot = time_plot({"$T$": (milk_temperature, "measurement")}, times, xlabel="$t$ [min]", ylabel="$T$ [°C]")
+    return plot.level(off, "without the element").mark(T, "one time constant")
+
+
+g_earth = sympy.Rational("9.81")
+TORQUE, INERTIA, RADIUS, CABIN, WEIGHT, G = sympy.symbols("T J r m_1 m_2 g", positive=True)
+
+
+def _lift(T, J, r, m_1, m_2, g):
+    return (T / r - (m_1 - m_2) * g) / (m_1 + m_2 + J / r**2)
+
+
+def _mistakes_differ(T, J, r, m_1, m_2):
+    """Whether the masses, and the accelerations, that follow from the usual mistakes are all different."""
+    masses = [m_1 + m_2, m_1 - m_2 + J / r**2, J + (m_1 + m_2) * r**2]
+    if not masses[1]:
+        return False
+    forces = [T / r - mass * g_earth for mass in (m_1 - m_2, m_1, m_1 + m_2, m_2 - m_1)]
+    others = [*forces[1:], -T / r - (m_1 - m_2) * g_earth]
+    moved = m_1 + m_2 + J / r**2
+    accelerations = [*(force / moved for force in others), *(forces[0] / mass for mass in (*masses[:2], moved * r))]
+    pairs = itertools.chain(itertools.combinations(masses, 2), itertools.combinations(accelerations, 2))
+    return all(abs(one - other) > abs(other) / 40 for one, other in pairs)
+
+
+@exercise(
+    "3.5",
+    title="A lift with a counterweight",
+    points=5,
+    insight="Weights that hang on both sides of a drum subtract, masses that move together add up.",
+    where=lambda m_1, m_2, J, r, T: (
+        abs(m_1 - m_2) >= 60
+        and abs(T) >= 200
+        and sympy.Rational(1, 5) <= abs(_lift(T, J, r, m_1, m_2, g_earth)) <= 2
+        and abs(T / r) <= 3 * abs(T / r - (m_1 - m_2) * g_earth)
+        and _mistakes_differ(T, J, r, m_1, m_2)
+    ),
+)
+def lift(
+    m_1=between(600, 1500, "kg", reference=1100, step=20),
+    m_2=between(800, 1200, "kg", reference=900, step=20),
+    J=between(20, 120, "kg m²", reference=50, step=5),
+    r=choice(0.25, 0.3, 0.35, 0.4, 0.5, unit="m", reference=0.4),
+    T=between(-2000, 2000, "N m", reference=1500, step=50),
+):
+    r"""A rope runs over the drum of a motor. On its one side hangs the cabin of a lift with the mass $m_1$ = {m_1},
+    people included, on the other a counterweight of $m_2$ = {m_2}. Drum and motor have the inertia $J$ = {J} and the
+    radius $r$ = {r}, and the rope does not slip. The motor turns with the torque $T$, positive where it lifts the
+    cabin. The mass of the rope and all friction are neglected, and $g$ = 9.81 m/s².
+
+    The tension of the rope is an inner force on each side. Eliminate both, and find the acceleration of the cabin,
+    upwards positive, as a formula in the symbols. Then in numbers: the mass that the rope seems to move, the torque
+    that holds the cabin where it is, and the acceleration under a torque of {T}.
+    """
+    return answers(
+        formula=expression(
+            _lift(TORQUE, INERTIA, RADIUS, CABIN, WEIGHT, G), "the formula for the acceleration of the cabin"
+        ),
+        mass=number(m_1 + m_2 + J / r**2, "kg", "the mass that seems to move"),
+        T_hold=number((m_1 - m_2) * g_earth * r, "N m", "the torque that holds the cabin"),
+        a=number(_lift(T, J, r, m_1, m_2, g_earth), "m/s²", "the acceleration"),
+    )
+
+
+@lift.picture
+def _(m_1, m_2, J, r):
+    """A rope over a drum of {J} with the radius {r}; on its left hangs the cabin of {m_1}, on its right the
+    counterweight of {m_2}. The torque T lifts the cabin."""
+    cabin, weight = f"${written(m_1)}$ kg", f"${written(m_2)}$ kg"
+    return draw.hoist(cabin, weight, f"${written(J)}$ kg m²", f"${written(r)}$ m")
+
+
+def _lift_with(mass, weight):
+    """Formula, mass and acceleration of somebody who counts another mass or another weight."""
+
+    def found(m_1, m_2, J, r, T):
+        in_letters = {"m_1": CABIN, "m_2": WEIGHT, "J": INERTIA, "r": RADIUS}
+        in_numbers = {"m_1": m_1, "m_2": m_2, "J": J, "r": r}
+        return {
+            "formula": (TORQUE / RADIUS - weight(**in_letters) * G) / mass(**in_letters),
+            "mass": mass(**in_numbers),
+            "T_hold": weight(**in_numbers) * g_earth * r,
+            "a": (T / r - weight(**in_numbers) * g_earth) / mass(**in_numbers),
+        }
+
+    return found
+
+
+def _moved(m_1, m_2, J, r):
+    """The mass that the rope seems to move."""
+    return m_1 + m_2 + J / r**2
+
+
+def _only(found, *names):
+    return {name: found[name] for name in names}
+
+
+@lift.mistake("Drum and motor have to be turned as well. What is their inertia, seen from the rope?")
+def _(m_1, m_2, J, r, T):
+    found = _lift_with(lambda m_1, m_2, J, r: m_1 + m_2, lambda m_1, m_2, J, r: m_1 - m_2)(m_1, m_2, J, r, T)
+    different = found["mass"] * sympy.Rational("1.02") < m_1 + m_2 + J / r**2
+    return _only(found, "formula", "mass", "a") if different else _only(found, "formula")
+
+
+@lift.mistake(
+    "The weights of cabin and counterweight pull against each other, but both masses have to be set in motion. "
+    "Which of the two is a difference, which a sum?"
+)
+def _(m_1, m_2, J, r, T):
+    found = _lift_with(lambda m_1, m_2, J, r: m_1 - m_2 + J / r**2, lambda m_1, m_2, J, r: m_1 - m_2)(m_1, m_2, J, r, T)
+    return _only(found, "formula", "mass", "a")
+
+
+@lift.mistake("Which way does this torque turn the drum? A negative one helps to lower the cabin.")
+def _(m_1, m_2, J, r, T):
+    return {"a": _lift(-T, J, r, m_1, m_2, g_earth)} if T < 0 else {}
+
+
+@lift.mistake("The counterweight helps the motor: it pulls on the other side of the drum.")
+def _(m_1, m_2, J, r, T):
+    found = _lift_with(_moved, lambda m_1, m_2, J, r: m_1)(m_1, m_2, J, r, T)
+    return _only(found, "formula", "T_hold", "a")
+
+
+@lift.mistake(
+    "The weights of cabin and counterweight are on two sides of the drum. Do they turn it in the same direction?"
+)
+def _(m_1, m_2, J, r, T):
+    found = _lift_with(_moved, lambda m_1, m_2, J, r: m_1 + m_2)(m_1, m_2, J, r, T)
+    return _only(found, "formula", "T_hold", "a")
+
+
+@lift.mistake("Which of the two weights pulls the cabin down, and which one up?")
+def _(m_1, m_2, J, r, T):
+    found = _lift_with(_moved, lambda m_1, m_2, J, r: m_2 - m_1)(m_1, m_2, J, r, T)
+    return _only(found, "formula", "a")
+
+
+@lift.mistake("That belongs to the turning of the drum. How is the motion of the rope connected with it?")
+def _(m_1, m_2, J, r, T):
+    angular = _lift(TORQUE, INERTIA, RADIUS, CABIN, WEIGHT, G) / RADIUS
+    return {"formula": angular, "mass": J + (m_1 + m_2) * r**2, "a": _lift(T, J, r, m_1, m_2, g_earth) / r}
+
+
+@lift.mistake("An inertia in kg m² becomes a mass when it is divided by what? Look at the units.")
+def _(m_1, m_2, J, r, T):
+    found = _lift_with(lambda m_1, m_2, J, r: m_1 + m_2 + J / r, lambda m_1, m_2, J, r: m_1 - m_2)(m_1, m_2, J, r, T)
+    different = _told_apart(found["mass"], m_1 + m_2, m_1 + m_2 + J / r**2, J + (m_1 + m_2) * r**2, by=0.015)
+    return _only(found, "formula", "mass", "a") if different else _only(found, "formula")
+
+
+@lift.mistake("Where are the weights of cabin and counterweight? They are not equal.")
+def _(m_1, m_2, J, r, T):
+    found = _lift_with(_moved, lambda m_1, m_2, J, r: 0 * m_1)(m_1, m_2, J, r, T)
+    right = _lift(T, J, r, m_1, m_2, g_earth)
+    return _only(found, "formula", "a") if _told_apart(found["a"], right, -right, by=0.03) else _only(found, "formula")
+
+
+@lift.mistake("A torque is a force times its arm, or a force is a torque over its arm. Which of the two is asked for?")
+def _(m_1, m_2, r):
+    return {"T_hold": (m_1 - m_2) * g_earth / r}
+
+
+@lift.mistake("A mass is not yet a force. How large is the force of gravity on it?")
+def _(m_1, m_2, r):
+    return {"T_hold": (m_1 - m_2) * r}
+
+
+@lift.mistake("An inertia in kg m² does not become a mass when it is multiplied by the radius. Look at the units.")
+def _(m_1, m_2, J, r, T):
+    found = _lift_with(lambda m_1, m_2, J, r: m_1 + m_2 + J * r**2, lambda m_1, m_2, J, r: m_1 - m_2)(m_1, m_2, J, r, T)
+    return _only(found, "formula")
+
+
+@lift.mistake("A torque is not a force. How long is the arm at which the rope pulls?")
+def _(m_1, m_2, J, r, T):
+    return {
+        "formula": (TORQUE - (CABIN - WEIGHT) * G) / (CABIN + WEIGHT + INERTIA / RADIUS**2),
+        "T_hold": (m_1 - m_2) * g_earth,
+        "a": _lift(T * r, J, r, m_1, m_2, g_earth),
+    }
+
+
+@lift.mistake("In the formula, leave $g$ a symbol.")
+def _():
+    return {"formula": _lift(TORQUE, INERTIA, RADIUS, CABIN, WEIGHT, g_earth)}
+
+
+lift.hints(
+    "Cut the rope on both sides of the drum. Then there are three bodies, and each has a balance: two of forces, one "
+    "of torques.",
+    "With the tensions $F_1$ and $F_2$: $m_1 a = F_1 - m_1 g$ for the cabin, $m_2 a = m_2 g - F_2$ for the "
+    "counterweight, which goes down as fast as the cabin goes up, and $J\\,a/r = T - F_1 r + F_2 r$ for the drum.",
+    "Solve the first two for the tensions and put them into the third, divided by $r$. What multiplies $a$ then is "
+    "$m_1 + m_2 + J/r^2 = {m_1} + {m_2} + \\frac{ {J} }{ {r}^2 }$, in kilograms.",
+)
+
+
+@lift.solution
+def _(m_1, m_2, J, r, T):
+    r"""Cut the rope on both sides, with the tensions $F_1$ and $F_2$. When the cabin goes up with $a$, the
+    counterweight goes down with $a$, and the drum turns with $a/r$:
+
+    $$m_1 a = F_1 - m_1 g, \qquad m_2 a = m_2 g - F_2, \qquad J\,a/r = T - F_1 r + F_2 r$$
+
+    The first two give $F_1 = m_1(g + a)$ and $F_2 = m_2(g - a)$. Put them into the third one and divide by $r$:
+    $J a/r^2 = T/r - m_1(g + a) + m_2(g - a)$. Collect $a$:
+
+    $$a = \frac{T/r - (m_1 - m_2)\,g}{m_1 + m_2 + J/r^2}$$
+
+    **The mass that seems to move** is what is below the line: ${m_1} + {m_2} + {J}/{r}^2 =$ {mass}. The drum counts
+    as {drum} in it.
+
+    **To hold the cabin** the force above the line must be zero: $T = (m_1 - m_2)\,g\,r$, and
+    $({m_1} - {m_2})\cdot 9.81\cdot{r} =$ {T_hold}.
+
+    **Under the torque of {T}** the force is ${T}/{r} - ({m_1} - {m_2})\cdot 9.81 = {force}$ newtons, and divided by
+    the mass this is {a}.
+    """
+    return {"drum": (J / r**2, "kg"), "force": T / r - (m_1 - m_2) * g_earth, "T": (T, "N m")}
+
+
+# Circuits of two resistors and a capacitor: what they look like, how they are drawn, and the rate of the capacitor's
+# voltage v.
+R_1, R_2, C, V_IN, V_C = sympy.symbols("R_1 R_2 C v_in v", positive=True)
+CIRCUITS = {
+    "loaded": (
+        "A resistor $R_1$ leads from the input to the output. From the output to ground lead a capacitor $C$ and, "
+        "beside it, a resistor $R_2$, which is the input resistance of the instrument that reads the voltage",
+        (["R_1"], ["C", "R_2"], False),
+        ((V_IN - V_C) / R_1 - V_C / R_2) / C,
+    ),
+    "stepped": (
+        "A resistor $R_1$ leads from the input to the output. From the output to ground lead, one behind the other, a "
+        "resistor $R_2$ and a capacitor $C$",
+        (["R_1"], ["R_2", "C"], True),
+        (V_IN - V_C) / (R_1 + R_2) / C,
+    ),
+    "bridged": (
+        "A resistor $R_1$ and, beside it, a capacitor $C$ lead from the input to the output. From the output to "
+        "ground leads a resistor $R_2$",
+        (["R_1", "C"], ["R_2"], False),
+        ((V_IN - V_C) / R_2 - V_C / R_1) / C,
+    ),
+}
+
+
+def _lag(circuit, R_1, R_2, C):
+    return (R_1 + R_2) * C if circuit == "stepped" else R_1 * R_2 * C / (R_1 + R_2)
+
+
+def _slow_and_fast(circuit, r_1, r_2):
+    """By what the circuit multiplies a constant voltage, and a very fast one."""
+    share = r_2 / (r_1 + r_2)
+    return {
+        "loaded": (share, sympy.Integer(0)),
+        "stepped": (sympy.Integer(1), share),
+        "bridged": (share, sympy.Integer(1)),
+    }[circuit]
+
+
+@exercise(
+    "3.6",
+    title="Two resistors and a capacitor",
+    points=5,
+    where=lambda r_1, r_2: r_1 != r_2,
+    insight="Ask what a capacitor does at the two ends: it stops a constant current, and lets a very fast one through.",
+)
+def two_resistors(
+    circuit=choice(*CIRCUITS, reference="loaded"),
+    r_1=between(1, 20, "kΩ", reference=5),
+    r_2=between(2, 60, "kΩ", reference=20),
+    c=choice(1, 2, 5, 10, 20, 50, unit="µF", reference=10),
+):
+    r"""{looks}. Nothing else takes a current from the output.
+
+    The voltage over the capacitor is $v$, with its plus at the side towards the input. Set up the balance of the
+    currents: with which rate $\dot v$ does it change, as a formula in $v$, the input voltage $v_{in}$, $R_1$, $R_2$
+    and $C$?
+
+    Now let $R_1$ = {r_1}, $R_2$ = {r_2} and $C$ = {c}. With which time constant does the capacitor follow? By which
+    factor does the circuit multiply a constant voltage on its way to the output, and by which one a voltage that
+    changes very fast?
+    """
+    slow, fast = _slow_and_fast(circuit, r_1, r_2)
+    return answers(
+        rate=expression(
+            CIRCUITS[circuit][2], "the rate of the voltage over the capacitor", symbols="R_1 R_2 C v_in v", unit="V/s"
+        ),
+        T=number(_lag(circuit, r_1, r_2, c), "ms", "the time constant"),
+        slow=number(slow, "", "the factor for a constant voltage"),
+        fast=number(fast, "", "the factor for a very fast one"),
+    )
+
+
+@two_resistors.picture
+def _(circuit, r_1, r_2, c):
+    """The circuit. {looks}. The voltage v over the capacitor has its plus at the side towards the input."""
+    values = {"R_1": written(r_1, "kΩ"), "R_2": written(r_2, "kΩ"), "C": written(c, "µF")}
+    title = ", ".join(f"${name}$ = {value}" for name, value in values.items())
+    return draw.voltage_divider(*CIRCUITS[circuit][1], title=title, voltages={"C": "v"})
+
+
+@two_resistors.mistake("There is a second resistor, and a current flows through it as well.")
+def _(circuit, r_1, c):
+    alone = {"loaded": (V_IN - V_C) / (R_1 * C), "stepped": (V_IN - V_C) / (R_1 * C), "bridged": -V_C / (R_1 * C)}
+    return {"rate": alone[circuit], "T": r_1 * c}
+
+
+@two_resistors.mistake("There is a second resistor, and a current flows through it as well.")
+def _(circuit, r_2, c):
+    alone = {"loaded": -V_C / (R_2 * C), "stepped": (V_IN - V_C) / (R_2 * C), "bridged": (V_IN - V_C) / (R_2 * C)}
+    return {"rate": alone[circuit], "T": r_2 * c}
+
+
+@two_resistors.mistake(
+    "Which of the currents charge the capacitor, and which one discharges it? They have opposite signs."
+)
+def _(circuit):
+    wrong = {
+        "loaded": ((V_IN - V_C) / R_1 + V_C / R_2) / C,
+        "stepped": (V_IN + V_C) / ((R_1 + R_2) * C),
+        "bridged": ((V_IN - V_C) / R_2 + V_C / R_1) / C,
+    }
+    return {"rate": wrong[circuit]}
+
+
+@two_resistors.mistake("Across which of the two resistors is the output voltage?")
+def _(circuit, r_1, r_2):
+    return {"fast" if circuit == "stepped" else "slow": r_1 / (r_1 + r_2)} if abs(r_1 / r_2 - 1) > 0.03 else {}
+
+
+@two_resistors.mistake(
+    "Replace the source by a wire, for which its voltage is zero. Are the two resistors, seen from the capacitor, "
+    "in series or in parallel?"
+)
+def _(circuit, r_1, r_2, c):
+    return {"T": r_1 * r_2 * c / (r_1 + r_2) if circuit == "stepped" else (r_1 + r_2) * c}
+
+
+@two_resistors.mistake(
+    "Replace the source by a wire, for which its voltage is zero. Are the two resistors, seen from the capacitor, "
+    "in series or in parallel?"
+)
+def _(circuit):
+    end = {"loaded": V_IN * R_2 / (R_1 + R_2), "stepped": V_IN, "bridged": V_IN * R_1 / (R_1 + R_2)}[circuit]
+    lag = R_1 * R_2 / (R_1 + R_2) if circuit == "stepped" else R_1 + R_2
+    return {"rate": (end - V_C) / (lag * C)}
+
+
+@two_resistors.mistake("Which of the three parts share one current, and which of them share one voltage?")
+def _(circuit):
+    _, _, other = CIRCUITS["loaded" if circuit == "stepped" else "stepped"]
+    return {"rate": other}
+
+
+@two_resistors.mistake("When the capacitor is charged, it takes no current. To which voltage is it charged, then?")
+def _(circuit):
+    end = {"loaded": V_IN, "stepped": V_IN * R_2 / (R_1 + R_2), "bridged": V_IN}[circuit]
+    return {"rate": (end - V_C) / (_lag(circuit, R_1, R_2, C))}
+
+
+@two_resistors.mistake("That is a current. Which law connects the current into a capacitor with its voltage?")
+def _(circuit):
+    return {"rate": CIRCUITS[circuit][2] * C}
+
+
+@two_resistors.mistake("That is the circuit with its values. Give the formula in the symbols.")
+def _(circuit, r_1, r_2, c):
+    return {"rate": CIRCUITS[circuit][2].subs({R_1: 1000 * r_1, R_2: 1000 * r_2, C: c / 10**6})}
+
+
+@two_resistors.mistake("A capacitor lets no constant current through, and is like a wire for a very fast one.")
+def _(circuit, r_1, r_2):
+    slow, fast = _slow_and_fast(circuit, r_1, r_2)
+    return {"slow": fast, "fast": slow}
+
+
+def _seen_otherwise(name, wrong):
+    """One of the two factors as 0 or 1, where neither of them is that."""
+
+    def found(circuit, r_1, r_2):
+        return {name: wrong} if wrong not in _slow_and_fast(circuit, r_1, r_2) else {}
+
+    return found
+
+
+for _name, _sentence in (
+    ("slow", "Take the capacitor out of the circuit. Through which resistors does a current flow then?"),
+    ("fast", "Put a wire in the place of the capacitor. Which parts are bridged by it, and where is the output then?"),
+):
+    for _wrong in (0, 1):
+        two_resistors.mistake(_sentence)(_seen_otherwise(_name, _wrong))
+
+two_resistors.hints(
+    "Kirchhoff's law of currents: what flows into a junction flows out of it. The current into a capacitor is "
+    "$C\\dot v$, that through a resistor is its voltage over $R$.",
+    "{way}",
+    "For the two factors, take the capacitor out of the circuit (constant voltage), and then put a wire in its place "
+    "(very fast). With $R_1 = {r_1}$ and $R_2 = {r_2}$, in kΩ, what is left is a voltage divider, or less than that.",
+)
+
+
+@two_resistors.shows
+def _(circuit):
+    way = {
+        "loaded": "At the output three branches meet: what comes through $R_1$, with the voltage $v_{in} - v$, goes on "
+        "through $C$ and through $R_2$, which both have the voltage $v$.",
+        "stepped": "All three are one behind the other and share one current. The two resistors together have the "
+        "voltage $v_{in} - v$.",
+        "bridged": "The voltage over $R_1$ is $v$ as well, so $R_2$ has $v_{in} - v$. What comes through $C$ and $R_1$ "
+        "together goes on through $R_2$.",
+    }
+    return {"looks": CIRCUITS[circuit][0], "way": way[circuit]}
+
+
+@two_resistors.solution
+def _(circuit, r_1, r_2, c):
+    r"""{way} So the balance of the currents is
+
+    $${balance}$$
+
+    and solved for the rate it is $\dot v = {solved}$.
+
+    **The time constant.** Collect what has $v$ in it and bring the equation to the form $T\dot v + v = \dots$: in
+    front of the rate is {lag}, with the two resistors in {together}. With kΩ times µF in milliseconds, $T$ = {T}.
+
+    **A constant voltage.** The capacitor is charged and takes no current. Take it out of the circuit: what is left
+    multiplies the voltage by {how_slow}{slow}.
+
+    **A very fast one.** The capacitor has no time to change its voltage, and lets the current through like a wire:
+    now the circuit multiplies it by {how_fast}{fast}.
+    """
+    balance = {
+        "loaded": r"\frac{v_{in} - v}{R_1} = C\dot v + \frac{v}{R_2}",
+        "stepped": r"C\dot v = \frac{v_{in} - v}{R_1 + R_2}",
+        "bridged": r"C\dot v + \frac{v}{R_1} = \frac{v_{in} - v}{R_2}",
+    }
+    solved = {
+        "loaded": r"\frac{1}{C}\left(\frac{v_{in} - v}{R_1} - \frac{v}{R_2}\right)",
+        "stepped": r"\frac{v_{in} - v}{(R_1 + R_2)\,C}",
+        "bridged": r"\frac{1}{C}\left(\frac{v_{in} - v}{R_2} - \frac{v}{R_1}\right)",
+    }
+    in_series = circuit == "stepped"
+    share = r"$\frac{R_2}{R_1 + R_2}$, which is "
+    return {
+        "how_slow": "" if in_series else share,
+        "how_fast": share if in_series else "",
+        "balance": balance[circuit],
+        "solved": solved[circuit],
+        "lag": r"$(R_1 + R_2)\,C$" if in_series else r"$\frac{R_1 R_2}{R_1 + R_2}\,C$",
+        "together": "series" if in_series else "parallel",
+    }
+
+
+@two_resistors.solution_picture
+def _(circuit, r_1, r_2, c):
+    """The output after a step of the input, from the factor for very fast voltages to that for constant ones."""
+    slow, fast = _slow_and_fast(circuit, r_1, r_2)
+    T = _lag(circuit, r_1, r_2, c)
+    output = slow + (fast - slow) * sympy.exp(-t / T)
+    axes = {"xlabel": "$t$ [ms]", "ylabel": "$v_{out}/v_{in}$", "ylim": (-0.05, 1.1)}
+    return time_plot({"$v_{out}$": (output, "measurement")}, np.linspace(0, 5 * float(T), 201), **axes).level(
+        slow, "slow"
+    )
+
+
+@exercise(
+    "3.7",
+    title="A filter against the hum",
+    points=5,
+    insight="A filter that takes more of the hum away also follows more slowly: one number for two wishes.",
+    where=lambda f, rest, t_95: (
+        1.3 <= 2 * math.pi * f * t_95 / 1000 / math.log(20) / math.sqrt((100 / float(rest)) ** 2 - 1) <= 4
+    ),
+)
+def hum(
+    f=choice(50, 60, unit="Hz", reference=50),
+    rest=choice(2, 3, 4, 5, 6, 8, 10, 12, 15, unit="%", reference=5),
+    t_95=between(60, 800, "ms", reference=300, step=20),
+    C=choice(1, 2.2, 3.3, 4.7, 6.8, 10, 15, 22, unit="µF", reference=4.7),
+):
+    r"""The signal of a thermometer carries the hum of the mains, a sine of {f}. An RC circuit as in Example 3.5
+    should take it away. A capacitor of {C} is at hand.
+
+    Choose the resistance $R$: at most {rest} of the amplitude of the hum should come through. And when the
+    temperature makes a step, the output should have gone 95 % of the way after {t_95} at the latest.
+    """
+    omega, capacitance, end = 2 * math.pi * float(f), float(C) * 1e-6, float(t_95)
+
+    def hum_left(R):
+        return 100 / math.hypot(1, omega * R * 1000 * capacitance)
+
+    def time_to_95(R):
+        return 1000 * math.log(20) * R * 1000 * capacitance
+
+    smallest = math.sqrt((100 / float(rest)) ** 2 - 1) / omega / capacitance / 1000
+    largest = end / 1000 / math.log(20) / capacitance / 1000
+
+    def step_and_hum(R):
+        seconds = max(R, 1e-6) * 1000 * capacitance
+        times = np.linspace(0, 2 * end / 1000, 2001)
+        step = 100 * (1 - np.exp(-times / seconds))
+        signals = {
+            "step and hum, filtered": (step + hum_left(R) / 3 * np.sin(omega * times), "measurement"),
+            "the step alone": (step, "setpoint"),
+        }
+        plot = time_plot(signals, 1000 * times, f"With $R$ = {R:.4g} kΩ", xlabel="$t$ [ms]", ylabel="way [%]")
+        return plot.event(end, "from here on at least 95 %").level(95, "95 %")
+
+    return answers(
+        R=design(
+            number(math.sqrt(smallest * largest), "kΩ", "the resistance"),
+            criterion("the resistance is positive", lambda R: R > 0),
+            criterion("the rest of the hum", hum_left, below=float(rest), unit="%"),
+            criterion("the time to 95 % of the way", time_to_95, below=end, unit="ms"),
+            draws=step_and_hum,
+        )
+    )
+
+
+def _limits(f, rest, t_95, C):
+    """The products RC between which both wishes come true, in seconds."""
+    return math.sqrt((100 / float(rest)) ** 2 - 1) / (2 * math.pi * float(f)), float(t_95) / 1000 / math.log(20)
+
+
+@hum.picture
+def _(C):
+    """An RC circuit: the voltage v_in lies over the resistor R and the capacitor of {C} in a row, v_out over the
+    capacitor alone."""
+    return draw.rc_circuit(capacitor=f"${written(C)}$ µF")
+
+
+@hum.mistake("The frequency in hertz counts periods. How many radians does the sine go in a second?")
+def _(f, rest, t_95, C):
+    smallest = 2 * math.pi * _limits(f, rest, t_95, C)[0] / float(C) * 1000
+    return {"R": smallest} if _told_apart(smallest, float(t_95) / float(C), by=0.03) else {}
+
+
+@hum.mistake("After one time constant a step has gone only 63 % of its way. How many time constants take it to 95 %?")
+def _(t_95, C):
+    return {"R": float(t_95) / float(C)}
+
+
+@hum.mistake("That is the circuit that takes so much away. How much should come through?")
+def _(f, rest, t_95, C):
+    omega = 2 * math.pi * float(f)
+    taken = 1 - float(rest) / 100
+    return {"R": math.sqrt(1 / taken**2 - 1) / omega / float(C) * 1000}
+
+
+@hum.mistake(
+    "At this resistance the sine still has 71 % of its amplitude: that is where the filter only begins to act."
+)
+def _(f, C):
+    return {"R": 1 / (2 * math.pi * float(f)) / float(C) * 1000}
+
+
+hum.hints(
+    "Each wish is a limit of the product $RC$, one from below and one from above.",
+    "A sine comes through with $1/\\sqrt{1 + (\\omega RC)^2}$ of its amplitude, with $\\omega$ in radians per "
+    "second. A step has gone $1 - e^{-t/RC}$ of its way.",
+    "Here $\\omega = 2\\pi\\cdot{f}$, and $1/\\sqrt{1 + (\\omega RC)^2}$ must be at most ${rest}/100$. The step must "
+    "have gone 95 % at {t_95}: $e^{-{t_95}/RC} = 0.05$, with $RC$ in milliseconds.",
+)
+
+
+@hum.solution
+def _(f, rest, t_95, C):
+    r"""**Against the hum.** With $\omega = 2\pi\cdot{f} =$ {omega}, the rest of the sine is $1/\sqrt{1 + (\omega
+    RC)^2}$. At most {rest} means $\omega RC \geq \sqrt{(100/{rest})^2 - 1} = {product}$, so $RC$ must be at least
+    {shortest}.
+
+    **For the step.** $1 - e^{-t/RC}$ is 95 % after $\ln 20$ = 3.0 time constants. At {t_95} at the latest means
+    that $RC$ is at most {longest}.
+
+    With a capacitor of {C}, these are resistances from {smallest} to {largest}. Any of them will do; the geometric
+    mean has the same reserve to both sides: $R$ = {R}.
+    """
+    shortest, longest = _limits(f, rest, t_95, C)
+    capacitance = float(C) * 1e-6
+    return {
+        "omega": (2 * math.pi * float(f), "rad/s"),
+        "product": math.sqrt((100 / float(rest)) ** 2 - 1),
+        "shortest": (1000 * shortest, "ms"),
+        "longest": (1000 * longest, "ms"),
+        "smallest": (shortest / capacitance / 1000, "kΩ"),
+        "largest": (longest / capacitance / 1000, "kΩ"),
+    }
+
+
+# Openings through which water leaves a tank: the power of the level with which the outflow grows.
+OPENINGS = {"a hole in the bottom": sympy.Rational(1, 2), "a slot in the wall": sympy.Rational(3, 2)}
+DEEPEST = 2  # metres
+
+
+def _flows(opening, h_s, q_i):
+    """Levels, inflow and outflow of the picture, in metres and litres per second."""
+    levels = np.linspace(0, DEEPEST, 201)
+    return levels, np.full(levels.shape, float(q_i)), float(q_i) * (levels / float(h_s)) ** float(OPENINGS[opening])
+
+
+@exercise(
+    "3.8",
+    title="A balance seen in a picture",
+    points=4,
+    where=lambda opening, h_s, q_i, h_1: (
+        (h_s >= 1 or opening == "a hole in the bottom") and abs((h_1 / h_s) ** OPENINGS[opening] - 1) >= 0.25
+    ),
+    insight="Near its rest, a tank feels only the slope of its outflow: that is all of linearisation.",
+)
+def seen_balance(
+    opening=choice(*OPENINGS, reference="a hole in the bottom"),
+    A=between(1, 6, "m²", reference=3, step=0.5),
+    h_s=between(0.7, 1.4, "m", reference=0.9, step=0.1),
+    q_i=between(8, 30, "L/s", reference=16, step=1),
+    h_1=between(0.3, 1.8, "m", reference=0.4, step=0.1),
+):
+    r"""Water flows into a tank with upright walls and a cross-section of {A}, always at the same rate, and leaves
+    it through {opening}. Nobody knows the formula of this opening, so the outflow has been measured at many levels.
+    The picture shows both flows.
+
+    At which level does the tank come to rest? At which rate does the level change while it is at {h_1} (negative if
+    it falls)? And with which time constant does it come back after a small disturbance of its rest? For this, lay a
+    ruler along the curve at the place of rest: near it, the outflow is as good as a straight line.
+
+    (`h, q_i, q_o = exercise("3.8").given("h", "q_i", "q_o")` are the levels [m], the inflow and the outflow [L/s].)
+    """
+    power = OPENINGS[opening]
+    return answers(
+        h_s=number(h_s, "m", "the level at rest", within=0.06),
+        rate=number(q_i * (1 - (h_1 / h_s) ** power) / A, "mm/s", "the rate of the level", within=0.15),
+        T=number(1000 * A * h_s / (power * q_i) / 60, "min", "the time constant", within=0.15),
+    )
+
+
+@seen_balance.shows
+def _(opening, h_s, q_i):
+    levels, inflow, outflow = _flows(opening, h_s, q_i)
+    return {"h": levels, "q_i": inflow, "q_o": outflow}
+
+
+@seen_balance.picture
+def _(opening, h_s, q_i):
+    """Two curves against the level: the inflow is constant, the outflow grows with the level and crosses it once."""
+    return _both_flows(opening, h_s, q_i, "Inflow and outflow of the tank")
+
+
+def _both_flows(opening, h_s, q_i, title):
+    levels, inflow, outflow = _flows(opening, h_s, q_i)
+    curves = {"inflow": (levels, inflow, "control signal"), "outflow": (levels, outflow, "measurement")}
+    return plane_plot(curves, "$h$ [m]", "flow [L/s]", title, xlim=(0, DEEPEST), ylim=(0, 1.05 * outflow[-1]))
+
+
+@seen_balance.mistake("That is the flow at which the two curves meet. At which level do they?")
+def _(q_i):
+    return {"h_s": q_i}
+
+
+def _told_apart(value, *others, by=0.35):
+    """Whether a value differs from all others, as a rule by more than a ruler may be off."""
+    return all(abs(value / other - 1) > by for other in others)
+
+
+def _rates(opening, h_s, q_i, h_1, A):
+    """The rate of the level, and those of four mistakes: a sum, no area, no inflow, no outflow."""
+    share = (h_1 / h_s) ** OPENINGS[opening]
+    return [q_i * (1 - share) / A, q_i * (1 + share) / A, q_i * (1 - share), -q_i * share / A, q_i / A]
+
+
+#: What is said of the rates of the mistakes, and of one that a ruler cannot tell from another one.
+RATES = [
+    "What comes in raises the level, what goes out lowers it. Do the two flows add up?",
+    "That is the flow that is left over. A litre on a square metre is one millimetre high.",
+    "Something also comes in. How far apart are the two curves at this level?",
+    "That is what comes in. What goes out at this level, at the same time?",
+]
+UNTOLD = "How far apart are the two curves at this level, and what does that much water do to this area?"
+
+
+def _rate_of(number, is_told):
+    """The rate of one of the mistakes, if a ruler can tell it from the others, or else if it cannot."""
+
+    def found(opening, h_s, q_i, h_1, A):
+        right, *wrong = _rates(opening, h_s, q_i, h_1, A)
+        rate = wrong.pop(number)
+        return {"rate": rate} if _told_apart(rate, right, by=0.2) and _told_apart(rate, *wrong) == is_told else {}
+
+    return found
+
+
+for _number, _sentence in enumerate(RATES):
+    seen_balance.mistake(_sentence)(_rate_of(_number, is_told=True))
+for _number in range(len(RATES)):
+    seen_balance.mistake(UNTOLD)(_rate_of(_number, is_told=False))
+
+
+def _times(opening, A, h_s, q_i, h_1):
+    """The time constant, and those of three mistakes: the line to the origin, the other level, no area."""
+    power = OPENINGS[opening]
+    right = 1000 * A * h_s / (power * q_i) / 60
+    return [right, right * power, right * (h_1 / h_s) ** (1 - power), right / A]
+
+
+@seen_balance.mistake(
+    "That is the slope of the line to the origin. Which slope has the curve itself where the level rests?"
+)
+def _(opening, A, h_s, q_i, h_1):
+    return {"T": _times(opening, A, h_s, q_i, h_1)[1]}
+
+
+@seen_balance.mistake("That is the slope of the curve at the other level. Near which level is the small disturbance?")
+def _(opening, A, h_s, q_i, h_1):
+    right, origin, elsewhere, _ = _times(opening, A, h_s, q_i, h_1)
+    return {"T": elsewhere} if _told_apart(elsewhere, right, origin) else {}
+
+
+@seen_balance.mistake("A steep outflow brings the level back sooner. What is divided by what in the time constant?")
+def _(opening, A, h_s, q_i, h_1):
+    multiplied = A * OPENINGS[opening] * q_i / h_s / 60
+    return {"T": multiplied} if _told_apart(multiplied, *_times(opening, A, h_s, q_i, h_1)) else {}
+
+
+@seen_balance.mistake("That would be a tank of one square metre. How many litres has one metre of this one?")
+def _(opening, A, h_s, q_i, h_1):
+    right, origin, elsewhere, without = _times(opening, A, h_s, q_i, h_1)
+    return {"T": without} if _told_apart(without, right, origin, elsewhere) else {}
+
+
+seen_balance.hints(
+    "The balance of the tank, $A\\,\\dot h = q_i - q_o$, is in the picture: the distance between the two curves.",
+    "At rest the curves meet. Elsewhere their distance, divided by the area, is the rate; a litre on a square metre "
+    "is one millimetre. Near the rest the outflow is $q_o \\approx q_i + k\\,(h - h_s)$, with the slope $k$ of the "
+    "curve there.",
+    "For a small deviation $x = h - h_s$ the balance becomes ${A}\\,\\dot x = -k\\,x$, with $k$ in m³/s for each "
+    "metre. That is $T\\dot x + x = 0$. Read off the slope, as a flow that belongs to one metre of your ruler, and "
+    "mind the litres.",
+)
+
+
+@seen_balance.solution
+def _(opening, A, h_s, q_i, h_1):
+    r"""The balance is $A\,\dot h = q_i - q_o$. Both flows are in the picture, so their distance is what is left over.
+
+    **At rest** nothing is left over: the curves meet at a level of {h_s} and a flow of {flow}.
+
+    **At {h_1}** the outflow is {out}, so {left} are left over. A litre on a square metre is one millimetre high:
+    ${left}/{A} =$ {rate}.
+
+    **Near the rest** put the ruler along the outflow. It rises by {slope} for each metre, which are {cubic} m³/s. A
+    small deviation $x$ from the rest lets that much more flow out, $A\,\dot x = -{cubic}\,x$, and so
+
+    $$T = \frac{ {A} }{ {cubic} } = {seconds}$$
+
+    in seconds, or {T}. The steeper the outflow, the sooner the level is back.
+    """
+    power = OPENINGS[opening]
+    out = float(q_i) * float(h_1 / h_s) ** float(power)
+    slope = power * q_i / h_s
+    return {
+        "flow": (q_i, "L/s"),
+        "out": (out, "L/s"),
+        "left": (float(q_i) - out, "L/s"),
+        "slope": (slope, "L/s"),
+        "cubic": float(slope / 1000),
+        "seconds": 1000 * A / slope,
+    }
+
+
+@seen_balance.solution_picture
+def _(opening, h_s, q_i):
+    """The two flows, and the straight line that takes the place of the outflow near the rest."""
+    plot = _both_flows(opening, h_s, q_i, "The ruler at the place of rest")
+    slope, reach = float(OPENINGS[opening] * q_i / h_s), 0.5
+    ends = np.array([float(h_s) - reach, float(h_s) + reach])
+    plot = plot.line(ends, float(q_i) + slope * (ends - float(h_s)), "ruler", role="setpoint")
+    return plot.points(float(h_s), float(q_i), "rest")

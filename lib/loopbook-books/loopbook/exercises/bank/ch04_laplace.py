@@ -1,0 +1,995 @@
+"""Exercises of chapter 4, the Laplace transform."""
+
+import numpy as np
+from sympy import Heaviside, Symbol, exp, log
+
+from exercisebook.parameters import written
+from loopbook.exercises.authoring import (
+    answers,
+    between,
+    choice,
+    exercise,
+    number,
+    time_function,
+    transfer_function,
+    words,
+)
+from loopbook.expressions import s, t
+from loopbook.figures import time_plot
+
+
+def _apart(value, *others):
+    """Whether the value of a mistake differs clearly from the key and from the values of other mistakes."""
+    return all(abs(value - other) > 0.03 * abs(other) for other in map(float, others))
+
+
+@exercise(
+    "4.1",
+    title="An oil bath warms up",
+    points=2,
+    insight="In the transform of a derivative the initial value is subtracted: where the bath started is gone from it.",
+)
+def oil_bath(
+    start=between(15, 40, "°C", reference=20),
+    rate=between(0.2, 2, "K/s", reference=0.5, step=0.1),
+):
+    r"""At $t = 0$ the oil in a bath has a temperature of {start}. From then on a heater raises it steadily, by
+    {rate}. Call the temperature $\vartheta(t)$ and give its transform. Then give the transform of its time
+    derivative $\dot\vartheta(t)$. Leave the units out: temperatures are in °C, the time is in seconds.
+    """
+    return answers(
+        F=transfer_function(start / s + rate / s**2, "the transform of the temperature"),
+        F_rate=transfer_function(rate / s, "the transform of the derivative"),
+    )
+
+
+@oil_bath.picture
+def _(start, rate):
+    """The temperature against time: it begins at {start} and rises along a straight line, by {rate}."""
+    signals = {r"$\vartheta(t)$": (start + rate * t, "measurement")}
+    plot = time_plot(signals, np.linspace(0, 60, 3), ylabel=r"$\vartheta$ [°C]", ylim=(0, start + 66 * rate), low=True)
+    return plot.mark(0, f"{written(start)} °C").mark(30, f"{written(rate)} K in each second")
+
+
+@oil_bath.mistake(
+    "A constant signal is a step at $t = 0$, and the transform of a step has an $s$. Look at its pair in the "
+    "table again."
+)
+def _(start, rate):
+    return {"F": start + rate / s**2}
+
+
+@oil_bath.mistake("A signal that grows steadily is a ramp. Look again at the power of $s$ in its pair.")
+def _(start, rate):
+    return {"F": (start + rate) / s}
+
+
+@oil_bath.mistake("That is a bath that starts at 0 °C. What does this one have at $t = 0$?")
+def _(rate):
+    return {"F": rate / s**2}
+
+
+@oil_bath.mistake("Multiplying by $s$ is right for a signal that starts at zero. This one has an initial value.")
+def _(start, rate):
+    return {"F_rate": start + rate / s}
+
+
+@oil_bath.mistake("The rate is a constant from $t = 0$ on. What does the table say of the transform of a constant?")
+def _(rate):
+    return {"F_rate": rate}
+
+
+@oil_bath.mistake("Which of the two is constant in time, and which one grows steadily? Look at both pairs again.")
+def _(start, rate):
+    return {"F": rate / s + start / s**2} if rate != start else {}
+
+
+@oil_bath.mistake("The bath warms up at a constant rate. Which signal is a constant?")
+def _(rate):
+    return {"F_rate": rate / s**2}
+
+
+oil_bath.hints(
+    "Write the temperature as a function of time first: a constant and a ramp. The transform is linear, so each is "
+    "transformed on its own.",
+    "A constant 1, from $t = 0$ on, has the transform $1/s$; the ramp $t$ has $1/s^2$. For the derivative, either "
+    "transform it directly, or use the rule $sF(s) - f(0)$.",
+    "$\\vartheta(t) = {start} + {rate}\\,t$, so the constant brings $\\frac{ {start} }{s}$. What does the ramp bring?",
+)
+
+
+@oil_bath.solution
+def _(start, rate):
+    r"""The temperature is a constant and a ramp: $\vartheta(t) = {start} + {rate}\,t$. From the table, the constant
+    has the transform ${start}/s$ and the ramp ${rate}/s^2$. The transform is linear, so the two add up:
+
+    $$\Theta(s) = \frac{ {start} }{s} + \frac{ {rate} }{s^2}$$
+
+    ***
+
+    The derivative is the constant {rate}. Its transform is ${rate}/s$.
+
+    The rule says the same: $s\,\Theta(s) - \vartheta(0) = {start} + {rate}/s - {start} = {rate}/s$. The initial
+    value has to be subtracted, or the bath would seem to jump from zero to {start} at $t = 0$.
+    """
+
+
+@exercise(
+    "4.2",
+    title="A dose of dye",
+    points=3,
+    insight="A transform at $s = 0$ is the area under the signal: here, all the dye there is.",
+)
+def dose(
+    q=between(2, 12, "mL/s", reference=5),
+    begin=between(4, 20, "s", reference=10),
+    duration=between(5, 30, "s", reference=15),
+):
+    """To measure the flow in a pipe, a pump adds dye to the water. The pump stands still at first. At $t$ = {begin}
+    it starts and gives {q}, and it stops after it has run for {duration}. Write the flow of the dye as a sum of
+    steps and transform it. How much dye has been added in the end? (Compare the total with the transform at $s =
+    0$.)
+    """
+    return answers(
+        F=transfer_function(
+            q / s * (exp(-begin * s) - exp(-(begin + duration) * s)), "the transform of the dye's flow"
+        ),
+        total=number(q * duration, "mL", "the amount of dye"),
+    )
+
+
+@dose.picture
+def _(q, begin, duration):
+    """The flow of the dye: zero at first, {q} from {begin} on for {duration}, and zero again."""
+    end = float(begin + duration)
+    flow = q * (Heaviside(t - begin) - Heaviside(t - begin - duration))
+    times = np.linspace(0, 1.25 * end, 201)
+    plot = time_plot({"$q(t)$": (flow, "control signal")}, times, "The flow of the dye", ylabel="$q$ [mL/s]", low=True)
+    return plot.level(q, f"{written(q)} mL/s")
+
+
+@dose.mistake("The delay of a step is counted from $t = 0$, not from the step before. When does the pump stop?")
+def _(q, begin, duration):
+    if begin == duration:
+        return {}
+    found, total = {"F": q / s * (exp(-begin * s) - exp(-duration * s))}, q * (duration - begin)
+    return found | ({"total": total} if total > 0 else {})
+
+
+@dose.mistake("Your pump starts and never stops. A second step has to stop the flow.")
+def _(q, begin):
+    return {"F": q / s * exp(-begin * s)}
+
+
+@dose.mistake(
+    "Your flow starts at the right time, but as a pulse without height or width. What is the transform of a step?"
+)
+def _(q, begin, duration):
+    return {"F": q * (exp(-begin * s) - exp(-(begin + duration) * s))}
+
+
+@dose.mistake("Your pump starts a second time instead of stopping. Which sign has the second step?")
+def _(q, begin, duration):
+    return {"F": q / s * (exp(-begin * s) + exp(-(begin + duration) * s))}
+
+
+@dose.mistake("Your pump runs from $t = 0$ on. When does it start?")
+def _(q, duration):
+    return {"F": q / s * (1 - exp(-duration * s))}
+
+
+@dose.mistake("No dye flows before the pump starts. For how long does it run?")
+def _(q, begin, duration):
+    return {"total": q * (begin + duration)}
+
+
+@dose.mistake(
+    "At $s = 0$ the transform is zero over zero, and such a quotient has a limit. What has the pump given while it ran?"
+)
+def _():
+    return {"total": 0}
+
+
+dose.hints(
+    "Every pulse is two steps: one up where it begins, one down where it ends.",
+    "A step of height $q$ at the time $\\tau$ has the transform $\\frac{{q}}{s}e^{-\\tau s}$. The delays count from $t "
+    "= 0$, for the second step as well.",
+    "The first step is $\\frac{ {q} }{s}e^{-{begin}s}$. The second one has the same height, the other sign, and "
+    "comes {duration} later.",
+)
+
+
+@dose.solution
+def _(q, begin, duration):
+    r"""The flow goes up by {q} at {begin} and down by as much at {end}, {duration} later. As a sum of steps it is
+    $q(t) = {q}\,\sigma(t - {begin}) - {q}\,\sigma(t - {end})$, where $\sigma$ is the unit step.
+
+    A step at zero has the transform $1/s$, and a delay is an exponential factor:
+
+    $$Q(s) = \frac{ {q} }{s}\left(e^{-{begin}s} - e^{-{end}s}\right)$$
+
+    The amount of dye is flow times duration, ${q}\cdot{duration} =$ {total}. The transform knows it, too: for small
+    $s$, $e^{-\tau s}$ is nearly $1 - \tau s$, the bracket is nearly ${duration}\,s$, and at $s = 0$ just {total}
+    are left.
+    """
+    return {"end": (begin + duration, "s")}
+
+
+@exercise(
+    "4.3",
+    title="Back to time",
+    points=3,
+    where=lambda A, B, p, q: A != B and p + 0.2 <= q <= 8 * p,
+    insight="Each pole is an exponential. Partial fractions only say how much there is of each.",
+)
+def back_to_time(
+    A=between(2, 12, reference=8, step=1),
+    B=between(1, 9, reference=3, step=1),
+    p=between(0.1, 0.5, reference=0.2, step=0.1),
+    q=between(0.3, 2, reference=0.7, step=0.1),
+):
+    r"""A tracer has been injected into a vessel that exchanges liquid with a second one. Its concentration $y(t)$, in
+    mg/L with the time in minutes, has the transform
+
+    $Y(s) =$ {Y}
+
+    Find the concentration as a function of time, and its value just after the injection, at $t = 0$.
+    """
+    return answers(
+        y=time_function(A * exp(-p * t) + B * exp(-q * t), 3 / p, "mg/L", "the concentration"),
+        y_0=number(A + B, "mg/L", "the concentration at the beginning"),
+    )
+
+
+@back_to_time.shows
+def _(A, B, p, q):
+    return {"Y": ((A + B) * s + A * q + B * p) / (s**2 + (p + q) * s + p * q)}
+
+
+@back_to_time.mistake("Each factor belongs to the other exponential. Which fraction has which pole?")
+def _(A, B, p, q):
+    return {"y": B * exp(-p * t) + A * exp(-q * t)} if abs(A - B) >= 0.4 * (A + B) and q >= 1.6 * p else {}
+
+
+@back_to_time.mistake(
+    "With $s$ at a pole one factor vanishes. Which number does the other one leave in the denominator?"
+)
+def _(A, B, p, q):
+    way = q - p
+    wrong = {"y": way * (A * exp(-p * t) - B * exp(-q * t)), "y_0": way * (A - B)}
+    return wrong if abs(way - 1) > 0.05 and _apart(way * (A - B), A, A + B) else {}
+
+
+@back_to_time.mistake("Which sign has the difference of the two poles, in the second fraction?")
+def _(A, B, p, q):
+    return {"y": A * exp(-p * t) - B * exp(-q * t)} | ({"y_0": A - B} if _apart(A - B, A, (q - p) * (A - B)) else {})
+
+
+@back_to_time.mistake("Look at the signs of the poles again: the tracer cannot multiply.")
+def _(A, B, p, q):
+    return {"y": A * exp(p * t) + B * exp(q * t)}
+
+
+@back_to_time.mistake("The denominator has two roots. Each of them brings an exponential of its own.")
+def _(A, B, p):
+    return {"y": (A + B) * exp(-p * t)}
+
+
+@back_to_time.mistake("The denominator has two roots. Each of them brings an exponential of its own.")
+def _(A, B, p, q):
+    return {"y": (A + B) * exp(-(p + q) / 2 * t)} if q >= 2 * p else {}
+
+
+@back_to_time.mistake("The limit of $sY(s)$ for $s \\to 0$ is the end. Which limit is the beginning?")
+def _():
+    return {"y_0": 0}
+
+
+@back_to_time.mistake("At the beginning, both exponentials are there.")
+def _(A):
+    return {"y_0": A}
+
+
+@back_to_time.mistake("The value at the beginning is $y(0)$. You have put $s = 0$ into the transform.")
+def _(A, B, p, q):
+    return {"y_0": A / p + B / q}
+
+
+back_to_time.hints(
+    "Split the transform into partial fractions. Each of them is a line of the table, an exponential.",
+    "The denominator is zero at the poles; factor it into $(s + p)(s + q)$. Then $Y(s) = \\frac{{A}}{s + p} + "
+    "\\frac{{B}}{s + q}$.",
+    "The poles are at $-{p}$ and $-{q}$, per minute. To find $A$, multiply $Y(s)$ by $s + {p}$ and put $s = -{p}$ "
+    "into what is left.",
+)
+
+
+@back_to_time.solution
+def _(A, B, p, q):
+    r"""The denominator is $(s + {p})(s + {q})$, since ${p} + {q} = {sum}$ stands in front of $s$, and ${p}\cdot{q} =
+    {product}$ at the end. So there are two fractions,
+
+    $$Y(s) = \frac{{A}}{s + {p}} + \frac{{B}}{s + {q}}$$
+
+    Multiply by $s + {p}$ and put $s = -{p}$: the second fraction vanishes, and $A = {above_p}/({q} - {p}) =
+    {A_found}$. In the same way, with $s = -{q}$, $B = {above_q}/({p} - {q}) = {B_found}$.
+
+    Each fraction is an exponential: $y(t) = {A_found}\,e^{-{p}t} + {B_found}\,e^{-{q}t}$. At $t = 0$ both
+    exponentials are one, and the concentration is ${A_found} + {B_found} =$ {y_0}.
+    """
+    return {"sum": p + q, "product": p * q, "above_p": A * (q - p), "above_q": B * (p - q), "A_found": A, "B_found": B}
+
+
+@back_to_time.solution_picture
+def _(A, B, p, q):
+    """The concentration and its two parts: one dies out soon, and then only the slow one is left."""
+    curves = {
+        "$y(t)$": A * exp(-p * t) + B * exp(-q * t),
+        "the slow part": A * exp(-p * t),
+        "the fast part": B * exp(-q * t),
+    }
+    return time_plot(curves, np.linspace(0, 3 / float(p), 201), xlabel="$t$ [min]", ylabel="[mg/L]")
+
+
+@exercise(
+    "4.4",
+    title="A thermometer comes into warm water",
+    points=4,
+    where=lambda bath, start: bath >= start + 20,
+    insight="The initial value enters at the derivative, and from then on it is algebra.",
+)
+def thermometer(
+    T=between(4, 20, "s", reference=8, step=1),
+    start=between(15, 30, "°C", reference=22, step=1),
+    bath=between(40, 75, "°C", reference=62, step=1),
+    rest=between(0.5, 2, "K", reference=1, step=0.25),
+):
+    r"""A thermometer shows {start}. At $t = 0$ it is put into water of {bath}. From then on its reading $y(t)$
+    follows the temperature of the water $u$ with the time constant $T$ = {T},
+
+    $$T\,\dot y(t) + y(t) = u$$
+
+    Transform this equation with its initial value and solve it for $Y(s)$. Find the reading as a function of time,
+    and the moment from which on it differs from the temperature of the water by less than {rest}. (In $Y(s)$ and
+    $y(t)$ leave the units out: °C and seconds.)
+    """
+    return answers(
+        Y=transfer_function((T * start * s + bath) / (s * (T * s + 1)), "the transform of the reading"),
+        y=time_function(bath - (bath - start) * exp(-t / T), 5 * T, "°C", "the reading", within=0.005),
+        t_near=number(T * log((bath - start) / rest), "s", "the moment from which on the reading is near"),
+    )
+
+
+@thermometer.picture
+def _(T, start, bath, rest):
+    """What is around the thermometer: {start} until t = 0, and {bath} from then on. The reading is drawn up to t = 0,
+    and also the line {rest} below the water."""
+    times = np.linspace(-float(T), 5 * float(T), 601)
+    before = times < 0
+    signals = {
+        "around it, $u$": (np.where(before, float(start), float(bath)), "setpoint"),
+        "reading, $y$": (np.where(before, float(start), np.nan), "measurement"),
+        f"{written(rest)} K below": (np.where(before, np.nan, float(bath - rest)), "raw"),
+    }
+    return time_plot(signals, times, ylabel="[°C]", low=True)
+
+
+@thermometer.mistake(
+    "That is a thermometer that starts at 0 °C. The derivative brings the initial value into the equation."
+)
+def _(T, bath):
+    return {"Y": bath / (s * (T * s + 1)), "y": bath * (1 - exp(-t / T))}
+
+
+@thermometer.mistake("Between which two temperatures is the difference at the beginning, of which so little is left?")
+def _(T, bath, rest):
+    return {"t_near": T * log(bath / rest)}
+
+
+@thermometer.mistake("By then the reading is {rest} away from where it began. How far is it still from the water?")
+def _(T, start, bath, rest):
+    way = bath - start
+    wrong = T * log(way / (way - rest))
+    return {"t_near": wrong} if _apart(wrong, log(way / rest) / T) else {}
+
+
+@thermometer.mistake("After three time constants 5 % of the difference are left. Which part of it is asked for here?")
+def _(T, start, bath, rest):
+    return {"t_near": 3 * T} if _apart(3, log((bath - start) / rest), log(bath / rest)) else {}
+
+
+@thermometer.mistake("After four time constants 2 % of the difference are left. Which part of it is asked for here?")
+def _(T, start, bath, rest):
+    return {"t_near": 4 * T} if _apart(4, log((bath - start) / rest), log(bath / rest)) else {}
+
+
+@thermometer.mistake("After five time constants 0.7 % of the difference are left. Which part is asked for here?")
+def _(T, start, bath, rest):
+    return {"t_near": 5 * T} if _apart(5, log((bath - start) / rest), log(bath / rest)) else {}
+
+
+@thermometer.mistake("Beginning and end are interchanged: what does your reading show at $t = 0$?")
+def _(T, start, bath):
+    return {"y": start + (bath - start) * exp(-t / T)}
+
+
+@thermometer.mistake("In the equation the derivative is multiplied by the time constant, and so is its initial value.")
+def _(T, start, bath):
+    return {"Y": (start * s + bath) / (s * (T * s + 1)), "y": bath - (bath - start / T) * exp(-t / T)}
+
+
+@thermometer.mistake(
+    "The temperature of the water is constant in time. So its transform is that of a step, with an $s$ in the "
+    "denominator."
+)
+def _(T, start, bath):
+    return {"Y": (T * start + bath) / (T * s + 1), "y": (start + bath / T) * exp(-t / T)}
+
+
+@thermometer.mistake("An exponent is a pure number: here it must be a time over a time constant.")
+def _(T, start, bath, rest):
+    return {"y": bath - (bath - start) * exp(-T * t), "t_near": log((bath - start) / rest) / T}
+
+
+@thermometer.mistake("This reading runs away from the water. Look at the sign of the pole again.")
+def _(T, start, bath):
+    return {"y": bath - (bath - start) * exp(t / T)}
+
+
+@thermometer.mistake("You have added the final value to the whole response from zero. What is the reading at $t = 0$?")
+def _(T, start, bath):
+    return {"Y": start / s + bath / (s * (T * s + 1)), "y": start + bath * (1 - exp(-t / T))}
+
+
+@thermometer.mistake("Is the reading above the temperature of the water at the beginning, or below it?")
+def _(T, start, bath):
+    return {"y": bath + (bath - start) * exp(-t / T)}
+
+
+@thermometer.mistake("In the transform of a derivative the initial value is subtracted. Which sign has it behind $Y$?")
+def _(T, start, bath):
+    return {"Y": (bath - T * start * s) / (s * (T * s + 1)), "y": bath - (bath + start) * exp(-t / T)}
+
+
+@thermometer.mistake("That is the rise of the reading. What does the thermometer show at $t = 0$?")
+def _(T, start, bath):
+    rise = bath - start
+    return {"Y": rise / (s * (T * s + 1)), "y": rise * (1 - exp(-t / T))}
+
+
+thermometer.hints(
+    "Transform the equation term by term. The transform of a derivative has the initial value in it.",
+    "$\\dot y$ becomes $sY - y(0)$, and the constant $u$ becomes $u/s$. Solve for $Y$, split it into a part with the "
+    "pole 0 and a part with the pole $-1/T$, and come back to time.",
+    "Transformed, it is ${T}\\,(sY - {start}) + Y = \\frac{ {bath} }{s}$. Collect $Y$. For the moment, ask how much "
+    "of the difference of ${bath} - {start}$ is left.",
+)
+
+
+@thermometer.solution
+def _(T, start, bath, rest):
+    r"""Term by term, ${T}\,(sY - {start}) + Y = {bath}/s$. The initial value comes with the derivative, so it is
+    multiplied by the time constant as well: ${T}\cdot{start} = {product}$. Solved for $Y$:
+
+    $$Y(s) = \frac{ {product}\,s + {bath} }{s\,({T}s + 1)} = \frac{ {bath} }{s} - \frac{ {difference} }{s + 1/{T} }$$
+
+    The first fraction is a constant, the second one an exponential: $y(t) = {bath} - {difference}\,e^{-t/{T}}$. At
+    $t = 0$ this is {start}, as it must be, and for a long time it goes to {bath}.
+
+    The reading is {rest} away when ${difference}\,e^{-t/{T}} = {rest}$. Take the logarithm:
+    $t = {T}\,\ln({difference}/{rest}) =$ {t_near}.
+    """
+    return {"product": T * start, "difference": bath - start}
+
+
+@thermometer.solution_picture
+def _(T, start, bath, rest):
+    """The reading goes from where it was to the temperature of the water."""
+    reading = bath - (bath - start) * exp(-t / T)
+    moment = float(T * log((bath - start) / rest))
+    plot = time_plot({"$y$": (reading, "measurement")}, np.linspace(0, 1.3 * moment, 201), ylabel="$y$ [°C]")
+    return plot.level(bath, "water").mark(moment, "near enough")
+
+
+@exercise(
+    "4.5",
+    title="Which of them settle?",
+    points=3,
+    insight="First look where the poles are, and only then take the limit: the theorem does not check that for you.",
+)
+def which_settle(
+    order=choice("ABCD", "BDAC", "CADB", "DCBA", "BACD", "CDBA", "ADCB", "DBAC", reference="BDAC"),
+    a=between(1, 9, reference=4, step=1),
+    b=between(2, 12, reference=6, step=1),
+    p=between(2, 5, reference=3, step=1),
+    w=between(2, 5, reference=2, step=1),
+):
+    """Four signals have these transforms, with the time in seconds:
+
+    - $A(s) =$ {A}
+    - $B(s) =$ {B}
+    - $C(s) =$ {C}
+    - $D(s) =$ {D}
+
+    Which of the signals settle, at whatever value? Exactly one signal settles at a value that is not zero. At which?
+    """
+    settles, _, _, fades = order
+    return answers(
+        settling=words(sorted([settles, fades]), ["A", "B", "C", "D"], "the signals that settle"),
+        value=number(b / p, "", "the final value that is not zero"),
+    )
+
+
+@which_settle.shows
+def _(order, a, b, p, w):
+    settles, grows, swings, fades = b / (s * (s + p)), b / (s * (s - p + 1)), a / (s**2 + w**2), a / ((s + 1) * (s + w))
+    return dict(zip(order, (settles, grows, swings, fades), strict=True))
+
+
+@which_settle.mistake(
+    "For each of these, $sF(s)$ has a limit at $s = 0$. Does that suffice? Look at the poles of $sF(s)$."
+)
+def _():
+    return {"settling": ["A", "B", "C", "D"]}
+
+
+@which_settle.mistake("One of these oscillates forever. A pair of poles on the imaginary axis does not fade.")
+def _(order):
+    return {"settling": sorted([order[0], order[2], order[3]])}
+
+
+@which_settle.mistake("One of these grows without bounds. On which side of the imaginary axis is its pole?")
+def _(order):
+    return {"settling": sorted([order[0], order[1], order[3]])}
+
+
+@which_settle.mistake("One of these oscillates forever. A pair of poles on the imaginary axis does not fade.")
+def _(order):
+    return {"settling": sorted([order[0], order[2]])}
+
+
+@which_settle.mistake("One of these oscillates forever. A pair of poles on the imaginary axis does not fade.")
+def _(order):
+    return {"settling": sorted([order[2], order[3]])}
+
+
+@which_settle.mistake("One of these grows without bounds. On which side of the imaginary axis is its pole?")
+def _(order):
+    return {"settling": sorted([order[0], order[1]])}
+
+
+@which_settle.mistake("One of these grows without bounds. On which side of the imaginary axis is its pole?")
+def _(order):
+    return {"settling": sorted([order[1], order[3]])}
+
+
+@which_settle.mistake("Zero is a final value, too: a signal that dies out has settled.")
+def _(order):
+    return {"settling": [order[0]]}
+
+
+@which_settle.mistake(
+    "That number is the limit of $sF(s)$ for a signal that grows without bounds. It has no final value."
+)
+def _(b, p):
+    return {"value": -b / (p - 1)}
+
+
+@which_settle.mistake("The transform itself at $s = 0$ is the area under a signal. Which factor belongs to its end?")
+def _(order, a, b, p, w):
+    return {"value": a / w} if _apart(a / w, b / p, b) else {}
+
+
+@which_settle.mistake(
+    "Settling at a value that is not zero counts as well. Which of the others has a single pole at zero?"
+)
+def _(order):
+    return {"settling": [order[3]]}
+
+
+@which_settle.mistake("Put $s = 0$ into all of $sF(s)$, into its denominator as well.")
+def _(b):
+    return {"value": b}
+
+
+which_settle.hints(
+    "A signal settles if each of its parts dies out, or stays where it is. The poles of the transform say which "
+    "parts there are.",
+    "A pole on the left dies out, one on the right grows, a pair on the imaginary axis oscillates forever. A single "
+    "pole at zero stays where it is.",
+    "Find the roots of each denominator. For the one signal with a single pole at zero and all others on the left, "
+    "the end is $sF(s)$ at $s = 0$: the factor $s$ cancels, and then zero is put in for every other $s$.",
+)
+
+
+@which_settle.solution
+def _(order, a, b, p, w):
+    r"""Look at the roots of the denominators.
+
+    **{settles}** has the poles 0 and $-{p}$. The one on the left dies out, the one at zero stays where it is: it
+    settles.
+
+    **{grows}** has the poles 0 and {right}. The second one is on the right: this signal grows without bounds,
+    although $sF(s)$ has a limit at $s = 0$.
+
+    **{swings}** has the poles $\pm {w}j$, on the imaginary axis. It oscillates forever.
+
+    **{fades}** has the poles $-1$ and $-{w}$. Both die out: it settles, at zero.
+
+    Only {settles} ends at a value that is not zero. Its end is $sF(s)$ at $s = 0$, which is ${b}/{p} =$ {value}.
+    """
+    settles, grows, swings, fades = order
+    return {"settles": settles, "grows": grows, "swings": swings, "fades": fades, "right": p - 1}
+
+
+@which_settle.solution_picture
+def _(order, a, b, p, w):
+    """The four signals: one settles, one grows, one oscillates, one dies out."""
+    times = np.linspace(0, 5, 501)
+    a, b, p, w = map(float, (a, b, p, w))
+    growing = (np.exp((p - 1) * times) - 1) * b / (p - 1)
+    growing[growing > 2 * max(b / p, a / w)] = np.nan
+    fading = a * (np.exp(-times) - np.exp(-w * times)) / (w - 1)
+    signals = (b * (1 - np.exp(-p * times)) / p, growing, a * np.sin(w * times) / w, fading)
+    return time_plot(dict(sorted(zip(order, signals, strict=True))), times)
+
+
+def _excess(K, full, warmer):
+    """How many times warmer full power would make the oven in the end, compared with what is wanted."""
+    return K * full / warmer
+
+
+@exercise(
+    "4.6",
+    title="Full power first, then just enough",
+    points=5,
+    insight="To be there soon, aim beyond the goal, and change over to what holds it at the right moment.",
+    where=lambda K, full, warmer: 1.25 <= _excess(K, full, warmer) <= 4 and abs(_excess(K, full, warmer) - 2) > 0.1,
+)
+def full_power_first(
+    K=between(20, 60, "K/kW", reference=40, step=5),
+    T=between(10, 40, "min", reference=20, step=1),
+    full=between(4, 10, "kW", reference=6, step=0.5),
+    warmer=between(80, 240, "K", reference=160, step=10),
+):
+    r"""An oven has the temperature of the room. Its temperature above that of the room, $y(t)$, follows the power
+    $u(t)$ of the heater by
+
+    $$T\,\dot y(t) + y(t) = K\,u(t)$$
+
+    with $K$ = {K} and $T$ = {T}. The oven should become {warmer} warmer than the room, soon, and then stay so. At
+    $t = 0$ the heater is switched to its full power, $u_1$ = {full}. At the moment $t_1$, when the temperature is
+    reached, it is switched back to a power $u_2$ that just holds it (the picture is not to scale). Transform the power,
+    in the symbols $u_1$, $u_2$, $t_1$ and $s$. Then find $u_2$ and $t_1$.
+    """
+    u_1, u_2, t_1 = (Symbol(name, positive=True) for name in ("u_1", "u_2", "t_1"))
+    return answers(
+        U=transfer_function(
+            u_1 / s + (u_2 - u_1) / s * exp(-t_1 * s),
+            "the transform of the power, in the symbols $u_1$, $u_2$, $t_1$ and $s$",
+        ),
+        u_2=number(warmer / K, "kW", "the power that holds the temperature"),
+        t_1=number(T * log(K * full / (K * full - warmer)), "min", "the moment of switching back"),
+    )
+
+
+@full_power_first.picture
+def _(full):
+    """The power against time: $u_1$ = {full} from t = 0 to $t_1$, and from then on a lower one, $u_2$; this is not to
+    scale."""
+    power = {"$u$": (float(full) * (1 - 0.45 * Heaviside(t - 1)), "control signal")}
+    plot = time_plot(power, np.linspace(0, 2.5, 251), ylim=(0, 1.3 * float(full)), xlabel="$t$", low=True)
+    axes = plot.figure.axes[0]
+    axes.set_xticks([0, 1], ["0", "$t_1$"])
+    axes.set_yticks([0, 0.55 * float(full), float(full)], ["0", "$u_2$", f"$u_1$ = {written(full)} kW"])
+    return plot
+
+
+@full_power_first.mistake("Your power is $u_1 + u_2$ after the switch. How large is the step from $u_1$ to $u_2$?")
+def _():
+    u_1, u_2, t_1 = (Symbol(name, positive=True) for name in ("u_1", "u_2", "t_1"))
+    return {"U": u_1 / s + u_2 / s * exp(-t_1 * s)}
+
+
+@full_power_first.mistake("Your power is $u_1 - u_2$ after the switch. How large is the step from $u_1$ to $u_2$?")
+def _():
+    u_1, u_2, t_1 = (Symbol(name, positive=True) for name in ("u_1", "u_2", "t_1"))
+    return {"U": u_1 / s - u_2 / s * exp(-t_1 * s)}
+
+
+@full_power_first.mistake(
+    "The second step is a step as well, only later and of another height. Which factor has it lost?"
+)
+def _():
+    u_1, u_2, t_1 = (Symbol(name, positive=True) for name in ("u_1", "u_2", "t_1"))
+    return {"U": u_1 / s + (u_2 - u_1) * exp(-t_1 * s)}
+
+
+@full_power_first.mistake("Your power is zero after the switch. Which power holds the oven then?")
+def _():
+    u_1, t_1 = (Symbol(name, positive=True) for name in ("u_1", "t_1"))
+    return {"U": u_1 / s * (1 - exp(-t_1 * s))}
+
+
+@full_power_first.mistake("Your $u_2$ is there from $t = 0$ on. When is it switched on, and how does a delay look?")
+def _():
+    u_1, u_2, t_1 = (Symbol(name, positive=True) for name in ("u_1", "u_2", "t_1"))
+    return {"U": u_1 / s * (1 - exp(-t_1 * s)) + u_2 / s}
+
+
+@full_power_first.mistake("Your power grows at the switch. From which power to which one does it step there?")
+def _():
+    u_1, u_2, t_1 = (Symbol(name, positive=True) for name in ("u_1", "u_2", "t_1"))
+    return {"U": u_1 / s + (u_1 - u_2) / s * exp(-t_1 * s)}
+
+
+@full_power_first.mistake(
+    "After three time constants a lag is nearly at its end. Must the oven wait until then, at full power?"
+)
+def _(T, K, full, warmer):
+    excess = _excess(K, full, warmer)
+    return {"t_1": 3 * T} if _apart(3, log(excess), log(excess / (excess - 1))) else {}
+
+
+@full_power_first.mistake("Under full power the temperature does not rise along a straight line to its end: it bends.")
+def _(T, K, full, warmer):
+    return {"t_1": T * warmer / (K * full)}
+
+
+@full_power_first.mistake("The exponential is what is still missing on the way to $Ku_1$, not what has been covered.")
+def _(T, K, full, warmer):
+    return {"t_1": T * log(K * full / warmer)} if abs(_excess(K, full, warmer) - 1.763) > 0.1 else {}
+
+
+@full_power_first.mistake(
+    "After one time constant, 63 % of the way to $Ku_1$ is covered. Is that the wanted temperature?"
+)
+def _(T, K, full, warmer):
+    excess = _excess(K, full, warmer)
+    return {"t_1": T} if _apart(1, log(excess), log(excess / (excess - 1))) else {}
+
+
+@full_power_first.mistake(
+    "After five time constants a lag is at its end. Must the oven wait until then, at full power?"
+)
+def _(T, K, full, warmer):
+    return {"t_1": 5 * T}
+
+
+@full_power_first.mistake("The inverse of $e^{-t/T}$ is the natural logarithm. Which one have you taken?")
+def _(T, K, full, warmer):
+    return {"t_1": T * log(K * full / (K * full - warmer)) / log(10)}
+
+
+@full_power_first.mistake(
+    "Kelvin times kelvin for each kilowatt does not make kilowatts. Look at the units of the gain."
+)
+def _(K, warmer):
+    return {"u_2": K * warmer}
+
+
+@full_power_first.mistake("At rest $Ku_2$ must be the temperature that is wanted. What is $u_2$, then?")
+def _(K, warmer):
+    return {"u_2": K / warmer}
+
+
+@full_power_first.mistake("That is the power with which the oven would stay at full power. What does it need at rest?")
+def _(full):
+    return {"u_2": full}
+
+
+full_power_first.hints(
+    "The power is two steps: one up at the beginning, and one down at $t_1$. The oven follows each step like a lag.",
+    "At rest $\\dot y = 0$, so $y = Ku$: that is what $u_2$ must do. Until $t_1$ the oven knows nothing of $u_2$ and "
+    "goes to $Ku_1$: $y(t) = Ku_1\\,(1 - e^{-t/T})$.",
+    "Full power would make the oven ${K}\\cdot{full}$ kelvin warmer in the end. Set ${K}\\cdot{full}\\,(1 - "
+    "e^{-t_1/{T}}) = {warmer}$ and solve for $t_1$.",
+)
+
+
+@full_power_first.solution
+def _(K, T, full, warmer):
+    r"""**The power** goes up by $u_1$ at $t = 0$, and at $t_1$ it changes by $u_2 - u_1$, which is a step down:
+
+    $$U(s) = \frac{u_1}{s} + \frac{u_2 - u_1}{s}\,e^{-t_1 s}$$
+
+    **To hold** the temperature, nothing may change any more: $\dot y = 0$ and $y = Ku_2$, so $u_2 = {warmer}/{K} =$
+    {u_2}.
+
+    **The moment.** Until $t_1$ the oven goes to where full power would take it, which is ${K}\cdot{full} =$ {far},
+    far beyond the goal: $y(t) = {far}\,(1 - e^{-t/{T}})$. It is at {warmer} when
+
+    $$e^{-t_1/{T}} = 1 - \frac{ {warmer} }{ {far} } = {left}$$
+
+    and the logarithm gives $t_1 = -{T}\,\ln {left} =$ {t_1}. From then on $y$ is where $u_2$ holds it, and stays
+    there.
+    """
+    return {"far": (K * full, "K"), "left": 1 - warmer / (K * full)}
+
+
+@full_power_first.solution_picture
+def _(K, T, full, warmer):
+    """The temperature rises under full power, reaches its goal, and stays; else it would go far beyond."""
+    t_1 = T * log(K * full / (K * full - warmer))
+    times = np.linspace(0, 3 * float(t_1), 301)
+    rising = float(K * full) * (1 - np.exp(-times / float(T)))
+    switched = np.where(times < float(t_1), rising, float(warmer))
+    curves = {"$y$": (switched, "measurement"), "full power all the time": (rising, "raw")}
+    powers = {"$u$": (full - (full - warmer / K) * Heaviside(t - t_1), "control signal")}
+    names = ["$y$ [K]", "$u$ [kW]"]
+    return time_plot([curves, powers], times, xlabel="$t$ [min]", ylabel=names).event(t_1, "$t_1$")
+
+
+@exercise(
+    "4.7",
+    title="A pole by ruler",
+    points=4,
+    where=lambda start, end: abs(start - end) >= 30,
+    insight="A curve shows its transform: where it begins, where it ends, and how far left its pole is.",
+)
+def pole_by_ruler(
+    start=between(15, 95, "°C", reference=80, step=1),
+    end=between(15, 95, "°C", reference=30, step=1),
+    T=between(4, 25, "s", reference=10, step=1),
+):
+    r"""A temperature sensor is moved from one bath into another, at $t = 0$. The picture shows its reading $y(t)$,
+    in °C with the time in seconds. Its transform has two poles, one at zero and one to the left of it.
+
+    Read with a ruler: which value does $y$ have at $t = 0$, and to which one does it tend? Where is the pole to the
+    left? And what is the transform $Y(s)$, with the numbers that you have read? (Leave the units out of it. You can
+    check it: at $s \to 0$, $sY(s)$ must tend to where the curve ends, and at $s \to \infty$ to where it begins.)
+
+    (`t, y = exercise("4.7").given("t", "y")` are the times [s] and readings [°C] of the picture.)
+    """
+    return answers(
+        y_0=number(start, "°C", "the reading at the beginning", within=0.05),
+        y_s=number(end, "°C", "the reading in the end", within=0.05),
+        pole=number(-1 / T, "1/s", "the pole to the left", within=0.1),
+        Y=transfer_function((start * s + end / T) / (s * (s + 1 / T)), "the transform of the reading", within=0.1),
+    )
+
+
+def _reading(start, end, T):
+    times = np.linspace(0, 6 * float(T), 301)
+    return times, float(end) + float(start - end) * np.exp(-times / float(T))
+
+
+@pole_by_ruler.shows
+def _(start, end, T):
+    times, readings = _reading(start, end, T)
+    return {"t": times, "y": readings}
+
+
+@pole_by_ruler.picture
+def _(start, end, T):
+    """The reading goes from one level to another, fast at first and then more and more slowly."""
+    times, readings = _reading(start, end, T)
+    return time_plot({"$y$": (readings, "measurement")}, times, "The sensor changes baths", ylabel="$y$ [°C]")
+
+
+def _with_pole(pole, start, end):
+    """Pole and transform of somebody who has both levels right; where the way is short, a ruler takes any pole."""
+    is_long = abs(start - end) >= max(start, end) * 7 / 10
+    return {"pole": pole} | ({"Y": end / s + (start - end) / (s - pole)} if is_long else {})
+
+
+@pole_by_ruler.mistake("That is the time constant. Where is the pole of something that dies out with it?")
+def _(T):
+    return {"pole": T}
+
+
+@pole_by_ruler.mistake("That is a time, with a minus. Which pole belongs to something that dies out with it?")
+def _(start, end, T):
+    return _with_pole(-T, start, end)
+
+
+@pole_by_ruler.mistake("The curve dies out. On which side of the imaginary axis is its pole?")
+def _(T):
+    return {"pole": 1 / T}
+
+
+@pole_by_ruler.mistake(
+    "By the time from which that comes, about half of the way is covered. How much is it after a time constant, and "
+    "counted from where?"
+)
+def _(T):
+    return {"pole": -1 / (T * log(2))}
+
+
+@pole_by_ruler.mistake(
+    "By the time from which that comes, about 37 % of the way are covered. How much is it after a time constant, and "
+    "counted from where?"
+)
+def _(start, end, T):
+    return _with_pole(1 / (T * log(0.632)), start, end)
+
+
+@pole_by_ruler.mistake(
+    "That is the time after which hardly anything is left of the way. After how many time constants is that?"
+)
+def _(start, end, T):
+    return _with_pole(-1 / (4 * T), start, end)
+
+
+@pole_by_ruler.mistake("Is that 63 % of the way from the beginning to the end, or of a temperature?")
+def _(start, end, T):
+    left = (0.368 * max(start, end) - (end if start > end else 0)) / abs(start - end)
+    after = -log(left) if left > 0.01 else 0
+    told = after and all(abs(after / n - 1) > 0.25 for n in (1, 0.693, 0.459, 4))
+    return _with_pole(-1 / (T * after), start, end) if told else {}
+
+
+@pole_by_ruler.mistake("Where does the signal that belongs to your transform begin? Add its two parts at $t = 0$.")
+def _(start, end, T):
+    return {"Y": end / s + start / (s + 1 / T)}
+
+
+@pole_by_ruler.mistake("A constant signal is a step: which transform has the value where the curve ends?")
+def _(start, end, T):
+    return {"Y": end + (start - end) / (s + 1 / T)}
+
+
+@pole_by_ruler.mistake("That is a reading that begins at zero. Where does this one begin?")
+def _(end, T):
+    return {"Y": end / T / (s * (s + 1 / T))}
+
+
+@pole_by_ruler.mistake("What belongs to your transform ends at zero. Which pole keeps a signal at a value?")
+def _(start, end, T):
+    return {"Y": (start - end) / (s + 1 / T)}
+
+
+@pole_by_ruler.mistake("Where does the signal that belongs to your transform begin? Add its two parts at $t = 0$.")
+def _(start, end, T):
+    return {"Y": end / s + (end - start) / (s + 1 / T)}
+
+
+@pole_by_ruler.mistake("What belongs to your transform runs away: one of its poles is on the right.")
+def _(start, end, T):
+    return {"Y": (start * s - end / T) / (s * (s - 1 / T))}
+
+
+@pole_by_ruler.mistake(
+    "Beginning and end are interchanged in your transform. Which of them belongs to the pole at zero?"
+)
+def _(start, end, T):
+    return {"Y": (end * s + start / T) / (s * (s + 1 / T))}
+
+
+pole_by_ruler.hints(
+    "A pole at zero is a constant, and a pole at $-1/T$ is an exponential with the time constant $T$. The reading is "
+    "the sum of the two.",
+    "After one time constant, 63 % of the way from the beginning to the end are covered. So read both levels, go 63 "
+    "% of the way from one to the other, and look when the curve is there.",
+    "With $y_0$ and $y_s$ as you have read them, $y(t) = y_s + (y_0 - y_s)\\,e^{-t/T}$, and so "
+    "$Y(s) = \\frac{{y_s}}{s} + \\frac{y_0 - y_s}{s + 1/T}$.",
+)
+
+
+@pole_by_ruler.solution
+def _(start, end, T):
+    r"""The curve begins at {y_0} and tends to {y_s}: that is a way of {way}. After one time constant, 63 % of it
+    are covered, so the reading is at {after_T}. It is there at $t$ = {T}. The pole is at $-1/{T} =$ {pole}.
+
+    In time, the reading is a constant and an exponential that dies out, $y(t) = {end} + ({start} -
+    {end})\,e^{-t/{T}}$. Each has its line in the table:
+
+    $$Y(s) = \frac{ {end} }{s} + \frac{ {start} - {end} }{s + {rate} } = \frac{ {start}\,s + {both} }{s\,(s + {rate})}$$
+
+    The check: $sY(s)$ tends to ${both}/{rate} = {end}$ for $s \to 0$, where the curve ends. For $s \to \infty$ only
+    the highest powers count, and ${start}$ is left, where it begins.
+    """
+    return {
+        "way": (end - start, "K"),
+        "after_T": (float(start) + 0.632 * float(end - start), "°C"),
+        "rate": float(1 / T),
+        "both": float(end / T),
+    }
+
+
+@pole_by_ruler.solution_picture
+def _(start, end, T):
+    """The picture of the statement, with the end and the moment at which 63 % of the way are covered."""
+    times, readings = _reading(start, end, T)
+    plot = time_plot({"$y$": (readings, "measurement")}, times, "63 % of the way", ylabel="$y$ [°C]")
+    return plot.level(end, "the end").mark(T, "one time constant")

@@ -1,0 +1,1 @@
+"""What is found in wrong answers of the kinds of control engineering."""

@@ -1,0 +1,60 @@
+"""Transfer functions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import sympy
+
+from exercisebook.kinds.formula import Expression, in_other_time
+from plainmath.expressions import s
+
+if TYPE_CHECKING:
+    from loopbook.types import Number
+
+
+class TransferFunction(Expression):
+    """A transfer function in s, with or without symbols; dead time is exact.
+
+    >>> H = TransferFunction(2 * sympy.exp(-3 * s) / (10 * s + 1))
+    >>> H.agrees(H.read("0.2*exp(-3*s)/(s + 0.1)")[0])
+    True
+    """
+
+    always = frozenset({"s"})
+
+    def __init__(
+        self,
+        key: Number | str,
+        what: str = "the transfer function",
+        symbols: str = "",
+        within: float = 0.01,
+        unit: str = "",
+    ):
+        super().__init__(key, what, symbols, within, unit)
+
+    def mistakes(self) -> Iterator[tuple[str, Any]]:
+        """Those of an expression, a forgotten dead time, its sign, and an s too many or too few."""
+        yield from super().mistakes()
+        if self.expr.has(sympy.exp):
+            if without := self.expr.replace(sympy.exp, lambda _: sympy.S.One):
+                yield "the dead time is missing", without
+            yield (
+                "the sign in the exponent of the dead time is wrong: a delay is exp of something negative times s",
+                self.expr.replace(sympy.exp, lambda x: sympy.exp(-x)),
+            )
+            for order in (1, 2):
+                yield (
+                    "that is a Pade approximation of the dead time; the exact one is asked for",
+                    self.expr.replace(sympy.exp, lambda x, n=order: _pade(x, n)),
+                )
+        yield "there is a factor s too many: compare with the transform of a response to a step", self.expr * s
+        yield "a factor s is missing in it, or it is the transform of a step response", self.expr / s
+        yield from in_other_time(self, "s")
+
+
+def _pade(x, order):
+    if order == 1:
+        return (1 + x / 2) / (1 - x / 2)
+    return (1 + x / 2 + x**2 / 12) / (1 - x / 2 + x**2 / 12)

@@ -1,0 +1,10 @@
+"""What control engineering adds to `exercisebook`: kinds of answers, and what is found in wrong ones."""
+
+import importlib
+import pkgutil
+
+from loopbook.exercises import diagnoses, kinds
+
+for _package in (kinds, diagnoses):  # what is in a module of its own is found by itself
+    for _module in pkgutil.iter_modules(_package.__path__):
+        importlib.import_module(f"{_package.__name__}.{_module.name}")

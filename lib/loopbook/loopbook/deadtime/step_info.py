@@ -1,0 +1,167 @@
+"""What a step response is judged by: rise, overshoot, settling, read off the exact response."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from loopbook.deadtime.response import Response
+from plainmath.validation import number
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+__all__ = ["StepInfo", "first_time_at", "settled_response", "step_info"]
+
+MOST_DOUBLINGS = 40  # of the time up to which a response is followed
+ROUNDING = 1e-11  # a smaller overshoot, as a share of the peak, is none
+REAL = 1e-7  # imaginary part of a root, of a segment of length 2, that may be rounding
+
+
+class StepInfo(NamedTuple):
+    """How a stable system answers to a unit step: what `System.step_info` returns.
+
+    Attributes:
+        rise_time: from 10 % to 90 % of the final value, or between the shares that were given.
+        settling_time: after it the response stays within 2 % of the final value, or the share that was given; where
+            the final value is zero, within that share of the peak.
+        overshoot: the largest value beyond the final one, as a share of it: 0.05 is 5 %. Zero if there is none.
+        undershoot: the largest value on the other side of zero, as a share of the final value.
+        peak: the value of largest size.
+        peak_time: when it is reached; infinite where the response only approaches it.
+        final_value: the static gain.
+
+    Where the final value is zero there is no rise and no overshoot: they are nan.
+    """
+
+    rise_time: float
+    settling_time: float
+    overshoot: float
+    undershoot: float
+    peak: float
+    peak_time: float
+    final_value: float
+
+
+def step_info(
+    response_until: Callable[[float], Response],
+    horizon: float,
+    final: float,
+    settling: float = 0.02,
+    rise: Sequence[float] = (0.1, 0.9),
+) -> StepInfo:
+    """Return what characterises the step response of a stable system.
+
+    Arguments:
+        response_until: function of an end, that returns the `Response` up to there.
+        horizon: an end to begin with; the response is followed until it has settled.
+        final: the final value.
+        settling: half the width of the band, as a share.
+        rise: two shares of the final value, increasing.
+    Raises:
+        ValueError: for shares that are none, or a response that does not settle however long it is followed.
+    """
+    number("the band for settling", settling, "a share between 0 and 1", lambda x: 0 < x < 1)
+    low, high = (number("a share of the rise", share, "one from 0 to 1", lambda x: 0 <= x < 1) for share in rise)
+    if not low < high:
+        raise ValueError(f"the rise is from {low:g} to {high:g}: expected increasing shares")
+    response = settled_response(response_until, horizon, final, settling)
+    (top, top_time), (bottom, bottom_time) = _extreme(response, 1), _extreme(response, -1)
+    peak, peak_time = (top, top_time) if top >= bottom else (-bottom, bottom_time)
+    band = settling * (abs(final) or abs(peak))
+    if final and abs(peak) <= abs(final) * (1 + ROUNDING):
+        peak, peak_time = final, math.inf
+    settled = _last_time_outside(response, final, band)
+    if not final:
+        return StepInfo(math.nan, settled, math.nan, math.nan, float(peak), float(peak_time), 0.0)
+    beyond, opposite = (top, bottom) if final > 0 else (bottom, top)
+    over, under = beyond / abs(final) - 1, opposite / abs(final)
+    start, end = (first_time_at(response, share * final) for share in (low, high))
+    return StepInfo(
+        end - start,
+        settled,
+        float(over if over > ROUNDING else 0.0),
+        float(under if under > ROUNDING * abs(peak / final) else 0.0),
+        float(peak),
+        float(peak_time),
+        float(final),
+    )
+
+
+def settled_response(
+    response_until: Callable[[float], Response], horizon: float, final: float, settling: float
+) -> Response:
+    """The response, followed twice as far until its later three quarters stay within a fifth of the band."""
+    end = horizon
+    for _ in range(MOST_DOUBLINGS):
+        response = response_until(end)
+        sizes = abs(response.coefficients).sum(axis=1)
+        away = abs(response.coefficients[:, 0] - final) + sizes - abs(response.coefficients[:, 0])
+        band = settling * (abs(final) or sizes.max(initial=0.0))
+        if (away[response.edges[1:] > end / 4] <= band / 5).all():
+            return response
+        end *= 2
+    raise ValueError(f"the response has not settled at {final:g} after t = {end:g}: expected one that does")
+
+
+def _extreme(response: Response, sign: int) -> tuple[float, float]:
+    """The largest value of ``sign*response`` and when it is reached."""
+    rows = sign * response.coefficients
+    bounds = rows[:, 0] + abs(rows[:, 1:]).sum(axis=1)
+    points = np.r_[-1.0, np.polynomial.legendre.leggauss(rows.shape[1])[0], 1.0]
+    values = legendre.legval(points, rows.T)
+    segment, point = np.unravel_index(values.argmax(), values.shape)
+    best, place = values[segment, point], (segment, points[point])
+    for k in np.argsort(-bounds):
+        if bounds[k] <= best * (1 + 1e-15):
+            break
+        turning = _roots(legendre.legder(rows[k]))
+        heights = legendre.legval(turning, rows[k])
+        if len(turning) and heights.max() > best:
+            best, place = heights.max(), (k, turning[heights.argmax()])
+    return float(best), _moment(response, *place)
+
+
+def first_time_at(response: Response, level: float) -> float:
+    """When a response first reaches a level, from below a positive one, from above a negative one."""
+    sign = -1.0 if level < 0 else 1.0
+    rows = sign * response.coefficients.copy()
+    rows[:, 0] -= abs(level)
+    for k in np.flatnonzero(rows[:, 0] + abs(rows[:, 1:]).sum(axis=1) >= 0):
+        if legendre.legval(-1.0, rows[k]) >= -ROUNDING * abs(rows[k]).max():
+            return float(response.edges[k])
+        if len(found := _roots(rows[k])):
+            return _moment(response, k, found.min())
+    raise ValueError(f"the response does not reach {level:g} up to t = {response.edges[-1]:g}")
+
+
+def _last_time_outside(response: Response, final: float, band: float) -> float:
+    """The last moment at which the distance from the final value is that of the band."""
+    rows = response.coefficients.copy()
+    rows[:, 0] -= final
+    for k in np.flatnonzero(abs(rows).sum(axis=1) > band)[::-1]:
+        crossings = []
+        for side in (-1, 1):
+            row = rows[k].copy()
+            row[0] += side * band
+            crossings += _roots(row).tolist()
+        if crossings:
+            return _moment(response, k, max(crossings))
+        if abs(rows[k].sum()) > band:  # until a jump at the end of the segment
+            return float(response.edges[k + 1])
+    return 0.0
+
+
+def _roots(row: np.ndarray) -> np.ndarray:
+    """The zeros of a Legendre series between -1 and 1."""
+    row = np.trim_zeros(np.where(abs(row) > 1e-16 * abs(row).max(initial=0.0), row, 0.0), "b")
+    roots = legendre.legroots(row) if len(row) > 1 else np.zeros(0)
+    return roots.real[(abs(roots.imag) < REAL) & (abs(roots.real) <= 1)]
+
+
+def _moment(response: Response, segment: int, local: float) -> float:
+    begin, end = response.edges[segment], response.edges[segment + 1]
+    return float(begin + (end - begin) * (local + 1) / 2)

@@ -1,0 +1,240 @@
+"""A simple model fitted to logged data of control signal and measurement, by least squares."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+import sympy
+
+from loopbook.approximation import SOPDT
+from loopbook.identification.profiles import Residuals, interval
+from loopbook.identification.records import even_step, record
+from loopbook.identification.search import least_squares
+from loopbook.identification.zero_order_hold import HOLDS, KINDS, DrivenChain
+from plainmath.expressions import exact
+from plainmath.validation import number, one_of
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+STARTS = ("rest", "unknown")
+LAGS = 7  # how many of each are tried at first
+FEWEST, MOST = 16, 110  # dead times that are tried at first
+POINTS = 3_000_000  # samples times sets of lags and dead times, computed for the grid
+BEST = 6  # of these, from which the search begins
+PATIENCE = 300  # steps of the last search
+DIGITS = 10  # of the model's numbers
+CLOSE = 1e-5  # a dead time of so few steps is none
+CLEAR = 6  # so many standard errors away, a parameter is told well
+AGREE = 0.2  # by how much of its half an interval may differ from the linear one, where a standard error says enough
+
+
+@dataclass(frozen=True, repr=False)
+class Fit:
+    """A model that fits logged data: what `fit` returns.
+
+    Attributes:
+        model: the `SOPDT`.
+        kind, hold: as given to `fit`.
+        parameters: K, T1 or T1 and T2, and delay, floats by name.
+        errors: the standard error of each of them, if what is left of the data is white noise, and if the response is
+            nearly linear in them over some standard errors. It is not where two lags may be equal, or one be too short
+            to be seen, or noise is large; then `intervals` tells more. `inf` is what cannot be said.
+        residual: standard deviation of what is left, in the unit of the measurement.
+        times, y, fitted: the record, and what the model makes of the control signal; arrays.
+    """
+
+    model: SOPDT
+    kind: str
+    parameters: dict[str, float]
+    errors: dict[str, float]
+    residual: float
+    times: np.ndarray
+    y: np.ndarray
+    fitted: np.ndarray
+    hold: str = "zero order"
+    _residuals: Residuals | None = field(default=None, compare=False)
+    _known: dict = field(default_factory=dict, compare=False)
+
+    @property
+    def expr(self) -> sympy.Expr:
+        """The transfer function of the model."""
+        return self.model.expr
+
+    def intervals(self, level: float = 0.95) -> dict[str, tuple[float, float]]:
+        """Return an interval for each parameter that holds the true one with a probability, if the noise is white.
+
+        A value is in the interval if the best model with that value fits not much worse than the best one of all, by
+        an F test (a profile likelihood). So the interval need not be symmetric; it ends at zero where a lag or a dead
+        time is not to be told from none, and at infinity where the record sets no limit. For two lags, the first one
+        is the longer one. The response need not be nearly linear in the parameters, as for `errors`.
+
+        Arguments:
+            level: the probability, between 0 and 1.
+        Raises:
+            ValueError: for another level, or a record of no more samples than the fit has numbers.
+
+        >>> import numpy as np
+        >>> times = np.arange(60.0)
+        >>> u, noise = np.where(times < 5, 0, 1), 0.1 * np.sin(times**2)
+        >>> y = 2 * (1 - np.exp(-np.maximum(times - 7.5, 0) / 10))
+        >>> {name: [round(x, 1) for x in ends] for name, ends in fit(times, u, y + noise).intervals().items()}
+        {'K': [2.0, 2.1], 'T1': [9.7, 11.7], 'delay': [1.7, 2.8]}
+        """
+        level = number("the level", level, "a probability between 0 and 1", lambda x: 0 < x < 1)
+        if level not in self._known:
+            if self._residuals.freedom < 1:
+                numbers = self._residuals.numbers
+                raise ValueError(
+                    f"{len(self.y)} samples tell no noise from a model of {numbers} numbers: expected more"
+                )
+            self._known[level] = {
+                name: interval(self._residuals, name, self.parameters, self.errors, level) for name in self.parameters
+            }
+        return dict(self._known[level])
+
+    def __repr__(self) -> str:
+        errors, intervals = self.errors, {}
+        if not self._is_regular() and self._residuals is not None and self._residuals.freedom > 0:
+            intervals = self.intervals()
+        values = []
+        for name, value in self.parameters.items():
+            if name in intervals and self._differs(name, intervals[name]):
+                values.append(f"{name} = {value:.4g} ({intervals[name][0]:.3g} to {intervals[name][1]:.3g})")
+            else:
+                values.append(f"{name} = {value:.4g} ± {errors[name]:.1g}")
+        return f"<fit, {self.kind} with dead time: {', '.join(values)}; residual {self.residual:.3g}>"
+
+    def _is_regular(self):
+        """Whether all parameters are so many standard errors from where they are not regular that these say enough."""
+        far = [abs(value) > CLEAR * self.errors[name] for name, value in self.parameters.items() if name != "delay"]
+        delay, lags = self.parameters["delay"], [name for name in self.parameters if name.startswith("T")]
+        apart = len(lags) < 2 or self.parameters["T1"] - self.parameters["T2"] > CLEAR * self.errors["T2"]
+        return all(far) and apart and delay >= 3 * self.errors["delay"]
+
+    def _differs(self, name, ends):
+        """Whether an interval is another than its standard error says."""
+        from scipy.special import stdtrit
+
+        reach = self.errors[name] * float(stdtrit(self._residuals.freedom, 0.975))
+        off = max(abs(abs(end - self.parameters[name]) - reach) for end in ends)
+        return not (math.isfinite(reach) and off <= AGREE * reach)
+
+
+def fit(
+    times: ArrayLike,
+    u: ArrayLike,
+    y: ArrayLike,
+    kind: str = "first order",
+    *,
+    hold: str = "zero order",
+    start: str = "rest",
+    level: float | None = None,
+    longest_delay: float | None = None,
+) -> Fit:
+    """Fit a simple model with dead time to logged data, so that the sum of squared output errors is least.
+
+    The output error is the measurement minus what the model makes of the control signal alone; this response is exact,
+    and the samples need not come evenly. For given lags and dead time the rest of the problem is linear. Lags and dead
+    time are searched by the method of Levenberg and Marquardt, from the best of a grid of starting points, because the
+    sum of squares over the dead time may have several minima. A lag that is shorter than a twentieth of the mean time
+    between two samples is not looked for.
+
+    Arguments:
+        times: moments of the samples, increasing.
+        u, y: control signal and measurement at these moments.
+        kind: "first order", "second order" (two real lags), "integrator" or "integrator with lag".
+        hold: what the control signal does between samples: "zero order", if it is held until the next one, as by a
+            computer; or "first order", if its values are joined by straight lines.
+        start: "rest", if the process was at rest with the first control signal before the record; or "unknown", and
+            then the state at the beginning is estimated, too. Before the record, u had its first value for as long as
+            the dead time.
+        level: the measurement at rest with the first control signal, if it is known; otherwise it is estimated.
+        longest_delay: up to which a dead time is looked for; half of the record if not given.
+    Returns:
+        A `Fit`.
+    Raises:
+        ValueError: for arrays that do not fit, times that do not increase, another kind, hold or start, a signal that
+            does not move, or a dead time as long as the longest one.
+
+    >>> import numpy as np
+    >>> times = np.arange(60.0)
+    >>> u = np.where(times < 5, 0, 1)
+    >>> y = 2 * (1 - np.exp(-np.maximum(times - 7.5, 0) / 10))
+    >>> fit(times, u, y).model
+    SOPDT(K=2, T1=10, delay=5/2)
+    """
+    times, u, y = record(times, u=u, y=y)
+    one_of("the kind", kind, KINDS)
+    one_of("the hold", hold, HOLDS)
+    one_of("the start", start, STARTS)
+    span = times[-1] - times[0]
+    step = span / (len(times) - 1)
+    if not (u[:-1] != u[0]).any():
+        raise ValueError(f"the control signal is {u[0]:g} all the time: expected an experiment that moves it")
+    if not (y != y[0]).any():
+        raise ValueError(f"the measurement is {y[0]:g} all the time: expected an experiment that moves it")
+    longest_delay = span / 2 if longest_delay is None else longest_delay
+    number(
+        "the longest dead time", longest_delay, f"a time up to that of the record, {span:g}", lambda x: 0 < x <= span
+    )
+    _, integrators = KINDS[kind]
+    # neither the search nor the standard errors may depend on units: time counts in steps, signals in their own spans
+    unit_u, unit_y = abs(u - u[0]).max(), np.ptp(y)
+    rest = y[0] if level is None else number("the level", level)
+    even = even_step(times) is not None
+    chain = DrivenChain(
+        kind, np.arange(len(times)) * 1.0 if even else (times - times[0]) / step, (u - u[0]) / unit_u, hold,
+        1.0 if even else None,
+    )  # fmt: skip
+    units = {"K": unit_y / unit_u / step**integrators, "T1": step, "T2": step, "delay": step}
+    longest = float(longest_delay) / step
+    residuals = Residuals(chain, (y - rest) / unit_y, start, level is not None, longest, units)
+    p = _search(residuals)
+    if p[-1] > longest * (1 - 1e-6):
+        raise ValueError(f"the dead time would be {longest_delay:g} or longer: expected a larger longest_delay")
+    if p[-1] < CLOSE:
+        p[-1] = 0.0
+    found, errors, residual, fitted = residuals.described(p)
+    parameters = {name: float(units[name] * value) for name, value in found.items()}
+    errors = {name: float(units[name] * value) for name, value in errors.items()}
+    rounded = {name: exact(float(f"{value:.{DIGITS}g}")) for name, value in parameters.items()}
+    model = SOPDT(**({"T1": sympy.oo} if integrators else {}), **rounded)
+    fitted = rest + unit_y * fitted
+    return Fit(model, kind, parameters, errors, float(residual * unit_y), times, y, fitted, hold, residuals)
+
+
+def _search(residuals):
+    """The lags and the dead time, as `Residuals` counts them, with the least sum of squares."""
+    low, high = residuals.low, residuals.high
+    count, longest = len(residuals.target), high[-1]
+    tried = np.geomspace(0.5, 2 * count, LAGS)
+    sets = list(itertools.combinations_with_replacement(tried[::-1], residuals.chain.lags))
+    many = min(MOST, math.ceil(longest), POINTS // (count * len(sets)))
+    delays = np.linspace(0, longest, max(FEWEST, many), endpoint=False)
+    sums = [(residuals.of(np.reshape(T, (-1, 1)), delays) ** 2).sum(axis=0) for T in sets]
+    order = np.argsort(np.ravel(sums), kind="stable")
+    chosen = []  # no more than one for each dead time
+    for k in order:
+        T, delay = sets[k // len(delays)], delays[k % len(delays)]
+        if all(abs(delay - other[-1]) > longest / FEWEST / 2 for other in chosen):
+            chosen.append([*residuals.counted(T), delay])
+        if len(chosen) == BEST:
+            break
+    start = np.array(chosen).T
+    wide = np.ones_like(start)
+    found, sums = least_squares(residuals.at, start, low[:, None] * wide, high[:, None] * wide)
+    best = found[:, sums.argmin()]
+    # where a dead time is a number of samples, the sum of squares has a kink: the pieces beside it, each for itself
+    floor = math.floor(best[-1])
+    floors = np.array([x for x in (floor - 1, floor, floor + 1) if 0 <= x < longest], dtype=float)
+    lows, highs = (np.repeat(x[:, None], len(floors), axis=1) for x in (low, high))
+    lows[-1], highs[-1] = floors, np.minimum(floors + 1, longest)
+    found, pieces = least_squares(
+        residuals.at, np.repeat(best[:, None], len(floors), axis=1), lows, highs, rounds=PATIENCE
+    )
+    return found[:, pieces.argmin()] if pieces.min() <= sums.min() else best

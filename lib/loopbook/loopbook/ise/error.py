@@ -1,0 +1,159 @@
+"""The error of a loop as a fraction that has an integral, after the proof that it does."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+from loopbook.deadtime import Loop
+from loopbook.ise.one_delay import OneDelay
+from loopbook.quasipolynomials import DelayFraction, read
+from loopbook.quasipolynomials.fraction import Quasipolynomial, plus, taylor_coefficient, times
+from loopbook.stability import StabilityLimitError, unstable_roots
+from plainmath.validation import one_of
+
+__all__ = ["ErrorFraction", "NotApplicableError", "UnstableLoopError", "error_of"]
+
+MODES = ("servo", "regulator")
+ZERO = Fraction(0)
+STEP: Quasipolynomial = {ZERO: (0, 1)}  # what a transfer function is divided by for a step
+
+
+class UnstableLoopError(ValueError):
+    """The loop is not stable, so that the integral of the squared error is infinite."""
+
+
+class NotApplicableError(Exception):
+    """Why a method is not the one for this error."""
+
+
+def error_of(process: object, controller: object, mode: str, from_setpoint: object) -> DelayFraction:
+    """E(s) of a loop for a unit step, with common factors cancelled once."""
+    if isinstance(process, Loop):
+        if controller is not None or from_setpoint is not None:
+            raise ValueError("a loop has its controller already: expected no other one")
+        loop = process
+    elif controller is None:
+        raise ValueError("the controller is missing: expected one, or a loop in place of the process")
+    else:
+        loop = Loop(process, controller, from_setpoint)
+    P, R, L = loop.process_fraction, loop.setpoint_fraction, loop.open_fraction
+    returned = times(STEP, plus(L.denominator, L.numerator))
+    if one_of("mode", mode, MODES) == "regulator":
+        above = {delay: tuple(-c for c in part) for delay, part in times(P.numerator, L.denominator).items()}
+        return DelayFraction(above, times(P.denominator, returned))
+    if loop.controller_fraction == R:
+        return DelayFraction(L.denominator, returned)
+    # 1/(1 + L) - (R/C) L/(1 + L), over the denominator of R P
+    own = times(R.denominator, P.denominator)
+    above = plus(
+        times(plus(L.denominator, L.numerator), own), times(times(R.numerator, P.numerator), L.denominator), -1
+    )
+    return DelayFraction(above, times(own, returned))
+
+
+@dataclass(frozen=True)
+class ErrorFraction:
+    """An error that has an integral: E = N/(s^pole D), all poles of 1/D in the left half-plane.
+
+    The step of the input makes a pole at zero, which N cancels. A Smith predictor does that by its dead times, as in
+    (1 - exp(-s))/s, and no common factor can be taken out.
+    """
+
+    fraction: DelayFraction
+    N: Quasipolynomial  # begins without dead time: what it has at least of that is left out
+    D: Quasipolynomial
+    pole: int
+    earliest: Fraction  # when the error begins
+
+    @classmethod
+    def of(cls, E: object) -> ErrorFraction | None:
+        """The fraction of an error; None for one that is zero."""
+        fraction = read(E)
+        if not fraction.numerator:
+            return None
+        order = fraction.order
+        if not fraction.is_proper or any(len(part) > order for part in fraction.numerator.values()):
+            raise ValueError(f"{fraction.expr} is not strictly proper: e(t) contains an impulse")
+        N, D = fraction.numerator, fraction.denominator
+        first = min(N)
+        if first:  # later by a dead time, the integral is the same
+            N = {delay - first: part for delay, part in N.items()}
+        pole = min(next(k for k, c in enumerate(part) if c) for part in D.values())
+        if pole:
+            D = {delay: part[pole:] for delay, part in D.items()}
+        found = cls(fraction, N, D, pole, first)
+        try:
+            unstable = found._unstable()
+        except StabilityLimitError:
+            raise UnstableLoopError(
+                f"E(s) = {fraction.expr} is not stable: it has poles on the imaginary axis"
+            ) from None
+        if unstable:
+            raise UnstableLoopError(f"{fraction.expr} is not stable: {unstable} poles in the right half-plane")
+        for k in range(pole):
+            if taylor_coefficient(N, k):
+                raise ValueError(f"the error does not vanish: E(s) = {fraction.expr} has a pole at zero")
+        return found
+
+    def _unstable(self) -> float:
+        """How many poles lie in the right half-plane."""
+        number = self.one_delay.unstable if self.one_delay else None
+        if number is None:
+            number = unstable_roots(self.D)
+        return number
+
+    @functools.cached_property
+    def one_delay(self) -> OneDelay | None:
+        """What the crossings of the axis say about D, if it has one dead time or none."""
+        if len(self.D) > 2:
+            return None
+        return OneDelay(self.D[ZERO], *next(((part, delay) for delay, part in self.D.items() if delay), ((), ZERO)))
+
+    @property
+    def order(self) -> int:
+        """The degree of D."""
+        return len(self.D[ZERO]) - 1
+
+    @property
+    def is_neutral(self) -> bool:
+        """Whether the highest derivative has a dead time."""
+        return any(delay and len(part) == self.order + 1 for delay, part in self.D.items())
+
+    @property
+    def speed(self) -> float:
+        """A frequency beside which no pole without dead time is large."""
+        leading = abs(self.D[ZERO][-1])
+        sizes = [sum(abs(part[k]) for part in self.D.values() if k < len(part)) for k in range(self.order)]
+        found = [(size / leading) ** (1 / (self.order - k)) for k, size in enumerate(sizes)]
+        return max(found, default=self._of_dead_times)
+
+    @property
+    def mean_speed(self) -> float:
+        """The geometric mean of the poles, the dead times left out of account."""
+        lowest = abs(sum(part[0] for part in self.D.values()) / self.D[ZERO][-1])
+        return lowest ** (1 / self.order) if self.order else self._of_dead_times
+
+    @property
+    def _of_dead_times(self) -> float:
+        longest = float(max((*self.N, *self.D)))
+        return 1 / longest if longest else 1.0
+
+    def arrays(self, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Coefficients of N and D in s/speed, a row for each dead time, and the dead times, as arrays of floats."""
+        leading, order = self.D[ZERO][-1], self.order + self.pole
+
+        def rows(parts, columns, more):
+            table = np.zeros((len(parts), columns))
+            for row, part in zip(table, parts.values(), strict=True):
+                row[: len(part)] = [c / leading * speed ** (k + more - order) for k, c in enumerate(part)]
+            return table, np.array([float(delay) * speed for delay in parts])
+
+        return *rows(self.N, order, 0), *rows(self.D, self.order + 1, self.pole)
+
+    def need_retarded(self) -> None:
+        if self.is_neutral:
+            raise NotApplicableError("the highest derivative has a dead time")

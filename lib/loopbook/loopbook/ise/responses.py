@@ -1,0 +1,240 @@
+"""Integral criteria from the exact response, followed until its slowest modes are left, and those in closed form."""
+
+from __future__ import annotations
+
+import functools
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from loopbook.deadtime import System
+from loopbook.ise.error import ErrorFraction, NotApplicableError, error_of
+from loopbook.ise.modes import ManyModesError, slow_modes
+from loopbook.quasipolynomials import read
+from plainmath.expressions import s
+from plainmath.validation import number
+
+if TYPE_CHECKING:
+    from loopbook.deadtime import Response
+
+__all__ = ["Criteria", "criteria"]
+
+DIFFERENTIATOR = read(s)
+SMALLEST_TOLERANCE = 1e-12  # smaller ones are lost in rounding, and the response would be followed forever
+NEGLIGIBLE = 1e-11  # the share of the integral that may be left when a response is cut off
+MOST_SEGMENTS = 16_000  # of a response that is followed
+EARLY = 400  # segments from which it pays to ask for the modes at once
+GONE = 30.0  # the exponent after which a mode has decayed below what floating point holds
+
+
+class Criteria(NamedTuple):
+    """Integrals of the error e(t), or of its size, with and without the time as a weight: what `criteria` returns."""
+
+    ISE: float
+    IAE: float
+    ITAE: float
+    ITSE: float
+
+
+def criteria(
+    process: object,
+    controller: object = None,
+    mode: str = "servo",
+    from_setpoint: object = None,
+    tolerance: float = 1e-9,
+) -> Criteria:
+    """Return four integral criteria of the control error after a unit step, from the exact response.
+
+    The response is a polynomial in each of its segments. The integrals of abs(e) are those between its zeros. What
+    comes after a certain time is the sum of a few modes, of which the argument principle proves that they are all that
+    have not decayed by then, and which have to agree with the response before it: their integrals are known in closed
+    form, also that of abs(e), as a geometric series of half periods, when one mode is left. So the response need not be
+    followed for long where the loop is hardly damped.
+
+    Arguments:
+        process, controller, mode, from_setpoint: as for `ise`.
+        tolerance: the share of each integral that may be left out, 1e-12 or more.
+    Returns:
+        `Criteria`: the integrals of e^2, abs(e), t abs(e) and t e^2.
+    Raises:
+        UnstableLoopError, ValueError: as `ise`; or where the response lasts too long to be followed: with more than
+            16,000 segments before few modes are left, or several modes that last too long together.
+
+    >>> [round(value, 6) for value in criteria(1 / s, 1)]
+    [0.5, 1.0, 1.0, 0.25]
+    """
+    range_ = f"a number from {SMALLEST_TOLERANCE:g} to 1"
+    tolerance = number("tolerance", tolerance, range_, lambda x: SMALLEST_TOLERANCE <= x < 1)
+    fraction = ErrorFraction.of(error_of(process, controller, mode, from_setpoint))
+    if fraction is None:
+        return Criteria(0.0, 0.0, 0.0, 0.0)
+    return Criteria(*map(float, _followed(fraction, tolerance, sizes=True)))
+
+
+def by_response(fraction: ErrorFraction) -> float:
+    try:
+        return float(_followed(fraction, NEGLIGIBLE, sizes=False)[0])
+    except ValueError as reason:
+        raise NotApplicableError(str(reason)) from None
+
+
+# ---- over the segments of a response
+
+
+def _four_integrals(response: Response, sizes: bool) -> np.ndarray:
+    """The integrals over each segment of e^2, abs(e), t abs(e) and t e^2, those of abs(e) only where wanted."""
+    times, weights = response.quadrature()
+    squares = response(times) ** 2 * weights
+    plain = weighted = np.zeros(len(squares))
+    if sizes:
+        plain, weighted = _of_sizes(response)
+    return np.stack([squares.sum(axis=1), plain, weighted, (times * squares).sum(axis=1)], axis=1)
+
+
+def _of_sizes(response: Response) -> tuple[np.ndarray, np.ndarray]:
+    """The integrals over each segment of abs(e) and t abs(e), between the zeros of the polynomials."""
+    coefficients, edges = response.coefficients, response.edges
+    points, at_points, at_points_slope, slopes, moments = _tables(coefficients.shape[1])
+    half, middle = np.diff(edges)[:, None] / 2, (edges[1:] + edges[:-1])[:, None] / 2
+    value, slope = coefficients @ at_points.T, coefficients @ at_points_slope.T
+    derivatives = coefficients @ slopes.T
+
+    def at(rows, x):
+        return legendre.legval(x, rows.T, tensor=False)
+
+    def zeros_of(rows, row_slopes, a, b):
+        at_a, at_b = at(rows, a), at(rows, b)
+        x = np.where(at_a == at_b, a, a + (b - a) * at_a / np.where(at_a == at_b, 1, at_a - at_b))
+        low, high = a, b
+        for _ in range(60):
+            here = at(rows, x)
+            same = (here < 0) == (at_a < 0)
+            low, high = np.where(same, x, low), np.where(same, high, x)
+            with np.errstate(all="ignore"):
+                better = x - here / at(row_slopes, x)
+            outside = ~((better >= low) & (better <= high))
+            better = np.where(outside, (low + high) / 2, better)
+            done = (abs(better - x) <= 1e-15).all()
+            x = better
+            if done:
+                break
+        return x
+
+    # where it dips through zero and comes back between two points, the bottom of the dip is one more
+    dips = np.nonzero(
+        (value[:, :-1] * slope[:, :-1] < 0) & (value[:, 1:] * slope[:, 1:] > 0) & (value[:, :-1] * value[:, 1:] > 0)
+    )
+    segments = [np.repeat(np.arange(len(value)), len(points) - 1)]
+    left, right = (np.broadcast_to(part, (len(value), len(points) - 1)).ravel() for part in (points[:-1], points[1:]))
+    at_left, at_right = value[:, :-1].ravel(), value[:, 1:].ravel()
+    if len(dips[0]):
+        rows = dips[0]
+        second = derivatives[rows] @ slopes[: derivatives.shape[1], : derivatives.shape[1]].T
+        bottom = zeros_of(derivatives[rows], second, points[dips[1]], points[dips[1] + 1])
+        at_bottom = at(coefficients[rows], bottom)
+        through = at_bottom * value[dips] < 0
+        rows, bottom, at_bottom = rows[through], bottom[through], at_bottom[through]
+        segments += [rows, rows]
+        left = np.concatenate([left, points[dips[1][through]], bottom])
+        right = np.concatenate([right, bottom, points[dips[1][through] + 1]])
+        at_left = np.concatenate([at_left, value[dips][through], at_bottom])
+        at_right = np.concatenate([at_right, at_bottom, value[dips[0][through], dips[1][through] + 1]])
+    rows = np.concatenate(segments)
+    crossing = (at_left < 0) != (at_right < 0)
+    rows, falling = rows[crossing], at_left[crossing] >= 0
+    zeros = zeros_of(coefficients[rows], derivatives[rows], left[crossing], right[crossing])
+    # integrals from the left end, of e and of x e: they change their sign at each zero
+    total = []
+    for table in moments:
+        integral = coefficients @ table.T
+        ends = at(integral, np.ones(len(integral)))
+        found = np.where(value[:, -1] < 0, -ends, ends)
+        np.add.at(found, rows, np.where(falling, 2.0, -2.0) * at(integral[rows], zeros))
+        total.append(found)
+    return total[0] * half[:, 0], (total[0] * middle[:, 0] + total[1] * half[:, 0]) * half[:, 0]
+
+
+@functools.cache
+def _tables(n: int):
+    """Points, the values and slopes of n Legendre polynomials there, and matrices of derivatives and of integrals."""
+    points = -np.cos(np.linspace(0, math.pi, 3 * n))
+    slopes = np.zeros((n, n))
+    slopes[: n - 1] = legendre.legder(np.eye(n), axis=0)
+    moments = [legendre.legint(np.eye(n), lbnd=-1, axis=0)]
+    by_x = np.zeros((n + 1, n))
+    for k, row in enumerate(np.eye(n)):
+        found = legendre.legmulx(row)
+        by_x[: len(found), k] = found
+    moments.append(legendre.legint(by_x, lbnd=-1, axis=0))
+    vander = legendre.legvander(points, n - 1)
+    return points, vander, vander @ slopes, slopes, moments
+
+
+# ---- and beyond
+
+
+def _followed(fraction: ErrorFraction, tolerance: float, sizes: bool) -> np.ndarray:
+    """Integrals over the response, followed twice as far until what comes later is known or does not matter."""
+    e = System(fraction.fraction * DIFFERENTIATOR)
+    delays = fraction.fraction.delays
+    end, enough = 2 * float(max(delays, default=0)) + 8 / fraction.speed, 4 * float(sum(delays)) + 16 / fraction.speed
+    number, reason = 0, ""
+    while True:
+        response = e.step_until(end)
+        table = _four_integrals(response, sizes)
+        total, later = table.sum(axis=0), table[response.edges[1:] > end / 2].sum(axis=0)
+        negligible = bool((later <= tolerance * total).all())
+        if negligible or number or len(response.edges) > EARLY:
+            rest, reason = _beyond(fraction, response, total, tolerance, sizes)
+            if rest is not None:
+                return total + rest
+        if negligible and end >= enough:
+            return total
+        if 2 * len(response.edges) > MOST_SEGMENTS:
+            left = max(b / a for a, b in zip(total, later, strict=True) if a)
+            raise ValueError(
+                f"the response up to t = {end:g} needs more than {MOST_SEGMENTS // 2} segments, its later half adds "
+                f"{left:.0e} of an integral, and {reason}: expected an error that decays sooner"
+            )
+        end, number = 2 * end, number + 1
+
+
+def _beyond(
+    fraction: ErrorFraction, response: Response, total: np.ndarray, tolerance: float, sizes: bool
+) -> tuple[np.ndarray | None, str]:
+    """The integrals from the end of a response on, or None and the reason why they are not known."""
+    end = float(response.edges[-1])
+    rate = GONE / end
+    modes = slow_modes(fraction, rate)
+    if modes is None:
+        return None, "the modes that last longer were not found"
+    modes = modes.later(-float(fraction.earliest))
+    late = response.edges[:-1] >= 0.9 * response.edges[-1]
+    late[-1] = True
+    times = response.quadrature()[0][late]
+    apart = float(abs(response(times) - modes(times)).max())
+    rest_modes = modes.later(end)
+    square, square_later = rest_modes.squares() if len(modes.poles) else (0.0, 0.0)
+    found = np.array([square, 0.0, 0.0, end * square + square_later])
+    if sizes:
+        scale = total + found
+        lead = max(rest_modes.bounds()[0].tolist(), default=0.0)
+        lead_later = end * lead + max(rest_modes.bounds()[1].tolist(), default=0.0)
+        allowed = tolerance / 20 * (scale[1] + lead / 2), tolerance / 20 * (scale[2] + lead_later / 2)
+        try:
+            found[1:3] = rest_modes.sizes(end, allowed)
+        except ManyModesError:
+            return None, "several modes that hardly decay last too long together"
+    # what is no mode decays at that rate or faster
+    size = float((rest_modes.weights * abs(rest_modes.residues)).sum())
+    plain, weighted = apart / rate, apart * (end / rate + 1 / rate**2)
+    error = np.array([(2 * size + apart) * plain, plain, weighted, (2 * size + apart) * weighted])
+    if not sizes:
+        error, found_total = error[[0]], (total + found)[[0]]
+    else:
+        found_total = total + found
+    if not (error <= tolerance / 2 * found_total).all():
+        return None, f"what the modes leave of it, {apart:.0e}, has not decayed"
+    return found, ""

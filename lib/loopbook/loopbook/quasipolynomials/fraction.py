@@ -1,0 +1,513 @@
+"""Exact fractions of sums of polynomials with dead times, and their algebra.
+
+A sum of polynomials in `s`, each with a dead time ``exp(-delay*s)``, is a dictionary {delay: coefficients}: the delay a
+fraction, the coefficients whole numbers, the lowest power first. ``5*s + 2 + 3*exp(-s/2)`` is
+``{0: (2, 5), 1/2: (3,)}``.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from fractions import Fraction
+from typing import TYPE_CHECKING, Self
+
+import numpy as np
+import sympy
+from sympy.polys.densearith import dup_exquo
+from sympy.polys.euclidtools import dup_gcd
+from sympy.polys.galoistools import gf_gcd
+from sympy.polys.rings import PolyRing
+
+from loopbook.transfer import transfer_function
+from plainmath.expressions import s
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+__all__ = ["DelayFraction", "Quasipolynomial", "lowest_term", "plus", "read", "taylor_coefficient", "times"]
+
+#: A sum of polynomials in `s`, each with a dead time: {delay: whole coefficients, the lowest power first}.
+Quasipolynomial = dict[Fraction, tuple[int, ...]]
+
+ZERO: Fraction = Fraction(0)
+ONE: Quasipolynomial = {ZERO: (1,)}
+PRIME = 2**61 - 1  # by which polynomials without a common factor are told apart quickly
+MOST_MULTIPLES = 60  # of a common base, up to which delays are powers of one symbol
+
+
+# ------------------------------------------------------------------------------------------------ quasipolynomials
+
+
+def plus(one: Quasipolynomial, other: Quasipolynomial, factor: int = 1) -> Quasipolynomial:
+    """Return ``one + factor*other``."""
+    total = dict(one)
+    for delay, part in other.items():
+        mine = total.get(delay, ())
+        longer = [*mine, *[0] * (len(part) - len(mine))]
+        for k, c in enumerate(part):
+            longer[k] += factor * c
+        while longer and not longer[-1]:
+            longer.pop()
+        if longer:
+            total[delay] = tuple(longer)
+        else:
+            total.pop(delay, None)
+    return total
+
+
+def times(one: Quasipolynomial, other: Quasipolynomial) -> Quasipolynomial:
+    """Return ``one*other``."""
+    total: Quasipolynomial = {}
+    for delay, p in one.items():
+        for later, q in other.items():
+            product = [0] * (len(p) + len(q) - 1)
+            for i, a in enumerate(p):
+                if a:
+                    for j, b in enumerate(q):
+                        product[i + j] += a * b
+            total = plus(total, {delay + later: tuple(product)})
+    return total
+
+
+def taylor_coefficient(parts: Quasipolynomial, k: int) -> Fraction:
+    """Return the coefficient of ``s**k`` in the Taylor series of a quasipolynomial at zero, exact.
+
+    >>> taylor_coefficient({Fraction(0): (1,), Fraction(2): (-1,)}, 1)    # of 1 - exp(-2*s)
+    Fraction(2, 1)
+    """
+    return sum(
+        (
+            c * (-Fraction(delay)) ** (k - i) / math.factorial(k - i)
+            for delay, part in parts.items()
+            for i, c in enumerate(part[: k + 1])
+            if c
+        ),
+        ZERO,
+    )
+
+
+def lowest_term(parts: Quasipolynomial) -> tuple[int, Fraction]:
+    """Return the lowest power of `s` in the Taylor series of a quasipolynomial, not 0, and its exact coefficient."""
+    k = 0
+    while not (coefficient := taylor_coefficient(parts, k)):
+        k += 1
+    return k, coefficient
+
+
+def _scaled(parts: Quasipolynomial, factor: int) -> Quasipolynomial:
+    return {delay: tuple(factor * c for c in part) for delay, part in parts.items()} if factor else {}
+
+
+# ------------------------------------------------------------------------------------------------ common factors
+
+
+def _cancelled(above: Quasipolynomial, below: Quasipolynomial) -> tuple[Quasipolynomial, Quasipolynomial]:
+    """Both without common factors, the denominator with a part without dead time and a positive leading coefficient."""
+    if not above:
+        return {}, ONE
+    base = min(below)
+    if base:
+        above, below = ({delay - base: part for delay, part in parts.items()} for parts in (above, below))
+    if len(below[ZERO]) > 1 or len(below) > 1:
+        above, below = _without_common_polynomial(above, below)
+        # only where both have several dead times can a common factor have one
+        if len(above) > 1 and len(below) > 1:
+            above, below = _without_common_quasipolynomial(above, below)
+    content = math.gcd(*(c for parts in (above, below) for part in parts.values() for c in part))
+    if below[ZERO][-1] < 0:
+        content = -content
+    if content != 1:
+        above, below = (
+            {delay: tuple(c // content for c in part) for delay, part in parts.items()} for parts in (above, below)
+        )
+    return dict(sorted(above.items())), dict(sorted(below.items()))
+
+
+def _without_common_polynomial(
+    above: Quasipolynomial, below: Quasipolynomial
+) -> tuple[Quasipolynomial, Quasipolynomial]:
+    """Without the factor that all polynomials of both quasipolynomials share."""
+    parts = [[*reversed(part)] for part in (*above.values(), *below.values())]
+    if min(map(len, parts)) == 1 or _surely_coprime(parts):
+        return above, below
+    common = functools.reduce(lambda f, g: dup_gcd(f, g, sympy.ZZ), [list(map(sympy.ZZ, part)) for part in parts])
+    if len(common) == 1:
+        return above, below
+    return tuple(
+        {
+            delay: tuple(int(c) for c in reversed(dup_exquo(list(map(sympy.ZZ, reversed(part))), common, sympy.ZZ)))
+            for delay, part in side.items()
+        }
+        for side in (above, below)
+    )
+
+
+def _surely_coprime(parts: list[list[int]]) -> bool:
+    """Whether polynomials, highest power first, have no common factor, as seen modulo a prime."""
+    if any(part[0] % PRIME == 0 for part in parts):
+        return False
+    # a common factor of all is one of the first and of any combination of the others
+    length = max(map(len, parts[1:]))
+    mixed = [0] * length
+    for number, part in enumerate(parts[1:], 1):
+        for k, c in enumerate(part, length - len(part)):
+            mixed[k] += (7919 * number * number + 1) * c
+    first, mixed = ([sympy.ZZ(c % PRIME) for c in row] for row in (parts[0], mixed))
+    while mixed and not mixed[0]:
+        mixed.pop(0)
+    return bool(mixed) and len(gf_gcd(first, mixed, sympy.ZZ(PRIME), sympy.ZZ)) == 1
+
+
+def _without_common_quasipolynomial(
+    above: Quasipolynomial, below: Quasipolynomial
+) -> tuple[Quasipolynomial, Quasipolynomial]:
+    """Without common factors that contain dead times, these being powers of a few symbols."""
+    powers, units = _as_powers({*above, *below})
+    ring = PolyRing(sympy.symbols(f"s z:{len(units)}"), sympy.ZZ)
+    f, g = (
+        ring.from_dict({(k, *powers[d]): sympy.ZZ(c) for d, part in side.items() for k, c in enumerate(part) if c})
+        for side in (above, below)
+    )
+    common, f, g = f.cofactors(g)
+    if common.is_ground:
+        return above, below
+    sides = []
+    for polynomial in (f, g):
+        side: Quasipolynomial = {}
+        for (k, *exponents), c in polynomial.terms():
+            delay = sum((n * unit for n, unit in zip(exponents, units, strict=True)), ZERO)
+            side = plus(side, {delay: (*[0] * k, int(c))})
+        sides.append(side)
+    base = min(sides[1])
+    above, below = ({delay - base: part for delay, part in side.items()} for side in sides)
+    return above, below
+
+
+def _as_powers(delays: set[Fraction]) -> tuple[dict[Fraction, tuple[int, ...]], list[Fraction]]:
+    """Delays as whole multiples of a few units: {delay: multiples of each unit}, and the units.
+
+    Delays that are multiples of one share a unit; others have one of their own, or are sums of those before.
+    """
+    families: list[list[Fraction]] = []
+    sums: dict[Fraction, tuple[Fraction, Fraction]] = {}
+    for delay in sorted(delays - {ZERO}):
+        for family in families:
+            unit = _unit([*family, delay])
+            if max(family[-1], delay) <= MOST_MULTIPLES * unit:
+                family.append(delay)
+                break
+        else:
+            known = {ZERO, *sums, *(d for family in families for d in family)}
+            pair = next(((d, delay - d) for d in known if d and delay - d in known), None)
+            if pair:
+                sums[delay] = pair
+            else:
+                families.append([delay])
+    units = [_unit(family) for family in families]
+    powers = {ZERO: (0,) * len(units)}
+    for k, (family, unit) in enumerate(zip(families, units, strict=True)):
+        for delay in family:
+            powers[delay] = tuple(int(delay / unit) if n == k else 0 for n in range(len(units)))
+    for delay, pair in sums.items():
+        powers[delay] = tuple(a + b for a, b in zip(*(powers[d] for d in pair), strict=True))
+    return powers, units
+
+
+def _unit(delays: list[Fraction]) -> Fraction:
+    """The largest fraction of which all delays are multiples."""
+    return Fraction(math.gcd(*(d.numerator for d in delays)), math.lcm(*(d.denominator for d in delays)))
+
+
+# ------------------------------------------------------------------------------------------------ the fraction
+
+
+class DelayFraction:
+    """A transfer function with numbers: a fraction of two sums of polynomials in `s`, each with a dead time.
+
+    It is exact, and may be improper, as a PID controller without filter. The operators ``+ - * / **`` work with other
+    fractions, expressions in `s`, controllers and numbers; common factors are cancelled, also those that contain dead
+    times, if these are multiples of one, up to 60 times it. Called with a complex number, or an array of such, it
+    returns its value there.
+
+    Arguments:
+        above, below: numerator and denominator, ``{delay: coefficients}`` with whole numbers, the lowest power first.
+    Attributes:
+        numerator, denominator: the same without common factors; the denominator has a part without dead time, whose
+            leading coefficient is positive. The numerator of zero is empty.
+    Raises:
+        ValueError: if the output would depend on the input of a later time, or the denominator is zero.
+
+    >>> H = read(sympy.exp(-2 * s) / (5 * s + 1))
+    >>> H.numerator
+    {Fraction(2, 1): (1,)}
+    >>> (1 / (1 + H)).expr
+    (5*s + 1)/(5*s + 1 + exp(-2*s))
+    """
+
+    def __init__(self, above: Quasipolynomial, below: Quasipolynomial = ONE):
+        if not below:
+            raise ValueError(f"{_expression(above)} is divided by 0: expected a denominator that is not zero")
+        self.numerator, self.denominator = _cancelled(above, below)
+        if early := [delay for delay in (*self.numerator, *self.denominator) if delay < 0]:
+            shift = sympy.exp(-sympy.Rational(early[0].numerator, early[0].denominator) * s)
+            raise ValueError(f"{self.expr} contains {shift}: a dead time cannot be negative")
+
+    @classmethod
+    def _make(cls, above: Quasipolynomial, below: Quasipolynomial) -> Self:
+        return cls(above, below)
+
+    @classmethod
+    def coprime(cls, above: Quasipolynomial, below: Quasipolynomial) -> DelayFraction:
+        """The fraction of two quasipolynomials that are known to be coprime, the denominator with a part at zero."""
+        fraction = DelayFraction.__new__(DelayFraction)
+        below = below if above else ONE
+        sign = -1 if below[ZERO][-1] < 0 else 1
+        fraction.numerator, fraction.denominator = (
+            dict(sorted(_scaled(parts, sign).items())) for parts in (above, below)
+        )
+        return fraction
+
+    @functools.cached_property
+    def expr(self) -> sympy.Expr:
+        """The transfer function, an expression in `s` with whole coefficients."""
+        return _expression(self.numerator) / _expression(self.denominator)
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.expr})"
+
+    def _repr_latex_(self) -> str:
+        return self.expr._repr_latex_()
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, DelayFraction):
+            return NotImplemented
+        return (self.numerator, self.denominator) == (other.numerator, other.denominator)
+
+    def __hash__(self) -> int:
+        return hash((tuple(self.numerator.items()), tuple(self.denominator.items())))
+
+    # ---- algebra
+
+    def __add__(self, other: object) -> Self:
+        other = _operand(other)
+        if other is None:
+            return NotImplemented
+        if self.denominator == other.denominator:
+            return self._make(plus(self.numerator, other.numerator), self.denominator)
+        above = plus(times(self.numerator, other.denominator), times(other.numerator, self.denominator))
+        return self._make(above, times(self.denominator, other.denominator))
+
+    def __neg__(self) -> Self:
+        return self._make(_scaled(self.numerator, -1), self.denominator)
+
+    def __sub__(self, other: object) -> Self:
+        other = _operand(other)
+        return NotImplemented if other is None else self + -other
+
+    def __rsub__(self, other: object) -> Self:
+        return -self + other
+
+    def __mul__(self, other: object) -> Self:
+        other = _operand(other)
+        if other is None:
+            return NotImplemented
+        return self._make(times(self.numerator, other.numerator), times(self.denominator, other.denominator))
+
+    def __truediv__(self, other: object) -> Self:
+        other = _operand(other)
+        if other is None:
+            return NotImplemented
+        return self._over(self, other)
+
+    def __rtruediv__(self, other: object) -> Self:
+        other = _operand(other)
+        return NotImplemented if other is None else self._over(other, self)
+
+    def _over(self, one: DelayFraction, other: DelayFraction) -> Self:
+        if not other.numerator:
+            raise ValueError(f"{one.expr} is divided by 0: expected a system that is not zero")
+        return self._make(times(one.numerator, other.denominator), times(one.denominator, other.numerator))
+
+    def __pow__(self, n: int) -> Self:
+        if isinstance(n, bool) or not hasattr(n, "__index__"):
+            return NotImplemented
+        n = n.__index__()
+        base = self._over(read(1), self) if n < 0 else self
+        above, below = ONE, ONE
+        for _ in range(abs(n)):
+            above, below = times(above, base.numerator), times(below, base.denominator)
+        return self._make(above, below)
+
+    __radd__, __rmul__ = __add__, __mul__
+
+    # ---- what it is
+
+    @property
+    def order(self) -> int:
+        """The degree of the denominator's part without dead time."""
+        return len(self.denominator[ZERO]) - 1
+
+    @property
+    def is_proper(self) -> bool:
+        """Whether no power of `s` anywhere in it is higher than the denominator's without dead time."""
+        return max(map(len, (*self.numerator.values(), *self.denominator.values()))) <= self.order + 1
+
+    @property
+    def delays(self) -> list[Fraction]:
+        """The dead times in the numerator and in the denominator, sorted, without zero.
+
+        >>> read((1 - sympy.exp(-2 * s)) / (s + sympy.exp(-s))).delays
+        [Fraction(1, 1), Fraction(2, 1)]
+        """
+        return sorted({*self.numerator, *self.denominator} - {ZERO})
+
+    @property
+    def is_neutral(self) -> bool:
+        """Whether the highest derivative of the output occurs with a dead time, so that a jump returns forever.
+
+        >>> read(1 / (s + 1 + s * sympy.exp(-s) / 2)).is_neutral
+        True
+        """
+        return any(delay and len(part) == self.order + 1 for delay, part in self.denominator.items())
+
+    # ---- values
+
+    def __call__(self, point: complex | ArrayLike) -> np.ndarray:
+        """Return the value H(s) at complex points, an array of their shape; not finite at a pole.
+
+        >>> read(1 / (s + 1))(1j)
+        np.complex128(0.5-0.5j)
+        """
+        point = np.asarray(point, dtype=complex)
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            return (self._value(self.numerator, point) / self._value(self.denominator, point))[()]
+
+    def _value(self, parts: Quasipolynomial, point: np.ndarray) -> np.ndarray:
+        leading, total = self.denominator[ZERO][-1], np.zeros(point.shape, dtype=complex)
+        for delay, part in parts.items():
+            value = np.polyval([c / leading for c in reversed(part)], point)
+            total = total + (value * np.exp(-float(delay) * point) if delay else value)
+        return total
+
+
+def _expression(parts: Quasipolynomial) -> sympy.Expr:
+    return sympy.Add(
+        *(
+            sympy.Add(*(c * s**k for k, c in enumerate(part) if c))
+            * sympy.exp(-sympy.Rational(delay.numerator, delay.denominator) * s)
+            for delay, part in parts.items()
+        )
+    )
+
+
+# ------------------------------------------------------------------------------------------------ reading
+
+
+def read(value: object) -> DelayFraction:
+    """Return the fraction that a transfer function with numbers is.
+
+    Arguments:
+        value: an expression in `s` or a number; whatever has one as its attribute `expr`, as a `PID`; a fraction or a
+            `System`; or a continuous single-input single-output system of python-control. Coefficients and dead times
+            that are no fractions are taken to 30 digits.
+    Raises:
+        ValueError: for symbols, complex coefficients, what is no such fraction, or an output that would depend on the
+            input of a later time.
+
+    >>> read(sympy.exp(-s) / s + 1)
+    DelayFraction((s + exp(-s))/s)
+    """
+    if isinstance(value, DelayFraction):
+        return value
+    H = transfer_function(value)
+    if letters := sorted(map(str, H.free_symbols - {s})):
+        raise ValueError(f"give a number for {', '.join(letters)} in {H}")
+    try:
+        above, below = _read(H)
+    except _InfiniteError:
+        raise ValueError(f"{H} is infinite: expected a transfer function") from None
+    except _NoFractionError:
+        raise ValueError(f"{H} is not a rational function of s and dead times exp(-delay*s)") from None
+    return DelayFraction(above, below)
+
+
+def _operand(value: object) -> DelayFraction | None:
+    """The other side of an operator; None for what Python may ask about it instead."""
+    return None if isinstance(value, (str, list, tuple, dict)) else read(value)
+
+
+class _InfiniteError(Exception):
+    """A part of an expression is divided by zero."""
+
+
+class _NoFractionError(Exception):
+    """An expression is no fraction of sums of polynomials with dead times."""
+
+
+def _read(e: sympy.Expr) -> tuple[Quasipolynomial, Quasipolynomial]:
+    """Numerator and denominator of an expression, common factors left in."""
+    if e == s:
+        return {ZERO: (0, 1)}, ONE
+    if e.is_Rational:
+        return {ZERO: (int(e.p),)} if e.p else {}, {ZERO: (int(e.q),)}
+    if e.is_Mul:
+        above, below = ONE, ONE
+        for factor in e.args:
+            p, q = _read(factor)
+            above, below = times(above, p), below if q == ONE else times(below, q)
+        return above, below
+    if e.is_Add:
+        above, below = {}, ONE
+        for term in e.args:
+            p, q = _read(term)
+            if q == below:
+                above = plus(above, p)
+            else:
+                above, below = plus(times(above, q), times(p, below)), times(below, q)
+        return above, below
+    if isinstance(e, sympy.exp) and e.has(s):
+        return _read_dead_time(e)
+    if e.is_Pow and e.exp.is_Integer:
+        p, q = _read(e.base)
+        if e.exp < 0:
+            if not p:
+                raise _InfiniteError
+            p, q = q, p
+        above, below = ONE, ONE
+        for _ in range(abs(int(e.exp))):
+            above, below = times(above, p), times(below, q)
+        return above, below
+    if e in (sympy.oo, -sympy.oo, sympy.zoo):
+        raise _InfiniteError
+    if e.is_number:
+        number = _rational(e)
+        return {ZERO: (number.numerator,)} if number else {}, {ZERO: (number.denominator,)}
+    raise _NoFractionError
+
+
+def _read_dead_time(e: sympy.Expr) -> tuple[Quasipolynomial, Quasipolynomial]:
+    """``exp(a - delay*s)``, as a shift of `s` makes it, with the number exp(a) as a factor."""
+    constant, rest = sympy.expand(e.exp).as_independent(s, as_Add=True)
+    delay = sympy.expand(-rest / s)
+    if delay.has(s) or not constant.is_number:
+        raise _NoFractionError
+    above, below = _read(sympy.exp(constant)) if constant else (ONE, ONE)
+    return times(above, {_rational(delay): (1,)}), below
+
+
+def _rational(number: sympy.Expr) -> Fraction:
+    """A number itself if it is a fraction, and otherwise with each irrational part of it to 30 digits.
+
+    So the sum of two dead times is, however it is written, the sum of what they are taken for.
+    """
+    if number.is_Rational:
+        return Fraction(int(number.p), int(number.q))
+    if number.is_Add:
+        return sum(map(_rational, number.args), ZERO)
+    if number.is_Mul:
+        return math.prod(map(_rational, number.args), start=Fraction(1))
+    if not number.is_real:
+        raise ValueError(f"{number} is complex: expected real coefficients")
+    digits = sympy.Rational(str(number.evalf(30)))
+    return Fraction(int(digits.p), int(digits.q))
