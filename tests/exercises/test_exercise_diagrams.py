@@ -6,8 +6,8 @@ import pytest
 
 from exercisebook.judging import RIGHT, UNJUDGED, WRONG, judge
 from loopbook.exercises import bank
+from loopbook.exercises.connections import connections
 from loopbook.exercises.kinds import InstrumentDiagram
-from loopbook.exercises.kinds.instrument_diagram import connections
 
 KEY = """vessel -> LT11 -> LC11 -> FC12 -//-> FV12 -> outlet
 outlet -> FT12 -> FC12

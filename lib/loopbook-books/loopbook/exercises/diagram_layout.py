@@ -14,7 +14,7 @@ from loopbook.diagrams import control_valve, instrumentation_diagram, vessel
 from loopbook.instruments import decode
 
 if TYPE_CHECKING:
-    from loopbook.exercises.kinds.instrument_diagram import Connection
+    from loopbook.exercises.connections import Connection
     from loopbook.figures import Picture
 
 

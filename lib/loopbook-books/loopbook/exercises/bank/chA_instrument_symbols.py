@@ -11,8 +11,8 @@ from loopbook.exercises.authoring import (
     word,
     words,
 )
+from loopbook.exercises.connections import connections
 from loopbook.exercises.diagram_layout import drawn
-from loopbook.exercises.kinds.instrument_diagram import connections
 from loopbook.instruments import decode
 
 QUANTITIES = ["density", "flow", "level", "position", "pressure", "quality", "speed", "temperature", "viscosity"]

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from exercisebook.kinds.kind import AS_IT_IS, LINES, Kind, Tried
 from exercisebook.reading import LONGEST, Unreadable, alone, answered, in_a_row, shortened
+from loopbook.exercises.connections import ELECTRICAL, PNEUMATIC, TAG, Connection, connections
 from loopbook.instruments import Tag, decode
 from plainmath.validation import did_you_mean
 
 if TYPE_CHECKING:
     from loopbook.figures import Picture
 
-ELECTRICAL, PNEUMATIC = "electrical", "pneumatic"
 MOST_CONNECTIONS = 60
 
 _ARROW = re.compile(
@@ -26,22 +25,9 @@ _SIGNS = str.maketrans({"–": "-", "—": "-", "−": "-", "→": "->", "⇒": 
 _BACK = re.compile(r"(<\s*[-=~/]+(?:\s*//\s*-+)?)")
 #: What is said of a signal behind the instrument that it goes to.
 _NOTE = re.compile(r" \((pneumatic|electrical|setpoint|set point|measurement|signal|cascade)\)\s*$")
-_TAG = re.compile(r"([A-Za-z]{2,5})[\s_-]?(\d+)[\s_-]?([A-Ja-j]?)")
 _AT = re.compile(r"(?i)^(.+?)(?:\s*:\s*|\s+(?:measures(?: at| in)?|is in|sits in|acts on|at|in|on)\s+)(?:the )?(.+)$")
 #: What an instrument does, the strongest first.
 ROLES = ("valve", "controller", "switch", "alarm", "secure control", "function", "transmitter", "indicator")
-
-
-@dataclass(frozen=True, order=True)
-class Connection:
-    """A connection: from one tag or place to another, and by what kind of signal; none at a place of the process."""
-
-    start: str
-    end: str
-    kind: str = ""
-
-    def __str__(self) -> str:
-        return f"{self.start} {'-//->' if self.kind == PNEUMATIC else '->'} {self.end}"
 
 
 class InstrumentDiagram(Kind):
@@ -130,7 +116,7 @@ class InstrumentDiagram(Kind):
         for place in self.places:
             if plain in {_bare(name) for name in (place, *(self.also or {}).get(place, ()))}:
                 return place
-        match = _TAG.fullmatch(text.strip(" .()[]'\"`"))
+        match = TAG.fullmatch(text.strip(" .()[]'\"`"))
         if not match:
             if re.fullmatch(r"[A-Z]{2,4}", text.strip()):
                 raise Unreadable(f"{text.strip()} has no number: expected that of its loop, as in {text.strip()}101")
@@ -317,16 +303,6 @@ class InstrumentDiagram(Kind):
 _DONE = {"transmitter": "measured", "controller": "controlled", "alarm": "watched", "switch": "watched"}
 
 
-def connections(text: str) -> list[Connection]:
-    """The connections of a diagram as it was read."""
-    found = []
-    for part in text.split("; "):
-        start, arrow, end = re.fullmatch(r"(.+?) (-//->|->) (.+)", part).groups()
-        found.append(Connection(start, end, PNEUMATIC if arrow == "-//->" else ELECTRICAL))
-    return [Connection(x.start, x.end) if " " in x.start + x.end or not (_is_tag(x.start) and _is_tag(x.end)) else x
-            for x in found]  # fmt: skip
-
-
 def _names(found):
     """The names that a reader has given to the instruments that are asked."""
     return {name: own for x, given in found.items() for name, own in ((x.start, given.start), (x.end, given.end))}
@@ -335,10 +311,6 @@ def _names(found):
 def role_of(tag: Tag) -> str:
     """What an instrument is in its loop: "transmitter", "controller", "valve"; an indicating controller controls."""
     return next((role for role in ROLES if role in tag.functions), tag.functions[-1])
-
-
-def _is_tag(name):
-    return bool(_TAG.fullmatch(name)) and any(sign.isdigit() for sign in name)
 
 
 def _matched(tags, wanted):
@@ -400,7 +372,7 @@ def _with_starts(parts):
     found: list[str] = []
     for part in parts:
         arrows = list(_ARROW.finditer(found[-1])) if found else []
-        if arrows and _TAG.fullmatch(part.strip(" .")):
+        if arrows and TAG.fullmatch(part.strip(" .")):
             begin = arrows[-2].end() if len(arrows) > 1 else 0
             part = f"{found[-1][begin : arrows[-1].start()]} -> {part}"
         found.append(part)
