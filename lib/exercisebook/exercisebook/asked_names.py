@@ -67,8 +67,8 @@ def by_name(alone: object, key: Mapping[str, Kind]) -> dict[str, Any]:
     """Return an answer without a name under that which is asked; nothing where several are, and it says not which.
 
     >>> from exercisebook.kinds import Number
-    >>> by_name("Kp = 2, Ti = 10 s", {"Kp": Number(2), "Ti": Number(10, "s")})
-    {'Kp': '2', 'Ti': '10 s'}
+    >>> by_name({"K": 2, "T": "10 s"}, {"K": Number(2), "T": Number(10, "s")})
+    {'K': 2, 'T': '10 s'}
     """
     if len(key) == 1:
         return dict.fromkeys(key, alone)
