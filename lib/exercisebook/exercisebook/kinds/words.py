@@ -2,18 +2,53 @@
 
 from __future__ import annotations
 
+import difflib
+import functools
 import hashlib
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Self
 
 import sympy
 from sympy.logic.boolalg import BooleanAtom
 
-from exercisebook.kinds import synonyms
 from exercisebook.kinds.kind import AS_IT_IS, NONE, ONE, ORDER, SEVERAL, Kind, Tried
 from exercisebook.reading import Unreadable, alone, answered, in_a_row, members, shortened
 
+#: What is usually said for the same, in one row; a word is never in a row with one that says the opposite.
+SAME = """
+setpoint, reference, reference value, desired value, set value, SP
+control error, error, error signal, control deviation
+control signal, controller output, manipulated variable, MV
+disturbance, load, load disturbance
+process output, process variable, controlled variable, PV
+measurement noise, sensor noise, noise of the measurement
+up, raise, raises, rises, increase, increases, higher
+down, lower, lowers, falls, decrease, decreases, reduce
+larger, greater, bigger, higher, increased
+smaller, lower, less, reduced, decreased
+yes, true, y
+no, false, n
+none, nothing
+unstable, not stable, instable
+direct, direct acting, direct action
+reverse, reverse acting, reverse action
+indicator, indicating
+as it was, unchanged, the same, no change
+more sluggish, sluggish, slower
+P, P controller
+PI, PI controller
+PD, PD controller
+PID, PID controller
+check valve, non return valve
+hand valve, manual valve
+safety valve, relief valve
+"""
+#: A longer text names no option; in a shorter word a letter makes another word, as of "not" the word "now".
+LONGEST, SHORTEST_WITH_A_SLIP = 200, 5
+_ARTICLE = re.compile(r"\b(?:an?|the)\s+(?=\w\w)")
+#: What two words may have between them or not; between digits it separates numbers.
+_BETWEEN = re.compile(r"(?<=[^\W\d])[\s_‐‑-]+(?=\w)|(?<=\w)[\s_‐‑-]+(?=[^\W\d])")
 _NONE = re.compile(r"none(?: of them| of these)?|nothing|no one|not any|[-–∅]|\[\]", re.IGNORECASE)
 _ONLY = re.compile(r"^(?:only|just|solely) ", re.IGNORECASE)
 _COUNTED = re.compile(r"(\D*)(\d+(?:\.\d+)?)(\D*)")
@@ -22,7 +57,7 @@ _SEPARATOR = re.compile(r"[,;&\n]|[-=]>|→|\b(?:and|then|und|plus)\b|(?<=\w)\s?
 
 
 class Word(Kind):
-    """One word of several; upper and lower case are alike, and other words for it are read.
+    """One word of several; case, spaces, hyphens and articles make no difference, and usual other words are read.
 
     >>> action = Word("reverse", ["reverse", "direct"], "the action of the controller")
     >>> action.agrees(action.read(" Reverse")[0])
@@ -109,7 +144,8 @@ class Words(Kind):
         if isinstance(answered(given), str) and _NONE.fullmatch(given.strip()) and "none" not in self.among:
             given = []
         elif isinstance(given, str):
-            given = [part for part in self._parts(_ONLY.sub("", given.strip(" []{}"))) if part.strip()]
+            parts = self._parts(_ONLY.sub("", given.strip(" []{}")))
+            given = [part.strip() for part in parts if part.strip()]
         is_set = isinstance(given, set | frozenset)
         row = members(given) if is_set else in_a_row(given)
         if row is None:
@@ -126,16 +162,15 @@ class Words(Kind):
         return ", ".join(answer) or "none of them"
 
     def _parts(self, text):
-        """The parts of a text, between separators, or one word after the other."""
-        if any(_bare(word) == _bare(text) for word in self.among):
+        """The parts of a text, between separators, or one word or letter after the other."""
+        if named(text, [word for word in self.among if " " in word or _SEPARATOR.search(word)]):
             return [text]
         if _SEPARATOR.search(text):
             return _SEPARATOR.split(text)
-        if all(len(word) == 1 for word in self.among):
-            return synonyms.listed(text, self.among) or [text]
-        return synonyms.listed(text, self.among) or (
-            [text] if any(" " in word for word in self.among) else text.split()
-        )
+        letters = re.sub(r"\s", "", text)
+        if all(len(word) == 1 for word in self.among) and set(letters) <= set(self.among):
+            return list(letters)
+        return [text] if any(" " in word for word in self.among) else text.split()
 
     def agrees(self, answer: list[str]) -> bool:
         """Whether they are the words."""
@@ -201,24 +236,66 @@ def _word(given, among, expected):
         if not {*_TRUTH.values()} <= {*among}:
             raise Unreadable(f"{given} is a truth value: expected {expected}")
         given = _TRUTH[bool(given)]
-    elif isinstance(given, int | float | sympy.Number) and (
-        (number := f"{float(given):g}") in among or synonyms.found(number, sorted(among))
-    ):
-        given = number
+    elif isinstance(given, int | float | sympy.Number) and f"{float(given):g}" in among:
+        given = f"{float(given):g}"
     if not isinstance(given, str):
         raise Unreadable(f"this is not text: expected {expected}")
-    wanted = _bare(given)
-    for word in among:
-        if _bare(word) == wanted:
-            return word, ""
-    if meant := synonyms.found(given, sorted(among)):
-        return meant, f'read as "{meant}"'
-    raise Unreadable(f"{shortened(given, 40)!r} is none of the words: expected {expected}")
+    meant = named(given, among)
+    if meant is None:
+        raise Unreadable(f"{shortened(given, 40)!r} is none of the words: expected {expected}")
+    return meant, "" if bare(given) == bare(meant) else f'read as "{meant}"'
 
 
-def _bare(word):
-    """A word without what makes no difference: case, spaces, hyphens, quotes and the full stop."""
-    return " ".join(re.sub(r"(?<=\w)-(?=\w)", " ", word).split()).strip(" '\".").casefold() or word
+def named(given: str, among: Sequence[str]) -> str | None:
+    """Return the option that a text is: spelled in any way, as a usual other word, or with one slip of the keyboard.
+
+    None where it is none, or may be several. A sentence is no option, so that none is read that is denied in it.
+
+    >>> named("Reverse-acting", ["reverse", "direct"]), named("not stable", ["stable", "unstable"])
+    ('reverse', 'unstable')
+    >>> named("not direct", ["reverse", "direct"]), named("sinle loop", ["cascade", "single loop"])
+    (None, 'single loop')
+    """
+    if len(given) > LONGEST:
+        return None
+    text = bare(given)
+    for option in among:
+        if bare(option) == text:
+            return option
+    meant = [option for option in among if any({bare(option), text} <= row for row in _rows())]
+    meant = meant or [option for option in among if _has_a_slip(given, option)]
+    return meant[0] if len(meant) == 1 else None
+
+
+def bare(text: str) -> str:
+    """Return a text without what makes no difference: case, articles, spaces, hyphens, quotes and a full stop.
+
+    >>> bare("the Set-point."), bare("V_1"), bare("-1"), bare("21 22")
+    ('setpoint', 'v1', '-1', '21 22')
+    """
+    return _BETWEEN.sub("", _plain(text)) or text
+
+
+def _plain(text):
+    return _ARTICLE.sub("", " ".join(text.casefold().split()).strip(" '\".,;:!()"))
+
+
+@functools.cache
+def _rows():
+    return [frozenset(bare(word) for word in row.split(",")) for row in SAME.strip().splitlines()]
+
+
+def _has_a_slip(typed, option):
+    """Whether of one word a letter, and not the first one, is missing, too many or another one, or two are swapped."""
+    words = [re.split(r"[\s_‐‑-]+", _plain(text)) for text in (typed, option)]
+    pairs = [pair for pair in zip(*words, strict=False) if len(set(pair)) == 2]
+    if len(words[0]) != len(words[1]) or len(pairs) != 1:
+        return False
+    short, long = sorted(pairs[0], key=len)
+    if len(short) < SHORTEST_WITH_A_SLIP or short[0] != long[0] or not (short + long).isalpha():
+        return False  # a number in it makes it a tag, of which one sign more is another one
+    blocks = difflib.SequenceMatcher(None, short, long, autojunk=False).get_matching_blocks()
+    return sum(block.size for block in blocks) >= len(long) - 1
 
 
 def _either(words):
