@@ -20,129 +20,29 @@ from plainmath.validation import did_you_mean
 
 _QUOTES = "or put the formula in quotes: there 2s, K(s + 1), ^ and a decimal comma are understood"
 _COMMA = "a decimal comma separates two values in Python: write 0.5 with a point, or put the number in quotes"
-_IMPORTS = (
-    "is not known yet: run the cell with the imports at the top first, and after a restart the cells above this one"
-)
-_UNIT = 'a value with its unit belongs in quotes, as in T="20 s"; and a product needs its *'
+_UNIT = f'a value with its unit belongs in quotes, as in T="20 s"; and a product needs its *; {_QUOTES}'
 #: Names that the first cell of a chapter imports.
-_IMPORTED = (
-    "exercise|progress|student|s|t|np|sympy|sp|exp|sqrt|log|sin|cos|pi|oo|PID|System|Piecewise|Heaviside|Symbol|symbols"
-)
-_LETTERS = r"Symbol|Mul|Add|Pow|Integer|Float|Rational|int|float|complex|exp|One|Zero|Half|Pi"
+_IMPORTED = "exercise|progress|student|s|t|np|sympy|sp|exp|sqrt|log|sin|cos|pi|oo|PID|System|Piecewise|Symbol|symbols"
+_FACTORS = r"Symbol|Mul|Add|Pow|Integer|Float|Rational|int|float|complex|exp|One|Zero|Half|Pi"
 
 #: What Python says, what is in the cell, and what is said instead; the first row that fits counts. In a sentence
 #: {0} is what the first group of the message holds, and {near} the names that are like it.
 SLIPS = (
-    (NameError, rf"name '({_IMPORTED})' is not defined", "", "{0} " + _IMPORTS),
     (
         NameError,
-        r"name '([ijI])' is not defined",
+        rf"name '({_IMPORTED})' is not defined",
         "",
-        "{0} alone is no number in Python: write 1j, or put the answer in quotes",
-    ),
-    (NameError, r"name '(e)' is not defined", "", f"{{0}} alone is no number in Python: write exp(...), {_QUOTES}"),
-    (
-        NameError,
-        r"name '(PI|PD|P)' is not defined",
-        "",
-        '{0} is not known here: PID(2, Ti=10) is a controller, and so is the text "{0}(2, 10)" in quotes',
+        "{0} is not known yet: run the cells above, imports first",
     ),
     (NameError, r"name '(\w+)' is not defined", "", "nothing is called {0} here: {near}"),
-    (
-        TypeError,
-        rf"'(?:{_LETTERS})' object is not callable",
-        "",
-        f"before a bracket a product needs its *, as K*(s + 1); {_QUOTES}",
-    ),
-    (
-        TypeError,
-        r"for \^|'\^'|Xor|boolean",
-        r"\^",
-        "a power is ** in Python; or put the formula in quotes: there ^ and 2s are understood",
-    ),
-    (TypeError, r"'tuple'|multiply sequence", r"\d,\d", _COMMA),
-    (
-        TypeError,
-        r"ufunc|convert expression to float|must be real number",
-        "",
-        f"that function is for numbers, not for symbols: write exp, sqrt ... of SymPy, {_QUOTES}",
-    ),
-    (
-        TypeError,
-        r"'str'|concatenate str|multiply sequence",
-        "",
-        "a text in quotes is not computed with: put the whole answer in quotes, or nothing of it",
-    ),
-    (AttributeError, r"'Question' object has no attribute '(\w+)'", "", "an exercise has no {0}: {near}"),
-    (
-        AttributeError,
-        r"'(?:Symbol|Mul|Add|Pow)' object has no attribute '(?:exp|sqrt|sin|cos|log)'",
-        "",
-        f"that function is for numbers, not for symbols: write exp, sqrt ... of SymPy, {_QUOTES}",
-    ),
-    (SyntaxError, r"positional argument follows keyword|leading zeros", r"\d,\s?\d", _COMMA),
-    (SyntaxError, r"positional argument follows keyword", "", "give each answer by its name, as in check(K=2, T=10)"),
-    (
-        SyntaxError,
-        r"cannot contain assignment|cannot assign",
-        "",
-        "before each = stands a name alone, as the exercise asks for it: check(y=...), not check(y(t)=...)",
-    ),
-    (
-        SyntaxError,
-        r"invalid decimal literal|invalid imaginary literal|invalid hexadecimal",
-        "",
-        f'a product needs its *, as 2*s, and a value with a unit needs quotes, as "2 s"; {_QUOTES}',
-    ),
-    (
-        SyntaxError,
-        r"invalid (?:non-printable )?character '(.)'",
-        "",
-        "{0} is no sign of Python's: put the answer in quotes, where it is understood",
-    ),
-    (
-        SyntaxError,
-        r"invalid (?:non-printable )?character",
-        "",
-        "there is a sign that is none of Python's: put the answer in quotes",
-    ),
-    (SyntaxError, r"unterminated string", "", "a quote is not closed: a text begins and ends with the same one"),
-    (SyntaxError, r"never closed|unexpected EOF|EOF while", "", "a bracket is not closed: count them, from ( to )"),
-    (
-        SyntaxError,
-        r"unmatched|does not match",
-        "",
-        "there is a bracket too many, or one of another kind: count them, from ( to )",
-    ),
-    (
-        SyntaxError,
-        r"unexpected character after line continuation",
-        "",
-        'LaTeX belongs in quotes with an r before them: r"\\frac{{1}}{{s}}"',
-    ),
-    (SyntaxError, r"forgot a comma", "", f"{_UNIT}; {_QUOTES}"),
-    (
-        SyntaxError,
-        r"Maybe you meant",
-        "",
-        "before each = stands a name alone, behind a comma: count the brackets before it",
-    ),
-    (SyntaxError, r"invalid syntax", r"\d\s?[%°]|[%°]\s?[,)]", _UNIT),
-    (
-        SyntaxError,
-        r"invalid syntax",
-        r"\blambda\s*=",
-        'lambda is a word of Python: give this answer as check(**{{"lambda": 2}})',
-    ),
-    (
-        SyntaxError,
-        r"invalid syntax",
-        "",
-        f"Python cannot read this: look at its brackets, quotes and commas, {_QUOTES}",
-    ),
+    (TypeError, rf"'({_FACTORS})' object is not callable", "", f"before a bracket a product needs its *; {_QUOTES}"),
+    (TypeError, r"(for \^|Xor)", r"\^", f"a power is ** in Python; {_QUOTES}"),
+    (TypeError, r"('tuple'|multiply sequence)", r"\d,\d", _COMMA),
+    (SyntaxError, r"(positional argument follows keyword|leading zeros)", r"\d,\s?\d", _COMMA),
+    (SyntaxError, r"(decimal literal|forgot a comma|invalid character)", r"\d\s?[^\W\d]|\d\s?[%°]", _UNIT),
+    (SyntaxError, r"(invalid syntax)", r"\d\s?%", _UNIT),
+    (SyntaxError, r"(.+)", "", f"Python cannot read this ({{0}}): look at its brackets, quotes and commas, {_QUOTES}"),
 )
-#: What a question can do, for one who misspells it.
-_CAN = ("check", "given", "hint", "solution", "statement", "picture")
 _ANSWERS = re.compile(r"\.\s*check\s*\(|\bexercise\([^()]*\)\s*\.")
 
 
@@ -172,8 +72,8 @@ def sentence(error: BaseException, cell: str, known: Collection[str] = ()) -> st
         cell: the code.
         known: the names of the reader's variables.
 
-    >>> sentence(NameError("name 's' is not defined"), "exercise('4.1').check(F=1/s)")[:40]
-    's is not known yet: run the cell with th'
+    >>> sentence(NameError("name 's' is not defined"), "exercise('4.1').check(F=1/s)")
+    's is not known yet: run the cells above, imports first'
     >>> sentence(NameError("name 's' is not defined"), "1/s")
     ''
     """
@@ -183,19 +83,17 @@ def sentence(error: BaseException, cell: str, known: Collection[str] = ()) -> st
     for kind, pattern, in_cell, says in SLIPS:
         found = re.search(pattern, message)
         if isinstance(error, kind) and found and re.search(in_cell, cell):
-            name = found[1] if found.groups() else ""
-            names = _CAN if kind is AttributeError else [one for one in known if not one.startswith("_")]
+            names = [one for one in known if not one.startswith("_")]
             otherwise = "run the cell that computes it, or put the answer in quotes"
-            return says.format(name, near=did_you_mean(name, names, otherwise=otherwise))
+            return says.format(found[1], near=did_you_mean(found[1], names, otherwise=otherwise))
     return ""
 
 
 def install() -> None:
-    """Switch the sentences on, where this is IPython; a handler that is there already keeps what is not ours."""
+    """Switch the sentences on, where this is IPython and nothing else handles its errors."""
     shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
-    if shell is None or getattr(shell, "_loopbook_slips", False):
+    if shell is None or shell.custom_exceptions:
         return
-    before, others = getattr(shell, "CustomTB", None), tuple(shell.custom_exceptions)
 
     def handle(shell: Any, kind: type, error: BaseException, trace: Any, tb_offset: int | None = None) -> Any:
         says = sentence(error, _cell(shell, error, trace), shell.user_ns)
@@ -204,13 +102,10 @@ def install() -> None:
 
             display(Slip(harmless(says)))
             return []
-        if others and isinstance(error, others) and before is not None:
-            return before(kind, error, trace, tb_offset=tb_offset)
         shell.showtraceback((kind, error, trace), tb_offset=tb_offset, running_compiled_code=True)
         return None
 
-    shell.set_custom_exc((*others, NameError, TypeError, SyntaxError, AttributeError), handle)
-    shell._loopbook_slips = True
+    shell.set_custom_exc((NameError, TypeError, SyntaxError), handle)
 
 
 def _cell(shell, error, trace):
