@@ -1,7 +1,8 @@
 """Figures as PNG: drawn where the figure is, looked at with suspicion wherever the bytes arrive.
 
-What is accepted holds what a picture needs and nothing else: texts, times and whatever else a file may carry are left
-out, so that what is shown is the picture.
+Where the figure is, in the reader's own process, Pillow makes a large picture smaller. Where bytes of somebody else
+arrive they are not decoded: `checked` reads the parts of the file alone, and keeps what a picture needs and nothing
+else, no texts, times and whatever else a file may carry.
 """
 
 from __future__ import annotations
@@ -21,9 +22,9 @@ from exercisebook.reading import Unreadable
 LARGEST, LONGEST_SIDE = 300_000, 2000
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _NEEDED = (b"IHDR", b"PLTE", b"tRNS", b"IDAT", b"IEND")
-#: With so many pixels to an inch a figure is drawn; with fewer where it would be too large.
-_PIXELS, _FEWER, _TRIES = 110.0, 0.7, 8
-_COLOURS = 64
+#: With so many pixels to an inch a figure is drawn, and with so few colours where it would be too large.
+_PIXELS, _COLOURS = 110.0, 64
+_FEWER, _TRIES = 0.7, 8
 #: What is so many times as far away as the figure is large is left out.
 _NEAR = 3
 _EXPECTED = "a figure of Matplotlib, as plt.gcf(), or the bytes of a PNG file"
@@ -42,18 +43,17 @@ def of_figure(value: object) -> bytes | None:
     if value is None or isinstance(value, str | int | float | complex | dict):
         return None
     content = _content(value)
-    return None if content is None else checked(as_data(content))
+    return None if content is None else _small(content)
 
 
 def _content(value):
-    """A PNG file of a figure that is small enough; None for what is no figure."""
+    """A PNG file of a figure; None for what is no figure."""
     if isinstance(value, bytes | bytearray | memoryview):
-        content = bytes(value)
-        return _smaller(content) if content.startswith(_SIGNATURE) else None
+        return bytes(value) if bytes(value).startswith(_SIGNATURE) else None
     if callable(getattr(type(value), "png", None)) and hasattr(value, "alt"):  # of `loopbook.figures`
-        return _smaller(value.png())
+        return value.png()
     if (image := sys.modules.get("PIL.Image")) and isinstance(value, image.Image):
-        return _smaller(_stored(value))
+        return _stored(value)
     figure = _figure(value)
     return None if figure is None else _drawn(figure)
 
@@ -131,24 +131,19 @@ def _chunk(name, data):
 
 def _figure(value):
     """The figure of Matplotlib that a value is, or that it is in."""
-    artists, pyplot = sys.modules.get("matplotlib.artist"), sys.modules.get("matplotlib.pyplot")
     figures = sys.modules.get("matplotlib.figure")
-    if artists is None or figures is None:  # then nothing is a figure yet
+    if figures is None:  # then nothing is a figure yet
         return None
-    if pyplot is not None and value is pyplot:
-        return pyplot.gcf()
+    if value is sys.modules.get("matplotlib.pyplot"):
+        return value.gcf()
     for _ in range(3):  # of an array of axes the first, of a container its lines
         if isinstance(value, list | tuple) and value:
             value = value[0]
         elif getattr(getattr(value, "dtype", None), "kind", "") == "O" and getattr(value, "size", 0):
             value = value.flat[0]
-    if isinstance(value, figures.Figure):
-        return value
-    inside = value if isinstance(value, artists.Artist) else getattr(value, "figure", None)
-    if not isinstance(inside, artists.Artist):
-        return None
-    figure = inside if isinstance(inside, figures.Figure) else getattr(inside, "figure", None)
-    return getattr(figure, "figure", figure) if not isinstance(figure, figures.Figure) else figure  # of a subfigure
+    inside = getattr(value, "figure", None)
+    whole = getattr(inside, "figure", None)  # of a subfigure
+    return next((one for one in (value, inside, whole) if isinstance(one, figures.Figure)), None)
 
 
 def _drawn(figure):
@@ -157,19 +152,14 @@ def _drawn(figure):
     around = figure.get_tightbbox()
     is_near = around is not None and max(around.width, around.height) < _NEAR * own  # nothing in it is very far away
     side = max(own, around.width, around.height) if is_near else own
+    file, how = io.BytesIO(), {"bbox_inches": "tight"} if is_near else {}
     pixels = min(_PIXELS, (LONGEST_SIDE - 100) / side)
-    for _ in range(_TRIES):
-        file = io.BytesIO()
-        how = {"bbox_inches": "tight"} if is_near else {}
-        figure.savefig(file, format="png", dpi=pixels, metadata={"Software": None}, **how)
-        if content := _small(file.getvalue()):
-            return content
-        pixels *= _FEWER
-    raise Unreadable("this figure cannot be made small enough: expected one with less in it")
+    figure.savefig(file, format="png", dpi=pixels, metadata={"Software": None}, **how)
+    return file.getvalue()
 
 
-def _smaller(content):
-    """A PNG file that is not too large, from one that may be."""
+def _small(content):
+    """A PNG file that `checked` accepts, from one that may be too large: with fewer colours, then with fewer pixels."""
     with contextlib.suppress(Unreadable):
         return checked(as_data(content))
     from PIL import Image
@@ -181,26 +171,11 @@ def _smaller(content):
         raise Unreadable("this picture is damaged: expected a PNG file") from None
     for _ in range(_TRIES):
         image.thumbnail((LONGEST_SIDE, LONGEST_SIDE))
-        if content := _small(_stored(image)):
-            return content
+        for one in (image, image.convert("RGB").quantize(_COLOURS, dither=Image.Dither.NONE)):
+            with contextlib.suppress(Unreadable):
+                return checked(as_data(_stored(one)))
         image = image.resize([max(1, round(_FEWER * side)) for side in image.size])
     raise Unreadable("this picture cannot be made small enough: expected one with less in it")
-
-
-def _small(content):
-    """A PNG file as it is, or with fewer colours, if one of them is small enough; None otherwise."""
-    if max(size(content)) > LONGEST_SIDE:
-        return None
-    if len(content) > LARGEST:
-        content = _with_few_colours(content)
-    return content if len(content) <= LARGEST else None
-
-
-def _with_few_colours(content):
-    from PIL import Image
-
-    with Image.open(io.BytesIO(content), formats=["PNG"]) as image:
-        return _stored(image.convert("RGB").quantize(_COLOURS, dither=Image.Dither.NONE))
 
 
 def _stored(image):
