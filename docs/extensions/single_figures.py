@@ -1,9 +1,10 @@
-"""Every figure alone, with its code: a page for each chapter, a program for each figure, and a gallery of all of them.
+"""Every figure alone, with the cell that draws it: a page for each chapter, and a gallery of all figures.
 
-The gallery is the directive ``figure-gallery``. A figure's picture is the one that its chapter shows; its program is
-cut out of the chapter by programs.py.
+The gallery is the directive ``figure-gallery``. A figure's picture is the one that its chapter shows. Its cell runs
+below the chapter's first one, which has the imports; where it takes a name from a cell between, the page says so.
 """
 
+import ast
 import base64
 import functools
 import hashlib
@@ -12,8 +13,8 @@ import json
 from pathlib import Path
 from typing import NamedTuple
 
+import launch
 import permanent
-import programs
 from docutils import nodes
 from sphinx.util.docutils import SphinxDirective
 
@@ -77,11 +78,32 @@ def place_picture(figure, folder):
         (folder / figure.picture).write_bytes(content(next(o for o in outputs if "image/png" in o.get("data", {}))))
 
 
-@functools.cache
-def program(figure):
-    """Return the program that draws a figure."""
-    place = f"From chapter {title_of(figure.chapter)} (chapters/{figure.chapter}.ipynb of loopbook)."
-    return programs.program(cells_of(figure.chapter), figure.cell, figure.title, place, f"{figure.name}.png")
+def imports(chapter):
+    """The first cell of a chapter with code: it imports what the others use."""
+    return next(cell["source"] for cell in cells_of(chapter) if cell["cell_type"] == "code")
+
+
+def goes_on(figure):
+    """Whether the cell of a figure may take what a cell before it has made."""
+    cells = cells_of(figure.chapter)
+    before = [names(cell["source"])[0] for cell in cells[: figure.cell] if cell["cell_type"] == "code"]
+    made, taken = names(cells[figure.cell]["source"])
+    return not taken.isdisjoint(set().union(*before) - made)
+
+
+def names(source):
+    """Return the names that some code gives a value, and those of which it takes the value.
+
+    >>> made, taken = names("a = b + 1\\ndef f(x): return x")
+    >>> sorted(made), sorted(taken)
+    (['a', 'f'], ['b', 'x'])
+    """
+    nodes = list(ast.walk(ast.parse(source)))
+    found = [(node.id, isinstance(node.ctx, ast.Load)) for node in nodes if isinstance(node, ast.Name)]
+    functions = {node.name for node in nodes if isinstance(node, ast.FunctionDef | ast.ClassDef)}
+    return functions | {name for name, is_taken in found if not is_taken}, {
+        name for name, is_taken in found if is_taken
+    }
 
 
 def title_of(chapter):
@@ -105,41 +127,41 @@ def image(figure, to_images):
 
 def body(chapter, title, highlighted):
     """The page of a chapter's figures, as HTML."""
+    notebook = f'<a href="{html.escape(launch.in_page(f"chapters/{chapter}.ipynb", "../"))}">the notebook</a>'
     parts = [
         f"<h1>Figures of chapter {html.escape(title)}</h1>",
-        f'<p>Each figure alone, and the program that draws it: cut out of <a href="../chapters/{chapter}.html">the '
-        'chapter</a>, with what it needs and nothing else. It runs where loopbook is <a href="../contributors.html">'
-        'installed</a>, and writes PNG, SVG or PDF. All chapters: <a href="../figures.html">figures</a>.</p>',
+        f'<p>Each figure of <a href="../chapters/{chapter}.html">the chapter</a> alone, and the cell that draws it, to '
+        'be run below the imports. All chapters: <a href="../figures.html">figures</a>.</p>',
+        '<section class="one-figure"><details><summary>The imports of all cells</summary>'
+        f"{highlighted(imports(chapter))}</details></section>",
     ]
     for figure in of_chapter(chapter):
         heading = html.escape(figure.title)
+        code = highlighted(cells_of(chapter)[figure.cell]["source"])
+        more = f"<p>The cell goes on from cells before it: run {notebook}.</p>" if goes_on(figure) else ""
         parts += [
             f'<section class="one-figure" id="{figure.name}">',
             f'<h2>{heading}<a class="headerlink" href="#{figure.name}" title="Link to this figure">¶</a></h2>',
             f"<figure>{image(figure, '../_images/')}</figure>",
             f'<p class="figure-links"><a href="../chapters/{chapter}.html#{figure.name}">In the chapter</a> · '
-            f'<a href="../_images/{figure.picture}" download="{figure.name}.png">PNG</a> · '
-            f'<a href="{chapter}/{figure.name}.py" download>Program</a>, {len(program(figure).splitlines())} lines</p>',
-            f"<details><summary>The program</summary>{highlighted(program(figure))}</details>",
+            f'<a href="../_images/{figure.picture}" download="{figure.name}.png">PNG</a></p>',
+            f"<details><summary>The cell</summary>{more}{code}</details>",
             "</section>",
         ]
     return "\n".join(parts)
 
 
 def pages(app):
-    """The page of each chapter's figures, and the programs beside it."""
+    """The page of each chapter's figures."""
+
+    def highlighted(code):
+        return app.builder.highlighter.highlight_block(code, "python")
+
     for chapter, title in chapters().items():
         if f"chapters/{chapter}" not in app.env.found_docs:
             continue
-        folder = Path(app.outdir, "figures", chapter)
-        folder.mkdir(parents=True, exist_ok=True)
         for figure in of_chapter(chapter):
             place_picture(figure, Path(app.outdir, "_images"))
-            (folder / f"{figure.name}.py").write_text(program(figure), encoding="utf-8")
-
-        def highlighted(code):
-            return app.builder.highlighter.highlight_block(code, "python")
-
         context = {"title": f"Figures of chapter {title}", "body": body(chapter, title, highlighted), "parents": []}
         yield f"figures/{chapter}", context, "page.html"
 
