@@ -14,7 +14,7 @@ from __future__ import annotations
 import ast
 import functools
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -422,9 +422,11 @@ class Digits:
         raise NoValue
 
 
-def in_digits(
-    tree: ast.expr, values: Mapping[str, complex], digits: Iterable[tuple[int, int]] = ((40, 200), (330, 1000))
-) -> complex:
+#: With so many digits a value is worked out twice, and then with so many.
+_DIGITS = ((40, 200), (330, 1000))
+
+
+def in_digits(tree: ast.expr, values: Mapping[str, complex]) -> complex:
     """Return the value of a formula at a point, worked out twice, with different numbers of digits.
 
     A value beyond the range of decimal numbers is infinite or zero.
@@ -437,7 +439,7 @@ def in_digits(
     (1+0j)
     """
     is_zero = False
-    for few, more in digits:
+    for few, more in _DIGITS:
         try:
             one, other = (worked_out(tree, Digits(values, many)) for many in (few, more))
         except NoValue:

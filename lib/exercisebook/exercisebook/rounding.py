@@ -35,7 +35,6 @@ class Measure(Protocol):
         """The difference."""
 
 
-@dataclass(frozen=True)
 class InRatio:
     """By the logarithm of the ratio, which has no turns where it is small.
 
@@ -43,7 +42,7 @@ class InRatio:
     array([0.01])
     """
 
-    most: float = CALM
+    most = CALM
 
     def __call__(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
         """The difference."""
@@ -59,7 +58,7 @@ class InTime:
     """
 
     size: float
-    most: float = np.inf
+    most = np.inf
 
     def __call__(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
         """The difference."""
