@@ -10,6 +10,7 @@ The numbers are yours alone. Each answer is judged to 1 %, so keep three or four
 from sympy import Rational, exp, sqrt, symbols
 
 from loopbook.exercises.authoring import (
+    Late,
     answers,
     between,
     choice,
@@ -32,7 +33,7 @@ from loopbook.pid import PID
 # Whoever knows it can compute the variants: an assignment that counts has a secret of its own, and stays secret itself.
 SECRET = "an-example-that-everybody-may-read"
 DUE = "2026-11-20 23:59"
-LATE = "10 % a day, 15 min grace, at most 50 %"
+LATE = Late(percent=10, per="day", grace_minutes=15, at_most=50)
 
 
 @exercise(

@@ -8,11 +8,11 @@ The figure and the explanation are marked by a person. Everything else is judged
 import numpy as np
 from sympy import exp, log, pi, sqrt
 
-from loopbook.exercises.authoring import answers, between, exercise, figure, number, text
+from loopbook.exercises.authoring import Late, answers, between, exercise, figure, number, text
 
 SECRET = "another-example-that-everybody-may-read"
 DUE = "2026-12-11 23:59"
-LATE = "10 % a day, 15 min grace, at most 50 %"
+LATE = Late(percent=10, per="day", grace_minutes=15, at_most=50)
 
 
 @exercise("1", title="A response in a table", points=3, weights={"zeta": 2})

@@ -11,7 +11,9 @@ from loopbook.exercises import authoring
 from loopbook.exercises.kinds import MAKERS, Kind
 
 PAGE = Path(__file__).parents[2] / "docs" / "authors.md"
-TOOLS = ("exercise", "between", "choice", "answers", "criterion", "pi_controller", "stable", "largest_sensitivity")
+TOOLS = (
+    "exercise", "between", "choice", "answers", "Late", "criterion", "pi_controller", "stable", "largest_sensitivity",
+)  # fmt: skip
 METHODS = ("mistake", "shows", "hints", "solution", "picture", "solution_picture")
 
 

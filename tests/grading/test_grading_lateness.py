@@ -2,11 +2,13 @@
 
 import datetime
 import itertools
+import re
 from datetime import timedelta
 
 import pytest
 
 from assignments import HEAD, ONE, written
+from exercisebook.late import Late
 from exercisegrader import GradingError
 from exercisegrader.assignment import Assignment
 from exercisegrader.lateness import Policy, lasting, lateness, moment, read_extensions, without_dates
@@ -21,19 +23,13 @@ UTC = datetime.UTC
     ("text", "iso"),
     [
         ("2026-12-01 23:59", "2026-12-01T23:59:59.999999"),
-        (" 2026-12-1   9:05:07 ", "2026-12-01T09:05:07.999999"),
-        ("2026-12-01T23:59Z", "2026-12-01T23:59:59.999999+00:00"),
-        ("2026-12-01 23:59+02:00", "2026-12-01T23:59:59.999999+02:00"),
-        ("2026-12-01 23:59 -0530", "2026-12-01T23:59:59.999999-05:30"),
+        (" 2026-12-01T09:05:07 ", "2026-12-01T09:05:07.999999"),
+        ("2026-12-01 23:59Z", "2026-12-01T23:59:59.999999+00:00"),
+        ("2026-12-01 23:59 +02:00", "2026-12-01T23:59:59.999999+02:00"),
+        ("2026-12-01 23:59 UTC", "2026-12-01T23:59:59.999999+00:00"),
         ("2026-07-01 23:59 Europe/Berlin", "2026-07-01T23:59:59.999999+02:00"),
         ("2026-12-01", "2026-12-01T23:59:59.999999"),
         ("2026-12-01 Asia/Tokyo", "2026-12-01T23:59:59.999999+09:00"),
-        ("2026-12-01 24:00", "2026-12-01T23:59:59.999999"),
-        ("2026-12-01 0:00", "2026-12-01T00:00:59.999999"),
-        ("1.12.2026 23:59", "2026-12-01T23:59:59.999999"),
-        ("12/31/2026 11:30 PM", "2026-12-31T23:30:59.999999"),
-        ("31/12/2026 12:30 am", "2026-12-31T00:30:59.999999"),
-        ("5/5/2026", "2026-05-05T23:59:59.999999"),
     ],
 )
 def test_a_moment_is_the_last_one_that_the_text_means(text, iso):
@@ -43,20 +39,19 @@ def test_a_moment_is_the_last_one_that_the_text_means(text, iso):
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("tomorrow", "'tomorrow' is not a date and time: expected one such as 2026-12-01 23:59"),
+        ("tomorrow", "'tomorrow' is not a date and time (it has another form): expected one such as 2026-12-01 23:59"),
         ("", "'' is not a date and time"),
+        ("1.12.2026", "'1.12.2026' is not a date and time"),
+        ("2026-12-01 11:59 PM", "there is no time zone 'PM'"),
         ("2026-02-30", "'2026-02-30' is not a date and time (day "),
         ("2026-12-01 25:00", "(hour must be in 0..23"),
-        ("2026-12-01 13:00 PM", "(hour must be in 1..12)"),
-        ("3/4/2026", "(it may mean two days)"),
         ("2026-12-01 23:59 Europe/Berlon", "there is no time zone 'Europe/Berlon': did you mean 'Europe/Berlin'?"),
         ("2026-12-01 23:59 Nowhere", "expected one such as Europe/Berlin"),
     ],
 )
 def test_what_is_no_moment_is_said(text, says):
-    with pytest.raises(ValueError) as problem:  # noqa: PT011 - the message is looked at below
+    with pytest.raises(ValueError, match=re.escape(says)):
         moment(text)
-    assert says in str(problem.value)
 
 
 # Policies.
@@ -65,85 +60,64 @@ def test_what_is_no_moment_is_said(text, says):
 @pytest.mark.parametrize(
     ("late", "costs"),
     [
-        ("none", {1: 0, 100: 0}),
-        ("", {1: 0}),
-        ("10 % a day", {0.1: 0.1, 24: 0.1, 24.1: 0.2, 9 * 24: 0.9, 30 * 24: 1}),
-        ("10% per day; at most 50 %", {24.1: 0.2, 300: 0.5}),
-        ("10 % for each started day late", {25: 0.2}),
-        ("2,5 % an hour, maximum 30%", {0.5: 0.025, 1.5: 0.05, 48: 0.3}),
-        ("20 %", {0.1: 0.2, 100: 0.2}),
-        ("20 %, 2 h grace", {2: 0, 2.1: 0.2}),
-        ("10 % a day, 60 min grace", {1: 0, 1.1: 0.1, 25: 0.1, 25.1: 0.2}),
-        ("10 % a day, not accepted after 2 days", {48: 0.2, 48.1: 1}),
-        ("not accepted after 1 d", {24: 0, 24.1: 1}),
-        ("50 % a week", {1: 0.5, 169: 1}),
+        (Late(10, "day"), {0.1: 0.1, 24: 0.1, 24.1: 0.2, 9 * 24: 0.9, 30 * 24: 1}),
+        (Late(2.5, "hour", at_most=30), {0.5: 0.025, 1.5: 0.05, 48: 0.3}),
+        (Late(50, "week"), {1: 0.5, 169: 1}),
+        (Late(20, grace_minutes=120), {2: 0, 2.1: 0.2, 100: 0.2}),
+        (Late(10, "day", grace_minutes=60), {1: 0, 1.1: 0.1, 25: 0.1, 25.1: 0.2}),
+        (Late(10, "day", at_most=50, accepted_days=2), {48: 0.2, 48.1: 1}),
+        (Late(accepted_days=1), {24: 0, 24.1: 1}),
+        (Late(accepted_days=0, grace_minutes=60), {1: 0, 1.1: 1}),
     ],
 )
 def test_what_it_costs_to_be_late(late, costs):
-    policy = Policy.of(DUE, late)
-    assert {hours: policy.costs(timedelta(hours=hours)) for hours in costs} == pytest.approx(costs)
-
-
-@pytest.mark.parametrize(
-    ("late", "says"),
-    [
-        ("ten percent", "'ten percent' says nothing about what is late: expected 'none', '10 % a day'"),
-        ("10 % a day, 5 % a day", "says twice what '5 % a day' says"),
-        ("10 % a day, 20 %", "has two costs"),
-        ("0 %", "expected a percentage above 0 and up to 100"),
-        ("120 % a day", "expected a percentage above 0 and up to 100"),
-        ("15 min grace", "does not say what it costs"),
-        ("at most 50 %", "does not say what it costs"),
-    ],
-)
-def test_what_is_no_policy_is_said(late, says):
-    with pytest.raises(GradingError) as problem:
-        Policy.of(DUE, late)
-    assert says in str(problem.value)
+    assert {hours: late.costs(timedelta(hours=hours)) for hours in costs} == pytest.approx(costs)
 
 
 @pytest.mark.parametrize(
     ("lines", "says"),
     [
         ("DUE = 3", "heater.py: DUE is 3: expected a text"),
-        ('DUE = "soon"', "heater.py: DUE or LATE: 'soon' is not a date and time"),
-        ('LATE = "10 % a day"', "heater.py has LATE and no DUE"),
-        ('DUE = "2026-12-01"\nLATE = 10', "heater.py: LATE is 10: expected a text"),
+        ('DUE = "soon"', "heater.py: DUE: 'soon' is not a date and time"),
+        ("LATE = Late(20)", "heater.py: there is LATE and no DUE: expected a text such as"),
+        (
+            f'DUE = "{DUE}"; LATE = "10 % a day, 15 min grace"',
+            "heater.py: LATE is '10 % a day, 15 min grace': expected one as Late(percent=10, per=\"day\", "
+            "grace_minutes=15, at_most=50, accepted_days=7), with Late from loopbook.exercises.authoring",
+        ),
+        ("LATE = Late(percent=120)", "heater.py, line 4: ValueError: percent is 120: expected a number from 0 to 100"),
+        ("LATE = Late(10, per='month')", "per is 'month': expected one of hour, day, week"),
+        ("LATE = Late(10, grace_minutes='15')", "grace_minutes is '15': expected a number from 0"),
+        ("LATE = Late(10, accepted_days=-1)", "accepted_days is -1: expected a number from 0"),
+        ("LATE = Late(grace_minutes=15)", "costs nothing: expected a percent above 0, as in Late(percent=20)"),
     ],
 )
-def test_what_is_wrong_with_the_texts_of_an_assignment_is_said(lines, says):
-    with pytest.raises(GradingError) as problem:
+def test_what_is_wrong_with_the_dates_of_an_assignment_is_said(lines, says):
+    with pytest.raises(GradingError, match=re.escape(says)):
         Assignment.of(HEAD + lines + "\n" + ONE.format('"1"', 1, "y=x"), "heater")
-    assert says in str(problem.value)
 
 
 def test_an_assignment_has_its_policy():
-    source = HEAD + f'DUE = "{DUE}"\nLATE = "10 % a day"\n' + ONE.format('"1"', 1, "y=x")
-    assert str(Assignment.of(source, "heater").policy) == f"due {DUE}; late: 10 % a day"
+    late = 'Late(10, "day", grace_minutes=15, at_most=50, accepted_days=7)'
+    source = HEAD + f'DUE = "{DUE}"\nLATE = {late}\n' + ONE.format('"1"', 1, "y=x")
+    terms = "10 % a day, 15 min grace, at most 50 %, not accepted after 7 days"
+    assert str(Assignment.of(source, "heater").policy) == f"due {DUE}; late: {terms}"
     assert Assignment.of(HEAD + ONE.format('"1"', 1, "y=x"), "heater").policy is None
 
 
 def test_another_due_date_is_no_reason_to_grade_again():
-    marks = {
-        Assignment.of(written() + lines, "tuning").fingerprint
-        for lines in (
-            "",
-            'DUE = "2026-12-01"\n',
-            'DUE = "2026-12-02"  # later\nLATE = """10 % a day,\nat most 50 %"""\n',
-        )
-    }
-    assert len(marks) == 1
+    lines = ("", 'DUE = "2026-12-01"\n', 'DUE = "2026-12-02"  # later\nLATE = Late(\n    percent=10,\n)\n')
+    assert len({Assignment.of(written() + one, "tuning").fingerprint for one in lines}) == 1
+    imports = ("answers, exercise", "Late, answers, exercise")
+    assert len({without_dates(f"from loopbook.exercises.authoring import {names}") for names in imports}) == 1
 
 
 @pytest.mark.parametrize(
     "source",
     [
-        'DUE = "2026-12-01"\nprint(DUE)\n',
-        'x = 1; DUE = "2026-12-01"\n',
-        'DUE = "2026-12-01"; x = 1\n',
-        'DUE = LATE = "2026-12-01"\n',
-        'DUE = "2026-" + "12-01"\n',
-        'if True:\n    DUE = "2026-12-01"\n',
+        "DUE = '2026-12-01'\nprint(DUE)",
+        "DUE = LATE = '2026-12-01'",
+        "if True:\n    DUE = '2026-12-01'",
     ],
 )
 def test_what_may_be_more_than_a_date_stays_part_of_the_assignment(source):
@@ -153,21 +127,20 @@ def test_what_may_be_more_than_a_date_stays_part_of_the_assignment(source):
 # How late a submission is.
 
 
-def late(at, policy="10 % a day, 15 min grace, at most 50 %", due=DUE, until=None):
+DAILY, USUAL = Late(10, "day"), Late(10, "day", grace_minutes=15, at_most=50)
+
+
+def late(at, terms=USUAL, due=DUE, until=None):
     until = until and moment(until, moment(due).tzinfo)
-    return lateness(Policy.of(due, policy), at if isinstance(at, datetime.datetime) else moment(at), until=until)
+    return lateness(Policy(moment(due), terms), at if isinstance(at, datetime.datetime) else moment(at), until=until)
 
 
 @pytest.mark.parametrize(
     ("at", "part", "says"),
     [
         ("2026-12-01 23:59", 0, ""),
-        (
-            "2026-12-02 00:10",
-            0,
-            "handed in 11 min late (due 2026-12-01 23:59 Europe/Berlin), within the grace of 15 min",
-        ),
-        ("2026-12-02 00:20", 0.1, "handed in 21 min late (due 2026-12-01 23:59 Europe/Berlin): 10 % of the points are"),
+        ("2026-12-02 00:10", 0, f"handed in 11 min late (due {DUE}), within the grace of 15 min: nothing is deducted"),
+        ("2026-12-02 00:20", 0.1, f"handed in 21 min late (due {DUE}): 10 % of the points are deducted"),
         ("2026-12-03 02:00", 0.2, "handed in 1 day 2 h late"),
         ("2027-03-01", 0.5, "handed in 90 days late"),
     ],
@@ -190,11 +163,11 @@ def test_a_time_with_a_zone_is_compared_as_such():
 
 def test_a_day_is_one_by_the_clock_on_the_wall():
     due = "2026-10-24 23:59 Europe/Berlin"  # the next day has 25 hours
-    assert late("2026-10-25 23:59", "10 % a day", due).part == pytest.approx(0.1)
-    assert late(datetime.datetime(2026, 10, 25, 22, 59, tzinfo=UTC), "10 % a day", due).part == pytest.approx(0.1)
-    assert late("2026-10-25 23:59", "1 % an hour", due).part == pytest.approx(0.25)
+    assert late("2026-10-25 23:59", DAILY, due).part == pytest.approx(0.1)
+    assert late(datetime.datetime(2026, 10, 25, 22, 59, tzinfo=UTC), DAILY, due).part == pytest.approx(0.1)
+    assert late("2026-10-25 23:59", Late(1, "hour"), due).part == pytest.approx(0.25)
     again = datetime.datetime(2026, 10, 25, 1, 30, tzinfo=UTC)  # 2:30 for the second time
-    found = late(again, "10 % a day", "2026-10-25 2:45 Europe/Berlin")
+    found = late(again, DAILY, "2026-10-25 02:45 Europe/Berlin")
     assert found.part == pytest.approx(0.1)
 
 
@@ -206,21 +179,21 @@ def test_an_extension_is_another_due_date():
     assert found.part == pytest.approx(0.1)
     assert "(extended to 2026-12-04 23:59 Europe/Berlin)" in found.says
     assert late("2026-12-01 12:00", until="2026-12-04").says == ""
-    for policy, delay in itertools.product(("10 % a day", "4 % an hour"), (0.5, 1, 1.5, 30, 99)):
-        policy, by = Policy.of(DUE, policy), datetime.timedelta(hours=delay)
-        until = policy.due + datetime.timedelta(days=3)
+    for terms, delay in itertools.product((DAILY, Late(4, "hour")), (0.5, 1, 1.5, 30, 99)):
+        policy, by = Policy(moment(DUE), terms), timedelta(hours=delay)
+        until = policy.due + timedelta(days=3)
         parts = lateness(policy, until + by, until=until).part, lateness(policy, policy.due + by).part
         assert parts[0] == parts[1] > 0
 
 
 def test_what_is_not_accepted_any_more():
-    assert late("2026-12-09", "10 % a day, not accepted after 7 days").says.endswith(
+    assert late("2026-12-09", Late(10, "day", accepted_days=7)).says.endswith(
         "after the last day on which it is accepted: all points are deducted"
     )
 
 
 def test_late_by_an_unknown_time_costs_nothing_and_is_told():
-    policy = Policy.of(DUE, "10 % a day")
+    policy = Policy(moment(DUE), DAILY)
     found = lateness(policy, late=True)
     assert (found.part, found.says) == (0, "handed in late, by how much is not known: nothing is deducted")
     assert "add a column handed_in to the roster, or a row to marks.csv" in found.look
@@ -243,18 +216,18 @@ def test_lengths_of_time_in_words(span, words):
 
 @pytest.fixture
 def extensions(tmp_path):
-    def read(text, due=DUE, encoding="utf-8"):
+    def read(text, due=DUE, encoding="utf-8", **more):
         path = tmp_path / "extensions.csv"
         path.write_bytes(text.encode(encoding))
-        return read_extensions(path, ["s1001", "s1002", "s1003"], "heater", due and Policy.of(due))
+        return read_extensions(path, ["s1001", "s1002", "s1003"], "heater", due and Policy(moment(due)), **more)
 
     return read
 
 
 @pytest.mark.parametrize("delimiter", [",", ";", "\t"])
 def test_extensions(extensions, delimiter):
-    lines = ["Student,Until,Assignment,why", "S1001,2026-12-05 12:00,,ill", "s1002,5.12.2026,Heater,", "s1003,x,other,"]
-    found = extensions("\ufeff" + "\r\n".join([*lines, ",,,"]).replace(",", delimiter))
+    lines = ["Student,Until,Assignment,why", "S1001,2026-12-05 12:00,,ill", "s1002,2026-12-05,Heater,"]
+    found = extensions("\ufeff" + "\r\n".join([*lines, "s1003,x,other,", ",,,"]).replace(",", delimiter))
     assert {name: f"{until:%m-%d %H:%M %z}" for name, until in found.until.items()} == {
         "s1001": "12-05 12:00 +0100", "s1002": "12-05 23:59 +0100",
     }  # fmt: skip
@@ -264,29 +237,28 @@ def test_extensions(extensions, delimiter):
 def test_of_an_extension_for_all_and_one_for_this_assignment_the_later_counts(extensions):
     found = extensions("student,assignment,until\ns1001,,2026-12-05\ns1001,heater,2026-12-03\n")
     assert found.until["s1001"].day == 5
-    early = extensions("student,until\ns1001,2026-11-05\n")
-    assert (early.until, early.notes) == (
-        {}, ("extensions.csv, of no effect here: s1001: before the due date",),
-    )  # fmt: skip
 
 
-def test_an_extension_by_another_id_of_the_student(tmp_path):
-    path = tmp_path / "extensions.csv"
-    path.write_text("student,until\nA17,2026-12-05\n", encoding="utf-8")
-    assert [*read_extensions(path, ["s1001"], "heater", Policy.of(DUE), {"a17": "s1001"}).until] == ["s1001"]
+def test_an_extension_is_of_the_place_of_the_due_date(extensions):
+    (until,) = extensions("student,until\ns1001,2026-12-05 12:00Z\n").until.values()
+    assert f"{until:%H:%M %z}" == "13:00 +0100"
 
 
-def test_an_extension_of_one_who_has_left_the_class(tmp_path):
-    path = tmp_path / "extensions.csv"
-    path.write_text("student,until\ns9,2026-12-05\n", encoding="utf-8")
-    found = read_extensions(path, ["s1001"], "heater", Policy.of(DUE), former={"s9"})
-    assert found.notes == ("extensions.csv, of no effect here: s9: no longer on the roster",)
+def test_an_extension_by_another_id_of_the_student(extensions):
+    assert [*extensions("student,until\nA17,2026-12-05\n", also={"a17": "s1001"}).until] == ["s1001"]
 
 
-def test_extensions_of_an_assignment_that_is_never_due(extensions):
-    assert extensions("student,until\ns1001,2026-12-05\n", due=None).notes == (
-        "extensions.csv, of no effect here: heater has no DUE",
-    )
+@pytest.mark.parametrize(
+    ("student", "until", "more", "note"),
+    [
+        ("s1001", "2026-11-05", {}, "s1001: before the due date"),
+        ("s9", "2026-12-05", {"former": {"s9"}}, "s9: no longer on the roster"),
+        ("s1001", "2026-12-05", {"due": None}, "heater has no DUE"),
+    ],
+)
+def test_extensions_that_have_no_effect_are_told(extensions, student, until, more, note):
+    found = extensions(f"student,until\n{student},{until}\n", **more)
+    assert (found.until, found.notes) == ({}, (f"extensions.csv, of no effect here: {note}",))
 
 
 def test_all_faults_of_the_extensions_are_told_at_once(extensions):
@@ -298,9 +270,9 @@ def test_all_faults_of_the_extensions_are_told_at_once(extensions):
         extensions("\n".join(lines))
     assert str(problem.value).splitlines() == [
         "extensions.csv, line 2: there is no student 's1O01' on the roster: did you mean 's1001'?",
-        "extensions.csv, line 3: 'soon' is not a date and time: expected one such as 2026-12-01 23:59",
-        "extensions.csv, line 4: '2026-11-05' is before the due date, 2026-12-01 23:59 Europe/Berlin: expected a later "
-        "time",
+        "extensions.csv, line 3: 'soon' is not a date and time (it has another form): expected one such as "
+        "2026-12-01 23:59",
+        f"extensions.csv, line 4: '2026-11-05' is before the due date, {DUE}: expected a later time",
         "extensions.csv, line 6: 's1003' has an extension in line 5 already: expected one",
     ]
 
@@ -325,9 +297,8 @@ def test_a_zone_stands_in_both_or_in_none(extensions):
     ],
 )
 def test_what_is_no_table_of_extensions_is_said(extensions, text, says):
-    with pytest.raises(GradingError) as problem:
+    with pytest.raises(GradingError, match=re.escape(says)):
         extensions(text)
-    assert says in str(problem.value)
 
 
 def test_a_table_that_is_not_utf_8_is_refused(extensions):

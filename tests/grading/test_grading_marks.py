@@ -399,7 +399,7 @@ def handed_in(student, at, late=None):
 
 
 def test_submissions_are_late_by_the_roster_or_by_their_names(tmp_path):
-    due = 'DUE = "2026-12-01 23:59 Europe/Berlin"\nLATE = "10 % a day"\n'
+    due = 'DUE = "2026-12-01 23:59 Europe/Berlin"\nLATE = Late(percent=10, per="day")\n'
     marking = Marking(tmp_path, Assignment.of(SOURCE + due, "responses"), CLASS)
     late = datetime.datetime(2026, 12, 2, 12, 0)
     submissions = {

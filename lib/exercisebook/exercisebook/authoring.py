@@ -37,6 +37,7 @@ import sympy
 
 from exercisebook import plugins
 from exercisebook.kinds import MAKERS, Criterion, Kind, Number
+from exercisebook.late import Late
 from exercisebook.parameters import Parameter, between, call, choice
 from exercisebook.question import Question
 from plainmath.validation import is_number
@@ -242,7 +243,7 @@ def collected(module: ModuleType) -> dict[str, Exercise]:
 
 
 plugins.load()
-__all__ = ["Exercise", "answers", "between", "choice", "collected", "criterion", "exercise", *MAKERS]
+__all__ = ["Exercise", "Late", "answers", "between", "choice", "collected", "criterion", "exercise", *MAKERS]
 if taken := MAKERS.keys() & {*__all__[: -len(MAKERS)]}:
     raise ValueError(f"{min(taken)} is another function for authors: expected another name for this kind of answers")
 # the kinds of answers, under the names that read well in an exercise

@@ -1,9 +1,9 @@
 """What is late, and what that costs: due dates, policies, and extensions for single students.
 
-``DUE`` and ``LATE`` in the module of an assignment are texts for people::
+The module of an assignment says both::
 
     DUE = "2026-12-01 23:59 Europe/Berlin"
-    LATE = "10 % a day, 15 min grace, at most 50 %"
+    LATE = Late(percent=10, per="day", grace_minutes=15, at_most=50)
 
 A time without seconds lasts to the end of its minute, a date without a time to the end of its day. Days are counted
 from the due date, those that have begun, by the clock on the wall; what comes within the grace costs nothing, and days
@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import ast
 import datetime
-import math
 import re
 import zoneinfo
 from collections.abc import Collection, Iterable, Mapping
@@ -24,111 +23,49 @@ from datetime import timedelta
 from pathlib import Path
 
 from exercisebook.judging import harmless
+from exercisebook.late import Late
 from exercisegrader import GradingError
 from exercisegrader.spreadsheet import Faults, read
 from plainmath.validation import did_you_mean
 
-_LENGTHS = {
-    "minute": timedelta(minutes=1), "hour": timedelta(hours=1), "day": timedelta(days=1), "week": timedelta(weeks=1),
-}  # fmt: skip
-_SHORT = {"min": "minute", "h": "hour", "d": "day", "w": "week"}
 #: How the sentence on an extension begins.
 IN_TIME = "in time by"
-_END = datetime.time(23, 59, 59, 999999)
-_DATES = (
-    r"(?P<year>\d{4})-(?P<month>\d\d?)-(?P<day>\d\d?)",
-    r"(?P<day>\d\d?)\.\s?(?P<month>\d\d?)\.\s?(?P<year>\d{4})",
-    r"(?P<first>\d\d?)/(?P<second>\d\d?)/(?P<year>\d{4})",
-)
-_TIME = (
-    r"(?:(?:\s*T|,?\s+)(?P<hour>\d\d?):(?P<minute>\d\d)(?::(?P<seconds>\d\d)(?:\.\d*)?)?"
-    r"\s*(?P<half>[AaPp]\.?[Mm]\.?)?)?"
-)
-_ZONE = r"\s*(?P<zone>Z|[+-]\d\d:?\d\d|[A-Za-z][\w+/-]*)?"
-_MOMENTS = tuple(re.compile(date + _TIME + _ZONE) for date in _DATES)
-
-_AMOUNT = r"(\d+(?:[.,]\d+)?)"
-_UNIT = r"(min|minute|h|hour|d|day|w|week)s?"
-_PARTS = {
-    "a_unit": re.compile(rf"{_AMOUNT} ?% (?:an?|per|each|every|for each) (?:started )?{_UNIT}(?: late)?"),
-    "once": re.compile(rf"{_AMOUNT} ?%"),
-    "grace": re.compile(rf"{_AMOUNT} ?{_UNIT} (?:of )?grace"),
-    "at_most": re.compile(rf"(?:at most|maximum|max\.?) {_AMOUNT} ?%"),
-    "nothing": re.compile(rf"(?:nothing counts|not accepted) after {_AMOUNT} ?{_UNIT}"),
-}
-_EXAMPLES = (
-    "'none', '10 % a day', '20 %', '15 min grace', 'at most 50 %' or 'not accepted after 7 days'"
-)  # fmt: skip
+_MOMENT = re.compile(r"(\d{4}-\d\d-\d\d)(?:[ T](\d\d:\d\d)(:\d\d)?)?(?: ?(Z|[+-]\d\d:\d\d)| ([A-Za-z]\S*))?", re.ASCII)
 
 
 def moment(text: str, zone: datetime.tzinfo | None = None) -> datetime.datetime:
     """Return the last moment that a text means: of its minute, where it has no seconds; of its day, without a time.
 
     Arguments:
-        text: a date, as 2026-12-01 or as a spreadsheet writes it (1.12.2026, 12/31/2026), and perhaps a time and a
-            zone: Europe/Berlin, UTC, +01:00.
+        text: a date, and perhaps a time and a zone: Europe/Berlin, UTC, +01:00.
         zone: for a text without one.
     Raises:
-        ValueError: in a sentence, for what is no date, for a date that means two days, and for an unknown zone.
+        ValueError: in a sentence, for what is no date, and for an unknown zone.
 
     >>> moment("2026-12-01 23:59 Europe/Berlin").isoformat()
     '2026-12-01T23:59:59.999999+01:00'
-    >>> moment("31.12.2026").isoformat(), moment("12/31/2026 1:30 PM").isoformat()
-    ('2026-12-31T23:59:59.999999', '2026-12-31T13:30:59.999999')
+    >>> moment("2026-12-31").isoformat()
+    '2026-12-31T23:59:59.999999'
     """
-    found = next((match for one in _MOMENTS if (match := one.fullmatch(" ".join(str(text).split())))), None)
-    if not found:
-        raise ValueError(f"{harmless(repr(text))} is not a date and time: expected one such as 2026-12-01 23:59")
-    parts = found.groupdict()
+    found = _MOMENT.fullmatch(text.strip())
     try:
-        date = datetime.date(int(parts["year"]), *_month_and_day(parts, text))
-        when = datetime.datetime.combine(date, _time(parts))
+        if not found:
+            raise ValueError("it has another form")
+        day, time, seconds, offset, place = found.groups()
+        when = datetime.datetime.fromisoformat(f"{day} {time or '23:59'}{seconds or ':59'}.999999{offset or ''}")
     except ValueError as problem:
-        raise ValueError(
-            f"{harmless(repr(text))} is not a date and time ({problem}): expected one such as 2026-12-01 23:59"
-        ) from None
-    return when.replace(tzinfo=_zone(parts["zone"]) if parts["zone"] else zone)
-
-
-def _month_and_day(parts, text):
-    if "month" in parts:
-        return int(parts["month"]), int(parts["day"])
-    first, second = int(parts["first"]), int(parts["second"])
-    if first != second and first <= 12 and second <= 12:
-        raise ValueError("it may mean two days")
-    return (first, second) if first <= 12 else (second, first)
-
-
-def _time(parts):
-    if parts["hour"] is None:
-        return _END
-    hour, minute = int(parts["hour"]), int(parts["minute"])
-    if parts["half"]:
-        if not 1 <= hour <= 12:
-            raise ValueError("hour must be in 1..12")
-        hour = hour % 12 + (12 if parts["half"][0] in "pP" else 0)
-    elif (hour, minute) == (24, 0):
-        return _END
-    if parts["seconds"] is None:
-        return datetime.time(hour, minute, 59, 999999)
-    return datetime.time(hour, minute, int(parts["seconds"]), 999999)
+        says = f"{harmless(repr(text))} is not a date and time ({problem})"
+        raise ValueError(f"{says}: expected one such as 2026-12-01 23:59") from None
+    return when if when.tzinfo else when.replace(tzinfo=_zone(place) if place else zone)
 
 
 def _zone(name):
-    if name in ("Z", "UTC"):
-        return datetime.UTC
-    if name[0] in "+-":
-        hours, minutes = int(name[1:3]), int(name[-2:])
-        return datetime.timezone(timedelta(hours=hours, minutes=minutes) * (-1 if name[0] == "-" else 1))
     try:
         return zoneinfo.ZoneInfo(name)
     except (KeyError, OSError, ValueError):
-        known = zoneinfo.available_timezones()
-    if not known:
-        raise ValueError(f"this machine has no list of time zones, in which {name} would be: install tzdata")
-    raise ValueError(
-        f"there is no time zone {name!r}: {did_you_mean(name, known, 'expected one such as Europe/Berlin')}"
-    )
+        otherwise = "expected one such as Europe/Berlin (this machine takes them from the package tzdata)"
+        near = did_you_mean(name, zoneinfo.available_timezones(), otherwise)
+        raise ValueError(f"there is no time zone {name!r}: {near}") from None
 
 
 def written(when: datetime.datetime) -> str:
@@ -158,119 +95,60 @@ def lasting(span: timedelta) -> str:
 
 @dataclass(frozen=True)
 class Policy:
-    """A due date, and what it costs to come later; percentages are fractions here.
+    """A due date, and what it costs to come later.
 
     Attributes:
         due: the last moment that is in time.
-        a_unit, unit: what each day that has begun costs, or each hour or week; `unit` is its name.
-        once: what it costs to be late at all.
-        grace: what is as good as in time.
-        at_most: the most that it costs.
-        accepted: what comes later than this earns nothing; None where there is no such limit.
+        late: what it costs; None where it is reported and costs nothing.
 
-    >>> policy = Policy.of("2026-12-01 23:59 Europe/Berlin", "10 % a day, 15 min grace, at most 50 %")
-    >>> print(policy)
-    due 2026-12-01 23:59 Europe/Berlin; late: 10 % a day, 15 min grace, at most 50 %
-    >>> policy.costs(timedelta(minutes=15)), policy.costs(timedelta(hours=25)), policy.costs(timedelta(days=9))
-    (0.0, 0.2, 0.5)
+    >>> print(Policy(moment("2026-12-01 23:59 Europe/Berlin"), Late(percent=20)))
+    due 2026-12-01 23:59 Europe/Berlin; late: 20 %
     """
 
     due: datetime.datetime
-    a_unit: float = 0
-    unit: str = "day"
-    once: float = 0
-    grace: timedelta = timedelta()
-    at_most: float = 1
-    accepted: timedelta | None = None
-
-    @classmethod
-    def of(cls, due: str, late: str = "none") -> Policy:
-        """Return the policy that two texts say. Raises GradingError in a sentence."""
-        for name, text in {"DUE": due, "LATE": late}.items():
-            if not isinstance(text, str):
-                raise GradingError(f"{name} is {harmless(repr(text))}: expected a text")
-        try:
-            return cls(moment(due), **_terms(late))
-        except ValueError as problem:
-            raise GradingError(f"DUE or LATE: {problem}") from None
-
-    def costs(self, by: timedelta) -> float:
-        """Return what it costs to be late by so much, as a fraction of what was earned."""
-        if by <= self.grace:
-            return 0.0
-        if self.accepted is not None and by > self.accepted:
-            return 1.0
-        begun = math.ceil((by - self.grace) / _LENGTHS[self.unit])
-        return min(self.once + self.a_unit * begun, self.at_most, 1.0)
+    late: Late | None = None
 
     def __str__(self) -> str:
-        parts = [f"{_percent(self.a_unit)} {'an' if self.unit == 'hour' else 'a'} {self.unit}"] if self.a_unit else []
-        parts += [_percent(self.once)] if self.once else []
-        parts += [f"{lasting(self.grace)} grace"] if self.grace else []
-        parts += [f"at most {_percent(self.at_most)}"] if self.at_most < 1 else []
-        parts += [f"not accepted after {lasting(self.accepted)}"] if self.accepted is not None else []
-        return f"due {written(self.due)}; late: {', '.join(parts) or 'costs nothing'}"
+        return f"due {written(self.due)}; late: {self.late or 'costs nothing'}"
 
 
 def policy_of(module: object, name: str) -> Policy | None:
     """Return the policy of an assignment's module; None where it says nothing of it.
 
-    Raises GradingError for texts that cannot be read, and for a `LATE` without a `DUE`.
+    Raises GradingError for a `DUE` that cannot be read, a `LATE` of another form, and a `LATE` without a `DUE`.
     """
-    due, late = (getattr(module, one, None) for one in ("DUE", "LATE"))
+    due, late = getattr(module, "DUE", None), getattr(module, "LATE", None)
     if due is None and late is None:
         return None
-    if due is None:
-        raise GradingError(f'{name}.py has LATE and no DUE: expected one, as DUE = "2026-12-01 23:59 Europe/Berlin"')
+    if not isinstance(due, str):
+        said = "there is LATE and no DUE" if due is None else f"DUE is {harmless(repr(due))}"
+        raise GradingError(f'{name}.py: {said}: expected a text such as "2026-12-01 23:59 Europe/Berlin"')
+    if late is not None and not isinstance(late, Late):
+        raise GradingError(
+            f'{name}.py: LATE is {harmless(repr(late))}: expected one as Late(percent=10, per="day", grace_minutes=15, '
+            "at_most=50, accepted_days=7), with Late from exercisebook.authoring"
+        )
     try:
-        return Policy.of(due, "none" if late is None else late)
-    except GradingError as problem:
-        raise GradingError(f"{name}.py: {problem}") from None
+        return Policy(moment(due), late)
+    except ValueError as problem:
+        raise GradingError(f"{name}.py: DUE: {problem}") from None
 
 
 def without_dates(source: str) -> str:
-    """Return the text of a module without the lines that say when it is due, where nothing else in it reads them.
+    """Return the statements of a module without those that say when it is due, where nothing else in it reads them.
 
-    >>> without_dates('x = 1\\nDUE = "2026-12-01"  # a Tuesday\\ny = 2\\n')
-    'x = 1\\ny = 2\\n'
+    >>> without_dates('x = 1\\nDUE = "2026-12-01"  # a Tuesday\\nLATE = Late(percent=20)\\ny = 2')
+    'x = 1\\ny = 2'
     """
-    tree, lines = ast.parse(source), source.splitlines(keepends=True)
-    named = [node.id for node in ast.walk(tree) if isinstance(node, ast.Name)]
-    for node in tree.body:
-        is_text = isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant) and len(node.targets) == 1
-        name = node.targets[0] if is_text else None
-        if isinstance(name, ast.Name) and name.id in ("DUE", "LATE") and named.count(name.id) == 1:
-            at, text = slice(node.lineno - 1, node.end_lineno), ast.get_source_segment(source, node)
-            if re.fullmatch(re.escape(text or "") + r"\s*(?:#.*)?\s*", "".join(lines[at])):
-                lines[at] = [""] * (at.stop - at.start)
-    return "".join(lines)
-
-
-def _terms(late):
-    """What a text of LATE says, as arguments of `Policy`. Raises ValueError."""
-    found = {}
-    for part in re.split(r"(?<!\d),|,(?!\d)|;", late):
-        text = " ".join(part.split()).casefold()
-        if text in ("", "none", "costs nothing", "no deduction"):
-            continue
-        term, match = next(((name, m) for name, one in _PARTS.items() if (m := one.fullmatch(text))), ("", None))
-        if not match:
-            raise ValueError(f"{part.strip()!r} says nothing about what is late: expected {_EXAMPLES}")
-        if term in found:
-            raise ValueError(f"{late!r} says twice what {match[0]!r} says: expected one")
-        amount, unit = float(match[1].replace(",", ".")), match[2] if len(match.groups()) > 1 else ""
-        unit = _SHORT.get(unit, unit)
-        if "%" in text and not 0 < amount <= 100:
-            raise ValueError(f"{part.strip()!r} is not possible: expected a percentage above 0 and up to 100")
-        found[term] = amount, unit
-    if {"a_unit", "once"} <= found.keys():
-        raise ValueError(f"{late!r} has two costs: expected one, as in '10 % a day' or in '20 %'")
-    if {"a_unit", "once", "nothing"}.isdisjoint(found) and found:
-        raise ValueError(f"{late!r} does not say what it costs: expected '10 % a day' or '20 %' besides")
-    terms = {name: found[name][0] / 100 for name in ("a_unit", "once", "at_most") if name in found}
-    terms |= {"unit": found["a_unit"][1]} if "a_unit" in found else {}
-    spans = {"grace": "grace", "nothing": "accepted"}
-    return terms | {name: found[one][0] * _LENGTHS[found[one][1]] for one, name in spans.items() if one in found}
+    tree = ast.parse(source)
+    names = [node.id for node in ast.walk(tree) if isinstance(node, ast.Name)]
+    for node in list(ast.walk(tree)):
+        match node:
+            case ast.Assign([ast.Name("DUE" | "LATE" as name)]) if node in tree.body and names.count(name) == 1:
+                tree.body.remove(node)
+            case ast.ImportFrom():
+                node.names = [one for one in node.names if one.name != "Late"] or node.names
+    return ast.unparse(tree)
 
 
 def _percent(fraction):
@@ -308,7 +186,7 @@ def lateness(
     Raises:
         GradingError: where the time has a zone and the due date has none.
 
-    >>> policy = Policy.of("2026-12-01 23:59", "10 % a day")
+    >>> policy = Policy(moment("2026-12-01 23:59"), Late(percent=10, per="day"))
     >>> lateness(policy, moment("2026-12-03 02:00")).says
     'handed in 1 day 2 h late (due 2026-12-01 23:59): 20 % of the points are deducted'
     >>> lateness(policy, late=True).says
@@ -334,18 +212,18 @@ def lateness(
         if _instant(handed_in) > _instant(policy.due):
             return Lateness(0, f"{IN_TIME} an extension to {written(until)}")
         return Lateness()
-    if policy.unit == "hour":
+    terms = policy.late
+    if terms and terms.per == "hour":
         by = _instant(handed_in) - _instant(due)
     else:  # as clocks on the wall say: the same time of the next day is a day later
         by = handed_in.replace(tzinfo=None) - due.replace(tzinfo=None)
     by = max(by, timedelta(microseconds=1))
-    part = policy.costs(by)
     how = f"handed in {lasting(by)} late ({'extended to' if due != policy.due else 'due'} {written(due)})"
-    if policy.accepted is not None and by > policy.accepted:
-        return Lateness(part, f"{how}, after the last day on which it is accepted: all points are deducted")
-    if part:
+    if terms and terms.refuses(by):
+        return Lateness(1, f"{how}, after the last day on which it is accepted: all points are deducted")
+    if terms and (part := terms.costs(by)):
         return Lateness(part, f"{how}: {_percent(part)} of the points are deducted")
-    within = f", within the grace of {lasting(policy.grace)}" if by <= policy.grace and policy.grace else ""
+    within = f", within the grace of {lasting(terms.grace)}" if terms and by <= terms.grace else ""
     return Lateness(0, f"{how}{within}: nothing is deducted")
 
 
@@ -395,43 +273,42 @@ def read_extensions(
     known |= {student.casefold(): student for student in students}
     faults, until, lines, others, early, left = Faults(sheet.path.name), {}, {}, {}, [], []
     for line, row in sheet.rows:
-        of = row.get("assignment", "")
+        of, said = row.get("assignment", ""), row["student"]
+        student = known.get(said.casefold())
         if of and of.casefold() != assignment.casefold():
             others[of] = others.get(of, 0) + 1
-            continue
-        student = known.get(row["student"].casefold())
-        if not student and row["student"] in former:
-            left.append(row["student"])
-            continue
-        if not student:
-            known_ids = did_you_mean(row["student"], known.values(), "expected an id")
-            faults.add(line, f"there is no student {row['student']!r} on the roster: {known_ids}")
-            continue
-        if policy is None:
-            continue
-        try:
-            when = moment(row["until"], policy.due.tzinfo)
-        except ValueError as problem:
-            faults.add(line, str(problem))
-            continue
-        if when.tzinfo and not policy.due.tzinfo:
-            faults.add(line, f"{row['until']!r} names a time zone, and DUE names none: expected one in both")
-        elif _instant(when) < _instant(policy.due):
-            if of:
-                faults.add(
-                    line, f"{row['until']!r} is before the due date, {written(policy.due)}: expected a later time"
-                )
+        elif not student and said in former:
+            left.append(said)
+        elif not student:
+            near = did_you_mean(said, known.values(), "expected an id")
+            faults.add(line, f"there is no student {said!r} on the roster: {near}")
+        elif policy is not None:
+            try:
+                when = _extended(row["until"], policy.due)
+            except ValueError as problem:
+                faults.add(line, str(problem))
+                continue
+            if _instant(when) >= _instant(policy.due):
+                first = lines.setdefault((student, bool(of)), line)
+                if first != line:
+                    faults.add(line, f"{student!r} has an extension in line {first} already: expected one")
+                until[student] = max(when, until.get(student, when), key=_instant)
+            elif of:
+                due = written(policy.due)
+                faults.add(line, f"{row['until']!r} is before the due date, {due}: expected a later time")
             else:
                 early.append(student)
-        elif (first := lines.get((student, bool(of)))) is not None:
-            faults.add(line, f"{student!r} has an extension in line {first} already: expected one")
-        else:
-            lines[student, bool(of)] = line
-            until[student] = max(when, until[student], key=_instant) if student in until else when
     faults.demand_none()
     notes = [f"{count} for the assignment {name!r}" for name, count in others.items()]
     notes += [f"{', '.join(early)}: before the due date"] if early else []
     notes += [f"{', '.join(left)}: no longer on the roster"] if left else []
-    if policy is None and sheet.rows:
-        notes.append(f"{assignment} has no DUE")
+    notes += [f"{assignment} has no DUE"] if policy is None and sheet.rows else []
     return Extensions(until, tuple(f"{sheet.path.name}, of no effect here: {note}" for note in notes))
+
+
+def _extended(text, due):
+    """The moment that a text means, by the clock of the due date. Raises ValueError where they cannot be compared."""
+    when = moment(text, due.tzinfo)
+    if when.tzinfo and not due.tzinfo:
+        raise ValueError(f"{text!r} names a time zone, and DUE names none: expected one in both")
+    return when.astimezone(due.tzinfo) if when.tzinfo else when
