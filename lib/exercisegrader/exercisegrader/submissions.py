@@ -6,21 +6,17 @@ What is not clearly one student's one notebook is left alone and said.
 from __future__ import annotations
 
 import datetime
-import io
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from exercisegrader import GradingError
+from exercisegrader import GradingError, sources
 from exercisegrader.entries import FAILURES, Entry, entries, shown, why
 from exercisegrader.owners import Owner, Owners, is_notebook
 from exercisegrader.roster import Student
-from exercisegrader.sources import sources
 
-#: The largest file that is read, in bytes; most of a notebook is pictures, which are skipped.
-LARGEST = 200 * 2**20
 #: The most complaints about what lies in one folder.
 MOST_COMPLAINTS = 10
 
@@ -30,20 +26,6 @@ BESIDE = ", beside "
 FILE = "the file "
 #: Zip files tell times in steps of two seconds.
 _SAME_TIME = datetime.timedelta(seconds=2)
-
-
-class _Limited(io.RawIOBase):
-    """A file of which at most LARGEST bytes are read, whatever was announced."""
-
-    def __init__(self, stream):
-        self._stream, self._left = stream, LARGEST
-
-    def read(self, size=-1):
-        piece = self._stream.read(size)
-        self._left -= len(piece)
-        if self._left < 0:
-            raise GradingError(_too_large())
-        return piece
 
 
 @dataclass(frozen=True)
@@ -77,7 +59,7 @@ class Submission:
             raise GradingError(self.problem)
         try:
             with self._source.open() as stream:
-                return sources(_Limited(stream))
+                return sources.sources(stream)
         except FAILURES as problem:
             raise GradingError(f"the file cannot be read: {why(problem)}") from None
 
@@ -171,8 +153,8 @@ def _submission(student, notebooks, latest):
         else:
             problem = f"{_several(notebooks)}; {why}; keep one"
     entry = one.entry
-    if not problem and entry.size > LARGEST:
-        problem = _too_large()
+    if not problem and entry.size > sources.LARGEST:
+        problem = sources.too_large()
     source = None if problem else entry.source
     return Submission(student, entry.label, problem, student.handed_in, one.owner.late, chosen, source)
 
@@ -195,10 +177,6 @@ def _latest(notebooks):
     if last.entry.changed - last_but_one.entry.changed <= _SAME_TIME:
         return None, "which is the latest is not known, because their times are the same"
     return last, "the times of the files"
-
-
-def _too_large():
-    return f"{FILE}is larger than {LARGEST // 2**20} MiB"
 
 
 class _Complaints:
