@@ -18,7 +18,7 @@ from typer.testing import CliRunner
 
 import contributing
 from exercisegrader import GradingError, lms, reports, tables
-from exercisegrader.lms import moodle, own
+from exercisegrader.lms import own
 from exercisegrader.lms.canvas import canvas_grades
 from exercisegrader.lms.gradescope import results_json
 from exercisegrader.lms.moodle import moodle_grades
@@ -83,16 +83,7 @@ def test_our_own_roster(roster, delimiter, encoding):
     ("header", "row", "student"),
     [
         ("Student ID,Full Name,E-mail", "s1,Jane Doe,j@x", Student("s1", "Jane Doe", email="j@x")),
-        (
-            "Matrikelnummer;Name;Vorname;E-Mail-Adresse",
-            "s1;Doe;Jane;j@x",
-            Student("s1", "Jane Doe", "Doe, Jane", email="j@x"),
-        ),
-        ("Matrikel-Nr.;Nachname;Vorname", "s1;Doe;Jane", Student("s1", "Jane Doe", "Doe, Jane")),
-        ("N° étudiant;Nom;Prénom", "s1;Doe;Jane", Student("s1", "Jane Doe", "Doe, Jane")),
-        ("No Etudiant;NOM", "s1;Doe", Student("s1", "Doe")),
-        ("Matrícula,Nombre,Apellidos", "s1,Jane,Doe", Student("s1", "Jane Doe", "Doe, Jane")),
-        ("matricola,nome", "s1,Jane", Student("s1", "Jane")),
+        ("First name;Name;Student no.", "Jane;Doe;s1", Student("s1", "Jane Doe", "Doe, Jane")),
         ("STUDENT_NUMBER\tlast_name\tFirst Name", "s1\tDoe\tJane", Student("s1", "Jane Doe", "Doe, Jane")),
         ("student-id,student,Group,NetID", "s1,Jane Doe,A,jd", Student("s1", "Jane Doe", login="jd", section="A")),
         ("sep=;\nid;name", "s1;Jane, Doe", Student("s1", "Jane, Doe")),
@@ -129,10 +120,8 @@ def test_the_instructors_guide_has_all_synonyms():
 
 def test_two_columns_for_one_field_are_a_sentence(roster):
     with pytest.raises(GradingError) as raised:
-        roster("ID,Matrikelnummer,Name\n1,s1,Jane\n")
-    assert str(raised.value) == (
-        "roster.csv, line 1: 'ID' and 'Matrikelnummer' could both be the id: rename one of them"
-    )
+        roster("ID,Student ID,Name\n1,s1,Jane\n")
+    assert str(raised.value) == ("roster.csv, line 1: 'ID' and 'Student ID' could both be the id: rename one of them")
 
 
 # Rosters of Canvas.
@@ -255,92 +244,6 @@ def test_the_participants_and_grades_of_moodle(roster):
     assert jane == Student("jane", "Jane Doe", "Doe, Jane", login="jane")
 
 
-@pytest.mark.parametrize(
-    ("header", "row"),
-    [
-        (
-            'ID,"Vollständiger Name",ID-Nummer,E-Mail-Adresse,Status,Bewertung,Bestwertung,"Bewertung kann geändert '
-            'werden","Zuletzt geändert (Abgabe)","Zuletzt geändert (Bewertung)","Feedback als Kommentar"',
-            'Teilnehmer/in77001,"Jane Doe",s1001,jane@x.org,"Zur Bewertung abgegeben",,"17,00",Ja,'
-            '"Montag, 3. November 2025, 23:59",-,',
-        ),
-        (
-            'Identifiant,"Nom complet","Numéro d’identification","Adresse de courriel",Statut,Note,"Note maximale",'
-            '"La note peut être modifiée","Dernière modification (travail remis)","Dernière modification (note)",'
-            '"Feedback par commentaires"',
-            'Participant77001,"Jane Doe",s1001,jane@x.org,Remis,,"17,00",Oui,"lundi 3 novembre 2025, 23:59",-,',
-        ),
-        (
-            'Identificador,"Nombre completo","Número de ID","Dirección de correo",Estado,Calificación,"Calificación '
-            'máxima","La calificación puede ser cambiada","Última modificación (entrega)","Última modificación '
-            '(calificación)","Comentarios de retroalimentación"',
-            'Participante77001,"Jane Doe",s1001,jane@x.org,Enviado,,"17,00",Sí,'
-            '"lunes, 3 de noviembre de 2025, 23:59",-,',
-        ),
-        (
-            'Identificativo,Nome,"Codice identificativo","Indirizzo email",Stato,Valutazione,"Valutazione massima",'
-            '"La valutazione può essere cambiata","Ultima modifica (consegna)","Ultima modifica (valutazione)",'
-            "Commenti",
-            'Partecipante77001,"Jane Doe",s1001,jane@x.org,Consegnato,,"17,00",Sì,"lunedì, 3 novembre 2025, 23:59",-,',
-        ),
-        (
-            'Identificador,"Nome completo","Número de identificação (ID)",E-mail,Estado,Avaliação,"Nota máxima",'
-            '"A nota pode ser alterada.","Última atualização (submissão)","Última atualização (avaliação)",'
-            '"Comentários de feedback"',
-            'Participante77001,"Jane Doe",s1001,jane@x.org,Enviado,,"17,00",Sim,'
-            '"segunda-feira, 3 de novembro de 2025 às 23:59",-,',
-        ),
-        (
-            'Identificatie,"Volledige naam","Nummer (ID)",E-mailadres,Status,Cijfer,"Maximaal cijfer","Het cijfer kan '
-            'gewijzigd worden","Laatst gewijzigd (inzending)","Laatst gewijzigd (beoordeling)","Feedback tekstvak"',
-            'Deelnemer77001,"Jane Doe",s1001,jane@x.org,Ingestuurd,,"17,00",Ja,"maandag, 3 november 2025, 23:59",-,',
-        ),
-        (
-            'ID,フルネーム,IDナンバ,メールアドレス,ステータス,評点,最大評点,評点変更可,"最終更新日時 (提出)",'
-            '"最終更新日時 (評定)",フィードバックコメント',
-            '参加者77001,"Jane Doe",s1001,jane@x.org,提出,,17.00,Yes,"2025年 11月 3日(月曜日) 23:59",-,',
-        ),
-    ],
-    ids=["German", "French", "Spanish", "Italian", "Portuguese", "Dutch", "Japanese"],
-)
-def test_the_worksheet_in_other_languages(roster, header, row):
-    """The heads and the form of the time are those of the language packs."""
-    (jane,) = students = roster(f"{header}\n{row}\n", "utf-8-sig")
-    time = datetime.datetime(2025, 11, 3, 23, 59)
-    assert jane == Student("s1001", "Jane Doe", sis_id="s1001", email="jane@x.org", moodle_id="77001", handed_in=time)
-    filled = moodle_grades("Heater", students, [mark("s1001", 4.5)])
-    assert filled.startswith("\ufeff")
-    heads, cells = csv.reader(io.StringIO(filled[1:]))
-    assert heads == next(csv.reader([header]))
-    expected = next(csv.reader([row]))
-    expected[5] = "4,5" if "," in expected[6] else "4.5"
-    assert cells == expected
-
-
-@pytest.mark.parametrize(
-    "header",
-    [
-        "Vorname,Nachname,ID-Nummer,E-Mail-Adresse,Gruppen",
-        'Prénom,"Nom de famille","Numéro d’identification","Adresse de courriel",Groupes',
-        'Nombre,Apellido(s),"Número de ID","Dirección de correo",Grupos',
-        'Nome,Cognome,"Codice identificativo","Indirizzo email",Gruppi',
-        'Voornaam,Achternaam,"Nummer (ID)",E-mailadres,Groepen',
-        'Имя,Фамилия,"Индивидуальный номер","Адрес электронной почты",Группы',
-    ],
-)
-def test_the_participants_in_other_languages(roster, header):
-    (jane,) = roster(f"{header}\nJane,Doe,s1001,jane@x.org,A\n")
-    assert jane == Student("s1001", "Jane Doe", "Doe, Jane", sis_id="s1001", email="jane@x.org", section="A")
-    assert (jane.system, jane.id_from) == ("moodle", "ID number")
-
-
-def test_each_language_has_a_head_for_each_field():
-    for language, fields in moodle.LANGUAGES.items():
-        assert all(words and all(words) for words in fields.values()), language
-        places = [fields[field][0] for field in fields if field not in ("first", "last")]
-        assert len(set(places)) == len(places), language
-
-
 def test_the_roster_of_gradescope(roster):
     jane, john = roster(
         "First Name,Last Name,SID,Email,Role,Sections\n"
@@ -448,12 +351,7 @@ def test_any_bytes_are_a_roster_or_sentences(tmp_path_factory, content):
         ("2025-11-03 23:59:30", (2025, 11, 3, 23, 59, 30)),
         ("Sunday, 28 March 2027, 12:05 AM", (2027, 3, 28, 0, 5)),
         ("Sunday, 28 March 2027, 12:05 PM", (2027, 3, 28, 12, 5)),
-        ("Mittwoch, 3. März 2027, 00:00", (2027, 3, 3, 0, 0)),
-        ("mardi 24 août 2027, 23:59", (2027, 8, 24, 23, 59)),
-        ("mardi 24 août 2027 à 23h59", (2027, 8, 24, 23, 59)),
-        ("dimecres, 2 d’abril 2025, 10:00", (2025, 4, 2, 10, 0)),
-        ("Çarşamba, 5 Kasım 2025, 10:00 PM", (2025, 11, 5, 22, 0)),
-        ("понедельник, 3 ноября 2025, 23:59", (2025, 11, 3, 23, 59)),
+        ("Sunday, March 28, 2027, 12:05 PM", (2027, 3, 28, 12, 5)),
     ],
 )
 def test_times(text, time):
@@ -469,10 +367,7 @@ def test_a_time_keeps_the_zone_that_it_says():
     [
         "2025-11-03",
         "2025-13-03 10:00",
-        "3 Foo 2025, 10:00",
-        "31 April 2025, 10:00",
-        "3 May 2025, 25:00",
-        "3 May 2025, 13:00 PM",
+        "Monday, 31 April 2025, 10:00 AM",
         "11/03/2025 10:00",
         "yes",
         "36 days late",

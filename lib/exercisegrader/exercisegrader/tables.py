@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import datetime
 import io
@@ -34,30 +35,8 @@ def letters(name: str) -> str:
     return "".join(sign for sign in plain if sign.isalnum())
 
 
-_MONTHS = {
-    letters(month): number
-    for months in (
-        "january february march april may june july august september october november december",
-        "januar februar marz april mai juni juli august september oktober november dezember",
-        "janvier fevrier mars avril mai juin juillet aout septembre octobre novembre decembre",
-        "enero febrero marzo abril mayo junio julio agosto septiembre octubre noviembre diciembre",
-        "janeiro fevereiro marco abril maio junho julho agosto setembro outubro novembro dezembro",
-        "gennaio febbraio marzo aprile maggio giugno luglio agosto settembre ottobre novembre dicembre",
-        "januari februari maart april mei juni juli augustus september oktober november december",
-        "januari februari mars april maj juni juli augusti september oktober november december",
-        "gener febrer marc abril maig juny juliol agost setembre octubre novembre desembre",
-        "xaneiro febreiro marzo abril maio xuno xullo agosto setembro outubro novembro decembro",
-        "ocak subat mart nisan mayıs haziran temmuz agustos eylul ekim kasım aralık",
-        "ianuarie februarie martie aprilie mai iunie iulie august septembrie octombrie noiembrie decembrie",
-        "января февраля марта апреля мая июня июля августа сентября октября ноября декабря",
-    )
-    for number, month in enumerate(months.split(), start=1)
-}
-_TIME = r"[^\d]+(\d{1,2})[:h](\d{2})(?::(\d{2}))?(?:\s*([ap])\.?\s?m\b\.?)?"
-_DAY_FIRST = re.compile(
-    rf"(?:[^\d]*[\s,])?(\d{{1,2}})\.?\s+(?:de |d['’])?([^\W\d]+)\.?\s+(?:de )?(\d{{4}}){_TIME}", re.I
-)
-_YEAR_FIRST = re.compile(r"(\d{4})年\s*(\d{1,2})月\s*(\d{1,2})日" + _TIME, re.I)
+#: A time as Moodle writes it, in English and in the English of the United States.
+_LONG_FORMS = ("%A, %d %B %Y, %I:%M %p", "%A, %B %d, %Y, %I:%M %p")
 
 
 @dataclass(frozen=True)
@@ -167,10 +146,8 @@ def _plain(cell):
 def moment(text: str) -> datetime.datetime | None:
     """Return the time that a text says, to the second, with a zone where it says one; None for no text, or a dash.
 
-    It is of the form of ISO 8601, or the long form of Moodle, with the month as a word in one of the languages of
-    `_MONTHS`; forms in which day and month could be mistaken are not read.
-
-    Raises ValueError for any other text.
+    It is of the form of ISO 8601, or of one of Moodle's long forms in English; forms in which day and month could be
+    mistaken are not read. Raises ValueError for any other text.
 
     >>> moment("Monday, 3 November 2025, 11:59 PM")
     datetime.datetime(2025, 11, 3, 23, 59)
@@ -180,27 +157,13 @@ def moment(text: str) -> datetime.datetime | None:
     text = _plain(text)
     if text in ("", "-", "–"):
         return None
-    expected = f"{text!r} is no time: expected one as 2025-11-03 23:59"
     if re.match(r"\d{4}-\d\d-\d\d[ T]\d", text):
-        try:
+        with contextlib.suppress(ValueError):
             return datetime.datetime.fromisoformat(text).replace(microsecond=0)
-        except ValueError:
-            raise ValueError(expected) from None
-    if long := _DAY_FIRST.fullmatch(text):
-        day, word, year, *clock = long.groups()
-        month = _MONTHS.get(letters(word), 0)
-    elif long := _YEAR_FIRST.match(text):
-        year, month, day, *clock = long.groups()
-    else:
-        raise ValueError(expected)
-    hour, minute, second, half = int(clock[0]), int(clock[1]), int(clock[2] or 0), (clock[3] or "").lower()
-    if half and not 1 <= hour <= 12:
-        raise ValueError(expected)
-    hour = hour % 12 + 12 * (half == "p") if half else hour
-    try:
-        return datetime.datetime(int(year), int(month), int(day), hour, minute, second)
-    except ValueError:
-        raise ValueError(expected) from None
+    for form in _LONG_FORMS:
+        with contextlib.suppress(ValueError):
+            return datetime.datetime.strptime(text, form)
+    raise ValueError(f"{text!r} is no time: expected one as 2025-11-03 23:59")
 
 
 def guarded(text: str) -> str:

@@ -1,14 +1,14 @@
 """Moodle: its grading worksheet, grades and participants, the names in its downloads, feedback files for each student.
 
-All of it is as https://github.com/moodle/moodle does it, in the files named below. The heads of its tables are
-translated; `LANGUAGES` has those of the language packs of Moodle 4.
+All of it is as https://github.com/moodle/moodle does it, in the files named below. The heads of its tables, and its
+times, are in the language of whoever exports them; here they are English.
 
-**Grading worksheet** (mod/assign/gradingtable.php): Identifier ("Participant 12345", in German "Teilnehmer/in12345"),
-Full name, ID number or Email address ..., Grade, Maximum grade, Last modified (submission), Last modified (grade),
-Feedback comments. It is filled in and goes back by "Upload grading worksheet" (mod/assign/feedback/offline), which
-finds a student by the number alone; takes no grade where that is empty or above the maximum; keeps a grade that is
-newer than "Last modified (grade)"; and reads a decimal comma where the language has one, and a point always. Its reader
-(lib/csvlib.class.php) takes a byte-order mark away.
+**Grading worksheet** (mod/assign/gradingtable.php): Identifier ("Participant 12345"), Full name, ID number or Email
+address ..., Grade, Maximum grade, Last modified (submission), Last modified (grade), Feedback comments. It is filled in
+and goes back by "Upload grading worksheet" (mod/assign/feedback/offline), which finds its columns by their heads, in
+the language of whoever uploads it, and a student by the number alone; takes no grade where that is empty or above the
+maximum; and keeps a grade that is newer than "Last modified (grade)". Its reader (lib/csvlib.class.php) takes a
+byte-order mark away.
 
 **Grades and participants** (grade/export/txt/grade_export_txt.php): First name, Last name, ID number, Username, Email
 address, Groups. Grades for such a roster are a table for "Import" in the gradebook (grade/import/csv): map its column
@@ -44,62 +44,15 @@ if TYPE_CHECKING:
     from exercisegrader.roster import Student
 
 _NAME = re.compile(r"([^_]*)_([0-9]{1,20})_assignsubmission_[a-z]+(?:_.*)?", re.DOTALL)
-#: The fields of `LANGUAGES`, in its order.
-_FIELDS = (
-    "moodle_id", "name", "first", "last", "sis_id", "login", "email", "section", "grade", "maximum", "handed_in",
-    "graded", "comments",
-)  # fmt: skip
-#: The heads by language, where a bar parts those of several versions.
-LANGUAGES = {
-    language: dict(zip(_FIELDS, (tuple(map(letters, heads.split("|"))) for heads in line.split("; ")), strict=True))
-    for language, line in {
-        "English": "Identifier; Full name; First name; Last name|Surname; ID number; Username; Email address; "
-        "Groups|Group; Grade; Maximum grade; Last modified (submission); Last modified (grade); Feedback comments",
-        "German": "ID; Vollständiger Name; Vorname; Nachname; ID-Nummer; Anmeldename; E-Mail-Adresse; Gruppen|Gruppe; "
-        "Bewertung; Bestwertung|Bestbewertung; Zuletzt geändert (Abgabe); Zuletzt geändert (Bewertung); "
-        "Feedback als Kommentar",
-        "French": "Identifiant; Nom complet; Prénom; Nom de famille|Nom; Numéro d’identification; Nom d’utilisateur; "
-        "Adresse de courriel; Groupes|Groupe; Note; Note maximale; Dernière modification (travail remis); "
-        "Dernière modification (note); Feedback par commentaires",
-        "Spanish": "Identificador; Nombre completo; Nombre; Apellido(s); Número de ID; Nombre de usuario; "
-        "Dirección de correo|Dirección Email; Grupos|Grupo; Calificación; Calificación máxima; "
-        "Última modificación (entrega); Última modificación (calificación); Comentarios de retroalimentación",
-        "Portuguese": "Identificador|Número de identificação; Nome completo; Nome; Apelido; "
-        "Número de identificação (ID)|Número de ID; Nome de utilizador; E-mail|Endereço de e-mail; Grupos|Grupo; "
-        "Avaliação|Nota; Nota máxima|Avaliação máxima; Última atualização (submissão); Última atualização (avaliação); "
-        "Comentários de feedback",
-        "Portuguese of Brazil": "Identificador; Nome completo; Nome; Sobrenome; Número de identificação; "
-        "Identificação de usuário|Nome de usuário; Endereço de email; Grupos|Grupo; Nota; Nota máxima; "
-        "Última modificação (envio); Última modificação (nota); Comentários de feedback",
-        "Italian": "Identificativo; Nome; Nome; Cognome; Codice identificativo; Username; Indirizzo email; "
-        "Gruppi|Gruppo; Valutazione; Valutazione massima; Ultima modifica (consegna); Ultima modifica (valutazione); "
-        "Commenti",
-        "Dutch": "Identificatie; Volledige naam; Voornaam; Achternaam; Nummer (ID)|ID-nummer; Gebruikersnaam; "
-        "E-mailadres; Groepen|Groep; Cijfer|Beoordeling; Maximaal cijfer|Maximumcijfer; "
-        "Laatst gewijzigd (inzending); Laatst gewijzigd (beoordeling); Feedback tekstvak",
-        "Catalan": "Identificador; Nom complet; Nom; Cognoms; Número ID; Nom d'usuari; Adreça electrònica; Grups|Grup; "
-        "Qualificació; Qualificació màxima; Darrera modificació (tramesa); Darrera modificació (qualificació); "
-        "Comentaris de retroacció",
-        "Galician": "Identificador; Nome completo; Nome; Apelidos; Número ID; Nome de usuario; Enderezo de correo; "
-        "Grupos|Grupo; Cualificación; Cualificación máxima; Última modificación (entrega); "
-        "Última modificación (cualificación); Comentarios",
-        "Swedish": "Identifierare; Fullständigt namn; Förnamn; Efternamn; ID nummer; Användarnamn; E-postadress; "
-        "Grupper|Grupp; Betyg; Maxbetyg; Senast modifierat (inlämning); Senast modifierat (betyg); "
-        "Återkopplingskommentarer",
-        "Romanian": "Identificator; Nume complet; Prenume; Nume de familie; Număr ID; Nume de utilizator; "
-        "Adresa de e-mail; Grupuri|Grup; Notă; Notă maximă; Ultima modificare (a răspunsului); "
-        "Ultima modificare (nota); Comentarii de feedback",
-        "Turkish": "Tanımlayıcı; Tam adı; Adı; Soyadı; ID numarası; Kullanıcı adı; E-posta adresi; Gruplar|Grup; Not; "
-        "Enyüksek not; Son düzenleme (gönderim); Son düzenleme (not); Geri bildirim yorumları",
-        "Russian": "Идентификатор; Полное имя; Имя; Фамилия; Индивидуальный номер; Логин; Адрес электронной почты; "
-        "Группы|Группа; Оценка; Максимальная оценка; Последнее изменение (ответ); Последнее изменение (оценка); "
-        "Отзыв в виде комментария",
-        "Japanese": "ID; フルネーム; 名; 姓; IDナンバ; ユーザ名; メールアドレス; グループ; 評点|評定; 最大評点; "
-        "最終更新日時 (提出); 最終更新日時 (評定); フィードバックコメント",
-        "Chinese": "标识符; 全名; 名; 姓; 学号; 用户名; 电子邮件地址; 小组; 成绩; 最高分; "
-        "上次修改（作业）; 上次修改（评分）; 反馈意见",
-    }.items()
-}
+#: The heads of its tables, and the fields that they are.
+_HEADS = {
+    "identifier": "moodle_id", "fullname": "name", "firstname": "first", "lastname": "last", "surname": "last",
+    "idnumber": "sis_id", "username": "login", "emailaddress": "email", "groups": "section", "group": "section",
+    "grade": "grade", "maximumgrade": "maximum", "lastmodifiedsubmission": "handed_in", "lastmodifiedgrade": "graded",
+    "feedbackcomments": "comments",
+}  # fmt: skip
+#: What of them is in the export of grades and of participants.
+_OF_CLASS = ("first", "last", "section", "sis_id", "login", "email")
 
 
 @lms.system
@@ -113,20 +66,17 @@ class Moodle(System):
     }  # fmt: skip
 
     def columns(self, header: Sequence[str]) -> Mapping[str, int] | None:
-        """Return where the fields are, in the language that fits the most heads."""
-        heads: dict[str, int] = {}
+        """Return where the fields are, the first column of a head for each."""
+        found: dict[str, int] = {}
         for index, head in enumerate(header):
-            heads.setdefault(letters(head), index)
-        best: dict[str, int] = {}
-        for language, names in LANGUAGES.items():
-            found = {
-                field: next(heads[word] for word in words if word in heads)
-                for field, words in names.items()
-                if not heads.keys().isdisjoint(words)
-            }
-            if (fields := _worksheet(language, found) or _table(found, header)) and len(fields) > len(best):
-                best = fields
-        return best or None
+            if field := _HEADS.get(letters(head)):
+                found.setdefault(field, index)
+        if "moodle_id" in found and {"graded", "grade"} & found.keys():  # the grading worksheet
+            return {field: index for field, index in found.items() if field not in ("first", "last")}
+        known = {"first", "last"} <= found.keys() and {"sis_id", "login", "email"} & found.keys()
+        if known and not any(map(own.is_id, header)):
+            return {field: found[field] for field in _OF_CLASS if field in found}
+        return None
 
     def student(self, cells: Mapping[str, str]) -> Mapping[str, str] | None:
         """Return what a row says."""
@@ -162,7 +112,7 @@ class Moodle(System):
                 "moodle_grades.csv: the worksheet has no maximum grade: set the assignment in Moodle to grades in "
                 "points, because a scale takes none",
             )
-        said = {student.row[columns["maximum"]].strip().replace(",", ".") for student in students} - {""}
+        said = {student.row[columns["maximum"]].strip() for student in students} - {""}
         other = sorted(there for there in said if _number(there) is not None and abs(_number(there) - points) > 0.005)
         if not other:
             return ()
@@ -189,24 +139,6 @@ class Moodle(System):
             "In the assignment whose worksheet is the roster, with Feedback files among its feedback types, choose "
             '"Upload multiple feedback files in a zip": each student finds their own there.',
         )
-
-
-def _worksheet(language, found):
-    """The fields of a grading worksheet; empty where it is none."""
-    # what other languages call the number, people call other things, too
-    if "moodle_id" in found and ("graded" in found or (language == "English" and "grade" in found)):
-        return {field: place for field, place in found.items() if field not in ("first", "last")}
-    return {}
-
-
-def _table(found, header):
-    """The fields of grades or participants; empty where they are none, or have an id of one's own."""
-    known = found.keys() & {"sis_id", "login", "email"}
-    if {"first", "last"} <= found.keys() and known and not any(map(own.is_id, header)):
-        return {
-            field: found[field] for field in ("first", "last", "section", "sis_id", "login", "email") if field in found
-        }
-    return {}
 
 
 def _number(text):
@@ -248,8 +180,7 @@ def moodle_grades(title: str, students: Sequence[Student], marks: Collection[Mar
     by_student = {mark.result.student: mark for mark in marks}
     unsafe = without_jail(mark.result for mark in marks)
     if "grade" in columns and "moodle_id" in columns and not unsafe:
-        comma = any("," in row[columns.get("maximum", columns["grade"])] for _, row in table.rows)
-        rows = [_filled(student.row, by_student.get(student.id), columns, comma) for student in students]
+        rows = [_filled(student.row, by_student.get(student.id), columns) for student in students]
         return as_text([table.header, *rows], table.delimiter, table.bom, {columns.get("comments", -1)})
     places = sorted(columns[field] for field in columns if field in ("moodle_id", "name", "first", "last", *Moodle.ids))
     rows = [[*(table.header[place] for place in places), f"{title} (graded without a jail)" if unsafe else title]]
@@ -260,11 +191,11 @@ def moodle_grades(title: str, students: Sequence[Student], marks: Collection[Mar
     return as_text(rows, bom=table.bom)
 
 
-def _filled(row, mark, columns, comma):
+def _filled(row, mark, columns):
     """A row of the worksheet with its grade and comments."""
     row = list(row)
     if mark and mark.total is not None:
-        row[columns["grade"]] = number(mark.total).replace(".", "," if comma else ".")
+        row[columns["grade"]] = number(mark.total)
     if mark and "comments" in columns:
         said = [*filter(None, [mark.late]), *mark.comments]
         said += [
