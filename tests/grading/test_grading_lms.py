@@ -26,7 +26,7 @@ from exercisegrader.lms.own import grades_csv
 from exercisegrader.marking import Marked, MarkedExercise
 from exercisegrader.owners import Owners
 from exercisegrader.results import JudgedAnswer, JudgedExercise, Result
-from exercisegrader.roster import MOST_FAULTS, POSSIBLE_ID, Student, read_roster
+from exercisegrader.roster import POSSIBLE_ID, Student, moment, read_roster
 from loopbook.__main__ import app
 
 JANE = Student("s1001", "Jane Doe", "Doe, Jane", canvas_id="123", moodle_id="77001")
@@ -58,25 +58,17 @@ def roster(tmp_path):
 # Rosters of one's own.
 
 
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "cp1252"])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig"])
 @pytest.mark.parametrize("delimiter", [",", ";", "\t"])
 def test_our_own_roster(roster, delimiter, encoding):
     lines = ["Name,ID,e-mail,canvas_id,Sortable", '"Zoë  Ünal",s2,z@x.org,7,', "", '"O\'Brien",s1,,,O Brien']
-    text = "\r\n".join(lines).replace(",", delimiter)
-    students = roster(text, encoding)
+    students = roster("\r\n".join(lines).replace(",", delimiter), encoding)
     assert students == (
         Student("s2", "Zoë Ünal", email="z@x.org", canvas_id="7"),
         Student("s1", "O'Brien", sortable="O Brien"),
     )
     assert pickle.loads(pickle.dumps(students)) == students
-    says = lms.remarks(students)
-    if encoding == "cp1252":
-        (remark,) = says
-        assert remark.startswith(
-            "roster.csv is no UTF-8 and was read as Windows-1252, as Excel saves it (line 2: 'Zoë')"
-        )
-    else:
-        assert says == ()
+    assert lms.remarks(students) == ()
 
 
 @pytest.mark.parametrize(
@@ -86,7 +78,7 @@ def test_our_own_roster(roster, delimiter, encoding):
         ("First name;Name;Student no.", "Jane;Doe;s1", Student("s1", "Jane Doe", "Doe, Jane")),
         ("STUDENT_NUMBER\tlast_name\tFirst Name", "s1\tDoe\tJane", Student("s1", "Jane Doe", "Doe, Jane")),
         ("student-id,student,Group,NetID", "s1,Jane Doe,A,jd", Student("s1", "Jane Doe", login="jd", section="A")),
-        ("sep=;\nid;name", "s1;Jane, Doe", Student("s1", "Jane, Doe")),
+        ("id;name", "s1;Jane, Doe", Student("s1", "Jane, Doe")),
         (
             "id,name,handed in at",
             "s1,Jane Doe,2025-11-03 23:59",
@@ -286,19 +278,14 @@ def test_the_roster_of_gradescope(roster):
         ("id,name\n2.3E+08,A\n", "line 2: '2.3E+08' cannot be an id"),
         (f"id,name\n{'x' * 101},A\n", "at most 100 characters"),
         ("id,name\nmüller,A\n", "line 2: 'müller' cannot be an id"),
-        ("id,name\ns1,Doe, Jane\n", "line 2: 3 cells, and the header has 2; put a name with a comma in quotes"),
+        ("id,name\ns1,Doe, Jane\n", "line 2: there are 3 cells below 2 columns: put 'a,b' in quotes"),
         ("id,name,handed_in\ns1,A,03/11/2025\n", "line 2: '03/11/2025' is no time: expected one as 2025-11-03 23:59"),
         ('id,name\ns1,"A\ns2,B\n', "no table"),
         ('Foo;Bar\n1;"x";2\n', "line 1: no header of a roster, 'Foo', 'Bar'; expected"),
-        ('sep=;\nid;name\ns1;"A\ns2;B\n', "line 4: no table"),
         (f"id,name\ns1,{'x' * 200_000}\n", "line 2: no table"),
-        (b"id,name\ns1,M\x81ller\n", "line 2: no text in UTF-8"),
-        (b"id,name\ns1,M\xa9ller\n", "line 2: no text in UTF-8"),
-        (b"\xef\xbb\xbfid,name\ns1,M\xfcller\n", "line 2: no text in UTF-8"),
-        ("id,name\ns1,Zoë\ns2,".encode() + b"\xfc\n", "line 3: no text in UTF-8"),
-        (b"\xff\xfei", "line 1: no text in UTF-16"),
-        (b"PK\x03\x04\x14\x00\x06\x00", "line 1: no text"),
-        ("id,name\n".encode("utf-16-le"), "line 1: no text"),
+        ("id,name\ns1,Zoë\ns2,".encode() + b"\xfc\n", "line 3: no text in UTF-8; save it as CSV UTF-8"),
+        ("id,name\ns1,A\n".encode("utf-16"), "line 1: no text in UTF-8; save it as CSV UTF-8"),
+        (b"PK\x03\x04\x14\x00\x06\x00", "line 1: no text in UTF-8; save it as CSV UTF-8"),
     ],
 )
 def test_a_roster_that_is_none(roster, content, says):
@@ -318,10 +305,6 @@ def test_all_faults_are_told_at_once(roster):
         "roster.csv, line 3",
         "roster.csv, line 5",
     ]
-    with pytest.raises(GradingError) as raised:
-        roster("id,name\n" + ",A\n" * (MOST_FAULTS + 7))
-    lines = str(raised.value).split("\n")
-    assert (len(lines), lines[-1]) == (MOST_FAULTS + 1, "and 7 more")
 
 
 def test_a_name_that_only_begins_like_a_device_is_an_id(roster):
@@ -341,7 +324,7 @@ def test_any_bytes_are_a_roster_or_sentences(tmp_path_factory, content):
     students, problem = attempted(read_roster, path)
     assert all(POSSIBLE_ID.fullmatch(student.id) for student in students or ())
     assert bool(students) != bool(problem)
-    assert all(line.startswith(("any.csv", "and ")) for line in problem.split("\n") if problem)
+    assert all(line.startswith("any.csv") for line in problem.split("\n") if problem)
 
 
 @pytest.mark.parametrize(
@@ -355,11 +338,11 @@ def test_any_bytes_are_a_roster_or_sentences(tmp_path_factory, content):
     ],
 )
 def test_times(text, time):
-    assert tables.moment(text) == datetime.datetime(*time)
+    assert moment(text) == datetime.datetime(*time)
 
 
 def test_a_time_keeps_the_zone_that_it_says():
-    assert tables.moment("2025-11-03T23:59+01:00").isoformat() == "2025-11-03T23:59:00+01:00"
+    assert moment("2025-11-03T23:59+01:00").isoformat() == "2025-11-03T23:59:00+01:00"
 
 
 @pytest.mark.parametrize(
@@ -375,7 +358,7 @@ def test_a_time_keeps_the_zone_that_it_says():
 )
 def test_what_is_no_time(text):
     with pytest.raises(ValueError, match="expected one as"):
-        tables.moment(text)
+        moment(text)
 
 
 # Owners.

@@ -11,7 +11,7 @@ import pytest
 
 from exercisebook import png
 from exercisebook.judging import MISTAKE, OPEN, RIGHT, WAITING, WRONG
-from exercisegrader import GradingError, spreadsheet
+from exercisegrader import GradingError, spreadsheet, tables
 from exercisegrader.assignment import Assignment
 from exercisegrader.lateness import Lateness
 from exercisegrader.marking import Marked, Marking, Notice
@@ -268,7 +268,7 @@ def test_who_has_left_the_class_stops_nobody(folder):
 
 def test_so_many_faults_are_told(folder):
     faults = folder.faults(*["s9,1,,1,"] * 100)
-    assert len(faults) == spreadsheet.MOST_FAULTS + 1
+    assert len(faults) == tables.MOST_FAULTS + 1
     assert faults[-1] == "marks.csv: 60 more such faults"
 
 

@@ -25,7 +25,8 @@ from pathlib import Path
 from exercisebook.judging import harmless
 from exercisebook.late import Late
 from exercisegrader import GradingError
-from exercisegrader.spreadsheet import Faults, read
+from exercisegrader.spreadsheet import read
+from exercisegrader.tables import Faults
 from plainmath.validation import did_you_mean
 
 #: How the sentence on an extension begins.

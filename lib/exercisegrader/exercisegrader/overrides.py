@@ -19,7 +19,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 from exercisegrader import GradingError, files, spreadsheet
-from exercisegrader.spreadsheet import Faults, Sheet
+from exercisegrader.spreadsheet import Sheet
+from exercisegrader.tables import Faults
 from plainmath.validation import did_you_mean
 
 if TYPE_CHECKING:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import datetime
 import re
 from collections.abc import Iterable
@@ -10,13 +11,14 @@ from pathlib import Path
 
 from exercisegrader import GradingError, lms, tables
 from exercisegrader.lms import own
+from exercisegrader.tables import Faults
 
 #: What an id may be: it is the name of a folder on any system, and part of a web address.
 POSSIBLE_ID = re.compile(
     r"(?!(?i:con|prn|aux|nul|com\d|lpt\d)(?:\.|$))[A-Za-z0-9][A-Za-z0-9._@-]{0,99}(?<!\.)", re.ASCII
 )
-#: So many faults of a roster are told.
-MOST_FAULTS = 20
+#: A time as Moodle writes it, in English and in the English of the United States.
+_LONG_FORMS = ("%A, %d %B %Y, %I:%M %p", "%A, %B %d, %Y, %I:%M %p")
 
 
 @dataclass(frozen=True)
@@ -67,14 +69,14 @@ def read_roster(path: str | Path) -> tuple[Student, ...]:
     """The students of a roster, in its order: a file of comma-, semicolon- or tab-separated values.
 
     It is one of your own with the columns id and name (`lms.own` says which others, and by which words), or an export
-    of a system in `lms`, to which a column "handed in" may be added. `tables.read` says in which encodings. Of an
-    export, the id of each student is in the first of the system's columns that is full in this row: in Canvas SIS User
-    ID, SIS Login ID, ID; in Moodle ID number, Username, the number in Identifier, Email address. `lms.remarks` says
-    where ids come from different columns.
+    of a system in `lms`, to which a column "handed in" may be added; both in UTF-8. Of an export, the id of each
+    student is in the first of the system's columns that is full in this row: in Canvas SIS User ID, SIS Login ID, ID;
+    in Moodle ID number, Username, the number in Identifier, Email address. `lms.remarks` says where ids come from
+    different columns.
 
-    Raises GradingError with all that is wrong, a line for each fault, at most MOST_FAULTS: a file that is missing or no
-    text, an unknown header, a roster without students; an id that is missing, impossible or not unique, a row with more
-    cells than the header, a time that cannot be read.
+    Raises GradingError with all that is wrong, a line for each fault: a file that is missing or no text, an unknown
+    header, a roster without students; an id that is missing, impossible or not unique, a row with more cells than the
+    header, a time that cannot be read.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -83,9 +85,8 @@ def read_roster(path: str | Path) -> tuple[Student, ...]:
     ...     [student.name for student in read_roster(path)]
     ['Jane Doe']
     """
-    path = Path(path)
-    table, system, columns = _recognised(path)
-    students, faults, lines = [], [], {}
+    table, system, columns = _recognised(Path(path))
+    faults, students, lines = Faults(table.path.name, table.faults), [], {}
     for line, row in table.rows:
         cells = {name: " ".join(row[index].split()) for name, index in columns.items()}
         fields = system.student(cells)
@@ -95,13 +96,12 @@ def read_roster(path: str | Path) -> tuple[Student, ...]:
         first = lines.setdefault(student.id.casefold(), line)
         if student.id and first != line:
             wrong.append(f"the id {student.id!r} is already that of line {first}")
-        faults += [f"{path.name}, line {line}: {fault}" for fault in wrong]
+        for says in wrong:
+            faults.add(line, says)
         students.append(student)
-    if faults:
-        more = [f"and {len(faults) - MOST_FAULTS} more"] if len(faults) > MOST_FAULTS else []
-        raise GradingError("\n".join(faults[:MOST_FAULTS] + more))
+    faults.demand_none()
     if not students:
-        raise GradingError(f"{path.name} has a header and no student")
+        raise GradingError(f"{table.path.name} has a header and no student")
     return tuple(students)
 
 
@@ -119,8 +119,6 @@ def _recognised(path):
         if len(found) > 1:
             titles = " and of ".join(one.title for one, _ in found)
             raise GradingError(f"{path.name}, line 1: the header is that of {titles}: expected that of one of them")
-        if found and table.fault:
-            raise GradingError(table.fault)
         if found:
             system, columns = found[0]
             return table, system, {**own.added(table.header), **columns}
@@ -151,15 +149,36 @@ def _student(system, fields, row, table):
             "begins with a letter or a digit, does not end in a dot, has at most 100 characters and is not a name of a "
             "device, as con"
         )
-    if any(cell.strip() for cell in row[len(table.header) :]):
-        wrong.append(f"{len(row)} cells, and the header has {len(table.header)}; put a name with a comma in quotes")
     try:
-        known["handed_in"] = tables.moment(fields.get("handed_in", ""))
+        known["handed_in"] = moment(fields.get("handed_in", ""))
     except ValueError as problem:
         wrong.append(str(problem))
         known["handed_in"] = None
     known["name"] = known.get("name") or known["id"]
     return Student(**known, id_from=id_from, system=system.name, row=row, table=table), wrong
+
+
+def moment(text: str) -> datetime.datetime | None:
+    """Return the time that a text says, to the second, with a zone where it says one; None for no text, or a dash.
+
+    It is of the form of ISO 8601, or of one of Moodle's long forms in English; forms in which day and month could be
+    mistaken are not read. Raises ValueError for any other text.
+
+    >>> moment("Monday, 3 November 2025, 11:59 PM")
+    datetime.datetime(2025, 11, 3, 23, 59)
+    >>> moment("2025-11-03 23:59"), moment("-")
+    (datetime.datetime(2025, 11, 3, 23, 59), None)
+    """
+    text = " ".join(text.split())
+    if text in ("", "-", "–"):
+        return None
+    if re.match(r"\d{4}-\d\d-\d\d[ T]\d", text):
+        with contextlib.suppress(ValueError):
+            return datetime.datetime.fromisoformat(text).replace(microsecond=0)
+    for form in _LONG_FORMS:
+        with contextlib.suppress(ValueError):
+            return datetime.datetime.strptime(text, form)
+    raise ValueError(f"{text!r} is no time: expected one as 2025-11-03 23:59")
 
 
 def _listed(words: Iterable[str]) -> str:

@@ -13,40 +13,11 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from exercisegrader import GradingError
+from exercisegrader import GradingError, tables
+from exercisegrader.tables import BOM, Faults
 from plainmath.validation import did_you_mean
 
-#: So many faults of a file are told.
-MOST_FAULTS = 40
-#: The mark by which a spreadsheet knows UTF-8.
-MARK = "\N{ZERO WIDTH NO-BREAK SPACE}"
 _NUMBER = re.compile(r"[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)")
-
-
-class Faults:
-    """The faults of a file, which are told all at once.
-
-    >>> faults = Faults("marks.csv")
-    >>> faults.add(3, "points are 'two': expected a number")
-    >>> faults.demand_none()
-    Traceback (most recent call last):
-    ...
-    exercisegrader.GradingError: marks.csv, line 3: points are 'two': expected a number
-    """
-
-    def __init__(self, name: str):
-        self.name, self._found = name, []
-
-    def add(self, line: int, says: str) -> None:
-        """Note a fault in a line."""
-        self._found.append(f"{self.name}, line {line}: {says}")
-
-    def demand_none(self) -> None:
-        """Raise GradingError with all of them, each in a line, where there is one."""
-        if self._found:
-            more = len(self._found) - MOST_FAULTS
-            lines = self._found[:MOST_FAULTS] + ([f"{self.name}: {more} more such faults"] if more > 0 else [])
-            raise GradingError("\n".join(lines))
 
 
 @dataclass(frozen=True)
@@ -75,7 +46,7 @@ class Sheet:
         >>> Sheet.new(Path("marks.csv"), ["student", "points"]).text
         '\\ufeffstudent,points\\r\\n'
         """
-        sheet = cls(path, MARK, tuple(columns))
+        sheet = cls(path, BOM, tuple(columns))
         return cls(path, sheet.continued([dict(zip(columns, columns, strict=True))]), tuple(columns))
 
     def continued(self, rows: Iterable[Mapping[str, str]]) -> str:
@@ -89,7 +60,7 @@ class Sheet:
         writer = csv.writer(file, delimiter=self.delimiter, lineterminator=self.newline)
         writer.writerows([row.get(column, "") for column in self.header] for row in rows)
         added = file.getvalue()
-        is_complete = self.text in ("", MARK) or self.text.endswith(("\n", "\r"))
+        is_complete = self.text in ("", BOM) or self.text.endswith(("\n", "\r"))
         return self.text + (self.newline if added and not is_complete else "") + added
 
 
@@ -101,68 +72,29 @@ def read(path: str | Path, columns: Collection[str], optional: Collection[str] =
         columns: those that are needed, in any order; capitals and spaces around a name do not matter.
         optional: others that are known.
     Raises:
-        GradingError: with the line, for a file that cannot be read, is no table, or lacks a column; rows with more
-            cells than the header are told all at once.
+        GradingError: with the line, for a file that cannot be read, is no table, or lacks a column.
     """
-    path = Path(path)
-    text = _text(path)
-    for delimiter in ",;\t":
-        reader = csv.reader(io.StringIO(text.removeprefix(MARK), newline=""), delimiter=delimiter, strict=True)
-        try:
-            header = tuple("_".join(cell.split()).casefold() for cell in next(reader, ()))
-        except csv.Error:
-            continue
+    header: tuple[str, ...] = ()
+    for table in tables.read(path):
+        header = max(header, tuple("_".join(head.split()).casefold() for head in table.header), key=len)
         if {*columns} <= {*header}:
             break
     else:
-        raise GradingError(f"{path.name}, line 1: {_missing(text, columns, optional)}")
-    faults = Faults(path.name)
+        raise GradingError(f"{Path(path).name}, line 1: {_missing(header, columns, optional)}")
+    faults = Faults(table.path.name, table.faults)
     for column in (*columns, *optional):
         if header.count(column) > 1:
             faults.add(1, f"there are {header.count(column)} columns {column!r}: expected one")
-    rows, line = [], reader.line_num + 1
-    try:
-        for row in reader:
-            cells = [cell.strip() for cell in row]
-            if any(cells[len(header) :]):
-                faults.add(
-                    line, f"there are {len(cells)} cells below {len(header)} columns: put 'a{delimiter}b' in quotes"
-                )
-            elif any(cells):
-                cells += [""] * (len(header) - len(cells))
-                rows.append((line, dict(zip(header, cells, strict=False))))
-            line = reader.line_num + 1  # a cell may have several lines
-    except csv.Error as problem:
-        faults.add(reader.line_num, f"no table, {problem}")
     faults.demand_none()
-    ends = re.search("\r\n|\n|\r", text)
-    return Sheet(path, text, header, tuple(rows), delimiter, ends[0] if ends else "\r\n")
+    rows = [(line, dict(zip(header, map(str.strip, cells), strict=True))) for line, cells in table.rows]
+    ends = re.search("\r\n|\n|\r", table.text)
+    return Sheet(table.path, table.text, header, tuple(rows), table.delimiter, ends[0] if ends else "\r\n")
 
 
-def _text(path):
-    try:
-        content = path.read_bytes()
-    except OSError as problem:
-        raise GradingError(f"{path} cannot be read: {problem.strerror}") from None
-    try:
-        text = content.decode("utf-8")
-    except UnicodeDecodeError as problem:
-        line = content.count(b"\n", 0, problem.start) + 1
-        raise GradingError(f"{path.name}, line {line}: no text in UTF-8; save it as CSV UTF-8") from None
-    if "\0" in text:
-        line = text[: text.index("\0")].count("\n") + 1
-        raise GradingError(f"{path.name}, line {line}: no text; save it as CSV UTF-8")
-    return text
-
-
-def _missing(text, columns, optional):
+def _missing(header, columns, optional):
     """A sentence on the first column that is not there."""
-    first = text.removeprefix(MARK).splitlines()[:1] or [""]
-    there = ["_".join(cell.strip(' "').split()).casefold() for cell in re.split("[,;\t]", first[0])]
-    lacking = next((column for column in columns if column not in there), "")
-    if not lacking:
-        return f"no header: expected the columns {', '.join(columns)}"
-    others = [name for name in there if name and name not in (*columns, *optional)]
+    lacking = next(column for column in columns if column not in header)
+    others = [name for name in header if name and name not in (*columns, *optional)]
     meant = did_you_mean(lacking, others, otherwise="")
     also = f" ({meant.removeprefix('did you mean ').rstrip('?')} is none)" if meant and others else ""
     return f"there is no column {lacking!r}{also}: expected the columns {', '.join(columns)}"

@@ -1,25 +1,22 @@
-"""Tables of comma-separated values as learning management systems and spreadsheets write and read them."""
+"""Tables of comma-separated values, as learning management systems and spreadsheets write and read them."""
 
 from __future__ import annotations
 
-import contextlib
 import csv
-import datetime
 import io
 import re
 import unicodedata
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from exercisegrader import GradingError
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 DELIMITERS = ",;\t"
 #: The mark at the beginning of a file by which Excel knows UTF-8.
 BOM = "\ufeff"
+#: So many faults of a file are told.
+MOST_FAULTS = 40
 #: What a spreadsheet takes for the beginning of a formula; a semicolon begins a cell where the comma is decimal.
 _FORMULA = re.compile(r"((?:^|;)\s*)(?=[=+\-@＝＋－＠])")
 _HARMLESS = re.compile(r"-|[+-]?\d+(?:[.,]\d+)?")
@@ -35,8 +32,31 @@ def letters(name: str) -> str:
     return "".join(sign for sign in plain if sign.isalnum())
 
 
-#: A time as Moodle writes it, in English and in the English of the United States.
-_LONG_FORMS = ("%A, %d %B %Y, %I:%M %p", "%A, %B %d, %Y, %I:%M %p")
+class Faults:
+    """The faults of a file, which are told all at once.
+
+    >>> faults = Faults("marks.csv")
+    >>> faults.add(3, "points are 'two': expected a number")
+    >>> faults.demand_none()
+    Traceback (most recent call last):
+    ...
+    exercisegrader.GradingError: marks.csv, line 3: points are 'two': expected a number
+    """
+
+    def __init__(self, name: str, found: Iterable[tuple[int, str]] = ()):
+        """Take the name of the file, and faults that are known already."""
+        self.name, self._found = name, list(found)
+
+    def add(self, line: int, says: str) -> None:
+        """Note a fault in a line."""
+        self._found.append((line, says))
+
+    def demand_none(self) -> None:
+        """Raise GradingError with all of them, each in a line, where there is one."""
+        if self._found:
+            more = len(self._found) - MOST_FAULTS
+            told = [f"{self.name}, line {line}: {says}" for line, says in self._found[:MOST_FAULTS]]
+            raise GradingError("\n".join(told + ([f"{self.name}: {more} more such faults"] if more > 0 else [])))
 
 
 @dataclass(frozen=True)
@@ -44,126 +64,68 @@ class Table:
     """The rows of a file, as it has them.
 
     Attributes:
-        file: its name.
-        header: the heads of the columns.
+        path: of the file.
+        text: all of it, as it is.
+        header: the heads of the columns, without spaces around them.
         rows: pairs of the line on which a row begins, counted from one, and its cells; blank rows are left out.
         delimiter: between the cells.
-        bom: whether the file begins with the mark by which Excel knows UTF-8.
-        remarks: sentences on how it was read.
-        fault: why the rows are no table with this delimiter, in a sentence; empty where they are one.
+        faults: pairs of a line and why it is no row of this table.
     """
 
-    file: str
+    path: Path
+    text: str
     header: tuple[str, ...]
     rows: tuple[tuple[int, tuple[str, ...]], ...]
     delimiter: str = ","
-    bom: bool = False
-    remarks: tuple[str, ...] = ()
-    fault: str = ""
+    faults: tuple[tuple[int, str], ...] = ()
+
+    @property
+    def bom(self) -> bool:
+        """Whether the file begins with the mark by which Excel knows UTF-8."""
+        return self.text.startswith(BOM)
 
 
-def read(path: Path) -> Iterator[Table]:
+def read(path: str | Path) -> Iterator[Table]:
     """Yield a table for each delimiter with which the file has a header, the likeliest first.
 
-    A byte-order mark decides the encoding, UTF-8 or UTF-16; without one it is UTF-8, and where that cannot be,
-    Windows-1252, in which Excel saves, if all letters then are printable, which a remark says. A first line "sep=;", as
-    Excel reads it, is skipped.
-
-    Raises GradingError for a file that cannot be read, or is no text.
+    Raises GradingError for a file that cannot be read, or is no text in UTF-8.
     """
-    text, bom, remarks = _text(path)
-    above = 0
-    if said := re.match(r"sep=(.)\r?\n", text):
-        text, above = text[said.end() :], 1
-    for delimiter in said[1] if said else DELIMITERS:
-        reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
+    path = Path(path)
+    text = _text(path)
+    for delimiter in DELIMITERS:
+        reader = csv.reader(io.StringIO(text.removeprefix(BOM), newline=""), delimiter=delimiter, strict=True)
         try:
-            header = tuple(_plain(cell) for cell in next(reader, []))
+            header = tuple(" ".join(cell.split()) for cell in next(reader, []))
         except csv.Error:
             continue
-        rows, fault = (), ""
+        rows, faults, line = [], [], reader.line_num + 1
         try:
-            rows = tuple(_rows(reader, len(header), above))
-        except csv.Error as why:
-            fault = f"{path.name}, line {reader.line_num + above}: no table, {why}"
-        yield Table(path.name, header, rows, delimiter, bom, remarks, fault)
-
-
-def _rows(reader, width, above):
-    line = reader.line_num + 1
-    for row in reader:
-        if any(cell.strip() for cell in row):
-            yield line + above, (*row, *[""] * (width - len(row)))
-        line = reader.line_num + 1  # a cell may have several lines: the next row begins below the last of them
+            for row in reader:
+                if any(cell.strip() for cell in row[len(header) :]):
+                    faults.append(
+                        (line, f"there are {len(row)} cells below {len(header)} columns: put 'a{delimiter}b' in quotes")
+                    )
+                elif any(cell.strip() for cell in row):
+                    rows.append((line, (*row, *[""] * len(header))[: len(header)]))
+                line = reader.line_num + 1  # a cell may have several lines
+        except csv.Error as problem:
+            faults.append((reader.line_num, f"no table, {problem}"))
+        yield Table(path, text, header, tuple(rows), delimiter, tuple(faults))
 
 
 def _text(path):
-    """The text of a file, whether it has the mark of UTF-8, and remarks."""
     try:
         content = path.read_bytes()
     except OSError as problem:
-        raise GradingError(f"the roster {path} cannot be read: {problem.strerror}") from None
-    bom, remarks = content.startswith(b"\xef\xbb\xbf"), ()
-    wide = content.startswith((b"\xff\xfe", b"\xfe\xff"))
+        raise GradingError(f"{path} cannot be read: {problem.strerror}") from None
     try:
-        text = content.decode("utf-16" if wide else "utf-8-sig")
+        text, damaged = content.decode("utf-8"), content.find(b"\0")
     except UnicodeDecodeError as problem:
-        line = content.count(b"\n", 0, problem.start) + 1
-        text = "" if wide or bom else _windows(content)
-        if not text:
-            raise GradingError(
-                f"{path.name}, line {line}: no text in {'UTF-16' if wide else 'UTF-8'}; save the roster as CSV in UTF-8"
-            ) from None
-        sign = next(sign for sign in text if not sign.isascii())
-        word = next(word for word in re.findall(r"\w+|\W", text) if sign in word)
-        remarks = (
-            f"{path.name} is no UTF-8 and was read as Windows-1252, as Excel saves it (line {line}: {word!r}); save it "
-            "as CSV in UTF-8 where that is wrong",
-        )
-    if "\0" in text:
-        line = text[: text.index("\0")].count("\n") + 1
-        raise GradingError(f"{path.name}, line {line}: no text; save it as CSV")
-    return text, bom, remarks
-
-
-def _windows(content):
-    """The text in Windows-1252; empty where that is no text either."""
-    try:
-        text = content.decode("cp1252")
-    except UnicodeDecodeError:
-        return ""
-    strange = [sign for sign in text if not sign.isascii()]
-    if re.search(r"[ÂÃ][^\x00-\x7f]", text):  # letters of UTF-8, some of which are damaged
-        return ""
-    return text if all(sign.isalpha() or sign in "’‘–" for sign in strange) else ""
-
-
-def _plain(cell):
-    """A cell without spaces around it, and with one kind of space in it."""
-    return " ".join(cell.split())
-
-
-def moment(text: str) -> datetime.datetime | None:
-    """Return the time that a text says, to the second, with a zone where it says one; None for no text, or a dash.
-
-    It is of the form of ISO 8601, or of one of Moodle's long forms in English; forms in which day and month could be
-    mistaken are not read. Raises ValueError for any other text.
-
-    >>> moment("Monday, 3 November 2025, 11:59 PM")
-    datetime.datetime(2025, 11, 3, 23, 59)
-    >>> moment("2025-11-03 23:59"), moment("-")
-    (datetime.datetime(2025, 11, 3, 23, 59), None)
-    """
-    text = _plain(text)
-    if text in ("", "-", "–"):
-        return None
-    if re.match(r"\d{4}-\d\d-\d\d[ T]\d", text):
-        with contextlib.suppress(ValueError):
-            return datetime.datetime.fromisoformat(text).replace(microsecond=0)
-    for form in _LONG_FORMS:
-        with contextlib.suppress(ValueError):
-            return datetime.datetime.strptime(text, form)
-    raise ValueError(f"{text!r} is no time: expected one as 2025-11-03 23:59")
+        damaged = problem.start
+    if damaged >= 0:
+        line = content.count(b"\n", 0, damaged) + 1
+        raise GradingError(f"{path.name}, line {line}: no text in UTF-8; save it as CSV UTF-8")
+    return text
 
 
 def guarded(text: str) -> str:

@@ -220,14 +220,14 @@ def of(students: Iterable[Student]) -> System | None:
 
 
 def remarks(students: Sequence[Student], title: str = "", marks: Iterable[Marked] = ()) -> tuple[str, ...]:
-    """Return what an instructor should know of a roster, in sentences: how it was read, and where ids come from.
+    """Return what an instructor should know of a roster, in sentences, as where ids come from different columns.
 
     Arguments:
         students: the roster.
         title: of an assignment; with marks, also what matters before its grades go to the system.
         marks: of the assignment.
     """
-    said = list(dict.fromkeys(remark for student in students if student.table for remark in student.table.remarks))
+    said: list[str] = []
     by_column: dict[str, list[str]] = defaultdict(list)
     for student in students:
         by_column[student.id_from].append(student.id)
