@@ -10,13 +10,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from draws import draws
-from loopbook.deadtime import collocation
-from loopbook.deadtime.response import (
-    ChannelModel,
-    Response,
-    response_to_samples,
-    step_family,
-)
+from loopbook.deadtime import ChannelModel, Response, collocation
+from loopbook.deadtime.family import step_family
+from loopbook.deadtime.superposition import response_to_samples
 
 
 def model(A=(), B1=(), B2=(), C1=(), C2=(), D11=0.0, D12=(), D21=(), D22=(), delays=()):

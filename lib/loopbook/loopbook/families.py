@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loopbook.deadtime.response import ChannelModel, step_family
+from loopbook.deadtime.channels import ChannelModel
+from loopbook.deadtime.family import step_family
 from loopbook.ise import ise_family
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.quasipolynomials.symbols import broadcast_values, with_values

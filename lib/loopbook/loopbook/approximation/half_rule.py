@@ -4,23 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import sympy
 
-from loopbook.approximation.model import SOPDT, factors, sort_lags
+from loopbook.approximation.model import SOPDT, Step, factors, sort_lags
 from loopbook.transfer import dead_time
 from loopbook.types import Number, TransferFunctionLike
 from plainmath.expressions import s
 from plainmath.validation import exact_not_negative, exact_positive, whole
-
-
-class Step(NamedTuple):
-    """One application of a rule: the name of the rule, a part of a transfer function, and what stands for it."""
-
-    rule: str
-    before: sympy.Expr
-    after: sympy.Expr
 
 
 def half_rule(

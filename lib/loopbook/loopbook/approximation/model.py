@@ -15,8 +15,13 @@ from loopbook.types import Number, TransferFunctionLike
 from plainmath.expressions import equalities, exact, s, written
 from plainmath.validation import exact_nonzero, exact_not_negative
 
-if TYPE_CHECKING:
-    from loopbook.approximation.half_rule import Step
+
+class Step(NamedTuple):
+    """One application of a rule: the name of the rule, a part of a transfer function, and what stands for it."""
+
+    rule: str
+    before: sympy.Expr
+    after: sympy.Expr
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,9 @@ A system is a fraction of sums of polynomials in `s`, each with a dead time ``ex
 from that, without a Pade approximation or a time step: `System` for block diagrams, `Loop` for a process under control.
 """
 
+from loopbook.deadtime.channels import ChannelModel
 from loopbook.deadtime.loop import Loop, LoopResponse
-from loopbook.deadtime.response import ChannelModel, Response
+from loopbook.deadtime.response import Response
 from loopbook.deadtime.system import System, closed_loop
 from loopbook.quasipolynomials import normal_form
 from loopbook.transfer import transfer_function

@@ -19,7 +19,7 @@ from numpy.polynomial import legendre
 from loopbook.deadtime.echoes import MOST_ECHOES, UNSEEN, Echoes
 
 if TYPE_CHECKING:
-    from loopbook.deadtime.response import ChannelModel
+    from loopbook.deadtime.channels import ChannelModel
 
 NODES = 20  # where a segment is known, so that it is a polynomial of degree 19
 GOAL = 1e-13  # the share of a signal that its last two coefficients may have

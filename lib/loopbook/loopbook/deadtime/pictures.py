@@ -417,7 +417,7 @@ def step_plot(
     loops = [hasattr(x, "open_fraction") for x in systems.values()]
     if any(loops) and not all(loops):
         raise ValueError("a plot shows loops or systems: expected no systems beside loops")
-    outputs = {label: _system(x.servo if any(loops) else x) for label, x in systems.items()}
+    outputs = {label: x.servo if any(loops) else x for label, x in systems.items()}
     end = positive("the end", end) if end is not None else max(x.horizon(info) for x in outputs.values())
     controls = {label: x.setpoint_to_control for label, x in systems.items()} if any(loops) else {}
     shown = [*outputs.values(), *controls.values()]
@@ -491,12 +491,6 @@ def _mark_info(axes, line, info, settling, rise, unit) -> list[str]:
     for words, point, places, colour in labels:
         free_place(axes, words, point, places, color=colour)
     return found
-
-
-def _system(value):
-    from loopbook.deadtime.system import System
-
-    return value if isinstance(value, System) else System(value)
 
 
 def _times(responses, end):

@@ -1,46 +1,23 @@
-"""Responses in time of a state-space model with delay channels."""
+"""The step response of a state-space model with delay channels, as a function of time."""
 
 from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import legendre
 
+from loopbook.deadtime.channels import ChannelModel
 from loopbook.deadtime.collocation import NODES, follow
 from loopbook.deadtime.echoes import ROUNDED
-from loopbook.deadtime.family import shared_cells
-from loopbook.deadtime.superposition import superpose
-from plainmath.validation import increasing, not_negative, one_of, real_numbers, times_from_zero
+from plainmath.validation import not_negative, times_from_zero
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-__all__ = ["ChannelModel", "Response", "response_to_samples", "step_family"]
-
-HOLDS = ("zero order", "first order")
-WORTH = 12  # models of the same dead times that are taken together
-
-
-class ChannelModel(NamedTuple):
-    """A state-space model with delay channels: what `System.state_space` returns.
-
-    x' = A x + B1 u + B2 w,  y = C1 x + D11 u + D12 w,  z = C2 x + D21 u + D22 w,  and w_k(t) = z_k(t - delays[k]).
-    The arrays are two-dimensional; `delays` is a list of fractions.
-    """
-
-    A: np.ndarray
-    B1: np.ndarray
-    B2: np.ndarray
-    C1: np.ndarray
-    C2: np.ndarray
-    D11: np.ndarray
-    D12: np.ndarray
-    D21: np.ndarray
-    D22: np.ndarray
-    delays: list[Fraction]
+__all__ = ["Response"]
 
 
 class Response:
@@ -117,98 +94,3 @@ class Response:
     def coefficients(self) -> np.ndarray:
         """The coefficients of the Legendre polynomials, an array with a row for each segment."""
         return self._coefficients
-
-
-def response_to_samples(model: ChannelModel, times: ArrayLike, u: ArrayLike, hold: str = "zero order") -> np.ndarray:
-    """Return the output at the times of samples of the input, in a time that grows with their number.
-
-    Arguments:
-        model: a `ChannelModel`, at rest before the first of the times; the first sample is a step from 0.
-        times: an array of times that increase, evenly or not.
-        u: the samples, one for each of the times.
-        hold: "zero order", each value is kept until the next sample; or "first order", they are joined by straight
-            lines.
-    Returns:
-        An array; the error is about 1e-13 of the largest value.
-    Raises:
-        ValueError: for arrays that do not fit, another hold, as `Response`; or for uneven times where more than eight
-            million pairs of samples had to be taken one by one, as with a step response that jumps hundreds of times.
-
-    >>> import numpy as np
-    >>> one = np.ones((1, 1))
-    >>> none = np.zeros((1, 0))
-    >>> integrator = ChannelModel(0 * one, one, none, one, none.T, 0 * one, none, none.T, none.T @ none, [])
-    >>> response_to_samples(integrator, [0, 1, 3], [1, 2, 0])[1:].round(6)
-    array([1., 5.])
-    >>> response_to_samples(integrator, [0, 1, 3], [1, 2, 0], hold="first order")[1:].round(6)
-    array([1.5, 3.5])
-    """
-    one_of("the hold", hold, HOLDS)
-    times, u = increasing("times", times), real_numbers("values of u", u)
-    if u.shape != times.shape:
-        raise ValueError(f"u has {u.size} values for {times.size} times")
-    since = times - times[0]
-    response = Response(model, since[-1])
-    if len(times) == 1:
-        return u * response(since)
-    late = float(ROUNDED) * 8 * abs(times).max()
-    return superpose(response, since, u, hold == "first order", late)
-
-
-def step_family(models: ChannelModel, times: ArrayLike) -> np.ndarray:
-    """Return the step responses of many models of the same shape at the same times.
-
-    Arguments:
-        models: a `ChannelModel` whose arrays have one more axis, the first, for the models; its `delays` is an array of
-            numbers, a row for each model.
-        times: an array of times, not negative.
-    Returns:
-        An array with a row for each model, in it a value for each of the times, at a jump the one after it. The error
-        is below 1e-10 of the largest value up to then. Models with the same dead times are taken together, what is too
-        stiff or too long for that, one by one.
-    Raises:
-        ValueError: for arrays that do not fit, or as `Response`.
-
-    >>> import numpy as np
-    >>> gains = np.array([1.0, 2.0]).reshape(2, 1, 1)
-    >>> one, none, zero = np.ones((2, 1, 1)), np.zeros((2, 1, 0)), np.zeros((2, 1, 1))
-    >>> loops = ChannelModel(zero, one, -gains, gains, one, zero, zero, zero, zero, np.ones((2, 1)))
-    >>> step_family(loops, [0.5, 1.5]).round(6)   # of gain/(s + gain*exp(-s))
-    array([[0.5  , 1.375],
-           [1.   , 2.5  ]])
-    """
-    times = times_from_zero(times)
-    delays = real_numbers("delays", models.delays)
-    parts = zip(ChannelModel._fields, models[:-1], strict=False)
-    models = ChannelModel(*(real_numbers(name, part) for name, part in parts), delays)
-    shape = _family_shape(models)
-    count = shape[0]
-    flat = times.ravel()
-    values = np.empty((count, flat.size))
-    rows, member = np.unique(delays, axis=0, return_inverse=True)
-    member = member.ravel()
-    end = flat.max(initial=0.0)
-    for number, row in enumerate(rows):
-        exact = [Fraction(repr(delay)) for delay in row.tolist()]  # as it is written
-        if any(delay <= 0 for delay in exact):
-            raise ValueError(f"the delays of the channels are {row.tolist()}: expected positive ones")
-        here = np.flatnonzero(member == number)
-        group = ChannelModel(*(array[here] for array in models[:-1]), exact)
-        found = np.full((len(here), flat.size), math.nan)
-        if len(here) >= WORTH:
-            found = shared_cells(group, exact, flat)
-        for k in np.flatnonzero(np.isnan(found).any(axis=1)):
-            found[k] = Response(ChannelModel(*(array[k] for array in group[:-1]), exact), end)(flat)
-        values[here] = found
-    return values.reshape(count, *times.shape)
-
-
-def _family_shape(models):
-    """The numbers of models, states and channels, or ValueError where arrays do not fit."""
-    shapes = [part.shape for part in models]
-    if models.A.ndim == 3 and models.delays.ndim == 2:
-        (count, n, _), q = models.A.shape, models.delays.shape[1]
-        expected = [(n, n), (n, 1), (n, q), (1, n), (q, n), (1, 1), (1, q), (q, 1), (q, q), (q,)]
-        if shapes == [(count, *shape) for shape in expected]:
-            return count, n, q
-    raise ValueError(f"the arrays of the models have the shapes {shapes}: expected an axis of models before the others")

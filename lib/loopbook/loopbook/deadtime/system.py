@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 import sympy
 
+from loopbook.deadtime.channels import ChannelModel
 from loopbook.deadtime.curves import natural_range
-from loopbook.deadtime.response import ChannelModel, Response, response_to_samples
+from loopbook.deadtime.response import Response
 from loopbook.deadtime.step_info import StepInfo, first_time_at, settled_response, step_info
+from loopbook.deadtime.superposition import response_to_samples
 from loopbook.laplace import transform
 from loopbook.quasipolynomials import DelayFraction, read
 from loopbook.quasipolynomials.fraction import Quasipolynomial, lowest_term, plus

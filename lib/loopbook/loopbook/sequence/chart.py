@@ -45,7 +45,8 @@ class Chart:
         step: time between two scans; None for every sample of the run.
         steps, initial, transitions, final: as given.
         active: the names of the active steps; none before the first scan.
-        markings: all sets of steps that can be active together, as `reachable_markings` finds them.
+        markings: all sets of steps that can be active together, with the conditions taken as free:
+            ``{marking: [(transition, next marking)]}``, frozen sets of steps, the initial one first.
 
     Arguments:
         inputs: names of the signals that the conditions use, a tuple or a text with blanks.
@@ -102,11 +103,11 @@ class Chart:
             if not isinstance(value, bool):
                 number(f"the output {name}", value, "a number, or TRUE or FALSE")
         self.conditions = [Formula(x.condition, f"the condition of {x.name}").condition() for x in self.transitions]
-        checks.connections(self)
+        checks.connections(self.steps, self.initial, self.final, self.transitions, self.conditions)
         for formula in self.conditions:
             self._known(formula)
         self.actions = {step: self._read(step, actions) for step, actions in self.steps.items()}
-        self.markings = checks.situations(self)
+        self.markings = checks.situations(self.steps, self.initial, self.final, self.transitions)
         used = [*self.conditions, *(formula for actions in self.actions.values() for _, formula in actions)]
         # the flags and times of steps that a formula needs
         self._flags = {name: name.split(".") for formula in used for name in formula.names if "." in name}

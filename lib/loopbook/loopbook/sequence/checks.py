@@ -8,17 +8,27 @@ clearing several at once, because these have no step in common.
 from __future__ import annotations
 
 import keyword
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from loopbook.types import Number
 from plainmath.validation import positive
 
 if TYPE_CHECKING:
-    from loopbook.sequence.chart import Chart
+    from loopbook.sequence.formulas import Formula
     from loopbook.sequence.transitions import Transition
 
-__all__ = ["MOST_MARKINGS", "reachable_markings"]
+__all__ = [
+    "MOST_MARKINGS",
+    "connections",
+    "initial_step",
+    "kinds",
+    "listed",
+    "names",
+    "reachable_markings",
+    "several",
+    "situations",
+]
 
 Marking: TypeAlias = frozenset[str]
 Markings: TypeAlias = dict[Marking, list[tuple["Transition", Marking]]]
@@ -78,24 +88,30 @@ def initial_step(initial: str | Sequence[str], steps: Mapping[str, Any]) -> str:
     return found[0]
 
 
-def connections(chart: Chart) -> None:
+def connections(
+    steps: Collection[str],
+    initial: str,
+    final: Collection[str],
+    transitions: Sequence[Transition],
+    conditions: Sequence[Formula],
+) -> None:
     """Check that every step can be left and come into, as far as single transitions show it."""
-    for transition in chart.transitions:
+    for transition in transitions:
         for step in (*transition.sources, *transition.targets):
-            if step not in chart.steps:
-                raise ValueError(f"{transition.name} has the unknown step {step}: the chart has {listed(chart.steps)}")
-    for step in chart.final:
-        if step not in chart.steps:
-            raise ValueError(f"the final step {step} is not a step of the chart: it has {listed(chart.steps)}")
-        if leaving := [x for x in chart.transitions if step in x.sources]:
+            if step not in steps:
+                raise ValueError(f"{transition.name} has the unknown step {step}: the chart has {listed(steps)}")
+    for step in final:
+        if step not in steps:
+            raise ValueError(f"the final step {step} is not a step of the chart: it has {listed(steps)}")
+        if leaving := [x for x in transitions if step in x.sources]:
             raise ValueError(f"{step} is a final step, but {leaving[0].name} leaves it")
-    for step in chart.steps:
-        if step != chart.initial and not any(step in transition.targets for transition in chart.transitions):
+    for step in steps:
+        if step != initial and not any(step in transition.targets for transition in transitions):
             raise ValueError(f"the step {step} cannot be reached: no transition leads to it")
-        if step not in chart.final and not any(step in transition.sources for transition in chart.transitions):
+        if step not in final and not any(step in transition.sources for transition in transitions):
             raise ValueError(f"no transition leaves the step {step}: declare it final, or add one")
     earlier = []
-    for transition, condition in zip(chart.transitions, chart.conditions, strict=True):
+    for transition, condition in zip(transitions, conditions, strict=True):
         for before, other in earlier:
             if set(before.sources) <= set(transition.sources) and (other.constant or other.text == condition.text):
                 why = "is unconditional" if other.constant else f"has the same condition, {other.text}"
@@ -105,22 +121,20 @@ def connections(chart: Chart) -> None:
         earlier.append((transition, condition))
 
 
-def reachable_markings(chart: Chart) -> Markings:
+def reachable_markings(initial: str, transitions: Sequence[Transition]) -> Markings:
     """Find all sets of steps that can be active together, with the conditions taken as free.
 
-    Arguments:
-        chart: a `Chart`.
     Returns:
         ``{marking: [(transition, next marking)]}``, the markings as frozen sets of steps; the initial one is the first.
     Raises:
         ValueError: where a step would be activated while it is active, as when a jump leaves simultaneous branches, or
             for more than 20 000 markings.
     """
-    start = frozenset([chart.initial])
+    start = frozenset([initial])
     found, waiting = {start: None}, [start]
     for marking in waiting:
         ways = []
-        for transition in chart.transitions:
+        for transition in transitions:
             if not marking.issuperset(transition.sources):
                 continue
             others = marking.difference(transition.sources)
@@ -140,23 +154,25 @@ def reachable_markings(chart: Chart) -> Markings:
     return found
 
 
-def situations(chart: Chart) -> Markings:
+def situations(
+    steps: Collection[str], initial: str, final: Collection[str], transitions: Sequence[Transition]
+) -> Markings:
     """Check that every step and transition can have its turn, and that the chart stops in final steps alone."""
-    markings = reachable_markings(chart)
+    markings = reachable_markings(initial, transitions)
     enabled = {transition for ways in markings.values() for transition, _ in ways}
-    for transition in chart.transitions:  # the cause before its consequence, a step that is never reached
+    for transition in transitions:  # the cause before its consequence, a step that is never reached
         reached = all(any(step in marking for marking in markings) for step in transition.sources)
         if transition not in enabled and reached:
-            steps = listed(transition.sources, "and")
-            raise ValueError(f"{transition.name} is never cleared: {steps} are never active together")
-    for step in chart.steps:
+            together = listed(transition.sources, "and")
+            raise ValueError(f"{transition.name} is never cleared: {together} are never active together")
+    for step in steps:
         if not any(step in marking for marking in markings):
-            raise ValueError(f"the step {step} cannot be reached from the initial step {chart.initial}")
+            raise ValueError(f"the step {step} cannot be reached from the initial step {initial}")
     for last in closing(markings):
         active = frozenset().union(*last)
         left = {step for marking in last for transition, _ in markings[marking] for step in transition.sources}
-        if waiting := [step for step in chart.steps if step in active - left and step not in chart.final]:
-            together = listed([step for step in chart.steps if step in last[0]], "and")
+        if waiting := [step for step in steps if step in active - left and step not in final]:
+            together = listed([step for step in steps if step in last[0]], "and")
             how = "go on" if any(markings[marking] for marking in last) else "stop"
             raise ValueError(
                 f"the chart can {how} for good with {together} active: no transition leaves {waiting[0]} then"
