@@ -199,6 +199,40 @@ def test_a_predictor_without_filter():
     assert abs(1 / (1 + L(1j * w))).max() <= found.Ms * (1 + 1e-9)
 
 
+def smith(k, wrong):
+    """The loop of a Smith predictor without filter, with a wrong dead time: three terms with the highest power."""
+    controller, model = PID(R(k), Ti=4, Td=1).expr, 1 / (3 * s + 1)
+    return controller / (1 + controller * model * (1 - late("0.5"))) * model * late(wrong)
+
+
+def test_several_dead_times_in_the_highest_powers():
+    """Sizes add up to a bound, which leaves open what comes close to it."""
+    loop = 3 * late("1.1") / (s + 3) * (1 + s / 30) + late("0.4") * s / (20 * (s + 1))
+    found = margins(loop)
+    assert ultimate(loop)[0] == pytest.approx(found.gain_margin, rel=1e-12)
+    assert found.gain_margin < 1 / (R(1, 10) + R(1, 20))
+    w = np.linspace(1e-3, 500, 500_001)
+    assert abs(1 / (1 + read(loop)(1j * w))).max() == pytest.approx(found.Ms, rel=1e-6)
+    wrong = smith("0.3", "0.6")
+    assert delay_margin(wrong) > 0
+    with pytest.raises(ValueError, match=r"several dead times; the gain margin is between .* and 10\.12.*; Ms is 1\.1"):
+        margins(wrong)
+    with pytest.raises(ValueError, match="still stable, and what is beyond the frequency"):
+        ultimate(wrong)
+
+
+def test_gains_at_ever_higher_frequencies_with_one_dead_time():
+    """Both highest powers return with it, so that abs(L) runs between two values for ever."""
+    loops = [(4 + R(4, 5) * late(1)) * (s + 1) / ((2 + k * late(1)) * (5 * s + 1)) for k in (R(3, 5), -R(3, 5))]
+    w = np.linspace(1e-3, 500, 500_001)
+    for loop in loops:
+        found = margins(loop / 2)
+        assert found.gain_margin == math.inf
+        assert found.delay_margin > 0
+        assert abs(1 / (1 + read(loop / 2)(1j * w))).max() == pytest.approx(found.Ms, rel=1e-6)
+        assert delay_margin(4 * loop) == 0
+
+
 # ------------------------------------------------------------------------------------------------ sharp resonances
 
 

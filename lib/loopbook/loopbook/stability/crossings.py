@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loopbook.stability.enclosures import Enclosure, divided, enclosed, geometric, walk
+from loopbook.stability.enclosures import Enclosure, divided, divided_about, enclosed, geometric, walk
 from loopbook.stability.loops import FEW
-from loopbook.stability.peaks import to_the_top, with_peaks
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -88,10 +87,11 @@ class Question:
     """What is asked on intervals.
 
     `judge` says which are undecided, and for which of them rounding is a reason; `take` gets those about which all
-    questions are decided.
+    questions are decided. About `place`, a frequency for each loop, intervals are divided more finely.
     """
 
     name = ""
+    place: np.ndarray | None = None
 
     def judge(self, view: View) -> tuple[np.ndarray, np.ndarray]:
         raise NotImplementedError
@@ -146,14 +146,14 @@ class SizeOne(Question):
 class Real(Question):
     """Where L is real and negative, with a gain in between `lowest` and `highest`, each an array over the loops.
 
-    The crossings nearest to the gain `pivot` are wanted, on either side, and those that are found draw the limits
-    together; with `all_gains` all are wanted, and they do not.
+    The crossings nearest to the gain 1 are wanted, on either side, and those that are found draw the limits together;
+    with `all_gains` all are wanted, and they do not.
     """
 
     name = "whether poles cross the imaginary axis"
 
-    def __init__(self, loops: Loops, all_gains: bool = False, pivot: float = 1.0):
-        self.loops, self.all_gains, self.pivot = loops, all_gains, pivot
+    def __init__(self, loops: Loops, all_gains: bool = False):
+        self.loops, self.all_gains = loops, all_gains
         _ = loops.start  # which finds the loops that are always real
         every, one = np.arange(loops.count), np.ones(loops.count)
         A, B = (abs(x[0]) for x in loops.values(every, one))
@@ -168,7 +168,7 @@ class Real(Question):
         self.gains = np.concatenate([self.gains, gains])
         self.frequencies = np.concatenate([self.frequencies, frequencies])
         if not self.all_gains:
-            above, below = gains > self.pivot, gains < self.pivot
+            above, below = gains > 1, gains < 1
             np.minimum.at(self.highest, points[above], gains[above])
             np.maximum.at(self.lowest, points[below], gains[below])
 
@@ -237,44 +237,6 @@ def _misses(A: Enclosure, B: Enclosure, low, high):
     with np.errstate(divide="ignore", invalid="ignore"):
         along = np.clip(np.nan_to_num((-start * step.conj()).real / abs(step) ** 2), 0, 1)
     return abs(start + along * step) > np.maximum(first.spread, last.spread)
-
-
-class Positive(Question):
-    """Whether abs(B/C) stays below `most`, one for each loop, which is the largest that was seen, and a little more."""
-
-    name = "the largest sensitivity"
-
-    def __init__(self, loops: Loops, share: float = 1e-9):
-        self.loops, self.share = loops, share
-        self.most, self.place = np.zeros(loops.count), np.zeros(loops.count)
-        self.width = 0.0  # of the last one whose top was found
-
-    def see(self, points: np.ndarray, sizes: np.ndarray, frequencies: np.ndarray) -> None:
-        """Remember values, where they are higher than what was seen."""
-        order = np.argsort(sizes)
-        points, sizes, frequencies = points[order], sizes[order], frequencies[order]
-        higher = sizes > self.most[points]
-        self.most[points[higher]] = sizes[higher]
-        self.place[points[higher]] = frequencies[higher]
-
-    def judge(self, view: View) -> tuple[np.ndarray, np.ndarray]:
-        which = view.which
-        before = self.most.copy()
-        B, C, early = view.B, view.C, view.early
-        known = slice(None) if view.precise else ~C.is_noisy
-        with np.errstate(divide="ignore", invalid="ignore"):
-            self.see(which[known], (B.sizes[0] / C.sizes[0])[known], view.c[known])
-        if (self.most > before * (1 + 1e-12)).any():
-            to_the_top(self.loops, self)
-        most = self.most[which] * (1 + self.share)
-        undecided = (most * (B.least - early.most) <= B.most) & (most * C.least <= B.most)
-        noisy = np.zeros(len(which), dtype=bool)
-        if (some := np.flatnonzero(undecided)).size:
-            B, C, most = B[some], C[some], most[some]
-            above = (most * most) * (C @ C).real - (B @ B).real
-            undecided[some] = ~above.is_positive
-            noisy[some] = above.is_noisy | C.is_noisy | (C.noise > 1e-10 * C.sizes[0])
-        return undecided, noisy
 
 
 # ---- zeros
@@ -400,17 +362,15 @@ def asked(
             question.take(view, ~undecided)
         return undecided, noisy, loops.longest[which]
 
-    peak = next((question for question in questions if isinstance(question, Positive)), None)
+    peaked = next((question for question in questions if question.place is not None), None)
 
     def divide(which, a, b, pieces):
-        if peak is None:
+        if peaked is None:
             return divided(which, a, b, pieces)
-        about = (a < peak.place[which]) & (peak.place[which] < b)
+        about = (a < peaked.place[which]) & (peaked.place[which] < b)
         others = divided(*(x[~about] for x in (which, a, b, pieces)))
-        return tuple(
-            np.concatenate(x)
-            for x in zip(others, with_peaks(*(x[about] for x in (which, a, b)), peak.place), strict=True)
-        )
+        near = divided_about(peaked.place, *(x[about] for x in (which, a, b)))
+        return tuple(np.concatenate(x) for x in zip(others, near, strict=True))
 
     names = " and ".join(question.name for question in questions)
     return walk(judge, which, a, b, names, loops.unit, loops.exact is not None, divide, most)

@@ -349,6 +349,18 @@ def divided(
     return which[source], start + number * step, end
 
 
+def divided_about(
+    places: np.ndarray, which: np.ndarray, a: np.ndarray, b: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Intervals that hold the places of their points, in three pieces, of which one has the place in its middle."""
+    p = places[which]
+    r = np.minimum(np.minimum(p - a, b - p), (b - a) / 8)
+    edges = (a, p - r, p + r, b)
+    which, a, b = np.tile(which, 3), np.concatenate(edges[:3]), np.concatenate(edges[1:])
+    some = b > a
+    return which[some], a[some], b[some]
+
+
 # ---- at zero
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from typing import TYPE_CHECKING
 
@@ -13,7 +12,7 @@ from loopbook.stability.confirmation import confirm, confirm_gains
 from loopbook.stability.counting import count_roots, fraction_sums, open_loop
 from loopbook.stability.crossings import Real, asked
 from loopbook.stability.enclosures import geometric
-from loopbook.stability.endless import Far
+from loopbook.stability.high_frequencies import HighFrequencies
 from loopbook.stability.loops import Loops
 from plainmath.validation import positive, positive_numbers
 
@@ -51,7 +50,7 @@ def ultimate(process: object) -> tuple[float, float]:
         opposite = -L
         other = _stable_range(Loops(*fraction_sums(opposite), opposite))[0][0]
         hint = "" if math.isnan(other) else ", but a negative one does"
-        least = float(_endless_gains(loops, Far(loops, pivot=0.0))[0])
+        least = float(_endless_gains(loops, HighFrequencies(loops, pivot=0.0))[0])
         below = f" below {least:.6g}, with which the gain at infinite frequency is 1," if least < math.inf else ""
         raise ValueError(f"no positive gain{below} makes the closed loop of {L.expr} stable{hint}")
     confirm(loops, {"gain_margin": gain, "omega_180": frequency}, itself=False)
@@ -150,7 +149,7 @@ def _stable_range(loops: Loops) -> tuple[np.ndarray, np.ndarray]:
     on, is it asked whether the loop is stable up to there, as soon as none that is lower can lie beyond the window.
     """
     count, unit = loops.count, loops.unit
-    far = Far(loops, pivot=0.0) if loops.exact is not None else None
+    far = HighFrequencies(loops, pivot=0.0) if loops.exact is not None else None
     endless = _endless_gains(loops, far)
     real = Real(loops, all_gains=True)
     real.highest = np.minimum(real.highest, endless)
@@ -211,8 +210,9 @@ def _stable_range(loops: Loops) -> tuple[np.ndarray, np.ndarray]:
 def _complete_beyond(loops, far, lower, gain, is_endless, is_largest):
     """The frequency beyond which no lower gain brings poles to the axis."""
     need = loops.beyond(np.minimum(gain, 1e100))
-    need = np.where(is_endless & ~is_largest, np.fmin(need, loops.beyond_limit()), need)
-    if far is not None and not need[0] < 30 and not far.vanishes:
+    if far is None:
+        need = np.where(is_endless & ~is_largest, np.fmin(need, loops.beyond_limit()), need)
+    elif not far.vanishes:
         need = np.fmin(need, far.no_crossing_beyond(float(lower[0]), float(gain[0])))
     if is_largest.any():
         last = np.array([loops.real_beyond]) if far is not None else loops.real_beyond_all()
@@ -229,21 +229,20 @@ def _least_gain(loops, w):
 
 
 def _endless_gains(loops, far):
-    """The lowest gain with which the highest powers alone have unstable roots; infinite without one."""
+    """The lowest gain with which the highest powers alone have unstable roots; infinite if none is known."""
     if far is not None:
         return np.array([far.highest])
     a, b = (loops.A + 0.0 * loops.B).coefficients[:, -1], (0.0 * loops.A + loops.B).coefficients[:, -1]
     lowest = np.full(loops.count, math.inf)
     if not a.any():
         return lowest
-    if len(a) > 3:
-        raise ValueError("the boundary of a loop with several dead times in its highest power is not known")
-    for signs in itertools.product((-1, 1), repeat=len(a) - 1):
-        # a sum of sizes is the largest of all sums with signs
-        signs = np.array([1, *signs])[:, None]
-        falling = -(signs * a).sum(axis=0)
+    used = a.any(axis=1) | b.any(axis=1)
+    if used[1:].sum() > 1:
+        raise ValueError("the boundary of loops with several dead times in their highest powers is not known")
+    for sign in (-1, 1):
+        falling, rest = (x[0] + sign * x[1:].sum(axis=0) for x in (-a, b))
         with np.errstate(divide="ignore", invalid="ignore"):
-            lowest = np.where(falling > 0, np.minimum(lowest, (signs * b).sum(axis=0) / falling), lowest)
+            lowest = np.where(falling > 0, np.minimum(lowest, rest / falling), lowest)
     return lowest
 
 

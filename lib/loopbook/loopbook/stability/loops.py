@@ -252,21 +252,17 @@ class Loops:
         return [np.array([[float(c)] for c in _exact_square(each)]) for each in self.exact[:2]]
 
     def beyond_limit(self) -> np.ndarray:
-        """A frequency beyond which abs(L) is not above what it is at infinite frequency, with one dead time; or nan."""
+        """A frequency beyond which abs(L) is not above what it is at infinite frequency, with one dead time; or nan.
+
+        In numbers, for many loops.
+        """
         if self.squares is None:
             return np.full(self.count, math.nan)
-        if self.exact is not None:
-            a, b = (_exact_square(each) for each in self.exact[:2])
-            if not a[-1]:
-                return np.full(1, math.nan)
-            rows = np.array([[float(y - b[-1] / a[-1] * x)] for x, y in zip(a, b, strict=True)])
-            sizes = abs(self.squares[1])
-        else:
-            a, b = self.squares
-            with np.errstate(divide="ignore", invalid="ignore"):
-                rows = b - b[-1] / a[-1] * a
-                sizes = abs(b) + b[-1] / a[-1] * abs(a)
-            rows[-1] = 0
+        a, b = self.squares
+        with np.errstate(divide="ignore", invalid="ignore"):
+            rows = b - b[-1] / a[-1] * a
+            sizes = abs(b) + b[-1] / a[-1] * abs(a)
+        rows[-1] = 0
         # less than that could make no difference to a gain that could be told
         rows[abs(rows) <= 1e-11 * sizes.max(axis=0)] = 0
         return np.where(rows.any(axis=0), positive_beyond(rows), np.where(rows[-1] == 0, 1.0, math.nan))

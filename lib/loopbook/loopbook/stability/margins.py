@@ -18,19 +18,11 @@ from loopbook.stability.counting import (
     is_stable,
     open_loop,
 )
-from loopbook.stability.crossings import (
-    Positive,
-    Real,
-    SizeOne,
-    asked,
-    below,
-    phase_left,
-    steps,
-)
+from loopbook.stability.crossings import Real, SizeOne, asked, below, phase_left, steps
 from loopbook.stability.enclosures import MOST_INTERVALS
-from loopbook.stability.endless import Far
+from loopbook.stability.high_frequencies import HighFrequencies
 from loopbook.stability.loops import ENOUGH, Loops
-from loopbook.stability.peaks import to_the_top
+from loopbook.stability.peaks import Peak, to_the_top
 
 MOST_TURNS = 2000.0  # of the phase by dead time, in radians, after which it is given up that has no end in sight
 FURTHEST = 1e15  # times the frequency of the fastest pole, beyond which nothing is looked for
@@ -112,7 +104,7 @@ def margins(loop: object) -> Margins:
     if loops is None:
         return NOTHING
     with _or_unstable(loop):
-        real, size, peak = Real(loops), SizeOne(), Positive(loops)
+        real, size, peak = Real(loops), SizeOne(), Peak(loops)
         survey = Survey(loops, [real, size, peak])
         found = survey.gain_margins() | survey.phase_margins() | survey.delay_margins()
         confirm(loops, found)
@@ -152,9 +144,9 @@ class Survey:
     """Questions about one loop, asked in windows of frequency until bounds answer them for all that is beyond."""
 
     def __init__(self, loops: Loops, questions: list):
-        self.loops, self.far = loops, Far(loops)
+        self.loops, self.far = loops, HighFrequencies(loops)
         kinds = {type(question): question for question in questions}
-        self.real, self.size, self.peak = (kinds.get(kind) for kind in (Real, SizeOne, Positive))
+        self.real, self.size, self.peak = (kinds.get(kind) for kind in (Real, SizeOne, Peak))
         self._begin()
         self._ask(questions)
 
@@ -213,6 +205,8 @@ class Survey:
         """What is not decided beyond a frequency, and what is known about it."""
         text = " and ".join(question.name for question in questions)
         text += f", beyond the frequency {end * self.loops.unit[0]:.6g}, is not decided"
+        if self.far.is_open:
+            text += ", where the highest powers have several dead times"
         if self.real in questions:
             low, high = float(self.real.lowest[0]), float(self.real.highest[0])
             sure = (1 + (high - 1) * (1 - 0.5**n) for n in range(12, 0, -1))

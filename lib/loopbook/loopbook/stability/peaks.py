@@ -1,4 +1,4 @@
-"""Peaks of the sensitivity: their tops, and intervals of frequency around them."""
+"""The largest sensitivity, asked for on intervals of frequency, and the tops of its peaks."""
 
 from __future__ import annotations
 
@@ -7,12 +7,52 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from loopbook.stability.crossings import Question, View
+from loopbook.stability.loops import ENOUGH
+
 if TYPE_CHECKING:
-    from loopbook.stability.crossings import Positive
     from loopbook.stability.loops import Loops
 
 
-def to_the_top(loops: Loops, question: Positive) -> None:
+class Peak(Question):
+    """Whether abs(B/C) stays below `most`, one for each loop, which is the largest that was seen, and a little more."""
+
+    name = "the largest sensitivity"
+
+    def __init__(self, loops: Loops):
+        self.loops = loops
+        self.most, self.place = np.zeros(loops.count), np.zeros(loops.count)
+        self.width = 0.0  # of the last one whose top was found
+
+    def see(self, points: np.ndarray, sizes: np.ndarray, frequencies: np.ndarray) -> None:
+        """Remember values, where they are higher than what was seen."""
+        order = np.argsort(sizes)
+        points, sizes, frequencies = points[order], sizes[order], frequencies[order]
+        higher = sizes > self.most[points]
+        self.most[points[higher]] = sizes[higher]
+        self.place[points[higher]] = frequencies[higher]
+
+    def judge(self, view: View) -> tuple[np.ndarray, np.ndarray]:
+        which = view.which
+        before = self.most.copy()
+        B, C, early = view.B, view.C, view.early
+        known = slice(None) if view.precise else ~C.is_noisy
+        with np.errstate(divide="ignore", invalid="ignore"):
+            self.see(which[known], (B.sizes[0] / C.sizes[0])[known], view.c[known])
+        if (self.most > before * (1 + 1e-12)).any():
+            to_the_top(self.loops, self)
+        most = self.most[which] * (1 + ENOUGH)
+        undecided = (most * (B.least - early.most) <= B.most) & (most * C.least <= B.most)
+        noisy = np.zeros(len(which), dtype=bool)
+        if (some := np.flatnonzero(undecided)).size:
+            B, C, most = B[some], C[some], most[some]
+            above = (most * most) * (C @ C).real - (B @ B).real
+            undecided[some] = ~above.is_positive
+            noisy[some] = above.is_noisy | C.is_noisy | (C.noise > 1e-10 * C.sizes[0])
+        return undecided, noisy
+
+
+def to_the_top(loops: Loops, question: Peak) -> None:
     """Move the highest values that were seen to the tops of their peaks."""
     if loops.count == 1 and _single_to_the_top(loops, question):
         return
@@ -101,15 +141,3 @@ def _climbed(at, w, most):
         settled = settled | small | (~better & (abs(w - places) <= 1e-8 * places))
         w = np.where(better, w + step, (w + places) / 2)
     return best, places, bend
-
-
-def with_peaks(
-    which: np.ndarray, a: np.ndarray, b: np.ndarray, peaks: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Intervals that hold the peaks of their loops, in three pieces, of which one has the peak in its middle."""
-    p = peaks[which]
-    r = np.minimum(np.minimum(p - a, b - p), (b - a) / 8)
-    edges = (a, p - r, p + r, b)
-    which, a, b = np.tile(which, 3), np.concatenate(edges[:3]), np.concatenate(edges[1:])
-    some = b > a
-    return which[some], a[some], b[some]

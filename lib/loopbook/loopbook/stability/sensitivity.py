@@ -8,9 +8,10 @@ import numpy as np
 
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.stability.counting import count_roots
-from loopbook.stability.crossings import Positive, asked, below
+from loopbook.stability.crossings import asked, below
 from loopbook.stability.enclosures import UndecidedError, geometric
 from loopbook.stability.loops import ENOUGH, Loops, positive_beyond, square
+from loopbook.stability.peaks import Peak
 
 MOST_TURNS = 2000.0  # of the phase by dead time, in radians, after which it is given up that has no end in sight
 
@@ -50,7 +51,7 @@ AT_ONCE = 2000
 
 def _largest(loops):
     every = np.arange(loops.count)
-    peak = Positive(loops)
+    peak = Peak(loops)
     near_A, near_B = loops.near_zero(every, np.full(loops.count, 1e-300))
     peak.see(every, abs(near_B.terms[0] / (near_A.terms[0] + near_B.terms[0])), np.zeros(loops.count))
     peak.see(every, _at_endless_frequency(loops), np.full(loops.count, math.inf))
