@@ -33,7 +33,7 @@ EVERYWHERE = ("plainmath.tables.", "loopbook.sliders.")  # what no section needs
 RESPONSE = "application/vnd.loopbook.response+json"
 SHOWN = ("image/png", "text/html", "text/latex", "text/markdown", "text/plain")  # the first of these that there is
 PROGRESS = re.compile(r"What (?:you have|is) right so far .*:")  # above the cell that shows it
-STATEMENT = re.compile(r"\*\*Exercise ([\dA-Z]+\.\d+) · (.*?)\*\*( \(\d+ points?\))?\s*(.*)", re.DOTALL)
+EXERCISE = re.compile(r'exercise\("([\w.]+)"\)')  # a cell that shows a statement
 
 
 def stored(path):
@@ -139,16 +139,9 @@ def in_code(cell, folder, name, figures, taken):
         taken: the places of the page that have their names already.
     """
     outputs = [shown for output in cell["outputs"] if (shown := one_way(output, taken))]
-    statement = next(
-        (STATEMENT.match(o["data"]["text/markdown"]) for o in outputs if "text/markdown" in o.get("data", {})), None
-    )
-    if statement and folder == "chapters":
-        number, title, points, _ = statement.groups()
-        head = f"(exercise-{slugs.slug(number)})=\n### Exercise {number} · {title}\n\n"
-        solutions = f"../solutions/{name}.html"
-        return [markdown(head + exercise_forms.form(number, (points or "").strip(" ()"), pictures(outputs), solutions))]
-    if statement:
-        return [markdown(exercise(*statement.groups(), pictures(outputs)))]
+    if asked := EXERCISE.fullmatch(cell["source"]):
+        shown = pictures(outputs)
+        return [markdown(exercise(asked[1], shown) if folder == "solutions" else with_form(asked[1], shown, name))]
     if folder == "chapters" and any(RESPONSE in output.get("data", {}) for output in cell["outputs"]):
         return []  # dots in the place of answers: the page has a form
     if folder == "chapters" and (asked := re.fullmatch(r'progress\("(\w+)"\)', cell["source"])):
@@ -228,12 +221,18 @@ def pictures(outputs):
     )
 
 
-def exercise(number, title, points, statement, pictures):
+def with_form(number, pictures, name):
+    """An exercise of a chapter, answered by a form, with the way to its solution."""
+    statement = exercise_forms.sheet(number).question.statement
+    form = exercise_forms.form(number, statement.points, pictures, f"../solutions/{name}.html")
+    return f"(exercise-{slugs.slug(number)})=\n### {statement.heading}\n\n{form}"
+
+
+def exercise(number, pictures):
     """The statement of an exercise in a box, in the solutions, with the way back to the chapter."""
-    points = (points or "").strip(" ()")
-    link = f"{{ref}}`In the chapter <exercise-{slugs.slug(number)}>`"
-    last = f"{{.exercise-links}}\n{' · '.join(filter(None, [points, link]))}"
-    body = "\n\n".join(filter(None, [statement.rstrip(), pictures, last]))
+    statement = exercise_forms.sheet(number).question.statement
+    last = f"{{.exercise-links}}\n{statement.points} · {{ref}}`In the chapter <exercise-{slugs.slug(number)}>`"
+    body = "\n\n".join(filter(None, [statement.below_heading, pictures, last]))
     return f":::::{{container}} exercise\n{body}\n:::::"
 
 

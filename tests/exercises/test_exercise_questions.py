@@ -35,10 +35,13 @@ def test_a_question():
     question = tank.question()
     assert question.given("A") == 4
     assert question.given("A", "q") == (4, 2)
-    assert question.statement.startswith("**Exercise 99.1 · A tank** (4 points)")
-    assert "an area of 4\N{NO-BREAK SPACE}m². An inflow of 2\N{NO-BREAK SPACE}m³/s" in question.statement
-    assert r"is $\frac{0.5}{s}$." in question.statement
-    assert "- `rate`: the rate of the level, in m/s" in question.statement
+    statement = question.statement
+    assert (statement.heading, statement.points) == ("Exercise 99.1 · A tank", "4 points")
+    assert "an area of 4\N{NO-BREAK SPACE}m². An inflow of 2\N{NO-BREAK SPACE}m³/s" in statement.body
+    assert r"is $\frac{0.5}{s}$." in statement.body
+    assert statement.asked[0] == "`rate`: the rate of the level, in m/s"
+    assert str(statement).startswith(f"**{statement.heading}** (4 points)\n\n{statement.body}\n\n- `rate`: ")
+    assert str(statement).endswith(f"\n\n*Accuracy: {statement.accuracy}*")
     with pytest.raises(ValueError, match="gives no 'V': expected 'A', 'q', 'kind', 'H'"):
         question.given("V")
 
@@ -56,7 +59,7 @@ def test_the_exercise_that_contributors_are_shown_is_as_those_of_the_bank(claim,
 
 def test_the_exercise_that_contributors_are_shown_is_one():
     question = HEATER.question()
-    assert "a gain of 3\N{NO-BREAK SPACE}K/%, a time constant of 25\N{NO-BREAK SPACE}s" in question.statement
+    assert "a gain of 3\N{NO-BREAK SPACE}K/%, a time constant of 25\N{NO-BREAK SPACE}s" in question.statement.body
     assert [one.status for one in question.check(Kp=25 / 24, Ti=16).verdicts] == [RIGHT, RIGHT]
     assert question.rungs[2] == "With $T_c = \\tau$ there is $K_p = 25/(3 \\cdot 2 \\cdot 4)$."
     assert "$T_i$ = 16\N{NO-BREAK SPACE}s." in question.solution().text
@@ -73,12 +76,12 @@ def accuracies(x=between(1, 9)):
 def test_what_is_shown_has_decimals_where_few_digits_write_them():
     one = Exercise("99.2", "Decimals", 1, lambda: True, key_of_one)
     one.shows(lambda: {"x": sympy.Rational(5, 2) * s + sympy.Rational(1, 3)})
-    assert r"$2.5 s + \frac{1}{3}$" in one.question().statement
+    assert r"$2.5 s + \frac{1}{3}$" in one.question().statement.body
 
 
 def test_the_statement_says_the_accuracy():
     statement = Exercise("99.2", "Accuracies", 1, lambda: True, accuracies).question().statement
-    assert statement.endswith("\n\n*Accuracy: 1\N{NO-BREAK SPACE}%; `a`: exact*")
+    assert statement.accuracy == "1\N{NO-BREAK SPACE}%; `a`: exact"
 
 
 def test_a_response():
@@ -216,12 +219,12 @@ def test_the_place_of_a_word_says_nothing_about_it():
         assert len({one.key[name].among for one in questions}) == orders
     for one in questions[:5]:
         among = one.key["action"].among
-        assert f"the action: {among[0]} or {among[1]}" in one.statement
+        assert f"the action: {among[0]} or {among[1]}" in one.statement.asked[0]
         assert one.key["action"].asking == f'word(["{among[0]}", "{among[1]}"])'
         assert one.key["action"].expected == f"{among[0]} or {among[1]}"
         assert one.key["valve"].among == ("V1", "V2", "V10")
         assert one.key["stable"].among == ("yes", "no")
-        assert "- `others`: those with a valve, out of the same list" in one.statement
+        assert "`others`: those with a valve, out of the same list" in one.statement.asked
         right = {"action": "Reverse", "steps": "fill, heat, drain", "others": ["drain", "heat"], "valve": "V2"}
         assert one.check(stable=False, **right).is_right
 

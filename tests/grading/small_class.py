@@ -67,7 +67,7 @@ def result_of(student, given, course=(gain, action), **more):
             JudgedAnswer(v.name, v.status, v.says, mine.get(v.name), key_in_words(question.key[v.name]))
             for v in question.check(**mine).verdicts
         )
-        done.append(JudgedExercise(one.number, one.title, one.points, question.statement, (), answers_))
+        done.append(JudgedExercise(one.number, one.title, one.points, question.statement.below_heading, (), answers_))
     file = f"{student.id}/heater.ipynb"
     usual = Result("heater", student.id, file, True, "0" * 64, "complete", "", (), (), tuple(done))
     return Marked.of(replace(usual, **more))

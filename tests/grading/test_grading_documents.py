@@ -311,7 +311,7 @@ def test_every_statement_of_the_bank_is_shown_whole():
     count = 0
     for number in chapters():
         for one in exercises(number).values():
-            asked = one.question().statement
+            asked = str(one.question().statement)
             text = page.written(of.Document("T", "T", statement.blocks(asked)))
             checked = assert_whole(text)
             outside = re.sub(r"<code>.*?</code>|<math.*?</math>|<style>.*?</style>", " ", text, flags=re.DOTALL)

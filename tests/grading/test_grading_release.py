@@ -33,7 +33,7 @@ def test_a_released_notebook(tuning):
     texts = [cell.source for cell in made.cells if cell.cell_type == "markdown"]
     assert texts[0].startswith("# Tuning $K$\n\n**Zoë \\*Ng\\*** (`s1001`)\n\nAn introduction.\n\n")
     for text, number in zip(texts[1:], "12", strict=True):
-        statement = tuning.question("s1001", number).statement
+        statement = str(tuning.question("s1001", number).statement)
         assert text.startswith(f"{statement}\n\n<details><summary>How your answers are read</summary>\n\n- `")
     assert "- `Kp`: a number, in %/K (to 1\N{NO-BREAK SPACE}%)\n" in texts[1]
     assert "- `H`: an expression (in any form, each number in it" in texts[1]
@@ -187,7 +187,7 @@ def test_braces_of_formulas_and_code_stay(text):
 
     twice.__doc__ = text
     question = checked(authoring.exercise("1", title="Twice")(twice).question, "exercise 1")
-    assert text.replace("{{c}}", "{c}") in question.statement
+    assert text.replace("{{c}}", "{c}") in question.statement.body
 
 
 @pytest.mark.parametrize(

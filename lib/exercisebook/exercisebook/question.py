@@ -20,7 +20,7 @@ from exercisebook.parameters import call
 from exercisebook.progress import is_answered, note, students
 from exercisebook.reading import NOT_ANSWERED
 from exercisebook.response import Response
-from exercisebook.showing import Page, Showing
+from exercisebook.showing import Page, Showing, Statement
 from plainmath.validation import did_you_mean
 
 if TYPE_CHECKING:
@@ -245,7 +245,7 @@ class Question(Showing):
             return Page(f"Exercise {self.exercise.number} has no hints.")
         self._hints_seen = min(self._hints_seen + 1, len(rungs)) if rung is None else rung
         head = f"**Hint {self._hints_seen} of {len(rungs)}** · {self.exercise.heading}"
-        return Page(f"{head}\n\n{rungs[self._hints_seen - 1]}")
+        return Page(rungs[self._hints_seen - 1], head)
 
     def solution(self) -> Page:
         """Return the solution with the numbers of this variant; before the first attempt, how to make one."""
@@ -262,8 +262,8 @@ class Question(Showing):
         """Return the solution, whether there was an attempt or not."""
         if not self.exercise.worked:
             return Page(f"Exercise {self.exercise.number} has no solution here.")
-        text = FADES.sub("", self._worked_text)
-        return Page(f"**Solution** · {self.exercise.heading}\n\n{text}", self._draws(self.exercise.drawn_in_solution))
+        head = f"**Solution** · {self.exercise.heading}"
+        return Page(FADES.sub("", self._worked_text), head, self._draws(self.exercise.drawn_in_solution))
 
     @functools.cached_property
     def _worked_text(self):
@@ -296,36 +296,32 @@ class Question(Showing):
         return draw
 
     @property
-    def statement(self) -> str:
-        """The statement in Markdown, with the values of this variant and a list of what is asked."""
+    def statement(self) -> Statement:
+        """The statement, with the values of this variant and what is asked."""
         points = f"{self.exercise.points} point{'' if self.exercise.points == 1 else 's'}"
-        lines = [f"**{self.exercise.heading}** ({points})", ""]
-        lines += [self.filled_in(self.exercise.statement), ""]
-        listed = set()
+        body = self.filled_in(self.exercise.statement)
+        asked, listed = [], set()
         for name, kind in self.key.items():
             among = getattr(kind, "among", None)
-            asked = f"{kind.what}, out of the same list" if among in listed else kind.asked
-            lines.append(f"- `{name}`: {asked}{_weighted(self.exercise.weights.get(name, 1))}")
+            what = f"{kind.what}, out of the same list" if among in listed else kind.asked
+            asked.append(f"`{name}`: {what}{_weighted(self.exercise.weights.get(name, 1))}")
             listed.add(among or name)
-        return "\n".join(lines + self._accuracy())
+        return Statement(self.exercise.heading, points, body, tuple(asked), self._accuracy())
 
     def _accuracy(self):
-        """A line on how near the answers must be: what holds for most of them, and then the others by name."""
+        """How near the answers must be: what holds for most of them, and then the others by name."""
         about = {}
         for name, kind in self.key.items():
             if kind.accuracy:
                 about.setdefault(kind.accuracy, []).append(f"`{name}`")
-        if not about:
-            return []
-        most, *others = sorted(about, key=lambda accuracy: -len(about[accuracy]))
-        parts = [most, *(", ".join(about[one]) + ": " + one for one in others)]
-        return ["", f"*Accuracy: {'; '.join(parts)}*"]
+        most, *others = sorted(about, key=lambda accuracy: -len(about[accuracy])) or [""]
+        return "; ".join([most, *(", ".join(about[one]) + ": " + one for one in others)])
 
     def _repr_mimebundle_(self, include=None, exclude=None):
-        return {"text/plain": repr(self), "text/markdown": self.statement}
+        return {"text/plain": repr(self), "text/markdown": repr(self)}
 
     def __repr__(self) -> str:
-        return self.statement
+        return str(self.statement)
 
 
 def _weighted(weight):

@@ -1,8 +1,9 @@
-"""What a notebook shows of an exercise: Markdown, and a picture below it."""
+"""What a notebook shows of an exercise: texts in Markdown, which others take in parts, and a picture below them."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 
@@ -24,19 +25,58 @@ class Showing:
             display(picture)
 
 
+@dataclass(frozen=True)
+class Statement:
+    """What a question says, in Markdown; as a string, it is all of it.
+
+    Attributes:
+        heading: the number of the exercise, and its title.
+        points: how many it brings, in words.
+        body: what is given and wanted.
+        asked: for each asked quantity its name, and what it is.
+        accuracy: how near the answers must be; empty where that is no question.
+    """
+
+    heading: str
+    points: str
+    body: str
+    asked: tuple[str, ...]
+    accuracy: str
+
+    @property
+    def list_of_asked(self) -> str:
+        """What is asked as a list."""
+        return "\n".join(f"- {one}" for one in self.asked)
+
+    @property
+    def below_heading(self) -> str:
+        """All but the heading and the points."""
+        parts = [self.body, self.list_of_asked]
+        return "\n\n".join([*parts, f"*Accuracy: {self.accuracy}*"] if self.accuracy else parts)
+
+    def __str__(self) -> str:
+        return f"**{self.heading}** ({self.points})\n\n{self.below_heading}"
+
+
 class Page(Showing):
     """A text in Markdown, and perhaps a picture.
 
     Arguments:
-        text: Markdown.
+        body: Markdown.
+        head: the line above it; empty for none.
         draw: returns the figure, or None.
 
     >>> Page("The **gain** comes first.")
     The **gain** comes first.
     """
 
-    def __init__(self, text: str, draw: Callable[[], Any] = lambda: None):
-        self.text, self._draw = text, draw
+    def __init__(self, body: str, head: str = "", draw: Callable[[], Any] = lambda: None):
+        self.body, self.head, self._draw = body, head, draw
+
+    @property
+    def text(self) -> str:
+        """All of it in Markdown."""
+        return f"{self.head}\n\n{self.body}" if self.head else self.body
 
     @property
     def pictures(self) -> Sequence[Any]:

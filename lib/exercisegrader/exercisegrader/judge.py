@@ -158,9 +158,9 @@ def judged(
             verdict = judge(name, kind, answer, question.mistakes[name], question.background.of(name, given))
         weight = question.exercise.weights.get(name, 1)
         answers.append(JudgedAnswer(name, verdict.status, verdict.says, answer, kind.solution, weight, verdict.look))
-    exercise = question.exercise
+    exercise, asked = question.exercise, question.statement.below_heading
     numbers = tuple((name, written(value, exercise.parameters[name].unit)) for name, value in question.stated.items())
-    return JudgedExercise(exercise.number, exercise.title, exercise.points, question.statement, numbers, tuple(answers))
+    return JudgedExercise(exercise.number, exercise.title, exercise.points, asked, numbers, tuple(answers))
 
 
 def main() -> None:

@@ -38,8 +38,6 @@ MOST_LINES, MOST_COLUMNS = 12, 88
 _NOT_FILLED_IN = re.compile(r"\$\$.*?\$\$|\$.*?\$|`.*?`", re.DOTALL)
 #: The place of a value; in front of it is none of what LaTeX has before a brace.
 _PLACE = re.compile(r"(?<![\w\\{}])\{([^\W\d]\w*)\}(?!\})")
-#: How a statement begins.
-_STATEMENT = re.compile(r"\*\*Exercise (\S+) ·")
 _HOW_TO_ANSWER = (
     "Put your answers in the places of the dots and run the cells: each shows how your answer is read, and nothing "
     "about right or wrong. You can answer as often as you like before you save this notebook and hand it in; the last "
@@ -187,15 +185,16 @@ def _there(path):
 
 
 def _changed(old, new):
-    """The parts of a notebook whose text differs from that of another one, by their names."""
-    parts = [{}, {}]
-    for found, made in zip(parts, (old, new), strict=True):
-        for cell in made.cells:
-            if cell.cell_type == "markdown":
-                begins = _STATEMENT.match(cell.source)
-                found.setdefault(f"exercise {begins[1]}" if begins else "the introduction", []).append(cell.source)
-    one, other = parts
-    return tuple(part for part in dict.fromkeys([*other, *one]) if one.get(part) != other.get(part))
+    """The parts whose text is not in the older one of two notebooks, and those that were in it alone, by their names.
+
+    The texts of a notebook as it is released are its introduction and, in the order of its numbers, its statements.
+    """
+    before, numbers = (Imprint.of(made.metadata).numbers for made in (old, new))
+    texts = [cell.source for cell in new.cells if cell.cell_type == "markdown"]
+    there = {cell.source for cell in old.cells}
+    parts = zip(["the introduction", *(f"exercise {one}" for one in numbers)], texts, strict=True)
+    gone = [f"exercise {one}" for one in before or () if one not in numbers]
+    return (*(part for part, text in parts if text not in there), *gone)
 
 
 def _demand_allowed(plans, folder, replace, new_numbers, record):
@@ -319,7 +318,7 @@ def checked(make: Callable[[], Question], label: str) -> Question:
 
 def statement_cells(question: Question) -> list[NotebookNode]:
     """Return the cells that put a question: the statement with its picture, and the data that it hands out."""
-    cell = v4.new_markdown_cell(question.statement)
+    cell = v4.new_markdown_cell(str(question.statement))
     if picture := question.picture:
         cell.source += f"\n\n![{as_markdown(picture.alt)}](attachment:picture.png)"
         cell.attachments = {"picture.png": {"image/png": base64.b64encode(picture.png()).decode()}}

@@ -64,7 +64,7 @@ class JudgedExercise:
 
     Attributes:
         number, title, points: of the exercise.
-        statement: the question as the student saw it, in Markdown.
+        statement: the question as the student saw it, below its heading, in Markdown.
         given: the student's own numbers that the statement shows, pairs of a name and a value with its unit.
         answers: a `JudgedAnswer` for each asked quantity.
 

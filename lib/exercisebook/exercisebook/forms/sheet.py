@@ -14,7 +14,7 @@ import numpy as np
 from exercisebook.errors import ExerciseError
 from exercisebook.forms import controls
 from exercisebook.forms.fields import Field, field_of
-from exercisebook.forms.text import escaped, html, sentence
+from exercisebook.forms.text import escaped, html, inline, sentence
 from exercisebook.kinds.kind import NONE, SEVERAL
 from exercisebook.question import Question
 from loopbook.exercises import exercise
@@ -55,29 +55,24 @@ class Sheet:
         return tuple(field_of(name, kind, weights.get(name, 1)) for name, kind in self.question.key.items())
 
     @functools.cached_property
-    def _texts(self):
-        """The text of the statement, the list of what is asked, and the line on accuracy, in Markdown."""
-        _, text = self.question.statement.split("\n", 1)
-        text = _CALL.sub(r"`\1` in the file below", text)
-        text, _, accuracy = text.partition("\n\n*Accuracy: ")
-        lines = text.rstrip().splitlines()
-        first = len(lines) - len(self.question.key)
-        return "\n".join(lines[:first]).strip(), "\n".join(lines[first:]), accuracy.rstrip("*\n")
+    def _statement(self):
+        return self.question.statement
 
     @property
     def text(self) -> str:
         """The text of the statement as HTML, without its heading, its picture and what is asked."""
-        return html(self._texts[0])
+        return html(_CALL.sub(r"`\1` in the file below", self._statement.body))
 
     @property
     def asked(self) -> str:
         """What is asked as a list in HTML, for print and for readers whose browser has no fields."""
-        return html(self._texts[1]).replace("<ul>", '<ul class="asked">', 1)
+        return html(self._statement.list_of_asked).replace("<ul>", '<ul class="asked">', 1)
 
     @property
     def accuracy(self) -> str:
         """How near the answers must be, as HTML; empty where that is no question."""
-        return f'<p class="accuracy">{html(f"Accuracy: {self._texts[2]}")[3:-4]}</p>' if self._texts[2] else ""
+        accuracy = self._statement.accuracy
+        return f'<p class="accuracy">Accuracy: {inline(accuracy)}</p>' if accuracy else ""
 
     @property
     def controls(self) -> str:
@@ -133,8 +128,7 @@ class Sheet:
 
     def hint(self, rung: int) -> str:
         """Return a hint as HTML. Raises ExerciseError for an unknown one."""
-        text = self.question.hint(rung).text
-        return html(text.partition("\n\n")[2])
+        return html(self.question.hint(rung).body)
 
     @property
     def solution(self) -> str:
@@ -144,7 +138,7 @@ class Sheet:
     @property
     def solution_text(self) -> str:
         """The same without the picture."""
-        return html(self.question.solved().text.partition("\n\n")[2])
+        return html(self.question.solved().body)
 
     def check(self, answers: Mapping[str, Any]) -> dict[str, Any]:
         """Return the response to what was typed and chosen.

@@ -230,7 +230,7 @@ def one_variant(assignment: Assignment, student: str, number: str) -> str:
     question = variant.question
     units = {name: parameter.unit for name, parameter in question.exercise.parameters.items()}
     given = [f"{name} = {written(value, units[name])}" for name, value in question.values.items()]
-    lines = [question.statement.replace("\N{NO-BREAK SPACE}", " "), "", f"{student}: {', '.join(given)}"]
+    lines = [str(question.statement).replace("\N{NO-BREAK SPACE}", " "), "", f"{student}: {', '.join(given)}"]
     lines += [line for name in variant.by_hand for line in ("", f"{name}: a person marks it")]
     for name, kind in variant.key.items():
         lines += ["", f"{name}: the key is {kind.solution}"]

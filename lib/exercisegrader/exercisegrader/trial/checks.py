@@ -212,7 +212,8 @@ def declared_mistakes(variant: Variant) -> Iterator[Seen]:
 def statements(variant: Variant) -> Iterator[Seen]:
     """The statement has its values, as people write them."""
     try:
-        text = variant.question.statement.partition("\n- `")[0]
+        statement = variant.question.statement
+        text = f"{statement.heading}\n\n{statement.body}"
     except Exception as problem:  # the functions are the author's
         yield Seen(WRONG, "the statement cannot be shown", shortened(str(problem), LONGEST_SENTENCE))
         return

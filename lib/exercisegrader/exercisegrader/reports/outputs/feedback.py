@@ -155,11 +155,8 @@ def _exercise(marked: MarkedExercise, reveal: bool) -> list[Block]:
 
 
 def _question(judged):
-    """The statement, without its heading, and the numbers."""
-    asked = judged.statement
-    if asked.startswith("**Exercise "):  # the heading above says it
-        asked = asked.partition("\n")[2]
-    blocks = statement.blocks(asked)
+    """The statement and the numbers."""
+    blocks = statement.blocks(judged.statement)
     if judged.given:
         given = [part for name, value in judged.given for part in (", ", Code(name), f" = {value}")]
         blocks = (*blocks, Paragraph(("Your numbers: ", *given[1:], ".")))
