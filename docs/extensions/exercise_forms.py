@@ -13,10 +13,10 @@ import re
 from pathlib import Path
 
 import slugs
-from loopbook.exercises.forms import Sheet, version
 
 from exercisebook import notes
-from loopbook.exercises import bank
+from loopbook.exercises import bank, exercise
+from loopbook.exercises.forms import Sheet, version
 
 ROOT = Path(__file__).parents[2]
 FOLDER = "exercises"  # of what is beside the pages, in _static
@@ -38,7 +38,7 @@ HOW_TO = (
 def sheet(number):
     """The exercise with the numbers of everybody."""
     with notes.off():
-        return Sheet(number)
+        return Sheet(exercise(number))
 
 
 def form(number, points, pictures, solutions):

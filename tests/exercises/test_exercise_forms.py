@@ -5,7 +5,6 @@ import json
 
 import pytest
 import sympy
-from loopbook.exercises.forms import Sheet, answer
 
 import contributing
 from draws import of_the_day
@@ -15,6 +14,7 @@ from exercisebook.forms.text import inline, sentence
 from exercisebook.kinds.by_hand import Figure, Text
 from exercisebook.kinds.kind import ELSEWHERE, LINE, LINES, ONE, ORDER, PARTS, SEVERAL
 from loopbook.exercises import ExerciseError, bank, exercise
+from loopbook.exercises.forms import Sheet, answer
 from loopbook.exercises.kinds import Design, Number, Settings, Words
 from loopbook.pid import PID
 
@@ -72,7 +72,7 @@ def typed(kind):
 def test_the_keys_typed_in_the_fields_are_right():
     """Of each kind there are many: a quarter a day. That a key is right in every form is proved of every exercise."""
     for number in of_the_day(NUMBERS, len(NUMBERS) // 4, "typed"):
-        answers = {name: typed(kind) for name, kind in Sheet(number).question.key.items()}
+        answers = {name: typed(kind) for name, kind in Sheet(exercise(number)).question.key.items()}
         reply = asked(do="check", exercise=number, answers=answers)
         assert reply.get("right"), (number, answers, reply)
 
@@ -80,7 +80,7 @@ def test_the_keys_typed_in_the_fields_are_right():
 def test_every_form_is_whole():
     """HTML that is closed as it is opened, MathML and no LaTeX, and for each quantity a field with a label."""
     for number in of_the_day(NUMBERS, len(NUMBERS) // 2, "forms"):
-        sheet = Sheet(number, "Mira")
+        sheet = Sheet(exercise(number, "Mira"))
         parts = {"text": sheet.text, "asked": sheet.asked, "accuracy": sheet.accuracy, "controls": sheet.controls}
         parts |= {f"hint {rung}": sheet.hint(rung) for rung in range(1, sheet.rungs + 1)}
         parts["solution"] = sheet.solution_text
@@ -130,7 +130,7 @@ def test_a_response_offers_what_a_page_has():
     """A hint is a button, the next exercise a link, and what a design does is drawn with its description."""
     replies = [asked(do="check", exercise="10.1", student="Noor", answers={"K": "77"}) for _ in range(3)]
     assert "A hint is one press away." in replies[-1]["html"]
-    key = Sheet("10.1", "Noor").question.key
+    key = Sheet(exercise("10.1", "Noor")).question.key
     reply = asked(do="check", exercise="10.1", student="Noor", answers={name: typed(one) for name, one in key.items()})
     assert '<a href="#exercise-10-2">Exercise 10.2 · ' in reply["html"]
     drawn = Read(asked(do="check", exercise="10.7", answers={"pid": {"Kp": "2", "Ti": "10"}})["html"]).all("img")
@@ -196,20 +196,24 @@ def test_nothing_is_written_and_no_file_is_read(tmp_path, monkeypatch):
 
 
 def test_the_record_of_an_exercise_is_a_table():
-    lines = Sheet("10.8").csv.splitlines()
+    lines = Sheet(exercise("10.8")).csv.splitlines()
     assert lines[0] == "t,u,y"
     assert len(lines) == 1 + len(exercise("10.8").data["t"])
     assert 'download="exercise-10-8.csv"' in asked(do="show", exercise="10.8")["html"]
-    assert Sheet("7.1").download() == Sheet("7.1").csv == ""
+    assert Sheet(exercise("7.1")).download() == Sheet(exercise("7.1")).csv == ""
 
 
 def test_the_order_of_curves_tells_nothing():
-    assert Sheet("14.7").csv.splitlines()[0] == Sheet("14.7", "Mira").csv.splitlines()[0] == "t,y,A,B,C,D"
+    assert (
+        Sheet(exercise("14.7")).csv.splitlines()[0]
+        == Sheet(exercise("14.7", "Mira")).csv.splitlines()[0]
+        == "t,y,A,B,C,D"
+    )
 
 
 def test_a_page_names_the_file_and_not_what_a_notebook_calls():
-    assert "<code>t, h</code> in the file below are its times" in Sheet("1.5").text
-    assert not [number for number in NUMBERS if "given(" in Sheet(number).text]
+    assert "<code>t, h</code> in the file below are its times" in Sheet(exercise("1.5")).text
+    assert not [number for number in NUMBERS if "given(" in Sheet(exercise(number)).text]
 
 
 def test_a_whole_controller_is_read_in_the_place_of_a_setting():
@@ -270,7 +274,7 @@ class TestFields:
 
     def test_words_are_in_the_order_of_the_variant(self):
         kind = exercise("1.1", "Mira").key["a"]
-        [field] = [one for one in Sheet("1.1", "Mira").fields if one.name == "a"]
+        [field] = [one for one in Sheet(exercise("1.1", "Mira")).fields if one.name == "a"]
         assert field.words == kind.among
 
     def test_what_counts_more_is_said(self):
@@ -305,4 +309,4 @@ class TestTexts:
 
 def test_an_unknown_exercise_is_refused_as_in_a_notebook():
     with pytest.raises(ExerciseError, match=r"there is no exercise '7\.99'"):
-        Sheet("7.99")
+        Sheet(exercise("7.99"))

@@ -11,41 +11,49 @@ from typing import Any
 from exercisebook import naming, notes, plugins
 from exercisebook.errors import ExerciseError
 from exercisebook.forms.sheet import Sheet
+from exercisebook.question import Question
 from plainmath.validation import did_you_mean
 
 #: So many forms are kept, each with its key.
 KEPT = 64
 
 
-def answer(text: str) -> str:
-    """Return the reply to a request, JSON for JSON; nothing is read from files or written to them.
+class Desk:
+    """Replies to requests about the exercises of a bank.
 
-    The requests by what they ``do``, each with an ``exercise`` and a ``student``, who is null without a name:
-
-    - show: ``{heading, html, fields, controls, accuracy, rungs}``: the statement, and what is asked as data and as
-      HTML;
-    - check, with ``answers``: ``{right, says, html, verdicts: [{name, status, says, html}], notes}``;
-    - prepare: ``{}``; the key is computed and judged, so that the first answer takes no longer than the next one;
-    - hint, with a ``rung`` from 1: ``{html, rung, of}``;
-    - solution: ``{html}``. Whether an attempt comes first is for the page to say.
-
-    What cannot be answered has the reply ``{"problem": "one sentence"}``.
-
-    >>> answer('{"do": "check", "exercise": "7.77"}')
-    '{"problem": "there is no exercise \\'7.77\\': did you mean \\'7.7\\'?"}'
+    Arguments:
+        exercise: a function that returns a question, as `Bank.exercise` does.
     """
-    try:
-        request = _read(text)
-        if not isinstance(request, dict):
-            raise ExerciseError("the request is no table: expected one with do and exercise")
-        do = request.get("do")
-        if not isinstance(do, str) or do not in _REPLIES:
-            raise ExerciseError(f"the request asks to do {do!r}: {did_you_mean(str(do), _REPLIES)}")
-        with notes.off():
-            reply = _REPLIES[do](_sheet(request.get("exercise"), _name(request.get("student"))), request)
-    except (ExerciseError, ValueError) as problem:
-        reply = {"problem": str(problem)}
-    return json.dumps(reply, ensure_ascii=False)
+
+    def __init__(self, exercise: Callable[[str, str | None], Question]):
+        self._sheet = functools.lru_cache(maxsize=KEPT)(lambda number, student: Sheet(exercise(number, student)))
+
+    def answer(self, text: str) -> str:
+        """Return the reply to a request, JSON for JSON; nothing is read from files or written to them.
+
+        The requests by what they ``do``, each with an ``exercise`` and a ``student``, who is null without a name:
+
+        - show: ``{heading, html, fields, controls, accuracy, rungs}``: the statement, and what is asked as data and as
+          HTML;
+        - check, with ``answers``: ``{right, says, html, verdicts: [{name, status, says, html}], notes}``;
+        - prepare: ``{}``; the key is computed and judged, so that the first answer takes no longer than the next one;
+        - hint, with a ``rung`` from 1: ``{html, rung, of}``;
+        - solution: ``{html}``. Whether an attempt comes first is for the page to say.
+
+        What cannot be answered has the reply ``{"problem": "one sentence"}``.
+        """
+        try:
+            request = _read(text)
+            if not isinstance(request, dict):
+                raise ExerciseError("the request is no table: expected one with do and exercise")
+            do = request.get("do")
+            if not isinstance(do, str) or do not in _REPLIES:
+                raise ExerciseError(f"the request asks to do {do!r}: {did_you_mean(str(do), _REPLIES)}")
+            with notes.off():
+                reply = _REPLIES[do](self._sheet(request.get("exercise"), _name(request.get("student"))), request)
+        except (ExerciseError, ValueError) as problem:
+            reply = {"problem": str(problem)}
+        return json.dumps(reply, ensure_ascii=False)
 
 
 @functools.cache
@@ -66,11 +74,6 @@ def _read(text):
 
 def _name(student):
     return None if student is None else naming.checked(student)
-
-
-@functools.lru_cache(maxsize=KEPT)
-def _sheet(number, student):
-    return Sheet(number, student)
 
 
 def _show(sheet: Sheet, request: dict[str, Any]) -> dict[str, Any]:

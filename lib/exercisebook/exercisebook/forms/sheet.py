@@ -17,7 +17,6 @@ from exercisebook.forms.fields import Field, field_of
 from exercisebook.forms.text import escaped, html, inline, sentence
 from exercisebook.kinds.kind import NONE, SEVERAL
 from exercisebook.question import Question
-from loopbook.exercises import exercise
 
 #: Longer ones are no answers that somebody typed.
 LONGEST = 20_000
@@ -34,19 +33,20 @@ class Sheet:
     """An exercise, with the numbers of everybody or those of a name, as a page shows it.
 
     Arguments:
-        number: of the exercise, as "7.1".
-        student: a name, for numbers of one's own; None for those of everybody.
-    Raises:
-        ExerciseError: for an unknown exercise.
+        question: the exercise in a variant.
 
-    >>> sheet = Sheet("7.1")
-    >>> [field.unit for field in sheet.fields], sheet.rungs
-    (['bar', 'mA', '(kg/h)/bar'], 4)
+    >>> from exercisebook.authoring import answers, between, exercise, number
+    >>> @exercise("1.1", title="Twice")
+    ... def twice(x=between(1, 9, "m", reference=3)):
+    ...     "What is twice {x}?"
+    ...     return answers(y=number(2 * x, "m"))
+    >>> [field.unit for field in Sheet(twice.question()).fields]
+    ['m']
     """
 
-    def __init__(self, number: str, student: str | None = None):
-        self.question: Question = exercise(number, student)
-        self.number = number
+    def __init__(self, question: Question):
+        self.question = question
+        self.number = question.exercise.number
 
     @functools.cached_property
     def fields(self) -> tuple[Field, ...]:
