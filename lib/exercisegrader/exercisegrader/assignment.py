@@ -100,11 +100,11 @@ class Assignment:
 
     @functools.cached_property
     def fingerprint(self) -> str:
-        """A text that changes with the module and with loopbook's version; modules beside it are not part of it.
+        """A text that changes with the module and with this package's version; modules beside it are not part of it.
 
         What says when it is due is not part of it either, and no comment is: nothing is judged by them.
         """
-        version, source = importlib.metadata.version("loopbook"), without_dates(self.source)
+        version, source = importlib.metadata.version("exercisegrader"), without_dates(self.source)
         return hashlib.sha256(f"{version}\n{source}".encode("utf-8", "surrogatepass")).hexdigest()
 
     @property

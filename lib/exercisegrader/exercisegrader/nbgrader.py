@@ -134,7 +134,7 @@ def _solved(number, key):
 def _hidden_tests(number, calls, points, weights):
     lines = [f"# The answers to exercise {number} are judged here.", "### BEGIN HIDDEN TESTS"]
     # by its module: the student may have a number or poles of another meaning
-    lines.append("from loopbook.exercises import authoring")
+    lines.append("from exercisebook import authoring")
     lines.append("from exercisegrader.nbgrader import earned")
     arguments = [f"sheet.taken({literal(number)})", repr(points), *([literal(weights)] if weights else [])]
     arguments += [f"{name}={call}" for name, call in calls.items()]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import enum
+import functools
 import html
 import importlib.metadata
 import io
@@ -15,7 +16,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nbformat import v4
+import nbformat
+from nbformat import NotebookNode, v4
 
 from exercisebook.kinds.kind import literal
 from exercisebook.parameters import call
@@ -23,17 +25,22 @@ from exercisegrader import GradingError, files
 from exercisegrader.assignment import check_names
 from exercisegrader.imprint import Imprint, cells_of, proofs
 from exercisegrader.released import Released, in_short, texts
-from loopbook import notebooks
 
 if TYPE_CHECKING:
-    from nbformat import NotebookNode
-
     from exercisebook.question import Question
     from exercisegrader.assignment import Assignment
     from exercisegrader.released import Numbers
     from exercisegrader.roster import Student
 
 MOST_LINES, MOST_COLUMNS = 12, 88
+_IMPORTS = re.compile(r"^(?:from|import) ", re.MULTILINE)
+METADATA = {
+    "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
+    "language_info": {"name": "python"},
+}
+#: Entry points of packages for whose subject this grader is used: each names the module from which a released notebook
+#: imports the answer sheet, and the package that students install.
+GROUP = "exercisegrader.answer_sheets"
 #: Formulas and code, in which braces have a meaning of their own.
 _NOT_FILLED_IN = re.compile(r"\$\$.*?\$\$|\$.*?\$|`.*?`", re.DOTALL)
 #: The place of a value; in front of it is none of what LaTeX has before a brace.
@@ -148,7 +155,7 @@ def _plan(assignment, student, folder, record, new_numbers):
     numbers = {number: texts(question) for number, question in questions.items()}
     path = folder / student.id / f"{assignment.name}.ipynb"
     made = _notebook(assignment, student, questions)
-    content = notebooks.as_text(made)
+    content = as_text(made)
     there, imprint = _there(path)
     if there is None:
         return _Plan(student, path, content, numbers, _What.ADDED)
@@ -157,9 +164,9 @@ def _plan(assignment, student, folder, record, new_numbers):
     if imprint is None or (imprint.assignment, imprint.student) != (assignment.name, student.id):
         return _Plan(student, path, content, numbers, _What.FOREIGN)
     as_before = _notebook(assignment, student, questions, imprint.version)
-    if there == notebooks.as_text(as_before):
+    if there == as_text(as_before):
         return _Plan(student, path, there, numbers, _What.SAME)
-    old = notebooks.read(path)
+    old = nbformat.reads(there, as_version=4)
     is_same = imprint == Imprint.of(as_before.metadata)
     base = record.numbers(student.id) or numbers
     proof = proofs(assignment.secret, student.id, base)
@@ -175,12 +182,12 @@ def _there(path):
     """The text of a notebook that is there, and its imprint; None for each that is missing."""
     try:
         text = path.read_bytes().decode("utf-8", "replace")
-        return text, Imprint.of(notebooks.read(path).metadata)
+        return text, Imprint.of(nbformat.reads(text, as_version=4).metadata)
     except FileNotFoundError:
         return None, None
     except OSError as problem:
         raise GradingError(f"{path} cannot be read: {problem.strerror}") from None
-    except notebooks.NotebookError:
+    except Exception:  # nbformat fails in as many ways as a file can be malformed
         return text, None
 
 
@@ -249,7 +256,7 @@ def notebook(assignment: Assignment, student: Student, numbers: Numbers | None =
 
 def _notebook(assignment, student, questions, version=None):
     """The notebook of a student; one of an earlier version of loopbook where nothing else has changed."""
-    version = importlib.metadata.version("loopbook") if version is None else version
+    version = installed().version if version is None else version
     person = f"**{as_markdown(student.name or student.id)}** (`{student.id}`)"
     introduction = [f"# {assignment.title}", person, assignment.introduction, _HOW_TO_ANSWER, _needs(version)]
     cells = [v4.new_markdown_cell("\n\n".join(part for part in introduction if part))]
@@ -268,15 +275,34 @@ def _notebook(assignment, student, questions, version=None):
 
 def _needs(version):
     """What a student needs to run the notebook, folded."""
-    links = (one.split(", ") for one in importlib.metadata.metadata("loopbook").get_all("Project-URL"))
-    address = dict(links)["Repository"]
+    name = installed().module.partition(".")[0]
+    address = installed().repository
     return (
-        "<details><summary>If the first cell fails with <code>No module named 'loopbook'</code></summary>\n\n"
-        "This notebook needs Python 3.11 or newer and loopbook, which is installed once, by running this in a cell "
+        f"<details><summary>If the first cell fails with <code>No module named '{name}'</code></summary>\n\n"
+        f"This notebook needs Python 3.11 or newer and {name}, which is installed once, by running this in a cell "
         f"and then restarting the kernel:\n\n    %pip install git+{address}\n\n"
         f"On a computer of your own without Jupyter, [{address.removeprefix('https://')}]({address}) says how to "
-        f"begin. The notebook was released with loopbook {version}.\n\n</details>"
+        f"begin. The notebook was released with {name} {version}.\n\n</details>"
     )
+
+
+@dataclass(frozen=True)
+class Installed:
+    """What students install: the module with the answer sheet, its version, and where it is from."""
+
+    module: str
+    version: str
+    repository: str
+
+
+@functools.cache
+def installed() -> Installed:
+    """Return what a released notebook needs: the package that names its answer sheet in `GROUP`, or this one."""
+    [plugin] = [*importlib.metadata.entry_points(group=GROUP)][:1] or [None]
+    about = importlib.metadata.metadata(plugin.dist.name if plugin else "exercisegrader")
+    links = dict(one.split(", ") for one in about.get_all("Project-URL"))
+    module = plugin.value if plugin else "exercisegrader.student_side.answer_sheet"
+    return Installed(module, about["Version"], links["Repository"])
 
 
 def _reading(question):
@@ -356,17 +382,24 @@ def _check_key(question):
 
 def bare(cells: list[NotebookNode]) -> NotebookNode:
     """Return the notebook of some cells, in the form in which notebooks are stored, of which nothing was run."""
-    made = notebooks.normalised(v4.new_notebook(cells=cells))
-    for number, cell in enumerate(made.cells, start=1):
+    for number, cell in enumerate(cells, start=1):
         cell.id = f"cell-{number:03}"  # a new cell has one at random
-    return made
+        cell.source = cell.source.replace("\r\n", "\n").rstrip()
+        if cell.cell_type == "code" and _IMPORTS.search(cell.source):  # JupyterLab shows such a cell folded
+            cell.metadata = NotebookNode(jupyter={"source_hidden": True}, tags=["hide-input"])
+    return v4.new_notebook(cells=[cell for cell in cells if cell.source], metadata=METADATA)
+
+
+def as_text(notebook: NotebookNode) -> str:
+    """Return the text of a notebook's file: JSON in the manner of JupyterLab, with a newline at the end."""
+    return nbformat.writes(notebook) + "\n"
 
 
 def set_up(title: str, student_id: str, questions: Mapping[str, Question]) -> list[str]:
     """Return the sources of the cells that make the sheet and say what it asks: forms, and nothing of the keys."""
     makers = {kind.asking.partition("(")[0] for question in questions.values() for kind in question.key.values()}
     sheet = wrapped(f"sheet = AnswerSheet({literal(title)}, student={literal(student_id)})")
-    sources = [f"{imported('exercisegrader.student_side.answer_sheet', {'AnswerSheet', *makers})}\n\n{sheet}"]
+    sources = [f"{imported(installed().module, {'AnswerSheet', *makers})}\n\n{sheet}"]
     for number, question in questions.items():
         forms = [f"{name}={kind.asking}" for name, kind in question.key.items()]
         call = wrapped(f"sheet.asks({', '.join([literal(number), *forms])})")

@@ -180,10 +180,10 @@ def release(
         given = load(assignment)
         if nbgrader:
             from exercisegrader.nbgrader import source
-            from loopbook import notebooks
+            from exercisegrader.release import as_text
 
             path = to / f"{given.name}.ipynb"
-            write(path, notebooks.as_text(source(given)))
+            write(path, as_text(source(given)))
             console.print(f"the source notebook of {given.title!r} is {path}", markup=False)
             return
         from exercisegrader import lms

@@ -254,7 +254,7 @@ def first_integrator(model=choice(*MODELS, reference="pendulum")):
     """
     driving, against, factor, order = MODELS[model][2]
     formula = (driving - against) / factor
-    names = " ".join(["x_1 x_2 x_3", *(symbol.name for symbol in formula.free_symbols)])
+    names = " ".join(["x_1 x_2 x_3", *sorted(symbol.name for symbol in formula.free_symbols)])
     return answers(
         integrators=number(order, "", "the number of integrators", within=0),
         formula=expression(formula, "the formula in front of the first integrator", symbols=names),

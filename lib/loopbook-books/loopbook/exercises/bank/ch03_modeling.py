@@ -222,7 +222,7 @@ def sloping_walls(shape=choice(*SHAPES, reference="funnel"), outlet=choice(*OUTL
     formulas in these symbols.
     """
     (V, area), out = _volume(shape), OUTLETS[outlet][1]
-    names = " ".join(["rho", *(symbol.name for symbol in (V + area + out + q_i).free_symbols)])
+    names = " ".join(["rho", *sorted(symbol.name for symbol in (V + area + out + q_i).free_symbols)])
     return answers(
         V=expression(V, "the volume", symbols=names, unit="m³"),
         rate=expression((q_i - out) / area, "the rate of the level", symbols=names, unit="m/s"),
