@@ -39,7 +39,7 @@ from loopbook.stability import stability_map
 from loopbook.transfer import first_order, second_order
 from medians import compared, medians, seconds, shown
 from peers import IN_CONTROL, IN_NUMPY, Linear
-from test_ise import by_parseval
+from test_ise import by_frequencies, by_parseval
 
 # ------------------------------------------------------------------------------------------------ step responses
 
@@ -302,12 +302,12 @@ def the_integrals(runs: int) -> Table:
     table.add_section()
     others = {
         "a million settings, closed form": lambda: pi_first_order(2, 0.7, 1.4, many, 3.2),
-        "Smith, wrong model, boundary values": lambda: integral_of_square(wrong, "boundary value"),
-        "Smith, delays without common base, quadrature": lambda: integral_of_square(crooked, "quadrature"),
+        "Smith, wrong model, by its response": lambda: integral_of_square(wrong),
+        "Smith, delays without common base, by its response": lambda: integral_of_square(crooked),
     }
     notes = {
-        name: abs(integral_of_square(E, method) / integral_of_square(E, "response") - 1)
-        for name, E, method in zip(list(others)[1:], (wrong, crooked), ("boundary value", "quadrature"), strict=True)
+        name: abs(integral_of_square(E) / by_frequencies(E) - 1)
+        for name, E in zip(list(others)[1:], (wrong, crooked), strict=True)
     }
     compared(table, runs, others, notes)
     return table

@@ -9,7 +9,7 @@ import sympy
 from loopbook import s
 from loopbook.deadtime import Loop
 from loopbook.families import Family
-from loopbook.ise import ise
+from loopbook.ise import ise, pi_first_order
 from loopbook.pid import PID
 from loopbook.transfer import first_order
 
@@ -54,6 +54,26 @@ def test_each_member_is_the_loop_that_it_stands_for(name):
     for signal in ("T", "S", "PS", "CS"):
         expected = np.array([getattr(loop, signal).step(TIMES) for loop in loops])
         assert family.step(TIMES, signal) == pytest.approx(expected, rel=1e-8, abs=1e-8 * abs(expected).max())
+
+
+@pytest.mark.parametrize("mode", ["servo", "regulator"])
+def test_a_thousand_integrals_are_the_closed_form(mode):
+    dice = np.random.default_rng(5)
+    settings = {"Kp": 10 ** dice.uniform(-2, 0.5, 1000), "Ti": 10 ** dice.uniform(-0.5, 1.5, 1000)}
+    values = Family(first_order(2, 5, delay=4), PID(Kp, Ti), **settings).ise(mode)
+    known = pi_first_order(2, 5, 4, **settings, mode=mode, unstable=math.inf)
+    assert (np.isinf(values) == np.isinf(known)).all()
+    stable = np.isfinite(known)
+    assert 300 < stable.sum() < 900
+    assert values[stable] == pytest.approx(known[stable], rel=1e-11)
+
+
+def test_integrals_that_residues_do_not_give():
+    """Critically damped loops, whose zeros of Delta coincide; an error with a pole at zero that a dead time cancels."""
+    assert Family(1 / s, PID(Kp, Ti), Kp=[4, 2], Ti=[1, 2]).ise() == pytest.approx([1 / 8, 1 / 4], rel=1e-9)
+    lag, late = first_order(2, 5), sympy.exp(-3 * s)
+    predictor = Kp * (1 + 1 / (5 * s)) / (1 + Kp * (1 + 1 / (5 * s)) * lag * (1 - late))
+    assert Family(lag * late, predictor, Kp=[0.5, 1]).ise() == pytest.approx([3 + 2.5, 3 + 1.25], rel=1e-9)
 
 
 def test_results_have_the_shape_of_the_values():

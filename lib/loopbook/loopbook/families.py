@@ -14,7 +14,7 @@ import numpy as np
 
 from loopbook.deadtime.channels import ChannelModel
 from loopbook.deadtime.family import step_family
-from loopbook.ise import ise_family
+from loopbook.ise.family import ise_family
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.quasipolynomials.symbols import broadcast_values, with_values
 from loopbook.stability.counting import count_roots
@@ -117,7 +117,7 @@ class Family:
             above = Quasipolynomials(rows[:, 1:], above.delays)
         else:
             below = Quasipolynomials(_shifted(below.coefficients), below.delays)
-        return ise_family(above.coefficients, above.delays, below.coefficients, below.delays).reshape(self.shape)
+        return ise_family(above, below).reshape(self.shape)
 
     def step(self, times: ArrayLike, signal: str = "T") -> np.ndarray:
         """Return the responses to a unit step, with an axis for the times behind those of the values.

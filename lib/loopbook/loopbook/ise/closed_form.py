@@ -1,17 +1,13 @@
-"""The closed form for a PI loop around a lag with dead time, with symbols and in fast, accurate numbers."""
+"""The closed form for a PI loop around a lag with dead time, in fast and accurate numbers."""
 
 from __future__ import annotations
 
-import functools
 import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-import sympy
 
 from loopbook.ise.error import MODES, UnstableLoopError
-from loopbook.ise.residue_method import residue_method
-from plainmath.expressions import s
 from plainmath.validation import one_of
 
 if TYPE_CHECKING:
@@ -20,33 +16,7 @@ if TYPE_CHECKING:
 LARGEST = 2**53  # a whole number that is a float without loss
 SETTINGS = ("K", "T", "delay", "Kp", "Ti")
 
-__all__ = ["pi_first_order", "symbolic_pi_first_order"]
-
-
-@functools.cache
-def symbolic_pi_first_order(mode: str = "servo") -> sympy.Expr:
-    """Return the integral of the squared error of a PI loop around a lag with dead time, as an expression.
-
-    The process is ``K/(T*s + 1)*exp(-delay*s)``, the controller ``Kp*(1 + 1/(Ti*s))``, the setpoint or the load a unit
-    step. It is derived by `residue_method`, and valid for stable loops only.
-
-    Arguments:
-        mode: "servo" or "regulator".
-    Returns:
-        An expression in K, T, delay, Kp and Ti, positive symbols as ``sympy.symbols("K T delay Kp Ti", positive=True)``
-        makes them.
-    Raises:
-        ValueError: for another mode.
-
-    >>> K, T, delay, Kp, Ti = sympy.symbols("K T delay Kp Ti", positive=True)
-    >>> formula = symbolic_pi_first_order("servo")
-    >>> round(formula.subs({K: 1, T: 1, delay: 0.5, Kp: 1, Ti: 1}).evalf(), 6)
-    0.842898
-    """
-    K, T, delay, Kp, Ti = sympy.symbols("K T delay Kp Ti", positive=True)
-    process, controller = K * sympy.exp(-delay * s) / (T * s + 1), Kp * (1 + 1 / (Ti * s))
-    forward = 1 if one_of("mode", mode, MODES) == "servo" else -process
-    return residue_method(forward / (1 + controller * process) / s).expr
+__all__ = ["pi_first_order"]
 
 
 def pi_first_order(

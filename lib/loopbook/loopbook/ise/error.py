@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import functools
 from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
 
 from loopbook.deadtime import Loop
-from loopbook.ise.one_delay import OneDelay
 from loopbook.quasipolynomials import DelayFraction, read
 from loopbook.quasipolynomials.fraction import Quasipolynomial, plus, taylor_coefficient, times
 from loopbook.stability import StabilityLimitError, unstable_roots
@@ -87,7 +85,7 @@ class ErrorFraction:
             D = {delay: part[pole:] for delay, part in D.items()}
         found = cls(fraction, N, D, pole, first)
         try:
-            unstable = found._unstable()
+            unstable = unstable_roots(D)
         except StabilityLimitError:
             raise UnstableLoopError(
                 f"E(s) = {fraction.expr} is not stable: it has poles on the imaginary axis"
@@ -99,29 +97,10 @@ class ErrorFraction:
                 raise ValueError(f"the error does not vanish: E(s) = {fraction.expr} has a pole at zero")
         return found
 
-    def _unstable(self) -> float:
-        """How many poles lie in the right half-plane."""
-        number = self.one_delay.unstable if self.one_delay else None
-        if number is None:
-            number = unstable_roots(self.D)
-        return number
-
-    @functools.cached_property
-    def one_delay(self) -> OneDelay | None:
-        """What the crossings of the axis say about D, if it has one dead time or none."""
-        if len(self.D) > 2:
-            return None
-        return OneDelay(self.D[ZERO], *next(((part, delay) for delay, part in self.D.items() if delay), ((), ZERO)))
-
     @property
     def order(self) -> int:
         """The degree of D."""
         return len(self.D[ZERO]) - 1
-
-    @property
-    def is_neutral(self) -> bool:
-        """Whether the highest derivative has a dead time."""
-        return any(delay and len(part) == self.order + 1 for delay, part in self.D.items())
 
     @property
     def speed(self) -> float:
@@ -129,18 +108,8 @@ class ErrorFraction:
         leading = abs(self.D[ZERO][-1])
         sizes = [sum(abs(part[k]) for part in self.D.values() if k < len(part)) for k in range(self.order)]
         found = [(size / leading) ** (1 / (self.order - k)) for k, size in enumerate(sizes)]
-        return max(found, default=self._of_dead_times)
-
-    @property
-    def mean_speed(self) -> float:
-        """The geometric mean of the poles, the dead times left out of account."""
-        lowest = abs(sum(part[0] for part in self.D.values()) / self.D[ZERO][-1])
-        return lowest ** (1 / self.order) if self.order else self._of_dead_times
-
-    @property
-    def _of_dead_times(self) -> float:
         longest = float(max((*self.N, *self.D)))
-        return 1 / longest if longest else 1.0
+        return max(found, default=1 / longest if longest else 1.0)
 
     def arrays(self, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Coefficients of N and D in s/speed, a row for each dead time, and the dead times, as arrays of floats."""
@@ -153,7 +122,3 @@ class ErrorFraction:
             return table, np.array([float(delay) * speed for delay in parts])
 
         return *rows(self.N, order, 0), *rows(self.D, self.order + 1, self.pole)
-
-    def need_retarded(self) -> None:
-        if self.is_neutral:
-            raise NotApplicableError("the highest derivative has a dead time")

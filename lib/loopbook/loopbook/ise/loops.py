@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-from loopbook.ise.boundary_values import by_boundary_values
 from loopbook.ise.error import ErrorFraction, NotApplicableError, error_of
-from loopbook.ise.quadrature import by_quadrature
 from loopbook.ise.residues import by_residues
 from loopbook.ise.responses import by_response
 from plainmath.validation import one_of
 
 __all__ = ["integral_of_square", "ise"]
 
-METHODS = {
-    "residues": by_residues,
-    "boundary value": by_boundary_values,
-    "quadrature": by_quadrature,
-    "response": by_response,
-}
+METHODS = {"residues": by_residues, "response": by_response}
 
 
 def ise(
@@ -51,19 +44,12 @@ def ise(
 def integral_of_square(E: object, method: str | None = None) -> float:
     """Return the integral of e(t)^2 from zero to infinity, for the transform E(s) of e(t).
 
-    The methods, of which the first that can be applied is taken unless one is named:
+    There are two methods, of which the first that can be applied is taken unless one is named:
 
-    - "residues": one dead time, or none; the formula of `residue_method` in floating point, with a bound of the digits
-      that it loses where zeros lie close together, or the loop near its limit: then again with 120 digits.
-    - "boundary value": all dead times multiples of one. The autocorrelation of the response of 1/D, D being the
-      denominator, fulfils linear differential equations with conditions at both ends. They are solved in three units
-      of time, and the results have to agree to 2e-11.
-    - "quadrature": any dead times. Parseval's integral along the frequencies, in intervals in which no pole is near;
-      poles very near to the axis are taken out, and integrated by a formula. Relative error below 1e-9.
-    - "response": from the exact step response, followed until its slowest modes are left, as in `criteria`; relative
-      error about 1e-11.
-
-    The second and the third need a retarded system, in which the highest derivative has no dead time.
+    - "residues": one dead time, or none; the formula of `residue_method` in floating point. It does not apply where it
+      may lose more than five digits of sixteen, because zeros lie close together or the loop is near its limit.
+    - "response": any dead times. The exact step response is followed until its slowest modes are left, as in
+      `criteria`; the relative error is about 1e-11.
 
     Arguments:
         E: expression in `s` with numbers, a `System`, or a system of python-control.
@@ -79,8 +65,8 @@ def integral_of_square(E: object, method: str | None = None) -> float:
     >>> integral_of_square(1 / (s + 1))
     0.5
     >>> E = 1 / (s + sympy.exp(-s) + sympy.exp(-2 * s) / 5)
-    >>> [round(integral_of_square(E, method), 8) for method in ("boundary value", "quadrature", "response")]
-    [2.5688072, 2.5688072, 2.5688072]
+    >>> round(integral_of_square(E), 8)
+    2.5688072
     """
     if method is not None:
         one_of("method", method, METHODS)

@@ -30,12 +30,10 @@ class Modes:
 
     Attributes:
         poles, residues: arrays, of each pair the upper pole.
-        mirrored: the values E(-pole) of the error that they are modes of.
     """
 
     poles: np.ndarray
     residues: np.ndarray
-    mirrored: np.ndarray | None = None
 
     @property
     def weights(self) -> np.ndarray:
@@ -223,7 +221,7 @@ def slow_modes(fraction: ErrorFraction, rate: float) -> Modes | None:
     exact = [_exact(fraction, p * unit) for p in poles]
     if any(e is None for e in exact):
         return None
-    return Modes(*np.array(exact, dtype=complex).reshape(-1, 3).T)
+    return Modes(*np.array(exact, dtype=complex).reshape(-1, 2).T)
 
 
 def _undelayed(delays) -> int:
@@ -281,8 +279,8 @@ def _roots_right_of_line(below, delays, top: float, count: int):
     return None
 
 
-def _exact(fraction: ErrorFraction, pole: complex) -> tuple[complex, complex, complex] | None:
-    """A pole p, from one that is nearly that, its residue and E(-p), each with all digits of floating point."""
+def _exact(fraction: ErrorFraction, pole: complex) -> tuple[complex, complex] | None:
+    """A pole, from one that is nearly that, and its residue, each with all digits of floating point."""
     import mpmath
 
     def value(parts, p, k):
@@ -305,5 +303,4 @@ def _exact(fraction: ErrorFraction, pole: complex) -> tuple[complex, complex, co
         if abs(p - mpmath.mpmathify(pole)) > 1e-5 * abs(p) or not p.real < 0:
             return None
         residue = value(fraction.N, p, 0) / value(fraction.D, p, 1) / p**fraction.pole
-        mirrored = value(fraction.N, -p, 0) / value(fraction.D, -p, 0) / (-p) ** fraction.pole
-        return complex(p), complex(residue), complex(mirrored)
+        return complex(p), complex(residue)

@@ -1,136 +1,110 @@
-"""The residue method in numbers, for one dead time and processes of any order, with more digits where it needs them."""
+"""The residue method in numbers, for one dead time and denominators of any order, of many errors at once.
+
+Each integral comes with a bound of the digits that it loses where zeros lie close together, or the loop near its limit.
+"""
 
 from __future__ import annotations
-
-import cmath
-import math
-from fractions import Fraction
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from loopbook.ise.error import ErrorFraction, NotApplicableError
-from loopbook.ise.one_delay import ROUNDING, OneDelay, size, squared, value
 from loopbook.ise.residue_method import both_residues
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
+__all__ = ["by_residues", "sums_of_residues"]
 
-    import mpmath
-
-MOST_DIGITS_LOST = 1e-11  # the relative error that residues may have before they are taken with more digits
-DIGITS = 120
-APART = 40  # digits after which coefficients are changed, so that multiple zeros come apart
-MOST_ORDER = 30  # of a denominator, for which zeros are sought with that many digits
-MOST_STEPS = 300
+ROUNDING = 2.3e-16
+MOST_DIGITS_LOST = 1e-11  # the relative error that a sum of residues may have
 
 
 def by_residues(fraction: ErrorFraction) -> float:
     """One dead time: minus the sum of Re F(p) over the zeros p of Delta, one of each p and -p (see `ResidueMethod`)."""
-    later = {delay for delay in (*fraction.N, *fraction.D) if delay}
-    if len(later) > 1:
+    if len({delay for delay in (*fraction.N, *fraction.D) if delay}) > 1:
         raise NotApplicableError("there are different dead times")
-    delay = next(iter(later), Fraction(0))
-    parts = fraction.D.get(0, ()), fraction.N.get(0, ())
-    parts += (fraction.D.get(delay, ()), fraction.N.get(delay, ())) if delay else ((), ())
-    total = None
-    if not fraction.pole:
-        one_delay = fraction.one_delay if len(fraction.D) > 1 or not delay else OneDelay(parts[0], (), delay)
-        total = _in_floating_point(one_delay, *parts)
-    return _with_many_digits(parts, delay, fraction.pole, fraction.mean_speed) if total is None else total
+    if fraction.pole:
+        raise NotApplicableError("a pole at zero is cancelled by dead times only")
+    speed = fraction.speed
+    value = float(sums_of_residues(*(array[..., None] for array in fraction.arrays(speed)))[0])
+    if np.isnan(value):
+        raise NotApplicableError("the residues lose too many digits")
+    return value * speed
 
 
-def _in_floating_point(one_delay: OneDelay, *parts: Sequence[int]) -> float | None:
-    """The sum; None if too many digits are lost."""
-    zeros = one_delay.zeros
-    if zeros is None:
-        return None
-    delay, total, lost = one_delay.delay, 0.0, 0.0
-    try:
-        A, B, C, D = ([c / one_delay.leading for c in part] for part in parts)
-        for x, radius, slope in zeros:
-            p = cmath.sqrt(x)
-            at_A, at_B, at_C, at_D = (value(part, p) for part in (A, B, C, D))
-            z = cmath.exp(-delay * p)
-            below = at_A + at_C * z
-            # dDelta/ds = 2 s dDelta/d(s^2)
-            share = both_residues(at_A, at_B, at_C, at_D, value(B, -p), value(D, -p), z) / (below * 2 * p * slope)
-            total -= share.real
-            # what polynomials lose where their terms cancel is seen from the sizes of the terms
-            terms = size(A, abs(p)) + size(C, abs(p)) * abs(z)
-            near = terms * (1 + abs(p) * delay) / abs(below)
-            sensitivity = radius / abs(x) / (4 * len(zeros) ** 2 * ROUNDING)
-            lost += 4e-16 * abs(share) * ((1 + sensitivity) ** 2 + near * (1 + sensitivity))
-    except (OverflowError, ZeroDivisionError):
-        return None
-    return total if math.isfinite(total) and lost <= MOST_DIGITS_LOST * total else None
+def sums_of_residues(
+    above: np.ndarray, above_delays: np.ndarray, below: np.ndarray, below_delays: np.ndarray
+) -> np.ndarray:
+    """Return the integrals of e(t)^2 for stable errors; nan where there are several dead times or digits are lost.
+
+    Arguments:
+        above, below: coefficients of numerators and denominators, arrays [part, power, point].
+        above_delays, below_delays: the dead times, arrays [part, point].
+    """
+    used = [(delays > 0) & part.any(axis=1) for part, delays in ((above, above_delays), (below, below_delays))]
+    every = np.concatenate([np.where(u, d, 0) for u, d in zip(used, (above_delays, below_delays), strict=True)])
+    delay = every.max(axis=0)
+    fits = ((every == 0) | (every == delay)).all(axis=0)
+    (A, C), (B, D) = (
+        [(part * which[:, None]).sum(axis=0) for which in (~late, late)]
+        for part, late in ((below, used[1]), (above, used[0]))
+    )
+    order = len(A) - 1
+    if not order:
+        return np.full(len(delay), np.nan)
+    with np.errstate(all="ignore"):
+        A, B, C, D = (part / A[-1] for part in (A, B, C, D))
+        Delta, sizes = np.zeros((2, order + 1, len(delay)))
+        for part, sign in ((A, 1), (C, -1)):
+            for i in range(order + 1):
+                for j in range(i % 2, order + 1, 2):
+                    product = part[i] * part[j]
+                    Delta[(i + j) // 2] += sign * (-1) ** j * product
+                    sizes[(i + j) // 2] += abs(product)
+        x, radius, slope = _zeros(Delta, sizes)
+        fits &= (np.isfinite(x) & (radius <= 1e-3 * abs(x))).all(axis=0)
+        x = np.where(fits, x, 1.0)
+        p = np.sqrt(x)
+        at_A, at_B, at_C, at_D = (_value(part, p) for part in (A, B, C, D))
+        z = np.exp(-delay * p)
+        close = at_A + at_C * z
+        # dDelta/ds = 2 s dDelta/d(s^2)
+        shares = both_residues(at_A, at_B, at_C, at_D, _value(B, -p), _value(D, -p), z) / (close * 2 * p * slope)
+        total = -shares.real.sum(axis=0)
+        # what polynomials lose where their terms cancel is seen from the sizes of the terms
+        terms = _value(abs(A), abs(p)) + _value(abs(C), abs(p)) * abs(z)
+        near = terms * (1 + abs(p) * delay) / abs(close)
+        sensitivity = radius / abs(x) / (4 * order**2 * ROUNDING)
+        lost = 4e-16 * (abs(shares) * ((1 + sensitivity) ** 2 + near * (1 + sensitivity))).sum(axis=0)
+        return np.where(fits & np.isfinite(total) & (lost <= MOST_DIGITS_LOST * total), total, np.nan)
 
 
-def _with_many_digits(parts: tuple[Sequence[int], ...], delay: Fraction, pole: int, unit: float) -> float:
-    """The same with so many digits that zeros which coincide may be drawn apart, and a pole at zero from zero."""
-    import mpmath
-
-    order = len(parts[0]) - 1
-    if order + pole > MOST_ORDER:
-        raise NotApplicableError(f"Delta has more than {MOST_ORDER} zeros")
-    with mpmath.workdps(DIGITS):
-        tiny, leading = mpmath.mpf(10) ** -APART, mpmath.mpf(parts[0][-1])
-        # in a unit of time in which the numbers are of one size
-        A, B, C, D = (
-            [c / leading * mpmath.mpf(unit) ** (k - order - more) for k, c in enumerate(part)]
-            for part, more in zip(parts, (0, pole, 0, pole), strict=True)
-        )
-        late = mpmath.mpf(delay.numerator) / delay.denominator * unit
-        for _ in range(pole):
-            A, C = (
-                [a + tiny * b for a, b in zip([0, *part], [*part, 0], strict=True)] if part else part for part in (A, C)
-            )
-        A = [c * (1 + tiny * math.sin(1 + 2 * k)) for k, c in enumerate(A)]
-        Delta = squared(A, C)
-        derivative = [k * c for k, c in enumerate(Delta)][1:]
-        total, largest = mpmath.mpf(0), mpmath.mpf(0)
-        for x in _zeros(Delta):
-            p = mpmath.sqrt(x)
-            at_A, at_B, at_C, at_D, B_mirrored, D_mirrored, slope = (
-                mpmath.polyval(part[::-1], point) if part else mpmath.mpf(0)
-                for part, point in ((A, p), (B, p), (C, p), (D, p), (B, -p), (D, -p), (derivative, x))
-            )
-            z = mpmath.exp(-late * p)
-            share = both_residues(at_A, at_B, at_C, at_D, B_mirrored, D_mirrored, z)
-            share /= (at_A + at_C * z) * 2 * p * slope
-            total -= share.real
-            largest = max(largest, abs(share))
-        if not (total > 0 and largest < total * mpmath.mpf(10) ** (DIGITS - APART - 20)):
-            raise NotApplicableError("zeros of Delta lie too close together")
-        return float(total * unit)
+def _value(part, x):
+    """The values of polynomials, one for each point, the lowest power first."""
+    total = 0.0
+    for row in part[::-1]:
+        total = total * x + row
+    return total
 
 
-def _zeros(polynomial: list[mpmath.mpf]) -> list[mpmath.mpc]:
-    """All zeros of a polynomial with simple ones, lowest power first, by the method of Ehrlich and Aberth."""
-    import mpmath
+def _zeros(coefficients, sizes):
+    """The zeros of polynomials, radii of discs in which there is one, and the slopes there: arrays [zero, point].
 
-    n = len(polynomial) - 1
-    largest = max(map(abs, polynomial))
-    starts = np.roots([float(c / largest) for c in reversed(polynomial)])
-    if len(starts) < n:
-        raise NotApplicableError("Delta has a zero at infinity")
-    x = [
-        mpmath.mpmathify(complex(start)) * (1 + mpmath.mpf("1e-9") * mpmath.expjpi(0.3 + k))
-        for k, start in enumerate(starts)
-    ]
-    x = [p if p else mpmath.mpf("1e-9") * (k + 1) for k, p in enumerate(x)]
-    row, slopes = polynomial[::-1], [k * c for k, c in enumerate(polynomial)][:0:-1]
-    end = mpmath.mpf(10) ** (50 - DIGITS)  # zeros that nearly coincide are not sharper
-    for _ in range(MOST_STEPS):
-        moved = False
-        for k, p in enumerate(x):
-            slope = mpmath.polyval(slopes, p)
-            step = mpmath.polyval(row, p)
-            if not step:
-                continue
-            step = step / (slope - step * sum(1 / (p - q) for m, q in enumerate(x) if m != k))
-            x[k] = p - step
-            moved = moved or abs(step) > end * abs(p)
-        if not moved:
-            return x
-    raise NotApplicableError("the zeros of Delta were not found")
+    The discs are those of Smith (1970), after Gerschgorin; `sizes` are those of the terms of each coefficient, by which
+    rounding enlarges them.
+    """
+    n, points = len(coefficients) - 1, coefficients.shape[1]
+    unit = abs(coefficients[0] / coefficients[-1]) ** (1 / n)
+    unit = np.where((unit > 0) & np.isfinite(unit), unit, 1.0)  # where the product of the zeros is 1
+    powers = np.arange(n + 1)[:, None]
+    scaled = coefficients / coefficients[-1] * unit ** (powers - n)
+    sizes = sizes / abs(coefficients[-1]) * unit ** (powers - n)
+    scaled = np.where(np.isfinite(scaled).all(axis=0), scaled, (powers == n) * 1.0 + (powers == 0))
+    companion = np.zeros((points, n, n))
+    companion[:, np.arange(1, n), np.arange(n - 1)] = 1
+    companion[:, :, -1] = -scaled[:-1].T
+    x = np.linalg.eigvals(companion).T.astype(complex)
+    step = _value(scaled, x) / _value(scaled[1:] * powers[1:], x)
+    x = np.where(abs(step) < 1e-6 * abs(x), x - step, x)
+    apart = x[:, None] - x[None]
+    apart[np.arange(n), np.arange(n)] = 1
+    slope = apart.prod(axis=1)
+    left = abs(_value(scaled, x)) + 4 * n * ROUNDING * _value(sizes, abs(x))
+    return x * unit, n * left / abs(slope) * unit, slope * coefficients[-1] * unit ** (n - 1)
