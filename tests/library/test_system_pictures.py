@@ -460,3 +460,15 @@ def test_pictures_are_small_and_have_the_colours_of_the_collection():
     image = nyquist_plot(LOOP, margins=OF_INTEGRATOR).png()
     assert image[:4] == b"\x89PNG"
     assert len(image) < 40_000
+
+
+def test_the_pictures_of_systems_and_loops_take_their_ranges():
+    for of in (LOOP, System(INTEGRATOR)):
+        low, high = of.bode((0.02, 30)).figure.axes[0].get_xlim()
+        assert (low, high) == (0.02, 30)
+        whole, part = (max(abs(of.nyquist(omega, unit="min").axes.lines[3].get_xdata())) for omega in (None, (1, 2)))
+        assert part < whole
+        assert of.plot_step(7).figure.axes[0].get_xlim()[1] == pytest.approx(7, rel=0.1)
+    marked, plain = (System(1 / (s**2 + s + 1)).plot_step(info=info).alt for info in (True, False))
+    assert marked.startswith(plain)
+    assert "overshoot" in marked

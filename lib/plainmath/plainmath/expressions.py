@@ -32,6 +32,7 @@ _FUNCTIONS = {
 _NAMES = {"s": s, "t": t, "pi": sympy.pi, "oo": sympy.oo, "I": sympy.I}
 _WITH_LISTS = (sympy.Derivative, sympy.Integral, sympy.Subs)
 _GROWING = (sympy.factorial, sympy.gamma)
+POINTS = 9  # at which a difference is looked at
 _OPERATORS = {
     ast.Add: lambda a, b: a + b,
     ast.Sub: lambda a, b: a - b,
@@ -198,14 +199,14 @@ def _opaque(*expressions):
     return tuple(replace(expression) for expression in expressions)
 
 
-def _nonzero_somewhere(difference, points=9):
+def _nonzero_somewhere(difference):
     """Whether a difference is not zero at one of several random points; the same points every time."""
     symbols = sorted(difference.free_symbols, key=lambda symbol: (symbol.name, str(symbol.assumptions0)))
     # dummify: two symbols of one name may stand in a difference
     terms = sympy.lambdify(symbols, sympy.Add.make_args(sympy.expand(difference)), [_NUMERIC, "mpmath"], dummify=True)
     dice = random.Random(4)
     judged = 0
-    for attempt in range(4 * points):
+    for attempt in range(4 * POINTS):
         # ordinary numbers first, then small and large ones: a limiter or a switch shows at large values only
         point = [_random_value(symbol, (0, -6, 6)[attempt % 3], dice) for symbol in symbols]
         sizes = _sum_and_largest(terms, point)
@@ -215,7 +216,7 @@ def _nonzero_somewhere(difference, points=9):
         if sizes[0] > sizes[1] * mpmath.mpf("1e-150"):
             return True
         judged += 1
-        if judged == points:
+        if judged == POINTS:
             return False
     if judged == 0:
         raise ValueError(f"cannot compare the two: {difference} has no value at any point")

@@ -418,13 +418,13 @@ class _Radau:
 
 
 @functools.cache
-def radau(count: int = NODES) -> _Radau:
-    return _Radau(count)
+def radau() -> _Radau:
+    return _Radau(NODES)
 
 
-def interpolation(places: np.ndarray, count: int = NODES) -> np.ndarray:
+def interpolation(places: np.ndarray) -> np.ndarray:
     """The matrix from values at the nodes to those at some places."""
-    rule = radau(count)
+    rule = radau()
     differences = np.asarray(places)[:, None] - rule.nodes
     differences[differences == 0] = 1e-200
     weights = rule.barycentric / differences

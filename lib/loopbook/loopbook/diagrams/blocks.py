@@ -230,13 +230,13 @@ def delay(time: str = r"\tau") -> _Block:
     return _Block(f"Delay\n{mathematics(time)}", f"delay {time}")
 
 
-def switch(upper: str = "auto", lower: str = "manual") -> _Block:
-    """Return a switch that lets one of two signals through, the upper one as it is drawn; for `grid_diagram`.
+def switch() -> _Block:
+    """Return a switch that lets one of two signals through, auto as it is drawn, or manual; for `grid_diagram`.
 
     >>> switch()
     [switch between auto and manual]
     """
-    return _Switch(upper, lower)
+    return _Switch("auto", "manual")
 
 
 def disturbance(name: str, *path: Item, sign: str = "+", side: str = "above") -> _Entry:
@@ -283,8 +283,8 @@ def sum_of(*paths: Sequence[Item], signs: str | None = None) -> _Paths:
         ValueError: for less than two or more than three paths, or for signs that do not fit.
 
     >>> G, H = sympy.symbols("G H")
-    >>> sum_of(["u_1", G], ["u_2", H])
-    (+ u_1 → [G] + u_2 → [H])
+    >>> sum_of(["u_1", G], ["u_2", H], signs="+-")
+    (+ u_1 → [G] - u_2 → [H])
     """
     return _Paths(paths, signs, branch=False)
 

@@ -20,6 +20,7 @@ FONT_SIZE = 12
 LINE = 1.1  # points
 HEAD = {"arrowlength": 0.26, "arrowwidth": 0.19}
 RADIUS = 0.22  # of a summing junction
+MARGIN = 0.1  # around the lines of a drawing
 LIQUID = "#d9d9d9"
 
 
@@ -170,11 +171,11 @@ class Drawing:
             axes.set_title(title or "")
         return Picture(figure, plain_words(f"{title}: {words}" if title else words))
 
-    def _extent(self, axes, margin=0.1):
+    def _extent(self, axes):
         """Left, right, bottom and top of the drawing: schemdraw guesses the width of mathematics from its source, so
         the lines and the labels as they are decide how wide the drawing is."""
         box, lines = self.schemdraw.get_bbox(), axes.dataLim
-        xs, ys = [lines.xmin - margin, lines.xmax + margin], [box.ymin - margin, box.ymax + margin]
+        xs, ys = [lines.xmin - MARGIN, lines.xmax + MARGIN], [box.ymin - MARGIN, box.ymax + MARGIN]
         for text in axes.texts:
             (x, y), (width, height) = text.get_position(), text_size(text.get_text(), text.get_fontsize())
             left = x - width * {"left": 0, "center": 0.5, "right": 1}[text.get_ha()]

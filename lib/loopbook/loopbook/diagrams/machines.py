@@ -114,24 +114,10 @@ def mass_spring_damper(
     return drawing.picture(title, f"mass {mass} on {where} by a spring {spring} and a damper {damper}, {moved}")
 
 
-def motor_with_load(
-    current: str = "i_m",
-    torque: str = "T_1",
-    inertia: str = r"J",
-    angle: str = r"\theta",
-    radius: str = "r",
-    force: str = "F_1",
-    mass: str = "m",
-    load: str = "F_L",
-    position: str = "y",
-    title: str | None = None,
-) -> Picture:
-    r"""Draw a motor that moves a load along a line, by a gear and a rod.
+def motor_with_load(title: str | None = None) -> Picture:
+    """Draw a motor that moves a load along a line, by a gear and a rod.
 
     Arguments:
-        current, torque, inertia, angle: mathematics at the motor and its shaft.
-        radius, force: at the gear wheel, and at the rod that it drives.
-        mass, load, position: of what moves along the line.
         title: written above the drawing.
     Returns:
         A `Picture`, which a notebook shows as the value of a cell.
@@ -141,15 +127,15 @@ def motor_with_load(
     """  # noqa: E501
     drawing, wheel, r = Drawing(), 4.6, 0.9
     drawing.wire((-1.4, 1.2), (0, 1.2), arrow="->")
-    drawing.text(-0.8, 1.32, mathematics(current), valign="bottom")
+    drawing.text(-0.8, 1.32, "$i_m$", valign="bottom")
     drawing.box(0, 1.2, 2, 1.5, "Motor")
-    drawing.text(1, 2.05, mathematics(inertia), valign="bottom")
+    drawing.text(1, 2.05, "$J$", valign="bottom")
     for side in (-0.06, 0.06):
         drawing.wire((2, 1.2 + side), (wheel, 1.2 + side))
     # the load's torque acts against the turning
-    for x, turning, name in ((2.4, "ccw", angle), (3.15, "cw", torque)):
+    for x, turning, name in ((2.4, "ccw", r"$\theta$"), (3.15, "cw", "$T_1$")):
         drawing.arc(x, 1.2, 0.4, 1.1, -70, 70, arrow=turning)
-        drawing.text(x, 1.9, mathematics(name), valign="bottom")
+        drawing.text(x, 1.9, name, valign="bottom")
     # the wheel, its teeth and the rack, which is the upper side of the rod
     corners = []
     for n in range(40):
@@ -158,37 +144,30 @@ def motor_with_load(
     drawing.area(corners, fill="white", zorder=3)
     drawing.circle(wheel, 1.2, 0.08, fill="black", zorder=4)
     drawing.wire((wheel, 1.2), (wheel + 0.62, 1.2 + 0.62), arrow="->", width=0.8, zorder=4)
-    drawing.text(wheel + 0.45, 1.22, mathematics(radius))
+    drawing.text(wheel + 0.45, 1.22, "$r$")
     top = 1.2 - r - 0.07
     drawing.area([(3.2, top - 0.35), (3.2, top), (8, top), (8, top - 0.35)], fill="white")
     drawing.wire((wheel - 0.2, top - 0.6), (wheel + 1.2, top - 0.6), arrow="->")
-    drawing.text(wheel - 0.35, top - 0.6, mathematics(force), halign="right")
-    drawing.box(8, top - 0.18, 1.5, 1.5, mathematics(mass))
+    drawing.text(wheel - 0.35, top - 0.6, "$F_1$", halign="right")
+    drawing.box(8, top - 0.18, 1.5, 1.5, "$m$")
     drawing.wire((11.1, top - 0.18), (9.5, top - 0.18), arrow="->", width=1.7)
-    drawing.text(10.5, top - 0.05, mathematics(load), valign="bottom")
-    _axis(drawing, 8, top - 1.1, 2.4, position)
+    drawing.text(10.5, top - 0.05, "$F_L$", valign="bottom")
+    _axis(drawing, 8, top - 1.1, 2.4, "y")
     words = (
-        f"a motor with current {current} and inertia {inertia} turns a gear wheel of radius {radius}, which moves a "
-        f"rod with load {mass} against the force {load} to the position {position}"
+        "a motor with current i_m and inertia J turns a gear wheel of radius r, which moves a rod with load m against "
+        "the force F_L to the position y"
     )
     return drawing.picture(title, words)
 
 
 def hoist(
-    left: str = "m_1",
-    right: str = "m_2",
-    inertia: str = "J",
-    radius: str = "r",
-    torque: str = "T",
-    acceleration: str = "a",
-    title: str | None = None,
+    left: str = "m_1", right: str = "m_2", inertia: str = "J", radius: str = "r", title: str | None = None
 ) -> Picture:
     """Draw two masses on the two ends of a rope over a drum, and the torque at the drum that lifts the left one.
 
     Arguments:
         left, right: mathematics at the two masses.
-        inertia, radius, torque: mathematics at the drum.
-        acceleration: of the left mass, upward.
+        inertia, radius: mathematics at the drum.
         title: written above the drawing.
     Returns:
         A `Picture`, which a notebook shows as the value of a cell.
@@ -203,35 +182,26 @@ def hoist(
     drawing.text(0.2, -0.75, mathematics(radius), halign="right")
     drawing.text(0, 0.6, mathematics(inertia))
     drawing.arc(0, 0, 2 * r + 0.7, 2 * r + 0.7, 55, 125, arrow="cw")
-    drawing.text(0, r + 0.5, mathematics(torque), valign="bottom")
+    drawing.text(0, r + 0.5, "$T$", valign="bottom")
     for x, length, mass, height in ((-r, 2.4, left, 1.7), (r, 1.7, right, 1.2)):
         drawing.wire((x, 0), (x, -length))
         drawing.box(x - 1.15, -length - height / 2, 2.3, height, mathematics(mass))
     drawing.wire((-r - 1.6, -4), (-r - 1.6, -2.5), arrow="->")
-    drawing.text(-r - 1.8, -3.2, mathematics(acceleration), halign="right")
+    drawing.text(-r - 1.8, -3.2, "$a$", halign="right")
     words = (
         f"a rope over a drum of inertia {inertia} and radius {radius}, with the masses {left} on its left and {right} "
-        f"on its right; the torque {torque} lifts {left} with {acceleration}"
+        f"on its right; the torque T lifts {left} with a"
     )
     return drawing.picture(title, words)
 
 
-def widening_tank(
-    power: float,
-    width: str = "R",
-    height: str = "H",
-    level: str = "h",
-    inflow: str = "q_i",
-    outflow: str = "q_o",
-    title: str | None = None,
-) -> Picture:
+def widening_tank(power: float, width: str = "R", outflow: str = "q_o", title: str | None = None) -> Picture:
     """Draw the section of a tank whose width grows with a power of the height, from a tip at its bottom.
 
     Arguments:
         power: 1 for straight walls, below it for a bowl, above it for a goblet.
         width: mathematics at half of the width of the rim, as a radius.
-        height, level: mathematics at the heights of rim and liquid.
-        inflow, outflow: mathematics at the arrows into the tank and out of it.
+        outflow: mathematics at the arrow out of the tank.
         title: written above the drawing.
     Returns:
         A `Picture`, which a notebook shows as the value of a cell.
@@ -251,22 +221,22 @@ def widening_tank(
     drawing.wire((-wet[-1][0], surface), (wet[-1][0], surface), width=0.8)
     drawing.wire(*[(-x, y) for x, y in reversed(wall)], *wall, width=1.7)
     # the heights, as dimension lines
-    for x, y, label in ((half + 0.5, surface, level), (half + 1.4, rim, height)):
+    for x, y, label in ((half + 0.5, surface, "$h$"), (half + 1.4, rim, "$H$")):
         drawing.wire((x, 0), (x, y), arrow="<->", width=0.8)
         drawing.wire((x - 0.2, y), (x + 0.2, y), width=0.8)
-        drawing.text(x + 0.15, y / 2, mathematics(label), halign="left")
+        drawing.text(x + 0.15, y / 2, label, halign="left")
     drawing.wire((half + 0.3, 0), (half + 1.6, 0), width=0.8)
     drawing.wire((0, rim + 0.3), (half, rim + 0.3), arrow="<->", width=0.8)
     for x in (0, half):
         drawing.wire((x, rim + 0.1), (x, rim + 0.5), width=0.8)
     drawing.text(half / 2, rim + 0.4, mathematics(width), valign="bottom")
     drawing.wire((-half - 1.2, rim + 0.9), (-0.6 * half, rim + 0.9), (-0.6 * half, rim - 0.3), arrow="->", width=1.7)
-    drawing.text(-half - 0.7, rim + 1, mathematics(inflow), valign="bottom")
+    drawing.text(-half - 0.7, rim + 1, "$q_i$", valign="bottom")
     drawing.wire((0, 0), (0, -0.5), (1.6, -0.5), arrow="->", width=1.7)
     drawing.text(1.1, -0.4, mathematics(outflow), valign="bottom")
     words = (
-        f"section of a tank, at the height {height} of the half width {width}, with liquid up to {level}; {inflow} "
-        f"flows in, {outflow} out at the bottom"
+        f"section of a tank, at the height H of the half width {width}, with liquid up to h; q_i flows in, {outflow} "
+        f"out at the bottom"
     )
     return drawing.picture(title, words)
 

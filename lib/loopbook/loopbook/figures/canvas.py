@@ -19,7 +19,7 @@ LEFT, RIGHT, BELOW, ABOVE, BETWEEN = 0.66, 0.12, 0.5, 0.32, 0.14
 MARGIN = 0.06  # inches of white around what is drawn
 
 
-def panels(heights: Sequence[float], width: float = WIDTH) -> tuple[Figure, list[Axes]]:
+def panels(heights: Sequence[float]) -> tuple[Figure, list[Axes]]:
     """Return a figure with panels of these heights above one another, in inches, and a common horizontal axis.
 
     The panels stay where they are: what the axes need outside is not negotiated but sticks out, and is cut out with the
@@ -34,10 +34,10 @@ def panels(heights: Sequence[float], width: float = WIDTH) -> tuple[Figure, list
 
     inside, gaps = sum(heights), BETWEEN * (len(heights) - 1)
     tall = BELOW + inside + gaps + ABOVE
-    figure = Figure(figsize=(width, tall), dpi=DOTS_PER_INCH)
+    figure = Figure(figsize=(WIDTH, tall), dpi=DOTS_PER_INCH)
     # it measures texts; the canvas that a figure has by itself looks for this one every time
     FigureCanvasAgg(figure).get_renderer().mathtext_parser = formulas()
-    places = {"left": LEFT / width, "right": 1 - RIGHT / width, "bottom": BELOW / tall, "top": 1 - ABOVE / tall}
+    places = {"left": LEFT / WIDTH, "right": 1 - RIGHT / WIDTH, "bottom": BELOW / tall, "top": 1 - ABOVE / tall}
     places |= {"height_ratios": heights, "hspace": BETWEEN / (inside / len(heights))}
     grid = figure.subplots(len(heights), sharex=True, squeeze=False, gridspec_kw=places)
     for axes in grid[:, 0]:

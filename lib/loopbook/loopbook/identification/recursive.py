@@ -24,16 +24,14 @@ class RecursiveLeastSquares:
     """Least squares estimate of parameters, y = regressors times parameters, brought up to date with each sample.
 
     The weight of a sample falls by the forgetting factor with each newer one: with 0.98 about the last 50 count,
-    1/(1 - 0.98). Where nothing moves, there is nothing to learn, and a forgetting estimator becomes ever less certain;
-    `largest` stops that.
+    1/(1 - 0.98). Where nothing moves, there is nothing to learn, and a forgetting estimator becomes ever less certain,
+    until it is as uncertain as at the beginning: then it forgets no more.
 
     Arguments:
         count: number of parameters.
         forgetting: forgetting factor, above 0 and at most 1; 1 forgets nothing.
         initial: first estimate, zeros if not given.
         uncertainty: of the first estimate: a large number (in squares of the parameters) if it is only a guess.
-        largest: of the sum of the uncertainties; beyond that the estimator does not forget. It is that at the beginning
-            if not given.
     Attributes:
         parameters: the estimate, an array.
         covariance: the uncertainty of the estimate, up to the variance of the noise as a factor; a matrix.
@@ -56,7 +54,6 @@ class RecursiveLeastSquares:
         forgetting: Number = 1.0,
         initial: ArrayLike | None = None,
         uncertainty: Number = 1e6,
-        largest: Number | None = None,
     ):
         count = int(number("the number of parameters", count, "1, 2, 3 ...", lambda x: x >= 1 and x == int(x)))
         self.forgetting = number(
@@ -66,7 +63,7 @@ class RecursiveLeastSquares:
         if self.parameters.shape != (count,):
             raise ValueError(f"{self.parameters.size} initial parameters for a count of {count}")
         self.covariance = positive("the uncertainty", uncertainty) * np.eye(count)
-        self.largest = self.covariance.trace() if largest is None else positive("the largest uncertainty", largest)
+        self.largest = self.covariance.trace()
 
     def update(self, regressors: ArrayLike, y: Number) -> float:
         """Take a sample and return its error, what the estimate so far did not explain."""

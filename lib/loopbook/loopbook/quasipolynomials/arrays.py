@@ -106,9 +106,9 @@ class Quasipolynomials:
         """The derivative with respect to s."""
         return Quasipolynomials(_derivative(self.coefficients) - self.delays[:, None] * self.coefficients, self.delays)
 
-    def slower(self, unit: np.ndarray, power: int | None = None) -> Quasipolynomials:
-        """The quasipolynomials divided by ``unit**power``, with time in a unit in which the frequency `unit` is 1."""
-        powers = np.arange(self.order + 1) - (self.order if power is None else power)
+    def slower(self, unit: np.ndarray) -> Quasipolynomials:
+        """The quasipolynomials divided by ``unit**order``, with time in a unit in which the frequency `unit` is 1."""
+        powers = np.arange(self.order + 1) - self.order
         return Quasipolynomials(self.coefficients * unit ** powers[:, None].astype(float), self.delays * unit)
 
     # ---- on the imaginary axis

@@ -78,8 +78,8 @@ class PlantIntegrator:
         plant: Plant,
         sources: Mapping[str, PiecewiseSignal],
         times: np.ndarray,
-        driven: Collection[str] = (),
-        past: PlantIntegrator | None = None,
+        driven: Collection[str],
+        past: PlantIntegrator | None,
     ):
         self.plant, self.sources, self.driven, self.past, self.rows = plant, sources, driven, past, []
         self.begin, self.step = times[0], times[1] - times[0]
