@@ -1,7 +1,8 @@
 """Mathematics as MathML: a browser draws it without a script and without a network.
 
 latex2mathml does the translation. What is done here is what its output lacks in a browser: upright names of functions
-with their space, accents that sit close, bars without air, and a fraction of the bytes.
+with their space, accents that sit close, bars without air, and a fraction of the bytes. And whoever wrote a formula, it
+is one and nothing else: the translator does not escape what is text in it, and hands on links and styles.
 """
 
 from __future__ import annotations
@@ -24,6 +25,15 @@ BRACKETS = set("()[]{}⟨⟩")
 SIGNS = {"−", "+", "±"}
 CLOSING = {")", "]", "}", "|", "!"}
 HIGH = {"mfrac", "mtable", "msqrt", "mroot", "munder", "mover", "munderover"}
+TAGS = {
+    "math", "mrow", "mi", "mn", "mo", "mtext", "mspace", "mfrac", "msqrt", "mroot", "msub", "msup", "msubsup",
+    "mover", "munder", "munderover", "mtable", "mtr", "mtd", "mstyle", "mpadded", "mphantom", "menclose",
+}  # fmt: skip
+ATTRIBUTES = {
+    "display", "stretchy", "fence", "separator", "form", "mathvariant", "mathsize", "displaystyle", "scriptlevel",
+    "linebreak", "linethickness", "width", "columnalign", "columnspacing", "rowspacing", "minsize", "maxsize", "lspace",
+    "rspace", "accent", "accentunder", "movablelimits", "notation",
+}  # fmt: skip
 BIG = {"lim", "max", "min", "sup", "inf", "arg min", "arg max"}  # their index is below them in a displayed formula
 
 
@@ -46,8 +56,10 @@ def convert(latex: str, display: bool = False) -> str:
         raise ValueError(f"{latex!r} cannot be written as MathML: {type(problem).__name__} {problem}") from problem
     for element in tree.iter():
         element.tag = element.tag.removeprefix(NAMESPACE)
-        if not element.tag.startswith("m"):  # the translator takes what is between < and > for an element
+        if element.tag not in TAGS:  # the translator takes what is between < and > for an element
             raise ValueError(f"{latex!r} cannot be written as MathML: it holds <{element.tag}>")
+        for name in element.attrib.keys() - ATTRIBUTES:
+            del element.attrib[name]
     _mend(tree, large=display or large)
     tree.attrib.clear()
     if display:

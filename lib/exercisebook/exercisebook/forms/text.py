@@ -16,6 +16,9 @@ from markdown_it import MarkdownIt
 
 from exercisebook.forms import mathml
 
+#: What a text brings into a page that has headings of its own and leads nowhere else.
+_BEYOND = ["autolink", "heading", "image", "lheading", "link", "reference"]
+
 
 def escaped(text: str) -> str:
     """Return a text as HTML shows it, also as the value of an attribute."""
@@ -45,15 +48,21 @@ def sentence(text: str) -> str:
     return "".join(formula(part) if is_formula else escaped(part) for part, is_formula in mathml.formulas(text))
 
 
-def html(text: str) -> str:
+def html(text: str, bare: bool = False) -> str:
     r"""Return Markdown as HTML. What HTML would take for its own shows as it is.
+
+    Arguments:
+        text: Markdown.
+        bare: whether headings, links and pictures show as they are typed, too.
 
     >>> html("$$a\n- b$$")
     '<div class="math block" tabindex="0"><math display="block"><mi>a</mi><mo>−</mo><mi>b</mi></math></div>'
+    >>> html("# [a](b.html)", bare=True)
+    '<p># [a](b.html)</p>'
     """
     # a line of a formula that begins with a minus begins no list
     text = re.sub(r"\$\$.+?\$\$", lambda found: found[0].replace("\n", " "), text, flags=re.DOTALL)
-    return _markdown().render(text).strip()
+    return _markdown(bare).render(text).strip()
 
 
 def inline(text: str) -> str:
@@ -62,12 +71,12 @@ def inline(text: str) -> str:
     >>> inline("the gain, in `K/%`")
     'the gain, in <code>K/%</code>'
     """
-    return _markdown().renderInline(text)
+    return _markdown(bare=False).renderInline(text)
 
 
 @functools.cache
-def _markdown() -> Any:
-    markdown = MarkdownIt("commonmark", {"html": False}).enable("table")
+def _markdown(bare: bool) -> Any:
+    markdown = MarkdownIt("commonmark", {"html": False}).enable("table").disable(_BEYOND if bare else [])
     markdown.inline.ruler.before("escape", "formula", _read)
     markdown.core.ruler.push("formula_alone", _alone)
     rules: dict[str, Callable[..., str]] = {
