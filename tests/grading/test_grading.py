@@ -1,6 +1,7 @@
 """Grading a class from end to end: release, submissions, grades; interrupted, resumed, on a cluster, without a jail."""
 
 import dataclasses
+import html
 import io
 import json
 import os
@@ -113,7 +114,7 @@ class TestAClass:
         assert results.of("s0").looks == (Look("unasked", says, "1"),)
         says = "a cell that answers exercise 2 is no code cell, and is not run"
         assert results.of("s3").looks == (Look("no code", says, "2"),)
-        assert says in (tmp_path / "out" / "feedback" / "s3" / "feedback.md").read_text(encoding="utf-8")
+        assert says in (tmp_path / "out" / "feedback" / "s3" / "feedback.html").read_text(encoding="utf-8")
 
     def test_everybody_has_what_is_due(self, graded):
         summary, folder = graded
@@ -122,7 +123,7 @@ class TestAClass:
         assert [row.split(",")[-1] for row in rows] == ["points", "5", "0", "5", "5", ""]
 
     def test_a_mistake_is_named_and_an_error_told(self, graded):
-        page = (graded[1] / "feedback" / "s1" / "feedback.md").read_text(encoding="utf-8")
+        page = (graded[1] / "feedback" / "s1" / "feedback.html").read_text(encoding="utf-8")
         assert "That is the gain." in page
         assert "ZeroDivisionError" in page
 
@@ -151,8 +152,8 @@ class TestAClass:
             summary = course.grade("graded", reveal=True)
             assert (summary.graded, summary.kept) == (1, 3)
             key = course.assignment.question("s2", "1").key["y"].solution.replace("\N{NO-BREAK SPACE}", " ")
-            page = (graded[1] / "feedback" / "s2" / "feedback.md").read_text(encoding="utf-8")
-            assert f"Key: `{key}`" in page
+            page = (graded[1] / "feedback" / "s2" / "feedback.html").read_text(encoding="utf-8")
+            assert f"Key: <code>{html.escape(key)}</code>" in page
         finally:
             path.write_bytes(before)
             course.grade("graded")

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from markdown_it import MarkdownIt
 from typer.testing import CliRunner
 
 import contributing
@@ -28,6 +29,7 @@ from exercisegrader.owners import Owners
 from exercisegrader.results import JudgedAnswer, JudgedExercise, Result
 from exercisegrader.roster import POSSIBLE_ID, Student, moment, read_roster
 from loopbook.__main__ import app
+from small_class import HOSTILE
 
 JANE = Student("s1001", "Jane Doe", "Doe, Jane", canvas_id="123", moodle_id="77001")
 JOHN = Student("s1002", "John Roe", "Roe, John", canvas_id="124", moodle_id="77002")
@@ -644,7 +646,7 @@ def members(content):
 def test_feedback_goes_to_canvas_under_the_names_of_the_download(roster, tmp_path):
     students = roster(CANVAS.format(sis="", login=""))
     marks = [
-        mark("A17", 2, file="heater submissions/doejane_LATE_123_456_heater-1.ipynb"),
+        replace(mark("A17", 2, file="heater submissions/doejane_LATE_123_456_heater-1.ipynb"), comments=(HOSTILE,)),
         mark("john", 2, file="john/heater.ipynb"),
         mark("A19", None, status="missing", file=""),
     ]
@@ -652,7 +654,9 @@ def test_feedback_goes_to_canvas_under_the_names_of_the_download(roster, tmp_pat
     ((name, text),) = members((tmp_path / "canvas_feedback.zip").read_bytes()).items()
     assert name == "doejane_LATE_123_456_heater-1.ipynb"
     (cell,) = json.loads(text)["cells"]
-    assert cell["source"] == (tmp_path / "feedback" / "A17" / "feedback.md").read_text(encoding="utf-8")
+    assert cell["source"].splitlines()[:3] == ["    Heater", "    Jane Doe (A17)", "    2 of 17 points"]
+    shown = MarkdownIt("commonmark", {"html": True}).render(cell["source"])
+    assert re.findall("<[^>]*>", shown) == ["<pre>", "<code>", "</code>", "</pre>"]
 
 
 def test_feedback_goes_to_moodle_by_the_numbers(tmp_path):

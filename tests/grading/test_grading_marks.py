@@ -3,6 +3,7 @@
 import datetime
 import multiprocessing
 import os
+import re
 import signal
 import time
 from pathlib import Path
@@ -23,6 +24,7 @@ from exercisegrader.results import JudgedAnswer, JudgedExercise, Result
 from exercisegrader.roster import Student
 from exercisegrader.submissions import Submission
 from test_exercise_by_hand import stored
+from whole_pages import Checker
 
 SOURCE = '''"""Responses"""
 from loopbook.exercises.authoring import *
@@ -360,29 +362,28 @@ def test_another_answer_to_what_is_marked_by_hand_is_told(folder):
 def test_a_marker_sees_all_answers_to_a_question_on_one_page(folder):
     marks = list(folder.run(result("s1"), result("s2", why=OPEN)).values())
     page = to_mark("Responses", CLASS, marks)
-    write_all(folder.path, "Responses", CLASS, marks)
-    html, text = (Path(folder.path, f"to_mark.{ending}").read_text(encoding="utf-8") for ending in ("html", "md"))
-    assert page.name == "Responses: to be marked"
-    assert html.count(f'src="data:image/png;base64,{PICTURE["png"]}"') == 2
-    assert "late" in html
-    assert "<b>" not in html.replace("<bdi>", "")
-    headings = [line for line in text.splitlines() if line.startswith("#")]
-    assert headings == [
-        "# Responses: to be marked", "## Exercise 1 · A lag · `sketch`", "### Ada (s1)", "### Ben (s2)",
-        "## Exercise 1 · A lag · `why`", "### Ada (s1)",
+    text = Checker(page).text
+    assert "<title>Responses: to be marked</title>" in page
+    assert page.count(f'src="data:image/png;base64,{PICTURE["png"]}"') == 2
+    assert "late" in text
+    assert "<b>" not in page
+    assert [Checker(heading).text for heading in re.findall(r"<h\d>.*</h\d>", page)] == [
+        "Responses: to be marked", "Exercise 1 · A lag · sketch", "Ada (s1)", "Ben (s2)", "Exercise 1 · A lag · why",
+        "Ada (s1)",
     ]  # fmt: skip
-    assert "`s1,1,why,,`" in text
+    assert "<code>s1,1,why,,</code>" in page
     assert "To look for: one lag" in text
-    assert "each worth at most 1.5 of 6 points" in text
+    assert "each worth at most\n1.5 of 6 points" in text
+    write_all(folder.path, "Responses", CLASS, marks)
     feedback = Path(folder.path, "feedback/s1/feedback.html").read_text(encoding="utf-8")
     assert PICTURE["png"] in feedback
     assert "waits for a mark" in feedback
     folder.write("s1,1,sketch,1,units", "s1,1,why,0,", "s2,1,sketch,1.5,")
     marks = list(folder.run(result("s1"), result("s2", why=OPEN)).values())
     write_all(folder.path, "Responses", CLASS, marks)
-    assert "0 answers to 0 questions." in Path(folder.path, "to_mark.md").read_text(encoding="utf-8")
-    feedback = Path(folder.path, "feedback/s1/feedback.md").read_text(encoding="utf-8")
-    assert "✎ `sketch` **marked by hand**" in feedback
+    assert "0 answers to 0 questions." in Path(folder.path, "to_mark.html").read_text(encoding="utf-8")
+    feedback = Path(folder.path, "feedback/s1/feedback.html").read_text(encoding="utf-8")
+    assert "✎ sketch marked by hand" in Checker(feedback).text
 
 
 def test_what_a_mark_may_cost_is_among_what_to_look_at():

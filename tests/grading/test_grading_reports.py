@@ -216,7 +216,7 @@ def test_the_outputs_of_the_bank_do_not_depend_on_order_or_place(tmp_path):
 
 
 def test_results_of_others_are_left_out_and_nothing_is_deleted(tmp_path):
-    kept = tmp_path / "feedback" / "s0" / "feedback.md"
+    kept = tmp_path / "feedback" / "s0" / "feedback.html"
     kept.parent.mkdir(parents=True)
     kept.write_text("mine")
     reports.write_all(tmp_path, TITLE, [ADA], [*RESULTS, changed(RIGHT_ALL, student="../../x")])

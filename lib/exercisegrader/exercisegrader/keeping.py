@@ -6,24 +6,21 @@ seen is spelled out, pictures are looked at without being decoded, and the brows
 
 from __future__ import annotations
 
-import base64
-import html
 import json
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from markupsafe import Markup
+
 from exercisebook import png
 from exercisebook.reading import Unreadable
 from exercisegrader.files import write
-from exercisegrader.reports.page import escaped, page
+from exercisegrader.reports.pages import line, page, picture, several_lines
 
 if TYPE_CHECKING:
     from exercisegrader.events import Shown
     from exercisegrader.results import Result
-
-_STYLE = "white-space: pre-wrap; overflow-wrap: anywhere; margin: 0; padding: 0.4rem 0.8rem; font-size: 0.9rem"
-_CODE = f"{_STYLE}; background: var(--box); border-left: 0.3rem solid var(--line)"
 
 
 class Kept:
@@ -67,26 +64,17 @@ def executed(result: Result, content: bytes, shown: Iterable[Shown], stopped: st
         shown: what its cells have shown.
         stopped: why it did not run to its end, in a sentence.
     """
-    title = f"{result.student}: {result.file}"
-    body = [_mark(result.fingerprint), f"<h1>{escaped(title)}</h1>"]
-    if not result.jailed:
-        body.append('<p class="warning">graded without a jail</p>')
-    says = "It ran a second time to be shown here; the points are those of the first run."
-    body.append(f'<p class="quiet">{says}</p>')
     of_cells: dict[int, list[Shown]] = {}
     for one in shown:
         of_cells.setdefault(one.cell, []).append(one)
-    number = 0
+    cells, number = [], 0
     for cell in json.loads(content)["cells"] if content else ():
         is_code = cell["cell_type"] == "code"
         number += is_code
-        label = f"cell {number}" if is_code else "text"
-        body.append(f'<p class="quiet">{label}</p>')
-        body.append(f'<pre style="{_CODE if is_code else _STYLE}">{_text(cell["source"])}</pre>')
-        body += [_output(one) for one in of_cells.get(number, ()) if is_code]
-    for says in filter(None, [result.says, stopped if stopped != result.says else ""]):
-        body.append(f'<p class="warning">{escaped(says)}</p>')
-    return page(title, body)
+        outputs = [_output(one) for one in of_cells.get(number, ()) if is_code]
+        cells.append((f"cell {number}" if is_code else "text", is_code, cell["source"], outputs))
+    problems = dict.fromkeys(filter(None, [result.says, stopped]))
+    return page("executed.html", f"{result.student}: {result.file}", result=result, cells=cells, problems=problems)
 
 
 def source(content: bytes) -> str:
@@ -96,20 +84,9 @@ def source(content: bytes) -> str:
 
 
 def _output(shown):
-    if shown.kind == "png":
-        try:
-            content = png.checked({"png": shown.data})
-        except Unreadable as problem:
-            return f'<p class="quiet">{escaped(str(problem))}</p>'
-        width, height = png.size(content)
-        data = base64.b64encode(content).decode()
-        return f'<img src="data:image/png;base64,{data}" width="{width}" height="{height}" alt="what the cell shows">'
-    return f'<pre style="{_STYLE}">{_text(shown.data)}</pre>'
-
-
-def _text(text):
-    """A text of several lines as HTML shows it, with all that cannot be seen, or turns the direction, spelled out."""
-    lines = text.replace("\r\n", "\n")
-    return html.escape(
-        "".join(c if c.isprintable() or c in "\n\t" else c.encode("unicode_escape").decode() for c in lines)
-    )
+    if shown.kind != "png":
+        return Markup("<pre>{}</pre>").format(several_lines(shown.data))
+    try:
+        return picture(png.checked({"png": shown.data}), "what the cell shows")
+    except Unreadable as problem:
+        return Markup('<p class="quiet">{}</p>').format(line(str(problem)))

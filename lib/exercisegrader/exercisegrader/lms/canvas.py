@@ -34,13 +34,13 @@ import hmac
 import json
 import re
 from collections.abc import Collection, Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from exercisegrader import lms
 from exercisegrader.lms import Claim, Known, Packed, System
+from exercisegrader.reports.lines import of_exercise, overall
 from exercisegrader.reports.outputs import output
-from exercisegrader.reports.wording import number, without_jail
+from exercisegrader.reports.wording import in_text, number, visible, without_jail
 from exercisegrader.tables import as_text, letters
 
 if TYPE_CHECKING:
@@ -264,27 +264,35 @@ def _grade(points, comma):
 
 
 @output("canvas_feedback.zip", 'the feedback as "Upload Submissions" of Canvas takes it, where the files came from it')
-def canvas_feedback(folder: Path, students: Sequence[Student], marks: Collection[Marked]) -> bytes | None:
+def canvas_feedback(
+    title: str, students: Sequence[Student], marks: Collection[Marked], reveal: bool = False
+) -> bytes | None:
     """Return a zip file with a notebook for each file of Canvas that was graded, under the file's name there.
 
     Arguments:
-        folder: of the grades, where the feedback is.
+        title: of the assignment.
         students: the roster.
         marks: a `Marked` for each submission.
+        reveal: whether the keys are in it.
     Returns:
         The file; None where no file was of a download of Canvas.
     """
-    files, pages = {}, lms.pages(folder, marks, "feedback.md")
+    files = {}
     by_id = {student.id: student for student in students}
     for mark in marks:
         student, name = by_id[mark.result.student], mark.result.file.rpartition("/")[2]
         claim = Canvas().claim(name, Known([student]), "")
-        if claim and claim.students and student.id in pages:
-            files[name] = _notebook(pages[student.id].decode())
+        if claim and claim.students:
+            files[name] = _notebook(title, student, mark, reveal)
     return lms.zipped(files) if files else None
 
 
-def _notebook(text):
-    cell = {"cell_type": "markdown", "id": "feedback", "metadata": {}, "source": text}
+def _notebook(title, student, mark, reveal):
+    """The feedback as a notebook: of HTML, a notebook that nobody trusts shows no formula, so it is text."""
+    lines = [in_text(title), f"{student.name} ({student.id})", *overall(mark)]
+    for one in mark.exercises:
+        lines += ["", f"Exercise {one.judged.number} · {in_text(one.judged.title)}", *of_exercise(one, reveal)]
+    source = "\n".join(f"    {visible(line)}" for line in lines)  # in Markdown, lines of code: no markup is in them
+    cell = {"cell_type": "markdown", "id": "feedback", "metadata": {}, "source": source}
     notebook = {"cells": [cell], "metadata": {}, "nbformat": 4, "nbformat_minor": 5}
     return (json.dumps(notebook, ensure_ascii=False, indent=1) + "\n").encode()

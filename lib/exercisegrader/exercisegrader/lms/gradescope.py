@@ -14,21 +14,11 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from exercisebook.judging import RIGHT
-from exercisebook.response import MARKS
 from exercisegrader import lms
 from exercisegrader.lms import Claim, Known, System
+from exercisegrader.reports.lines import known, of_exercise, overall
 from exercisegrader.reports.outputs import output
-from exercisegrader.reports.wording import (
-    NO_JAIL,
-    answer_in_words,
-    explained,
-    hints,
-    in_text,
-    of_points,
-    remarks,
-    visible,
-    without_jail,
-)
+from exercisegrader.reports.wording import in_text
 from exercisegrader.tables import letters
 
 if TYPE_CHECKING:
@@ -92,24 +82,10 @@ def results_json(mark: Marked, reveal: bool = False) -> str:
     >>> json.loads(results_json(Marked.of(result)))["tests"][0]["output"]
     '✓ K: right. Answer: 2'
     """
-    result, total = mark.result, mark.total
-    if total is None:  # while something waits for a person, the rest counts already
-        total = max(0.0, sum(one.earned or 0 for one in mark.exercises) - mark.deduction) if mark.waiting else 0.0
     visibility = "after_published" if reveal else "visible"
-    lines = [NO_JAIL] if without_jail([result]) else []
-    lines += [
-        of_points(total, result.points),
-        *remarks(result),
-        *hints(result),
-        *filter(None, [mark.late]),
-        *map(visible, mark.comments),
-    ]
-    if mark.waiting:
-        where = dict.fromkeys(number for number, _ in mark.waiting)
-        lines.append(f"Waiting for a mark by hand: exercise {', '.join(where)}.")
     data = {
-        "score": round(total, 2),
-        "output": "\n".join(lines),
+        "score": round(known(mark), 2),
+        "output": "\n".join(overall(mark)),
         "output_format": "text",
         "test_output_format": "text",
         "test_name_format": "text",
@@ -120,24 +96,14 @@ def results_json(mark: Marked, reveal: bool = False) -> str:
 
 
 def _test(marked, visibility, reveal):
-    exercise, verdicts = marked.judged, marked.judged.answers
-    by_hand = map(visible, [*marked.history, *marked.comments])
+    exercise = marked.judged
     return {
         "number": exercise.number,
         "name": in_text(exercise.title),
         "score": round(marked.earned or 0, 2),
         "max_score": round(exercise.points, 2),
-        "status": "passed" if all(verdict.status == RIGHT for verdict in verdicts) else "failed",
-        "output": "\n".join([*(_line(verdict, reveal) for verdict in verdicts), *by_hand]),
+        "status": "passed" if all(one.status == RIGHT for one in exercise.answers) else "failed",
+        "output": "\n".join(of_exercise(marked, reveal)),
         "output_format": "text",
         "visibility": visibility,
     }
-
-
-def _line(verdict, reveal):
-    status, says, answer = verdict.status, explained(verdict), answer_in_words(verdict.answer)
-    line = f"{MARKS[status][0]} {verdict.name}: {status}"
-    line += f", {in_text(says)}" if says else ""
-    line = line if line.endswith((".", "?", "!")) else line + "."
-    line += f" Answer: {answer}" if answer else ""
-    return line + (f" Key: {visible(verdict.key)}" if reveal else "")

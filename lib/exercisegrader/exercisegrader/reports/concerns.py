@@ -6,9 +6,11 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from markupsafe import Markup
+
 from exercisebook.judging import OPEN, UNJUDGED
-from exercisegrader.reports.document import Code, Lines, Link, Said, Text
 from exercisegrader.reports.equal_answers import equal_answers
+from exercisegrader.reports.pages import code, line, lines, said
 from exercisegrader.reports.wording import answer_in_words, explained, remarks
 from exercisegrader.results import MISSING, NO_CODE, NOT_RUN, ODD, OWNER, STOPPED, UNASKED
 from exercisegrader.submissions import BESIDE, FILE
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
     from exercisegrader.marking import Marked
     from exercisegrader.results import JudgedAnswer, JudgedExercise
 
-_BY_HAND = ("To give points, enter them in ", Code("marks.csv"), " and grade again.")
+_BY_HAND = Markup("To give points, enter them in <code>marks.csv</code> and grade again.")
 
 
 @dataclass(frozen=True)
@@ -27,12 +29,12 @@ class Case:
     Attributes:
         students: the ids of those whom it concerns; none for a file of nobody.
         points: at stake for each of them.
-        what: there is.
+        what: there is, for the summary.
     """
 
     students: tuple[str, ...]
     points: float
-    what: Text
+    what: Markup
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,7 @@ class Concern:
     """
 
     title: str
-    advice: Text
+    advice: Markup | str
     cases: tuple[Case, ...] = field(default=())
 
     @property
@@ -62,43 +64,40 @@ NOBODYS = Concern(
 )
 NOT_RUNNING = Concern(
     "Notebooks that could not be run",
-    ("The grade is an empty cell. Repair the file or ask for another one, and grade again. ", *_BY_HAND),
+    "The grade is an empty cell. Repair the file or ask for another one, and grade again. " + _BY_HAND,
 )
 TO_MARK = Concern(
     "Answers that wait for a mark",
-    (
-        *("The grade is an empty cell until there are points in ", Code("marks.csv"), ". They are all on "),
-        *(Link("one page", "to_mark.html"), ", those to one question below each other."),
+    Markup(
+        "The grade is an empty cell until there are points in <code>marks.csv</code>. They are all on "
+        '<a href="to_mark.html">one page</a>, those to one question below each other.'
     ),
 )
 TO_DECIDE = Concern(
     "Marks and times that need a decision",
-    ("It stays as it is until you say otherwise, in ", Code("marks.csv"), " or in the file that is named."),
+    Markup("It stays as it is until you say otherwise, in <code>marks.csv</code> or in the file that is named."),
 )
 CUT_SHORT = Concern(
     "Notebooks that were stopped before all answers were in",
-    (
-        "Open answers earn nothing. More time or memory may help (",
-        *(Code("--cell-seconds"), ", ", Code("--seconds"), ", ", Code("--megabytes"), "). "),
-        *_BY_HAND,
-    ),
+    Markup(
+        "Open answers earn nothing. More time or memory may help (<code>--cell-seconds</code>, <code>--seconds</code>, "
+        "<code>--megabytes</code>). "
+    )
+    + _BY_HAND,
 )
 FAILED = Concern(
     "Cells that failed, with answers left open",
-    ("Open answers earn nothing. The cell may have worked only after another one that is gone. ", *_BY_HAND),
+    "Open answers earn nothing. The cell may have worked only after another one that is gone. " + _BY_HAND,
 )
 MISPLACED = Concern(
     "Answers that do not count where they stand",
-    (
-        "They have a name that is not asked, or are in a cell that is not run; what is asked was left open and earns "
-        "nothing. ",
-        *_BY_HAND,
-    ),
+    "They have a name that is not asked, or are in a cell that is not run; what is asked was left open and earns "
+    "nothing. " + _BY_HAND,
 )
-UNREAD = Concern("Answers that could not be judged", ("They earn nothing, but you may see what was meant. ", *_BY_HAND))
+UNREAD = Concern("Answers that could not be judged", "They earn nothing, but you may see what was meant. " + _BY_HAND)
 FLAGGED = Concern(
     "Answers that were judged and are unusual",
-    ("The verdict stands unless you say otherwise. ", *_BY_HAND),
+    "The verdict stands unless you say otherwise. " + _BY_HAND,
 )
 OF_ANOTHER = Concern(
     "Notebooks that say they are somebody else's",
@@ -155,7 +154,7 @@ def _cases(marks, complaints) -> Iterator[tuple[Concern | None, Case]]:
     owner = {one.file: one.student for one in results if one.file}
     chosen = {f"{one.file}: {one.chosen}": one.student for one in results if one.chosen}
     for complaint in complaints:
-        what = Said(complaint)
+        what = said(complaint)
         if complaint in chosen:
             yield None, Case((chosen[complaint],), 0, what)
         elif student := owner.get(complaint.rpartition(BESIDE)[2]):
@@ -173,10 +172,10 @@ def _of_one(mark):
     """The cases of one submission, without its student. What a person has decided is none."""
     result, is_decided = mark.result, mark.by_hand is not None
     for look in mark.looks:
-        yield TO_DECIDE, look.points, Said(look.says)
+        yield TO_DECIDE, look.points, said(look.says)
     if result.status == MISSING:
         return
-    notes = Lines(tuple(map(Said, remarks(result))))
+    notes = lines(*map(said, remarks(result)))
     if result.status == NOT_RUN:
         yield None if mark.total is not None else NOT_RUNNING, result.points, notes
         return
@@ -186,18 +185,18 @@ def _of_one(mark):
         for answer in one.judged.answers
         if not is_decided and answer.name not in one.decided
     ]
-    if notes.texts:
+    if notes:
         at_stake = sum(share(exercise, answer) for exercise, answer in left if answer.status == OPEN)
         concern = CUT_SHORT if result.status == STOPPED else FAILED if result.errors else None
         yield concern if at_stake else None, at_stake, notes
     for exercise, answer in left:
-        at_stake, place = share(exercise, answer), (f"{exercise.number} · ", Code(answer.name))
-        shown = answer_in_words(answer.answer)
-        given = (": ", Code(shown)) if shown else ""
+        at_stake, given = share(exercise, answer), _place(exercise.number, answer.name)
+        if shown := answer_in_words(answer.answer):
+            given = line(given, ": ", code(shown))
         if answer.status == UNJUDGED:
-            yield UNREAD, at_stake, (place, given, "; ", Said(explained(answer)))
+            yield UNREAD, at_stake, line(given, "; ", said(explained(answer)))
         if answer.look:
-            yield FLAGGED, at_stake, (place, given, f"; judged {answer.status}: ", Said(answer.look))
+            yield FLAGGED, at_stake, line(given, f"; judged {answer.status}: ", said(answer.look))
     for look in result.looks:
         left_open = sum(
             share(exercise, answer)
@@ -210,19 +209,20 @@ def _of_one(mark):
             UNASKED: (MISPLACED if left_open else None, left_open),
             NO_CODE: (MISPLACED if left_open else None, left_open),
         }.get(look.kind, (None, 0))
-        yield None if is_decided else concern, at_stake, Said(look.says)
+        yield None if is_decided else concern, at_stake, said(look.says)
 
 
 def _to_mark(marks):
     """The cases of what waits for a mark: one for each quantity, whoever's answers these are."""
-    found: dict[tuple[str, str], tuple[float, Text, list[str]]] = {}
+    found: dict[tuple[str, str], tuple[float, Markup, list[str]]] = {}
     for mark in marks:
         waiting = set(mark.waiting)
         for exercise in mark.result.exercises:
             for answer in exercise.answers:
                 if (place := (exercise.number, answer.name)) in waiting:
-                    looks_for = ("; to look for: ", Said(answer.key)) if answer.key else ""
-                    what = (f"{exercise.number} · ", Code(answer.name), looks_for)
+                    what = _place(*place)
+                    if answer.key:
+                        what = line(what, "; to look for: ", said(answer.key))
                     found.setdefault(place, (share(exercise, answer), what, []))[2].append(mark.result.student)
     for points, what, students in found.values():
         yield Case(tuple(students), points, what)
@@ -236,11 +236,16 @@ def _equal(results):
         for exercise in result.exercises
         for answer in exercise.answers
     }
-    found: dict[tuple[tuple[str, ...], tuple[str, ...]], list[tuple[float, Text]]] = {}
+    found: dict[tuple[tuple[str, ...], tuple[str, ...]], list[tuple[float, Markup]]] = {}
     for one in equal_answers(results):
-        what = (f"{one.number} · ", Code(one.name), ": ", Code(one.answer))
+        what = line(_place(one.number, one.name), ": ", code(one.answer))
         found.setdefault((one.right, one.others), []).append((shares[one.number, one.name], what))
     for (right, others), given in found.items():
         whose = f"right for {', '.join(right)}, not for {', '.join(others)}" if right else "wrong for all"
-        points, lines = zip(*given, strict=True)
-        yield Case((*right, *others), sum(points), Lines((*lines, whose)))
+        points, answers = zip(*given, strict=True)
+        yield Case((*right, *others), sum(points), lines(*answers, whose))
+
+
+def _place(number, name):
+    """A quantity of an exercise."""
+    return line(f"{number} · ", code(name))

@@ -1,10 +1,12 @@
-"""The distribution of the sums: a drawing, and the same in words and in text."""
+"""The distribution of the sums: a drawing, and the same in words."""
 
 from __future__ import annotations
 
 import io
 import re
 from collections.abc import Sequence
+
+from markupsafe import Markup
 
 from exercisegrader.reports.wording import counted, number
 from loopbook.figures import Picture
@@ -13,20 +15,19 @@ from loopbook.figures.style import STYLE, WIDTH
 _BAR = "#0072B2"
 #: Stands for the colour of the page's text, which follows its ground.
 _INK = "#010203"
-_LONGEST_BAR = 40
 
 
-def histogram_svg(steps: Sequence[tuple[float, float, int]], label: str) -> str:
+def histogram_svg(steps: Sequence[tuple[float, float, int]]) -> Markup:
     """Return the distribution as SVG for a page: text in the page's colour, on its ground; the same bytes every time.
 
     Arguments:
         steps: triples of lower end, upper end and count.
-        label: the same in words, for those who cannot see it.
     """
     import matplotlib
     from matplotlib.figure import Figure
     from matplotlib.ticker import MaxNLocator
 
+    label = histogram_words(steps)
     ink = dict.fromkeys(["text.color", "axes.labelcolor", "axes.edgecolor", "xtick.color", "ytick.color"], _INK)
     ink["axes.facecolor"] = "none"
     fixed = {"svg.hashsalt": "loopbook", "svg.fonttype": "path"}
@@ -56,7 +57,7 @@ def histogram_svg(steps: Sequence[tuple[float, float, int]], label: str) -> str:
     drawing = drawing[drawing.index("<svg") :].replace(_INK, "currentColor")
     drawing = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", drawing, flags=re.DOTALL)
     drawing = re.sub(r"\s*\n\s*", "\n", drawing).strip()
-    return drawing.replace("<svg ", f'<svg role="img" aria-label="{label}" ', 1)
+    return Markup(drawing.replace("<svg ", f'<svg role="img" aria-label="{label}" ', 1))
 
 
 def histogram_words(steps: Sequence[tuple[float, float, int]]) -> str:
@@ -67,22 +68,3 @@ def histogram_words(steps: Sequence[tuple[float, float, int]]) -> str:
     """
     told = (f"{number(lower)} to {number(upper)}: {counted(n, 'submission')}" for lower, upper, n in steps if n)
     return "Distribution of the points: " + "; ".join(told)
-
-
-def histogram_text(steps: Sequence[tuple[float, float, int]]) -> list[str]:
-    """Return the distribution as lines of text.
-
-    >>> print("\\n".join(histogram_text([(0, 1, 2), (1, 2, 0), (2, 3, 1)])))
-    0 to 1  ██  2
-    1 to 2
-    2 to 3  █  1
-    """
-    most = max(count for _, _, count in steps)
-    scale = min(1, _LONGEST_BAR / max(most, 1))
-    labels = [f"{number(lower)} to {number(upper)}" for lower, upper, _ in steps]
-    width = max(map(len, labels))
-    lines = []
-    for label, (_, _, count) in zip(labels, steps, strict=True):
-        bar = "█" * max(round(scale * count), 1) + f"  {count}" if count else ""
-        lines.append(f"{label:>{width}}  {bar}".rstrip())
-    return lines

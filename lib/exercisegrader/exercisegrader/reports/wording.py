@@ -37,10 +37,16 @@ def visible(text: str) -> str:
     >>> visible("two\nlines \x1b[31m \u202e \ud800")
     'two lines \\x1b[31m \\u202e \\ud800'
     """
-    line = " ".join(text.split())
-    if line.isprintable():
-        return line
-    return "".join(c if c.isprintable() or c in _JOINERS else _escaped(c) for c in line)
+    return spelled_out(" ".join(text.split()), but=_JOINERS)
+
+
+def spelled_out(text: str, but: str) -> str:
+    r"""Return a text with all that cannot be seen or cannot be stored written as an escape, but for some characters.
+
+    >>> spelled_out("two\nlines \x1b[31m", but="\n")
+    'two\nlines \\x1b[31m'
+    """
+    return text if text.isprintable() else "".join(c if c.isprintable() or c in but else _escaped(c) for c in text)
 
 
 def spaced(text: str) -> str:
@@ -183,23 +189,16 @@ def verdict_and_reading(answer: JudgedAnswer) -> tuple[str, str]:
     return (before, behind) if dot and answer.status != UNJUDGED else (says, "")
 
 
-def parts(sentence: str) -> list[str]:
-    """Return the pieces of a sentence, by turns text and formula; a dollar sign without another one is text.
+def in_text(sentence: str) -> str:
+    r"""Return a sentence without signs of formulas; a dollar sign without another one is text.
 
-    >>> parts("here $c = 4$ is asked"), parts("5 $ each")
-    (['here ', 'c = 4', ' is asked'], ['5 $ each'])
+    >>> in_text(r"here $T_c = \tau$ is asked"), in_text("5 $ each")
+    ('here T_c = tau is asked', '5 $ each')
     """
     pieces = spaced(sentence).split("$")
-    return pieces if len(pieces) % 2 else ["$".join(pieces)]
-
-
-def in_text(sentence: str) -> str:
-    r"""Return a sentence without signs of formulas.
-
-    >>> in_text(r"here $T_c = \tau$ is asked")
-    'here T_c = tau is asked'
-    """
-    return "".join(plain_words(piece) if place % 2 else piece for place, piece in enumerate(parts(sentence)))
+    if len(pieces) % 2 == 0:
+        return "$".join(pieces)
+    return "".join(plain_words(piece) if place % 2 else piece for place, piece in enumerate(pieces))
 
 
 def without_jail(results: Iterable[Result]) -> bool:

@@ -7,44 +7,28 @@ from typing import TYPE_CHECKING
 
 from exercisebook.judging import WAITING
 from exercisegrader.reports.concerns import Case, Concern, concerns
-from exercisegrader.reports.document import (
-    Block,
-    Caution,
-    Code,
-    Details,
-    Document,
-    Heading,
-    Histogram,
-    Lines,
-    Link,
-    Listing,
-    Paragraph,
-    Said,
-    Sentence,
-    Status,
-    Table,
-    Text,
-    person,
-)
 from exercisegrader.reports.findings import Findings
-from exercisegrader.reports.outputs import registered
-from exercisegrader.reports.publishing import published
-from exercisegrader.reports.wording import NO_JAIL, STATUSES, counted, in_text, number, percent, without_jail
+from exercisegrader.reports.histogram import histogram_svg
+from exercisegrader.reports.outputs import output, registered
+from exercisegrader.reports.pages import Table, code, line, lines, link, page, person, said, sentence, status
+from exercisegrader.reports.wording import STATUSES, counted, in_text, number, percent, without_jail
 from exercisegrader.results import NOT_RUN
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from markupsafe import Markup
 
     from exercisegrader.marking import Marked
     from exercisegrader.roster import Student
 
 #: So many cases of one kind are told.
 MOST_CASES = 100
-#: The files of this summary.
-OWN = ("summary.html", "summary.md")
+#: The file of this summary.
+OWN = "summary.html"
 
 
-@published("summary", "the summary for the instructor")
+@output(OWN, "the summary for the instructor")
 def summary(
     title: str,
     students: Sequence[Student],
@@ -53,7 +37,7 @@ def summary(
     notes: Sequence[str] = (),
     notebooks: Collection[str] = (),
     folder: Path | None = None,
-) -> Document:
+) -> str:
     """Return the summary.
 
     Arguments:
@@ -68,144 +52,100 @@ def summary(
     found = Findings(students, marks)
     graded, names = {mark.result.student for mark in marks}, {student.id: student.name for student in students}
 
-    def named(id: str) -> Text:
+    def named(id: str) -> Markup:
         """A student, with links to what there is of the submission."""
+        shown = person(names.get(id, id), id)
         if id not in graded:
-            return person(names.get(id, id), id)
-        shown: Text = Link(person(names.get(id, id), id), f"feedback/{id}/feedback.html")
-        return (shown, " · ", Link("notebook", f"notebooks/{id}.html")) if id in notebooks else shown
+            return shown
+        shown = link(shown, f"feedback/{id}/feedback.html")
+        return line(shown, " · ", link("notebook", f"notebooks/{id}.html")) if id in notebooks else shown
 
-    blocks: list[Block] = []
-    if without_jail(mark.result for mark in marks):
-        blocks.append(Caution(NO_JAIL))
-    blocks += [Paragraph(line) for line in _overview(found)]
-    if notes:
-        blocks += [Heading("How the class was graded"), Listing(tuple(map(Said, notes)))]
-    blocks += _to_look_at(*concerns(marks, complaints), named)
-    for heading, ids in (("Missing", found.missing), ("Not graded yet", found.ungraded)):
-        if ids:
-            blocks += [Heading(heading), Listing(tuple(map(named, ids)))]
-    blocks += [*_late(marks, named), *_by_hand(marks, named)]
-    if found.sums and found.points:
-        blocks += [Heading("Points"), Histogram(tuple(found.steps))]
-    blocks += [*_exercises(found), *_files(folder)]
-    return Document((Sentence(title), ": summary"), f"{in_text(title)}: summary", tuple(blocks))
+    def whose(case: Case) -> Markup | str:
+        return lines(*map(named, case.students)) if case.students else "nobody"
+
+    def of_concern(concern: Concern) -> Table:
+        rows = [(whose(case), number(case.points), case.what) for case in concern.cases[:MOST_CASES]]
+        return Table(concern.title, ["student", "at stake", "what"], rows, [1])
+
+    costly, harmless = concerns(marks, complaints)
+    rows = [(whose(case), case.what) for case in harmless[:MOST_CASES]]
+    return page(
+        "summary.html",
+        f"{in_text(title)}: summary",
+        title=title,
+        unsafe=without_jail(mark.result for mark in marks),
+        found=found,
+        counts=_counts(found),
+        notes=notes,
+        most=MOST_CASES,
+        costly=[(concern, of_concern(concern)) for concern in costly],
+        harmless=harmless,
+        cases_of_harmless=Table("Harmless", ["student", "what"], rows),
+        absent=[("Missing", [*map(named, found.missing)]), ("Not graded yet", [*map(named, found.ungraded)])],
+        distribution=histogram_svg(found.steps) if found.sums and found.points else "",
+        tables_of_students=[_late(marks, named), _by_hand(marks, named)],
+        tables_of_exercises=_exercises(found),
+        files=_files(folder),
+    )
 
 
-def _overview(found):
-    """Lines on how many there are, and how they did."""
-    many = [counted(len(found.handed_in), "submission")]
+def _counts(found):
+    """How many there are of each."""
     not_run = sum(mark.result.status == NOT_RUN for mark in found.handed_in)
     waiting = sum(mark.total is None and mark.result.status != NOT_RUN for mark in found.handed_in)
     counts = {"missing": len(found.missing), "not graded yet": len(found.ungraded), "not run": not_run}
     counts["waiting for a mark"] = waiting
-    lines = [", ".join([*many, *(f"{count} {what}" for what, count in counts.items() if count)]) + "."]
-    if found.sums:
-        mean = f"Mean {number(found.mean)}, median {number(found.median)}"
-        lines.append(f"{mean} of {number(found.points)} points, over {counted(len(found.sums), 'grade')}.")
-    return lines
+    return [counted(len(found.handed_in), "submission"), *(f"{n} {what}" for what, n in counts.items() if n)]
 
 
-def _to_look_at(costly: list[Concern], harmless: list[Case], named) -> list[Block]:
-    blocks: list[Block] = [Heading("To look at")]
-    if costly:
-        blocks.append(Paragraph("In the order of the points at stake for a student."))
-    for concern in costly:
-        blocks += [Heading(concern.title, level=3), Paragraph(concern.advice)]
-        rows = [(_whose(case, named), number(case.points), case.what) for case in concern.cases[:MOST_CASES]]
-        blocks.append(Table(concern.title, ["student", "at stake", "what"], rows, counts=frozenset({1})))
-        blocks += _more(concern.cases)
-    if not costly:
-        blocks.append(Paragraph("Nothing." if not harmless else "Nothing that may cost points."))
-    if harmless:
-        rows = [(_whose(case, named), case.what) for case in harmless[:MOST_CASES]]
-        table = Table("Harmless", ["student", "what"], rows)
-        count = counted(len(harmless), "remark")
-        blocks.append(
-            Details(
-                f"{count} that cost nothing" if len(harmless) > 1 else f"{count} that costs nothing",
-                (table, *_more(harmless)),
-            )
-        )
-    return blocks
+def _late(marks, named):
+    rows = [(named(mark.result.student), number(mark.deduction), said(mark.late)) for mark in marks if mark.late]
+    return Table("Late, and extensions", ["student", "points off", "why"], rows, [1])
 
 
-def _whose(case: Case, named) -> Text:
-    return Lines(tuple(map(named, case.students))) if case.students else "nobody"
-
-
-def _more(cases: Sequence[Case]) -> list[Block]:
-    more = len(cases) - MOST_CASES
-    return [Paragraph(f"There are {more} more, on the pages of the students.")] if more > 0 else []
-
-
-def _late(marks, named) -> list[Block]:
-    rows = [(named(mark.result.student), number(mark.deduction), Said(mark.late)) for mark in marks if mark.late]
-    if not rows:
-        return []
-    head = ["student", "points off", "why"]
-    return [Heading("Late, and extensions"), Table("Late, and extensions", head, rows, counts=frozenset({1}))]
-
-
-def _by_hand(marks, named) -> list[Block]:
+def _by_hand(marks, named):
     rows = []
     for mark in marks:
         student = named(mark.result.student)
         for one in mark.exercises:
-            if said := (*one.comments, *one.history):
+            if texts := (*one.comments, *one.history):
                 grader, counts = number(one.judged.earned), "" if one.earned is None else number(one.earned)
-                rows.append((student, one.judged.number, grader, counts, Lines(tuple(map(Said, said)))))
+                rows.append((student, one.judged.number, grader, counts, lines(*map(said, texts))))
         if mark.comments or mark.by_hand is not None:
             grader, counts = number(mark.result.earned), "" if mark.total is None else number(mark.total)
-            rows.append((student, "all of it", grader, counts, Lines(tuple(map(Said, mark.comments)))))
-    if not rows:
-        return []
+            rows.append((student, "all of it", grader, counts, lines(*map(said, mark.comments))))
     head = ["student", "exercise", "by the grader", "counts", "marks and comments"]
-    return [Heading("Marks by hand"), Table("Marks by hand", head, rows, counts=frozenset({2, 3}))]
+    return Table("Marks by hand", head, rows, [2, 3])
 
 
-def _exercises(found: Findings) -> list[Block]:
-    if not found.exercises:
-        return []
+def _exercises(found):
     rows = [
         (
-            (f"{one.number} · ", Sentence(one.title)),
+            line(f"{one.number} · ", sentence(one.title)),
             *(("", "") if one.mean is None else (percent(one.fraction), f"{number(one.mean)} of {number(one.points)}")),
         )
         for one in found.exercises
     ]
-    head: list[Text] = ["exercise", "mean", "points"]
-    blocks: list[Block] = [
-        Heading("Exercises, the hardest first"),
-        Table("Exercises", head, rows, counts=frozenset({1, 2})),
-    ]
     asked = [asked for one in found.exercises for asked in one.asked]
-    statuses = [status for status in STATUSES if status != WAITING or any(one.counts[status] for one in asked)]
+    statuses = [one for one in STATUSES if one != WAITING or any(each.counts[one] for each in asked)]
     answers = [
         (
             one.number,
-            Code(one.name),
+            code(one.name),
             "" if one.fraction is None else percent(one.fraction),
-            *(str(one.counts[status]) for status in statuses),
+            *(one.counts[status] for status in statuses),
         )
         for one in asked
     ]
-    head = ["exercise", "quantity", "in percent", *map(Status, statuses)]
-    blocks += [Heading("Answers"), Table("Answers", head, answers, counts=frozenset(range(2, len(head))))]
-    if found.mistakes:
-        mistakes = [(place, Code(name), str(count), Sentence(says)) for place, name, says, count in found.mistakes]
-        head = ["exercise", "quantity", "how often", "mistake"]
-        blocks += [
-            Heading("Most common mistakes"),
-            Table("Most common mistakes", head, mistakes, counts=frozenset({2})),
-        ]
-    return blocks
-
-
-def _files(folder: Path | None) -> list[Block]:
-    there = [one for one in registered() if folder is None or one.is_for_each_student or (folder / one.file).exists()]
-    rows = [(Code(one.file), one.what) for one in there if one.file not in OWN]
+    head = ["exercise", "quantity", "in percent", *map(status, statuses)]
+    mistakes = [(place, code(name), count, sentence(says)) for place, name, says, count in found.mistakes]
     return [
-        Heading("Files"),
-        Details("What was written, and what for", (Table("Files", ["file", "what it is"], rows),)),
+        Table("Exercises, the hardest first", ["exercise", "mean", "points"], rows, [1, 2]),
+        Table("Answers", head, answers, range(2, len(head))),
+        Table("Most common mistakes", ["exercise", "quantity", "how often", "mistake"], mistakes, [2]),
     ]
+
+
+def _files(folder: Path | None) -> Table:
+    there = [one for one in registered() if folder is None or one.is_for_each_student or (folder / one.file).exists()]
+    return Table("Files", ["file", "what it is"], [(code(one.file), one.what) for one in there if one.file != OWN])

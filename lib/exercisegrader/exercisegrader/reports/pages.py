@@ -1,0 +1,194 @@
+"""Pages that need nothing but themselves, written by the templates beside this module.
+
+What a template is told is text, whoever wrote it: it is escaped, in one line, with all that cannot be seen spelled out.
+HTML is only what a template holds, and what the functions of this module return.
+"""
+
+from __future__ import annotations
+
+import base64
+import urllib.parse
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import jinja2
+from markupsafe import Markup, escape
+
+from exercisebook import png
+from exercisebook.forms import text as of_forms
+from exercisebook.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WAITING, WRONG
+from exercisebook.response import MARKS
+from exercisegrader.reports import wording
+
+if TYPE_CHECKING:
+    from exercisegrader.student_side.plain import Plain
+
+#: The colours of the statuses on a dark ground; those on a light one are the response's.
+ON_DARK = {
+    RIGHT: "#5fd3ae",
+    MISTAKE: "#e8b04a",
+    WRONG: "#ff9a6b",
+    UNJUDGED: "#b8b8b8",
+    OPEN: "#b8b8b8",
+    WAITING: "#a3b4ff",
+}
+
+
+class Table(NamedTuple):
+    """A table of a page.
+
+    Attributes:
+        caption: what is in it, in words.
+        head: the names of the columns.
+        rows: of as many cells each; the first one names the row.
+        counts: the numbers of the columns that hold numbers.
+    """
+
+    caption: str
+    head: Sequence[object]
+    rows: Sequence[Sequence[object]]
+    counts: Sequence[int] = ()
+
+
+def page(template: str, window: str, **told: object) -> str:
+    """Return a page.
+
+    Arguments:
+        template: its name.
+        window: the title of the window, in words.
+        told: what the template asks for, by name.
+    """
+    return _TEMPLATES.get_template(template).render(told, window=window)
+
+
+def line(*texts: object) -> Markup:
+    """Return texts and pieces of HTML, one behind the other, as HTML.
+
+    >>> line("<b> & ", said("x"), " ", code("K"))
+    Markup('&lt;b&gt; &amp; <bdi>x</bdi> <code>K</code>')
+    """
+    return Markup("").join(map(_shown, texts))
+
+
+def lines(*texts: object) -> Markup:
+    """Return texts of one place, each on a line of its own."""
+    return Markup("<br>").join(map(_shown, texts))
+
+
+def said(text: str) -> Markup:
+    """Return a text that a student may have written, apart from what is beside it: it may run from right to left."""
+    return Markup("<bdi>{}</bdi>").format(wording.visible(text))
+
+
+def code(text: str) -> Markup:
+    """Return a name, a number or an answer, letter by letter, whoever wrote it."""
+    shown = wording.visible(text)
+    return Markup("<code>{}</code>").format(shown if shown.isascii() else said(shown))
+
+
+def sentence(text: str) -> Markup:
+    """Return a sentence with its formulas between dollar signs.
+
+    >>> sentence("here $c$ is < 4")
+    Markup('here <math><mi>c</mi></math> is &lt; 4')
+    """
+    return Markup(of_forms.sentence(wording.spaced(text)))
+
+
+def statement(markdown: str) -> Markup:
+    """Return the statement of an exercise; of its Markdown, HTML, headings, links and pictures show as they are typed.
+
+    >>> statement("A lag of $T$.")
+    Markup('<p>A lag of <math><mi>T</mi></math>.</p>')
+    """
+    return Markup(of_forms.html(wording.spelled_out(markdown.expandtabs(4), but="\n\N{NO-BREAK SPACE}"), bare=True))
+
+
+def several_lines(text: str) -> Markup:
+    """Return a text with its lines, as it is to be seen in an element that keeps these."""
+    return escape(wording.spelled_out(text.replace("\r\n", "\n"), but="\n\t"))
+
+
+def person(name: str, id: str) -> Markup:
+    """Return a student: the name, and behind it the id."""
+    return line(said(name), Markup(' <span class="quiet">({})</span>').format(wording.visible(id)))
+
+
+def numbers(given: Iterable[tuple[str, str]]) -> Markup:
+    """Return the numbers of a student, pairs of a name and a value with its unit."""
+    return Markup(", ").join(line(code(name), f" = {value}") for name, value in given)
+
+
+def status(status: str, between: str = "", word: str = "") -> Markup:
+    """Return the sign of a status and its word, which says the same.
+
+    Arguments:
+        status: of an answer.
+        between: HTML for the middle.
+        word: in the place of that of the status.
+    """
+    shown = Markup('<span class="status {0}" aria-hidden="true">{1}</span> {2}<span class="status {0}">{3}</span>')
+    return shown.format(class_of(status), MARKS[status][0], line(between, " ") if between else "", word or status)
+
+
+def class_of(status: str) -> str:
+    """Return the class of what has the colour of a status."""
+    return status.replace(" ", "-")
+
+
+def link(text: str, to: str) -> Markup:
+    """Return a link to another file of the folder of the grades.
+
+    Raises ValueError for what is no path from one file to another.
+
+    >>> link("page", "feedback/a b/x.html")
+    Markup('<a href="feedback/a%20b/x.html">page</a>')
+    """
+    if not to or to[0] in "/\\":
+        raise ValueError(f"a link leads to {to!r}: expected the path from one file to another")
+    return Markup('<a href="{}">{}</a>').format(urllib.parse.quote(to), _shown(text))
+
+
+def picture(content: bytes, alt: str) -> Markup:
+    """Return a picture, which the page itself holds.
+
+    Arguments:
+        content: a PNG file, of `exercisebook.png`.
+        alt: what it is, in words.
+    """
+    image = Markup('<img src="data:image/png;base64,{}" width="{}" height="{}" alt="{}">')
+    return image.format(base64.b64encode(content).decode(), *png.size(content), wording.visible(alt))
+
+
+def handed_in(answer: Plain, name: str) -> Markup:
+    """Return what a person marks, as it was handed in: a figure, or a text with its lines."""
+    if png.is_data(answer):
+        return picture(png.checked(answer), f"the figure that was handed in for {name}")
+    return lines(*(said(one) for one in str(answer).splitlines() if one.strip()))
+
+
+def _shown(value: object) -> str:
+    return value if isinstance(value, Markup) else wording.spaced(str(value))
+
+
+_TEMPLATES = jinja2.Environment(
+    loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"),
+    autoescape=True,
+    finalize=_shown,
+    undefined=jinja2.StrictUndefined,
+    trim_blocks=True,
+    lstrip_blocks=True,
+    keep_trailing_newline=True,
+)
+_FILTERS = (
+    said, code, sentence, statement, several_lines, person, numbers, status, class_of, handed_in, wording.number,
+)  # fmt: skip
+_TEMPLATES.filters |= {function.__name__: function for function in _FILTERS}
+_TEMPLATES.globals |= {
+    "marks_of": MARKS,
+    "on_dark": ON_DARK,
+    "no_jail": wording.NO_JAIL,
+    "of_points": wording.of_points,
+    "counted": wording.counted,
+}
