@@ -1,7 +1,7 @@
 """An assignment to release and to grade, whose text a test may change."""
 
 from exercisegrader.assignment import Assignment
-from exercisegrader.roster import Student
+from exercisegrader.student import Student
 
 SOURCE = '''"""Tuning $K$
 

@@ -29,7 +29,7 @@ from exercisegrader.grade import grade, here
 from exercisegrader.jail import Jail
 from exercisegrader.judge import Judge
 from exercisegrader.release import release
-from exercisegrader.roster import Student
+from exercisegrader.student import Student
 from hostile import ATTACKS
 from loopbook import notebooks
 

@@ -7,7 +7,7 @@ from exercisebook import png
 from exercisebook.judging import WAITING
 from exercisegrader.marking import Marked
 from exercisegrader.results import CellError, JudgedAnswer, JudgedExercise, Look, Result
-from exercisegrader.roster import Student
+from exercisegrader.student import Student
 from loopbook.exercises.authoring import answers, between, choice, exercise, expression, number, word
 from plainmath.expressions import s
 

@@ -7,7 +7,7 @@ from exercisebook.judging import RIGHT
 from exercisegrader import trial
 from exercisegrader.assignment import Assignment
 from exercisegrader.release import notebook
-from exercisegrader.roster import Student
+from exercisegrader.student import Student
 from exercisegrader.student_side.answer_sheet import FORMS
 
 ASSIGNMENTS = authors_guide.assignments()

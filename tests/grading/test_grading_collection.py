@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from exercisegrader import GradingError, entries, sources
-from exercisegrader.roster import Student
+from exercisegrader.student import Student
 from exercisegrader.submissions import Collection, collect
 
 JANE = Student("s1001", "Jane Doe", "Doe, Jane", canvas_id="123", moodle_id="77001")

@@ -18,7 +18,7 @@ from exercisegrader.assignment import load
 from exercisegrader.grade import grade
 from exercisegrader.jail import Limits
 from exercisegrader.results import Results
-from exercisegrader.roster import Student
+from exercisegrader.student import Student
 from hostile import ATTACKS, Target, canary, notebook
 from needs import needs_jail
 

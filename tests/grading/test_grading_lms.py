@@ -27,7 +27,8 @@ from exercisegrader.lms.own import grades_csv
 from exercisegrader.marking import Marked, MarkedExercise
 from exercisegrader.owners import Owners
 from exercisegrader.results import JudgedAnswer, JudgedExercise, Result
-from exercisegrader.roster import POSSIBLE_ID, Student, moment, read_roster
+from exercisegrader.roster import POSSIBLE_ID, moment, read_roster
+from exercisegrader.student import Student
 from loopbook.__main__ import app
 from small_class import HOSTILE
 
@@ -373,14 +374,14 @@ def test_what_is_no_time(text):
         ("s1001.ipynb", JANE, ()),
         ("s1001.IPYNB", JANE, ()),
         ("Jane Doe (s1001)", JANE, ()),
-        ("doejane_123_456_heater.ipynb", JANE, (None, 1, 456)),
-        ("doejane_LATE_123_456_heater-1.ipynb", JANE, (True, 2, 456)),
-        ("doejane_LATE_123_456_mine-1.ipynb", JANE, (True, None, 456)),
-        ("doejane_123_456_heater-0.ipynb", JANE, (None, None, 456)),
-        ("doejane_123_456_LATE_heater.ipynb", JANE, (None, None, 456)),
-        ("müllerlüdenscheidtanne_125_456_a_b.ipynb", ANNE, (None, None, 456)),
-        ("mu\u0308llerlu\u0308denscheidtanne_LATE_125_456_heater.ipynb", ANNE, (True, 1, 456)),
-        ("doejane_123_456_124_789_x.ipynb", JANE, (None, None, 456)),  # a file's own name is the student's to choose
+        ("doejane_123_456_heater.ipynb", JANE, (None, 456)),
+        ("doejane_LATE_123_456_heater-1.ipynb", JANE, (True, 456)),
+        ("doejane_LATE_123_456_mine-1.ipynb", JANE, (True, 456)),
+        ("doejane_123_456_heater-0.ipynb", JANE, (None, 456)),
+        ("doejane_123_456_LATE_heater.ipynb", JANE, (None, 456)),
+        ("müllerlüdenscheidtanne_125_456_a_b.ipynb", ANNE, (None, 456)),
+        ("mu\u0308llerlu\u0308denscheidtanne_LATE_125_456_heater.ipynb", ANNE, (True, 456)),
+        ("doejane_123_456_124_789_x.ipynb", JANE, (None, 456)),  # a file's own name is the student's to choose
         ("Jane Doe_77001_assignsubmission_file", JANE, ()),
         ("Jane Doe_77001_assignsubmission_file_", JANE, ()),
         ("Jane Doe_77001_assignsubmission_file_heater.ipynb", JANE, ()),
@@ -390,9 +391,9 @@ def test_what_is_no_time(text):
     ],
 )
 def test_whose_it_is(name, student, said):
-    found = Owners(CLASS, "heater").of(name)
+    found = Owners(CLASS).of(name)
     assert (found.student, found.reason) == (student, "")
-    assert (found.late, found.attempt, found.upload) == (said or (None, None, None))
+    assert (found.late, found.upload) == (said or (None, None))
 
 
 @pytest.mark.parametrize(
@@ -417,7 +418,7 @@ def test_whose_it_is(name, student, said):
     ],
 )
 def test_whose_it_is_not(name, says):
-    found = Owners(CLASS, "heater").of(name)
+    found = Owners(CLASS).of(name)
     assert found.student is None
     assert says in found.reason
 
@@ -445,7 +446,7 @@ def test_the_name_of_a_file_stands_for_nobody_else(own_name):
         (f"doejane_123_456_{own_name}.ipynb", None),
         (f"Jane Doe_77001_assignsubmission_file_{own_name}.ipynb", None),
     ):
-        found = Owners(CLASS, "heater").of(written)
+        found = Owners(CLASS).of(written)
         assert (found.student, found.late) == (JANE, late)
 
 
@@ -500,7 +501,7 @@ def test_canvas_gets_its_own_columns_with_the_number_of_the_assignment(roster):
         ["Nguyễn, Thị, Anh", "125", "A19", "anh", "C1", "EX"],  # who is excused stays so
         ["'=1+1", "126", "A20", "odd", "C1", "2.5"],
     ]
-    assert lms.remarks(students, "heater", marks)[1:] == ("canvas_grades.csv: A19 is excused in Canvas, and so left",)
+    assert lms.remarks(students, "heater", 10)[1:] == ("canvas_grades.csv: A19 is excused in Canvas, and so left",)
     kept = canvas_grades("Heater", students, [mark("A17", None, 10, "not run")])
     assert rows(kept)[-1][-1] == "9.00"  # what stands in Canvas
     assert not kept.startswith("\ufeff")
@@ -520,17 +521,17 @@ def test_canvas_asks_where_it_cannot_know_and_that_is_said(roster):
     marks = [mark("A17", 10)]
     table = rows(canvas_grades("Tank", students, marks))
     assert [row[-1] for row in table] == ["Tank", "17", "10"]
-    assert lms.remarks(students, "Tank", marks) == (
+    assert lms.remarks(students, "Tank", 17) == (
         "canvas_grades.csv: the gradebook of the roster has no assignment called 'Tank' but 'Heater', so that Canvas "
         "will ask where the grades go; export it again once there is one",
     )
-    assert lms.remarks(students, "Heater", marks)[1:] == (
+    assert lms.remarks(students, "Heater", 17)[1:] == (
         "canvas_grades.csv: Heater (11) has 10 points in Canvas and 17 here, and grades are not scaled: change it in "
         "Canvas",
     )
     two = roster(CANVAS.format(sis="A18", login="anh").replace("Current Score", "Heater (12)"))
     assert {row[-1] for row in rows(canvas_grades("Heater", two, marks))} == {"Heater", "17", "10"}
-    assert "two assignments or more called 'Heater'" in lms.remarks(two, "Heater", marks)[0]
+    assert "two assignments or more called 'Heater'" in lms.remarks(two, "Heater", 17)[0]
     unsafe = [mark("A17", 10, jailed=False)]
     assert rows(canvas_grades("Heater", students, unsafe))[0][-1] == "Heater (graded without a jail)"
 
@@ -543,7 +544,7 @@ def test_canvas_with_semicolons_has_decimal_commas(roster):
     students = roster(text, "utf-8-sig")
     written = canvas_grades("Heater", students, [mark("A17", 2.5)])
     assert written == text.replace("jane;C1;", "jane;C1;2,5")  # before LastName Canvas takes no byte-order mark
-    assert lms.remarks(students, "Heater", [mark("A17", 2.5)]) == ()
+    assert lms.remarks(students, "Heater", 17) == ()
     assert canvas_grades("Heater", roster(CANVAS.format(sis="", login=""), "utf-8-sig"), []).startswith("\ufeff")
 
 
@@ -557,8 +558,8 @@ def test_the_worksheet_of_moodle_is_filled_in_and_nothing_else_changes(roster):
         cell for k, cell in enumerate(before[1]) if k not in (5, 10)
     ]
     assert after[2] == before[2]
-    assert lms.remarks(students, "Heater", marks) == ()
-    assert lms.remarks(students, "Heater", [mark("s1001", 4, 20)]) == (
+    assert lms.remarks(students, "Heater", 17) == ()
+    assert lms.remarks(students, "Heater", 20) == (
         "moodle_grades.csv: the assignment has 17 points in Moodle and 20 here, and grades are not scaled: change it "
         "in Moodle, and take its worksheet again",
     )
@@ -609,7 +610,7 @@ def test_other_tables_of_moodle_get_a_table_for_the_gradebook(roster):
         ["First name", "Surname", "ID number", "Email address", "Heater"],
         ["Jane", "Doe", "s1001", "j@x.org", "2"],
     ]
-    assert lms.remarks(students, "Heater", marks)[0].startswith("moodle_grades.csv is for the import of the gradebook")
+    assert lms.remarks(students, "Heater", 17)[0].startswith("moodle_grades.csv is for the import of the gradebook")
 
 
 FITTING = {

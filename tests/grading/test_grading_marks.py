@@ -21,7 +21,7 @@ from exercisegrader.reports import write_all
 from exercisegrader.reports.concerns import concerns
 from exercisegrader.reports.outputs.to_mark import to_mark
 from exercisegrader.results import JudgedAnswer, JudgedExercise, Result
-from exercisegrader.roster import Student
+from exercisegrader.student import Student
 from exercisegrader.submissions import Submission
 from test_exercise_by_hand import stored
 from whole_pages import Checker

@@ -19,7 +19,7 @@ from exercisegrader.reports.outputs.feedback import feedback
 from exercisegrader.reports.outputs.summary import summary
 from exercisegrader.reports.wording import answer_in_words
 from exercisegrader.results import CellError, JudgedAnswer, JudgedExercise, Look
-from exercisegrader.roster import Student
+from exercisegrader.student import Student
 from small_class import (
     ADA,
     BOB,

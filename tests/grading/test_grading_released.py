@@ -13,7 +13,7 @@ from exercisegrader.assignment import load
 from exercisegrader.imprint import Imprint, peek
 from exercisegrader.release import notebook, release
 from exercisegrader.released import FEW, Released, texts
-from exercisegrader.roster import Student
+from exercisegrader.student import Student
 from exercisegrader.submissions import collect
 from loopbook.__main__ import app
 from loopbook.notebooks import as_text, read

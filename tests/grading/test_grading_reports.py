@@ -15,7 +15,7 @@ from exercisebook.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
 from exercisegrader import GradingError, reports
 from exercisegrader.lms.gradescope import results_json
 from exercisegrader.reports.outputs import output, registered
-from exercisegrader.roster import Student
+from exercisegrader.student import Student
 from loopbook.__main__ import app
 from loopbook.exercises.bank import exercises
 from small_class import (

@@ -31,7 +31,7 @@ from exercisegrader.submissions import collect
 
 if TYPE_CHECKING:
     from exercisegrader.assignment import Assignment
-    from exercisegrader.roster import Student
+    from exercisegrader.student import Student
 
 #: Where so many submissions that were graded before are gone, and most of them, something else has happened.
 FEWEST_GONE = 3
@@ -239,7 +239,7 @@ def grade(
         stored = {student.id: one for student in students if (one := results.of(student.id))}
         marking.read(stored.get)
         marks = marking.marked(list(stored.values()), found)
-        notes += [*marking.notes(marks), *lms.remarks(students, assignment.title, marks)]
+        notes += [*marking.notes(marks), *lms.remarks(students, assignment.title, assignment.points if marks else None)]
         write_all(folder, assignment.title, students, marks, collection.complaints, notes, reveal)
         others = [student for student in students if student not in wanted and student.id in stored]
         outdated = [one.id for one in others if stored[one.id].fingerprint != task(one).fingerprint]

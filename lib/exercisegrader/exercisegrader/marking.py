@@ -18,7 +18,7 @@ from exercisegrader.results import MISSING, NOT_RUN, JudgedExercise, Result
 
 if TYPE_CHECKING:
     from exercisegrader.assignment import Assignment
-    from exercisegrader.roster import Student
+    from exercisegrader.student import Student
     from exercisegrader.submissions import Submission
 
 _NONE = Mark()

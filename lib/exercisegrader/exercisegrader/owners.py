@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from exercisegrader import lms
 
 if TYPE_CHECKING:
-    from exercisegrader.roster import Student
+    from exercisegrader.student import Student
 
 
 @dataclass(frozen=True)
@@ -24,38 +24,36 @@ class Owner:
         student: whose it is; None where that is not clear.
         reason: where it is not, why.
         late: whether the name says that it came late; None where it says nothing.
-        attempt: which file of this name it is, 1 for the first; None where it does not say.
         upload: a number that is larger for what the same student handed in later; None where it does not say.
     """
 
     student: Student | None
     reason: str = ""
     late: bool | None = None
-    attempt: int | None = None
     upload: int | None = None
 
 
 class Owners:
     """The students of a roster, found by the names that the systems give to their submissions.
 
-    >>> from exercisegrader.roster import Student
-    >>> owners = Owners([Student("s1001", "Jane Doe", canvas_id="123"), Student("s1002", "John Roe")], "heater")
+    >>> from exercisegrader.student import Student
+    >>> owners = Owners([Student("s1001", "Jane Doe", canvas_id="123"), Student("s1002", "John Roe")])
     >>> found = owners.of("doejane_LATE_123_456_heater-1.ipynb")
-    >>> found.student.id, found.late, found.attempt, found.upload
-    ('s1001', True, 2, 456)
+    >>> found.student.id, found.late, found.upload
+    ('s1001', True, 456)
     >>> owners.of("John Roe_7_assignsubmission_file").student.id
     's1002'
     >>> owners.of("s1003").reason
     'is named after no student of the roster'
     """
 
-    def __init__(self, students: Iterable[Student], assignment: str = ""):
-        """Take the students of the roster, and the name of the assignment."""
-        self._known, self._assignment, self._systems = lms.Known(students), assignment, lms.registered()
+    def __init__(self, students: Iterable[Student]):
+        """Take the students of the roster."""
+        self._known, self._systems = lms.Known(students), lms.registered()
 
     def of(self, name: str) -> Owner:
         """Return whose the submission with this name at the top is."""
-        claims = [claim for one in self._systems if (claim := one.claim(name, self._known, self._assignment))]
+        claims = [claim for one in self._systems if (claim := one.claim(name, self._known))]
         found = list({student.id: student for claim in claims for student in claim.students}.values())
         if len(found) > 1:
             return Owner(None, f"may be that of {found[0].id} or of {found[1].id}")
@@ -63,7 +61,7 @@ class Owners:
             reasons = [claim.reason for claim in claims if claim.reason]
             return Owner(None, reasons[0] if reasons else "is named after no student of the roster")
         claim = next(claim for claim in claims if claim.students)
-        return Owner(found[0], "", claim.late, claim.attempt, claim.upload)
+        return Owner(found[0], "", claim.late, claim.upload)
 
 
 def stem(name: str) -> str:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from exercisebook.question import Question
     from exercisegrader.assignment import Assignment
-    from exercisegrader.roster import Student
+    from exercisegrader.student import Student
     from exercisegrader.submissions import Submission
 
 #: {exercise: {parameter: text}}, as `parameters.as_text` writes the values.

@@ -6,69 +6,26 @@ import contextlib
 import datetime
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass, field
 from pathlib import Path
 
 from exercisegrader import GradingError, lms, tables
-from exercisegrader.lms import own
+from exercisegrader.student import Student
 from exercisegrader.tables import Faults
 
 #: What an id may be: it is the name of a folder on any system, and part of a web address.
 POSSIBLE_ID = re.compile(
     r"(?!(?i:con|prn|aux|nul|com\d|lpt\d)(?:\.|$))[A-Za-z0-9][A-Za-z0-9._@-]{0,99}(?<!\.)", re.ASCII
 )
+#: What an instructor may add to any export.
+_ADDED = {"handedin": "handed_in"}
 #: A time as Moodle writes it, in English and in the English of the United States.
 _LONG_FORMS = ("%A, %d %B %Y, %I:%M %p", "%A, %B %d, %Y, %I:%M %p")
-
-
-@dataclass(frozen=True)
-class Student:
-    """One who takes part.
-
-    Attributes:
-        id: what variants are drawn from and folders are named after; unique without regard to case.
-        name: as it is shown.
-        sortable: as it is sorted, "Doe, Jane"; Canvas puts it into the names of files.
-        canvas_id: Canvas's number.
-        sis_id: the number in the student information system; Moodle's "ID number", Gradescope's "SID".
-        login: the name to log in with.
-        section: section or groups.
-        email: the address.
-        moodle_id: the number in Moodle's "Participant 12345", which belongs to one assignment.
-        handed_in: when the student handed in, where the roster says it.
-        roster_id: the id on the roster, where another one is kept from the release.
-        id_from: the column from which the id is.
-        system: the `lms.System` of the roster.
-        row: the student's row, as the roster has it.
-        table: the whole roster, as it is.
-
-    What is not known is the empty text, or None.
-
-    >>> Student("s1001", "Jane Doe").email
-    ''
-    """
-
-    id: str
-    name: str
-    sortable: str = ""
-    canvas_id: str = ""
-    sis_id: str = ""
-    login: str = ""
-    section: str = ""
-    email: str = ""
-    moodle_id: str = ""
-    handed_in: datetime.datetime | None = None
-    roster_id: str = field(default="", compare=False)
-    id_from: str = field(default="", compare=False)
-    system: str = field(default="", compare=False)
-    row: tuple[str, ...] = field(default=(), compare=False, repr=False)
-    table: tables.Table | None = field(default=None, compare=False, repr=False)
 
 
 def read_roster(path: str | Path) -> tuple[Student, ...]:
     """The students of a roster, in its order: a file of comma-, semicolon- or tab-separated values.
 
-    It is one of your own with the columns id and name (`lms.own` says which others, and by which words), or an export
+    It is one of your own with the columns id and name (`lms.own` says which others), or an export
     of a system in `lms`, to which a column "handed in" may be added; both in UTF-8. Of an export, the id of each
     student is in the first of the system's columns that is full in this row: in Canvas SIS User ID, SIS Login ID, ID;
     in Moodle ID number, Username, the number in Identifier, Email address. `lms.remarks` says where ids come from
@@ -121,7 +78,7 @@ def _recognised(path):
             raise GradingError(f"{path.name}, line 1: the header is that of {titles}: expected that of one of them")
         if found:
             system, columns = found[0]
-            return table, system, {**own.added(table.header), **columns}
+            return table, system, {**tables.places(table.header, _ADDED), **columns}
     heads = [head for head in seen if head]
     says = f", {_listed(map(repr, heads))}" if heads else ""
     *kinds, last = [one.roster for one in sorted(lms.registered(), key=lambda one: one.name != lms.OWN)]

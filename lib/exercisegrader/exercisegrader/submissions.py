@@ -15,7 +15,7 @@ from typing import Any
 from exercisegrader import GradingError, sources
 from exercisegrader.entries import FAILURES, Entry, entries, shown, why
 from exercisegrader.owners import Owner, Owners, is_notebook
-from exercisegrader.roster import Student
+from exercisegrader.student import Student
 
 #: The most complaints about what lies in one folder.
 MOST_COMPLAINTS = 10
@@ -101,7 +101,7 @@ def collect(path: str | Path, students: Sequence[Student], assignment_name: str,
     (['s1001.ipynb'], ('s10002.ipynb: is named after no student of the roster',))
     """
     lying = entries(Path(path), assignment_name, [student.id for student in students])
-    owners, complaints = Owners(students, assignment_name), _Complaints()
+    owners, complaints = Owners(students), _Complaints()
     notebooks, others = defaultdict(list), defaultdict(list)
     for entry in lying:
         owner = owners.of(entry.parts[0])

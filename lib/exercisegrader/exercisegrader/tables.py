@@ -6,7 +6,7 @@ import csv
 import io
 import re
 import unicodedata
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -57,6 +57,19 @@ class Faults:
             more = len(self._found) - MOST_FAULTS
             told = [f"{self.name}, line {line}: {says}" for line, says in self._found[:MOST_FAULTS]]
             raise GradingError("\n".join(told + ([f"{self.name}: {more} more such faults"] if more > 0 else [])))
+
+
+def places(header: Sequence[str], heads: Mapping[str, str]) -> dict[str, int]:
+    """Return where the columns are of which the letters of the head are known: {field: place of the first one}.
+
+    >>> places(["Student", "SIS User ID", "Id"], {"sisuserid": "sis_id", "id": "canvas_id"})
+    {'sis_id': 1, 'canvas_id': 2}
+    """
+    found: dict[str, int] = {}
+    for place, head in enumerate(header):
+        if field := heads.get(letters(head)):
+            found.setdefault(field, place)
+    return found
 
 
 @dataclass(frozen=True)

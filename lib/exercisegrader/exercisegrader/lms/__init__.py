@@ -22,8 +22,7 @@ from exercisegrader.tables import letters
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from exercisegrader.marking import Marked
-    from exercisegrader.roster import Student
+    from exercisegrader.student import Student
 
 __all__ = [
     "Claim",
@@ -50,7 +49,7 @@ _Class = TypeVar("_Class", bound="type[System]")
 class Known:
     """The students of a roster, found by what they are known by.
 
-    >>> from exercisegrader.roster import Student
+    >>> from exercisegrader.student import Student
     >>> known = Known([Student("s1", "Jané Doe", canvas_id="7")])
     >>> known.by("canvas_id", "7")[0].id, known.named("Jane  Doe")[0].id, known.by("login", "")
     ('s1', 's1', [])
@@ -86,14 +85,12 @@ class Claim:
         students: who may be meant.
         reason: where nobody is, why.
         late: whether it says that the file came late; None where it says nothing.
-        attempt: which file of this name it is, 1 for the first; None where it does not say.
         upload: a number that is larger for what the same student handed in later; None where it does not say.
     """
 
     students: tuple[Student, ...] = ()
     reason: str = ""
     late: bool | None = None
-    attempt: int | None = None
     upload: int | None = None
 
 
@@ -143,13 +140,12 @@ class System:
         """
         return cells
 
-    def claim(self, name: str, known: Known, assignment: str) -> Claim | None:
+    def claim(self, name: str, known: Known) -> Claim | None:
         """Return whose a file or folder with this name at the top of a download is; None for a name of another form.
 
         Arguments:
             name: of the file or folder.
             known: the students.
-            assignment: name of the assignment, by which its notebooks were released; may be empty.
         """
         return None
 
@@ -219,13 +215,12 @@ def of(students: Iterable[Student]) -> System | None:
     return next((one for one in registered() if {one.name} == names), None)
 
 
-def remarks(students: Sequence[Student], title: str = "", marks: Iterable[Marked] = ()) -> tuple[str, ...]:
+def remarks(students: Sequence[Student], title: str = "", points: float | None = None) -> tuple[str, ...]:
     """Return what an instructor should know of a roster, in sentences, as where ids come from different columns.
 
     Arguments:
         students: the roster.
-        title: of an assignment; with marks, also what matters before its grades go to the system.
-        marks: of the assignment.
+        title, points: of an assignment; with them also what matters before its grades go to the system.
     """
     said: list[str] = []
     by_column: dict[str, list[str]] = defaultdict(list)
@@ -239,7 +234,6 @@ def remarks(students: Sequence[Student], title: str = "", marks: Iterable[Marked
                 f"the ids of {len(most)} student{'s' * (len(most) > 1)} come from {usual}, and "
                 f"{'those' if len(ids) > 1 else 'that'} of {len(ids)} from {column}: {who}"
             )
-    points = max((mark.result.points for mark in marks), default=None)
     if points is not None and (found := of(students)):
         said += found.remarks(students, title, points)
     return tuple(said)
@@ -270,7 +264,7 @@ def packed(place: str, released: Path, students: Sequence[Student], assignment: 
         GradingError: for another place, a student without a notebook, and one whom the system could not find.
 
     >>> import pathlib, tempfile
-    >>> from exercisegrader.roster import Student
+    >>> from exercisegrader.student import Student
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = pathlib.Path(folder, "s1", "heater.ipynb")
     ...     path.parent.mkdir()
@@ -302,20 +296,16 @@ def _files(folder):
         raise GradingError(f"{folder} cannot be read: {problem.strerror}") from None
 
 
-def pages(folder: Path | None, marks: Iterable[Marked], name: str) -> dict[str, bytes]:
-    """Return what was written for the students of these marks under a name, by their ids.
+def pages(folder: Path | None, students: Iterable[str], name: str) -> dict[str, bytes]:
+    """Return what was written for students under a name, by their ids.
 
     Arguments:
         folder: of the grades, if there is one.
-        marks: of students.
+        students: their ids.
         name: of a file in the folder of feedback of each.
     """
-    found = {}
-    for mark in marks if folder else ():
-        path = folder / "feedback" / mark.result.student / name
-        if path.is_file():
-            found[mark.result.student] = path.read_bytes()
-    return found
+    paths = {student: folder / "feedback" / student / name for student in students} if folder else {}
+    return {student: path.read_bytes() for student, path in paths.items() if path.is_file()}
 
 
 def zipped(files: Mapping[str, bytes]) -> bytes:

@@ -41,11 +41,11 @@ from exercisegrader.lms import Claim, Known, Packed, System
 from exercisegrader.reports.lines import of_exercise, overall
 from exercisegrader.reports.outputs import output
 from exercisegrader.reports.wording import in_text, number, visible, without_jail
-from exercisegrader.tables import as_text, letters
+from exercisegrader.tables import as_text, letters, places
 
 if TYPE_CHECKING:
     from exercisegrader.marking import Marked
-    from exercisegrader.roster import Student
+    from exercisegrader.student import Student
 
 #: A name ending in one of these is read as Canvas does: "Doe, John, Jr." is John Doe Jr.
 _SUFFIX = re.compile(r"(?i)(sn?r\.?|senior|jn?r\.?|junior|ii|iii|iv|v|vi|esq\.?|esquire)")
@@ -56,7 +56,6 @@ _TITLE = re.compile(r"(.*\S)\s*\(([0-9]+)\)")
 _HEADS = {
     "student": "sortable", "lastname": "last", "firstname": "first", "id": "canvas_id", "sisuserid": "sis_id",
     "sisloginid": "login", "integrationid": "integration", "rootaccount": "account", "section": "section",
-    "handedin": "handed_in",  # a column that instructors add: Canvas does not export when
 }  # fmt: skip
 _POINTS = "Points Possible"
 #: What stands in the cell of a student who is excused.
@@ -72,11 +71,8 @@ class Canvas(System):
     ids = {"sis_id": "SIS User ID", "login": "SIS Login ID", "canvas_id": "ID"}  # noqa: RUF012 - read and never changed
 
     def columns(self, header: Sequence[str]) -> Mapping[str, int] | None:
-        """Return where the fields are, the first column of a head for each."""
-        found = {}
-        for index, head in enumerate(header):
-            if field := _HEADS.get(letters(head)):
-                found.setdefault(field, index)
+        """Return where the fields are."""
+        found = places(header, _HEADS)
         named = "sortable" in found or {"last", "first"} <= found.keys()
         return found if named and "canvas_id" in found and {"sis_id", "login", "section"} & found.keys() else None
 
@@ -93,7 +89,7 @@ class Canvas(System):
         name = _spoken(sortable) or fields["canvas_id"]
         return {**fields, "sortable": sortable, "name": name, "handed_in": cells.get("handed_in", "")}
 
-    def claim(self, name: str, known: Known, assignment: str) -> Claim | None:
+    def claim(self, name: str, known: Known) -> Claim | None:
         """Return whose a file of a download is.
 
         A number counts for a student only behind that student's name, where the roster tells how Canvas writes it.
@@ -110,12 +106,7 @@ class Canvas(System):
         ]
         first = numbers[0]
         written = name[: first.start()]
-        own = name[first.end(2) + 1 :]
-        said = {
-            "late": True if written.endswith("_LATE") else None,
-            "attempt": _attempt(own, assignment),
-            "upload": int(first[2]),
-        }
+        said = {"late": True if written.endswith("_LATE") else None, "upload": int(first[2])}
         if fitting[0]:
             return Claim(tuple(student for students in fitting for student in students), **said)
         if found[0]:
@@ -166,12 +157,6 @@ class Canvas(System):
             "Canvas cannot give each student a file of their own: put the folder links on a web space that does not "
             "list its folders, and send each student the link of links.csv behind its address, as by mail merge.",
         )
-
-
-def _attempt(own, assignment):
-    """Which file of the assignment's name it is, 1 for the first."""
-    again = re.fullmatch(rf"(?i){re.escape(assignment)}(?:-([1-9][0-9]?))?\.ipynb", own) if assignment else None
-    return int(again[1] or 0) + 1 if again else None
 
 
 def _on_time(written):
@@ -237,7 +222,7 @@ def canvas_grades(title: str, students: Sequence[Student], marks: Collection[Mar
     if not isinstance(found, Canvas) or table is None:
         return None
     columns = found.columns(table.header) or {}
-    places = sorted(place for field, place in columns.items() if field != "handed_in")
+    own_places = sorted(columns.values())
     unsafe = without_jail(mark.result for mark in marks)
     heads = [] if unsafe else _of_title(table.header, title)
     own = heads[0] if len(heads) == 1 else None
@@ -246,8 +231,8 @@ def canvas_grades(title: str, students: Sequence[Student], marks: Collection[Mar
     head = table.header[own] if own is not None else f"{title} (graded without a jail)" if unsafe else title
     possible = (_possible(table, own) if own is not None else "") or _grade(points, comma)
     rows = [
-        [*(table.header[place] for place in places), head],
-        [f"    {_POINTS}", *[""] * (len(places) - 1), possible],
+        [*(table.header[place] for place in own_places), head],
+        [f"    {_POINTS}", *[""] * (len(own_places) - 1), possible],
     ]
     totals = {mark.result.student: mark.total for mark in marks}
     for student in students:
@@ -255,7 +240,7 @@ def canvas_grades(title: str, students: Sequence[Student], marks: Collection[Mar
             there = student.row[own].strip() if own is not None else ""
             total = totals[student.id]
             cell = there if total is None or there.upper() == EXCUSED else _grade(total, comma)
-            rows.append([*(_unquoted(student.row[place]) for place in places), cell])
+            rows.append([*(_unquoted(student.row[place]) for place in own_places), cell])
     return as_text(rows, table.delimiter, bom=table.bom and "last" not in columns)
 
 
@@ -281,7 +266,7 @@ def canvas_feedback(
     by_id = {student.id: student for student in students}
     for mark in marks:
         student, name = by_id[mark.result.student], mark.result.file.rpartition("/")[2]
-        claim = Canvas().claim(name, Known([student]), "")
+        claim = Canvas().claim(name, Known([student]))
         if claim and claim.students:
             files[name] = _notebook(title, student, mark, reveal)
     return lms.zipped(files) if files else None

@@ -19,7 +19,7 @@ from exercisegrader.lms import Claim, Known, System
 from exercisegrader.reports.lines import known, of_exercise, overall
 from exercisegrader.reports.outputs import output
 from exercisegrader.reports.wording import in_text
-from exercisegrader.tables import letters
+from exercisegrader.tables import places
 
 if TYPE_CHECKING:
     from exercisegrader.marking import Marked
@@ -39,11 +39,8 @@ class Gradescope(System):
     ids = {"sis_id": "SID", "email": "Email"}  # noqa: RUF012 - read and never changed
 
     def columns(self, header: Sequence[str]) -> Mapping[str, int] | None:
-        """Return where the fields are, the first column of a head for each."""
-        found: dict[str, int] = {}
-        for index, head in enumerate(header):
-            if field := _HEADS.get(letters(head)):
-                found.setdefault(field, index)
+        """Return where the fields are."""
+        found = places(header, _HEADS)
         return found if {"first", "last", "sis_id", "email"} <= found.keys() else None
 
     def student(self, cells: Mapping[str, str]) -> Mapping[str, str] | None:
@@ -55,7 +52,7 @@ class Gradescope(System):
         time = re.sub(r" *(?:[+-][0-9]{4}|UTC)$", "", cells.get("handed_in", ""))
         return {**cells, "name": " ".join(filter(None, (first, last))), "sortable": sortable, "handed_in": time}
 
-    def claim(self, name: str, known: Known, assignment: str) -> Claim | None:
+    def claim(self, name: str, known: Known) -> Claim | None:
         """Return that nobody can tell."""
         if not re.fullmatch(r"submission_[0-9]+(?:\..*)?", name):
             return None

@@ -37,11 +37,11 @@ from exercisegrader import GradingError, lms
 from exercisegrader.lms import Claim, Known, Packed, System, own
 from exercisegrader.reports.outputs import output
 from exercisegrader.reports.wording import number, visible, without_jail
-from exercisegrader.tables import as_text, letters
+from exercisegrader.tables import as_text, places
 
 if TYPE_CHECKING:
     from exercisegrader.marking import Marked
-    from exercisegrader.roster import Student
+    from exercisegrader.student import Student
 
 _NAME = re.compile(r"([^_]*)_([0-9]{1,20})_assignsubmission_[a-z]+(?:_.*)?", re.DOTALL)
 #: The heads of its tables, and the fields that they are.
@@ -66,11 +66,8 @@ class Moodle(System):
     }  # fmt: skip
 
     def columns(self, header: Sequence[str]) -> Mapping[str, int] | None:
-        """Return where the fields are, the first column of a head for each."""
-        found: dict[str, int] = {}
-        for index, head in enumerate(header):
-            if field := _HEADS.get(letters(head)):
-                found.setdefault(field, index)
+        """Return where the fields are."""
+        found = places(header, _HEADS)
         if "moodle_id" in found and {"graded", "grade"} & found.keys():  # the grading worksheet
             return {field: index for field, index in found.items() if field not in ("first", "last")}
         known = {"first", "last"} <= found.keys() and {"sis_id", "login", "email"} & found.keys()
@@ -91,7 +88,7 @@ class Moodle(System):
         name = " ".join(filter(None, (first, last))) or cells.get("login") or cells.get("email", "")
         return {**cells, "name": name, "sortable": ", ".join(filter(None, (last, first)))}
 
-    def claim(self, name: str, known: Known, assignment: str) -> Claim | None:
+    def claim(self, name: str, known: Known) -> Claim | None:
         """Return whose a folder or a file of a download is."""
         parts = _NAME.fullmatch(name)
         if parts is None:
@@ -182,12 +179,12 @@ def moodle_grades(title: str, students: Sequence[Student], marks: Collection[Mar
     if "grade" in columns and "moodle_id" in columns and not unsafe:
         rows = [_filled(student.row, by_student.get(student.id), columns) for student in students]
         return as_text([table.header, *rows], table.delimiter, table.bom, {columns.get("comments", -1)})
-    places = sorted(columns[field] for field in columns if field in ("moodle_id", "name", "first", "last", *Moodle.ids))
-    rows = [[*(table.header[place] for place in places), f"{title} (graded without a jail)" if unsafe else title]]
+    shown = sorted(columns[field] for field in columns if field in ("moodle_id", "name", "first", "last", *Moodle.ids))
+    rows = [[*(table.header[place] for place in shown), f"{title} (graded without a jail)" if unsafe else title]]
     for student in students:
         if mark := by_student.get(student.id):
             grade = "" if mark.total is None else number(mark.total)
-            rows.append([*(" ".join(student.row[place].split()) for place in places), grade])
+            rows.append([*(" ".join(student.row[place].split()) for place in shown), grade])
     return as_text(rows, bom=table.bom)
 
 
@@ -221,7 +218,7 @@ def moodle_feedback(folder: Path, students: Sequence[Student], marks: Collection
     Returns:
         The file; None where no number is known.
     """
-    files, pages = {}, lms.pages(folder, marks, "feedback.html")
+    files, pages = {}, lms.pages(folder, (mark.result.student for mark in marks), "feedback.html")
     by_id = {student.id: student for student in students}
     for mark in marks:
         student = by_id[mark.result.student]

@@ -11,11 +11,11 @@ from exercisegrader import GradingError, lms
 from exercisegrader.lms import Claim, Known, Packed, System
 from exercisegrader.reports.outputs import output
 from exercisegrader.reports.wording import number, without_jail
-from exercisegrader.tables import as_text, letters
+from exercisegrader.tables import as_text, letters, places
 
 if TYPE_CHECKING:
     from exercisegrader.marking import Marked
-    from exercisegrader.roster import Student
+    from exercisegrader.student import Student
 
 #: The words by which a column is known, without regard to capitals, accents, spaces and signs.
 SYNONYMS = {
@@ -46,15 +46,6 @@ def is_id(head: str) -> bool:
     return _FIELDS.get(letters(head)) == "id"
 
 
-def added(header: Sequence[str]) -> Mapping[str, int]:
-    """Return where the columns are that an instructor may add to any export: when each student handed in.
-
-    >>> added(["Student", "ID", "Section", "handed in"])
-    {'handed_in': 3}
-    """
-    return {field: index for index, head in enumerate(header) if (field := _FIELDS.get(letters(head))) == "handed_in"}
-
-
 @lms.system
 class Own(System):
     """A roster of one's own, and folders by id."""
@@ -68,21 +59,14 @@ class Own(System):
 
         Raises GradingError where two columns could be the same field.
         """
-        found: dict[str, int] = {}
-        twice = {}
-        for index, head in enumerate(header):
-            field = _FIELDS.get(letters(head))
-            if field in found:
-                twice[field] = index
-            elif field:
-                found[field] = index
+        found = places(header, _FIELDS)
         if "id" not in found or not {"name", "first", "last"} & found.keys():
             return None
-        for field, index in twice.items():
-            first, second = header[found[field]], header[index]
-            raise GradingError(
-                f"line 1: {first!r} and {second!r} could both be the {field.replace('_', ' ')}: rename one of them"
-            )
+        for place, head in enumerate(header):
+            field = _FIELDS.get(letters(head))
+            if field and found[field] != place:
+                first, words = header[found[field]], field.replace("_", " ")
+                raise GradingError(f"line 1: {first!r} and {head!r} could both be the {words}: rename one of them")
         return found
 
     def student(self, cells: Mapping[str, str]) -> Mapping[str, str] | None:
@@ -94,7 +78,7 @@ class Own(System):
         sortable = cells.get("sortable", "") or (f"{last}, {first}" if first and last else "")
         return {**cells, "name": name or " ".join(filter(None, (first, last))), "sortable": sortable}
 
-    def claim(self, name: str, known: Known, assignment: str) -> Claim | None:
+    def claim(self, name: str, known: Known) -> Claim | None:
         """Return whose a folder, or a notebook, named by an id is."""
         own = re.sub(r"(?i)\.ipynb$", "", name)
         students = known.by("id", name) or known.by("id", own) or known.by("roster_id", own)
@@ -166,7 +150,7 @@ def feedback_zip(folder: Path, students: Sequence[Student], marks: Collection[Ma
     Returns:
         The file; None where the roster is that of a system with a form of its own.
     """
-    found, pages = lms.of(students), lms.pages(folder, marks, "feedback.html")
+    found, pages = lms.of(students), lms.pages(folder, (mark.result.student for mark in marks), "feedback.html")
     if not pages or (found and not isinstance(found, Own)):
         return None
     return lms.zipped({f"{student}.html": content for student, content in pages.items()})
