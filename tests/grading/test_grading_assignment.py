@@ -21,7 +21,7 @@ def test_an_assignment(tuning):
     assert list(tuning.exercises) == ["1", "2"]
     assert (tuning.points, tuning.name, tuning.path) == (7, "tuning", None)
     assert tuning.fingerprint == Assignment.of(written(), "other").fingerprint
-    assert tuning.fingerprint != Assignment.of(written() + "x = 1\n", "tuning").fingerprint
+    assert tuning.fingerprint != Assignment.of(written() + "\n", "tuning").fingerprint
 
 
 def test_variants_come_from_the_secret_the_student_and_the_exercise(tuning):

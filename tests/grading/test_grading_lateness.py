@@ -108,17 +108,10 @@ def test_an_assignment_has_its_policy():
 def test_another_due_date_is_no_reason_to_grade_again():
     lines = ("", 'DUE = "2026-12-01"\n', 'DUE = "2026-12-02"  # later\nLATE = Late(\n    percent=10,\n)\n')
     assert len({Assignment.of(written() + one, "tuning").fingerprint for one in lines}) == 1
-    imports = ("answers, exercise", "Late, answers, exercise")
-    assert len({without_dates(f"from loopbook.exercises.authoring import {names}") for names in imports}) == 1
 
 
 @pytest.mark.parametrize(
-    "source",
-    [
-        "DUE = '2026-12-01'\nprint(DUE)",
-        "DUE = LATE = '2026-12-01'",
-        "if True:\n    DUE = '2026-12-01'",
-    ],
+    "source", ['x = 1; DUE = "2026-12-01"\n', 'DUE = "2026-" + "12-01"\n', 'if True:\n    DUE = "2026-12-01"\n']
 )
 def test_what_may_be_more_than_a_date_stays_part_of_the_assignment(source):
     assert without_dates(source) == source

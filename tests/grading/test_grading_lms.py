@@ -716,7 +716,9 @@ def test_notebooks_for_moodle_are_feedback_files(released):
         "Anne Müller-Lüdenscheidt_77003_assignsubmission_file_heater.ipynb": '{"of": "s1003"}',
     }
     assert "Upload multiple feedback files in a zip" in made.says
-    with pytest.raises(GradingError, match="s1002 has none: take the worksheet of the assignment as the roster"):
+    with pytest.raises(
+        GradingError, match="there is none of s1002: take the worksheet of the assignment as the roster"
+    ):
         lms.packed("moodle", released, [JANE, replace(JOHN, moodle_id="")])
 
 

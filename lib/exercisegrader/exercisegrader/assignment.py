@@ -6,7 +6,6 @@ Its docstring is the title and, below it, an introduction in Markdown; `SECRET` 
 from __future__ import annotations
 
 import contextlib
-import functools
 import hashlib
 import hmac
 import importlib.metadata
@@ -98,11 +97,11 @@ class Assignment:
         """The points of all exercises together."""
         return sum(exercise.points for exercise in self.exercises.values())
 
-    @functools.cached_property
+    @property
     def fingerprint(self) -> str:
         """A text that changes with the module and with this package's version; modules beside it are not part of it.
 
-        What says when it is due is not part of it either, and no comment is: nothing is judged by them.
+        What says when it is due is not part of it either: nothing is judged by that.
         """
         version, source = importlib.metadata.version("exercisegrader"), without_dates(self.source)
         return hashlib.sha256(f"{version}\n{source}".encode("utf-8", "surrogatepass")).hexdigest()

@@ -63,7 +63,7 @@ def _client(address):
     try:
         from distributed import Client
     except ImportError:
-        raise GradingError("a cluster needs Dask: install the extra loopbook[cluster]") from None
+        raise GradingError("a cluster needs Dask: install the extra exercisegrader[cluster]") from None
     made, why = [], ["what answers there is something else"]
 
     def connect():

@@ -27,6 +27,7 @@ from exercisegrader.outside_code import answered
 from exercisegrader.released import Released
 from exercisegrader.reports import registered, write_all
 from exercisegrader.results import MISSING, OWNER, Look, Result, Results, fingerprint, result
+from exercisegrader.student import in_short
 from exercisegrader.submissions import collect
 
 if TYPE_CHECKING:
@@ -254,13 +255,13 @@ def _gone(results, students, found, submissions):
     """
     before = [one.id for one in students if (kept := results.if_whole(one.id)) and kept.status != MISSING]
     gone = [student for student in before if student not in found]
-    who = f"{', '.join(gone[:3])}{f' and {len(gone) - 3} more' if len(gone) > 3 else ''}"
     if len(gone) >= FEWEST_GONE and 2 * len(gone) > len(before):
         raise GradingError(
             f"{len(gone)} of {len(before)} students who were graded have no submission in {submissions} any more: "
-            f"{who}; nothing is graded; look whether place and roster are the right ones, or grade into another folder"
+            f"{in_short(gone)}; nothing is graded; look whether place and roster are the right ones, or grade into "
+            "another folder"
         )
-    return [f"Graded before, and without a submission now: {who}."] if gone else []
+    return [f"Graded before, and without a submission now: {in_short(gone)}."] if gone else []
 
 
 def _demand_apart(folder, submissions):

@@ -13,7 +13,6 @@ as the due date; where that names none either, all of them are of one place, and
 
 from __future__ import annotations
 
-import ast
 import datetime
 import re
 import zoneinfo
@@ -32,6 +31,7 @@ from plainmath.validation import did_you_mean
 #: How the sentence on an extension begins.
 IN_TIME = "in time by"
 _MOMENT = re.compile(r"(\d{4}-\d\d-\d\d)(?:[ T](\d\d:\d\d)(:\d\d)?)?(?: ?(Z|[+-]\d\d:\d\d)| ([A-Za-z]\S*))?", re.ASCII)
+_DATES = re.compile(r"""^(?:DUE = (["'])[^"'\n]*\1|LATE = Late\([^()]*\))[ \t]*(?:#.*)?\n""", re.MULTILINE)
 
 
 def moment(text: str, zone: datetime.tzinfo | None = None) -> datetime.datetime:
@@ -136,20 +136,12 @@ def policy_of(module: object, name: str) -> Policy | None:
 
 
 def without_dates(source: str) -> str:
-    """Return the statements of a module without those that say when it is due, where nothing else in it reads them.
+    """Return the text of a module without the statements that say when it is due.
 
-    >>> without_dates('x = 1\\nDUE = "2026-12-01"  # a Tuesday\\nLATE = Late(percent=20)\\ny = 2')
-    'x = 1\\ny = 2'
+    >>> without_dates('x = 1\\nDUE = "2026-12-01"  # a Tuesday\\nLATE = Late(\\n    20,\\n)\\ny = 2\\n')
+    'x = 1\\ny = 2\\n'
     """
-    tree = ast.parse(source)
-    names = [node.id for node in ast.walk(tree) if isinstance(node, ast.Name)]
-    for node in list(ast.walk(tree)):
-        match node:
-            case ast.Assign([ast.Name("DUE" | "LATE" as name)]) if node in tree.body and names.count(name) == 1:
-                tree.body.remove(node)
-            case ast.ImportFrom():
-                node.names = [one for one in node.names if one.name != "Late"] or node.names
-    return ast.unparse(tree)
+    return _DATES.sub("", source)
 
 
 def _percent(fraction):

@@ -20,6 +20,7 @@ from exercisebook.parameters import as_text
 from exercisegrader import GradingError
 from exercisegrader.files import write
 from exercisegrader.imprint import Imprint, peek, proofs
+from exercisegrader.student import in_short
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -383,15 +384,6 @@ def _without_record(assignment):
         f"{assignment.record.name} is not beside {assignment.name}.py: all numbers are drawn from the secret, which "
         "gives those of the release only if nothing has changed in the ranges since"
     )
-
-
-def in_short(names: Sequence[str]) -> str:
-    """Return a few of many names, in words.
-
-    >>> in_short(["s1", "s2"]), in_short([f"s{k}" for k in range(60)])
-    ('s1 and s2', 's0, s1, s2 and 57 more')
-    """
-    return f"{', '.join(names[:3])} and {len(names) - 3} more" if len(names) > 4 else _listed(names)
 
 
 def _listed(names):

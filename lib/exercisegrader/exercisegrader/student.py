@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from exercisegrader.tables import Table
@@ -50,3 +51,13 @@ class Student:
     system: str = field(default="", compare=False)
     row: tuple[str, ...] = field(default=(), compare=False, repr=False)
     table: Table | None = field(default=None, compare=False, repr=False)
+
+
+def in_short(names: Sequence[str]) -> str:
+    """Return a few of many names, in words.
+
+    >>> in_short(["s1", "s2"]), in_short([f"s{k}" for k in range(60)])
+    ('s1 and s2', 's0, s1, s2 and 57 more')
+    """
+    *most, last = names if len(names) <= 4 else [*names[:3], f"{len(names) - 3} more"]
+    return f"{', '.join(most)} and {last}" if most else last

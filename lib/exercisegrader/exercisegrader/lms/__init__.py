@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 from exercisegrader import GradingError
+from exercisegrader.student import in_short
 from exercisegrader.tables import letters
 
 if TYPE_CHECKING:
@@ -229,10 +230,9 @@ def remarks(students: Sequence[Student], title: str = "", points: float | None =
     if len(by_column) > 1:
         (usual, most), *others = sorted(by_column.items(), key=lambda one: -len(one[1]))
         for column, ids in others:
-            who = ", ".join(ids[:5]) + (f" and {len(ids) - 5} more" if len(ids) > 5 else "")
             said.append(
                 f"the ids of {len(most)} student{'s' * (len(most) > 1)} come from {usual}, and "
-                f"{'those' if len(ids) > 1 else 'that'} of {len(ids)} from {column}: {who}"
+                f"{'those' if len(ids) > 1 else 'that'} of {len(ids)} from {column}: {in_short(ids)}"
             )
     if points is not None and (found := of(students)):
         said += found.remarks(students, title, points)
@@ -281,8 +281,8 @@ def packed(place: str, released: Path, students: Sequence[Student], assignment: 
         notebooks[student] = found
     if missing:
         raise GradingError(
-            f"{released} has no notebook of {', '.join(missing[:5])}{' ...' if len(missing) > 5 else ''}: expected a "
-            "folder for each student of the roster, as released"
+            f"{released} has no notebook of {in_short(missing)}: expected a folder for each student of the roster, as "
+            "released"
         )
     names = {name.removesuffix(".ipynb") for found in notebooks.values() for name in found}
     return system_there.pack(notebooks, assignment or min(names, default="notebook"), secret)

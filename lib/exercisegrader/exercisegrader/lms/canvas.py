@@ -41,6 +41,7 @@ from exercisegrader.lms import Claim, Known, Packed, System
 from exercisegrader.reports.lines import of_exercise, overall
 from exercisegrader.reports.outputs import output
 from exercisegrader.reports.wording import in_text, number, visible, without_jail
+from exercisegrader.student import in_short
 from exercisegrader.tables import as_text, letters, places
 
 if TYPE_CHECKING:
@@ -121,17 +122,15 @@ class Canvas(System):
         if len(heads) != 1:
             how_many = "two assignments or more" if heads else "no assignment"
             there = [said[1] for head in table.header if (said := _TITLE.fullmatch(head))] if table else []
-            others = f" but {', '.join(map(repr, there[:5]))}{' ...' * (len(there) > 5)}" if there and not heads else ""
+            others = f" but {in_short([*map(repr, there)])}" if there and not heads else ""
             return (
                 f"canvas_grades.csv: the gradebook of the roster has {how_many} called {title!r}{others}, so that "
                 "Canvas will ask where the grades go; export it again once there is one",
             )
         said, excused = [], [one.id for one in students if one.row[heads[0]].strip().upper() == EXCUSED]
         if excused:
-            who = ", ".join(excused[:5]) + (f" and {len(excused) - 5} more" if len(excused) > 5 else "")
-            said.append(
-                f"canvas_grades.csv: {who} {'is' if len(excused) == 1 else 'are'} excused in Canvas, and so left"
-            )
+            are = "is" if len(excused) == 1 else "are"
+            said.append(f"canvas_grades.csv: {in_short(excused)} {are} excused in Canvas, and so left")
         try:
             there = float(_possible(table, heads[0]).replace(",", "."))
         except ValueError:

@@ -37,6 +37,7 @@ from exercisegrader import GradingError, lms
 from exercisegrader.lms import Claim, Known, Packed, System, own
 from exercisegrader.reports.outputs import output
 from exercisegrader.reports.wording import number, visible, without_jail
+from exercisegrader.student import in_short
 from exercisegrader.tables import as_text, places
 
 if TYPE_CHECKING:
@@ -123,8 +124,8 @@ class Moodle(System):
         unknown = [student.id for student in notebooks if not student.moodle_id]
         if unknown:
             raise GradingError(
-                f"Moodle hands out files by the numbers of a grading worksheet, and {', '.join(unknown[:5])}"
-                f"{' ...' if len(unknown) > 5 else ''} has none: take the worksheet of the assignment as the roster"
+                f"Moodle hands out files by the numbers of a grading worksheet, and there is none of "
+                f"{in_short(unknown)}: take the worksheet of the assignment as the roster"
             )
         zipped = {
             f"{_prefix(student, student.moodle_id)}_{name}": content
