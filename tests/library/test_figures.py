@@ -25,13 +25,14 @@ from loopbook.deadtime.pictures import nyquist_plot
 from loopbook.diagrams import block, block_diagram
 from loopbook.figures import PlanePlot, TimePlot, half_rule_plot, level_plot, map_plot, plane_plot, time_plot, trends
 from loopbook.figures.labels import free_place
-from loopbook.figures.picture import plain_words, with_few_colours
+from loopbook.figures.picture import with_few_colours
 from loopbook.figures.style import DOTS_PER_INCH, GREY, INPUTS, LOOKS, MODELS, ROLES, STYLE, TINTS, WIDTH, look
 from loopbook.laplace import s, t
 from loopbook.pid import PID, Controller
 from loopbook.plants import WoodChipTank
 from loopbook.signals import stepwise
 from loopbook.simulation import simulate
+from plainmath.tables import plain_words
 
 ROOT = Path(__file__).parents[2]
 TIMES = np.linspace(0, 25, 501)

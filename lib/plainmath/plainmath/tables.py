@@ -22,7 +22,9 @@ from typing import Any
 
 import sympy
 
-__all__ = ["Table", "aligned", "is_symbol", "marked", "quantities", "rounded", "symbol", "table", "typeset"]
+__all__ = [
+    "Table", "aligned", "is_symbol", "marked", "plain_words", "quantities", "rounded", "symbol", "table", "typeset",
+]  # fmt: skip
 
 _GREEK = {"alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi",
           "pi", "rho", "sigma", "tau", "phi", "chi", "psi", "omega"}  # fmt: skip
@@ -271,6 +273,19 @@ def symbol(name: str) -> str:
     ('$T_{1}$', 'time to rest')
     """
     return f"${sympy.latex(sympy.Symbol(name))}$" if is_symbol(name) else name.replace("_", " ")
+
+
+def plain_words(text: str) -> str:
+    r"""Return a label without its LaTeX commands, for a description in words.
+
+    >>> plain_words(r"$F_{\mathrm{in}}(t)$ after $\tau$")
+    'F_in(t) after tau'
+    >>> plain_words(r"$\dot{h}_{SP}$, $\frac{1}{T s}$")
+    'dh_SP/dt, (1)/(T s)'
+    """
+    text = re.sub(r"\\d?frac\{([^{}]*)\}\{([^{}]*)\}", r"(\1)/(\2)", text)
+    text = re.sub(r"\\dot\{(\w+)\}(_\w+|_\{\w+\})?", r"d\1\2/dt", text)
+    return re.sub(r"\\(mathrm|mathit|left|right)\b|[$\\{}]", "", text)
 
 
 def marked(text: str) -> str:

@@ -11,7 +11,7 @@ from exercisebook import png
 from exercisebook.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WAITING, WRONG
 from exercisebook.reading import shortened
 from exercisegrader.results import NO_CODE, UNASKED
-from loopbook.figures.picture import plain_words
+from plainmath.tables import plain_words
 
 if TYPE_CHECKING:
     from exercisegrader.results import JudgedAnswer, Result

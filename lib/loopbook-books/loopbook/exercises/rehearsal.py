@@ -10,6 +10,9 @@ import numpy as np
 def rehearse() -> None:
     """Import the libraries, and do with each of them something of what a student does."""
     import ipywidgets  # noqa: F401 - the import is what takes time
+    import scipy.integrate
+    import scipy.optimize
+    import scipy.signal
 
     from loopbook.deadtime import Loop
     from loopbook.exercises import exercise
@@ -24,6 +27,8 @@ def rehearse() -> None:
         control.step_response(lag), control.poles(control.feedback(lag)), control.margin(lag), control.tf2ss(lag)
         control.frequency_response(lag, [0.1, 1])
 
+    scipy.integrate.solve_ivp(lambda time, y: -y, (0, 1), [1.0]), scipy.optimize.brentq(np.cos, 0, 3)
+    scipy.signal.step(scipy.signal.TransferFunction([1], [1, 1]))
     process = first_order(2, 5, delay=1)
     Loop(process, simc(process, Tc=1)).servo.step(np.linspace(0, 10, 11)), PID(1, Ti=2).expr
     exercise("10.1").check(K=1)

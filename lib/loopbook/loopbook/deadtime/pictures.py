@@ -13,9 +13,10 @@ import numpy as np
 from loopbook.deadtime.curves import frequency_curve, natural_range
 from loopbook.figures import Picture, PlanePlot, TimePlot, canvas, time_plot
 from loopbook.figures.labels import decades, free_legend, free_place, legend_below
-from loopbook.figures.picture import plain_words, titled
+from loopbook.figures.picture import titled
 from loopbook.figures.style import GUIDE, LEVEL, WIDTH, ZERO, look, styled
 from loopbook.quasipolynomials import DelayFraction, read
+from plainmath.tables import plain_words
 from plainmath.validation import increasing, positive, positive_numbers, real_numbers
 
 if TYPE_CHECKING:

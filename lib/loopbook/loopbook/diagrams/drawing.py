@@ -10,8 +10,8 @@ from typing import TypeAlias
 
 from loopbook.figures import Picture
 from loopbook.figures.canvas import formulas
-from loopbook.figures.picture import plain_words
 from loopbook.figures.style import DOTS_PER_INCH, STYLE, styled
+from plainmath.tables import plain_words
 
 # Lengths are in drawing units of half an inch, as schemdraw has them.
 INCHES = 0.5

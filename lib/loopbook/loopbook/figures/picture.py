@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import base64
 import io
-import re
 import struct
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from loopbook.figures.canvas import drawn
 from loopbook.figures.style import DOTS_PER_INCH, LOOKS, RESPONSE_COLOURS, styled
+from plainmath.tables import plain_words
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -133,19 +133,6 @@ def with_few_colours(image: Image.Image) -> Image.Image:
     palette = Image.new("P", (1, 1))
     palette.putpalette([x for colour in dict.fromkeys([(255, 255, 255), *mixed]) for x in colour])
     return image.quantize(palette=palette, dither=Image.Dither.NONE)
-
-
-def plain_words(text: str) -> str:
-    r"""Return a label without its LaTeX commands, for a description in words.
-
-    >>> plain_words(r"$F_{\mathrm{in}}(t)$ after $\tau$")
-    'F_in(t) after tau'
-    >>> plain_words(r"$\dot{h}_{SP}$, $\frac{1}{T s}$")
-    'dh_SP/dt, (1)/(T s)'
-    """
-    text = re.sub(r"\\d?frac\{([^{}]*)\}\{([^{}]*)\}", r"(\1)/(\2)", text)
-    text = re.sub(r"\\dot\{(\w+)\}(_\w+|_\{\w+\})?", r"d\1\2/dt", text)
-    return re.sub(r"\\(mathrm|mathit|left|right)\b|[$\\{}]", "", text)
 
 
 def titled(title: str | None, words: str) -> str:

@@ -9,8 +9,9 @@ import numpy as np
 
 from loopbook.figures import canvas
 from loopbook.figures.labels import add_legend, decades
-from loopbook.figures.picture import Picture, plain_words, titled
+from loopbook.figures.picture import Picture, titled
 from loopbook.figures.style import GREY, ON_WHITE, RESPONSE_COLOURS, TINTS, WIDTH, ZERO, look, styled
+from plainmath.tables import plain_words
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

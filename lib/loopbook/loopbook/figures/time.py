@@ -11,9 +11,10 @@ import sympy
 
 from loopbook.figures import canvas
 from loopbook.figures.labels import add_legend, free_legend, free_place, make_room
-from loopbook.figures.picture import Picture, plain_words, titled
+from loopbook.figures.picture import Picture, titled
 from loopbook.figures.style import EVENT, GUIDE, INPUTS, LEVEL, ON_WHITE, ZERO, look, pale, styled
 from loopbook.laplace import evaluate, t
+from plainmath.tables import plain_words
 from plainmath.validation import did_you_mean, increasing, one_of
 
 if TYPE_CHECKING:
