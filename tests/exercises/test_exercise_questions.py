@@ -178,7 +178,7 @@ def test_two_exercises_of_one_number():
     module = types.ModuleType("assignment")
     module.one, module.other = tank, Exercise("99.1", "Another", 1, lambda: True, tank.key)
     with pytest.raises(ValueError, match=r"two exercises 99\.1 in assignment"):
-        bank.collected(module)
+        authoring.collected(module)
 
 
 @pytest.mark.parametrize(

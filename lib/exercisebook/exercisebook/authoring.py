@@ -25,22 +25,20 @@ So an exercise looks::
 from __future__ import annotations
 
 import functools
-import inspect
 import itertools
-import textwrap
 import unicodedata
 from collections.abc import Callable, Mapping
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING
 
 import sympy
 
 from exercisebook import plugins
+from exercisebook.declared import Declared
 from exercisebook.kinds import MAKERS, Criterion, Kind, Number
 from exercisebook.late import Late
-from exercisebook.parameters import Parameter, between, call, choice
+from exercisebook.parameters import between, call, choice
 from exercisebook.question import Question
-from plainmath.validation import is_number
 
 if TYPE_CHECKING:
     # editors read no registry
@@ -93,89 +91,8 @@ def exercise(
     return functools.partial(Exercise, number, title, points, where, insight=insight, weights=weights)
 
 
-_Function = TypeVar("_Function", bound=Callable[..., Any])
-
-
-class Exercise:
-    """An exercise, with all its variants.
-
-    Attributes:
-        number, title, points, insight, weights: as given.
-        parameters: {name: `Parameter`}.
-    """
-
-    def __init__(
-        self,
-        number: str,
-        title: str,
-        points: float,
-        where: Callable[..., object],
-        key: Callable[..., dict[str, Kind]],
-        insight: str = "",
-        weights: Mapping[str, float] | None = None,
-    ):
-        self.number, self.title, self.points, self.where, self.key = number, title, points, where, key
-        self.insight, self.then = insight, ""  # the heading of the next exercise, which a collection knows
-        self.weights = dict(weights or {})
-        for name, weight in self.weights.items():
-            if not is_number(weight) or not weight > 0:
-                raise ValueError(f"the weight of {name} in exercise {number} is {weight!r}: expected a positive number")
-        self.statement = textwrap.dedent(" " * 4 + (key.__doc__ or "")).strip()
-        self.parameters: dict[str, Parameter] = {
-            name: item.default for name, item in inspect.signature(key).parameters.items()
-        }
-        self.mistakes: list[tuple[str, Callable[..., dict[str, Any] | None]]] = []
-        self.shown: Callable[..., dict[str, Any]] = lambda: {}
-        self.rungs: tuple[str, ...] = ()
-        self.worked: Callable[..., dict[str, Any] | None] | None = None
-        self.drawn: Callable[..., Any] | None = None
-        self.drawn_in_solution: Callable[..., Any] | None = None
-        for name, parameter in self.parameters.items():
-            if not isinstance(parameter, Parameter):
-                raise ValueError(f"{name} of exercise {number} is {parameter!r}: expected between(...) or choice(...)")
-        if not self.statement:
-            raise ValueError(f"exercise {number} has no statement: expected one as the docstring of its function")
-
-    @property
-    def heading(self) -> str:
-        """Number and title."""
-        return f"Exercise {self.number} · {self.title}"
-
-    def mistake(self, sentence: str) -> Callable[[_Function], _Function]:
-        """Declare a known mistake: a function of parameters that it names, returning {name: wrong value}."""
-
-        def declared(function):
-            self.mistakes.append((sentence, function))
-            return function
-
-        return declared
-
-    def shows(self, function: _Function) -> _Function:
-        """Declare what else the statement shows: {name: expression, equation or text}; an array is data to work on."""
-        self.shown = function
-        return function
-
-    def hints(self, *rungs: str) -> None:
-        """Declare the hints, from the law that helps to the first line; each goes one step further."""
-        self.rungs = rungs
-
-    def solution(self, function: _Function) -> _Function:
-        """Declare the solution: its text is the docstring, and the function returns what else the text shows.
-
-        What is below a line of three stars is left to the reader in the last hint.
-        """
-        self.worked = function
-        return function
-
-    def picture(self, function: _Function) -> _Function:
-        """Declare the picture of the statement; the docstring says what is in it to those who cannot see it."""
-        self.drawn = function
-        return function
-
-    def solution_picture(self, function: _Function) -> _Function:
-        """Declare the picture of the solution, as that of the statement."""
-        self.drawn_in_solution = function
-        return function
+class Exercise(Declared):
+    """An exercise, with all its variants."""
 
     @functools.lru_cache(maxsize=64)  # noqa: B019 - the exercises live as long as the program
     def question(self, student: str | None = None) -> Question:
@@ -224,9 +141,6 @@ class Exercise:
             if call(self.where, values):
                 return values
         raise ValueError(f"the condition of exercise {self.number} holds in none of {MOST_DRAWS} draws: widen it")
-
-    def __repr__(self) -> str:
-        return self.heading
 
 
 def collected(module: ModuleType) -> dict[str, Exercise]:

@@ -79,13 +79,16 @@ class Bank:
         """
         name = naming.known() if student is None else student
         if chapter is not None:
-            return Progress.of(self.exercises(self._chapter(str(chapter))).values(), name)
+            return self._progress(self._chapter(str(chapter)), name)
         return Collection(
             tuple(
-                (self.title(one), module.removeprefix("ch"), Progress.of(self.exercises(one).values(), name))
+                (self.title(one), module.removeprefix("ch"), self._progress(one, name))
                 for one, module in self.chapters().items()
             )
         )
+
+    def _progress(self, chapter, name):
+        return Progress.of({number: one.heading for number, one in self.exercises(chapter).items()}, name)
 
     def _chapter(self, name):
         name = name.lstrip("0")

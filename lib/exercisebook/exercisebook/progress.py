@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Iterable
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from typing import Self
 
 from exercisebook import notes
-
-if TYPE_CHECKING:
-    from exercisebook.authoring import Exercise
 
 FILE = Path(".loopbook-progress.json")
 
@@ -57,10 +54,10 @@ class Progress:
     rows: tuple[tuple[str, bool | None], ...]
 
     @classmethod
-    def of(cls, exercises: Iterable[Exercise], student: str | None = None) -> Self:
-        """The progress in these exercises."""
+    def of(cls, headings: Mapping[str, str], student: str | None = None) -> Self:
+        """The progress in exercises, of which the headings are given by their numbers."""
         known = load()
-        return cls(tuple((one.heading, known.get(_key(one.number, student))) for one in exercises))
+        return cls(tuple((heading, known.get(_key(number, student))) for number, heading in headings.items()))
 
     @property
     def right(self) -> int:

@@ -24,7 +24,7 @@ from exercisebook.showing import Page, Showing, Statement
 from plainmath.validation import did_you_mean
 
 if TYPE_CHECKING:
-    from exercisebook.authoring import Exercise
+    from exercisebook.declared import Declared
     from exercisebook.parameters import Value
 
 #: In a solution, what is below it is left to the reader in the last hint.
@@ -43,7 +43,7 @@ class Question(Showing):
         values: {name: value} of the parameters, exact numbers or words.
     """
 
-    def __init__(self, exercise: Exercise, student: str | None, values: dict[str, Value]):
+    def __init__(self, exercise: Declared, student: str | None, values: dict[str, Value]):
         self.exercise, self.student, self.values = exercise, student, values
         self._hints_seen = self._answered = self._bare = 0
 
