@@ -112,8 +112,7 @@ def everything(text, formulas=False):
 def test_a_page_is_whole_whatever_is_said_in_it(attack, formulas):
     for text in everything(attack, formulas):
         checked = assert_whole(text)
-        assert "b" not in checked.tags
-        assert checked.tags.count("svg") == text.count('<svg role="img"')
+        assert not {"b", "svg"} & {*checked.tags}
         assert formulas or shown(attack) in words(checked.text)
 
 

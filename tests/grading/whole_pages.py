@@ -7,7 +7,7 @@ import re
 class Checker(html.parser.HTMLParser):
     """Complains about what is no valid page of ours; collects tags, attributes and text."""
 
-    VOID = ("meta", "br", "img", "path", "use")
+    VOID = ("meta", "br", "hr", "img")
 
     def __init__(self, text):
         super().__init__()

@@ -72,7 +72,6 @@ class Findings:
     """
 
     def __init__(self, students: Sequence[Student], marks: Collection[Marked]):
-        self.names = {student.id: student.name for student in students}
         self.handed_in = [mark for mark in marks if mark.result.status != MISSING]
         self.missing: list[str] = [mark.result.student for mark in marks if mark.result.status == MISSING]
         graded = {mark.result.student for mark in marks}
@@ -82,10 +81,6 @@ class Findings:
         run = [mark for mark in self.handed_in if mark.result.status != NOT_RUN]
         self.exercises: list[Exercise] = _exercises(run)
         self.mistakes: list[tuple[str, str, str, int]] = _mistakes([mark.result for mark in run])
-
-    def name(self, student: str) -> str:
-        """The name of a student, by the id."""
-        return self.names.get(student, student)
 
     @property
     def mean(self) -> float:

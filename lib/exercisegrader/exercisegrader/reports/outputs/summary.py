@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
+from markupsafe import Markup
+
 from exercisebook.judging import WAITING
 from exercisegrader.reports.concerns import Case, Concern, concerns
 from exercisegrader.reports.findings import Findings
-from exercisegrader.reports.histogram import histogram_svg
 from exercisegrader.reports.outputs import output, registered
 from exercisegrader.reports.pages import Table, code, line, lines, link, page, person, said, sentence, status
 from exercisegrader.reports.wording import STATUSES, counted, in_text, number, percent, without_jail
@@ -17,13 +18,13 @@ from exercisegrader.results import NOT_RUN
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from markupsafe import Markup
-
     from exercisegrader.marking import Marked
     from exercisegrader.roster import Student
 
 #: So many cases of one kind are told.
 MOST_CASES = 100
+#: The bar of the most common points (rem).
+LONGEST_BAR = 20
 #: The file of this summary.
 OWN = "summary.html"
 
@@ -82,9 +83,7 @@ def summary(
         harmless=harmless,
         cases_of_harmless=Table("Harmless", ["student", "what"], rows),
         absent=[("Missing", [*map(named, found.missing)]), ("Not graded yet", [*map(named, found.ungraded)])],
-        distribution=histogram_svg(found.steps) if found.sums and found.points else "",
-        tables_of_students=[_late(marks, named), _by_hand(marks, named)],
-        tables_of_exercises=_exercises(found),
+        tables=[_late(marks, named), _by_hand(marks, named), _points(found), *_exercises(found)],
         files=_files(folder),
     )
 
@@ -116,6 +115,16 @@ def _by_hand(marks, named):
             rows.append((student, "all of it", grader, counts, lines(*map(said, mark.comments))))
     head = ["student", "exercise", "by the grader", "counts", "marks and comments"]
     return Table("Marks by hand", head, rows, [2, 3])
+
+
+def _points(found):
+    """The distribution of the points, with bars."""
+    most = max((count for _, _, count in found.steps), default=0)
+    bar = Markup('<span class="bar" style="width: {:.1f}rem"></span> {}')
+    rows = [
+        (f"{number(a)} to {number(b)}", bar.format(LONGEST_BAR * n / most, n) if n else "") for a, b, n in found.steps
+    ]
+    return Table("Points", ["points", "submissions"], rows if found.sums and found.points else [])
 
 
 def _exercises(found):
