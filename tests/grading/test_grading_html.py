@@ -118,7 +118,7 @@ def test_a_page_is_whole_whatever_is_said_in_it(attack, formulas):
 
 def test_what_a_template_is_not_told_is_an_error():
     with pytest.raises(jinja2.UndefinedError):
-        pages.page("to_mark.html", "To mark")
+        pages.page("executed.html", "s1")
 
 
 @pytest.mark.parametrize("to", ["", "/etc", "//evil.example", "\\\\evil"])

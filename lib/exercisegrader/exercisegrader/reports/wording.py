@@ -27,6 +27,8 @@ LONGEST_REMARK = 400
 MOST_REMARKS = 20
 #: Joiners are invisible and belong to names in several scripts, and to emoji.
 _JOINERS = "\u200c\u200d"
+#: White space, but for what keeps a number and its unit in one line.
+_SPACE = re.compile(r"[^\S\N{NO-BREAK SPACE}]+")
 _SETTINGS = ("Kp", "Ti", "Td", "Tf")
 _FRACTION = re.compile(r"-?[0-9]{1,300}/[1-9][0-9]{0,6}")
 
@@ -50,15 +52,14 @@ def spelled_out(text: str, but: str) -> str:
 
 
 def spaced(text: str) -> str:
-    """Return a text as `visible` does, with a space at each end where it had one: there stands more beside it.
+    """Return a text as `visible` does, with a space at each end where it had one.
 
     A space at which no line may be broken, as between a number and its unit, stays one.
 
     >>> spaced(" of \\n"), spaced("\\n"), spaced("")
     (' of ', ' ', '')
     """
-    line = "\N{NO-BREAK SPACE}".join(map(visible, text.split("\N{NO-BREAK SPACE}")))
-    return f"{' ' * text[:1].isspace()}{line}{' ' * text[-1:].isspace()}" if line else " " * bool(text)
+    return spelled_out(_SPACE.sub(" ", text), but=f"{_JOINERS}\N{NO-BREAK SPACE}")
 
 
 def _escaped(character):
