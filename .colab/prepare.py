@@ -16,9 +16,9 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 def constraints(environment):
-    """Return the lines of environment.txt that say a version, which is all but the library itself.
+    """Return the lines of environment.txt that say a version, which is all but our own packages.
 
-    >>> constraints("# the library" + chr(10) + "some-package==7" + chr(10) + "-e .")
+    >>> constraints("# the library" + chr(10) + "some-package==7" + chr(10) + "-e lib/loopbook")
     ['some-package==7']
     """
     lines = [line.strip() for line in environment.splitlines()]
@@ -43,7 +43,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         pins = Path(folder) / "constraints.txt"
         pins.write_text("\n".join(constraints((ROOT / "environment.txt").read_text(encoding="utf-8"))), "utf-8")
-        command = ["install", "--quiet", "--disable-pip-version-check", "--constraint", str(pins), str(ROOT)]
+        command = ["install", "--quiet", "--disable-pip-version-check", "--constraint", str(pins)]
+        command += sorted(str(path.parent) for path in (ROOT / "lib").glob("*/pyproject.toml"))
         subprocess.run([sys.executable, "-m", "pip", *command], check=True)
     after = versions()
     if any(after.get(name) != before.get(name) for name in loaded):

@@ -24,6 +24,8 @@ from sphinx.pycode import ModuleAnalyzer
 from sphinx.util.docutils import SphinxDirective
 
 ROOT = Path(__file__).parents[2]
+#: Our packages; the reference calls a module of loopbook by its name within it.
+OURS = ("bookledger", "exercisebook", "exercisegrader", "loopbook", "plainmath")
 _SOURCE = re.compile(r"^Source: (.*(?:\n(?! *$).*)*)", re.MULTILINE)
 
 
@@ -76,7 +78,7 @@ def part_of(module, name):
     """Return the module that makes what another one offers: itself, or a part of a package."""
     made_in = getattr(getattr(module, name), "__module__", "") or module.__name__
     parts = (part for part in (module.__name__, *_imported_parts(module)) if name in _made(part))
-    return next(parts, made_in if made_in.startswith("loopbook") else module.__name__)
+    return next(parts, made_in if made_in.startswith(OURS) else module.__name__)
 
 
 @functools.cache
@@ -85,9 +87,9 @@ def public():
     found = {}
     for names, _ in modules():
         for name in names:
-            module = importlib.import_module(f"loopbook.{name}")
+            module = importlib.import_module(name if name in OURS else f"loopbook.{name}")
             found |= {key: f"{module.__name__}.{key}" for key in offered(module) if len(key) > 1 and key not in found}
-            found.setdefault(name, f"loopbook.{name}")
+            found.setdefault(name, module.__name__)
     return found
 
 
@@ -107,7 +109,7 @@ def chapters_with():
 
 def mend(app, what, name, obj, options, lines):
     """Make a field of the source, and one with the chapters that use a function or a class."""
-    if not name.startswith("loopbook"):
+    if not name.startswith(OURS):
         return
     text = _SOURCE.sub(lambda match: "\n:Source: " + re.sub(r"\n\s*", "\n    ", match[1]) + "\n", "\n".join(lines))
     pages = [chapter for chapter in chapters_with().get(name, ()) if f"chapters/{chapter}" in app.env.found_docs]
@@ -185,7 +187,7 @@ def documented(module, name):
         if value.__name__ != name:  # another name for a class that has its place elsewhere
             return [f".. py:class:: {name}", place, "", f"   The same as `{value.__name__}`.", ""]
         lines = [f".. auto{'exception' if issubclass(value, Exception) else 'class'}:: {address}", "   :members:"]
-        bases = [base for base in value.__bases__ if base.__module__.startswith("loopbook")]
+        bases = [base for base in value.__bases__ if base.__module__.startswith(OURS)]
         return [*lines, *(["   :show-inheritance:"] if bases else []), ""]
     if callable(value) and hasattr(value, "__code__"):
         return [f".. autofunction:: {address}", ""]

@@ -38,9 +38,11 @@ def direct():
     """What our packages and the tests say they need, with their extras, of the packages of others."""
     needed = []
     for path in [ROOT, *(ROOT / "lib" / package for package in PACKAGES)]:
-        project = tomllib.loads((path / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+        written = tomllib.loads((path / "pyproject.toml").read_text(encoding="utf-8"))
+        project = written["project"]
         needed += project["dependencies"]
-        needed += [line for extra in project.get("optional-dependencies", {}).values() for line in extra]
+        groups = [*project.get("optional-dependencies", {}).values(), *written.get("dependency-groups", {}).values()]
+        needed += [line for group in groups for line in group]
     return sorted({line for line in needed if Requirement(line).name not in PACKAGES})
 
 
