@@ -214,7 +214,7 @@ class TestAClass:
             course.grade("cluster", place=connected(cluster.scheduler_address))
         assert files(course.folder / "cluster") == files(graded[1])
 
-    @pytest.mark.parametrize("bytes_of_a_file", [1000, 20_000])
+    @pytest.mark.parametrize("bytes_of_a_file", [1000, 8000])
     def test_a_disk_that_is_full_is_a_sentence_and_later_goes_on(self, course, graded, bytes_of_a_file):
         import resource
 
