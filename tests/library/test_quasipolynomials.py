@@ -114,10 +114,9 @@ def test_they_can_be_sent_copied_and_compared():
 
 def test_what_it_is():
     H = read((s * sympy.exp(-s) + 1) / (3 * s**2 + s * sympy.exp(-s / 2)))
-    assert (H.order, H.is_proper, H.is_neutral) == (2, True, False)
+    assert (H.order, H.is_proper) == (2, True)
     assert H.delays == [Fraction(1, 2), Fraction(1)]
     assert not read(PID(1, 5, 2)).is_proper
-    assert read(s * sympy.exp(-s) / (1 + s + s * sympy.exp(-s))).is_neutral
     assert read(0).numerator == {}
     assert read(0) + H == H
     assert (0 * H).denominator == {0: (1,)}

@@ -120,11 +120,6 @@ class Echoes:
         return len(self.moments) > before
 
 
-def fastest(model: ChannelModel) -> float:
-    """About how fast the signals can change, in 1/time."""
-    return max(_speeds(model)[0], default=0.0)
-
-
 def _speeds(model):
     """How fast the signals can change, in 1/time: without the channels, and with each closed either way."""
     if not len(model.A):

@@ -34,7 +34,6 @@ MARKS = {
     "measuring line": (),
 }
 SIGNALS = tuple(MARKS)
-OTHERS = ("pipe", "duct", "shaft", "crossing", "junction")
 CONDUCTORS = ("pipe", "crossing", "junction", "duct", "shaft", "measuring line",
               *(kind for kind in SIGNALS if kind != "measuring line"))  # fmt: skip
 

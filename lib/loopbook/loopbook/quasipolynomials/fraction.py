@@ -362,15 +362,6 @@ class DelayFraction:
         """
         return sorted({*self.numerator, *self.denominator} - {ZERO})
 
-    @property
-    def is_neutral(self) -> bool:
-        """Whether the highest derivative of the output occurs with a dead time, so that a jump returns forever.
-
-        >>> read(1 / (s + 1 + s * sympy.exp(-s) / 2)).is_neutral
-        True
-        """
-        return any(delay and len(part) == self.order + 1 for delay, part in self.denominator.items())
-
     # ---- values
 
     def __call__(self, point: complex | ArrayLike) -> np.ndarray:

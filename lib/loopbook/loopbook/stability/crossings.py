@@ -273,10 +273,7 @@ def solved(
     """
     # where a straight line has its zero, not too close to the ends
     w = a + (b - a) * np.clip(at_a / np.where(at_a == at_b, 1, at_a - at_b), 0.02, 0.98)
-    if len(w) == 1:
-        w = _solved_one(loops, which, float(a[0]), float(b[0]), function, bool(at_a[0] < at_b[0]), float(w[0]))
-    else:
-        w = _solved(loops, which, a, b, function, at_a < at_b, w, False)
+    w = _solved(loops, which, a, b, function, at_a < at_b, w, False)
     A, B = (x[0] for x in loops.values(which, w))
     if loops.exact is not None and 0 < len(w) < FEW:
         again = np.flatnonzero(loops.doubtful(which, w, A, B))
@@ -285,29 +282,6 @@ def solved(
             w[again] = _solved(loops, some, a[again], b[again], function, (at_a < at_b)[again], w[again], True)
             A[again], B[again] = (x[0] for x in loops.values(some, w[again], precise=True))
     return w, A, B
-
-
-def _solved_one(loops, which, a, b, function, rising, w):
-    """The same for one, with less ado."""
-    enough = 3e-6 * (b - a)
-    for _ in range(100):
-        A, B = (x[:, 0].tolist() for x in loops.values(which, np.array([w]), 2))
-        value, slope, bend = function(A, B)
-        if not value:
-            break
-        if (value < 0) == rising:
-            a = w
-        else:
-            b = w
-        below = 2 * slope * slope - value * bend
-        better = w - 2 * value * slope / below if below else math.nan
-        inside = a <= better <= b
-        better = better if inside else (a + b) / 2
-        change, w = abs(better - w), better
-        # the next change would be about the cube of this one
-        if change <= max(enough if inside else 0.0, 4e-16 * w):
-            break
-    return np.array([w])
 
 
 def _solved(loops, which, a, b, function, rising, w, precise):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -54,8 +53,6 @@ class Peak(Question):
 
 def to_the_top(loops: Loops, question: Peak) -> None:
     """Move the highest values that were seen to the tops of their peaks."""
-    if loops.count == 1 and _single_to_the_top(loops, question):
-        return
     every = np.flatnonzero((question.place > 0) & np.isfinite(question.place))
     if not len(every):
         return
@@ -73,48 +70,6 @@ def to_the_top(loops: Loops, question: Peak) -> None:
         # rounding made what was seen, also if that is higher than what is there
         question.most[0] = 0.0
         question.see(every, *_climbed(lambda w: [each.taylor(w, 2) for each in loops.exact[1:]], place, 8)[:2])
-
-
-def _single_to_the_top(loops, question):
-    """The same for one loop, with less ado; and whether rounding has no share in it."""
-    w = float(question.place[0])
-    if not 0 < w < math.inf:
-        return True
-    one, best = np.zeros(1, dtype=int), (0.0, w, w)
-    for _ in range(30):
-        A, B = (x[:, 0].tolist() for x in loops.values(one, np.array([w]), 2))
-        height, step, width = _step([a + b for a, b in zip(A, B, strict=True)], B, w)
-        if height > best[0]:
-            best = height, w, width
-            if abs(step) <= 3e-8 * width or abs(step) <= 4e-16 * w:
-                break
-            w += step
-        else:
-            if abs(w - best[1]) <= 1e-8 * min(w, width):
-                break
-            w = (w + best[1]) / 2
-    height, w, width = best
-    question.see(one, np.array([height]), np.array([w]))
-    question.width = min(max(width, 1e-7 * w), w / 4)
-    place = np.array([w])
-    return loops.exact is None or not loops.doubtful(one, place, loops.C.value(one, place))[0]
-
-
-def _step(C, B, w):
-    """The size of B/C, Newton's step towards its top, and the width of the peak."""
-    (up, up1, up2), (down, down1, down2) = (
-        (
-            abs(x0) ** 2,
-            2 * (x1 * x0.conjugate()).real,
-            2 * abs(x1) ** 2 + 4 * (x2 * x0.conjugate()).real,
-        )
-        for x0, x1, x2 in (B, C)
-    )
-    slope = up1 / up - down1 / down
-    bend = up2 / up - (up1 / up) ** 2 - down2 / down + (down1 / down) ** 2
-    if bend < 0:
-        return math.sqrt(up / down), max(-0.3 * w, min(0.3 * w, -slope / bend)), math.sqrt(-2 / bend)
-    return math.sqrt(up / down), math.copysign(0.1 * w, slope), w
 
 
 def _climbed(at, w, most):
