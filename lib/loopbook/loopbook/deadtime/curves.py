@@ -179,7 +179,10 @@ class _OnAxis:
         return first + np.r_[0, np.cumsum(turns)]
 
     def beside(self, a: float, b: float) -> np.ndarray:
-        """The values on the way from ja to jb along a half circle in the right half-plane."""
+        """The values on the way from ja to jb along a half circle in the right half-plane.
+
+        So goes Nyquist's contour, which counts a zero on the axis as one to the left of it.
+        """
         s = 1j * (a + b) / 2 + (b - a) / 2 * np.exp(1j * np.linspace(-math.pi / 2, math.pi / 2, 129))
         parts = zip(self.delays, self.real, strict=True)
         return sum(polynomial.polyval(s, part) * np.exp(-delay * s) for delay, part in parts)

@@ -56,6 +56,7 @@ class Echoes:
         grid = grid[np.searchsorted(grid, 0.1 / end) :]
         from_input, channels = _transfer(model, grid)
         q = len(delays)
+        # what goes round in the channels becomes smaller each time where the spectral radius of the sizes is below 1
         loud = np.flatnonzero(_radius(abs(channels[:q])) >= 1)
         if len(loud) and loud[-1] == len(grid) - 1:  # what comes back is never smooth
             longest = REACH / fastest if fastest else math.inf

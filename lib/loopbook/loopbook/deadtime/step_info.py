@@ -94,7 +94,11 @@ def step_info(
 def settled_response(
     response_until: Callable[[float], Response], horizon: float, final: float, settling: float
 ) -> Response:
-    """The response, followed twice as far until its later three quarters stay within a fifth of the band."""
+    """The response, followed twice as far until its later three quarters stay within a fifth of the band.
+
+    A single quarter could lie between two swings, or within a dead time; and what may yet come is smaller than what has
+    been in as long a time, since a stable response decays.
+    """
     end = horizon
     for _ in range(MOST_DOUBLINGS):
         response = response_until(end)

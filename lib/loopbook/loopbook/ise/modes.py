@@ -202,6 +202,7 @@ def slow_modes(fraction: ErrorFraction, rate: float) -> Modes | None:
         if not np.isfinite(shifted).all():
             return None
         sizes = abs(shifted).sum(axis=0)
+        # beyond a certain height the undelayed highest power outweighs all others (Fujiwara): the search ends there
         reserve = 2 * abs(shifted[_undelayed(delays), -1]) - sizes[-1]
         if reserve <= 0:  # infinite rows of poles come as far as that
             return None

@@ -59,6 +59,7 @@ def sums_of_residues(
                     Delta[(i + j) // 2] += sign * (-1) ** j * product
                     sizes[(i + j) // 2] += abs(product)
         x, radius, slope = _zeros(Delta, sizes)
+        # a zero as uncertain as that could lie on either side of the axis, where the formula is another one
         fits &= (np.isfinite(x) & (radius <= 1e-3 * abs(x))).all(axis=0)
         x = np.where(fits, x, 1.0)
         p = np.sqrt(x)

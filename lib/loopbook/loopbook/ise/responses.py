@@ -185,6 +185,7 @@ def _followed(fraction: ErrorFraction, tolerance: float, sizes: bool) -> np.ndar
         response = e.step_until(end)
         table = _four_integrals(response, sizes)
         total, later = table.sum(axis=0), table[response.edges[1:] > end / 2].sum(axis=0)
+        # the first time, it may only be that an error within a dead time has not begun to move
         negligible = bool((later <= tolerance * total).all())
         if negligible or number or len(response.edges) > EARLY:
             rest, reason = _beyond(fraction, response, total, tolerance, sizes)

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
     from loopbook.stability.loops import Loops
 
 MOST_INTERVALS, MOST_ALONE = 150_000, 40_000  # for all counts beside limits, and for one if these are too few
-SHARES = (1e-6, 1e-5, 1e-4, 1e-3)  # of a limit, by which the two sides differ from it, the first that decides
+# Of a limit, by which the two sides differ from it, the first that decides: closer than the first, poles are nearer to
+# the axis than counting can tell, and farther than the last, another limit may have been passed.
+SHARES = (1e-6, 1e-5, 1e-4, 1e-3)
 
 
 class Change(NamedTuple):

@@ -408,6 +408,8 @@ class Turns:
         """Add the turns on intervals where they are known, and mark quasipolynomials with roots on the axis."""
         sums, c, r = self.sums, (a + b) / 2, (b - a) / 2
         around = enclosed(sums, which, c, r, self.exact if precise else None, self.degree)
+        # all values then lie in a disc without zero, so that the phase turns by less than a half from one end to the
+        # other; three times the noise, because both ends are rounded as well
         proven = around.least > 3 * around.noise
         at_a, at_b = self._value(which, a, precise), self._value(which, b, precise)
         turns = np.angle(at_b * at_a.conj())

@@ -182,6 +182,7 @@ def _stable_range(loops: Loops) -> tuple[np.ndarray, np.ndarray]:
             points = np.flatnonzero(ready)
             unlimited = next_gain[points] >= LARGEST
             middle = np.where(unlimited, 2 * lower[points] + 1, (lower[points] + next_gain[points]) / 2)
+            # between two gains that bring poles to the axis their number does not change: one gain stands for all
             good = count_roots(loops.B[points] + middle * loops.A[points]) == 0
             stable = points[good]
             found[stable] = np.where(unlimited[good], math.inf, next_gain[stable])

@@ -161,7 +161,8 @@ class Loops:
         some, sides = series[:count].any(axis=0), np.arange(2 * points)
         lowest = np.argmax(series[:count] != 0, axis=0)
         self.is_real = ~some[:points]
-        # where the next powers are still below the lowest one; then in halves, until all others are, too
+        # where each of the next powers is still a quarter of the lowest one; then in halves, until all others together,
+        # with a bound of what the series leaves out, are half of it: up to there the lowest one decides the sign
         known, series = abs(series[lowest, sides]), abs(series)
         gaps = np.arange(len(series))[:, None] - lowest
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -229,6 +230,7 @@ class Loops:
         reserve = self._endless_reserve - factor * A[-1]
         sizes[-1] = np.where(reserve > 0, reserve, math.nan)
         end = prevailing(sizes[None])
+        # Fujiwara's bound adds up sizes; where it is far out, the squares, in which terms cancel, may do much better
         if self.squares is not None and not (end < 8).all():
             squares = self.squares
             end = np.fmin(end, positive_beyond(squares[1] - factor**2 * squares[0]))

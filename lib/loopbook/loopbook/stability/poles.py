@@ -96,7 +96,7 @@ def _of_polynomial(polynomial):
 
 def _strip(sums, unit, count, name):
     """Real parts right and left of the poles that are wanted, and how many lie between them."""
-    right, left = 0.37 * unit, -0.63 * unit
+    right, left = 0.37 * unit, -0.63 * unit  # no round numbers: on these lines poles of made-up loops like to lie
     while _right_of(sums, right):
         right *= 2
     while (most := _right_of(sums, left)) < count:
