@@ -1,20 +1,23 @@
-"""What noise does to what is read off a record: intervals that hold the true value as often as they say, and rulers."""
+"""Records of all kinds: uneven samples, both holds, what standard errors say, and what noise does to a ruler."""
 
-import itertools
 import math
 import pickle
 
 import numpy as np
 import pytest
 import sympy
-from scipy.special import stdtrit
-from scipy.stats import binom
 
-from draws import draws
 from loopbook import s
 from loopbook.deadtime import System
 from loopbook.identification import first_order_from_step, fit
-from loopbook.identification.zero_order_hold import HOLDS, DrivenChain, responses
+from loopbook.identification.zero_order_hold import HOLDS, DrivenChain
+
+
+def responses(kind, lags, delay, times, u, hold="zero order"):
+    """The response to u, at rest before, and a column for each way to move without it."""
+    lags = np.array(sorted(lags, reverse=True), dtype=float)[:, None] if len(lags) else np.empty((0, 1))
+    chain = DrivenChain(kind, times, u, hold)
+    return chain.forced(lags, np.array([float(delay)]))[:, 0], chain.free(lags)[:, 0]
 
 
 def record(kind, lags, delay, noise, seed, *, count=60, hold="zero order", jitter=0.0, gain=2.0):
@@ -70,118 +73,23 @@ def test_logged_when_something_changed():
     )
 
 
-# ---------------------------------------------------------------------------- intervals
-
-CASES = {  # kind, lags, dead time, noise; the lags are equal or one is hardly seen in some
-    "a lag in much noise": ("first order", [8.0], 0.4, 0.2),
-    "two lags": ("second order", [9.0, 3.0], 2.6, 0.02),
-    "two lags in much noise": ("second order", [9.0, 5.0], 2.6, 0.15),
-    "equal lags in much noise": ("second order", [6.0, 6.0], 3.0, 0.15),
-    "a lag that is not seen": ("second order", [9.0, 0.1], 1.0, 0.1),
-    "an integrator with lag": ("integrator with lag", [6.0], 1.5, 0.05),
-}
-RECORDS = draws(30)
+# ---------------------------------------------------------------------------- standard errors
 
 
-def test_intervals_hold_the_true_values_as_often_as_they_say():
-    """Over 237 records of second order it was 92 % for the gain and 96 % for lags and dead time; here are some."""
-    told, outside, linear = (dict.fromkeys(("K", "T1", "T2", "delay"), 0) for _ in range(3))
-    for kind, lags, delay, noise in CASES.values():
-        names = ["T2"] if kind == "integrator with lag" else ["T1", "T2"][: len(lags)]
-        true = {"K": 2.0, **dict(zip(names, lags, strict=True)), "delay": delay}
-        for seed in range(RECORDS):
-            found = fit(*record(kind, lags, delay, noise, seed), kind)
-            for name, (low, high) in found.intervals().items():
-                assert low <= found.parameters[name] <= high
-                told[name] += 1
-                outside[name] += not low <= true[name] <= high
-                linear[name] += not abs(found.parameters[name] - true[name]) <= 2 * found.errors[name]
-    for name, count in told.items():  # what happens once in a thousand runs if one in twenty is outside
-        assert outside[name] <= binom.ppf(0.999, count, 0.05), (name, outside, linear, told)
+def test_where_standard_errors_are_rough_is_said():
+    """Two lags that may be equal, one that is hardly seen, much noise; and none of these."""
+    for lags, noise, rough in (([9.0, 3.0], 0.001, False), ([6.0, 6.0], 0.05, True), ([9.0, 0.1], 0.1, True)):
+        found = fit(*record("second order", lags, 2.6, noise, seed=2, count=120), "second order")
+        shown = repr(found)
+        assert shown.count("±") == 4
+        assert ("the errors are rough" in shown) == rough
 
 
-def test_a_profile_is_the_least_sum_of_squares_that_a_search_of_another_kind_finds():
-    times, u, y = record("second order", [6.0, 6.0], 3.0, 0.15, seed=4)
-    found = fit(times, u, y, "second order")
-    left = ((found.y - found.fitted) ** 2).sum()
-    limit = left * (1 + stdtrit(55, 0.975) ** 2 / 55)
-    low, high = found.intervals()["T1"]
-    chain, delays = DrivenChain("second order", times, u, "zero order"), np.linspace(0, 20, 201)
-
-    def least(T1):  # over a grid, so that it cannot miss a valley
-        sums = []
-        for T2 in np.linspace(0.05, T1, 60):
-            forced = chain.forced(np.array([[T1], [T2]]), delays)
-            forced, target = forced - forced.mean(axis=0), y - y.mean()
-            sums.append(target @ target - ((target @ forced) ** 2 / (forced**2).sum(axis=0)).max())
-        return min(sums)
-
-    for end, beyond in ((low, 0.97), (high, 1.03)):
-        assert least(end) == pytest.approx(limit, rel=5e-3)
-        assert least(end * beyond) > limit
-
-
-def test_where_the_response_is_nearly_linear_intervals_are_those_of_the_standard_errors():
-    found = fit(*record("second order", [9.0, 3.0], 2.6, 0.001, seed=1, count=120), "second order")
-    for name, (low, high) in found.intervals().items():
-        reach = stdtrit(120 - 5, 0.975) * found.errors[name]
-        assert (low, high) == pytest.approx(
-            (found.parameters[name] - reach, found.parameters[name] + reach), abs=0.15 * reach
-        )
-    assert repr(found).count("±") == 4
-
-
-def test_a_larger_level_has_a_longer_interval():
+def test_a_fit_goes_through_a_pickle():
     found = fit(*record("first order", [8.0], 3.3, 0.1, seed=1))
-    ends = [found.intervals(level)["T1"] for level in (0.5, 0.9, 0.95, 0.99)]
-    assert all(b[0] < a[0] < a[1] < b[1] for a, b in itertools.pairwise(ends))
-
-
-def test_what_a_record_does_not_limit_ends_at_zero_or_at_infinity():
-    times, u, y = record("integrator", [], 2.0, 0.05, seed=1, gain=0.1)
-    as_lag = fit(times, u, y).intervals()
-    assert as_lag["T1"][1] == math.inf
-    assert math.isfinite(as_lag["T1"][0])
-    unseen = fit(*record("second order", [9.0, 0.1], 1.0, 0.1, seed=1), "second order")
-    assert unseen.intervals()["T2"][0] == 0
-    assert unseen.intervals()["delay"][0] == 0
-    assert "(0 to " in repr(unseen)  # and no standard error as if it were right
-
-
-def test_equal_lags_have_no_standard_error():
-    found = fit(*record("second order", [6.0, 6.0], 2.0, 0.05, seed=2), "second order")
-    shown = repr(found)
-    assert "T1 = " in shown
-    for name in ("T1", "T2"):
-        low, high = found.intervals()[name]
-        assert low < 6 < high
-        assert f"{name} = {found.parameters[name]:.4g} ({low:.3g} to {high:.3g})" in shown
-
-
-@pytest.mark.parametrize(("unit_t", "unit_u", "unit_y"), [(3.6e6, 1e-3, 1e5), (1e-9, 1e3, 1e-7)])
-def test_intervals_do_not_depend_on_units(unit_t, unit_u, unit_y):
-    times, u, y = record("second order", [9.0, 5.0], 2.6, 0.1, seed=3)
-    one = fit(times, u, y, "second order").intervals()
-    other = fit(times * unit_t, u * unit_u, y * unit_y, "second order").intervals()
-    for name, ends in one.items():
-        unit = unit_y / unit_u if name == "K" else unit_t
-        assert other[name] == pytest.approx([end * unit for end in ends], rel=1e-3)
-
-
-def test_a_fit_goes_through_a_pickle_with_its_intervals():
-    found = fit(*record("first order", [8.0], 3.3, 0.1, seed=1))
-    assert pickle.loads(pickle.dumps(found)).intervals() == found.intervals()
-
-
-def test_intervals_that_cannot_be_are_refused():
-    found = fit(*record("first order", [8.0], 3.3, 0.1, seed=1))
-    for level in (0, 1, "high"):
-        with pytest.raises(ValueError, match="a probability between 0 and 1"):
-            found.intervals(level)
+    assert repr(pickle.loads(pickle.dumps(found))) == repr(found)
     few = fit([0, 1, 2, 3], [0, 1, 1, 1], [0, 0, 1, 1.5])
     assert all(error == math.inf for error in few.errors.values())
-    with pytest.raises(ValueError, match="4 samples tell no noise from a model of 4 numbers"):
-        few.intervals()
 
 
 # ---------------------------------------------------------------------------- the ruler

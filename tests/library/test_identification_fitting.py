@@ -13,12 +13,13 @@ from draws import THOROUGH, draws
 from loopbook import s
 from loopbook.deadtime import System
 from loopbook.identification import fit
-from loopbook.identification.zero_order_hold import HOLDS, KINDS, DrivenChain, responses
+from loopbook.identification.zero_order_hold import HOLDS, KINDS, DrivenChain
 from loopbook.pid import PID, Controller
 from loopbook.plants import Process
 from loopbook.signals import noise, stepwise
 from loopbook.simulation import simulate
 from loopbook.tuning import simc
+from test_fit_statistics import responses
 from test_identification_steps import values
 
 E = sympy.exp

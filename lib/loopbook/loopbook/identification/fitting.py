@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 import sympy
 
 from loopbook.approximation import SOPDT
-from loopbook.identification.profiles import Residuals, interval
 from loopbook.identification.records import even_step, record
+from loopbook.identification.residuals import Residuals
 from loopbook.identification.search import least_squares
 from loopbook.identification.zero_order_hold import HOLDS, KINDS, DrivenChain
 from plainmath.expressions import exact
@@ -30,7 +30,6 @@ PATIENCE = 300  # steps of the last search
 DIGITS = 10  # of the model's numbers
 CLOSE = 1e-5  # a dead time of so few steps is none
 CLEAR = 6  # so many standard errors away, a parameter is told well
-AGREE = 0.2  # by how much of its half an interval may differ from the linear one, where a standard error says enough
 
 
 @dataclass(frozen=True, repr=False)
@@ -43,7 +42,7 @@ class Fit:
         parameters: K, T1 or T1 and T2, and delay, floats by name.
         errors: the standard error of each of them, if what is left of the data is white noise, and if the response is
             nearly linear in them over some standard errors. It is not where two lags may be equal, or one be too short
-            to be seen, or noise is large; then `intervals` tells more. `inf` is what cannot be said.
+            to be seen, or noise is large; then they are rough. `inf` is what cannot be said.
         residual: standard deviation of what is left, in the unit of the measurement.
         times, y, fitted: the record, and what the model makes of the control signal; arrays.
     """
@@ -56,58 +55,17 @@ class Fit:
     times: np.ndarray
     y: np.ndarray
     fitted: np.ndarray
-    hold: str = "zero order"
-    _residuals: Residuals | None = field(default=None, compare=False)
-    _known: dict = field(default_factory=dict, compare=False)
+    hold: str
 
     @property
     def expr(self) -> sympy.Expr:
         """The transfer function of the model."""
         return self.model.expr
 
-    def intervals(self, level: float = 0.95) -> dict[str, tuple[float, float]]:
-        """Return an interval for each parameter that holds the true one with a probability, if the noise is white.
-
-        A value is in the interval if the best model with that value fits not much worse than the best one of all, by
-        an F test (a profile likelihood). So the interval need not be symmetric; it ends at zero where a lag or a dead
-        time is not to be told from none, and at infinity where the record sets no limit. For two lags, the first one
-        is the longer one. The response need not be nearly linear in the parameters, as for `errors`.
-
-        Arguments:
-            level: the probability, between 0 and 1.
-        Raises:
-            ValueError: for another level, or a record of no more samples than the fit has numbers.
-
-        >>> import numpy as np
-        >>> times = np.arange(60.0)
-        >>> u, noise = np.where(times < 5, 0, 1), 0.1 * np.sin(times**2)
-        >>> y = 2 * (1 - np.exp(-np.maximum(times - 7.5, 0) / 10))
-        >>> {name: [round(x, 1) for x in ends] for name, ends in fit(times, u, y + noise).intervals().items()}
-        {'K': [2.0, 2.1], 'T1': [9.7, 11.7], 'delay': [1.7, 2.8]}
-        """
-        level = number("the level", level, "a probability between 0 and 1", lambda x: 0 < x < 1)
-        if level not in self._known:
-            if self._residuals.freedom < 1:
-                numbers = self._residuals.numbers
-                raise ValueError(
-                    f"{len(self.y)} samples tell no noise from a model of {numbers} numbers: expected more"
-                )
-            self._known[level] = {
-                name: interval(self._residuals, name, self.parameters, self.errors, level) for name in self.parameters
-            }
-        return dict(self._known[level])
-
     def __repr__(self) -> str:
-        errors, intervals = self.errors, {}
-        if not self._is_regular() and self._residuals is not None and self._residuals.freedom > 0:
-            intervals = self.intervals()
-        values = []
-        for name, value in self.parameters.items():
-            if name in intervals and self._differs(name, intervals[name]):
-                values.append(f"{name} = {value:.4g} ({intervals[name][0]:.3g} to {intervals[name][1]:.3g})")
-            else:
-                values.append(f"{name} = {value:.4g} ± {errors[name]:.1g}")
-        return f"<fit, {self.kind} with dead time: {', '.join(values)}; residual {self.residual:.3g}>"
+        values = [f"{name} = {value:.4g} ± {self.errors[name]:.1g}" for name, value in self.parameters.items()]
+        rough = "" if self._is_regular() else ", the errors are rough"
+        return f"<fit, {self.kind} with dead time: {', '.join(values)}; residual {self.residual:.3g}{rough}>"
 
     def _is_regular(self):
         """Whether all parameters are so many standard errors from where they are not regular that these say enough."""
@@ -115,14 +73,6 @@ class Fit:
         delay, lags = self.parameters["delay"], [name for name in self.parameters if name.startswith("T")]
         apart = len(lags) < 2 or self.parameters["T1"] - self.parameters["T2"] > CLEAR * self.errors["T2"]
         return all(far) and apart and delay >= 3 * self.errors["delay"]
-
-    def _differs(self, name, ends):
-        """Whether an interval is another than its standard error says."""
-        from scipy.special import stdtrit
-
-        reach = self.errors[name] * float(stdtrit(self._residuals.freedom, 0.975))
-        off = max(abs(abs(end - self.parameters[name]) - reach) for end in ends)
-        return not (math.isfinite(reach) and off <= AGREE * reach)
 
 
 def fit(
@@ -193,7 +143,7 @@ def fit(
     )  # fmt: skip
     units = {"K": unit_y / unit_u / step**integrators, "T1": step, "T2": step, "delay": step}
     longest = float(longest_delay) / step
-    residuals = Residuals(chain, (y - rest) / unit_y, start, level is not None, longest, units)
+    residuals = Residuals(chain, (y - rest) / unit_y, start, level is not None, longest)
     p = _search(residuals)
     if p[-1] > longest * (1 - 1e-6):
         raise ValueError(f"the dead time would be {longest_delay:g} or longer: expected a larger longest_delay")
@@ -205,7 +155,7 @@ def fit(
     rounded = {name: exact(float(f"{value:.{DIGITS}g}")) for name, value in parameters.items()}
     model = SOPDT(**({"T1": sympy.oo} if integrators else {}), **rounded)
     fitted = rest + unit_y * fitted
-    return Fit(model, kind, parameters, errors, float(residual * unit_y), times, y, fitted, hold, residuals)
+    return Fit(model, kind, parameters, errors, float(residual * unit_y), times, y, fitted, hold)
 
 
 def _search(residuals):

@@ -15,31 +15,29 @@ if TYPE_CHECKING:
 
 WIDTH = 1e-7  # of a difference for a derivative
 DAMPED, FREE, STUCK = 1e-2, 1e-12, 1e10  # the damping: at first, the least, and when nothing helps
+ENOUGH = 1e-15  # a step that lessens a sum by no more than this part is the last
 ARRIVED = 1e-11  # a step so short, as a part of a lag or of a sample, is none
 
 
 def least_squares(
-    left: Callable[[np.ndarray, np.ndarray], np.ndarray],
+    left: Callable[[np.ndarray], np.ndarray],
     start: np.ndarray,
     low: np.ndarray,
     high: np.ndarray,
     *,
     rounds: int = 60,
-    enough: float = 1e-15,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return where each column's sum of squares is least, near its starting point, and these sums.
 
     Arguments:
-        left: what is left of the data, a column of residuals for each column of parameters; it is given these, and the
-            numbers of the columns.
+        left: what is left of the data, a column of residuals for each column of parameters.
         start: the starting points, a row for each parameter and a column for each problem.
         low, high: bounds of the same shape.
         rounds: the most steps that are tried.
-        enough: a column has arrived when a step lessens its sum by no more than this part.
 
     >>> import numpy as np
     >>> data = np.array([[1.0], [2.0]])
-    >>> left = lambda p, which: data - np.exp(p)
+    >>> left = lambda p: data - np.exp(p)
     >>> zero = np.zeros((1, 2))
     >>> found, sums = least_squares(left, zero, zero - 1, np.array([[1.0, 0.2]]))
     >>> np.exp(found).round(4), sums.round(4)
@@ -48,9 +46,9 @@ def least_squares(
     p = np.clip(start, low, high)
     count, columns = p.shape
     if count == 0:
-        return p, (left(p, np.arange(columns)) ** 2).sum(axis=0)
+        return p, (left(p) ** 2).sum(axis=0)
     at_work = np.arange(columns)
-    sums, slopes, squares = _described(left, p, at_work, low, high)
+    sums, slopes, squares = _described(left, p, low, high)
     damping, best = np.full(columns, DAMPED), p
     diagonal = np.arange(count)
     for _ in range(rounds):
@@ -64,10 +62,10 @@ def least_squares(
         step = -np.linalg.solve(matrix, gradient[:, :, None])[:, :, 0].T
         tried = np.clip(best + step, low, high)
         step = tried - best
-        new, new_slopes, new_squares = _described(left, tried, at_work, low, high)
+        new, new_slopes, new_squares = _described(left, tried, low, high)
         better = new < sums
         gain = np.where(better, sums - new, 0.0)
-        arrived = (abs(step) < ARRIVED).all(axis=0) | (better & (gain <= enough * sums)) | (damping > STUCK)
+        arrived = (abs(step) < ARRIVED).all(axis=0) | (better & (gain <= ENOUGH * sums)) | (damping > STUCK)
         best = np.where(better, tried, best)
         sums = np.where(better, new, sums)
         slopes = np.where(better[:, None], new_slopes, slopes)
@@ -81,15 +79,15 @@ def least_squares(
             if not on.any():
                 break
     p[:, at_work] = best
-    return p, (left(p, np.arange(columns)) ** 2).sum(axis=0)
+    return p, (left(p) ** 2).sum(axis=0)
 
 
-def _described(left, p, which, low, high):
+def _described(left, p, low, high):
     """The sums of squares, half their slopes, and the products of the residuals' derivatives, one after another."""
     count, columns = p.shape
     forward = np.where(p + WIDTH > high, -WIDTH, WIDTH)
     points = np.concatenate([p] + [p + forward * (np.arange(count) == k)[:, None] for k in range(count)], axis=1)
-    r = left(points, np.tile(which, count + 1)).reshape(-1, count + 1, columns)
+    r = left(points).reshape(-1, count + 1, columns)
     here = r[:, 0]
     derivatives = (r[:, 1:] - here[:, None]) / forward
     slopes = np.einsum("nkc,nc->ck", derivatives, here)

@@ -9,12 +9,8 @@ done for many sets of lags and dead times at once.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 KINDS = {  # how many lags, and how many integrators
     "first order": (1, 0),
@@ -123,29 +119,6 @@ class DrivenChain:
             else:
                 found.append([one, elapsed, elapsed**2 / 2])
         return found
-
-
-def responses(
-    kind: str, lags: Sequence[float], delay: float, times: np.ndarray, u: np.ndarray, hold: str = "zero order"
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the response to the input u, at rest before with u = 0, and the free ones.
-
-    Arguments:
-        kind: one of `KINDS`, with as many `lags`.
-        delay: the dead time.
-        times, u, hold: as for `DrivenChain`.
-    Returns:
-        An array with a value for each sample, and one with a column for each way to move without that input, one for
-        each state that is 1 at the first sample, the last one for a constant input of 1.
-
-    >>> import numpy as np
-    >>> forced, free = responses("first order", [2.0], 0.5, np.array([0.0, 1.0, 2.5]), np.array([0.0, 1.0, 1.0]))
-    >>> forced.round(4)
-    array([0.    , 0.    , 0.3935])
-    """
-    lags = np.array(sorted(lags, reverse=True), dtype=float)[:, None] if len(lags) else np.empty((0, 1))
-    chain = DrivenChain(kind, times, u, hold)
-    return chain.forced(lags, np.array([float(delay)]))[:, 0], chain.free(lags)[:, 0]
 
 
 def _sum(shares, signals):
