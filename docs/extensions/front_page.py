@@ -37,12 +37,11 @@ class FrontExercise(SphinxDirective):
     def run(self):
         number = self.arguments[0]
         chapter, outputs = self.found(number)
-        texts = [o["data"]["text/markdown"] for o in outputs if "text/markdown" in o.get("data", {})]
-        title, points = next((m[2], m[3]) for text in texts if (m := stored.STATEMENT.match(text)))
+        statement = exercise_forms.sheet(number).question.statement
         pictures = stored.pictures(outputs).replace("<img ", '<img loading="lazy" ')
-        form = exercise_forms.form(number, (points or "").strip(" ()"), pictures, f"solutions/{chapter}.html")
+        form = exercise_forms.form(number, statement.points, pictures, f"solutions/{chapter}.html")
         link = f"[In its chapter](chapters/{chapter}.ipynb#exercise-{slug(number)})"
-        return self.parse_text_to_nodes(f"**Exercise {number} · {title}.** {link}\n\n{form}")
+        return self.parse_text_to_nodes(f"**{statement.heading}.** {link}\n\n{form}")
 
     def found(self, number):
         """The chapter of an exercise, and what its cell shows."""

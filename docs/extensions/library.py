@@ -186,6 +186,9 @@ def documented(module, name):
     if inspect.isclass(value):
         if value.__name__ != name:  # another name for a class that has its place elsewhere
             return [f".. py:class:: {name}", place, "", f"   The same as `{value.__name__}`.", ""]
+        if value.__module__.partition(".")[0] != module.__name__.partition(".")[0]:  # a class has one place
+            home = f":py:obj:`{value.__module__}.{value.__qualname__}`"
+            return [f".. py:class:: {name}", place, "", f"   The same as {home}.", ""]
         lines = [f".. auto{'exception' if issubclass(value, Exception) else 'class'}:: {address}", "   :members:"]
         bases = [base for base in value.__bases__ if base.__module__.startswith(OURS)]
         return [*lines, *(["   :show-inheritance:"] if bases else []), ""]

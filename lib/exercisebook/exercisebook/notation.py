@@ -15,8 +15,8 @@ from dataclasses import dataclass
 STEPS = ("Heaviside", "heaviside", "step", "unitstep", "u", "H", "sigma", "theta", "1")
 #: Functions by other names.
 OTHER_NAMES = {"Sqrt": "sqrt", "root": "sqrt", "Exp": "exp", "Ln": "ln", "Log": "log", "Sin": "sin", "Cos": "cos"}
-#: Letters that stand for the same in different books.
-SAME_LETTERS = {"kc": "kp", "kp": "kc"}
+#: Letters that stand for the same in different books, {one: the other} in both directions, as `bare` writes them.
+SAME_LETTERS: dict[str, str] = {}
 LONGEST_NAME, MOST_READINGS = 40, 500
 
 _LATEX_WORDS = {

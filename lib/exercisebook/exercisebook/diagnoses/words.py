@@ -10,19 +10,10 @@ from exercisebook.kinds import Word, Words
 from exercisebook.reading import listed
 
 #: What to ask oneself where there is the choice between such words.
-_QUESTIONS = (
-    (
-        {"reverse", "direct"},
-        "follow a rise of the measurement once round the loop: which way must the control signal go against it, "
-        "and what does the actuator do with more signal?",
-    ),
-    ({"heating", "cooling"}, "does the measurement rise or fall when this actuator does more?"),
-    ({"rises", "falls"}, "what changes first of what flows in and out, and in which direction?"),
-    ({"stable", "unstable"}, "where do the poles of the closed loop lie?"),
-    ({"overdamped", "underdamped"}, "how large is the damping, and are the poles real?"),
+QUESTIONS: list[tuple[set[str], str]] = [
     ({"A", "B"}, "put the numbers of both side by side"),
     ({"yes", "no"}, "what would have to be measured or computed to be sure?"),
-)
+]
 
 
 @explained.register
@@ -30,7 +21,7 @@ def _(kind: Word, answer: str, background: Background) -> Finding | None:
     for how, key in background.keys_of_other_words():
         if isinstance(key, Word) and key.key == answer:
             return Finding(how)
-    for words, question in _QUESTIONS:
+    for words, question in QUESTIONS:
         if words <= {*kind.among}:
             return Finding(f"not right: {question}", is_mistake=False)
     return None

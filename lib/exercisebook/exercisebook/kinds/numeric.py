@@ -39,7 +39,7 @@ from exercisebook.reading import (
 _WITH_UNIT = re.compile(r"([+-]? ?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?) ?(.*)")
 #: What may be beside a number, on either side, and says nothing of its size.
 _BEFORE_IT = re.compile(
-    r"^(?:(?:at least|at most|at|after|only|loops?|exactly|(?:by )?(?:a )?factor(?: of)?|by|is|it is) |[<>]=? ?)",
+    r"^(?:(?:at least|at most|at|after|only|exactly|(?:by )?(?:a )?factor(?: of)?|by|is|it is) |[<>]=? ?)",
     re.IGNORECASE,
 )
 _BEHIND_IT = re.compile(
@@ -386,12 +386,12 @@ def _changed(key):
 
 
 def _without_noun(text, what):
-    """A number without the noun of what is asked, as "4 batches" or "loop 31"; empty where there is none."""
+    """A number without the noun of what is asked, as "4 boxes" or "room 31"; empty where there is none."""
     nouns = "|".join(re.sub("(?:(?<=[cs]h)e)?s$", "", word) for word in re.findall(r"[a-z]{4,}", what))
     text = re.sub(r" \([A-Za-z ]+\)$|\.$", "", text.strip())
     if re.fullmatch(r"(?:(?:no|nr|number)\b\.? ?|# ?)?\d+", text, re.IGNORECASE):
         return re.sub(r"\D", "", text)
-    if "loop" in what and (tag := re.fullmatch(r"[A-Z]{1,5}[- ]?(\d+)", text)):  # TC41
+    if what.startswith("the number of the ") and (tag := re.fullmatch(r"[A-Z]{1,5}[- ]?(\d+)", text)):  # TC41
         return tag[1]
     some = r"([\w.,]+)(?: (?:full|whole|complete))?"
     found = re.fullmatch(rf"(?:(?:the )?(?:{nouns}) ([\w.,]+)|{some} (?:{nouns})(?:e?s)?)", text) if nouns else None

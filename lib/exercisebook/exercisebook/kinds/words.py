@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import functools
 import hashlib
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -15,35 +14,8 @@ from sympy.logic.boolalg import BooleanAtom
 from exercisebook.kinds.kind import AS_IT_IS, NONE, ONE, ORDER, SEVERAL, Kind, Tried
 from exercisebook.reading import Unreadable, alone, answered, in_a_row, members, shortened
 
-#: What is usually said for the same, in one row; a word is never in a row with one that says the opposite.
-SAME = """
-setpoint, reference, reference value, desired value, set value, SP
-control error, error, error signal, control deviation
-control signal, controller output, manipulated variable, MV
-disturbance, load, load disturbance
-process output, process variable, controlled variable, PV
-measurement noise, sensor noise, noise of the measurement
-up, raise, raises, rises, increase, increases, higher
-down, lower, lowers, falls, decrease, decreases, reduce
-larger, greater, bigger, higher, increased
-smaller, lower, less, reduced, decreased
-yes, true, y
-no, false, n
-none, nothing
-unstable, not stable, instable
-direct, direct acting, direct action
-reverse, reverse acting, reverse action
-indicator, indicating
-as it was, unchanged, the same, no change
-more sluggish, sluggish, slower
-P, P controller
-PI, PI controller
-PD, PD controller
-PID, PID controller
-check valve, non return valve
-hand valve, manual valve
-safety valve, relief valve
-"""
+#: What is usually said for the same, a set for each; see `also_said`.
+SAME: list[frozenset[str]] = []
 #: A longer text names no option; in a shorter word a letter makes another word, as of "not" the word "now".
 LONGEST, SHORTEST_WITH_A_SLIP = 200, 5
 _ARTICLE = re.compile(r"\b(?:an?|the)\s+(?=\w\w)")
@@ -246,15 +218,24 @@ def _word(given, among, expected):
     return meant, "" if bare(given) == bare(meant) else f'read as "{meant}"'
 
 
+def also_said(*rows: str) -> None:
+    """Say which words mean the same.
+
+    Arguments:
+        rows: words with commas between them; none is in a row with one that says the opposite.
+    """
+    SAME.extend(frozenset(map(bare, row.split(","))) for row in rows)
+
+
 def named(given: str, among: Sequence[str]) -> str | None:
     """Return the option that a text is: spelled in any way, as a usual other word, or with one slip of the keyboard.
 
     None where it is none, or may be several. A sentence is no option, so that none is read that is denied in it.
 
-    >>> named("Reverse-acting", ["reverse", "direct"]), named("not stable", ["stable", "unstable"])
-    ('reverse', 'unstable')
-    >>> named("not direct", ["reverse", "direct"]), named("sinle loop", ["cascade", "single loop"])
-    (None, 'single loop')
+    >>> named("Set-point", ["set point", "load"]), named("increases", ["up", "down"])
+    ('set point', 'up')
+    >>> named("not up", ["up", "down"]), named("sinle beam", ["frame", "single beam"])
+    (None, 'single beam')
     """
     if len(given) > LONGEST:
         return None
@@ -262,7 +243,7 @@ def named(given: str, among: Sequence[str]) -> str | None:
     for option in among:
         if bare(option) == text:
             return option
-    meant = [option for option in among if any({bare(option), text} <= row for row in _rows())]
+    meant = [option for option in among if any({bare(option), text} <= row for row in SAME)]
     meant = meant or [option for option in among if _has_a_slip(given, option)]
     return meant[0] if len(meant) == 1 else None
 
@@ -280,11 +261,6 @@ def _plain(text):
     return _ARTICLE.sub("", " ".join(text.casefold().split()).strip(" '\".,;:!()"))
 
 
-@functools.cache
-def _rows():
-    return [frozenset(bare(word) for word in row.split(",")) for row in SAME.strip().splitlines()]
-
-
 def _has_a_slip(typed, option):
     """Whether of one word a letter, and not the first one, is missing, too many or another one, or two are swapped."""
     words = [re.split(r"[\s_‐‑-]+", _plain(text)) for text in (typed, option)]
@@ -300,3 +276,15 @@ def _has_a_slip(typed, option):
 
 def _either(words):
     return f"{', '.join(words[:-1])} or {words[-1]}"
+
+
+also_said(
+    "up, raise, raises, rises, increase, increases, higher",
+    "down, lower, lowers, falls, decrease, decreases, reduce",
+    "larger, greater, bigger, higher, increased",
+    "smaller, lower, less, reduced, decreased",
+    "yes, true, y",
+    "no, false, n",
+    "none, nothing",
+    "as it was, unchanged, the same, no change",
+)

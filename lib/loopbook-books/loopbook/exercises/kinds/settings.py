@@ -48,6 +48,7 @@ also_called(
     "settings controller pid pi c",
     "h g m tf transferfunction",
 )
+notation.SAME_LETTERS |= {"kc": "kp", "kp": "kc"}
 
 
 class Settings(Kind):
