@@ -20,6 +20,7 @@ from hypothesis import strategies as st
 
 import contributing
 import loopbook.ledger
+from bookledger import EXAMPLE
 from bookledger.kinds import Number
 from bookledger.report import MIME_TYPE
 from bookledger.statuses import STATUSES
@@ -45,9 +46,14 @@ def book(**entry):
     """A source with one entry, "Example 1", of which some keys are told."""
     entry = {"title": "An example", "chapter": "10_tuning"} | entry
     lines = [f"{key} = {toml(value)}" for key, value in entry.items()]
-    return Source.read(
-        "book", "\n".join(['[source]\ntitle = "Author"\ncitation = "A. Author"\n["Example 1"]', *lines]).encode()
-    )
+    return read("\n".join(['[source]\ntitle = "Author"\ncitation = "A. Author"\n["Example 1"]', *lines]).encode())
+
+
+def read(content):
+    """A source, all of whose entries have been read."""
+    source = Source.read("book", content)
+    list(source)
+    return source
 
 
 def example(printed, **result):
@@ -95,7 +101,7 @@ def test_what_is_quoted_is_in_the_library_and_public(source, subtests):
     for place in sorted(quoted):
         with subtests.test(place):
             module, _, name = place.rpartition(".")
-            found = getattr(importlib.import_module(f"loopbook.{module}"), name)
+            found = getattr(importlib.import_module(module), name)
             assert not name.startswith("_")
             assert found.__doc__ or not callable(found)
 
@@ -559,6 +565,23 @@ def test_an_unknown_source_is_named_with_the_known_ones(monkeypatch):
         from loopbook.ledger import auhtor  # noqa: F401
 
 
+def test_a_source_is_a_file_anywhere(tmp_path):
+    path = tmp_path / "walls.toml"
+    with pytest.raises(LedgerError, match=r"walls\.toml cannot be read: No such file"):
+        Source.open(path)
+    path.write_bytes(EXAMPLE.read_bytes())
+    for where in (path, str(path)):
+        assert Source.open(where).name == "walls"
+        assert [*Source.open(where)] == [*Source.read("walls", path.read_bytes())]
+
+
+def test_an_entry_is_read_when_it_is_asked_for():
+    source = Source.read("book", (CITATION + '["Example 1"]\ntitle = "A"\nchapter = "1"\n["Example 2"]').encode())
+    assert source["Example 1"].title == "A"
+    with pytest.raises(LedgerError, match="book, Example 2: title"):
+        source["Example 2"]
+
+
 # Malformed entries.
 
 
@@ -571,7 +594,7 @@ def result(**keys):
 
 
 def text(content):
-    return lambda: Source.read("book", content if isinstance(content, bytes) else content.encode())
+    return lambda: read(content if isinstance(content, bytes) else content.encode())
 
 
 CITATION = '[source]\ntitle = "A"\ncitation = "A"\n'
@@ -738,7 +761,7 @@ def test_a_notebook_cannot_change_the_ledger():
     entry.givens["K"] = 5  # a copy
     for change in (
         lambda: entry.inputs.__setitem__("K", 5),
-        lambda: TWO.entries.__setitem__("Example 1", None),
+        lambda: TWO.tables.__setitem__("Example 1", None),
         lambda: TWO.__setitem__("Example 1", None),
         lambda: setattr(entry, "results", ()),
         lambda: setattr(entry.results[0], "printed", "2"),
@@ -763,7 +786,13 @@ MIXED = book(
         {"name": "c", "printed": "1", "status": "unreproduced", "computed": "2", "because": "nobody knows"},
         {"name": "d", "printed": "17.3", "status": "measured", "because": "in the laboratory"},
         {"name": "e", "printed": "8.4", "status": "unreproduced", "because": "its settings are not printed"},
-        {"name": "f", "printed": "0.9", "label": "share of <water>", "status": "quoted", "library": "tuning.simc"},
+        {
+            "name": "f",
+            "printed": "0.9",
+            "label": "share of <water>",
+            "status": "quoted",
+            "library": "loopbook.tuning.simc",
+        },
         {"name": "grows", "claim": "The peak grows with the gain."},
         {"name": "is_large", "claim": "The gain is large & positive.", "status": "observed", "on": "a tank of ours"},
         {

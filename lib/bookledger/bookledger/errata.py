@@ -1,4 +1,4 @@
-"""What the ledger says as a whole: its totals by status, and three pages: errors, open questions, damaged copies."""
+"""What ledgers say as a whole: totals by status, and lists of what was corrected, not reproduced, or damaged."""
 
 from __future__ import annotations
 
@@ -6,43 +6,22 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from bookledger.kinds import Claim
-from bookledger.statuses import STATUSES, Corrected, Damaged, Unreproduced
+from bookledger.statuses import STATUSES, Corrected, Damaged, Status, Unreproduced
 
 if TYPE_CHECKING:
-    from bookledger.source import Entry, Result, Source
+    from bookledger.results import Result
+    from bookledger.source import Entry, Source
 
-INTRODUCTION = """\
-# Errata
-
-What the books print and a computation contradicts, with the reason, and slips of the print that change no result.
-`make execute` writes this page from the ledger itself, and a test proves each line on a result: what is computed agrees
-with the correction and not with the print. What did not come out, and nobody knows why, is no error of a book: it is on
-[a page of its own](docs/unreproduced.md), and so is [what our copies have damaged](docs/damage.md).
-"""
-UNREPRODUCED = """\
-# Not reproduced
-
-What did not come out as it is printed, though all that it takes is known, and what cannot be computed because the book
-does not print what it takes. Nothing here says that a book is wrong. `make execute` writes this page from the ledger,
-and a test proves each line that has a number or evidence: that is what is computed, and it does not agree with the
-print.
-"""
-DAMAGE = """\
-# Damage of our copies
-
-Where the text that this collection was made from has lost a bracket, an index or a digit of the book on its way: no
-error of the authors, as far as one can see. `make execute` writes this page from the ledger, and a test proves each
-line on a result: what is computed agrees with what the book must have, and not with our copy. The other lines are
-misreadings in the text around the results.
-"""
+#: The slips of the print that are listed with a status, by their name in an entry.
+_SLIPS = {Corrected: "misprints", Damaged: "damage"}
 
 
 def totals(sources: Mapping[str, Source]) -> dict[str, dict[str, int]]:
     """Count the results of each source by status: {source name: {status: number}}.
 
-    >>> from loopbook.ledger import sources
-    >>> list(totals(sources())["haugen"])[:4]
-    ['computed', 'quoted', 'observed', 'reconstructed']
+    >>> from bookledger import EXAMPLE, Source
+    >>> {word: count for word, count in totals({"walls": Source.open(EXAMPLE)})["walls"].items() if count}
+    {'computed': 2, 'corrected': 1, 'measured': 2}
     """
     return {
         name: {word: sum(row.status.word == word for entry in source for row in entry.results) for word in STATUSES}
@@ -50,30 +29,29 @@ def totals(sources: Mapping[str, Source]) -> dict[str, dict[str, int]]:
     }
 
 
-def page(sources: Mapping[str, Source]) -> str:
-    """Return the text of ERRATA.md: what is corrected, and misprints."""
-    return _page(INTRODUCTION, sources, Corrected, "misprints", "chapters/")
+def listed(sources: Mapping[str, Source], status: type[Status], folder: str) -> str:
+    """Return what has a status, and the slips of that kind, as a list in Markdown under each source's citation.
 
+    Arguments:
+        sources: by name.
+        status: `Corrected`, `Unreproduced` or `Damaged`.
+        folder: the address of the notebooks' folder, with a slash at its end.
 
-def unreproduced(sources: Mapping[str, Source]) -> str:
-    """Return the text of the page on what did not come out."""
-    return _page(UNREPRODUCED, sources, Unreproduced, "", "/chapters/")
-
-
-def damaged(sources: Mapping[str, Source]) -> str:
-    """Return the text of the page on what is damaged in our copies."""
-    return _page(DAMAGE, sources, Damaged, "damage", "/chapters/")
-
-
-def _page(introduction, sources, status, slips, folder):
-    lines = [introduction]
+    >>> from bookledger import EXAMPLE, Source
+    >>> print(listed({"walls": Source.open(EXAMPLE)}, Corrected, "notebooks/"))
+    ## A. N. Author, Warm Walls: an invented textbook on heat, 1st edition
+    <BLANKLINE>
+    - **Example 2.1, equation (2.4)**, R: prints `4.17`, correct is `0.417`: the decimal point is lost. ([02_conduction](notebooks/02_conduction.ipynb))
+    <BLANKLINE>
+    """  # noqa: E501
+    lines = []
     for source in sources.values():
         found = []
         for entry in source:
             found += [_line(entry, row, folder) for row in entry.results if type(row.status) is status]
             found += [
                 f"- **{entry.name}** {slip.sentence}. {_link(entry, folder)}"
-                for slip in getattr(entry, slips or "", ())
+                for slip in getattr(entry, _SLIPS.get(status, ""), ())
             ]
         if found:
             lines += [f"## {source.citation}\n", *found, ""]

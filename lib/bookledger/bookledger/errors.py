@@ -18,5 +18,5 @@ class LedgerError(Exception):
         return [f"{type(self).__name__}: {self}"]
 
 
-class Disagreement(LedgerError):  # noqa: N818 - it reads as what it is: "Disagreement: Kp = 1.7 ..."
+class Disagreement(LedgerError):  # noqa: N818 - it reads as what it is: "Disagreement: Q = 1.7 ..."
     """A computed value, or evidence, that the ledger does not confirm."""

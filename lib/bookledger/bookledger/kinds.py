@@ -121,7 +121,7 @@ def _latex(text):
 
 @dataclass(frozen=True)
 class Name:
-    """The name of something: a valve, a kind of controller, an entry of a table of words."""
+    """The name of something: a valve, a material, an entry of a table of words."""
 
     kind: ClassVar[str] = "name"
     text: str

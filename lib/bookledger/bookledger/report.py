@@ -1,125 +1,39 @@
-"""Verdicts, and how a reader sees them: as plain text, as HTML, and as data for whatever shows them otherwise."""
+"""How a reader sees verdicts: as plain text, as HTML, and as data for whatever shows them otherwise."""
 
 from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-import sympy
-
-from bookledger.evidence.comparisons import without_gaps
 from bookledger.kinds import Claim, Formula
-from plainmath.tables import aligned, marked, symbol, typeset
+from bookledger.results import FAILS, Result, Verdict
+from plainmath.tables import aligned, marked
 
-if TYPE_CHECKING:
-    from bookledger.source import Entry, Result
-
-#: The MIME type under which a stored notebook carries the verdicts as data.
+#: The MIME type under which a stored notebook carries the verdicts as data; it has the name of the first collection.
 MIME_TYPE = "application/vnd.loopbook.check+json"
 
 _HEAD = ("verdict", "equation", "result", "book", "computed")
 _CLAIMS = ("verdict", "equation", "claim", "", "evidence")
-_FAILS = ("✗", "fails")
-_LEFT = 'style="text-align:left"'  # JupyterLab would centre the heads and align numbers to the right
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """What became of one result.
-
-    Attributes:
-        result: of the ledger.
-        computed: the value, or the evidence, as text.
-        how: how it was found to hold; empty where it does not hold.
-        value: the number, formula or name, or the evidence; None where nothing can be computed.
-    """
-
-    result: Result
-    computed: str
-    how: str
-    value: Any = None
-
-    @property
-    def holds(self) -> bool:
-        """Whether the computation bears the status out."""
-        return bool(self.how)
-
-    @property
-    def near(self) -> bool:
-        """Whether the evidence hangs on the limit of a criterion, or on a few percent."""
-        return self.is_claim and self.value is not None and self.value.near
-
-    @property
-    def is_claim(self) -> bool:
-        """Whether the result is a sentence."""
-        return isinstance(self.result.printed, Claim)
-
-    @property
-    def word(self) -> str:
-        """The verdict in a word or two."""
-        if not self.holds:
-            return "does not hold"
-        more = [text for text, so in (("at random points", self.how == "probed"), ("a near thing", self.near)) if so]
-        return self.result.status.word + (f" ({', '.join(more)})" if more else "")
-
-    @property
-    def mark(self) -> tuple[str, str]:
-        """A sign, and the class under which a page shows it."""
-        return self.result.status.mark if self.holds else _FAILS
-
-    @property
-    def complaint(self) -> str:
-        """A sentence on what does not hold."""
-        what = f"the evidence ({self.computed})" if self.is_claim else f"= {self.computed}"
-        return f"{self.result.name} {what} {self.result.status.complaint(self.result.printed)}"
-
-    @property
-    def book(self) -> str:
-        """What the book prints, as text: of a claim what it says of the sentence."""
-        printed = self.result.printed
-        if isinstance(printed, Claim):
-            return "says so" if printed.says else "denies it"
-        return f"{printed.text} {self.result.unit}".strip()
-
-    @property
-    def data(self) -> dict[str, Any]:
-        """The verdict as JSON data; `tex` has the texts that hold formulas again, those between dollar signs.
-
-        What is empty is left out.
-        """
-        result, printed = self.result, self.result.printed
-        typeset_texts = {"computed": printed.latex(self.computed)}
-        if self.is_claim:
-            typeset_texts["computed"] = self.value.told(typeset) if self.value is not None else ""
-        else:
-            typeset_texts["title"] = "" if result.label else symbol(result.name)
-            typeset_texts["book"] = f"{printed.latex(printed.text)} {result.unit}".strip()
-        plain = {"title": printed.text if self.is_claim else result.title, "book": self.book, "computed": self.computed}
-        return {
-            "name": result.name,
-            "kind": printed.kind,
-            **plain,
-            "status": result.status.word,
-            "word": self.word,
-            "holds": self.holds,
-            "how": self.how,
-            **without_gaps(
-                {
-                    "equation": result.equation,
-                    "tex": {key: text for key, text in typeset_texts.items() if text and text != plain[key]},
-                    "evidence": self.value.data if self.is_claim and self.value is not None else None,
-                }
-            ),
-        }
+LEFT = 'style="text-align:left"'  # JupyterLab would centre the heads and align numbers to the right
 
 
 @dataclass(frozen=True)
 class Report:
-    """The verdicts on one entry of the ledger."""
+    """The verdicts on one entry of the ledger.
 
-    entry: Entry
+    Attributes:
+        source, name: of the entry.
+        heading: the entry as a reader calls it.
+        verdicts: on its results, in their order.
+        slips: those of its print, a sentence for each.
+    """
+
+    source: str
+    name: str
+    heading: str
     verdicts: tuple[Verdict, ...]
+    slips: tuple[str, ...] = ()
 
     @property
     def failures(self) -> tuple[Verdict, ...]:
@@ -144,16 +58,15 @@ class Report:
             note if len(results) == alike[results[0].status.word] else f"{_named(results)}: {note}"
             for note, results in about.items()
         ]
-        told += [f"misprint: the book {slip.sentence}" for slip in self.entry.misprints]
-        return told + [f"damaged: our copy {slip.sentence}" for slip in self.entry.damage]
+        return [*told, *self.slips]
 
     @property
     def data(self) -> dict[str, Any]:
         """The verdicts as JSON data."""
         return {
-            "source": self.entry.source,
-            "entry": self.entry.name,
-            "heading": heading(self.entry),
+            "source": self.source,
+            "entry": self.name,
+            "heading": self.heading,
             "counts": self.counts,
             "verdicts": [verdict.data for verdict in self.verdicts],
             "notes": self.notes,
@@ -167,7 +80,7 @@ class Report:
             if verdict.is_claim:
                 denied = "" if verdict.result.printed.says else " (The book denies it.)"
                 lines += [f"{verdict.word}: {verdict.result.printed.text}{denied}", f"    {verdict.computed}"]
-        return "\n".join([f"{heading(self.entry)}: {self.counts}", *lines, *self.notes])
+        return "\n".join([f"{self.heading}: {self.counts}", *lines, *self.notes])
 
     def _without_equations(self, rows, column):
         """Rows without the column of equations where none has a number."""
@@ -178,14 +91,14 @@ class Report:
     def _repr_html_(self):
         rows = [self._cells(verdict.data, verdict.mark[0]) for verdict in self.verdicts]
         names = _CLAIMS if all(verdict.is_claim for verdict in self.verdicts) else _HEAD
-        head = "".join(f"<th {_LEFT}>{name}</th>" for name in self._without_equations([names], 1)[0])
+        head = "".join(f"<th {LEFT}>{name}</th>" for name in self._without_equations([names], 1)[0])
         lines = [f'<tr class="{v.mark[1]}">{row}</tr>' for v, row in zip(self.verdicts, rows, strict=True)]
-        sign = _FAILS[0] if self.failures else "✓"
+        sign = FAILS[0] if self.failures else "✓"
         opened = " open" if self.failures else ""
         return "\n".join(
             [
                 f'<details class="loopbook-check"{opened}>',
-                f"<summary>{sign} <strong>{marked(heading(self.entry))}</strong>: {self.counts}</summary>",
+                f"<summary>{sign} <strong>{marked(self.heading)}</strong>: {self.counts}</summary>",
                 f"<table><thead><tr>{head}</tr></thead>",
                 *lines,
                 "</table>",
@@ -199,13 +112,13 @@ class Report:
             marked(data.get("tex", {}).get(key, data[key])) for key in ("title", "book", "computed")
         )
         equation = marked(f"({data['equation']})") if "equation" in data else ""
-        cells = [f'<td {_LEFT} class="verdict">{sign}&nbsp;{marked(data["word"])}</td>', f"<td {_LEFT}>{equation}</td>"]
+        cells = [f'<td {LEFT} class="verdict">{sign}&nbsp;{marked(data["word"])}</td>', f"<td {LEFT}>{equation}</td>"]
         if data["kind"] == Claim.kind:
-            cells.append(f'<td {_LEFT} colspan="2">{title}{"" if book == "says so" else f" ({book})"}</td>')
+            cells.append(f'<td {LEFT} colspan="2">{title}{"" if book == "says so" else f" ({book})"}</td>')
         else:
-            cells += [f"<td {_LEFT}>{title}</td>", f"<td {_LEFT}>{book}</td>"]
+            cells += [f"<td {LEFT}>{title}</td>", f"<td {LEFT}>{book}</td>"]
         computed = "the same" if data["kind"] == Formula.kind and computed == book else computed
-        return "".join(self._without_equations([[*cells, f"<td {_LEFT}>{computed}</td>"]], 1)[0])
+        return "".join(self._without_equations([[*cells, f"<td {LEFT}>{computed}</td>"]], 1)[0])
 
     def _repr_mimebundle_(self, include=None, exclude=None):
         return {"text/plain": repr(self), "text/html": self._repr_html_(), MIME_TYPE: self.data}
@@ -217,25 +130,3 @@ def _named(results):
         kind = "claim" if all(isinstance(result.printed, Claim) for result in results) else "result"
         return f"{len(results)} {kind}s" if results[1:] else f"one {kind}"
     return ", ".join(result.title for result in results)
-
-
-def described(entry: Entry, as_html: bool = False) -> str:
-    """An entry with its givens, as text or HTML."""
-    if not as_html:
-        rows = [(name, "=" if "=" not in given.text else ":", given.text) for name, given in entry.inputs.items()]
-        return "\n".join([heading(entry), *aligned(rows)])
-    lines = [f"<p><strong>{marked(heading(entry))}</strong></p>"]
-    if entry.inputs:
-        cells = [(marked(symbol(name)), marked(_given(given))) for name, given in entry.inputs.items()]
-        rows = [f"<tr><td {_LEFT}>{name}</td><td {_LEFT}>{given}</td></tr>" for name, given in cells]
-        lines += ["<table>", *rows, "</table>"]
-    return "\n".join(lines)
-
-
-def heading(entry: Entry) -> str:
-    """The short title of the book, the name of the entry and its title."""
-    return f"{entry.book or entry.source}, {entry.name} · {entry.title}"
-
-
-def _given(given):
-    return given.text if isinstance(given.value, sympy.Rational) else typeset(given.value)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import keyword
 import re
 import sys
 import tomllib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self
 
@@ -15,108 +15,16 @@ import sympy
 
 from bookledger.errors import Disagreement, LedgerError
 from bookledger.evidence.values import NUMBER, in_one_line, parse_formula
-from bookledger.kinds import KINDS, Claim, Number, Printed
-from bookledger.report import Report, Verdict, described
-from bookledger.statuses import KEYS, Computed, Status, status_of
-from plainmath.tables import is_symbol
+from bookledger.kinds import Claim, Number
+from bookledger.report import LEFT, Report
+from bookledger.results import Result, Verdict
+from plainmath.tables import aligned, marked, symbol, typeset
 from plainmath.validation import did_you_mean
 
 if TYPE_CHECKING:
     from bookledger.evidence.values import Formula
 
 _QUANTITY = re.compile(rf"(?P<number>{NUMBER.pattern})(\s+(?P<unit>([^\W\d]|[%°]|\(\w[\w/]*\))[\w%°·/^*()-]*))?")
-_OF_A_RESULT = ("name", "label", "equation", "kind", "printed", "unit", "claim", "says", "status")
-_TRUTH = {"true": True, "false": False}
-
-
-@dataclass(frozen=True)
-class Result:
-    """What a book prints as a result, and what was done about it.
-
-    Attributes:
-        name: the argument of the check, and its place on a page.
-        label: the same in words; empty where the name is a symbol.
-        equation: its number, if it has one.
-        unit: of a number.
-        printed: the number, formula, name or claim.
-        status: what was done.
-    """
-
-    name: str
-    label: str
-    equation: str
-    unit: str
-    printed: Printed
-    status: Status
-
-    @classmethod
-    def read(cls, where: str, data: object) -> Self:
-        """Make a result of a TOML table, or raise LedgerError."""
-        known = [*_OF_A_RESULT, *KEYS]
-        if not isinstance(data, dict):
-            raise LedgerError(f"{where}: a result is {data!r}, expected a table like {{ name = ..., printed = ... }}")
-        for key, value in data.items():
-            if key not in known:
-                raise LedgerError(f"{where}: a result has the unknown key {key!r}, {did_you_mean(key, known)}")
-            if not isinstance(value, str) or not value.strip():
-                raise LedgerError(f"{where}: {key} is {value!r}, expected text in quotes (digits carry the tolerance)")
-        data = {key: in_one_line(value) for key, value in data.items()}
-        if "name" not in data:
-            raise LedgerError(f"{where}: a result has no 'name': {data}")
-        where, name = f"{where}, {data['name']}", data["name"]
-        if not name.isidentifier() or keyword.iskeyword(name):
-            raise LedgerError(f"{where}: expected a name that can be an argument in Python, as Kp or y_s")
-        printed = _claim(where, data) if "claim" in data else _printed(where, data)
-        told = {key: value for key, value in data.items() if key in KEYS}
-        status = status_of(where, printed, data.get("status", Computed.word), told)
-        return cls(name, data.get("label", ""), data.get("equation", ""), data.get("unit", ""), printed, status)
-
-    @property
-    def is_checked(self) -> bool:
-        """Whether there is something to compute: not for laboratory data, nor where what it takes is not printed."""
-        return self.status.is_checked
-
-    @property
-    def title(self) -> str:
-        """What a reader calls it: its label, or else its symbol."""
-        return self.label or (self.name if is_symbol(self.name) else self.name.replace("_", " "))
-
-    def judge(self, value: object) -> Verdict:
-        """Return the verdict on a computed value, or on evidence.
-
-        Raises TypeError, saying what the value is instead, where it is not of the result's kind.
-        """
-        value = self.printed.computed(value)
-        how = self.status.judge(self.printed, value)
-        return Verdict(self, self.printed.written(value, *self.status.others(self.printed)), how, value)
-
-
-def _claim(where, data):
-    """The claim of a TOML table."""
-    for key in ("printed", "kind", "unit", "label"):
-        if key in data:
-            raise LedgerError(f"{where}: a claim has no use for {key!r}")
-    if not data["claim"].endswith("."):
-        raise LedgerError(f"{where}: the claim is {data['claim']!r}, expected a sentence with a full stop")
-    says = data.get("says", "true")
-    if says not in _TRUTH:
-        raise LedgerError(f"{where}: says is {says!r}, expected true or false")
-    return Claim(data["claim"], _TRUTH[says])
-
-
-def _printed(where, data):
-    """The number, formula or name of a TOML table."""
-    if "printed" not in data:
-        raise LedgerError(f"{where}: a result has no 'printed': {data}")
-    if "says" in data:
-        raise LedgerError(f"{where}: what is not a claim has no use for 'says'")
-    kind = data.get("kind", Number.kind)
-    if kind not in KINDS:
-        raise LedgerError(f"{where}: the kind is {kind!r}, {did_you_mean(kind, KINDS)}")
-    try:
-        return KINDS[kind].read(data["printed"])
-    except ValueError as error:
-        raise LedgerError(f"{where}: printed is {error}") from None
 
 
 @dataclass(frozen=True)
@@ -174,6 +82,11 @@ class Given:
         except ValueError as error:
             raise LedgerError(f"{where}: {error}") from None
 
+    @property
+    def typeset(self) -> str:
+        """The text, a formula as LaTeX."""
+        return self.text if isinstance(self.value, sympy.Rational) else typeset(self.value)
+
 
 @dataclass(frozen=True)
 class Entry:
@@ -223,9 +136,9 @@ class Entry:
 
         Raises LedgerError for a name that the example does not give.
 
-        >>> from loopbook.ledger import haugen
-        >>> haugen["Figure 6.2"].given("K", "T")
-        (2, 5)
+        >>> from bookledger import EXAMPLE
+        >>> Source.open(EXAMPLE)["Example 2.1"].given("k", "d")
+        (3/5, 1/4)
         """
         for name in names:
             if not isinstance(name, str) or name not in self.inputs:
@@ -252,9 +165,9 @@ class Entry:
 
         Raises LedgerError for the name of what is not a number.
 
-        >>> from loopbook.ledger import syder
-        >>> syder["Table 1 (Hang et al.)"].printed_value("PID_Hang_servo_B", "PID_Hang_regulator_B")
-        (181/100, 363/100)
+        >>> from bookledger import EXAMPLE
+        >>> Source.open(EXAMPLE)["Table 2.1"].printed_value("k_brick", "k_wool")
+        (3/5, 1/25)
         """
         return self._values_in_print("no printed number", self.results, names)
 
@@ -303,7 +216,9 @@ class Entry:
             except Exception as error:  # whatever an object does that only pretends to be a number
                 what = f"a {type(value).__name__} that fails with {type(error).__name__}: {error}"
                 raise LedgerError(f"{where}, {row.name}: expected {_a(row)}, got {what}") from error
-        return Report(self, tuple(verdicts))
+        slips = [f"misprint: the book {slip.sentence}" for slip in self.misprints]
+        slips += [f"damaged: our copy {slip.sentence}" for slip in self.damage]
+        return Report(self.source, self.name, self.heading, tuple(verdicts), tuple(slips))
 
     def check(self, /, **values: object) -> None:
         """Show how computed values compare with the book's, and raise Disagreement where one does not hold."""
@@ -313,53 +228,51 @@ class Entry:
             more = f" (and {len(failures) - 1} more)" if failures[1:] else ""
             raise Disagreement(f"{self.source}, {self.name}: {failures[0].complaint}{more}")
 
+    @property
+    def heading(self) -> str:
+        """The short title of the book, the name of the entry and its title."""
+        return f"{self.book or self.source}, {self.name} · {self.title}"
+
     def __repr__(self) -> str:
-        return described(self)
+        rows = [(name, "=" if "=" not in given.text else ":", given.text) for name, given in self.inputs.items()]
+        return "\n".join([self.heading, *aligned(rows)])
 
     def _repr_html_(self):
-        return described(self, as_html=True)
-
-
-class _Entries(Mapping):
-    """The entries of a book by name, each read when it is first asked for: a chapter uses a few of hundreds."""
-
-    def __init__(self, source: str, title: str, tables: dict[str, Any]):
-        self._source, self._title, self._tables, self._read = source, title, tables, {}
-
-    def __getitem__(self, name: str) -> Entry:
-        if name not in self._read:
-            self._read[name] = Entry.read(self._source, name, self._tables[name], self._title)
-        return self._read[name]
-
-    def __contains__(self, name: object) -> bool:
-        return name in self._tables
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._tables)
-
-    def __len__(self) -> int:
-        return len(self._tables)
+        lines = [f"<p><strong>{marked(self.heading)}</strong></p>"]
+        if self.inputs:
+            cells = [(marked(symbol(name)), marked(given.typeset)) for name, given in self.inputs.items()]
+            rows = [f"<tr><td {LEFT}>{name}</td><td {LEFT}>{given}</td></tr>" for name, given in cells]
+            lines += ["<table>", *rows, "</table>"]
+        return "\n".join(lines)
 
 
 @dataclass(frozen=True)
 class Source:
-    """A book: its entries in the order of the file, found by name; `title` is short, for headings."""
+    """A book: its entries in the order of the file, found by name; `title` is short, for headings.
+
+    Each entry is read when it is first asked for, and one that is malformed raises LedgerError then; `list(source)`
+    reads all of them.
+    """
 
     name: str
     title: str
     citation: str
-    entries: Mapping[str, Entry]
+    tables: Mapping[str, Any] = field(repr=False)
+    _read: dict[str, Entry] = field(default_factory=dict, compare=False)
+
+    @classmethod
+    def open(cls, path: Path | str) -> Self:
+        """Open a source that is a TOML file; its name is that of the file."""
+        path = Path(path)
+        try:
+            content = path.read_bytes()
+        except OSError as error:
+            raise LedgerError(f"{path} cannot be read: {error.strerror}") from None
+        return cls.read(path.stem, content)
 
     @classmethod
     def read(cls, name: str, content: bytes) -> Self:
-        """Read a source from the content of its TOML file with all its entries, or raise LedgerError."""
-        source = cls.opened(name, content)
-        list(source)
-        return source
-
-    @classmethod
-    def opened(cls, name: str, content: bytes) -> Self:
-        """Open a source, of which each entry is read when it is first asked for; LedgerError is raised then."""
+        """Read a source from the content of its TOML file."""
         try:
             data = tomllib.loads(content.decode())
         except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
@@ -369,24 +282,26 @@ class Source:
         if not isinstance(head, dict) or set(head) != keys or not all(isinstance(head[key], str) for key in keys):
             raise LedgerError(f"{name}.toml: expected a table [source] with title and citation, and nothing else")
         title, citation = (in_one_line(head[key]) for key in ("title", "citation"))
-        return cls(name, title, citation, _Entries(name, title, data))
+        return cls(name, title, citation, MappingProxyType(data))
 
     def __getitem__(self, name: str) -> Entry:
-        if not isinstance(name, str) or name not in self.entries:
-            raise LedgerError(f"{self.name} has no entry {name!r}, {did_you_mean(name, self.entries)}")
-        return self.entries[name]
+        if not isinstance(name, str) or name not in self.tables:
+            raise LedgerError(f"{self.name} has no entry {name!r}, {did_you_mean(name, self.tables)}")
+        if name not in self._read:
+            self._read[name] = Entry.read(self.name, name, self.tables[name], self.title)
+        return self._read[name]
 
     def __iter__(self) -> Iterator[Entry]:
-        return iter(self.entries.values())
+        return (self[name] for name in self.tables)
 
     def __contains__(self, name: object) -> bool:
-        return name in self.entries
+        return name in self.tables
 
     def __len__(self) -> int:
-        return len(self.entries)
+        return len(self.tables)
 
     def __repr__(self) -> str:
-        return f"{self.name}: {self.citation} ({len(self.entries)} entries)"
+        return f"{self.name}: {self.citation} ({len(self)} entries)"
 
 
 def _a(row):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, fields
+from dataclasses import MISSING, dataclass, fields
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
@@ -17,7 +17,7 @@ __all__ = ["STATUSES", "Status"]
 
 @dataclass(frozen=True)
 class Status:
-    """What was done about a result. The fields of a status are what the ledger must say for it.
+    """What was done about a result. The ledger must say its fields; one with a default may be missing.
 
     Attributes:
         word: the name of the status.
@@ -34,19 +34,15 @@ class Status:
     @classmethod
     def read(cls, where: str, printed: Printed, told: dict[str, str]) -> Self:
         """Make the status of what the ledger tells of it, or raise LedgerError."""
-        needed = {field.name for field in fields(cls)}
+        own = {field.name: field.default is MISSING for field in fields(cls)}
         for key in KEYS:
-            if (key in told) != (key in needed) and not (key in needed and cls._spares(key, printed)):
-                verb = "needs" if key in needed else "has no use for"
-                raise LedgerError(f"{where}: the status {cls.word!r} {verb} {key!r}")
+            if key in told and key not in own:
+                raise LedgerError(f"{where}: the status {cls.word!r} has no use for {key!r}")
+            if key not in told and own.get(key):
+                raise LedgerError(f"{where}: the status {cls.word!r} needs {key!r}")
         status = cls(**told)
         status._validate(where, printed)
         return status
-
-    @classmethod
-    def _spares(cls, key, printed):
-        """Whether a key may be missing for a result of this kind."""
-        return False
 
     def _validate(self, where, printed):
         pass
@@ -90,16 +86,16 @@ class Quoted(Status):
 
     @property
     def note(self) -> str:
-        """Where the library holds it."""
-        return f"quoted by loopbook.{self.library}"
+        """The name of what holds it, with its module."""
+        return f"quoted by {self.library}"
 
 
 @dataclass(frozen=True)
 class Observed(Status):
-    """Seen on a plant or by a criterion of ours."""
+    """Seen on a model, in an example or by a criterion of ours."""
 
     word = "observed"
-    meaning = "seen on a plant, an example or by a criterion of ours, where the book has none"
+    meaning = "seen on a model, in an example or by a criterion of ours, where the book has none"
     on: str
 
     @property
@@ -117,13 +113,11 @@ class Reconstructed(Status):
     assuming: str
     within: str = ""
 
-    @classmethod
-    def _spares(cls, key, printed):
-        return key == "within" and isinstance(printed, Claim | Name)  # a word has no margin
-
     def _validate(self, where, printed):
-        if isinstance(printed, Claim | Name) and self.within:
-            raise LedgerError(f"{where}: the status 'reconstructed' of a {printed.kind} has no use for 'within'")
+        is_word = isinstance(printed, Claim | Name)  # which has no margin
+        if is_word is bool(self.within):
+            verb = "has no use for" if is_word else "needs"
+            raise LedgerError(f"{where}: the status 'reconstructed' of a {printed.kind} {verb} 'within'")
         if self.within:
             self.margin(printed, where)
 
@@ -227,11 +221,7 @@ class Unreproduced(Contrary):
     mark = ("?", "open")
     key = "computed"
     because: str
-    computed: str = ""
-
-    @classmethod
-    def _spares(cls, key, printed):
-        return key == "computed"  # what it takes may not be printed: then there is nothing to compare
+    computed: str = ""  # what it takes may not be printed: then there is nothing to compare
 
     @property
     def is_checked(self) -> bool:

@@ -113,8 +113,9 @@ def ledger(
     ] = Path("docs"),
 ) -> None:
     """Print the totals of the ledger by source and status, and write errors, open questions and damage as pages."""
-    from bookledger.errata import damaged, page, totals, unreproduced
+    from bookledger.errata import totals
     from bookledger.statuses import STATUSES
+    from loopbook.errata import damaged, page, unreproduced
     from loopbook.ledger import LedgerError, sources
 
     try:

@@ -1,10 +1,10 @@
 """Evidence: what decides a claim in words, with its numbers.
 
-A book says "with the larger gain the response is less stable". The claim is a sentence, true or false; evidence is what
-a computation has to say about it, and a check shows both:
+A book says "through a wall of twice the thickness less heat flows". The claim is a sentence, true or false; evidence is
+what a computation has to say about it, and a check shows both:
 
->>> greater(2.31, 1.59, "Ms")
-holds: Ms 2.31 > 1.59
+>>> less(288, 576, "heat flow [W]")
+holds: heat flow 288 W < 576 W
 
 What cannot fail is no evidence. A truth value is refused, because it shows no number; so is a list without cases.
 Words such as "much" or "about the same" have one meaning in all chapters, in `evidence.criteria`, and evidence that
@@ -32,8 +32,6 @@ from bookledger.evidence.comparisons import (
     not_substantially_less,
     positive,
     roughly_equal,
-    somewhat_greater,
-    somewhat_less,
     substantially_less,
     zero,
 )
@@ -45,6 +43,5 @@ __all__ = [
     "CRITERIA", "Cases", "Comparison", "Criterion", "Evidence", "EvidenceError", "Ratio", "Refusal", "about_equal",
     "at_least", "at_most", "decreasing", "different", "equal", "every", "greater", "increasing", "less",
     "much_greater", "much_less", "negative", "negligible", "nonzero", "not_negligible", "not_substantially_less",
-    "positive", "refused", "roughly_equal", "some", "somewhat_greater", "somewhat_less", "substantially_less",
-    "zero",
+    "positive", "refused", "roughly_equal", "some", "substantially_less", "zero",
 ]  # fmt: skip

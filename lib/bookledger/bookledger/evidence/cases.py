@@ -113,8 +113,8 @@ def every(*cases: Evidence | Mapping[Any, Evidence]) -> Cases:
     Raises:
         EvidenceError: without cases, and for what is no evidence.
 
-    >>> every(greater(2.3, 1.6, "Ms"), less(8, 9, "rise time [s]"))
-    holds: Ms 2.3 > 1.6; rise time 8 s < 9 s
+    >>> every(greater(2.3, 1.6, "width"), less(8, 9, "cooling time [s]"))
+    holds: width 2.3 > 1.6; cooling time 8 s < 9 s
     >>> every({"K = 1": less(1, 2), "K = 2": less(3, 2)})
     does not hold: in 1 of 2 cases; K = 2: 3 not < 2
     """
@@ -153,8 +153,8 @@ def increasing(values: Iterable[Number], quantity: str = "") -> Chain:
     Raises:
         EvidenceError: for fewer values, or as `greater`.
 
-    >>> increasing([1.4, 1.6, 2.1], "Ms")
-    holds: Ms 1.4 < 1.6 < 2.1
+    >>> increasing([1.4, 1.6, 2.1], "width")
+    holds: width 1.4 < 1.6 < 2.1
     """
     return _chain(values, less, quantity)
 
@@ -162,8 +162,8 @@ def increasing(values: Iterable[Number], quantity: str = "") -> Chain:
 def decreasing(values: Iterable[Number], quantity: str = "") -> Chain:
     """Evidence that each of several values is smaller than the one before it; otherwise as `increasing`.
 
-    >>> decreasing([9, 5, 7], "control error [mm]")
-    does not hold: control error 5 mm not > 7 mm
+    >>> decreasing([9, 5, 7], "deflection [mm]")
+    does not hold: deflection 5 mm not > 7 mm
     """
     return _chain(values, greater, quantity)
 

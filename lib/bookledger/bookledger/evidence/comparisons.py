@@ -16,7 +16,6 @@ from bookledger.evidence.criteria import (
     NEGLIGIBLE,
     ROUGHLY,
     SAME,
-    SOMEWHAT,
     SUBSTANTIALLY,
     Criterion,
 )
@@ -152,7 +151,7 @@ class Comparison(Evidence):
         return ", at random points" if self.probed else ", proved"
 
     def told(self, typeset: Typeset = str) -> str:
-        """The quantity, its values and the relation, as in "Ms 2.31 > 1.59"."""
+        """The quantity, its values and the relation, as in "width 2.31 > 1.59"."""
         left, right = texts([self.left, self.right], self.unit, typeset)
         why = f" ({self.criterion.word}: {self.criterion.meaning})" if self.criterion else ""
         return f"{self.quantity} {left} {self.sign} {right}{self.way}{why}".strip()
@@ -176,7 +175,7 @@ class Ratio(Evidence):
     Attributes:
         left, right: the numbers.
         quantity, unit: what is compared.
-        criterion: SAME, ROUGHLY, SOMEWHAT, MUCH, SUBSTANTIALLY or NEGLIGIBLE.
+        criterion: SAME, ROUGHLY, MUCH, SUBSTANTIALLY or NEGLIGIBLE.
         contrary: whether it is said not to be so.
     """
 
@@ -190,7 +189,7 @@ class Ratio(Evidence):
     def __post_init__(self) -> None:
         if abs(self.left) == abs(self.right) == math.inf:
             raise EvidenceError("two infinite numbers have no ratio: expected numbers to compare")
-        if self.criterion in (ROUGHLY, SOMEWHAT, MUCH, SUBSTANTIALLY) and min(self.left, self.right) < 0:
+        if self.criterion in (ROUGHLY, MUCH, SUBSTANTIALLY) and min(self.left, self.right) < 0:
             one, other = texts([self.left, self.right])
             raise EvidenceError(f"{one} beside {other}: how much larger one is asks for numbers that are not negative")
 
@@ -249,12 +248,10 @@ _BY_RATIO = {
     SAME: lambda a, b, limit: _apart(a, b) <= limit * _ROOM,
     NEGLIGIBLE: lambda a, b, limit: abs(a) <= limit * abs(b) * _ROOM,
     ROUGHLY: lambda a, b, limit: order(a, b) == 0 or max(a, b) * _ROOM < (1 + limit) * min(a, b),
-    SOMEWHAT: lambda a, b, limit: order(a, b) > 0 and a * _ROOM < (1 + limit) * b,
     MUCH: lambda a, b, limit: order(a, b) > 0 and a * _ROOM >= (1 + limit) * b,
     SUBSTANTIALLY: lambda a, b, limit: order(a, b) < 0 and a <= limit * b * _ROOM,
 }
 _WORDS = {
-    SOMEWHAT: "somewhat larger than",
     MUCH: "much larger than",
     NEGLIGIBLE: "negligible beside",
     SAME: "about equal to",
@@ -283,12 +280,12 @@ def greater(left: Number, right: Number, quantity: str = "") -> Comparison:
 
     Arguments:
         left, right: real numbers of any kind, or expressions whose difference SymPy knows the sign of.
-        quantity: what is compared, with its unit in brackets as on an axis: "settling time [s]".
+        quantity: what is compared, with its unit in brackets as on an axis: "cooling time [s]".
     Raises:
         EvidenceError: for what is no real number, and where the sign of a difference is not known.
 
-    >>> greater(2.31, 1.59, "Ms")
-    holds: Ms 2.31 > 1.59
+    >>> greater(2.31, 1.59, "width")
+    holds: width 2.31 > 1.59
     >>> K = sympy.Symbol("K", positive=True)
     >>> greater(K + 1, K)
     holds: K + 1 > K, proved
@@ -299,8 +296,8 @@ def greater(left: Number, right: Number, quantity: str = "") -> Comparison:
 def less(left: Number, right: Number, quantity: str = "") -> Comparison:
     """Evidence that the first of two values is the smaller one; otherwise as `greater`.
 
-    >>> less(12, 31.4, "settling time [s]")
-    holds: settling time 12 s < 31.4 s
+    >>> less(12, 31.4, "cooling time [s]")
+    holds: cooling time 12 s < 31.4 s
     """
     return _compared(left, "<", right, quantity)
 
@@ -308,8 +305,8 @@ def less(left: Number, right: Number, quantity: str = "") -> Comparison:
 def at_least(left: Number, right: Number, quantity: str = "") -> Comparison:
     """Evidence that the first of two values is not the smaller one; otherwise as `greater`.
 
-    >>> at_least(2, 2, "poles")
-    holds: poles 2 ≥ 2
+    >>> at_least(2, 2, "roots")
+    holds: roots 2 ≥ 2
     """
     return _compared(left, "≥", right, quantity)
 
@@ -326,8 +323,8 @@ def at_most(left: Number, right: Number, quantity: str = "") -> Comparison:
 def positive(value: Number, quantity: str = "") -> Comparison:
     """Evidence that a value is above zero; otherwise as `greater`.
 
-    >>> positive(-3, "gain [m/%]")
-    does not hold: gain -3 m/% not > 0
+    >>> positive(-3, "slope [m/s]")
+    does not hold: slope -3 m/s not > 0
     """
     return _compared(value, ">", 0, quantity)
 
@@ -336,8 +333,8 @@ def negative(value: Number, quantity: str = "") -> Comparison:
     """Evidence that a value is below zero; otherwise as `greater`.
 
     >>> T = sympy.Symbol("T", positive=True)
-    >>> negative(-1 / T, "pole")
-    holds: pole -1/T < 0, proved
+    >>> negative(-1 / T, "root")
+    holds: root -1/T < 0, proved
     """
     return _compared(value, "<", 0, quantity)
 
@@ -395,8 +392,8 @@ def zero(value: Number, quantity: str = "") -> Comparison:
 def nonzero(value: Number, quantity: str = "") -> Comparison:
     """Evidence that a value is not zero.
 
-    >>> nonzero(0.25, "control error [m]")
-    holds: control error 0.25 m ≠ 0
+    >>> nonzero(0.25, "deflection [m]")
+    holds: deflection 0.25 m ≠ 0
     """
     return different(value, 0, quantity)
 
@@ -418,8 +415,8 @@ def roughly_equal(left: Number, right: Number, quantity: str = "") -> Ratio:
 
     Raises EvidenceError for negative numbers, of which no ratio speaks.
 
-    >>> roughly_equal(0.21, 0.25, "decay ratio")
-    holds: decay ratio 0.21 roughly equal to 0.25 (less than half of the smaller one apart)
+    >>> roughly_equal(0.21, 0.25, "ratio")
+    holds: ratio 0.21 roughly equal to 0.25 (less than half of the smaller one apart)
     """
     return _by_ratio(left, right, quantity, ROUGHLY)
 
@@ -427,8 +424,8 @@ def roughly_equal(left: Number, right: Number, quantity: str = "") -> Ratio:
 def negligible(value: Number, beside: Number, quantity: str = "") -> Ratio:
     """Evidence that a number is at most 5 percent of another one.
 
-    >>> negligible(0.001, 0.5, "control error [m]")
-    holds: control error 0.001 m negligible beside 0.5 m (at most 5 % of what it is compared with)
+    >>> negligible(0.001, 0.5, "deflection [m]")
+    holds: deflection 0.001 m negligible beside 0.5 m (at most 5 % of what it is compared with)
     """
     return _by_ratio(value, beside, quantity, NEGLIGIBLE)
 
@@ -436,30 +433,10 @@ def negligible(value: Number, beside: Number, quantity: str = "") -> Ratio:
 def not_negligible(value: Number, beside: Number, quantity: str = "") -> Ratio:
     """Evidence that a number is more than 5 percent of another one, and so can be seen beside it.
 
-    >>> not_negligible(0.1, 0.5, "control error [m]")
-    holds: control error 0.1 m not negligible beside 0.5 m (at most 5 % of what it is compared with)
+    >>> not_negligible(0.1, 0.5, "deflection [m]")
+    holds: deflection 0.1 m not negligible beside 0.5 m (at most 5 % of what it is compared with)
     """
     return negligible(value, beside, quantity).turned()
-
-
-def somewhat_greater(left: Number, right: Number, quantity: str = "") -> Ratio:
-    """Evidence that the first of two numbers is the larger one, but by less than half of the other.
-
-    Raises EvidenceError for negative numbers, of which no ratio speaks.
-
-    >>> somewhat_greater(34, 28, "overshoot [%]")
-    holds: overshoot 34 % somewhat larger than 28 % (by less than half of the smaller one)
-    """
-    return _by_ratio(left, right, quantity, SOMEWHAT)
-
-
-def somewhat_less(left: Number, right: Number, quantity: str = "") -> Ratio:
-    """Evidence that the first of two numbers is the smaller one, but not by half of it.
-
-    >>> somewhat_less(28, 34, "phase margin [°]")
-    holds: phase margin 34° somewhat larger than 28° (by less than half of the smaller one)
-    """
-    return _by_ratio(right, left, quantity, SOMEWHAT)
 
 
 def much_greater(left: Number, right: Number, quantity: str = "") -> Ratio:
@@ -467,8 +444,8 @@ def much_greater(left: Number, right: Number, quantity: str = "") -> Ratio:
 
     Raises EvidenceError for negative numbers, of which no ratio speaks.
 
-    >>> much_greater(33, 30, "settling time [s]")
-    does not hold: settling time 33 s not much larger than 30 s (by half of the smaller one or more)
+    >>> much_greater(33, 30, "cooling time [s]")
+    does not hold: cooling time 33 s not much larger than 30 s (by half of the smaller one or more)
     """
     return _by_ratio(left, right, quantity, MUCH)
 
@@ -476,8 +453,8 @@ def much_greater(left: Number, right: Number, quantity: str = "") -> Ratio:
 def much_less(left: Number, right: Number, quantity: str = "") -> Ratio:
     """Evidence that the first of two numbers is the smaller one, and the other larger by half of it or more.
 
-    >>> much_less(10, 30, "settling time [s]")
-    holds: settling time 30 s much larger than 10 s (by half of the smaller one or more)
+    >>> much_less(10, 30, "cooling time [s]")
+    holds: cooling time 30 s much larger than 10 s (by half of the smaller one or more)
     """
     return _by_ratio(right, left, quantity, MUCH)
 
@@ -514,6 +491,6 @@ def _by_ratio(left, right, quantity, criterion):
 def _named(quantity):
     """A quantity and its unit, which is in brackets as on an axis."""
     if not isinstance(quantity, str):
-        raise EvidenceError(f'the quantity is {quantity!r}: expected text, as "settling time [s]"')
+        raise EvidenceError(f'the quantity is {quantity!r}: expected text, as "cooling time [s]"')
     name, unit = re.fullmatch(r"(.*?)\s*(?:\[([^\[\]]*)\])?", in_one_line(quantity)).groups()
     return name, unit or ""

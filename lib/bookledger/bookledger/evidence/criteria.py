@@ -1,6 +1,6 @@
-"""What words of degree mean in numbers: one home for "about the same", "somewhat", "much".
+"""What words of degree mean in numbers: one home for "about the same", "negligible", "much".
 
-A book says that one value is somewhat larger, that two curves are nearly the same. Each such word is a `Criterion` with
+A book says that one value is much larger, that two curves are nearly the same. Each such word is a `Criterion` with
 a limit and a reason. Evidence that rests on one shows it, and says that it is a near
 thing if half or twice the limit gave another verdict.
 """
@@ -46,25 +46,18 @@ NEGLIGIBLE = Criterion(
     "the band of 5 % within which a response counts as settled",
     published=True,
 )
-SOMEWHAT = Criterion(
-    "somewhat",
-    Fraction(1, 2),
-    "by less than half of the smaller one",
-    "a number of ours: no book says how much somewhat is; half is where a plot looks like another one",
-    published=False,
-)
 ROUGHLY = Criterion(
     "roughly equal",
     Fraction(1, 2),
     "less than half of the smaller one apart",
-    "a number of ours: as much as somewhat, upwards or downwards",
+    "a number of ours, where much begins",
     published=False,
 )
 MUCH = Criterion(
     "much",
     Fraction(1, 2),
     "by half of the smaller one or more",
-    "a number of ours, the end of somewhat",
+    "a number of ours: no book says how much that is; half is where a plot looks like another one",
     published=False,
 )
 SUBSTANTIALLY = Criterion(
@@ -75,4 +68,4 @@ SUBSTANTIALLY = Criterion(
     published=False,
 )
 #: All criteria, as a page can list them; what a subject adds is here as well.
-CRITERIA = [SAME, NEGLIGIBLE, SOMEWHAT, ROUGHLY, MUCH, SUBSTANTIALLY]
+CRITERIA = [SAME, NEGLIGIBLE, ROUGHLY, MUCH, SUBSTANTIALLY]

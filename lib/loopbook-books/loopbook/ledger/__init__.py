@@ -16,13 +16,16 @@ computed  6.14      T       2     2
 from __future__ import annotations
 
 import functools
-import importlib.resources
+from pathlib import Path
 
 from bookledger.errors import Disagreement, LedgerError
-from bookledger.source import Entry, Given, Result, Slip, Source
+from bookledger.results import Result
+from bookledger.source import Entry, Given, Slip, Source
 from plainmath.validation import did_you_mean
 
 __all__ = ["Disagreement", "Entry", "Given", "LedgerError", "Result", "Slip", "Source", "sources"]
+
+_FOLDER = Path(__file__).parent
 
 
 def sources() -> dict[str, Source]:
@@ -35,16 +38,15 @@ def sources() -> dict[str, Source]:
 
 
 def _names():
-    files = importlib.resources.files(__name__).iterdir()
-    return sorted(file.name.removesuffix(".toml") for file in files if file.name.endswith(".toml"))
+    return sorted(path.stem for path in _FOLDER.glob("*.toml"))
 
 
 @functools.cache
 def _load(name):
-    file = importlib.resources.files(__name__).joinpath(f"{name}.toml")
-    if not file.is_file():
+    path = _FOLDER / f"{name}.toml"
+    if not path.is_file():
         raise AttributeError(f"the ledger has no source {name!r}: {did_you_mean(name, _names())}")
-    return Source.opened(name, file.read_bytes())
+    return Source.open(path)
 
 
 def __getattr__(name: str) -> Source:
