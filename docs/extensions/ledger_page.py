@@ -19,6 +19,7 @@ from sphinx.util.docutils import SphinxDirective
 
 from bookledger import errata
 from bookledger.statuses import STATUSES
+from bookledger.stored import checks as checks_in
 from loopbook.evidence import CRITERIA
 from loopbook.ledger import sources
 
@@ -29,14 +30,11 @@ PAGE = "ledger"
 @functools.cache
 def stored(folder=CHAPTERS):
     """Return the checks in the stored chapters: {(source, entry): (chapter, verdicts by name)}."""
-    found = {}
-    for file in sorted(folder.glob("*.ipynb")):
-        for cell in json.loads(file.read_text(encoding="utf-8"))["cells"]:
-            for output in cell.get("outputs", []):
-                if check := output.get("data", {}).get(checks.MIME_TYPE):
-                    verdicts = {verdict["name"]: verdict for verdict in check["verdicts"]}
-                    found[check["source"], check["entry"]] = (file.stem, verdicts)
-    return found
+    return {
+        (check["source"], check["entry"]): (file.stem, {verdict["name"]: verdict for verdict in check["verdicts"]})
+        for file in sorted(folder.glob("*.ipynb"))
+        for check in checks_in(json.loads(file.read_text(encoding="utf-8")))
+    }
 
 
 @functools.cache

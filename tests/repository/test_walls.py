@@ -159,6 +159,12 @@ def test_what_runs_beside_a_submission_knows_nothing_of_the_judge():
     assert {name: wrong for name, wrong in found.items() if wrong} == {}
 
 
+@pytest.mark.parametrize("package", [package for package in MAY_IMPORT if (ROOT / "tests" / package).is_dir()])
+def test_the_tests_of_a_package_do_without_those_beside_it(package):
+    found = {path.name: across(package, imports_of(path)) for path in (ROOT / "tests" / package).glob("*.py")}
+    assert {name: wrong for name, wrong in found.items() if wrong} == {}
+
+
 @pytest.mark.parametrize("package", ["plainmath", "bookledger", "exercisebook", "exercisegrader", "loopbook"])
 def test_importing_a_package_does_not_import_another_beside_it(package):
     """Nor by a plug-in, which waits until exercises are written or read."""

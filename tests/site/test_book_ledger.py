@@ -31,7 +31,7 @@ import slugs  # noqa: E402
 
 import library  # noqa: E402
 
-#: Of the entries that a chapter checks; `test_ledger_in_chapters` says of which none does.
+#: Of the entries that a chapter checks; pytest says of which none does, as it proves the ledger.
 RESULTS = [(entry, row) for entry in ledger_page.checked() for row in entry.results]
 
 

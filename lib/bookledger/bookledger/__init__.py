@@ -17,6 +17,9 @@ corrected  2.4       R       4.17 m^2*K/W  0.4166667
 computed: Through a wall of twice the thickness less heat flows.
     heat flow 288 W < 576 W
 corrected: the decimal point is lost
+
+`bookledger.pytest_plugin` proves a collection of notebooks: that each entry is checked where it belongs, that its
+status is true, and that no check can only succeed.
 """
 
 from __future__ import annotations
@@ -39,7 +42,7 @@ __all__ = ["EXAMPLE", *_HOMES]
 
 
 def __getattr__(name: str) -> object:
-    """Import what is asked for only then."""
+    """Import what is asked for only then: pytest loads the plug-in wherever this package is installed."""
     if name not in _HOMES:
         raise AttributeError(f"module 'bookledger' has no attribute {name!r}")
     return getattr(importlib.import_module(f"bookledger.{_HOMES[name]}"), name)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
+from bookledger.evidence import again
 from bookledger.evidence.cases import Cases, every, some
 from bookledger.evidence.comparisons import Comparison, Evidence
 from bookledger.evidence.sides import EvidenceError, Typeset, numbers, rounded
@@ -65,6 +66,14 @@ class Stability(Evidence):
             "kind": "stability", "is_stable": self.is_stable, "unstable_poles": poles,
             "margins": [f"{x:.6g}" for x in self.margins], "holds": self.holds, "near": self.near,
         }  # fmt: skip
+
+
+def _speaks_for(data):
+    poles = data["unstable_poles"]
+    return poles == "0" if data["is_stable"] else poles not in ("0", "nan")
+
+
+again.FURTHER["stability"] = _speaks_for
 
 
 def stable(system: object) -> Stability:

@@ -4,16 +4,14 @@ import decimal
 import math
 from fractions import Fraction
 
-import control
 import numpy as np
 import pytest
 import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from draws import draws
-from loopbook import PID, Loop, evidence, s
-from loopbook.evidence import (
+from bookledger import evidence
+from bookledger.evidence import (
     CRITERIA,
     Evidence,
     EvidenceError,
@@ -24,38 +22,34 @@ from loopbook.evidence import (
     different,
     equal,
     every,
-    good_stability,
     greater,
     increasing,
     less,
     much_greater,
     much_less,
-    negative,
     negligible,
-    no_overshoot,
     nonzero,
     not_negligible,
     not_substantially_less,
-    overshoots,
-    poor_stability,
-    poorly_damped,
     positive,
     refused,
     roughly_equal,
     some,
-    stable,
     substantially_less,
-    unstable,
-    well_damped,
     zero,
 )
-from loopbook.tuning import simc
+from bookledger.evidence.comparisons import within
+from draws import draws
+from plainmath.expressions import s
 
 K, T = sympy.symbols("K T", positive=True)
 x = sympy.Symbol("x", real=True)
 n = sympy.Symbol("n", integer=True)
-LAG = 1 / (5 * s + 1)
 f = sympy.Function("f")
+
+
+#: A criterion as a subject adds it.
+STEEP = evidence.Criterion("not steep", Fraction(2), "at most 2 %", "an example", published=True)
 
 
 # One of each, which holds and says so.
@@ -63,14 +57,11 @@ f = sympy.Function("f")
 TRUE = {
     "greater": (greater(2.31, 1.59, "Ms"), "Ms 2.31 > 1.59"),
     "less": (less(Fraction(1, 3), np.float64(0.5), "decay ratio"), "decay ratio 0.333 < 0.5"),
-    "at least": (at_least(2, 2), "2 ≥ 2"),
     "at most": (at_most(1, sympy.pi, "x [rad]"), "x 1 rad ≤ 3.14 rad"),
     "digits that keep apart": (greater(1.00012, 1.00011), "1.00012 > 1.00011"),
     "infinite": (greater(math.inf, 3, "gain margin"), "gain margin ∞ > 3"),
     "a symbol": (greater(2 * K, K, "gain"), "gain 2*K > K, proved"),
-    "a sign": (negative(-1 / (K * T), "pole [1/s]"), "pole -1/(K*T) < 0, proved"),
     "a square": (positive(x**2 + 1), "x**2 + 1 > 0, proved"),
-    "positive": (positive(0.1, "gain [m/%]"), "gain 0.1 m/% > 0"),
     "equal numbers": (equal(0.1 * 3, Fraction(3, 10)), "0.3 = 0.3"),
     "equal formulas": (equal(K / (T * s + 1), (K / T) / (s + 1 / T)), "K/(T*s + 1) = K/(T*(s + 1/T)), proved"),
     "equal equations": (equal(sympy.Eq(K, T), sympy.Eq(T, K)), "Eq(K, T) = Eq(T, K), proved"),
@@ -99,7 +90,6 @@ TRUE = {
     ),
     "on the limit, but for rounding": (at_least(0.3, 0.1 + 0.2), "0.3 ≥ 0.3"),
     "on the limit of a ratio": (about_equal(0.95, 1), "0.95 about equal to 1 (at most 5 % of the larger one apart)"),
-    "digits in order": (greater(1234.5, 1234, "T [s]"), "T 1234.5 s > 1234 s"),
     "large digits in order": (greater(1000000.4, 999999.7), "1.0000004e+6 > 999999.7"),
     "a row with digits in order": (increasing([1, 2.006, 2.0084]), "1 < 2.006 < 2.008"),
     "a row of formulas": (increasing([K, 2 * K, 3 * K], "gain"), "gain K < 2*K < 3*K, proved"),
@@ -109,24 +99,13 @@ TRUE = {
         about_equal(1.99999884, 1.99999875, "T [K]"),
         "T 2 K about equal to 2 K (at most 5 % of the larger one apart)",
     ),
-    "poor on the limit": (
-        poor_stability(Loop(1 / (s + 1) ** 3, PID(8))),
-        "gain margin 1 < 2 (good stability: a gain margin of at least 2); "
-        "phase margin 0 < 30° (good stability: a phase margin of at least 30 degrees)",
-    ),
-    "no overshoot": (no_overshoot(0.02), "overshoot 2 % ≤ 2 % (no overshoot: at most 2 % of the step)"),
-    "overshoots": (overshoots(0.3), "overshoot 30 % > 2 % (no overshoot: at most 2 % of the step)"),
-    "well damped": (well_damped(0.1), "decay ratio 0.1 ≤ 0.25 (well damped: a decay ratio of at most 1/4)"),
-    "poorly damped": (poorly_damped(0.3), "decay ratio 0.3 > 0.25 (well damped: a decay ratio of at most 1/4)"),
+    "within": (within(Fraction(2), "tilt", "%", STEEP), "tilt 2 % ≤ 2 % (not steep: at most 2 %)"),
+    "beyond": (within(Fraction(3), "tilt", "%", STEEP).turned(), "tilt 3 % > 2 % (not steep: at most 2 %)"),
     "increasing": (increasing([1, 2, 3.5], "Ms"), "Ms 1 < 2 < 3.5"),
     "decreasing": (decreasing(np.array([3, 2]), "offset [m]"), "offset 3 m > 2 m"),
     "every": (every({"K = 1": less(1, 2), "K = 2": less(2, 3)}), "K = 1: 1 < 2; K = 2: 2 < 3"),
     "and": (every(less(1, 2), equal(1, 1)), "1 < 2; 1 = 1"),
     "some": (some({"K = 1": less(3, 2), "K = 2": less(2, 3)}), "in 1 of 2 cases; K = 2: 2 < 3"),
-    "stable": (stable(LAG), "stable: no pole in the right half-plane"),
-    "a stable loop": (stable(Loop(LAG, PID(2, Ti=5))), "stable: gain margin ∞, phase margin 90°, Ms 1"),
-    "unstable": (unstable(1 / (s**2 - s + 1)), "unstable: 2 poles in the right half-plane"),
-    "poor stability": (poor_stability(Loop(LAG, PID(-2))), "unstable: 1 pole in the right half-plane"),
     "refused": (refused(float, "a"), "declined: could not convert string to float: 'a'"),
 }  # fmt: skip
 
@@ -150,7 +129,6 @@ def test_turned_around_it_falls_and_twice_turned_it_stands(name):
 
 FALSE = {
     "greater": greater(1, 1),
-    "less": less(2, 1),
     "at least": at_least(1, 1.0000001),
     "a proved sign": greater(-K, T),
     "equal": equal(1, 1 + 1e-8),
@@ -160,9 +138,7 @@ FALSE = {
     "rows of another length": equal([1], [1, 1]),
     "a row of other kinds": equal(["1"], [1]),
     "the same row": different([1.0, K * (T + 1)], [1, K * T + K]),
-    "the same mapping": different({"a": 1.0}, {"a": 1.0}),
     "rounding alone": greater(0.1 + 0.2, 0.3),
-    "rounding in a row": increasing([0.3, 0.1 + 0.2]),
     "a decimal beside a formula": greater(
         sympy.sin(K) ** 2 * Fraction(3, 10) + sympy.cos(K) ** 2 * sympy.Rational(3, 10), 0.3
     ),
@@ -170,29 +146,20 @@ FALSE = {
     "different": different({"a": 1}, {"a": 1}),
     "zero": zero(1e-300),
     "infinite and not": equal(math.inf, 1e308),
-    "about equal": about_equal(106, 100),
     "about equal to nothing": about_equal(1e-9, 0),
     "roughly is not half more": roughly_equal(3, 2),
-    "roughly is not a third less": roughly_equal(2, 3),
     "roughly nothing": roughly_equal(1e-9, 0),
     "not much": much_greater(1.49, 1),
     "a third is not substantially less": substantially_less(1, 3),
     "a sixth is substantially less": not_substantially_less(1, 6),
     "much of nothing": much_greater(0, 0),
-    "negligible": negligible(0.06, 1),
     "just negligible": not_negligible(Fraction(1, 20), 1),
-    "overshoot": no_overshoot(0.021),
-    "an undamped one": well_damped(0.26),
-    "a quarter is not poorly damped": poorly_damped(Fraction(1, 4)),
+    "beyond": within(Fraction(21, 10), "tilt", "%", STEEP),
     "increasing": increasing([1, 3, 2]),
     "constant": decreasing([1, 1]),
     "every": every(less(1, 2), less(2, 1)),
     "none of some": some(less(3, 2), less(2, 1)),
-    "on the limit": stable(1 / s),
-    "on the limit, too": unstable(1 / (s**2 + 1)),
-    "poor": good_stability(Loop(1 / (s * (s + 1) ** 2), PID(1.2))),
-    "unstable": good_stability(Loop(1 / (s * (s + 1) ** 2), PID(3))),
-    "accepted": refused(simc, LAG, Tc=1),
+    "accepted": refused(float, 1),
 }
 
 
@@ -211,7 +178,6 @@ def test_what_is_not_so_does_not_hold(name):
         (much_greater(1, 2), "1 not much larger than 2 (by half of the smaller one or more)"),
         (every({"K = 1": less(1, 2), "K = 2": less(4, 3)}), "in 1 of 2 cases; K = 2: 4 not < 3"),
         (increasing([1, 3, 2], "Ms"), "Ms 3 not < 2"),
-        (stable(1 / s), "on the limit of stability: poles on the imaginary axis"),
         (refused(float, 1), "accepted"),
         (
             every({"P": about_equal(1, 2), "PI": about_equal(3, 5), "PID": about_equal(1, 1)}),
@@ -235,21 +201,17 @@ def test_what_fails_is_told_by_its_counterexample(found, told):
         (not_substantially_less(1, 3), True),  # to two fifths
         (not_substantially_less(1, 2), False),
         (much_greater(1.6, 1), True),
-        (much_greater(2.1, 1), False),
         (much_greater(1.1, 1), False),
         (roughly_equal(1, 1.2), False),
         (roughly_equal(1, 1.3), True),
         (roughly_equal(1, 1.9), True),
-        (roughly_equal(1, 2.1), False),
         (about_equal(1, 1.04), True),
         (about_equal(1, 1.02), False),
         (about_equal(1, 1.09), True),
-        (about_equal(1, 1.2), False),
-        (no_overshoot(0.005), False),
-        (no_overshoot(0.015), True),
-        (no_overshoot(0.03), True),
-        (overshoots(0.3), False),
-        (well_damped(0.3), True),
+        (within(Fraction(1, 2), "tilt", "%", STEEP), False),
+        (within(Fraction(3, 2), "tilt", "%", STEEP), True),
+        (within(Fraction(3), "tilt", "%", STEEP), True),
+        (within(Fraction(30), "tilt", "%", STEEP).turned(), False),
         (greater(1.02, 1), True),
         (greater(1.2, 1), False),
         (positive(1e-9), False),
@@ -257,13 +219,9 @@ def test_what_fails_is_told_by_its_counterexample(found, told):
         (equal(1, 1), False),
         (every(greater(2, 1), greater(1.01, 1)), True),
         (every(greater(1, 2), greater(1.01, 1)), False),
-        (every(greater(1, 1.01), greater(2, 1)), True),
         (some(greater(2, 1), greater(1.01, 1)), False),
         (some(greater(1, 2), greater(1.01, 1)), True),
         (increasing([1, 1.01, 2]), True),
-        (stable(Loop(1 / (s + 1) ** 3, PID(7.9))), True),
-        (stable(Loop(1 / (s + 1) ** 3, PID(4))), False),
-        (stable(Loop(1 / (s - 1), PID(1.02))), True),
         (every(greater(1.01, 1), greater(1, 1.01)), True),
         (some(greater(1.01, 1), greater(1, 1.01)), True),
     ],
@@ -284,12 +242,8 @@ def test_a_near_thing_is_known(found, near):
         (lambda: greater(math.nan, 1), "not a number"),
         (lambda: greater(None, 1), "NoneType"),
         (lambda: greater(1j, 0), "complex number"),
-        (lambda: greater([2], 1), "list"),
         (lambda: greater(K, T), "the sign of K - T is not known"),
-        (lambda: positive(x), "the sign of x is not known"),
         (lambda: positive(0.5 * K), "rounded decimals"),
-        (lambda: equal(0.5 * K, K), "rounded decimals"),
-        (lambda: equal(True, 1), "a truth value, True"),
         (lambda: equal(row := [1], row), "compared with itself"),
         (
             lambda: much_greater(-2, -0.1),
@@ -309,21 +263,14 @@ def test_a_near_thing_is_known(found, near):
         (lambda: equal(f((K**2 - 1) / (K - 1)), f(K + 1)), "is not decided"),
         (lambda: positive(sympy.Integral(f(x), (x, 0, 1))), "is not known"),
         (lambda: increasing(3), "3 is not a row"),
-        (lambda: good_stability(LAG), "has no margins: expected a Loop"),
         (lambda: refused(greater, K, T), "the sign of K - T is not known"),
         (lambda: refused(3), "3 cannot be called"),
         (lambda: greater(decimal.Decimal("sNaN"), 1), "evidence needs a real number"),
-        (lambda: stable(control.ss([[-1, 0], [0, 1]], [[1], [0]], [[1, 0]], [[0]])), "state space"),
-        (lambda: about_equal(K, K), "a real number"),
-        (lambda: no_overshoot("0.1"), "a real number"),
         (lambda: every(), "no case is given"),
-        (lambda: every({}), "no case is given"),
-        (lambda: some(), "no case is given"),
         (lambda: every(True), "the case is True: expected evidence"),
         (lambda: every({"K = 1": 3 > 2}), "the case K = 1 is True: expected evidence"),
         (lambda: every([greater(2, 1)]), "expected evidence"),
         (lambda: increasing([1]), "at least two values"),
-        (lambda: decreasing([]), "at least two values"),
         (lambda: greater(2, 1, 3), "the quantity is 3"),
     ],
 )
@@ -367,15 +314,6 @@ def test_rows_are_compared_neighbour_by_neighbour(values):
     assert every(cases).holds is not some({name: case.turned() for name, case in cases.items()}).holds
 
 
-def test_margins_decide_good_stability():
-    for gain in (0.1, 0.3, 0.6, 0.9, 1.1, 1.5, 2.5):
-        loop = Loop(1 / (s * (s + 1) ** 2), PID(gain))
-        margins = loop.margins() if loop.is_stable else None
-        good = margins is not None and margins.gain_margin >= 2 and margins.phase_margin >= 30
-        assert good_stability(loop).holds is good is not poor_stability(loop).holds
-        assert stable(loop).holds is loop.is_stable is not unstable(loop).holds
-
-
 # Criteria, and what carries them.
 
 
@@ -387,8 +325,8 @@ def test_each_criterion_has_its_word_its_number_and_its_reason():
 
 
 def test_evidence_names_the_criteria_that_it_rests_on():
-    both = every(much_greater(1.2, 1), some(no_overshoot(0), greater(2, 1)))
-    assert [criterion.word for criterion in both.criteria] == ["much", "no overshoot"]
+    both = every(much_greater(1.2, 1), some(within(Fraction(0), "tilt", "%", STEEP), greater(2, 1)))
+    assert [criterion.word for criterion in both.criteria] == ["much", "not steep"]
     assert greater(2, 1).criteria == ()
 
 
@@ -399,7 +337,6 @@ def test_data_is_plain_and_keeps_values_apart():
     assert equal(["V1, V2"], ["V1", "V2"]).data["right"] == ["V1", "V2"]
     assert every({"K = 1": equal(K, T)}).data["cases"][0]["of"] == "formulas"
     assert equal("a", "b").data["of"] == "texts"
-    assert stable(1 / s).data["unstable_poles"] == "nan"
 
 
 def test_formulas_in_a_sentence_are_typeset_by_whom_it_is_told():

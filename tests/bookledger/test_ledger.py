@@ -2,7 +2,6 @@
 
 import decimal
 import enum
-import importlib
 import json
 import math
 import re
@@ -18,17 +17,13 @@ import sympy
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-import contributing
-import loopbook.ledger
-from bookledger import EXAMPLE
+from bookledger import EXAMPLE, Disagreement, LedgerError, Source
+from bookledger.evidence import Evidence, greater, increasing, much_greater, positive
 from bookledger.kinds import Number
 from bookledger.report import MIME_TYPE
 from bookledger.statuses import STATUSES
 from draws import draws
-from loopbook import s, t
-from loopbook.evidence import Evidence, greater, increasing, much_greater, positive
-from loopbook.ledger import Disagreement, LedgerError, Source
-from plainmath.tables import is_symbol
+from plainmath.expressions import s, t
 
 x, K, T = sympy.symbols("x K T", positive=True)
 
@@ -44,7 +39,7 @@ def toml(value):
 
 def book(**entry):
     """A source with one entry, "Example 1", of which some keys are told."""
-    entry = {"title": "An example", "chapter": "10_tuning"} | entry
+    entry = {"title": "An example", "chapter": "02_walls"} | entry
     lines = [f"{key} = {toml(value)}" for key, value in entry.items()]
     return read("\n".join(['[source]\ntitle = "Author"\ncitation = "A. Author"\n["Example 1"]', *lines]).encode())
 
@@ -72,42 +67,6 @@ def agrees(value, printed):
 
 def formula_holds(value, printed, **result):
     return holds(value, printed, kind="formula", **result)
-
-
-# What the sources of the ledger obey, and the one that contributors are shown.
-
-
-SHOWN = Source.read("shown", contributing.ledger().encode())
-#: What the ledger's entries must obey, those of the guide obey too; `test_ledger_in_chapters` has what is about checks.
-each_source = pytest.mark.parametrize(
-    "source", [*loopbook.ledger.sources().values(), SHOWN], ids=lambda source: source.name
-)
-
-
-@each_source
-def test_what_is_no_symbol_has_a_label_for_the_reader(source):
-    bare = [
-        f"{source.name}, {entry.name}: {row.name} is no symbol: expected a label"
-        for entry in source
-        for row in entry.results
-        if row.printed.kind != "claim" and not row.label and not is_symbol(row.name)
-    ]
-    assert not bare, "\n" + "\n".join(bare)
-
-
-@each_source
-def test_what_is_quoted_is_in_the_library_and_public(source, subtests):
-    quoted = {row.status.library for entry in source for row in entry.results if row.status.word == "quoted"}
-    for place in sorted(quoted):
-        with subtests.test(place):
-            module, _, name = place.rpartition(".")
-            found = getattr(importlib.import_module(module), name)
-            assert not name.startswith("_")
-            assert found.__doc__ or not callable(found)
-
-
-def test_the_book_that_contributors_are_shown_is_one_of_the_ledger():
-    assert SHOWN.citation in {source.citation for source in loopbook.ledger.sources().values()}
 
 
 # Numbers.
@@ -144,7 +103,6 @@ def as_decimal(value):
 # How a fraction becomes a value of each type, and that value a fraction again.
 TYPES = {
     "Fraction": (Fraction, Fraction),
-    "float": (float, Fraction),
     "int": (round, Fraction),
     "Decimal": (as_decimal, Fraction),
     "float64": (lambda v: np.float64(float(v)), lambda v: Fraction(float(v))),
@@ -292,24 +250,16 @@ WRONG = {
     "the other sign": (K / (T * s - 1), "K/(T*s + 1)"),
     "a capital letter": (sympy.Symbol("k"), "K"),
     "a letter for a function": (sympy.Symbol("Y"), "Y(s)"),
-    "another argument": (Y(0), "Y(s)"),
     "nearly one half": (sympy.Rational(1, 2) + sympy.Rational(1, 10**40), "0.5"),
-    "nearly one third": (sympy.Rational(333333333333333, 10**15), "1/3"),
     "a tiny term": (x + x * sympy.Rational(1, 10**25), "x"),
-    "a tiny factor": (x * sympy.Rational(1, 10**25), "2e-25*x"),
-    "a faster decay": (sympy.exp(-101 * t), "exp(-100*t)"),
-    "a much faster decay": (sympy.exp(-100001 * t), "exp(-100000*t)"),
     "a limiter": (sympy.Min(x, 100), "x"),
-    "a distant limiter": (sympy.Min(x, 10**5), "x"),
     "a dead band": (sympy.Max(x, sympy.Rational(1, 10**5)), "x"),
     "a corner": (sympy.Abs(x - 50), "50 - x"),
-    "a switch": (sympy.Heaviside(50 - x), "1"),
     "a piece": (sympy.Piecewise((x, x < 1000), (0, True)), "x"),
     "rounding down": (sympy.floor(x) + x - sympy.floor(x) * (1 + sympy.Rational(1, 10**22)), "x"),
     "a letter that is zero": (K / (sympy.Symbol("T", zero=True) * s + 1), "K"),
     "a letter that is even": (sympy.Symbol("n", even=True), "n*(-1)**n"),
     "a letter that is negative": (sympy.sqrt(sympy.Symbol("x", negative=True) ** 2), "x"),
-    "a root of a square": (sympy.sqrt(s**2), "s"),
     "a multiple of pi": (sympy.Integer(0), "sin(pi*n)"),
     "the product with zero": (sympy.Eq(0, 0, evaluate=False), "s*K = 2*T"),
     "the double": (sympy.Eq(2 * s * K, 4 * T, evaluate=False), "s*K = 2*T"),
@@ -317,7 +267,6 @@ WRONG = {
     "an expression for an equation": (s * K - 2 * T, "s*K = 2*T"),
     "an equation for an expression": (sympy.Eq(K, T), "K"),
     "one solution for the equation": (2 * T / s, "K = 2*T/s"),
-    "minus the expression": (-K, "K"),
     "infinity": (sympy.oo, "5"),
     "a number for infinity": (sympy.Integer(5), "oo"),
     "the other infinity": (-sympy.oo, "oo"),
@@ -434,14 +383,10 @@ class Unprintable:
 NO_NUMBER = {
     "nan": (math.nan, "NaN"),
     "numpy nan": (np.float32("nan"), "NaN"),
-    "decimal nan": (Decimal("nan"), "NaN"),
     "signalling nan": (Decimal("sNaN"), "InvalidOperation"),
-    "sympy nan": (sympy.nan, "nan"),
     "complex infinity": (sympy.zoo, "zoo"),
-    "unevaluated nan": (sympy.Mul(0, sympy.nan, evaluate=False), "nan"),
     "unevaluated 0 times infinity": (sympy.Mul(0, sympy.oo, evaluate=False), "0"),
     "complex": (1 + 0j, "complex number"),
-    "numpy complex": (np.complex128(1), "complex number"),
     "sympy complex": (1 + sympy.I / 10**50, "complex number"),
     "string": ("1.5", "type str"),
     "none": (None, "NoneType"),
@@ -449,7 +394,6 @@ NO_NUMBER = {
     "numpy bool": (np.bool_(True), "truth value"),
     "sympy true": (sympy.true, "True"),
     "list": ([1.5], "type list"),
-    "array of one": (np.array([1.5]), "type ndarray"),
     "array without axes": (np.array(1.5), "type ndarray"),
     "array of three": (np.array([[1.5], [2], [3]]), "type ndarray"),
     "matrix": (sympy.ImmutableMatrix([[1.5]]), "Matrix"),
@@ -466,7 +410,6 @@ NO_NUMBER = {
 NO_FORMULA = {
     "rounded decimals": (0.5 * K, "rounded decimals"),
     "float": (0.5 * sympy.Symbol("K"), "rounded decimals"),
-    "rounded exponent": (sympy.exp(-0.5 * t), "rounded decimals"),
     "nan": (math.nan, "nan"),
     "complex infinity": (K * sympy.zoo, "zoo"),
     "bounds": (sympy.AccumBounds(1, 2) * K, "AccumBounds"),
@@ -477,7 +420,6 @@ NO_FORMULA = {
     "none": (None, "NoneType"),
     "list": ([K], "type list"),
     "matrix": (sympy.Matrix([K, T]), "Matrix"),
-    "frozen matrix": (sympy.ImmutableMatrix([[K]]), "Matrix"),
     "tuple": (sympy.Tuple(K, T), "Tuple"),
     "two symbols of one name": (K + sympy.Symbol("K"), "two different symbols named K"),
     "unprintable": (Unprintable(), "Unprintable"),
@@ -557,14 +499,6 @@ def test_a_wrong_use_is_explained_in_one_line(call, words):
     assert all(word in said for word in words), said
 
 
-def test_an_unknown_source_is_named_with_the_known_ones(monkeypatch):
-    monkeypatch.setattr(loopbook.ledger, "_names", lambda: ["author", "writer"])
-    with pytest.raises(AttributeError, match="no source 'auhtor': did you mean 'author'"):
-        loopbook.ledger.auhtor  # noqa: B018
-    with pytest.raises(ImportError, match="auhtor"):
-        from loopbook.ledger import auhtor  # noqa: F401
-
-
 def test_a_source_is_a_file_anywhere(tmp_path):
     path = tmp_path / "walls.toml"
     with pytest.raises(LedgerError, match=r"walls\.toml cannot be read: No such file"):
@@ -576,144 +510,128 @@ def test_a_source_is_a_file_anywhere(tmp_path):
 
 
 def test_an_entry_is_read_when_it_is_asked_for():
-    source = Source.read("book", (CITATION + '["Example 1"]\ntitle = "A"\nchapter = "1"\n["Example 2"]').encode())
+    source = Source.read("book", (HEAD + '["Example 1"]\ntitle = "A"\nchapter = "1"\n["Example 2"]').encode())
     assert source["Example 1"].title == "A"
     with pytest.raises(LedgerError, match="book, Example 2: title"):
         source["Example 2"]
 
 
-# Malformed entries.
+# Malformed sources, as they are written: each line is a fault, and what is said of it.
 
-
-def entry(**keys):
-    return lambda: book(**keys)
-
-
-def result(**keys):
-    return lambda: example(**({"printed": "1"} | keys))
-
-
-def text(content):
-    return lambda: read(content if isinstance(content, bytes) else content.encode())
-
-
-CITATION = '[source]\ntitle = "A"\ncitation = "A"\n'
-RECONSTRUCTED = {"status": "reconstructed", "assuming": "a guess"}
-MALFORMED = {
-    "syntax": (text("[source"), ["book.toml", "TOML"]),
-    "a key twice": (text(CITATION + "[a]\n[a]\n"), ["book.toml", "TOML"]),
-    "another encoding": (text(CITATION.encode() + "# Å".encode("latin-1")), ["book.toml", "decode"]),
-    "no source": (text('["Example 1"]\ntitle = "A"\n'), ["book.toml", "[source]", "citation"]),
-    "a source of another type": (text('source = "A"\n'), ["book.toml", "[source]"]),
-    "an unknown key of the source": (text(CITATION + 'year = "2010"\n'), ["book.toml", "nothing else"]),
-    "a source without a short title": (text('[source]\ncitation = "A"\n'), ["book.toml", "title"]),
-    "a citation of another type": (text('[source]\ntitle = "A"\ncitation = 1\n'), ["book.toml", "citation"]),
-    "an entry of another type": (text("a = 1\n" + CITATION), ["book, a", "expected a table"]),
-    "no title": (text(CITATION + '["Example 1"]\nchapter = "10"\n'), ["book, Example 1", "title"]),
-    "no chapter": (text(CITATION + '["Example 1"]\ntitle = "A"\n'), ["book, Example 1", "chapter"]),
-    "an empty title": (entry(title=" "), ["book, Example 1", "title"]),
-    "a chapter of another type": (entry(chapter=10), ["book, Example 1", "chapter is 10"]),
-    "an unknown key": (entry(results=[]), ["book, Example 1", "'results'", "did you mean 'result'"]),
-    "givens of another type": (entry(given=["K"]), ["book, Example 1", "`given`"]),
-    "a given as a number": (entry(given={"K": 1.5}), ["book, Example 1, given K", "1.5", "text in quotes"]),
-    "a given that is empty": (entry(given={"K": ""}), ["book, Example 1, given K"]),
-    "a given with a comma": (entry(given={"K": "1,5"}), ["book, Example 1, given K", "'1,5'"]),
-    "a given that cannot be read": (entry(given={"K": "1.5 (s"}), ["book, Example 1, given K", "cannot read"]),
-    "a given without value": (entry(given={"K": "1/0"}), ["book, Example 1, given K", "no value"]),
-    "results of another type": (entry(result={"name": "y"}), ["book, Example 1", "`result`"]),
-    "a result of another type": (entry(result=["y"]), ["book, Example 1", "'y'", "expected a table"]),
-    "a result without a name": (entry(result=[{"printed": "1"}]), ["book, Example 1", "no 'name'"]),
-    "a result without a print": (entry(result=[{"name": "y"}]), ["book, Example 1", "no 'printed'"]),
-    "a result twice": (entry(result=[{"name": "y", "printed": "1"}] * 2), ["book, Example 1", "y", "once"]),
-    "an unknown key of a result": (result(units="s"), ["book, Example 1", "'units'", "did you mean 'unit'"]),
-    "a printed number outside quotes": (result(printed=1.50), ["book, Example 1", "printed is 1.5", "quotes"]),
-    "a printed list": (result(printed=["1"]), ["book, Example 1", "printed is ['1']", "quotes"]),
-    "an empty print": (result(printed=""), ["book, Example 1", "printed is ''"]),
-    "a printed decimal comma": (result(printed="1,5"), ["book, Example 1, y", "'1,5'", "a number like 1.50"]),
-    "a printed unit": (result(printed="1.5 s"), ["book, Example 1, y", "'1.5 s'", "a number like 1.50"]),
-    "a printed per cent": (result(printed="63 %"), ["book, Example 1, y", "'63 %'"]),
-    "a printed word": (result(printed="stable"), ["book, Example 1, y", "'name'"]),
-    "a printed nan": (result(printed="nan"), ["book, Example 1, y", "'nan'"]),
-    "a printed number with a bare point": (result(printed="1."), ["book, Example 1, y", "'1.'"]),
-    "other digits": (result(printed="١.٥"), ["book, Example 1, y"]),
-    "an endless number": (result(printed="1e999999999"), ["book, Example 1, y"]),
-    "a name with a space": (result(name="K p"), ["book, Example 1, K p", "argument in Python"]),
-    "a name of Python": (result(name="lambda"), ["book, Example 1, lambda", "argument in Python"]),
-    "an unknown kind": (result(kind="formulae"), ["book, Example 1, y", "'formulae'", "did you mean 'formula'"]),
-    "an unknown status": (result(status="correct"), ["book, Example 1, y", "did you mean 'corrected'"]),
-    "a formula that cannot be read": (result(kind="formula", printed="K/(T*s"), ["book, Example 1, y", "'K/(T*s'"]),
-    "a formula with a comma": (result(kind="formula", printed="1,5"), ["book, Example 1, y", "'1,5'"]),
-    "a formula without value": (result(kind="formula", printed="K/0"), ["book, Example 1, y", "no value"]),
-    "an equation twice": (result(kind="formula", printed="a = b = c"), ["book, Example 1, y", "cannot read"]),
-    "an equation with one side": (result(kind="formula", printed="= b"), ["book, Example 1, y", "cannot read"]),
-    "an equation that says nothing": (result(kind="formula", printed="0 = 0"), ["book, Example 1, y", "says nothing"]),
-    "another one": (result(kind="formula", printed="2*(a + b) = 2*a + 2*b"), ["book, Example 1, y", "says nothing"]),
-    "an inequality": (result(kind="formula", printed="a <= b"), ["book, Example 1, y", "cannot read"]),
-    "a correction without reason": (result(status="corrected", correct="2"), ["needs 'because'"]),
-    "a correction without value": (result(status="corrected", because="a slip"), ["needs 'correct'"]),
-    "a correction of another kind": (result(status="corrected", correct="two", because="a"), ["correct is 'two'"]),
-    "a correction that widens the tolerance": (
-        result(printed="0.123", status="corrected", correct="1.2", because="a slip"),
-        ["correct is '1.2'", "as many digits as in '0.123'"],
-    ),
-    "a reason for nothing": (result(because="a slip"), ["'computed' has no use for 'because'"]),
-    "a margin for nothing": (result(within="5 %"), ["'computed' has no use for 'within'"]),
-    "unreproduced without reason": (result(status="unreproduced", computed="2"), ["needs 'because'"]),
-    "unreproduced with a margin": (
-        result(status="unreproduced", because="a", computed="2", within="1"),
-        ["no use for 'within'"],
-    ),
-    "measured without reason": (result(status="measured"), ["'measured' needs 'because'"]),
-    "reconstructed without assumption": (result(status="reconstructed", within="1"), ["needs 'assuming'"]),
-    "reconstructed without margin": (result(**RECONSTRUCTED), ["needs 'within'"]),
-    "a margin in words": (result(**RECONSTRUCTED, within="a little"), ["within is 'a little'"]),
-    "a margin of zero": (result(**RECONSTRUCTED, within="0"), ["within is '0'", "positive"]),
-    "a negative margin": (result(**RECONSTRUCTED, within="-1 %"), ["within is '-1 %'", "positive"]),
-    "a margin with a unit": (result(**RECONSTRUCTED, within="1 s"), ["within is '1 s'"]),
-    "a margin as wide as the number": (result(**RECONSTRUCTED, within="100 %"), ["within is '100 %'", "below"]),
-    "an infinite margin": (result(**RECONSTRUCTED, within="oo"), ["within is 'oo'"]),
-    "a percentage of zero": (result(**RECONSTRUCTED, printed="0.0", within="5 %"), ["'5 %' of 0"]),
-    "a margin around infinity": (result(**RECONSTRUCTED, printed="oo", within="5 %"), ["'oo'", "expected a number"]),
-    "a margin around a word": (
-        result(**RECONSTRUCTED, kind="name", printed="stable", within="5 %"),
-        ["no use for 'within'"],
-    ),
-    "a claim with a print": (result(claim="It grows."), ["book, Example 1, y", "no use for 'printed'"]),
-    "a claim that is no sentence": (
-        entry(result=[{"name": "y", "claim": "grows"}]),
-        ["book, Example 1, y", "'grows'", "full stop"],
-    ),
-    "a claim that says something else": (
-        entry(result=[{"name": "y", "claim": "It grows.", "says": "yes"}]),
-        ["says is 'yes'", "true or false"],
-    ),
-    "a number that says something": (result(says="true"), ["no use for 'says'"]),
-    "quoted without its place": (result(status="quoted"), ["'quoted' needs 'library'"]),
-    "observed without a plant": (result(status="observed"), ["'observed' needs 'on'"]),
-    "damaged without the right value": (result(status="damaged", because="a"), ["'damaged' needs 'correct'"]),
-    "a corrected claim without a reason": (
-        entry(result=[{"name": "y", "claim": "It grows.", "status": "corrected", "correct": "It falls."}]),
-        ["needs 'because'"],
-    ),
-    "misprints of another type": (entry(misprint="a"), ["book, Example 1", "misprint is 'a'", "list"]),
-    "a misprint without a reason": (
-        entry(misprint=[{"printed": "a", "correct": "b"}]),
-        ["book, Example 1, misprint", "printed, correct, because"],
-    ),
-    "damage that is empty": (
-        entry(damage=[{"printed": "a", "correct": "b", "because": ""}]),
-        ["book, Example 1, damage", "because is ''"],
-    ),
-    "a margin around a formula": (result(**RECONSTRUCTED, kind="formula", within="5 %"), ["expected a number"]),
+HEAD = '[source]\ntitle = "A"\ncitation = "A"\n'
+SOURCES = {
+    "[source": "book.toml is not valid TOML",
+    HEAD + "[a]\n[a]\n": "book.toml is not valid TOML",
+    '["Example 1"]\ntitle = "A"\n': "book.toml: expected a table [source] with title and citation",
+    'source = "A"\n': "book.toml: expected a table [source]",
+    HEAD + 'year = "2010"\n': "and nothing else",
+    '[source]\ncitation = "A"\n': "book.toml: expected a table [source]",
+    '[source]\ntitle = "A"\ncitation = 1\n': "book.toml: expected a table [source]",
+    "a = 1\n" + HEAD: "book, a: the entry is 1, expected a table",
 }
+ENTRIES = """
+chapter = "10"                                  | title is None, expected text
+title = "A"                                     | chapter is None, expected text
+title = " "                                     | title is ' ', expected text
+title = "A" ; chapter = 10                      | chapter is 10, expected text
+results = []                                    | unknown key 'results', did you mean 'result'?
+given = ["K"]                                   | expected `given` to be a table
+result = { name = "y" }                         | and `result` a list of tables
+given = { K = 1.5 }                             | given K is 1.5, expected text in quotes
+given = { K = "" }                              | given K is '', expected text in quotes
+given = { K = "1,5" }                           | given K: cannot read '1,5'
+given = { K = "1.5 (s" }                        | given K: cannot read
+given = { K = "1/0" }                           | given K: cannot read '1/0' as an expression: 1/0 has no value
+result = ["y"]                                  | a result is 'y', expected a table
+result = [{ printed = "1" }]                    | a result has no 'name'
+result = [{ name = "y" }]                       | a result has no 'printed'
+result = [{ name = "y", printed = "1" }, { name = "y", printed = "1" }] | y is a result twice
+misprint = "a"                                  | misprint is 'a', expected a list
+misprint = [{ printed = "a", correct = "b" }]   | misprint: {'printed': 'a', 'correct': 'b'}, expected a table with
+damage = [{ printed = "a", correct = "b", because = "" }] | damage: because is ''
+"""
+RESULTS = """
+units = "s"                                     | unknown key 'units', did you mean 'unit'?
+printed = 1.50                                  | printed is 1.5, expected text in quotes
+printed = ["1"]                                 | printed is ['1'], expected text in quotes
+printed = ""                                    | printed is '', expected text in quotes
+printed = "1,5"                                 | y: printed is '1,5', expected a number like 1.50
+printed = "1.5 s"                               | y: printed is '1.5 s', expected a number
+printed = "63 %"                                | y: printed is '63 %', expected a number
+printed = "stable"                              | or else a kind 'formula' or 'name'
+printed = "nan"                                 | y: printed is 'nan'
+printed = "1."                                  | y: printed is '1.'
+printed = "١.٥"                                 | y: printed is '١.٥'
+printed = "1e999999999"                         | y: printed is '1e999999999'
+kind = "formulae"                               | y: the kind is 'formulae', did you mean 'formula'?
+kind = "formula" ; printed = "K/(T*s"           | y: printed is cannot read 'K/(T*s'
+kind = "formula" ; printed = "1,5"              | y: printed is cannot read '1,5'
+kind = "formula" ; printed = "K/0"              | has no value
+kind = "formula" ; printed = "a = b = c"        | y: printed is cannot read
+kind = "formula" ; printed = "= b"              | y: printed is cannot read
+kind = "formula" ; printed = "0 = 0"            | says nothing
+kind = "formula" ; printed = "2*(a + b) = 2*a + 2*b" | says nothing
+kind = "formula" ; printed = "a <= b"           | y: printed is cannot read
+name = "K p"                                    | K p: expected a name that can be an argument in Python
+name = "lambda"                                 | lambda: expected a name that can be an argument in Python
+status = "correct"                              | y: the status is 'correct', did you mean 'corrected'?
+status = "corrected" ; correct = "2"            | 'corrected' needs 'because'
+status = "corrected" ; because = "a"            | 'corrected' needs 'correct'
+status = "corrected" ; correct = "two" ; because = "a" | correct is 'two'
+status = "corrected" ; correct = "1" ; because = "a" ; printed = "0.123" | as many digits as in '0.123'
+because = "a"                                   | 'computed' has no use for 'because'
+within = "5 %"                                  | 'computed' has no use for 'within'
+status = "unreproduced" ; computed = "2"        | 'unreproduced' needs 'because'
+status = "unreproduced" ; because = "a" ; within = "1" | 'unreproduced' has no use for 'within'
+status = "measured"                             | 'measured' needs 'because'
+status = "quoted"                               | 'quoted' needs 'library'
+status = "observed"                             | 'observed' needs 'on'
+status = "damaged" ; because = "a"              | 'damaged' needs 'correct'
+status = "reconstructed" ; within = "1"         | 'reconstructed' needs 'assuming'
+GUESS                                           | 'reconstructed' of a number needs 'within'
+GUESS ; within = "a little"                     | within is 'a little', expected a positive number
+GUESS ; within = "0"                            | within is '0', expected a positive number
+GUESS ; within = "-1 %"                         | within is '-1 %', expected a positive number
+GUESS ; within = "1 s"                          | within is '1 s', expected a positive number
+GUESS ; within = "100 %"                        | or a percentage below 100 %
+GUESS ; within = "oo"                           | within is 'oo', expected a positive number
+GUESS ; within = "5 %" ; printed = "0.0"        | within is '5 %' of 0
+GUESS ; within = "5 %" ; printed = "oo"         | 'oo' cannot be reconstructed, expected a number
+GUESS ; within = "5 %" ; kind = "formula"       | '1' cannot be reconstructed, expected a number
+GUESS ; within = "5 %" ; kind = "name"          | has no use for 'within'
+says = "true"                                   | what is not a claim has no use for 'says'
+claim = "It grows."                             | a claim has no use for 'printed'
+claim = "grows" ; printed                       | the claim is 'grows', expected a sentence with a full stop
+claim = "It grows." ; says = "yes" ; printed    | says is 'yes', expected true or false
+claim = "It grows." ; status = "corrected" ; correct = "It falls." ; printed | 'corrected' needs 'because'
+""".replace("GUESS", 'status = "reconstructed" ; assuming = "a"')
 
 
-def test_a_malformed_entry_is_explained_in_one_line(subtests):
-    for name, (call, words) in MALFORMED.items():
-        with subtests.test(name):
-            said = complaint(call)
+def faults(lines):
+    return [[part.strip() for part in line.rsplit("|", 1)] for line in lines.strip().splitlines()]
+
+
+def table(keys, **usual):
+    """A table of TOML: some keys as they are written, beside usual ones, of which those named alone are left out."""
+    own = dict(part.strip().partition(" = ")[::2] for part in keys.split(" ; "))
+    return {key: value for key, value in ({key: f'"{text}"' for key, text in usual.items()} | own).items() if value}
+
+
+def test_a_malformed_source_is_explained_in_one_line(subtests):
+    cases = [*SOURCES.items()]
+    for keys, words in faults(ENTRIES):
+        usual = {} if keys.startswith(("title", "chapter")) else {"title": "A", "chapter": "10"}
+        lines = [f"{key} = {value}" for key, value in table(keys, **usual).items()]
+        cases.append(("\n".join([HEAD + '["Example 1"]', *lines]), words))
+    for keys, words in faults(RESULTS):
+        row = ", ".join(f"{key} = {value}" for key, value in table(keys, name="y", printed="1").items())
+        cases.append((f'{HEAD}["Example 1"]\ntitle = "A"\nchapter = "10"\nresult = [{{ {row} }}]', words))
+    for content, words in cases:
+        with subtests.test(words=words):
+            said = complaint(read, content.encode())
             assert said.startswith("book")
-            assert all(word in said for word in words), said
+            assert words in said
+    assert "decode" in complaint(read, HEAD.encode() + "# Å".encode("latin-1"))
 
 
 def test_text_over_several_lines_is_joined():
@@ -774,46 +692,32 @@ def test_a_notebook_cannot_change_the_ledger():
 
 # What the reader sees.
 
-MIXED = book(
-    title='A <b>title</b> & "more"',
-    given={"K": "1.5 s", "H": "K/(T*s + 1)"},
-    result=[
-        {"name": "share", "equation": "6.21", "printed": "0.63", "unit": "m/s"},
-        {"name": "H", "kind": "formula", "printed": "K/(T*s + 1)"},
-        {"name": "action", "kind": "name", "printed": "Reverse"},
-        {"name": "a", "printed": "1", "status": "corrected", "correct": "2", "because": 'a <b>"slip"</b> & more'},
-        {"name": "b", "printed": "1", "status": "reconstructed", "assuming": "F = 1 <kg/s>", "within": "5 %"},
-        {"name": "c", "printed": "1", "status": "unreproduced", "computed": "2", "because": "nobody knows"},
-        {"name": "d", "printed": "17.3", "status": "measured", "because": "in the laboratory"},
-        {"name": "e", "printed": "8.4", "status": "unreproduced", "because": "its settings are not printed"},
-        {
-            "name": "f",
-            "printed": "0.9",
-            "label": "share of <water>",
-            "status": "quoted",
-            "library": "loopbook.tuning.simc",
-        },
-        {"name": "grows", "claim": "The peak grows with the gain."},
-        {"name": "is_large", "claim": "The gain is large & positive.", "status": "observed", "on": "a tank of ours"},
-        {
-            "name": "is_much",
-            "claim": "The peak is much larger.",
-            "status": "corrected",
-            "correct": "The peak is a little larger.",
-            "because": "it grows by a fifth",
-        },
-        {
-            "name": "b_3",
-            "printed": "2(a+b)",
-            "kind": "name",
-            "status": "damaged",
-            "correct": "2",
-            "because": "a bracket",
-        },
-    ],
-    misprint=[{"printed": "Section ??", "correct": "Section 9.2", "because": "the reference is lost"}],
-    damage=[{"printed": "k 1", "correct": "k_1", "because": "an index is lost", "place": "footnote"}],
-)["Example 1"]
+MIXED = read(b"""
+[source]
+title = "Author"
+citation = "A. Author"
+["Example 1"]
+title = 'A <b>title</b> & "more"'
+chapter = "02_walls"
+given = { K = "1.5 s", H = "K/(T*s + 1)" }
+result = [
+    { name = "share", equation = "6.21", printed = "0.63", unit = "m/s" },
+    { name = "H", kind = "formula", printed = "K/(T*s + 1)" },
+    { name = "action", kind = "name", printed = "Reverse" },
+    { name = "a", printed = "1", status = "corrected", correct = "2", because = 'a <b>"slip"</b> & more' },
+    { name = "b", printed = "1", status = "reconstructed", assuming = "F = 1 <kg/s>", within = "5 %" },
+    { name = "c", printed = "1", status = "unreproduced", computed = "2", because = "nobody knows" },
+    { name = "d", printed = "17.3", status = "measured", because = "in the laboratory" },
+    { name = "e", printed = "8.4", status = "unreproduced", because = "its settings are not printed" },
+    { name = "f", printed = "0.9", label = "share of <water>", status = "quoted", library = "math.pi" },
+    { name = "grows", claim = "The peak grows with the gain." },
+    { name = "is_large", claim = "The gain is large & positive.", status = "observed", on = "a tank of ours" },
+    { name = "much", claim = "It is large.", status = "corrected", correct = "It is not.", because = "by a fifth" },
+    { name = "b_3", printed = "2(a+b)", kind = "name", status = "damaged", correct = "2", because = "a bracket" },
+]
+misprint = [{ printed = "Section ??", correct = "Section 9.2", because = "the reference is lost" }]
+damage = [{ printed = "k 1", correct = "k_1", because = "an index is lost", place = "footnote" }]
+""")["Example 1"]
 GOOD = {
     "share": 0.632121,
     "H": K / (T * s + 1),
@@ -824,7 +728,7 @@ GOOD = {
     "f": 0.9,
     "grows": greater(1.5, 1.2, "peak [m]"),
     "is_large": positive(K * T, "gain"),
-    "is_much": much_greater(1.2, 1, "peak [m]"),
+    "much": much_greater(1.2, 1, "peak [m]"),
     "b_3": "2",
 }
 
@@ -835,7 +739,7 @@ def test_a_report_tells_everything_as_text():
         assert all(part in told for part in (row.title, row.printed.text, row.status.word, row.status.note))
     assert "\nreconstructed to within 5 %, assuming F = 1 <kg/s>\n" in told  # the only one
     assert "\na: corrected: a <b>" in told  # one of two
-    assert "\none claim: corrected: it grows by a fifth\n" in told
+    assert "\none claim: corrected: by a fifth\n" in told
     for part in ("Author, Example 1", MIXED.title, "6.21", "m/s", "0.632121", "reverse", "5 %", "F = 1 <kg/s>"):
         assert part in told
     assert "computed: The peak grows with the gain.\n    peak 1.5 m > 1.2 m\n" in told
@@ -891,14 +795,7 @@ def test_a_report_carries_its_verdicts_as_data():
         ("f", "0.9", "quoted", "0.9", True, "digits"),
         ("grows", "says so", "computed", "peak 1.5 m > 1.2 m", True, "evidence"),
         ("is_large", "says so", "observed", "gain K*T > 0, proved", True, "evidence"),
-        (
-            "is_much",
-            "says so",
-            "corrected",
-            "peak 1.2 m not much larger than 1 m (by half of the smaller one or more)",
-            True,
-            "evidence",
-        ),
+        ("much", "says so", "corrected", GOOD["much"].told(), True, "evidence"),
         ("b_3", "2(a+b)", "damaged", "2", True, "word"),
     ]
     H, is_large = data["verdicts"][1], data["verdicts"][-3]
@@ -907,11 +804,6 @@ def test_a_report_carries_its_verdicts_as_data():
     assert is_large["evidence"] == positive(K * T, "gain").data
     failed = MIXED.compare(**GOOD | {"a": 1})._repr_mimebundle_()[MIME_TYPE]["verdicts"]
     assert [verdict["name"] for verdict in failed if not verdict["holds"]] == ["a"]
-
-
-def test_a_report_is_the_same_every_time():
-    assert MIXED.compare(**GOOD)._repr_mimebundle_() == MIXED.compare(**GOOD)._repr_mimebundle_()
-    assert repr(MIXED) == repr(MIXED)
 
 
 def test_an_entry_shows_its_givens():
@@ -939,11 +831,11 @@ title = "Author"
 citation = "A. Author"
 ["Equation 1"]
 title = "A gain and a time constant"
-chapter = "10_tuning"
+chapter = "02_walls"
 result = [{ name = "K", printed = "1.5" }, { name = "T", kind = "formula", printed = "2" }]
 """
 CELLS = [
-    f'from loopbook.ledger import Source\nbook = Source.read("book", {BOOK.encode()})\nlag = book["Equation 1"]',
+    f'from bookledger import Source\nbook = Source.read("book", {BOOK.encode()})\nlag = book["Equation 1"]',
     "lag.check(K=1.5, T=2)",
     "lag.check(K=1.5, T=3)",
     'book["Equatoin 1"]',
