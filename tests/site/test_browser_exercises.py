@@ -11,12 +11,12 @@ from pathlib import Path
 
 import pytest
 from docs.browser import site
-from loopbook.exercises.forms import answer
 from playwright.sync_api import expect
 
 import browser_runtime
 from browser import DESKTOP, PATIENCE, PHONE, SCREENSHOTS, Complaints, serious, served
 from loopbook.exercises import exercise
+from loopbook.exercises.forms import answer
 
 ROOT = Path(__file__).parents[2]
 TUNING, SEQUENCES, SYMBOLS = (

@@ -17,10 +17,10 @@ from pathlib import Path
 
 import pytest
 from docs.browser import judge, runtime, site, wheels
-from loopbook.exercises.forms import answer
 
 import browser
 import browser_runtime
+from loopbook.exercises.forms import answer
 
 ROOT = Path(__file__).parents[2]
 STATIC = ROOT / "docs" / "_static"
