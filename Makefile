@@ -45,7 +45,7 @@ test-all: .venv/ready ## prove everything with all variants and all draws, as on
 
 bench: .venv/ready ## measure what the collection costs beside what it stands on
 	$(python) tests/bench.py
-	$(python) tests/library/bench_deadtime.py
+	$(python) tests/control_engineering/bench_deadtime.py
 	$(python) tests/grading/bench_grading.py
 	$(python) tests/site/bench_book.py
 

@@ -34,7 +34,7 @@ from loopbook.synthesis import IMC_TABLE, imc
 from loopbook.transfer import second_order
 
 ROOT = Path(__file__).parents[1]
-sys.path[:0] = [str(ROOT / "tests" / folder) for folder in ("library", "exercises")]
+sys.path[:0] = [str(ROOT / "tests" / folder) for folder in ("control_engineering", "exercises")]
 
 from medians import medians, seconds  # noqa: E402 - of tests/, where it has just become possible to import from
 from test_exercises import key_as_given, wrong_answers  # noqa: E402
