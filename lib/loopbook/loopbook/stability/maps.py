@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,12 +20,11 @@ if TYPE_CHECKING:
 CHUNK = 2000  # points at once
 
 
-def stability_map(loop: object, progress: bool | None = None, **values: ArrayLike) -> np.ndarray:
+def stability_map(loop: object, **values: ArrayLike) -> np.ndarray:
     """Return the number of unstable closed-loop poles for many values of two symbols.
 
     Arguments:
         loop: the open loop L(s), an expression with two symbols, in its coefficients or dead times.
-        progress: whether to show a progress bar; None shows one when the work takes more than two seconds.
         **values: the values of the two symbols by their names, one-dimensional arrays.
     Returns:
         An array of integers, with a row for each value of the second symbol and a column for each of the first; -1
@@ -61,8 +59,8 @@ def stability_map(loop: object, progress: bool | None = None, **values: ArrayLik
     numbers = sympy.lambdify([positive[name] for name in values], [*rows, *parts], "numpy", cse=True)
     points = [grid.ravel() for grid in np.meshgrid(*grids)]
     counts = np.empty(points[0].size, dtype=int)
-    chunks = [slice(k, k + CHUNK) for k in range(0, counts.size, CHUNK)]
-    for chunk in _watched(chunks, progress):
+    for begin in range(0, counts.size, CHUNK):
+        chunk = slice(begin, begin + CHUNK)
         here = [x[chunk] for x in points]
         found = [row + 0.0 * here[0] for row in numbers(*here)]
         coefficients, delays = np.array(found[: len(rows)]), np.array(found[len(rows) :])
@@ -74,25 +72,6 @@ def stability_map(loop: object, progress: bool | None = None, **values: ArrayLik
             raise ValueError(f"the closed loop of {L} loses its highest power at {where}: expected other values")
         counts[chunk] = count_roots(Quasipolynomials(coefficients, delays))
     return counts.reshape(len(grids[1]), len(grids[0]))
-
-
-def _watched(chunks, progress):
-    """The chunks, with a progress bar where it is wanted or the work takes more than two seconds."""
-    begun, bar = time.monotonic(), None
-    try:
-        for number, chunk in enumerate(chunks):
-            if bar is None and progress is not False and (progress or time.monotonic() - begun > 2):
-                from rich.progress import Progress
-
-                bar = Progress(transient=True)
-                bar.start()
-                task = bar.add_task("stability map", total=len(chunks))
-            if bar is not None:
-                bar.update(task, completed=number)
-            yield chunk
-    finally:
-        if bar is not None:
-            bar.stop()
 
 
 def _characteristic(L):
