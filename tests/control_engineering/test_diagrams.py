@@ -2,6 +2,7 @@
 
 import functools
 import itertools
+import sys
 
 import pytest
 import sympy
@@ -339,13 +340,10 @@ def test_description_and_title():
     assert picture.png() == picture.png()
 
 
-def test_nothing_stays_open_in_pyplot():
-    import matplotlib.pyplot as plt
-
-    before = dict(plt.rcParams)
-    block_diagram("u", feedback_loop(H1), "y").png()
-    assert plt.get_fignums() == []
-    assert dict(plt.rcParams) == before
+def test_without_schemdraw_a_sentence_says_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "schemdraw", None)
+    with pytest.raises(ImportError, match=r"schemdraw draws the diagrams: install loopbook\[diagrams\]"):
+        block_diagram("u", H1, "y")
 
 
 @pytest.mark.parametrize(

@@ -223,6 +223,7 @@ def test_style_is_left_alone_and_nothing_stays_open_in_pyplot():
 
     before = dict(plt.rcParams)
     time_plot({"y": LAG}, TIMES, title="x").mark(5, "63 %").level(2, "$KU$").png()
+    block_diagram("u", 1 / s, "y").png()
     assert dict(plt.rcParams) == before
     assert plt.get_fignums() == []
     assert set(STYLE) <= set(before)

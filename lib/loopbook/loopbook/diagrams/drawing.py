@@ -82,8 +82,11 @@ class Drawing:
     """A drawing of schemdraw's segments at given places."""
 
     def __init__(self) -> None:
-        import schemdraw
-        from schemdraw import segments
+        try:
+            import schemdraw
+            from schemdraw import segments
+        except ModuleNotFoundError:
+            raise ModuleNotFoundError("schemdraw draws the diagrams: install loopbook[diagrams]") from None
 
         self.segments = segments
         self.schemdraw = schemdraw.Drawing(show=False)
