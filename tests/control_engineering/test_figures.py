@@ -4,16 +4,12 @@ import base64
 import io
 import re
 from dataclasses import replace
-from pathlib import Path
 
-import nbclient
-import nbformat
 import numpy as np
 import pytest
 import sympy
 from matplotlib._mathtext import Parser
 from matplotlib.collections import PolyCollection, QuadMesh
-from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from PIL import Image
@@ -26,15 +22,13 @@ from loopbook.diagrams import block, block_diagram
 from loopbook.figures import PlanePlot, TimePlot, half_rule_plot, level_plot, map_plot, plane_plot, time_plot, trends
 from loopbook.figures.labels import free_place
 from loopbook.figures.picture import with_few_colours
-from loopbook.figures.style import DOTS_PER_INCH, GREY, INPUTS, LOOKS, MODELS, ROLES, STYLE, TINTS, WIDTH, look
+from loopbook.figures.style import DOTS_PER_INCH, GREY, MODELS, ROLES, STYLE, WIDTH, look
 from loopbook.laplace import s, t
 from loopbook.pid import PID, Controller
 from loopbook.plants import WoodChipTank
 from loopbook.signals import stepwise
 from loopbook.simulation import simulate
-from plainmath.tables import plain_words
 
-ROOT = Path(__file__).parents[2]
 TIMES = np.linspace(0, 25, 501)
 LAG = 2 * (1 - exp(-t / 5))
 
@@ -92,68 +86,31 @@ def test_several_signals_have_a_legend_and_one_has_its_name_on_the_axis():
 
 @pytest.mark.parametrize("role", ROLES)
 def test_role_decides_colour_wherever_it_stands(role):
-    alone = time_plot({"x": (t, role)}, TIMES).lines["x"]
-    below = time_plot([{"a": 1, "b": 2}, {"c": 3, "x": (TIMES, role)}], TIMES).lines["x"]
-    assert alone.get_color() == below.get_color() == ROLES[role]["color"]
-    assert alone.get_linewidth() == below.get_linewidth() == ROLES[role]["linewidth"]
+    for plot in (time_plot({"x": (t, role)}, TIMES), time_plot([{"a": 1, "b": 2}, {"x": (TIMES, role)}], TIMES)):
+        assert plot.lines["x"].get_color() == ROLES[role]["color"]
+        assert plot.lines["x"].get_linewidth() == ROLES[role]["linewidth"]
 
 
 def test_no_two_looks_agree_in_colour_or_in_grey():
     assert len({line["color"] for line in ROLES.values()}) == len(ROLES)
     assert len({(line["linestyle"], line["linewidth"]) for line in ROLES.values()}) == len(ROLES)
-    assert ROLES["control signal"]["linestyle"] == "-"
-    looks = [look(n) for n in range(30)]
-    assert len({(look["color"], look["linestyle"]) for look in looks}) == 30
-    assert not {line["color"] for line in looks} & {line["color"] for line in ROLES.values()}
-    assert set(INPUTS) < set(ROLES)
-
-
-def test_as_many_curves_as_a_panel_has_differ_in_colour_and_in_their_dashes():
+    assert len({(line["color"], line["linestyle"]) for line in map(look, range(30))}) == 30
+    assert not {look(n)["color"] for n in range(30)} & {line["color"] for line in ROLES.values()}
     for looks in ([look(n) for n in range(5)], list(MODELS.values())):
         assert len({look["color"] for look in looks}) == len({look["linestyle"] for look in looks}) == len(looks)
 
 
-def luminance(colour):
-    """How light a colour is, as the guidelines for accessible pages define it."""
-    parts = np.clip(np.asarray(colour, dtype=float), 0, 1)
-    linear = np.where(parts <= 0.04045, parts / 12.92, ((parts + 0.055) / 1.055) ** 2.4)
-    return linear @ [0.2126, 0.7152, 0.0722]
-
-
-def contrast(one, other):
-    darker, lighter = sorted((luminance(one), luminance(other)))
-    return (lighter + 0.05) / (darker + 0.05)
-
-
-def turned_over(colour, share):
-    """What ``filter: invert(share) hue-rotate(180deg)`` makes of a colour."""
-    inverted = share + (1 - 2 * share) * np.asarray(colour)
-    return np.array([[-0.574, 1.430, 0.144], [0.426, 0.430, 0.144], [0.426, 1.430, -0.856]]) @ inverted
-
-
-@pytest.mark.parametrize("sheet", ["docs/_static/loopbook.css", "docs/jupyterlab/custom.css"])
-def test_lines_and_words_are_seen_on_white_and_on_a_dark_page(sheet):
-    (share,) = set(re.findall(r"filter: invert\(([\d.]+)\) hue-rotate\(180deg\)", (ROOT / sheet).read_text("utf-8")))
-    paper = turned_over([1, 1, 1], float(share))
-    assert 0.05 < paper.max() < 0.09  # as dark pages are
-    for name, line in (LOOKS | {n: look(n) for n in range(6)}).items():
-        colour = to_rgb(line["color"])
-        assert contrast(colour, [1, 1, 1]) > 3, name
-        assert contrast(turned_over(colour, float(share)), paper) > 4, name
-    for words in (GREY, "#000000"):
-        assert contrast(to_rgb(words), [1, 1, 1]) > 7 < contrast(turned_over(to_rgb(words), float(share)), paper)
-    for tint in TINTS:
-        assert contrast(to_rgb(tint), [0, 0, 0]) > 14
-
-
-def test_responses_go_on_with_the_next_look_in_the_next_panel():
-    plot = time_plot([{"a": 1, "u": (1, "control signal")}, {"b": 2}], TIMES)
-    assert plot.lines["a"].get_color() == look(0)["color"]
-    assert plot.lines["b"].get_color() == look(1)["color"]
+def test_responses_go_on_with_the_next_look_in_the_next_panel_and_a_number_is_the_look_of_that_response():
+    plot = time_plot([{"a": 1, "u": (1, "control signal")}, {"b": 2, "c": (3, 0)}], TIMES)
+    assert [plot.lines[name].get_color() for name in "abc"] == [look(n)["color"] for n in (0, 1, 0)]
 
 
 def test_mark_is_on_the_curve_with_guides_beyond_both_axes():
-    axes = time_plot({"y": LAG}, TIMES, before=2).mark(5, "63 % at $t = T$").figure.axes[0]
+    plot = time_plot({"y": LAG}, TIMES, before=2)
+    axes = plot.figure.axes[0]
+    before = axes.get_xlim(), axes.get_ylim()
+    plot.mark(5, "63 % at $t = T$")
+    assert (axes.get_xlim(), axes.get_ylim()) == before
     upright, level, dot = axes.lines[-3:]
     assert (dot.get_xdata().item(), dot.get_ydata().item()) == pytest.approx((5, 2 * (1 - np.exp(-1))))
     assert list(upright.get_xdata()) == [5, 5]
@@ -192,14 +149,6 @@ def test_label_of_a_mark_stands_clear_of_the_curve(signal, time, corner):
     assert (label.get_ha(), label.get_va()) == corner
 
 
-def test_marks_and_levels_leave_the_curves_where_they_are():
-    plot = time_plot({"y": LAG}, TIMES)
-    axes = plot.figure.axes[0]
-    before = axes.get_xlim(), axes.get_ylim()
-    plot.mark(5, "63 %")
-    assert (axes.get_xlim(), axes.get_ylim()) == before
-
-
 @pytest.mark.parametrize("level", [2, 4, -3, sympy.Rational(1, 2)])
 def test_level_is_inside_the_frame_with_its_label(level):
     plot = time_plot({"y": LAG}, TIMES).level(level, "$KU$")
@@ -215,7 +164,6 @@ def test_description_says_what_is_shown():
     assert repr(plot.mark(1, "$t = T$").level(3, "$y_s$")) == (
         "<Figure 6.1 · An integrator: y_1(t); F_in against t [s]; marked: t = T; level: y_s>"
     )
-    assert plain_words(r"$\left(\tau\right)$") == "(tau)"
 
 
 def test_style_is_left_alone_and_nothing_stays_open_in_pyplot():
@@ -229,14 +177,10 @@ def test_style_is_left_alone_and_nothing_stays_open_in_pyplot():
     assert set(STYLE) <= set(before)
 
 
-def test_same_picture_every_time():
-    one, other = (time_plot({"y": LAG}, TIMES, title="Figure 6.2").mark(5, "63 %").png() for _ in range(2))
-    assert one == other
-
-
 def test_image_has_its_printed_size_and_an_alternative_text():
-    plot = time_plot({"y": LAG}, TIMES, title="Figure 6.2")
+    plot, same = (time_plot({"y": LAG}, TIMES, title="Figure 6.2").mark(5, "63 %") for _ in range(2))
     data, metadata = plot._repr_mimebundle_()
+    assert data["image/png"] == same._repr_mimebundle_()[0]["image/png"]
     assert set(data) == {"image/png", "text/plain"}
     assert base64.b64decode(data["image/png"]).startswith(b"\x89PNG")
     assert metadata["image/png"]["alt"] == plot.alt == data["text/plain"].strip("<>")
@@ -249,47 +193,19 @@ def test_saves_as_a_file(tmp_path):
     assert (tmp_path / "y.pdf").read_bytes().startswith(b"%PDF")
 
 
-def test_notebook_shows_a_figure_exactly_once():
-    cells = """
-import matplotlib.pyplot as plt
-from loopbook.figures import time_plot
-from loopbook.diagrams import block_diagram
-from loopbook.laplace import s, t
----
-time_plot({"$y(t)$": t}, [0, 1, 2], title="Figure 6.1")
----
-block_diagram("u", 1 / s, "y", title="Figure 5.2")
-"""
-    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(c.strip()) for c in cells.split("---")])
-    nbclient.NotebookClient(notebook, timeout=60, kernel_name="python3").execute()
-    assert notebook.cells[0].outputs == []
-    expected = ["Figure 6.1: y(t) against t [s]", "Figure 5.2: block diagram: u → [1/s] → y"]
-    for cell, words in zip(notebook.cells[1:], expected, strict=True):
-        (output,) = cell.outputs
-        assert set(output.data) == {"image/png", "text/plain"}
-        assert output.data["text/plain"] == f"<{words}>"
-        assert output.metadata["image/png"]["alt"] == words
-
-
 @pytest.mark.parametrize(
     ("signals", "times", "options", "message"),
     [
         ({"y": [1, 2]}, [0, 1, 2], {}, "y has 2 values for 3 times"),
         ({"y": np.ones((3, 3))}, [0, 1, 2], {}, "y has 9 values for 3 times"),
-        ({"y": t}, [0, 2, 1], {}, "the times go from 2 to 1: expected increasing numbers"),
-        ({"y": t}, [0, 0], {}, "the times go from 0 to 0: expected increasing numbers"),
-        ({"y": t}, [0, np.nan], {}, "the times contain nan: expected finite numbers"),
         ({"y": t}, [0], {}, "the number of times is 1: expected 2 or more"),
-        ({"y": t}, "now", {}, "the times are 'now': expected real numbers"),
         ({"y": (t, "output")}, [0, 1], {}, "the role is 'output': expected one of setpoint, measurement, "),
         ({"y": "t**2"}, [0, 1], {}, "y must be a SymPy expression in t or an array of numbers"),
-        ({"y": None}, [0, 1], {}, "y must be a SymPy expression in t or an array of numbers"),
         ({"y": sympy.Eq(t, 1)}, [0, 1], {}, "y must be a SymPy expression in t or an array of numbers"),
         ({"y": sympy.Symbol("K") * t}, [0, 1], {}, "give a number for K"),
         ({"y": DiracDelta(t)}, [0, 1], {}, "an impulse has an area but no value"),
         ([{"y": t}, {"y": 2 * t}], [0, 1], {}, "two signals have the same label: y, y"),
         ([], [0, 1], {}, "signals must be {label: signal}"),
-        ({}, [0, 1], {}, "signals must be {label: signal}"),
         (t, [0, 1], {}, "signals must be {label: signal}"),
         ({"y": t}, [0, 1], {"ylabel": ["a", "b"]}, "2 names of vertical axes for 1 panels"),
         ({"y": t}, [1, 2], {"before": 1}, "only in front of times that start at 0"),
@@ -343,14 +259,6 @@ def test_an_area_to_a_late_step_keeps_the_step_upright():
     assert not path.contains_point((4.999, 0.01))
 
 
-def test_an_area_between_panels_is_refused():
-    plot = time_plot([{"a": 1}, {"b": t}], TIMES)
-    with pytest.raises(ValueError, match="a and b are in two panels"):
-        plot.area("a", "b")
-    with pytest.raises(ValueError, match="no signal 'c' in this plot"):
-        plot.area("c")
-
-
 def test_an_event_is_in_all_panels_with_words_that_hide_no_curve():
     plot = time_plot([{"y": 2}, {"u": t}], TIMES).event(10, "load").event(24, "the end is near")
     above, below = plot.figure.axes
@@ -364,8 +272,6 @@ def test_an_event_is_in_all_panels_with_words_that_hide_no_curve():
         assert above.bbox.x0 < box.x0
         assert box.x1 < above.bbox.x1
         assert not plot.lines["y"].get_path().transformed(above.transData).intersects_bbox(box, filled=False)
-    with pytest.raises(ValueError, match="cannot mark t = 26: the plot shows 0 to 25"):
-        plot.event(26, "late")
 
 
 def test_the_words_at_events_are_not_behind_the_legend():
@@ -452,18 +358,20 @@ def test_a_half_rule_needs_lags():
         half_rule_plot({"T": 1}, order=2)
 
 
-def test_bad_marks_are_told_in_one_sentence():
-    plot = time_plot({"y": LAG}, TIMES)
-    with pytest.raises(ValueError, match="cannot mark t = 30: the plot shows 0 to 25"):
-        plot.mark(30, "late")
-    with pytest.raises(ValueError, match="no signal 'z' in this plot: expected one of y"):
-        plot.level(2, "$KU$", signal="z")
-
-
-def test_a_number_is_the_look_of_that_response():
-    plot = time_plot([{"a": (1, 1), "b": 2}, {"c": (3, 1)}], TIMES)
-    assert plot.lines["a"].get_color() == plot.lines["c"].get_color() == look(1)["color"]
-    assert plot.lines["b"].get_color() == look(0)["color"]
+@pytest.mark.parametrize(
+    ("add", "message"),
+    [
+        (lambda plot: plot.mark(30, "late"), "cannot mark t = 30: the plot shows 0 to 25"),
+        (lambda plot: plot.event(26, "late"), "cannot mark t = 26: the plot shows 0 to 25"),
+        (lambda plot: plot.level(2, "$KU$", signal="z"), "no signal 'z' in this plot: expected one of a, b"),
+        (lambda plot: plot.area("z"), "no signal 'z' in this plot"),
+        (lambda plot: plot.area("a", "b"), "a and b are in two panels"),
+        (lambda plot: plot.points([0, 2], [1], "data"), "2 times and 1 values"),
+    ],
+)
+def test_bad_marks_are_told_in_one_sentence(add, message):
+    with pytest.raises(ValueError, match=message):
+        add(time_plot([{"a": 1}, {"b": t}], TIMES))
 
 
 def test_points_are_added_and_stay_inside():
@@ -471,8 +379,6 @@ def test_points_are_added_and_stay_inside():
     (axes,) = plot.figure.axes
     assert axes.get_ylim()[1] >= 7
     assert [text.get_text() for text in axes.get_legend().get_texts()] == ["u", "data"]
-    with pytest.raises(ValueError, match="2 times and 1 values"):
-        plot.points([0, 2], [1], "data")
 
 
 @pytest.mark.parametrize(("plot", "kind"), [(time_plot, TimePlot), (plane_plot, PlanePlot)])
@@ -516,15 +422,6 @@ def test_a_legend_hides_no_curve():
     assert time_plot({"a": LAG, "b": 1}, TIMES).figure.axes[0].get_ylim()[1] < 2.3  # there is room
 
 
-def test_a_legend_is_placed_without_drawing_the_figure(monkeypatch):
-    draws = []
-    monkeypatch.setattr(Figure, "draw", lambda *arguments: draws.append(arguments))
-    everywhere = {"one": sympy.sin(3 * t), "another": sympy.cos(3 * t), "a third": sympy.sin(2 * t)}
-    plot = time_plot([everywhere, {"a": LAG, "b": 1}], TIMES)
-    assert draws == []
-    assert plot.figure.axes[0].get_ylim()[1] > 1.2
-
-
 def test_a_formula_is_read_once_for_all_figures(monkeypatch):
     read, parse = [], Parser.parse
     monkeypatch.setattr(Parser, "parse", lambda self, *what: read.append((what[0], what[2])) or parse(self, *what))
@@ -542,14 +439,9 @@ def test_a_figure_is_drawn_in_one_pass_and_nothing_is_cut_off(monkeypatch):
     plot = time_plot({"$y$": LAG, "$u$": 1}, TIMES, title="A title that goes on and on " * 3)
     image = Image.open(io.BytesIO(plot.png())).convert("L")
     assert len(draws) == 1
-    for edge in (0, image.width - 1):
-        assert image.crop((edge, 0, edge + 1, image.height)).getextrema() == (255, 255)
-    for edge in (0, image.height - 1):
-        assert image.crop((0, edge, image.width, edge + 1)).getextrema() == (255, 255)
+    dots = np.asarray(image)
+    assert {*dots[0], *dots[-1], *dots[:, 0], *dots[:, -1]} == {255}
     assert image.width > WIDTH * DOTS_PER_INCH  # because of the title
-    longer = Image.open(io.BytesIO(time_plot({"y": LAG}, TIMES, title="A title that goes on and on " * 9).png()))
-    assert longer.width > 2 * image.width
-    assert longer.convert("L").crop((longer.width - 1, 0, longer.width, longer.height)).getextrema() == (255, 255)
     assert time_plot({"y": LAG}, TIMES).figure.bbox_inches.p0.tolist() == plot.figure.bbox_inches.p0.tolist() == [0, 0]
 
 
@@ -668,17 +560,14 @@ def test_trends_compare_runs_in_one_colour_each():
     assert [axes.get_legend() is not None for axes in plot.figure.axes] == [True, False]
 
 
-def test_trends_of_a_plant_alone():
-    assert list(trends(simulate(WoodChipTank(), until=500, step=10, u=50)).lines) == ["$h$", "$u$"]
-
-
-def test_trends_need_the_same_times_and_known_signals():
+def test_trends_of_a_plant_alone_and_of_runs_that_do_not_fit():
     short = simulate(WoodChipTank(), until=500, step=10, u=50)
+    assert list(trends(short).lines) == ["$h$", "$u$"]
     with pytest.raises(ValueError, match="different times"):
         trends({"a": short, "b": loop(1)})
     with pytest.raises(ValueError, match="different signals 'setpoint'"):
         trends({"a": loop(1), "b": loop(1, setpoint=10)})
-    for wrong in ({}, 5, [short]):
+    for wrong in ({}, [short]):
         with pytest.raises(ValueError, match="expected a run"):
             trends(wrong)
     with pytest.raises(ValueError, match="expected a list of names"):

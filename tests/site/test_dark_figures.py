@@ -10,15 +10,15 @@ from matplotlib.colors import to_rgb
 
 from loopbook.figures import style
 
-CSS = Path(__file__).parents[2] / "docs" / "_static" / "loopbook.css"
+DOCS = Path(__file__).parents[2] / "docs"
 LINES = sorted({*(look["color"] for look in style.LOOKS.values()), *style.RESPONSE_COLOURS})
 
 
 def turned(colour):
-    """What the filter of the page makes of a colour, by the matrices of the Filter Effects Module."""
-    css = CSS.read_text(encoding="utf-8")
-    (inverted, degrees), *others = set(re.findall(r"filter: invert\(([\d.]+)\) hue-rotate\((\d+)deg\)", css))
-    assert not others, "by the system and by the switch it is one filter"
+    """What the filter of a page makes of a colour, by the matrices of the Filter Effects Module."""
+    sheets = "".join((DOCS / sheet).read_text("utf-8") for sheet in ("_static/loopbook.css", "jupyterlab/custom.css"))
+    (inverted, degrees), *others = set(re.findall(r"filter: invert\(([\d.]+)\) hue-rotate\((\d+)deg\)", sheets))
+    assert not others, "by the system and by the switch, on the site and in JupyterLab, it is one filter"
     share, angle = float(inverted), np.radians(float(degrees))
     weights = np.array([0.213, 0.715, 0.072])
     around = np.array([[-0.213, -0.715, 0.928], [0.143, 0.140, -0.283], [-0.787, 0.715, 0.072]])
@@ -38,7 +38,8 @@ def contrast(one, other):
 @pytest.mark.parametrize("colour", LINES)
 def test_a_line_keeps_its_hue_and_is_seen_as_well(colour):
     day, night = to_rgb(colour), turned(colour)
-    assert contrast(night, turned("white")) > min(3, contrast(day, to_rgb("white")))
+    assert contrast(day, to_rgb("white")) > 3
+    assert contrast(night, turned("white")) > 4
     if max(day) - min(day) > 0.05:  # greys have no hue
         difference = abs(colorsys.rgb_to_hls(*day)[0] - colorsys.rgb_to_hls(*night)[0])
         assert min(difference, 1 - difference) * 360 < 3
@@ -51,6 +52,13 @@ def test_lines_that_differ_by_day_differ_by_night():
     for number, one in enumerate(LINES):
         for other in LINES[:number]:
             assert distance(one, other, turned) > 0.4 * distance(one, other, to_rgb), (one, other)
+
+
+def test_words_are_read_by_day_and_by_night_and_on_every_tint():
+    for words in (style.GREY, "black"):
+        assert contrast(to_rgb(words), to_rgb("white")) > 7 < contrast(turned(words), turned("white"))
+    for tint in style.TINTS:
+        assert contrast(to_rgb(tint), to_rgb("black")) > 14
 
 
 def test_white_becomes_the_page():
