@@ -124,65 +124,17 @@ class Modes:
                 y += (1 + (pole.imag > 0)) * (share * np.exp(pole * times)).real
         return y
 
-    def held(self, u: np.ndarray, h: float) -> np.ndarray:
-        """The response to samples that are held: a recursion for each mode."""
-        y = (self.final + self.shares.sum().real) * u
-        now = np.exp(self.poles * h)
-        for pole, one, share in zip(self.poles, now, self.shares, strict=True):
-            if pole.imag >= 0:
-                y += (1 + (pole.imag > 0)) * (share * signal.lfilter([0, one - 1], [1, -one], u)).real
-        return y
 
-
-def by_control(system: control.StateSpace, times: np.ndarray, u: np.ndarray | None = None) -> np.ndarray:
-    return control.forced_response(system, times, np.ones_like(times) if u is None else u)[1]
-
-
-def tustin_pi_step(K: float, T: float, steps: int, Kp: float, Ti: float, h: float, count: int) -> np.ndarray:
-    """The step response of a PI loop with a dead time of whole steps, by the bilinear transform and one filter.
-
-    The open loop's response to the step itself is exact, so that the jump of the setpoint costs no digits.
-    """
-    loop = [K * Kp * Ti, K * Kp], np.polymul([T, 1], [Ti, 0])
-    (held,), rest, _ = signal.cont2discrete(loop, h, "zoh")
-    alone = np.concatenate([np.zeros(steps), signal.lfilter(held, rest, np.ones(count - steps))])
-    above, below = signal.bilinear(*loop, 1 / h)
-    return signal.lfilter(below, np.append(below, np.zeros(steps)) + np.append(np.zeros(steps), above), alone)
-
-
-def held_late(above: list[float], below: list[float], delay: float, h: float, u: np.ndarray) -> np.ndarray:
-    """The exact response of an open loop to samples that are held, with any dead time: a filter with two inputs.
-
-    Where the dead time is no whole number of steps, each step sees an older sample first, and then a newer one.
-    """
-    A, B, C, _ = rational(above, below)
-    whole = max(math.ceil(delay / h - 1e-12), 1)
-    share = whole * h - delay
-
-    def moved(length: float) -> tuple[np.ndarray, np.ndarray]:
-        block = linalg.expm(np.pad(np.hstack([A, B]), ((0, 1), (0, 0))) * length)
-        return block[:-1, :-1], block[:-1, -1:]
-
-    (full, _), (after, newer), (_, older) = moved(h), moved(share), moved(h - share)
-    y = np.zeros(len(u))
-    for k, effect in ((whole - 1, newer), (whole, after @ older)):
-        taps, rest = signal.ss2tf(full, effect, C, np.zeros((1, 1)))
-        y[k:] += signal.lfilter(taps[0], rest, u[: len(u) - k])
-    return y
+def by_control(system: control.StateSpace, times: np.ndarray) -> np.ndarray:
+    return control.forced_response(system, times, np.ones_like(times))[1]
 
 
 # ------------------------------------------------------------------------------------------------ integrals and margins
 
 
-def integral_of_square(L: Linear, balanced: bool = False) -> float:
-    """The integral of the squared error of the loop after a step of the setpoint, from a Lyapunov equation.
-
-    `balanced` scales the states of the closed loop first, which SciPy's solver does not do.
-    """
+def integral_of_square(L: Linear) -> float:
+    """The integral of the squared error of the loop after a step of the setpoint, from a Lyapunov equation."""
     A, B, C = L.A - L.B @ L.C, L.B, L.C
-    if balanced:
-        A, (scales, _) = linalg.matrix_balance(A, permute=False, separate=True)
-        B, C = B / scales[:, None], C * scales
     x = np.linalg.solve(A, B)
     return (x.T @ linalg.solve_continuous_lyapunov(A.T, -C.T @ C) @ x).item()
 
@@ -198,15 +150,8 @@ def companion(L: control.TransferFunction) -> Linear:
     return Linear(system.A, system.B, system.C, system.D.item())
 
 
-class GridMargins(NamedTuple):
-    gain_margin: float
-    phase_margin: float
-    delay_margin: float
-    Ms: float
-
-
-def margins_on_grid(L: Callable[[np.ndarray], np.ndarray], omega: np.ndarray) -> GridMargins:
-    """Margins of a loop with its exact dead time from a grid of frequencies, each crossing refined to the last digits.
+def margins_on_grid(L: Callable[[np.ndarray], np.ndarray], omega: np.ndarray) -> tuple[float, float, float]:
+    """Gain margin, phase margin and Ms of a loop with its exact dead time from a grid of frequencies, each refined.
 
     It cannot know what happens between two points, or beyond the last one, or whether the loop is stable.
     """
@@ -225,10 +170,9 @@ def margins_on_grid(L: Callable[[np.ndarray], np.ndarray], omega: np.ndarray) ->
     nearest = optimize.minimize_scalar(
         lambda w: abs(1 + L(1j * w)), bounds=between, method="bounded", options={"xatol": 1e-10}
     )
-    return GridMargins(
+    return (
         min((g for g in gains if g > 1), default=math.inf),
         min((math.degrees(min(p, 2 * math.pi - p)) for p in phases), default=math.inf),
-        min((p / w for p, w in zip(phases, at_one, strict=True)), default=math.inf),
         1 / nearest.fun,
     )
 
@@ -336,16 +280,3 @@ def by_series(
 
     with mpmath.workdps(45):
         return np.array([float(value(time)) for time in times])
-
-
-def by_circle(times: Iterable[float], F: Function, radius: float, points: int) -> np.ndarray:
-    """The inverse Laplace transform from the poles within a circle, where those outside have decayed to nothing."""
-    with mpmath.workdps(120):
-        around = [radius * mpmath.expjpi(2 * mpmath.mpf(k) / points) for k in range(points)]
-        weights = [F(p) * p / points for p in around]
-        return np.array(
-            [
-                float(sum((w * mpmath.exp(p * time)).real for w, p in zip(weights, around, strict=True)))
-                for time in times
-            ]
-        )
