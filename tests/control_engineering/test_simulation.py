@@ -9,6 +9,7 @@ import pytest
 import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.integrate import quad
 
 from draws import draws
 from loopbook import plants, s, t
@@ -83,7 +84,7 @@ def test_dead_time_needs_no_grid(ratio, moment):
 @pytest.mark.parametrize("u", [sympy.sin(t), t * sympy.exp(-t), t * sympy.Heaviside(t - 2) + 1])
 def test_signals_that_change_all_the_time_are_integrated_too(u):
     H = sympy.exp(-sympy.Rational(3, 2) * s) / (2 * s + 1)
-    run = simulate(Process(H), until=20, step=0.7 * 10 / 7, u=u, d=0)
+    run = simulate(Process(H), until=20, step=1, u=u, d=0)
     assert close(run["y"], evaluate(response(H, u), run.times))
 
 
@@ -96,22 +97,13 @@ def test_an_array_is_held_between_the_samples():
 
 
 def test_a_plant_that_is_not_linear():
-    """With a flow that changes, V c' = w - c q is still linear in c; here it is solved by an integrating factor."""
+    """With a flow q that changes, V c' = w - c q is still linear in c; here it is solved by an integrating factor."""
     tank = BlendingTank()
     run = simulate(tank, until=600, step=5, q=0.01 + t / 20000)
-    from scipy.integrate import quad
-
     V, w, c_0 = float(tank.V), float(tank.w_A), float(tank.c_A)
-
-    def turned_over(time):
-        return (0.01 * time + time**2 / 40000) / V
-
-    exact = [
-        math.exp(-turned_over(time))
-        * (c_0 + quad(lambda x: math.exp(turned_over(x)) * w / V, 0, time, epsabs=1e-12)[0])
-        for time in run.times
-    ]
-    assert close(run["c_A"], np.array(exact))
+    turned_over = np.polynomial.Polynomial([0, 0.01, 1 / 40000]) / V  # the integral of q/V
+    put_in = [quad(lambda x: math.exp(turned_over(x)) * w / V, 0, time, epsabs=1e-12)[0] for time in run.times]
+    assert close(run["c_A"], np.exp(-turned_over(run.times)) * (c_0 + np.array(put_in)))
 
 
 # Dead time within the plant, and several of them.
@@ -174,17 +166,14 @@ def test_a_dead_time_in_a_balance_is_exact(tau, step):
     assert run["c_m"][-1] == pytest.approx(1, abs=0.01)
 
 
-def test_a_recycle_in_parts_is_the_whole_run():
-    whole, run = simulate(Recycle(), recycle_loop(1), until=60, setpoint=stepwise(0.9, {5: 1})), None
-    for until in (9, 12, 60):
-        run = simulate(Recycle(), recycle_loop(1), until=until, setpoint=stepwise(0.9, {5: 1}), after=run)
-    for name in whole.signals:
-        assert run[name] == pytest.approx(whole[name], abs=1e-9), name
-    # another time on the way: what comes back at first was there before
-    longer = simulate(Recycle(tau=15), recycle_loop(1), until=120, setpoint=1, after=whole)
-    rate = np.gradient(longer["c"], 1.0)[80:110]
-    back = (2 * rate + 0.5 * longer["c"][80:110] + 0.2 * longer["c"][80:110] - 0.3 * longer["c_in"][80:110]) / 0.2
-    assert back == pytest.approx(longer["c"][65:95], abs=0.02)
+@pytest.mark.parametrize(("before", "after"), [(7, 15), (0, 4)])
+def test_a_plant_goes_on_with_another_dead_time_inside(before, after):
+    """What comes back at first was there before."""
+    first = simulate(Recycle(tau=before), until=20, step=1, c_in=2)
+    run = simulate(Recycle(tau=after), until=60, step=1, c_in=2, after=first)
+    now = np.arange(20 + after - before, 50)
+    rates = (0.3 * 2 + 0.2 * run["c"][now - after] - 0.7 * run["c"][now]) / 2
+    assert np.gradient(run["c"], 1.0)[now] == pytest.approx(rates, abs=2e-3)
 
 
 def test_a_stiff_plant_with_a_delayed_state():
@@ -217,13 +206,6 @@ def test_the_history_is_no_longer_than_the_longest_dead_time_until_more_is_asked
     every = simulate(Recycle(tau_m=45), until=50, step=1, c_in=2 + sympy.sin(t))._past.integrator  # which keeps it all
     assert every.oldest == 0
     assert asked == pytest.approx([every.state_at(moment)[0] for moment in moments], abs=1e-9)
-
-
-def test_a_plant_goes_on_with_a_dead_time_inside_that_it_did_not_have():
-    first = simulate(Recycle(tau=0), until=20, step=1, c_in=2)
-    run = simulate(Recycle(tau=4), until=60, step=1, c_in=2, after=first)
-    rates = [0.3 * 2 + 0.2 * back - 0.7 * c for back, c in zip(run["c"][20:50], run["c"][24:54], strict=True)]
-    assert np.gradient(run["c"], 1.0)[24:54] == pytest.approx(np.array(rates) / 2, abs=2e-3)
 
 
 # Limits.
@@ -290,23 +272,14 @@ def test_a_sampled_loop_is_that_of_its_difference_equation():
 
 
 @pytest.mark.parametrize("pid", [PID(2, 5), PID(2, 5, 1, 0.1), PID(2)])
-def test_a_loop_without_dead_time_approaches_the_transfer_function_of_the_closed_loop(pid):
-    process = 1 / ((4 * s + 1) * (s + 1))
-    times, errors = None, []
+def test_a_loop_without_dead_time_approaches_the_transfer_functions_of_the_closed_loop(pid):
+    process, errors = 1 / ((4 * s + 1) * (s + 1)), []
+    exact = step_response(feedback(pid.expr * process)) - step_response(feedback(process, pid.expr)) / 2
     for step in (0.02, 0.01):
-        run = simulate(Process(process), Controller(pid, step), until=15, setpoint=1)
-        times = run.times
-        exact = evaluate(step_response(feedback(pid.expr * process)), times)
-        errors.append(np.abs(run["y"] - exact).max())
+        run = simulate(Process(process), Controller(pid, step), until=15, setpoint=1, d=-0.5)
+        errors.append(np.abs(run["y"] - evaluate(exact, run.times)).max())
     assert errors[1] < 0.01
     assert errors[0] / errors[1] == pytest.approx(2, rel=0.1)
-
-
-def test_the_load_response():
-    process, pid = 1 / (4 * s + 1), PID(2, 5)
-    run = simulate(Process(process), Controller(pid, 0.005), until=15, setpoint=0, d=1)
-    exact = evaluate(step_response(feedback(process, pid.expr)), run.times)
-    assert np.abs(run["y"] - exact).max() < 0.001
 
 
 def chip_loop(**changes):
@@ -337,20 +310,16 @@ def test_what_a_run_contains():
     )
 
 
-def test_a_run_is_the_same_for_the_same_seed_and_does_not_change_its_controller():
+def test_noise_is_the_same_for_the_same_seed_and_goes_on_as_noise_of_its_own():
     controller = chip_loop()
     one, two, other = (
-        simulate(WoodChipTank(), controller, until=2000, setpoint=11, noise=0.05, seed=seed) for seed in (1, 1, 2)
+        simulate(WoodChipTank(), controller, until=500, setpoint=11, noise=0.05, seed=seed) for seed in (1, 1, 2)
     )
     assert (one["h"] == two["h"]).all()
     assert (one["h"] != other["h"]).any()
-    assert controller.u is None
-
-
-def test_a_run_that_goes_on_has_noise_of_its_own():
-    run = simulate(WoodChipTank(), chip_loop(), until=500, setpoint=10, noise=0.05)
-    run = simulate(WoodChipTank(), chip_loop(), until=1000, setpoint=10, noise=0.05, after=run)
-    added = run["measurement"] - run["h"]
+    assert controller.u is None  # a run does not change its controller
+    longer = simulate(WoodChipTank(), controller, until=1000, setpoint=11, noise=0.05, after=one)
+    added = longer["measurement"] - longer["h"]
     assert abs(np.corrcoef(added[:100], added[100:200])[0, 1]) < 0.4
 
 
@@ -373,14 +342,22 @@ def test_feedforward_is_added():
 
 # A run that goes on.
 
+TRANSPORT = Controller(PID(5, 300), 10, u0=40, limits=(0, 100))
+IN_PARTS = {
+    "chips": (WoodChipTank(), chip_loop(), [255, 300, 1000], {"w_out": stepwise(25, {400: 30}) + sympy.sin(t / 100)}),
+    "recycle": (Recycle(), recycle_loop(1), [9, 12, 60], {}),
+    "transport": (HeatedTankWithTransport(tau=72.3), TRANSPORT, [300, 500, 1000], {}),
+}
 
-@pytest.mark.parametrize("parts", [[500, 1000], [255, 300, 1000]])
-def test_a_run_in_parts_is_the_whole_run(parts):
-    signals = {"setpoint": stepwise(10, {100: 11}), "w_out": stepwise(25, {400: 30}) + sympy.sin(t / 100)}
-    whole = simulate(WoodChipTank(), chip_loop(), until=1000, **signals)
-    run = None
+
+@pytest.mark.parametrize("name", IN_PARTS)
+def test_a_run_in_parts_is_the_whole_run(name):
+    plant, controller, parts, signals = IN_PARTS[name]
+    rest = getattr(plant, name_of(plant.output))
+    signals |= {"setpoint": stepwise(float(rest), {parts[0] // 2: float(rest) * 1.1})}
+    whole, run = simulate(plant, controller, until=parts[-1], **signals), None
     for until in parts:
-        run = simulate(WoodChipTank(), chip_loop(), until=until, after=run, **signals)
+        run = simulate(plant, controller, until=until, after=run, **signals)
     assert run.times.tolist() == whole.times.tolist()
     for name in whole.signals:
         assert run[name] == pytest.approx(whole[name], abs=1e-8), name
@@ -401,22 +378,17 @@ def test_an_open_run_before_a_closed_one():
     run = simulate(RCCircuit(), Controller(PID(2, 1), 0.5), until=10, setpoint=1, after=first)
     assert np.isnan(run["setpoint"][:4]).all()
     assert run["v_out"][:5].tolist() == first["v_out"].tolist()
+    assert run["v_in"][4] == pytest.approx(3)  # from which the controller begins
     assert run["v_out"][-1] == pytest.approx(1, abs=0.05)
 
 
 @pytest.mark.parametrize("tau", [65, 72.3])
-def test_a_delayed_output_needs_no_grid_in_a_run_in_parts(tau):
-    tank, settings = HeatedTankWithTransport(tau=tau), PID(5, 300)
-    controller = Controller(settings, 10, u0=40, limits=(0, 100))
-    whole = simulate(tank, controller, until=1000, setpoint=stepwise(40, {100: 45}))
-    run = None
-    for until in (300, 500, 1000):
-        run = simulate(tank, controller, until=until, after=run, setpoint=stepwise(40, {100: 45}))
-    assert run["T"] == pytest.approx(whole["T"], abs=1e-9)
-    assert run["u"] == pytest.approx(whole["u"], abs=1e-9)
-    # the sensor tells what the tank was at that time, on a grid ten times finer
-    finer = simulate(tank, until=1000, step=0.1, u=np.repeat(whole["u"], 100)[: 10_000 + 1])
-    assert whole["T"][20:] == pytest.approx(np.interp(whole.times[20:] - tau, finer.times, finer["T_1"]), abs=1e-4)
+def test_a_delayed_output_needs_no_grid(tau):
+    """The sensor tells what the tank was at that time, on a grid ten times finer."""
+    tank = HeatedTankWithTransport(tau=tau)
+    run = simulate(tank, TRANSPORT, until=1000, setpoint=stepwise(40, {100: 45}))
+    finer = simulate(tank, until=1000, step=0.1, u=np.repeat(run["u"], 100)[: 10_000 + 1])
+    assert run["T"][20:] == pytest.approx(np.interp(run.times[20:] - tau, finer.times, finer["T_1"]), abs=1e-4)
 
 
 def test_new_settings_do_not_move_a_loop_at_rest():
@@ -463,12 +435,6 @@ def test_any_object_with_a_step_and_an_update_is_a_controller():
     assert longer["P"].tolist() == 10 * [10] + 11 * [0]
     pid = simulate(tank, Controller(PID(1, 100), 1), until=40, setpoint=30, after=longer)
     assert pid["P"][20] == pytest.approx(0, abs=1e-12)  # it begins as after manual mode
-
-
-def test_a_controller_begins_from_the_control_signal_of_an_open_run():
-    run = simulate(HeatedTank(), until=100, step=10, P=12000)
-    run = simulate(HeatedTank(), Controller(PID(500, 300), 10), until=200, setpoint=30, after=run)
-    assert run["P"][10] == pytest.approx(12000)
 
 
 @pytest.mark.parametrize("scale", [1e-9, 1e-3, 1, 1e6, 1e12])
@@ -519,13 +485,36 @@ class Early(Plant):
     output, manipulated = x, u
 
 
+class AtOnce(Plant):
+    """Its output has the input in it."""
+
+    u, x = plants.signal(0, "1", "input"), plants.signal(0, "1", "state")
+    y = plants.measured(x + u, "1", "output")
+    decay = plants.Balance(x, -x)
+    output, manipulated = y, u
+
+
+class Dividing(Plant):
+    """It divides by zero on its way, within SciPy's solver, which would not come back from an error there."""
+
+    x, u = plants.signal(0, "1", "state"), plants.signal(-1, "1", "input")
+    law = plants.Balance(x, u / x)
+    output, manipulated = x, u
+
+
 REFUSED = {
+    "a plant in a sampled loop that responds at once": (
+        lambda: simulate(AtOnce(), Controller(PID(1), 1), until=10, setpoint=1),
+        "at once",
+    ),
+    "a division by zero on the way": (
+        lambda: simulate(Dividing(), until=2, step=1),
+        "x grows beyond all numbers before t = 1",
+    ),
     "a missing step": (lambda: simulate(TANK, until=100), "step is missing"),
     "a step of zero": (lambda: simulate(TANK, until=100, step=0), "step is 0"),
-    "a step that is not a number": (lambda: simulate(TANK, until=100, step="1"), "step is '1'"),
     "an end that is not a number": (lambda: simulate(TANK, until=math.nan, step=1), "until is nan"),
     "an end between two samples": (lambda: simulate(TANK, until=10.5, step=1), "whole number of steps"),
-    "an end before the beginning": (lambda: simulate(TANK, until=-10, step=1), "whole number of steps"),
     "a dead time before its time": (lambda: simulate(Early(), until=10, step=1), "u acts 1 before its time"),
     "a dead time inside far too short": (
         lambda: simulate(Recycle(tau=1e-9), until=10, step=1),
@@ -534,21 +523,14 @@ REFUSED = {
     "two different steps": (lambda: simulate(TANK, LOOP, until=100, step=1, setpoint=10), "runs every 5"),
     "a missing setpoint": (lambda: simulate(TANK, LOOP, until=100), "setpoint is missing"),
     "a setpoint for nobody": (lambda: simulate(TANK, until=100, step=1, setpoint=10), "no controller"),
-    "a feedforward for nobody": (lambda: simulate(TANK, until=100, step=1, feedforward=1), "no controller"),
     "two hands on one valve": (lambda: simulate(TANK, LOOP, until=100, setpoint=10, u=5), "controller that sets it"),
     "an unknown input": (lambda: simulate(TANK, until=100, step=1, q=5), "no input 'q': expected one of u, w_out"),
     "a letter in a signal": (lambda: simulate(TANK, until=100, step=1, u=sympy.Symbol("K")), "u: .*number for K"),
-    "a letter and time in a signal": (
-        lambda: simulate(TANK, until=100, step=1, u=sympy.Symbol("K") * t),
-        "number for K",
-    ),
     "an impulse": (lambda: simulate(TANK, until=100, step=1, u=sympy.DiracDelta(t)), "impulse"),
     "a signal that is text": (lambda: simulate(TANK, until=100, step=1, u="45"), "u: '45' is of type str"),
     "a short array": (lambda: simulate(TANK, until=100, step=1, u=[1, 2, 3]), "u has 3 values for 101 samples"),
-    "a short setpoint": (lambda: simulate(TANK, LOOP, until=100, setpoint=[10, 11]), "setpoint has 2 values for 21"),
     "NaN in an array": (lambda: simulate(TANK, until=2, step=1, u=[1, math.nan, 3]), "u is nan at t = 1"),
     "NaN as a number": (lambda: simulate(TANK, LOOP, until=100, setpoint=math.nan), "setpoint: nan is of type float"),
-    "infinite noise": (lambda: simulate(TANK, LOOP, until=100, setpoint=10, noise=math.inf), "noise"),
     "negative noise": (lambda: simulate(TANK, LOOP, until=100, setpoint=10, noise=-1), "deviation is -1"),
     "half a stretch by hand": (lambda: simulate(TANK, LOOP, until=100, setpoint=10, manual=[(0, 5)]), "manual has"),
     "another plant's run": (
@@ -558,11 +540,7 @@ REFUSED = {
     "a class for a plant": (lambda: simulate(WoodChipTank, until=10, step=1), "the plant is"),
     "a plant for the earlier run": (lambda: simulate(TANK, until=10, step=1, after=TANK), "after is"),
     "settings for a controller": (lambda: simulate(TANK, PID(1), until=10, setpoint=1), "the controller is PID"),
-    "an array of noise for nobody": (
-        lambda: simulate(TANK, until=2, step=1, noise=np.zeros(3)),
-        "noise is given, but no controller",
-    ),
-    "noise for nobody": (lambda: simulate(TANK, until=10, step=1, noise=1), "no controller"),
+    "noise for nobody": (lambda: simulate(TANK, until=10, step=1, noise=1), "noise is given, but no controller"),
     "an unknown manipulated input": (
         lambda: simulate(TANK, LOOP, until=10, setpoint=1, manipulated="h"),
         "has no input 'h'",
@@ -572,10 +550,6 @@ REFUSED = {
         "the beginning before the end",
     ),
     "a manual mode that is a number": (lambda: simulate(TANK, LOOP, until=10, setpoint=1, manual=5), "manual is 5"),
-    "a manual mode in words": (
-        lambda: simulate(TANK, LOOP, until=10, setpoint=1, manual=[("now", 5, 1)]),
-        "manual has",
-    ),
     "a seed that is none": (lambda: simulate(TANK, LOOP, until=10, setpoint=1, noise=1, seed=0.5), "seed is 0.5"),
     "an endless run": (lambda: simulate(TANK, until=1e12, step=1), "at most"),
     "a signal without a value": (lambda: simulate(TANK, until=10, step=1, w_out=sympy.log(t)), "w_out"),
@@ -593,10 +567,6 @@ REFUSED = {
         lambda: simulate(Process(1 / (s - 1)), until=2000, step=1, u=1),
         "grows beyond all numbers before t = 7",
     ),
-    "an unstable loop": (
-        lambda: simulate(Process(sympy.exp(-s) / s), Controller(PID(50), 0.5), until=5000, setpoint=1),
-        "grows beyond all numbers",
-    ),
 }
 
 
@@ -606,29 +576,3 @@ def test_what_is_refused_in_one_sentence(case):
     with pytest.raises(ValueError, match=message) as caught:
         call()
     assert "\n" not in str(caught.value)
-
-
-def test_a_plant_that_answers_at_once_cannot_be_in_a_sampled_loop():
-    class Gain(plants.Plant):
-        u = plants.signal(0, "1", "input")
-        x = plants.signal(0, "1", "state")
-        y = plants.measured(x + u, "1", "output")
-        decay = plants.Balance(x, -x)
-        output, manipulated = y, u
-
-    with pytest.raises(ValueError, match="at once"):
-        simulate(Gain(), Controller(PID(1), 1), until=10, setpoint=1)
-
-
-def test_a_division_by_zero_on_the_way_ends_in_one_sentence():
-    """It is raised within SciPy's solver, which would not come back from it."""
-
-    class Dividing(plants.Plant):
-        x = plants.signal(0, "1", "state")
-        u = plants.signal(-1, "1", "input")
-        law = plants.Balance(x, u / x)
-        output, manipulated = x, u
-
-    plant = Dividing()
-    with pytest.raises(ValueError, match="x grows beyond all numbers before t = 1"):
-        simulate(plant, until=2, step=1)

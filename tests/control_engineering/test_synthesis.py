@@ -116,7 +116,6 @@ def test_a_process_with_several_dead_times(process):
         (K * exp(-delay * s) / (T * s + 1), exp(-symbols("phi", positive=True) * s) / (Tc * s + 1)),  # left open
         (K * (1 - plain * s) / (T * s + 1), 1 / (Tc * s + 1)),  # the side of the zero is left open
         (K / s, 1 / (Tc * s + 1)),
-        (K / s**2, (2 * Tc * s + 1) / (Tc * s + 1) ** 2),
         (exp(-s) / s, exp(-s) / (s + 1)),
     ],
 )
@@ -134,7 +133,6 @@ def test_what_can_be_or_is_left_open_is_not_refused(process, desired):
         ((1 - s) / (s + 1) ** 2, 1 / (s + 1), "has a zero at 1: expected a desired response with that zero"),
         ((1 - s) ** 2 / (s + 1) ** 3, (1 - s) / (s + 1) ** 2, "has a zero at 1"),
         (K * (1 - T3 * s) / (T * s + 1), 1 / (Tc * s + 1), "has a zero at 1/T3"),
-        ((s**2 - s + 1) / (s + 1) ** 3, 1 / (s + 1), "has a zero at 1/2"),
         (s / (s + 1) ** 2, 1 / (s + 1), "has a zero at 0"),
         ((s**2 + 1) / (s + 1) ** 3, 1 / (s + 1), "has a zero at -I"),
         (1 / (s - 1), 1 / (s + 1), "has a pole at 1: expected a desired response that is 1 there"),
@@ -146,18 +144,13 @@ def test_what_can_be_or_is_left_open_is_not_refused(process, desired):
         (1 / (s**3 - 3 * s**2 - 7), 1 / (s + 1), "has a pole at 3.5"),
         (1 / (s + 1), 1 / (1 - s), "has a pole at 1: expected a stable one"),
         (1 / (s + 1), 1 / s, "has a pole at 0: expected a stable one"),
-        (1 / (s + 1), 1 / (s**2 + 4), "has a pole at -2[*]I: expected a stable one"),
         (1 / (s + 1), s + 1, "has more zeros than poles"),
-        (exp(-s) / (s + 1), exp(-s) * (s**2 + 1) / (s + 1), "has more zeros than poles"),
-        (1 / s, 0, "lags behind the setpoint"),
         (1 / s, 1, "lags behind the setpoint"),
         (0, 1 / (s + 1), "the model is 0"),
         (1 / sqrt(s), 1 / (s + 1), "not a rational function"),
-        (sympy.Function("G")(s), 1 / (s + 1), "not a rational function"),
         (1 / (s + 1), 1 / (s + exp(-s)), "dead time in its denominator"),
         (exp(s) / (s + 1), 1 / (s + 1), "a dead time cannot be negative"),
         ("1/s", 1 / (s + 1), "of type str"),
-        (oo, 1 / (s + 1), "not a rational function"),
     ],
 )
 def test_what_no_controller_can_do(process, desired, message):
@@ -192,11 +185,9 @@ def test_a_pole_that_only_numbers_know():
         ((s + 1) * (s + 2) / (s * (s + 1)), PID(1, 0.5)),
         (s * (s + 1) / s**2, PID(1, 1)),
         (exp(-s) * exp(s) * (s + 1) / s, PID(1, 1)),
-        (exp(2) * (s + 1) / s, PID(exp(2), 1)),
         (sqrt(2) * (pi * s + 1) / s, PID(sqrt(2) * pi, pi)),
         (1 / (1 / (1 + 1 / s)), PID(1, 1)),
         (K * (T1 * s + 1) / s, PID(K * T1, T1)),
-        (x * (T1 * s + 1) / s, PID(x * T1, T1)),
         (control.tf([6, 5, 1], [1, 0]), PID(5, 5, 1.2)),
         (control.tf2ss(control.tf([6, 5, 1], [1, 0.1, 0])), PID(30, 3, 2, 10, form="serial")),
     ],
@@ -263,40 +254,21 @@ def coefficients(function, n):
 
 
 @pytest.mark.parametrize(("controller", "function"), SERIES.values(), ids=SERIES)
-def test_the_series_beside_numerical_taylor_coefficients(controller, function):
-    match = as_pid(controller)
+@pytest.mark.parametrize("kind", [None, "P", "PI", "PID"])
+def test_the_series_beside_numerical_taylor_coefficients(controller, function, kind):
     integral, proportional, derivative = coefficients(function, 3)
+    if kind == "PID" and derivative / proportional < 0:  # a derivative time is never negative
+        with pytest.raises(ValueError, match="at low frequencies"):
+            as_pid(controller, kind)
+        return
+    match = as_pid(controller, kind)
     pid = match.settings
+    expected = integral if kind != "P" else 0, derivative if kind not in ("P", "PI") else 0
     assert not match.exact
     assert float(pid.Kp) == pytest.approx(float(proportional), rel=1e-9)
-    assert float(pid.Kp / pid.Ti) == pytest.approx(float(integral), rel=1e-9)
-    expected = derivative if derivative / proportional > 0 else 0  # a derivative time is never negative
-    assert float(pid.Kp * pid.Td) == pytest.approx(float(expected), rel=1e-9)
-
-
-def test_a_filter_beside_the_taylor_series_of_mpmath():
-    controller = (s + 1) * (2 * s + 1) * (3 * s + 1) / (s * (s + 1 / 2) * (s / 5 + 1))
-    with mpmath.workdps(40):
-        c = mpmath.taylor(lambda z: (z + 1) * (2 * z + 1) * (3 * z + 1) / (z + 0.5) / (z / 5 + 1), 0, 3)
-    pid = as_pid(controller, "PID with filter").settings
-    found = [pid.Kp / pid.Ti, pid.Kp, pid.Kp * pid.Td, -pid.Kp * pid.Td * pid.Tf]
-    assert [float(value) for value in found] == pytest.approx([float(value) for value in c])
-
-
-@pytest.mark.parametrize(("controller", "function"), SERIES.values(), ids=SERIES)
-@pytest.mark.parametrize("kind", ["P", "PI", "PID"])
-def test_no_more_than_the_kind(controller, function, kind):
-    try:
-        pid = as_pid(controller, kind).settings
-    except ValueError as error:
-        assert "at low frequencies" in str(error)  # noqa: PT017 - the derivative time would be negative
-        assert kind == "PID"
-        return
-    integral, proportional, _ = coefficients(function, 3)
-    assert float(pid.Kp) == pytest.approx(float(proportional), rel=1e-9)
-    assert pid.Tf == 0
-    assert pid.Td == 0 or kind == "PID"
-    assert oo == pid.Ti if kind == "P" else float(pid.Kp / pid.Ti) == pytest.approx(float(integral), rel=1e-9)
+    assert float(pid.Kp / pid.Ti) == pytest.approx(float(expected[0]), rel=1e-9)
+    assert float(pid.Kp * pid.Td) == pytest.approx(float(max(expected[1] / proportional, 0) * proportional), rel=1e-9)
+    assert pid.Tf == 0 or kind is None
 
 
 def test_the_filter_of_a_series_agrees_in_one_term_more():
@@ -325,7 +297,6 @@ def test_the_rest_is_what_the_settings_lack(Kp, T1, T2, one, other):
     [
         (0, None, "no proportional part"),
         (1 / s, None, "no proportional part"),
-        (3 * s, None, "no proportional part"),
         ((s + 1) / s**2, None, "at most one integrator"),
         (1 / (1 - exp(-s)) ** 2, None, "at most one integrator"),
         ((1 - 2 * s) / s, None, "Ti is -2"),
@@ -334,9 +305,7 @@ def test_the_rest_is_what_the_settings_lack(Kp, T1, T2, one, other):
         (1 - s, "PID", "Td is -1"),
         (1 + (1 + sympy.I) / s, None, "finite real number"),
         (1, "PD", "kind is 'PD': expected one of P, PI, PID, PID with filter"),
-        (1, 3, "kind is 3"),
         (sqrt(s), None, "not a rational function"),
-        (sympy.Function("G")(s), None, "not a rational function"),
         ("1/s", None, "of type str"),
         (control.tf([1], [1, 0], 0.1), None, "discrete time"),
     ],
@@ -370,11 +339,7 @@ BY_HAND = {
     "K": ((T1 + T2 + A) / (Tc + T3 + delay), T1 + T2 + A, A + T1 * T2 / (T1 + T2 + A)),
     "L": ((2 * zeta * T + A) / (Tc + T3 + delay), 2 * zeta * T + A, A + T**2 / (2 * zeta * T + A)),
     "M": ((2 * Tc + delay) / (Tc + delay) ** 2, 2 * Tc + delay, 0),
-    "N": (
-        (2 * Tc + delay) / (Tc + delay / 2) ** 2,
-        2 * Tc + delay,
-        (Tc * delay + delay**2 / 4) / (2 * Tc + delay),
-    ),
+    "N": ((2 * Tc + delay) / (Tc + delay / 2) ** 2, 2 * Tc + delay, delay * (Tc + delay / 4) / (2 * Tc + delay)),
     "O": (
         (2 * Tc + T + delay) / (Tc + delay) ** 2,
         2 * Tc + T + delay,
@@ -404,9 +369,12 @@ def test_every_row_of_the_table(case):
 @pytest.mark.parametrize("case", BY_HAND)
 def test_the_exact_controller_gives_the_loop_that_was_asked_for(case):
     made = design(case)
-    loop = feedback(made.match.controller * made.model)
-    assert sympy.cancel(loop - made.remaining * made.filter) == 0
+    asked = made.remaining * made.filter
+    assert sympy.cancel(feedback(made.match.controller * made.model) - asked) == 0
     assert sympy.cancel(made.invertible * made.remaining - made.model) == 0
+    # no offset, neither after a setpoint nor after a load
+    assert asked.subs(s, 0) == 1
+    assert sympy.limit(made.model * (1 - asked), s, 0) == 0
 
 
 @pytest.mark.parametrize("case", BY_HAND)
@@ -417,14 +385,6 @@ def test_exact_rows_and_series(case):
     if not match.exact:  # the exact controller is unstable, and the settings leave out what is of order s**2
         assert any(sympy.re(p).is_positive for p in poles(match.controller))
         assert sympy.cancel(match.rest / s**2).subs(s, 0).is_finite
-
-
-@pytest.mark.parametrize("case", BY_HAND)
-def test_no_offset_after_a_setpoint_or_a_load(case):
-    made = design(case)
-    to_setpoint = made.remaining * made.filter
-    assert to_setpoint.subs(s, 0) == 1
-    assert sympy.limit(made.model * (1 - to_setpoint), s, 0) == 0
 
 
 @pytest.mark.parametrize("case", BY_HAND)
@@ -463,12 +423,7 @@ def test_the_settings_do_not_depend_on_how_the_model_is_written(gain, T1, T2, la
     assert numbers == imc(expanded, slow) == imc(slow_first, slow) == imc(System(expanded), slow)
     with_common_factor = second_order(gain, T1, T2, late) * (s + 3) / (s + 3)
     assert numbers == imc(with_common_factor, slow)
-
-
-def test_a_system_of_python_control():
     assert imc(control.tf([2], [50, 15, 1]), 1) == imc(second_order(2, 10, 5), 1)
-    assert imc(control.tf2ss(control.tf([2], [50, 15, 1])), 1) == imc(second_order(2, 10, 5), 1)
-    assert imc(control.tf([2], [10, 1]), 0.1) == PID(50, 10)
 
 
 @settings(deadline=None, max_examples=draws(10))
@@ -476,9 +431,8 @@ def test_a_system_of_python_control():
 def test_higher_orders_of_pade_keep_the_promise(gain, T, late, slow, order):
     made = imc_design(first_order(gain, T, late), slow, lambda H: pade(H, order))
     loop = feedback(made.match.controller * made.model)
-    assert sympy.simplify(loop - made.remaining * made.filter) == 0 or complex(
-        (loop - made.remaining * made.filter).subs(s, 0.4 + 0.3j)
-    ) == pytest.approx(0, abs=1e-10)
+    difference = loop - made.remaining * made.filter
+    assert abs(complex(difference.subs(s, 0.4 + 0.3j))) < 1e-10
     assert not made.remaining.has(sympy.I)
 
 
@@ -495,24 +449,14 @@ def test_both_roads_of_the_slides():
         assert as_pid(taylor(ideal)).settings == imc(model, Tc)
 
 
-def test_a_negative_gain_makes_a_direct_controller():
-    assert imc(first_order(-2, 10, 3), 2) == PID(-1, 10)
-
-
-def test_complex_zeros_in_the_right_half_plane_remain():
-    made = imc_design((s**2 - s + 1) / (s + 1) ** 3, 1)
-    assert made.remaining == s**2 - s + 1
-    assert sympy.cancel(feedback(made.match.controller * made.model) - made.remaining * made.filter) == 0
-
-
 @pytest.mark.parametrize(
     ("numerator", "remains"),
     [
         (s**2 - s - 1, 1 - 2 * s / (1 + sqrt(5))),
         ((1 + s - s**2) ** 2, (1 - 2 * s / (1 + sqrt(5))) ** 2),
-        (s**3 - 6 * s**2 + 15 * s - 15, 1 - s + 2 * s**2 / 5 - s**3 / 15),
         (s**3 - s - 1, 1 - s / sympy.CRootOf(s**3 - s - 1, 0)),
         ((s - 2) * (s + 1 / sympy.S(3)), 1 - s / 2),
+        (s**2 - s + 1, s**2 - s + 1),
     ],
 )
 def test_zeros_that_are_no_fractions_are_kept_out_of_what_is_inverted(numerator, remains):
@@ -531,7 +475,6 @@ def test_zeros_that_are_no_fractions_are_kept_out_of_what_is_inverted(numerator,
         (1 / (s**2 + 1), 1, "has a pole at -I: expected a process that is stable"),
         (K / (T * s - 1), 1, "has a pole at 1/T"),
         (integrator_with_lag(K, T) / s, 1, "two integrators"),
-        (s / (s + 1), 1, "zero at 0: no rule is known"),
         ((s**2 + 1) / (s + 1) ** 3, 1, "zero at -I: no rule is known"),
         (K * exp(-plain * s) / (T * s + 1), 1, "zero at 1/plain, on which side is not known: expected positive"),
         (K * (x * s + 1) / (T * s + 1) ** 2, 1, "zero at -1/x, on which side is not known"),
@@ -539,11 +482,8 @@ def test_zeros_that_are_no_fractions_are_kept_out_of_what_is_inverted(numerator,
         ((exp(-s) + exp(-2 * s)) / (s + 1), 1, "adds several dead times"),
         (2, 1, "no proportional part"),
         (first_order(1, 2), 0, "Tc is 0: expected a positive"),
-        (first_order(1, 2), -1, "Tc is -1"),
         (first_order(1, 2), oo, "Tc is oo"),
-        (first_order(1, 2), sympy.I, "Tc is I"),
         (first_order(1, 2), "Tc", "Tc is 'Tc': expected a number or an expression"),
-        (first_order(1, 2), sympy.nan, "Tc is nan: expected a number or an expression"),
         (1 / sqrt(s), 1, "not a rational function"),
         (control.tf([1], [1, 1], 1), 1, "discrete time"),
     ],
