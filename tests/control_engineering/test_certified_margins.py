@@ -306,6 +306,9 @@ def test_nothing_in_the_loop():
         found = margins(nothing)
         assert found[:5] == (math.inf, 0, math.inf, math.inf, 1)
         assert delay_margin(nothing) == math.inf
+        assert is_closed_loop_stable(nothing)
+    with pytest.raises(ValueError, match="is 0"):
+        ultimate(0)
     with pytest.raises(ValueError, match="cancel an unstable pole"):
         margins(Loop(1 / (s - 1), 0))
 

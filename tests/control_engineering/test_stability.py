@@ -13,9 +13,7 @@ from scipy.optimize import brentq
 from draws import draws
 from loopbook import s
 from loopbook.deadtime import Loop, System, normal_form
-from loopbook.pid import PID, Controller
-from loopbook.plants import Process
-from loopbook.simulation import simulate
+from loopbook.pid import PID
 from loopbook.stability import (
     StabilityLimitError,
     boundary_pi,
@@ -40,24 +38,6 @@ DELAY = sympy.exp(-s)
 COEFFICIENTS = st.fractions(-3, 3, max_denominator=4).map(sympy.Rational)
 
 
-@settings(deadline=None, max_examples=draws(60))
-@given(st.lists(COEFFICIENTS, min_size=2, max_size=3), st.lists(COEFFICIENTS, min_size=1, max_size=2),
-       st.fractions(0, 8, max_denominator=5).map(sympy.Rational))  # fmt: skip
-def test_poles_are_counted_as_the_argument_principle_does(below, above, delay):
-    D = s ** len(below) + sum(c * s**n for n, c in enumerate(below))
-    N = sum(c * s**n for n, c in enumerate(above))
-    assume(N != 0)
-    loop = N / D * sympy.exp(-delay * s)
-    numerator, denominator = sympy.cancel(N / D).as_numer_denom()
-    around = sympy.lambdify(s, denominator + numerator * sympy.exp(-delay * s), "numpy")
-    radius = 60.0  # along the boundary of a half-disc that holds all poles of the right half-plane
-    up = np.linspace(-radius, radius, 400_001) * 1j
-    arc = radius * np.exp(1j * np.linspace(math.pi / 2, -math.pi / 2, 200_001))
-    values = np.concatenate([around(up), around(arc)])
-    assume(abs(values).min() > 1e-3)  # too close to the limit for the counting by turns
-    assert unstable_closed_loop_poles(loop) == -round(np.angle(values[1:] / values[:-1]).sum() / (2 * math.pi))
-
-
 def test_an_integrator_with_dead_time():
     assert ultimate(DELAY / s) == pytest.approx((math.pi / 2, 4), rel=1e-12)
     assert delay_margin(1 / s) == pytest.approx(math.pi / 2, rel=1e-12)
@@ -74,16 +54,8 @@ def test_three_equal_lags():
     assert (unstable_closed_loop_poles(9 / (s + 1) ** 3), unstable_closed_loop_poles(7 / (s + 1) ** 3)) == (2, 0)
 
 
-def test_loops_that_no_gain_or_no_delay_makes_unstable():
-    assert ultimate(1 / (s + 1)) == (math.inf, 0)
-    assert delay_margin(sympy.Rational(1, 2) / (s + 1)) == math.inf
-
-
 def test_an_unstable_process_has_a_lowest_gain():
-    assert (unstable_closed_loop_poles(2 / (s - 1)), unstable_closed_loop_poles(sympy.Rational(1, 2) / (s - 1))) == (
-        0,
-        1,
-    )
+    assert [unstable_closed_loop_poles(gain / (s - 1)) for gain in (2, sympy.Rational(1, 2))] == [0, 1]
     assert ultimate(1 / (s - 1)) == (math.inf, 0)
     Ku, Pu = ultimate(sympy.exp(-s / 2) / (s - 1))
     w = 2 * math.pi / Pu
@@ -144,18 +116,6 @@ def test_a_loop_that_returns_to_stability_with_more_delay():
     assert changes >= 3
 
 
-@pytest.mark.parametrize("factor", [0.97, 1.03])
-def test_the_simulated_loop_agrees(factor):
-    process = 2 * sympy.exp(-s) / ((4 * s + 1) * (s + 1))
-    _, Pu = ultimate(process)
-    step = 0.02
-    # the held control signal acts as half a step of dead time more
-    Ku_sampled, _ = ultimate(process * sympy.exp(-sympy.Rational(1, 100) * s))
-    run = simulate(Process(process), Controller(PID(factor * Ku_sampled), step), until=60, setpoint=1)
-    swing = [np.ptp(run["y"][(run.times >= a) & (run.times <= a + Pu)]) for a in (20, 60 - Pu)]
-    assert (swing[1] > swing[0]) == (factor > 1)
-
-
 @pytest.mark.parametrize(
     ("loop", "message"),
     [
@@ -170,13 +130,6 @@ def test_what_is_not_known(loop, message):
     for question in (is_closed_loop_stable, unstable_closed_loop_poles, ultimate, delay_margin, margins):
         with pytest.raises(ValueError, match=message):
             question(loop)
-
-
-def test_nothing_in_the_loop():
-    assert is_closed_loop_stable(0)
-    assert unstable_closed_loop_poles(sympy.S.Zero) == 0
-    with pytest.raises(ValueError, match="is 0"):
-        ultimate(0)
 
 
 def test_an_unstable_loop_has_no_margin():
@@ -205,7 +158,19 @@ def turns_around(D, radius=60.0):
     return None if abs(values).min() < 1e-3 else -round(np.angle(values[1:] / values[:-1]).sum() / (2 * math.pi))
 
 
-DELAYS = st.fractions(0, 5, max_denominator=5).map(sympy.Rational)
+DELAYS = st.fractions(0, 8, max_denominator=5).map(sympy.Rational)
+
+
+@settings(deadline=None, max_examples=draws(60))
+@given(st.lists(COEFFICIENTS, min_size=2, max_size=3), st.lists(COEFFICIENTS, min_size=1, max_size=2), DELAYS)
+def test_poles_are_counted_as_the_argument_principle_does(below, above, delay):
+    D = s ** len(below) + sum(c * s**n for n, c in enumerate(below))
+    N = sum(c * s**n for n, c in enumerate(above))
+    assume(N != 0)
+    numerator, denominator = sympy.cancel(N / D).as_numer_denom()
+    expected = turns_around(denominator + numerator * sympy.exp(-delay * s))
+    assume(expected is not None)
+    assert unstable_closed_loop_poles(N / D * sympy.exp(-delay * s)) == expected
 
 
 @settings(deadline=None, max_examples=draws(40))
@@ -313,8 +278,7 @@ def test_responses_grow_where_roots_are_unstable():
 
 
 def test_every_form_of_a_loop():
-    process, settings_ = 2 * DELAY / (4 * s + 1), PID(1, Ti=4)
-    loop = Loop(process, settings_)
+    loop = Loop(2 * DELAY / (4 * s + 1), PID(1, Ti=4))
     assert {is_closed_loop_stable(x) for x in (loop, loop.open, System(loop.open))} == {True}
     assert delay_margin(loop) == delay_margin(loop.open) == pytest.approx(math.pi - 1)
     # derivative action without filter: exp(-s) returns with Kp Td, and 1 is the limit for the lag 1
@@ -341,8 +305,6 @@ def test_margins_of_an_integrator_with_dead_time(k):
     w = found.omega_ms
     assert found.Ms == pytest.approx((1 - 2 * k * math.sin(w) / w + (k / w) ** 2) ** -0.5, rel=1e-12)
     assert k / w + w * math.cos(w) - math.sin(w) == pytest.approx(0, abs=1e-6)
-    grid = np.linspace(0.01, 40, 400_001)
-    assert 1 - 1e-9 < found.Ms / abs(1 / (1 + k * np.exp(-1j * grid) / (1j * grid))).max() < 1 + 1e-6
 
 
 @pytest.mark.parametrize(
@@ -381,35 +343,6 @@ MODEL = LAG * late("1.4")
 PREDICTOR = predictor(MODEL, PID(1.5, Ti=0.7).expr, MODEL)
 
 
-@pytest.mark.parametrize(
-    "loop",
-    [
-        PREDICTOR * LAG * late("1.6"),
-        PREDICTOR * LAG * late("1.4"),
-        late(1) / (3 * s + 1) + late(sympy.sqrt(5)) / (s + 1) / 2,
-        PID(0.7, 2, 0.5).expr * DELAY / (s + 1),
-        PID(0.3, 2, 2).expr * DELAY / (s + 1),
-    ],
-)
-def test_margins_with_several_dead_times_are_on_the_limit(loop):
-    found = margins(loop)
-    assert is_closed_loop_stable(loop)
-    for factor, stable in ((0.9999, True), (1.0001, False)):
-        assert is_closed_loop_stable(sympy.Rational(factor * found.gain_margin) * loop) == stable
-        assert is_closed_loop_stable(sympy.exp(-sympy.Rational(factor * found.delay_margin) * s) * loop) == stable
-    assert delay_margin(loop) == pytest.approx(found.delay_margin, rel=1e-13)
-    L = System(loop).frequency
-    assert abs(L(found.omega_c)) == pytest.approx(1, rel=1e-12)
-    angle = np.degrees(np.angle(-L(found.omega_c)))
-    assert abs(angle) == pytest.approx(found.phase_margin, rel=1e-9)
-    if math.isfinite(found.omega_180):
-        assert L(found.omega_180) == pytest.approx(-1 / found.gain_margin, rel=1e-12)
-    grid = np.linspace(1e-3, 60, 600_001)
-    S = abs(1 / (1 + L(grid)))
-    assert found.Ms >= S.max() * (1 - 1e-12)
-    assert math.isinf(found.omega_ms) or S.max() * (1 + 1e-5) > found.Ms
-
-
 def test_a_narrow_peak_of_the_sensitivity_is_found():
     zeta = sympy.Rational(1, 10**6)
     loop = (1 + zeta / 100) * DELAY / (s + 1) / 3 + zeta * s / (s**2 + zeta * s + 2) * late("0.5") / 10
@@ -426,13 +359,9 @@ def test_a_narrow_peak_of_the_sensitivity_is_found():
 
 def test_margins_that_have_no_end():
     found = margins(1 / (s + 1))
-    assert (found.gain_margin, found.gain_reduction, found.phase_margin, found.delay_margin) == (
-        math.inf,
-        0,
-        math.inf,
-        math.inf,
-    )
-    assert (found.Ms, found.omega_ms) == (1, math.inf)
+    assert found[:5] == (math.inf, 0, math.inf, math.inf, 1)
+    assert found.omega_ms == math.inf
+    assert ultimate(1 / (s + 1)) == (math.inf, 0)
     assert math.isnan(found.omega_180)
     assert math.isnan(found.omega_c)
     # the gain is 2 at high frequencies: without dead time that is well, with any it is not
@@ -552,10 +481,12 @@ def test_the_approximate_boundary_is_exact_where_the_lag_is_cancelled():
     [
         (lambda: boundary_pi(MODEL, 0), "values of Ti contain 0: expected positive"),
         (lambda: boundary_pi(MODEL, [1, math.inf]), "values of Ti contain inf"),
+        (lambda: boundary_pi(MODEL, np.array([1j])), "expected real numbers"),
         (lambda: boundary_pid(MODEL, 1, -1), "values of Td contain -1"),
         (lambda: boundary_pid(MODEL, [1, 2], [1, 2, 3]), "arrays that fit"),
         (lambda: boundary_pid((s + 1) / (s + 2), 1, 1), "improper"),
         (lambda: boundary_pi_approximate(0, 1, 1), "T is 0"),
+        (lambda: boundary_pi_approximate(1, 1, np.array([1j])), "expected real numbers"),
         (lambda: robustness(LAG, PID(1), 1), "one dead time"),
         (lambda: robustness(LAG * (1 + DELAY), PID(1), 1), "one dead time"),
         (lambda: robustness(MODEL, PID(1), [1, 0]), "gain ratios contain 0"),
@@ -659,12 +590,7 @@ def test_a_predictor_is_robust_only_if_it_is_gentle():
 
 
 @pytest.mark.parametrize(
-    ("loop", "a", "b"),
-    [
-        ("PI", (0.01, 3), (0.1, 5)),
-        ("predictor", (0.3, 3), (0, 3)),
-        ("two ways", (0.1, 10), (0, 8)),
-    ],
+    ("loop", "a", "b"), [("PI", (0.01, 3), (0.1, 5)), ("predictor", (0.3, 3), (0, 3)), ("two ways", (0.1, 10), (0, 8))]
 )
 def test_a_map_counts_as_single_loops_do(loop, a, b):
     x, y = sympy.symbols("x y")
@@ -709,7 +635,7 @@ def test_marks_in_a_map():
         ("K/s", {"K": [1]}, "expected two symbols"),
         ("K/(s + a)", {"K": [1], "b": [1]}, "has the symbols K, a, and there are values for K, b"),
         ("K/(s + a)", {"K": 1, "a": [1]}, "one-dimensional"),
-        ("K/(s + a)", {"K": ["x"], "a": [1]}, "expected real numbers"),
+        ("K/(s + a)", {"K": [1j], "a": [1]}, "expected real numbers"),
         ("K*exp(-a*s)/s", {"K": [1], "a": [-1, 1]}, "dead time -1"),
         ("K*s**2/(s + a)", {"K": [1], "a": [1]}, "improper"),
         ("K/(a*s + 1)", {"K": [1], "a": [1, 0]}, "highest power"),
@@ -718,15 +644,3 @@ def test_marks_in_a_map():
 def test_maps_without_meaning(loop, values, message):
     with pytest.raises(ValueError, match=message):
         stability_map(sympy.sympify(loop, locals={"s": s}), **values)
-
-
-def test_complex_numbers_are_not_cut():
-    process, (Kp, Ti) = DELAY / (s + 1), sympy.symbols("Kp Ti", positive=True)
-    for question in (
-        lambda: boundary_pi(process, np.array([1 + 1j])),
-        lambda: boundary_pi_approximate(1, 1, np.array([1j])),
-        lambda: robustness(process, PID(1, Ti=1), np.array([1j])),
-        lambda: stability_map(process * Kp * (1 + 1 / (Ti * s)), Kp=np.array([1j]), Ti=np.array([1.0])),
-    ):
-        with pytest.raises(ValueError, match="expected real numbers"):
-            question()
