@@ -2,6 +2,7 @@
 
 import copy
 import itertools
+from functools import partial
 
 import numpy as np
 import pytest
@@ -47,19 +48,15 @@ from loopbook.diagrams.valves import BODIES
 from pictures import crossed_texts, misplaced_texts, overlapping_texts, smallest_print, written
 
 TAGGED = {
-    **{f"valve {kind}": lambda kind=kind: valve("HV12", kind=kind) for kind in VALVES},
-    **{f"control valve {way}": lambda way=way: control_valve("FV123", actuator=way) for way in ACTUATORS},
-    **{f"control valve {kind}": lambda kind=kind: control_valve("V1", kind=kind) for kind in BODIES[1:]},
-    **{f"pump {kind}": lambda kind=kind: pump("P1", kind=kind) for kind in PUMPS},
-    **{f"fan {kind}": lambda kind=kind: fan("F1", kind=kind) for kind in FANS},
-    **{f"compressor {kind}": lambda kind=kind: compressor("K1", kind=kind) for kind in COMPRESSORS},
-    **{f"exchanger {kind}": lambda kind=kind: heat_exchanger("E101", kind=kind) for kind in EXCHANGERS},
-    **{f"heater {kind}": lambda kind=kind: heater("H1", kind=kind) for kind in HEATERS},
-    "turbine": lambda: turbine("T1"),
-    "feed screw": lambda: feed_screw("S1"),
-    "conveyor": lambda: conveyor("B1"),
-    "cyclone": lambda: cyclone("C1"),
-    "silo": lambda: silo("S1"),
+    **{f"valve {kind}": partial(valve, kind=kind) for kind in VALVES},
+    **{f"control valve {way}": partial(control_valve, actuator=way) for way in ACTUATORS},
+    **{f"control valve {kind}": partial(control_valve, kind=kind) for kind in BODIES[1:]},
+    **{f"pump {kind}": partial(pump, kind=kind) for kind in PUMPS},
+    **{f"fan {kind}": partial(fan, kind=kind) for kind in FANS},
+    **{f"compressor {kind}": partial(compressor, kind=kind) for kind in COMPRESSORS},
+    **{f"exchanger {kind}": partial(heat_exchanger, kind=kind) for kind in EXCHANGERS},
+    **{f"heater {kind}": partial(heater, kind=kind) for kind in HEATERS},
+    **{make.__name__: make for make in (turbine, feed_screw, conveyor, cyclone, silo)},
 }
 BARE = {
     "motor": motor,
@@ -83,7 +80,7 @@ BARE = {
         for place in PLACES
     },
 }
-SYMBOLS = TAGGED | BARE
+SYMBOLS = {name: partial(make, "FV123") for name, make in TAGGED.items()} | BARE
 WAYS = {"right": (1, 0), "left": (-1, 0), "up": (0, 1), "down": (0, -1)}
 LAYOUTS = {"right": "a x b", "left": "b x a", "up": "b\n x\n a", "down": "a\n x\n b"}
 
@@ -160,14 +157,7 @@ def shape(picture):
 
 
 def test_every_symbol_differs_from_every_other_one():
-    plain = {name: make() for name, make in BARE.items()}
-    plain |= {f"valve {kind}": valve(kind=kind) for kind in VALVES}
-    plain |= {f"control valve {way}": control_valve(actuator=way) for way in ACTUATORS}
-    plain |= {f"pump {kind}": pump(kind=kind) for kind in PUMPS} | {f"fan {kind}": fan(kind=kind) for kind in FANS}
-    plain |= {f"compressor {kind}": compressor(kind=kind) for kind in COMPRESSORS}
-    plain |= {f"exchanger {kind}": heat_exchanger(kind=kind) for kind in EXCHANGERS}
-    plain |= {f"heater {kind}": heater(kind=kind) for kind in HEATERS}
-    plain |= {"turbine": turbine(), "cyclone": cyclone(), "silo": silo()}
+    plain = {name: make() for name, make in (BARE | TAGGED).items()}
     plain |= {f"conductor {kind}": conductor(kind) for kind in CONDUCTORS}
     del plain["generator"]  # differs from a motor by its letter
     shapes = {name: shape(symbol_table({"x": symbol})) for name, symbol in plain.items()}

