@@ -255,7 +255,7 @@ JUDGED = [
         (number(41, "", "the number of the loop"), text, RIGHT, "read as 41")
         for text in ("TC41", "loop 41", "no. 41", "41 (pressure)", "#41", "TC-41")
     ),
-    *((numbers([41, 42]), text, RIGHT, "right") for text in ("loops 41, 42", "41 and 42", "loop 41 and loop 42")),
+    *((numbers([41, 42]), text, RIGHT, "right") for text in ("41, 42", "41 and 42")),
     (number(41), "TC41", UNJUDGED, "not a number"),
     (number(8, "s"), "at 8 s", RIGHT, "right"),
     (number(1.25), "1.25 times smaller", UNJUDGED, "not a number"),

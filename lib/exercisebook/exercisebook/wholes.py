@@ -1,7 +1,8 @@
-"""Answers that may come whole or in parts: a controller, and its settings one by one."""
+"""Answers that may come whole or in parts: a spring, and its stiffness and its length one by one."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, ClassVar
 
 
@@ -37,6 +38,15 @@ class Whole:
 
     def of_data(self, data: dict[str, Any]) -> object | None:
         """Return the object that a dictionary is the data of; None for another dictionary."""
+        raise NotImplementedError
+
+    def in_words(self, data: dict[str, Any], written: Callable[[Any], str]) -> str | None:
+        """Return the object that a dictionary is the data of, as people write it; None for another dictionary.
+
+        Arguments:
+            data: as plain data, in which a fraction is a text, and which may be anybody's.
+            written: returns a value of it as a text.
+        """
         raise NotImplementedError
 
 

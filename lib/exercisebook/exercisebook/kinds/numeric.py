@@ -80,8 +80,8 @@ MOST_UNITS = 2
 class Number(Kind):
     """A real number with its unit; a text may name another unit, as "2 min" where seconds are asked.
 
-    >>> Ti = Number(120, "s", "the integral time")
-    >>> Ti.agrees(Ti.read("2 min")[0])
+    >>> period = Number(120, "s", "the period")
+    >>> period.agrees(period.read("2 min")[0])
     True
     """
 

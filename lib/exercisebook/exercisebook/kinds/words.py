@@ -31,8 +31,8 @@ _SEPARATOR = re.compile(r"[,;&\n]|[-=]>|→|\b(?:and|then|und|plus)\b|(?<=\w)\s?
 class Word(Kind):
     """One word of several; case, spaces, hyphens and articles make no difference, and usual other words are read.
 
-    >>> action = Word("reverse", ["reverse", "direct"], "the action of the controller")
-    >>> action.agrees(action.read(" Reverse")[0])
+    >>> moves = Word("to the left", ["to the left", "to the right"], "the way in which it moves")
+    >>> moves.agrees(moves.read(" To the Left")[0])
     True
     """
 

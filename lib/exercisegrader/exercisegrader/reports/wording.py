@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from exercisebook import png
 from exercisebook.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WAITING, WRONG
 from exercisebook.reading import shortened
+from exercisebook.wholes import WHOLES
 from exercisegrader.results import NO_CODE, UNASKED
 from plainmath.tables import plain_words
 
@@ -29,8 +29,6 @@ MOST_REMARKS = 20
 _JOINERS = "\u200c\u200d"
 #: White space, but for what keeps a number and its unit in one line.
 _SPACE = re.compile(r"[^\S\N{NO-BREAK SPACE}]+")
-_SETTINGS = ("Kp", "Ti", "Td", "Tf")
-_FRACTION = re.compile(r"-?[0-9]{1,300}/[1-9][0-9]{0,6}")
 
 
 def visible(text: str) -> str:
@@ -107,8 +105,6 @@ def answer_in_words(answer: Plain) -> str:
 
     >>> answer_in_words([2.5, "3 min", {"-1": 2}]), answer_in_words({"unreadable": "a function"})
     ('[2.5, 3 min, {-1: 2}]', '')
-    >>> answer_in_words({"Kp": "30303/5000", "Ti": 12, "Td": 0, "Tf": 0, "form": "parallel"})
-    'Kp = 6.0606, Ti = 12'
     """
     if isinstance(answer, dict) and [*answer] == ["unreadable"]:
         return ""
@@ -118,28 +114,16 @@ def answer_in_words(answer: Plain) -> str:
 
 
 def _in_words(answer):
-    if isinstance(answer, dict) and {"Kp", "form"} <= {*answer} <= {"form", *_SETTINGS}:
-        return _controller(answer)
     if isinstance(answer, dict):
+        for whole in WHOLES:
+            if (said := whole.in_words(answer, _in_words)) is not None:
+                return said
         return "{" + ", ".join(f"{name}: {_in_words(value)}" for name, value in answer.items()) + "}"
     if isinstance(answer, list):
         return "[" + ", ".join(map(_in_words, answer)) + "]"
     if isinstance(answer, float):
         return f"{answer:.12g}"
     return "" if answer is None else str(answer)
-
-
-def _controller(settings):
-    """A controller, whose settings may be exact fractions, without those that it does not use."""
-    usual = {"Ti": "inf", "Td": 0, "Tf": 0}
-    used = [name for name in _SETTINGS if settings.get(name, usual.get(name)) != usual.get(name)]
-    form = f", {settings['form']} form" if {"Td", "Tf"} & {*used} else ""
-    return ", ".join(f"{name} = {_in_decimals(settings[name])}" for name in used) + form
-
-
-def _in_decimals(value):
-    is_fraction = isinstance(value, str) and _FRACTION.fullmatch(value)
-    return f"{float(Fraction(value)):.8g}" if is_fraction else _in_words(value)
 
 
 def remarks(result: Result) -> list[str]:

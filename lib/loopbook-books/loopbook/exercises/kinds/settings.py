@@ -6,7 +6,8 @@ import ast
 import math
 import random
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -289,6 +290,19 @@ class Controller(Whole):
         """The controller of settings with a form."""
         return Settings.without_key().read(data)[0] if {"Kp", "form"} <= data.keys() else None
 
+    def in_words(self, data: dict[str, Any], written: Callable[[Any], str]) -> str | None:
+        """The settings that a controller uses, and its form where there are two.
+
+        >>> Settings.whole.in_words({"Kp": "30303/5000", "Ti": 12, "Td": 0, "Tf": 0, "form": "parallel"}, str)
+        'Kp = 6.0606, Ti = 12'
+        """
+        if not {"Kp", "form"} <= data.keys() <= {"form", *NAMES}:
+            return None
+        usual = {"Ti": "inf", "Td": 0, "Tf": 0}
+        used = [name for name in NAMES if data.get(name, usual.get(name)) != usual.get(name)]
+        form = f", {data['form']} form" if {"Td", "Tf"} & {*used} else ""
+        return ", ".join(f"{name} = {_in_decimals(data[name]) or written(data[name])}" for name in used) + form
+
 
 Settings.whole = Controller()
 
@@ -396,6 +410,8 @@ def _by_our_names(given):
     return found, f"read {listed(others)}" if others else ""
 
 
+#: As much of one as a number can be of it: not of 0, and of no length without end.
+_FRACTION = re.compile(r"-?[0-9]{1,300}/[1-9][0-9]{0,6}")
 #: So many values of s tell the settings of a formula, and as many others confirm them.
 _MOST_POINTS = 30
 
@@ -460,6 +476,12 @@ def _with_terms(c0, c1, c2, Tf):
 
 def _rounded(value):
     return float(f"{value:.8g}")
+
+
+def _in_decimals(value):
+    """A fraction in a text as a decimal number; empty for anything else."""
+    is_fraction = isinstance(value, str) and _FRACTION.fullmatch(value)
+    return f"{float(Fraction(value)):.8g}" if is_fraction else ""
 
 
 def _unknown(given):
