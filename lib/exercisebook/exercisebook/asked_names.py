@@ -1,4 +1,4 @@
-"""The names under which readers answer, matched with those that are asked: ``check(K_c=2)`` where `Kp` is asked."""
+"""The names under which readers answer, matched with those that are asked: ``check(t_1=2)`` where `T1` is asked."""
 
 from __future__ import annotations
 
@@ -51,8 +51,7 @@ def matched(given: Iterable[str], asked: Iterable[str]) -> dict[str, str]:
 def as_asked(given: Mapping[str, Any], key: Mapping[str, Kind]) -> dict[str, Any]:
     """Return answers under the names that are asked; one that may mean none or several keeps its own.
 
-    The parts of a `Whole`, as a controller's settings, may be given one by one where it is asked, and as a whole where
-    they are asked one by one.
+    The parts of a `Whole` may be given one by one where it is asked, and as a whole where they are asked one by one.
 
     >>> from exercisebook.kinds import Number
     >>> as_asked({"t_1": 2}, {"T1": Number(2)})

@@ -2,24 +2,24 @@
 
 So an exercise looks::
 
-    @exercise("10.2", title="Settings for the air heater", points=4, where=lambda T, delay: delay < T)
-    def air_heater(K=between(2, 6, "K/%"), T=between(15, 40, "s"), delay=between(2, 6, "s")):
-        '''The statement in Markdown, with {K}, {T} and {delay}.'''
+    @exercise("2.3", title="Braking", points=4, where=lambda v, way: way > v)
+    def braking(v=between(5, 30, "m/s"), way=between(10, 90, "m"), mass=between(800, 2000, "kg")):
+        '''The statement in Markdown, with {v}, {way} and {mass}.'''
         return answers(
-            Kp=number(T / (2 * K * delay), "%/K", "the proportional gain"),
-            Ti=number(min(T, 4 * delay), "s", "the integral time"),
+            t=number(2 * way / v, "s", "the time until the car stands"),
+            F=number(mass * v**2 / (2 * way), "N", "the force of its brakes"),
         )
 
-    @air_heater.mistake("That is the integral time for $c = 4$; here $c = 2$ is asked.")
-    def _(T, delay):
-        return {"Ti": min(T, 8 * delay)}
+    @braking.mistake("The car does not go on at {v}: half of that is its mean velocity.")
+    def _(v, way):
+        return {"t": way / v}
 
-    air_heater.hints("Skogestad's rule ...", "With $T_C = \\tau$ ...", "The first line is ...")
+    braking.hints("The mean velocity ...", "With $v^2 = 2 a s$ ...", "The first line is ...")
 
-    @air_heater.solution
-    def _(T, delay):
-        '''The worked solution in Markdown, with {T}, {limit} and the key {Kp}.'''
-        return {"limit": (4 * delay, "s")}
+    @braking.solution
+    def _(v, way):
+        '''The worked solution in Markdown, with {v}, {a} and the key {F}.'''
+        return {"a": (v**2 / (2 * way), "m/s²")}
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ MOST_DRAWS = 1000
 def answers(**kinds: Kind | float | sympy.Expr) -> dict[str, Kind]:
     """Return the key of an exercise: a kind for each asked quantity; a bare number is one without unit.
 
-    >>> answers(K=2, Ti=number(12, "s", "the integral time"))["K"].key
+    >>> answers(K=2, T=number(12, "s", "the period"))["K"].key
     2.0
     """
     if not kinds:

@@ -33,8 +33,7 @@ class Formula:
 
     Arguments:
         given: text, in Python's notation or as people write formulas; a number; an expression of SymPy; or something
-            that has a transfer function, as a `PID`, a `System`, or a system of python-control with one input and
-            one output.
+            that has one as its ``expr``, or is a linear system with one input and one output.
         symbols: the names that may occur.
     Attributes:
         text: the formula in Python's notation, where ``^`` is a power too.

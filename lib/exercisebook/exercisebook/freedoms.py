@@ -1,8 +1,8 @@
 """The numbers of a formula that may be rounded, and those that belong together.
 
 A number that multiplies a product is one number, however it is written: 5/2, and the 5 and the 2 of 5*x/(2*y). In a
-factor as 40*s + 4 one of the two numbers says nothing new beside the number before the product: 1/(40*s + 4) has a gain
-of 0.25 and a time constant of 10. What stands in an exponent alone, as in s**2, is exact.
+factor as 40*s + 4 one of the two numbers says nothing new beside the number before the product: 1/(40*s + 4) is a
+0.25/(10*s + 1). What stands in an exponent alone, as in s**2, is exact.
 """
 
 from __future__ import annotations

@@ -73,8 +73,8 @@ def judge(
         background: what else is known of the exercise, for the general ones.
 
     >>> from exercisebook.kinds import Number
-    >>> judge("Ti", Number(120, "s", "the integral time"), 2)
-    Verdict(name='Ti', status='mistake', says='that would be the value in min; asked: the integral time, in s')
+    >>> judge("T", Number(120, "s", "the period"), 2)
+    Verdict(name='T', status='mistake', says='that would be the value in min; asked: the period, in s')
     """
     try:
         return Verdict(name, *limited(SECONDS, _judged, kind, given, mistakes, background))

@@ -81,8 +81,8 @@ def between(
 def choice(*values: Number | str, unit: str = "", reference: Number | str | None = None) -> Parameter:
     """Return a parameter that takes one of several values, words or numbers; the first one is the reference.
 
-    >>> choice("heating", "cooling").values
-    ('heating', 'cooling')
+    >>> choice("open", "closed").values
+    ('open', 'closed')
     """
     if len(values) < 2:
         raise ValueError(f"the values are {values!r}: expected at least two of them")
@@ -140,8 +140,8 @@ def written(value: Number | str, unit: str = "") -> str:
 def as_text(value: Value) -> str:
     """Return a value as a text that `of_text` reads back exactly; a word stands in quotes.
 
-    >>> as_text(sympy.Rational(5, 2)), as_text(sympy.sqrt(2)), as_text("heating")
-    ('5/2', 'sqrt(2)', "'heating'")
+    >>> as_text(sympy.Rational(5, 2)), as_text(sympy.sqrt(2)), as_text("open")
+    ('5/2', 'sqrt(2)', "'open'")
     """
     if isinstance(value, str):
         return f"'{value}'"

@@ -33,12 +33,12 @@ _EXPECTED = "a figure of Matplotlib, as plt.gcf(), or the bytes of a PNG file"
 def of_figure(value: object) -> bytes | None:
     """Return a figure as the bytes of a PNG file that `checked` accepts; None for a value that is no figure.
 
-    A figure is one of Matplotlib or of this library; axes, lines, and other things in a figure stand for it; so do
-    pyplot, images of Pillow, and bytes of a PNG file. Raises Unreadable for one that cannot be made small enough.
+    A figure is one of Matplotlib, or has ``png()`` and ``alt``; axes, lines, and other things in a figure stand for it;
+    so do pyplot, images of Pillow, and bytes of a PNG file. Raises Unreadable for one that cannot be made small enough.
 
-    >>> from loopbook.figures import time_plot
-    >>> size(of_figure(time_plot({"$y(t)$": [0, 2]}, [0, 1]))), of_figure("plot.png")
-    ((870, 373), None)
+    >>> from PIL import Image
+    >>> size(of_figure(Image.new("L", (5, 3)))), of_figure("plot.png")
+    ((5, 3), None)
     """
     if value is None or isinstance(value, str | int | float | complex | dict):
         return None
@@ -50,7 +50,7 @@ def _content(value):
     """A PNG file of a figure; None for what is no figure."""
     if isinstance(value, bytes | bytearray | memoryview):
         return bytes(value) if bytes(value).startswith(_SIGNATURE) else None
-    if callable(getattr(type(value), "png", None)) and hasattr(value, "alt"):  # of `loopbook.figures`
+    if callable(getattr(type(value), "png", None)) and hasattr(value, "alt"):
         return value.png()
     if (image := sys.modules.get("PIL.Image")) and isinstance(value, image.Image):
         return _stored(value)

@@ -94,7 +94,7 @@ def _drawn(symbols: Iterable[str], sizes: list[float], dice: random.Random, shar
                 size = dice.choice(sizes) * math.exp(dice.uniform(-1.5, 1.5))
             else:
                 size = math.exp(dice.uniform(least, most))
-            # in the whole plane, and near the axis where a dead time leaves the range of decimal numbers elsewhere
+            # in the whole plane, and near the axis where exp(-3*s) leaves the range of decimal numbers elsewhere
             angle = math.copysign(math.pi / 2 + dice.gauss(0, 0.05), dice.uniform(-1, 1))
             if k % 4 < 3:
                 angle = dice.uniform(-math.pi, math.pi)

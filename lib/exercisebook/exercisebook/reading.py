@@ -1,8 +1,8 @@
 """Reading what readers give, without running anything of theirs: values, rows of values, and formulas.
 
 Python's grammar reads the text of a formula, and what is no arithmetic is refused. A text that is none of Python's is
-read as people write formulas, in `notation`, and a remark says how. SymPy's expressions, and systems of the library
-and of python-control, are read from what they spell.
+read as people write formulas, in `notation`, and a remark says how. SymPy's expressions, and linear systems of SciPy
+and python-control, are read from what they spell.
 """
 
 from __future__ import annotations

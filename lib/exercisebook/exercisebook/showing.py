@@ -66,8 +66,8 @@ class Page(Showing):
         head: the line above it; empty for none.
         draw: returns the figure, or None.
 
-    >>> Page("The **gain** comes first.")
-    The **gain** comes first.
+    >>> Page("The **law** comes first.")
+    The **law** comes first.
     """
 
     def __init__(self, body: str, head: str = "", draw: Callable[[], Any] = lambda: None):

@@ -1,4 +1,4 @@
-"""What of a formula is right: its gain, dead time, poles and zeros, its beginning and its end.
+"""What of a formula is right: on which symbols it depends, and in time its beginning and its end.
 
 All of it is worked out from values of the formula at some points, for the key and the answer alike. What cannot be told
 from them is not said.

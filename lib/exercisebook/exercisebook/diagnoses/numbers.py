@@ -113,9 +113,9 @@ class Mistake:
 def found_in(answer: float, case: Case, agrees: Callable[[float], bool] | None = None) -> Finding | None:
     """Return the mistake in a wrong number; the nearest ones before those within its rounding.
 
-    >>> case = Case(12, "s", "the integral time, in s", givens=[Amount(4, "s", "4 s"), Amount(3, "", "3")])
+    >>> case = Case(12, "s", "the period, in s", givens=[Amount(4, "s", "4 s"), Amount(3, "", "3")])
     >>> found_in(4, case).says
-    'that is the same number as the 4 s of the question: how does one get from there to the integral time, in s?'
+    'that is the same number as the 4 s of the question: how does one get from there to the period, in s?'
     >>> found_in(17.9, case)
     """
     agrees = agrees or (lambda wrong: abs(wrong - case.key) <= case.within * abs(case.key))

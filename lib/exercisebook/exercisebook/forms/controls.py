@@ -136,7 +136,7 @@ def _order(place, field, beside):
 
 
 def _parts(place, field, beside):
-    """A line for each setting, and where both are right a list of the two forms."""
+    """A line for each part, and where it may have several forms a list of them."""
     lines = [
         f'<span class="part"><label for="{place}-{name}"><code>{name}</code> <span>{what}</span></label>'
         f'<span class="box"><input type="text" id="{place}-{name}" class="short" data-part="{name}" {_PLAIN} '

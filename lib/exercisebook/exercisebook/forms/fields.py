@@ -15,13 +15,13 @@ class Field:
 
     Attributes:
         name: of the quantity.
-        kind: of the answer, as authors call it, as "transfer_function".
+        kind: of the answer, as authors call it, as "time_function".
         control: how it is filled in, one of the names in `kinds.kind`.
         asked: the quantity in words, as HTML.
         unit: beside the field.
         help: how an answer looks, as HTML; empty where that is plain.
         words: to choose from.
-        parts: of a controller: (name, what it is, unit).
+        parts: of something whole: (name, what it is, unit).
         weight: what the quantity counts, where others count 1.
     """
 
@@ -52,7 +52,7 @@ def field_of(name: str, kind: Kind, weight: float = 1) -> Field:
         weight: what it counts.
 
     >>> from exercisebook.kinds import Number
-    >>> field_of("Ti", Number(120, "s", "the integral time")).data["unit"]
+    >>> field_of("T", Number(120, "s", "the period")).data["unit"]
     's'
     """
     said = {"asked": kind.what, "unit": kind.unit} | kind.field

@@ -24,7 +24,8 @@ LONGEST = 20_000
 _TRACE = 1e-12
 #: What comes along where somebody copies, and nobody sees.
 _UNSEEN = re.compile("[\u200b-\u200f\u2060-\u2064\ufeff]")
-_CONTROLLER = re.compile(r"\s*[A-Za-z]+\s*\(")
+#: How something whole begins that is typed as it is called, as Spring(2, 0.5).
+_CALLED = re.compile(r"\s*[A-Za-z]+\s*\(")
 #: What a notebook calls for the arrays of an exercise; a page has them as a file.
 _CALL = re.compile(r'`([^`=]+?)\s*=\s*exercise\("[^`]*`')
 
@@ -145,7 +146,7 @@ class Sheet:
 
         Arguments:
             answers: {name of a field: its text}; a list of texts where several words are chosen, and texts by the
-                names of the settings where a controller is asked. What is empty is not answered yet.
+                names of the parts where something is asked that has some. What is empty is not answered yet.
         Raises:
             ExerciseError: for what is none of these.
         """
@@ -177,9 +178,9 @@ class Sheet:
             answer = _UNSEEN.sub("", typed) if isinstance(typed, str) else typed
             if isinstance(answer, Mapping):
                 answer = {part: text for part, text in answer.items() if _is_typed(part, text)}
-                answer = {} if answer.keys() == {"form"} else answer  # a form alone is no controller
-                # in the place of one setting somebody may write the whole controller, as PID(5, 3)
-                answer = next((text for text in answer.values() if _CONTROLLER.match(text)), answer)
+                answer = {} if answer.keys() == {"form"} else answer  # a form alone is no answer
+                # in the place of one part somebody may write the whole
+                answer = next((text for text in answer.values() if _CALLED.match(text)), answer)
             elif isinstance(answer, list):
                 answer = [word for word in answer if _is_typed(name, word)]
                 # a box of its own says that none is chosen

@@ -1,7 +1,7 @@
 """The texts of exercises as HTML: Markdown with formulas, which become MathML.
 
->>> html("The gain is $K$.")
-'<p>The gain is <math><mi>K</mi></math>.</p>'
+>>> html("The mass is $m$.")
+'<p>The mass is <math><mi>m</mi></math>.</p>'
 """
 
 from __future__ import annotations
@@ -40,8 +40,8 @@ def formula(latex: str, display: bool = False) -> str:
 def sentence(text: str) -> str:
     """Return a sentence of a response as HTML; what is between two dollars is a formula.
 
-    >>> sentence("the gain $K$ is < 2")
-    'the gain <math><mi>K</mi></math> is &lt; 2'
+    >>> sentence("the mass $m$ is < 2")
+    'the mass <math><mi>m</mi></math> is &lt; 2'
     """
     if text.count("$") % 2:
         return escaped(text)
@@ -68,8 +68,8 @@ def html(text: str, bare: bool = False) -> str:
 def inline(text: str) -> str:
     """Return a line of Markdown as HTML, without a paragraph around it.
 
-    >>> inline("the gain, in `K/%`")
-    'the gain, in <code>K/%</code>'
+    >>> inline("the mass, in `kg`")
+    'the mass, in <code>kg</code>'
     """
     return _markdown(bare=False).renderInline(text)
 

@@ -63,12 +63,12 @@ class Figure(_ByHand, Kind):
     """A figure that a person marks: a plot or a sketch, as Matplotlib's figure or as the bytes of a PNG file.
 
     Arguments:
-        what: it shows, as "the step response".
+        what: it shows, as "the path of the ball".
         key: what whoever marks it looks for; no student sees it before keys are revealed.
 
-    >>> sketch = Figure("the step response", key="it begins after the dead time")
+    >>> sketch = Figure("the path of the ball", key="it is a parabola")
     >>> sketch.asked
-    'the step response, as a figure, which a person marks'
+    'the path of the ball, as a figure, which a person marks'
     """
 
     expected = "a figure of Matplotlib, as plt.gcf(), or the bytes of a PNG file"
@@ -111,13 +111,13 @@ class Text(_ByHand, Kind):
     """A text that a person marks.
 
     Arguments:
-        what: it says, as "why the loop oscillates".
+        what: it says, as "why the ball bounces".
         words: how many it has at most; a longer one is taken down as well, and that is said.
         key: what whoever marks it looks for; no student sees it before keys are revealed.
 
-    >>> why = Text("why the loop oscillates", words=5)
-    >>> why.read("The dead time is as long as the time constant.")[1]
-    '10 words, where at most 5 are asked for'
+    >>> why = Text("why the ball bounces", words=5)
+    >>> why.read("What it loses of its height is heat.")[1]
+    '8 words, where at most 5 are asked for'
     >>> why.asking
     'text(5)'
     """

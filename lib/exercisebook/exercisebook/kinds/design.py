@@ -26,7 +26,7 @@ class Criterion:
     """What a design must achieve: a measure of it with a limit, or a condition that is true or false.
 
     Arguments:
-        what: the measure in words, as "the overshoot", or the condition as a clause, as "the loop is stable".
+        what: the measure in words, as "the mass", or the condition as a clause, as "the bridge holds".
         measure: function of the answer; infinite where it has no value.
         below, above: limits, themselves allowed.
         unit: of the measure.
@@ -79,9 +79,9 @@ class Design(Kind):
         draws: returns a figure of what an answer does, with the limits that it must meet.
 
     >>> from exercisebook.kinds import Number
-    >>> gain = Design(Number(2, what="a gain"), Criterion("the offset", lambda K: 1 / (1 + K), below=0.4))
-    >>> gain.agrees(1.6), gain.hint(1)
-    (True, 'the offset is 0.5; asked is at most 0.4')
+    >>> layers = Design(Number(2, what="the layers"), Criterion("the light", lambda n: 1 / (1 + n), below=0.4))
+    >>> layers.agrees(1.6), layers.hint(1)
+    (True, 'the light is 0.5; asked is at most 0.4')
     """
 
     def __init__(self, example: Kind, *criteria: Criterion, draws: Callable[[Any], Any] | None = None):

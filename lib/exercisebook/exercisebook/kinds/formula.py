@@ -38,8 +38,8 @@ class Expression(Kind):
     Raises:
         ValueError: for a key with a symbol that is not among them.
 
-    >>> gain = Expression(sympy.sympify("K*T/(K + 1)"), "the gain")
-    >>> gain.agrees(gain.read("T/(1 + 1/K)")[0])
+    >>> R = Expression("R_1*R_2/(R_1 + R_2)", "the resistance of both")
+    >>> R.agrees(R.read("1/(1/R1 + 1/R2)")[0])
     True
     """
 
@@ -113,7 +113,7 @@ class Expression(Kind):
         if isinstance(given, Formula):
             return given, ""
         given = alone(given)
-        if isinstance(given, dict):  # a controller, as data
+        if isinstance(given, dict):  # something whole, as data
             given = next((one for whole in WHOLES if (one := whole.of_data(given)) is not None), given)
         used = symbols_in(given) if self.symbols is None else ()
         formula, remark = self._formula(
@@ -149,7 +149,7 @@ class Expression(Kind):
         """A formula whose text ends in a unit, in the asked one."""
         if not self.unit and "/" in unit:
             return formula, f"read without {unit}, {formula.text}"
-        if not self.unit:  # a letter may be a gain
+        if not self.unit:  # a letter may be a factor
             raise Unreadable(f"the text ends in {unit}: expected {self.expected}, without a unit")
         try:
             zero, factor = (units.convert(value, unit, to=self.unit) for value in (0, 1))

@@ -44,7 +44,7 @@ class Kind:
     Arguments:
         key: the right answer.
         unit: of the answer; none for a number without unit.
-        what: the quantity in words, with its article, as "the integral time".
+        what: the quantity in words, with its article, as "the period".
         within: how far a number may be off, as a fraction of it.
     """
 
@@ -58,7 +58,7 @@ class Kind:
     by_hand: ClassVar[bool] = False
     #: Whether such an answer belongs to the numbers of one student, so that a right one to others' is recognised.
     is_personal: ClassVar[bool] = False
-    #: What an answer is that may come in parts, under names of their own, as a controller and its settings.
+    #: What an answer is that may come in parts, under names of their own.
     whole: Whole | None = None
     #: Whether there is a picture of what an answer does.
     draws: Any = False
@@ -120,8 +120,8 @@ class Kind:
         """What of this kind says how an answer looks: the same without its key.
 
         >>> from exercisebook.kinds import Number
-        >>> Number(2.5, "K/%", "the gain").keyless.expected
-        'a number, in K/%'
+        >>> Number(2.5, "kg/m", "the density").keyless.expected
+        'a number, in kg/m'
         """
         return self.without_key(**{name: getattr(self, name) for name in self.FORM})
 
@@ -130,8 +130,8 @@ class Kind:
         """The call, as code, that makes a kind of this form without the key; nothing in it comes from the key.
 
         >>> from exercisebook.kinds import Number
-        >>> Number(2.5, "K/%", "the gain").asking
-        'number("K/%")'
+        >>> Number(2.5, "kg/m", "the density").asking
+        'number("kg/m")'
         """
         usual = self._usual_form()
         said = {name: getattr(self, name) for name in self.FORM if getattr(self, name) != usual[name]}
@@ -143,8 +143,8 @@ class Kind:
         """The call, as code, that makes this kind with its key; empty where no code says it.
 
         >>> from exercisebook.kinds import Number
-        >>> Number(2.5, "s", "the integral time").making
-        'number(2.5, unit="s", what="the integral time")'
+        >>> Number(2.5, "s", "the period").making
+        'number(2.5, unit="s", what="the period")'
         """
         _, *others = inspect.signature(type(self)).parameters.values()
         said = {one.name: self._argument(one.name) for one in others}
@@ -288,8 +288,8 @@ class Kind:
 def literal(value: object) -> str:
     """Return plain data as code: a text, a number, a truth value, lists, arrays and dictionaries of them.
 
-    >>> literal(("heating", "cooling")), literal({"Kp": 2.0, "Ti": 0.1}), literal(True)
-    ('["heating", "cooling"]', '{"Kp": 2, "Ti": 0.1}', 'True')
+    >>> literal(("up", "down")), literal({"m": 2.0, "v": 0.1}), literal(True)
+    ('["up", "down"]', '{"m": 2, "v": 0.1}', 'True')
     """
     match value:
         case np.ndarray() | np.generic():
