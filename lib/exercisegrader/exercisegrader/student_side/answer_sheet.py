@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from exercisebook import png
+from exercisebook import plugins, png
 from exercisebook.judging import harmless
 from exercisebook.kinds import MAKERS
 from exercisebook.reading import NOT_ANSWERED, Unreadable, shortened
@@ -22,6 +22,7 @@ from plainmath.validation import did_you_mean
 if TYPE_CHECKING:
     from exercisebook.kinds import Kind
 
+plugins.load()  # a released notebook imports nothing before the sheet that would know them
 #: The forms of answers: each kind without a key, {name of its maker: maker}.
 FORMS: dict[str, Callable[..., Kind]] = {name: kind.without_key for name, kind in MAKERS.items()}
 globals().update(FORMS)
