@@ -3,18 +3,19 @@
 import typer
 from sphinx.util.docutils import SphinxDirective
 
-from loopbook import __main__ as commands
+from exercisegrader import __main__ as grader
+from loopbook.__main__ import app
 
 
 def described(name):
     """Return the lines of a table of what a command takes."""
-    command = typer.main.get_command(commands.app).commands[name]
+    command = typer.main.get_command(app).commands[name]
     lines = [f"`loopbook {name}`: {command.help}", "", "| name | meaning |", "|---|---|"]
     for parameter in command.params:
         word = parameter.opts[0] if parameter.param_type_name == "option" else parameter.name.upper()
         if word != "--help":
             lines.append(f"| `{word}` | {parameter.help}{_default(parameter)} |")
-    if isinstance(command, commands.Grade):
+    if isinstance(command, grader.Grade):
         lines += ["", "What is written:", "", *(f"- {line}" for line in command.written())]
     return lines
 
@@ -32,7 +33,7 @@ class CommandOptions(SphinxDirective):
     required_arguments = 1
 
     def run(self):
-        self.env.note_dependency(commands.__file__)
+        self.env.note_dependency(grader.__file__)
         return self.parse_text_to_nodes("\n".join(described(self.arguments[0])))
 
 

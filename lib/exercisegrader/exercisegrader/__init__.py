@@ -1,7 +1,7 @@
 """Assignments: one notebook per student, and a grader that lets no submission near the key.
 
-Answers come out of the student's process as plain data; judging happens in another process. ``loopbook release`` and
-``loopbook grade`` are the commands.
+Answers come out of the student's process as plain data; judging happens in another process. ``exercisegrader release``
+and ``exercisegrader grade`` are the commands.
 """
 
 __all__ = ["GradingError", "NoJail"]

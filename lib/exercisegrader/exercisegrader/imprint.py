@@ -29,7 +29,7 @@ class Imprint:
     Attributes:
         assignment: its name.
         student: id.
-        version: of loopbook, which released it.
+        version: of the package that released it.
         cells: a text that changes with the cells as they were released; empty where it is not known.
         numbers: {exercise: proof of its numbers}; empty in notebooks of a version that wrote none.
     """

@@ -255,7 +255,7 @@ def notebook(assignment: Assignment, student: Student, numbers: Numbers | None =
 
 
 def _notebook(assignment, student, questions, version=None):
-    """The notebook of a student; one of an earlier version of loopbook where nothing else has changed."""
+    """The notebook of a student; one of an earlier version where nothing else has changed."""
     version = installed().version if version is None else version
     person = f"**{as_markdown(student.name or student.id)}** (`{student.id}`)"
     introduction = [f"# {assignment.title}", person, assignment.introduction, _HOW_TO_ANSWER, _needs(version)]

@@ -2,7 +2,7 @@
 
 Each module of this folder is one: a class with ``@system``, and functions with ``@output`` for the files in its form. A
 new one is a new module here and nothing else: rosters are then recognised, the names in its downloads are read, and its
-files are written and listed by ``loopbook grade --help``.
+files are written and listed by ``exercisegrader grade --help``.
 """
 
 from __future__ import annotations
@@ -117,7 +117,7 @@ class System:
         roster: what its rosters are, in some words.
         ids: the fields of `Student` that may give an id, the best first, each with the column as people call it; in
             each row the first that is full is the student's id.
-        place: where it hands out notebooks, as ``loopbook release --for`` takes it; empty where it cannot.
+        place: where it hands out notebooks, as ``exercisegrader release --for`` takes it; empty where it cannot.
     """
 
     name: ClassVar[str] = ""
@@ -256,7 +256,7 @@ def packed(place: str, released: Path, students: Sequence[Student], assignment: 
 
     Arguments:
         place: of a `System`, "canvas", "drive" or "moodle".
-        released: folder of ``loopbook release``, with a folder for each student.
+        released: folder of ``exercisegrader release``, with a folder for each student.
         students: the roster.
         assignment: its name; if not given, the name of the notebooks.
         secret: of the assignment, from which names are drawn that nobody can guess.

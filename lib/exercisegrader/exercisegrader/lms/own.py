@@ -98,7 +98,7 @@ class Own(System):
         return Packed(
             files,
             "Copy the folders to the drive and share each with its student, whom folders.csv names; filled-in "
-            "notebooks in the same folders are what loopbook grade takes.",
+            "notebooks in the same folders are what grade takes.",
         )
 
 

@@ -1,7 +1,7 @@
 """The files that grading leaves behind. The modules of this folder make some, and register them by `output`.
 
 So do the learning management systems in `exercisegrader.lms`. What is registered is written, is listed by
-``loopbook grade --help``, and is tested.
+``exercisegrader grade --help``, and is tested.
 """
 
 from __future__ import annotations
@@ -114,7 +114,7 @@ def output(file: str, what: str) -> Callable[[_Function], _Function]:
 
     Arguments:
         file: its place in the folder of the grades, with "{student}" in it for a file for each student.
-        what: it is, and for whom, for the list of ``loopbook grade --help``.
+        what: it is, and for whom, for the list of ``exercisegrader grade --help``.
     Raises:
         GradingError: for a file that is made already, and for a function that asks for something else.
 
