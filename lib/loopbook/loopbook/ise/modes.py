@@ -5,12 +5,13 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 
 from loopbook.ise.error import ErrorFraction
 from loopbook.quasipolynomials.arrays import Quasipolynomials
-from loopbook.stability.counting import count_roots
+from loopbook.stability.poles import roots_right_of
 
 DIGITS = 40
 MOST_MODES = 80
@@ -193,91 +194,14 @@ def slow_modes(fraction: ErrorFraction, rate: float) -> Modes | None:
 
     The time is counted from when the error begins.
 
-    None if there are too many, or they are not found: multiple ones, or some on the line itself.
+    None if there are too many, or they are not found, as `roots_right_of` says.
     """
-    unit = rate
-    _, _, below, delays = fraction.arrays(unit)
-    with np.errstate(over="ignore", invalid="ignore"):
-        shifted = _moved(below, delays)
-        if not np.isfinite(shifted).all():
-            return None
-        sizes = abs(shifted).sum(axis=0)
-        # beyond a certain height the undelayed highest power outweighs all others (Fujiwara): the search ends there
-        reserve = 2 * abs(shifted[_undelayed(delays), -1]) - sizes[-1]
-        if reserve <= 0:  # infinite rows of poles come as far as that
-            return None
-        order = below.shape[1] - 1
-        top = max((2 * (sizes[:-1] / reserve) ** (1 / np.arange(order, 0, -1))).tolist(), default=0.0)
-    first = _undelayed(delays)
-    arranged = [first, *(k for k in range(len(delays)) if k != first)]
-    try:
-        count = int(count_roots(Quasipolynomials(shifted[arranged][:, :, None], delays[arranged][:, None]))[0])
-    except ValueError:
-        return None
-    if not 0 <= count <= MOST_MODES:
-        return None
-    poles = _roots_right_of_line(below, delays, top, count)
-    if poles is None:
-        return None
-    exact = [_exact(fraction, p * unit) for p in poles]
+    sums = Quasipolynomials.exact(fraction.D, fraction.order, fraction.D[Fraction(0)][-1])
+    poles = roots_right_of(sums.slower(np.full(1, rate)), -1.0, MOST_MODES)
+    exact = [None] if poles is None else [_exact(fraction, p * rate) for p in poles]
     if any(e is None for e in exact):
         return None
     return Modes(*np.array(exact, dtype=complex).reshape(-1, 2).T)
-
-
-def _undelayed(delays) -> int:
-    return int(delays.argmin())
-
-
-def _moved(below, delays):
-    """The coefficients as functions of s + 1."""
-    n = below.shape[1]
-    shift = np.array([[math.comb(k, j) * (-1.0) ** (k - j) if k >= j else 0.0 for k in range(n)] for j in range(n)])
-    return below @ shift.T * np.exp(delays)[:, None]
-
-
-def _roots_right_of_line(below, delays, top: float, count: int):
-    """The upper ones of so many roots to the right of -1, by Newton's method; None if others are found."""
-    if not count:
-        return []
-    powers = np.arange(1, below.shape[1])
-    slopes = below[:, 1:] * powers
-
-    def newton_step(x):
-        value = derivative = 0
-        for row, slope, delay in zip(below, slopes, delays, strict=True):
-            wave = np.exp(-delay * x)
-            polynomial = np.polynomial.polynomial.polyval(x, row)
-            lowered = np.polynomial.polynomial.polyval(x, slope) if len(slope) else 0.0
-            value, derivative = value + polynomial * wave, derivative + (lowered - delay * polynomial) * wave
-        return value / derivative
-
-    for fineness in (1, 4):
-        rows = int(min(fineness * (20 + 2 * top * delays.max()), 8000 * fineness))
-        heights = np.concatenate(
-            [[0.0], np.geomspace(1e-3, max(top, 1), fineness * 120), np.linspace(0, max(top, 1), rows)]
-        )
-        x = np.concatenate([-share + 1j * heights for share in (0.0, 0.4, 0.9)])
-        with np.errstate(all="ignore"):
-            for number in range(60):
-                change = newton_step(x)
-                x = x - change
-                there = abs(change) <= 1e-14 * abs(x)
-                if number in (8, 16, 32):  # what has gone far away will hardly come back
-                    stay = (x.real > -3) & (x.real < 3) & (abs(x.imag) < 2 * max(top, 1))
-                    x, there = x[stay], there[stay]
-                if there.all():
-                    break
-            rest = abs(newton_step(x))
-        inside = np.isfinite(x) & (x.real > -1) & (x.real < 0) & (x.imag > -1e-9 * abs(x)) & (rest < 1e-7 * abs(x))
-        x, rest = x[inside], rest[inside]
-        distinct: list[complex] = []
-        for k in np.argsort(rest):
-            if all(abs(x[k] - q) > 1e-7 * abs(q) for q in distinct):
-                distinct.append(complex(x[k].real, 0.0 if abs(x[k].imag) < 1e-7 * abs(x[k].real) else x[k].imag))
-        if sum(2 if p.imag else 1 for p in distinct) == count:
-            return distinct
-    return None
 
 
 def _exact(fraction: ErrorFraction, pole: complex) -> tuple[complex, complex] | None:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from loopbook.quasipolynomials.fraction import Quasipolynomial
 
 MOST_POINTS = 16_000  # from which Newton's method begins at once
+SLOW = 40  # rows of these points below the height of the others, at first
 MOST_TRIES = 2  # of a line left of the poles that are wanted
 
 
@@ -68,6 +69,26 @@ def dominant_roots(parts: Quasipolynomial, count: int | None, name: str) -> list
     poles = [q for p in sorted(upper, key=lambda p: (-p.real, p.imag)) for q in ([p, p.conjugate()] if p.imag else [p])]
     end = count + 1 if len(poles) > count and poles[count - 1].imag > 0 else count
     return [complex(np.complex128(p)) for p in poles[:end]]
+
+
+def roots_right_of(sums: Quasipolynomials, left: float, most: int) -> list[complex] | None:
+    """Return all roots of a stable quasipolynomial to the right of a line, of each pair the upper one.
+
+    None where they are more than so many, or not found: multiple ones, or some on the line itself.
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        shifted = _shifted(sums, left)
+    if not np.isfinite(shifted.coefficients).all() or math.isnan(prevailing(shifted.coefficients)[0]):
+        return None  # infinite rows of roots come as far as that
+    try:
+        number = int(count_roots(shifted)[0])
+    except ValueError:
+        return None
+    if not 0 <= number <= most:
+        return None
+    found = _inside(sums, left, 0.0, number) if number else []
+    right = sum(2 if p.imag else 1 for p in found) == number and len(set(found)) == len(found)
+    return found if right else None
 
 
 def _of_sum(sums, count, name):
@@ -145,7 +166,10 @@ def _inside(sums, left, right, most):
         rows = refinement * (20 + int(top * float(sums.delays.max()) + 8 * sums.order))
         columns = 6 * refinement
         rows = min(rows, MOST_POINTS // columns)
-        x, y = np.meshgrid(np.linspace(left, right, columns), np.linspace(0, top, rows))
+        slow = np.geomspace(
+            1e-3 * min(right - left, top), top, SLOW * refinement
+        )  # roots may be of very different sizes
+        x, y = np.meshgrid(np.linspace(left, right, columns), np.r_[np.linspace(0, top, rows), slow])
         points, rest = _newton(sums, derivative, (x + 1j * y).ravel())
         inside = (points.real > left) & (points.real < right) & (points.imag > -1e-9 * top)
         points, rest, size = points[inside], rest[inside], np.maximum(abs(points[inside]), 1e-9 * top)
