@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from loopbook.approximation import SOPDT
     from loopbook.pid import PID
 
+WAIT = 20  # samples before the settings follow the model for the first time
+
 
 class AdaptiveController(Controller):
     """The practical PI controller with Skogestad's settings for a lag with dead time that it estimates itself.
@@ -30,7 +32,6 @@ class AdaptiveController(Controller):
         delay: the dead time of the process, known, rounded to whole steps.
         Tc, c: as for `tuning.simc`.
         forgetting: forgetting factor of the estimator.
-        wait: how many samples pass before the settings follow the model for the first time.
         options: as of `Controller`.
     Raises:
         ValueError: as `Controller`, and where neither the dead time nor Tc says how fast the loop should be.
@@ -57,13 +58,12 @@ class AdaptiveController(Controller):
         Tc: Number | None = None,
         c: Number = 4,
         forgetting: Number = 0.99,
-        wait: int = 20,
         **options: Any,
     ):
         super().__init__(settings, step, **options)
         self.whole_delay = round(not_negative("the dead time", delay) / self.step)
         self.Tc = None if Tc is None else not_negative("the time constant Tc", Tc)
-        self.c, self.wait = positive("the factor c", c), wait
+        self.c, self.wait = positive("the factor c", c), WAIT
         if not (self.whole_delay or self.Tc):
             raise ValueError(f"the dead time is {delay}, less than a step, and Tc is {Tc}: expected a positive Tc")
         self.estimator, self.scale = RecursiveLeastSquares(3, forgetting), abs(self.Kp) or 1.0
