@@ -70,8 +70,8 @@ def at_endless_frequency(later: np.ndarray, delays: np.ndarray) -> Endless:
             return Endless(1 - total)
         return Endless(0.0 if total == 1 else -1.0)
     if abs(later).max() > total - abs(later).max() + 1:
-        # on the axis this one outweighs all others, so that the phase turns with it without end; far to the right only the
-        # undelayed one is left, and it does not turn: in between there are roots
+        # on the axis this one outweighs all others, so that the phase turns with it without end; far to the right only
+        # the undelayed one is left, and it does not turn: in between there are roots
         return Endless(-1.0)
     unit = common_unit(delays.tolist())
     if unit:
