@@ -74,7 +74,7 @@ endif
 ifneq ($(filter-out $(shell sed -n 2p .venv/ready 2>/dev/null),$(asked)),)
 .PHONY: .venv/ready
 endif
-.venv/ready: environment.txt pyproject.toml
+.venv/ready: environment.txt $(wildcard lib/*/pyproject.toml)
 	@test -n "$(PYTHON)" || { echo "loopbook needs Python 3.11 or newer; name one with: make PYTHON=/path/to/python3"; exit 1; }
 	$(PYTHON) -m venv $(if $(asked),--clear) .venv
 	$(python) -m pip install --quiet --disable-pip-version-check --requirement environment.txt
