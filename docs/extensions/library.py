@@ -36,6 +36,15 @@ def modules():
     return [(re.findall(r"`(\w+)`", row.split("|")[1]), row.split("|")[2].strip()) for row in table]
 
 
+def address_of(name):
+    """Return the full name of a module that the README's table names: a package, or a module of loopbook.
+
+    >>> address_of("pid"), address_of("plainmath")
+    ('loopbook.pid', 'plainmath')
+    """
+    return name if name in OURS else f"loopbook.{name}"
+
+
 def offered(module):
     """Return the public names of a module, in the order of its source; of a package part by part."""
     names = getattr(module, "__all__", None) or [
@@ -50,14 +59,13 @@ def _place(module, name):
     """Where a name is made: the part of the package as `__init__` imports it, and the line there."""
     home = part_of(module, name)
     parts = [part for part in _imported_parts(module) if part != module.__name__]
-    return (parts.index(home) if home in parts else -1, _made(home).get(name, 10**9))
+    part = -1 if home == module.__name__ else parts.index(home) if home in parts else len(parts)
+    return (part, _made(home).get(name, 10**9))
 
 
 @functools.cache
 def _imported_parts(module):
-    found = re.findall(
-        rf"^from ({re.escape(module.__package__)}[\w.]*) import", inspect.getsource(module), re.MULTILINE
-    )
+    found = re.findall(rf"^from ((?:{'|'.join(OURS)})[\w.]*) import", inspect.getsource(module), re.MULTILINE)
     return list(dict.fromkeys(found))
 
 
@@ -87,7 +95,7 @@ def public():
     found = {}
     for names, _ in modules():
         for name in names:
-            module = importlib.import_module(name if name in OURS else f"loopbook.{name}")
+            module = importlib.import_module(address_of(name))
             found |= {key: f"{module.__name__}.{key}" for key in offered(module) if len(key) > 1 and key not in found}
             found.setdefault(name, module.__name__)
     return found

@@ -6,10 +6,9 @@ import sys
 
 import pytest
 
-from exercisebook import progress
 from exercisebook.naming import FILE
 from loopbook import exercises
-from loopbook.exercises import bank, exercise, student
+from loopbook.exercises import bank, exercise, progress, student
 
 
 @pytest.fixture

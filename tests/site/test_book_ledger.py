@@ -198,12 +198,12 @@ def test_every_module_of_the_readme_has_its_page_in_the_reference():
     names = [name for names, _ in library.modules() for name in names]
     assert sorted(names) == sorted(pages)
     for name, text in pages.items():
-        assert f".. library:: loopbook.{name}\n" in text
+        assert f".. library:: {library.address_of(name)}\n" in text
 
 
 @pytest.mark.parametrize("name", [name for names, _ in library.modules() for name in names])
 def test_every_public_name_has_a_docstring(name):
-    module = importlib.import_module(f"loopbook.{name}")
+    module = importlib.import_module(library.address_of(name))
     assert module.__doc__
     assert all(getattr(module, key).__doc__ for key in getattr(module, "__all__", ()))
 
