@@ -95,7 +95,7 @@ def test_a_worker_with_another_version_is_one_sentence(failing, monkeypatch, the
         return there
 
     monkeypatch.setattr(cluster, "installed", installed)
-    says = f"has {f'loopbook {there}' if there else 'no loopbook'}: expected 1, as here"
+    says = f"has {f'exercisegrader {there}' if there else 'no exercisegrader'}: expected 1, as here"
     with pytest.raises(GradingError, match=f"^the worker .* {says}"), connected(failing.ready()):
         pass
 

@@ -83,7 +83,7 @@ def test_what_it_costs_to_be_late(late, costs):
         (
             f'DUE = "{DUE}"; LATE = "10 % a day, 15 min grace"',
             "heater.py: LATE is '10 % a day, 15 min grace': expected one as Late(percent=10, per=\"day\", "
-            "grace_minutes=15, at_most=50, accepted_days=7), with Late from loopbook.exercises.authoring",
+            "grace_minutes=15, at_most=50, accepted_days=7), with Late from exercisebook.authoring",
         ),
         ("LATE = Late(percent=120)", "heater.py, line 4: ValueError: percent is 120: expected a number from 0 to 100"),
         ("LATE = Late(10, per='month')", "per is 'month': expected one of hour, day, week"),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import enum
-import functools
 import html
 import importlib.metadata
 import io
@@ -295,14 +294,13 @@ class Installed:
     repository: str
 
 
-@functools.cache
 def installed() -> Installed:
     """Return what a released notebook needs: the package that names its answer sheet in `GROUP`, or this one."""
     [plugin] = [*importlib.metadata.entry_points(group=GROUP)][:1] or [None]
     about = importlib.metadata.metadata(plugin.dist.name if plugin else "exercisegrader")
     links = dict(one.split(", ") for one in about.get_all("Project-URL"))
     module = plugin.value if plugin else "exercisegrader.student_side.answer_sheet"
-    return Installed(module, about["Version"], links["Repository"])
+    return Installed(module, importlib.metadata.version(about["Name"]), links["Repository"])
 
 
 def _reading(question):
