@@ -14,7 +14,7 @@ unexport MPLBACKEND
 # Each of the fifty kernels of the tests would compile the library again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help lab fresh edit test test-site test-grading test-solutions test-all bench book pdf pictures grade execute
+.PHONY: help lab fresh edit test test-site test-grading test-solutions test-all test-alone bench book pdf pictures grade execute
 
 help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
@@ -42,6 +42,9 @@ test-solutions: .venv/ready ## prove every cell of the solutions
 
 test-all: .venv/ready ## prove everything with all variants and all draws, as once a week
 	LOOPBOOK_ALL=1 $(python) -m pytest -n $(more) -o bookledger_points=12 tests lib chapters solutions README.md
+
+test-alone: ## prove each package alone, with those it stands on, as once a week
+	$(PYTHON) tests/repository/alone.py
 
 bench: .venv/ready ## measure what the collection costs beside what it stands on
 	$(python) tests/bench.py

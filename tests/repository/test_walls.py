@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+import alone
+
 ROOT = Path(__file__).parents[2]
 LIB = ROOT / "lib"
 #: Each package with the packages that it stands on. A tool is for any book, and knows nothing of control engineering.
@@ -126,6 +128,10 @@ def test_a_package_says_on_which_it_stands(package):
     named = {line.partition("==")[0].partition("[")[0] for line in project["dependencies"]} & {*MAY_IMPORT}
     used = {package_of(name) for (home, _), path in modules().items() if home == package for name in imports_of(path)}
     assert named == used - {package, None}
+
+
+def test_each_package_is_proved_alone():
+    assert {package: alone.stands_on(package) - {package} for package in alone.TESTS} == MAY_IMPORT
 
 
 def test_no_modules_import_each_other():
