@@ -35,7 +35,7 @@ test-site: .venv/ready ## prove the site: its pages, in a browser, with Python i
 	$(python) -m pytest -n $(more) tests/site
 
 test-grading: .venv/ready ## prove the grader: jail, judge, reports, attacks, a term
-	$(python) -m pytest -n $(more) tests/grading
+	$(python) -m pytest -n $(more) tests/exercisegrader tests/books_grading
 
 test-solutions: .venv/ready ## prove every cell of the solutions
 	$(python) -m pytest -n $(more) solutions
@@ -49,7 +49,7 @@ test-alone: ## prove each package alone, with those it stands on, as once a week
 bench: .venv/ready ## measure what the collection costs beside what it stands on
 	$(python) tests/bench.py
 	$(python) tests/control_engineering/bench_deadtime.py
-	$(python) tests/grading/bench_grading.py
+	$(python) tests/books_grading/bench_grading.py
 	$(python) tests/site/bench_book.py
 
 book: .venv/ready ## make the site of the collection, build/book/index.html; OFFLINE=1 puts Python into it as well

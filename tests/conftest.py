@@ -4,6 +4,7 @@ Linear algebra keeps to one thread: the tests themselves run in parallel, and ma
 """
 
 import gc
+import importlib.util
 import os
 import shutil
 import sys
@@ -30,7 +31,8 @@ settings.load_profile("loopbook")
 def pytest_configure(config):
     """Let the kernels of a run with several processes begin with the libraries imported, where processes can fork."""
     is_first = not hasattr(config, "workerinput") and config.getoption("numprocesses", None)
-    if is_first and sys.platform == "linux" and not THOROUGH:
+    has_books = importlib.util.find_spec("loopbook")  # where a tool alone is tested there are no notebooks
+    if is_first and has_books and sys.platform == "linux" and not THOROUGH:
         folder = Path(tempfile.mkdtemp(prefix="loopbook-kernels-"))
         config.pluginmanager.register(Kernels(folder))
         config.add_cleanup(lambda: shutil.rmtree(folder))

@@ -16,8 +16,9 @@ LANES = {
     ],
     "test-grading": [
         "lib/exercisegrader/*", "lib/exercisebook/exercisebook/*.py", "lib/exercisebook/exercisebook/kinds/*",
-        "lib/loopbook-books/loopbook/exercises/kinds/*", "tests/grading/*", "examples/*", "docs/authors.md",
-        "docs/instructors.md", "environment.txt",
+        "lib/loopbook-books/loopbook/exercises/kinds/*", "lib/loopbook-books/loopbook/grading/*",
+        "tests/exercisegrader/*", "tests/books_grading/*", "examples/*", "docs/authors.md", "docs/instructors.md",
+        "environment.txt",
     ],
     "test-solutions": [
         "solutions/*", "lib/exercisebook/*", "lib/loopbook-books/loopbook/exercises/*", "environment.txt",

@@ -26,10 +26,9 @@ sys.path.insert(0, str(DOCS / "extensions"))
 pytest.importorskip("sphinx", reason="the book's extra is not installed")
 import checks  # noqa: E402  (of docs/extensions)
 import ledger_page  # noqa: E402  (of docs/extensions)
+import library  # noqa: E402
 import repository_pages  # noqa: E402
 import slugs  # noqa: E402
-
-import library  # noqa: E402
 
 #: Of the entries that a chapter checks; pytest says of which none does, as it proves the ledger.
 RESULTS = [(entry, row) for entry in ledger_page.checked() for row in entry.results]

@@ -33,7 +33,7 @@ def test_a_class_is_graded_and_who_spies_gains_nothing(tmp_path):
     course = Course(tmp_path)
     valuables = [str(course.path), str(course.submissions / "s0" / "lag.ipynb")]
     course.fill_in("s2", {"1": SPYING.format(valuables=valuables)})
-    run = subprocess.run(course.command("graded"), capture_output=True, encoding="utf-8")
+    run = subprocess.run(course.command("graded", "loopbook"), capture_output=True, encoding="utf-8")
     assert run.returncode == 0, run.stderr
     with (tmp_path / "graded" / "grades.csv").open(encoding="utf-8-sig", newline="") as file:
         points = {row["id"]: row["points"] for row in csv.DictReader(file)}

@@ -5,11 +5,12 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from exercisegrader.__main__ import app as grader
-from exercisegrader.__main__ import console, errors, fail
 from rich import box
 from rich.console import Console
 from rich.table import Table
+
+from exercisegrader.__main__ import app as grader
+from exercisegrader.__main__ import console, errors, fail
 
 app = typer.Typer(
     name="loopbook",

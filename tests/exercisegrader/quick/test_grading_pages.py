@@ -1,0 +1,546 @@
+"""The pages of students and the summary: what they say."""
+
+import re
+from dataclasses import replace
+
+import pytest
+
+from exercisebook.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
+from exercisegrader.lateness import Lateness
+from exercisegrader.lms.gradescope import results_json
+from exercisegrader.marking import Marked, MarkedExercise, Notice
+from exercisegrader.overrides import Mark
+from exercisegrader.reports import write_all
+from exercisegrader.reports.concerns import concerns
+from exercisegrader.reports.equal_answers import equal_answers, significant_digits
+from exercisegrader.reports.findings import Findings
+from exercisegrader.reports.outputs import registered
+from exercisegrader.reports.outputs.feedback import feedback
+from exercisegrader.reports.outputs.summary import summary
+from exercisegrader.reports.wording import answer_in_words
+from exercisegrader.results import CellError, JudgedAnswer, JudgedExercise, Look
+from small_class import (
+    ADA,
+    BOB,
+    CLASS,
+    EVE,
+    HOSTILE,
+    MISSING,
+    NAMED,
+    RESULTS,
+    RIGHT_ALL,
+    STOPPED,
+    TITLE,
+    ZOE,
+    by_hand,
+    changed,
+    gain,
+    own_mistake,
+    result_of,
+)
+from whole_pages import Checker
+
+
+def read(page):
+    """What a reader of the page sees, its cells and lines apart."""
+    return " ".join(Checker(re.sub("<(?=br|/t[dh]>|/li>|/?div)", " <", page)).text.split())
+
+
+def rows(page):
+    """The rows of the tables of a page, as a reader sees them."""
+    return [read(row) for row in re.findall("<tr>.*?</tr>", page, re.DOTALL)]
+
+
+def waiting(mark, number, *, earned=None, **more):
+    """The same with an exercise that has other points, none where it waits."""
+    exercises = tuple(
+        replace(one, earned=earned, **more) if one.judged.number == number else one for one in mark.exercises
+    )
+    return replace(mark, exercises=exercises)
+
+
+def with_answer(mark, number, name, **fields):
+    """The same with other fields of one answer."""
+    exercises = tuple(
+        replace(one, answers=tuple(replace(a, **fields) if a.name == name else a for a in one.answers))
+        if one.number == number
+        else one
+        for one in mark.result.exercises
+    )
+    return changed(mark, exercises=exercises)
+
+
+NOT_RUN = result_of(BOB, {}, status="not run", says="two notebooks: a.ipynb and <b>.ipynb; keep one")
+
+
+# The page of a student.
+
+
+def test_the_page_says_what_became_of_each_answer():
+    text = read(feedback(TITLE, BOB, NAMED))
+    assert f"{TITLE} Bob Bode (s1002) 3.67 of 5 points" in text
+    assert "(2.67 of 4 points)" in text
+    assert "≈ K mistake: That is the gain itself" in text
+    assert f"Your answer: {float(gain.question(BOB.id).values['K']):.12g}" in text
+
+
+def test_the_page_says_how_an_answer_was_read_where_that_is_not_what_was_typed():
+    mark = with_answer(RIGHT_ALL, "1", "T", answer="2 min", says="right, converted from min")
+    mark = with_answer(mark, "1", "K", answer=2, status="wrong", says="not right; asked: the gain · read as 2")
+    mark = with_answer(mark, "1", "H", answer="2/s", status="mistake", says="no $T$ · read as 2.0/s")
+    text = read(feedback(TITLE, ADA, mark))
+    assert "Your answer: 2 min, converted from min" in text
+    assert "Your answer: 2/s, read as 2.0/s" in text
+    assert "not right; asked: the gain Your answer: 2 ✓" in text
+
+
+def test_the_page_says_what_stopped_and_what_failed():
+    text = read(feedback(TITLE, EVE, STOPPED))
+    assert "stopped in cell 4: it took longer than 60 s" in text
+    assert "cell 3: NameError" in text
+    assert "stream" not in text  # what makes the instructor look is for the instructor
+
+
+def test_the_page_names_the_question_the_numbers_and_the_file():
+    given = (("K", "2 K/%"), ("T", "30 s"))
+    exercises = tuple(replace(one, given=given) for one in NAMED.result.exercises[:1])
+    text = read(feedback(TITLE, BOB, changed(NAMED, exercises=exercises)))
+    values = gain.question(BOB.id).values
+    assert "The question, with your numbers" in text
+    assert re.search(rf"A lag of {values['T']}.s with the gain", text)
+    assert "Your numbers: " in text
+    assert text.count("Gain below") == 1  # the heading of the statement is that of the exercise
+    assert "s1002/heater.ipynb" in text
+
+
+def test_the_page_says_how_the_file_was_chosen_of_several():
+    chosen = "counts as the latest, by the times of the files, of two notebooks: a<b>.ipynb and b.ipynb"
+    text = read(feedback(TITLE, BOB, changed(NAMED, chosen=chosen)))
+    assert f"It {chosen}." in text
+    mark = changed(NAMED, chosen=chosen)
+    assert told([mark, MISSING], [f"s1002/heater.ipynb: {chosen}"]) == ({}, [("s1002",)])
+
+
+def test_the_page_says_whose_notebook_it_is():
+    text = read(feedback(TITLE, BOB, changed(NAMED, owner="s1001")))
+    assert "This is somebody else's notebook: it was made for" in text
+    for owner in ("", "s1002"):
+        assert "somebody else" not in read(feedback(TITLE, BOB, changed(NAMED, owner=owner)))
+
+
+def test_the_page_says_what_waits_and_what_was_given_by_hand():
+    mark = waiting(NAMED, "1", comments=("the plot has *no* axes",), history=("3 points before",))
+    text = read(feedback(TITLE, BOB, mark))
+    assert "1 of 5 points so far" in text
+    assert "(waits for a mark)" in text
+    assert "From your instructor:" in text
+    assert "the plot has *no* axes" in text
+    assert "3 points before" in text
+    assert "(3.5 of 4 points)" in read(feedback(TITLE, BOB, waiting(NAMED, "1", earned=3.5)))
+
+
+def test_what_a_person_marks_is_shown_whole():
+    text = feedback(TITLE, ADA, by_hand())
+    assert text.count("<img") == 1
+    assert 'alt="the figure that was handed in for sketch"' in text
+    assert "<bdi>the dead time is long</bdi><br><bdi>&lt;b&gt;so&lt;/b&gt; it oscillates" in text
+    said = read(feedback(TITLE, ADA, by_hand()))
+    assert "oscillates !" in said
+    assert "to be marked: a person marks this" in re.sub(r"\*", "", said)
+    assert "9 words, where at most 5 are asked for" in said
+    assert "5 of 9 points so far" in said
+    assert "begins after" not in said
+    assert "Key: it begins after the dead time" in read(feedback(TITLE, ADA, by_hand(), reveal=True))
+
+
+def test_what_a_person_has_marked_waits_no_more():
+    marks = {("3", "sketch"): Mark(2, "no *axes*"), ("3", "why"): Mark(None, "and why?")}
+    text = read(feedback(TITLE, ADA, by_hand(marks)))
+    assert re.search(r"sketch\W+marked by hand", text)
+    assert re.search(r"why\W+to be marked", text)
+    assert 'sketch: 2 of 3 points by hand: "no *axes*"' in text
+    assert "why: and why?" in text
+    text = read(feedback(TITLE, ADA, by_hand(marks | {("3", "why"): Mark(1)})))
+    assert "8 of 9 points" in text
+    assert "so far" not in text
+
+
+def test_the_page_says_what_being_late_cost():
+    mark = replace(NAMED, late="2 days late: 20 % off", deduction=0.7333, comments=("See me.",))
+    text = read(feedback(TITLE, BOB, mark))
+    assert "2.93 of 5 points" in text
+    assert "2 days late: 20 % off (0.73 points)." in text
+    assert "See me." in text
+
+
+def test_who_has_no_points_yet_is_not_told_zero():
+    for mark in (NOT_RUN, MISSING):
+        text = read(feedback(TITLE, BOB, mark))
+        assert "no points yet, of 5" in text
+        assert "Exercise" not in text
+        assert ("Show this page" in text) == (mark is NOT_RUN)
+    assert "Exercise 2" in read(feedback(TITLE, BOB, Marked.of(NOT_RUN.result, {("2", ""): Mark(1, "on paper")})))
+    assert "two notebooks: a.ipynb and <b>.ipynb; keep one" in read(feedback(TITLE, BOB, NOT_RUN))
+
+
+# What to look at.
+
+
+def told(marks, complaints=()):
+    """The concerns by their titles: pairs of the students and the points of each case; and the harmless ones."""
+    costly, harmless = concerns(marks, complaints)
+    cases = {one.title: [(*case.students, round(case.points, 3)) for case in one.cases] for one in costly}
+    return cases, [case.students for case in harmless]
+
+
+def test_nothing_is_to_look_at_where_all_is_well():
+    assert told([RIGHT_ALL, NAMED, MISSING]) == ({}, [])
+    text = read(summary(TITLE, CLASS, [RIGHT_ALL]))
+    assert "Nothing." in text
+
+
+def test_what_may_cost_most_comes_first():
+    waits = replace(with_answer(RIGHT_ALL, "2", "action", weight=1), exercises=RIGHT_ALL.exercises)
+    flagged = with_answer(NAMED, "1", "T", look="it has no value at $t = 0$")
+    cases, harmless = told([waits, flagged, STOPPED, NOT_RUN])
+    assert list(cases) == [
+        "Notebooks that could not be run",
+        "Notebooks that were stopped before all answers were in",
+        "Answers that could not be judged",
+        "Answers that were judged and are unusual",
+        "Notebooks that sent the grader something else than answers",
+    ]
+    assert cases["Notebooks that could not be run"] == [("s1002", 5)]
+    # H and the action are open
+    assert cases["Notebooks that were stopped before all answers were in"] == [("s1003", 2.333)]
+    assert cases["Answers that were judged and are unusual"] == [("s1002", 1.333)]
+    # and they brought nothing
+    assert cases["Notebooks that sent the grader something else than answers"] == [("s1003", 0)]
+    assert harmless == []
+
+
+def test_the_costliest_case_of_a_kind_comes_first():
+    many = [changed(result_of(one, {"2": {"action": "either"}}), student=one.id) for one in CLASS[:2]]
+    many.append(result_of(EVE, {"1": {"H": "K | $x$"}}))
+    cases, _ = told(many)
+    assert cases == {"Answers that could not be judged": [("s1003", 1.333), ("s1001", 1), ("s1002", 1)]}
+
+
+def test_weights_say_what_hangs_on_an_answer():
+    heavy = with_answer(result_of(BOB, {"1": {"H": "K | x"}}), "1", "H", weight=2)
+    assert told([heavy])[0] == {"Answers that could not be judged": [("s1002", 2)]}
+
+
+def test_a_notebook_of_somebody_else_and_odd_lines():
+    looks = (Look("owner", "it names another student: s1001"), Look("odd lines", "it told 3 lines"))
+    cases, harmless = told([changed(NAMED, looks=(*looks, Look("extra", "it answers '9'")))])
+    assert cases == {
+        "Notebooks that say they are somebody else's": [("s1002", 5)],
+        "Notebooks that sent the grader something else than answers": [("s1002", 3.667)],
+    }
+    assert harmless == [("s1002",)]
+
+
+@pytest.mark.parametrize("kind", ["unasked", "no code"])
+def test_answers_that_do_not_count_where_they_stand_cost_what_is_open(kind):
+    mark = changed(result_of(BOB, {"1": {"K": 1.0}}), looks=(Look(kind, "in exercise 1 it answers 'k'", "1"),))
+    title = "Answers that do not count where they stand"
+    assert told([mark]) == ({title: [("s1002", 2.667)]}, [])
+    anywhere = changed(mark, looks=(Look(kind, "it answers '11'"),))
+    assert told([anywhere]) == ({title: [("s1002", 3.667)]}, [])
+    decided = Marked.of(mark.result, {("1", ""): Mark(4)})
+    assert told([decided]) == ({}, [("s1002",)])
+    text = read(feedback(TITLE, BOB, mark))
+    assert "in exercise 1 it answers 'k'" in text
+    assert "in exercise 1 it answers 'k'" in results_json(mark)
+
+
+def test_the_page_says_what_the_summary_says_of_another_name():
+    mark = changed(RIGHT_ALL, owner="s1001", looks=(Look("owner", "it names another student: s1002"),))
+    text = read(feedback(TITLE, ADA, mark))
+    assert "Of this notebook: it names another student: s1002. It was graded with the numbers of" in text
+
+
+def test_what_failed_after_the_answers_were_in_is_harmless():
+    errors = (CellError(9, "NameError: x"),)
+    assert told([changed(RIGHT_ALL, errors=errors)]) == ({}, [("s1001",)])
+    latest = result_of(BOB, {"1": {"K": 1.0}}, says="of two notebooks the latest")
+    assert told([latest]) == ({}, [("s1002",)])
+    unanswered = result_of(BOB, {"1": {"K": 1.0}}, errors=errors)
+    assert told([unanswered]) == ({"Cells that failed, with answers left open": [("s1002", 3.667)]}, [])
+    text = read(summary(TITLE, CLASS, [changed(RIGHT_ALL, errors=errors)]))
+    assert "1 remark that costs nothing" in text
+    assert "cell 9: NameError: x" in text
+
+
+def test_what_waits_for_a_person_is_told_with_what_to_look_for():
+    cases, _ = told([by_hand({("3", "why"): Mark(1)})])
+    assert cases == {"Answers that wait for a mark": [("s1001", 3)]}
+    two = [by_hand(), changed(by_hand(), student="s1002")]
+    cases, _ = told(two)
+    assert cases["Answers that wait for a mark"] == [("s1001", "s1002", 3), ("s1001", "s1002", 1)]
+    text = read(summary(TITLE, CLASS, two))
+    assert re.search("3 · .?sketch.?; to look for: it begins after the dead time", text)
+
+
+def test_marks_and_times_that_need_a_decision():
+    look = "exercise 1, K: marked by hand with 1, and the answer has changed since"
+    named = Marked.of(NAMED.result, looks=(Notice(2, look),))
+    cases, _ = told([named, Marked.of(MISSING.result, looks=(Notice(5, "late"),))])
+    assert cases == {"Marks and times that need a decision": [("s1004", 5), ("s1002", 2)]}
+    text = read(summary(TITLE, CLASS, [named]))
+    assert look in text
+
+
+def test_what_a_person_has_decided_is_not_to_look_at():
+    unread = result_of(BOB, {"1": {"H": "K | x", "K": 1.0}}, errors=(CellError(9, "NameError: x"),))
+    assert set(told([unread])[0]) == {"Cells that failed, with answers left open", "Answers that could not be judged"}
+    one = Marked.of(unread.result, {("1", "H"): Mark(1)})
+    assert told([one])[0] == {"Cells that failed, with answers left open": [("s1002", 2.333)]}
+    exercise = Marked.of(unread.result, {("1", ""): Mark(1), ("2", "action"): Mark(0)})
+    assert told([exercise]) == ({}, [("s1002",)])
+    for mark in (unread, NOT_RUN, changed(NAMED, looks=(Look("owner", "it names another student: s1001"),))):
+        assert told([Marked.of(mark.result, {("", ""): Mark(2)})]) == ({}, [("s1002",)])
+
+
+def test_a_file_of_nobody_costs_where_somebody_is_missing():
+    complaint = "x_<y>.ipynb: is named after no student of the roster"
+    assert told([RIGHT_ALL], [complaint]) == ({}, [()])
+    assert told([RIGHT_ALL, MISSING], [complaint]) == ({"Files that were not graded": [(5,)]}, [])
+    beside = f"notes.pdf: is not a notebook (.ipynb), beside {RIGHT_ALL.result.file}"
+    assert told([RIGHT_ALL, MISSING], [beside]) == ({}, [(ADA.id,)])
+    for marks in ([], [RIGHT_ALL], [MISSING]):
+        text = read(summary(TITLE, CLASS, marks, [complaint]))
+        assert complaint in text
+
+
+def test_what_was_not_run_is_told_once():
+    complaint = f"{NOT_RUN.result.file}: {NOT_RUN.result.says}"
+    assert told([NOT_RUN, MISSING], [complaint]) == ({"Notebooks that could not be run": [("s1002", 5)]}, [])
+    assert read(summary(TITLE, CLASS, [NOT_RUN, MISSING], [complaint])).count("keep one") == 1
+
+
+def test_equal_answers_are_told():
+    marks = [given(ADA, 123.4), given(BOB, "123.4")]
+    assert told(marks)[0] == {"Equal answers where the numbers differ": [("s1001", "s1002", 1.333)]}
+    (row,) = [row for row in rows(summary(TITLE, CLASS, marks)) if "123.4" in row]
+    assert row.endswith(" 1.33 1 · K: 123.4 wrong for all")
+    copied = 2 * float(gain.question(ADA.id).values["K"])
+    cases, _ = told([given(ADA, copied, "3.217/(s + 1)"), given(BOB, copied, "3.217/(s + 1)")])
+    assert [one[:2] for one in cases["Equal answers where the numbers differ"]] == [("s1001", "s1002")] * 2
+    text = read(summary(TITLE, CLASS, [given(ADA, copied), given(BOB, copied)]))
+    assert "right for s1001, not for s1002" in text
+
+
+# The summary.
+
+
+def test_the_summary_counts():
+    text = read(summary(TITLE, CLASS, RESULTS))
+    assert "3 submissions, 1 missing." in text
+    assert "Mean 2.89, median 3.67 of 5 points, over 3 grades." in text
+    assert "wrote to the answers" in text
+    assert "stopped in cell 4" in text
+
+
+def test_means_are_over_those_who_have_a_grade():
+    marks = [RIGHT_ALL, NOT_RUN, waiting(changed(NAMED, student="s1003"), "1")]
+    text = read(summary(TITLE, CLASS, marks))
+    assert "3 submissions, 1 not graded yet, 1 not run, 1 waiting for a mark." in text
+    assert "Mean 5, median 5 of 5 points, over 1 grade." in text
+    means = {one.number: one.mean for one in Findings(CLASS, marks).exercises}
+    assert means == {"1": 4, "2": 1}
+    text = read(summary(TITLE, CLASS, [waiting(RIGHT_ALL, "1")]))
+    assert "Mean" not in text
+
+
+def test_the_summary_of_nothing():
+    for students, marks in [((), []), (CLASS, []), (CLASS, [MISSING])]:
+        assert "0 submissions" in read(summary(TITLE, students, marks))
+
+
+def test_many_cases_of_one_kind_are_cut():
+    many = [changed(result_of(ADA, {"1": {"H": "K | $x$"}}), student=f"s{k}") for k in range(103)]
+    text = read(summary(TITLE, CLASS, many))
+    assert "There are 3 more, on the pages of the students." in text
+
+
+def test_pages_lead_to_each_other_and_to_the_notebooks_that_were_kept():
+    text = summary(TITLE, CLASS, [STOPPED, MISSING], notebooks=["s1003"])
+    assert '<a href="feedback/s1003/feedback.html"><bdi>=HYPERLINK(1)</bdi>' in text
+    assert '<a href="notebooks/s1003.html">notebook</a>' in text
+    assert 'href="feedback/s1004/feedback.html"' in text
+    assert "feedback/s1002" not in text
+    assert "notebooks/s1003" not in summary(TITLE, CLASS, RESULTS)
+    link = 'href="../../notebooks/s1002.html"'
+    assert link in feedback(TITLE, BOB, NAMED, notebooks=["s1002"])
+    assert link not in feedback(TITLE, BOB, NAMED, notebooks=["s1001"])
+
+
+def test_late_hand_ins_and_marks_by_hand_are_in_the_summary():
+    late = Marked.of(NAMED.result, lateness=Lateness(0.2, "2 days late: 20 % of the points are deducted"))
+    marked = Marked.of(RIGHT_ALL.result, {("1", ""): Mark(3.5, "no axes"), ("2", "action"): Mark(None, "good")})
+    of_all = Marked.of(NOT_RUN.result, {("", ""): Mark(4, "on paper")})
+    found = rows(summary(TITLE, CLASS, [late, marked]))
+    assert "Bob Bode (s1002) 0.73 2 days late: 20 % of the points are deducted" in found
+    assert 'Ada Lovelace (s1001) 1 4 3.5 4 of 4 points by the grader, 3.5 by hand: "no axes"' in found
+    assert "Ada Lovelace (s1001) 2 1 1 action: good" in found
+    says = 'all of it 0 4 0 of 5 points before, 4 by hand for all of it: "on paper"'
+    assert f"Bob Bode (s1002) {says}" in rows(summary(TITLE, CLASS, [of_all]))
+    assert "by hand" not in read(summary(TITLE, CLASS, [RIGHT_ALL, NAMED]))
+
+
+def test_answers_to_be_marked_have_a_column_where_there_are_any():
+    found = rows(summary(TITLE, CLASS, [by_hand()]))
+    assert "exercise quantity in percent ✓ right ≈ mistake ✗ wrong ? not judged ✎ to be marked … open" in found
+    assert "3 sketch 0 0 0 0 1 0" in found
+    assert "to be marked" not in read(summary(TITLE, CLASS, [RIGHT_ALL]))
+
+
+def test_each_file_that_was_written_is_told_and_no_other(tmp_path):
+    write_all(tmp_path, TITLE, CLASS, RESULTS, notes=["other numbers than at the release"])
+    text = (tmp_path / "summary.html").read_text(encoding="utf-8")
+    of_all = [one for one in registered() if not one.is_for_each_student]
+    told = {one.file for one in of_all if f"<code>{one.file}</code>" in text and one.what in read(text)}
+    assert told == {path.name for path in tmp_path.iterdir() if path.is_file()} - {"summary.html"}
+    assert "grades.csv" in told
+    assert len(told) < len(of_all) - 2
+    assert "other numbers than at the release" in read(text)
+    assert "How the class was graded" not in read(summary(TITLE, CLASS, RESULTS))
+
+
+def test_the_tables_of_the_summary_have_equal_rows():
+    widths = []
+    for table in re.findall("<table>.*?</table>", summary(TITLE, CLASS, RESULTS), re.DOTALL):
+        widths.append({len(re.findall("</t[dh]>", row)) for row in re.findall("<tr>.*?</tr>", table, re.DOTALL)})
+    assert [*map(len, widths)] == [1] * len(widths)
+    assert set.union(*widths) == {2, 3, 4, 8}
+
+
+def test_the_words_of_a_verdict_are_those_of_its_status():
+    statuses = {answer.status for mark in RESULTS for one in mark.result.exercises for answer in one.answers}
+    text = read(summary(TITLE, CLASS, RESULTS))
+    assert statuses == {RIGHT, MISTAKE, WRONG, UNJUDGED, OPEN}
+    assert all(status in text for status in statuses)
+
+
+@pytest.mark.parametrize(
+    ("settings", "says"),
+    [
+        ({"Kp": 2, "Ti": "inf", "Td": 0, "Tf": 0, "form": "parallel"}, "Kp = 2"),
+        ({"Kp": "1/3", "Ti": "2 min", "Td": 1, "form": "serial"}, "Kp = 0.33333333, Ti = 2 min, Td = 1, serial form"),
+        ({"Kp": "1/0", "Ti": [HOSTILE[:5]], "form": {}}, "Kp = 1/0, Ti = [</cod]"),
+        ({"Kp": 2, "form": "parallel", "more": 1}, "{Kp: 2, form: parallel, more: 1}"),
+        ({"Kp": "9" * 400 + "/7", "form": ""}, "Kp = 9999"),
+    ],
+)
+def test_a_controller_in_words(settings, says):
+    assert answer_in_words(settings).startswith(says)
+
+
+def test_the_hardest_exercise_comes_first_and_one_that_waits_last():
+    found = Findings(CLASS, RESULTS)
+    assert [one.number for one in found.exercises] == ["1", "2"]
+    waits = Findings(CLASS, [by_hand(), changed(NAMED, student="s1003")])
+    assert waits.exercises[-1].number == "3"
+    assert found.exercises[0].fraction == pytest.approx((4 + 8 / 3 + 0) / 12)
+    assert {asked.name: asked.fraction for asked in found.exercises[0].asked} == {
+        "K": pytest.approx(1 / 3),
+        "T": pytest.approx(2 / 3),
+        "H": pytest.approx(2 / 3),
+    }
+
+
+def test_mistakes_are_counted():
+    third = result_of(EVE, own_mistake)
+    (most, *_) = Findings(CLASS, [RIGHT_ALL, NAMED, third]).mistakes
+    assert most[:2] == ("1", "K")
+    assert most[2].startswith("That is the gain itself")
+    assert most[3] == 2
+
+
+def test_a_mistake_is_one_whatever_the_numbers_in_its_sentence():
+    hours = [result_of(one, {"1": {"T": gain.question(one.id).given("T") / 3600.0}}) for one in CLASS]
+    assert Findings(CLASS, hours).mistakes == [("1", "T", "The …\N{NO-BREAK SPACE}s are not in hours.", 4)]
+    assert Findings(CLASS, hours[:1]).mistakes[0][2] == "The 40\N{NO-BREAK SPACE}s are not in hours."
+
+
+def summing(points, earned):
+    """A marked result of so many points of those possible."""
+    exercise_ = JudgedExercise("1", "Gain", points, "", (), (JudgedAnswer("K", WRONG, "", 1, "2"),))
+    return Marked(replace(RIGHT_ALL.result, exercises=(exercise_,)), (MarkedExercise(exercise_, earned),))
+
+
+@pytest.mark.parametrize("points", [0.5, 1, 3, 5, 10, 24, 37, 100, 250])
+def test_every_sum_has_its_place_in_the_distribution(points):
+    earned = [points * k / 30 for k in range(31)]
+    steps = Findings(CLASS, [summing(points, sum_) for sum_ in earned]).steps
+    assert sum(count for _, _, count in steps) == 31
+    assert steps[0][0] == 0
+    assert steps[-1][1] == points
+    assert 1 <= len(steps) <= 12
+
+
+def test_the_distribution_has_a_bar_for_each_step():
+    page = summary(TITLE, CLASS, RESULTS)
+    found = [row for row in rows(page) if re.match(r"[\d.]+ to [\d.]+", row)]
+    assert found[:3] == ["0 to 0.5 1", "0.5 to 1", "1 to 1.5"]
+    assert re.findall(r'class="bar" style="width: (.*?)"', page) == ["20.0rem"] * 3
+
+
+def test_a_sum_of_thirds_is_not_below_its_step():
+    steps = Findings(CLASS, [summing(5, 1 / 3 + 1 / 3 + 1 / 3 - 1e-16)]).steps
+    assert [count for _, _, count in steps if count] == [1]
+    assert next(lower for lower, _, count in steps if count) == 1
+
+
+# Equal answers.
+
+
+def given(student, K, H="", way=""):
+    return result_of(student, {"1": {"K": K, "H": H or None}, "2": {"action": way or None}})
+
+
+def equal(marks):
+    return equal_answers([mark.result for mark in marks])
+
+
+def test_an_answer_that_is_right_for_another_student_is_reported():
+    copied = 2 * float(gain.question(ADA.id).values["K"])
+    (found,) = equal([given(ADA, copied), given(BOB, f"{copied} K/%"), given(BOB, copied), given(ZOE, 1.0)])
+    assert (found.number, found.name, found.right, found.others) == ("1", "K", (ADA.id,), (BOB.id,))
+
+
+def test_an_equal_wrong_expression_is_reported_in_any_spacing():
+    (found,) = equal([given(ADA, None, "3.217/(s + 1)"), given(BOB, None, "3.217 / (s+1)")])
+    assert (found.name, found.right, found.others) == ("H", (), (ADA.id, BOB.id))
+
+
+def test_equal_answers_that_mean_little_are_not_reported():
+    assert equal([given(ADA, 100), given(BOB, 100)]) == []  # few digits
+    assert equal([given(ADA, None, way="direct"), given(BOB, None, way="direct")]) == []  # words
+    assert equal([given(ADA, 123.4), given(ADA, 123.4)]) == []  # the same numbers
+    assert equal([given(ADA, None), given(BOB, None)]) == []  # nothing
+
+
+@pytest.mark.parametrize(
+    ("answer", "digits"),
+    [
+        (0, 1),
+        (2.0, 1),
+        (0.00250, 2),
+        (1e-7, 1),
+        (2.345e10, 4),
+        (1200, 2),
+        (True, 0),
+        (None, 0),
+        ("S12, S13", 0),
+        ("K/(T*s + 1)", 1),
+        ("2.50 min", 2),
+        (".125", 3),
+        ([1, 2.345], 4),
+        ({"unreadable": "it has no form"}, 0),
+    ],
+)
+def test_significant_digits(answer, digits):
+    assert significant_digits(answer) == digits
