@@ -75,7 +75,9 @@ def by_name(alone: object, key: Mapping[str, Kind]) -> dict[str, Any]:
         return alone if set(as_asked(alone, key)) & set(key) else {}
     for whole in WHOLES:
         if whole.is_one(alone) or (isinstance(alone, str) and re.search("[=:]", alone)):
-            return {name: value for name, value in _one_by_one({whole.called: alone}, key).items() if name in key}
+            one_by_one = _one_by_one({whole.called: alone}, key)
+            if found := {name: value for name, value in one_by_one.items() if name in key}:
+                return found
     return {}
 
 
