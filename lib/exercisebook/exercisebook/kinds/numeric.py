@@ -160,7 +160,7 @@ class Number(Kind):
                 yield f"in {unit}", f"{units.convert(self.key, self.unit, to=unit):.{digits}g} {unit}"
 
     def wrong_forms(self) -> Iterator[Tried]:
-        """Zero, the other sign, a factor of ten.
+        """Zero, the other sign, a factor of ten; one where the key is zero.
 
         >>> [answer for _, answer in Number(90, "s").wrong_forms()]
         [0.0, -90.0, 900.0, 9.0]
@@ -374,13 +374,8 @@ class Poles(Kind):
 
 def _changed(key):
     """Zero, the other sign, and a factor of ten; of a row and of poles, those that are not the same once more."""
-    changed = {
-        "zero": 0 * key,
-        "with the other sign": -key,
-        "ten times as much": 10 * key,
-        "a tenth of it": key / 10,
-    }
-    for how, answer in changed.items():
+    changed = {"with the other sign": -key, "ten times as much": 10 * key, "a tenth of it": key / 10}
+    for how, answer in ({"zero": 0 * key} | changed if np.any(key) else {"one": key + 1}).items():
         if not np.array_equal(np.sort_complex(np.ravel(answer)), np.sort_complex(np.ravel(key))):
             yield how, answer
 
