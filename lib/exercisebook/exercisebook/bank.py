@@ -11,12 +11,12 @@ from types import EllipsisType
 from typing import TYPE_CHECKING
 
 from exercisebook import naming
-from exercisebook.authoring import Exercise, collected
 from exercisebook.errors import ExerciseError
 from exercisebook.progress import Collection, Progress
 from plainmath.validation import did_you_mean
 
 if TYPE_CHECKING:
+    from exercisebook.authoring import Exercise
     from exercisebook.question import Question
 
 
@@ -40,6 +40,8 @@ class Bank:
     @functools.cache  # noqa: B019
     def exercises(self, chapter: str) -> dict[str, Exercise]:
         """Return the exercises of a chapter in their order: {number: `Exercise`}. Raises KeyError for no chapter."""
+        from exercisebook.authoring import collected  # it loads the plug-ins, which may have banks themselves
+
         return collected(self._module(chapter))
 
     def title(self, chapter: str) -> str:
