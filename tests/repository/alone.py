@@ -24,8 +24,13 @@ TESTS = {
     "loopbook-books": "tests/books",
 }
 #: What is installed with each, besides pytest and hypothesis: extras of its own, and packages of others.
-EXTRAS = {"loopbook": "diagrams", "exercisegrader": "cluster", "loopbook-books": "lab"}
-OTHERS = {"loopbook": ["control"], "exercisebook": ["ipython"]}
+EXTRAS = {"bookledger": "pytest", "loopbook": "diagrams", "exercisegrader": "cluster", "loopbook-books": "lab"}
+OTHERS = {
+    "bookledger": ["ipykernel", "nbclient"],
+    "exercisebook": ["ipython"],
+    "loopbook": ["control"],
+    "loopbook-books": ["control"],
+}
 
 
 def stands_on(package: str) -> set[str]:
