@@ -64,9 +64,13 @@ def _of_library():
         for path in (LIBRARY / package).rglob("*"):
             if path.is_file() and path.name != "pyproject.toml" and not LEFT_OUT & set(path.parts):
                 yield "/".join(path.relative_to(LIBRARY).parts[1:]), path.read_bytes()
-        for name, content in _installed(package):
-            if ".dist-info/" in name and not name.endswith("direct_url.json"):
-                yield name, content
+    about = f"loopbook-{metadata.version('loopbook')}.dist-info"
+    for name, content in _installed("loopbook"):
+        if ".dist-info/" in name and not name.endswith("direct_url.json"):
+            yield name, content
+    for name, content in _installed("loopbook-books"):
+        if name.endswith("/entry_points.txt"):  # a wheel has one folder of this kind
+            yield f"{about}/entry_points.txt", content
 
 
 def _record(members, about):
