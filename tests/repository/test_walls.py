@@ -2,6 +2,7 @@
 
 import ast
 import functools
+import re
 import subprocess
 import sys
 import tomllib
@@ -119,6 +120,15 @@ def upward(name, names):
 
 def test_a_package_imports_only_those_that_it_stands_on():
     found = {f"{name} ({package})": across(package, imports_of(path)) for (package, name), path in modules().items()}
+    assert {name: wrong for name, wrong in found.items() if wrong} == {}
+
+
+def test_the_examples_of_a_package_need_no_other():
+    """Those in docstrings, which no syntax tree has as imports."""
+    said = re.compile(r"^\s*(?:>>>|\.\.\.) (?:from|import) ([\w.]+)", re.MULTILINE)
+    found = {
+        name: across(package, said.findall(path.read_text("utf-8"))) for (package, name), path in modules().items()
+    }
     assert {name: wrong for name, wrong in found.items() if wrong} == {}
 
 

@@ -67,10 +67,17 @@ class Assignment:
         Raises:
             GradingError: for a text that fails, or has no title, secret or exercises; with the line.
 
-        >>> text = '"Tuning"; SECRET = "a secret of many letters"; from loopbook.exercises.bank.ch10_tuning import *'
-        >>> tuning = Assignment.of(text, "tuning")
-        >>> tuning.title, tuning.question("s1001", "10.1").values == tuning.question("s1002", "10.1").values
-        ('Tuning', False)
+        >>> text = '''"Springs"
+        ... SECRET = "a secret of many letters"
+        ... from exercisebook.authoring import answers, between, exercise, number
+        ... @exercise("1", title="A spring")
+        ... def spring(k=between(100, 900, "N/m"), x=between(2, 9, "cm")):
+        ...     "A spring of {k} is {x} longer than at rest. How large is the force in it?"
+        ...     return answers(F=number(k * x / 100, "N", "the force"))
+        ... '''
+        >>> springs = Assignment.of(text, "springs")
+        >>> springs.title, springs.question("s1001", "1").values == springs.question("s1002", "1").values
+        ('Springs', False)
         """
         module = _run(source, name, path)
         title, _, introduction = inspect.cleandoc(module.__doc__ or "").partition("\n")

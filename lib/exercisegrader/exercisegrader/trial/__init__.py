@@ -84,10 +84,17 @@ def try_all(
         follow: is told how many variants are done, of all exercises together.
 
     >>> from exercisegrader.assignment import Assignment
-    >>> text = '"Laplace"; SECRET = "a secret of many letters"; from loopbook.exercises.bank.ch04_laplace import *'
-    >>> first = next(try_all(Assignment.of(text, "laplace"), ["s1", "s2"]))
+    >>> text = '''"Springs"
+    ... SECRET = "a secret of many letters"
+    ... from exercisebook.authoring import answers, between, exercise, number
+    ... @exercise("1", title="A spring")
+    ... def spring(k=between(100, 900, "N/m"), x=between(2, 9, "cm")):
+    ...     "A spring of {k} is {x} longer than at rest. How large is the force in it?"
+    ...     return answers(F=number(k * x / 100, "N", "the force"))
+    ... '''
+    >>> first = next(try_all(Assignment.of(text, "springs"), ["s1", "s2"]))
     >>> first.number, first.variants, first.level
-    ('4.1', 2, '')
+    ('1', 2, '')
     """
     done = 0
     for number in assignment.exercises:
