@@ -19,17 +19,17 @@ HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 #: Pyodide's own packages: those that are compiled, and what a notebook runs in.
 PACKAGES = ["numpy", "scipy", "matplotlib", "pillow", "ipython", "sqlite3"]
-#: Those in pure Python, in the versions that are installed here.
+#: Those in pure Python, in the versions that are installed here, and ours in the wheel of a page.
 PURE = [
     "sympy", "mpmath", "pint", "flexcache", "flexparser", "platformdirs", "typing-extensions", "schemdraw", "control",
-    "latex2mathml", "markdown-it-py", "mdurl", "ipywidgets", "comm",
+    "latex2mathml", "markdown-it-py", "mdurl", "ipywidgets", "comm", "loopbook",
 ]  # fmt: skip
 PROGRAM = """
 import sys, logging, pathlib, zipfile
 logging.getLogger("matplotlib.font_manager").setLevel(logging.ERROR)  # it says that it looks for fonts
 for wheel in pathlib.Path("/order/wheels").glob("*.whl"):
     zipfile.ZipFile(wheel).extractall("/wheels")
-sys.path[:0] = ["/library", "/tests", "/wheels"]
+sys.path[:0] = ["/tests", "/wheels"]
 import in_browser
 in_browser.perform(pathlib.Path("/order/jobs"), pathlib.Path("/order/results"))
 """
@@ -63,8 +63,8 @@ def performed(jobs: Sequence[tuple[str, Any]], parts: Path, folder: Path, second
     order = {
         "parts": str(parts),
         "packages": PACKAGES,
-        "folders": {"/library": str(ROOT / "lib"), "/tests": str(HERE), "/chapters": str(ROOT / "chapters"),
-                    "/solutions": str(ROOT / "solutions"), "/order": str(folder)},
+        "folders": {"/tests": str(HERE), "/chapters": str(ROOT / "chapters"), "/solutions": str(ROOT / "solutions"),
+                    "/order": str(folder)},
         "environment": {"HOME": "/home/pyodide", "MPLBACKEND": "agg", "LOOPBOOK_PROGRESS": "off"},
         "program": PROGRAM,
     }  # fmt: skip
