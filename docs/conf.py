@@ -17,7 +17,7 @@ language = "en"
 
 extensions = [
     "myst_nb", "stored", "exercise_forms", "mathml", "readme", "lazy_figures", "library", "repository_pages",
-    "command_options", "ledger_page", "cheat_sheet_page", "front_page", "lesson_directive", "accessible",
+    "command_options", "calls", "ledger_page", "cheat_sheet_page", "front_page", "lesson_directive", "accessible",
     "permanent", "single_figures", "search_index", "previews", "here", "python_in_pages", "notebooks_in_pages",
     "on_paper", "light_code",
 ]  # fmt: skip

@@ -78,7 +78,7 @@ def exercise(
     insight: str = "",
     weights: Mapping[str, float] | None = None,
 ) -> Callable[[Callable[..., dict[str, Kind]]], Exercise]:
-    """Make an exercise of a function that returns its key.
+    """Make an exercise of the function below, which returns its key; `where` is a condition on the parameters.
 
     Arguments:
         number: chapter and place in it, as "10.2".

@@ -62,7 +62,7 @@ class Declared:
         return f"Exercise {self.number} · {self.title}"
 
     def mistake(self, sentence: str) -> Callable[[_Function], _Function]:
-        """Declare a known mistake: a function of parameters that it names, returning {name: wrong value}."""
+        """Declare a mistake: a function of parameters that returns {name: wrong value}, and {} where there is none."""
 
         def declared(function):
             self.mistakes.append((sentence, function))
