@@ -40,7 +40,7 @@ def complaints(checks=(CHECK,), notebook="02_conduction", **changes):
 
 def test_an_entry_with_results_is_checked_once_or_more():
     assert complaints() == complaints([CHECK, CHECK]) == []
-    assert complaints([]) == ["no notebook checks it"]
+    assert complaints([]) == ["no notebook checks it: expected a check in 02_conduction"]
     assert complaints(notebook="03_radiation") == ["there is no notebook 02_conduction"]
 
 

@@ -71,7 +71,9 @@ def test_a_chapter_asks_each_of_its_exercises_in_one_notebook(chapter):
     times = Counter(number for name, own in NOTEBOOKS.items() if own == chapter for number in asked(name))
     for number in bank.exercises(chapter) | times:
         assert number in bank.exercises(chapter), f"a notebook asks exercise {number}, which the bank does not have"
-        assert times[number] == 1, f"exercise {number} is asked in {times[number]} notebooks: expected one"
+        said = f"exercise {number} is asked in {times[number]} notebooks: expected one, as chapters/{{}}.ipynb, with"
+        said += f' exercise("{number}") and exercise("{number}").check(...) in two cells'
+        assert times[number] == 1, said.format(bank.chapters()[chapter].removeprefix("ch"))
 
 
 @each_chapter
@@ -100,7 +102,9 @@ def test_a_notebook_asks_exercises_in_their_order_and_answers_none(name, chapter
 def test_a_solution_solves_each_exercise(name, chapter):
     exercises = {number: bank.exercises(chapter)[number] for number in asked(name)}
     solved = [response["exercise"] for response in responses("solutions", name) if response["right"] is True]
-    assert solved == [one.heading for one in exercises.values()]
+    for one in exercises.values():
+        assert one.heading in solved, f"solutions/{name}.ipynb has no right answer to exercise {one.number}"
+    assert solved == [one.heading for one in exercises.values()], "the solutions are not in the order of the exercises"
     assert all(response["right"] for response in responses("solutions", name))
     shown = [number for number, answers in calls("solutions", name) if answers is None]
     assert shown == list(exercises)

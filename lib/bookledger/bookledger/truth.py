@@ -30,7 +30,7 @@ def complaints(source: str, name: str, books: Books, points: int) -> list[str]:
     if entry["chapter"] not in books.stored:
         found.append(f"there is no notebook {entry['chapter']}")
     if entry.get("result") and not checks:
-        found.append("no notebook checks it")
+        found.append(f"no notebook checks it: expected a check in {entry['chapter']}")
     for check in checks:
         values = {verdict["name"]: verdict.get("evidence", verdict["computed"]) for verdict in check["verdicts"]}
         found += untrue(entry, values, books.assumptions(source), points)

@@ -1,5 +1,7 @@
 """Reading what readers give, without running anything of theirs: values, rows of values, and formulas.
 
+Numbers with their units are read in `kinds.numeric`.
+
 Python's grammar reads the text of a formula, and what is no arithmetic is refused. A text that is none of Python's is
 read as people write formulas, in `notation`, and a remark says how. SymPy's expressions, and linear systems of SciPy
 and python-control, are read from what they spell.

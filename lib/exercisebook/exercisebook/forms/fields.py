@@ -1,4 +1,4 @@
-"""The fields of a form: what each kind of answers says of how it is typed, or chosen, as HTML."""
+"""The fields of a form: what each kind of answers says of how it is typed, or chosen; `controls` makes HTML of it."""
 
 from __future__ import annotations
 
