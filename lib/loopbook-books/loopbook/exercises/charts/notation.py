@@ -156,7 +156,7 @@ class _Reader:
             parts = ["", way[1]]
         if len(parts) > 1:
             self._way([part.strip() for part in parts])
-        elif (initial := _INITIAL.match(line)) and not self._are_actions(initial[1] or ""):
+        elif (initial := _INITIAL.match(line)) and not (initial[1] and self._are_actions(initial[1])):
             self.chart.initial = self._step(initial[1] or initial[2])
         elif ":" in line.replace(":=", "") and not self._are_actions(line):
             name, _, actions = (part.strip() for part in line.partition(":"))
