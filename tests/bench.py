@@ -34,10 +34,9 @@ from loopbook.synthesis import IMC_TABLE, imc
 from loopbook.transfer import second_order
 
 ROOT = Path(__file__).parents[1]
-sys.path[:0] = [str(ROOT / "tests" / folder) for folder in ("control_engineering", "exercises")]
+sys.path.insert(0, str(ROOT / "tests" / "control_engineering"))
 
 from medians import medians, seconds  # noqa: E402 - of tests/, where it has just become possible to import from
-from test_exercises import key_as_given, wrong_answers  # noqa: E402
 from test_plantwide import CALM, structure  # noqa: E402
 from test_sequence import batches_of_two  # noqa: E402
 
@@ -254,7 +253,7 @@ def the_exercises(runs: int) -> Table:
         for number, exercise in bank.exercises(chapter).items():
             question = exercise.question()
             for name, kind in question.key.items():
-                for answer in (key_as_given(kind), *wrong_answers(kind)):
+                for answer in (kind.as_given, *(form for _, form in kind.wrong_forms())):
                     time = medians(runs, check=functools.partial(question.check, **{name: answer}))["check"]
                     found = slowest.get(type(kind).__name__, (0.0, ""))
                     slowest[type(kind).__name__] = max(found, (time, f"{number}, {name}"))

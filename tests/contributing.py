@@ -28,7 +28,7 @@ def run(heading, known=()):
 
 def kind():
     """The kind of answers that contributors are shown, of which the registry keeps nothing: one may be there by now."""
-    from loopbook.exercises.kinds import MAKERS  # which a test of the control library does without
+    from exercisebook.kinds import MAKERS  # which a test of the control library does without
 
     with mock.patch.dict(MAKERS):
         MAKERS.pop("span", None)

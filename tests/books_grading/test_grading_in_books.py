@@ -13,7 +13,7 @@ import sympy
 
 import assignments
 from assignments import SECRET, students
-from exercisebook.judging import RIGHT, UNJUDGED, judge
+from exercisebook.judging import RIGHT, UNJUDGED, WAITING, judge
 from exercisegrader import nbgrader
 from exercisegrader.assignment import Assignment
 from exercisegrader.release import as_text, notebook
@@ -23,8 +23,9 @@ from exercisegrader.student_side.plain import plain
 from loopbook import notebooks, s
 from loopbook.deadtime import System
 from loopbook.exercises import bank
-from loopbook.exercises.authoring import criterion, design, settings, transfer_function
+from loopbook.exercises.authoring import criterion, design, figure, settings, transfer_function
 from loopbook.exercises.kinds import Design
+from loopbook.figures import stacked, time_plot
 from loopbook.pid import PID
 
 K = sympy.Symbol("K")
@@ -104,6 +105,12 @@ def test_the_sheet_shows_how_a_controller_is_read():
     sheet = answer_sheet.AnswerSheet("Tuning", student="s1001")
     sheet.asks("1", H=answer_sheet.transfer_function())
     assert "· H: 2 + 1/(5*s), an expression in s" in repr(sheet.answer("1", H=PID(2, Ti=10)))
+
+
+def test_a_figure_of_the_library_is_taken_down():
+    output, control = (time_plot({name: [0, 1]}, [0, 1]) for name in "yu")
+    for drawn in (output, stacked(output, control)):
+        assert judge("y", figure("the response"), plain(drawn)).status == WAITING
 
 
 # Released notebooks.

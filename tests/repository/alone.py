@@ -27,7 +27,8 @@ TESTS = {
 EXTRAS = {"bookledger": "pytest", "loopbook": "diagrams", "exercisegrader": "cluster", "loopbook-books": "lab"}
 OTHERS = {
     "bookledger": ["ipykernel", "nbclient"],
-    "exercisebook": ["ipython"],
+    "exercisebook": ["control", "ipython", "matplotlib"],
+    "exercisegrader": ["control"],
     "loopbook": ["control"],
     "loopbook-books": ["control"],
 }

@@ -132,6 +132,12 @@ def test_the_examples_of_a_package_need_no_other():
     assert {name: wrong for name, wrong in found.items() if wrong} == {}
 
 
+def test_the_tests_of_a_package_need_no_other():
+    files = {path: package for package, folder in alone.TESTS.items() for path in (ROOT / folder).rglob("*.py")}
+    found = {path.name: across(package, imports_of(path)) for path, package in files.items()}
+    assert {name: wrong for name, wrong in found.items() if wrong} == {}
+
+
 @pytest.mark.parametrize("package", MAY_IMPORT)
 def test_a_package_says_on_which_it_stands(package):
     project = tomllib.loads((LIB / package / "pyproject.toml").read_text(encoding="utf-8"))["project"]

@@ -16,6 +16,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from exercisebook import judging, question
+from judged import NOT_TO_BE_JUDGED
 from loopbook.exercises import bank
 
 TESTS = Path(__file__).parents[1]
@@ -67,13 +68,10 @@ def of_bank(count: int, seed: int) -> list[tuple]:
 
 def of_exercise(number: str, name: str) -> Iterator[tuple]:
     """Yield answers to a quantity of an exercise: right, wrong, mistaken, and some that are none at all."""
-    import test_exercises as tests
-
     asked = bank.exercises(number.partition(".")[0])[number].question()
     kind = asked.key[name]
-    given = [tests.key_as_given(kind), *tests.other_forms(kind), *tests.wrong_answers(kind)]
-    given += [wrong for _, wrong in asked.mistakes[name]]
-    given += [none for place, none in enumerate(tests.NOT_TO_BE_JUDGED.values()) if place % 4 == len(number) % 4]
+    given = [one for _, one in (*kind.right_forms(), *kind.wrong_forms(), *asked.mistakes[name])]
+    given += [none for place, none in enumerate(NOT_TO_BE_JUDGED.values()) if place % 4 == len(number) % 4]
     for one in given:
         if content := portable((), {name: one}):
             yield "check", number, None, content
@@ -84,10 +82,10 @@ def of_exercise(number: str, name: str) -> Iterator[tuple]:
 
 def of_all(folder: Path) -> list[tuple]:
     """Return all answers that the tests of exercises give and that another Python can have; it takes minutes."""
-    files = sorted(
-        {*TESTS.glob("exercises/test_*.py"), TESTS / "grading" / "test_masked_answers.py"}
-        - {TESTS / "exercises" / "test_exercise_forms.py"}
-    )
+    tested = {*TESTS.glob("exercisebook/test_*.py"), *TESTS.glob("books/test_exercise*.py")}
+    forms = {TESTS / "exercisebook" / "test_exercise_forms.py", TESTS / "books" / "test_exercise_pages.py"}
+    masked = {TESTS / "exercisegrader/slow/test_masked_answers.py", TESTS / "books_grading/test_masked_in_books.py"}
+    files = sorted((tested - forms) | masked)
     places = os.pathsep.join([str(Path(__file__).parent), str(TESTS)])
     environment = os.environ | {RECORD: str(folder / "recorded"), "PYTHONPATH": places}
     environment.pop("LOOPBOOK_ALL", None)

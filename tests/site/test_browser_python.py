@@ -16,7 +16,7 @@ import in_browser
 from draws import THOROUGH
 from exercisebook.judging import SECONDS
 from loopbook.exercises import bank
-from test_exercise_forms import typed
+from typed import typed
 
 ROOT = browser_python.ROOT
 SOME = 200

@@ -82,7 +82,7 @@ def test_diagrams_in_many_forms_are_right(text):
         (KEY + "\nLT11 -> LI11", "LI11 is not asked for: the text names no level indicator in loop 11"),
         (KEY + "\nLC11 -> vessel", "LC11 acts on 'vessel' itself: what moves there?"),
     ],
-)  # fmt: skip
+)
 def test_what_is_wrong_is_named(text, says):
     found = judge("diagram", KIND, text)
     assert found.status == WRONG

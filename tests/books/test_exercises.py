@@ -4,24 +4,24 @@ Of each exercise three variants are proved, other ones each day, and by ``make t
 for in 200.
 """
 
-import ast
-import functools
 import inspect
-import math
 import re
 
 import numpy as np
 import pytest
 import sympy
 
+import contributing
 from draws import STUDENTS, of_the_day
 from exercisebook import filling
 from exercisebook.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG, judge
 from exercisebook.parameters import call
-from exercisegrader.student_side.plain import plain
-from loopbook.exercises import bank, kinds
+from judged import NOT_TO_BE_JUDGED
+from loopbook.exercises import authoring, bank, kinds
 from loopbook.pid import PID
 
+#: The tests of all exercises, each of a claim.
+CLAIMS = []
 #: All exercises.
 NUMBERS = [number for chapter in bank.chapters() for number in bank.exercises(chapter)]
 
@@ -37,6 +37,7 @@ def each_exercise(claim, numbers=NUMBERS):
                     claim(exercise)
 
     test.__name__, test.__doc__ = claim.__name__, claim.__doc__
+    CLAIMS.append(test)
     return test
 
 
@@ -45,187 +46,63 @@ def some_exercises(claim):
     return each_exercise(claim, of_the_day(NUMBERS, len(NUMBERS) // 3, claim.__name__))
 
 
-# Answers of every kind: the key in other forms, and wrong answers.
+# Answers of every kind: the key in many forms, and wrong answers.
 
 
-@functools.singledispatch
-def key_as_given(kind):
-    """The key as a reader might give it."""
-    return kind.key
+def forms(kind):
+    """The key as an assignment is tried with it, and in more forms; of a design those that are good enough."""
+    if isinstance(kind, kinds.Design):
+        return [form for form in forms(kind.example) if kind.agrees(kind.read(form)[0])]
+    # a decimal comma may be asked about, as in 1,500
+    found = [form for how, form in kind.right_forms() if how != "with a decimal comma"]
+    return [*found, *other_forms(kind)]
 
 
-@key_as_given.register
-def _(kind: kinds.Poles):
-    return [complex(value) for value in kind.key]
-
-
-@key_as_given.register
-def _(kind: kinds.Expression):
-    return kind.expr
-
-
-@key_as_given.register
-def _(kind: kinds.Design):
-    return key_as_given(kind.example)
-
-
-@functools.singledispatch
 def other_forms(kind):
-    """At least three other forms of the key; here those that every kind has, from its code."""
-    value = ast.literal_eval(kind.as_code())
-    yield value
-    yield plain(value)
-    yield {sympy.Symbol("x"): value}
+    key = kind.key
+    match kind:
+        case kinds.Number():
+            return [np.float64(key), [sympy.Float(key, 17)], f"{key!r} {kind.unit}"]
+        case kinds.Numbers():
+            return [key * (1 + kind.within / 2)]
+        case kinds.Poles():
+            values = key.tolist()
+            return [np.array(values), {value: values.count(value) for value in values}]
+        case kinds.Expression():
+            return [f"({kind.expr})*(1 + 2/3) - 2*({kind.expr})/3"]
+        case kinds.Settings():
+            return [PID(key.Kp * (1 + kind.within / 2), key.Ti, key.Td, key.Tf, key.form)]
+        case kinds.Word():
+            return [key.capitalize()]
+        case kinds.Words():
+            return [tuple(key), [word.upper() for word in key]]
+        case kinds.SequentialChart():
+            return [key.replace("->", "→").replace(">=", "≥").upper(), key.replace("\n", "; ")]
+        case kinds.InstrumentDiagram():
+            return [key.lower().replace(" ->", " →"), "\n".join(reversed(key.split("; ")))]
 
 
-@other_forms.register
-def _(kind: kinds.Number):
-    x = kind.key
-    yield np.float64(x)
-    yield repr(x)
-    yield [sympy.Float(x, 17)]
-    yield f"{x!r} {kind.unit}"
-
-
-@other_forms.register
-def _(kind: kinds.Numbers):
-    yield kind.key.tolist()
-    yield sympy.Matrix(kind.key)
-    yield np.array([repr(float(x)) for x in kind.key.ravel()]).reshape(kind.key.shape)
-    yield kind.key * (1 + kind.within / 2)
-
-
-@other_forms.register
-def _(kind: kinds.Poles):
-    values = [complex(value) for value in kind.key]
-    yield values[::-1]
-    yield np.array(values)
-    yield {value: values.count(value) for value in values}
-    yield [sympy.Float(z.real) + sympy.I * sympy.Float(z.imag) for z in values]
-
-
-@other_forms.register
-def _(kind: kinds.Expression):
-    yield str(kind.expr)
-    yield sympy.expand(kind.expr)
-    yield sympy.together(kind.expr)
-    yield f"({kind.expr})*(1 + 2/3) - 2*({kind.expr})/3"
-    plain = {symbol: sympy.Symbol(symbol.name) for symbol in kind.expr.free_symbols}  # letters of the reader's own
-    yield kind.expr.xreplace(plain)
-
-
-@other_forms.register
-def _(kind: kinds.Settings):
-    pid = kind.key
-    times = {"Ti": pid.Ti, "Td": pid.Td, "Tf": pid.Tf}
-    yield {"Kp": pid.Kp, **times} if pid.form == "parallel" or kind.form == "serial" else pid
-    yield PID(float(pid.Kp), **{name: x if x == sympy.oo else float(x) for name, x in times.items()}, form=pid.form)
-    yield PID(pid.Kp * (1 + kind.within / 2), **times, form=pid.form)
-
-
-@other_forms.register
-def _(kind: kinds.Word):
-    yield kind.key.upper()
-    yield kind.key.capitalize()
-    yield f"  {kind.key} "
-
-
-@other_forms.register
-def _(kind: kinds.Words):
-    yield tuple(kind.key)
-    yield ", ".join(kind.key)
-    yield [word.upper() for word in kind.key]
-
-
-@other_forms.register
-def _(kind: kinds.SequentialChart):
-    yield kind.key.splitlines()
-    yield kind.key.replace("->", "→").replace(">=", "≥").upper()
-    yield kind.key.replace("\n", "; ")
-
-
-@other_forms.register
-def _(kind: kinds.InstrumentDiagram):
-    yield kind.key.split("; ")
-    yield kind.key.lower().replace(" ->", " →")
-    yield "\n".join(reversed(kind.key.split("; ")))
-
-
-@other_forms.register
-def _(kind: kinds.Design):
-    example = kind.example
-    yield from (form for form in other_forms(example) if kind.agrees(kind.read(form)[0]))
-
-
-@functools.singledispatch
 def wrong_answers(kind):
-    """Three wrong answers; here the mistakes that the kind knows by itself."""
-    yield from (wrong for _, wrong in kind.mistakes() if not kind.agrees(kind.read(wrong)[0]))
-
-
-@wrong_answers.register
-def _(kind: kinds.Number):
-    yield from (-kind.key - 1, 1.7 * kind.key + 1, 0.3 * kind.key - 2)
-
-
-@wrong_answers.register
-def _(kind: kinds.Numbers):
-    yield kind.key + np.max(np.abs(kind.key)) + 1
-    yield 1.7 * kind.key + 1
-    yield 0.4 * kind.key - 3
-
-
-@wrong_answers.register
-def _(kind: kinds.Poles):
-    yield [*kind.key, -1]
-    yield 1.3 * kind.key + 1
-    yield kind.key[1:] if len(kind.key) > 1 else [-77.7]
-
-
-@wrong_answers.register
-def _(kind: kinds.Expression):
-    yield 2.5 * kind.expr
-    yield -3 * kind.expr
-    yield (kind.expr + 7) * 5
-
-
-@wrong_answers.register
-def _(kind: kinds.Settings):
-    pid = kind.key
-    yield PID(1.5 * pid.Kp, pid.Ti, pid.Td, pid.Tf, pid.form)
-    yield PID(pid.Kp, 77 if pid.Ti == sympy.oo else 1.5 * pid.Ti, pid.Td, pid.Tf, pid.form)
-    yield PID(pid.Kp / 3, pid.Ti, pid.Td + 5, pid.Tf, pid.form)
-
-
-@wrong_answers.register
-def _(kind: kinds.Word):
-    yield from [word for word in kind.among if word != kind.key][:3]
-
-
-@wrong_answers.register
-def _(kind: kinds.Words):
-    yield [word for word in kind.among if word not in kind.key]
-    yield kind.key[1:]
-    yield [*kind.key, kind.among[-1] if kind.among[-1] not in kind.key else kind.among[0]] if not kind.ordered else []
-
-
-@wrong_answers.register
-def _(kind: kinds.SequentialChart | kinds.InstrumentDiagram):
-    lines = re.split("\n|; ", kind.key)
-    yield from (lines[:n] + lines[n + 1 :] for n in range(len(lines)) if not lines[n].endswith(": none"))
-
-
-@wrong_answers.register
-def _(kind: kinds.Design):
-    yield from (form for form in wrong_answers(kind.example) if not kind.agrees(kind.read(form)[0]))
-
-
-NOT_TO_BE_JUDGED = {
-    "None": None, "ellipsis": ..., "NaN": math.nan, "infinite": math.inf, "a text": "about this much",
-    "unclosed": "2*(s", "another letter": "xyzzy + 1", "an object": object(), "a type": dict, "empty list": [],
-    "nested": [[1, 2], [3]], "truth": True, "code": "__import__('os').getcwd()", "a set": {"a", 1}, "bytes": b"1",
-    "array of objects": np.array([None, object()]), "a failing function": lambda _: 1 / 0,
-}  # fmt: skip
+    """Those with which an assignment is tried, and of words and lines each that is nearly right."""
+    key = kind.key
+    match kind:
+        case kinds.Design():
+            return [form for form in wrong_answers(kind.example) if not kind.agrees(kind.read(form)[0])]
+        case kinds.Settings():
+            more = [
+                PID(key.Kp, 77 if key.Ti == sympy.oo else 1.5 * key.Ti, key.Td, key.Tf, key.form),
+                PID(key.Kp, key.Ti, key.Td + 5, key.Tf, key.form),
+            ]
+        case kinds.Word():
+            more = [word for word in kind.among if word != key]
+        case kinds.Words():
+            more = [[word for word in kind.among if word not in key], key[1:]]
+        case kinds.SequentialChart() | kinds.InstrumentDiagram():
+            lines = re.split("\n|; ", key)
+            return [lines[:n] + lines[n + 1 :] for n in range(len(lines)) if not lines[n].endswith(": none")]
+        case _:
+            more = []
+    return [*(form for _, form in kind.wrong_forms()), *more]
 
 
 # The reference variant.
@@ -234,24 +111,20 @@ NOT_TO_BE_JUDGED = {
 @some_exercises
 def test_the_key_is_right_in_every_form(exercise):
     question = exercise.question()
-    given = {name: key_as_given(kind) for name, kind in question.key.items()}
+    given = {name: kind.as_given for name, kind in question.key.items()}
     assert question.check(**given).is_right, question.check(**given)
     for name, kind in question.key.items():
-        forms = list(other_forms(kind))
-        assert len(forms) >= (1 if isinstance(kind, kinds.Design) else 3)
-        for form in forms:
+        assert len(forms(kind)) >= (1 if isinstance(kind, kinds.Design) else 3)
+        for form in forms(kind):
             verdict = _verdict(question, name, form)
             assert verdict.status == RIGHT, f"{form!r}: {verdict}"
 
 
 @some_exercises
 def test_wrong_answers_are_wrong(exercise):
-    question = exercise.question()
-    for name, kind in question.key.items():
-        answers = list(wrong_answers(kind))
-        assert answers
-        by_itself = wrong_answers.dispatch(type(kind)) is wrong_answers.dispatch(object)
-        assert len(answers) >= 3 or by_itself or isinstance(kind, kinds.Word | kinds.Design)
+    for name, kind in exercise.question().key.items():
+        answers = wrong_answers(kind)
+        assert len(answers) >= 3 or isinstance(kind, kinds.Word) or kind.key == 0
         for answer in answers:
             assert judge(name, kind, answer).status in (WRONG, MISTAKE), f"{name} = {answer!r}"
 
@@ -408,8 +281,7 @@ def test_variants(exercise):
         question = exercise.question.__wrapped__(exercise, student)
         for name, kind in question.key.items():
             assert _finite(kind), f"the key of {name} is {kind.key} for {question.values}"
-            given = key_as_given(kind)
-            answer, _ = kind.read(given)
+            answer, _ = kind.read(kind.as_given)
             assert kind.agrees(answer), f"the key of {name} fails for {question.values}"
             for sentence, wrong in question.mistakes[name]:
                 answer, _ = kind.read(wrong)
@@ -428,3 +300,25 @@ def _finite(kind):
             # a dead time leaves the range of decimal numbers where s is large
             return bool(np.mean(np.isfinite(kind.key(**kind.points()))) > 0.3)
     return True
+
+
+# The exercise that contributors are shown.
+
+HEATER = contributing.run("Add an exercise", vars(authoring))["air_heater"]
+
+
+@pytest.mark.parametrize("claim", CLAIMS, ids=lambda claim: claim.__name__)
+def test_the_exercise_that_contributors_are_shown_is_as_those_of_the_bank(claim, monkeypatch, subtests):
+    monkeypatch.setattr(bank, "exercises", lambda chapter: {HEATER.number: HEATER})
+    claim("10", subtests)
+
+
+def test_the_exercise_that_contributors_are_shown_is_one():
+    question = HEATER.question()
+    assert "a gain of 3\N{NO-BREAK SPACE}K/%, a time constant of 25\N{NO-BREAK SPACE}s" in question.statement.body
+    assert [one.status for one in question.check(Kp=25 / 24, Ti=16).verdicts] == [RIGHT, RIGHT]
+    assert question.rungs[2] == "With $T_c = \\tau$ there is $K_p = 25/(3 \\cdot 2 \\cdot 4)$."
+    assert "$T_i$ = 16\N{NO-BREAK SPACE}s." in question.solution().text
+    assert question.picture.alt.endswith("it rises by 3 K/%.")
+    wrong = question.check(Kp=25 / 24, Ti=25).verdicts[1]
+    assert (wrong.status, wrong.says) == (MISTAKE, "That is the integral time for $c = 4$; here $c = 2$ is asked.")

@@ -9,7 +9,6 @@ from loopbook.exercises.charts.notation import read_chart
 from loopbook.exercises.charts.running import SCAN
 from loopbook.exercises.charts.signals import Signals
 from loopbook.plants import BatchTank
-from loopbook.sequence import Chart, Transition
 from loopbook.signals import stepwise
 from loopbook.simulation import simulate
 
@@ -33,21 +32,56 @@ def verdict(question, chart):
 
 # The notation.
 
+#: A transition, as it is read, and the ways to write it, between bars.
+TRANSITIONS = {
+    "Fill -> Heat: level >= 0.9": (
+        "Fill → Heat: Level ≥ 0.9 m | Fill -> Heat if level >= 0.90 | Fill --level >= 0.9--> Heat"
+        " | Fill -> level >= 0.9 -> Heat | Fill => Heat: level => 0.9 | 2. from Fill to Heat when level >= 90 cm"
+        " | Fill -> Heat : h >= 0,9   // it is full | Fill [level >= 0.9] -> Heat"
+        " | Fill: none\ngo to Heat if h >= 0.9 | Step Fill\n  -> Heat when the level is at least 0.9 m"
+        " | \n# my chart\nFill -> Heat [level >= 0.9]\n"
+    ),
+    "Hold -> Empty: Hold.T >= 120": (
+        "Hold -> Empty: Hold.T >= 2 min | Hold -> Empty: t >= 120 s | Hold -> Empty after 120 s | Hold [120 s] -> Empty"
+    ),
+    "Wait -> Fill: start": "Wait -> Fill when start is pressed | Wait -> Fill: START",
+    "Wait -> Fill: start AND NOT heater": "Wait -> start and not heater -> Fill | Wait -> Fill if start & !heater",
+    "Fill + Timer -> Wait: TRUE": "Fill + Timer -> Wait",
+}
+#: The actions of a step, in the same way.
+ACTIONS = {
+    "inlet off, heater on": (
+        "Inlet := FALSE, Heater := TRUE | close the inlet valve and start the heater | V1 = 0; Do: heater"
+        " | inlet=0, heater=1 | R inlet, S heater | inlet off, heater on  # now"
+    ),
+    "heater off": "switch off heater",
+    "inlet off, heater off, outlet off": "all off",
+    "none": "none",
+}
+
+
+@pytest.mark.parametrize("line", TRANSITIONS)
+def test_a_transition_is_read_in_many_forms(line):
+    for text in (line, *TRANSITIONS[line].split(" | ")):
+        assert line in read_chart(text, TANK).text.splitlines(), text
+
+
+@pytest.mark.parametrize("actions", ACTIONS)
+def test_actions_are_read_in_many_forms(actions):
+    for text in (actions, *ACTIONS[actions].split(" | ")):
+        found = read_chart(f"Do: {text}\nDo -> End: start", TANK).text
+        assert found.startswith(f"Do (initial): {actions}\n"), found
+
+
+@pytest.mark.parametrize("text", ["2. Wait (initial): none", "Initial step: Wait", "Wait is the initial step"])
+def test_the_first_step_is_the_initial_one_unless_another_one_is_named(text):
+    assert read_chart("Fill: inlet on\nwait -> FILL: start", TANK).initial == "Fill"
+    assert read_chart(f"Fill: inlet on\nWAIT -> Fill: start\n{text}", TANK).initial == "WAIT"
+
+
 RIGHT_CHARTS = {
-    "signs, units and capitals": """
-        WAIT → FILL: START
-        FILL: inlet := TRUE
-        fill → heat: Level ≥ 0.9 m
-        Heat: Inlet := FALSE, Heater := TRUE
-        heat → Hold : T >= 60 °C
-        Hold: heater := FALSE
-        Hold → Empty: Hold.T >= 2 min
-        Empty: outlet := TRUE
-        Empty → Done: level <= 0.12 m
-        Done: outlet := FALSE
-        Done → Wait""",
     "transitions below their steps": """
-        Step Wait
+        Step Start
           outlet off
           -> Fill when start is pressed
         Step Fill
@@ -61,56 +95,9 @@ RIGHT_CHARTS = {
           -> Drain after 120 s
         Step Drain
           open outlet
-          -> Wait when level < 0.12""",
+          -> Start when level < 0.12""",
     "one line": "S1 -> S2: start; S2: V1 = 1; S2 -> S3: h >= 0,9; S3: V1 = 0; heater; S3 -> S4: temp >= 60; "
     "S4: heater = 0; S4 -> S5: t >= 120 s; S5: outlet = 1; S5 -> S1: h <= 12 cm; S1: outlet = 0",
-    "the same in all steps": """
-        Wait: inlet=0, heater=0, outlet=0
-        Fill: inlet=1, heater=0, outlet=0
-        Heat: inlet=0, heater=1, outlet=0
-        Soak: inlet=0, heater=0, outlet=0
-        Drain: inlet=0, heater=0, outlet=1
-        Wait -> Fill if start
-        Fill -> Heat if level >= 0.90
-        Heat -> Soak if temperature >= 60.0 AND level >= 0.5
-        Soak -> Drain if Soak.t > 120
-        Drain -> Wait if level < 0.12""",
-    "conditions between the arrows": """
-        Wait -> start and not heater & level < 0.9 -> Fill
-        Fill: inlet on
-        Fill --level >= 0.9--> Heat
-        Heat: R inlet, S heater
-        Heat -> Hold [temperature >= 60]
-        Hold: heater off
-        Hold [120 s] -> Empty
-        Empty: outlet on
-        Empty -> level <= 0.12 -> Wait
-        Wait: outlet off""",
-    "a step with the name of the button": """
-        Start: all off
-        Start -> Fill: start
-        Fill: inlet on
-        Fill -> Heat: level >= 0.9
-        Heat: inlet off, heater on
-        Heat -> Hold: temperature >= 60
-        Hold: heater off
-        go to Empty after 120 s
-        Empty: outlet on
-        Empty -> Start: level <= 0.12""",
-    "numbers, comments and blanks": """
-        # my chart
-        1. Filling tank: inlet on
-        2. Waiting => Filling tank: start       // the button
-        3. Filling tank => Heating: level => 0.9
-
-        4. Heating: heater on, inlet off
-        5. from Heating to Holding when temperature >= 60
-        6. Holding: heater off
-        7. Holding => Emptying: Holding.T >= 120
-        8. Emptying: outlet on
-        9. Emptying => Waiting: level <= 0.12
-        10. Waiting: all off
-        Initial step: Waiting""",
     "steps at the same time": """
         Wait (initial): outlet off
         Wait -> Fill: start
@@ -134,13 +121,7 @@ def test_charts_in_many_forms_are_right(batch, text):
 
 
 def test_a_chart_of_the_library_is_an_answer(batch):
-    steps = {"Idle": {"outlet": False}, "Fill": {"inlet": True}, "Heat": {"inlet": False, "heater": True},
-             "Hold": {"heater": False}, "Drain": {"outlet": True}}  # fmt: skip
-    ways = [("Idle", "Fill", "start"), ("Fill", "Heat", "level >= 0.9"), ("Heat", "Hold", "temperature >= 60"),
-            ("Hold", "Drain", "Hold.T >= 120"), ("Drain", "Idle", "level <= 0.12")]  # fmt: skip
-    outputs = dict.fromkeys(TANK.outputs, False)
-    chart = Chart(tuple(TANK.inputs), outputs, steps, "Idle", [Transition(*way) for way in ways])
-    assert verdict(batch, chart).status == RIGHT
+    assert verdict(batch, read_chart(lines(), TANK).chart(TANK)).status == RIGHT
 
 
 @pytest.mark.parametrize(
@@ -179,17 +160,26 @@ def test_what_cannot_be_read_is_said_in_one_sentence_with_its_line(lines, messag
 @pytest.mark.parametrize(
     ("text", "condition"),
     [
-        ("start", "start"), ("NOT start", "NOT start"), ("start off", "NOT start"), ("start = 1", "start = 1"),
-        ("level is above 0.5", "level > 0.5"), ("0.5 m < level", "0.5 < level"),
+        ("start", "start"),
+        ("NOT start", "NOT start"),
+        ("start off", "NOT start"),
+        ("start = 1", "start = 1"),
+        ("level is above 0.5", "level > 0.5"),
+        ("0.5 m < level", "0.5 < level"),
         ("level reaches 90 cm", "level >= 0.9"),
-        ("T > 50", "temperature > 50"), ("T > 50 s", "Fill.T > 50"), ("timer >= 1 min", "Fill.T >= 60"),
-        ("wait 2 min", "Fill.T >= 120"), ("1 min 40 s", "Fill.T >= 100"),
-        ("time in Fill >= 1 min 40 s", "Fill.T >= 100"), ("timer of Fill > 9 s", "Fill.T > 9"),
-        ("always", "TRUE"), ("start || (level<1 && !heater)",
-                                                              "start OR (level < 1 AND NOT heater)"),
-        ("fill.t >= 10", "Fill.T >= 10"), ("Fill.X", "Fill.X"),
+        ("T > 50", "temperature > 50"),
+        ("T > 50 s", "Fill.T > 50"),
+        ("timer >= 1 min", "Fill.T >= 60"),
+        ("wait 2 min", "Fill.T >= 120"),
+        ("1 min 40 s", "Fill.T >= 100"),
+        ("time in Fill >= 1 min 40 s", "Fill.T >= 100"),
+        ("timer of Fill > 9 s", "Fill.T > 9"),
+        ("always", "TRUE"),
+        ("start || (level<1 && !heater)", "start OR (level < 1 AND NOT heater)"),
+        ("fill.t >= 10", "Fill.T >= 10"),
+        ("Fill.X", "Fill.X"),
     ],
-)  # fmt: skip
+)
 def test_conditions(text, condition):
     assert TANK.condition(text, "Fill", {"fill": "Fill"}) == condition
 
@@ -263,7 +253,7 @@ WRONG_CHARTS = {
         "Hold can activate the step Hold while it is active: it leaves a simultaneous branch without its convergence",
     ),
     "a step that is not reached": (lines(fly="Fly -> Wait: start"), "the step Fly cannot be reached"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("chart", "says"), WRONG_CHARTS.values(), ids=WRONG_CHARTS)

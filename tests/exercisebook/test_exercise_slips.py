@@ -8,8 +8,8 @@ from exercisebook import slips
 
 BEFORE = """
 import sympy
-from loopbook import s, t
-from loopbook.exercises import exercise
+from plainmath.expressions import s, t
+from shelf import exercise
 K, T = sympy.symbols("K T")
 gain_of_mine = 3
 """
@@ -30,7 +30,7 @@ SAID = {
     "F='3": "Python cannot read this (unterminated string",
     "F=(3, T=3": "Python cannot read this",
 }
-UNTOUCHED = ["1/q", "2s", "K(s + 1)", "s^2", "exercise('4.1').check(F=1/0)", "exercise('4.1').chek(F=1)"]
+UNTOUCHED = ["1/q", "2s", "K(s + 1)", "s^2", "exercise('1.1').check(F=1/0)", "exercise('1.1').chek(F=1)"]
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +54,7 @@ def ran(shell, cell):
 
 @pytest.mark.parametrize("answers", SAID)
 def test_a_slip_in_an_answer_is_one_sentence(shell, answers):
-    shown, succeeded = ran(shell, f"exercise('4.1').check({answers})")
+    shown, succeeded = ran(shell, f"exercise('1.1').check({answers})")
     assert SAID[answers] in shown
     assert "Error" not in shown
     assert not succeeded
@@ -70,7 +70,7 @@ def test_other_cells_and_other_errors_are_untouched(shell, cell):
 
 def test_what_is_not_in_the_cell_of_the_answer_is_shown_where_it_is(shell):
     ran(shell, "def model(s):\n    return s^2")
-    shown, _ = ran(shell, "exercise('4.1').check(F=model(s))")
+    shown, _ = ran(shell, "exercise('1.1').check(F=model(s))")
     assert "Traceback" in shown
     assert "model" in shown
 
