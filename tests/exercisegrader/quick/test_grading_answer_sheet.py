@@ -4,28 +4,16 @@ import numpy as np
 import pytest
 import sympy
 
-from exercisebook.authoring import criterion, design, expression, number, numbers, poles, time_function, word, words
+from exercisebook.authoring import criterion, design, expression, number, numbers, poles, word, words
 from exercisebook.formulas import Formula
 from exercisebook.reading import Unreadable
 from exercisegrader.student_side import answer_sheet
 from exercisegrader.student_side.plain import plain
+from judged import EVERY_KIND
 from odd_answers import CIRCLE, Odd
-from plainmath.expressions import s, t
+from plainmath.expressions import s
 
 X, K = sympy.symbols("x K")
-#: One answer of each kind, by the code of its form.
-EVERY_KIND = {
-    'number("K/%")': number(2.5, "K/%", "the gain", within=0.02),
-    "number()": number(2),
-    'numbers("s")': numbers([[1, 2], [3, 4]], "s", "the matrix"),
-    'poles("1/min")': poles([-1, -2], "1/min"),
-    'expression("m³")': expression(X**2 * K, "the volume", unit="m³"),
-    'expression("m³", symbols="K x y")': expression(X**2 * K, "the volume", symbols="K x y", unit="m³"),
-    'time_function("°C")': time_function(1 - sympy.exp(-t / 7), 35, "°C", "the response"),
-    'word(["direct", "reverse"])': word("reverse", ["direct", "reverse"]),
-    'words(["a", "b"], ordered=True)': words(["b", "a"], "ab", ordered=True),
-    'number("%")': design(number(2, "%"), criterion("the gain", abs, below=3)),
-}
 
 
 @pytest.mark.parametrize("code", EVERY_KIND)

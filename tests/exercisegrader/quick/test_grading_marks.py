@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from drawings import picture
 from exercisebook import png
 from exercisebook.judging import MISTAKE, OPEN, RIGHT, WAITING, WRONG
 from exercisegrader import GradingError, spreadsheet, tables
@@ -23,7 +24,6 @@ from exercisegrader.reports.outputs.to_mark import to_mark
 from exercisegrader.results import JudgedAnswer, JudgedExercise, Result
 from exercisegrader.student import Student
 from exercisegrader.submissions import Submission
-from png_files import picture
 from whole_pages import Checker
 
 SOURCE = '''"""Responses"""

@@ -13,10 +13,10 @@ import sympy
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from exercisebook.authoring import expression, number, numbers, poles, time_function, word, words
 from exercisebook.judging import UNJUDGED, judge
 from exercisegrader.student_side import answer_sheet
 from exercisegrader.student_side.plain import LONGEST_TEXT, MOST_VALUES, plain, unreadable
+from judged import EVERY_KIND
 from odd_answers import CIRCLE, Odd
 from plainmath.expressions import s, t
 
@@ -115,22 +115,15 @@ NOT_PLAIN = [
 ]
 
 
-KINDS = [
-    number(120, "s"), numbers([[1, 2], [3, 4]], "s"), poles([-1 + 2j, -1 - 2j, -3]), expression(X**2 / 3, unit="m³"),
-    time_function(1 - sympy.exp(-t / 7), 35), word("reverse", ["direct", "reverse"]), words(["b"], "ab"),
-    words(["b", "a"], "ab", ordered=True),
-]  # fmt: skip
-
-
 @pytest.mark.parametrize(("answer", "says"), NOT_PLAIN, ids=range(len(NOT_PLAIN)))
 def test_what_has_no_plain_form_is_said(answer, says):
     data = plain(answer)
     assert says in unreadable(data)
     assert "\n" not in unreadable(data)
-    assert {judge("x", kind, data).status for kind in KINDS} == {UNJUDGED}
+    assert {judge("x", kind, data).status for kind in EVERY_KIND.values()} == {UNJUDGED}
 
 
-@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.maker)
+@pytest.mark.parametrize("kind", EVERY_KIND.values(), ids=EVERY_KIND)
 def test_plain_data_is_judged_as_the_answer_itself(kind):
     form = eval(kind.asking, vars(answer_sheet))
     for _, answer in (*kind.right_forms(), *kind.wrong_forms()):

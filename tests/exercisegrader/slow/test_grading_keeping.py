@@ -7,12 +7,12 @@ from html.parser import HTMLParser
 
 import pytest
 
+from drawings import chunk, picture
 from exercisegrader.events import LONGEST_SHOWN, MOST_SHOWN, Scene, Shown
 from exercisegrader.jail import MEGA, Jail, Limits
 from exercisegrader.keeping import executed
 from exercisegrader.results import Result
 from needs import needs_jail
-from png_files import chunk, picture
 
 RESULT = Result("lag", "s1", "s1/lag.ipynb", True, "f" * 64, "complete", "", (), (), ())
 NASTY = "<script>alert(1)</script> \x1b[31mred \u202egnp.exe \ud800 \x00 </pre>"
