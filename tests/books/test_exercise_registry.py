@@ -44,12 +44,12 @@ def test_answers_as_code_read_back_and_a_kind_is_made_again_from_its_code(name):
     asked = [
         (one, quantity, kind) for one in questions(name) for quantity, kind in one.key.items() if kind.maker == name
     ]
-    assert asked, f"no exercise asks for a {name}"
+    assert asked, f"no exercise asks for a {name}: add one to a chapter of loopbook.exercises.bank"
     for question, quantity, kind in asked:
         wrong = [value for _, value in (*question.mistakes[quantity], *kind.mistakes())]
         for answer in (kind.key, *(kind.read(value)[0] for value in wrong)):
             assert_reads_back(kind, answer)
     makings = {kind.making: kind for _, _, kind in asked if kind.making}
-    assert makings or name == "design"  # whose criteria are functions
+    assert makings or name == "design", f"no exercise asks for a {name}"  # the criteria of a design are functions
     for kind in makings.values():
         assert_is_made_again(kind, vars(authoring))
