@@ -11,7 +11,7 @@ import sympy
 
 from loopbook.quasipolynomials import DelayFraction, read
 from loopbook.quasipolynomials.arrays import DEGREE, Quasipolynomials
-from loopbook.quasipolynomials.fraction import Quasipolynomial, plus, times
+from loopbook.quasipolynomials.fraction import Quasipolynomial, lowest_term, plus, times
 from loopbook.stability.difference import Endless, at_endless_frequency, power_of_two, prevailing
 from loopbook.stability.enclosures import (
     NARROWEST,
@@ -80,14 +80,15 @@ def unstable_poles(x: object) -> float:
     """
     if not _is_loop(x):
         H = open_loop(x, zero=True)
-        return _count_of(H.denominator, _zeros_at_origin(H.numerator), lambda: H.expr)
+        return _count_of(H.denominator, _removable(H.numerator, H.denominator), lambda: H.expr)
     process, controller = x.process_fraction, x.controller_fraction
     below = times(controller.denominator, process.denominator)
     parts = plus(times(controller.numerator, process.numerator), below)
     if _degree(parts) < _degree(below) or len(parts.get(Fraction(0), ())) < _degree(parts):
         _fraction(x.open_fraction)  # raises for what is improper
         raise ValueError(f"the algebraic loop of {x.open_fraction.expr} has no solution")
-    count = _count_of(parts, _common_zeros_at_origin(process, controller), lambda: x)
+    removable = sum(_removable(H.numerator, H.denominator) for H in (process, controller))
+    count = _count_of(parts, removable, lambda: x)
     R = getattr(x, "setpoint_fraction", None)
     if R is not None and controller != R and R.denominator != controller.denominator:
         count += _of_prefilter(R, controller, x)
@@ -129,7 +130,7 @@ def unstable_closed_loop_poles(loop: object) -> float:
     2
     """
     L = open_loop(loop, zero=True)
-    removable = min(_zeros_at_origin(L.numerator), _zeros_at_origin(L.denominator))
+    removable = _removable(L.numerator, L.denominator)
     return _count_of(characteristic(L), removable, lambda: f"the closed loop of {L.expr}")
 
 
@@ -257,19 +258,9 @@ def _degree(parts: Quasipolynomial) -> int:
     return max((len(part) for part in parts.values()), default=0)
 
 
-def _zeros_at_origin(parts: Quasipolynomial) -> int:
-    """How often a quasipolynomial is zero at s = 0."""
-    if not parts:
-        return 0
-    value, n = Exact(parts, 0, 1, 1.0), 0
-    while not exact_coefficient(value, n):
-        n += 1
-    return n
-
-
-def _common_zeros_at_origin(*fractions: DelayFraction) -> int:
-    """How many zeros at s = 0 numerators and denominators have in common, that are removed."""
-    return sum(min(_zeros_at_origin(H.numerator), _zeros_at_origin(H.denominator)) for H in fractions)
+def _removable(above: Quasipolynomial, below: Quasipolynomial) -> int:
+    """How many zeros at s = 0 numerator and denominator have in common, by their dead times."""
+    return min(lowest_term(above)[0], lowest_term(below)[0]) if above else 0
 
 
 def _of_prefilter(R: DelayFraction, C: DelayFraction, loop: object) -> float:
@@ -277,7 +268,7 @@ def _of_prefilter(R: DelayFraction, C: DelayFraction, loop: object) -> float:
     rest = R / C if C.numerator else R
     # the poles of R/C that are no zeros of C
     own = DelayFraction(rest.denominator, C.numerator or {Fraction(0): (1,)}).numerator
-    return _count_of(own, _zeros_at_origin(rest.numerator), lambda: f"the block from the setpoint of {loop}")
+    return _count_of(own, _removable(rest.numerator, own), lambda: f"the block from the setpoint of {loop}")
 
 
 def _count_of(parts: Quasipolynomial, removable: int, name: Callable[[], object]) -> float:

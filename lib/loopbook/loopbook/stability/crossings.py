@@ -367,7 +367,8 @@ def below(loops: Loops, questions: list[Question]) -> np.ndarray:
 
 
 def steps(start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Intervals from start to end, in geometric steps."""
-    which, a, b = geometric(start, end)
-    some = a >= start[which]
-    return which[some], a[some], b[some]
+    """Intervals from start to end, in geometric steps, for each loop for which the end is the larger one."""
+    points = np.flatnonzero(end > start)
+    which, a, b = geometric(start[points], end[points])
+    some = a >= start[points[which]]
+    return points[which[some]], a[some], b[some]

@@ -10,15 +10,16 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from loopbook.quasipolynomials.arrays import DEGREE, Quasipolynomials
+from loopbook.quasipolynomials.fraction import taylor_coefficient
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from fractions import Fraction
 
 EPSILON = 2.0**-52
 RATIO = 1.45  # of the frequencies at the ends of an interval, at first
@@ -194,8 +195,6 @@ class Exact:
 
         The numbers are whole multiples of ``2**-BITS``.
         """
-        from fractions import Fraction
-
         unit = Fraction(self.unit)
         scale = 2**BITS / (Fraction(self.divisor) * unit**self.order)
         found = []
@@ -212,6 +211,12 @@ class Exact:
                 rows.append(row)
             found.append((delay * unit, rows))
         return found
+
+    def coefficients(self, delay: Fraction) -> np.ndarray:
+        """The polynomial with a dead time, time in the unit: an array of fractions, the lowest power first."""
+        part, unit = self.parts.get(delay, ()), Fraction(self.unit)
+        whole = [*part, *[0] * (self.order + 1 - len(part))]
+        return np.array([Fraction(c, self.divisor) * unit ** (n - self.order) for n, c in enumerate(whole)])
 
     def taylor(self, w: np.ndarray, degree: int = DEGREE) -> np.ndarray:
         """The coefficients of the powers of h in the quasipolynomial at ``j (w + h)*unit``: array [power,
@@ -384,28 +389,10 @@ def origin(sums: Quasipolynomials, degree: int, exact: Exact | None = None) -> t
         series[small] = 0
     else:
         for n in np.flatnonzero(((abs(series) <= 1e-9 * bounds) & (bounds > 0))[:, 0]):
-            series[n, 0] = exact_coefficient(exact, int(n))
+            series[n, 0] = float(exact_coefficient(exact, int(n)))
     return series[:-1], bounds[-1]
 
 
-def exact_coefficient(exact: Exact, n: int) -> float:
+def exact_coefficient(exact: Exact, n: int) -> Fraction:
     """The coefficient of ``s**n`` in the power series of an exact quasipolynomial at zero, time in its unit."""
-    if not n:
-        total = sum(part[0] for part in exact.parts.values())
-        return total / exact.divisor / exact.unit**exact.order
-    return float(exact_coefficient_fraction(exact, n))
-
-
-def exact_coefficient_fraction(exact: Exact, n: int) -> Fraction:
-    """The same, as a fraction."""
-    from fractions import Fraction
-
-    total = sum(
-        (
-            c * (-delay) ** (n - i) / math.factorial(n - i)
-            for delay, part in exact.parts.items()
-            for i, c in enumerate(part[: n + 1])
-        ),
-        start=Fraction(0),
-    )
-    return total / exact.divisor * Fraction(exact.unit) ** (n - exact.order)
+    return taylor_coefficient(exact.parts, n) / exact.divisor * Fraction(exact.unit) ** (n - exact.order)

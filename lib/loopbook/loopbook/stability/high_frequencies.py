@@ -15,15 +15,11 @@ from __future__ import annotations
 import functools
 import math
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from loopbook.stability.difference import prevailing
 from loopbook.stability.loops import ENOUGH, Loops, positive_beyond
-
-if TYPE_CHECKING:
-    from loopbook.stability.enclosures import Exact
 
 NEAR = 30.0  # an end of the search, beside the fastest pole, that is not worth being improved
 
@@ -44,7 +40,7 @@ class HighFrequencies:
         self.loops = loops
         A, B = loops.exact[:2]
         delays = sorted({Fraction(0), *A.parts, *B.parts})
-        rows = [[_coefficients(exact, delay)[-1] for exact in (A, B)] for delay in delays]
+        rows = [[exact.coefficients(delay)[-1] for exact in (A, B)] for delay in delays]
         self._rows = [row for row in rows if row is rows[0] or any(row)]
         self._a, self._b = np.array(self._rows, dtype=float).T
         self.vanishes, self.is_open = not self._a.any(), len(self._rows) > 2
@@ -71,7 +67,7 @@ class HighFrequencies:
         if len(delays) > 1:
             return None
         return [
-            np.array([_coefficients(exact, delay) for delay in (Fraction(0), *(delays or [Fraction(1)]))])
+            np.array([exact.coefficients(delay) for delay in (Fraction(0), *(delays or [Fraction(1)]))])
             for exact in self.loops.exact[:2]
         ]
 
@@ -183,13 +179,6 @@ class HighFrequencies:
             return end
         A, B = self._parts
         return _better(end, _sum_positive_beyond((Fraction(most) ** 2, A + B), (-1, B)))
-
-
-def _coefficients(exact: Exact, delay: Fraction) -> list[Fraction]:
-    """The polynomial with a dead time, time in the unit of the loop."""
-    part, unit = exact.parts.get(delay, ()), Fraction(exact.unit)
-    whole = [*part, *[0] * (exact.order + 1 - len(part))]
-    return [Fraction(c, exact.divisor) * unit ** (n - exact.order) for n, c in enumerate(whole)]
 
 
 def _extremes(part) -> list[float]:

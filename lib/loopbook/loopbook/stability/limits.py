@@ -10,8 +10,7 @@ import numpy as np
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.stability.confirmation import confirm, confirm_gains
 from loopbook.stability.counting import count_roots, fraction_sums, open_loop
-from loopbook.stability.crossings import Real, asked
-from loopbook.stability.enclosures import geometric
+from loopbook.stability.crossings import Real, asked, steps
 from loopbook.stability.high_frequencies import HighFrequencies
 from loopbook.stability.loops import Loops
 from plainmath.validation import positive, positive_numbers
@@ -160,11 +159,9 @@ def _stable_range(loops: Loops) -> tuple[np.ndarray, np.ndarray]:
     real.add(some, static[some], 0 * static[some])
     done, end = loops.start, np.fmin(np.nan_to_num(loops.beyond(2 * np.ones(count)), nan=4.0), 64.0)
     while True:
-        mine = np.flatnonzero(searched & (end > done))
-        which, a, b = geometric(done[mine], end[mine])
-        inner = a >= done[mine[which]]
-        asked(loops, [real], mine[which[inner]], a[inner], b[inner])
-        done = np.where(searched, np.maximum(done, end), done)
+        end = np.where(searched, np.maximum(done, end), done)
+        asked(loops, [real], *steps(done, end))
+        done = end
         while searched.any():
             # the lowest gain on the limit that is left, or the end of all
             next_gain, next_place = np.minimum(endless, LARGEST), np.full(count, math.inf)

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from loopbook.quasipolynomials.arrays import DEGREE, Quasipolynomials, powers_of
-from loopbook.quasipolynomials.fraction import plus
+from loopbook.quasipolynomials.fraction import Quasipolynomial, plus, taylor_coefficient, times
 from loopbook.stability.difference import at_endless_frequency, power_of_two, prevailing
-from loopbook.stability.enclosures import EPSILON, Enclosure, Exact, exact_coefficient_fraction, origin
+from loopbook.stability.enclosures import EPSILON, Enclosure, Exact, origin
 
 if TYPE_CHECKING:
     from loopbook.quasipolynomials import DelayFraction
@@ -194,25 +194,27 @@ class Loops:
 
     def _exactly(self, series, size, parity):
         """The lowest term that is not zero, which rounding may hide, as it is."""
-        removed = int(self.at_zero[4][0])
-        rows = [[], []]
+        removed, (A, B) = int(self.at_zero[4][0]), self.exact[:2]
+        product = (
+            self._odd if parity else plus(times(B.parts, _mirrored(B.parts)), times(A.parts, _mirrored(A.parts)), -1)
+        )
         for n in range(parity, len(self.at_zero[0]), 2):
             if abs(series[n, 0]) > 1e-8 * size[n, 0]:
                 return
             if not size[n, 0]:
                 continue
-            for row, each in zip(rows, self.exact[:2], strict=True):
-                row += [exact_coefficient_fraction(each, k + removed) for k in range(len(row), n + 1)]
-            A, B = rows
-            value = Fraction(0)
-            for sign, one, other in ((1, A, B),) if parity else ((1, B, B), (-1, A, A)):
-                for i in range(n + 1):
-                    # j**i times the conjugate of j**(n - i)
-                    turn = 1j**i * (-1j) ** (n - i)
-                    value += sign * int(turn.imag if parity else turn.real) * one[i] * other[n - i]
+            # of powers of s: those of w have other signs, and 2j Im A conj(B) is the odd one
+            value = taylor_coefficient(product, n + 2 * removed) * (-1) ** (n // 2 + removed) / (1 + parity)
+            value *= Fraction(A.unit) ** (n + 2 * removed - 2 * A.order) / A.divisor**2
             series[n, 0] = float(value)
             if value:
                 return
+
+    @functools.cached_property
+    def _odd(self) -> Quasipolynomial:
+        """A(s) B(-s) - A(-s) B(s) of a single loop: where it is zero on the axis, L is real."""
+        A, B = (each.parts for each in self.exact[:2])
+        return plus(times(A, _mirrored(B)), times(_mirrored(A), B), -1)
 
     def static_gains(self) -> np.ndarray:
         """The gain with which there is a pole at zero; nan without one."""
@@ -251,7 +253,7 @@ class Loops:
             return None
         if self.exact is None:
             return [square(x.coefficients[0]) for x in (self.A, self.B)]
-        return [np.array([[float(c)] for c in _exact_square(each)]) for each in self.exact[:2]]
+        return [square(each.coefficients(min(each.parts))[:, None]).astype(float) for each in self.exact[:2]]
 
     def beyond_limit(self) -> np.ndarray:
         """A frequency beyond which abs(L) is not above what it is at infinite frequency, with one dead time; or nan.
@@ -272,35 +274,12 @@ class Loops:
     @functools.cached_property
     def real_beyond(self) -> float:
         """A frequency beyond which L is never real, of a single loop; nan if it may be, zero if L is always real."""
-        parts: dict[Fraction, list[Fraction]] = {}
-        A, B = self.exact[:2]
-        for early, p in A.parts.items():
-            for late, q in B.parts.items():
-                # p(s) q(-s) exp((late - early)*s), and the same with -s, subtracted
-                product = [0] * (len(p) + len(q) - 1)
-                for i, x in enumerate(p):
-                    for k, y in enumerate(q):
-                        product[i + k] += (-1) ** k * x * y
-                for delay, sign in ((early - late, 1), (late - early, -1)):
-                    row = parts.setdefault(delay, [])
-                    row += [0] * (len(product) - len(row))
-                    for n, c in enumerate(product):
-                        row[n] += sign * c * (1 if sign > 0 else (-1) ** n)
-        parts = {delay: row for delay, row in parts.items() if any(row)}
-        if not parts:
+        if not (odd := self._odd):
             return 0.0
-        order = max(n for row in parts.values() for n, c in enumerate(row) if c)
-        lead = parts.pop(Fraction(0), [0])
-        rows = [lead, *parts.values()]
-        scale = float(A.unit)
-        largest = max(abs(c) for row in rows for c in row)
-        coefficients = np.zeros((len(rows), order + 1))
-        for k, row in enumerate(rows):
-            coefficients[k, : len(row)] = [
-                float(Fraction(c, largest)) * scale**n for n, c in enumerate(row[: order + 1])
-            ]
-        end = float(prevailing(coefficients[:, :, None])[0])
-        return end if coefficients[0, -1] else math.nan
+        order, largest = max(map(len, odd.values())) - 1, max(abs(c) for part in odd.values() for c in part)
+        sums = Quasipolynomials.exact({Fraction(0): (), **odd}, order, largest).slower(self.unit)
+        rows = sums.coefficients[np.argsort(abs(sums.delays[:, 0]))]  # the undelayed part first
+        return float(prevailing(rows)[0]) if rows[0, -1, 0] else math.nan
 
     def real_beyond_all(self) -> np.ndarray:
         """The same for many loops, in numbers."""
@@ -320,16 +299,9 @@ class Loops:
         return end
 
 
-def _exact_square(exact):
-    """The square of the size of an exact quasipolynomial with one part, time in its unit."""
-    ((_, part),) = exact.parts.items()
-    order, scale = exact.order, Fraction(exact.unit) ** 2
-    part = [*part, *[0] * (order + 1 - len(part))]
-    terms = [
-        sum((-1) ** abs(n - i) * part[i] * part[2 * n - i] for i in range(max(0, 2 * n - order), min(2 * n, order) + 1))
-        for n in range(order + 1)
-    ]
-    return [Fraction(c, exact.divisor**2) * scale ** (n - order) for n, c in enumerate(terms)]
+def _mirrored(parts: Quasipolynomial) -> Quasipolynomial:
+    """The quasipolynomial of -s."""
+    return {-delay: tuple((-1) ** n * c for n, c in enumerate(part)) for delay, part in parts.items()}
 
 
 def square(part: np.ndarray) -> np.ndarray:
@@ -338,7 +310,7 @@ def square(part: np.ndarray) -> np.ndarray:
     return np.array(
         [
             sum(
-                (-1.0) ** (n - i) * part[i] * part[2 * n - i]
+                (-1) ** abs(n - i) * part[i] * part[2 * n - i]
                 for i in range(max(0, 2 * n - order), min(2 * n, order) + 1)
             )
             for n in range(order + 1)

@@ -12,8 +12,7 @@ import numpy as np
 from loopbook.quasipolynomials import DelayFraction
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.stability.counting import count_roots, fraction_sums, open_loop
-from loopbook.stability.crossings import SizeOne, asked, difference, phase_left
-from loopbook.stability.enclosures import geometric
+from loopbook.stability.crossings import SizeOne, asked, difference, phase_left, steps
 from loopbook.stability.loops import Loops
 from plainmath.validation import positive_numbers
 
@@ -133,9 +132,7 @@ def _stable_delays(A: Quasipolynomials, B: Quasipolynomials) -> list[list[tuple[
         return regions
     loops, end = loops[decided], end[decided]
     size = SizeOne()
-    which, a, b = geometric(loops.start, end)
-    some = a >= loops.start[which]
-    asked(loops, [size], which[some], a[some], b[some])
+    asked(loops, [size], *steps(loops.start, end))
     which, w, A, B = size.solved(loops)
     rise = difference(*loops.values(which, w, 2))[1]
     first, period = phase_left(A, B) / w, 2 * math.pi / w

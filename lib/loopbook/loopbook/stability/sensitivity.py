@@ -8,8 +8,8 @@ import numpy as np
 
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.stability.counting import count_roots
-from loopbook.stability.crossings import asked, below
-from loopbook.stability.enclosures import UndecidedError, geometric
+from loopbook.stability.crossings import asked, below, steps
+from loopbook.stability.enclosures import UndecidedError
 from loopbook.stability.loops import ENOUGH, Loops, positive_beyond, square
 from loopbook.stability.peaks import Peak
 
@@ -58,10 +58,7 @@ def _largest(loops):
     done = below(loops, [peak])
     end = np.maximum(np.clip(np.nan_to_num(loops.beyond(np.full(loops.count, 2.0)), nan=4.0), 0, 64), 4 * done)
     while True:
-        mine = np.flatnonzero(end > done)
-        which, a, b = geometric(done[mine], end[mine])
-        inner = a >= done[mine[which]]
-        asked(loops, [peak], mine[which[inner]], a[inner], b[inner])
+        asked(loops, [peak], *steps(done, end))
         done = np.maximum(done, end)
         need = np.nan_to_num(_no_peak_beyond(loops, peak.most * (1 + ENOUGH)), nan=math.inf)
         if (need <= done).all():
