@@ -5,10 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import sympy
 
-from loopbook.quasipolynomials import normal_form
-from loopbook.quasipolynomials.arrays import Quasipolynomials
+from loopbook.quasipolynomials.symbols import with_values
 from loopbook.stability.counting import count_roots
 from loopbook.transfer import transfer_function
 from plainmath.expressions import s
@@ -33,6 +31,7 @@ def stability_map(loop: object, **values: ArrayLike) -> np.ndarray:
         ValueError: for other symbols than two with values, a negative dead time, a loop that is improper or loses its
             highest power at a point, or as `unstable_roots`.
 
+    >>> import sympy
     >>> K, delay = sympy.symbols("K delay")
     >>> stability_map(K * sympy.exp(-delay * s) / s, K=[1, 2], delay=[0.5, 1, 3])
     array([[0, 0],
@@ -40,8 +39,8 @@ def stability_map(loop: object, **values: ArrayLike) -> np.ndarray:
            [2, 2]])
     """
     L = transfer_function(loop)
-    symbols = {str(symbol): symbol for symbol in L.free_symbols - {s}}
-    if set(symbols) != set(values) or len(values) != 2:
+    symbols = {str(symbol) for symbol in L.free_symbols - {s}}
+    if symbols != set(values) or len(values) != 2:
         raise ValueError(
             f"the loop {L} has the symbols {', '.join(sorted(symbols)) or 'none'}, and there are values for "
             f"{', '.join(values) or 'none'}: expected two symbols, and values for both"
@@ -51,41 +50,17 @@ def stability_map(loop: object, **values: ArrayLike) -> np.ndarray:
         grids.append(real_numbers(f"values of {name}", grid))
         if grids[-1].ndim != 1:
             raise ValueError(f"the values of {name} are {grid!r}: expected a one-dimensional array")
-    # symbols in dead times are ordered as positive ones
-    positive = {name: sympy.Symbol(name, positive=True) for name in values}
-    parts = _characteristic(L.xreplace({symbols[name]: positive[name] for name in values}))
-    order = parts[0].degree()
-    rows = [part.coeff_monomial(s**n) for part in parts.values() for n in range(order + 1)]
-    numbers = sympy.lambdify([positive[name] for name in values], [*rows, *parts], "numpy", cse=True)
-    points = [grid.ravel() for grid in np.meshgrid(*grids)]
-    counts = np.empty(points[0].size, dtype=int)
+    points = dict(zip(values, (grid.ravel() for grid in np.meshgrid(*grids)), strict=True))
+    A, B = with_values(L, points)
+    order = np.flatnonzero(B.coefficients[0].any(axis=1))[-1]
+    if max(A.order, B.order) > order:
+        raise ValueError(f"{L} is improper: expected no more zeros than poles")
+    counts = np.empty(B.count, dtype=int)
     for begin in range(0, counts.size, CHUNK):
         chunk = slice(begin, begin + CHUNK)
-        here = [x[chunk] for x in points]
-        found = [row + 0.0 * here[0] for row in numbers(*here)]
-        coefficients, delays = np.array(found[: len(rows)]), np.array(found[len(rows) :])
-        if (delays < 0).any():
-            raise ValueError(f"the values make a dead time {delays.min():g}: expected one that is not negative")
-        coefficients = coefficients.reshape(len(parts), order + 1, -1)
-        if (lost := np.flatnonzero(coefficients[0, -1] == 0)).size:
-            where = ", ".join(f"{name} = {x[lost[0]]:g}" for name, x in zip(values, here, strict=True))
+        closed = B[chunk] + A[chunk]
+        if (lost := np.flatnonzero(closed.coefficients[0, -1] == 0)).size:
+            where = ", ".join(f"{name} = {x[chunk][lost[0]]:g}" for name, x in points.items())
             raise ValueError(f"the closed loop of {L} loses its highest power at {where}: expected other values")
-        counts[chunk] = count_roots(Quasipolynomials(coefficients, delays))
+        counts[chunk] = count_roots(closed)
     return counts.reshape(len(grids[1]), len(grids[0]))
-
-
-def _characteristic(L):
-    """The quasipolynomial A + B whose roots are the poles of the closed loop of L = A/B, with symbols."""
-    above, below = normal_form(L)
-    order = below[0].degree()
-    for part in (*above.values(), *below.values()):
-        if part.degree() > order:
-            raise ValueError(
-                f"{L} is improper: it has s**{part.degree()} over s**{order}; expected no more zeros than poles"
-            )
-    parts = dict(below)
-    for delay, part in above.items():
-        parts[delay] = parts.get(delay, 0) + part
-    if 0 not in parts or parts[0].degree() < order:
-        raise ValueError(f"the algebraic loop of {L} has no solution: its gain at infinite frequency is -1")
-    return parts
