@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 
 from draws import draws
 from loopbook.deadtime import ChannelModel, Response, collocation
-from loopbook.deadtime.family import step_family
 from loopbook.deadtime.superposition import response_to_samples
 
 
@@ -434,50 +433,6 @@ def test_samples_that_do_not_fit():
             response_to_samples(lag, times, u)
     with pytest.raises(ValueError, match="the hold is 'linear'"):
         response_to_samples(lag, [0, 1], [1, 2], "linear")
-
-
-# ------------------------------------------------------------------------------------------------ families
-
-
-def family(members):
-    return ChannelModel(
-        *(np.stack(parts) for parts in list(zip(*members, strict=True))[:9]),
-        np.array([[float(delay) for delay in member.delays] for member in members]),
-    )
-
-
-def singles(members, times):
-    return np.array([Response(member, max(times))(times) for member in members])
-
-
-def settings_of_loops(count, seed=1):
-    rng = np.random.default_rng(seed)
-    return [pi_loop(2, 5, 4, Kp, Ti) for Kp, Ti in rng.uniform([0.1, 3], [0.8, 9], (count, 2))]
-
-
-def test_a_family_is_its_members():
-    times = np.r_[np.linspace(0, 50, 101), 4, 8, 12.3]
-    members = settings_of_loops(40)
-    assert step_family(family(members), times) == pytest.approx(singles(members, times), abs=1e-11)
-    assert step_family(family(members), times.reshape(2, -1)).shape == (40, 2, 52)
-    mixed = [feedback(K, T, delay) for K in (0.5, 2, 3) for T in (0.02, 1, 50) for delay in ("1/2", "1/3")] * 2
-    early = times[times < 9]
-    expected = singles(mixed, early)
-    assert (abs(step_family(family(mixed), early) - expected).max(axis=1) < 1e-10 * abs(expected).max(axis=1)).all()
-    none = [model([[-1 / T]], [[1 / T]], C1=[[1]]) for T in np.linspace(1, 9, 20)]
-    assert step_family(family(none), times) == pytest.approx(singles(none, times), abs=1e-11)
-    rings = [model(D12=[[1, 0]], D21=[[1], [0.3]], D22=[[0.2, -g], [0.3, 0.3]], delays=[1, 2]) for g in np.ones(20) / 3]
-    assert step_family(family(rings), [0.5, 3.5, 7]) == pytest.approx(singles(rings, [0.5, 3.5, 7]), abs=1e-11)
-
-
-def test_families_that_do_not_fit():
-    members = family(settings_of_loops(3))
-    with pytest.raises(ValueError, match="expected an axis of models before the others"):
-        step_family(members._replace(B1=members.B1[0]), [1])
-    with pytest.raises(ValueError, match="expected positive ones"):
-        step_family(members._replace(delays=-members.delays), [1])
-    with pytest.raises(ValueError, match="the times contain -1: expected numbers that are not negative"):
-        step_family(members, [-1])
 
 
 # ------------------------------------------------------------------------------------------------ horizons

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,8 +11,7 @@ import numpy as np
 from loopbook.ise.error import UnstableLoopError
 from loopbook.ise.loops import integral_of_square
 from loopbook.ise.residues import sums_of_residues
-from loopbook.quasipolynomials import DelayFraction
-from loopbook.quasipolynomials.fraction import Quasipolynomial, plus
+from loopbook.quasipolynomials.symbols import fraction_of
 from loopbook.stability.counting import ON_LIMIT, count_roots
 
 if TYPE_CHECKING:
@@ -41,27 +40,7 @@ def ise_family(above: Quasipolynomials, below: Quasipolynomials) -> np.ndarray:
     left = (counts == ON_LIMIT) | (parts[2][0, -1] == 0)
     values = np.where(left, math.nan, np.where(counts > 0, math.inf, sums_of_residues(*parts)))
     for point in np.flatnonzero(np.isnan(values)):
-        values[point] = _alone(*(x[..., point] for x in parts))
+        with contextlib.suppress(UnstableLoopError):  # infinite, then
+            values[point] = math.inf
+            values[point] = integral_of_square(fraction_of(above, below, point))
     return values
-
-
-def _alone(above, above_delays, below, below_delays) -> float:
-    # numbers in floating point are whole ones over a power of two
-    scale = max(c.as_integer_ratio()[1] for rows in (above, below) for c in rows.ravel().tolist())
-    E = DelayFraction(_exact(above, above_delays, scale), _exact(below, below_delays, scale))
-    try:
-        return integral_of_square(E)
-    except UnstableLoopError:
-        return math.inf
-
-
-def _exact(rows, delays, scale: int) -> Quasipolynomial:
-    """A sum times a scale that makes its coefficients whole numbers."""
-    total: Quasipolynomial = {}
-    for row, delay in zip(rows.tolist(), delays.tolist(), strict=True):
-        whole = [int(Fraction(c) * scale) for c in row]
-        while whole and not whole[-1]:
-            whole.pop()
-        if whole:
-            total = plus(total, {Fraction(delay): tuple(whole)})
-    return total

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import functools
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
 import sympy
 
 from loopbook.quasipolynomials.arrays import Quasipolynomials
+from loopbook.quasipolynomials.fraction import DelayFraction, Quasipolynomial, plus
 from loopbook.quasipolynomials.normal_form import normal_form
 from loopbook.transfer import transfer_function
 from plainmath.expressions import s
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-__all__ = ["broadcast_values", "with_values"]
+__all__ = ["broadcast_values", "fraction_of", "with_values"]
 
 
 def broadcast_values(values: Mapping[str, ArrayLike]) -> tuple[dict[str, np.ndarray], tuple[int, ...]]:
@@ -81,3 +83,24 @@ def _numbers(compiled, values, count):
     if (delays < 0).any():
         raise ValueError(f"the values make a dead time {delays.min():g}: expected one that is not negative")
     return Quasipolynomials(coefficients, delays)
+
+
+def fraction_of(above: Quasipolynomials, below: Quasipolynomials, point: int) -> DelayFraction:
+    """Return one of many fractions, exact: its coefficients as they are, its dead times as they are written.
+
+    >>> import numpy as np
+    >>> K = sympy.Symbol("K")
+    >>> fraction_of(*with_values(K * sympy.exp(-s / 10) / (2 * s + 1), {"K": np.array([1.0, 3.0])}), 1)
+    DelayFraction(3*exp(-s/10)/(2*s + 1))
+    """
+    rows, delays = (
+        [getattr(sums, name)[..., point % sums.count].tolist() for sums in (above, below)]
+        for name in ("coefficients", "delays")
+    )
+    # numbers in floating point are whole ones over a power of two
+    scale = max(c.as_integer_ratio()[1] for side in rows for row in side for c in row)
+    sides: list[Quasipolynomial] = [{}, {}]
+    for n in (0, 1):
+        for row, delay in zip(rows[n], delays[n], strict=True):
+            sides[n] = plus(sides[n], {Fraction(repr(delay)): tuple(int(Fraction(c) * scale) for c in row)})
+    return DelayFraction(*sides)
