@@ -14,7 +14,7 @@ from plainmath.validation import number
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-__all__ = ["StepInfo", "first_time_at", "settled_response", "step_info"]
+__all__ = ["StepInfo", "first_time_at", "settled_response", "step_info", "zeros_of"]
 
 MOST_DOUBLINGS = 40  # of the time up to which a response is followed
 ROUNDING = 1e-11  # a smaller overshoot, as a share of the peak, is none
@@ -122,7 +122,7 @@ def _extreme(response: Response, sign: int) -> tuple[float, float]:
     for k in np.argsort(-bounds):
         if bounds[k] <= best * (1 + 1e-15):
             break
-        turning = _roots(legendre.legder(rows[k]))
+        turning = zeros_of(legendre.legder(rows[k]))
         heights = legendre.legval(turning, rows[k])
         if len(turning) and heights.max() > best:
             best, place = heights.max(), (k, turning[heights.argmax()])
@@ -137,7 +137,7 @@ def first_time_at(response: Response, level: float) -> float:
     for k in np.flatnonzero(rows[:, 0] + abs(rows[:, 1:]).sum(axis=1) >= 0):
         if legendre.legval(-1.0, rows[k]) >= -ROUNDING * abs(rows[k]).max():
             return float(response.edges[k])
-        if len(found := _roots(rows[k])):
+        if len(found := zeros_of(rows[k])):
             return _moment(response, k, found.min())
     raise ValueError(f"the response does not reach {level:g} up to t = {response.edges[-1]:g}")
 
@@ -151,7 +151,7 @@ def _last_time_outside(response: Response, final: float, band: float) -> float:
         for side in (-1, 1):
             row = rows[k].copy()
             row[0] += side * band
-            crossings += _roots(row).tolist()
+            crossings += zeros_of(row).tolist()
         if crossings:
             return _moment(response, k, max(crossings))
         if abs(rows[k].sum()) > band:  # until a jump at the end of the segment
@@ -159,7 +159,7 @@ def _last_time_outside(response: Response, final: float, band: float) -> float:
     return 0.0
 
 
-def _roots(row: np.ndarray) -> np.ndarray:
+def zeros_of(row: np.ndarray) -> np.ndarray:
     """The zeros of a Legendre series between -1 and 1."""
     row = np.trim_zeros(np.where(abs(row) > 1e-16 * abs(row).max(initial=0.0), row, 0.0), "b")
     roots = legendre.legroots(row) if len(row) > 1 else np.zeros(0)

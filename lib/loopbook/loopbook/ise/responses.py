@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import functools
-import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
 
 from loopbook.deadtime import System
+from loopbook.deadtime.step_info import zeros_of
 from loopbook.ise.error import ErrorFraction, NotApplicableError, error_of
 from loopbook.ise.modes import ManyModesError, slow_modes
 from loopbook.quasipolynomials import read
@@ -95,81 +94,19 @@ def _four_integrals(response: Response, sizes: bool) -> np.ndarray:
 
 def _of_sizes(response: Response) -> tuple[np.ndarray, np.ndarray]:
     """The integrals over each segment of abs(e) and t abs(e), between the zeros of the polynomials."""
-    coefficients, edges = response.coefficients, response.edges
-    points, at_points, at_points_slope, slopes, moments = _tables(coefficients.shape[1])
-    half, middle = np.diff(edges)[:, None] / 2, (edges[1:] + edges[:-1])[:, None] / 2
-    value, slope = coefficients @ at_points.T, coefficients @ at_points_slope.T
-    derivatives = coefficients @ slopes.T
-
-    def at(rows, x):
-        return legendre.legval(x, rows.T, tensor=False)
-
-    def zeros_of(rows, row_slopes, a, b):
-        at_a, at_b = at(rows, a), at(rows, b)
-        x = np.where(at_a == at_b, a, a + (b - a) * at_a / np.where(at_a == at_b, 1, at_a - at_b))
-        low, high = a, b
-        for _ in range(60):
-            here = at(rows, x)
-            same = (here < 0) == (at_a < 0)
-            low, high = np.where(same, x, low), np.where(same, high, x)
-            with np.errstate(all="ignore"):
-                better = x - here / at(row_slopes, x)
-            outside = ~((better >= low) & (better <= high))
-            better = np.where(outside, (low + high) / 2, better)
-            done = (abs(better - x) <= 1e-15).all()
-            x = better
-            if done:
-                break
-        return x
-
-    # where it dips through zero and comes back between two points, the bottom of the dip is one more
-    dips = np.nonzero(
-        (value[:, :-1] * slope[:, :-1] < 0) & (value[:, 1:] * slope[:, 1:] > 0) & (value[:, :-1] * value[:, 1:] > 0)
-    )
-    segments = [np.repeat(np.arange(len(value)), len(points) - 1)]
-    left, right = (np.broadcast_to(part, (len(value), len(points) - 1)).ravel() for part in (points[:-1], points[1:]))
-    at_left, at_right = value[:, :-1].ravel(), value[:, 1:].ravel()
-    if len(dips[0]):
-        rows = dips[0]
-        second = derivatives[rows] @ slopes[: derivatives.shape[1], : derivatives.shape[1]].T
-        bottom = zeros_of(derivatives[rows], second, points[dips[1]], points[dips[1] + 1])
-        at_bottom = at(coefficients[rows], bottom)
-        through = at_bottom * value[dips] < 0
-        rows, bottom, at_bottom = rows[through], bottom[through], at_bottom[through]
-        segments += [rows, rows]
-        left = np.concatenate([left, points[dips[1][through]], bottom])
-        right = np.concatenate([right, bottom, points[dips[1][through] + 1]])
-        at_left = np.concatenate([at_left, value[dips][through], at_bottom])
-        at_right = np.concatenate([at_right, at_bottom, value[dips[0][through], dips[1][through] + 1]])
-    rows = np.concatenate(segments)
-    crossing = (at_left < 0) != (at_right < 0)
-    rows, falling = rows[crossing], at_left[crossing] >= 0
-    zeros = zeros_of(coefficients[rows], derivatives[rows], left[crossing], right[crossing])
-    # integrals from the left end, of e and of x e: they change their sign at each zero
-    total = []
-    for table in moments:
-        integral = coefficients @ table.T
-        ends = at(integral, np.ones(len(integral)))
-        found = np.where(value[:, -1] < 0, -ends, ends)
-        np.add.at(found, rows, np.where(falling, 2.0, -2.0) * at(integral[rows], zeros))
-        total.append(found)
-    return total[0] * half[:, 0], (total[0] * middle[:, 0] + total[1] * half[:, 0]) * half[:, 0]
-
-
-@functools.cache
-def _tables(n: int):
-    """Points, the values and slopes of n Legendre polynomials there, and matrices of derivatives and of integrals."""
-    points = -np.cos(np.linspace(0, math.pi, 3 * n))
-    slopes = np.zeros((n, n))
-    slopes[: n - 1] = legendre.legder(np.eye(n), axis=0)
-    moments = [legendre.legint(np.eye(n), lbnd=-1, axis=0)]
-    by_x = np.zeros((n + 1, n))
-    for k, row in enumerate(np.eye(n)):
-        found = legendre.legmulx(row)
-        by_x[: len(found), k] = found
-    moments.append(legendre.legint(by_x, lbnd=-1, axis=0))
-    vander = legendre.legvander(points, n - 1)
-    return points, vander, vander @ slopes, slopes, moments
+    rows, edges = response.coefficients, response.edges
+    half, middle = np.diff(edges) / 2, (edges[1:] + edges[:-1]) / 2
+    # the integral of e from the left end, and by parts that of x e, x being -1 there and 1 at the right end
+    once = legendre.legint(rows.T, lbnd=-1)
+    twice = legendre.legint(once, lbnd=-1)
+    whole = once.sum(axis=0)
+    found = np.sign(whole) * np.array([whole, whole - twice.sum(axis=0)])
+    for k in np.flatnonzero(abs(rows[:, 0]) <= abs(rows[:, 1:]).sum(axis=1)):
+        x = np.r_[-1.0, np.sort(zeros_of(rows[k])), 1.0]
+        plain = legendre.legval(x, once[:, k])
+        pieces = np.diff([plain, x * plain - legendre.legval(x, twice[:, k])])
+        found[:, k] = pieces @ np.sign(pieces[0])
+    return found[0] * half, (found[0] * middle + found[1] * half) * half
 
 
 # ---- and beyond
