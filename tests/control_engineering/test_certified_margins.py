@@ -26,7 +26,6 @@ from loopbook.stability import (
     ultimate,
     unstable_closed_loop_poles,
     unstable_poles,
-    unstable_roots,
 )
 from loopbook.stability.counting import count_roots
 from loopbook.stability.sensitivity import largest_sensitivities
@@ -311,10 +310,6 @@ def test_nothing_in_the_loop():
         ultimate(0)
     with pytest.raises(ValueError, match="cancel an unstable pole"):
         margins(Loop(1 / (s - 1), 0))
-
-
-def test_integers_may_be_given_instead_of_polynomials():
-    assert unstable_roots({0: (0, 1), 1: (2,)}) == unstable_roots({0: sympy.Poly(s), 1: sympy.Poly(2, s)}) == 2
 
 
 # ------------------------------------------------------------------------------------------------ families

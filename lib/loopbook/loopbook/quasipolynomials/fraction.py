@@ -25,7 +25,9 @@ from plainmath.expressions import s
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-__all__ = ["DelayFraction", "Quasipolynomial", "lowest_term", "plus", "read", "taylor_coefficient", "times"]
+__all__ = [
+    "DelayFraction", "Quasipolynomial", "expression", "lowest_term", "plus", "read", "taylor_coefficient", "times",
+]  # fmt: skip
 
 #: A sum of polynomials in `s`, each with a dead time: {delay: whole coefficients, the lowest power first}.
 Quasipolynomial = dict[Fraction, tuple[int, ...]]
@@ -247,7 +249,7 @@ class DelayFraction:
 
     def __init__(self, above: Quasipolynomial, below: Quasipolynomial = ONE):
         if not below:
-            raise ValueError(f"{_expression(above)} is divided by 0: expected a denominator that is not zero")
+            raise ValueError(f"{expression(above)} is divided by 0: expected a denominator that is not zero")
         self.numerator, self.denominator = _cancelled(above, below)
         if early := [delay for delay in (*self.numerator, *self.denominator) if delay < 0]:
             shift = sympy.exp(-sympy.Rational(early[0].numerator, early[0].denominator) * s)
@@ -271,7 +273,7 @@ class DelayFraction:
     @functools.cached_property
     def expr(self) -> sympy.Expr:
         """The transfer function, an expression in `s` with whole coefficients."""
-        return _expression(self.numerator) / _expression(self.denominator)
+        return expression(self.numerator) / expression(self.denominator)
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.expr})"
@@ -382,7 +384,8 @@ class DelayFraction:
         return total
 
 
-def _expression(parts: Quasipolynomial) -> sympy.Expr:
+def expression(parts: Quasipolynomial) -> sympy.Expr:
+    """Return a quasipolynomial as an expression in `s`."""
     return sympy.Add(
         *(
             sympy.Add(*(c * s**k for k, c in enumerate(part) if c))

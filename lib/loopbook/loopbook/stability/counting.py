@@ -11,7 +11,7 @@ import sympy
 
 from loopbook.quasipolynomials import DelayFraction, read
 from loopbook.quasipolynomials.arrays import DEGREE, Quasipolynomials
-from loopbook.quasipolynomials.fraction import Quasipolynomial, lowest_term, plus, times
+from loopbook.quasipolynomials.fraction import Quasipolynomial, expression, lowest_term, plus, times
 from loopbook.stability.difference import Endless, at_endless_frequency, power_of_two, prevailing
 from loopbook.stability.enclosures import (
     NARROWEST,
@@ -143,15 +143,14 @@ def unstable_roots(denominator: Mapping) -> float:
     frequency the highest power prevails, also by a bound. No more than 400,000 intervals are looked at.
 
     Arguments:
-        denominator: ``{delay: coefficients}``, the lowest power first, as `System.denominator` is; or with polynomials
-            in s, as `deadtime.normal_form` has them.
+        denominator: ``{delay: coefficients}``, the lowest power first, as `System.denominator` is.
     Returns:
         An integer; ``math.inf`` where the highest power returns with dead times so strongly that there is no end of
         roots.
     Raises:
         StabilityLimitError: for roots on the imaginary axis, or so close to it that their frequencies cannot be told
             from it.
-        ValueError: for symbols, a sum that is zero, or one whose highest powers leave open whether it has an end of
+        ValueError: for a sum that is zero, or one whose highest powers leave open whether it has an end of
             roots: where they have several dead times that are not multiples of one, and the sizes of their coefficients
             add up to that of the undelayed one or more.
     Source: the criterion of A. V. Mikhailov (1938), extended to dead times.
@@ -159,10 +158,14 @@ def unstable_roots(denominator: Mapping) -> float:
     >>> unstable_roots({0: (0, 1), 1: (2,), Fraction(7, 5): (1,)})    # s + 2 exp(-s) + exp(-1.4 s)
     2
     """
-    parts = _whole(denominator)
+    fractions = {Fraction(delay): [*map(Fraction, part)] for delay, part in denominator.items()}
+    divisor = math.lcm(*(c.denominator for part in fractions.values() for c in part))
+    parts: Quasipolynomial = {}
+    for delay, part in fractions.items():
+        parts = plus(parts, {delay: tuple(int(c * divisor) for c in part)})
     if Fraction(0) not in parts or any(delay < 0 for delay in parts):
-        raise ValueError(f"the sum is {_written(parts)}: expected a part without dead time, and later ones")
-    return _count_of(parts, 0, lambda: _written(parts))
+        raise ValueError(f"the sum is {expression(parts)}: expected a part without dead time, and later ones")
+    return _count_of(parts, 0, lambda: expression(parts))
 
 
 # ---- from what is given to quasipolynomials
@@ -222,36 +225,6 @@ def characteristic(L: DelayFraction) -> Quasipolynomial:
     if len(parts.get(Fraction(0), ())) < len(below[Fraction(0)]):
         raise ValueError(f"the algebraic loop of {L.expr} has no solution: its gain at infinite frequency is -1")
     return parts
-
-
-def _whole(denominator: Mapping) -> Quasipolynomial:
-    """A quasipolynomial given with numbers of any kind, in whole ones."""
-    parts = {}
-    for delay, part in denominator.items():
-        if isinstance(part, (sympy.Expr, sympy.Poly)):
-            polynomial = part if isinstance(part, sympy.Poly) else sympy.Poly(part, s)
-            if symbols := sorted(map(str, polynomial.as_expr().free_symbols - {s})):
-                raise ValueError(f"give a number for {', '.join(symbols)} in {polynomial.as_expr()}")
-            part = polynomial.all_coeffs()[::-1]
-        coefficients = [_fraction_of(c) for c in part]
-        while coefficients and not coefficients[-1]:
-            coefficients.pop()
-        if coefficients:
-            parts[_fraction_of(delay)] = coefficients
-    divisor = math.lcm(*(c.denominator for part in parts.values() for c in part))
-    return {delay: tuple(int(c * divisor) for c in part) for delay, part in parts.items()}
-
-
-def _fraction_of(number: object) -> Fraction:
-    if isinstance(number, sympy.Expr):
-        number = number if number.is_Rational else sympy.Rational(str(number.evalf(30)))
-        return Fraction(int(number.p), int(number.q))
-    return Fraction(number)
-
-
-def _written(parts: Quasipolynomial) -> str:
-    terms = ((sum(c * s**n for n, c in enumerate(part)), sympy.Rational(str(delay))) for delay, part in parts.items())
-    return str(sympy.Add(*(part * sympy.exp(-delay * s) for part, delay in terms)))
 
 
 def _degree(parts: Quasipolynomial) -> int:
