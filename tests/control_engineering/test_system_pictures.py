@@ -11,7 +11,7 @@ from sympy import Rational, exp
 
 from loopbook.deadtime import Loop, System
 from loopbook.deadtime.curves import frequency_curve, natural_range
-from loopbook.deadtime.pictures import bode_plot, frequency_data, nyquist_plot, step_plot
+from loopbook.deadtime.pictures import bode_plot, nyquist_plot, step_plot
 from loopbook.figures import Picture, PlanePlot, TimePlot
 from loopbook.figures.style import look
 from loopbook.pid import PID
@@ -286,7 +286,6 @@ def test_nyquist_plot_shows_the_exact_curve_and_its_mirror():
     np.testing.assert_allclose(x + 1j * y, System(INTEGRATOR).frequency(omega), rtol=1e-9)
     near = abs(x + 1j * y) < 1
     assert np.hypot(*np.diff(curve[near], axis=0).T).max() < 0.03
-    assert r"$L(-j\omega)$" not in labels(nyquist_plot(LOOP, mirror=False).axes)
 
 
 def test_the_marks_of_nyquist_are_where_the_margins_are():
@@ -322,9 +321,8 @@ def test_the_window_is_that_of_the_unit_circle(L):
     assert -3 < bottom < -1.1 < 1.1 < top < 3
 
 
-def test_a_given_window_stays_and_more_can_be_added():
-    plot = nyquist_plot(LOOP, xlim=(-2, 1), ylim=(-2, 1)).points([-0.5], [-0.5], "a point").text(0.5, 0.5, "words")
-    assert (plot.axes.get_xlim(), plot.axes.get_ylim()) == ((-2, 1), (-2, 1))
+def test_more_can_be_added():
+    plot = nyquist_plot(LOOP).points([-0.5], [-0.5], "a point").text(0.5, 0.5, "words")
     assert labels(plot.axes)[-1] == "a point"
     assert plot.alt.endswith("; points: a point; words")
 
@@ -386,7 +384,7 @@ def test_frequency_data_are_exact_and_python_control_draws_them():
     import control
     from matplotlib import pyplot
 
-    data = frequency_data(INTEGRATOR, name="loop")
+    data = System(INTEGRATOR).to_control()
     np.testing.assert_allclose(data.complex, System(INTEGRATOR).frequency(data.omega))
     gain, angle, at_180, at_c = control.margin(data)
     assert (gain, at_180) == pytest.approx((math.pi, math.pi / 2), rel=1e-5)
@@ -401,7 +399,8 @@ def test_frequency_data_are_exact_and_python_control_draws_them():
 
 
 def test_frequency_data_at_given_frequencies():
-    np.testing.assert_allclose(frequency_data(1 / (s + 1), [1, 2]).complex, [0.5 - 0.5j, 0.2 - 0.4j])
+    data = System(1 / (s + 1)).to_control(omega=[1, 2])
+    np.testing.assert_allclose(data.complex, [0.5 - 0.5j, 0.2 - 0.4j])
 
 
 # What is wrong is said.
@@ -419,8 +418,8 @@ def test_frequency_data_at_given_frequencies():
         (lambda: bode_plot(sympy.Symbol("K") / s), "give a number for K"),
         (lambda: step_plot({"a": LOOP, "b": LOOP.T}), "expected no systems beside loops"),
         (lambda: step_plot(LOOP, end=-1), "the end is -1: expected a positive number"),
-        (lambda: frequency_data(1 / s, [2, 1]), "the frequencies go from 2 to 1: expected increasing numbers"),
-        (lambda: frequency_data(1 / (s**2 + 1), [1]), "H has a pole at the frequency 1"),
+        (lambda: System(1 / s).to_control(omega=[2, 1]), "the frequencies go from 2 to 1: expected increasing numbers"),
+        (lambda: System(1 / (s**2 + 1)).to_control(omega=[1]), "has a pole at the frequency 1"),
     ],
 )
 def test_what_is_wrong_is_said(call, message):

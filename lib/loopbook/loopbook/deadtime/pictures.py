@@ -17,19 +17,18 @@ from loopbook.figures.picture import titled
 from loopbook.figures.style import GUIDE, LEVEL, WIDTH, ZERO, look, styled
 from loopbook.quasipolynomials import DelayFraction, read
 from plainmath.tables import plain_words
-from plainmath.validation import increasing, positive, positive_numbers, real_numbers
+from plainmath.validation import positive, real_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    import control
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike
 
     from loopbook.deadtime.step_info import StepInfo
     from loopbook.stability import Margins
 
-__all__ = ["bode_plot", "frequency_data", "nyquist_plot", "step_plot"]
+__all__ = ["bode_plot", "nyquist_plot", "step_plot"]
 
 OF_GAIN = look("control signal")["color"]
 OF_PHASE = look("measurement")["color"]
@@ -223,12 +222,10 @@ def nyquist_plot(
     margins: Margins | None = None,
     title: str | None = None,
     unit: str = "s",
-    mirror: bool = True,
-    xlim: Sequence[float] | None = None,
-    ylim: Sequence[float] | None = None,
 ) -> PlanePlot:
     """Plot an open loop L(j omega) in the complex plane, with the point -1, the unit circle and the margins.
 
+    The curve of negative frequencies is a thin line.
     The window holds the unit circle and the part of the curve around it, so that an integrator or a sharp resonance
     does not take all the room.
 
@@ -239,8 +236,6 @@ def nyquist_plot(
             axis, the phase margin as an arc, and Ms by the circle around -1 that the curve touches.
         title: written above the plot.
         unit: of time, for the delay margin.
-        mirror: draw the curve of negative frequencies, too, as a thin line.
-        xlim, ylim: lowest and highest value of an axis.
     Returns:
         A `PlanePlot`, to which areas, points and words can be added.
     Raises:
@@ -261,8 +256,7 @@ def nyquist_plot(
     curves = {}
     for label, fraction in fractions.items():
         curves[label] = frequency_curve(fraction, low, high, _coarse)
-    window = _window(curves.values(), margins, mirror, xlim, ylim)
-    (left, right), (bottom, top) = window
+    (left, right), (bottom, top) = _window(curves.values(), margins)
     with styled():
         figure, (axes,) = canvas.panels([(WIDTH - canvas.LEFT - canvas.RIGHT) * (top - bottom) / (right - left)])
         axes.axhline(0, **ZERO)
@@ -273,9 +267,8 @@ def nyquist_plot(
             line = look(place)
             x, y = curve.values.real, curve.values.imag
             axes.plot(x, y, label=label or r"$L(j\omega)$", **line)
-            if mirror:
-                thin = {"linewidth": 0.7, "linestyle": "-", "zorder": 1.8}
-                axes.plot(x, -y, label=r"$L(-j\omega)$" if len(curves) == 1 else None, **(line | thin))
+            thin = {"linewidth": 0.7, "linestyle": "-", "zorder": 1.8}
+            axes.plot(x, -y, label=r"$L(-j\omega)$" if len(curves) == 1 else None, **(line | thin))
         axes.set_xlim(left, right)
         axes.set_ylim(bottom, top)
         axes.set_aspect("equal")
@@ -299,7 +292,7 @@ def _coarse(a, b):
         return (abs(b - a) > 0.02) & (np.minimum(abs(a), abs(b)) < 4)
 
 
-def _window(curves, margins, mirror, xlim, ylim):
+def _window(curves, margins):
     """Limits that hold the unit circle, and as much of the curves as does not dwarf it."""
     x, y = [-1.15, 1.15], [-1.15, 1.15]
     for curve in curves:
@@ -311,9 +304,7 @@ def _window(curves, margins, mirror, xlim, ylim):
             values = values[near]
         if len(values):
             x += [values.real.min(), values.real.max()]
-            y += [values.imag.min(), values.imag.max()]
-            if mirror:
-                y += [-values.imag.min(), -values.imag.max()]
+            y += [sign * value for value in (values.imag.min(), values.imag.max()) for sign in (1, -1)]
     if margins is not None:
         if margins.gain_reduction > 1 / WHOLE:
             x.append(-1 / margins.gain_reduction)
@@ -321,11 +312,10 @@ def _window(curves, margins, mirror, xlim, ylim):
             x.append(-1 - min(1 / margins.Ms, 0.9))
     width, height = max(x) - min(x), max(y) - min(y)
     x, y = (min(x) - 0.06 * width, max(x) + 0.06 * width), (min(y) - 0.06 * height, max(y) + 0.06 * height)
-    x, y = (tuple(map(float, limits)) if limits is not None else own for limits, own in ((xlim, x), (ylim, y)))
     width, height = x[1] - x[0], y[1] - y[0]
-    if xlim is None and width < height / FLATTEST[1]:
+    if width < height / FLATTEST[1]:
         x = (sum(x) / 2 - height / FLATTEST[1] / 2, sum(x) / 2 + height / FLATTEST[1] / 2)
-    elif ylim is None and height < FLATTEST[0] * width:
+    elif height < FLATTEST[0] * width:
         y = (sum(y) / 2 - FLATTEST[0] * width / 2, sum(y) / 2 + FLATTEST[0] * width / 2)
     return x, y
 
@@ -506,45 +496,6 @@ def _times(responses, end):
         seen = jump > 1e-4 * max(abs(response(times[0])).max(), 1e-300)
         times += [edges[seen], before[seen]]
     return np.unique(np.concatenate(times))
-
-
-# ------------------------------------------------------------------------------------------------ python-control
-
-
-def frequency_data(H: object, omega: ArrayLike | None = None, name: str = "H") -> control.FrequencyResponseData:
-    """Return the exact frequency response as a data object of python-control, which its plots accept.
-
-    ``control.bode_plot(frequency_data(H))``, ``nyquist_plot``, ``nichols_plot`` and ``margin`` take it as a system, and
-    ``frequency_data(H) * C`` with a transfer function C of python-control is one, too.
-
-    Arguments:
-        H: as for `bode_plot`, one of them.
-        omega: frequencies in radians for one unit of time, increasing and positive; by itself as many as a picture
-            needs, around the corner frequencies.
-        name: by which python-control calls it in titles and legends.
-    Raises:
-        ValueError: for other frequencies, a pole at one of them, or H = 0.
-
-    >>> from plainmath.expressions import s
-    >>> import sympy
-    >>> data = frequency_data(sympy.exp(-s) / (s + 1), [0.5, 1])
-    >>> data.magnitude.round(4)
-    array([0.8944, 0.7071])
-    """
-    import control
-
-    fractions = _fractions({"H": H})
-    (fraction,) = fractions.values()
-    if omega is None:
-        curve = frequency_curve(fraction, *natural_range([fraction]))
-        known = np.isfinite(curve.phase)
-        omega, values = curve.omega[known], curve.values[known]
-    else:
-        omega = increasing("frequencies", np.atleast_1d(positive_numbers("frequencies", omega)))
-        values = fraction(1j * omega)
-        if not np.isfinite(values).all():
-            raise ValueError(f"H has a pole at the frequency {omega[~np.isfinite(values)][0]:g}: expected others")
-    return control.FrequencyResponseData(values, omega, dt=0, name=name)
 
 
 # ------------------------------------------------------------------------------------------------ common

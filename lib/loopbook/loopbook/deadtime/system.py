@@ -12,7 +12,7 @@ import numpy as np
 import sympy
 
 from loopbook.deadtime.channels import ChannelModel
-from loopbook.deadtime.curves import natural_range
+from loopbook.deadtime.curves import frequency_curve, natural_range
 from loopbook.deadtime.response import Response
 from loopbook.deadtime.step_info import StepInfo, first_time_at, settled_response, step_info
 from loopbook.deadtime.superposition import response_to_samples
@@ -23,7 +23,7 @@ from loopbook.stability import is_stable
 from loopbook.stability import margins as margins_of
 from loopbook.stability.poles import dominant_roots
 from plainmath.expressions import function_of, s, t
-from plainmath.validation import number, real_numbers, times_from_zero, whole
+from plainmath.validation import increasing, number, positive_numbers, real_numbers, times_from_zero, whole
 
 if TYPE_CHECKING:
     import control
@@ -364,7 +364,7 @@ class System(DelayFraction):
                 the frequency response, exact, which python-control's Bode, Nyquist and Nichols plots accept.
             omega: the frequencies of these data, positive and increasing; by themselves as many as a picture needs.
         Raises:
-            ValueError: for another order, or frequencies beside an order.
+            ValueError: for another order, frequencies beside an order, or others, or a pole at one of them.
 
         >>> System(sympy.exp(-s) / (s + 1)).to_control(order=4).nstates
         5
@@ -374,9 +374,15 @@ class System(DelayFraction):
         import control
 
         if order is None:
-            from loopbook.deadtime.pictures import frequency_data
-
-            return frequency_data(self, omega)
+            if omega is None:
+                curve = frequency_curve(self, *natural_range([self]))
+                omega = curve.omega[np.isfinite(curve.phase)]
+            omega = increasing("frequencies", np.atleast_1d(positive_numbers("frequencies", omega)))
+            values = self.frequency(omega)
+            if not np.isfinite(values).all():
+                pole = omega[~np.isfinite(values)][0]
+                raise ValueError(f"{self.expr} has a pole at the frequency {pole:g}: expected others")
+            return control.FrequencyResponseData(values, omega, dt=0, name="H")
         if omega is not None:
             raise ValueError(f"order is {order!r} and omega is given: expected one of the two")
         order = whole("order", order)
