@@ -12,17 +12,18 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.polynomial import polynomial
 
 from loopbook.quasipolynomials import DelayFraction
+from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.quasipolynomials.fraction import Quasipolynomial, lowest_term
+from loopbook.stability.counting import above_origin
+from loopbook.stability.enclosures import Enclosure, Exact, enclosed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
 __all__ = ["FrequencyCurve", "frequency_curve", "natural_range"]
 
-TERMS = 6  # of the Taylor polynomials
 CONE = math.sin(math.radians(20))  # so far from a third two values of a side may be, seen from zero
 NARROWEST = 1e-12  # of an interval, as a share of the frequency; one as narrow and undecided holds a zero
 MOST_POINTS = 300_000
@@ -81,9 +82,7 @@ def frequency_curve(
         raise ValueError("the transfer function is 0: it has no phase")
     scale = H.denominator[Fraction(0)][-1]
     above, below = sides = [_OnAxis(parts, scale) for parts in (H.numerator, H.denominator)]
-    start = low
-    while not all(side.has_begun(start) for side in sides):
-        start /= 4
+    start = min(low, *(side.begins for side in sides))
     first = np.geomspace(start, low, 2 + int(16 * math.log10(low / start)))[:-1]
     grid = np.r_[first, np.geomspace(low, high, 2 + int(64 * math.log10(high / low)))]
     grid, is_gap = _followed(sides, grid)
@@ -128,46 +127,23 @@ def frequency_curve(
 
 
 class _OnAxis:
-    """A quasipolynomial q(w) = Q(jw) without its shortest dead time; its derivatives by w, their bounds."""
+    """A quasipolynomial q(w) = Q(jw) without its shortest dead time."""
 
     def __init__(self, parts: Quasipolynomial, scale: int):
         shortest = min(parts)
         parts = {delay - shortest: part for delay, part in parts.items()}
-        self.delay, self.delays = float(shortest), [float(delay) for delay in parts]
-        self.power, lowest = lowest_term(parts)
-        self.sign, self.lowest = (1 if lowest > 0 else -1), abs(float(lowest / scale))
-        self.real = [np.array([c / scale for c in part]) for part in parts.values()]
-        self.derivatives = [[part * 1j ** (np.arange(len(part)) % 4) for part in self.real]]
-        for _ in range(max(TERMS, self.power + 1)):
-            latest = zip(self.delays, self.derivatives[-1], strict=True)
-            self.derivatives.append(
-                [polynomial.polyadd(polynomial.polyder(part), -1j * delay * part) for delay, part in latest]
-            )
+        self.delay, (self.power, lowest) = float(shortest), lowest_term(parts)
+        self.sign = 1 if lowest > 0 else -1
+        order = max(map(len, parts.values())) - 1
+        self.sums = Quasipolynomials.exact(parts, order, scale)
+        self.begins = float(above_origin(self.sums, self.power, Exact(parts, order, scale, 1.0))[0][0])
 
-    def __call__(self, w: np.ndarray, order: int = 0) -> np.ndarray:
-        parts = zip(self.delays, self.derivatives[order], strict=True)
-        return sum(polynomial.polyval(w, part) * np.exp(-1j * delay * w) for delay, part in parts)
+    def __call__(self, w: np.ndarray) -> np.ndarray:
+        return self.sums.value(np.zeros(len(w), dtype=int), w)
 
-    def bound(self, w: np.ndarray, order: int = 0) -> np.ndarray:
-        """What a derivative does not exceed from 0 to w."""
-        return sum(polynomial.polyval(w, abs(part)) for part in self.derivatives[order])
-
-    def noise(self, w: np.ndarray) -> np.ndarray:
-        """A value below this may be nothing but rounding."""
-        return 4e-16 * max(map(len, self.real)) * self.bound(w)
-
-    def has_begun(self, w: float) -> bool:
-        """Whether the quasipolynomial stays near its lowest power from 0 to w."""
-        k = self.power + 1
-        return self.bound(w, k) * w / math.factorial(k) <= CONE * self.lowest
-
-    def change(self, a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The value in the middle of intervals, and how far others in it are away from that at most."""
-        c, r = (a + b) / 2, (b - a) / 2
-        most = self.bound(b, TERMS) * r**TERMS / math.factorial(TERMS)
-        for order in range(1, TERMS):
-            most = most + abs(self(c, order)) * r**order / math.factorial(order)
-        return self(c), most
+    def around(self, a: np.ndarray, b: np.ndarray) -> Enclosure:
+        """The quasipolynomial on intervals."""
+        return enclosed(self.sums, np.zeros(len(a), dtype=int), (a + b) / 2, (b - a) / 2)
 
     def phases(self, grid: np.ndarray, values: np.ndarray, is_gap: np.ndarray) -> np.ndarray:
         """The continuous phase of the quasipolynomial, divided by its sign, at frequencies close to each other."""
@@ -183,9 +159,7 @@ class _OnAxis:
 
         So goes Nyquist's contour, which counts a zero on the axis as one to the left of it.
         """
-        s = 1j * (a + b) / 2 + (b - a) / 2 * np.exp(1j * np.linspace(-math.pi / 2, math.pi / 2, 129))
-        parts = zip(self.delays, self.real, strict=True)
-        return sum(polynomial.polyval(s, part) * np.exp(-delay * s) for delay, part in parts)
+        return self.sums.at(1j * (a + b) / 2 + (b - a) / 2 * np.exp(1j * np.linspace(-math.pi / 2, math.pi / 2, 129)))
 
 
 def _followed(sides: list[_OnAxis], grid: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -196,10 +170,10 @@ def _followed(sides: list[_OnAxis], grid: np.ndarray) -> tuple[np.ndarray, np.nd
     while len(a):
         open_, empty = np.zeros((2, len(a)), dtype=bool)
         for side in sides:
-            value, most = side.change(a, b)
-            noise = side.noise(b)
-            undecided = ~(most + noise <= CONE * abs(value))
-            small = (b - a <= NARROWEST * b) | ((abs(value) <= 3 * noise / CONE) & (most <= 100 * noise / CONE))
+            around = side.around(a, b)
+            value, most, noise = around.sizes[0], around.spread, around.noise / CONE
+            undecided = ~(most <= CONE * value)
+            small = (b - a <= NARROWEST * b) | ((value <= 3 * noise) & (most <= 100 * noise))
             empty |= undecided & small
             open_ |= undecided & ~small
         gaps += zip(a[empty], b[empty], strict=True)
@@ -230,7 +204,8 @@ def _wide_enough(sides: list[_OnAxis], gaps: list[tuple[float, float]]) -> list[
         middle, radius = (a + b) / 2, (b - a) / 2
         for _ in range(40):
             a, b = middle - radius, middle + radius
-            if all(abs(side.beside(a, b)).min() > 100 * side.noise(b) for side in sides):
+            here = np.array([b])
+            if all(abs(side.beside(a, b)).min() > 100 * side.around(here, here).noise[0] for side in sides):
                 break
             radius *= 2
         merged.append((a, b))

@@ -111,6 +111,11 @@ class Quasipolynomials:
         powers = np.arange(self.order + 1) - self.order
         return Quasipolynomials(self.coefficients * unit ** powers[:, None].astype(float), self.delays * unit)
 
+    def at(self, points: np.ndarray) -> np.ndarray:
+        """The values of a single quasipolynomial at complex points."""
+        parts = zip(self.coefficients[..., 0], self.delays[:, 0], strict=True)
+        return sum(np.polynomial.polynomial.polyval(points, part) * np.exp(-delay * points) for part, delay in parts)
+
     # ---- on the imaginary axis
 
     def value(self, which: np.ndarray, w: np.ndarray) -> np.ndarray:

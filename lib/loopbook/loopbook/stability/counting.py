@@ -341,7 +341,7 @@ class Turns:
         one, points = np.ones(sums.count), np.arange(sums.count)
         which, a, b = geometric(_lowest(sums), one, near, RATIO)
         if self.removable:
-            start, turn = _above_origin(sums, self.removable, self.exact)
+            start, turn = above_origin(sums, self.removable, self.exact)
             self.phase += turn
             some = b > start[which]
             which, a, b = which[some], np.maximum(a[some], start[which[some]]), b[some]
@@ -407,7 +407,7 @@ def _lowest(sums):
     return np.clip(np.where(lowest < math.inf, 0.3 * lowest, 1e-3), 1e-30, 0.5)
 
 
-def _above_origin(sums, removable, exact):
+def above_origin(sums: Quasipolynomials, removable: int, exact: Exact | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies up to which quasipolynomials are about their lowest power, that of roots at zero, and their turns.
 
     Raises StabilityLimitError for more roots at zero than are removable.

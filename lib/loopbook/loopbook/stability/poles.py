@@ -190,20 +190,13 @@ def _newton(sums, derivative, points):
     """Where Newton's method leads from many points, and how long its next step would be."""
     with np.errstate(all="ignore"):
         for _ in range(60):
-            change = _value(sums, points) / _value(derivative, points)
+            change = sums.at(points) / derivative.at(points)
             points = points - change
             points = points[np.isfinite(points)]
             if not len(points) or (abs(change) <= 1e-14 * (1 + abs(change.real))).all():
                 break
-        rest = abs(_value(sums, points) / _value(derivative, points))
+        rest = abs(sums.at(points) / derivative.at(points))
     return points, rest
-
-
-def _value(sums, points):
-    total = 0
-    for part, delay in zip(sums.coefficients[..., 0], sums.delays[:, 0], strict=True):
-        total = total + np.polynomial.polynomial.polyval(points, part) * np.exp(-delay * points)
-    return total
 
 
 def _multiplicity(sums, derivative, root, others, top):
@@ -212,5 +205,5 @@ def _multiplicity(sums, derivative, root, others, top):
     apart = min(distances, default=top)
     circle = min(apart, 1e-2 * top) / 3 * np.exp(2j * math.pi * np.arange(64) / 64)
     with np.errstate(all="ignore"):
-        turns = (_value(derivative, root + circle) / _value(sums, root + circle) * circle).real.mean()
+        turns = (derivative.at(root + circle) / sums.at(root + circle) * circle).real.mean()
     return max(1, round(float(turns))) if np.isfinite(turns) else 1
