@@ -34,35 +34,6 @@ def active(chart, **inputs):
 # One scan after the other.
 
 
-def test_an_unconditional_chart_moves_one_step_a_scan_and_none_in_the_first():
-    ring = chart("ABC", [("A", "B"), ("B", "C"), ("C", "A")])
-    assert active(ring, a=[0] * 7) == [*"ABCABCA"]
-
-
-def test_a_condition_in_the_first_scan_clears_nothing():
-    two = chart("AB", [("A", "B", "a"), ("B", "A", "b")])
-    assert active(two, a=[1, 0, 1], b=[0, 0, 0]) == ["A", "A", "B"]
-
-
-def test_of_alternative_branches_the_first_true_one_is_taken():
-    for order, winner in ((("B", "C"), "B"), (("C", "B"), "C")):
-        ways = [Transition("A", x, {"B": "a", "C": "b"}[x]) for x in order]
-        both = chart("ABC", ways, final=("B", "C"))
-        assert active(both, a=[0, 1], b=[0, 1])[-1] == winner
-        assert active(both, a=[0, 1], b=[0, 0])[-1] == "B"
-        assert active(both, a=[0, 0], b=[0, 1])[-1] == "C"
-
-
-def test_simultaneous_branches_begin_at_once_and_end_when_all_are_there():
-    fork = chart("ABCDE", [("A", ("B", "C"), "a"), ("B", "D", "b"), (("D", "C"), "E", "c")], final="E")
-    assert active(fork, a=[0, 1, 0, 0, 0], b=[0, 0, 0, 1, 0], c=[0, 1, 1, 1, 1]) == ["A", "BC", "BC", "CD", "E"]
-
-
-def test_transitions_of_different_branches_are_cleared_in_the_same_scan():
-    fork = chart("ABCDEF", [("A", ("B", "C")), ("B", "D", "a"), ("C", "E", "a"), (("D", "E"), "F")], final="F")
-    assert active(fork, a=[0, 0, 1, 0]) == ["A", "BC", "DE", "F"]
-
-
 def test_a_transition_of_one_step_and_one_of_two_never_take_the_same_step_twice():
     """C may be left alone or together with B: the first in the list wins, and the other is not cleared by halves."""
     ways = [("A", ("B", "C")), (("B", "C"), "D", "a"), ("C", "E", "b"), (("B", "E"), "D", "c")]
