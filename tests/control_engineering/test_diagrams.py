@@ -207,7 +207,7 @@ def test_a_disturbance_without_a_name_and_with_a_wide_block():
     [
         (integrator(), r"$\int$", []),
         (integrator("y_0", limits=["a", "b"]), r"$\int$", ["$y_0$", "$a$", "$b$"]),
-        (multiplication("K", side="above"), r"$\times$", ["$K$"]),
+        (multiplication("K"), r"$\times$", ["$K$"]),
         (division("A"), r"$\div$", ["$A$"]),
         (block("f(u)", above=["d"], below=["a", "b", "c"]), "$f(u)$", ["$d$", "$a$", "$b$", "$c$"]),
         (delay(), "Delay\n$\\tau$", []),
@@ -273,8 +273,8 @@ def test_labels_of_ones_own():
 
 
 def test_conveyor_delay_spans_from_the_inflow_to_the_outflow():
-    texts, _, _, _, wires = measured(conveyor_belt("A", "B", "2", title="Figure 6.3"))
-    assert [text for text, _ in texts] == ["$A$", "$B$", "$2$"]
+    texts, _, _, _, wires = measured(conveyor_belt(title="Figure 6.3"))
+    assert [text for text, _ in texts] == [r"$F_{\mathrm{in}}$", r"$F_{\mathrm{out}}$", r"$\tau$"]
     down = [wire for wire in wires if wire[0][0] == wire[-1][0] and wire[0][1] - wire[-1][1] > 1]
     inflow, outflow = sorted(wire[0][0] for wire in down)
     dimension = min((wire for wire in wires if wire[0][1] == wire[-1][1]), key=lambda wire: wire[0][1])
@@ -308,7 +308,6 @@ def test_without_schemdraw_a_sentence_says_what_to_install(monkeypatch):
         (lambda: disturbance("d", sign="*"), "the sign of a feedback or disturbance is - or ., not '.'"),
         (lambda: disturbance("d", side="left"), "the side is above or below, not 'left'"),
         (lambda: disturbance("d", parallel_paths(H1, H2)), "between a disturbance and its junction stand blocks only"),
-        (lambda: multiplication("K", side="left"), "the side is above or below, not 'left'"),
         (lambda: integrator(limits=["a"]), "the limits of an integrator are its lowest and its highest value"),
         (lambda: block("f", above="d"), "'d' must be a list of names"),
         (lambda: equivalent_diagrams({"Series": ["u"]}), "rules must be {name: "),

@@ -194,22 +194,22 @@ def integrator(initial: str | None = None, limits: Sequence[str] = ()) -> _Block
     return _Block(r"$\int$", "integral", [initial] if initial else [], limits, SYMBOL)
 
 
-def multiplication(factor: str, side: str = "below") -> _Block:
-    """Return a block that multiplies the signal by another one, which enters from `side`, "above" or "below".
+def multiplication(factor: str) -> _Block:
+    """Return a block that multiplies the signal by another one, which enters from below.
 
     >>> block_diagram("u", multiplication("K"), "y")
     <block diagram: u → [×; from below K] → y>
     """
-    return _Block(r"$\times$", "×", size=SYMBOL, **{_side(side): [factor]})
+    return _Block(r"$\times$", "×", below=[factor], size=SYMBOL)
 
 
-def division(divisor: str, side: str = "below") -> _Block:
-    """Return a block that divides the signal by another one, which enters from `side`, "above" or "below".
+def division(divisor: str) -> _Block:
+    """Return a block that divides the signal by another one, which enters from below.
 
     >>> block_diagram("u", division("A"), "y")
     <block diagram: u → [÷; from below A] → y>
     """
-    return _Block(r"$\div$", "÷", size=SYMBOL, **{_side(side): [divisor]})
+    return _Block(r"$\div$", "÷", below=[divisor], size=SYMBOL)
 
 
 def gain(factor: str) -> _Block:

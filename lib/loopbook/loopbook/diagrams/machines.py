@@ -11,13 +11,10 @@ if TYPE_CHECKING:
     from loopbook.figures import Picture
 
 
-def conveyor_belt(
-    inflow: str = r"F_{\mathrm{in}}", outflow: str = r"F_{\mathrm{out}}", delay: str = r"\tau", title: str | None = None
-) -> Picture:
-    r"""Draw a conveyor belt, which turns an inflow into the same outflow some time later.
+def conveyor_belt(title: str | None = None) -> Picture:
+    """Draw a conveyor belt, which turns an inflow into the same outflow some time later.
 
     Arguments:
-        inflow, outflow, delay: mathematics at the arrow in, at the arrow out and at the time in between.
         title: written above the drawing.
     Returns:
         A `Picture`, which a notebook shows as the value of a cell.
@@ -40,16 +37,15 @@ def conveyor_belt(
     for side in (-1, 1):
         drawing.wire((0.45 + side * 0.75, 2.4), (0.45 + side * 0.25, 1.75), (0.45 + side * 0.25, 1.35))
     drawing.wire((0.45, 3.1), (0.45, r + 0.4), arrow="->")
-    drawing.text(0.7, 3.0, mathematics(inflow), halign="left")
+    drawing.text(0.7, 3.0, r"$F_{\mathrm{in}}$", halign="left")
     drawing.wire((length + r + 0.1, -0.1), (length + r + 0.1, -1.5), arrow="->")
-    drawing.text(length + r + 0.35, -1.1, mathematics(outflow), halign="left")
+    drawing.text(length + r + 0.35, -1.1, r"$F_{\mathrm{out}}$", halign="left")
     # the time on the belt, as a dimension line
     for x in (0.45, length + r + 0.1):
         drawing.wire((x, -1.75), (x, -2.25), width=0.8)
     drawing.wire((0.45, -2), (length + r + 0.1, -2), arrow="<->", width=0.8)
-    drawing.text((0.55 + length + r) / 2, -1.9, mathematics(delay), valign="bottom")
-    words = f"conveyor belt: {inflow} falls on one end, {outflow} leaves the other end {delay} later"
-    return drawing.picture(title, words)
+    drawing.text((0.55 + length + r) / 2, -1.9, r"$\tau$", valign="bottom")
+    return drawing.picture(title, "conveyor belt: F_in falls on one end, F_out leaves the other end tau later")
 
 
 def mass_spring_damper(

@@ -119,6 +119,13 @@ class Container(Equipment):
     def met_above(self, x: float) -> None:
         self.tops = (*self.tops, x)
 
+    def draw_jacket(self, drawing: Drawing, x0: float, x1: float) -> None:
+        """Around walls at x0 and x1, if there is one."""
+        if self.jacket:
+            top = self.jacket_top() - self.jacket
+            outside = [(self.x0, top), (self.x0, self.y0), (self.x1, self.y0), (self.x1, top)]
+            drawing.wire((x0, self.jacket_top()), *outside, (x1, self.jacket_top()), width=THICK)
+
 
 def draw_stirrer(
     drawing: Drawing, x: float, top: float, blade: float, half: float = 0.41, on_shaft: bool = False
@@ -179,10 +186,7 @@ class Tank(Container):
     def draw(self, drawing: Drawing) -> None:
         x0, x1, y0, y1 = self.inside()
         surface, middle = self.surface(), (x0 + x1) / 2
-        if self.jacket:
-            top, slant = self.jacket_top(), self.jacket
-            drawing.wire((x0, top), (self.x0, top - slant), (self.x0, self.y0), (self.x1, self.y0),
-                       (self.x1, top - slant), (x1, top), width=THICK)  # fmt: skip
+        self.draw_jacket(drawing, x0, x1)
         if self.filled:
             drawing.area([(x0, y0), (x1, y0), (x1, surface), (x0, surface)], fill=LIQUID, outline=0)
             drawing.wire((x0, surface), (x1, surface), width=THIN)
@@ -258,10 +262,7 @@ class Vessel(Container):
     def draw(self, drawing: Drawing) -> None:
         x0, x1, y0, y1 = self.shell()
         outline, surface = self._outline(x0, x1, y0, y1), y0 + self.filled * (y1 - y0)
-        if self.jacket:
-            top, slant = self.jacket_top(), self.jacket
-            drawing.wire((x0, top), (self.x0, top - slant), (self.x0, self.y0), (self.x1, self.y0),
-                       (self.x1, top - slant), (x1, top), width=THICK)  # fmt: skip
+        self.draw_jacket(drawing, x0, x1)
         drawing.area(outline, fill="white", outline=THICK)
         if self.filled:
             drawing.area([(x, min(y, surface)) for x, y in outline], fill=LIQUID, outline=THICK)
