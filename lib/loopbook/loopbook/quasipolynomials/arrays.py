@@ -131,12 +131,12 @@ class Quasipolynomials:
                 total = total + (value * np.exp(-1j * (w * delay)) if delay else value)
             return total
         if len(w) * (degree + 1) * (self.order + 1) <= FEW:
-            powers = 1j ** _degrees(self.order)[:, None] * powers_of(w, self.order + 1)
+            powers = 1j ** np.arange(self.order + 1)[:, None] * powers_of(w, self.order + 1)
             total = 0
             for matrix, delay in zip(self._expansion, self.delays, strict=True):
                 value = (matrix[: degree + 1, :, which] * powers).sum(axis=1)
                 total = total + (value * np.exp(-1j * (w * delay[which])) if delay.any() else value)
-            return total * 1j ** _degrees(degree)[:, None]
+            return total * 1j ** np.arange(degree + 1)[:, None]
         total, square = np.zeros((degree + 1, len(w)), dtype=complex), -w * w
         for matrix, delay in zip(self._expansion, self.delays, strict=True):
             value = np.empty((degree + 1, len(w)), dtype=complex)
@@ -192,20 +192,15 @@ class Quasipolynomials:
         return expanded
 
 
-@functools.cache
-def _degrees(last):
-    return np.arange(last + 1)
-
-
 def _derivative(coefficients):
     lower = np.zeros_like(coefficients)
-    lower[:, :-1] = coefficients[:, 1:] * _degrees(coefficients.shape[1] - 1)[1:, None]
+    lower[:, :-1] = coefficients[:, 1:] * np.arange(coefficients.shape[1])[1:, None]
     return lower
 
 
 def powers_of(w: np.ndarray, count: int) -> np.ndarray:
     """The powers 0, 1 ... of numbers: array [power, number]."""
-    return w ** _degrees(count - 1)[:, None] if count > 1 else (0 * w + 1)[None]
+    return w ** np.arange(count)[:, None] if count > 1 else (0 * w + 1)[None]
 
 
 def _polynomial(rows, which, x):

@@ -158,7 +158,7 @@ def enclosed(
     degree: int = DEGREE,
 ) -> Enclosure:
     """The quasipolynomials on the intervals from c - r to c + r; with more digits where there is an exact one."""
-    end, degrees = c + r, _DEGREES()[: degree + 2]
+    end, degrees = c + r, np.arange(degree + 2)
     scale = r ** degrees[:, None]
     sizes = sums.sizes(which, end, degree) * scale
     if exact is None:
@@ -170,11 +170,6 @@ def enclosed(
         noise = 8 * EPSILON * abs(terms).sum(axis=0) + 2.0**-140 * sizes[0]
         steep = degree * noise
     return Enclosure(terms, noise, noise + sizes[-1], steep + (degree + 1) * sizes[-1])
-
-
-@functools.cache
-def _DEGREES():
-    return np.arange(DEGREE + 2)
 
 
 # ---- more digits

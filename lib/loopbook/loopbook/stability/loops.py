@@ -172,7 +172,7 @@ class Loops:
         start = np.where(some, np.fmin(start, ratios[:count].min(axis=0)), start)
         series[lowest, sides] = 0
         series[count:] = sizes[count:]
-        degrees = _degrees(count)
+        degrees = np.arange(count)[:, None]
         for _ in range(400):
             others = (series * start**gaps).sum(axis=0)
             wider = np.maximum(start[:points], start[points:])
@@ -336,11 +336,6 @@ def positive_beyond(rows: np.ndarray) -> np.ndarray:
         found = np.where(possible & (lead > 0), np.minimum(found, end), found)
     # a little beyond, because such a bound may itself be a zero
     return np.where(found < math.inf, 1.001 * np.sqrt(found), math.nan)
-
-
-@functools.cache
-def _degrees(count):
-    return np.arange(count)[:, None]
 
 
 def _conjugate_product(x, y):

@@ -159,10 +159,6 @@ class Survey:
             if (static := loops.static_gains())[0] > 0:
                 self.real.add(one, static, np.zeros(1))
         if self.peak:
-            # A and B may both be zero at zero, as with (1 - exp(-s))/s, and only their expansions have a quotient there
-            A, B = loops.near_zero(one, np.full(1, 1e-300))
-            zero = abs(B.terms[0] / (A.terms[0] + B.terms[0]))
-            self.peak.see(one, zero, np.zeros(1))
             self.peak.see(one, np.array([far.sensitivity]), np.full(1, math.inf))
 
     def _end(self, question, done: float) -> float:

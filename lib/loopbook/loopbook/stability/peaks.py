@@ -22,6 +22,10 @@ class Peak(Question):
         self.loops = loops
         self.most, self.place = np.zeros(loops.count), np.zeros(loops.count)
         self.width = 0.0  # of the last one whose top was found
+        # A and B may both be zero at zero, as with (1 - exp(-s))/s, and only their expansions have a quotient there
+        every = np.arange(loops.count)
+        A, B = loops.near_zero(every, np.full(loops.count, 1e-300))
+        self.see(every, abs(B.terms[0] / (A.terms[0] + B.terms[0])), np.zeros(loops.count))
 
     def see(self, points: np.ndarray, sizes: np.ndarray, frequencies: np.ndarray) -> None:
         """Remember values, where they are higher than what was seen."""

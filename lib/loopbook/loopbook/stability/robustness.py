@@ -61,7 +61,7 @@ def robustness(process: object, controller: object, gain_ratio: ArrayLike) -> De
     >>> ratios.upper.round(4)    # pi over the gain ratio
     array([3.1416, 1.5708])
     """
-    gains = _gain_ratios(gain_ratio)
+    gains = positive_numbers("gain ratios", gain_ratio)
     A, B, delay = open_loop_without_dead_time(process, controller)
     regions = [[(low / delay, high / delay) for low, high in each] for each in _stable_delays(gains.ravel() * A, B)]
     chosen = np.array([min(each, key=_distance_from_1, default=(math.nan, math.nan)) for each in regions])
@@ -86,7 +86,7 @@ def robustness_pi_first_order(
     >>> round(robustness_pi_first_order(2, 4, 1, Kp=1, Ti=4, gain_ratio=2), 4)    # pi/2
     1.5708
     """
-    gains = _gain_ratios(gain_ratio)
+    gains = positive_numbers("gain ratios", gain_ratio)
     k = (float(K) * float(Kp) * gains) ** 2
     T, delay, Ti = float(T), float(delay), float(Ti)
     middle = (k - 1) * Ti
@@ -96,10 +96,6 @@ def robustness_pi_first_order(
     w = np.sqrt(sum_ / (2 * Ti * T**2))
     ratio = (math.pi / 2 + np.arctan(w * Ti) - np.arctan(w * T)) / w / delay
     return ratio if ratio.ndim else float(ratio)
-
-
-def _gain_ratios(gain_ratio):
-    return positive_numbers("gain ratios", gain_ratio)
 
 
 def open_loop_without_dead_time(

@@ -52,8 +52,6 @@ AT_ONCE = 2000
 def _largest(loops):
     every = np.arange(loops.count)
     peak = Peak(loops)
-    near_A, near_B = loops.near_zero(every, np.full(loops.count, 1e-300))
-    peak.see(every, abs(near_B.terms[0] / (near_A.terms[0] + near_B.terms[0])), np.zeros(loops.count))
     peak.see(every, _at_endless_frequency(loops), np.full(loops.count, math.inf))
     done = below(loops, [peak])
     end = np.maximum(np.clip(np.nan_to_num(loops.beyond(np.full(loops.count, 2.0)), nan=4.0), 0, 64), 4 * done)
