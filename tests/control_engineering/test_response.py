@@ -383,15 +383,6 @@ def test_samples_are_summed_exactly(name, hold, spacing):
     found = response_to_samples(SYSTEMS[name], times, u, hold)
     expected = one_by_one(SYSTEMS[name], times, u, hold)
     assert abs(found - expected).max() <= 2e-11 * abs(expected).max()
-
-
-def test_samples_of_an_integrator():
-    times = np.array([0, 0.5, 2, 2.25, 7])
-    u = np.array([1.0, -2, 3, 0.5, 4])
-    steps = np.r_[0, np.cumsum(u[:-1] * np.diff(times))]
-    lines = np.r_[0, np.cumsum((u[1:] + u[:-1]) / 2 * np.diff(times))]
-    assert response_to_samples(SYSTEMS["integrator"], times, u) == pytest.approx(steps, abs=1e-13)
-    assert response_to_samples(SYSTEMS["integrator"], times, u, "first order") == pytest.approx(lines, abs=1e-13)
     assert response_to_samples(model(D11=2.0), [3.0], [5.0]) == pytest.approx([10])
 
 

@@ -77,9 +77,3 @@ def test_the_duty_cycle_of_the_beginning_holds_for_the_whole_cycle():
 def test_a_pulse_needs_a_share_and_a_period(duty, period, message):
     with pytest.raises(ValueError, match=message):
         pulse_width_modulation(duty, [0, 1], period)
-
-
-@pytest.mark.parametrize("times", [[], [1, 0], [0, float("nan")], "times", 5])
-def test_pulses_need_increasing_times(times):
-    with pytest.raises(ValueError, match=r"^the times .*: expected "):
-        pulse_width_modulation(50, times, 2)
