@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from loopbook.deadtime import System
+from loopbook.deadtime.loop import MODES
 from loopbook.ise.family import ise_family
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.quasipolynomials.symbols import broadcast_values, fraction_of, with_values
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 __all__ = ["Family"]
-
-MODES = ("servo", "regulator")
 
 
 class Family:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +13,7 @@ import sympy
 from loopbook.deadtime.system import System, return_difference
 from loopbook.laplace import evaluate
 from loopbook.quasipolynomials import DelayFraction, read
+from loopbook.quasipolynomials.fraction import Quasipolynomial, plus, times
 from loopbook.stability import Margins, dominant_poles, is_stable, margins
 from loopbook.transfer import transfer_function
 from plainmath.expressions import function_of, s, t
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
 __all__ = ["MODES", "Loop", "LoopResponse"]
 
 MODES = ("servo", "regulator")
+STEP: Quasipolynomial = {Fraction(0): (0, 1)}  # what a transfer function is divided by for a step
 
 
 @dataclass(frozen=True, repr=False)
@@ -172,11 +175,18 @@ class Loop:
         >>> Loop(1 / s, PID(2)).error("servo")
         System(1/(s + 2))
         """
-        if one_of("the mode", mode, MODES) == "servo":
-            forward = self._difference - self.setpoint_fraction * self.process_fraction
-        else:
-            forward = -self.process_fraction
-        return System(forward / self._difference / s)
+        P, R, L = self.process_fraction, self.setpoint_fraction, self.open_fraction
+        returned = times(STEP, plus(L.denominator, L.numerator))  # common factors are cancelled once
+        if one_of("the mode", mode, MODES) == "regulator":
+            above = plus({}, times(P.numerator, L.denominator), -1)
+            return System(DelayFraction(above, times(P.denominator, returned)))
+        if self.controller_fraction == R:
+            return System(DelayFraction(L.denominator, returned))
+        # 1/(1 + L) - (R/C) L/(1 + L), over the denominator of R P
+        own = times(R.denominator, P.denominator)
+        through = times(times(R.numerator, P.numerator), L.denominator)
+        above = plus(times(plus(L.denominator, L.numerator), own), through, -1)
+        return System(DelayFraction(above, times(own, returned)))
 
     # ---- stability
 

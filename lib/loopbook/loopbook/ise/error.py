@@ -9,15 +9,13 @@ import numpy as np
 
 from loopbook.deadtime import Loop
 from loopbook.quasipolynomials import DelayFraction, read
-from loopbook.quasipolynomials.fraction import Quasipolynomial, plus, taylor_coefficient, times
+from loopbook.quasipolynomials.arrays import Quasipolynomials
+from loopbook.quasipolynomials.fraction import Quasipolynomial, taylor_coefficient
 from loopbook.stability import StabilityLimitError, unstable_roots
-from plainmath.validation import one_of
 
 __all__ = ["ErrorFraction", "NotApplicableError", "UnstableLoopError", "error_of"]
 
-MODES = ("servo", "regulator")
 ZERO = Fraction(0)
-STEP: Quasipolynomial = {ZERO: (0, 1)}  # what a transfer function is divided by for a step
 
 
 class UnstableLoopError(ValueError):
@@ -38,19 +36,7 @@ def error_of(process: object, controller: object, mode: str, from_setpoint: obje
         raise ValueError("the controller is missing: expected one, or a loop in place of the process")
     else:
         loop = Loop(process, controller, from_setpoint)
-    P, R, L = loop.process_fraction, loop.setpoint_fraction, loop.open_fraction
-    returned = times(STEP, plus(L.denominator, L.numerator))
-    if one_of("mode", mode, MODES) == "regulator":
-        above = {delay: tuple(-c for c in part) for delay, part in times(P.numerator, L.denominator).items()}
-        return DelayFraction(above, times(P.denominator, returned))
-    if loop.controller_fraction == R:
-        return DelayFraction(L.denominator, returned)
-    # 1/(1 + L) - (R/C) L/(1 + L), over the denominator of R P
-    own = times(R.denominator, P.denominator)
-    above = plus(
-        times(plus(L.denominator, L.numerator), own), times(times(R.numerator, P.numerator), L.denominator), -1
-    )
-    return DelayFraction(above, times(own, returned))
+    return loop.error(mode)
 
 
 @dataclass(frozen=True)
@@ -111,14 +97,7 @@ class ErrorFraction:
         longest = float(max((*self.N, *self.D)))
         return max(found, default=1 / longest if longest else 1.0)
 
-    def arrays(self, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Coefficients of N and D in s/speed, a row for each dead time, and the dead times, as arrays of floats."""
-        leading, order = self.D[ZERO][-1], self.order + self.pole
-
-        def rows(parts, columns, more):
-            table = np.zeros((len(parts), columns))
-            for row, part in zip(table, parts.values(), strict=True):
-                row[: len(part)] = [c / leading * speed ** (k + more - order) for k, c in enumerate(part)]
-            return table, np.array([float(delay) * speed for delay in parts])
-
-        return *rows(self.N, order, 0), *rows(self.D, self.order + 1, self.pole)
+    def sums(self, speed: float) -> tuple[Quasipolynomials, Quasipolynomials]:
+        """N and D in s/speed, over the leading coefficient of D."""
+        leading, unit = self.D[ZERO][-1], np.full(1, speed)
+        return tuple(Quasipolynomials.exact(x, self.order, leading).slower(unit) for x in (self.N, self.D))

@@ -5,12 +5,10 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
-from fractions import Fraction
 
 import numpy as np
 
 from loopbook.ise.error import ErrorFraction
-from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.stability.poles import roots_right_of
 
 DIGITS = 40
@@ -196,8 +194,7 @@ def slow_modes(fraction: ErrorFraction, rate: float) -> Modes | None:
 
     None if there are too many, or they are not found, as `roots_right_of` says.
     """
-    sums = Quasipolynomials.exact(fraction.D, fraction.order, fraction.D[Fraction(0)][-1])
-    poles = roots_right_of(sums.slower(np.full(1, rate)), -1.0, MOST_MODES)
+    poles = roots_right_of(fraction.sums(rate)[1], -1.0, MOST_MODES)
     exact = [None] if poles is None else [_exact(fraction, p * rate) for p in poles]
     if any(e is None for e in exact):
         return None

@@ -23,7 +23,8 @@ def by_residues(fraction: ErrorFraction) -> float:
     if fraction.pole:
         raise NotApplicableError("a pole at zero is cancelled by dead times only")
     speed = fraction.speed
-    value = float(sums_of_residues(*(array[..., None] for array in fraction.arrays(speed)))[0])
+    N, D = fraction.sums(speed)
+    value = float(sums_of_residues(N.coefficients, N.delays, D.coefficients, D.delays)[0])
     if np.isnan(value):
         raise NotApplicableError("the residues lose too many digits")
     return value * speed
