@@ -16,10 +16,9 @@ version = release = repository.VERSION
 language = "en"
 
 extensions = [
-    "myst_nb", "stored", "exercise_forms", "mathml", "readme", "lazy_figures", "library", "repository_pages",
+    "myst_nb", "stored", "exercise_forms", "mathml", "lazy_figures", "library", "repository_pages",
     "command_options", "calls", "ledger_page", "cheat_sheet_page", "front_page", "lesson_directive", "accessible",
-    "permanent", "single_figures", "search_index", "previews", "here", "python_in_pages", "notebooks_in_pages",
-    "on_paper", "light_code",
+    "permanent", "single_figures", "search_index", "here", "python_in_pages", "on_paper", "light_code",
 ]  # fmt: skip
 exclude_patterns = ["lessons", "**/.ipynb_checkpoints"]
 
@@ -51,7 +50,8 @@ html_static_path = ["_static"]
 templates_path = ["_templates"]
 html_css_files = ["loopbook.css"]
 html_favicon = "_static/favicon.svg"
-html_baseurl = os.environ.get("LOOPBOOK_SITE", "")  # where the site is going to be, for previews of links
+html_baseurl = os.environ.get("LOOPBOOK_SITE", "")  # where the site is going to be, as https://control.example.edu/book/
+html_context = {"site": html_baseurl}  # for previews of links
 html_copy_source = False
 html_show_sourcelink = False
 pygments_style = "a11y-high-contrast-light"

@@ -1,18 +1,34 @@
 """The site holds what its pages need to run Python in the reader's browser, and works without a network once visited.
 
-With ``OFFLINE=1`` in the environment its pages take Python from the site itself, where ``docs/__main__.py`` has put it.
+Beside it is JupyterLite, in which every chapter and its solutions run as notebooks. With ``OFFLINE=1`` in the
+environment both take Python from the site itself, where ``docs/__main__.py`` has put it.
 """
 
 import os
+import subprocess
 from pathlib import Path
 
-from browser import site
+from sphinx.errors import SphinxError
+
+from browser import lite, runtime, site
+
+
+class NoNotebooksError(SphinxError):
+    category = "JupyterLite cannot be made"
 
 
 def write(app, exception):
     """Write it when all pages are there, because the service worker knows the site by its content."""
-    if app.builder.name == "html" and not exception:
-        site.write(Path(app.outdir), bool(os.environ.get("OFFLINE")))
+    if app.builder.name != "html" or exception:
+        return
+    folder, offline = Path(app.outdir), bool(os.environ.get("OFFLINE"))
+    site.write(folder, offline)
+    try:
+        lite.write(folder, offline, os.environ.get("PARTS"))  # of the wheels, which are there now, it takes most
+    except runtime.MissingError as problem:
+        raise NoNotebooksError(str(problem)) from None
+    except subprocess.CalledProcessError as problem:
+        raise NoNotebooksError(f"{problem.stdout[-2000:]}{problem.stderr[-2000:]}") from None
 
 
 def setup(app):
