@@ -83,6 +83,6 @@ def test_what_a_controller_does_is_drawn():
 
 def test_where_both_forms_of_a_controller_are_right_one_is_chosen():
     field = field_of("x", Settings(PID(2, Ti=3)))
-    assert field.data["forms"] == ("parallel", "serial")
+    assert field.more["forms"] == ("parallel", "serial")
     assert field.help == "Leave empty what the controller does not have."
-    assert "forms" not in field_of("x", Settings(PID(2, Ti=3), form="parallel")).data
+    assert "forms" not in field_of("x", Settings(PID(2, Ti=3), form="parallel")).more

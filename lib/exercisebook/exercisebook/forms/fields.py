@@ -36,12 +36,6 @@ class Field:
     weight: float = 1
     more: dict[str, Any] = field(default_factory=dict)
 
-    @property
-    def data(self) -> dict[str, Any]:
-        """The field as JSON data."""
-        said = {"name": self.name, "kind": self.kind, "control": self.control, "asked": self.asked}
-        return said | {"unit": self.unit, "help": self.help, "words": self.words, "parts": self.parts} | self.more
-
 
 def field_of(name: str, kind: Kind, weight: float = 1) -> Field:
     """Return the field for an asked quantity.
@@ -52,7 +46,7 @@ def field_of(name: str, kind: Kind, weight: float = 1) -> Field:
         weight: what it counts.
 
     >>> from exercisebook.kinds import Number
-    >>> field_of("T", Number(120, "s", "the period")).data["unit"]
+    >>> field_of("T", Number(120, "s", "the period")).unit
     's'
     """
     said = {"asked": kind.what, "unit": kind.unit} | kind.field

@@ -33,11 +33,10 @@ class Desk:
 
         The requests by what they ``do``, each with an ``exercise`` and a ``student``, who is null without a name:
 
-        - show: ``{heading, html, fields, controls, accuracy, rungs}``: the statement, and what is asked as data and as
-          HTML;
-        - check, with ``answers``: ``{right, says, html, verdicts: [{name, status, says, html}], notes}``;
+        - show: ``{html, controls}``: the statement and the fields, as HTML;
+        - check, with ``answers``: ``{right, says, html, verdicts: [{name, status, says, html}]}``;
         - prepare: ``{}``; the key is computed and judged, so that the first answer takes no longer than the next one;
-        - hint, with a ``rung`` from 1: ``{html, rung, of}``;
+        - hint, with a ``rung`` from 1: ``{html}``;
         - solution: ``{html}``. Whether an attempt comes first is for the page to say.
 
         What cannot be answered has the reply ``{"problem": "one sentence"}``.
@@ -77,14 +76,7 @@ def _name(student):
 
 
 def _show(sheet: Sheet, request: dict[str, Any]) -> dict[str, Any]:
-    return {
-        "heading": sheet.question.exercise.heading,
-        "html": sheet.statement,
-        "fields": [field.data for field in sheet.fields],
-        "controls": sheet.controls,
-        "accuracy": sheet.accuracy,
-        "rungs": sheet.rungs,
-    }
+    return {"html": sheet.statement, "controls": sheet.controls}
 
 
 def _check(sheet: Sheet, request: dict[str, Any]) -> dict[str, Any]:
@@ -97,8 +89,7 @@ def _prepare(sheet: Sheet, request: dict[str, Any]) -> dict[str, Any]:
 
 
 def _hint(sheet: Sheet, request: dict[str, Any]) -> dict[str, Any]:
-    rung = request.get("rung", 1)
-    return {"html": sheet.hint(rung), "rung": rung, "of": sheet.rungs}
+    return {"html": sheet.hint(request.get("rung", 1))}
 
 
 def _solution(sheet: Sheet, request: dict[str, Any]) -> dict[str, Any]:
