@@ -50,7 +50,9 @@ html_static_path = ["_static"]
 templates_path = ["_templates"]
 html_css_files = ["loopbook.css"]
 html_favicon = "_static/favicon.svg"
-html_baseurl = os.environ.get("LOOPBOOK_SITE", "")  # where the site is going to be, as https://control.example.edu/book/
+html_baseurl = os.environ.get(
+    "LOOPBOOK_SITE", ""
+)  # where the site is going to be, as https://control.example.edu/book/
 html_context = {"site": html_baseurl}  # for previews of links
 html_copy_source = False
 html_show_sourcelink = False

@@ -19,7 +19,7 @@ import browser  # noqa: E402 - tests/site/ has just become a place to import fro
 from desk import Desk, jupyterlab  # noqa: E402
 
 CHAPTER = "10_tuning"
-LESSON, ITS_CHAPTER = "smith", "17_dead_time_compensation"
+LESSON, ITS_CHAPTER = "predictor_at_work", "17_dead_time_compensation"
 GRADED = ROOT / "examples" / "course" / "build" / "grades" / "air_heater"
 STUDENT = "s1002"
 PREVIEW = DOCS / "_static" / "preview.png"

@@ -21,25 +21,23 @@ from sphinx.util.docutils import SphinxDirective
 class Lesson(SphinxDirective):
     """A live lesson, by its name.
 
-    ``:short:`` leaves out what to try; ``:cell:`` is for the cell of a recorded lesson, where the text above says what
-    is seen, and no heading has its title.
+    ``:cell:`` is for the cell of a lesson, where the text above says what is seen, and no heading has its title.
     """
 
     required_arguments = 1
-    option_spec: ClassVar[dict] = {"short": directives.flag, "cell": directives.flag}
+    option_spec: ClassVar[dict] = {"cell": directives.flag}
 
     def run(self):
         name = self.arguments[0]
         try:
             lesson = lessons.load(name)
-            text = lessons.data((name,))[name]
+            record = lesson.record()
         except ValueError as problem:
             raise self.error(str(problem)) from None
         self.env.note_dependency(lessons.__path__[0] + "/words.toml")
-        self.env.note_dependency(f"{lessons.__path__[0]}/recorded/{name}.json")
+        self.env.note_dependency(str(lesson.file))
         title = html.escape(lesson.title)
-        short = "short" in self.options
-        version = hashlib.sha256(text.encode()).hexdigest()[:8]
+        version = hashlib.sha256(lesson.file.read_bytes()).hexdigest()[:8]
         found = [
             raw(
                 f'<section class="lesson" id="lesson-{name}" data-lesson="{name}" data-version="{version}" '
@@ -51,8 +49,8 @@ class Lesson(SphinxDirective):
             found += self.parse_text_to_nodes(f"{{.lesson-title}}\n{lesson.title}")
         elif lesson.about:
             found += self.parse_text_to_nodes(lesson.about)
-        found.append(raw(desk(name, json.loads(text))))
-        if lesson.questions and not short:
+        found.append(raw(desk(name, record)))
+        if lesson.questions:
             questions = "\n".join(f"1. {question}" for question in lesson.questions)
             found += self.parse_text_to_nodes(f"**What to try.**\n\n{questions}")
         return [*found, raw("</section>")]
@@ -79,8 +77,8 @@ def write_data(app):
         return
     folder = Path(app.outdir, "_static", "lessons")
     folder.mkdir(parents=True, exist_ok=True)
-    for name, text in lessons.data().items():
-        shown = json.dumps(json.loads(text)["data"], ensure_ascii=False, separators=(",", ":"))
+    for name, lesson in lessons.recorded().items():
+        shown = json.dumps(lesson.record()["data"], ensure_ascii=False, separators=(",", ":"))
         script = f"(window.loopbookLessons ||= {{}}).{name} = {shown};\n"
         (folder / f"{name}.js").write_text(script, encoding="utf-8")
 

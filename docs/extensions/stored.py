@@ -19,7 +19,7 @@ import nbformat
 import permanent
 import slugs
 from lazy_figures import is_wide
-from lessons import of_cell, places
+from lessons import of_cell
 from nbformat.v4.rwbase import rejoin_lines
 from sphinx import addnodes
 from sphinx.util.matching import Matcher
@@ -57,7 +57,7 @@ def page(path):
     whole = content["cells"]
     figures, taken = permanent.figures(whole), permanent.taken(whole)
     if folder == "chapters":
-        whole = with_functions(places.with_lessons(whole, name))
+        whole = with_functions(whole)
     cells = []
     for cell in whole:
         cells += in_markdown(cell) if cell["cell_type"] == "markdown" else in_code(cell, folder, name, figures, taken)

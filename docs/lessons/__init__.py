@@ -1,5 +1,5 @@
 """The live lessons of the book: what a slider does to a loop, computed by the library and shown by the page alone."""
 
-from lessons.store import PLACES, data, load, names, of_cell, recorded, titles
+from lessons.store import load, of_cell, recorded, titles
 
-__all__ = ["PLACES", "data", "load", "names", "of_cell", "recorded", "titles"]
+__all__ = ["load", "of_cell", "recorded", "titles"]

@@ -2,8 +2,6 @@
 
 import colorsys
 
-from loopbook.figures.style import RESPONSE_COLOURS, RESPONSE_LINES, ROLES
-
 # The colours of the figures in a dark page: as far apart, and light enough.
 IN_THE_DARK = {
     "#000000": "#ffffff", "#0072b2": "#56b4e9", "#d55e00": "#ff9248", "#cc79a7": "#e6a3c8",
@@ -26,22 +24,7 @@ def dark(colour):
     return "#" + "".join(f"{round(255 * min(1, share)):02x}" for share in turned)
 
 
-def pixels(style):
-    """The dashes of a line's style, in pixels."""
-    return [] if style == "-" else [round(4 / 3 * points, 1) for points in style[1]]
-
-
 def dashes_of(line):
     """The dashes of a line of Matplotlib, in pixels."""
     _, dashes = line._unscaled_dash_pattern  # Matplotlib tells it in no other way
     return [round(4 / 3 * points, 1) for points in dashes or ()]
-
-
-def look_of(role):
-    """Colour, dashes and width of a line in pixels, for a role or the number of a response."""
-    if role in ROLES:
-        look = ROLES[role]
-    else:
-        look = {"color": RESPONSE_COLOURS[role], "linestyle": RESPONSE_LINES[role], "linewidth": 2.0}
-    width = round(look["linewidth"] * 4 / 3, 1)
-    return {"colour": look["color"].lower(), "dash": pixels(look["linestyle"]), "width": width}

@@ -1,39 +1,15 @@
-"""The lessons by name with their places: made by hand and kept until their code changes, or recorded from a cell."""
+"""The lessons by name, each recorded from a cell of a chapter."""
 
-import concurrent.futures
 import functools
-import hashlib
-import importlib
 import json
-import os
 import re
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
 
 from plainmath.validation import did_you_mean
 
-
-class Place(NamedTuple):
-    """The chapter of a lesson, and the beginning of the heading whose part "Try it" it follows."""
-
-    chapter: str
-    section: str
-
-
-PLACES = {
-    "pi": Place("07_feedback", "Example 7.5"),
-    "good_gain": Place("10_tuning", "Example 10.1"),
-    "half_rule": Place("14_model_approximation", "How good is a reduced model?"),
-    "smith": Place("17_dead_time_compensation", "Section 7.4"),
-    "windup": Place("07_feedback", "Example 7.4"),
-    "cascade": Place("11_control_structures", "Example 11.1"),
-}
-
 HERE = Path(__file__).resolve().parent
-ROOT = HERE.parents[1]
-KEPT = ROOT / "build" / "lessons"
 RECORDED = HERE / "recorded"
 
 
@@ -44,7 +20,8 @@ class Recorded:
     Attributes:
         name: of the lesson, and of its file in recorded/.
         chapter, function: where the cell is, and what its function is called.
-        title, about, questions: as of `lesson.Lesson`; the text of the chapter above the cell has most of them.
+        title, about, questions: of the lesson, what is shown and what to try; Markdown, with mathematics. The text of
+            the chapter above the cell has most of them.
         typed: texts to choose from where the cell has a field to type in.
     """
 
@@ -95,66 +72,16 @@ def of_cell(chapter, source):
     return next((lesson for lesson in recorded().values() if (lesson.chapter, lesson.function) == place), None)
 
 
-def names():
-    """The names of all lessons."""
-    return (*PLACES, *recorded())
-
-
 def load(name):
-    """Return the lesson of a name, a `lesson.Lesson` or a `Recorded` one.
+    """Return the lesson of a name.
 
     Raises ValueError for a name that no lesson has.
     """
-    if name in PLACES:
-        return importlib.import_module(f"lessons.{name}").LESSON
     if name not in recorded():
-        raise ValueError(f"there is no lesson {name!r}: {did_you_mean(name, names())}")
+        raise ValueError(f"there is no lesson {name!r}: {did_you_mean(name, recorded())}")
     return recorded()[name]
 
 
 def titles():
     """All lessons as (chapter, name, title), chapter by chapter."""
-    of_hand = [(place.chapter, name, load(name).title.removeprefix("Live: ")) for name, place in PLACES.items()]
-    others = [(lesson.chapter, name, lesson.title) for name, lesson in recorded().items()]
-    return sorted(((c, n, title[0].upper() + title[1:]) for c, n, title in others + of_hand), key=lambda told: told[0])
-
-
-def code_of(name):
-    """A short text that changes with the code of a lesson made by hand, and of the library."""
-    files = sorted([*(ROOT / "lib" / "loopbook" / "loopbook").rglob("*.py"), *HERE.glob("*.py")])
-    digest = hashlib.sha256(name.encode())
-    for file in files:
-        digest.update(file.read_bytes())
-    return digest.hexdigest()[:16]
-
-
-def computed(name):
-    """Return the record of one lesson as JSON; one made by hand is computed again where the code has changed."""
-    if name not in PLACES:
-        return json.dumps(load(name).record(), ensure_ascii=False, separators=(",", ":"))
-    kept = KEPT / f"{name}-{code_of(name)}.json"
-    if kept.exists():
-        return kept.read_text(encoding="utf-8")
-    text = json.dumps(load(name).record(), ensure_ascii=False, separators=(",", ":"))
-    KEPT.mkdir(parents=True, exist_ok=True)
-    for old in KEPT.glob(f"{name}-*.json"):
-        old.unlink(missing_ok=True)
-    being_written = kept.with_suffix(f".{os.getpid()}")
-    being_written.write_text(text, encoding="utf-8")
-    being_written.replace(kept)  # in one step, since two builds may run at once
-    return text
-
-
-def data(wanted=None):
-    """Return {name: JSON of the lesson's record}, computed on all the processors where it is not kept.
-
-    Raises ValueError for a name that no lesson has.
-    """
-    wanted = names() if wanted is None else wanted
-    for name in wanted:
-        load(name)
-    by_hand = [n for n in wanted if n in PLACES and not (KEPT / f"{n}-{code_of(n)}.json").exists()]
-    if by_hand:
-        with concurrent.futures.ProcessPoolExecutor(min(len(by_hand), os.cpu_count() or 1)) as pool:
-            list(pool.map(computed, by_hand))
-    return {name: computed(name) for name in wanted}
+    return [(lesson.chapter, name, lesson.title) for name, lesson in recorded().items()]
