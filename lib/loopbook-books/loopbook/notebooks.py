@@ -8,7 +8,6 @@ never imports this module; ``python -m loopbook execute`` does.
 
 import ast
 import copy
-import functools
 import json
 import math
 import os
@@ -28,6 +27,8 @@ from jupyter_client.kernelspec import NoSuchKernel
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
 from nbformat import NotebookNode
+
+from bookledger.stored import parsed, walk
 
 SECONDS_PER_CELL = 120
 """A cell that takes longer than this (s) waits for something that never comes, and is stopped."""
@@ -283,18 +284,13 @@ def folded(cells: Iterable[NotebookNode]) -> list[NotebookNode]:
     return [code[n] for n in sorted(hidden)]
 
 
-@functools.lru_cache(maxsize=1000)
 def _walked(source: str) -> list[ast.AST]:
-    return [*ast.walk(_parsed(source))]
+    return walk(_parsed(source))
 
 
-@functools.lru_cache(maxsize=1000)
 def _parsed(source: str) -> ast.Module:
     """The syntax tree of a cell, empty where it is no Python, such as a magic of IPython."""
-    try:
-        return ast.parse(source)
-    except SyntaxError:
-        return ast.Module([], [])
+    return parsed(source) or ast.Module([], [])
 
 
 def bound_in(source: str) -> set[str]:
