@@ -1,4 +1,4 @@
-// Who follows a link to a place within something folded finds it open; and the list at the side says where one is.
+// Who follows a link to a place within something folded finds it open.
 "use strict";
 
 (() => {
@@ -18,37 +18,4 @@
 
   open();
   window.addEventListener("hashchange", open);
-
-  // The sections of this page, in the list at the side: the one that is being read is marked.
-  const links = new Map(
-    [...document.querySelectorAll(".here a")].map((link) => [decodeURIComponent(link.hash.slice(1)), link]),
-  );
-  const sections = [...links.keys()].map((id) => document.getElementById(id)).filter(Boolean);
-  if (!sections.length) return;
-  let marked = null;
-
-  function mark() {
-    const end = scrollY + innerHeight > document.documentElement.scrollHeight - 4; // what is last may be short
-    const line = end ? innerHeight : innerHeight / 3;
-    const read = sections.findLast((section) => section.getBoundingClientRect().top < line);
-    const link = read && links.get(read.id);
-    if (link === marked) return;
-    marked?.removeAttribute("aria-current");
-    marked = link;
-    if (!link) return;
-    link.setAttribute("aria-current", "location");
-    const list = link.closest(".sidebar-scroll");
-    const [box, frame] = [link.getBoundingClientRect(), list.getBoundingClientRect()];
-    if (box.top < frame.top || box.bottom > frame.bottom) list.scrollTop += box.top - frame.top - frame.height / 3;
-  }
-
-  let waiting = false;
-  const soon = () => {
-    if (waiting) return;
-    waiting = true;
-    requestAnimationFrame(() => ((waiting = false), mark()));
-  };
-  document.addEventListener("scroll", soon, { passive: true });
-  window.addEventListener("resize", soon);
-  mark();
 })();
