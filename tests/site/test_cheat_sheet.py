@@ -16,7 +16,6 @@ from loopbook.deadtime import System
 from loopbook.identification import relay_experiment
 from loopbook.ise import ise, pi_first_order
 from loopbook.latex import latex
-from loopbook.pid import PID
 from loopbook.stability import margins
 from loopbook.synthesis import IMC_TABLE, imc
 from loopbook.transfer import first_order
@@ -131,13 +130,6 @@ def test_dead_times():
     assert section(dynamics.dead_times).rows[0][0] == taylor(delay)
     for n, approximation in ((2, pade(delay)), (3, pade(delay, 2))):
         assert sympy.simplify(section(dynamics.dead_times).rows[0][n] - approximation) == 0
-
-
-def test_conversion_of_controllers():
-    f = [sympy.Rational(5, 4), sympy.Rational(1, 2) + sympy.sqrt(1 - 4 * sympy.Rational(8, 50)) / 2]
-    serial, parallel = PID(2, 8, 2, form="serial"), PID(2, 10, sympy.Rational(8, 5))
-    assert serial.parallel() == PID(2 * f[0], 8 * f[0], 2 / f[0])
-    assert parallel.serial() == PID(2 * f[1], 10 * f[1], sympy.Rational(8, 5) / f[1], form="serial")
 
 
 @pytest.mark.parametrize(
