@@ -39,6 +39,7 @@ UNREAD = (
     nodes.substitution_definition, addnodes.desc, addnodes.desc_signature, addnodes.toctree, addnodes.index,
 )  # fmt: skip
 FIRST, SECOND = "chapters/", 0.6  # what comes first, and what the words of other pages count to those
+ASKED = 0.8  # what those of an exercise count to those of a section that explains
 IN_TITLE, IN_PAGE_TITLE = 5.0, 1.0  # what a word in a title is worth, to one in the text
 SATURATION, LENGTH = 1.2, 0.5  # of BM25
 KINDS = (*permanent.KINDS, "exercise")
@@ -207,8 +208,8 @@ def index(pages, titles):
     lengths = [1 + len(text) / 6 for *_, text, _ in whole]  # about as many words
     average = sum(lengths) / len(lengths)
     entries, places = {}, {}
-    for number, (page, _, title, above, text, named) in enumerate(whole):
-        factor = 1 if names[page].startswith(FIRST) else SECOND
+    for number, (page, place, title, above, text, named) in enumerate(whole):
+        factor = (1 if names[page].startswith(FIRST) else SECOND) * (ASKED if place.startswith("exercise-") else 1)
         counts = Counter(word for word in words(text) if word not in COMMON and not word[0].isdigit())
         weights = {
             word: count * (SATURATION + 1) / (count + SATURATION * (1 - LENGTH + LENGTH * lengths[number] / average))
