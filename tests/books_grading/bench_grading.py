@@ -1,7 +1,6 @@
 """What grading costs: `make bench` runs this too.
 
-A class of 100 with ordinary notebooks, one of 300 with figures, one of 1000 with two workers and its memory, and the
-grader killed at twenty random moments.
+A class of 100 on one worker, one of 1000 on two with its memory, and the grader killed at twenty random moments.
 """
 
 import json
@@ -41,31 +40,14 @@ SYMBOLS = (
     "loop = sympy.simplify(K / (T * s + 1) / (1 + K / (T * s + 1)))\n"
     "sympy.apart(loop.subs({K: 2, T: 30}) / s, s)"
 )
-
-FIT = (
-    "from scipy import integrate, optimize, signal\n"
-    "solution = integrate.solve_ivp(lambda t, y: [(2 - y[0]) / 30], (0, 200), [0.0], t_eval=times)\n"
-    "def distance(T):\n    return float(np.sum((2 * (1 - np.exp(-times / T)) - solution.y[0]) ** 2))\n"
-    "best = optimize.minimize_scalar(distance, bounds=(5, 100), method='bounded').x"
-)
-PLOT_OF_FIT = (
-    "figure, (upper, lower) = plt.subplots(2, sharex=True)\nupper.plot(times, solution.y[0], label='simulated')\n"
-    "upper.plot(times, 2 * (1 - np.exp(-times / best)), '--', label='fitted')\nupper.legend()\n"
-    "lower.plot(times, np.gradient(solution.y[0], times))\nlower.grid(True)\nfigure.savefig('fit.png')\nplt.show()"
-)
-BODE = (
-    "w, magnitude, phase = signal.bode(signal.TransferFunction([2], [30, 1]))\nfigure, axes = plt.subplots(2)\n"
-    "axes[0].semilogx(w, magnitude)\naxes[1].semilogx(w, phase)\nfigure.savefig('bode.png')\nplt.show()"
-)
-#: The cells of an ordinary notebook, each before the exercise of this number, and of one with three figures.
+#: The cells of an ordinary notebook, each before the exercise of this number.
 ORDINARY = (("1", IMPORTS), ("2", STEPS), ("3", PLOT), ("4", SYMBOLS))
-FIGURES = (("1", IMPORTS), ("2", STEPS), ("3", PLOT), ("3", SYMBOLS), ("4", FIT), ("4", PLOT_OF_FIT), ("5", BODE))
 
 
 class Class:
     """A class of so many students, who all hand in such a notebook: five right answers and the way to them."""
 
-    def __init__(self, folder, size, cells=ORDINARY):
+    def __init__(self, folder, size):
         self.folder, self.path = folder, folder / "air_heater.py"
         folder.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / "examples" / "course" / "air_heater.py", self.path)
@@ -78,7 +60,7 @@ class Class:
         for student, path in zip(self.students, released.paths, strict=True):
             notebook = json.loads(path.read_text(encoding="utf-8"))
             fill_in_all(notebook, lambda number, student=student: self.assignment.question(student.id, number))
-            for number, source in cells:
+            for number, source in ORDINARY:
                 insert(notebook, number, source)
             path.write_text(json.dumps(notebook), encoding="utf-8")
 
@@ -127,39 +109,6 @@ def of_hundred(table, folder):
     table.add_row("starts", f"{measured['jail, start']:.1f} s", f"judge {measured['judge, start']:.1f} s")
     table.add_row("class of 100, one worker", f"{all_of_it:.1f} s", f"{all_of_it / 100:.3f} s a notebook, with starts")
     return course
-
-
-def _processor_seconds():
-    """Processor time (s) of this process and all below it that live, with those that they have waited for."""
-    children, ticks = {}, os.sysconf("SC_CLK_TCK")
-    for path in Path("/proc").glob("[0-9]*/stat"):
-        try:
-            numbers = path.read_text().rsplit(")", 1)[1].split()
-        except OSError:
-            continue
-        children.setdefault(int(numbers[1]), []).append((int(path.parent.name), sum(map(int, numbers[11:15])) / ticks))
-    seconds, parents = sum(os.times()[:2]), [os.getpid()]
-    while parents:
-        for child, own in children.get(parents.pop(), ()):
-            seconds += own
-            parents.append(child)
-    return seconds
-
-
-def with_figures(table, folder, size=300):
-    """A class with figures on two workers, from the command line: until the first result, and until the end."""
-    course = Class(folder, size, FIGURES)
-    start, first, used = perf_counter(), None, 0
-    process = subprocess.Popen(course.command("graded", 2), stdout=subprocess.DEVNULL)
-    before = _processor_seconds()
-    while process.poll() is None:
-        used = max(used, _processor_seconds() - before)
-        if first is None and any((course.folder / "graded" / "results").glob("s*.json")):
-            first = perf_counter() - start
-        time.sleep(0.1)
-    seconds = perf_counter() - start
-    table.add_row(f"class of {size} with figures, two workers", f"{seconds:.0f} s", f"{used:.0f} s of processor time")
-    table.add_row("its first result", f"{first:.1f} s", "from the command on")
 
 
 def of_thousand(table, folder):
@@ -219,7 +168,6 @@ def main():
         course = of_hundred(table, Path(hundred))
         killed(table, course)
         of_thousand(table, Path(thousand))
-        with_figures(table, Path(thousand) / "figures")
     Console().print(table)
 
 

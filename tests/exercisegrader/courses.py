@@ -85,14 +85,12 @@ class Course:
         """The course while s2 has answered something else."""
         return self.mended(self.submissions / "s2" / "lag.ipynb", "* 2,", "* 3,")
 
-    def grade(self, to, **options):
+    def grade(self, to, submissions=None, **options):
         options.setdefault("place", self.place())
-        return grade(self.assignment, self.students, self.submissions, self.folder / to, **options)
+        return grade(self.assignment, self.students, submissions or self.submissions, self.folder / to, **options)
 
-    def results_of(self, submissions, to):
-        """The results of other submissions."""
-        grade(self.assignment, self.students, submissions, to, place=self.place())
-        return Results(to / "results", self.assignment.secret)
+    def results(self, to):
+        return Results(self.folder / to / "results", self.assignment.secret)
 
     def handed_in(self, student):
         """The bytes of what a student has handed in."""

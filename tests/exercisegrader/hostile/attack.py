@@ -88,13 +88,11 @@ class Expects:
         counts: numbers of the exercises whose answers must all be right.
         may: those whose answers may be right, or not have arrived; all others must bring nothing.
         statuses: of the submission, allowed ones.
-        complains: whether the collection must say something about it; an archive may also be refused as a whole.
     """
 
     counts: frozenset[str] = frozenset({"1"})
     may: frozenset[str] = frozenset({"2"})
     statuses: frozenset[str] = frozenset({COMPLETE, STOPPED})
-    complains: bool = False
 
 
 @dataclass(frozen=True)

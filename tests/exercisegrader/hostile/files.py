@@ -11,12 +11,10 @@ from hostile.attack import COMPLETE, MISSING, NOT_RUN, STOPPED, Attack, Expects,
 
 _NOT_RUN = Expects(counts=frozenset(), may=frozenset(), statuses=frozenset({NOT_RUN}))
 _EITHER = Expects(counts=frozenset(), may=frozenset({"1", "2"}), statuses=frozenset({NOT_RUN, STOPPED, COMPLETE}))
+#: The student's notebook is right, or a right one is beside the trap, and it counts.
 _RIGHT = Expects(counts=frozenset({"1", "2"}), may=frozenset(), statuses=frozenset({COMPLETE}))
-_REFUSED = Expects(counts=frozenset(), may=frozenset(), statuses=frozenset({MISSING, NOT_RUN}), complains=True)
 _NOTHING = Expects(counts=frozenset(), may=frozenset(), statuses=frozenset({MISSING, NOT_RUN}))
 _ANY = Expects(counts=frozenset(), may=frozenset({"1", "2"}), statuses=frozenset({COMPLETE, NOT_RUN, MISSING}))
-#: Beside the trap there is the student's right notebook, and it counts.
-_BESIDE = Expects(counts=frozenset({"1", "2"}), may=frozenset(), statuses=frozenset({COMPLETE}), complains=True)
 
 
 def _file(item, name, content, expects=_NOT_RUN):
@@ -24,11 +22,11 @@ def _file(item, name, content, expects=_NOT_RUN):
     return Attack(f"{item}: {name}", item, expects, content=make)
 
 
-def _place(item, name, place, expects=_REFUSED):
+def _place(item, name, place, expects=_NOTHING):
     return Attack(f"{item}: {name}", item, expects, place=place)
 
 
-def _archive(item, name, archive, expects=_BESIDE):
+def _archive(item, name, archive, expects=_RIGHT):
     return Attack(f"{item}: {name}", item, expects, archive=archive)
 
 
@@ -245,15 +243,15 @@ ATTACKS = (
     _place(_MISSING, "an empty folder", _empty_folder, _NOTHING),
     _place(_MISSING, "two notebooks", _two, _NOT_RUN),
     _place(_MISSING, "a folder with the name of a notebook", _folder_named_as_a_notebook, _NOTHING),
-    _place(_MISSING, "folders of nobody", _nobody_s, _BESIDE),
+    _place(_MISSING, "folders of nobody", _nobody_s, _RIGHT),
     _place(_LINKS, "to another student's", _linked(lambda folder: folder / "s1002" / "air_heater.ipynb")),
     _place(_LINKS, "to /etc/shadow", _linked(lambda folder: "/etc/shadow")),
     _place(_LINKS, "to a device without an end", _linked(lambda folder: "/dev/zero")),
     _place(_LINKS, "to nothing", _linked(lambda folder: "nothing")),
     _place(_LINKS, "to itself", _linked(lambda folder: "air_heater.ipynb")),
-    _place(_LINKS, "beside the own file", _link_beside_the_own_file, _BESIDE),
+    _place(_LINKS, "beside the own file", _link_beside_the_own_file, _RIGHT),
     _place(_LINKS, "the folder itself", _linked_folder),
-    _place(_LINKS, "a folder in a ring", _endless_folder, _BESIDE),
+    _place(_LINKS, "a folder in a ring", _endless_folder, _RIGHT),
     _place(_LINKS, "a pipe", _pipe),
     _archive(_BOMB, "two large members", _bomb),
     _archive(_BOMB, "a large member that calls itself small", _bomb_that_calls_itself_small, _ANY),
@@ -278,6 +276,6 @@ ATTACKS = (
     _archive(_TRAVERSAL, "the same name twice", _zipped(("STUDENT/air_heater.ipynb", b"{}")), _ANY),
     _archive(_TRAVERSAL, "encrypted", _encrypted),
     _archive(_TRAVERSAL, "damaged member", _damaged, _RIGHT),
-    _archive(_TRAVERSAL, "cut in the middle", _cut, _REFUSED),
-    _archive(_TRAVERSAL, "no archive", lambda student, right: right, _REFUSED),
+    _archive(_TRAVERSAL, "cut in the middle", _cut, _NOTHING),
+    _archive(_TRAVERSAL, "no archive", lambda student, right: right, _NOTHING),
 )

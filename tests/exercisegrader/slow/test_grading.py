@@ -78,14 +78,15 @@ class TestAClass:
         others = zip(ids, [*ids[1:], ids[0]], strict=True)
         submissions = hand_in(tmp_path / "in", **{own: course.handed_in(other) for own, other in others})
         with pytest.raises(GradingError, match="4 of 4 notebooks are not those that were released to these students"):
-            grade(course.assignment, course.students, submissions, tmp_path / "out", place=course.place())
+            course.grade(tmp_path / "out", submissions)
         assert not (tmp_path / "out" / "grades.csv").exists()
 
     def test_a_notebook_of_somebody_else_is_told(self, course, tmp_path):
         content = course.handed_in("s3")
         earlier = content.replace(peek(content).numbers["2"].encode(), b"of an earlier release")
         taken = course.handed_in("s2").replace(b'student=\\"s2\\"', b'student=\\"s0\\"')
-        results = course.results_of(hand_in(tmp_path / "in", s0=taken, s3=earlier), tmp_path / "out")
+        course.grade(tmp_path / "out", hand_in(tmp_path / "in", s0=taken, s3=earlier))
+        results = course.results(tmp_path / "out")
         assert results.of("s3").looks == (Look(OWNER, "it was released with other numbers in exercise 2"),)
         found = results.of("s0")
         assert (found.looks, found.owner) == ((Look(OWNER, "it names another student: s2"),), "s2")
@@ -100,7 +101,8 @@ class TestAClass:
                 cell.cell_type = "markdown"
                 del cell["outputs"], cell["execution_count"]
         s0, s3 = (nbformat.writes(one).encode() for one in (named, marked))
-        results = course.results_of(hand_in(tmp_path / "in", s0=s0, s3=s3), tmp_path / "out")
+        course.grade(tmp_path / "out", hand_in(tmp_path / "in", s0=s0, s3=s3))
+        results = course.results(tmp_path / "out")
         says = "in exercise 1 it answers 'Y' and 'P', which are not asked"
         assert results.of("s0").looks == (Look("unasked", says, "1"),)
         says = "a cell that answers exercise 2 is no code cell, and is not run"
@@ -111,9 +113,7 @@ class TestAClass:
         summary, folder = graded
         assert (summary.graded, summary.kept, summary.missing, summary.failures) == (4, 0, 1, ())
         assert points(folder) == ["5", "0", "5", "5", ""]
-
-    def test_a_mistake_is_named_and_an_error_told(self, graded):
-        page = (graded[1] / "feedback" / "s1" / "feedback.html").read_text(encoding="utf-8")
+        page = (folder / "feedback" / "s1" / "feedback.html").read_text(encoding="utf-8")
         assert "That is the gain." in page
         assert "ZeroDivisionError" in page
 
@@ -238,7 +238,7 @@ def test_what_is_written_does_not_lie_among_the_submissions(course, inside):
 
 def test_another_assignment_has_another_folder(course):
     other = dataclasses.replace(course.assignment, name="other")
-    results = Results(course.folder / "taken" / "results", course.assignment.secret)
+    results = course.results("taken")
     lag = result("lag", "s1", "s1.ipynb", "", True, Outcome(), ())
     results.keep(lag)
     with pytest.raises(GradingError, match="holds results of the assignment 'lag': expected a folder of its own for"):
@@ -260,12 +260,10 @@ def test_where_most_submissions_are_gone_nothing_is_graded(course, tmp_path):
     before = files(folder)
     empty.mkdir()
     with pytest.raises(GradingError, match=r"4 of 4 students who were graded have no submission in .*: s0, s1"):
-        grade(course.assignment, course.students, empty, folder, place=course.place())
+        course.grade("gone", empty)
     assert files(folder) == before
-    shutil.copytree(course.submissions / "s0", empty / "s0")
-    shutil.copytree(course.submissions / "s1", empty / "s1")
-    shutil.copytree(course.submissions / "s2", empty / "s2")
-    done = grade(course.assignment, course.students, empty, folder, place=course.place())
+    most = hand_in(empty, **{student: course.handed_in(student) for student in ("s0", "s1", "s2")})
+    done = course.grade("gone", most)
     assert "Graded before, and without a submission now: s3." in done.notes
 
 
@@ -277,13 +275,13 @@ def test_a_system_without_locks_is_refused(course, monkeypatch):
 
 def test_what_every_submission_could_read_is_refused(course):
     with pytest.raises(GradingError, match="which every submission can read: move it elsewhere"):
-        grade(course.assignment, course.students, Path(sys.prefix) / "share", course.folder / "exposed")
+        course.grade("exposed", Path(sys.prefix) / "share")
 
 
 def test_without_bubblewrap_it_says_what_to_install(course, monkeypatch):
     monkeypatch.setattr(jail.shutil, "which", lambda name: None)
     with pytest.raises(NoJail, match=r"install bubblewrap and libseccomp2 .* or say --without-jail"):
-        grade(course.assignment, course.students, course.submissions, course.folder / "nowhere")  # in no jail that runs
+        course.grade("nowhere", place=None)  # in no jail that runs
     assert not (course.folder / "nowhere" / "grades.csv").exists()
 
 

@@ -60,9 +60,8 @@ def test_a_good_exercise_surprises_nobody():
     assert (found.variants, found.lacks) == (40, ("hints", "a solution"))
 
 
-def exercise(
-    key, parameters='K=between(2, 6, "K/%"), T=between(15, 40, "s")', statement="{K}, {T}.", more="", shown=""
-):
+def asks(key, more="", parameters='K=between(2, 6, "K/%"), T=between(15, 40, "s")', statement="{K}, {T}.", shown=""):
+    """An exercise with this key."""
     return f'''
 @exercise("1", title="A fault")
 def fault({parameters}):
@@ -73,174 +72,81 @@ def fault({parameters}):
 '''
 
 
-def mistake(body, sentence="That is another one.", names="K"):
-    return f'@fault.mistake("{sentence}")\ndef _({names}):\n    {body}\n'
+def mistake(body, sentence="That is another one."):
+    return f'@fault.mistake("{sentence}")\ndef _(K):\n    {body}\n'
 
 
-FAULTS = {
-    "a key that fails in some variants": (
-        exercise('y=number(1 / (K - 3), "s", "it") if K != 3 else None'),
-        (WRONG, "the key of exercise 1 fails: not answered yet, in 2 of 40 variants"),
+Y = 'y=number(3 * K, "K", "it")'
+TOLD = 'y: the mistake "That is another one." '
+#: Faulty exercises by the sentences that name what is wrong in them.
+WRONG_ONES = {
+    "the key of exercise 1 fails: not answered yet, in 2 of 40 variants":
+        asks('y=number(1 / (K - 3), "s", "it") if K != 3 else None'),
+    "the key of exercise 1 fails: this is ": asks('y=number(5 / (K - 3), "s", "it")'),
+    "the key of exercise 1 fails: this is infinite: expected a number, in s, in all 40 variants":
+        asks('y=number(float("inf"), "s", "it")'),
+    "g: the key is not right, in":
+        asks('g=design(number(K, "", "the gain"), criterion("the gain", lambda g: g, below=5))'),
+    "y: the key is not right with eight digits, in ": asks('y=number(K / 7, "s", "it", within=0)'),
+    f"{TOLD}is right, in all 40 variants": asks(Y, mistake('return {"y": 3.01 * K}')),
+    f"{TOLD}is right, in ": asks('y=number(min(K, 4), "K", "it")', mistake('return {"y": K}')),
+    f"{TOLD}cannot be judged": asks(Y, mistake('return {"y": "K times three"}')),
+    f"{TOLD}cannot be judged, in all": asks(Y, mistake('return {"y": K / 0}')),
+    "a mistake of exercise 1 is in 'x': expected 'y'": asks(Y, mistake('return {"x": K}')),
+    "y: the key, with the other sign, is right, too, in all 40 variants":
+        asks('y=number(3 * K, "K", "it", within=2.5)'),
+    'y: the word "Lag" is read as "lag"': asks('y=word("Lag" if K > 4 else "lag", ["lag", "Lag"], "it")'),
+    "the statement does not show T, of which the key may depend":
+        asks('y=number(3 * K + T, "K", "it")', statement="the gain {K}."),
+    "a place of the statement has no value, in all 40 variants":
+        asks('y=number(3 * K + T, "K", "it")', statement="the gain {K}, {T} and {gain}."),
+    "a place of the statement has no value": asks(Y, '@fault.shows\ndef _(T):\n    return {"T": str(None)}\n'),
+    "the statement has a $ without another one": asks(Y, statement="$K = {K}, {T}."),
+    "the picture fails, in": asks(Y, '@fault.picture\ndef _(K):\n    """It."""\n    return 1 / 0\n'),
+}  # fmt: skip
+#: And by those that name what is odd.
+ODD_ONES = {
+    "g: the key is not right rounded to three digits":
+        asks('g=design(number(1 / (7 * K), "", "it"), criterion("K g", lambda g: g * K, below=1/7, above=1/7))'),
+    'y: the mistake "The second." gets that of "The first.", in all 40 variants':
+        asks(Y, mistake('return {"y": 9 * K}', "The first.") + mistake('return {"y": 9 * K}', "The second.")),
+    'y: 2 mistakes have the same sentence, "That is another one.", in all 40 variants': asks(
+        'y=word("a" if K > 4 else "b", ["a", "b", "c", "d"], "it")',
+        mistake('return {"y": "c"}') + mistake('return {"y": "d"}'),
     ),
-    "a key that divides by zero": (
-        exercise('y=number(5 / (K - 3), "s", "it")'),
-        (WRONG, "the key of exercise 1 fails: this is "),
-    ),
-    "a key that is infinite": (
-        exercise('y=number(float("inf"), "s", "it")'),
-        (WRONG, "the key of exercise 1 fails: this is infinite: expected a number, in s, in all 40 variants"),
-    ),
-    "a design whose example does not meet the criteria": (
-        exercise('g=design(number(K, "", "the gain"), criterion("the gain", lambda g: g, below=5))'),
-        (WRONG, "g: the key is not right, in"),
-    ),
-    "a number with so small a tolerance that three digits are wrong": (
-        exercise('y=number(K / 7, "s", "it", within=0)'),
-        (WRONG, "y: the key is not right with eight digits, in "),
-    ),
-    "a design at its limit": (
-        exercise('g=design(number(1 / (7 * K), "", "it"), criterion("K g", lambda g: g * K, below=1/7, above=1/7))'),
-        (ODD, "g: the key is not right rounded to three digits"),
-    ),
-    "a declared mistake that is right": (
-        exercise('y=number(3 * K, "K", "it")', more=mistake('return {"y": 3.01 * K}')),
-        (WRONG, 'y: the mistake "That is another one." is right, in all 40 variants'),
-    ),
-    "a declared mistake that is the key in some variants": (
-        exercise('y=number(min(K, 4), "K", "it")', more=mistake('return {"y": K}')),
-        (WRONG, 'y: the mistake "That is another one." is right, in '),
-    ),
-    "a declared mistake that gets the sentence of another one": (
-        exercise(
-            'y=number(3 * K, "K", "it")',
-            more=mistake('return {"y": 9 * K}', "The first.") + mistake('return {"y": 9 * K}', "The second."),
-        ),
-        (ODD, 'y: the mistake "The second." gets that of "The first.", in all 40 variants'),
-    ),
-    "two words with one sentence": (
-        exercise(
-            'y=word("a" if K > 4 else "b", ["a", "b", "c", "d"], "it")',
-            more=mistake('return {"y": "c"}') + mistake('return {"y": "d"}'),
-        ),
-        (ODD, 'y: 2 mistakes have the same sentence, "That is another one.", in all 40 variants'),
-    ),
-    "a mistake that never occurs": (
-        exercise('y=number(3 * K, "K", "it")', more=mistake('return {"y": K} if K > 100 else {}')),
-        (ODD, 'the mistake "That is another one." occurs in none of 40 variants'),
-    ),
-    "a mistake that is no answer": (
-        exercise('y=number(3 * K, "K", "it")', more=mistake('return {"y": "K times three"}')),
-        (WRONG, 'y: the mistake "That is another one." cannot be judged'),
-    ),
-    "a mistake of what is not asked": (
-        exercise('y=number(3 * K, "K", "it")', more=mistake('return {"x": K}')),
-        (WRONG, "a mistake of exercise 1 is in 'x': expected 'y'"),
-    ),
-    "a mistake that fails": (
-        exercise('y=number(3 * K, "K", "it")', more=mistake('return {"y": K / 0}')),
-        (WRONG, 'y: the mistake "That is another one." cannot be judged'),
-    ),
-    "a mistake that is right as soon as it is rounded": (
-        exercise('y=number(10, "K", "it")', more=mistake('return {"y": 10.104}')),
-        (ODD, 'y: the mistake "That is another one." is right when it is rounded'),
-    ),
-    "a tolerance that takes the wrong sign": (
-        exercise('y=number(3 * K, "K", "it", within=2.5)'),
-        (WRONG, "y: the key, with the other sign, is right, too, in all 40 variants"),
-    ),
-    "a design that everything meets": (
-        exercise('g=design(number(K, "", "the gain"), criterion("the gain", lambda g: abs(g), above=0.01))'),
-        (ODD, "g: the example, ten times as much, meets the criteria, too"),
-    ),
-    "two words that are read as one": (
-        exercise('y=word("Lag" if K > 4 else "lag", ["lag", "Lag"], "it")'),
-        (WRONG, 'y: the word "Lag" is read as "lag"'),
-    ),
-    "a word that is nearly always the answer": (
-        exercise('y=word("no" if K == 4 else "yes", ["no", "yes"], "it")'),
-        (ODD, "y: the answer is the same in "),
-    ),
-    "a number that is the same for all": (
-        exercise('y=number(3, "K", "it"), x=number(K, "", "x")'),
-        (ODD, "y: the answer is the same for all, 3"),
-    ),
-    "answers that can be copied": (
-        exercise('y=word("yes" if K > 3 else "no", ["no", "yes"], "it")'),
-        (ODD, "the answers of one student are right for another one, "),
-    ),
-    "hardly any variants": (
-        exercise('y=number(3 * K, "K", "it")', parameters='K=choice(1, 2, 3, unit="K/%")', statement="{K}."),
-        (ODD, "there are only 3 different variants"),
-    ),
-    "a key over many decades": (
-        exercise('y=number(K * exp(T), "K", "it")'),
-        (ODD, "y: the keys are between "),
-    ),
-    "a key that is zero for some": (exercise('y=number(K - 4, "K", "it")'), (ODD, "y: the key is 0 in ")),
-    "a key that nobody writes": (
-        exercise('y=number(K / 10**7, "m", "it")'),
-        (ODD, "y: a key is 2e-07: another unit makes a number that people write"),
-    ),
-    "a difference of two numbers that are nearly equal": (
-        exercise('y=number(T / (T - 15.8), "K", "it")'),
-        (ODD, "y: T rounded to four digits makes it wrong"),
-    ),
-    "two quantities with one answer": (
-        exercise('y=number(3 * K, "K", "it"), x=number(3 * K, "K", "x")'),
-        (ODD, "y and x have the same answer, in all 40 variants"),
-    ),
-    "an answer that is in the statement": (
-        exercise('y=number(K, "K/%", "it")'),
-        (ODD, "y: the answer is the given K, in all 40 variants"),
-    ),
-    "a parameter that nobody sees": (
-        exercise('y=number(3 * K + T, "K", "it")', statement="the gain {K}."),
-        (WRONG, "the statement does not show T, of which the key may depend"),
-    ),
-    "a place that nothing fills": (
-        exercise('y=number(3 * K + T, "K", "it")', statement="the gain {K}, {T} and {gain}."),
-        (WRONG, "a place of the statement has no value, in all 40 variants"),
-    ),
-    "a number of many digits in the statement": (
-        exercise(
-            'y=number(3 * K, "K", "it")',
-            more='@fault.shows\ndef _(T):\n    return {"T": f"{float(T) / 7} s"}\n',
-        ),
-        (ODD, "the statement has a number of many digits"),
-    ),
-    "a statement that shows nothing for a value": (
-        exercise('y=number(3 * K, "K", "it")', more='@fault.shows\ndef _(T):\n    return {"T": str(None)}\n'),
-        (WRONG, "a place of the statement has no value"),
-    ),
-    "half a formula": (
-        exercise('y=number(3 * K, "K", "it")', statement="$K = {K}, {T}."),
-        (WRONG, "the statement has a $ without another one"),
-    ),
-    "a picture that fails": (
-        exercise('y=number(3 * K, "K", "it")', more='@fault.picture\ndef _(K):\n    """It."""\n    return 1 / 0\n'),
-        (WRONG, "the picture fails, in"),
-    ),
-    "a solution with a place that nothing fills": (
-        exercise('y=number(3 * K, "K", "it")', more='@fault.solution\ndef _(K):\n    """It is {gain}."""\n'),
-        (ODD, "a place of the solution has no value"),
-    ),
-    "a slow key": (
-        exercise('y=number(3 * K, "K", "it")', shown="sum(range(10**8 // 5))\n    "),
-        (ODD, "the key takes 0."),
-    ),
-}
+    'the mistake "That is another one." occurs in none of 40 variants':
+        asks(Y, mistake('return {"y": K} if K > 100 else {}')),
+    f"{TOLD}is right when it is rounded": asks('y=number(10, "K", "it")', mistake('return {"y": 10.104}')),
+    "g: the example, ten times as much, meets the criteria, too":
+        asks('g=design(number(K, "", "the gain"), criterion("the gain", lambda g: abs(g), above=0.01))'),
+    "y: the answer is the same in ": asks('y=word("no" if K == 4 else "yes", ["no", "yes"], "it")'),
+    "y: the answer is the same for all, 3": asks('y=number(3, "K", "it"), x=number(K, "", "x")'),
+    "the answers of one student are right for another one, ":
+        asks('y=word("yes" if K > 3 else "no", ["no", "yes"], "it")'),
+    "there are only 3 different variants": asks(Y, parameters='K=choice(1, 2, 3, unit="K/%")', statement="{K}."),
+    "y: the keys are between ": asks('y=number(K * exp(T), "K", "it")'),
+    "y: the key is 0 in ": asks('y=number(K - 4, "K", "it")'),
+    "y: a key is 2e-07: another unit makes a number that people write": asks('y=number(K / 10**7, "m", "it")'),
+    "y: T rounded to four digits makes it wrong": asks('y=number(T / (T - 15.8), "K", "it")'),
+    "y and x have the same answer, in all 40 variants": asks(f'{Y}, x=number(3 * K, "K", "x")'),
+    "y: the answer is the given K, in all 40 variants": asks('y=number(K, "K/%", "it")'),
+    "the statement has a number of many digits":
+        asks(Y, '@fault.shows\ndef _(T):\n    return {"T": f"{float(T) / 7} s"}\n'),
+    "a place of the solution has no value": asks(Y, '@fault.solution\ndef _(K):\n    """It is {gain}."""\n'),
+    "the key takes 0.": asks(Y, shown="sum(range(10**8 // 5))\n    "),
+}  # fmt: skip
 
 
-@pytest.mark.parametrize("fault", FAULTS)
-def test_a_fault_is_found(fault):
-    text, (level, sentence) = FAULTS[fault]
-    found = tried(text, STUDENTS[:3] if "slow" in fault else STUDENTS)
+@pytest.mark.parametrize("sentence", [*WRONG_ONES, *ODD_ONES])
+def test_a_fault_is_found(sentence):
+    level, text = (WRONG, WRONG_ONES[sentence]) if sentence in WRONG_ONES else (ODD, ODD_ONES[sentence])
+    found = tried(text, STUDENTS[:3] if sentence == "the key takes 0." else STUDENTS)
     said = [(one.level, one.says) for one in found.surprises]
     assert any(one == level and says.startswith(sentence) for one, says in said), said
 
 
 def test_the_worst_is_said_first_with_a_student_and_an_answer():
-    text = exercise('y=number(min(K, 4), "K", "it")', more=mistake('return {"y": K}') + mistake('return {"y": 0}'))
+    text = asks('y=number(min(K, 4), "K", "it")', mistake('return {"y": K}') + mistake('return {"y": 0}'))
     found = tried(text)
     assert [one.level for one in found.surprises] == sorted((one.level for one in found.surprises), reverse=True)
     first = found.surprises[0]
@@ -251,15 +157,15 @@ def test_the_worst_is_said_first_with_a_student_and_an_answer():
 
 
 def test_what_a_person_marks_is_named():
-    found = tried(exercise('y=number(3 * K, "K", "it"), plot=figure("it"), why=text("why")'))
+    found = tried(asks(f'{Y}, plot=figure("it"), why=text("why")'))
     assert [(one.level, one.says) for one in found.surprises] == [(NOTE, "a person marks plot and why")]
-    alone = tried(exercise('why=text("why")', parameters="K=choice(1, 2)", statement="{K}."))
+    alone = tried(asks('why=text("why")', parameters="K=choice(1, 2)", statement="{K}."))
     assert [(one.level, one.says) for one in alone.surprises] == [(NOTE, "a person marks why")]
     assert trial.report([alone]).splitlines()[2] == "nothing surprising"
 
 
 def test_the_time_is_bounded_and_it_says_how_far_it_came():
-    found = tried(exercise('y=number(3 * K, "K", "it")', shown="time.sleep(0.2)\n    "), seconds=0.5)
+    found = tried(asks(Y, shown="time.sleep(0.2)\n    "), seconds=0.5)
     assert 1 <= found.variants < 8
     (note,) = [one for one in found.surprises if one.level == NOTE]
     assert note.says == f"only {found.variants} of 40 variants were tried in 0.5 s: --seconds allows more"
@@ -267,7 +173,7 @@ def test_the_time_is_bounded_and_it_says_how_far_it_came():
 
 def test_a_key_that_does_not_end(monkeypatch):
     monkeypatch.setattr(trial, "PATIENCE_WITH_KEY", 0.3)
-    found = tried(exercise('y=number(3 * K, "K", "it")', shown="while True: pass\n    "), STUDENTS[:2])
+    found = tried(asks(Y, shown="while True: pass\n    "), STUDENTS[:2])
     assert [one.says for one in found.surprises] == ["the key takes longer than 0.3 s, in all 2 variants"]
 
 
@@ -302,7 +208,7 @@ def test_the_command_ends_well_where_nothing_surprises(command):
 
 
 def test_the_command_fails_where_something_is_wrong(command):
-    result = command(exercise('y=number(3 * K, "K", "it")', more=mistake('return {"y": 3 * K}')))
+    result = command(asks(Y, mistake('return {"y": 3 * K}')))
     assert result.exit_code == 1
     assert result.stdout.startswith("Exercise 1 · A fault\n  wrong       y: the mistake")
     assert re.search(r"exercisegrader try \S+tried.py --student ID --exercise N shows a variant", result.stderr)
@@ -310,7 +216,7 @@ def test_the_command_fails_where_something_is_wrong(command):
 
 def test_the_command_takes_the_class_first(command, tmp_path):
     (tmp_path / "roster.csv").write_text("id,name\nada,Ada\n", encoding="utf-8")
-    result = command(exercise('y=number(3 * K, "K", "it")', more=mistake('return {"y": 3 * K}')))
+    result = command(asks(Y, mistake('return {"y": 3 * K}')))
     assert "\n              ada: " in result.stdout
 
 
@@ -325,7 +231,7 @@ def test_the_command_shows_a_student(command):
 
 
 def test_the_command_tries_one_exercise(command):
-    both = GOOD + exercise('y=number(3 * K, "K", "it")', more=mistake('return {"y": 3 * K}')).replace('"1"', '"2"')
+    both = GOOD + asks(Y, mistake('return {"y": 3 * K}')).replace('"1"', '"2"')
     assert command(both, "--exercise", "1").exit_code == 0
     result = command(both, "--exercise", "3")
     assert (result.exit_code, result.stderr) == (1, "there is no exercise '3' in tried: expected one of 1, 2\n")
