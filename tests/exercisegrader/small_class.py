@@ -7,6 +7,7 @@ from exercisebook import png
 from exercisebook.authoring import answers, between, choice, exercise, expression, number, word
 from exercisebook.judging import WAITING
 from exercisegrader.marking import Marked
+from exercisegrader.reports.outputs import Grades
 from exercisegrader.results import CellError, JudgedAnswer, JudgedExercise, Look, Result
 from exercisegrader.student import Student
 from plainmath.expressions import s
@@ -99,6 +100,11 @@ STOPPED = result_of(
 )
 MISSING = result_of(ZOE, {}, status="missing", file="")
 RESULTS = [RIGHT_ALL, NAMED, STOPPED, MISSING]
+
+
+def grades(marks=RESULTS, complaints=(), students=CLASS, **more):
+    """What outputs are made of, for these marks."""
+    return Grades(TITLE, students, marks, complaints, **more)
 
 
 def by_hand(marks=None, key="it begins after the dead time", **more):

@@ -68,10 +68,9 @@ class MarkedExercise:
         by_hand = by_hand or {}
         whole = by_hand.get((judged.number, ""), _NONE)
         marks = {one.name: by_hand.get((judged.number, one.name), _NONE) for one in judged.answers}
-        asked = sum(one.weight for one in judged.answers)
         sum_, comments, history, waiting = 0.0, [], [], []
         for one in judged.answers:
-            mark, part = marks[one.name], earned(judged.points, one.weight, asked)
+            mark, part = marks[one.name], judged.share(one)
             if mark.points is not None:
                 sum_ += mark.points
                 said = f"{_of(mark.points, part)} by hand{_quoted(mark)}"
@@ -171,6 +170,13 @@ class Marked:
         if any(one.earned is None for one in self.exercises):
             return None
         return max(0.0, sum(one.earned or 0 for one in self.exercises) - self.deduction)
+
+    @property
+    def known(self) -> float:
+        """The points; while something waits for a person, the rest counts already."""
+        if self.total is not None:
+            return self.total
+        return max(0.0, sum(one.earned or 0 for one in self.exercises) - self.deduction) if self.waiting else 0.0
 
 
 class Marking:

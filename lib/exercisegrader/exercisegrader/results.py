@@ -86,6 +86,10 @@ class JudgedExercise:
         right = sum(one.weight for one in self.answers if one.status == RIGHT)
         return earned(self.points, right, sum(one.weight for one in self.answers))
 
+    def share(self, answer: JudgedAnswer) -> float:
+        """Return the points that one of its answers brings where it is right."""
+        return earned(self.points, answer.weight, sum(one.weight for one in self.answers))
+
     @classmethod
     def of_data(cls, data: dict[str, Any]) -> Self:
         """Return the exercise that JSON data says."""

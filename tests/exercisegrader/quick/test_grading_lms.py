@@ -27,6 +27,7 @@ from exercisegrader.lms.moodle import moodle_grades
 from exercisegrader.lms.own import grades_csv
 from exercisegrader.marking import Marked, MarkedExercise
 from exercisegrader.owners import Owners
+from exercisegrader.reports.outputs import Grades
 from exercisegrader.results import JudgedAnswer, JudgedExercise, Result
 from exercisegrader.roster import POSSIBLE_ID, moment, read_roster
 from exercisegrader.student import Student
@@ -138,7 +139,7 @@ def test_an_export_may_have_a_column_of_when_each_handed_in_which_is_not_sent_ba
         '"Doe, Jane",123,A17,jane,C1,,2025-11-03 23:59\n"Roe, John",124,A18,john,C1,,\n'
     )
     assert [student.handed_in for student in students] == [HANDED_IN, None]
-    assert rows(canvas_grades("Heater", students, []))[0][-1] == "Heater (11)"
+    assert rows(canvas_grades(Grades("Heater", students, [])))[0][-1] == "Heater (11)"
     with pytest.raises(GradingError, match="line 2: 'yes' is no time"):
         roster('"First name","Last name","ID number","handed in"\nJane,Doe,s1,yes\n')
 
@@ -413,9 +414,9 @@ def rows(text):
 
 
 def test_the_grades_that_are_always_there():
-    text = grades_csv(CLASS, [mark("s1001", 17 / 3), mark("s1002", None, status="missing")])
+    text = grades_csv(Grades("Heater", CLASS, [mark("s1001", 17 / 3), mark("s1002", None, status="missing")]))
     assert text == "\ufeffid,name,points\ns1001,Jane Doe,5.67\ns1002,John Roe,\n"
-    head = rows(grades_csv(CLASS, [mark("s1001", 1, jailed=False)]))[0]
+    head = rows(grades_csv(Grades("Heater", CLASS, [mark("s1001", 1, jailed=False)])))[0]
     assert head == ["id", "name", "points (graded without a jail)"]
 
 
@@ -423,20 +424,20 @@ def test_the_grades_that_are_always_there():
     "name", ["=1+1", "+1+2", "-1+x", "@SUM(A1)", " =1", "\t=1", "\r\n=1", "Doe;=1", "＝1", "Doe; -1"]
 )
 def test_no_name_is_a_formula(name):
-    cell = rows(grades_csv([Student("s1001", name)], [mark("s1001", 1)]))[1][1]
+    cell = rows(grades_csv(Grades("Heater", [Student("s1001", name)], [mark("s1001", 1)])))[1][1]
     assert all(not part.strip().startswith(("=", "+", "-", "@", "＝")) for part in cell.split(";"))
     assert "\n" not in cell
 
 
 @pytest.mark.parametrize("name", ["Anne-Marie O'Hara", "Doe, Jane", 'Jane "J" Doe', "李 小龙", "Ünal"])
 def test_other_names_stay_as_they_are(name):
-    assert rows(grades_csv([Student("s1001", name)], [mark("s1001", 1)]))[1][1] == name
+    assert rows(grades_csv(Grades("Heater", [Student("s1001", name)], [mark("s1001", 1)])))[1][1] == name
 
 
 def test_canvas_gets_its_own_columns_with_the_number_of_the_assignment(roster):
     students = roster(CANVAS.format(sis="", login="anh"))
     marks = [mark("A17", 10, 10), mark("john", None, 10, "missing"), mark("A19", 3, 10), mark("A20", 2.5, 10)]
-    assert rows(canvas_grades("heater", students, marks)) == [
+    assert rows(canvas_grades(Grades("heater", students, marks))) == [
         ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", "Heater (11)"],
         ["    Points Possible", "", "", "", "", "10.00"],
         ["Doe, Jane", "123", "A17", "jane", "C1, C2", "10"],
@@ -445,7 +446,7 @@ def test_canvas_gets_its_own_columns_with_the_number_of_the_assignment(roster):
         ["'=1+1", "126", "A20", "odd", "C1", "2.5"],
     ]
     assert lms.remarks(students, "heater", 10)[1:] == ("canvas_grades.csv: A19 is excused in Canvas, and so left",)
-    kept = canvas_grades("Heater", students, [mark("A17", None, 10, "not run")])
+    kept = canvas_grades(Grades("Heater", students, [mark("A17", None, 10, "not run")]))
     assert rows(kept)[-1][-1] == "9.00"  # what stands in Canvas
     assert not kept.startswith("\ufeff")
 
@@ -453,7 +454,7 @@ def test_canvas_gets_its_own_columns_with_the_number_of_the_assignment(roster):
 def test_canvas_asks_where_it_cannot_know_and_that_is_said(roster):
     students = roster(CANVAS.format(sis="A18", login="anh"))
     marks = [mark("A17", 10)]
-    table = rows(canvas_grades("Tank", students, marks))
+    table = rows(canvas_grades(Grades("Tank", students, marks)))
     assert [row[-1] for row in table] == ["Tank", "17", "10"]
     assert lms.remarks(students, "Tank", 17) == (
         "canvas_grades.csv: the gradebook of the roster has no assignment called 'Tank' but 'Heater', so that Canvas "
@@ -464,10 +465,10 @@ def test_canvas_asks_where_it_cannot_know_and_that_is_said(roster):
         "Canvas",
     )
     two = roster(CANVAS.format(sis="A18", login="anh").replace("Current Score", "Heater (12)"))
-    assert {row[-1] for row in rows(canvas_grades("Heater", two, marks))} == {"Heater", "17", "10"}
+    assert {row[-1] for row in rows(canvas_grades(Grades("Heater", two, marks)))} == {"Heater", "17", "10"}
     assert "two assignments or more called 'Heater'" in lms.remarks(two, "Heater", 17)[0]
     unsafe = [mark("A17", 10, jailed=False)]
-    assert rows(canvas_grades("Heater", students, unsafe))[0][-1] == "Heater (graded without a jail)"
+    assert rows(canvas_grades(Grades("Heater", students, unsafe)))[0][-1] == "Heater (graded without a jail)"
 
 
 def test_canvas_with_semicolons_has_decimal_commas(roster):
@@ -477,16 +478,18 @@ def test_canvas_with_semicolons_has_decimal_commas(roster):
     )
     students = roster(text, "utf-8-sig")
     assert (students[0].name, students[0].sortable) == ("Jane Doe", "Doe, Jane")
-    written = canvas_grades("Heater", students, [mark("A17", 2.5)])
+    written = canvas_grades(Grades("Heater", students, [mark("A17", 2.5)]))
     assert written == text.replace("jane;C1;", "jane;C1;2,5")  # before LastName Canvas takes no byte-order mark
     assert lms.remarks(students, "Heater", 17) == ()
-    assert canvas_grades("Heater", roster(CANVAS.format(sis="", login=""), "utf-8-sig"), []).startswith("\ufeff")
+    assert canvas_grades(Grades("Heater", roster(CANVAS.format(sis="", login=""), "utf-8-sig"), [])).startswith(
+        "\ufeff"
+    )
 
 
 def test_the_worksheet_of_moodle_is_filled_in_and_nothing_else_changes(roster):
     students = roster(WORKSHEET)
     marks = [replace(mark("s1001", 4.5), comments=("- See me.",)), mark("s1002", None, status="missing")]
-    before, after = rows(WORKSHEET), rows(moodle_grades("Heater", students, marks))
+    before, after = rows(WORKSHEET), rows(moodle_grades(Grades("Heater", students, marks)))
     assert after[0] == before[0]
     assert (after[1][5], after[1][10]) == ("4.5", "- See me.")
     assert [cell for k, cell in enumerate(after[1]) if k not in (5, 10)] == [
@@ -498,7 +501,7 @@ def test_the_worksheet_of_moodle_is_filled_in_and_nothing_else_changes(roster):
         "moodle_grades.csv: the assignment has 17 points in Moodle and 20 here, and grades are not scaled: change it "
         "in Moodle, and take its worksheet again",
     )
-    unsafe = rows(moodle_grades("Heater", students, [mark("s1001", 4, jailed=False)]))
+    unsafe = rows(moodle_grades(Grades("Heater", students, [mark("s1001", 4, jailed=False)])))
     assert unsafe[0][-1] == "Heater (graded without a jail)"
     assert unsafe[1] == ["Participant 77001", "Jane Doe", "s1001", "jane@x.org", "4"]
 
@@ -513,10 +516,10 @@ def by_hand(earned, waiting=()):
 
 
 def test_what_a_person_says_goes_to_moodle_and_gradescope(roster):
-    filled = rows(moodle_grades("Heater", roster(WORKSHEET), [by_hand(5)]))[1]
+    filled = rows(moodle_grades(Grades("Heater", roster(WORKSHEET), [by_hand(5)])))[1]
     said = "A day late: 10 %. · Exercise 1: 4 by the grader, 5 by hand · Exercise 1: K &lt; 0: look at the sign"
     assert (filled[5], filled[10]) == ("4.5", said)
-    data = json.loads(results_json(by_hand(5)))
+    data = json.loads(results_json(Grades("Heater", CLASS, []), JANE, by_hand(5)))
     assert (data["score"], data["tests"][0]["score"]) == (4.5, 5)
     assert "A day late" in data["output"]
     assert data["tests"][0]["output"].endswith("4 by the grader, 5 by hand\nK < 0: look at the sign")
@@ -524,15 +527,15 @@ def test_what_a_person_says_goes_to_moodle_and_gradescope(roster):
 
 def test_what_waits_for_a_person_is_no_grade_and_gradescope_says_so(roster):
     waits = by_hand(None, ("K",))
-    assert rows(moodle_grades("Heater", roster(WORKSHEET), [waits]))[1][5] == ""
-    data = json.loads(results_json(waits))
+    assert rows(moodle_grades(Grades("Heater", roster(WORKSHEET), [waits])))[1][5] == ""
+    data = json.loads(results_json(Grades("Heater", CLASS, []), JANE, waits))
     assert data["score"] == 0
     assert data["output"].endswith("Waiting for a mark by hand: exercise 1.")
 
 
 def test_what_students_write_into_the_worksheet_is_no_formula(roster):
     students = roster(WORKSHEET.replace("Jane Doe", "=1+1").replace("<p>Good", "-Good"))
-    after = rows(moodle_grades("Heater", students, [mark("s1001", 4)]))
+    after = rows(moodle_grades(Grades("Heater", students, [mark("s1001", 4)])))
     assert after[1][1] == "'=1+1"
     assert after[1][9] == "-"
     assert after[2][10].startswith("-Good")  # the instructor's own
@@ -541,7 +544,7 @@ def test_what_students_write_into_the_worksheet_is_no_formula(roster):
 def test_other_tables_of_moodle_get_a_table_for_the_gradebook(roster):
     students = roster('"First name",Surname,"ID number","Email address"\nJane,Doe,s1001,j@x.org\nJohn,Roe,s1002,\n')
     marks = [mark("s1001", 2)]
-    assert rows(moodle_grades("Heater", students, marks)) == [
+    assert rows(moodle_grades(Grades("Heater", students, marks))) == [
         ["First name", "Surname", "ID number", "Email address", "Heater"],
         ["Jane", "Doe", "s1001", "j@x.org", "2"],
     ]
@@ -722,7 +725,9 @@ def test_the_system_that_contributors_are_shown_is_one(monkeypatch, roster):
     assert Owners(students).of("badge b7.ipynb").late is None
     assert "not on the roster" in Owners(students).of("badge b9.ipynb").reason
     one = reports.outputs._REGISTERED["lectern_grades.csv"]
-    assert dict(one.files("Heater", students, [mark("b7", 2.5)])) == {"lectern_grades.csv": "Badge;Points\nb7;2.5\n"}
-    assert dict(one.files("Heater", CLASS, [])) == {}
+    assert dict(one.files(Grades("Heater", students, [mark("b7", 2.5)]))) == {
+        "lectern_grades.csv": "Badge;Points\nb7;2.5\n"
+    }
+    assert dict(one.files(Grades("Heater", CLASS, []))) == {}
     with pytest.raises(GradingError, match="an export of Lectern's participants"):
         roster("a,b\n")

@@ -17,6 +17,7 @@ from exercisegrader.assignment import Assignment
 from exercisegrader.lateness import Lateness
 from exercisegrader.marking import Marked, Marking, Notice
 from exercisegrader.overrides import HISTORY, Mark
+from exercisegrader.reports.outputs import Grades
 from exercisegrader.reports.outputs.to_mark import to_mark
 from exercisegrader.results import JudgedAnswer, JudgedExercise, Result
 from exercisegrader.student import Student
@@ -343,7 +344,7 @@ def test_another_answer_to_what_is_marked_by_hand_is_told(folder):
 
 def test_a_marker_sees_all_answers_to_a_question_on_one_page(folder):
     marks = list(folder.run(result("s1"), result("s2", why=OPEN)).values())
-    page = to_mark("Responses", CLASS, marks)
+    page = to_mark(Grades("Responses", CLASS, marks))
     text = Checker(page).text
     assert "<title>Responses: to be marked</title>" in page
     assert page.count(f'src="data:image/png;base64,{PICTURE["png"]}"') == 2
@@ -358,7 +359,7 @@ def test_a_marker_sees_all_answers_to_a_question_on_one_page(folder):
     assert "each worth at most\n1.5 of 6 points" in text
     folder.write("s1,1,sketch,1,units", "s1,1,why,0,", "s2,1,sketch,1.5,")
     marks = list(folder.run(result("s1"), result("s2", why=OPEN)).values())
-    assert "0 answers to 0 questions." in to_mark("Responses", CLASS, marks)
+    assert "0 answers to 0 questions." in to_mark(Grades("Responses", CLASS, marks))
 
 
 # What is late.

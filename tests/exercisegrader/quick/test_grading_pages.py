@@ -11,8 +11,8 @@ from exercisegrader.lateness import Lateness
 from exercisegrader.lms.gradescope import results_json
 from exercisegrader.marking import Marked, MarkedExercise, Notice
 from exercisegrader.overrides import Mark
-from exercisegrader.reports import write_all
-from exercisegrader.reports.concerns import concerns
+from exercisegrader.reports import pages, write_all
+from exercisegrader.reports.concerns import KINDS, concerns
 from exercisegrader.reports.equal_answers import equal_answers, significant_digits
 from exercisegrader.reports.findings import Findings
 from exercisegrader.reports.outputs import registered
@@ -36,6 +36,7 @@ from small_class import (
     by_hand,
     changed,
     gain,
+    grades,
     own_mistake,
     result_of,
 )
@@ -135,7 +136,7 @@ PAGES = {
 @pytest.mark.parametrize("what", PAGES)
 def test_the_page_says(what):
     mark, said, unsaid = PAGES[what]
-    text = read(feedback(TITLE, next(one for one in CLASS if one.id == mark.result.student), mark))
+    text = read(page_of(mark))
     assert [one for one in said if one not in text] == []
     assert [one for one in unsaid if one in text] == []
 
@@ -143,7 +144,7 @@ def test_the_page_says(what):
 def test_the_page_names_the_question_the_numbers_and_the_file():
     values, given = gain.question(BOB.id).values, (("K", "2 K/%"), ("T", "30 s"))
     exercises = tuple(replace(one, given=given) for one in NAMED.result.exercises[:1])
-    text = read(feedback(TITLE, BOB, changed(NAMED, exercises=exercises)))
+    text = read(page_of(changed(NAMED, exercises=exercises)))
     assert "The question, with your numbers" in text
     assert re.search(rf"A lag of {values['T']}.s with the gain", text)
     assert "Your numbers: " in text
@@ -153,20 +154,30 @@ def test_the_page_names_the_question_the_numbers_and_the_file():
 
 
 def test_what_a_person_marks_is_shown_whole():
-    text = feedback(TITLE, ADA, by_hand())
+    text = page_of(by_hand())
     assert text.count("<img") == 1
     assert 'alt="the figure that was handed in for sketch"' in text
     assert "<bdi>the dead time is long</bdi><br><bdi>&lt;b&gt;so&lt;/b&gt; it oscillates" in text
-    assert "Key: it begins after the dead time" in read(feedback(TITLE, ADA, by_hand(), reveal=True))
+    assert "Key: it begins after the dead time" in read(page_of(by_hand(), reveal=True))
+
+
+def page_of(mark, **more):
+    """The page of the student whose mark this is."""
+    return feedback(grades([mark], **more), next(one for one in CLASS if one.id == mark.result.student), mark)
 
 
 # What to look at.
 
 
+def test_there_is_advice_on_each_kind_of_concern():
+    advice = pages._TEMPLATES.get_template("advice.html").module.advice
+    assert len({str(advice(kind)) for kind in (*KINDS, "nothing")}) == len(KINDS) + 1
+
+
 def told(marks, complaints=()):
     """The concerns by their titles: pairs of the students and the points of each case; and the harmless ones."""
     costly, harmless = concerns(marks, complaints)
-    cases = {one.title: [(*case.students, round(case.points, 3)) for case in one.cases] for one in costly}
+    cases = {kind: [(*case.students, round(case.points, 3)) for case in found] for kind, found in costly.items()}
     return cases, [case.students for case in harmless]
 
 
@@ -275,34 +286,34 @@ def test_answers_that_do_not_count_where_they_stand_cost_what_is_open(kind):
     assert told([anywhere]) == ({NOT_COUNTED: [("s1002", 3.667)]}, [])
     decided = Marked.of(mark.result, {("1", ""): Mark(4)})
     assert told([decided]) == ({}, [("s1002",)])
-    for text in (read(feedback(TITLE, BOB, mark)), results_json(mark)):
+    for text in (read(page_of(mark)), results_json(grades([mark]), BOB, mark)):
         assert "in exercise 1 it answers 'k'" in text
 
 
 def test_the_summary_says_what_is_to_look_at():
-    assert "Nothing." in read(summary(TITLE, CLASS, [RIGHT_ALL]))
-    text = read(summary(TITLE, CLASS, [changed(RIGHT_ALL, errors=FAILED)]))
+    assert "Nothing." in read(summary(grades([RIGHT_ALL])))
+    text = read(summary(grades([changed(RIGHT_ALL, errors=FAILED)])))
     assert "1 remark that costs nothing" in text
     assert "cell 9: NameError: x" in text
-    waits = read(summary(TITLE, CLASS, [by_hand(), changed(by_hand(), student="s1002")]))
+    waits = read(summary(grades([by_hand(), changed(by_hand(), student="s1002")])))
     assert re.search("3 · .?sketch.?; to look for: it begins after the dead time", waits)
     look = "exercise 1, K: marked by hand with 1, and the answer has changed since"
-    assert look in read(summary(TITLE, CLASS, [Marked.of(NAMED.result, looks=(Notice(2, look),))]))
+    assert look in read(summary(grades([Marked.of(NAMED.result, looks=(Notice(2, look),))])))
     for marks in ([], [RIGHT_ALL], [MISSING]):
-        assert NOBODYS in read(summary(TITLE, CLASS, marks, [NOBODYS]))
+        assert NOBODYS in read(summary(grades(marks, [NOBODYS])))
     complaint = f"{NOT_RUN.result.file}: {NOT_RUN.result.says}"
-    assert read(summary(TITLE, CLASS, [NOT_RUN, MISSING], [complaint])).count("keep one") == 1
+    assert read(summary(grades([NOT_RUN, MISSING], [complaint]))).count("keep one") == 1
 
 
 def test_equal_answers_are_told():
     marks = [given(ADA, 123.4), given(BOB, "123.4")]
     assert told(marks)[0] == {"Equal answers where the numbers differ": [("s1001", "s1002", 1.333)]}
-    (row,) = [row for row in rows(summary(TITLE, CLASS, marks)) if "123.4" in row]
+    (row,) = [row for row in rows(summary(grades(marks))) if "123.4" in row]
     assert row.endswith(" 1.33 1 · K: 123.4 wrong for all")
     copied = 2 * float(gain.question(ADA.id).values["K"])
     cases, _ = told([given(ADA, copied, "3.217/(s + 1)"), given(BOB, copied, "3.217/(s + 1)")])
     assert [one[:2] for one in cases["Equal answers where the numbers differ"]] == [("s1001", "s1002")] * 2
-    text = read(summary(TITLE, CLASS, [given(ADA, copied), given(BOB, copied)]))
+    text = read(summary(grades([given(ADA, copied), given(BOB, copied)])))
     assert "right for s1001, not for s1002" in text
 
 
@@ -310,7 +321,7 @@ def test_equal_answers_are_told():
 
 
 def test_the_summary_counts():
-    text = read(summary(TITLE, CLASS, RESULTS))
+    text = read(summary(grades()))
     assert "3 submissions, 1 missing." in text
     assert "Mean 2.89, median 3.67 of 5 points, over 3 grades." in text
     assert "wrote to the answers" in text
@@ -319,56 +330,56 @@ def test_the_summary_counts():
 
 def test_means_are_over_those_who_have_a_grade():
     marks = [RIGHT_ALL, NOT_RUN, waiting(changed(NAMED, student="s1003"), "1")]
-    text = read(summary(TITLE, CLASS, marks))
+    text = read(summary(grades(marks)))
     assert "3 submissions, 1 not graded yet, 1 not run, 1 waiting for a mark." in text
     assert "Mean 5, median 5 of 5 points, over 1 grade." in text
-    means = {one.number: one.mean for one in Findings(CLASS, marks).exercises}
+    means = {one.number: one.mean for one in Findings(grades(marks)).exercises}
     assert means == {"1": 4, "2": 1}
-    text = read(summary(TITLE, CLASS, [waiting(RIGHT_ALL, "1")]))
+    text = read(summary(grades([waiting(RIGHT_ALL, "1")])))
     assert "Mean" not in text
 
 
 def test_the_summary_of_nothing():
     for students, marks in [((), []), (CLASS, []), (CLASS, [MISSING])]:
-        assert "0 submissions" in read(summary(TITLE, students, marks))
+        assert "0 submissions" in read(summary(grades(marks, students=students)))
 
 
 def test_many_cases_of_one_kind_are_cut():
     many = [changed(result_of(ADA, {"1": {"H": "K | $x$"}}), student=f"s{k}") for k in range(103)]
-    text = read(summary(TITLE, CLASS, many))
+    text = read(summary(grades(many)))
     assert "There are 3 more, on the pages of the students." in text
 
 
 def test_pages_lead_to_each_other_and_to_the_notebooks_that_were_kept():
-    text = summary(TITLE, CLASS, [STOPPED, MISSING], notebooks=["s1003"])
+    text = summary(grades([STOPPED, MISSING], notebooks=["s1003"]))
     assert '<a href="feedback/s1003/feedback.html"><bdi>=HYPERLINK(1)</bdi>' in text
     assert '<a href="notebooks/s1003.html">notebook</a>' in text
     assert 'href="feedback/s1004/feedback.html"' in text
     assert "feedback/s1002" not in text
-    assert "notebooks/s1003" not in summary(TITLE, CLASS, RESULTS)
+    assert "notebooks/s1003" not in summary(grades())
     link = 'href="../../notebooks/s1002.html"'
-    assert link in feedback(TITLE, BOB, NAMED, notebooks=["s1002"])
-    assert link not in feedback(TITLE, BOB, NAMED, notebooks=["s1001"])
+    assert link in page_of(NAMED, notebooks=["s1002"])
+    assert link not in page_of(NAMED, notebooks=["s1001"])
 
 
 def test_late_hand_ins_and_marks_by_hand_are_in_the_summary():
     late = Marked.of(NAMED.result, lateness=Lateness(0.2, "2 days late: 20 % of the points are deducted"))
     marked = Marked.of(RIGHT_ALL.result, {("1", ""): Mark(3.5, "no axes"), ("2", "action"): Mark(None, "good")})
     of_all = Marked.of(NOT_RUN.result, {("", ""): Mark(4, "on paper")})
-    found = rows(summary(TITLE, CLASS, [late, marked]))
+    found = rows(summary(grades([late, marked])))
     assert "Bob Bode (s1002) 0.73 2 days late: 20 % of the points are deducted" in found
     assert 'Ada Lovelace (s1001) 1 4 3.5 4 of 4 points by the grader, 3.5 by hand: "no axes"' in found
     assert "Ada Lovelace (s1001) 2 1 1 action: good" in found
     says = 'all of it 0 4 0 of 5 points before, 4 by hand for all of it: "on paper"'
-    assert f"Bob Bode (s1002) {says}" in rows(summary(TITLE, CLASS, [of_all]))
-    assert "by hand" not in read(summary(TITLE, CLASS, [RIGHT_ALL, NAMED]))
+    assert f"Bob Bode (s1002) {says}" in rows(summary(grades([of_all])))
+    assert "by hand" not in read(summary(grades([RIGHT_ALL, NAMED])))
 
 
 def test_answers_to_be_marked_have_a_column_where_there_are_any():
-    found = rows(summary(TITLE, CLASS, [by_hand()]))
+    found = rows(summary(grades([by_hand()])))
     assert "exercise quantity in percent ✓ right ≈ mistake ✗ wrong ? not judged ✎ to be marked … open" in found
     assert "3 sketch 0 0 0 0 1 0" in found
-    assert "to be marked" not in read(summary(TITLE, CLASS, [RIGHT_ALL]))
+    assert "to be marked" not in read(summary(grades([RIGHT_ALL])))
 
 
 def test_each_file_that_was_written_is_told_and_no_other(tmp_path):
@@ -380,12 +391,12 @@ def test_each_file_that_was_written_is_told_and_no_other(tmp_path):
     assert "grades.csv" in told
     assert len(told) < len(of_all) - 2
     assert "other numbers than at the release" in read(text)
-    assert "How the class was graded" not in read(summary(TITLE, CLASS, RESULTS))
+    assert "How the class was graded" not in read(summary(grades()))
 
 
 def test_the_tables_of_the_summary_have_equal_rows():
     widths = []
-    for table in re.findall("<table>.*?</table>", summary(TITLE, CLASS, RESULTS), re.DOTALL):
+    for table in re.findall("<table>.*?</table>", summary(grades()), re.DOTALL):
         widths.append({len(re.findall("</t[dh]>", row)) for row in re.findall("<tr>.*?</tr>", table, re.DOTALL)})
     assert [*map(len, widths)] == [1] * len(widths)
     assert set.union(*widths) == {2, 3, 4, 8}
@@ -393,7 +404,7 @@ def test_the_tables_of_the_summary_have_equal_rows():
 
 def test_the_words_of_a_verdict_are_those_of_its_status():
     statuses = {answer.status for mark in RESULTS for one in mark.result.exercises for answer in one.answers}
-    text = read(summary(TITLE, CLASS, RESULTS))
+    text = read(summary(grades()))
     assert statuses == {RIGHT, MISTAKE, WRONG, UNJUDGED, OPEN}
     assert all(status in text for status in statuses)
 
@@ -413,9 +424,9 @@ def test_a_controller_in_words(settings, says):
 
 
 def test_the_hardest_exercise_comes_first_and_one_that_waits_last():
-    found = Findings(CLASS, RESULTS)
+    found = Findings(grades())
     assert [one.number for one in found.exercises] == ["1", "2"]
-    waits = Findings(CLASS, [by_hand(), changed(NAMED, student="s1003")])
+    waits = Findings(grades([by_hand(), changed(NAMED, student="s1003")]))
     assert waits.exercises[-1].number == "3"
     assert found.exercises[0].fraction == pytest.approx((4 + 8 / 3 + 0) / 12)
     assert {asked.name: asked.fraction for asked in found.exercises[0].asked} == {
@@ -427,7 +438,7 @@ def test_the_hardest_exercise_comes_first_and_one_that_waits_last():
 
 def test_mistakes_are_counted():
     third = result_of(EVE, own_mistake)
-    (most, *_) = Findings(CLASS, [RIGHT_ALL, NAMED, third]).mistakes
+    (most, *_) = Findings(grades([RIGHT_ALL, NAMED, third])).mistakes
     assert most[:2] == ("1", "K")
     assert most[2].startswith("That is the gain itself")
     assert most[3] == 2
@@ -435,8 +446,8 @@ def test_mistakes_are_counted():
 
 def test_a_mistake_is_one_whatever_the_numbers_in_its_sentence():
     hours = [result_of(one, {"1": {"T": gain.question(one.id).given("T") / 3600.0}}) for one in CLASS]
-    assert Findings(CLASS, hours).mistakes == [("1", "T", "The …\N{NO-BREAK SPACE}s are not in hours.", 4)]
-    assert Findings(CLASS, hours[:1]).mistakes[0][2] == "The 40\N{NO-BREAK SPACE}s are not in hours."
+    assert Findings(grades(hours)).mistakes == [("1", "T", "The …\N{NO-BREAK SPACE}s are not in hours.", 4)]
+    assert Findings(grades(hours[:1])).mistakes[0][2] == "The 40\N{NO-BREAK SPACE}s are not in hours."
 
 
 def summing(points, earned):
@@ -448,7 +459,7 @@ def summing(points, earned):
 @pytest.mark.parametrize("points", [0.5, 1, 3, 5, 10, 24, 37, 100, 250])
 def test_every_sum_has_its_place_in_the_distribution(points):
     earned = [points * k / 30 for k in range(31)]
-    steps = Findings(CLASS, [summing(points, sum_) for sum_ in earned]).steps
+    steps = Findings(grades([summing(points, sum_) for sum_ in earned])).steps
     assert sum(count for _, _, count in steps) == 31
     assert steps[0][0] == 0
     assert steps[-1][1] == points
@@ -456,14 +467,14 @@ def test_every_sum_has_its_place_in_the_distribution(points):
 
 
 def test_the_distribution_has_a_bar_for_each_step():
-    page = summary(TITLE, CLASS, RESULTS)
+    page = summary(grades())
     found = [row for row in rows(page) if re.match(r"[\d.]+ to [\d.]+", row)]
     assert found[:3] == ["0 to 0.5 1", "0.5 to 1", "1 to 1.5"]
     assert re.findall(r'class="bar" style="width: (.*?)"', page) == ["20.0rem"] * 3
 
 
 def test_a_sum_of_thirds_is_not_below_its_step():
-    steps = Findings(CLASS, [summing(5, 1 / 3 + 1 / 3 + 1 / 3 - 1e-16)]).steps
+    steps = Findings(grades([summing(5, 1 / 3 + 1 / 3 + 1 / 3 - 1e-16)])).steps
     assert [count for _, _, count in steps if count] == [1]
     assert next(lower for lower, _, count in steps if count) == 1
 

@@ -33,7 +33,6 @@ __all__ = [
     "demand_place",
     "of",
     "packed",
-    "pages",
     "registered",
     "remarks",
     "system",
@@ -294,18 +293,6 @@ def _files(folder):
         return {path.name: path.read_bytes() for path in sorted(folder.glob("*.ipynb"))}
     except OSError as problem:
         raise GradingError(f"{folder} cannot be read: {problem.strerror}") from None
-
-
-def pages(folder: Path | None, students: Iterable[str], name: str) -> dict[str, bytes]:
-    """Return what was written for students under a name, by their ids.
-
-    Arguments:
-        folder: of the grades, if there is one.
-        students: their ids.
-        name: of a file in the folder of feedback of each.
-    """
-    paths = {student: folder / "feedback" / student / name for student in students} if folder else {}
-    return {student: path.read_bytes() for student, path in paths.items() if path.is_file()}
 
 
 def zipped(files: Mapping[str, bytes]) -> bytes:

@@ -33,19 +33,19 @@ import hashlib
 import hmac
 import json
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from exercisegrader import lms
 from exercisegrader.lms import Claim, Known, Packed, System
 from exercisegrader.reports.lines import of_exercise, overall
 from exercisegrader.reports.outputs import output
-from exercisegrader.reports.wording import in_text, number, visible, without_jail
+from exercisegrader.reports.wording import in_text, number, visible
 from exercisegrader.student import in_short
 from exercisegrader.tables import as_text, letters, places
 
 if TYPE_CHECKING:
-    from exercisegrader.marking import Marked
+    from exercisegrader.reports.outputs import Grades
     from exercisegrader.student import Student
 
 #: A name ending in one of these is read as Canvas does: "Doe, John, Jr." is John Doe Jr.
@@ -202,30 +202,23 @@ def _unguessable(student, assignment, secret):
 
 
 @output("canvas_grades.csv", "the grades as Canvas imports them, where the roster is a gradebook of Canvas")
-def canvas_grades(title: str, students: Sequence[Student], marks: Collection[Marked]) -> str | None:
+def canvas_grades(grades: Grades) -> str | None:
     """Return the students' columns of the gradebook and the assignment's, a row for each student with a result.
 
     The head of the assignment's column is the gradebook's, with the number, where one has its title. A student without
     a grade here, and one who is excused, keeps the cell of the gradebook. Where a submission ran without a jail, the
     column is named so, and Canvas asks which assignment is meant. A text that a spreadsheet would run as a formula is
-    guarded; Canvas finds the student by ID then.
-
-    Arguments:
-        title: of the assignment.
-        students: the roster.
-        marks: a `Marked` for each submission.
-    Returns:
-        The file; None where the roster is not of Canvas.
+    guarded; Canvas finds the student by ID then. It is None where the roster is not of Canvas.
     """
+    students, title, unsafe = grades.students, grades.title, grades.without_jail
     found, table = lms.of(students), students[0].table if students else None
     if not isinstance(found, Canvas) or table is None:
         return None
     columns = found.columns(table.header) or {}
     own_places = sorted(columns.values())
-    unsafe = without_jail(mark.result for mark in marks)
     heads = [] if unsafe else _of_title(table.header, title)
     own = heads[0] if len(heads) == 1 else None
-    points = max((mark.result.points for mark in marks), default=0)
+    points = max((mark.result.points for mark in grades.marks), default=0)
     comma = table.delimiter == ";"
     head = table.header[own] if own is not None else f"{title} (graded without a jail)" if unsafe else title
     possible = (_possible(table, own) if own is not None else "") or _grade(points, comma)
@@ -233,13 +226,10 @@ def canvas_grades(title: str, students: Sequence[Student], marks: Collection[Mar
         [*(table.header[place] for place in own_places), head],
         [f"    {_POINTS}", *[""] * (len(own_places) - 1), possible],
     ]
-    totals = {mark.result.student: mark.total for mark in marks}
-    for student in students:
-        if student.id in totals:
-            there = student.row[own].strip() if own is not None else ""
-            total = totals[student.id]
-            cell = there if total is None or there.upper() == EXCUSED else _grade(total, comma)
-            rows.append([*(_unquoted(student.row[place]) for place in own_places), cell])
+    for student, mark in grades.graded:
+        there = student.row[own].strip() if own is not None else ""
+        cell = there if mark.total is None or there.upper() == EXCUSED else _grade(mark.total, comma)
+        rows.append([*(_unquoted(student.row[place]) for place in own_places), cell])
     return as_text(rows, table.delimiter, bom=table.bom and "last" not in columns)
 
 
@@ -248,26 +238,17 @@ def _grade(points, comma):
 
 
 @output("canvas_feedback.zip", 'the feedback as "Upload Submissions" of Canvas takes it, where the files came from it')
-def canvas_feedback(
-    title: str, students: Sequence[Student], marks: Collection[Marked], reveal: bool = False
-) -> bytes | None:
+def canvas_feedback(grades: Grades) -> bytes | None:
     """Return a zip file with a notebook for each file of Canvas that was graded, under the file's name there.
 
-    Arguments:
-        title: of the assignment.
-        students: the roster.
-        marks: a `Marked` for each submission.
-        reveal: whether the keys are in it.
-    Returns:
-        The file; None where no file was of a download of Canvas.
+    It is None where no file was of a download of Canvas.
     """
     files = {}
-    by_id = {student.id: student for student in students}
-    for mark in marks:
-        student, name = by_id[mark.result.student], mark.result.file.rpartition("/")[2]
+    for student, mark in grades.graded:
+        name = mark.result.file.rpartition("/")[2]
         claim = Canvas().claim(name, Known([student]))
         if claim and claim.students:
-            files[name] = _notebook(title, student, mark, reveal)
+            files[name] = _notebook(grades.title, student, mark, grades.reveal)
     return lms.zipped(files) if files else None
 
 

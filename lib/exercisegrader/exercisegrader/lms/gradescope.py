@@ -16,13 +16,15 @@ from typing import TYPE_CHECKING
 from exercisebook.judging import RIGHT
 from exercisegrader import lms
 from exercisegrader.lms import Claim, Known, System
-from exercisegrader.reports.lines import known, of_exercise, overall
+from exercisegrader.reports.lines import of_exercise, overall
 from exercisegrader.reports.outputs import output
 from exercisegrader.reports.wording import in_text
 from exercisegrader.tables import places
 
 if TYPE_CHECKING:
     from exercisegrader.marking import Marked
+    from exercisegrader.reports.outputs import Grades
+    from exercisegrader.student import Student
 
 _HEADS = {
     "firstname": "first", "lastname": "last", "sid": "sis_id", "email": "email", "role": "role", "section": "section",
@@ -60,7 +62,7 @@ class Gradescope(System):
 
 
 @output("feedback/{student}/results.json", "the result of a student, as Gradescope takes it from an autograder")
-def results_json(mark: Marked, reveal: bool = False) -> str:
+def results_json(grades: Grades, student: Student, mark: Marked) -> str:
     """Return a submission's `results.json`: the sum, and a test for each exercise.
 
     The format is https://gradescope-autograders.readthedocs.io/en/latest/specs/. All formats are said to be text,
@@ -68,26 +70,23 @@ def results_json(mark: Marked, reveal: bool = False) -> str:
     rounded; Gradescope then takes the sum. With keys, everything is shown only once grades are published: a student
     may hand in again before that.
 
-    Arguments:
-        mark: of a submission.
-        reveal: whether the keys are in it.
-
     >>> from exercisegrader.marking import Marked
+    >>> from exercisegrader.reports.outputs import Grades
     >>> from exercisegrader.results import JudgedAnswer, JudgedExercise, Result
     >>> exercise = JudgedExercise("1", "Gain", 4, "", (), (JudgedAnswer("K", "right", "right", 2, "2 s"),))
     >>> result = Result("tuning", "s1", "s1.ipynb", True, "", "complete", "", (), (), (exercise,))
-    >>> json.loads(results_json(Marked.of(result)))["tests"][0]["output"]
+    >>> json.loads(results_json(Grades("Tuning", (), ()), None, Marked.of(result)))["tests"][0]["output"]
     '✓ K: right. Answer: 2'
     """
-    visibility = "after_published" if reveal else "visible"
+    visibility = "after_published" if grades.reveal else "visible"
     data = {
-        "score": round(known(mark), 2),
+        "score": round(mark.known, 2),
         "output": "\n".join(overall(mark)),
         "output_format": "text",
         "test_output_format": "text",
         "test_name_format": "text",
         "visibility": visibility,
-        "tests": [_test(exercise, visibility, reveal) for exercise in mark.exercises],
+        "tests": [_test(exercise, visibility, grades.reveal) for exercise in mark.exercises],
     }
     return json.dumps(data, ensure_ascii=False, allow_nan=False, indent=1) + "\n"
 

@@ -29,19 +29,18 @@ from __future__ import annotations
 
 import html
 import re
-from collections.abc import Collection, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from exercisegrader import GradingError, lms
 from exercisegrader.lms import Claim, Known, Packed, System, own
 from exercisegrader.reports.outputs import output
-from exercisegrader.reports.wording import number, visible, without_jail
+from exercisegrader.reports.wording import number, visible
 from exercisegrader.student import in_short
 from exercisegrader.tables import as_text, places
 
 if TYPE_CHECKING:
-    from exercisegrader.marking import Marked
+    from exercisegrader.reports.outputs import Grades
     from exercisegrader.student import Student
 
 _NAME = re.compile(r"([^_]*)_([0-9]{1,20})_assignsubmission_[a-z]+(?:_.*)?", re.DOTALL)
@@ -158,34 +157,28 @@ def _prefix(student, identifier):
 
 
 @output("moodle_grades.csv", "the grades as Moodle takes them, where the roster is its worksheet or another table")
-def moodle_grades(title: str, students: Sequence[Student], marks: Collection[Marked]) -> str | None:
+def moodle_grades(grades: Grades) -> str | None:
     """Return the grading worksheet of the roster, filled in; of another table of Moodle, one for its gradebook.
 
     In the worksheet, what has no grade here, and all other cells, are as they were; what the instructor has said, and
     what lateness costs, takes the place of the comments, which are HTML there. Where a submission ran without a jail,
-    there is no worksheet, whose columns cannot say so, and the column of the other table does.
-
-    Arguments:
-        title: of the assignment.
-        students: the roster.
-        marks: a `Marked` for each submission.
-    Returns:
-        The file; None where the roster is not of Moodle.
+    there is no worksheet, whose columns cannot say so, and the column of the other table does. It is None where the
+    roster is not of Moodle.
     """
+    students, unsafe = grades.students, grades.without_jail
     if not isinstance(lms.of(students), Moodle) or students[0].table is None:
         return None
     table, columns = students[0].table, _columns(students)
-    by_student = {mark.result.student: mark for mark in marks}
-    unsafe = without_jail(mark.result for mark in marks)
     if "grade" in columns and "moodle_id" in columns and not unsafe:
-        rows = [_filled(student.row, by_student.get(student.id), columns) for student in students]
+        marks = {student.id: mark for student, mark in grades.graded}
+        rows = [_filled(student.row, marks.get(student.id), columns) for student in students]
         return as_text([table.header, *rows], table.delimiter, table.bom, {columns.get("comments", -1)})
     shown = sorted(columns[field] for field in columns if field in ("moodle_id", "name", "first", "last", *Moodle.ids))
-    rows = [[*(table.header[place] for place in shown), f"{title} (graded without a jail)" if unsafe else title]]
-    for student in students:
-        if mark := by_student.get(student.id):
-            grade = "" if mark.total is None else number(mark.total)
-            rows.append([*(" ".join(student.row[place].split()) for place in shown), grade])
+    head = f"{grades.title} (graded without a jail)" if unsafe else grades.title
+    rows = [[*(table.header[place] for place in shown), head]]
+    for student, mark in grades.graded:
+        grade = "" if mark.total is None else number(mark.total)
+        rows.append([*(" ".join(student.row[place].split()) for place in shown), grade])
     return as_text(rows, bom=table.bom)
 
 
@@ -207,22 +200,13 @@ def _filled(row, mark, columns):
 
 
 @output("moodle_feedback.zip", 'the feedback as Moodle takes it by "Upload multiple feedback files in a zip"')
-def moodle_feedback(folder: Path, students: Sequence[Student], marks: Collection[Marked]) -> bytes | None:
+def moodle_feedback(grades: Grades) -> bytes | None:
     """Return a zip file with a page of feedback for each student whose number in Moodle is known.
 
-    That is the number of the file that was graded, else that of the roster.
-
-    Arguments:
-        folder: of the grades, where the feedback is.
-        students: the roster.
-        marks: a `Marked` for each submission.
-    Returns:
-        The file; None where no number is known.
+    That is the number of the file that was graded, else that of the roster. It is None where no number is known.
     """
-    files, pages = {}, lms.pages(folder, (mark.result.student for mark in marks), "feedback.html")
-    by_id = {student.id: student for student in students}
-    for mark in marks:
-        student = by_id[mark.result.student]
+    files, pages = {}, grades.pages
+    for student, mark in grades.graded:
         names = [found[2] for part in mark.result.file.split("/") if (found := _NAME.fullmatch(part))]
         identifier = names[0] if names else student.moodle_id
         if identifier and student.id in pages:

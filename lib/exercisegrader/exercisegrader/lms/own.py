@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from exercisegrader import GradingError, lms
 from exercisegrader.lms import Claim, Known, Packed, System
 from exercisegrader.reports.outputs import output
-from exercisegrader.reports.wording import number, without_jail
+from exercisegrader.reports.wording import number
 from exercisegrader.tables import as_text, letters, places
 
 if TYPE_CHECKING:
-    from exercisegrader.marking import Marked
+    from exercisegrader.reports.outputs import Grades
     from exercisegrader.student import Student
 
 #: The words by which a column is known, without regard to capitals, accents, spaces and signs.
@@ -109,48 +108,36 @@ def _folder(student):
 
 
 @output("grades.csv", "the grades by id, for any table")
-def grades_csv(students: Sequence[Student], marks: Collection[Marked]) -> str:
+def grades_csv(grades: Grades) -> str:
     """Return the grades as CSV: id, name and points of each student with a result, in the roster's order.
 
     A student who handed in nothing, or nothing that could be run, has an empty cell: what it costs is the instructor's
     decision. It begins with the mark by which Excel knows UTF-8. Where a submission ran without a jail, the head says
     so.
 
-    Arguments:
-        students: the roster.
-        marks: a `Marked` for each submission.
-
     >>> from types import SimpleNamespace as Student
     >>> from exercisegrader.marking import Marked, MarkedExercise
+    >>> from exercisegrader.reports.outputs import Grades
     >>> from exercisegrader.results import Result
     >>> result = Result("tuning", "s1", "s1.ipynb", True, "", "complete", "", (), (), ())
-    >>> print(grades_csv([Student(id="s1", name="Ada")], [Marked(result, (MarkedExercise(None, 8 / 3),))])[1:])
+    >>> mark = Marked(result, (MarkedExercise(None, 8 / 3),))
+    >>> print(grades_csv(Grades("Tuning", [Student(id="s1", name="Ada")], [mark]))[1:])
     id,name,points
     s1,Ada,2.67
     <BLANKLINE>
     """
-    totals = {mark.result.student: mark.total for mark in marks}
-    head = "points (graded without a jail)" if without_jail(mark.result for mark in marks) else "points"
-    rows = [["id", "name", head]]
-    for student in students:
-        if student.id in totals:
-            total = totals[student.id]
-            rows.append([student.id, student.name, "" if total is None else number(total)])
-    return as_text(rows, bom=True)
+    head = "points (graded without a jail)" if grades.without_jail else "points"
+    rows = [[one.id, one.name, "" if mark.total is None else number(mark.total)] for one, mark in grades.graded]
+    return as_text([["id", "name", head], *rows], bom=True)
 
 
 @output("feedback.zip", "the page of each student as a file by id, where the roster is your own")
-def feedback_zip(folder: Path, students: Sequence[Student], marks: Collection[Marked]) -> bytes | None:
+def feedback_zip(grades: Grades) -> bytes | None:
     """Return a zip file with a page of feedback for each student, named by the id.
 
-    Arguments:
-        folder: of the grades, where the feedback is.
-        students: the roster.
-        marks: a `Marked` for each submission.
-    Returns:
-        The file; None where the roster is that of a system with a form of its own.
+    It is None where the roster is that of a system with a form of its own.
     """
-    found, pages = lms.of(students), lms.pages(folder, (mark.result.student for mark in marks), "feedback.html")
+    found, pages = lms.of(grades.students), grades.pages
     if not pages or (found and not isinstance(found, Own)):
         return None
     return lms.zipped({f"{student}.html": content for student, content in pages.items()})

@@ -1,6 +1,6 @@
 """What grading leaves behind: grades, a page for each student, and a summary for the instructor.
 
-Each output is a text made of results alone, so that it is the same whenever and wherever it is made.
+Each output is made of results alone, so that it is the same whenever and wherever it is made.
 """
 
 from __future__ import annotations
@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from exercisegrader import files
-from exercisegrader.reports.outputs import Output, output, registered
+from exercisegrader.reports.outputs import Grades, Output, output, registered
 
 if TYPE_CHECKING:
     from exercisegrader.marking import Marked
-    from exercisegrader.roster import Student
+    from exercisegrader.student import Student
 
-__all__ = ["Output", "output", "registered", "write_all"]
+__all__ = ["Grades", "Output", "output", "registered", "write_all"]
 
 
 def write_all(
@@ -32,20 +32,17 @@ def write_all(
 
     Arguments:
         folder: where to write.
-        title: of the assignment.
-        students: the roster; outputs keep its order, and what belongs to nobody in it is left out.
-        marks: a `Marked` for each submission, in any order.
-        complaints: sentences on what was handed in and could not be assigned to a student.
-        notes: sentences on how the class was graded.
-        reveal: whether students see the keys.
+        title, students, complaints, notes, reveal: as `Grades` has them.
+        marks: a `Marked` for each submission, in any order; what belongs to nobody on the roster is left out.
     Raises:
         GradingError: where a file cannot be written.
     """
     by_student = {mark.result.student: mark for mark in marks}
     marks = [by_student[student.id] for student in students if student.id in by_student]
     notebooks = {path.stem for path in Path(folder, "notebooks").glob("*.html")}
+    grades = Grades(title, students, marks, complaints, notes, reveal, notebooks, Path(folder))
     for one in sorted(registered(), key=_turn):
-        for file, content in one.files(title, students, marks, complaints, notes, reveal, notebooks, Path(folder)):
+        for file, content in one.files(grades):
             files.write(Path(folder, file), content)
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import statistics
 from collections import Counter
-from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -15,7 +14,7 @@ from exercisegrader.results import MISSING, NOT_RUN
 
 if TYPE_CHECKING:
     from exercisegrader.marking import Marked
-    from exercisegrader.roster import Student
+    from exercisegrader.reports.outputs import Grades
 
 #: So many of the named mistakes are told.
 MOST_MISTAKES = 15
@@ -58,28 +57,31 @@ class Exercise:
 class Findings:
     """What a summary tells of the points.
 
-    Arguments:
-        students: the roster.
-        marks: a `Marked` for each submission.
-
     Attributes:
         handed_in: the marks of those who handed something in.
         missing: the ids of those who did not, and `ungraded` of those without any result.
+        late, by_hand: the marks of those who were late or have an extension, and those to which a person has added.
         points: of the assignment.
         sums: the points of those who have a grade; means are over these.
         exercises: the hardest first.
+        asked: their quantities, and `statuses` which the answers to these may have.
         mistakes: number of exercise, quantity, sentence and count, the most common first.
     """
 
-    def __init__(self, students: Sequence[Student], marks: Collection[Marked]):
+    def __init__(self, grades: Grades):
+        marks = grades.marks
         self.handed_in = [mark for mark in marks if mark.result.status != MISSING]
         self.missing: list[str] = [mark.result.student for mark in marks if mark.result.status == MISSING]
         graded = {mark.result.student for mark in marks}
-        self.ungraded = [student.id for student in students if student.id not in graded]
+        self.ungraded = [student.id for student in grades.students if student.id not in graded]
+        self.late = [mark for mark in marks if mark.late]
+        self.by_hand = [mark for mark in marks if _is_touched(mark)]
         self.points: float = max((mark.result.points for mark in marks), default=0)
         self.sums: list[float] = [mark.total for mark in marks if mark.total is not None]
         run = [mark for mark in self.handed_in if mark.result.status != NOT_RUN]
         self.exercises: list[Exercise] = _exercises(run)
+        self.asked = [asked for one in self.exercises for asked in one.asked]
+        self.statuses = [one for one in STATUSES if one != WAITING or any(each.counts[one] for each in self.asked)]
         self.mistakes: list[tuple[str, str, str, int]] = _mistakes([mark.result for mark in run])
 
     @property
@@ -103,6 +105,16 @@ class Findings:
         # rounding: three thirds of a point are one
         places = Counter(min(count - 1, int(round(earned / width, 9))) for earned in self.sums)
         return [(k * width, min((k + 1) * width, self.points), places[k]) for k in range(count)]
+
+    @property
+    def most(self) -> int:
+        """The number of sums in the fullest of the steps."""
+        return max(count for *_, count in self.steps)
+
+
+def _is_touched(mark: Marked) -> bool:
+    """Whether a person has given points, or a comment."""
+    return mark.by_hand is not None or bool(mark.comments) or any(one.comments or one.history for one in mark.exercises)
 
 
 def _width(points):

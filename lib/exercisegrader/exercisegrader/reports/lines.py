@@ -21,18 +21,11 @@ if TYPE_CHECKING:
     from exercisegrader.results import JudgedAnswer
 
 
-def known(mark: Marked) -> float:
-    """Return the points of a result; while something waits for a person, the rest counts already."""
-    if mark.total is not None:
-        return mark.total
-    return max(0.0, sum(one.earned or 0 for one in mark.exercises) - mark.deduction) if mark.waiting else 0.0
-
-
 def overall(mark: Marked) -> list[str]:
     """Return what is to be said of a result besides its answers."""
     result = mark.result
     lines = [] if result.jailed else [NO_JAIL]
-    lines += [of_points(known(mark), result.points), *remarks(result), *hints(result), *filter(None, [mark.late])]
+    lines += [of_points(mark.known, result.points), *remarks(result), *hints(result), *filter(None, [mark.late])]
     lines += map(visible, mark.comments)
     if mark.waiting:
         where = dict.fromkeys(number for number, _ in mark.waiting)

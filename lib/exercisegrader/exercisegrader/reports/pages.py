@@ -7,10 +7,9 @@ HTML is only what a template holds, and what the functions of this module return
 from __future__ import annotations
 
 import base64
-import urllib.parse
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import jinja2
 from markupsafe import Markup, escape
@@ -33,22 +32,6 @@ ON_DARK = {
     OPEN: "#b8b8b8",
     WAITING: "#a3b4ff",
 }
-
-
-class Table(NamedTuple):
-    """A table of a page.
-
-    Attributes:
-        caption: what is in it, in words.
-        head: the names of the columns.
-        rows: of as many cells each; the first one names the row.
-        counts: the numbers of the columns that hold numbers.
-    """
-
-    caption: str
-    head: Sequence[object]
-    rows: Sequence[Sequence[object]]
-    counts: Sequence[int] = ()
 
 
 def page(template: str, window: str, **told: object) -> str:
@@ -137,19 +120,6 @@ def class_of(status: str) -> str:
     return status.replace(" ", "-")
 
 
-def link(text: str, to: str) -> Markup:
-    """Return a link to another file of the folder of the grades.
-
-    Raises ValueError for what is no path from one file to another.
-
-    >>> link("page", "feedback/a b/x.html")
-    Markup('<a href="feedback/a%20b/x.html">page</a>')
-    """
-    if not to or to[0] in "/\\":
-        raise ValueError(f"a link leads to {to!r}: expected the path from one file to another")
-    return Markup('<a href="{}">{}</a>').format(urllib.parse.quote(to), _shown(text))
-
-
 def picture(content: bytes, alt: str) -> Markup:
     """Return a picture, which the page itself holds.
 
@@ -183,6 +153,7 @@ _TEMPLATES = jinja2.Environment(
 )
 _FILTERS = (
     said, code, sentence, statement, several_lines, person, numbers, status, class_of, handed_in, wording.number,
+    wording.percent,
 )  # fmt: skip
 _TEMPLATES.filters |= {function.__name__: function for function in _FILTERS}
 _TEMPLATES.globals |= {

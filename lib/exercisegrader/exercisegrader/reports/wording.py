@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from exercisebook import png
@@ -184,8 +183,3 @@ def in_text(sentence: str) -> str:
     if len(pieces) % 2 == 0:
         return "$".join(pieces)
     return "".join(plain_words(piece) if place % 2 else piece for place, piece in enumerate(pieces))
-
-
-def without_jail(results: Iterable[Result]) -> bool:
-    """Whether a submission of these ran without a jail."""
-    return any(not result.jailed for result in results)

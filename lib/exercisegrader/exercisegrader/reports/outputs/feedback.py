@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -24,27 +23,20 @@ if TYPE_CHECKING:
     from markupsafe import Markup
 
     from exercisegrader.marking import Marked
+    from exercisegrader.reports.outputs import Grades
     from exercisegrader.results import JudgedAnswer
-    from exercisegrader.roster import Student
+    from exercisegrader.student import Student
 
 
 @output("feedback/{student}/feedback.html", "the page of a student")
-def feedback(title: str, student: Student, mark: Marked, reveal: bool = False, notebooks: Collection[str] = ()) -> str:
-    """Return a student's page.
-
-    Arguments:
-        title: of the assignment.
-        student: whose page it is.
-        mark: of the submission.
-        reveal: whether the keys are shown.
-        notebooks: the ids of the students whose notebook was kept as it ran.
-    """
+def feedback(grades: Grades, student: Student, mark: Marked) -> str:
+    """Return a student's page."""
     result, is_run = mark.result, mark.result.status not in (MISSING, NOT_RUN)
     told = [one for one in mark.exercises if is_run or one.comments or one.history]
     return page(
         "feedback.html",
-        f"{in_text(title)} · {student.name}",
-        title=title,
+        f"{in_text(grades.title)} · {student.name}",
+        grades=grades,
         student=student,
         mark=mark,
         sum=_sum(mark, is_run),
@@ -53,8 +45,9 @@ def feedback(title: str, student: Student, mark: Marked, reveal: bool = False, n
         is_anothers=result.owner not in ("", student.id),
         doubts="; ".join(look.says for look in result.looks if look.kind == OWNER),
         notes=[*remarks(result), *hints(result)],
-        exercises=[(one, [_verdict(a, a.name in one.waiting, reveal) for a in one.judged.answers]) for one in told],
-        notebooks=notebooks,
+        exercises=[
+            (one, [_verdict(a, a.name in one.waiting, grades.reveal) for a in one.judged.answers]) for one in told
+        ],
     )
 
 
@@ -65,8 +58,7 @@ def _sum(mark, is_run):
         return of_points(mark.total, points)
     if not is_run:
         return f"no points yet, of {number(points)}"
-    known = sum(one.earned for one in mark.exercises if one.earned is not None) - mark.deduction
-    return f"{of_points(max(0.0, known), points)} so far"
+    return f"{of_points(mark.known, points)} so far"
 
 
 @dataclass(frozen=True)

@@ -2,32 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from exercisegrader.reports.concerns import share
 from exercisegrader.reports.outputs import output
 from exercisegrader.reports.pages import page
-from exercisegrader.reports.wording import in_text, without_jail
+from exercisegrader.reports.wording import in_text
 
 if TYPE_CHECKING:
-    from exercisegrader.marking import Marked
+    from exercisegrader.reports.outputs import Grades
     from exercisegrader.results import JudgedAnswer, JudgedExercise
-    from exercisegrader.roster import Student
 
 
 @output("to_mark.html", "what waits for a person, the answers to each question below each other")
-def to_mark(title: str, students: Sequence[Student], marks: Sequence[Marked]) -> str:
-    """Return the page for whoever marks.
-
-    Arguments:
-        title: of the assignment.
-        students: the roster.
-        marks: a `Marked` for each submission.
-    """
+def to_mark(grades: Grades) -> str:
+    """Return the page for whoever marks."""
     # whether somebody's answer waits or not, its question has the place that it has in the assignment
     questions: dict[tuple[str, str], list[tuple[str, JudgedExercise, JudgedAnswer]]] = {}
-    for mark in marks:
+    for mark in grades.marks:
         waiting = set(mark.waiting)
         for exercise in mark.result.exercises:
             for answer in exercise.answers:
@@ -36,11 +27,9 @@ def to_mark(title: str, students: Sequence[Student], marks: Sequence[Marked]) ->
                     given.append((mark.result.student, exercise, answer))
     return page(
         "to_mark.html",
-        f"{in_text(title)}: to be marked",
-        title=title,
-        unsafe=without_jail(mark.result for mark in marks),
-        names={student.id: student.name for student in students},
+        f"{in_text(grades.title)}: to be marked",
+        grades=grades,
+        names={student.id: student.name for student in grades.students},
         questions=[given for given in questions.values() if given],
         count=sum(map(len, questions.values())),
-        share=share,
     )
