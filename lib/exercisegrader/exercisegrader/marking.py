@@ -174,9 +174,9 @@ class Marked:
     @property
     def known(self) -> float:
         """The points; while something waits for a person, the rest counts already."""
-        if self.total is not None:
-            return self.total
-        return max(0.0, sum(one.earned or 0 for one in self.exercises) - self.deduction) if self.waiting else 0.0
+        if self.total is not None or self.result.status in (MISSING, NOT_RUN):
+            return self.total or 0.0
+        return max(0.0, sum(one.earned or 0 for one in self.exercises) - self.deduction)
 
 
 class Marking:
