@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from exercisebook.judging import harmless
 from exercisebook.parameters import as_text
+from exercisebook.reading import listed
 from exercisegrader import GradingError
 from exercisegrader.files import write
 from exercisegrader.imprint import Imprint, peek, proofs
@@ -216,7 +217,7 @@ class Released:
                 )
             found += _on_parameters(number, exercise, having)
             if names := _other_draws(assignment, number, having):
-                ranges.append(f"{_listed(names)} in exercise {number}")
+                ranges.append(f"{listed(names)} in exercise {number}")
         if ranges:
             found.append(
                 f"other ranges than at the release: {', '.join(ranges)}; those who were released to keep their numbers"
@@ -252,7 +253,7 @@ class Released:
         if imprint.student != student:
             return (f"{_OTHER_STUDENT} {harmless(imprint.student)}",)
         others = self.misfits(assignment, imprint)
-        which = f"exercise{'' if len(others) == 1 else 's'} {_listed(others)}" if others else ""
+        which = f"exercise{'' if len(others) == 1 else 's'} {listed(others)}" if others else ""
         return (f"{_OTHER_NUMBERS} {which}",) if others else ()
 
     def demand_fitting(self, assignment: Assignment, submissions: Sequence[Submission]) -> None:
@@ -384,8 +385,3 @@ def _without_record(assignment):
         f"{assignment.record.name} is not beside {assignment.name}.py: all numbers are drawn from the secret, which "
         "gives those of the release only if nothing has changed in the ranges since"
     )
-
-
-def _listed(names):
-    *most, last = names
-    return f"{', '.join(most)} and {last}" if most else last

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Self
 from exercisebook.judging import OPEN, RIGHT, earned, harmless
 from exercisegrader import GradingError
 from exercisegrader.files import write
+from exercisegrader.student import in_short
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -30,8 +31,8 @@ if TYPE_CHECKING:
 MISSING, NOT_RUN, STOPPED, COMPLETE = "missing", "not run", "stopped", "complete"
 #: Kinds of `Look`.
 OWNER, ODD, UNASKED, NO_CODE, EXTRA = "owner", "odd lines", "unasked", "no code", "extra"
-#: So many answers to what is not asked are told, and so many names in one of them.
-MOST_EXTRA, MOST_NAMES = 20, 5
+#: So many answers to what is not asked are told.
+MOST_EXTRA = 20
 #: An address of memory, in an error's text, differs from run to run.
 ADDRESS = re.compile(r"\b0x[0-9a-fA-F]{6,}\b")
 
@@ -254,21 +255,11 @@ def looks(
             says = f"it answers {harmless(repr(number))}, which is not an exercise of this assignment"
             more.append(Look(UNASKED if left and given else EXTRA, says))
         elif extra := [name for name in given if name not in asked[number]]:
-            says = f"in exercise {number} it answers {_named(extra)}, which {_is(extra)} not asked"
+            named = in_short([harmless(repr(name)) for name in extra])
+            says = f"in exercise {number} it answers {named}, which {'are' if extra[1:] else 'is'} not asked"
             more.append(Look(UNASKED, says, number) if number in left else Look(EXTRA, says))
     more.sort(key=lambda look: (look.kind == EXTRA, look.says))
     return [*found, *more[:MOST_EXTRA]]
-
-
-def _named(names):
-    """Names that a student chose, in words."""
-    shown = [harmless(repr(name)) for name in names[:MOST_NAMES]]
-    shown += [f"{len(names) - MOST_NAMES} more"] * (len(names) > MOST_NAMES)
-    return f"{', '.join(shown[:-1])} and {shown[-1]}" if shown[1:] else shown[0]
-
-
-def _is(names):
-    return "are" if names[1:] else "is"
 
 
 def _same_each_time(says):

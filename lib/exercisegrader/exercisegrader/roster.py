@@ -5,11 +5,10 @@ from __future__ import annotations
 import contextlib
 import datetime
 import re
-from collections.abc import Iterable
 from pathlib import Path
 
 from exercisegrader import GradingError, lms, tables
-from exercisegrader.student import Student
+from exercisegrader.student import Student, in_short
 from exercisegrader.tables import Faults
 
 #: What an id may be: it is the name of a folder on any system, and part of a web address.
@@ -79,8 +78,8 @@ def _recognised(path):
         if found:
             system, columns = found[0]
             return table, system, {**tables.places(table.header, _ADDED), **columns}
-    heads = [head for head in seen if head]
-    says = f", {_listed(map(repr, heads))}" if heads else ""
+    heads = [repr(head) for head in seen if head]
+    says = f", {in_short(heads)}" if heads else ""
     *kinds, last = [one.roster for one in sorted(lms.registered(), key=lambda one: one.name != lms.OWN)]
     raise GradingError(f"{path.name}, line 1: no header of a roster{says}; expected {', '.join(kinds)} or {last}")
 
@@ -136,9 +135,3 @@ def moment(text: str) -> datetime.datetime | None:
         with contextlib.suppress(ValueError):
             return datetime.datetime.strptime(text, form)
     raise ValueError(f"{text!r} is no time: expected one as 2025-11-03 23:59")
-
-
-def _listed(words: Iterable[str]) -> str:
-    """The first of some words, as a list in a sentence."""
-    words = list(words)
-    return ", ".join(words[:6]) + (", ..." if len(words) > 6 else "")

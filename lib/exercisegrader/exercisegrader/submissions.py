@@ -14,8 +14,8 @@ from typing import Any
 
 from exercisegrader import GradingError, sources
 from exercisegrader.entries import FAILURES, Entry, entries, shown, why
-from exercisegrader.owners import Owner, Owners, is_notebook
-from exercisegrader.student import Student
+from exercisegrader.lms import Claim, Known
+from exercisegrader.student import Student, in_short
 
 #: The most complaints about what lies in one folder.
 MOST_COMPLAINTS = 10
@@ -101,11 +101,11 @@ def collect(path: str | Path, students: Sequence[Student], assignment_name: str,
     (['s1001.ipynb'], ('s10002.ipynb: is named after no student of the roster',))
     """
     lying = entries(Path(path), assignment_name, [student.id for student in students])
-    owners, complaints = Owners(students), _Complaints()
+    known, complaints = Known(students), _Complaints()
     notebooks, others = defaultdict(list), defaultdict(list)
     for entry in lying:
-        owner = owners.of(entry.parts[0])
-        fault = entry.fault or ("" if is_notebook(entry.parts[-1]) else "is not a notebook (.ipynb)")
+        owner = known.owner(entry.parts[0])
+        fault = entry.fault or ("" if entry.parts[-1].lower().endswith(".ipynb") else "is not a notebook (.ipynb)")
         if owner.student is None:
             complaints.add(entry.parts[0], entry.label, fault or owner.reason)
         elif fault:
@@ -138,7 +138,7 @@ class _Notebook:
     """A notebook of a student, as it lies there, and what its name says."""
 
     entry: Entry
-    owner: Owner
+    owner: Claim
 
 
 def _submission(student, notebooks, latest):
@@ -161,9 +161,8 @@ def _submission(student, notebooks, latest):
 
 def _several(notebooks):
     """That there are several, in words."""
-    names = [one.entry.label for one in notebooks[:3]] + [f"{len(notebooks) - 3} more"] * (len(notebooks) > 3)
     number = {2: "two"}.get(len(notebooks), len(notebooks))
-    return f"{number} notebooks: {', '.join(names[:-1])} and {names[-1]}"
+    return f"{number} notebooks: {in_short([one.entry.label for one in notebooks])}"
 
 
 def _latest(notebooks):

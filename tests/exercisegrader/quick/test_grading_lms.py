@@ -20,13 +20,12 @@ from typer.testing import CliRunner
 import contributing
 from exercisegrader import GradingError, lms, reports, tables
 from exercisegrader.__main__ import app
-from exercisegrader.lms import own
+from exercisegrader.lms import Known, own
 from exercisegrader.lms.canvas import canvas_grades
 from exercisegrader.lms.gradescope import results_json
 from exercisegrader.lms.moodle import moodle_grades
 from exercisegrader.lms.own import grades_csv
 from exercisegrader.marking import Marked, MarkedExercise
-from exercisegrader.owners import Owners
 from exercisegrader.reports.outputs import Grades
 from exercisegrader.results import JudgedAnswer, JudgedExercise, Result
 from exercisegrader.roster import POSSIBLE_ID, moment, read_roster
@@ -230,7 +229,7 @@ def test_the_roster_of_gradescope(roster):
     ("content", "says"),
     [
         ("", "line 1: no header of a roster"),
-        ("Vorname,Nachname\na,b\n", "line 1: no header of a roster, 'Vorname', 'Nachname'; expected the columns id"),
+        ("Vorname,Nachname\na,b\n", "line 1: no header of a roster, 'Vorname' and 'Nachname'; expected the columns id"),
         ("id,name\n", "a header and no student"),
         ("Student,ID,Section\n    Points Possible,,\n", "a header and no student"),
         ("id,name\ns1,A\n\ns1,B\n", "line 4: the id 's1' is already that of line 2"),
@@ -246,7 +245,7 @@ def test_the_roster_of_gradescope(roster):
         ("id,name\ns1,Doe, Jane\n", "line 2: there are 3 cells below 2 columns: put 'a,b' in quotes"),
         ("id,name,handed_in\ns1,A,03/11/2025\n", "line 2: '03/11/2025' is no time: expected one as 2025-11-03 23:59"),
         ('id,name\ns1,"A\ns2,B\n', "no table"),
-        ('Foo;Bar\n1;"x";2\n', "line 1: no header of a roster, 'Foo', 'Bar'; expected"),
+        ('Foo;Bar\n1;"x";2\n', "line 1: no header of a roster, 'Foo' and 'Bar'; expected"),
         (f"id,name\ns1,{'x' * 200_000}\n", "line 2: no table"),
         ("id,name\ns1,Zoë\ns2,".encode() + b"\xfc\n", "line 3: no text in UTF-8; save it as CSV UTF-8"),
         ("id,name\ns1,A\n".encode("utf-16"), "line 1: no text in UTF-8; save it as CSV UTF-8"),
@@ -337,7 +336,7 @@ def test_what_is_no_time(text):
     ],
 )
 def test_whose_it_is(name, student, said):
-    found = Owners(CLASS).of(name)
+    found = Known(CLASS).owner(name)
     assert (found.student, found.reason) == (student, "")
     assert (found.late, found.upload) == (said or (None, None))
 
@@ -362,24 +361,24 @@ def test_whose_it_is(name, student, said):
     ],
 )
 def test_whose_it_is_not(name, says):
-    found = Owners(CLASS).of(name)
+    found = Known(CLASS).owner(name)
     assert found.student is None
     assert says in found.reason
 
 
 def test_what_may_be_that_of_two():
     twins = [Student("a", "Jane Doe"), Student("b", "Jané  Doe"), Student("c", "C", canvas_id="3", moodle_id="5")]
-    owners = Owners([*twins, Student("d", "D", canvas_id="3"), Student("e", "E", canvas_id="4")])
+    known = Known([*twins, Student("d", "D", canvas_id="3"), Student("e", "E", canvas_id="4")])
     for name in ("Jane Doe_1_assignsubmission_file", "janedoe_1_2_x.ipynb", "c_3_4_x.ipynb", "x_4_8_3_9_y.ipynb"):
-        found = owners.of(name)
+        found = known.owner(name)
         assert found.student is None
         assert found.reason.startswith("may be that of ")
 
 
 def test_a_name_decides_only_where_there_is_no_number():
-    owners = Owners([Student("a", "Jane Doe", "Doe, Jane"), JOHN])
-    assert owners.of("doejane_7_8_x.ipynb").student.id == "a"
-    assert owners.of("roejohn_7_8_x.ipynb").student is None
+    known = Known([Student("a", "Jane Doe", "Doe, Jane"), JOHN])
+    assert known.owner("doejane_7_8_x.ipynb").student.id == "a"
+    assert known.owner("roejohn_7_8_x.ipynb").student is None
 
 
 @given(st.text(alphabet=string.ascii_letters + string.digits + "_ -.ü()", max_size=30))
@@ -390,7 +389,7 @@ def test_the_name_of_a_file_stands_for_nobody_else(own_name):
         (f"doejane_123_456_{own_name}.ipynb", None),
         (f"Jane Doe_77001_assignsubmission_file_{own_name}.ipynb", None),
     ):
-        found = Owners(CLASS).of(written)
+        found = Known(CLASS).owner(written)
         assert (found.student, found.late) == (JANE, late)
 
 
@@ -657,7 +656,7 @@ def test_notebooks_for_a_drive_come_back_from_there(released):
     folders = [row[0] for row in rows(made.files["folders.csv"].decode())[1:]]
     assert folders == ["Jane Doe (s1001)", "John J Roe x (s1002)"]
     assert sorted(made.files) == [*(f"{folder}/heater.ipynb" for folder in folders), "folders.csv"]
-    assert [Owners([JANE, odd]).of(folder).student for folder in folders] == [JANE, odd]
+    assert [Known([JANE, odd]).owner(folder).student for folder in folders] == [JANE, odd]
 
 
 def test_the_command_packs_what_it_releases(tmp_path):
@@ -720,10 +719,10 @@ def test_the_system_that_contributors_are_shown_is_one(monkeypatch, roster):
     contributing.run("Add a learning management system")
     jane, john = students = roster("Person;Badge\nJane Doe;b7\nJohn Roe;b8\n")
     assert (jane.id, jane.name, jane.id_from, jane.system) == ("b7", "Jane Doe", "Badge", "lectern")
-    assert Owners(students).of("badge b8 late.ipynb").student == john
-    assert Owners(students).of("badge b8 late.ipynb").late is True
-    assert Owners(students).of("badge b7.ipynb").late is None
-    assert "not on the roster" in Owners(students).of("badge b9.ipynb").reason
+    assert Known(students).owner("badge b8 late.ipynb").student == john
+    assert Known(students).owner("badge b8 late.ipynb").late is True
+    assert Known(students).owner("badge b7.ipynb").late is None
+    assert "not on the roster" in Known(students).owner("badge b9.ipynb").reason
     one = reports.outputs._REGISTERED["lectern_grades.csv"]
     assert dict(one.files(Grades("Heater", students, [mark("b7", 2.5)]))) == {
         "lectern_grades.csv": "Badge;Points\nb7;2.5\n"

@@ -13,7 +13,7 @@ import pkgutil
 import zipfile
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 from exercisegrader import GradingError
@@ -47,12 +47,17 @@ _Class = TypeVar("_Class", bound="type[System]")
 
 
 class Known:
-    """The students of a roster, found by what they are known by.
+    """The students of a roster, found by what they are known by; nothing is guessed.
 
     >>> from exercisegrader.student import Student
-    >>> known = Known([Student("s1", "Jané Doe", canvas_id="7")])
+    >>> known = Known([Student("s1", "Jané Doe", canvas_id="7"), Student("s2", "John Roe")])
     >>> known.by("canvas_id", "7")[0].id, known.named("Jane  Doe")[0].id, known.by("login", "")
     ('s1', 's1', [])
+    >>> found = known.owner("janedoe_LATE_7_456_heater-1.ipynb")
+    >>> found.student.id, found.late, found.upload
+    ('s1', True, 456)
+    >>> known.owner("John Roe_7_assignsubmission_file").student.id, known.owner("s3").reason
+    ('s2', 'is named after no student of the roster')
     """
 
     def __init__(self, students: Iterable[Student]):
@@ -76,13 +81,27 @@ class Known:
         """The students whose name, or name to sort by, has the same letters."""
         return self._names.get(letters(name), [])
 
+    def owner(self, name: str) -> Claim:
+        """Return whose the submission with this name at the top of a download is, by the systems together.
+
+        What a student chooses, the file's own name, stands last in all of them and cannot stand for somebody else.
+        """
+        claims = [claim for one in registered() if (claim := one.claim(name, self))]
+        found = list({student.id: student for claim in claims for student in claim.students}.values())
+        if len(found) > 1:
+            return Claim(reason=f"may be that of {found[0].id} or of {found[1].id}")
+        if not found:
+            reasons = [claim.reason for claim in claims if claim.reason]
+            return Claim(reason=reasons[0] if reasons else "is named after no student of the roster")
+        return replace(next(claim for claim in claims if claim.students), reason="")
+
 
 @dataclass(frozen=True)
 class Claim:
     """What a system reads from the name of a file or folder in a download.
 
     Attributes:
-        students: who may be meant.
+        students: who may be meant; of the systems together, one at most.
         reason: where nobody is, why.
         late: whether it says that the file came late; None where it says nothing.
         upload: a number that is larger for what the same student handed in later; None where it does not say.
@@ -92,6 +111,11 @@ class Claim:
     reason: str = ""
     late: bool | None = None
     upload: int | None = None
+
+    @property
+    def student(self) -> Student | None:
+        """The first of the students; None where nobody is meant."""
+        return self.students[0] if self.students else None
 
 
 @dataclass(frozen=True)
