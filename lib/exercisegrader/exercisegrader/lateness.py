@@ -16,10 +16,11 @@ from __future__ import annotations
 import datetime
 import re
 import zoneinfo
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import timedelta
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from exercisebook.judging import harmless
 from exercisebook.late import Late
@@ -27,6 +28,9 @@ from exercisegrader import GradingError
 from exercisegrader.spreadsheet import read
 from exercisegrader.tables import Faults
 from plainmath.validation import did_you_mean
+
+if TYPE_CHECKING:
+    from exercisegrader.student import Roll
 
 #: How the sentence on an extension begins.
 IN_TIME = "in time by"
@@ -240,11 +244,9 @@ class Extensions:
 
 def read_extensions(
     path: str | Path,
-    students: Iterable[str],
+    roll: Roll,
     assignment: str,
     policy: Policy | None,
-    also: Mapping[str, str] | None = None,
-    former: Collection[str] = (),
 ) -> Extensions:
     """Return the extensions that a file grants: student, until, and perhaps assignment, one row for each.
 
@@ -252,29 +254,24 @@ def read_extensions(
 
     Arguments:
         path: of the file.
-        students: the ids of the roster.
+        roll: the ids of the roster.
         assignment: the name of this one.
         policy: its policy.
-        also: {another id of a student: id}.
-        former: the ids of those who have left the roster.
     Raises:
         GradingError: with all faults, each with its line: a student who is not on the roster, what is no time, a time
             before the due date, two rows for one student.
     """
     sheet = read(path, ["student", "until"], ["assignment"])
-    known = {other.casefold(): student for other, student in (also or {}).items()}
-    known |= {student.casefold(): student for student in students}
     faults, until, lines, others, early, left = Faults(sheet.path.name), {}, {}, {}, [], []
     for line, row in sheet.rows:
         of, said = row.get("assignment", ""), row["student"]
-        student = known.get(said.casefold())
+        student = roll.find(said)
         if of and of.casefold() != assignment.casefold():
             others[of] = others.get(of, 0) + 1
-        elif not student and said in former:
+        elif not student and said in roll.former:
             left.append(said)
         elif not student:
-            near = did_you_mean(said, known.values(), "expected an id")
-            faults.add(line, f"there is no student {said!r} on the roster: {near}")
+            faults.add(line, roll.fault(said))
         elif policy is not None:
             try:
                 when = _extended(row["until"], policy.due)

@@ -11,10 +11,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
-from exercisebook.judging import RIGHT, WAITING, earned
+from exercisebook.judging import RIGHT, WAITING
 from exercisegrader.lateness import IN_TIME, Extensions, Lateness, lateness, read_extensions
-from exercisegrader.overrides import Asked, Mark, Overrides, graded, points
+from exercisegrader.overrides import Mark, Notice, Overrides
+from exercisegrader.reports.wording import counted, number, of_points
 from exercisegrader.results import MISSING, NOT_RUN, JudgedExercise, Result
+from exercisegrader.student import Roll
 
 if TYPE_CHECKING:
     from exercisegrader.assignment import Assignment
@@ -22,19 +24,6 @@ if TYPE_CHECKING:
     from exercisegrader.submissions import Submission
 
 _NONE = Mark()
-
-
-@dataclass(frozen=True)
-class Notice:
-    """Why an instructor should see to a mark: it has lost its ground, or nobody knows how late something is.
-
-    Attributes:
-        points: that may hang on it.
-        says: the reason, in a sentence.
-    """
-
-    points: float
-    says: str
 
 
 @dataclass(frozen=True)
@@ -67,32 +56,29 @@ class MarkedExercise:
         """
         by_hand = by_hand or {}
         whole = by_hand.get((judged.number, ""), _NONE)
-        marks = {one.name: by_hand.get((judged.number, one.name), _NONE) for one in judged.answers}
-        sum_, comments, history, waiting = 0.0, [], [], []
+        sum_, comments, history, waiting, decided = 0.0, [], [], [], []
         for one in judged.answers:
-            mark, part = marks[one.name], judged.share(one)
+            mark, part = by_hand.get((judged.number, one.name), _NONE), judged.share(one)
+            by_grader = part if one.status == RIGHT else 0.0
             if mark.points is not None:
                 sum_ += mark.points
-                said = f"{_of(mark.points, part)} by hand{_quoted(mark)}"
-                if one.status != WAITING:
-                    said = f"{points(part if one.status == RIGHT else 0)} by the grader, {said}"
-                history.append(f"{one.name}: {said}")
-            elif one.status == WAITING:
+                decided.append(one.name)
+                said = "" if one.status == WAITING else f"{number(by_grader)} by the grader, "
+                history.append(f"{one.name}: {said}{of_points(mark.points, part)} by hand{_quoted(mark)}")
+                continue
+            sum_ += by_grader
+            if one.status == WAITING:
                 waiting.append(one.name)
-            else:
-                sum_ += part if one.status == RIGHT else 0
-            if mark.comment and mark.points is None:
+            if mark.comment:
                 comments.append(f"{one.name}: {mark.comment}")
         if whole.points is not None:
-            history.append(
-                f"{_of(judged.earned, judged.points)} by the grader, {points(whole.points)} by hand{_quoted(whole)}"
-            )
-            return cls(judged, whole.points, tuple(comments), tuple(history), (), True, tuple(marks))
-        if whole.comment:
+            by_grader = of_points(judged.earned, judged.points)
+            history.append(f"{by_grader} by the grader, {number(whole.points)} by hand{_quoted(whole)}")
+            sum_, waiting, decided = whole.points, [], [one.name for one in judged.answers]
+        elif whole.comment:
             comments.append(whole.comment)
-        decided = tuple(name for name, mark in marks.items() if mark.points is not None)
-        sum_or_none = None if waiting else sum_
-        return cls(judged, sum_or_none, tuple(comments), tuple(history), tuple(waiting), decided=decided)
+        earned, is_by_hand = None if waiting else sum_, whole.points is not None
+        return cls(judged, earned, tuple(comments), tuple(history), tuple(waiting), is_by_hand, tuple(decided))
 
 
 @dataclass(frozen=True)
@@ -140,8 +126,8 @@ class Marked:
         sum_ = sum(one.earned or 0 for one in exercises)
         comments = [whole.comment] if whole.comment and whole.points is None else []
         if whole.points is not None:
-            said = f"{_of(sum_, result.points)} before, {points(whole.points)} by hand for all of it{_quoted(whole)}"
-            comments.append(said)
+            before = of_points(sum_, result.points)
+            comments.append(f"{before} before, {number(whole.points)} by hand for all of it{_quoted(whole)}")
         late = lateness.says
         if whole.points is not None and lateness.part:
             late += "; the points by hand for all of it stay as they are"
@@ -200,26 +186,13 @@ class Marking:
         extensions: Path | None = None,
         also: Mapping[str, str] | None = None,
     ):
-        self.assignment = assignment
-        ids = tuple(student.id for student in students)
-        self.extensions = Extensions({})
+        self.assignment, self.extensions = assignment, Extensions({})
+        graded = [path.stem for path in (folder / "results").glob("*.json")]
+        roll = Roll([student.id for student in students], also, graded)
         if extensions:
-            former = graded(folder).difference(ids)
-            self.extensions = read_extensions(extensions, ids, assignment.name, assignment.policy, also, former)
+            self.extensions = read_extensions(extensions, roll, assignment.name, assignment.policy)
+        self.overrides = Overrides(folder, assignment, roll)
         self._at: dict[str, datetime.datetime | None] = {}
-        self._names: dict[str, dict[str, float]] = {}
-        exercises = {number: exercise.points for number, exercise in assignment.exercises.items()}
-        self.overrides = Overrides(folder, Asked(ids, exercises, self._quantities, also or {}))
-
-    def _quantities(self, student, number):
-        """{quantity: points} of an exercise; the names are the same for all students."""
-        if number not in self._names:
-            question = self.assignment.question(student, number)
-            weights = {name: question.exercise.weights.get(name, 1) for name in question.key}
-            of_all = sum(weights.values())
-            parts = {name: earned(question.exercise.points, weight, of_all) for name, weight in weights.items()}
-            self._names[number] = parts
-        return self._names[number]
 
     def read(self, result_of: Callable[[str], Result | None]) -> None:
         """Read the marks by hand, and note what has changed; `Overrides.read` says more."""
@@ -245,24 +218,16 @@ class Marking:
         """
         self._at = {student: submission.handed_in for student, submission in submissions.items()}
         marks = [self._marked(result, submissions.get(result.student)) for result in results]
-        waiting = [(number, name) for number, parts in self._asked(results) for name in parts]
-        places = {(mark.result.student, *place) for mark in marks for place in mark.waiting}
-        rows = [(mark.result.student, *place) for place in waiting for mark in marks]
-        self.overrides.add(row for row in rows if row in places)
+        asked = dict.fromkeys(
+            (one.number, answer.name) for result in results for one in result.exercises for answer in one.answers
+        )
+        self.overrides.add((mark.result.student, *place) for place in asked for mark in marks if place in mark.waiting)
         return marks
-
-    def _asked(self, results):
-        """The exercises with their quantities, in their order."""
-        names: dict[str, dict[str, bool]] = {number: {} for number in self.assignment.exercises}
-        for result in results:
-            for exercise in result.exercises:
-                names[exercise.number] |= dict.fromkeys((one.name for one in exercise.answers), True)
-        return names.items()
 
     def _marked(self, result, submission):
         late = self._lateness(submission) if submission and result.status != MISSING else Lateness()
-        changed = tuple(Notice(*one) for one in self.overrides.changed_since(result))
-        return Marked.of(result, self.overrides.of(result.student), late, changed)
+        changed = self.overrides.changed_since(result)
+        return Marked.of(result, self.overrides.of(result.student), late, tuple(changed))
 
     def notes(self, marks: Sequence[Marked]) -> list[str]:
         """Return sentences on what was applied."""
@@ -271,37 +236,29 @@ class Marking:
         if policy is not None:
             late = [mark for mark in handed_in if mark.late and not mark.late.startswith(IN_TIME)]
             unknown = [one for mark in handed_in if not mark.late and self._at.get(one := mark.result.student) is None]
-            found.append(f"D{str(policy)[1:]}. {_counted(len(late), 'submission')} came late.")
+            found.append(f"D{str(policy)[1:]}. {counted(len(late), 'submission')} came late.")
             if until := self.extensions.until:
-                found[-1] += f" {_counted(len(until), 'student')} {'has' if len(until) == 1 else 'have'} an extension."
+                found[-1] += f" {counted(len(until), 'student')} {'has' if len(until) == 1 else 'have'} an extension."
             if unknown:
                 found.append(
-                    f"Of {_counted(len(unknown), 'submission')} nothing says when it was handed in: it counts as in "
+                    f"Of {counted(len(unknown), 'submission')} nothing says when it was handed in: it counts as in "
                     "time. A column handed_in in the roster says it."
                 )
         found += self.extensions.notes
         by_hand = sum(mark.points is not None for mark in self.overrides.marks.values())
         if by_hand:
-            found.append(f"{_counted(by_hand, 'mark')} by hand in marks.csv.")
+            found.append(f"{counted(by_hand, 'mark')} by hand in marks.csv.")
         if waiting := sum(len(mark.waiting) for mark in marks):
             found.append(
-                f"{_counted(waiting, 'answer')} to be marked: to_mark.html shows them, marks.csv has a row for each."
+                f"{counted(waiting, 'answer')} to be marked: to_mark.html shows them, marks.csv has a row for each."
             )
         if former := self.overrides.former:
             found.append(
                 f"marks.csv has rows of {', '.join(sorted(former))}, no longer on the roster: they stay there."
             )
         if self.overrides.withdrawn:
-            found.append(f"{_counted(self.overrides.withdrawn, 'mark')} by hand withdrawn since the last time.")
+            found.append(f"{counted(self.overrides.withdrawn, 'mark')} by hand withdrawn since the last time.")
         return found
-
-
-def _counted(count, noun):
-    return f"{count} {noun}{'' if count == 1 else 's'}"
-
-
-def _of(value, most):
-    return f"{points(value)} of {points(most)} point{'' if most == 1 else 's'}"
 
 
 def _quoted(mark):

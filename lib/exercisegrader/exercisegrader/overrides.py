@@ -13,18 +13,22 @@ from __future__ import annotations
 import datetime
 import hashlib
 import json
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
+from exercisebook.judging import earned
 from exercisegrader import GradingError, files, spreadsheet
+from exercisegrader.reports.wording import number as written
 from exercisegrader.spreadsheet import Sheet
 from exercisegrader.tables import Faults
 from plainmath.validation import did_you_mean
 
 if TYPE_CHECKING:
+    from exercisegrader.assignment import Assignment
     from exercisegrader.results import Result
+    from exercisegrader.student import Roll
 
 COLUMNS = ("student", "exercise", "quantity", "points", "comment")
 HISTORY = ("when", "student", "exercise", "quantity", "from", "to", "comment", "grader", "answer")
@@ -49,20 +53,16 @@ class Mark:
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What can be marked, and with how many points.
+class Notice:
+    """Why an instructor should see to a mark: it has lost its ground, or nobody knows how late something is.
 
     Attributes:
-        students: their ids.
-        exercises: {number: points}.
-        quantities: returns {quantity: points} for a student and an exercise.
-        also: {another id of a student: id}.
+        points: that may hang on it.
+        says: the reason, in a sentence.
     """
 
-    students: tuple[str, ...]
-    exercises: Mapping[str, float]
-    quantities: Callable[[str, str], Mapping[str, float]]
-    also: Mapping[str, str] = field(default_factory=dict)
+    points: float
+    says: str
 
 
 class Overrides:
@@ -70,7 +70,8 @@ class Overrides:
 
     Arguments:
         folder: of the grades.
-        asked: what can be marked.
+        assignment: `Assignment`.
+        roll: the ids of the students.
 
     Attributes:
         marks: {place: `Mark`}, as `read` found them.
@@ -78,11 +79,12 @@ class Overrides:
         former: those of whom there are marks and results, and who are no longer on the roster.
     """
 
-    def __init__(self, folder: Path, asked: Asked):
-        self.path, self.history_path, self.asked = folder / "marks.csv", folder / "marks_history.csv", asked
+    def __init__(self, folder: Path, assignment: Assignment, roll: Roll):
+        self.path, self.history_path = folder / "marks.csv", folder / "marks_history.csv"
+        self.assignment, self.roll = assignment, roll
         self.marks: dict[Place, Mark] = {}
         self.withdrawn, self.former = 0, set[str]()
-        self._graded = graded(folder)
+        self._parts: dict[str, dict[str, float]] = {}
         self._sheet = Sheet.new(self.path, COLUMNS)
         self._noted: dict[Place, dict[str, str]] = {}
 
@@ -117,8 +119,8 @@ class Overrides:
         """Return the marks of a student: {(exercise, quantity): mark}."""
         return {place[1:]: mark for place, mark in self.marks.items() if place[0] == student}
 
-    def changed_since(self, result: Result) -> list[tuple[float, str]]:
-        """Return where a mark by hand has lost its ground: the points of the place, and a sentence.
+    def changed_since(self, result: Result) -> list[Notice]:
+        """Return where a mark by hand has lost its ground.
 
         That is where the student has given another answer since, and where the grader now says another thing of it.
         """
@@ -129,11 +131,11 @@ class Overrides:
                 continue
             says, answer = judged(result, exercise, quantity)
             most = self._most((result.student, exercise, quantity))
-            about = f"{where(exercise, quantity)}: marked by hand with {points(mark.points)}"
+            about = f"{where(exercise, quantity)}: marked by hand with {written(mark.points)}"
             if answer != noted["answer"]:
-                found.append((most, f"{about}, and the answer has changed since"))
+                found.append(Notice(most, f"{about}, and the answer has changed since"))
             elif says != noted["grader"]:
-                found.append((most, f"{about} when the grader said {noted['grader']!r}; now it says {says!r}"))
+                found.append(Notice(most, f"{about} when the grader said {noted['grader']!r}; now it says {says!r}"))
         return found
 
     def add(self, waiting: Iterable[Place]) -> int:
@@ -155,19 +157,17 @@ class Overrides:
 
     def _placed(self):
         """The rows that are about somebody: line, place and cells, in the words of the roster and the assignment."""
-        by_id = {also.casefold(): student for also, student in self.asked.also.items()}
-        by_id |= {student.casefold(): student for student in self.asked.students}
-        numbers = {number.casefold(): number for number in self.asked.exercises}
+        numbers = {number.casefold(): number for number in self.assignment.exercises}
         for line, row in self._sheet.rows:
             student, number = row["student"], row["exercise"]
-            place = by_id.get(student.casefold(), student), numbers.get(number.casefold(), number), row["quantity"]
-            yield line, place, row
+            known = self.roll.find(student) or student
+            yield line, (known, numbers.get(number.casefold(), number), row["quantity"]), row
 
     def _marks(self):
         """The marks that count. Raises GradingError with all faults."""
         faults, marks = Faults(self.path.name), {}
         for line, place, row in self._placed():
-            if place[0] not in self.asked.students and place[0] in self._graded:
+            if place[0] in self.roll.former:
                 self.former.add(place[0])
                 continue
             says = self._fault(place)
@@ -176,7 +176,7 @@ class Overrides:
                 if row["points"] and given is None:
                     says = f"the points are {row['points']!r}: expected a number, or nothing"
                 elif given is not None and not 0 <= given <= most + ROUNDED:
-                    says = f"the points are {row['points']}: expected 0 to {points(most)} for {where(*place[1:])}"
+                    says = f"the points are {row['points']}: expected 0 to {written(most)} for {where(*place[1:])}"
                 else:
                     marks.pop(place, None)  # the last row counts, and is in its place
                     marks[place] = Mark(given if given is None else min(given, most), row.get("comment", ""))
@@ -188,15 +188,14 @@ class Overrides:
     def _fault(self, place):
         """A sentence on an unknown place; empty for a known one."""
         student, number, quantity = place
-        asked = self.asked
-        if student not in asked.students:
-            near = did_you_mean(student, asked.students, "expected an id")
-            return f"there is no student {student!r} on the roster: {near}"
+        exercises = self.assignment.exercises
+        if student not in self.roll.ids:
+            return self.roll.fault(student)
         if not number:
             return f"the quantity {quantity!r} has no exercise: expected its number" if quantity else ""
-        if number not in asked.exercises:
-            return f"there is no exercise {number!r}: {did_you_mean(number, asked.exercises)}"
-        if quantity and quantity not in (known := asked.quantities(student, number)):
+        if number not in exercises:
+            return f"there is no exercise {number!r}: {did_you_mean(number, exercises)}"
+        if quantity and quantity not in (known := self._quantities(student, number)):
             return f"exercise {number} asks for no {quantity!r}: {did_you_mean(quantity, known)}"
         return ""
 
@@ -204,8 +203,18 @@ class Overrides:
         """The points that a place may have."""
         student, number, quantity = place
         if quantity:
-            return self.asked.quantities(student, number)[quantity]
-        return self.asked.exercises[number] if number else sum(self.asked.exercises.values())
+            return self._quantities(student, number)[quantity]
+        return self.assignment.exercises[number].points if number else self.assignment.points
+
+    def _quantities(self, student, number):
+        """{quantity: points} of an exercise; the names are the same for all students."""
+        if number not in self._parts:
+            question = self.assignment.question(student, number)
+            weights = {name: question.exercise.weights.get(name, 1) for name in question.key}
+            asked = sum(weights.values())
+            parts = {name: earned(question.exercise.points, weight, asked) for name, weight in weights.items()}
+            self._parts[number] = parts
+        return self._parts[number]
 
     # ---------------------------------------------------------------------------------------------- the history
 
@@ -221,25 +230,19 @@ class Overrides:
         rows = []
         for place in dict.fromkeys([*self.marks, *self._noted]):
             before, mark = self._noted.get(place, {"to": "", "comment": ""}), self.marks.get(place, Mark())
-            if place[0] not in self.asked.students:
+            if place[0] not in self.roll.ids:
                 continue
-            was = spreadsheet.number(before["to"])
-            if (was, before["comment"]) == (_rounded(mark.points), mark.comment):
+            was, to = spreadsheet.number(before["to"]), "" if mark.points is None else written(mark.points)
+            if (was, before["comment"]) == (spreadsheet.number(to), mark.comment):
                 continue
             result = result_of(place[0])
             if result is None and place in self.marks:
                 continue
             self.withdrawn += was is not None and mark.points is None
             says, answer = judged(result, *place[1:]) if result else ("", "")
-            to = "" if mark.points is None else f"{_rounded(mark.points):g}"
             cells = when, *place, before["to"], to, mark.comment, says, answer
             rows.append(dict(zip(HISTORY, cells, strict=True)))
         return rows
-
-
-def graded(folder: Path) -> set[str]:
-    """Return the ids of the students of whom there are results in a folder of grades."""
-    return {path.stem for path in (folder / "results").glob("*.json")}
 
 
 def judged(result: Result, exercise: str, quantity: str) -> tuple[str, str]:
@@ -254,8 +257,8 @@ def judged(result: Result, exercise: str, quantity: str) -> tuple[str, str]:
     mark = hashlib.sha256(text.encode()).hexdigest()[:8]
     if quantity:
         return (answers[0].status if answers else "not asked"), mark
-    earned = f"{points(sum(one.earned for one in within))} of {points(sum(one.points for one in within))}"
-    return (earned if exercise or result.status == "complete" else f"{result.status}, {earned}"), mark
+    says = f"{written(sum(one.earned for one in within))} of {written(sum(one.points for one in within))}"
+    return (says if exercise or result.status == "complete" else f"{result.status}, {says}"), mark
 
 
 def where(exercise: str, quantity: str) -> str:
@@ -264,24 +267,7 @@ def where(exercise: str, quantity: str) -> str:
     >>> where("1", "K"), where("1", ""), where("", "")
     ('exercise 1, K', 'exercise 1', 'the whole notebook')
     """
-    return (
-        (f"exercise {exercise}, {quantity}" if quantity else f"exercise {exercise}")
-        if exercise
-        else "the whole notebook"
-    )
-
-
-def points(value: float) -> str:
-    """Return points with at most two decimals.
-
-    >>> points(4 / 3), points(2.0)
-    ('1.33', '2')
-    """
-    return f"{_rounded(value):g}"
-
-
-def _rounded(value):
-    return None if value is None else round(value, 2)
+    return f"exercise {exercise}" + (f", {quantity}" if quantity else "") if exercise else "the whole notebook"
 
 
 def _changed_at(path):

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import datetime
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from exercisegrader.tables import Table
+from plainmath.validation import did_you_mean
 
 
 @dataclass(frozen=True)
@@ -51,6 +52,32 @@ class Student:
     system: str = field(default="", compare=False)
     row: tuple[str, ...] = field(default=(), compare=False, repr=False)
     table: Table | None = field(default=None, compare=False, repr=False)
+
+
+class Roll:
+    """The ids of a roster, as they are found in tables of an instructor: without regard to capitals.
+
+    Arguments:
+        ids: of the roster.
+        also: {another id of a student: id}.
+        graded: the ids of those of whom there are results; who is no longer on the roster is one of the `former`.
+
+    >>> roll = Roll(["s1", "s2"], {"a17": "s1"}, ["s9"])
+    >>> roll.find("A17"), roll.find("s3"), roll.former
+    ('s1', None, {'s9'})
+    """
+
+    def __init__(self, ids: Collection[str], also: Mapping[str, str] | None = None, graded: Collection[str] = ()):
+        self.ids, self.former = ids, {*graded} - {*ids}
+        self._known = {other.casefold(): id for other, id in (*(also or {}).items(), *((id, id) for id in ids))}
+
+    def find(self, said: str) -> str | None:
+        """Return the id that is meant; None where it is none of the roster's."""
+        return self._known.get(said.casefold())
+
+    def fault(self, said: str) -> str:
+        """Return a sentence on what is no id."""
+        return f"there is no student {said!r} on the roster: {did_you_mean(said, self.ids, 'expected an id')}"
 
 
 def in_short(names: Sequence[str]) -> str:

@@ -12,6 +12,7 @@ from exercisebook.late import Late
 from exercisegrader import GradingError
 from exercisegrader.assignment import Assignment
 from exercisegrader.lateness import Policy, lasting, lateness, moment, read_extensions, without_dates
+from exercisegrader.student import Roll
 
 DUE = "2026-12-01 23:59 Europe/Berlin"
 UTC = datetime.UTC
@@ -207,10 +208,11 @@ def test_lengths_of_time_in_words(span, words):
 
 @pytest.fixture
 def extensions(tmp_path):
-    def read(text, due=DUE, **more):
+    def read(text, due=DUE, also=None, former=()):
         path = tmp_path / "extensions.csv"
         path.write_bytes(text if isinstance(text, bytes) else text.encode())
-        return read_extensions(path, ["s1001", "s1002", "s1003"], "heater", due and Policy(moment(due)), **more)
+        roll = Roll(["s1001", "s1002", "s1003"], also, former)
+        return read_extensions(path, roll, "heater", due and Policy(moment(due)))
 
     return read
 
