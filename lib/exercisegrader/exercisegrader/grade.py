@@ -23,10 +23,10 @@ from exercisegrader.jail import USUAL, Jail, Limits, demand_hidden
 from exercisegrader.judge import Judge
 from exercisegrader.keeping import Kept, executed, source
 from exercisegrader.marking import Marking
-from exercisegrader.outside_code import answered
 from exercisegrader.released import Released
 from exercisegrader.reports import registered, write_all
 from exercisegrader.results import MISSING, OWNER, Look, Result, Results, fingerprint, result
+from exercisegrader.sources import answered
 from exercisegrader.student import in_short
 from exercisegrader.submissions import collect
 

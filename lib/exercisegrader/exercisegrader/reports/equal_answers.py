@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
+from decimal import Decimal
 from typing import TYPE_CHECKING
 
 from exercisebook.judging import MISTAKE, RIGHT, WRONG
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 #: Equal wrong answers are a coincidence when they have fewer significant digits.
 DIGITS = 3
 #: A number, but not the one in a name such as S2.
-_NUMBER = re.compile(r"(?<![\w.])(?:(\d+)\.?(\d*)|\.(\d+))(?:[eE][+-]?\d+)?")
+_NUMBER = re.compile(r"(?<![\w.])((?:\d+\.?\d*|\.\d+))(?:[eE][+-]?\d+)?")
 
 
 @dataclass(frozen=True)
@@ -83,15 +84,8 @@ def significant_digits(answer: Plain) -> int:
         return max(map(significant_digits, answer), default=0)
     if answer is None or isinstance(answer, bool):
         return 0
-    return max((_digits(match) for match in _NUMBER.finditer(str(answer))), default=0)
-
-
-def _digits(match):
-    whole, decimals, alone = match.groups()
-    if alone is not None:
-        return max(1, len(alone.lstrip("0")))
-    digits = (whole + decimals if decimals.strip("0") else whole.rstrip("0")).lstrip("0")
-    return max(1, len(digits.rstrip("0") if decimals else digits))
+    numbers = [Decimal(match[1]).normalize().as_tuple() for match in _NUMBER.finditer(str(answer))]
+    return max((len(one.digits) for one in numbers), default=0)
 
 
 def _one_form(answer):

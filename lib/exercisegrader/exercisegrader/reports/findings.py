@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 MOST_MISTAKES = 15
 #: A number in a sentence, but not the one in a name such as T_0.
 _NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?!\w)")
-#: Into at most so many steps the points are divided.
-MOST_STEPS = 12
+#: Into so many steps the points are divided.
+STEPS = 10
 
 
 @dataclass(frozen=True)
@@ -100,11 +100,10 @@ class Findings:
 
         The last step holds the full points too.
         """
-        width = _width(self.points)
-        count = max(1, -int(-self.points // width))
+        width = self.points / STEPS
         # rounding: three thirds of a point are one
-        places = Counter(min(count - 1, int(round(earned / width, 9))) for earned in self.sums)
-        return [(k * width, min((k + 1) * width, self.points), places[k]) for k in range(count)]
+        places = Counter(min(STEPS - 1, int(round(earned / width, 9))) for earned in self.sums)
+        return [(k * width, (k + 1) * width, places[k]) for k in range(STEPS)]
 
     @property
     def most(self) -> int:
@@ -115,22 +114,6 @@ class Findings:
 def _is_touched(mark: Marked) -> bool:
     """Whether a person has given points, or a comment."""
     return mark.by_hand is not None or bool(mark.comments) or any(one.comments or one.history for one in mark.exercises)
-
-
-def _width(points):
-    """The width of a step, a round number.
-
-    >>> _width(10), _width(24), _width(100)
-    (1, 2, 10)
-    """
-    scale = 0.001
-    while scale < 1e9:
-        for step in (1, 2, 5):
-            width = round(step * scale, 3)
-            if width * MOST_STEPS >= points:
-                return int(width) if width == int(width) else width
-        scale *= 10
-    return points
 
 
 def _exercises(marks):
