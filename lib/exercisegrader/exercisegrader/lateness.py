@@ -25,8 +25,7 @@ from typing import TYPE_CHECKING
 from exercisebook.judging import harmless
 from exercisebook.late import Late
 from exercisegrader import GradingError
-from exercisegrader.spreadsheet import read
-from exercisegrader.tables import Faults
+from exercisegrader.tables import Faults, read_sheet
 from plainmath.validation import did_you_mean
 
 if TYPE_CHECKING:
@@ -261,8 +260,8 @@ def read_extensions(
         GradingError: with all faults, each with its line: a student who is not on the roster, what is no time, a time
             before the due date, two rows for one student.
     """
-    sheet = read(path, ["student", "until"], ["assignment"])
-    faults, until, lines, others, early, left = Faults(sheet.path.name), {}, {}, {}, [], []
+    sheet = read_sheet(path, ["student", "until"], ["assignment"])
+    faults, until, lines, others, early, left = Faults(sheet.table.path.name), {}, {}, {}, [], []
     for line, row in sheet.rows:
         of, said = row.get("assignment", ""), row["student"]
         student = roll.find(said)
@@ -293,7 +292,7 @@ def read_extensions(
     notes += [f"{', '.join(early)}: before the due date"] if early else []
     notes += [f"{', '.join(left)}: no longer on the roster"] if left else []
     notes += [f"{assignment} has no DUE"] if policy is None and sheet.rows else []
-    return Extensions(until, tuple(f"{sheet.path.name}, of no effect here: {note}" for note in notes))
+    return Extensions(until, tuple(f"{sheet.table.path.name}, of no effect here: {note}" for note in notes))
 
 
 def _extended(text, due):

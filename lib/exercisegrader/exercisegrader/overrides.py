@@ -19,10 +19,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 from exercisebook.judging import earned
-from exercisegrader import GradingError, files, spreadsheet
+from exercisegrader import GradingError, files, tables
 from exercisegrader.reports.wording import number as written
-from exercisegrader.spreadsheet import Sheet
-from exercisegrader.tables import Faults
+from exercisegrader.tables import Faults, Sheet, read_sheet
 from plainmath.validation import did_you_mean
 
 if TYPE_CHECKING:
@@ -101,7 +100,7 @@ class Overrides:
         """
         history = self._read_history()
         if self.path.exists():
-            self._sheet = spreadsheet.read(self.path, COLUMNS[:4], COLUMNS[4:])
+            self._sheet = read_sheet(self.path, COLUMNS[:4], COLUMNS[4:])
             changed = _changed_at(self.path)
         else:
             if known := sum(bool(row["to"] or row["comment"]) for row in self._noted.values()):
@@ -146,7 +145,7 @@ class Overrides:
         """
         have = {place for _, place, _ in self._placed()}
         rows = [dict(zip(COLUMNS, place, strict=False)) for place in waiting if place not in have]
-        there, text = self._sheet.text.encode(), self._sheet.continued(rows).encode()
+        there, text = self._sheet.table.text.encode(), self._sheet.continued(rows).encode()
         if not self.path.exists():
             files.write(self.path, text.decode())
         elif rows and self.path.read_bytes() == there:
@@ -172,7 +171,7 @@ class Overrides:
                 continue
             says = self._fault(place)
             if not says:
-                given, most = spreadsheet.number(row["points"]), self._most(place)
+                given, most = tables.number(row["points"]), self._most(place)
                 if row["points"] and given is None:
                     says = f"the points are {row['points']!r}: expected a number, or nothing"
                 elif given is not None and not 0 <= given <= most + ROUNDED:
@@ -221,7 +220,7 @@ class Overrides:
     def _read_history(self):
         if not self.history_path.exists():
             return Sheet.new(self.history_path, HISTORY)
-        sheet = spreadsheet.read(self.history_path, HISTORY)
+        sheet = read_sheet(self.history_path, HISTORY)
         self._noted = {(row["student"], row["exercise"], row["quantity"]): row for _, row in sheet.rows}
         return sheet
 
@@ -232,8 +231,8 @@ class Overrides:
             before, mark = self._noted.get(place, {"to": "", "comment": ""}), self.marks.get(place, Mark())
             if place[0] not in self.roll.ids:
                 continue
-            was, to = spreadsheet.number(before["to"]), "" if mark.points is None else written(mark.points)
-            if (was, before["comment"]) == (spreadsheet.number(to), mark.comment):
+            was, to = tables.number(before["to"]), "" if mark.points is None else written(mark.points)
+            if (was, before["comment"]) == (tables.number(to), mark.comment):
                 continue
             result = result_of(place[0])
             if result is None and place in self.marks:

@@ -1,4 +1,9 @@
-"""Tables of comma-separated values, as learning management systems and spreadsheets write and read them."""
+"""Tables of comma-separated values, as learning management systems and spreadsheets write and read them.
+
+A spreadsheet saves them with commas, semicolons or tabs, with decimal commas, and with a mark of UTF-8 in front. All
+faults of a table are told in one run. What an instructor's spreadsheet saved stays as it is, byte for byte; rows are
+added below in the same way.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from exercisegrader import GradingError
+from plainmath.validation import did_you_mean
 
 DELIMITERS = ",;\t"
 #: The mark at the beginning of a file by which Excel knows UTF-8.
@@ -20,6 +26,7 @@ MOST_FAULTS = 40
 #: What a spreadsheet takes for the beginning of a formula; a semicolon begins a cell where the comma is decimal.
 _FORMULA = re.compile(r"((?:^|;)\s*)(?=[=+\-@＝＋－＠])")
 _HARMLESS = re.compile(r"-|[+-]?\d+(?:[.,]\d+)?")
+_NUMBER = re.compile(r"[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)")
 
 
 def letters(name: str) -> str:
@@ -98,6 +105,46 @@ class Table:
         return self.text.startswith(BOM)
 
 
+@dataclass(frozen=True)
+class Sheet:
+    """A table that an instructor keeps, of which the columns have names.
+
+    Attributes:
+        table: as it is.
+        header: the names of its columns, in small letters.
+        rows: pairs of the number of a line and {column: cell}.
+    """
+
+    table: Table
+    header: tuple[str, ...]
+    rows: tuple[tuple[int, dict[str, str]], ...] = ()
+
+    @classmethod
+    def new(cls, path: Path, columns: Sequence[str]) -> Sheet:
+        """Return a table without rows, of which there is no file yet, as Excel opens it.
+
+        >>> Sheet.new(Path("marks.csv"), ["student", "points"]).table.text
+        '\\ufeffstudent,points\\r\\n'
+        """
+        return cls(Table(path, BOM + _written([columns], ",", "\r\n"), tuple(columns), ()), tuple(columns))
+
+    def continued(self, rows: Iterable[Mapping[str, str]]) -> str:
+        """Return the text with more rows, {column: cell}, below; where there are none, the text as it is.
+
+        >>> table = Table(Path("marks.csv"), "student;points;mine\\ns2;1;", ("student", "points", "mine"), (), ";")
+        >>> Sheet(table, table.header).continued([{"student": "s1", "points": "2"}])
+        'student;points;mine\\ns2;1;\\ns1;2;\\n'
+        """
+        text, ends = self.table.text, re.search("\r\n|\n|\r", self.table.text)
+        newline = ends[0] if ends else "\r\n"
+        cells = [[row.get(column, "") for column in self.header] for row in rows]
+        return (
+            text
+            + (newline if cells and text[-1] not in "\r\n" else "")
+            + _written(cells, self.table.delimiter, newline)
+        )
+
+
 def read(path: str | Path) -> Iterator[Table]:
     """Yield a table for each delimiter with which the file has a header, the likeliest first.
 
@@ -124,6 +171,51 @@ def read(path: str | Path) -> Iterator[Table]:
         except csv.Error as problem:
             faults.append((reader.line_num, f"no table, {problem}"))
         yield Table(path, text, header, tuple(rows), delimiter, tuple(faults))
+
+
+def read_sheet(path: str | Path, columns: Collection[str], optional: Collection[str] = ()) -> Sheet:
+    """Return the table in a file; further columns are kept.
+
+    Arguments:
+        path: of the file, in UTF-8.
+        columns: those that are needed, in any order; capitals and spaces around a name do not matter.
+        optional: others that are known.
+    Raises:
+        GradingError: with the line, for a file that cannot be read, is no table, or lacks a column.
+    """
+    header: tuple[str, ...] = ()
+    for table in read(path):
+        header = max(header, tuple("_".join(head.split()).casefold() for head in table.header), key=len)
+        if {*columns} <= {*header}:
+            break
+    else:
+        raise GradingError(f"{Path(path).name}, line 1: {_missing(header, columns, optional)}")
+    faults = Faults(table.path.name, table.faults)
+    for column in (*columns, *optional):
+        if header.count(column) > 1:
+            faults.add(1, f"there are {header.count(column)} columns {column!r}: expected one")
+    faults.demand_none()
+    rows = [(line, dict(zip(header, map(str.strip, cells), strict=True))) for line, cells in table.rows]
+    return Sheet(table, header, tuple(rows))
+
+
+def _missing(header, columns, optional):
+    """A sentence on the first column that is not there."""
+    lacking = next(column for column in columns if column not in header)
+    others = [name for name in header if name and name not in (*columns, *optional)]
+    meant = did_you_mean(lacking, others, otherwise="")
+    also = f" ({meant.removeprefix('did you mean ').rstrip('?')} is none)" if meant and others else ""
+    return f"there is no column {lacking!r}{also}: expected the columns {', '.join(columns)}"
+
+
+def number(text: str) -> float | None:
+    """Return the number that a cell holds, with a decimal point or a decimal comma; None for any other text.
+
+    >>> number("2,5"), number(" 3 "), number("two"), number("1e3")
+    (2.5, 3.0, None, None)
+    """
+    text = text.strip()
+    return float(text.replace(",", ".")) if _NUMBER.fullmatch(text) else None
 
 
 def _text(path):
@@ -167,7 +259,11 @@ def as_text(
     >>> as_text([["id", "name"], ["s1", "Doe, Jane"]])
     'id,name\\ns1,"Doe, Jane"\\n'
     """
-    file = io.StringIO()
-    writer = csv.writer(file, delimiter=delimiter, lineterminator="\n")
-    writer.writerows([cell if k in trusted else guarded(cell) for k, cell in enumerate(row)] for row in rows)
-    return BOM * bom + file.getvalue()
+    cells = [[cell if k in trusted else guarded(cell) for k, cell in enumerate(row)] for row in rows]
+    return BOM * bom + _written(cells, delimiter, "\n")
+
+
+def _written(rows, delimiter, newline):
+    file = io.StringIO(newline="")
+    csv.writer(file, delimiter=delimiter, lineterminator=newline).writerows(rows)
+    return file.getvalue()

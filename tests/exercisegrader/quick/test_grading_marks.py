@@ -12,7 +12,7 @@ import pytest
 from drawings import picture
 from exercisebook import png
 from exercisebook.judging import MISTAKE, OPEN, RIGHT, WAITING, WRONG
-from exercisegrader import GradingError, spreadsheet, tables
+from exercisegrader import GradingError, tables
 from exercisegrader.assignment import Assignment
 from exercisegrader.lateness import Lateness
 from exercisegrader.marking import Marked, Marking, Notice
@@ -91,7 +91,7 @@ class Folder:
 
     def changes(self):
         """What the history holds: places, from and to."""
-        rows = [row for _, row in spreadsheet.read(self.history, HISTORY).rows]
+        rows = [row for _, row in tables.read_sheet(self.history, HISTORY).rows]
         return [tuple(row[name] for name in ("student", "exercise", "quantity", "from", "to")) for row in rows]
 
 
