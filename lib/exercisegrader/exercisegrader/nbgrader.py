@@ -17,7 +17,7 @@ from nbformat import v4
 
 from exercisebook import judging
 from exercisebook.kinds.kind import literal
-from exercisegrader.release import answer_call, asked, bare, checked, set_up, statement_cells, wrapped
+from exercisegrader.release import answer_call, asked, bare, set_up, statement_cells, wrapped
 from exercisegrader.student_side.plain import unreadable
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ def source(assignment: Assignment, student_id: str | None = None) -> NotebookNod
     Raises:
         GradingError: where a variant fails.
     """
-    questions = {number: _question(assignment, student_id, number) for number in assignment.exercises}
+    questions = {number: asked(assignment, student_id, number) for number in assignment.exercises}
     parts = [f"# {assignment.title}", assignment.introduction, _HOW_TO_ANSWER]
     cells = [(v4.new_markdown_cell("\n\n".join(part for part in parts if part)), _locked("introduction"))]
     for k, code in enumerate(set_up(assignment.title, student_id or "", questions), start=1):
@@ -82,12 +82,6 @@ def earned(
 def _weight(names, weights):
     """What some quantities count together."""
     return sum(weights.get(name, 1) for name in names)
-
-
-def _question(assignment, student_id, number):
-    if student_id is not None:
-        return asked(assignment, student_id, number)
-    return checked(assignment.exercises[number].question, f"exercise {number} of {assignment.name}")
 
 
 def _cells(grade_id, number, question):

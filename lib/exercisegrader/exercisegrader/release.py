@@ -10,7 +10,7 @@ import io
 import itertools
 import re
 import tokenize
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -207,35 +207,31 @@ def _demand_allowed(plans, folder, replace, new_numbers, record):
     """Raise GradingError where something is in the way, or would change without being asked for."""
     foreign = [plan for plan in plans if plan.what is _What.FOREIGN]
     if foreign:
+        more = f" ({len(foreign) - 1} more are in the way)" if foreign[1:] else ""
         raise GradingError(
             f"{foreign[0].path} is in the way and no notebook of this release: move it away, or release to another "
-            f"folder; nothing is written{_besides(foreign)}"
+            f"folder; nothing is written{more}"
         )
+
+    def whose(plans):
+        return in_short([plan.student.id for plan in plans])
+
     numbers = [plan for plan in plans if plan.what is _What.NUMBERS and not new_numbers]
     if numbers:
-        whose = (
-            f"of {record.path.name}" if record.path else "that are drawn today, and no record says which were released"
-        )
+        none = "that are drawn today, and no record says which were released"
+        drawn = f"of {record.path.name}" if record.path else none
         raise GradingError(
-            f"nothing is written: the notebooks of {in_short(_ids(numbers))} in {folder} have other numbers than those "
-            f"{whose}: put the record of their release beside the assignment, or say --replace --new-numbers"
+            f"nothing is written: the notebooks of {whose(numbers)} in {folder} have other numbers than those "
+            f"{drawn}: put the record of their release beside the assignment, or say --replace --new-numbers"
         )
     others = [plan for plan in plans if plan.what in (_What.TEXT, _What.NUMBERS, _What.WORKED_IN)]
     if others and not replace:
         parts = list(dict.fromkeys(part for plan in others for part in plan.parts))
         what = f" in {in_short(parts)}" if parts else ""
         raise GradingError(
-            f"nothing is written: the notebooks of {in_short(_ids(others))} in {folder} would be others{what}: "
+            f"nothing is written: the notebooks of {whose(others)} in {folder} would be others{what}: "
             "--replace puts them in place, with the numbers of the release, except where somebody has worked in one"
         )
-
-
-def _ids(plans):
-    return [plan.student.id for plan in plans]
-
-
-def _besides(plans):
-    return f" ({len(plans) - 1} more are in the way)" if plans[1:] else ""
 
 
 def notebook(assignment: Assignment, student: Student, numbers: Numbers | None = None) -> NotebookNode:
@@ -312,23 +308,20 @@ def _reading(question):
     return "\n".join(["<details><summary>How your answers are read</summary>", "", *lines, "", "</details>"])
 
 
-def asked(assignment: Assignment, student_id: str, number: str, values: Mapping[str, str] | None = None) -> Question:
+def asked(
+    assignment: Assignment, student_id: str | None, number: str, values: Mapping[str, str] | None = None
+) -> Question:
     """Return a student's question, with all that will be needed of it. Raises GradingError where that fails.
 
     Arguments:
-        assignment, student_id, number, values: as `Assignment.question` takes them.
-    """
-    label = f"exercise {number} of {assignment.name} for student {student_id}"
-    return checked(lambda: assignment.question(student_id, number, values), label)
-
-
-def checked(make: Callable[[], Question], label: str) -> Question:
-    """Return the question that a function makes, with all that will be needed of it.
-
-    Raises GradingError, in a sentence that begins with the label, where a function of the author fails.
+        assignment, number, values: as `Assignment.question` takes them.
+        student_id: whose; the reference variant if it is None.
     """
     try:
-        question = make()
+        if student_id is None:
+            question = assignment.exercises[number].question()
+        else:
+            question = assignment.question(student_id, number, values)
         check_names(question)
         _check_places(question)
         _check_key(question)
@@ -336,7 +329,8 @@ def checked(make: Callable[[], Question], label: str) -> Question:
     except GradingError:
         raise
     except Exception as problem:  # the functions are the author's
-        raise GradingError(f"{label}: {problem}") from problem
+        whose = f" for student {student_id}" if student_id else ""
+        raise GradingError(f"exercise {number} of {assignment.name}{whose}: {problem}") from problem
     return question
 
 

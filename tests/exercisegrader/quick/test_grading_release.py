@@ -9,10 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from assignments import HEAD, ONE, students, written
-from exercisebook import authoring
 from exercisegrader import GradingError, nbgrader
 from exercisegrader.assignment import Assignment
-from exercisegrader.release import as_markdown, as_text, checked, installed, notebook, release, wrapped
+from exercisegrader.release import as_markdown, as_text, asked, installed, notebook, release, wrapped
 
 
 def code(made):
@@ -137,11 +136,8 @@ def test_what_an_author_overlooks_is_said_before_anything_is_written(tmp_path, o
 
 @pytest.mark.parametrize("text", [r"$\frac{a}{b} {c}$", r"$${c}$$", "`{c}`", r"\begin{align}", "{{c}}", "{1}", "x_{c}"])
 def test_braces_of_formulas_and_code_stay(text):
-    def twice(x=authoring.between(1, 9)):
-        return authoring.answers(y=2 * x)
-
-    twice.__doc__ = text
-    question = checked(authoring.exercise("1", title="Twice")(twice).question, "exercise 1")
+    twice = ONE.format('"1"', 1, "y=number(x)").replace('"x is {x}"', f'r"""{text}"""')
+    question = asked(Assignment.of(HEAD + twice, "twice"), None, "1")
     assert text.replace("{{c}}", "{c}") in question.statement.body
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import dataclasses
 import itertools
 import re
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from time import perf_counter, process_time
@@ -98,44 +98,31 @@ def try_all(
     """
     done = 0
     for number in assignment.exercises:
-        yield _Attempt(assignment, number).over(students, seconds, lambda count, before=done: follow(before + count))
+        attempt = _Attempt(assignment, number)
+        for place, student in enumerate(students):
+            if not attempt.is_made(place, student, seconds, len(students)):
+                break
+            follow(done + place + 1)
+        yield attempt.trial(students[0])
         done += len(students)
         follow(done)
 
 
 class _Attempt:
-    """An exercise that is being tried: the variants so far, and what was seen in them."""
+    """An exercise that is being tried: the variants so far, and what was seen in them, how often and where first."""
 
     def __init__(self, assignment, number):
         self.assignment, self.number, self.exercise = assignment, number, assignment.exercises[number]
-        self.variants, self.asked = [], 0
-        self.seen = {}  # {(level, words): [how often, student, example, from which part on]}
+        self.variants, self.asked, self.begin = [], 0, perf_counter()
+        self.counts, self.first = Counter(), {}
 
-    def over(self, students, seconds, follow):
-        begin = perf_counter()
-        for place, student in enumerate(students):
-            if place and perf_counter() - begin > seconds:
-                says = f"only {place} of {len(students)} variants were tried in {seconds:g} s: --seconds allows more"
-                self.note(Seen(NOTE, says))
-                break
-            self.asked += 1
-            if variant := self.variant(student, place):
-                self.variants.append(variant)
-                for check in OF_ONE:
-                    for seen in check(variant):
-                        self.note(seen, student)
-            follow(place + 1)
-        for check in OF_ALL if self.variants else ():
-            for seen in check(self.variants):
-                self.note(seen)
-        if self.variants and not any(level == WRONG for level, _ in self.seen):
-            self.release(students[0])
-        lacks = {"hints": self.exercise.rungs, "a solution": self.exercise.worked}
-        missing = tuple(name for name, what in lacks.items() if not what)
-        return Trial(self.number, self.exercise.title, self.asked, self.surprises(), missing)
-
-    def variant(self, student, place):
-        """The variant of a student; None where a function of the author fails."""
+    def is_made(self, place, student, seconds, many):
+        """Try a variant; whether there was time for it."""
+        if place and perf_counter() - self.begin > seconds:
+            says = f"only {place} of {many} variants were tried in {seconds:g} s: --seconds allows more"
+            self.note(Seen(NOTE, says))
+            return False
+        self.asked += 1
         begin = process_time()
         try:
             question = limited(PATIENCE_WITH_KEY, self.complete, student)
@@ -146,38 +133,44 @@ class _Attempt:
             what = re.sub(r" (?:for|of \w+ for student) [^:]*(?=:)", "", str(problem), count=1)
             self.note(Seen(WRONG, shortened(what, LONGEST_PROBLEM)), student)
         else:
-            return Variant(student, place, question, process_time() - begin)
-        return None
+            self.variants.append(Variant(student, place, question, process_time() - begin))
+            for seen in itertools.chain.from_iterable(check(self.variants[-1]) for check in OF_ONE):
+                self.note(seen, student)
+        return True
 
     def complete(self, student):
         question = self.assignment.question(student, self.number)
         question.key, question.mistakes, question.background  # noqa: B018 - they are worked out once, and may fail
         return question
 
-    def release(self, student):
-        """Find what else would stop a release."""
-        try:
-            asked(self.assignment, student, self.number)
-        except GradingError as problem:
-            self.note(Seen(WRONG, shortened(str(problem), LONGEST_PROBLEM)), student)
-
     def note(self, seen, student=""):
-        entry = self.seen.setdefault((seen.level, seen.says), [0, student, seen.example, seen.least])
-        entry[0] += 1
+        self.counts[seen.level, seen.says] += 1
+        self.first.setdefault((seen.level, seen.says), (student, seen))
+
+    def trial(self, student):
+        """What came of it, with what all variants together show, and what else would stop a release."""
+        if self.variants:
+            for seen in itertools.chain.from_iterable(check(self.variants) for check in OF_ALL):
+                self.note(seen)
+        if self.variants and not any(level == WRONG for level, _ in self.counts):
+            try:
+                asked(self.assignment, student, self.number)
+            except GradingError as problem:
+                self.note(Seen(WRONG, shortened(str(problem), LONGEST_PROBLEM)), student)
+        lacks = {"hints": self.exercise.rungs, "a solution": self.exercise.worked}
+        missing = tuple(name for name, what in lacks.items() if not what)
+        return Trial(self.number, self.exercise.title, self.asked, self.surprises(), missing)
 
     def surprises(self):
         """What was seen often enough, the worst first, and of that what was seen most often."""
         made = []
-        for (level, says), (count, student, example, least) in self.seen.items():
-            if count >= least * self.asked:
-                often = "" if not student else self.how_often(min(count, self.asked))
-                made.append((LEVELS.index(level), -count, Surprise(level, says + often, student, example)))
+        for (level, says), count in self.counts.items():
+            student, seen = self.first[level, says]
+            if count >= seen.least * self.asked:
+                if student and self.asked > 1:
+                    says += f", in {'all' if count >= self.asked else f'{count} of'} {self.asked} variants"
+                made.append((LEVELS.index(level), -count, Surprise(level, says, student, seen.example)))
         return tuple(surprise for *_, surprise in sorted(made, key=lambda one: one[:2]))
-
-    def how_often(self, count):
-        if self.asked == 1:
-            return ""
-        return f", in {'all' if count == self.asked else f'{count} of'} {self.asked} variants"
 
 
 def ids(known: Sequence[str], count: int) -> list[str]:
@@ -186,10 +179,8 @@ def ids(known: Sequence[str], count: int) -> list[str]:
     >>> ids(["ada", "s0002"], 4)
     ['ada', 's0002', 's0001', 's0003']
     """
-    made = (f"s{number:04}" for number in itertools.count(1))
-    return list(
-        itertools.islice(dict.fromkeys(itertools.chain(known, itertools.islice(made, len(known) + count))), count)
-    )
+    made = (f"s{number:04}" for number in range(1, len(known) + count + 1))
+    return [*dict.fromkeys([*known, *made])][:count]
 
 
 def only(assignment: Assignment, numbers: Collection[str]) -> Assignment:
@@ -221,10 +212,8 @@ def as_text(trial: Trial) -> str:
     lines = [f"Exercise {trial.number} · {trial.title}" + ("" if trial.surprises else ": nothing surprising")]
     for one in trial.surprises:
         lines.append(f"  {one.level:10}  {one.says}")
-        if one.student:
-            lines.append(f"{'':14}{one.student}" + (f": {one.example}" if one.example else ""))
-        elif one.example:
-            lines.append(f"{'':14}{one.example}")
+        if seen := ": ".join(filter(None, [one.student, one.example])):
+            lines.append(f"{'':14}{seen}")
     return "\n".join(lines)
 
 
