@@ -7,6 +7,7 @@ seen is spelled out, pictures are looked at without being decoded, and the brows
 from __future__ import annotations
 
 import json
+from collections import defaultdict
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -64,17 +65,13 @@ def executed(result: Result, content: bytes, shown: Iterable[Shown], stopped: st
         shown: what its cells have shown.
         stopped: why it did not run to its end, in a sentence.
     """
-    of_cells: dict[int, list[Shown]] = {}
+    outputs = defaultdict(list)
     for one in shown:
-        of_cells.setdefault(one.cell, []).append(one)
-    cells, number = [], 0
-    for cell in json.loads(content)["cells"] if content else ():
-        is_code = cell["cell_type"] == "code"
-        number += is_code
-        outputs = [_output(one) for one in of_cells.get(number, ()) if is_code]
-        cells.append((f"cell {number}" if is_code else "text", is_code, cell["source"], outputs))
+        outputs[one.cell].append(_output(one))
+    cells = json.loads(content)["cells"] if content else []
     problems = dict.fromkeys(filter(None, [result.says, stopped]))
-    return page("executed.html", f"{result.student}: {result.file}", result=result, cells=cells, problems=problems)
+    told = {"result": result, "cells": cells, "outputs": outputs, "problems": problems}
+    return page("executed.html", f"{result.student}: {result.file}", **told)
 
 
 def source(content: bytes) -> str:
