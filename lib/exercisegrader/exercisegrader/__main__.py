@@ -3,7 +3,9 @@
 A package for whose subject this grader is used adds them to its own, as `loopbook` does.
 """
 
+import contextlib
 import os
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Annotated
 
@@ -34,6 +36,17 @@ def fail(message: str) -> None:
     """End the command with exit code 1 and one line on the error stream."""
     errors.print(message, style="bold red", markup=False)
     raise typer.Exit(1)
+
+
+@contextlib.contextmanager
+def progress(word: str) -> Iterator[Callable[[int, int | None], None]]:
+    """Yield a function that is told how much is done, and of how much, and shows it in a terminal."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = TextColumn(word), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
+    with Progress(*columns, console=errors, transient=True, disable=not errors.is_terminal) as bars:
+        bar = bars.add_task("", total=None)
+        yield lambda done, total: bars.update(bar, completed=done, total=total)
 
 
 @app.command()
@@ -121,8 +134,6 @@ def try_out(
     ] = None,
 ) -> None:
     """Answer each exercise with its key, its mistakes and others, over many variants, and say what would surprise."""
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
     from exercisegrader import GradingError, trial
     from exercisegrader.assignment import load
     from exercisegrader.roster import read_roster
@@ -135,10 +146,9 @@ def try_out(
             return
         there = students or assignment.with_name("roster.csv")
         ids = trial.ids([one.id for one in read_roster(there)] if students or there.exists() else [], variants)
-        columns = TextColumn("trying"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
-        with Progress(*columns, console=errors, transient=True, disable=not errors.is_terminal) as progress:
-            bar = progress.add_task("", total=len(ids) * len(given.exercises))
-            found = list(trial.try_all(given, ids, seconds, lambda done: progress.update(bar, completed=done)))
+        total = len(ids) * len(given.exercises)
+        with progress("trying") as show:
+            found = list(trial.try_all(given, ids, seconds, lambda done: show(done, total)))
     except GradingError as error:
         fail(str(error))
     except KeyboardInterrupt:
@@ -199,8 +209,6 @@ def grade(
     ] = False,
 ) -> None:
     """Run the submissions of a class in a jail, judge their answers, and write grades and feedback."""
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
     from exercisegrader import GradingError
 
     try:
@@ -214,9 +222,7 @@ def grade(
         class_list = students or assignment.with_name("roster.csv")
         given, roster = load(assignment), read_roster(class_list)
         beside = class_list.with_name("extensions.csv")
-        columns = TextColumn("grading"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
-        with Progress(*columns, console=errors, transient=True, disable=not errors.is_terminal) as progress:
-            bar = progress.add_task("", total=None)
+        with progress("grading") as show:
             done = grade_all(
                 given,
                 roster,
@@ -231,7 +237,7 @@ def grade(
                 reveal=reveal,
                 latest=latest,
                 keep_notebooks=keep_notebooks,
-                follow=lambda total, count: progress.update(bar, total=total, completed=count),
+                follow=show,
             )
     except GradingError as error:
         fail(str(error))

@@ -162,7 +162,7 @@ def _run(source, name, path):
     file = f"{name}.py"
     module = types.ModuleType(f"assignment {name}")
     try:
-        with _beside(path), _known(module):
+        with _imported(module, path):
             exec(compile(source, file, "exec"), vars(module))
     except SyntaxError as problem:
         where = f"line {problem.lineno}" if problem.filename == file else f"{problem.filename}, line {problem.lineno}"
@@ -176,24 +176,14 @@ def _run(source, name, path):
 
 
 @contextlib.contextmanager
-def _beside(path):
-    folder = str(path.resolve().parent) if path else None
-    if folder:
-        sys.path.insert(0, folder)
+def _imported(module, path):
+    """While it runs, a module is among those that are imported, as data classes demand, and finds those beside it."""
+    before, sys.modules[module.__name__] = sys.path, module
+    sys.path = [*([str(path.resolve().parent)] if path else []), *before]
     try:
         yield
     finally:
-        if folder in sys.path:
-            sys.path.remove(folder)
-
-
-@contextlib.contextmanager
-def _known(module):
-    """While it runs, a module is among those that are imported, as data classes demand."""
-    sys.modules[module.__name__] = module
-    try:
-        yield
-    finally:
+        sys.path = before
         sys.modules.pop(module.__name__, None)
 
 

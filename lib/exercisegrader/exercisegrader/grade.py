@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from exercisebook.judging import harmless
 from exercisegrader import GradingError, NoJail, lms
 from exercisegrader.events import Outcome
 from exercisegrader.imprint import peek
@@ -25,7 +26,18 @@ from exercisegrader.keeping import Kept, executed, source
 from exercisegrader.marking import Marking
 from exercisegrader.released import Released
 from exercisegrader.reports import registered, write_all
-from exercisegrader.results import MISSING, OWNER, Look, Result, Results, fingerprint, result
+from exercisegrader.results import (
+    COMPLETE,
+    MISSING,
+    NOT_RUN,
+    STOPPED,
+    CellError,
+    Result,
+    Results,
+    fingerprint,
+    looks,
+    same_each_time,
+)
 from exercisegrader.sources import answered
 from exercisegrader.student import in_short
 from exercisegrader.submissions import collect
@@ -87,14 +99,7 @@ class Desk:
                     self.judge.begin()
                     self.jail = Jail(self.jailed, self.limits)
             outcome = self.jail.run(task.content)
-        exercises = self.judge.judge(task.student, outcome.answers, task.numbers)
-        found = result(
-            task.name, task.student, task.label, task.fingerprint, task.jailed, outcome, exercises,
-            answered(task.content),
-        )  # fmt: skip
-        is_said = any(look.kind == OWNER for look in found.looks)
-        looks = () if is_said else tuple(Look(OWNER, says) for says in task.doubts)
-        found = replace(found, looks=(*looks, *found.looks), chosen=task.chosen)
+        found = _result(task, outcome, self.judge.judge(task.student, outcome.answers, task.numbers))
         if not task.show:
             return Graded(found)
         shown, stopped = self.jail.show(task.content) if self.jail and task.content else ((), "")
@@ -105,6 +110,19 @@ class Desk:
         self.judge.close()
         if self.jail:
             self.jail.close()
+
+
+def _result(task, outcome, exercises):
+    """What became of a task that was run and judged; its texts are the same each time."""
+    status = MISSING if not task.label else NOT_RUN if outcome.refused else STOPPED if outcome.stopped else COMPLETE
+    says = same_each_time(outcome.refused or outcome.stopped)
+    errors = tuple(CellError(cell, same_each_time(text)) for cell, text in outcome.errors)
+    found = looks(task.student, outcome, exercises, answered(task.content), task.doubts)
+    owner = harmless(outcome.named[0]) if outcome.named else ""
+    return Result(
+        task.name, task.student, task.label, task.jailed, task.fingerprint, status, says, errors, tuple(found),
+        tuple(exercises), owner, task.chosen,
+    )  # fmt: skip
 
 
 _desks = threading.local()
@@ -166,7 +184,7 @@ def grade(
     latest: bool = False,
     keep_notebooks: bool = False,
     limits: Limits = USUAL,
-    follow: Callable[[int, int], object] = lambda total, done: None,
+    follow: Callable[[int, int], object] = lambda done, total: None,
 ) -> Summary:
     """Grade the submissions of a class, and write the reports.
 
@@ -185,7 +203,7 @@ def grade(
         latest: of several notebooks of a student the latest counts, as `submissions.collect` tells it.
         keep_notebooks: keep each notebook as executed; a page that is there is kept up to date in any case.
         limits: `jail.Limits`.
-        follow: is called with the number of submissions and how many are done.
+        follow: is called with how many submissions are done, and how many there are.
     Returns:
         The `Summary`.
     Raises:
@@ -236,7 +254,7 @@ def grade(
                 if outcome.page:  # before the result: where that is there, so is the page
                     pages.keep(student, outcome.page, outcome.source)
                 results.keep(outcome.result)
-            follow(len(wanted), done)
+            follow(done, len(wanted))
         stored = {student.id: one for student in students if (one := results.of(student.id))}
         marking.read(stored.get)
         marks = marking.marked(list(stored.values()), found)

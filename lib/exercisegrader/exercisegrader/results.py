@@ -201,45 +201,30 @@ def fingerprint(
     return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
 
 
-def result(
-    assignment: str,
-    student: str,
-    label: str,
-    mark: str,
-    jailed: bool,
-    outcome: Outcome,
-    exercises: Sequence[JudgedExercise],
-    outside_code: Sequence[str] = (),
-) -> Result:
-    """Return the result of a submission.
-
-    Arguments:
-        assignment: its name.
-        student: id.
-        label: name of the file; empty where there is none.
-        mark: the fingerprint.
-        outcome: `events.Outcome`.
-        exercises: as `judge.Judge.judge` returns them.
-        outside_code: the exercises that are answered in cells that are not run.
-    """
-    status = MISSING if not label else NOT_RUN if outcome.refused else STOPPED if outcome.stopped else COMPLETE
-    errors = tuple(CellError(cell, _same_each_time(says)) for cell, says in outcome.errors)
-    says = _same_each_time(outcome.refused or outcome.stopped)
-    found = tuple(looks(student, outcome, exercises, outside_code))
-    owner = outcome.named[0] if outcome.named else ""
-    return Result(
-        assignment, student, label, jailed, mark, status, says, errors, found, tuple(exercises), harmless(owner)
-    )
+def same_each_time(says: str) -> str:
+    """Return a sentence without what differs from run to run."""
+    return ADDRESS.sub("0x...", says)
 
 
 def looks(
-    student: str, outcome: Outcome, exercises: Sequence[JudgedExercise], outside_code: Sequence[str] = ()
+    student: str,
+    outcome: Outcome,
+    exercises: Sequence[JudgedExercise],
+    outside_code: Sequence[str] = (),
+    doubts: Sequence[str] = (),
 ) -> list[Look]:
-    """Return why an instructor should look at a submission, what is harmless last."""
-    found = []
+    """Return why an instructor should look at a submission, what is harmless last.
+
+    Arguments:
+        student: id.
+        outcome: `events.Outcome`.
+        exercises: as `judge.Judge.judge` returns them.
+        outside_code: the exercises that are answered in cells that are not run.
+        doubts: what speaks against the notebook, by its imprint.
+    """
     others = [name for name in outcome.named if name != student]
-    if others:
-        found.append(Look(OWNER, f"it names another student: {', '.join(map(harmless, others[:3]))}"))
+    says_of_others = f"it names another student: {', '.join(map(harmless, others[:3]))}"
+    found = [Look(OWNER, says) for says in ([says_of_others] if others else doubts)]
     if outcome.odd:
         lines = f"{outcome.odd} line{'s' if outcome.odd > 1 else ''}"
         found.append(Look(ODD, f"it told {lines} that could not be read as answers"))
@@ -260,10 +245,6 @@ def looks(
             more.append(Look(UNASKED, says, number) if number in left else Look(EXTRA, says))
     more.sort(key=lambda look: (look.kind == EXTRA, look.says))
     return [*found, *more[:MOST_EXTRA]]
-
-
-def _same_each_time(says):
-    return ADDRESS.sub("0x...", says)
 
 
 class Results:

@@ -23,11 +23,10 @@ from exercisegrader import GradingError, NoJail, jail
 from exercisegrader.__main__ import app
 from exercisegrader.assignment import load
 from exercisegrader.cluster import connected
-from exercisegrader.events import Outcome
 from exercisegrader.grade import grade, here
 from exercisegrader.imprint import peek
 from exercisegrader.judge import Judge
-from exercisegrader.results import OWNER, Look, Results, result
+from exercisegrader.results import OWNER, Look, Result, Results
 from needs import needs_jail
 
 
@@ -239,7 +238,7 @@ def test_what_is_written_does_not_lie_among_the_submissions(course, inside):
 def test_another_assignment_has_another_folder(course):
     other = dataclasses.replace(course.assignment, name="other")
     results = course.results("taken")
-    lag = result("lag", "s1", "s1.ipynb", "", True, Outcome(), ())
+    lag = Result("lag", "s1", "s1.ipynb", True, "", "complete", "", (), (), ())
     results.keep(lag)
     with pytest.raises(GradingError, match="holds results of the assignment 'lag': expected a folder of its own for"):
         grade(other, course.students, course.submissions, course.folder / "taken", jailed=False)
@@ -248,7 +247,7 @@ def test_another_assignment_has_another_folder(course):
 
 def test_the_result_of_somebody_else_is_not_hers(course, tmp_path):
     results = Results(tmp_path, course.assignment.secret)
-    results.keep(result("lag", "s1", "s1.ipynb", "", True, Outcome(), ()))
+    results.keep(Result("lag", "s1", "s1.ipynb", True, "", "complete", "", (), (), ()))
     (tmp_path / "s2.json").write_bytes((tmp_path / "s1.json").read_bytes())
     with pytest.raises(GradingError, match=r"s2\.json is not as the grader of this assignment wrote it"):
         results.of("s2")
