@@ -10,9 +10,9 @@ import stat
 import struct
 import zipfile
 import zlib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import IO, TYPE_CHECKING
 
 from exercisegrader import GradingError
 
@@ -39,7 +39,7 @@ class Entry:
     parts: tuple[str, ...]
     fault: str = ""
     size: int = 0
-    source: _File | _Member | None = None
+    open: Callable[[], IO[bytes]] | None = None
     changed: datetime.datetime | None = None
 
 
@@ -87,22 +87,14 @@ def _too_deep():
 # In a folder.
 
 
-@dataclass(frozen=True)
-class _File:
-    """A file on the disk."""
-
-    path: str
-
-    def open(self):
-        """Open it, if it is still a file and no link; a pipe that took its place does not make us wait."""
-        flags = os.O_RDONLY | sum(
-            getattr(os, name, 0) for name in ("O_NOFOLLOW", "O_NONBLOCK", "O_BINARY", "O_CLOEXEC")
-        )
-        descriptor = os.open(self.path, flags)
-        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
-            os.close(descriptor)
-            raise ValueError("it is no longer a file")
-        return os.fdopen(descriptor, "rb")
+def _open_file(path):
+    """Open a file on the disk, if it is still one and no link; a pipe that took its place does not make us wait."""
+    flags = os.O_RDONLY | sum(getattr(os, name, 0) for name in ("O_NOFOLLOW", "O_NONBLOCK", "O_BINARY", "O_CLOEXEC"))
+    descriptor = os.open(path, flags)
+    if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+        os.close(descriptor)
+        raise ValueError("it is no longer a file")
+    return os.fdopen(descriptor, "rb")
 
 
 def _in_folder(root, wrappers):
@@ -151,7 +143,7 @@ def _below(item, parts, within):
         if not stat.S_ISDIR(state.st_mode):
             fault = _kind(state.st_mode) or ("" if os.access(item.path, os.R_OK) else "cannot be read: no permission")
             changed = datetime.datetime.fromtimestamp(state.st_mtime)
-            yield Entry(label, parts, fault, state.st_size, _File(item.path), changed)
+            yield Entry(label, parts, fault, state.st_size, functools.partial(_open_file, item.path), changed)
         elif len(parts) > DEEPEST:
             yield Entry(label, parts, _too_deep())
         else:
@@ -171,19 +163,12 @@ def _kind(mode):
 # In a zip file.
 
 
-@dataclass(frozen=True)
-class _Member:
-    """A member of a zip file."""
-
-    path: str
-    state: tuple
-    number: int
-
-    def open(self):
-        if _state(self.path) != self.state:
-            raise ValueError("the zip file has changed")
-        archive = _archive(self.path, self.state, os.getpid())
-        return archive.open(archive.infolist()[self.number])
+def _open_member(path, state, number):
+    """Open a member of a zip file that is still the same."""
+    if _state(path) != state:
+        raise ValueError("the zip file has changed")
+    archive = _archive(path, state, os.getpid())
+    return archive.open(archive.infolist()[number])
 
 
 @functools.lru_cache(maxsize=1)
@@ -218,8 +203,8 @@ def _in_zip(path, wrappers):
             fault = _fault(member, parts)
             if not fault and member.is_dir():
                 continue
-        source = _Member(str(path), state, number)
-        found.append(Entry(shown(name), parts or (name,), fault, member.file_size, source, _changed(member)))
+        opens = functools.partial(_open_member, str(path), state, number)
+        found.append(Entry(shown(name), parts or (name,), fault, member.file_size, opens, _changed(member)))
     return _unwrapped(found, wrappers)
 
 

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import datetime
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import IO
 
 from exercisegrader import GradingError, sources
 from exercisegrader.entries import FAILURES, Entry, entries, shown, why
@@ -48,7 +48,7 @@ class Submission:
     handed_in: datetime.datetime | None = None
     late: bool | None = None
     chosen: str = ""
-    _source: Any = field(default=None, repr=False)
+    _open: Callable[[], IO[bytes]] | None = field(default=None, repr=False, compare=False)
 
     def read(self) -> bytes:
         """The notebook without its outputs, as `sources.sources` returns it.
@@ -58,7 +58,7 @@ class Submission:
         if self.problem:
             raise GradingError(self.problem)
         try:
-            with self._source.open() as stream:
+            with self._open() as stream:
                 return sources.sources(stream)
         except FAILURES as problem:
             raise GradingError(f"the file cannot be read: {why(problem)}") from None
@@ -101,13 +101,13 @@ def collect(path: str | Path, students: Sequence[Student], assignment_name: str,
     (['s1001.ipynb'], ('s10002.ipynb: is named after no student of the roster',))
     """
     lying = entries(Path(path), assignment_name, [student.id for student in students])
-    known, complaints = Known(students), _Complaints()
+    known, complaints = Known(students), defaultdict(list)
     notebooks, others = defaultdict(list), defaultdict(list)
     for entry in lying:
         owner = known.owner(entry.parts[0])
         fault = entry.fault or ("" if entry.parts[-1].lower().endswith(".ipynb") else "is not a notebook (.ipynb)")
         if owner.student is None:
-            complaints.add(entry.parts[0], entry.label, fault or owner.reason)
+            complaints[entry.parts[0]].append(f"{entry.label}: {fault or owner.reason}")
         elif fault:
             others[owner.student.id].append((_Notebook(entry, owner), fault))
         else:
@@ -119,7 +119,7 @@ def collect(path: str | Path, students: Sequence[Student], assignment_name: str,
             rest = others[student.id]
         elif others[student.id]:
             (one, fault), *rest = others[student.id]
-            complaints.add(student.id, one.entry.label, fault)
+            complaints[student.id].append(f"{one.entry.label}: {fault}")
             problem = f"{FILE}{fault}"
             submission = Submission(student, one.entry.label, problem, student.handed_in, one.owner.late)
         else:
@@ -127,10 +127,10 @@ def collect(path: str | Path, students: Sequence[Student], assignment_name: str,
         submissions.append(submission)
         says = submission.problem or submission.chosen
         if says and notebooks[student.id]:
-            complaints.add(student.id, submission.label, says)
+            complaints[student.id].append(f"{submission.label}: {says}")
         for one, fault in rest:
-            complaints.add(student.id, one.entry.label, f"{fault}{BESIDE}{submission.label}")
-    return Collection(tuple(submissions), complaints.all())
+            complaints[student.id].append(f"{one.entry.label}: {fault}{BESIDE}{submission.label}")
+    return Collection(tuple(submissions), tuple(_told(complaints)))
 
 
 @dataclass(frozen=True)
@@ -155,8 +155,8 @@ def _submission(student, notebooks, latest):
     entry = one.entry
     if not problem and entry.size > sources.LARGEST:
         problem = sources.too_large()
-    source = None if problem else entry.source
-    return Submission(student, entry.label, problem, student.handed_in, one.owner.late, chosen, source)
+    opens = None if problem else entry.open
+    return Submission(student, entry.label, problem, student.handed_in, one.owner.late, chosen, opens)
 
 
 def _several(notebooks):
@@ -178,20 +178,9 @@ def _latest(notebooks):
     return last, "the times of the files"
 
 
-class _Complaints:
-    """Sentences, of which not too many are about what lies in one folder."""
-
-    def __init__(self):
-        self._said = defaultdict(list)
-        self._unsaid = defaultdict(int)
-
-    def add(self, top, label, fault):
-        if len(self._said[top]) < MOST_COMPLAINTS:
-            self._said[top].append(f"{label}: {fault}")
-        else:
-            self._unsaid[top] += 1
-
-    def all(self):
-        for top, number in self._unsaid.items():
-            self._said[top].append(f"{shown(top)}: has {number} more that cannot be used")
-        return tuple(sentence for sentences in self._said.values() for sentence in sentences)
+def _told(complaints):
+    """The sentences, of which not too many are about what lies in one folder."""
+    for top, said in complaints.items():
+        yield from said[:MOST_COMPLAINTS]
+        if said[MOST_COMPLAINTS:]:
+            yield f"{shown(top)}: has {len(said) - MOST_COMPLAINTS} more that cannot be used"
