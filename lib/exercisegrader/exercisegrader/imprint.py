@@ -81,11 +81,14 @@ def proofs(secret: str, student: str, numbers: Mapping[str, Mapping[str, str]]) 
         student: id.
         numbers: {exercise: {parameter: text}}.
     """
-    return {exercise: _proof(secret, [student, exercise, sorted(texts.items())]) for exercise, texts in numbers.items()}
+    return {
+        exercise: sealed(secret, [student, exercise, sorted(texts.items())])[:16] for exercise, texts in numbers.items()
+    }
 
 
-def _proof(secret, data):
-    return hmac.new(secret.encode(), json.dumps(data).encode(), hashlib.sha256).hexdigest()[:16]
+def sealed(secret: str, data: object) -> str:
+    """Return what only the owner of a secret can make of data."""
+    return hmac.new(secret.encode(), json.dumps(data, sort_keys=True).encode(), hashlib.sha256).hexdigest()
 
 
 def _is_text(value):

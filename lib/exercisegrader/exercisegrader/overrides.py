@@ -137,8 +137,8 @@ class Overrides:
                 found.append(Notice(most, f"{about} when the grader said {noted['grader']!r}; now it says {says!r}"))
         return found
 
-    def add(self, waiting: Iterable[Place]) -> int:
-        """Add a row without points for each place that has none yet; returns how many there are.
+    def add(self, waiting: Iterable[Place]) -> None:
+        """Add a row without points for each place that has none yet.
 
         What is in the file stays as it is, byte for byte: the rows are written behind it. A file that is saved
         meanwhile is not touched: the next run adds the rows.
@@ -150,7 +150,6 @@ class Overrides:
             files.write(self.path, text.decode())
         elif rows and self.path.read_bytes() == there:
             files.append(self.path, text[len(there) :])
-        return len(rows)
 
     # ------------------------------------------------------------------------------------------------- the file
 

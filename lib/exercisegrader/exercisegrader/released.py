@@ -13,14 +13,14 @@ import json
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Self
 
 from exercisebook.judging import harmless
 from exercisebook.parameters import as_text
 from exercisebook.reading import listed
 from exercisegrader import GradingError
 from exercisegrader.files import write
-from exercisegrader.imprint import Imprint, peek, proofs
+from exercisegrader.imprint import Imprint, peek, proofs, sealed
 from exercisegrader.student import in_short
 
 if TYPE_CHECKING:
@@ -126,7 +126,7 @@ class Released:
         """Write the record, signed with a secret; raises GradingError where that is not possible."""
         students = {one.id: {**one.known, "numbers": one.numbers} for one in self.holders.values()}
         data = {"assignment": self.assignment, "secret": _trace(secret), "students": students}
-        signed = data | {"signature": _signature(data, secret)}
+        signed = data | {"signature": sealed(secret, data)}
         write(path, json.dumps(signed, ensure_ascii=False, indent=1) + "\n")
 
     def identified(self, students: Iterable[Student]) -> tuple[tuple[Student, ...], tuple[str, ...]]:
@@ -170,14 +170,19 @@ class Released:
                 found.setdefault(holder.id, (holder, name))
         if len(found) > 1:
             (one, by), (other, besides) = list(found.values())[:2]
-            raise _contradiction(student, f"by {_IN_WORDS[by]} {one.id}, and by {_IN_WORDS[besides]} {other.id}")
+            raise GradingError(
+                f"{student.name} ({student.id} on the roster) is by {_IN_WORDS[by]} {one.id}, and by "
+                f"{_IN_WORDS[besides]} {other.id}: correct the roster"
+            )
         by_id = self.holders.get(student.id)
         for holder, by in [*found.values(), *([(by_id, "")] if by_id and not found else [])]:
             first = next((name for name in SURE if holder.known.get(name) and getattr(student, name)), "")
             if first and _plain(holder.known[first]) != _plain(getattr(student, first)):
                 same = _IN_WORDS[by] if by else "the id"
-                says = f"by {same} {holder.id} ({holder.called}), and by {_IN_WORDS[first]} somebody else"
-                raise _contradiction(student, says)
+                raise GradingError(
+                    f"{student.name} ({student.id} on the roster) is by {same} {holder.id} ({holder.called}), and by "
+                    f"{_IN_WORDS[first]} somebody else: correct the roster"
+                )
             return holder
         return None
 
@@ -315,14 +320,9 @@ def _holders(text, path, assignment):
             "the release back"
         )
     del data["signature"]
-    if not hmac.compare_digest(str(signature), _signature(data, secret)):
+    if not hmac.compare_digest(str(signature), sealed(secret, data)):
         raise GradingError(f"{path} was changed since it was written: {_PUT_BACK}")
     return holders
-
-
-def _signature(data: Mapping[str, Any], secret: str) -> str:
-    text = json.dumps(data, sort_keys=True)
-    return hmac.new(secret.encode(), text.encode(), hashlib.sha256).hexdigest()
 
 
 def _trace(secret):
@@ -332,10 +332,6 @@ def _trace(secret):
 
 def _plain(text):
     return text.strip().casefold()
-
-
-def _contradiction(student, says):
-    return GradingError(f"{student.name} ({student.id} on the roster) is {says}: correct the roster")
 
 
 def _on_ids(students, kept, found):

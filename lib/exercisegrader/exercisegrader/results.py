@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Self
 from exercisebook.judging import OPEN, RIGHT, earned, harmless
 from exercisegrader import GradingError
 from exercisegrader.files import write
+from exercisegrader.imprint import sealed
 from exercisegrader.student import in_short
 
 if TYPE_CHECKING:
@@ -166,13 +167,13 @@ class Result:
     def as_json(self, secret: str) -> str:
         """Return it as JSON with a seal that this secret makes; `of_json` reads it."""
         data = json.loads(json.dumps(asdict(self)))  # tuples are lists there
-        return json.dumps(data | {"seal": _seal(data, secret)}, indent=1, sort_keys=True) + "\n"
+        return json.dumps(data | {"seal": sealed(secret, data)}, indent=1, sort_keys=True) + "\n"
 
     @classmethod
     def of_json(cls, text: str, secret: str) -> Self:
         """Return the result that a text of `as_json` holds. Raises ValueError for any other text."""
         data = json.loads(text)
-        if not isinstance(data, dict) or not hmac.compare_digest(str(data.pop("seal", "")), _seal(data, secret)):
+        if not isinstance(data, dict) or not hmac.compare_digest(str(data.pop("seal", "")), sealed(secret, data)):
             raise ValueError("its seal is broken")
         return cls(
             **data
@@ -182,11 +183,6 @@ class Result:
                 "exercises": tuple(map(JudgedExercise.of_data, data["exercises"])),
             }
         )
-
-
-def _seal(data, secret):
-    text = json.dumps(data, sort_keys=True)
-    return hmac.new(secret.encode(), text.encode(), hashlib.sha256).hexdigest()
 
 
 def fingerprint(

@@ -36,7 +36,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from exercisegrader import lms
+from exercisegrader import lms, tables
 from exercisegrader.lms import Claim, Known, Packed, System
 from exercisegrader.reports.outputs import output
 from exercisegrader.reports.wording import in_text, number, of_exercise, overall, visible
@@ -111,7 +111,7 @@ class Canvas(System):
             return Claim(tuple(student for students in fitting for student in students), **said)
         if found[0]:
             return Claim(reason=f"has Canvas's number of {found[0][0].id} and another name")
-        named = tuple(student for student in known.named(_on_time(written)) if not student.canvas_id)
+        named = tuple(student for student in known.named(written.removesuffix("_LATE")) if not student.canvas_id)
         return Claim(named, f"has Canvas's number {first[1]}, which the roster does not have", **said)
 
     def remarks(self, students: Sequence[Student], title: str, points: float) -> Sequence[str]:
@@ -130,11 +130,8 @@ class Canvas(System):
         if excused:
             are = "is" if len(excused) == 1 else "are"
             said.append(f"canvas_grades.csv: {in_short(excused)} {are} excused in Canvas, and so left")
-        try:
-            there = float(_possible(table, heads[0]).replace(",", "."))
-        except ValueError:
-            return said
-        if abs(there - points) >= 0.005:
+        there = tables.number(_possible(table, heads[0]))
+        if there is not None and abs(there - points) >= 0.005:
             said.append(
                 f"canvas_grades.csv: {table.header[heads[0]]} has {number(there)} points in Canvas and "
                 f"{number(points)} here, and grades are not scaled: change it in Canvas"
@@ -157,14 +154,9 @@ class Canvas(System):
         )
 
 
-def _on_time(written):
-    """The name in front of Canvas's number, without the mark of what came late."""
-    return written.removesuffix("_LATE")
-
-
 def _fits(student, written):
     """Whether the student has the name in front of Canvas's number, as far as the roster tells."""
-    return not student.sortable or letters(student.sortable) == letters(_on_time(written))
+    return not student.sortable or letters(student.sortable) == letters(written.removesuffix("_LATE"))
 
 
 def _unquoted(name):

@@ -32,7 +32,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from exercisegrader import GradingError, lms
+from exercisegrader import GradingError, lms, tables
 from exercisegrader.lms import Claim, Known, Packed, System, own
 from exercisegrader.reports.outputs import output
 from exercisegrader.reports.wording import number, visible
@@ -109,12 +109,12 @@ class Moodle(System):
                 "moodle_grades.csv: the worksheet has no maximum grade: set the assignment in Moodle to grades in "
                 "points, because a scale takes none",
             )
-        said = {student.row[columns["maximum"]].strip() for student in students} - {""}
-        other = sorted(there for there in said if _number(there) is not None and abs(_number(there) - points) > 0.005)
+        said = {tables.number(student.row[columns["maximum"]]) for student in students} - {None}
+        other = sorted(there for there in said if abs(there - points) > 0.005)
         if not other:
             return ()
         return (
-            f"moodle_grades.csv: the assignment has {number(float(other[0]))} points in Moodle and {number(points)} "
+            f"moodle_grades.csv: the assignment has {number(other[0])} points in Moodle and {number(points)} "
             "here, and grades are not scaled: change it in Moodle, and take its worksheet again",
         )
 
@@ -136,13 +136,6 @@ class Moodle(System):
             "In the assignment whose worksheet is the roster, with Feedback files among its feedback types, choose "
             '"Upload multiple feedback files in a zip": each student finds their own there.',
         )
-
-
-def _number(text):
-    try:
-        return float(text)
-    except ValueError:
-        return None
 
 
 def _columns(students):

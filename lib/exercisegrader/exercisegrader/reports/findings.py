@@ -62,7 +62,7 @@ class Findings:
         missing: the ids of those who did not, and `ungraded` of those without any result.
         late, by_hand: the marks of those who were late or have an extension, and those to which a person has added.
         points: of the assignment.
-        sums: the points of those who have a grade; means are over these.
+        sums: the points of those who have a grade, with their `mean` and `median`.
         exercises: the hardest first.
         asked: their quantities, and `statuses` which the answers to these may have.
         mistakes: number of exercise, quantity, sentence and count, the most common first.
@@ -78,21 +78,12 @@ class Findings:
         self.by_hand = [mark for mark in marks if _is_touched(mark)]
         self.points: float = max((mark.result.points for mark in marks), default=0)
         self.sums: list[float] = [mark.total for mark in marks if mark.total is not None]
+        self.mean, self.median = (of(self.sums or [0.0]) for of in (statistics.fmean, statistics.median))
         run = [mark for mark in self.handed_in if mark.result.status != NOT_RUN]
         self.exercises: list[Exercise] = _exercises(run)
         self.asked = [asked for one in self.exercises for asked in one.asked]
         self.statuses = [one for one in STATUSES if one != WAITING or any(each.counts[one] for each in self.asked)]
         self.mistakes: list[tuple[str, str, str, int]] = _mistakes([mark.result for mark in run])
-
-    @property
-    def mean(self) -> float:
-        """The mean of the sums."""
-        return statistics.fmean(self.sums)
-
-    @property
-    def median(self) -> float:
-        """The median of the sums."""
-        return statistics.median(self.sums)
 
     @property
     def steps(self) -> list[tuple[float, float, int]]:
