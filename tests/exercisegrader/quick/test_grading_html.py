@@ -76,6 +76,11 @@ def seen(text):
     return set(checked.tags), words(checked.text)
 
 
+def parts():
+    """The blocks that several pages have."""
+    return pages._TEMPLATES.get_template("parts.html").module
+
+
 def shown(text):
     """How a text is shown: in one line, with what cannot be seen spelled out."""
     return words(html.unescape(pages.line(text)))
@@ -87,7 +92,7 @@ def test_a_text_is_shown_as_it_is(attack):
     assert seen(pages.said(attack)) == ({"bdi"}, shown(attack))
     tags, text = seen(pages.code(attack))
     assert (tags - {"bdi"}, text) == ({"code"}, shown(attack))
-    tags, text = seen(pages.person(attack, attack))
+    tags, text = seen(parts().person(attack, attack))
     assert (tags, text) == ({"bdi", "span"}, words(f"{shown(attack)} ({shown(attack)})"))
 
 
@@ -140,7 +145,7 @@ def test_a_picture_is_in_the_page():
 
 
 def test_a_status_is_said_by_a_sign_a_colour_and_a_word():
-    text = pages.status("to be marked", pages.code("sketch"), "marked by hand")
+    text = parts().status("to be marked", "sketch", "marked by hand")
     assert Checker(text).text == "✎ sketch marked by hand"
     assert text.count('class="status to-be-marked"') == 2
     assert 'aria-hidden="true">✎' in text

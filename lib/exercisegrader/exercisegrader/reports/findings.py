@@ -60,6 +60,7 @@ class Findings:
     Attributes:
         handed_in: the marks of those who handed something in.
         missing: the ids of those who did not, and `ungraded` of those without any result.
+        counts: how many are missing, and so on, each with these words.
         late, by_hand: the marks of those who were late or have an extension, and those to which a person has added.
         points: of the assignment.
         sums: the points of those who have a grade, with their `mean` and `median`.
@@ -74,6 +75,12 @@ class Findings:
         self.missing: list[str] = [mark.result.student for mark in marks if mark.result.status == MISSING]
         graded = {mark.result.student for mark in marks}
         self.ungraded = [student.id for student in grades.students if student.id not in graded]
+        not_run = sum(mark.result.status == NOT_RUN for mark in self.handed_in)
+        waiting = sum(mark.total is None and mark.result.status != NOT_RUN for mark in self.handed_in)
+        self.counts = [
+            (len(self.missing), "missing"), (len(self.ungraded), "not graded yet"), (not_run, "not run"),
+            (waiting, "waiting for a mark"),
+        ]  # fmt: skip
         self.late = [mark for mark in marks if mark.late]
         self.by_hand = [mark for mark in marks if _is_touched(mark)]
         self.points: float = max((mark.result.points for mark in marks), default=0)

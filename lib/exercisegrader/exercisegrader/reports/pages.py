@@ -7,7 +7,6 @@ HTML is only what a template holds, and what the functions of this module return
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -93,33 +92,6 @@ def several_lines(text: str) -> Markup:
     return escape(wording.spelled_out(text.replace("\r\n", "\n"), but="\n\t"))
 
 
-def person(name: str, id: str) -> Markup:
-    """Return a student: the name, and behind it the id."""
-    return line(said(name), Markup(' <span class="quiet">({})</span>').format(wording.visible(id)))
-
-
-def numbers(given: Iterable[tuple[str, str]]) -> Markup:
-    """Return the numbers of a student, pairs of a name and a value with its unit."""
-    return Markup(", ").join(line(code(name), f" = {value}") for name, value in given)
-
-
-def status(status: str, between: str = "", word: str = "") -> Markup:
-    """Return the sign of a status and its word, which says the same.
-
-    Arguments:
-        status: of an answer.
-        between: HTML for the middle.
-        word: in the place of that of the status.
-    """
-    shown = Markup('<span class="status {0}" aria-hidden="true">{1}</span> {2}<span class="status {0}">{3}</span>')
-    return shown.format(class_of(status), MARKS[status][0], line(between, " ") if between else "", word or status)
-
-
-def class_of(status: str) -> str:
-    """Return the class of what has the colour of a status."""
-    return status.replace(" ", "-")
-
-
 def picture(content: bytes, alt: str) -> Markup:
     """Return a picture, which the page itself holds.
 
@@ -152,8 +124,7 @@ _TEMPLATES = jinja2.Environment(
     keep_trailing_newline=True,
 )
 _FILTERS = (
-    said, code, sentence, statement, several_lines, person, numbers, status, class_of, handed_in, wording.number,
-    wording.percent,
+    said, code, sentence, statement, several_lines, handed_in, wording.number, wording.percent, wording.visible,
 )  # fmt: skip
 _TEMPLATES.filters |= {function.__name__: function for function in _FILTERS}
 _TEMPLATES.globals |= {

@@ -8,8 +8,7 @@ from exercisegrader.reports.concerns import concerns
 from exercisegrader.reports.findings import Findings
 from exercisegrader.reports.outputs import output, registered
 from exercisegrader.reports.pages import page
-from exercisegrader.reports.wording import counted, in_text
-from exercisegrader.results import NOT_RUN
+from exercisegrader.reports.wording import in_text
 
 if TYPE_CHECKING:
     from exercisegrader.reports.outputs import Grades
@@ -32,7 +31,6 @@ def summary(grades: Grades) -> str:
         found=found,
         graded={mark.result.student for mark in grades.marks},
         names={student.id: student.name for student in grades.students},
-        counts=_counts(found),
         most=MOST_CASES,
         costly=costly,
         harmless=harmless,
@@ -42,12 +40,3 @@ def summary(grades: Grades) -> str:
             if one.file != OWN and (there is None or one.is_for_each_student or (there / one.file).exists())
         ],
     )
-
-
-def _counts(found):
-    """How many there are of each."""
-    not_run = sum(mark.result.status == NOT_RUN for mark in found.handed_in)
-    waiting = sum(mark.total is None and mark.result.status != NOT_RUN for mark in found.handed_in)
-    counts = {"missing": len(found.missing), "not graded yet": len(found.ungraded), "not run": not_run}
-    counts["waiting for a mark"] = waiting
-    return [counted(len(found.handed_in), "submission"), *(f"{n} {what}" for what, n in counts.items() if n)]
