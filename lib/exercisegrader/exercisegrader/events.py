@@ -11,7 +11,7 @@ import math
 import signal
 from dataclasses import dataclass, field
 from time import monotonic
-from typing import Any, BinaryIO, ClassVar
+from typing import Any, BinaryIO
 
 from exercisebook.judging import harmless
 from exercisegrader.student_side.plain import DEEPEST, MOST_DIGITS
@@ -56,11 +56,6 @@ class Story:
         too_long: a sentence where it told more than it may.
     """
 
-    kinds: ClassVar[dict[str, str]] = {
-        "refused": "_refused", "made for": "_named", "cell": "_cell", "error": "_error", "answer": "_answer",
-        "end": "_end",
-    }  # fmt: skip
-
     def __init__(self, longest: int, most: int):
         self.longest, self.most = longest, most
         self.answers: dict[str, dict[str, Any]] = {}
@@ -93,28 +88,34 @@ class Story:
 
     def _take(self, line):
         try:
-            event = json.loads(line.decode(), parse_constant=_no_number)
-            ((what, value),) = event.items()
-            getattr(self, self.kinds[what])(value)
+            ((what, value),) = json.loads(line.decode(), parse_constant=_no_number).items()
+            self._tell(what, value)
         except Exception:  # whatever it is, it is not what a notebook's answers look like
             self.odd += 1
 
-    def _refused(self, says):
-        if self.cell or self.answers:  # by now it runs
-            raise ValueError(says)
-        self.refused = self.refused or harmless(says)
+    def _tell(self, what, value):
+        """Take an event; raises anything for what is none."""
+        match what:
+            case "refused" if not (self.cell or self.answers):  # later it runs
+                self.refused = self.refused or harmless(value)
+            case "made for":
+                self._named(value)
+            case "cell":
+                self.cell, self.cell_began = _place(value), monotonic()
+            case "error":
+                number, says = _place(value["cell"]), harmless(value["says"])
+                if len(self.errors) < MOST:
+                    self.errors.append((number, says))
+            case "answer":
+                self._answer(value)
+            case "end":
+                self.ended = True
+            case _:
+                raise ValueError(what)
 
     def _named(self, student):
         if student and len(self.named) < MOST:
             self.named[harmless(student)] = True
-
-    def _cell(self, number):
-        self.cell, self.cell_began = _place(number), monotonic()
-
-    def _error(self, error):
-        number, says = _place(error["cell"]), harmless(error["says"])
-        if len(self.errors) < MOST:
-            self.errors.append((number, says))
 
     def _answer(self, answer):
         number, given = answer["exercise"], answer["given"]
@@ -126,9 +127,6 @@ class Story:
         # what is still a placeholder, in a copy of the cell, takes nothing back
         filled = {name: value for name, value in given.items() if value is not None}
         self.answers.setdefault(number, {}).update(filled)
-
-    def _end(self, value):
-        self.ended = True
 
     def outcome(self, why: str, exit_code: int) -> Outcome:
         """Return the `Outcome`.
@@ -159,22 +157,21 @@ class Scene(Story):
         shown: so much as MOST_SHOWN allows, in the order in which it came.
     """
 
-    kinds: ClassVar[dict[str, str]] = Story.kinds | {"shown": "_show"}
-
     def __init__(self):
         super().__init__(4 * LONGEST_SHOWN, 4 * MOST_SHOWN)
         self.shown: list[Shown] = []
         self._room, self._in_cell = MOST_SHOWN, {}
 
-    def _error(self, error):
-        super()._error(error)
-        self._take_in(Shown(_place(error["cell"]), "error", harmless(error["says"])))
-
-    def _show(self, shown):
-        cell, kind, data = _place(shown["cell"]), shown["kind"], shown["data"]
-        if kind not in ("text", "png") or not isinstance(data, str):
-            raise ValueError(kind)
-        self._take_in(Shown(cell, kind, data))
+    def _tell(self, what, value):
+        if what == "shown":
+            cell, kind, data = _place(value["cell"]), value["kind"], value["data"]
+            if kind not in ("text", "png") or not isinstance(data, str):
+                raise ValueError(kind)
+            self._take_in(Shown(cell, kind, data))
+            return
+        super()._tell(what, value)
+        if what == "error":
+            self._take_in(Shown(_place(value["cell"]), "error", harmless(value["says"])))
 
     def _take_in(self, shown):
         self._room -= len(shown.data) + 10

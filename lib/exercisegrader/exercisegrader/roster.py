@@ -110,7 +110,9 @@ def _student(system, fields, row, table):
     except ValueError as problem:
         wrong.append(str(problem))
         known["handed_in"] = None
-    known["name"] = known.get("name") or known["id"]
+    first, last = fields.get("first", ""), fields.get("last", "")
+    known["name"] = known.get("name") or f"{first} {last}".strip() or known["id"]
+    known["sortable"] = known.get("sortable") or ", ".join(filter(None, (last, first)))
     return Student(**known, id_from=id_from, system=system.name, row=row, table=table), wrong
 
 

@@ -48,10 +48,7 @@ class Gradescope(System):
         """Return what a row says; None for instructors and assistants."""
         if cells.get("role", "Student").casefold() not in ("student", ""):
             return None
-        first, last = cells["first"], cells["last"]
-        sortable = ", ".join(filter(None, (last, first)))
-        time = re.sub(r" *(?:[+-][0-9]{4}|UTC)$", "", cells.get("handed_in", ""))
-        return {**cells, "name": " ".join(filter(None, (first, last))), "sortable": sortable, "handed_in": time}
+        return {**cells, "handed_in": re.sub(r" *(?:[+-][0-9]{4}|UTC)$", "", cells.get("handed_in", ""))}
 
     def claim(self, name: str, known: Known) -> Claim | None:
         """Return that nobody can tell."""

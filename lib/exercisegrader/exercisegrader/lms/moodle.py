@@ -77,16 +77,12 @@ class Moodle(System):
 
     def student(self, cells: Mapping[str, str]) -> Mapping[str, str] | None:
         """Return what a row says."""
-        if "moodle_id" in cells:
-            said = re.search(r"[0-9]+$", cells["moodle_id"])
-            return {
-                **cells,
-                "name": cells.get("name") or cells["moodle_id"],
-                "moodle_id": said[0] if said else "",
-            }
-        first, last = cells["first"], cells["last"]
-        name = " ".join(filter(None, (first, last))) or cells.get("login") or cells.get("email", "")
-        return {**cells, "name": name, "sortable": ", ".join(filter(None, (last, first)))}
+        if "moodle_id" not in cells:
+            known = cells["first"] or cells["last"]
+            return cells if known else {**cells, "name": cells.get("login") or cells.get("email", "")}
+        said = re.search(r"[0-9]+$", cells["moodle_id"])
+        name = cells.get("name") or cells["moodle_id"]
+        return {**cells, "name": name, "moodle_id": said[0] if said else ""}
 
     def claim(self, name: str, known: Known) -> Claim | None:
         """Return whose a folder or a file of a download is."""

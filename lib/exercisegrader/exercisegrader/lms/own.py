@@ -70,12 +70,9 @@ class Own(System):
 
     def student(self, cells: Mapping[str, str]) -> Mapping[str, str] | None:
         """Return what a row says; a name beside a first name is a last name, as in "First name, Name"."""
-        first, last = cells.get("first", ""), cells.get("last", "")
-        name = cells.get("name", "")
         if "first" in cells and "last" not in cells:
-            name, last = "", name
-        sortable = cells.get("sortable", "") or (f"{last}, {first}" if first and last else "")
-        return {**cells, "name": name or " ".join(filter(None, (first, last))), "sortable": sortable}
+            return {**cells, "name": "", "last": cells.get("name", "")}
+        return cells
 
     def claim(self, name: str, known: Known) -> Claim | None:
         """Return whose a folder, or a notebook, named by an id is."""
