@@ -104,10 +104,6 @@ class Variant:
         """Whether an answer is right; faster than a verdict with its sentence."""
         return is_right(self.key[name], sent(answer))
 
-    def all_right(self, answers: dict[str, Any]) -> bool:
-        """Whether answers to all quantities are right."""
-        return 0 < len(self.key) == len(answers) and all(itertools.starmap(self.is_right, answers.items()))
-
     def solution(self, name: str) -> str:
         """The key in words, in short."""
         return shortened(self.key[name].solution, LONGEST_ANSWER)
@@ -209,23 +205,6 @@ def declared_mistakes(variant: Variant) -> Iterator[Seen]:
                 yield Seen(ODD, f"{mistake} is right when it is rounded", example, RARE)
 
 
-def statements(variant: Variant) -> Iterator[Seen]:
-    """The statement has its values, as people write them."""
-    try:
-        statement = variant.question.statement
-        text = f"{statement.heading}\n\n{statement.body}"
-    except Exception as problem:  # the functions are the author's
-        yield Seen(WRONG, "the statement cannot be shown", shortened(str(problem), LONGEST_SENTENCE))
-        return
-    bare = _FORMULA.sub("", text)
-    if found := _NO_VALUE.search(text) or _UNFILLED.search(bare):
-        yield Seen(WRONG, "a place of the statement has no value", found[0])
-    if found := _MANY_DIGITS.search(text):
-        yield Seen(ODD, "the statement has a number of many digits", found[0])
-    if text.count("$") % 2:
-        yield Seen(WRONG, "the statement has a $ without another one")
-
-
 def quantities_with_one_answer(variant: Variant) -> Iterator[Seen]:
     """Two quantities have different answers, and none of them is a given."""
     numbers = variant.of_kind(kinds.Number)
@@ -272,30 +251,34 @@ def _is_rounded(kind):
 
 
 def texts_and_pictures(variant: Variant) -> Iterator[Seen]:
-    """Pictures can be drawn, and hints and solution are filled in."""
-    if variant.place >= MOST_SHOWN:
-        return
+    """The statement has its values, as people write them; pictures can be drawn, hints and solution are filled in."""
     question, exercise = variant.question, variant.exercise
     made: dict[str, Callable[[], Any]] = {
+        "the statement": lambda: f"{question.statement.heading}\n\n{question.statement.body}",
         "a hint": lambda: "\n".join(question.rungs),
         "the insight": lambda: question.filled_in(exercise.insight, also={}),
         "the solution": lambda: question._worked_text,
         "the picture": lambda: question.picture,
         "the picture of the solution": question._draws(exercise.drawn_in_solution),
     }
-    for what, make in made.items():
+    for what, make in list(made.items())[: None if variant.place < MOST_SHOWN else 1]:
         try:
             found = make()
         except Exception as problem:  # the functions are the author's
             yield Seen(WRONG, f"{what} fails", shortened(str(problem), LONGEST_SENTENCE))
             continue
-        if isinstance(found, str) and (place := _UNFILLED.search(_FORMULA.sub("", found)) or _NO_VALUE.search(found)):
-            yield Seen(ODD, f"a place of {what.removeprefix('a ')} has no value", place[0])
+        is_statement = what == "the statement"
+        if isinstance(found, str) and (place := _NO_VALUE.search(found) or _UNFILLED.search(_FORMULA.sub("", found))):
+            yield Seen(WRONG if is_statement else ODD, f"a place of {what.removeprefix('a ')} has no value", place[0])
+        if is_statement and (digits := _MANY_DIGITS.search(found)):
+            yield Seen(ODD, "the statement has a number of many digits", digits[0])
+        if is_statement and found.count("$") % 2:
+            yield Seen(WRONG, "the statement has a $ without another one")
 
 
 OF_ONE: tuple[Callable[[Variant], Iterator[Seen]], ...] = (
-    keys_in_their_forms, words_of_a_list, other_answers, declared_mistakes, statements,
-    quantities_with_one_answer, rounded_givens, texts_and_pictures,
+    keys_in_their_forms, words_of_a_list, other_answers, declared_mistakes, quantities_with_one_answer, rounded_givens,
+    texts_and_pictures,
 )  # fmt: skip
 
 
@@ -316,7 +299,12 @@ def equal_answers(variants: Sequence[Variant]) -> Iterator[Seen]:
     if different < FEWEST_VARIANTS and variants[0].key:
         yield Seen(ODD, f"there are only {different} different variants")
     pairs = [pair for pair in itertools.pairwise(variants) if pair[0].question.values != pair[1].question.values]
-    copied = [pair for pair in pairs if pair[1].all_right({name: kind.as_given for name, kind in pair[0].key.items()})]
+    copied = [
+        (one, other)
+        for one, other in pairs
+        if one.key.keys() == other.key.keys() != set()
+        and all(other.is_right(name, kind.as_given) for name, kind in one.key.items())
+    ]
     if len(copied) >= OFTEN * len(pairs) > 0:
         one, other = copied[0]
         says = f"the answers of one student are right for another one, {len(copied)} of {len(pairs)} times"
