@@ -220,7 +220,8 @@ def grade(
     unknown = sorted(set(only) - {student.id for student in students})
     if unknown:
         raise GradingError(f"there is no student {unknown[0]!r} on the roster")
-    _demand_apart(folder, submissions)
+    if submissions.resolve() in (folder.resolve(), *folder.resolve().parents):  # and would be collected
+        raise GradingError(f"{folder} lies among the submissions in {submissions}: expected a folder beside them")
     if jailed:
         demand_hidden(*filter(None, [assignment.path, submissions, folder]))
     collection = collect(submissions, students, assignment.name, latest)
@@ -280,12 +281,6 @@ def _gone(results, students, found, submissions):
             "another folder"
         )
     return [f"Graded before, and without a submission now: {in_short(gone)}."] if gone else []
-
-
-def _demand_apart(folder, submissions):
-    """Raise GradingError where what is written would be collected as handed in."""
-    if submissions.resolve() in (folder.resolve(), *folder.resolve().parents):
-        raise GradingError(f"{folder} lies among the submissions in {submissions}: expected a folder beside them")
 
 
 def _task(assignment, released, student, submission, jailed, limits):

@@ -18,11 +18,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from exercisebook import units
-from exercisebook.judging import SECONDS, UNJUDGED
+from exercisebook.judging import SECONDS, UNJUDGED, Verdict, judge
 from exercisebook.parameters import written
 from exercisebook.timeout import WAITING
 from exercisegrader import GradingError
 from exercisegrader.results import JudgedAnswer, JudgedExercise
+from exercisegrader.student_side.plain import unreadable
 
 if TYPE_CHECKING:
     from exercisebook.question import Question
@@ -143,9 +144,6 @@ def judged(
         hopeless: names of quantities that cannot be judged.
         at: is told each name before it is judged.
     """
-    from exercisebook.judging import Verdict, judge
-    from exercisegrader.student_side.plain import unreadable
-
     answers = []
     for name, kind in question.key.items():
         answer = given.get(name)

@@ -193,8 +193,13 @@ class Released:
             assignment: as it is now.
             students: whose notebooks there are, with the ids of `identified`.
         """
+        if self.path is None and assignment.record is None:
+            return ()
         if self.path is None:
-            return (_without_record(assignment),) if assignment.record else ()
+            return (
+                f"{assignment.record.name} is not beside {assignment.name}.py: all numbers are drawn from the secret, "
+                "which gives those of the release only if nothing has changed in the ranges since",
+            )
         holders = [self.holders[one.id] for one in students if one.id in self.holders]
         without = [one.id for one in students if one.id not in self.holders]
         found: list[str] = []
@@ -370,10 +375,3 @@ def _other_draws(assignment, number, holders):
             return list(holder.numbers[number])
         names |= dict.fromkeys(name for name, text in drawn.items() if had.get(name, text) != text)
     return list(names)
-
-
-def _without_record(assignment):
-    return (
-        f"{assignment.record.name} is not beside {assignment.name}.py: all numbers are drawn from the secret, which "
-        "gives those of the release only if nothing has changed in the ranges since"
-    )

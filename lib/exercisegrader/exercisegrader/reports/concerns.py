@@ -146,16 +146,10 @@ def _to_mark(marks):
 
 def _equal(results):
     """The cases of equal answers: one for the same students."""
-    shares = {
-        (exercise.number, answer.name): exercise.share(answer)
-        for result in results
-        for exercise in result.exercises
-        for answer in exercise.answers
-    }
     found: dict[tuple[tuple[str, ...], tuple[str, ...]], list[tuple[float, Markup]]] = {}
     for one in equal_answers(results):
         what = line(_place(one.number, one.name), ": ", code(one.answer))
-        found.setdefault((one.right, one.others), []).append((shares[one.number, one.name], what))
+        found.setdefault((one.right, one.others), []).append((one.points, what))
     for (right, others), given in found.items():
         whose = f"right for {', '.join(right)}, not for {', '.join(others)}" if right else "wrong for all"
         points, answers = zip(*given, strict=True)

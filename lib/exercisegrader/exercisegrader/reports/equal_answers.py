@@ -29,12 +29,14 @@ class EqualAnswers:
         number: of the exercise.
         name: of the quantity.
         answer: in words.
+        points: that it brings where it is right.
         right, others: the ids of the students for whom it is right, and of those for whom it is not.
     """
 
     number: str
     name: str
     answer: str
+    points: float
     right: tuple[str, ...]
     others: tuple[str, ...]
 
@@ -50,15 +52,16 @@ def equal_answers(results: Iterable[Result]) -> list[EqualAnswers]:
     """
     groups, order = {}, {}
     for result in results:
-        for place, exercise in enumerate(result.exercises):
+        for exercise in result.exercises:
             for verdict in exercise.answers:
                 asked = exercise.number, verdict.name
-                order.setdefault(asked, (place, len(order)))
+                order.setdefault(asked, len(order))
                 if verdict.status in (RIGHT, MISTAKE, WRONG) and (digits := significant_digits(verdict.answer)):
-                    group = groups.setdefault((asked, _one_form(verdict.answer)), (digits, []))
-                    group[1].append((result.student, verdict))
+                    points = exercise.share(verdict)
+                    group = groups.setdefault((asked, _one_form(verdict.answer)), (digits, points, []))
+                    group[2].append((result.student, verdict))
     found = []
-    for (asked, _), (digits, given) in groups.items():
+    for (asked, _), (digits, points, given) in groups.items():
         right = [(student, verdict.key) for student, verdict in given if verdict.status == RIGHT]
         others = [(student, verdict.key) for student, verdict in given if verdict.status != RIGHT]
         keys_of_right, keys_of_others = {key for _, key in right}, {key for _, key in others}
@@ -66,7 +69,8 @@ def equal_answers(results: Iterable[Result]) -> list[EqualAnswers]:
         shared = len(keys_of_others) > 1 and digits >= DIGITS
         if crossed or shared:
             answer = answer_in_words(given[0][1].answer)
-            found.append(EqualAnswers(*asked, answer, tuple(s for s, _ in right), tuple(s for s, _ in others)))
+            of = tuple(student for student, _ in right), tuple(student for student, _ in others)
+            found.append(EqualAnswers(*asked, answer, points, *of))
     return sorted(found, key=lambda one: (order[one.number, one.name], one.answer))
 
 
