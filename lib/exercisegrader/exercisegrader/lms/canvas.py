@@ -38,8 +38,9 @@ from typing import TYPE_CHECKING
 
 from exercisegrader import lms, tables
 from exercisegrader.lms import Claim, Known, Packed, System
+from exercisegrader.reports.lines import of_exercise, overall
 from exercisegrader.reports.outputs import output
-from exercisegrader.reports.wording import in_text, number, of_exercise, overall, visible
+from exercisegrader.reports.wording import in_text, number, visible
 from exercisegrader.student import in_short
 from exercisegrader.tables import as_text, letters, places
 

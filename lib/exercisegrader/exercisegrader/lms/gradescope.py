@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING
 from exercisebook.judging import RIGHT
 from exercisegrader import lms
 from exercisegrader.lms import Claim, Known, System
+from exercisegrader.reports.lines import of_exercise, overall
 from exercisegrader.reports.outputs import output
-from exercisegrader.reports.wording import in_text, of_exercise, overall
+from exercisegrader.reports.wording import in_text
 from exercisegrader.tables import places
 
 if TYPE_CHECKING:
