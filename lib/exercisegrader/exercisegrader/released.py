@@ -115,6 +115,10 @@ class Released:
         holder = self.holders.get(student)
         return {number: dict(texts) for number, texts in holder.numbers.items()} if holder else {}
 
+    def values(self, student: str, number: str) -> Mapping[str, str] | None:
+        """Return the numbers of a student in an exercise, {parameter: text}; None where none were released."""
+        return self.numbers(student).get(number)
+
     def with_release(self, student: Student, numbers: Numbers) -> Self:
         """Return the record with one more release; exercises of earlier ones that are gone from the module stay."""
         before = self.holders.get(student.id, Holder(student.id, {}, {}))
