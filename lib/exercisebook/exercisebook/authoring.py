@@ -26,6 +26,7 @@ from __future__ import annotations
 
 import functools
 import itertools
+import re
 import unicodedata
 from collections.abc import Callable, Mapping
 from types import ModuleType
@@ -151,6 +152,12 @@ def collected(module: ModuleType) -> dict[str, Exercise]:
             if one.number in found:
                 raise ValueError(f"there are two exercises {one.number} in {module.__name__}: expected one")
             found[one.number] = one
+    return in_order(found)
+
+
+def in_order(exercises: Mapping[str, Exercise]) -> dict[str, Exercise]:
+    """Return exercises in the order of their numbers; each knows the heading of the next one."""
+    found = dict(sorted(exercises.items(), key=lambda item: [int(part) for part in re.findall(r"\d+", item[0])]))
     for one, following in itertools.pairwise(found.values()):
         one.then = following.heading
     return found

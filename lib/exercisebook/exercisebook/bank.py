@@ -1,4 +1,4 @@
-"""The exercises of a book: a package with a module for each chapter, loaded when one of its exercises is asked for."""
+"""The exercises of a book: a package with a package for each chapter, loaded when one of its exercises is asked for."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import importlib
 import inspect
 import pkgutil
 import re
+from pathlib import Path
 from types import EllipsisType
 from typing import TYPE_CHECKING
 
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Bank:
-    """The exercises of a package whose modules are chapters, as ``ch01_introduction``.
+    """The exercises of a package of chapters, as ``ch01_introduction``, each a package with pages, or a module.
 
     Arguments:
         package: its name.
@@ -40,9 +41,17 @@ class Bank:
     @functools.cache  # noqa: B019
     def exercises(self, chapter: str) -> dict[str, Exercise]:
         """Return the exercises of a chapter in their order: {number: `Exercise`}. Raises KeyError for no chapter."""
-        from exercisebook.authoring import collected  # it loads the plug-ins, which may have banks themselves
+        from exercisebook.authoring import (
+            collected,
+            in_order,
+        )  # they load the plug-ins, which may have banks themselves
+        from exercisebook.pages import page
 
-        return collected(self._module(chapter))
+        module, found = self._module(chapter), {}
+        for folder in map(Path, getattr(module, "__path__", ())):
+            for file in sorted(folder.glob("*.md")):
+                found |= page.read(file)
+        return in_order(found | collected(module))
 
     def title(self, chapter: str) -> str:
         """Return number and title of a chapter, from the first line of its module. Raises KeyError for no chapter."""

@@ -1,9 +1,13 @@
-"""What control engineering adds to `exercisebook`: kinds of answers, and what is found in wrong ones."""
+"""What control engineering adds to `exercisebook`: kinds of answers, what is found in wrong ones, and PID settings."""
 
 import importlib
 import pkgutil
 
+from exercisebook.pages import formula
 from loopbook.exercises import diagnoses, kinds
+from loopbook.pid import PID
+
+formula.FUNCTIONS["PID"] = PID
 
 for _package in (kinds, diagnoses):  # what is in a module of its own is found by itself
     for _module in pkgutil.iter_modules(_package.__path__):

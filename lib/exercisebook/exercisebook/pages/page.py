@@ -1,0 +1,343 @@
+"""Exercises as pages of text: what is given, the formulas of its physics, what is asked, and mistakes as changes.
+
+The author's guide has pages to copy. Python stands beside a page, in a file of the same name, only for pictures and for
+what no formula says: formulas call its functions by name, and `picture` and `solution_picture` draw.
+"""
+
+from __future__ import annotations
+
+import ast
+import contextlib
+import functools
+import importlib.util
+import inspect
+import re
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import sympy
+
+from exercisebook.authoring import Exercise
+from exercisebook.kinds import MAKERS, Kind
+from exercisebook.pages import conversion, formula, parts
+from exercisebook.pages.graph import Graph
+from exercisebook.pages.parts import Front, PageError, PageText
+from exercisebook.parameters import Parameter, Value, between, call, choice
+from plainmath.validation import did_you_mean
+
+_RANGE = re.compile(r"(\S+) *(?:…|\.\.\.) *(\S+?)(?: +by +(\S+))?")
+_FORMULA = re.compile(r"(\w+(?:, *\w+)*) *=(?!=) *(.+?)(?:  +\[(.*)\])?")
+_CODE, _KIND = re.compile(r"`([^`]+)`[ ,:\n]*"), re.compile(r"[ ,:\n]*`([^`]+)`$")
+_PLACE = re.compile(r"(?<!\{)\{(\w+)\}(?!\})")
+#: Two ways to a value agree, and a change is none, within this fraction.
+SAME = 1e-6
+
+
+class Page(Exercise):
+    """An exercise that is written as a page.
+
+    Arguments:
+        page: its text by its parts.
+        functions: those of the Python beside it, by name.
+    Raises:
+        PageError: for what cannot be read.
+
+    Attributes:
+        graph: of its givens and formulas.
+        units: {name of a quantity: its unit}; None where it has none that is known.
+        changes: its mistakes, pairs of a sentence and {name of a quantity: formula for what it is by mistake}.
+    """
+
+    def __init__(self, page: PageText, functions: Mapping[str, Callable[..., Any]]):
+        self.page, self.functions = page, functions
+        parameters = dict(_givens(page))
+        self.units: dict[str, str | None] = {
+            name: None if any(isinstance(value, str) for value in one.values) else one.unit
+            for name, one in parameters.items()
+        }
+        self.graph = Graph(list(parameters), {}, functions)
+        self._conditions = self._read_formulas()
+        self._asked = dict(self._read_asked())
+        key, where = (_naming(function, parameters) for function in (self._key, self._holds))
+        key.__doc__ = page.statement.text
+        insight = " ".join(page.section("Insight").text.split())
+        super().__init__(page.number, page.title, page.points, where, key, insight)
+        self.changes = list(self._read_mistakes())
+        for of in (self._at_once, self._carried):
+            self.mistakes += [
+                (sentence, _naming(functools.partial(of, changes), parameters)) for sentence, changes in self.changes
+            ]
+        self.hints(*(" ".join(text.split()) for _, text in page.section("Hints").items()))
+        texts = [page.statement.text, self.insight, *self.rungs, *(sentence for sentence, _ in self.changes)]
+        self.shown = _naming(functools.partial(self._shown, "\n".join(texts)), parameters)
+        if solution := page.section("Solution").text:
+            self.worked = _naming(functools.partial(self._shown, solution), parameters, solution)
+        for attribute, name in (("drawn", "picture"), ("drawn_in_solution", "solution_picture")):
+            if name in functions:
+                draw = functools.partial(self._drawing, functions[name])
+                setattr(self, attribute, _naming(draw, parameters, inspect.getdoc(functions[name])))
+
+    # ---- reading
+
+    @contextlib.contextmanager
+    def _at(self, line):
+        """Say file and line of what cannot be read."""
+        try:
+            yield
+        except ValueError as error:
+            raise PageError(self.page.file, line, str(error)) from error
+
+    def _read(self, text, also=None):
+        """A formula of the quantities that are known so far, whose functions are those of the page or others."""
+        known = [*self.graph.givens, *self.graph.formulas, *getattr(self, "_asked", ())]
+        return formula.read(text, dict.fromkeys(known), self.functions if also is None else also)
+
+    def _read_formulas(self):
+        """Read the formulas into the graph, and return the conditions among them."""
+        conditions = []
+        for line, text in self.page.section("Formulas").lines():
+            with self._at(line):
+                if text.startswith("where "):
+                    conditions.append(self._read(text.removeprefix("where ")))
+                else:
+                    self._add(text)
+        return conditions
+
+    def _with_units(self, one, to=None):
+        """A formula with the factors that its units need, in a unit if one is said, and the text of its unit."""
+        tree, own = conversion.converted(one.tree, self.units)
+        if to is not None and own is not None and not isinstance(one.tree, ast.Constant):
+            tree = conversion.times(tree, conversion.factor(own, to))  # a number alone is one in the unit
+        return one.with_tree(tree), conversion.plain(own) if to is None else to
+
+    def _add(self, text):
+        found = _FORMULA.fullmatch(text)
+        if not found:
+            raise ValueError(f"{text!r} is no formula: expected one such as 'v = way/t  [m/s]', or 'where v > 0'")
+        names = [name.strip() for name in found[1].split(",")]
+        one, unit = self._with_units(self._read(found[2]), found[3])
+        for place, name in enumerate(names):
+            if name in self.graph.givens or name in self.graph.formulas:
+                raise ValueError(f"{name} is there already: expected another name for this quantity")
+            part = one.tree if len(names) == 1 else ast.Subscript(one.tree, ast.Constant(place))
+            self.graph.formulas[name], self.units[name] = one.with_tree(part), unit
+
+    def _read_asked(self):
+        for line, text in self.page.section("Asked").items():
+            with self._at(line):
+                name, kind = _CODE.match(text), _KIND.search(text)
+                if not name:
+                    raise ValueError(f"{text!r} names no quantity: expected one such as '`v` the speed of the car'")
+                has_kind = kind and kind.start() >= name.end() - 1
+                one = self._read(kind[1] if has_kind else "number()", {**MAKERS, **self.functions})
+                if not (isinstance(one.tree, ast.Call) and one.tree.func.id in {*MAKERS, *self.functions}):
+                    raise ValueError(f"{one.text} is no kind of answers: {did_you_mean(one.text, MAKERS)}")
+                if one.tree.func.id in MAKERS and name[1] not in self.graph.formulas:
+                    raise ValueError(f"{name[1]} has no formula: {did_you_mean(name[1], self.graph.formulas)}")
+                words = text[name.end() : kind.start()] if has_kind else text[name.end() :]
+                yield name[1], (one, " ".join(words.split()))
+
+    def _read_mistakes(self):
+        for line, text in self.page.section("Mistakes").items():
+            with self._at(line):
+                code = _CODE.match(text)
+                if not code or not text[code.end() :]:
+                    raise ValueError(
+                        f"{text!r} is no mistake: expected a change and a sentence, as '`c = 4` That is ...'"
+                    )
+                yield " ".join(text[code.end() :].split()), dict(map(self._read_change, code[1].split(";")))
+
+    def _read_change(self, text):
+        """A change of a mistake: with the numbers as they are, whatever their units."""
+        found = _FORMULA.fullmatch(text.strip())
+        known = dict.fromkeys([*self.graph.givens, *self.graph.formulas, *self._asked])
+        name = found[1] if found else text.strip()
+        if name not in known:
+            raise ValueError(f"{name!r} is no quantity of this page: {did_you_mean(name, known)}")
+        return name, self._read(found[2])
+
+    # ---- what follows for some values of the givens
+
+    def quantities(self, values: Mapping[str, Value]) -> dict[str, Any]:
+        """Return the values of all quantities for those of the givens."""
+        return self._quantities(tuple(values.items()))
+
+    @functools.lru_cache(maxsize=8)  # noqa: B019 - the exercises live as long as the program
+    def _quantities(self, givens):
+        return self.graph.values(dict(givens))
+
+    def _holds(self, **values):
+        needs_formulas = any(one.names & {*self.graph.formulas} for one in self._conditions)
+        among = self.quantities(values) if needs_formulas else values
+        return all(one(among, self.functions) for one in self._conditions)
+
+    def _key(self, **values):
+        quantities = self.quantities(values)
+        return {name: self._kind(name, *asked, quantities) for name, asked in self._asked.items()}
+
+    def _kind(self, name, one, words, quantities) -> Kind:
+        """What is asked under a name, with its key."""
+        maker = one.tree.func.id
+        if maker in self.functions:
+            return one(quantities, self.functions)
+        said = {part.arg for part in one.tree.keywords} | {"unit"} - {*inspect.signature(MAKERS[maker]).parameters}
+        usual = {"what": words or name} | ({} if "unit" in said else {"unit": self.units[name] or ""})
+
+        def make(*parts, **named):
+            named = usual | {word: _plain(value) for word, value in named.items()}
+            return MAKERS[maker](quantities[name], *map(_plain, parts), **named)
+
+        return one(quantities, {**self.functions, maker: make})
+
+    def _mistaken(self, changes, values):
+        """What is asked and is another value by a mistake: {name: wrong value}."""
+        right = self.quantities(values)
+        found = self.graph.changed(right, {name: one for name, one in changes.items() if name in right})
+        for name, one in changes.items():
+            if name not in right:  # a function of the page makes its key
+                found[name] = one(found, self.functions)
+        return {
+            name: found[name]
+            for name in self._asked
+            if found.get(name) is not None and not are_same(found[name], right.get(name))
+        }
+
+    def _at_once(self, changes, **values):
+        """What is wrong where the mistake is made: what it changes of all that is asked, or else all that follows."""
+        found = self._mistaken(changes, values)
+        return {name: value for name, value in found.items() if name in changes or not {*changes} & {*self._asked}}
+
+    def _carried(self, changes, **values):
+        """What follows from a mistake in what is asked, which is told after the mistakes of that quantity itself."""
+        found = self._mistaken(changes, values) if {*changes} & {*self._asked} else {}
+        return {name: value for name, value in found.items() if name not in changes}
+
+    def _shown(self, text, **values):
+        """The quantities that a text shows, each with its unit."""
+        names = {*_PLACE.findall(text)} - {*self.graph.givens}
+        found = {name: value for name, value in self.quantities(values).items() if name in names} if names else {}
+        return {
+            name: (value, unit) if (unit := self.units[name]) and formula.is_number(value) else value
+            for name, value in found.items()
+        }
+
+    def _drawing(self, draw, **values):
+        return call(draw, self.quantities(values))
+
+    def second_ways(self, values: Mapping[str, Value]) -> Iterator[tuple[str, bool]]:
+        """Yield what the section Check says, each with whether it holds for some values of the givens.
+
+        ``K = ...`` is another way to K; ``a == b``, to one part in a million, and other conditions hold as they are.
+        """
+        right = self.quantities(values)
+        for line, text in self.page.section("Check").lines():
+            with self._at(line):
+                found = _FORMULA.fullmatch(text)
+                if found:
+                    one = self._with_units(self._read(found[2]), self.units[found[1]])[0]
+                    yield text, are_same(one(right, self.functions), right[found[1]])
+                    continue
+                one = self._with_units(self._read(text))[0]
+                match one.tree:
+                    case ast.Compare(left, [ast.Eq()], [other]):
+                        sides = (one.with_tree(side)(right, self.functions) for side in (left, other))
+                        yield text, are_same(*sides)
+                    case _:
+                        yield text, bool(one(right, self.functions))
+
+
+def are_same(one: Any, other: Any) -> bool:
+    """Return whether two values of a quantity are the same, numbers to one part in a million.
+
+    >>> are_same(sympy.Rational(1, 3), 0.33333334), are_same("up", "down"), are_same([1, 2], [1, 2.0000001])
+    (True, False, True)
+    """
+    if isinstance(one, list) and isinstance(other, list):
+        return len(one) == len(other) and all(map(are_same, one, other))
+    if formula.is_number(one) and formula.is_number(other):
+        one, other = complex(one), complex(other)
+        return abs(one - other) <= SAME * abs(other)
+    if isinstance(one, sympy.Expr) and isinstance(other, sympy.Expr):
+        return bool(sympy.simplify(one - other) == 0)
+    return bool(np.all(one == other))
+
+
+def _plain(value):
+    """A number as Python has it; anything else as it is."""
+    if isinstance(value, sympy.Rational):
+        return int(value) if value.is_Integer else float(value)
+    return value
+
+
+def _givens(page: PageText) -> Iterator[tuple[str, Parameter]]:
+    """Read the table of the givens."""
+    for line, cells in page.section("Given").rows():
+        try:
+            name, values, unit, reference = [*cells, "", ""][:4]
+            if not name.isidentifier():
+                raise ValueError(f"{name!r} is no name of a quantity: expected one such as 'T_1'")
+            if found := _RANGE.fullmatch(values):
+                low, high, step = (one and formula.number(one) for one in found.groups())
+                example = formula.number(reference) if reference else None
+                yield name, between(low, high, unit, reference=example, step=step)
+            else:
+                words = [formula.word(one.strip()) for one in values.split(",")]
+                yield name, choice(*words, unit=unit, reference=formula.word(reference) if reference else None)
+        except ValueError as error:
+            raise PageError(page.file, line, str(error)) from error
+
+
+def _naming(
+    function: Callable[..., Any], parameters: Mapping[str, Parameter], text: str | None = None
+) -> Callable[..., Any]:
+    """The same function, which says that its arguments are the givens of the page."""
+
+    def named(**values):
+        return function(**values)
+
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    known = [inspect.Parameter(name, keyword, default=one) for name, one in parameters.items()]
+    named.__signature__ = inspect.Signature(known)  # type: ignore[attr-defined]
+    named.__doc__ = text
+    return named
+
+
+def read(file: Path) -> dict[str, Page]:
+    """Return the exercises of a file: {number: `Page`}. Raises `PageError`."""
+    return of(file.read_text(encoding="utf-8"), file.name, beside(file))[1]
+
+
+def beside(file: Path) -> dict[str, Callable[..., Any]]:
+    """Return the functions of the Python beside a page, which has its name."""
+    code = file.with_suffix(".py")
+    if not code.exists():
+        return {}
+    specification = importlib.util.spec_from_file_location(f"page_{file.stem}", code)
+    assert specification
+    assert specification.loader
+    module = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(module)
+    return {name: one for name, one in vars(module).items() if callable(one) and not name.startswith("_")}
+
+
+def of(
+    source: str, file: str, functions: Mapping[str, Callable[..., Any]] | None = None
+) -> tuple[Front | None, dict[str, Page]]:
+    """Return what stands above the pages of a text, and the exercises in it: {number: `Page`}.
+
+    Arguments:
+        source: the text.
+        file: its name, for errors.
+        functions: those of the Python beside it.
+    Raises:
+        PageError: for what cannot be read, and for two pages of one number.
+    """
+    front, texts = parts.read(source, file)
+    found: dict[str, Page] = {}
+    for one in texts:
+        if one.number in found:
+            raise PageError(file, one.line, f"there are two exercises {one.number}: expected one")
+        found[one.number] = Page(one, functions or {})
+    return front, found
