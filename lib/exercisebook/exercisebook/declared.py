@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import textwrap
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from exercisebook.parameters import Parameter
@@ -12,6 +12,7 @@ from plainmath.validation import is_number
 
 if TYPE_CHECKING:
     from exercisebook.kinds import Kind
+    from exercisebook.parameters import Value
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
@@ -96,6 +97,19 @@ class Declared:
         """Declare the picture of the solution, as that of the statement."""
         self.drawn_in_solution = function
         return function
+
+    def sources(self, name: str) -> Collection[str]:
+        """Return the names of all on which a quantity depends, where formulas say it."""
+        return ()
+
+    def following(self, values: Mapping[str, Value], answers: Mapping[str, float]) -> Mapping[str, Kind]:
+        """Return the key as it follows from other answers, where formulas say it: {name: kind}.
+
+        Arguments:
+            values: of the parameters.
+            answers: {name of an asked quantity: number}.
+        """
+        return {}
 
     def __repr__(self) -> str:
         return self.heading

@@ -101,7 +101,9 @@ class Question(Showing):
         stated = {float(text) for text in _NUMBERS.findall(self.filled_in(self.exercise.statement))}
         given = {float(self.values[name]) for name, one in parameters.items() if not isinstance(self.values[name], str)}
         shown = [value for value in sorted(stated - given) if len(f"{value:g}".strip("0.").replace(".", "")) > 1]
-        return Background(self.key, self.values, parameters, self.exercise.key, shown[:MOST_SHOWN])
+        following = functools.partial(self.exercise.following, self.values)
+        sources = {name: self.exercise.sources(name) for name in self.key}
+        return Background(self.key, self.values, parameters, self.exercise.key, shown[:MOST_SHOWN], sources, following)
 
     @functools.cached_property
     def stated(self) -> dict[str, Value]:
@@ -191,7 +193,7 @@ class Question(Showing):
             return filter(None, [insight, self.exercise.then and f"Next: {self.exercise.then}"])
         if name := self._whose(given):
             return [f"With the numbers of {name} all of that is right. Yours are those of {_person(self.student)}."]
-        if self._bare >= BARE and self.exercise.rungs:
+        if self._bare >= BARE and self.exercise.rungs and any(one.is_bare for one in response.verdicts):
             return [self.offer_of_a_hint]
         return []
 

@@ -6,7 +6,7 @@ import contextlib
 import copy
 import itertools
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -29,10 +29,6 @@ MOST_CHANGES, FEWER = 30, 18
 SECONDS = 1.5
 #: By these factors a given is wrong if its unit is mistaken, by what its unit contains.
 _UNIT_FACTORS = (("min", 60), ("h", 60), ("h", 3600), ("s", 60), ("%", 100), ("m", 1000), ("kg", 1000), ("mm", 1000))
-
-
-#: A given is found for a wrong number in so many steps, to this fraction.
-STEPS, FOUND = 5, 1e-5
 
 
 @dataclass(frozen=True)
@@ -77,6 +73,8 @@ class Background:
         parameters: {name: `Parameter`}, those alone that the statement shows.
         function: returns the key for such values.
         shown: more numbers that the statement shows.
+        sources: {name: names of all on which it depends}, by the formulas of the exercise.
+        following: returns what follows from answers, {name: number}, by the formulas of the exercise, {name: kind}.
 
     Attributes:
         name: the quantity in question; `of` sets it.
@@ -93,9 +91,11 @@ class Background:
         parameters: Mapping[str, Parameter] | None = None,
         function: Callable[..., Mapping[str, Kind]] | None = None,
         shown: Sequence[float] = (),
+        sources: Mapping[str, Collection[str]] | None = None,
+        following: Callable[[Mapping[str, float]], Mapping[str, Kind]] = lambda _: {},
     ):
         self.key, self.values, self.parameters, self.function = key or {}, values or {}, parameters or {}, function
-        self.shown = shown
+        self.shown, self.sources, self.following = shown, sources or {}, following
         self._keys: dict[tuple[tuple[str, Value], ...], Mapping[str, Kind]] = {}
         self._given_up: set[str] = set()  # that a key took too long
 
@@ -121,49 +121,19 @@ class Background:
         found = [self.answered(name) for name in before if self.name in self.key]
         return [one for one in found if one and not one.is_right]
 
+    @property
+    def depends_on(self) -> Collection[str]:
+        """The names of all quantities on which this one depends."""
+        return self.sources.get(self.name, ())
+
     def carried_on(self) -> Iterator[tuple[str, Kind]]:
-        """The key of this quantity with a given that explains a wrong number before it, and a sentence."""
-        wrong = [one for one in self.wrong_before if type(one.kind) is Number and one.answer]
-        pairs = list(itertools.product(wrong, self.numbers))
-        found: list[tuple[str, dict[str, Value]]] = []
-
-        def solve():
-            for one, given in pairs:
-                if (value := self._given_with(one, given)) is not None:
-                    found.append((follows(one.words), {given: value}))
-
-        if pairs:
-            self._in_time(solve)
-        yield from self._keys_with(found)
-
-    def _given_with(self, one, given):
-        """The value of a given with which a number would be what the reader has; None where none is found."""
-        points = [(float(self.values[given]), one.kind.key)]
-        guess = 1.25 * points[0][0]
-        for _ in range(STEPS):
-            key = self._key_with({given: sympy.Float(guess)}).get(one.name)
-            if type(key) is not Number or not np.isfinite(key.key):
-                return None
-            points.append((guess, key.key))
-            if abs(key.key - one.answer) <= FOUND * abs(one.answer):
-                return sympy.Float(guess)
-            (x, y), (x1, y1) = points[-2:]
-            if abs(y1 - y) <= 1e-9 * abs(y):
-                return None
-            ratios = [last / before for last, before in ((x1, x), (y1, y), (one.answer, y1)) if before]
-            if len(ratios) == 3 and min(ratios) > 0:  # a power of it, most often
-                guess = x1 * ratios[2] ** (np.log(ratios[0]) / np.log(ratios[1]))
-            else:
-                guess = x1 + (one.answer - y1) * (x1 - x) / (y1 - y)
-            if not 1e-3 < abs(guess / points[0][0]) < 1e3:
-                return None
-        return None
-
-    def with_twice(self) -> dict[str, Mapping[str, Kind]]:
-        """The keys of all quantities with twice each of the givens, {name of the given: keys}."""
-        changes = [{name: 2 * self.values[name]} for name in self.numbers]
-        list(self._keys_with([("", change) for change in changes]))
-        return {name: self._keys.get(_place(change), {}) for name, change in zip(self.numbers, changes, strict=True)}
+        """The key of this quantity as it follows from a wrong number before it, or from all of them, and a sentence."""
+        wrong = {one.name: one for one in self.wrong_before if type(one.kind) is Number}
+        several = [[*wrong]] if len(wrong) > 1 else []
+        for names in [*([name] for name in reversed(wrong)), *several]:
+            with contextlib.suppress(Exception), np.errstate(all="ignore"):  # not each wrong number leads somewhere
+                if found := self.following({name: wrong[name].answer for name in names}).get(self.name):
+                    yield follows(" and ".join(wrong[name].words for name in names)), found
 
     @property
     def givens(self) -> list[Amount]:
@@ -226,8 +196,8 @@ class Background:
 
 
 def follows(words: str) -> str:
-    """A sentence on a quantity that goes with a wrong one; which of the two comes first, is not known."""
-    return f"this fits what you have for {words}, which is not right either: one mistake may be behind both"
+    """A sentence on a quantity that follows by the right way from a wrong one before it."""
+    return f"this is right for what you have for {words}, which is not right"
 
 
 def _place(changed):

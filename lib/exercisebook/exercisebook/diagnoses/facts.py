@@ -133,7 +133,7 @@ def _dependence(kind, answer):
         grid[name] = np.asarray(points[name])[None, :]
         return np.broadcast_to(formula(**grid), (24, 24))
 
-    in_factor, in_term, absent = [], [], []
+    in_factor, in_term, absent, there = [], [], [], []
     for name in names:
         with np.errstate(all="ignore"):
             key, found = varied(kind.key, name), varied(answer, name)
@@ -142,6 +142,7 @@ def _dependence(kind, answer):
             return None
         if np.all(np.ptp(np.abs(key), axis=1) <= 1e-9 * np.abs(key[:, 0])):
             continue
+        there.append(name)
         if np.all(np.ptp(np.abs(found), axis=1) <= 1e-9 * np.abs(found[:, 0])):
             absent.append(name)
         if np.all(np.abs(ratio - ratio[:, :1]) <= 1e-6 * np.abs(ratio[:, :1])):
@@ -160,7 +161,7 @@ def _dependence(kind, answer):
         return Finding(f"it is right {listed(limits[:3])}, but not otherwise", is_mistake=False)
     right = in_factor or in_term
     if right:
-        off = [name for name in names if name not in right]
+        off = [name for name in there if name not in right]
         says = f"it depends on {listed(right)} in the right way"
         return Finding(says + (f"; look at {listed(off)}" if off else ""), is_mistake=False)
     return None

@@ -6,10 +6,9 @@ true by chance, comes first. A value is recognised within half a unit of the las
 
 from __future__ import annotations
 
-import functools
 import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal
 
@@ -17,7 +16,7 @@ from exercisebook import units
 from exercisebook.diagnoses.background import Amount, Background, follows
 from exercisebook.diagnoses.finding import Finding, explained
 from exercisebook.diagnoses.own_formulas import of_formulas
-from exercisebook.kinds import Kind, Number
+from exercisebook.kinds import Number
 from exercisebook.kinds.numeric import in_unit
 
 #: A value is recognised within this fraction of it, however many digits the answer has, and never beyond the other.
@@ -29,8 +28,6 @@ ENOUGH_DIGITS, NEAREST, NEAR_ENOUGH, EXACTLY = 3, 0.0004, 0.0021, 1e-6
 CARRIED = 0.012
 #: Whole numbers without unit up to this are taken for counts.
 MOST = 12
-#: A factor of a rule is not larger, nor one divided by it smaller.
-MOST_TIMES = 20
 #: An answer that is off by less than this is in the neighbourhood of the right one.
 NEARBY = 0.05
 #: A rounded answer is off by less than this.
@@ -39,21 +36,6 @@ ROUNDED = 0.3
 
 #: A wrong value and the sentence for it.
 Wrong = tuple[float, str]
-
-
-@dataclass(frozen=True)
-class Scaling:
-    """How a number goes with others.
-
-    Attributes:
-        twice: pairs of a given in words and how many times as large the key is with twice as much of it.
-        measures: the givens and the right numbers of its unit to which the key has a fixed ratio.
-        sources: the wrong numbers before it, in words, that depend on no given on which it does not depend.
-    """
-
-    twice: list[tuple[str, float]] = field(default_factory=list)
-    measures: list[Amount] = field(default_factory=list)
-    sources: list[str] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
@@ -67,9 +49,8 @@ class Case:
         givens: the numbers that are given.
         changed: pairs of the number that comes out with a change of the givens, either a likely change (True) or
             another one, and a sentence.
-        answered: pairs of an asked number before this one and what the reader has instead of it.
+        before: a wrong number before it, in words, on which it depends; empty where there is none.
         carried: pairs of the number that follows from a wrong one before it, and a sentence.
-        scaling: how the key goes with the givens and with other quantities.
         shown: more numbers that the statement shows.
     """
 
@@ -80,9 +61,8 @@ class Case:
     others: list[Amount] = field(default_factory=list)
     givens: list[Amount] = field(default_factory=list)
     changed: Callable[[bool], Iterator[Wrong]] = lambda _: iter(())
-    answered: list[tuple[Amount, float]] = field(default_factory=list)
+    before: str = ""
     carried: Callable[[], Iterator[Wrong]] = lambda: iter(())
-    scaling: Callable[[], Scaling] = lambda: Scaling()
     shown: Sequence[float] = ()
 
     def is_count(self, answer: float) -> bool:
@@ -126,7 +106,6 @@ def found_in(answer: float, case: Case, agrees: Callable[[float], bool] | None =
         or _carried_on(answer, case, agrees)
         or _in_tables(answer, case, agrees, (GIVENS,))
         or _rounded(answer, case)
-        or _measured(answer, case)
         or _in_tables(answer, case, agrees, (FACTORS,))
         or _plain(answer, case, agrees)
         or _in_tables(answer, case, agrees, (MORE,))
@@ -164,32 +143,9 @@ def _plain(answer, case, agrees):
 
 def _carried_on(answer, case, agrees):
     """Whether a number follows, by the right way, from a wrong one before it, which may be rounded."""
-    half_units = [_digits(answered)[1] / abs(answered) for _, answered in case.answered if answered]
-    if not answer:
-        return None
-    within = min(_digits(answer)[1] / abs(answer) + max(half_units, default=0), CARRIED)
-    for wrong, says in itertools.chain(_follows(case), case.carried()):
-        if math.isfinite(wrong) and not agrees(wrong) and abs(answer - wrong) <= max(within, NARROWEST) * abs(wrong):
+    for wrong, says in case.carried():
+        if math.isfinite(wrong) and not agrees(wrong) and abs(answer - wrong) <= CARRIED * abs(wrong):
             return Finding(says, is_mistake=False)
-    return None
-
-
-def _measured(answer, case):
-    """A simple factor other than that by which the key goes with a given, or with a number that is right."""
-    if answer * case.key <= 0:
-        return None
-    within = max(_digits(answer)[1] / abs(answer), NEAREST)
-    for one in case.scaling().measures:
-        of = one.words if one.is_had else f"the {one.words} of the question"
-        for ratio, says in ((answer / one.value, "{} times {}"), (one.value / answer, "{1} divided by {0}")):
-            simple = float(f"{ratio:.2g}")
-            if (
-                simple != 1
-                and 1 / MOST_TIMES < ratio < MOST_TIMES
-                and abs(simple - ratio) <= min(within, WIDEST) * ratio
-            ):
-                says = f"that is {says.format(f'{simple:g}', of)}: which factor belongs there?"
-                return Finding(says, is_mistake=False)
     return None
 
 
@@ -280,16 +236,21 @@ def _as_large_as(given):
     return f"it is off by a factor as large as the {given.words}: is that missing, or in it once too often?"
 
 
+def _is_common(value):
+    """Whether a factor is so common a number that it is some other quantity by chance."""
+    return float(value).is_integer() and abs(value) <= MOST
+
+
 def _with_given(case):
     for given in case.givens:
-        if given.value not in (0, 1, -1):
+        if not _is_common(given.value):
             yield case.key * given.value, _as_large_as(given)
             yield case.key / given.value, _as_large_as(given)
     for value in case.shown:
         yield case.key * value, _as_large_as(Amount(value, "", f"{value:g}"))
         yield case.key / value, _as_large_as(Amount(value, "", f"{value:g}"))
     for other in case.others:
-        if other.value not in (0, 1, -1):
+        if not _is_common(other.value):
             says = f"it is off by a factor as large as {other.words}: is that missing, or in it once too often?"
             yield case.key * other.value, says
             yield case.key / other.value, says
@@ -332,21 +293,6 @@ def _times(case, factors):
                 says = _as_large_as(given)
         yield case.key * factor, says
         yield case.key / factor, says
-
-
-def _follows(case):
-    """From a wrong number before it, by the right way."""
-    for other, answered in case.answered:
-        if not other.value or not answered or abs(answered / other.value - 1) < 0.03:
-            continue
-        says = follows(other.words)
-        for power in (1, -1, 2, 0.5):
-            ratio = answered / other.value
-            if ratio > 0:
-                yield case.key * ratio**power, says
-        if other.unit == case.unit:
-            yield case.key + (answered - other.value), says
-            yield case.key - (answered - other.value), says
 
 
 def _changed(case):
@@ -457,7 +403,7 @@ def in_general(answer: float, case: Case) -> Finding:
     if found := _rounded(answer, case):
         return found
     is_counted = case.unit == "" and float(key).is_integer() and float(answer).is_integer()
-    if key and not (is_counted or case.is_count(answer)) and not case.answered and abs(answer / key - 1) < NEARBY:
+    if key and not (is_counted or case.is_count(answer)) and not case.before and abs(answer / key - 1) < NEARBY:
         says = "that is off by a few percent, which is more than the rounding of a result"
         says += ": is a small term missing, or a value rounded or read off too coarsely on the way?"
         return Finding(says, is_mistake=False)
@@ -466,26 +412,9 @@ def in_general(answer: float, case: Case) -> Finding:
     return Finding(says + more, is_mistake=False, is_bare=True)
 
 
-_TIMES_AS_LARGE = {0.25: "a quarter as large", 0.5: "half as large", 4: "four times as large", 2: "twice as large"}
-
-
 def to_check(case: Case) -> str:
-    """Return what a reader can check in a wrong number: what it may follow from, or how it goes with the givens.
-
-    >>> to_check(Case(12, "s", "the time", scaling=lambda: Scaling([("3 K/%", 0.5), ("8 s", 2), ("5 s", 1.3)])))
-    '. A check: with twice the 3 K/% it is half as large, with twice the 8 s twice as large'
-    """
-    scaling = case.scaling()
-    if scaling.sources:
-        return f". What you have for {scaling.sources[0]}, is not right either: does this follow from it?"
-    found = [
-        (list(_TIMES_AS_LARGE).index(size), f"with twice the {words} {{}}{_TIMES_AS_LARGE[size]}")
-        for words, times in scaling.twice
-        for size in _TIMES_AS_LARGE
-        if abs(times / size - 1) < EXACTLY
-    ]
-    first, *others = [says for _, says in sorted(found)[:2]] or [""]
-    return ". A check: " + ", ".join([first.format("it is "), *(says.format("") for says in others)]) if first else ""
+    """Return what a reader can look at: a number before it that is not right either; empty where there is none."""
+    return f". What you have for {case.before}, is not right either: look at it first" if case.before else ""
 
 
 def size_of(answer: float, case: Case) -> str:
@@ -526,63 +455,12 @@ def _asked_amount(name, kind, background):
     return Amount(kind.key, kind.unit, one.words if one and is_swapped else _ANOTHER)
 
 
-def wrong_before(background: Background) -> list[tuple[Amount, float]]:
-    """The numbers asked for before this one that the reader has answered, and not rightly."""
-    return [
-        (Amount(one.kind.key, one.kind.unit, one.words), one.answer)
-        for one in background.wrong_before
-        if type(one.kind) is Number
-    ]
-
-
-def scaling(background: Background, key: float, unit: str, of: Callable[[Mapping[str, Kind]], float]) -> Scaling:
-    """How a number of a key goes with the givens, and to which of them, and of the right numbers, it has a fixed ratio.
-
-    Arguments:
-        background: with the other quantities.
-        key, unit: of the number.
-        of: returns the number for a changed key.
-    """
-
-    def times(changed, number, usual):
-        try:
-            return number(changed) / usual if usual else math.nan
-        except (KeyError, AttributeError, TypeError):  # the changed key has none
-            return math.nan
-
-    def scaled(name, value):
-        """How many times as large a number is with twice each of the givens."""
-        number = of if name == background.name else lambda found: found[name].key
-        return {given: times(keys, number, value) for given, keys in changed.items()}
-
-    changed = background.with_twice()
-    mine = scaled(background.name, key)
-    if all(abs(value - 1) < EXACTLY for value in mine.values()):
-        return Scaling()
-    twice = [(background.words(given), value) for given, value in mine.items() if math.isfinite(value)]
-    theirs = {name: scaled(name, other.value) for name, other in others_asked(background)}
-    measures = [
-        other
-        for name, other in others_asked(background)
-        if other.is_had and other.unit == unit and _are_near(mine, theirs[name])
-    ]
-    measures += [
-        one
-        for name, one in zip(background.numbers, background.givens, strict=True)
-        if one.unit == unit and one.value and _are_near(mine, {given: 1 + (given == name) for given in mine})
-    ]
-    moved = {given for given, value in mine.items() if abs(value - 1) > EXACTLY}
-    sources = [
-        one.words
-        for one in background.wrong_before
-        if one.name in theirs
-        and {given for given, value in theirs[one.name].items() if abs(value - 1) > EXACTLY} <= moved
-    ]
-    return Scaling(twice, measures, sources)
-
-
-def _are_near(some, others):
-    return all(abs(value - others[name]) < EXACTLY for name, value in some.items())
+def wrong_before(background: Background) -> str:
+    """The last wrong number before this one on which it depends, in words; empty where there is none."""
+    for one in reversed(background.wrong_before):
+        if type(one.kind) is Number and one.name in background.depends_on:
+            return one.words
+    return ""
 
 
 @explained.register
@@ -598,13 +476,10 @@ def _(kind: Number, answer: float, background: Background) -> Finding:
         others=[amount for _, amount in others_asked(background)],
         givens=background.givens,
         changed=lambda likely: numbers(background.changed_keys(likely)),
-        answered=wrong_before(background),
+        before=wrong_before(background),
         carried=lambda: itertools.chain(
             ((own, follows(words)) for words, own in of_formulas(kind.key, background)),
             numbers(background.carried_on()),
-        ),
-        scaling=functools.cache(
-            lambda: scaling(background, kind.key, kind.unit, lambda keys: keys[background.name].key)
         ),
         shown=background.shown,
     )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import itertools
 import math
 from collections.abc import Iterator
 
@@ -15,8 +14,6 @@ from exercisebook.kinds import Expression, Kind, TimeFunction
 
 #: A number belongs to a formula if it is this near to what the right formula gives.
 SAME = 1e-4
-#: So many ways to put givens into a formula are tried at most.
-MOST_WAYS = 400
 
 
 def of_formulas(key: float, background: Background) -> Iterator[tuple[str, float]]:
@@ -49,11 +46,10 @@ def _(kind: TimeFunction, one: Answered, background: Background) -> Iterator[tup
 
 @numbers_of.register
 def _(kind: Expression, one: Answered, background: Background) -> Iterator[tuple[float, float]]:
-    givens = [given.value for given in background.givens]
-    ways = list(itertools.islice(itertools.permutations(givens, len(kind.symbols)), MOST_WAYS))
-    if ways:
-        values = dict(zip(kind.symbols, np.array(ways, float).T, strict=True))
-        yield from zip(_real(kind.key, **values), _real(one.answer, **values), strict=True)
+    values = {name: background.values.get(name) for name in kind.symbols}
+    if values and not any(value is None or isinstance(value, str) for value in values.values()):
+        numbers = {name: np.array([float(value)]) for name, value in values.items()}
+        yield from zip(_real(kind.key, **numbers), _real(one.answer, **numbers), strict=True)
 
 
 def _real(formula, **values):

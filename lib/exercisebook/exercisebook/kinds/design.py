@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from exercisebook.kinds.kind import Kind, Tried
-from exercisebook.kinds.numeric import in_unit
 from exercisebook.reading import Unreadable
 from exercisebook.timeout import limited
 
@@ -201,10 +200,7 @@ class Design(Kind):
         return self.example.is_value(answer, wrong)
 
     def hint(self, answer: Any) -> str:
-        """Say which criteria are not met, and how far it is; or in which other unit it would meet them."""
-        for unit, meant in self.example.in_other_units(answer):
-            if not self.complaints(meant):
-                return f"that would be right {in_unit(unit)}; asked: {self.example.asked}"
+        """Say which criteria are not met, and how far it is."""
         return "; ".join(self.complaints(answer))
 
 

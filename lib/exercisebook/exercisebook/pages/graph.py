@@ -55,13 +55,12 @@ class Graph:
         return found
 
     def sources(self, name: str) -> frozenset[str]:
-        """Return the givens on which a quantity depends.
+        """Return the names of all quantities, givens and others, on which a quantity depends.
 
         >>> from exercisebook.pages.formula import read
         >>> graph = Graph(["a", "x"], {"b": read("2*a", "a", {}), "c": read("b + 1", "ab", {})}, {})
         >>> sorted(graph.sources("c"))
-        ['a']
+        ['a', 'b']
         """
-        if name in self.givens:
-            return frozenset([name])
-        return frozenset().union(*map(self.sources, self.formulas[name].names))
+        direct = self.formulas[name].names if name in self.formulas else frozenset()
+        return direct.union(*map(self.sources, direct))

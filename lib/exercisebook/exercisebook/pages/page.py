@@ -177,6 +177,20 @@ class Page(Exercise):
         quantities = self.quantities(values)
         return {name: self._kind(name, *asked, quantities) for name, asked in self._asked.items()}
 
+    def sources(self, name: str) -> frozenset[str]:
+        """Return the names of all quantities on which one depends."""
+        return self.graph.sources(name)
+
+    def following(self, values: Mapping[str, Value], answers: Mapping[str, float]) -> dict[str, Kind]:
+        """Return the key as it follows from other answers, by the formulas: {name: kind}.
+
+        Arguments:
+            values: of the givens.
+            answers: {name of an asked quantity: number}.
+        """
+        changed = self.graph.changed(self.quantities(values), answers)
+        return {name: self._kind(name, *asked, changed) for name, asked in self._asked.items() if name not in answers}
+
     def _kind(self, name, one, words, quantities) -> Kind:
         """What is asked under a name, with its key."""
         maker = one.tree.func.id

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from typing import Any
 
 import sympy
@@ -14,7 +13,6 @@ from exercisebook.diagnoses.numbers import (
     found_in,
     in_general,
     others_asked,
-    scaling,
     size_of,
     to_check,
     wrong_before,
@@ -66,17 +64,11 @@ def _in_part(kind, name, answer, background):
         if other != name and getattr(kind.key, other) not in (0, sympy.oo)
     ]
 
-    def part(keys):
-        return float(getattr(keys[background.name].key, name))
-
     def changed(likely):
         for how, other in background.changed_keys(likely):
             if isinstance(other, Settings) and other.key.form == kind.key.form and getattr(other.key, name).is_finite:
                 yield float(getattr(other.key, name)), how
 
-    # a derivative time is often a part of the integral time
-    before = [other for other in others if (name, other.words, other.is_had) == ("Td", "Ti", False)]
-    answered = [(other, float(answer.Ti)) for other in before if answer.Ti.is_finite]
     case = Case(
         float(key),
         _unit(kind, name),
@@ -85,8 +77,7 @@ def _in_part(kind, name, answer, background):
         others + [amount for _, amount in others_asked(background)],
         background.givens,
         changed,
-        [*wrong_before(background), *answered],
-        scaling=functools.cache(lambda: scaling(background, float(key), _unit(kind, name), part)),
+        wrong_before(background),
         shown=background.shown,
     )
     named = found_in(float(value), case) or in_general(float(value), case)
