@@ -1,4 +1,4 @@
-"""The author's guide is true: a class can have its assignments."""
+"""The author's guide is true: its page, and the pages for each kind, are assignments that a class can have."""
 
 import re
 from pathlib import Path
@@ -7,41 +7,47 @@ import pytest
 
 from exercisebook.judging import RIGHT
 from exercisegrader import trial
-from exercisegrader.assignment import Assignment
+from exercisegrader.assignment import Assignment, load
 from exercisegrader.release import notebook
 from exercisegrader.student import Student
 from exercisegrader.student_side.answer_sheet import FORMS
+from loopbook.exercises.kinds import MAKERS
 
-GUIDE = (Path(__file__).parents[2] / "docs" / "authors.md").read_text(encoding="utf-8")
-#: The assignments of the guide by the headings above them: {kind of answers: text of the module}.
-ASSIGNMENTS = dict(
-    re.findall(
-        r"^### (\w+)\n.*?^```python\n(.*?)^```$",
-        GUIDE.partition("\n## A whole assignment for each kind\n")[2],
-        re.MULTILINE | re.DOTALL,
-    )
+ROOT = Path(__file__).parents[2]
+GUIDE = (ROOT / "docs" / "authors.md").read_text(encoding="utf-8")
+PAGE = Assignment.of(
+    re.search(r"^````markdown\n(.*?)^````$", GUIDE, re.MULTILINE | re.DOTALL)[1], "heater", Path("heater.md")
 )
-STUDENTS = [f"s{number:03}" for number in range(24)]
+KINDS = load(ROOT / "examples" / "kinds" / "kinds.md")
+STUDENTS = [f"s{number:03}" for number in range(12)]
+EXERCISES = [(PAGE, number) for number in PAGE.exercises] + [(KINDS, number) for number in KINDS.exercises]
 
 
-@pytest.mark.parametrize("kind", ASSIGNMENTS)
-def test_an_assignment_of_the_guide_asks_for_its_kind_and_surprises_nobody(kind):
-    assignment = Assignment.of(ASSIGNMENTS[kind], kind)
-    asked = [one.maker for number in assignment.exercises for one in assignment.question("s1", number).key.values()]
-    assert kind in asked
-    for found in trial.try_all(assignment, STUDENTS, seconds=60):
+def test_each_usual_kind_has_a_page():
+    asked = {one.maker for number in KINDS.exercises for one in KINDS.question("s1", number).key.values()}
+    assert {*MAKERS} - asked <= {"sequential_chart", "instrument_diagram", "span"}
+
+
+@pytest.mark.parametrize(("assignment", "number"), EXERCISES)
+def test_a_page_of_the_guide_surprises_nobody(assignment, number):
+    for found in trial.try_all(trial.only(assignment, [number]), STUDENTS, seconds=120):
         assert not [one for one in found.surprises if one.level != trial.NOTE], trial.as_text(found)
 
 
-@pytest.mark.parametrize("kind", ASSIGNMENTS)
-def test_an_assignment_of_the_guide_can_be_released_and_answered(kind):
-    assignment = Assignment.of(ASSIGNMENTS[kind], kind)
+@pytest.mark.parametrize("number", PAGE.exercises)
+@pytest.mark.parametrize("student", STUDENTS)
+def test_the_key_of_the_page_of_the_guide_has_another_way(number, student):
+    question = PAGE.question(student, number)
+    assert {*dict(question.exercise.second_ways(question.values)).values()} == {True}
+
+
+@pytest.mark.parametrize(("assignment", "number"), EXERCISES)
+def test_a_page_of_the_guide_can_be_released_and_answered(assignment, number):
     made = notebook(assignment, Student("s1", "Ada"))
     assert any("sheet.answer(" in cell.source for cell in made.cells)
-    for number in assignment.exercises:
-        variant = trial.Variant("s1", 0, assignment.question("s1", number), 0.0)
-        for name, one in variant.key.items():
-            form = eval(one.asking, dict(FORMS))
-            assert variant.judged(name, one.as_given).status == RIGHT
-            assert form.read(one.as_given)
-            assert (form.key, form.asking) == (None, one.asking)
+    variant = trial.Variant("s1", 0, assignment.question("s1", number), 0.0)
+    for name, one in variant.key.items():
+        form = eval(one.asking, dict(FORMS))
+        assert one.by_hand or variant.judged(name, one.as_given).status == RIGHT
+        assert one.by_hand or form.read(one.as_given)
+        assert (form.key, form.asking) == (None, one.asking)

@@ -1,6 +1,7 @@
-"""Assignments: a Python module in the format of the exercises, and the variants that it gives to students.
+"""Assignments: pages of exercises, or a Python module in their format, and the variants that it gives to students.
 
-Its docstring is the title and, below it, an introduction in Markdown; `SECRET` is what the variants are drawn from.
+Above the pages stand title and introduction, and a block of TOML with the secret that the variants are drawn from. Of a
+module its docstring is title and introduction, and `SECRET` is that.
 """
 
 from __future__ import annotations
@@ -21,7 +22,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
-from exercisebook.authoring import Exercise, collected
+from exercisebook.authoring import Exercise, Late, collected
+from exercisebook.pages import page
+from exercisebook.pages.parts import PageError
 from exercisebook.parameters import of_text
 from exercisegrader import GradingError
 from exercisegrader.lateness import Policy, policy_of, without_dates
@@ -31,6 +34,8 @@ if TYPE_CHECKING:
     from exercisebook.question import Question
 
 SHORTEST_SECRET = 16
+#: The ending of a file with pages, and what its block of TOML may say.
+PAGES, SETTINGS = ".md", ("secret", "due", "late")
 _NUMBER = re.compile(r"\w[\w.-]{0,19}")
 
 
@@ -43,8 +48,8 @@ class Assignment:
         title, introduction: from the docstring.
         secret: what the variants are drawn from.
         exercises: {number: `Exercise`}, in their order.
-        source: the text of the module.
-        path: of the module; None where it was made from a text.
+        source: the text of the file.
+        path: of the file; None where it was made from a text.
         policy: when it is due and what it costs to be late, from `DUE` and `LATE`; None where there is no `DUE`.
     """
 
@@ -59,9 +64,10 @@ class Assignment:
 
     @classmethod
     def of(cls, source: str, name: str, path: Path | None = None) -> Self:
-        """Return the assignment that the text of a module is. The text is run: it is the instructor's.
+        """Return the assignment that a text is. That of a module is run: it is the instructor's.
 
         Arguments:
+            source: the text of a module, or pages, as the ending of the path says.
             name: of the assignment.
             path: the file that it came from; modules beside it can be imported.
         Raises:
@@ -79,25 +85,30 @@ class Assignment:
         >>> springs.title, springs.question("s1001", "1").values == springs.question("s1002", "1").values
         ('Springs', False)
         """
-        module = _run(source, name, path)
+        is_of_pages = path is not None and path.suffix == PAGES
+        file = f"{name}{PAGES if is_of_pages else '.py'}"
+        module = _paged(source, name, path) if is_of_pages else _run(source, name, path)
         title, _, introduction = inspect.cleandoc(module.__doc__ or "").partition("\n")
         if not title.strip():
-            raise GradingError(f"{name}.py has no docstring: expected the title of the assignment in its first line")
+            raise GradingError(f"{file} has no docstring: expected the title of the assignment in its first line")
         secret = getattr(module, "SECRET", None)
         if not (isinstance(secret, str) and len(secret) >= SHORTEST_SECRET):
             raise GradingError(
-                f"{name}.py has no SECRET of at least {SHORTEST_SECRET} characters, from which the variants are "
-                f'drawn: write SECRET = "{secrets.token_hex(16)}" into it'
+                f"{file} has no {'secret' if is_of_pages else 'SECRET'} of at least {SHORTEST_SECRET} characters, from "
+                f"which the variants are drawn: write {'secret' if is_of_pages else 'SECRET'} = "
+                f'"{secrets.token_hex(16)}" into it'
             )
         try:
             exercises = collected(module)
         except ValueError as problem:
-            raise GradingError(f"{name}.py: {problem}") from None
+            raise GradingError(f"{file}: {problem}") from None
         if not exercises:
-            raise GradingError(f"{name}.py has no exercise: expected at least one, a function with @exercise(...)")
+            raise GradingError(
+                f"{file} has no exercise: expected at least one, a page or a function with @exercise(...)"
+            )
         for exercise in exercises.values():
-            _check(exercise, name)
-        return cls(name, title.strip(), introduction.strip(), secret, exercises, source, path, policy_of(module, name))
+            _check(exercise, file)
+        return cls(name, title.strip(), introduction.strip(), secret, exercises, source, path, policy_of(module, file))
 
     @property
     def points(self) -> float:
@@ -146,15 +157,35 @@ class Assignment:
 def load(path: str | Path) -> Assignment:
     """Return the assignment in a file. Raises GradingError in a sentence, with the line where the module fails."""
     path = Path(path)
-    if path.suffix != ".py":
-        raise GradingError(f"{path} is not an assignment: expected a Python module, as heater.py")
+    if path.suffix not in (PAGES, ".py"):
+        raise GradingError(f"{path} is not an assignment: expected pages, as heater.md, or a Python module, heater.py")
     try:
         source = path.read_text(encoding="utf-8-sig")
     except OSError as problem:
         raise GradingError(f"{path} cannot be read: {problem.strerror}") from None
     except UnicodeDecodeError:
-        raise GradingError(f"{path} is not text in UTF-8: expected a Python module") from None
+        raise GradingError(f"{path} is not text in UTF-8: expected one") from None
     return Assignment.of(source, path.stem, path)
+
+
+def _paged(source, name, path):
+    """What a module of these pages would hold."""
+    file, module = f"{name}{PAGES}", types.ModuleType(f"assignment {name}")
+    try:
+        with _imported(module, path):
+            front, exercises = page.of(source, file, page.beside(path))
+        if front is None:
+            raise PageError(file, 1, "there is no title above the exercises: expected one, as '# Filling tanks'")
+        settings = dict(front.settings)
+        if unknown := [word for word in settings if word not in SETTINGS]:
+            raise PageError(file, 1, f"there is no setting {unknown[0]!r}: {did_you_mean(unknown[0], SETTINGS)}")
+        if "late" in settings:
+            settings["late"] = Late(**settings["late"])
+    except (TypeError, ValueError) as problem:
+        raise GradingError(str(problem)) from None
+    module.__doc__ = f"{front.title}\n{front.introduction}"
+    vars(module).update({word.upper(): value for word, value in settings.items()} | exercises)
+    return module
 
 
 def _run(source, name, path):
@@ -187,15 +218,15 @@ def _imported(module, path):
         sys.modules.pop(module.__name__, None)
 
 
-def _check(exercise, name):
+def _check(exercise, file):
     if not (isinstance(exercise, Exercise) and isinstance(exercise.number, str) and _NUMBER.fullmatch(exercise.number)):
         raise GradingError(
-            f"{name}.py: the number of an exercise is {exercise.number!r}: expected a text such as '1' or '2b', of "
+            f"{file}: the number of an exercise is {exercise.number!r}: expected a text such as '1' or '2b', of "
             "at most 20 letters, digits, dots and hyphens"
         )
     points = exercise.points
     if isinstance(points, bool) or not isinstance(points, int | float) or not 0 < points < float("inf"):
-        raise GradingError(f"{name}.py: exercise {exercise.number} has {points!r} points: expected a positive number")
+        raise GradingError(f"{file}: exercise {exercise.number} has {points!r} points: expected a positive number")
 
 
 def check_names(question: Question) -> None:

@@ -34,7 +34,9 @@ if TYPE_CHECKING:
 #: How the sentence on an extension begins.
 IN_TIME = "in time by"
 _MOMENT = re.compile(r"(\d{4}-\d\d-\d\d)(?:[ T](\d\d:\d\d)(:\d\d)?)?(?: ?(Z|[+-]\d\d:\d\d)| ([A-Za-z]\S*))?", re.ASCII)
-_DATES = re.compile(r"""^(?:DUE = (["'])[^"'\n]*\1|LATE = Late\([^()]*\))[ \t]*(?:#.*)?\n""", re.MULTILINE)
+_DATES = re.compile(
+    r"""^(?:(?:DUE|due) = (["'])[^"'\n]*\1|LATE = Late\([^()]*\)|late = \{[^{}]*\})[ \t]*(?:#.*)?\n""", re.MULTILINE
+)
 
 
 def moment(text: str, zone: datetime.tzinfo | None = None) -> datetime.datetime:
@@ -116,7 +118,7 @@ class Policy:
         return f"due {written(self.due)}; late: {self.late or 'costs nothing'}"
 
 
-def policy_of(module: object, name: str) -> Policy | None:
+def policy_of(module: object, file: str) -> Policy | None:
     """Return the policy of an assignment's module; None where it says nothing of it.
 
     Raises GradingError for a `DUE` that cannot be read, a `LATE` of another form, and a `LATE` without a `DUE`.
@@ -126,16 +128,16 @@ def policy_of(module: object, name: str) -> Policy | None:
         return None
     if not isinstance(due, str):
         said = "there is LATE and no DUE" if due is None else f"DUE is {harmless(repr(due))}"
-        raise GradingError(f'{name}.py: {said}: expected a text such as "2026-12-01 23:59 Europe/Berlin"')
+        raise GradingError(f'{file}: {said}: expected a text such as "2026-12-01 23:59 Europe/Berlin"')
     if late is not None and not isinstance(late, Late):
         raise GradingError(
-            f'{name}.py: LATE is {harmless(repr(late))}: expected one as Late(percent=10, per="day", grace_minutes=15, '
+            f'{file}: LATE is {harmless(repr(late))}: expected one as Late(percent=10, per="day", grace_minutes=15, '
             "at_most=50, accepted_days=7), with Late from exercisebook.authoring"
         )
     try:
         return Policy(moment(due), late)
     except ValueError as problem:
-        raise GradingError(f"{name}.py: DUE: {problem}") from None
+        raise GradingError(f"{file}: DUE: {problem}") from None
 
 
 def without_dates(source: str) -> str:

@@ -231,6 +231,8 @@ def read(text: str, known: Mapping[str, Any], functions: Mapping[str, Any]) -> F
                 for part in (*arguments, *(one.value for one in keywords)):
                     look(part)
                 return
+            case ast.Call():
+                refuse(f"{ast.unparse(node.func)} is no function that a formula may call")
             case ast.Attribute(_, name) if name.startswith("_"):
                 refuse(f"{name!r} is no name of a quantity")
         operators = [getattr(node, "op", None), *getattr(node, "ops", ())]

@@ -29,7 +29,7 @@ from plainmath.validation import did_you_mean
 
 _RANGE = re.compile(r"(\S+) *(?:…|\.\.\.) *(\S+?)(?: +by +(\S+))?")
 _FORMULA = re.compile(r"(\w+(?:, *\w+)*) *=(?!=) *(.+?)(?:  +\[(.*)\])?")
-_CODE, _KIND = re.compile(r"`([^`]+)`[ ,:\n]*"), re.compile(r"[ ,:\n]*`([^`]+)`$")
+_CODE, _KIND = re.compile(r"`([^`]+)`[ ,:\n]*"), re.compile(r"[ ,:\n]*`([^`]+)`\.?$")
 _PLACE = re.compile(r"(?<!\{)\{(\w+)\}(?!\})")
 #: Two ways to a value agree, and a change is none, within this fraction.
 SAME = 1e-6
@@ -127,17 +127,17 @@ class Page(Exercise):
     def _read_asked(self):
         for line, text in self.page.section("Asked").items():
             with self._at(line):
-                name, kind = _CODE.match(text), _KIND.search(text)
+                name = _CODE.match(text)
                 if not name:
                     raise ValueError(f"{text!r} names no quantity: expected one such as '`v` the speed of the car'")
-                has_kind = kind and kind.start() >= name.end() - 1
-                one = self._read(kind[1] if has_kind else "number()", {**MAKERS, **self.functions})
+                words = text[name.end() :]
+                kind = _KIND.search(words)
+                one = self._read(kind[1] if kind else "number()", {**MAKERS, **self.functions})
                 if not (isinstance(one.tree, ast.Call) and one.tree.func.id in {*MAKERS, *self.functions}):
                     raise ValueError(f"{one.text} is no kind of answers: {did_you_mean(one.text, MAKERS)}")
                 if one.tree.func.id in MAKERS and name[1] not in self.graph.formulas:
                     raise ValueError(f"{name[1]} has no formula: {did_you_mean(name[1], self.graph.formulas)}")
-                words = text[name.end() : kind.start()] if has_kind else text[name.end() :]
-                yield name[1], (one, " ".join(words.split()))
+                yield name[1], (one, " ".join((words[: kind.start()] if kind else words).split()))
 
     def _read_mistakes(self):
         for line, text in self.page.section("Mistakes").items():
@@ -333,7 +333,8 @@ def beside(file: Path) -> dict[str, Callable[..., Any]]:
     assert specification.loader
     module = importlib.util.module_from_spec(specification)
     specification.loader.exec_module(module)
-    return {name: one for name, one in vars(module).items() if callable(one) and not name.startswith("_")}
+    found = {name: one for name, one in vars(module).items() if callable(one) and not name.startswith("_")}
+    return {name: one for name, one in found.items() if one not in MAKERS.values()}  # these are there in any case
 
 
 def of(
