@@ -10,7 +10,8 @@ GUIDE = Path(__file__).parents[1] / "CONTRIBUTING.md"
 
 def example(heading, language="python"):
     """The first block of code under a heading of CONTRIBUTING.md."""
-    section = GUIDE.read_text(encoding="utf-8").partition(f"\n## {heading}\n")[2].partition("\n## ")[0]
+    text = re.sub(r"^````.*?^````$", "", GUIDE.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
+    section = text.partition(f"\n## {heading}\n")[2].partition("\n## ")[0]
     return textwrap.dedent(re.search(rf"```{language}\n(.*?)```", section, re.DOTALL)[1])
 
 
@@ -24,6 +25,14 @@ def run(heading, known=()):
     names = dict(known)
     exec(compile(example(heading), heading, "exec"), names)
     return names
+
+
+def exercise():
+    """The exercise that contributors are shown: its page, and the Python beside it."""
+    from exercisebook.pages import page
+
+    text = re.search(r"^````markdown\n(.*?)^````$", GUIDE.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)[1]
+    return page.of(text, "CONTRIBUTING.md", run("Add an exercise"))[1]["10.11"]
 
 
 def kind():

@@ -17,7 +17,7 @@ from exercisebook import filling
 from exercisebook.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG, judge
 from exercisebook.parameters import call
 from judged import NOT_TO_BE_JUDGED
-from loopbook.exercises import authoring, bank, kinds
+from loopbook.exercises import bank, kinds
 from loopbook.pid import PID
 
 #: The tests of all exercises, each of a claim.
@@ -304,7 +304,7 @@ def _finite(kind):
 
 # The exercise that contributors are shown.
 
-HEATER = contributing.run("Add an exercise", vars(authoring))["air_heater"]
+HEATER = contributing.exercise()
 
 
 @pytest.mark.parametrize("claim", CLAIMS, ids=lambda claim: claim.__name__)

@@ -1,4 +1,4 @@
-"""Exercises as pages: what is read, what follows from the graph of formulas, and what is said of a page that is wrong."""
+"""Exercises as pages: what is read, what follows from the formulas, and what is said of a page that is wrong."""
 
 import re
 
@@ -153,8 +153,8 @@ def test_python_beside_a_page_is_called_by_its_name():
         ("| q | 2 … 9 by 1 | L/s | 4 |", "| q | 2 … 9 by 1 | apples | 4 |", 10, "'apples' is not a unit"),
         ("| q | 2 … 9 by 1 | L/s | 4 |", "| q | 9 … 2 | L/s | 4 |", 10, "the range is 9 to 2"),
         ("V/q                 [min]", "V/Q                 [min]", 18, "V/Q: there is no 'Q': did you mean 'q'?"),
-        ("A*h                 [m³]", "A*h                 [s]", 16, "meter^3 is not a unit of the same quantity as second"),
-        ("A*h                 [m³]", "A + h                 [m³]", 16, "meter is not a unit of the same quantity as meter^2"),
+        ("A*h                 [m³]", "A*h                 [s]", 16, "meter^3 is not a unit of the same"),
+        ("A*h                 [m³]", "A + h                 [m³]", 16, "meter is not a unit of the same"),
         ("A*h                 [m³]", "A*h.__class__                 [m³]", 16, "'__class__' is no name of a quantity"),
         ("A*h                 [m³]", "[x for x in A]                 [m³]", 16, "is nothing that a formula may say"),
         ("A*h                 [m³]", "open(A)                 [m³]", 16, "there is no function 'open'"),
