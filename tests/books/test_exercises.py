@@ -15,6 +15,7 @@ import contributing
 from draws import STUDENTS, of_the_day
 from exercisebook import filling
 from exercisebook.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG, judge
+from exercisebook.pages.page import Page
 from exercisebook.parameters import call
 from judged import NOT_TO_BE_JUDGED
 from loopbook.exercises import bank, kinds
@@ -286,6 +287,20 @@ def test_variants(exercise):
             for sentence, wrong in question.mistakes[name]:
                 answer, _ = kind.read(wrong)
                 assert not kind.agrees(answer), f"{name} = {wrong} passes for {question.values}: {sentence}"
+
+
+@each_exercise
+def test_the_key_of_a_page_has_a_second_way(exercise):
+    if not isinstance(exercise, Page):
+        return
+    for student in of_the_day(STUDENTS, 3, exercise.number):
+        question = exercise.question.__wrapped__(exercise, student)
+        ways = list(exercise.second_ways(question.values))
+        for text, holds in ways:
+            assert holds, f"{text} does not hold for {question.values}"
+    for name, kind in exercise.question().key.items():
+        if isinstance(kind, kinds.Number | kinds.Numbers | kinds.Poles | kinds.Expression | kinds.Settings):
+            assert any(re.search(rf"\b{name}\b", text) for text, _ in ways), f"nothing below Check is about {name}"
 
 
 def _finite(kind):

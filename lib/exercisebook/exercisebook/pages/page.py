@@ -226,7 +226,12 @@ class Page(Exercise):
     def _carried(self, changes, **values):
         """What follows from a mistake in what is asked, which is told after the mistakes of that quantity itself."""
         found = self._mistaken(changes, values) if {*changes} & {*self._asked} else {}
-        return {name: value for name, value in found.items() if name not in changes}
+        key = self._key(**values) if {*found} - {*changes} else {}
+        return {
+            name: value
+            for name, value in found.items()
+            if name not in changes and not key[name].agrees(key[name].like(value).key)
+        }
 
     def _shown(self, text, **values):
         """The quantities that a text shows, each with its unit."""
