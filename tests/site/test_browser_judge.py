@@ -61,7 +61,7 @@ def test_pip_installs_the_wheel_of_the_library(tmp_path):
     wheel = wheels.make("loopbook", tmp_path)
     command = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps"]
     subprocess.run([*command, "--target", str(tmp_path / "there"), str(wheel)], check=True)
-    assert (tmp_path / "there" / "loopbook" / "exercises" / "bank" / "ch07_feedback.py").is_file()
+    assert (tmp_path / "there" / "loopbook" / "exercises" / "bank" / "ch07_feedback" / "7_1.md").is_file()
 
 
 def test_compiled_code_is_no_pure_package(tmp_path):

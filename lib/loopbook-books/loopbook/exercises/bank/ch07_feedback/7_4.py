@@ -1,0 +1,18 @@
+"""Python beside the page of exercise 7.4."""
+
+from loopbook import diagrams
+from loopbook.expressions import parse
+from loopbook.transfer import feedback, first_order, static_gain  # noqa: F401
+
+
+def in_numbers(e, K, K_p, W):
+    """A formula with the numbers of the tank."""
+    formula, values = parse(e), {"K": K, "K_p": K_p, "W": W}
+    return formula.subs({symbol: values[symbol.name] for symbol in formula.free_symbols})
+
+
+def picture(K, T):
+    """The loop: the P controller, and the process, at whose input the loss $W$ is subtracted."""
+    lag = diagrams.block(rf"\frac{{{float(K):g}}}{{{T}\,s+1}}")
+    forward = ["e", diagrams.gain("K_p"), "u", diagrams.disturbance("W", sign="-"), lag]
+    return diagrams.block_diagram("T_SP", diagrams.feedback_loop(forward), "T")

@@ -1,0 +1,23 @@
+"""Python beside the page of exercise 15.2."""
+
+import numpy as np
+
+from loopbook import diagrams
+from loopbook.deadtime import Loop
+from loopbook.figures import time_plot
+from loopbook.pid import PID
+from loopbook.synthesis import direct_synthesis, imc  # noqa: F401
+from loopbook.transfer import feedback, integrator, static_gain  # noqa: F401
+
+
+def picture(process):
+    """Block diagram: the setpoint, a controller, the load d added to its signal, the tank, and the level fed back."""
+    forward = ["e", diagrams.block("Controller"), "u", diagrams.disturbance("d"), process]
+    return diagrams.block_diagram("y_{SP}", diagrams.feedback_loop(forward), "y")
+
+
+def solution_picture(process, gain, controller, total, load):
+    """The level after the load with both controllers: with the gain alone it stays away, with the PI it returns."""
+    times, both = np.linspace(0, float(12 * total), 401), {"gain alone": PID(gain), "with the lead": controller}
+    curves = {name: np.array(load * Loop(process, pid).regulator.step(times), float) for name, pid in both.items()}
+    return time_plot(curves, times, "The level after the load", "$t$ [min]", "deviation [%]")

@@ -1,0 +1,1 @@
+"""Exercises of chapter 15, direct synthesis: from the wish to the controller."""
