@@ -42,5 +42,5 @@ def picture(t, p_raw, p_filtered):
 
 
 def solution_picture(t, p_raw, p_filtered, moment, start):
-    """The same picture, with the point where the filtered pressure has done 63 % of its rise."""
+    """The same picture, with the point where the filtered pressure has covered 63 % of its rise."""
     return picture(t, p_raw, p_filtered).mark(moment, "63 %, after $T_f$", "filtered").event(start, "step")
