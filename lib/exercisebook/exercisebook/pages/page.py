@@ -339,7 +339,7 @@ def beside(file: Path) -> dict[str, Callable[..., Any]]:
     module = importlib.util.module_from_spec(specification)
     specification.loader.exec_module(module)
     found = {name: one for name, one in vars(module).items() if callable(one) and not name.startswith("_")}
-    return {name: one for name, one in found.items() if one not in MAKERS.values()}  # these are there in any case
+    return {name: one for name, one in found.items() if one is not MAKERS.get(name)}  # these are there in any case
 
 
 def of(
