@@ -1,0 +1,13 @@
+"""The responses of exercise 14.3."""
+
+from loopbook.approximation import zero_rule
+from loopbook.exercises.bank.ch14_model_approximation.shared import beside, times_until
+from loopbook.transfer import dead_time
+
+__all__ = ["solution_picture", "zero_rule"]
+
+
+def solution_picture(part, instead, theta):
+    """The step response of zero and lag behind the dead time, and of what takes their place."""
+    systems = {"zero and lag": part * dead_time(theta), "instead": instead * dead_time(theta)}
+    return beside(systems, times_until(6 * theta), "What the loop sees", "$t$ [s]")

@@ -1,0 +1,37 @@
+"""The responses of exercise 14.5."""
+
+import numpy as np
+from scipy.optimize import brentq
+
+from loopbook.approximation import pade
+from loopbook.deadtime import System
+from loopbook.exercises.bank.ch14_model_approximation.shared import times_until
+from loopbook.figures import time_plot
+from loopbook.laplace import evaluate
+from loopbook.transfer import dead_time, first_order
+
+__all__ = ["at", "back_at_zero", "dead_time", "first_order", "is_step_response", "pade", "solution_picture"]
+
+
+def at(y, time):
+    """The value of a function of time."""
+    return float(evaluate(y, [float(time)])[0])
+
+
+def back_at_zero(y, before, after):
+    """The time between two others at which a response is zero."""
+    return brentq(lambda time: at(y, time), float(before), float(after))
+
+
+def is_step_response(y, H, end):
+    """Whether a function of time is the response of a system to a unit step."""
+    times = times_until(end)
+    return np.allclose(evaluate(y, times), System(H).step(times), atol=1e-6)
+
+
+def solution_picture(y, K, tau, theta, moment):
+    """The response of the approximation dips below zero at first; the exact one waits for the dead time."""
+    times = times_until(4 * tau)
+    curves = {"Padé": (y, "model"), "exact": (System(first_order(K, tau, theta)).step(times), "process")}
+    plot = time_plot(curves, times, "Before the dead time is over", "$t$ [min]", "temperature [K]")
+    return plot.mark(float(moment), "lowest", "Padé")

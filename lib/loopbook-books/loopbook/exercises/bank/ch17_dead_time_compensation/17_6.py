@@ -1,0 +1,44 @@
+"""The runs of exercise 17.6."""
+
+import numpy as np
+
+from loopbook.deadtime import Loop
+from loopbook.exercises import authoring
+from loopbook.exercises.bank.ch17_dead_time_compensation.shared import predictor
+from loopbook.figures import time_plot
+from loopbook.pid import PID
+from loopbook.transfer import first_order
+
+
+def dead_time(delay):
+    """The dead time of the process, which is read off the picture."""
+    return authoring.number(delay, "min", "the dead time of the process", within=0.06)
+
+
+def run(K, T, delay, model):
+    """Times, output and control signal after a unit step of the setpoint, with the lag cancelled and T_C = T."""
+    loop = Loop(first_order(K, T, delay), predictor(K, T, model, PID(1 / K, T)))
+    times = np.linspace(0, float(3 * max(delay, model) + 2 * T), 601)
+    return times, loop.servo.step(times), loop.setpoint_to_control.step(times)
+
+
+def first_moved(t, signal):
+    """When a signal leaves the value with which it begins."""
+    return t[np.flatnonzero(abs(signal - signal[0]) > 1e-9)[0]]
+
+
+def rises(signal):
+    """Whether a signal leaves the value with which it begins upwards."""
+    return bool(signal[np.flatnonzero(abs(signal - signal[0]) > 1e-9)[0]] > signal[0])
+
+
+def picture(t, y, u):
+    """Above the weight, which waits and then rises; below the valve, which leaves its first position after a while."""
+    panels = [{"weight": (y, "measurement")}, {"valve": (u, "control signal")}]
+    return time_plot(panels, t, "A unit step of the setpoint", "$t$ [min]", ["weight [%]", "valve [%]"])
+
+
+def solution_picture(t, u, delay, model):
+    """The valve again, with the two corners marked: where the model responds, and where the process does."""
+    plot = time_plot({"valve": (u, "control signal")}, t, "Two corners", "$t$ [min]", "valve [%]")
+    return plot.mark(delay, "process").mark(model, "model")

@@ -1,0 +1,41 @@
+"""The errors of exercise 18.6, of straight lines."""
+
+import numpy as np
+from scipy.integrate import simpson
+
+from loopbook.figures import time_plot
+
+
+def _corners(wait, fall, down, up, depth):
+    """The corners of an error that waits, falls through zero, and comes back: times and values."""
+    return np.cumsum([0, wait, fall, down, up]).astype(float), np.array([1, 1, 0, -float(depth), 0])
+
+
+def errors(wait, fall, down, up, depth, change):
+    """Times, and both errors: after the change with a worse beginning, or with one more oscillation at the end."""
+    corners, e = _corners(wait, fall, down, up, depth)
+    times = np.linspace(0, corners[-1] + 7, 20 * int(corners[-1] + 7) + 1)
+    if change == "beginning":
+        changed = corners, np.array([1, 1.8, *e[2:]])
+    else:
+        changed = np.append(corners, corners[-1] + [3.0, 6.0]), np.append(e, [0.6 * float(depth), 0])
+    return times, np.interp(times, corners, e), np.interp(times, *changed)
+
+
+def integrals(t, e):
+    """IAE, ISE and ITAE by Simpson's rule, which is exact for parabolas."""
+    return [float(simpson(one, x=t)) for one in (abs(e), e**2, t * abs(e))]
+
+
+def picture(wait, fall, down, up, depth, t, e, changed):
+    """The error in straight lines: it stays at one, falls below zero, and returns; dashed, after the change."""
+    curves = {"error": (e, "measurement"), "after the change": (changed, "setpoint")}
+    plot = time_plot(curves, t, "After a unit step of the setpoint", ylabel="error")
+    return plot.points(*_corners(wait, fall, down, up, depth), "corners")
+
+
+def solution_picture(t, e):
+    """What the three criteria add up before the change: the absolute error, its square, and its product with time."""
+    panels = [{"$|e|$": (abs(e), 0)}, {"$e^2$": (e**2, 1)}, {"$t\\,|e|$": (t * abs(e), 2)}]
+    plot = time_plot(panels, t, "What is added up", low=True)
+    return plot.area("$|e|$").area("$e^2$").area("$t\\,|e|$")

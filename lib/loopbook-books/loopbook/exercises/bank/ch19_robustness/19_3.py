@@ -1,0 +1,16 @@
+"""The record of exercise 19.3."""
+
+import numpy as np
+
+from loopbook.figures import time_plot
+from loopbook.stability import margins
+from loopbook.transfer import first_order
+
+__all__ = ["first_order", "margins", "picture"]
+
+
+def picture(omega, period):
+    """The record of the temperature: an oscillation with a constant amplitude around the setpoint."""
+    times = np.linspace(0, 3.5 * float(period), 401)
+    curves = {"temperature": (np.sin(omega * times), "measurement"), "setpoint": (0, "setpoint")}
+    return time_plot(curves, times, xlabel="$t$ [min]", ylabel="deviation [%]", low=True)

@@ -1,0 +1,49 @@
+"""The Nyquist curve of exercise 19.6."""
+
+import math
+
+import numpy as np
+from scipy.optimize import brentq
+
+from loopbook.exercises.bank.ch19_robustness.shared import nyquist, three_digits
+from loopbook.stability import margins, unstable_closed_loop_poles
+from loopbook.transfer import first_order
+
+__all__ = ["loop", "margins", "picture", "points", "solution_picture", "three_digits", "unstable_closed_loop_poles"]
+
+
+def size_at(r, turn):
+    """The size of exp(-s)/(r s + 1) where its phase is turned back by an angle in radians."""
+    r, turn = float(r), float(turn)
+    w = brentq(lambda w: w + math.atan(r * w) - turn, turn - math.pi / 2, turn)
+    return 1 / math.hypot(1, r * w)
+
+
+def points(k, r):
+    """The Nyquist curve at frequencies from zero on."""
+    w = np.concatenate([np.linspace(0, 3, 121), np.linspace(3.05, 30, 540)])
+    return float(k) * np.exp(-1j * w) / (1 + 1j * float(r) * w)
+
+
+def loop(k, r, delay):
+    """The loop transfer function, in minutes."""
+    return first_order(k, r * delay, delay)
+
+
+def picture(L, x, y, crossover):
+    """The last part of a Nyquist curve, which turns around the origin, with the unit circle and the point -1."""
+    plot = nyquist(L, (-1.25, 1.15), (-1.35, 1.05))
+    plot.axes.set_xticks(np.arange(-1.2, 1.2, 0.2))
+    plot.axes.set_yticks(np.arange(-1.2, 1.2, 0.2))
+    plot.axes.minorticks_on()
+    plot.axes.grid(which="minor", linewidth=0.3)
+    plot.points([float(x)], [-float(y)], f"{crossover:.3g} rad/min", "o")
+    plot.axes.get_legend().set_loc("upper right")  # where nothing but the unit circle is
+    return plot
+
+
+def solution_picture(L, x, y, crossover, first, second):
+    """The same curve, with the crossings of the negative real axis."""
+    plot = picture(L, x, y, crossover).points([-float(first), -float(second)], [0, 0], "crossings", "s")
+    plot.axes.get_legend().set_loc("upper right")
+    return plot

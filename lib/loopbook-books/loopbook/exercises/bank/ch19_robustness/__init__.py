@@ -1,0 +1,1 @@
+"""Exercises of chapter 19, robustness: margins, unstable poles, and processes that change."""
