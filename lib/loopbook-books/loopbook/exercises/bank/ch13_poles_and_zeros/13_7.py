@@ -1,0 +1,59 @@
+"""The sensitivity of exercise 13.7, of a loop x exp(-s)/s with the dead time as the unit of time."""
+
+import numpy as np
+from scipy.optimize import brentq
+
+from loopbook.figures import plane_plot
+from loopbook.stability import margins
+from loopbook.transfer import integrator
+from plainmath.tables import rounded
+
+
+def sensitivity(x, w):
+    """The size of the sensitivity at one frequency or at several."""
+    jw = 1j * np.asarray(w, dtype=float)
+    found = abs(1 / (1 + float(x) * np.exp(-jw) / jw))
+    return found if found.ndim else float(found)
+
+
+def largest(x):
+    """The height of the peak."""
+    return float(sensitivity(x, np.linspace(0.8, 2.2, 1401)).max())
+
+
+def peak_at(x):
+    """The frequency of the peak."""
+    w = np.linspace(0.8, 2.2, 1401)
+    return float(w[sensitivity(x, w).argmax()])
+
+
+def helps_until(x, limit=1):
+    """The frequency up to which the size of the sensitivity is below a limit."""
+    return brentq(lambda w: sensitivity(x, w) - float(limit), 0.01, peak_at(x))
+
+
+def three_digits(value):
+    """A number as texts show it, with three digits."""
+    return float(rounded(float(value), 3))
+
+
+def curve(x, delay):
+    """Frequencies, and the size of the sensitivity at these."""
+    w = np.linspace(0.02, 2.6, 259)
+    return w / float(delay), sensitivity(x, w)
+
+
+def picture(w, S, Ms):
+    """The size of the sensitivity function against the frequency: it rises from zero over one to a peak, and falls."""
+    axes = {"xlim": (0, float(w[-1])), "ylim": (0, 0.5 * float(np.ceil(2.2 * Ms)))}
+    plot = plane_plot({"$|S|$": (w, S)}, r"frequency $\omega$ [rad/min]", "$|S|$", **axes)
+    plot.axes.minorticks_on()
+    plot.axes.grid(which="minor", linewidth=0.3)
+    return plot
+
+
+def solution_picture(w, S, Ms, at, helps, omega, size):
+    """The same curve, with the peak, the end of the range in which control helps, and the disturbance."""
+    plot = picture(w, S, Ms).points([float(at)], [float(Ms)], "$M_s$")
+    plot.points([float(helps)], [1], "control helps up to here", "s")
+    return plot.points([float(omega)], [size], "the disturbance", "^")
