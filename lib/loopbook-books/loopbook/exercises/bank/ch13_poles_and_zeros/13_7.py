@@ -8,6 +8,11 @@ from loopbook.stability import margins
 from loopbook.transfer import integrator
 from plainmath.tables import rounded
 
+__all__ = [
+    "curve", "helps_until", "integrator", "largest", "margins", "peak_at", "picture", "sensitivity", "solution_picture",
+    "three_digits",
+]  # fmt: skip
+
 
 def sensitivity(x, w):
     """The size of the sensitivity at one frequency or at several."""
