@@ -33,7 +33,7 @@ def quick_and_robust(K, T, delay, controller, limit):
         y = Loop(first_order(K, T, delay), pid).servo.step(times)
         panels = [{"$y$": (y, "measurement")}, {"$e^2$": ((1 - y) ** 2, 0)}]
         plot = time_plot(panels, times, "Your loop after a unit step of the setpoint", ylabel=["$y$", "$e^2$"])
-        return plot.area("$e^2$", label=f"ISE {error(pid):.4g} s, at most {limit:g}")
+        return plot.area("$e^2$", label=f"ISE {error(pid):.4g} s, at most {float(limit):g}")
 
     return design(
         settings(controller, time="s", what="the settings of the PI controller"),
