@@ -43,16 +43,17 @@ def unit_of(text: str) -> Any:
     return _registry().parse_units("".join({"³": "**3", "²": "**2", "·": "*"}.get(sign, sign) for sign in text))
 
 
-def converted(tree: ast.expr, units: Mapping[str, str | None]) -> tuple[ast.expr, Any]:
+def converted(tree: ast.expr, units: Mapping[str, Any]) -> tuple[ast.expr, Any]:
     """Return a formula with the factors that its units need, and its own unit.
 
     Arguments:
         tree: of the formula.
-        units: {name of a quantity: its unit}; None where that is not known.
+        units: {name of a quantity: its unit, as `unit_of` returns it}; None where that is not known.
     Raises:
         ValueError: where units do not fit together.
 
-    >>> tree, unit = converted(ast.parse("V/q + t", mode="eval").body, {"V": "m³", "q": "L/s", "t": "min"})
+    >>> units = {"V": unit_of("m³"), "q": unit_of("L/s"), "t": unit_of("min")}
+    >>> tree, unit = converted(ast.parse("V/q + t", mode="eval").body, units)
     >>> ast.unparse(tree), factor(unit, "min")
     ('V / q + t * (3 / 50)', Fraction(50, 3))
     """
@@ -76,11 +77,6 @@ def _factor(unit, to):
     except pint.PintError:
         raise ValueError(f"{_written(unit)} is not a unit of the same quantity as {_written(to)}") from None
     return much if much.denominator < 10**12 and abs(much) < 10**12 else float(much)  # angles contain pi
-
-
-def plain(unit: Any) -> str | None:
-    """Return the text for a unit that comes out of a formula: none for a number, None for one without name."""
-    return "" if unit is not UNKNOWN and unit == unit_of("") else None
 
 
 def _written(unit):
@@ -119,8 +115,7 @@ def _converted(node, units):
         case ast.Constant(value):
             return node, one if isinstance(value, int | float) else UNKNOWN
         case ast.Name(name):
-            unit = units.get(name, "" if name == "pi" else UNKNOWN)
-            return node, UNKNOWN if unit is None else unit_of(unit)
+            return node, units.get(name, one if name == "pi" else UNKNOWN)
         case ast.BinOp(left, ast.Add() | ast.Sub() | ast.Mod() as op, right):
             (left, right), unit = like_first([left, right])
             return ast.BinOp(left, op, right), unit

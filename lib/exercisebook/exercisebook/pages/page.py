@@ -30,7 +30,7 @@ from plainmath.validation import did_you_mean
 _RANGE = re.compile(r"(\S+) *(?:…|\.\.\.) *(\S+?)(?: +by +(\S+))?")
 _FORMULA = re.compile(r"(\w+(?:, *\w+)*) *=(?!=) *(.+?)(?:  +\[(.*)\])?")
 _CODE, _KIND = re.compile(r"`([^`]+)`[ ,:\n]*"), re.compile(r"[ ,:\n]*`([^`]+)`\.?$")
-_PLACE = re.compile(r"(?<!\{)\{(\w+)\}(?!\})")
+_PLACE, _GIVEN = re.compile(r"(?<!\{)\{(\w+)\}(?!\})"), re.compile(r"\.given\(([^()]*)\)")
 #: Two ways to a value agree, and a change is none, within this fraction.
 SAME = 1e-6
 
@@ -46,17 +46,16 @@ class Page(Exercise):
 
     Attributes:
         graph: of its givens and formulas.
-        units: {name of a quantity: its unit}; None where it has none that is known.
+        units: {name of a quantity: its unit as it is shown}.
         changes: its mistakes, pairs of a sentence and {name of a quantity: formula for what it is by mistake}.
     """
 
     def __init__(self, page: PageText, functions: Mapping[str, Callable[..., Any]]):
         self.page, self.functions = page, functions
         parameters = dict(_givens(page))
-        self.units: dict[str, str | None] = {
-            name: None if any(isinstance(value, str) for value in one.values) else one.unit
-            for name, one in parameters.items()
-        }
+        words = {name for name, one in parameters.items() if any(isinstance(value, str) for value in one.values)}
+        self.units = {name: one.unit for name, one in parameters.items()}
+        self._units = {name: None if name in words else conversion.unit_of(unit) for name, unit in self.units.items()}
         self.graph = Graph(list(parameters), {}, functions)
         self._conditions = self._read_formulas()
         self._asked = dict(self._read_asked())
@@ -95,22 +94,24 @@ class Page(Exercise):
         return formula.read(text, dict.fromkeys(known), self.functions if also is None else also)
 
     def _read_formulas(self):
-        """Read the formulas into the graph, and return the conditions among them."""
+        """Read the formulas into the graph, and return the conditions among them, each with how many stand above it."""
         conditions = []
         for line, text in self.page.section("Formulas").lines():
             with self._at(line):
                 if text.startswith("where "):
-                    conditions.append(self._read(text.removeprefix("where ")))
+                    conditions.append((len(self.graph.formulas), self._read(text.removeprefix("where "))))
                 else:
                     self._add(text)
         return conditions
 
     def _with_units(self, one, to=None):
-        """A formula with the factors that its units need, in a unit if one is said, and the text of its unit."""
-        tree, own = conversion.converted(one.tree, self.units)
-        if to is not None and own is not None and not isinstance(one.tree, ast.Constant):
+        """A formula with the factors that its units need, in a unit if one is said, and its unit."""
+        tree, own = conversion.converted(one.tree, self._units)
+        if to is None:
+            return one.with_tree(tree), own
+        if own is not None and not isinstance(one.tree, ast.Constant):
             tree = conversion.times(tree, conversion.factor(own, to))  # a number alone is one in the unit
-        return one.with_tree(tree), conversion.plain(own) if to is None else to
+        return one.with_tree(tree), conversion.unit_of(to)
 
     def _add(self, text):
         found = _FORMULA.fullmatch(text)
@@ -122,7 +123,8 @@ class Page(Exercise):
             if name in self.graph.givens or name in self.graph.formulas:
                 raise ValueError(f"{name} is there already: expected another name for this quantity")
             part = one.tree if len(names) == 1 else ast.Subscript(one.tree, ast.Constant(place))
-            self.graph.formulas[name], self.units[name] = one.with_tree(part), unit
+            self.graph.formulas[name] = one.with_tree(part)
+            self._units[name], self.units[name] = unit, found[3] or ""
 
     def _read_asked(self):
         for line, text in self.page.section("Asked").items():
@@ -135,8 +137,8 @@ class Page(Exercise):
                 one = self._read(kind[1] if kind else "number()", {**MAKERS, **self.functions})
                 if not (isinstance(one.tree, ast.Call) and one.tree.func.id in {*MAKERS, *self.functions}):
                     raise ValueError(f"{one.text} is no kind of answers: {did_you_mean(one.text, MAKERS)}")
-                if one.tree.func.id in MAKERS and name[1] not in self.graph.formulas:
-                    raise ValueError(f"{name[1]} has no formula: {did_you_mean(name[1], self.graph.formulas)}")
+                if one.tree.func.id in MAKERS and name[1] not in self.units:
+                    raise ValueError(f"{name[1]} has no formula: {did_you_mean(name[1], self.units)}")
                 yield name[1], (one, " ".join((words[: kind.start()] if kind else words).split()))
 
     def _read_mistakes(self):
@@ -169,9 +171,15 @@ class Page(Exercise):
         return self.graph.values(dict(givens))
 
     def _holds(self, **values):
-        needs_formulas = any(one.names & {*self.graph.formulas} for one in self._conditions)
-        among = self.quantities(values) if needs_formulas else values
-        return all(one(among, self.functions) for one in self._conditions)
+        """Whether the conditions hold, each before what stands below it is worked out."""
+        found, formulas, done = dict(values), list(self.graph.formulas.items()), 0
+        for above, condition in self._conditions:
+            for name, one in formulas[done:above] if condition.names & {*self.graph.formulas} else ():
+                found[name] = one(found, self.functions)
+                done = above
+            if not condition(found, self.functions):
+                return False
+        return True
 
     def _key(self, **values):
         quantities = self.quantities(values)
@@ -197,7 +205,7 @@ class Page(Exercise):
         if maker in self.functions:
             return one(quantities, self.functions)
         said = {part.arg for part in one.tree.keywords} | {"unit"} - {*inspect.signature(MAKERS[maker]).parameters}
-        usual = {"what": words or name} | ({} if "unit" in said else {"unit": self.units[name] or ""})
+        usual = {"what": words or name} | ({} if "unit" in said else {"unit": self.units[name]})
 
         def make(*parts, **named):
             named = usual | {word: _plain(value) for word, value in named.items()}
@@ -212,11 +220,11 @@ class Page(Exercise):
         for name, one in changes.items():
             if name not in right:  # a function of the page makes its key
                 found[name] = one(found, self.functions)
-        return {
-            name: found[name]
-            for name in self._asked
-            if found.get(name) is not None and not are_same(found[name], right.get(name))
-        }
+        wrong = [
+            name for name in self._asked if found.get(name) is not None and not are_same(found[name], right.get(name))
+        ]
+        key = self._key(**values) if {*wrong} - {*changes} else {}
+        return {name: found[name] for name in wrong if name in changes or not _agree(key[name], found[name])}
 
     def _at_once(self, changes, **values):
         """What is wrong where the mistake is made: what it changes of all that is asked, or else all that follows."""
@@ -226,20 +234,17 @@ class Page(Exercise):
     def _carried(self, changes, **values):
         """What follows from a mistake in what is asked, which is told after the mistakes of that quantity itself."""
         found = self._mistaken(changes, values) if {*changes} & {*self._asked} else {}
-        key = self._key(**values) if {*found} - {*changes} else {}
-        return {
-            name: value
-            for name, value in found.items()
-            if name not in changes and not key[name].agrees(key[name].like(value).key)
-        }
+        return {name: value for name, value in found.items() if name not in changes}
 
     def _shown(self, text, **values):
-        """The quantities that a text shows, each with its unit."""
-        names = {*_PLACE.findall(text)} - {*self.graph.givens}
+        """The quantities that a text shows, each with its unit, and the data that it says are given."""
+        given = {name for names in _GIVEN.findall(text) for name in re.findall(r"\w+", names)}
+        names = ({*_PLACE.findall(text)} | given) & {*self.graph.formulas}
         found = {name: value for name, value in self.quantities(values).items() if name in names} if names else {}
         return {
-            name: (value, unit) if (unit := self.units[name]) and formula.is_number(value) else value
+            name: (value, self.units[name]) if self.units[name] and formula.is_number(value) else value
             for name, value in found.items()
+            if not (name in self._asked and isinstance(value, list))  # which its kind shows
         }
 
     def _drawing(self, draw, **values):
@@ -255,7 +260,7 @@ class Page(Exercise):
             with self._at(line):
                 found = _FORMULA.fullmatch(text)
                 if found:
-                    one = self._with_units(self._read(found[2]), self.units[found[1]])[0]
+                    one = self._with_units(self._read(found[2]), self.units[found[1]] or None)[0]
                     yield text, are_same(one(right, self.functions), right[found[1]])
                     continue
                 one = self._with_units(self._read(text))[0]
@@ -281,6 +286,14 @@ def are_same(one: Any, other: Any) -> bool:
     if isinstance(one, sympy.Expr) and isinstance(other, sympy.Expr):
         return bool(sympy.simplify(one - other) == 0)
     return bool(np.all(one == other))
+
+
+def _agree(kind, value):
+    """Whether a value that follows from a mistake is as good as the key."""
+    try:
+        return kind.agrees(kind.like(value).key)
+    except ValueError:  # it is no answer
+        return True
 
 
 def _plain(value):
