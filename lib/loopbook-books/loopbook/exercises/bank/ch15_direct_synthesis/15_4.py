@@ -16,6 +16,11 @@ def fraction(K, T1, T2, beta):
     return rf"$\frac{{{gain}(1 - {lead}s)}}{{({float(T1):g}\,s + 1)({float(T2):g}\,s + 1)}}$"
 
 
+def one_digit(depth):
+    """A depth as it is read off the picture."""
+    return float(f"{float(depth):.1g}")
+
+
 def least(y, end):
     """The least value of a function of time."""
     return float(sympy.lambdify(t, y)(np.linspace(0, float(end), 10001)).min())
