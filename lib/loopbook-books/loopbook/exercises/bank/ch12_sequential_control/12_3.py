@@ -14,14 +14,15 @@ BRANCHES = {
 }
 
 
-def words_of(order):
-    """The steps in their order."""
-    return order.split()
-
-
 def conditions(order, w_1, w_2):
     """The conditions of the branches in their order."""
     return [condition.format(w_1, w_2) for condition in BRANCHES[order]]
+
+
+def in_lines(order, w_1, w_2):
+    """The branches in a list."""
+    pairs = zip(order.split(), conditions(order, w_1, w_2), strict=True)
+    return "\n".join(f"{n}. to `{size}`: `{condition}`" for n, (size, condition) in enumerate(pairs, start=1))
 
 
 def branch(order, w_1, w_2, egg, true, place):
