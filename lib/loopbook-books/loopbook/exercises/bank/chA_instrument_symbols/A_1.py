@@ -10,6 +10,11 @@ def number_of_loop(key):
     return authoring.number(key, "", "the number of the loop", within=0)
 
 
+def in_code(letters, loop):
+    """The tag with its number."""
+    return f"`{letters}{loop}`"
+
+
 def joined(names):
     """Names in a sentence."""
     return " and ".join(names)
