@@ -50,11 +50,6 @@ def in_code(steps):
     return " and ".join(f"`{step}`" for step in steps)
 
 
-def in_words(boxes):
-    """The actions of all steps."""
-    return "; ".join(f"{step}: {in_order(boxes, [step])}" for step in boxes if boxes[step]).replace("`", "")
-
-
 def _chart(boxes, mix):
     ways = [
         ("Wait", ("Fill", "Warm"), "start"),
@@ -77,12 +72,11 @@ def run(boxes, mix, start, full, hot):
     return found
 
 
-def picture(boxes, mix, actions):
-    # its text is set here because the actions are in no other text of the page, and a docstring would not show them
-    chart = sequential_function_chart(_chart(boxes, mix))
-    chart.alt = (
-        "A chart. From Wait, if start, to Fill and Warm at the same time; from Fill to Hold if full; from Warm to "
-        f"Ready if hot; from Hold and Ready together to Mix, always; from Mix to Drain if Mix.T >= {float(mix):g} s; "
-        f"from Drain to Wait if empty. The actions: {actions}."
-    )
-    return chart
+def picture(boxes, mix):
+    """A chart. From Wait, if start, to Fill and Warm at the same time; from Fill to Hold if full; from Warm to Ready if
+    hot; from Hold and Ready together to Mix, always; from Mix to Drain if Mix.T >= {mix}; from Drain to Wait if empty.
+    The actions: Wait: drain := FALSE, lamp := FALSE; Fill: inlet := TRUE; Hold: inlet := FALSE; Warm: heater := TRUE;
+    Mix: stirrer := TRUE; Drain: stirrer := FALSE, drain := TRUE; and {heater_off}: heater := FALSE; {lamp}: lamp :=
+    TRUE.
+    """
+    return sequential_function_chart(_chart(boxes, mix))
