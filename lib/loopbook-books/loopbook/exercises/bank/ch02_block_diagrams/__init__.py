@@ -1,0 +1,1 @@
+"""Exercises of chapter 2, block diagrams and state-space models."""
