@@ -69,7 +69,7 @@ _MODELS = {
 
 
 def of_model(model):
-    """Its words, its equation, what drives it, what acts against that, the factor of the highest derivative, its order."""
+    """Words and equation; what drives it, what acts against that, the factor of the highest derivative, its order."""
     situation, equation, parts = _MODELS[model]
     return situation, f"$${equation}$$", *parts
 
