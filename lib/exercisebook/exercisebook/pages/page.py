@@ -69,7 +69,9 @@ class Page(Exercise):
                 (sentence, _naming(functools.partial(of, changes), parameters)) for sentence, changes in self.changes
             ]
         self.hints(*(" ".join(text.split()) for _, text in page.section("Hints").items()))
+        drawing = [functions[name] for name in ("picture", "solution_picture") if name in functions]
         texts = [page.statement.text, self.insight, *self.rungs, *(sentence for sentence, _ in self.changes)]
+        texts += [inspect.getdoc(function) or "" for function in drawing]
         self.shown = _naming(functools.partial(self._shown, "\n".join(texts)), parameters)
         if solution := page.section("Solution").text:
             self.worked = _naming(functools.partial(self._shown, solution), parameters, solution)
