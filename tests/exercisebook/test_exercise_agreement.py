@@ -83,6 +83,10 @@ def test_an_exact_answer_may_have_another_form(key, given):
     assert not is_right(expression(key, within=0), f"({given})*1.0000001")
 
 
+def test_an_exact_dead_time_is_exact():
+    assert not is_right(expression(DELAYED, within=0), "2*exp(-8.00001*s)/(10*s + 1)")
+
+
 def _lags(dice):
     """A transfer function with gain, lags and dead time of two digits, and its parameters."""
     gain, lag = (math.exp(dice.uniform(-2, 5)) for _ in range(2))
