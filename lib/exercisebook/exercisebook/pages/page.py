@@ -20,7 +20,7 @@ import numpy as np
 import sympy
 
 from exercisebook.authoring import Exercise
-from exercisebook.kinds import MAKERS, Kind
+from exercisebook.kinds import MAKERS, Kind, Number, Numbers, Poles
 from exercisebook.pages import conversion, formula, parts
 from exercisebook.pages.graph import Graph
 from exercisebook.pages.parts import Front, PageError, PageText
@@ -66,7 +66,8 @@ class Page(Exercise):
         self.changes = list(self._read_mistakes())
         for of in (self._at_once, self._carried):
             self.mistakes += [
-                (sentence, _naming(functools.partial(of, changes), parameters)) for sentence, changes in self.changes
+                (sentence, _naming(functools.partial(of, place), parameters))
+                for place, (sentence, _) in enumerate(self.changes)
             ]
         self.hints(*(" ".join(text.split()) for _, text in page.section("Hints").items()))
         drawing = [functions[name] for name in ("picture", "solution_picture") if name in functions]
@@ -173,7 +174,7 @@ class Page(Exercise):
         return self.graph.values(dict(givens))
 
     def _holds(self, **values):
-        """Whether the conditions hold, each before what stands below it is worked out."""
+        """Whether the conditions hold, each before what stands below it is worked out, and no mistake is as good."""
         found, formulas, done = dict(values), list(self.graph.formulas.items()), 0
         for above, condition in self._conditions:
             for name, one in formulas[done:above] if condition.names & {*self.graph.formulas} else ():
@@ -181,11 +182,15 @@ class Page(Exercise):
                 done = above
             if not condition(found, self.functions):
                 return False
-        return True
+        return None not in self._wrong(tuple(values.items()))
 
     def _key(self, **values):
         quantities = self.quantities(values)
         return {name: self._kind(name, *asked, quantities) for name, asked in self._asked.items()}
+
+    @functools.lru_cache(maxsize=8)  # noqa: B019 - the exercises live as long as the program
+    def _key_of(self, givens):
+        return self._key(**dict(givens))
 
     def sources(self, name: str) -> frozenset[str]:
         """Return the names of all quantities on which one depends."""
@@ -215,28 +220,32 @@ class Page(Exercise):
 
         return one(quantities, {**self.functions, maker: make})
 
+    @functools.lru_cache(maxsize=8)  # noqa: B019 - the exercises live as long as the program
+    def _wrong(self, givens):
+        """For each mistake what is asked and is another value by it: {name: value}, or None where it is as good."""
+        return [self._mistaken(changes, dict(givens)) for _, changes in self.changes]
+
     def _mistaken(self, changes, values):
-        """What is asked and is another value by a mistake: {name: wrong value}."""
-        right = self.quantities(values)
+        right, key = self.quantities(values), self._key_of(tuple(values.items()))
         found = self.graph.changed(right, {name: one for name, one in changes.items() if name in right})
         for name, one in changes.items():
             if name not in right:  # a function of the page makes its key
                 found[name] = one(found, self.functions)
-        wrong = [
-            name for name in self._asked if found.get(name) is not None and not are_same(found[name], right.get(name))
-        ]
-        key = self._key(**values) if {*wrong} - {*changes} else {}
-        return {name: found[name] for name in wrong if name in changes or not _agree(key[name], found[name])}
+        other = {name: found.get(name) for name in key if not _is_unchanged(found.get(name), right.get(name))}
+        as_good = {name: _is_as_good(key[name], value) for name, value in other.items()}
+        wrong = {name: value for name, value in other.items() if as_good[name] is False}
+        numbers = [name for name in other if isinstance(key[name], Number | Numbers | Poles)]
+        return None if not wrong and any(as_good[name] for name in numbers) else wrong
 
-    def _at_once(self, changes, **values):
+    def _at_once(self, place, /, **values):
         """What is wrong where the mistake is made: what it changes of all that is asked, or else all that follows."""
-        found = self._mistaken(changes, values)
+        changes, found = self.changes[place][1], self._wrong(tuple(values.items()))[place] or {}
         return {name: value for name, value in found.items() if name in changes or not {*changes} & {*self._asked}}
 
-    def _carried(self, changes, **values):
+    def _carried(self, place, /, **values):
         """What follows from a mistake in what is asked, which is told after the mistakes of that quantity itself."""
-        found = self._mistaken(changes, values) if {*changes} & {*self._asked} else {}
-        return {name: value for name, value in found.items() if name not in changes}
+        changes, found = self.changes[place][1], self._wrong(tuple(values.items()))[place] or {}
+        return {name: value for name, value in found.items() if name not in changes and {*changes} & {*self._asked}}
 
     def _shown(self, text, **values):
         """The quantities that a text shows, each with its unit, and the data that it says are given."""
@@ -290,12 +299,17 @@ def are_same(one: Any, other: Any) -> bool:
     return bool(np.all(one == other))
 
 
-def _agree(kind, value):
-    """Whether a value that follows from a mistake is as good as the key."""
+def _is_unchanged(one, other):
+    """Whether a change leaves a quantity as it is; of an expression only where it is written in the same way."""
+    return one is None or (one == other if isinstance(one, sympy.Expr) and one.free_symbols else are_same(one, other))
+
+
+def _is_as_good(kind, value):
+    """Whether a value is within the accuracy of the key; None where it is no answer."""
     try:
         return kind.agrees(kind.like(value).key)
-    except ValueError:  # it is no answer
-        return True
+    except ValueError:
+        return None
 
 
 def _plain(value):
