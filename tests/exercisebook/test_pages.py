@@ -113,6 +113,13 @@ def test_what_follows_from_a_mistake_follows_and_comes_after_those_of_the_quanti
     assert "The height is missing." in [says for says, _ in question.mistakes["half"]]
 
 
+def test_a_variant_in_which_a_mistake_is_right_is_not_drawn():
+    near = made(PAGE.replace("`V = A` The height", "`V = A*h + (h - 2)/300` The height"))
+    assert {near.question(f"student {n}").values["h"] for n in range(20)} == {2}  # where it changes nothing
+    with pytest.raises(ValueError, match="holds in none of 1000 draws"):
+        made(PAGE.replace("`V = A` The height", "`V = 1.001*V` The height")).question("Ada")
+
+
 def test_a_change_that_changes_nothing_is_no_mistake():
     same = made(PAGE.replace("| A | 0.5 … 3 by 0.5 | m² | 1 |", "| A | 0.5 … 3 by 0.5 | m² | 2 |")).question()
     assert "The two are interchanged." in [says for says, _ in same.mistakes["V"]]  # 2 and twice 2
