@@ -358,7 +358,11 @@ def read(file: Path) -> dict[str, Page]:
 
 
 def beside(file: Path) -> dict[str, Callable[..., Any]]:
-    """Return the functions of the Python beside a page, which has its name."""
+    """Return the functions of the Python beside a page, which has its name: those that its formulas may call.
+
+    Raises:
+        PageError: where one has the name of a function of formulas or of a kind of answers.
+    """
     code = file.with_suffix(".py")
     if not code.exists():
         return {}
@@ -368,7 +372,10 @@ def beside(file: Path) -> dict[str, Callable[..., Any]]:
     module = importlib.util.module_from_spec(specification)
     specification.loader.exec_module(module)
     found = {name: one for name, one in vars(module).items() if callable(one) and not name.startswith("_")}
-    return {name: one for name, one in found.items() if one is not MAKERS.get(name)}  # these are there in any case
+    for name in found.keys() & {*MAKERS, *formula.FUNCTIONS}:  # an import serves the Python alone
+        if found.pop(name).__module__ == module.__name__:
+            raise PageError(code.name, 1, f"{name} is a function that all pages have: expected another name for this one")
+    return found
 
 
 def of(
