@@ -14,6 +14,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
+from exercisebook.pages.formula import Formula
 from exercisebook.units import spelled
 
 #: Functions of a number without unit, of an angle, and those whose value has the unit of what they are of.
@@ -69,11 +70,14 @@ def factor(unit: Any, to: str) -> Fraction | float:
 def _factor(unit, to):
     import pint
 
-    one, percent = unit_of(""), unit_of("%")
-    if (unit, to) in ((one, percent), (percent, one)):
-        return Fraction(100) if to == percent else Fraction(1, 100)
+    parts = Fraction(1)
+    match unit.dimensionality.get("[share]", 0), to.dimensionality.get("[share]", 0):  # a part of a whole, or percent
+        case 0, 1:
+            unit, parts = unit * unit_of("%"), Fraction(100)
+        case 1, 0:
+            unit, parts = unit / unit_of("%"), Fraction(1, 100)
     try:
-        much = _registry().Quantity(Fraction(1), unit).to(to).magnitude
+        much = parts * _registry().Quantity(Fraction(1), unit).to(to).magnitude
     except pint.PintError:
         raise ValueError(f"{_written(unit)} is not a unit of the same quantity as {_written(to)}") from None
     return much if much.denominator < 10**12 and abs(much) < 10**12 else float(much)  # angles contain pi
@@ -125,6 +129,9 @@ def _converted(node, units):
             if its is UNKNOWN or other is UNKNOWN:
                 return tree, UNKNOWN
             return tree, its * other if isinstance(op, ast.Mult) else its / other
+        case ast.BinOp(left, ast.FloorDiv() as op, right):
+            (left, right), unit = like_first([left, right])
+            return ast.BinOp(left, op, right), UNKNOWN if unit is UNKNOWN else one
         case ast.BinOp(left, op, right):
             (left, its), (right, power) = _converted(left, units), _converted(right, units)
             if its is UNKNOWN:
@@ -132,8 +139,9 @@ def _converted(node, units):
             if its == one:
                 return ast.BinOp(left, op, _in(right, power, one)), one
             try:
-                return ast.BinOp(left, op, right), its ** Fraction(ast.literal_eval(ast.unparse(right)))
-            except (ValueError, TypeError):
+                exponent = Fraction(str(Formula(ast.unparse(right), right, frozenset())({})))
+                return ast.BinOp(left, op, right), its**exponent
+            except (ValueError, KeyError):
                 raise ValueError(f"{ast.unparse(node)} has a unit to a power that is no number") from None
         case ast.UnaryOp(op, operand):
             tree, unit = _converted(operand, units)
