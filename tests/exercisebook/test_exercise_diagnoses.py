@@ -91,6 +91,7 @@ WITHOUT_GIVENS = [
     (numbers([1, 2, 3], what="A"), [1, 2, 7.7], WRONG, "look at the third number"),
     (poles([-1 + 2j, -1 - 2j]), [-1 + 2j], MISTAKE, "its mirror image is missing"),
     (poles([-1, -1, -2]), [-1, -2], MISTAKE, "one of them counts several times"),
+    (poles([-0.2]), 0.2, MISTAKE, "the size is right, the sign is not"),
     (poles([-1, -2]), [-1], WRONG, "what is there is right, but something is missing"),
     (poles([-1, -2]), [1], MISTAKE, "one has the wrong sign"),
     (poles([-1, -2]), [-1, -2, -3], WRONG, "all that are asked for are there, but also more"),
