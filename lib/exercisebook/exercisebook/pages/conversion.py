@@ -15,7 +15,7 @@ from fractions import Fraction
 from typing import Any
 
 from exercisebook.pages.formula import Formula
-from exercisebook.units import spelled
+from exercisebook.units import registry, spelled
 
 #: Functions of a number without unit, of an angle, and those whose value has the unit of what they are of.
 _OF_RATIO = {"exp", "log", "log10", "log2", "asin", "acos", "atan"}
@@ -28,20 +28,10 @@ UNKNOWN = None
 
 
 @functools.cache
-def _registry():
-    import pint
-
-    registry = pint.UnitRegistry(cache_folder=None, non_int_type=Fraction)
-    registry.define("dB_ = []")  # decibels are numbers here, which Pint's are not
-    registry.define("percent_ = [share]")  # of the range of a signal: K/% is no K
-    return registry
-
-
-@functools.cache
 def unit_of(text: str) -> Any:
     """Return Pint's unit for a text, as "kg/min"; °C is K."""
     text = spelled(text).replace("°C", "K").replace("dB", "dB_").replace("%", "percent_")
-    return _registry().parse_units("".join({"³": "**3", "²": "**2", "·": "*"}.get(sign, sign) for sign in text))
+    return registry().parse_units("".join({"³": "**3", "²": "**2", "·": "*"}.get(sign, sign) for sign in text))
 
 
 def converted(tree: ast.expr, units: Mapping[str, Any]) -> tuple[ast.expr, Any]:
@@ -77,7 +67,7 @@ def _factor(unit, to):
         case 1, 0:
             unit, parts = unit / unit_of("%"), Fraction(1, 100)
     try:
-        much = parts * _registry().Quantity(Fraction(1), unit).to(to).magnitude
+        much = parts * registry().Quantity(Fraction(1), unit).to(to).magnitude
     except pint.PintError:
         raise ValueError(f"{_written(unit)} is not a unit of the same quantity as {_written(to)}") from None
     return much if much.denominator < 10**12 and abs(much) < 10**12 else float(much)  # angles contain pi
