@@ -147,7 +147,8 @@ def _is_data(cell):
 
 @each_chapter
 def test_released_cells_are_short_and_hold_no_number(chapter):
-    text = f'"Title"\nfrom loopbook.exercises.bank import exercises\nglobals().update(exercises({chapter!r}))\n{SECRET}\n'
+    chosen = f"globals().update(exercises({chapter!r}))"
+    text = f'"Title"\nfrom loopbook.exercises.bank import exercises\n{chosen}\n{SECRET}\n'
     for cell in code(notebook(Assignment.of(text, "chapter"), *students("Ada"))):
         lines = cell.split("\n")
         assert max(map(len, lines)) <= 88

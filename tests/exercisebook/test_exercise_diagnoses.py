@@ -200,8 +200,8 @@ a = 0.6*u  [%/K]
 T = 3/2*(last - first)  [s]
 tau = first - T/3  [s]
 P = 8/3*T  [s]
-poles_of_it = [-3, -5]
-zeros_of_it = [5]
+roots = [-3, -5]
+zeros = [5]
 ```
 
 ## Asked
@@ -210,8 +210,8 @@ zeros_of_it = [5]
 - `T` the time constant
 - `tau` the delay
 - `P` the period
-- `poles_of_it` the poles `poles()`
-- `zeros_of_it` the zeros `poles()`
+- `roots` the poles `poles()`
+- `zeros` the zeros `poles()`
 """,
     "swing.md",
 )[1]["1.2"]
@@ -229,9 +229,9 @@ TOGETHER = [
     ({"u": 269}, "u", "as large as the 44: is that missing"),
     ({"u": 0.265}, "u", "with the numbers of 2.5\xa0K and 12\xa0% interchanged"),
     ({"P": 0.01939}, "P", "an angular frequency instead of a period"),
-    ({"poles_of_it": [5], "zeros_of_it": [-3, -5]}, "poles_of_it", "this and the zeros, `zeros_of_it`, are interchanged"),
-    ({"poles_of_it": [5]}, "poles_of_it", "have you interchanged the two?"),
-    ({"poles_of_it": [-3, -5], "zeros_of_it": [-3, -5]}, "zeros_of_it", "that is the poles, `poles_of_it`, itself"),
+    ({"roots": [5], "zeros": [-3, -5]}, "roots", "this and the zeros, `zeros`, are interchanged"),
+    ({"roots": [5]}, "roots", "have you interchanged the two?"),
+    ({"roots": [-3, -5], "zeros": [-3, -5]}, "zeros", "that is the poles, `roots`, itself"),
 ]
 
 

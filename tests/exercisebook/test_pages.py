@@ -198,7 +198,7 @@ def test_python_beside_a_page_is_called_by_its_name():
         ("- `V = A` The height", "- `W = A` The height", 30, "'W' is no quantity of this page: expected one of A, h"),
         ("- `V = A` The height is missing.", "- `V = A`", 30, "is no mistake: expected a change and a sentence"),
         ("- `V = A` The height is missing.", "- The height is missing.", 30, "is no mistake"),
-        ("2. Two, {V}.", r"2. Two, $\frac{1}{V}$.", 38, r"\frac{1}{V}: write {{V}} for the letter, or { {V} } for its value"),
+        ("2. Two, {V}.", r"2. Two, $\frac{1}{V}$.", 38, "{V}: write {{V}} for the letter, or { {V} } for its value"),
         ("2. Two, {V}.", r"2. Two, $t_{V}$.", 38, "_{V}: write {{V}} for the letter"),
         ("V/q                 [min]", "V**q                [min]", 18, "a unit to a power that is no number"),
     ],

@@ -1,4 +1,4 @@
-"""Formulas as a graph: each quantity is a given, or has one formula of quantities that stand above it."""
+"""Formulas as a graph: each quantity is a given, or has one formula of quantities above it."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Graph:
         Arguments:
             right: the values without a change, as `values` returns them.
             changes: {name: another value, or a formula for it}. In its formula a quantity is what it would be by its
-                own one, with the changes above it, unless two are interchanged; what stands below it is what it is
+                own one, with the changes above it, unless two are interchanged; what is below it is what it is
                 without a change.
             asked: those whose values are of use; of all if there are none.
         Raises:

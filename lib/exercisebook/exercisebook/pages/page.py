@@ -1,6 +1,6 @@
 """Exercises as pages of text: what is given, the formulas of its physics, what is asked, and mistakes as changes.
 
-The author's guide has pages to copy. Python stands beside a page, in a file of the same name, only for pictures and for
+The author's guide has pages to copy. A page has Python in a file of the same name only for pictures and for
 what no formula says: formulas call its functions by name, and `picture` and `solution_picture` draw.
 """
 
@@ -102,7 +102,7 @@ class Page(Exercise):
         return formula.read(text, dict.fromkeys(known), self.functions if also is None else also)
 
     def _read_formulas(self):
-        """Read the formulas into the graph, and return the conditions among them, each with how many stand above it."""
+        """Read the formulas into the graph; return the conditions, each with the number of formulas above it."""
         conditions = []
         for line, text in self.page.section("Formulas").lines():
             with self._at(line):
@@ -187,7 +187,7 @@ class Page(Exercise):
         return self.graph.values(dict(givens))
 
     def _holds(self, **values):
-        """Whether the conditions hold, each before what stands below it is worked out, and no mistake is as good."""
+        """Whether the conditions hold, each before the formulas below it are worked out, and no mistake is as good."""
         found, formulas, done = dict(values), list(self.graph.formulas.items()), 0
         for above, condition in self._conditions:
             for name, one in formulas[done:above] if condition.names & {*self.graph.formulas} else ():
@@ -393,14 +393,15 @@ def beside(file: Path) -> dict[str, Callable[..., Any]]:
     found = {name: one for name, one in vars(module).items() if callable(one) and not name.startswith("_")}
     for name in found.keys() & {*MAKERS, *formula.FUNCTIONS}:  # an import serves the Python alone
         if found.pop(name).__module__ == module.__name__:
-            raise PageError(code.name, 1, f"{name} is a function that all pages have: expected another name for this one")
+            says = f"{name} is a function that all pages have: expected another name for this one"
+            raise PageError(code.name, 1, says)
     return found
 
 
 def of(
     source: str, file: str, functions: Mapping[str, Callable[..., Any]] | None = None
 ) -> tuple[Front | None, dict[str, Page]]:
-    """Return what stands above the pages of a text, and the exercises in it: {number: `Page`}.
+    """Return the front of a text of pages, and the exercises in it: {number: `Page`}.
 
     Arguments:
         source: the text.

@@ -110,7 +110,7 @@ class PageText:
 
 @dataclass(frozen=True)
 class Front:
-    """What stands above the first page of a file, where pages are an assignment.
+    """The text above the first page of a file, where pages are an assignment.
 
     Attributes:
         title, introduction: of the assignment.
@@ -123,7 +123,7 @@ class Front:
 
 
 def read(source: str, file: str) -> tuple[Front | None, list[PageText]]:
-    """Return what stands above the pages of a text, if anything does, and the pages, each with a heading of its own.
+    """Return the front of a text of pages, if it has one, and the pages, each with a heading of its own.
 
     Raises `PageError` for what is no page.
     """
