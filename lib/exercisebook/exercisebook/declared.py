@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import textwrap
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from exercisebook.parameters import Parameter
@@ -110,6 +110,10 @@ class Declared:
             answers: {name of an asked quantity: number}.
         """
         return {}
+
+    def second_ways(self, values: Mapping[str, Value]) -> Iterable[tuple[str, bool]]:
+        """Yield what has to hold for some values of the parameters, where that is said, each with whether it does."""
+        return ()
 
     def __repr__(self) -> str:
         return self.heading

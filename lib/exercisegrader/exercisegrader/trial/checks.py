@@ -177,6 +177,16 @@ def other_answers(variant: Variant) -> Iterator[Seen]:
                 yield Seen(WRONG, f"{name}: an empty answer is right", repr(empty))
 
 
+def second_ways(variant: Variant) -> Iterator[Seen]:
+    """What an exercise says has to hold, as another way to its key, does."""
+    try:
+        for text, holds in variant.exercise.second_ways(variant.question.values):
+            if not holds:
+                yield Seen(WRONG, f"the check {text} does not hold", variant.question.with_values.strip())
+    except ValueError as problem:
+        yield Seen(WRONG, f"a check fails: {problem}")
+
+
 def declared_mistakes(variant: Variant) -> Iterator[Seen]:
     """A declared mistake is wrong, and gets its own sentence."""
     texts = {variant.question.filled_in(sentence): sentence for sentence, _ in variant.exercise.mistakes}
@@ -277,8 +287,8 @@ def texts_and_pictures(variant: Variant) -> Iterator[Seen]:
 
 
 OF_ONE: tuple[Callable[[Variant], Iterator[Seen]], ...] = (
-    keys_in_their_forms, words_of_a_list, other_answers, declared_mistakes, quantities_with_one_answer, rounded_givens,
-    texts_and_pictures,
+    keys_in_their_forms, second_ways, words_of_a_list, other_answers, declared_mistakes, quantities_with_one_answer,
+    rounded_givens, texts_and_pictures,
 )  # fmt: skip
 
 
