@@ -67,7 +67,7 @@ class Page(Exercise):
         insight = " ".join(page.section("Insight").text.split())
         super().__init__(page.number, page.title, page.points, where, key, insight)
         self.changes = list(self._read_mistakes())
-        for part in (page.statement, *page.sections.values()):
+        for part in (page.statement, *map(page.section, ("Mistakes", "Hints", "Solution", "Insight"))):
             self._look_at_braces(part)
         for of in (self._at_once, self._carried):
             self.mistakes += [
