@@ -7,7 +7,7 @@ import textwrap
 from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from exercisebook.parameters import Parameter
+from exercisebook.parameters import Parameter, call
 from plainmath.validation import is_number
 
 if TYPE_CHECKING:
@@ -102,14 +102,15 @@ class Declared:
         """Return the names of all on which a quantity depends, where formulas say it."""
         return ()
 
-    def following(self, values: Mapping[str, Value], answers: Mapping[str, float]) -> Mapping[str, Kind]:
-        """Return the key as it follows from other answers, where formulas say it: {name: kind}.
+    def following(self, values: Mapping[str, Value], changes: Mapping[str, Any], name: str) -> Kind | None:
+        """Return the key of an asked quantity as it follows from changes; None where nothing says how.
 
         Arguments:
             values: of the parameters.
-            answers: {name of an asked quantity: number}.
+            changes: {name of a parameter, or of another asked quantity: value}.
+            name: of the asked quantity.
         """
-        return {}
+        return call(self.key, {**values, **changes}).get(name) if changes.keys() <= self.parameters.keys() else None
 
     def second_ways(self, values: Mapping[str, Value]) -> Iterable[tuple[str, bool]]:
         """Yield what has to hold for some values of the parameters, where that is said, each with whether it does."""

@@ -103,7 +103,7 @@ class Question(Showing):
         shown = [value for value in sorted(stated - given) if len(f"{value:g}".strip("0.").replace(".", "")) > 1]
         following = functools.partial(self.exercise.following, self.values)
         sources = {name: self.exercise.sources(name) for name in self.key}
-        return Background(self.key, self.values, parameters, self.exercise.key, shown[:MOST_SHOWN], sources, following)
+        return Background(self.key, self.values, parameters, following, shown[:MOST_SHOWN], sources)
 
     @functools.cached_property
     def stated(self) -> dict[str, Value]:

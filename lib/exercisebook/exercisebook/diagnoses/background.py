@@ -14,7 +14,7 @@ import numpy as np
 import sympy
 
 from exercisebook.kinds import Number
-from exercisebook.parameters import call, written
+from exercisebook.parameters import written
 from exercisebook.reading import Unreadable
 from exercisebook.timeout import limited
 
@@ -71,10 +71,10 @@ class Background:
         key: {name: kind} of the exercise.
         values: {name: exact value} of the parameters.
         parameters: {name: `Parameter`}, those alone that the statement shows.
-        function: returns the key for such values.
+        following: returns the key of a quantity as it follows from changes, {name: value} of parameters or of other
+            asked quantities, and its name; None where nothing says how.
         shown: more numbers that the statement shows.
         sources: {name: names of all on which it depends}, by the formulas of the exercise.
-        following: returns what follows from answers, {name: number}, by the formulas of the exercise, {name: kind}.
 
     Attributes:
         name: the quantity in question; `of` sets it.
@@ -89,14 +89,13 @@ class Background:
         key: Mapping[str, Kind] | None = None,
         values: Mapping[str, Value] | None = None,
         parameters: Mapping[str, Parameter] | None = None,
-        function: Callable[..., Mapping[str, Kind]] | None = None,
+        following: Callable[[Mapping[str, Any], str], Kind | None] = lambda changes, name: None,
         shown: Sequence[float] = (),
         sources: Mapping[str, Collection[str]] | None = None,
-        following: Callable[[Mapping[str, float]], Mapping[str, Kind]] = lambda _: {},
     ):
-        self.key, self.values, self.parameters, self.function = key or {}, values or {}, parameters or {}, function
-        self.shown, self.sources, self.following = shown, sources or {}, following
-        self._keys: dict[tuple[tuple[str, Value], ...], Mapping[str, Kind]] = {}
+        self.key, self.values, self.parameters, self.following = key or {}, values or {}, parameters or {}, following
+        self.shown, self.sources = shown, sources or {}
+        self._keys: dict[tuple[Any, ...], Kind | None] = {}
         self._given_up: set[str] = set()  # that a key took too long
 
     def of(self, name: str, answers: Mapping[str, Any]) -> Background:
@@ -132,7 +131,7 @@ class Background:
         several = [[*wrong]] if len(wrong) > 1 else []
         for names in [*([name] for name in reversed(wrong)), *several]:
             with contextlib.suppress(Exception), np.errstate(all="ignore"):  # not each wrong number leads somewhere
-                if found := self.following({name: wrong[name].answer for name in names}).get(self.name):
+                if found := self.following({name: wrong[name].answer for name in names}, self.name):
                     yield follows(" and ".join(wrong[name].words for name in names)), found
 
     @property
@@ -170,12 +169,11 @@ class Background:
             for changed in missing:
                 self._key_with(changed)
 
-        if missing := [changed for _, changed in changes if _place(changed) not in self._keys]:
+        if missing := [changed for _, changed in changes if self._place(changed) not in self._keys]:
             self._in_time(compute)
         for how, changed in changes:
-            key = self._keys.get(_place(changed), {})
-            if self.name in key:
-                yield how, key[self.name]
+            if key := self._keys.get(self._place(changed)):
+                yield how, key
 
     def _in_time(self, compute):
         """Compute keys, as long as none has taken too long."""
@@ -186,22 +184,20 @@ class Background:
                 self._given_up.add(self.name)
 
     def _key_with(self, changed):
-        """The keys of all quantities with other values of some givens; none where there are none."""
-        if _place(changed) not in self._keys:
-            self._keys[_place(changed)] = {}
-            # the author's function is for her own ranges: for other values it may fail in any way
-            with contextlib.suppress(Exception), np.errstate(all="ignore"):
-                self._keys[_place(changed)] = call(self.function, {**self.values, **changed})
-        return self._keys[_place(changed)]
+        """Work out the key of this quantity with other values of some givens; None where there is none."""
+        place = self._place(changed)
+        self._keys[place] = None
+        # the author's functions are for her own ranges: for other values they may fail in any way
+        with contextlib.suppress(Exception), np.errstate(all="ignore"):
+            self._keys[place] = self.following(changed, self.name)
+
+    def _place(self, changed):
+        return (self.name, *changed.items())
 
 
 def follows(words: str) -> str:
     """A sentence on a quantity that follows by the right way from a wrong one before it."""
     return f"this is right for what you have for {words}, which is not right"
-
-
-def _place(changed):
-    return tuple(changed.items())
 
 
 def _likely_changes(background):

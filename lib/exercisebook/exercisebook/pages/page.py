@@ -14,7 +14,6 @@ import inspect
 import re
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -209,15 +208,16 @@ class Page(Exercise):
         """Return the names of all quantities on which one depends."""
         return self.graph.sources(name)
 
-    def following(self, values: Mapping[str, Value], answers: Mapping[str, float]) -> dict[str, Kind]:
-        """Return the key as it follows from other answers, by the formulas: {name: kind}.
+    def following(self, values: Mapping[str, Value], changes: Mapping[str, Any], name: str) -> Kind | None:
+        """Return the key of an asked quantity as it follows from changes of givens and other answers, by the formulas.
 
         Arguments:
             values: of the givens.
-            answers: {name of an asked quantity: number}.
+            changes: {name of a quantity: value}.
+            name: of the asked quantity.
         """
-        changed = self.graph.changed(self.quantities(values), answers, self._wanted())
-        return {name: self._kind(name, *asked, changed) for name, asked in self._asked.items() if name not in answers}
+        changed = self.graph.changed(self.quantities(values), changes, self._wanted([name]))
+        return self._kind(name, *self._asked[name], changed)
 
     def _kind(self, name, one, words, quantities) -> Kind:
         """What is asked under a name, with its key."""
@@ -238,15 +238,15 @@ class Page(Exercise):
         """For each mistake what is asked and is another value by it: {name: value}, or None where it is as good."""
         return [self._mistaken(changes, dict(givens)) for _, changes in self.changes]
 
-    def _wanted(self, changes=MappingProxyType({})):
-        """The quantities that make what is asked, also with changes of it."""
-        kinds = [one for one, _ in self._asked.values()]
-        return self._asked.keys() | {name for one in (*kinds, *changes.values()) for name in one.names}
+    def _wanted(self, asked, changes=()):
+        """The quantities that make what is asked under some names, also with formulas for changes of it."""
+        formulas = [*(self._asked[name][0] for name in asked), *changes]
+        return {*asked}.union(*(one.names for one in formulas))
 
     def _mistaken(self, changes, values):
         right, key = self.quantities(values), self._key_of(tuple(values.items()))
         of_graph = {name: one for name, one in changes.items() if name in right}
-        found = self.graph.changed(right, of_graph, self._wanted(changes))
+        found = self.graph.changed(right, of_graph, self._wanted(self._asked, changes.values()))
         for name, one in changes.items():
             if name not in right:  # a function of the page makes its key
                 found[name] = one(found, self.functions)
