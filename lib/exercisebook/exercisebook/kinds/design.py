@@ -110,7 +110,7 @@ class Design(Kind):
     @property
     def asked(self) -> str:
         """The quantity with its criteria."""
-        return f"{self.example.asked}, such that {'; '.join(one.demand for one in self.criteria)}"
+        return f"{self.example.asked}. Required: {'; '.join(one.demand for one in self.criteria)}"
 
     @property
     def expected(self) -> str:
