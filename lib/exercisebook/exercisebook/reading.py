@@ -449,10 +449,21 @@ def _check_call(node, source):
         raise Unreadable(f"{node.func.id} has {len(node.args)} arguments: expected one")
     if node.func.id == "Piecewise" and not all(isinstance(piece, ast.Tuple) for piece in node.args):
         raise Unreadable(f"{_quoted(source, node)} cannot be read: expected pairs of a value and a condition")
+    if node.func.id == "Piecewise" and len(node.args) > 1:
+        _goes_on(node.args[-1])
     if not node.args:
         raise Unreadable(f"{node.func.id} has no arguments: expected at least one")
     if node.func.id == "Heaviside" and len(node.args) > 1 and not _is_value_at_zero(node.args[1]):
         raise NotPython(f"{_quoted(source, node)} has a comma in it: expected one value, with a decimal point")
+
+
+def _goes_on(piece):
+    """Let the last piece of a function end nowhere: its end, as in 20 < t < 45, is that of what is asked."""
+    match piece.elts:
+        case [_, ast.Compare(ast.Name(), [ast.Lt() | ast.LtE()], [_])]:
+            piece.elts[1] = ast.Constant(True)
+        case [_, ast.BinOp(begin, ast.BitAnd(), ast.Compare(ast.Name(), [ast.Lt() | ast.LtE()], [_]))]:
+            piece.elts[1] = begin
 
 
 def _is_value_at_zero(node):

@@ -42,7 +42,7 @@ _LONGEST = 40
 _SPELLINGS = {
     "percent": "%", "per cent": "%", "pct": "%", "percents": "%", "mins": "min", "hrs": "h", "secs": "s", "Sec": "s",
     "Min": "min", "Nm": "N m", "kNm": "kN m", "Nms": "N m s", "Ohm": "Ω", "Ohms": "Ω", "kOhm": "kΩ", "cbm": "m³",
-    "degs": "deg", "decibel": "dB", "decibels": "dB", "KW": "kW", "Kg": "kg", "sec.": "s", "min.": "min",
+    "degs": "deg", "Ns": "N s", "decibel": "dB", "decibels": "dB", "KW": "kW", "Kg": "kg", "sec.": "s", "min.": "min",
 }  # fmt: skip
 _SPELLED = re.compile(
     rf"(?<![^\W\d_])(?:{'|'.join(map(re.escape, sorted(_SPELLINGS, key=len, reverse=True)))})(?![^\W\d_])"

@@ -39,9 +39,20 @@ from exercisebook.reading import (
 _WITH_UNIT = re.compile(r"([+-]? ?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?) ?(.*)")
 #: What may be beside a number, on either side, and says nothing of its size.
 _BEFORE_IT = re.compile(
-    r"^(?:(?:at least|at most|at|after|only|exactly|(?:by )?(?:a )?factor(?: of)?|by|is|it is) |[<>]=? ?)",
+    r"^(?:(?:at least|at most|at|after|only|exactly|(?:by )?(?:a )?factor(?: of)?|by|is|it is|magnitude|size) |"
+    r"(?:[^\W\d]\w* ?)?[<>≥≤]=? ?)",
     re.IGNORECASE,
 )
+#: Units and spaces of LaTeX, and dollar signs around a number.
+_IN_LATEX = (
+    (re.compile(r"\\(?:mathrm|text|mathit|operatorname|unit)\s*\{([^{}]*)\}"), r"\1"),
+    (re.compile(r"^\s*\$|\$\s*\.?\s*$"), ""),
+    (re.compile(r"\\[,;:! ]|(?<=\d)~"), " "),
+    (re.compile(r"\\%"), "%"),
+    (re.compile(r"\^\{?\s*\\circ\s*\}?"), "°"),
+)
+#: A letter with an index, which is no unit.
+_HAS_SYMBOLS = re.compile(r"[^\W\d_]_\w")
 _BEHIND_IT = re.compile(
     r" times(?: (?:larger|bigger|greater|higher|longer|faster|more|as (?:large|much|big|high|long|fast)))?$"
 )
@@ -469,8 +480,10 @@ def one_number(given: object, unit: str, expected: str) -> tuple[complex, str]:
 
 
 def _number_of_text(text, unit, expected):
-    *before, line = plain(_BEFORE_IT.sub("", text.strip())).split(" = ")
-    before = [part for part in before if re.search(r"\d", part)]  # theta - theta_m = 4 min
+    for pattern, meant in _IN_LATEX:
+        text = pattern.sub(meant, text)
+    *before, line = _BEFORE_IT.sub("", plain(_BEFORE_IT.sub("", text.strip()))).split(" = ")
+    before = [part for part in before if re.search(r"\d", part) and not _HAS_SYMBOLS.search(part)]  # 3 T_c = 30 min
     if before:  # 3840 s = 64 min
         found = [_number_of_text(part, unit, expected) for part in (*before, line)]
         value = found[-1][0]

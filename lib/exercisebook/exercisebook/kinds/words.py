@@ -21,7 +21,18 @@ LONGEST, SHORTEST_WITH_A_SLIP = 200, 5
 _ARTICLE = re.compile(r"\b(?:an?|the)\s+(?=\w\w)")
 #: What two words may have between them or not; between digits it separates numbers.
 _BETWEEN = re.compile(r"(?<=[^\W\d])[\s_‐‑-]+(?=\w)|(?<=\w)[\s_‐‑-]+(?=[^\W\d])")
-_NONE = re.compile(r"none(?: of them| of these)?|nothing|no one|not any|[-–∅]|\[\]", re.IGNORECASE)
+_NONE = re.compile(r"none(?: of them| of these)?|nothing|no one|not any|no \w+|[-–∅]|\[\]", re.IGNORECASE)
+#: What denies the words of a sentence, turns them, or leaves them open.
+_DENIED = re.compile(
+    r"\b(?:not|no|never|neither|nor|without|less|more|or|but|instead|rather|opposite|if|either|both|un|non|hardly)\b"
+    r"|n't|\?"
+)
+#: Words of a sentence that name nothing, and endings of words of some letters.
+_FILLING = re.compile(r"an?|the|its?|is|are|be|to|of|at|in|on|that|this|which|with|will|would|must|for|so|by|and")
+_ENDING = re.compile(r"(?<=..)(?:ing|ed|es|s|ly|e)$")
+#: An option is known from so many letters of its beginning.
+SHORTEST_BEGINNING = 3
+_DIGIT = re.compile(r"\d")
 _ONLY = re.compile(r"^(?:only|just|solely) ", re.IGNORECASE)
 _COUNTED = re.compile(r"(\D*)(\d+(?:\.\d+)?)(\D*)")
 _TRUTH = {True: "yes", False: "no"}
@@ -113,7 +124,7 @@ class Words(Kind):
 
     def read(self, given: object) -> tuple[list[str], str]:
         """Return the words as they stand in the list, and a remark where others were given for them."""
-        if isinstance(answered(given), str) and _NONE.fullmatch(given.strip()) and "none" not in self.among:
+        if isinstance(answered(given), str) and _NONE.fullmatch(given.strip()) and NONE not in self.among:
             given = []
         elif isinstance(given, str):
             parts = self._parts(_ONLY.sub("", given.strip(" []{}")))
@@ -135,11 +146,11 @@ class Words(Kind):
 
     def _parts(self, text):
         """The parts of a text, between separators, or one word or letter after the other."""
-        if named(text, [word for word in self.among if " " in word or _SEPARATOR.search(word)]):
+        if _spelled(text, [word for word in self.among if " " in word or _SEPARATOR.search(word)]):
             return [text]
         if _SEPARATOR.search(text):
             return _SEPARATOR.split(text)
-        letters = re.sub(r"\s", "", text)
+        letters = re.sub(r"[\s-]", "", text)
         if all(len(word) == 1 for word in self.among) and set(letters) <= set(self.among):
             return list(letters)
         return [text] if any(" " in word for word in self.among) else text.split()
@@ -230,22 +241,49 @@ def also_said(*rows: str) -> None:
 def named(given: str, among: Sequence[str]) -> str | None:
     """Return the option that a text is: spelled in any way, as a usual other word, or with one slip of the keyboard.
 
-    None where it is none, or may be several. A sentence is no option, so that none is read that is denied in it.
+    None where it is none, or may be several. Of a sentence it is the only one in it, unless something is denied there.
 
     >>> named("Set-point", ["set point", "load"]), named("increases", ["up", "down"])
     ('set point', 'up')
     >>> named("not up", ["up", "down"]), named("sinle beam", ["frame", "single beam"])
     (None, 'single beam')
+    >>> named("It must be tuned at B.", ["A", "B"]), named("a load lowering it", ["a load that lowers it", "noise"])
+    ('B', 'a load that lowers it')
     """
-    if len(given) > LONGEST:
-        return None
+    found = [] if len(given) > LONGEST else _spelled(given, among) or _in_a_sentence(given, among)
+    return found[0] if len(found) == 1 else None
+
+
+def _spelled(given, among):
+    """The options that a text is, spelled in any way."""
+    if NONE in among and _NONE.fullmatch(given.strip()):
+        return [NONE]
     text = bare(given)
-    for option in among:
-        if bare(option) == text:
-            return option
+    if exact := [option for option in among if bare(option) == text][:1]:
+        return exact
     meant = [option for option in among if any({bare(option), text} <= row for row in SAME)]
-    meant = meant or [option for option in among if _has_a_slip(given, option)]
-    return meant[0] if len(meant) == 1 else None
+    return meant or [option for option in among if _has_a_slip(given, option)]
+
+
+def _in_a_sentence(given, among):
+    """The options of which all words are in a sentence, or else those in which all words of a shorter text are."""
+    said, begun = _stems(given), given.strip().casefold()
+    options = {one: _stems(one) for one in among}
+    found = [one for one, stems in options.items() if stems and stems <= said]
+    found = [one for one in found if not _DIGIT.search("".join(said - options[one]))]
+    found = [one for one in found if not any(options[one] < options[other] for other in found)]
+    found = found or [one for one, stems in options.items() if said and said <= stems]
+    found = found or [one for one in among if len(begun) >= SHORTEST_BEGINNING and one.casefold().startswith(begun)]
+    is_denied = len(found) == 1 and {*_DENIED.findall(found[0].casefold())} != {*_DENIED.findall(begun)}
+    return [] if is_denied else found
+
+
+def _stems(text):
+    """The words of a text that say something, without their endings; of single letters the case counts."""
+    words = re.findall(r"[^\W_]+(?:[/.][^\W_]+)*", text)
+    return {
+        word if len(word) == 1 else _ENDING.sub("", word.casefold()) for word in words if not _FILLING.fullmatch(word)
+    }
 
 
 def bare(text: str) -> str:
@@ -258,7 +296,7 @@ def bare(text: str) -> str:
 
 
 def _plain(text):
-    return _ARTICLE.sub("", " ".join(text.casefold().split()).strip(" '\".,;:!()"))
+    return _ARTICLE.sub("", " ".join(text.casefold().split()).strip(" '\"`*.,;:!()"))
 
 
 def _has_a_slip(typed, option):
@@ -279,8 +317,8 @@ def _either(words):
 
 
 also_said(
-    "up, raise, raises, rises, increase, increases, higher",
-    "down, lower, lowers, falls, decrease, decreases, reduce",
+    "up, raise, raises, rises, increase, increases, higher, goes up, upwards",
+    "down, lower, lowers, falls, decrease, decreases, reduce, goes down, downwards, drops, sinks",
     "larger, greater, bigger, higher, increased",
     "smaller, lower, less, reduced, decreased",
     "yes, true, y",
