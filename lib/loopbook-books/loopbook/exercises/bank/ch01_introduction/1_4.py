@@ -12,9 +12,9 @@ def picture(A, h_0, h_low, q, more):
         .      .     .     tank  tank  .      drawn
         .      .     .     tank  tank  valve  hydrant
         .      .     .     tank  tank  LAL    alarm"""
-    tank = draw.tank(written(A, "m²"), level=written(h_0, "m"), filled=0.9)
+    tank = draw.tank(f"${written(A)}$ m²", level=f"${written(h_0)}$ m", filled=0.9)
     parts = {"pump": draw.pump(), "valve": draw.valve(kind="hand"), "tank": tank}
-    names = {"in": written(q, "L/s"), "drawn": written(q, "L/s"), "hydrant": written(more, "L/s")}
-    names["alarm"] = f"at {written(h_low, 'm')}"
+    names = {"in": f"${written(q)}$ L/s", "drawn": f"${written(q)}$ L/s", "hydrant": f"${written(more)}$ L/s"}
+    names["alarm"] = f"at ${written(h_low)}$ m"
     pipes = "water pump in 1 tank drawn, tank valve hydrant"
     return draw.instrumentation_diagram(layout, pipes, "tank LAL", parts, names)

@@ -38,7 +38,7 @@ def picture(reach, sigma, per_percent):
         water  pump  2     .     .
         .      .     tank  LT    reach
         .      .     tank  .     drawn"""
-    parts = {"pump": draw.pump(f"{written(per_percent)} L/s\nfor 1 %"), "tank": draw.tank(level="h")}
-    names = {"reach": f"0 to {written(reach)} m,\nnoise {written(sigma)} cm"}
+    parts = {"pump": draw.pump(f"${written(per_percent)}$ L/s\nfor $1\\,\\%$"), "tank": draw.tank(level="h")}
+    names = {"reach": f"$0$ to ${written(reach)}$ m,\nnoise ${written(sigma)}$ cm"}
     pipes, signals = "water pump 2 tank drawn", "tank LT LC 1 pump, K_p LC"
     return draw.instrumentation_diagram(layout, pipes, signals, parts, names)

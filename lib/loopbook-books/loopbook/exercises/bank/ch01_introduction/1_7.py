@@ -11,7 +11,7 @@ SLOWEST, FASTEST, HEIGHT, FILLING = 20.0, 100.0, 4.0, 0.003
 
 @lru_cache
 def night(h_SP, u_0, Kp, t_load, size, outflow, fault):
-    """Minutes, level and control signal of a water tower; `size` is by how many percent the pump would have to change."""
+    """Minutes, level and control signal; `size` is by how many percent the pump would have to change."""
     setpoint, start, missing = float(h_SP), float(u_0), float(size) if outflow == "larger" else -float(size)
     if fault == "at a limit":  # two or three percent more than the pump can give, or than it can be held back
         missing = (FASTEST - start if missing > 0 else SLOWEST - start) + 0.13 * missing
