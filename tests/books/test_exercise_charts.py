@@ -98,6 +98,25 @@ RIGHT_CHARTS = {
           -> Start when level < 0.12""",
     "one line": "S1 -> S2: start; S2: V1 = 1; S2 -> S3: h >= 0,9; S3: V1 = 0; heater; S3 -> S4: temp >= 60; "
     "S4: heater = 0; S4 -> S5: t >= 120 s; S5: outlet = 1; S5 -> S1: h <= 12 cm; S1: outlet = 0",
+    "as in IEC 61131-3, and a loop back to the beginning": """
+        INITIAL_STEP Wait: outlet off
+        Wait -> Fill: start
+        Fill: inlet on
+        Fill -> Heat: level >= 0.9
+        Heat: inlet off, heater on
+        Heat -> Hold: temperature >= 60
+        Hold: heater off
+        Hold -> Empty: Hold.T >= 120
+        Empty: outlet on
+        Empty -> Wait: level <= 0.12""",
+    "a table": """
+        | step | actions | transition to the next step |
+        |:---|---|---:|
+        | `Wait` (initial) | `outlet := FALSE` | `start` |
+        | `Fill` | `inlet := TRUE` | `level >= 0.9` |
+        | `Heat` | `inlet := FALSE`, `heater := TRUE` | `temperature >= 60` |
+        | `Hold` | `heater := FALSE` | `Hold.T >= 120` |
+        | `Empty` | `outlet := TRUE` | `level <= 0.12`, back to `Wait` |""",
     "steps at the same time": """
         Wait (initial): outlet off
         Wait -> Fill: start

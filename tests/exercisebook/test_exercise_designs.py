@@ -24,7 +24,7 @@ BEAM = design(
         (LAYERS, 1.49, WRONG, "the light is 0.4016; asked is at most 0.4"),
         (LAYERS, 1, WRONG, "the light is 0.5; asked is at most 0.4"),
         (LAYERS, -1, WRONG, "the light has no value (float division by zero)"),
-        (WEIGHT, 2, WRONG, "that would be right in kg; asked: the mass, in g"),
+        (WEIGHT, 2, WRONG, "the mass is 2\xa0g; asked is at least 1500\xa0g and at most 2500\xa0g"),
         (BEAM, 2, RIGHT, "right"),
         (BEAM, 0.1, WRONG, "the width is 0.1; asked is at least 0.5"),
         (BEAM, 2.9, WRONG, "the width is 2.9; asked is at least 0.5 and at most 2.5"),

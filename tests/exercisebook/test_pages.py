@@ -101,6 +101,20 @@ def test_units_convert_by_themselves(question):
     assert (key["late"].what, key["V"].what) == ("the time until then", "the volume")
 
 
+@pytest.mark.parametrize(
+    ("formula", "value"),
+    [
+        ("h/m  [%]", 200),
+        ("part*V  [L]", 2000 * 5 / 100),
+        ("V**(2/3)  [m²]", 2 ** (2 / 3)),
+        ("h//m", 2),
+    ],
+)
+def test_units_of_powers_parts_and_quotients(formula, value):
+    page_ = made(PAGE.replace("share = 1/4", f"m = 1  [m]\npart = 5  [%]\nmore = {formula}\nshare = 1/4"))
+    assert float(page_.quantities(page_.question().values)["more"]) == pytest.approx(value)
+
+
 def test_what_follows_from_a_mistake_follows_and_comes_after_those_of_the_quantity_itself(question):
     late = question.mistakes["late"]
     assert [says for says, _ in late] == [
@@ -113,11 +127,29 @@ def test_what_follows_from_a_mistake_follows_and_comes_after_those_of_the_quanti
     assert "The height is missing." in [says for says, _ in question.mistakes["half"]]
 
 
+def test_a_variant_in_which_a_mistake_is_right_is_not_drawn():
+    near = made(PAGE.replace("`V = A` The height", "`V = A*h + (h - 2)/300` The height"))
+    assert {near.question(f"student {n}").values["h"] for n in range(20)} == {2}  # where it changes nothing
+    with pytest.raises(ValueError, match="holds in none of 1000 draws"):
+        made(PAGE.replace("`V = A` The height", "`V = 1.001*V` The height")).question("Ada")
+
+
 def test_a_change_that_changes_nothing_is_no_mistake():
     same = made(PAGE.replace("| A | 0.5 … 3 by 0.5 | m² | 1 |", "| A | 0.5 … 3 by 0.5 | m² | 2 |")).question()
     assert "The two are interchanged." in [says for says, _ in same.mistakes["V"]]  # 2 and twice 2
     equal = made(PAGE.replace("h = 2*A", "h = A").replace("| m² | 1 |", "| m² | 2 |")).question()
     assert "The two are interchanged." not in [says for says, _ in equal.mistakes["V"]]
+
+
+def test_two_quantities_with_formulas_may_be_interchanged():
+    swapped = made(PAGE.replace("`A = h; h = 2*A`", "`V = share; share = V`")).question()
+    found = {name: [float(value) for says, value in swapped.mistakes[name] if "two" in says] for name in swapped.key}
+    assert found == {"V": [0.25], "late": [pytest.approx(0.25 * 1000 / 4 / 60)], "half": []}  # which has both in it
+
+
+def test_what_has_no_value_after_a_mistake_breaks_none_where_nothing_asked_needs_it():
+    shown = made(PAGE.replace("share = 1/4", "share = 1/4\nrest = log(1 - 2*share)").replace("One.", "One, {rest}."))
+    assert "Half of a half is a quarter." in [says for says, _ in shown.question().mistakes["half"]]
 
 
 def test_answers_are_judged(question):
@@ -166,6 +198,9 @@ def test_python_beside_a_page_is_called_by_its_name():
         ("- `V = A` The height", "- `W = A` The height", 30, "'W' is no quantity of this page: expected one of A, h"),
         ("- `V = A` The height is missing.", "- `V = A`", 30, "is no mistake: expected a change and a sentence"),
         ("- `V = A` The height is missing.", "- The height is missing.", 30, "is no mistake"),
+        ("2. Two, {V}.", r"2. Two, $\frac{1}{V}$.", 38, r"\frac{1}{V}: write {{V}} for the letter, or { {V} } for its value"),
+        ("2. Two, {V}.", r"2. Two, $t_{V}$.", 38, "_{V}: write {{V}} for the letter"),
+        ("V/q                 [min]", "V**q                [min]", 18, "a unit to a power that is no number"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_in_a_page_is_said_with_its_line(old, new, line, says):

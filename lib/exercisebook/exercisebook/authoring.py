@@ -157,7 +157,7 @@ def collected(module: ModuleType) -> dict[str, Exercise]:
 
 def in_order(exercises: Mapping[str, Exercise]) -> dict[str, Exercise]:
     """Return exercises in the order of their numbers; each knows the heading of the next one."""
-    found = dict(sorted(exercises.items(), key=lambda item: [int(part) for part in re.findall(r"\d+", item[0])]))
+    found = dict(sorted(exercises.items(), key=lambda item: [int(part) for part in re.findall(r"\d+", str(item[0]))]))
     for one, following in itertools.pairwise(found.values()):
         one.then = following.heading
     return found

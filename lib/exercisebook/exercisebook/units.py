@@ -8,9 +8,12 @@ import math
 import operator
 import re
 from collections.abc import Callable, Iterable
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    import pint
+
     from plainmath.types import Number
 
 #: Units that are taken for one another.
@@ -93,7 +96,7 @@ def convert(value: Number, unit: str, to: str) -> float:
     if re.search("rad|deg", unit + to):
         unit, to = unit.replace("Hz", "turn/s"), to.replace("Hz", "turn/s")
     try:
-        return float(_registry().Quantity(float(value), _parsed(unit)).to(_parsed(to)).magnitude)
+        return float(registry().Quantity(float(value), _parsed(unit)).to(_parsed(to)).magnitude)
     except (pint.PintError, OverflowError):
         raise ValueError(f"{unit or 'a number without unit'} is not a unit of the same quantity as {to or 1}") from None
 
@@ -202,16 +205,16 @@ def worked_out(text: str, to: str) -> float:
     def value(node):
         match node:
             case ast.Constant(int() | float()):
-                return _registry().Quantity(float(node.value))
+                return registry().Quantity(float(node.value))
             case ast.Name() if node.id[1:].isdigit() and node.id[0] == "_":
-                return _registry().Quantity(1.0, _parsed(units[int(node.id[1:])]))
+                return registry().Quantity(1.0, _parsed(units[int(node.id[1:])]))
             case ast.UnaryOp(ast.USub()):
                 return -value(node.operand)
             case ast.BinOp() if type(node.op) in _OPERATORS:
                 return _OPERATORS[type(node.op)](value(node.left), value(node.right))
             case ast.Call(ast.Name("exp" | "sqrt"), [argument]):
                 part = value(argument)
-                return part**0.5 if node.func.id == "sqrt" else _registry().Quantity(math.exp(part.to("").magnitude))
+                return part**0.5 if node.func.id == "sqrt" else registry().Quantity(math.exp(part.to("").magnitude))
         raise ValueError(f"{text[:40]!r} is no arithmetic of numbers with units")
 
     try:
@@ -228,10 +231,14 @@ def _on_kelvin(unit):
 
 
 @functools.cache
-def _registry():
+def registry() -> pint.UnitRegistry:
+    """Return Pint's registry, which takes its time to load, so there is one; its factors are exact."""
     import pint
 
-    return pint.UnitRegistry(cache_folder=None)
+    found = pint.UnitRegistry(cache_folder=None, non_int_type=Fraction)
+    found.define("dB_ = []")  # in a graph of formulas decibels are numbers, which Pint's are not
+    found.define("percent_ = [share]")  # and percent are those of the range of a signal: K/% is no K
+    return found
 
 
 @functools.lru_cache(maxsize=1000)
@@ -242,6 +249,6 @@ def _parsed(text):
     if not re.fullmatch(r"(\s*1\s*/)?[\s%°·*/()]*", between):
         raise ValueError(f"{text!r} is not a unit: expected one such as 's', 'kg/min' or '%/K'")
     try:
-        return _registry().parse_units(re.sub(r"(?<=[A-Za-z])(-?[1-9])(?!\d)", r"^\1", text))
+        return registry().parse_units(re.sub(r"(?<=[A-Za-z])(-?[1-9])(?!\d)", r"^\1", text))
     except Exception:  # Pint fails in as many ways as a text can be no unit
         raise ValueError(f"{text!r} is not a unit: expected one such as 's', 'kg/min' or '%/K'") from None

@@ -75,7 +75,7 @@ def test_a_file_is_loaded_with_the_modules_beside_it(tmp_path):
 
 @pytest.mark.parametrize(
     ("name", "content", "says"),
-    [("a.py", None, "cannot be read"), ("a.txt", b"", "expected a Python module"), ("a.py", b"\xff\xfe", "UTF-8")],
+    [("a.py", None, "cannot be read"), ("a.txt", b"", "expected pages, as heater.md, or a Python module"), ("a.py", b"\xff\xfe", "UTF-8")],
 )
 def test_what_is_no_assignment(tmp_path, name, content, says):
     if content is not None:

@@ -232,7 +232,8 @@ class Numbers(Kind):
 
     def mistakes(self) -> Iterator[tuple[str, np.ndarray]]:
         """Wrong sign, another unit, rows for columns, the order turned."""
-        yield "the sizes are right, the signs are not", -self.key
+        is_one = np.size(self.key) == 1
+        yield "the size is right, the sign is not" if is_one else "the sizes are right, the signs are not", -self.key
         for unit, converted in units.neighbours(self.unit).items():
             yield f"those would be the values {in_unit(unit)}; asked: {self.asked}", np.vectorize(converted)(self.key)
         if self.key.ndim == 2 and min(self.key.shape) > 1:
@@ -340,7 +341,8 @@ class Poles(Kind):
 
     def mistakes(self) -> Iterator[tuple[str, np.ndarray]]:
         """All signs turned, times instead of poles, another unit."""
-        yield "the sizes are right, the signs are not", -self.key
+        is_one = np.size(self.key) == 1
+        yield "the size is right, the sign is not" if is_one else "the sizes are right, the signs are not", -self.key
         if np.all(self.key != 0):
             yield "those are the inverses, the times instead of the values in s", 1 / self.key
             yield "those are the time constants: a time constant of T makes the value -1/T", -1 / self.key

@@ -14,7 +14,8 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
-from exercisebook.units import spelled
+from exercisebook.pages.formula import Formula
+from exercisebook.units import registry, spelled
 
 #: Functions of a number without unit, of an angle, and those whose value has the unit of what they are of.
 _OF_RATIO = {"exp", "log", "log10", "log2", "asin", "acos", "atan"}
@@ -27,20 +28,10 @@ UNKNOWN = None
 
 
 @functools.cache
-def _registry():
-    import pint
-
-    registry = pint.UnitRegistry(cache_folder=None, non_int_type=Fraction)
-    registry.define("dB_ = []")  # decibels are numbers here, which Pint's are not
-    registry.define("percent_ = [share]")  # of the range of a signal: K/% is no K
-    return registry
-
-
-@functools.cache
 def unit_of(text: str) -> Any:
     """Return Pint's unit for a text, as "kg/min"; °C is K."""
     text = spelled(text).replace("°C", "K").replace("dB", "dB_").replace("%", "percent_")
-    return _registry().parse_units("".join({"³": "**3", "²": "**2", "·": "*"}.get(sign, sign) for sign in text))
+    return registry().parse_units("".join({"³": "**3", "²": "**2", "·": "*"}.get(sign, sign) for sign in text))
 
 
 def converted(tree: ast.expr, units: Mapping[str, Any]) -> tuple[ast.expr, Any]:
@@ -69,11 +60,14 @@ def factor(unit: Any, to: str) -> Fraction | float:
 def _factor(unit, to):
     import pint
 
-    one, percent = unit_of(""), unit_of("%")
-    if (unit, to) in ((one, percent), (percent, one)):
-        return Fraction(100) if to == percent else Fraction(1, 100)
+    parts = Fraction(1)
+    match unit.dimensionality.get("[share]", 0), to.dimensionality.get("[share]", 0):  # a part of a whole, or percent
+        case 0, 1:
+            unit, parts = unit * unit_of("%"), Fraction(100)
+        case 1, 0:
+            unit, parts = unit / unit_of("%"), Fraction(1, 100)
     try:
-        much = _registry().Quantity(Fraction(1), unit).to(to).magnitude
+        much = parts * registry().Quantity(Fraction(1), unit).to(to).magnitude
     except pint.PintError:
         raise ValueError(f"{_written(unit)} is not a unit of the same quantity as {_written(to)}") from None
     return much if much.denominator < 10**12 and abs(much) < 10**12 else float(much)  # angles contain pi
@@ -125,6 +119,9 @@ def _converted(node, units):
             if its is UNKNOWN or other is UNKNOWN:
                 return tree, UNKNOWN
             return tree, its * other if isinstance(op, ast.Mult) else its / other
+        case ast.BinOp(left, ast.FloorDiv() as op, right):
+            (left, right), unit = like_first([left, right])
+            return ast.BinOp(left, op, right), UNKNOWN if unit is UNKNOWN else one
         case ast.BinOp(left, op, right):
             (left, its), (right, power) = _converted(left, units), _converted(right, units)
             if its is UNKNOWN:
@@ -132,8 +129,9 @@ def _converted(node, units):
             if its == one:
                 return ast.BinOp(left, op, _in(right, power, one)), one
             try:
-                return ast.BinOp(left, op, right), its ** Fraction(ast.literal_eval(ast.unparse(right)))
-            except (ValueError, TypeError):
+                exponent = Fraction(str(Formula(ast.unparse(right), right, frozenset())({})))
+                return ast.BinOp(left, op, right), its**exponent
+            except (ValueError, KeyError):
                 raise ValueError(f"{ast.unparse(node)} has a unit to a power that is no number") from None
         case ast.UnaryOp(op, operand):
             tree, unit = _converted(operand, units)

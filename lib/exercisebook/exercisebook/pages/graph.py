@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import functools
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from exercisebook.pages.formula import Formula
@@ -27,13 +28,17 @@ class Graph:
             found[name] = formula(found, self.functions)
         return found
 
-    def changed(self, right: Mapping[str, Any], changes: Mapping[str, Formula | Any]) -> dict[str, Any]:
-        """Return the values of all quantities where some of them are others: what follows from these follows.
+    def changed(
+        self, right: Mapping[str, Any], changes: Mapping[str, Formula | Any], asked: Iterable[str] = ()
+    ) -> dict[str, Any]:
+        """Return the values of quantities where some of them are others: what follows from these follows.
 
         Arguments:
             right: the values without a change, as `values` returns them.
             changes: {name: another value, or a formula for it}. In its formula a quantity is what it would be by its
-                own one, with the changes above it; what stands below it is what it is without a change.
+                own one, with the changes above it, unless two are interchanged; what stands below it is what it is
+                without a change.
+            asked: those whose values are of use; of all if there are none.
         Raises:
             ValueError: where a quantity has no value then.
 
@@ -43,16 +48,24 @@ class Graph:
         >>> graph.changed(right, {"b": read("1/b", "abc", {})})["c"]
         19/6
         """
-        found, moved = dict(right), set(changes)
+        found, moved, needed = dict(right), set(changes), self._needed(frozenset(asked or self.formulas))
         for name in (*self.givens, *self.formulas):
             formula = self.formulas.get(name)
-            if formula and formula.names & moved:
+            if formula and formula.names & moved and name in needed:
                 found[name] = formula(found, self.functions)
                 moved.add(name)
             if name in changes:
-                new, among = changes[name], found if formula else right  # two givens may be interchanged
-                found[name] = new(among, self.functions) if isinstance(new, Formula) else new
+                new = changes[name]
+                if isinstance(new, Formula):
+                    others = [changes[one] for one in new.names & changes.keys() - {name}]
+                    is_swapped = any(isinstance(other, Formula) and name in other.names for other in others)
+                    new = new(found if formula and not is_swapped else right, self.functions)
+                found[name] = new
         return found
+
+    @functools.lru_cache(maxsize=64)  # noqa: B019 - the graphs live as long as the program
+    def _needed(self, asked):
+        return asked.union(*map(self.sources, asked))
 
     def sources(self, name: str) -> frozenset[str]:
         """Return the names of all quantities, givens and others, on which a quantity depends.

@@ -14,6 +14,7 @@ import inspect
 import re
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,8 @@ from plainmath.validation import did_you_mean
 _RANGE = re.compile(r"(\S+) *(?:…|\.\.\.) *(\S+?)(?: +by +(\S+))?")
 _FORMULA = re.compile(r"(\w+(?:, *\w+)*) *=(?!=) *(.+?)(?:  +\[(.*)\])?")
 _CODE, _KIND = re.compile(r"`([^`]+)`[ ,:\n]*"), re.compile(r"[ ,:\n]*`([^`]+)`\.?$")
+#: A name in braces that are LaTeX's: of an argument, an index or an exponent.
+_LATEX = re.compile(r"(?:[_^]|\\(?:[dt]?frac(?:\{[^{}]*\})?|sqrt|text|math[a-z]+|operatorname|dot|bar|hat)) ?\{(\w+)\}")
 _PLACE, _GIVEN = re.compile(r"(?<!\{)\{(\w+)\}(?!\})"), re.compile(r"\.given\(([^()]*)\)")
 #: Two ways to a value agree, and a change is none, within this fraction.
 SAME = 1e-6
@@ -64,6 +67,8 @@ class Page(Exercise):
         insight = " ".join(page.section("Insight").text.split())
         super().__init__(page.number, page.title, page.points, where, key, insight)
         self.changes = list(self._read_mistakes())
+        for part in (page.statement, *page.sections.values()):
+            self._look_at_braces(part)
         for of in (self._at_once, self._carried):
             self.mistakes += [
                 (sentence, _naming(functools.partial(of, place), parameters))
@@ -163,6 +168,14 @@ class Page(Exercise):
             raise ValueError(f"{name!r} is no quantity of this page: {did_you_mean(name, known)}")
         return name, self._read(found[2])
 
+    def _look_at_braces(self, part):
+        for place, line in enumerate(part.source.splitlines()):
+            for found in _LATEX.finditer(line):
+                name = found[1]
+                if name in self.units or name in self._asked:
+                    says = f"{found[0]}: write {{{{{name}}}}} for the letter, or {{ {{{name}}} }} for its value"
+                    raise PageError(part.file, part.line + place, says)
+
     # ---- what follows for some values of the givens
 
     def quantities(self, values: Mapping[str, Value]) -> dict[str, Any]:
@@ -203,7 +216,7 @@ class Page(Exercise):
             values: of the givens.
             answers: {name of an asked quantity: number}.
         """
-        changed = self.graph.changed(self.quantities(values), answers)
+        changed = self.graph.changed(self.quantities(values), answers, self._wanted())
         return {name: self._kind(name, *asked, changed) for name, asked in self._asked.items() if name not in answers}
 
     def _kind(self, name, one, words, quantities) -> Kind:
@@ -225,9 +238,15 @@ class Page(Exercise):
         """For each mistake what is asked and is another value by it: {name: value}, or None where it is as good."""
         return [self._mistaken(changes, dict(givens)) for _, changes in self.changes]
 
+    def _wanted(self, changes=MappingProxyType({})):
+        """The quantities that make what is asked, also with changes of it."""
+        kinds = [one for one, _ in self._asked.values()]
+        return self._asked.keys() | {name for one in (*kinds, *changes.values()) for name in one.names}
+
     def _mistaken(self, changes, values):
         right, key = self.quantities(values), self._key_of(tuple(values.items()))
-        found = self.graph.changed(right, {name: one for name, one in changes.items() if name in right})
+        of_graph = {name: one for name, one in changes.items() if name in right}
+        found = self.graph.changed(right, of_graph, self._wanted(changes))
         for name, one in changes.items():
             if name not in right:  # a function of the page makes its key
                 found[name] = one(found, self.functions)
@@ -358,7 +377,11 @@ def read(file: Path) -> dict[str, Page]:
 
 
 def beside(file: Path) -> dict[str, Callable[..., Any]]:
-    """Return the functions of the Python beside a page, which has its name."""
+    """Return the functions of the Python beside a page, which has its name: those that its formulas may call.
+
+    Raises:
+        PageError: where one has the name of a function of formulas or of a kind of answers.
+    """
     code = file.with_suffix(".py")
     if not code.exists():
         return {}
@@ -368,7 +391,10 @@ def beside(file: Path) -> dict[str, Callable[..., Any]]:
     module = importlib.util.module_from_spec(specification)
     specification.loader.exec_module(module)
     found = {name: one for name, one in vars(module).items() if callable(one) and not name.startswith("_")}
-    return {name: one for name, one in found.items() if one is not MAKERS.get(name)}  # these are there in any case
+    for name in found.keys() & {*MAKERS, *formula.FUNCTIONS}:  # an import serves the Python alone
+        if found.pop(name).__module__ == module.__name__:
+            raise PageError(code.name, 1, f"{name} is a function that all pages have: expected another name for this one")
+    return found
 
 
 def of(

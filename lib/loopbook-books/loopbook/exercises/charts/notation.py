@@ -3,7 +3,8 @@
 A line is a step with its actions, ``Fill: inlet on``, or a transition with its condition, ``Fill -> Heat: level >=
 0.9``. Several steps before or behind an arrow, with + between them, are simultaneous. The first step is the initial one
 unless another one says so, ``Wait (initial)``. A duration alone, ``120 s``, is the time of the step. Other forms are
-read as well: several words for on and off, conditions behind `if` or in brackets, transitions below their step.
+read as well: several words for on and off, conditions behind `if` or in brackets, transitions below their step, a table
+with a row for each step, its actions, and the transition to the next one.
 """
 
 from __future__ import annotations
@@ -33,7 +34,9 @@ _BRACKET = re.compile(r"^(.*?)\s*[\[({]\s*(.+?)\s*[\])}]$")
 _CONDITION = re.compile(
     r"(?i)^([^:,]+?)\s*(?::|,|\b(?:if|when|once|as soon as)\b)\s*(.*)$|^(\S+(?: \S+)?)\s+(after\b.*)$"
 )
-_MARK = re.compile(r"(?i)\((?:initial|start|initial step)\)|\binitial step\b|\*$|^\*|^initial\b|\binitial$")
+_MARK = re.compile(r"(?i)\((?:initial|start|initial step)\)|\binitial[_ ]step\b|\*$|^\*|^initial\b|\binitial$")
+_RULE = re.compile(r"[-:]+")
+_TO = re.compile(r"(?i)^(.*?),?\s*(?:(?:back |then |go )*\bto\b|[-=]+>|→)\s*(\w+)$")
 _STEP = re.compile(r"(?i)^step\b[: ]*(?=\S)")
 
 
@@ -108,11 +111,33 @@ def read_chart(given: str | Iterable[str], signals: Signals) -> WrittenChart:
     lines = [line for text in ([given] if isinstance(given, str) else given) for line in text.splitlines()]
     if sum(map(len, lines)) > LONGEST or len(lines) > MOST_LINES:
         raise Unreadable(f"the chart is very long: expected at most {MOST_LINES} lines and {LONGEST} characters")
-    numbered = [(n, part) for n, line in enumerate(lines, start=1) for part in _COMMENT.sub("", line).split(";")]
+    numbered = _untabled([(n, _COMMENT.sub("", line)) for n, line in enumerate(lines, start=1)])
+    numbered = [(n, part) for n, line in numbered for part in line.split(";")]
     numbered = [(n, " ".join(_BULLET.sub("", part).split()), part) for n, part in numbered if part.strip()]
     if not numbered:
         raise Unreadable("the chart is empty: expected lines such as 'Fill: inlet on' and 'Fill -> Heat: level >= 0.9'")
     return _Reader(signals).read(numbered)
+
+
+def _untabled(lines):
+    """The lines of a chart, where a table is one for each step and for each transition; others stay as they are."""
+    rows = [(n, [cell.strip(" `") for cell in line.strip()[1:-1].split("|")])
+            for n, line in lines if re.fullmatch(r"\s*\|.*\|\s*", line)]  # fmt: skip
+    rows = [(n, cells) for n, cells in rows if not all(map(_RULE.fullmatch, cells))]
+    if not rows:
+        return lines
+    if any("step" in cell.casefold() for cell in rows[0][1]):
+        del rows[0]  # the heads of the columns
+    found = [(n, line) for n, line in lines if not line.lstrip().startswith("|")]
+    following = [_MARK.sub("", cells[0]).strip(" `") for _, cells in [*rows[1:], *rows[:1]]]
+    for (n, cells), after in zip(rows, following, strict=True):
+        step, actions, *conditions = (cell.replace("`", "") for cell in cells)
+        name = _MARK.sub("", step).strip()
+        found.append((n, f"{step}: {actions}"))
+        for condition in filter(None, re.split(r"<br ?/?>", " ".join(conditions))):
+            way = _TO.match(condition.strip())
+            found.append((n, f"{name} -> {way[2] if way else after}: {way[1] if way else condition.strip()}"))
+    return found
 
 
 class _Reader:
