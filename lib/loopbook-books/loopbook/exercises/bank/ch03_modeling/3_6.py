@@ -5,7 +5,8 @@ from sympy import diff  # noqa: F401
 from exercisebook.parameters import written
 from loopbook import diagrams as draw
 from loopbook.exercises.bank.ch03_modeling.shared import in_numbers  # noqa: F401
-from loopbook.transfer import initial_gain, poles, static_gain  # noqa: F401
+from loopbook.transfer import initial_gain, static_gain  # noqa: F401
+from loopbook.transfer import poles as poles_of  # noqa: F401
 
 #: What lies above the output and what below, and whether the latter is a row.
 PARTS = {
