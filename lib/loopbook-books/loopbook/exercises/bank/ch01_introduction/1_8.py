@@ -2,25 +2,19 @@
 
 import numpy as np
 
+from loopbook.deadtime import Loop
 from loopbook.figures import time_plot
+from loopbook.pid import PID
+from loopbook.transfer import integrator
 
 
-def new_level(*givens):
-    """Trend of a tank with a PI controller, from one setpoint to another at 10 min: times, level, control signal.
-
-    A tank is an integrator: error and control signal obey s² + 2ζω s + ω², with 2ζω = Kp times its rate per percent.
-    """
-    h_1, h_2, reach, Kp, zeta, per_percent, u_0 = map(float, givens)
-    damping = Kp * per_percent / 2
-    omega = damping / zeta
-    swing = omega * np.sqrt(1 - zeta**2)
-    after = np.linspace(0, 5 / damping, 401)
-    fades, angle = (h_2 - h_1) * np.exp(-damping * after), swing * after
-    error = fades * (np.cos(angle) - damping / swing * np.sin(angle))
-    added = fades * np.sin(angle) / swing * omega**2 / (2 * damping)
-    quiet = np.linspace(0, 9.9999, 41)
-    level = np.r_[0 * quiet + h_1, h_2 - error]
-    return np.r_[quiet, 10 + after], level, np.r_[0 * quiet + u_0, u_0 + Kp * 100 / reach * (error + added)]
+def new_level(h_1, h_2, reach, Kp, zeta, per_percent, u_0):
+    """Trend of a tank with a PI controller, from one setpoint to another at 10 min: times, level, control signal."""
+    loop = Loop(integrator(per_percent), PID(Kp, 4 * zeta**2 / (Kp * per_percent)))
+    quiet, after = np.linspace(0, 9.9999, 41), np.linspace(0, 10 / float(Kp * per_percent), 401)
+    level = float(h_1) + float(h_2 - h_1) * loop.servo.step(after)
+    control = float(u_0) + float(100 * (h_2 - h_1) / reach) * loop.setpoint_to_control.step(after)
+    return np.r_[quiet, 10 + after], np.r_[0 * quiet + float(h_1), level], np.r_[0 * quiet + float(u_0), control]
 
 
 def first_at(t, h, level):
