@@ -24,7 +24,7 @@ from loopbook.exercises.forms import answer
 
 ROOT = Path(__file__).parents[2]
 STATIC = ROOT / "docs" / "_static"
-ASKED = {"do": "check", "exercise": "7.1", "student": None, "answers": {"I": "14.4 mA", "p": "0.85 MPa", "K_p": "2"}}
+ASKED = {"do": "check", "exercise": "7.1", "student": None, "answers": {"I": "14.4 mA", "p": "0.85 MPa", "gain": "2"}}
 #: A word in an answer with which the judge of these tests never comes to an end.
 ENDLESS = "endless"
 

@@ -11,10 +11,7 @@ def picture(low, high, I, p_SP):
         .    1           PC        I  PT       .
         air  compressor  .         .  network  consumers"""
     parts = {"compressor": draw.compressor(), "network": draw.vessel()}
-    names = {
-        "setpoint": f"${written(p_SP)}$ bar",
-        "I": f"${written(I)}$ mA",
-        "range": f"${written(low)}$ to ${written(high)}$ bar",
-    }
+    names = {"setpoint": f"${written(p_SP)}$ bar", "I": f"${written(I)}$ mA"}
+    names["range"] = f"${written(low)}$ to ${written(high)}$ bar"
     pipes, signals = "air compressor network consumers", "network PT I PC 1 compressor, setpoint PC"
     return draw.instrumentation_diagram(layout, pipes, signals, parts, names)

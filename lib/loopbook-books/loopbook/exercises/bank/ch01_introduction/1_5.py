@@ -2,13 +2,7 @@
 
 import numpy as np
 
-from loopbook.exercises import authoring
 from loopbook.figures import time_plot
-
-
-def asked(key, what):
-    """A number that is read off a picture."""
-    return authoring.number(key, "", what, within=0.1)
 
 
 def silo(h_SP, above, left, period):
@@ -34,6 +28,5 @@ def picture(t, h, h_SP):
 
 def solution_picture(t, h, h_SP, period):
     """The picture of the statement, with the two swings marked that are compared."""
-    signals = {"setpoint": (h_SP, "setpoint"), "$h$": (h, "measurement")}
-    plot = time_plot(signals, t, "Two swings, one after the other", xlabel="$t$ [min]", ylabel="$h$ [m]")
+    plot = picture(t, h, h_SP)
     return plot.mark(period / 2, "first", signal="$h$").mark(period, "next", signal="$h$")

@@ -4,28 +4,27 @@ import numpy as np
 
 from exercisebook.parameters import written
 from loopbook import diagrams as draw
-from loopbook.exercises import authoring
+from loopbook.exercises.authoring import criterion, design, number
 from loopbook.figures import plane_plot
 
 
-def both_wishes(key, low, high, e_max, u_max):
+def both_demands(key, *limits):
     """A gain between two limits."""
-    low, high = float(low), float(high)
+    low, high, e_max, u_max = map(float, limits)
 
     def against_both_limits(Kp):
         gains = np.linspace(low / 2, max(1.3 * high, 1.1 * Kp), 200)
         curves = {"error that stays": (gains, low / gains), "noise of the control signal": (gains, gains / high)}
+        curves["limit"] = gains, np.ones(200), "setpoint"
         plot = plane_plot(curves, "$K_p$", "part of what is allowed", "Both should be at most 1")
-        plot.line([gains[0], gains[-1]], [1, 1], "limit", role="setpoint")
         return plot.points([Kp, Kp], [low / Kp, Kp / high], "your gain")
 
     noise = "the standard deviation of the control signal"
-    stays, trembles = low * float(e_max), float(u_max) / high
-    return authoring.design(
-        authoring.number(key, "", "the gain"),
-        authoring.criterion("the gain is positive", lambda Kp: Kp > 0),
-        authoring.criterion("the error that stays", lambda Kp: stays / Kp, below=float(e_max), unit="cm"),
-        authoring.criterion(noise, lambda Kp: trembles * Kp, below=float(u_max), unit="%"),
+    return design(
+        number(key, "", "the gain"),
+        criterion("the gain is positive", lambda Kp: Kp > 0),
+        criterion("the error that stays", lambda Kp: low * e_max / Kp, below=e_max, unit="cm"),
+        criterion(noise, lambda Kp: Kp * u_max / high, below=u_max, unit="%"),
         draws=against_both_limits,
     )
 
@@ -39,8 +38,7 @@ def picture(reach, sigma, per_percent):
         water  pump  2     .     .
         .      .     tank  LT    reach
         .      .     tank  .     drawn"""
-    pump = draw.pump(f"${written(per_percent)}$ L/s\nfor $1\\,\\%$")
-    parts = {"pump": pump, "tank": draw.tank(level="h")}
+    parts = {"pump": draw.pump(f"${written(per_percent)}$ L/s\nfor $1\\,\\%$"), "tank": draw.tank(level="h")}
     names = {"reach": f"$0$ to ${written(reach)}$ m,\nnoise ${written(sigma)}$ cm"}
     pipes, signals = "water pump 2 tank drawn", "tank LT LC 1 pump, K_p LC"
     return draw.instrumentation_diagram(layout, pipes, signals, parts, names)

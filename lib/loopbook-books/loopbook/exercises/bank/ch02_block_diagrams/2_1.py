@@ -2,7 +2,6 @@
 
 from exercisebook.parameters import written
 from loopbook import diagrams as draw
-from loopbook.figures import time_plot
 
 
 def picture(K, y_0):
@@ -15,9 +14,3 @@ def picture(K, y_0):
     blocks = {"K_A": gain, "I_A": sum_up, "I_B": sum_up, "K_B": gain}
     names = {"A": "Meter A", "B": "Meter B", "u_A": "u", "u_B": "u"}
     return draw.grid_diagram(layout, "u_A K_A I_A y_A, u_B I_B K_B y_B", blocks, names)
-
-
-def solution_picture(K, y_0, t_1, t_2, t_end, y_A, y_B):
-    """The outputs of both meters: they begin apart and remain as far apart, since both rise by the same."""
-    outputs = {"meter A": [y_0, y_0, y_A, y_A], "meter B": [K * y_0, K * y_0, y_B, y_B]}
-    return time_plot(outputs, [0, float(t_1), float(t_2), float(t_end)], ylabel="output [L]")

@@ -1,6 +1,7 @@
 """Python beside the page of exercise 2.3."""
 
 import numpy as np
+from scipy.linalg import expm
 
 from exercisebook.parameters import written
 from loopbook import diagrams as draw
@@ -8,12 +9,8 @@ from loopbook import diagrams as draw
 
 def motion(m, D, K, y_start, t):
     """Position and speed of the real mass at a moment."""
-    m, D, K, y_start, t = map(float, (m, D, K, y_start, t))
-    root = np.sqrt(complex(D**2 - 4 * m * K)) + 1e-9  # never zero
-    p, q = (-D + root) / (2 * m), (-D - root) / (2 * m)
-    y = y_start * (p * np.exp(q * t) - q * np.exp(p * t)) / (p - q)
-    v = y_start * p * q * (np.exp(q * t) - np.exp(p * t)) / (p - q)
-    return float(y.real), float(v.real)
+    A = np.array([[0, 1], [-K / m, -D / m]], dtype=float)
+    return (expm(A * float(t)) @ [float(y_start), 0]).tolist()
 
 
 def picture(m, D, K, y_0):

@@ -11,11 +11,6 @@ def tex(matrix):
     return sympy.latex(sympy.Matrix(matrix))
 
 
-def tex_of_lags(above, T_1, T_2):
-    """A transfer function with two lags as a formula."""
-    return rf"\frac{{{sympy.latex(sympy.simplify(above))}}}{{({written(T_1)} s + 1)({written(T_2)} s + 1)}}"
-
-
 def picture(T_1, T_2, K):
     """A block diagram of the two equations: two integrators, each in a loop of its own; {K} in front of the first one,
     division by {T_1} in the first loop and by {T_2} in the second one."""

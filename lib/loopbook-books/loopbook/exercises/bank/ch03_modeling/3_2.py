@@ -1,11 +1,9 @@
 """Python beside the page of exercise 3.2."""
 
-import numpy as np
 import sympy
 from sympy import diff, fraction, integrate, latex  # noqa: F401
 
 from loopbook import diagrams as draw
-from loopbook.figures import plane_plot
 
 #: With which power of the height each of the vessels becomes wider, and half of its width at the rim.
 SECTIONS = {"funnel": (1, "R"), "trough": (1, "W/2"), "bowl": (0.5, "R"), "pit": (1, "L/2"), "goblet": (2, "R")}
@@ -19,9 +17,3 @@ def circle(radius):
 def picture(shape, lost):
     """The tank in section, with its level h: q_i flows in above; {loses}."""
     return draw.widening_tank(*SECTIONS[shape], outflow=lost)
-
-
-def solution_picture(power):
-    """The level of the vessel while it is filled at a constant rate: fast at first, and then more and more slowly."""
-    levels = np.linspace(0, 1, 101)
-    return plane_plot({"level": (levels ** (int(power) + 1), levels)}, "volume, as a part of $V(H)$", "$h/H$")

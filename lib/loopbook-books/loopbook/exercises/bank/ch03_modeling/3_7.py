@@ -16,24 +16,26 @@ def picture(C):
     return draw.rc_circuit(capacitor=f"${written(C)}$ µF")
 
 
-def _step_and_hum(R, omega, t_95, C):
-    """The step with a third of the hum behind the filter, whose lag is in milliseconds."""
-    lag, times = max(R, 1e-6) * C, np.linspace(0, 2 * t_95, 2001)
-    step = 100 * (1 - np.exp(-times / lag))
-    hum = 100 / math.hypot(1, omega * lag / 1000) / 3 * np.sin(omega * times / 1000)
-    signals = {"step and hum, filtered": (step + hum, "measurement"), "the step alone": (step, "setpoint")}
-    plot = time_plot(signals, times, f"With $R$ = {R:.4g} kΩ", xlabel="$t$ [ms]", ylabel="way [%]")
-    return plot.event(t_95, "from here on at least 95 %").level(95, "95 %")
-
-
 def little_hum_and_quick(key, *givens):
     """A resistance that lets little of the hum through and the step come in time."""
     f, rest, t_95, C = map(float, givens)
-    omega = 2 * math.pi * f
+    omega = 2 * math.pi * f / 1000  # per millisecond, in which kΩ times µF are
+
+    def hum(R):
+        return 100 / math.hypot(1, omega * R * C)
+
+    def step_and_hum(R):
+        times = np.linspace(0, 2 * t_95, 2001)
+        step = 100 * (1 - np.exp(-times / (max(R, 1e-6) * C)))
+        noisy = step + hum(R) / 3 * np.sin(omega * times)
+        signals = {"step and hum, filtered": (noisy, "measurement"), "the step alone": (step, "setpoint")}
+        plot = time_plot(signals, times, f"With $R$ = {R:.4g} kΩ", xlabel="$t$ [ms]", ylabel="share of the step [%]")
+        return plot.event(t_95, "from here on at least 95 %").level(95, "95 %")
+
     return design(
         number(key, "kΩ", "the resistance"),
         criterion("the resistance is positive", lambda R: R > 0),
-        criterion("the rest of the hum", lambda R: 100 / math.hypot(1, omega * R * C / 1000), below=rest, unit="%"),
-        criterion("the time to 95 % of the way", lambda R: math.log(20) * R * C, below=t_95, unit="ms"),
-        draws=lambda R: _step_and_hum(float(R), omega, t_95, C),
+        criterion("the rest of the hum", hum, below=rest, unit="%"),
+        criterion("the time to 95 % of the step", lambda R: math.log(20) * R * C, below=t_95, unit="ms"),
+        draws=step_and_hum,
     )

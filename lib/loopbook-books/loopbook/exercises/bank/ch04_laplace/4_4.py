@@ -3,14 +3,8 @@
 import numpy as np
 
 from exercisebook.parameters import written
-from loopbook.expressions import t
 from loopbook.figures import time_plot
 from loopbook.laplace import inverse  # noqa: F401
-
-
-def reading_at(y, moment):
-    """The reading at a moment."""
-    return float(y.subs(t, moment))
 
 
 def picture(T, start, bath, rest):
@@ -24,9 +18,3 @@ def picture(T, start, bath, rest):
         f"{written(rest)} K below": (np.where(before, np.nan, float(bath - rest)), "raw"),
     }
     return time_plot(signals, times, ylabel="temperature [°C]", low=True)
-
-
-def solution_picture(y, bath, t_near):
-    """The reading goes from where it was to the temperature of the water."""
-    plot = time_plot({"$y$": (y, "measurement")}, np.linspace(0, 1.3 * float(t_near), 201), ylabel="$y$ [°C]")
-    return plot.level(bath, "water").mark(float(t_near), "near enough")

@@ -3,34 +3,16 @@
 import numpy as np
 
 from loopbook import signals
-from loopbook.exercises import authoring
 from loopbook.figures import time_plot
-
-
-def read_off(key, unit, what, within):
-    """A number that is given, and is asked where it is only seen in the picture."""
-    return authoring.number(key, unit, what, within=float(within))
-
-
-def _rising(times, start, T, y_1, dy):
-    return float(y_1) + float(dy) * (1 - np.exp(-np.maximum(times - float(start), 0) / float(T)))
+from loopbook.identification import fit  # noqa: F401
 
 
 def record(start, T, u_1, du, y_1, dy, noise):
-    """Times, power and noisy temperature."""
-    times = np.linspace(0, float(start + 7 * T), 400)
-    power = float(u_1) + float(du) * (times >= float(start))
-    return times, power, _rising(times, start, T, y_1, dy) + signals.noise(times, 0.012 * float(dy), seed=int(noise))
-
-
-def change(values):
-    """From the mean at the beginning to that at the end."""
-    return np.mean(values[-60:]) - np.mean(values[:15])
-
-
-def reached(t, values, level):
-    """When a curve is above a level for the first time."""
-    return float(t[np.argmax(values >= float(level))])
+    """Times, power, noisy temperature, and that without the noise."""
+    start, T, u_1, du, y_1, dy = map(float, (start, T, u_1, du, y_1, dy))
+    times = np.linspace(0, start + 7 * T, 400)
+    rising = y_1 + dy * (1 - np.exp(-np.maximum(times - start, 0) / T))
+    return times, u_1 + du * (times >= start), rising + signals.noise(times, 0.012 * dy, seed=int(noise)), rising
 
 
 def picture(t, u, y):
@@ -39,8 +21,8 @@ def picture(t, u, y):
     return time_plot(panels, t, xlabel="$t$ [min]", ylabel=["temperature [°C]", "power [%]"])
 
 
-def solution_picture(t, y, start, T, y_1, dy, moment):
+def solution_picture(t, y, y_model, start, moment):
     """The record with the response of the model through the noise, and the point at 63 %."""
-    curves = {"measured": (y, "raw"), "model": (_rising(t, start, T, y_1, dy), "model")}
+    curves = {"measured": (y, "raw"), "model": (y_model, "model")}
     plot = time_plot(curves, t, xlabel="$t$ [min]", ylabel="temperature [°C]")
     return plot.mark(moment, "63 %, after $T$", "model").event(start, "step")

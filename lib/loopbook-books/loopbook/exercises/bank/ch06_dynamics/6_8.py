@@ -1,18 +1,13 @@
 """Python beside the page of exercise 6.8."""
 
 import numpy as np
+from numpy import interp  # noqa: F401
 
-from loopbook.exercises import authoring
 from loopbook.figures import time_plot
 
 
-def read_off(key, unit, what, within):
-    """A number that is given, and is asked where it is only seen in the picture."""
-    return authoring.number(key, unit, what, within=float(within))
-
-
-def _rises(T, tau, order):
-    """Times and step responses of the four models, each under its letter."""
+def curves(T, tau, order):
+    """The times, and the curves A to D."""
     T, tau = float(T), float(tau)
     times = np.linspace(0, 3.2 * T, 400)
     two, four, after = 2 * times / T, 4 * times / T, np.maximum(times - tau, 0)
@@ -22,24 +17,7 @@ def _rises(T, tau, order):
         1 - np.exp(-four) * (1 + four + four**2 / 2 + four**3 / 6),
         1 - np.exp(-after / max(T - tau, 1e-9)),
     )
-    return times, dict(sorted(zip(order, responses, strict=True)))
-
-
-def curves(T, tau, order):
-    """The times, and the curves A to D."""
-    times, rises = _rises(T, tau, order)
-    return times, *rises.values()
-
-
-def curve(T, tau, order, letter):
-    """The curve with a letter."""
-    return _rises(T, tau, order)[1][letter]
-
-
-def reached(T, tau, order, letter, level):
-    """When a curve is above a level for the first time."""
-    times, rises = _rises(T, tau, order)
-    return float(times[np.argmax(rises[letter] >= float(level))])
+    return times, *dict(sorted(zip(order, responses, strict=True))).values()
 
 
 def picture(t, A, B, C, D):

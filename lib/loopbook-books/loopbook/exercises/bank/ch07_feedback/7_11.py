@@ -12,11 +12,6 @@ def by_hand(SP, e, u_man, before):
     return times, y, np.where(times < 10, float(before), float(u_man))
 
 
-def last(values):
-    """The last value of a curve."""
-    return float(values[-1])
-
-
 def picture(SP, t, T, u):
     """Temperature and setpoint, and below them the control signal, which the operator moves at 10 min."""
     panels = [{"setpoint": (float(SP), "setpoint"), "temperature": (T, "measurement")}, {"$u$": (u, "control signal")}]

@@ -1,14 +1,7 @@
 """Python beside the page of exercise 7.4."""
 
 from loopbook import diagrams
-from loopbook.expressions import parse
 from loopbook.transfer import feedback, first_order, static_gain  # noqa: F401
-
-
-def in_numbers(e, K, K_p, W):
-    """A formula with the numbers of the tank."""
-    formula, values = parse(e), {"K": K, "K_p": K_p, "W": W}
-    return formula.subs({symbol: values[symbol.name] for symbol in formula.free_symbols})
 
 
 def picture(K, T):
