@@ -11,10 +11,10 @@ def _sinusoids(theta, P):
     return times, np.sin(turn * times), np.sin(turn * (times - float(theta)))
 
 
-def largest(theta, P):
-    """The amplitude of what is left."""
+def largest(theta, P, k):
+    """The amplitude of what is left, with k times the force."""
     _, wind, late = _sinusoids(theta, P)
-    return max(abs(wind - late))
+    return max(abs(wind - float(k) * late))
 
 
 def solution_picture(e_0, theta, P):
