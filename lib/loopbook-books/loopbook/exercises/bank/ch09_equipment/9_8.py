@@ -31,14 +31,18 @@ def opening_for(kind, authority, flow):
     return float(np.interp(float(flow), _installed(kind, authority, openings)[0], openings))
 
 
-def picture(kind, authority, low, high, **tangents):
-    """The flow against the opening of the valve, as measured in the plant, with the points A and B."""
+def _curve(kind, authority, points, tangents):
     x = np.linspace(0, 100, 201)
     curves = {"valve": (x, _installed(kind, authority, x)[0], "measurement")} | tangents
     plot = plane_plot(curves, "opening [%]", "flow [%]", xlim=(0, 100), ylim=(0, 105))
-    flows = [flow_at(kind, authority, opening) for opening in (low, high)]
-    plot.points([float(low), float(high)], flows, "working points")
-    return plot.text(float(low) - 3, flows[0] + 5, "A").text(float(high) - 3, flows[1] + 5, "B")
+    for name, (opening, flow) in points.items():
+        plot.text(float(opening) - 3, float(flow) + 5, name)
+    return plot.points(*np.array([*points.values()], float).T, "working points")
+
+
+def picture(kind, authority, low, high, q_A, q_B):
+    """The flow against the opening of the valve, as measured in the plant, with the points A and B."""
+    return _curve(kind, authority, {"A": (low, q_A), "B": (high, q_B)}, {})
 
 
 def solution_picture(kind, authority, low, high, q_A, q_B, gain_A, gain_B):
@@ -46,4 +50,4 @@ def solution_picture(kind, authority, low, high, q_A, q_B, gain_A, gain_B):
     near = np.array([-15.0, 15.0])
     lines = {"tangent at A": (low, q_A, gain_A), "tangent at B": (high, q_B, gain_B)}
     tangents = {name: (float(x) + near, float(q) + slope * near) for name, (x, q, slope) in lines.items()}
-    return picture(kind, authority, low, high, **tangents)
+    return _curve(kind, authority, {"A": (low, q_A), "B": (high, q_B)}, tangents)

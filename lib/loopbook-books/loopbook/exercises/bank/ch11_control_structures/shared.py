@@ -35,7 +35,8 @@ def vessels(feed, pipes, product, above=None, signals=""):
     row = [feed, *pipes[0], *(sign for name, pipe in zip(names, pipes[1:], strict=True) for sign in (name, *pipe))]
     row += [product]
     layout = [[above.get(sign, (".", "."))[place] for sign in row] for place in (1, 0)] + [row]
-    parts = {name: diagrams.vessel(name[1:], filled=0.5) for name in names} | {"Filter": "Filter"}
+    parts = {sign: sign for sign in row if sign == "Filter"}
+    parts |= {name: diagrams.vessel(name[1:], filled=0.5) for name in names}
     parts |= {sign: diagrams.control_valve(sign[1:] and sign) for sign in row if sign[0] == "V"}
     signals = [signals] * bool(signals) + [f"{name} {' '.join(above[name])}" for name in names]
     return diagrams.instrumentation_diagram("\n".join(map(" ".join, layout)), " ".join(row), ", ".join(signals), parts)
