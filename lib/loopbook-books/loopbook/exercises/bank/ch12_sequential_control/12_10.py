@@ -1,9 +1,8 @@
 """Python beside the page of exercise 12.10."""
 
-from loopbook.exercises.bank.ch12_sequential_control.shared import TANK_NAMES, written  # noqa: F401
+from loopbook.exercises.bank.ch12_sequential_control.shared import PRESSED, TANK_NAMES, written  # noqa: F401
 from loopbook.exercises.kinds.sequential_chart import SequentialChart
 
-PRESSED = "Wait.X AND Wait.T >= 20 AND Wait.T < 24"
 SCENARIOS_OF_ALARM = [
     ("", 2, {"start": PRESSED, "reset": "FALSE"}),
     ("if the level transmitter gets stuck", 2, {
@@ -57,7 +56,7 @@ def asked_chart(key, *givens):
         _demands_on_alarm(*givens),
         SCENARIOS_OF_ALARM,
         what="the chart of the tank",
-        also={**{name: TANK_NAMES[name] for name in ("start", "level", "inlet", "outlet")}, "horn": ["alarm horn"]},
+        also={name: TANK_NAMES[name] for name in ("start", "level", "inlet", "outlet", "horn")},
     )
 
 
