@@ -49,7 +49,9 @@ def way(order, step):
 
 def _chart(ways):
     steps = {"Weigh": {}} | {step: {} for step, _ in ways}
-    return Chart("mass", {}, steps, "Weigh", [("Weigh", *one) for one in ways], final=" ".join(step for step, _ in ways))
+    return Chart(
+        "mass", {}, steps, "Weigh", [("Weigh", *one) for one in ways], final=" ".join(step for step, _ in ways)
+    )
 
 
 def run(ways, eggs):

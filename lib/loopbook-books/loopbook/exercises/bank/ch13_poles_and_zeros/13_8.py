@@ -1,9 +1,8 @@
-"""The matrix of exercise 13.8, and how its numbers are written."""
+"""Python beside the page of exercise 13.8."""
 
 import numpy as np
 import sympy
 
-from loopbook.exercises.bank.ch13_poles_and_zeros.shared import factor
 from loopbook.figures import time_plot
 
 
@@ -12,29 +11,15 @@ def matrix(a_11, a_12, a_21, a_22):
     return sympy.ImmutableMatrix([[a_11, a_12], [a_21, a_22]])
 
 
-def are_eigenvalues(values, A):
-    """Whether numbers are the eigenvalues of a matrix, by numpy."""
-    found = np.linalg.eigvals(np.array(A, dtype=float))
-    return np.allclose(np.sort_complex(found), np.sort_complex([complex(value) for value in values]))
+def by_numpy(A):
+    """The eigenvalues of a matrix, the one with the largest real part first."""
+    found = np.linalg.eigvals(np.array(A, dtype=complex)).round(9)
+    return [sympy.sympify(value) for value in np.sort_complex(found)[::-1].tolist()]
 
 
 def largest_real(A):
-    """The largest real part of an eigenvalue, by numpy."""
-    return float(max(np.linalg.eigvals(np.array(A, dtype=float)).real))
-
-
-def polynomial_of(trace, det):
-    """The characteristic polynomial, as a formula."""
-
-    def sign(value):
-        return "-" if value < 0 else "+"
-
-    return rf"\lambda^2 {sign(-trace)} {factor(abs(trace))}\lambda {sign(det)} {abs(float(det)):.4g}"
-
-
-def in_brackets(value):
-    """A number within a product or a power: a negative one in brackets."""
-    return f"({float(value):.4g})" if value < 0 else f"{float(value):.4g}"
+    """The largest real part of an eigenvalue."""
+    return max(sympy.re(value) for value in by_numpy(A))
 
 
 def written(value):
