@@ -6,17 +6,13 @@ from loopbook.figures import time_plot
 from loopbook.identification import fit
 
 
-def _response(t, K, T, delay, step, y_0, start):
-    return float(y_0) + float(K * step) * -np.expm1(-np.maximum(t - float(start + delay), 0) / float(T))
-
-
 def record(K, T, delay, u_0, step, y_0, start, noise):
     """Times, valve opening and temperature."""
     t = np.arange(0, float(start + delay + 8 * T), 5.0)
     u = np.where(t < float(start), float(u_0), float(u_0 + step))
+    rise = float(K * step) * -np.expm1(-np.maximum(t - float(start + delay), 0) / float(T))
     dice = np.random.default_rng(int(noise))
-    noise = 0.015 * abs(float(K * step)) * dice.normal(size=t.size)
-    return t, u, (_response(t, K, T, delay, step, y_0, start) + noise).round(2)
+    return t, u, (float(y_0) + rise + 0.015 * abs(float(K * step)) * dice.normal(size=t.size)).round(2)
 
 
 def ends(u, y):
@@ -44,9 +40,3 @@ def picture(t, u, y):
     plot = time_plot([{"temperature [°C]": (y, "measurement")}, {"valve [%]": (u, "control signal")}], t)
     plot.lines["valve [%]"].set_drawstyle("steps-post")
     return plot
-
-
-def solution_picture(t, y, K, T, delay, step, y_0, start):
-    """The record, and the response of the model through it."""
-    curves = {"measured": (y, "raw"), "model": (_response(t, K, T, delay, step, y_0, start), "model")}
-    return time_plot(curves, t, ylabel="temperature [°C]")

@@ -1,11 +1,7 @@
 """Python beside the page of exercise 11.10."""
 
-import numpy as np
-
 from loopbook import diagrams
-from loopbook.deadtime import System
 from loopbook.exercises.bank.ch11_control_structures.shared import lag
-from loopbook.figures import time_plot
 from loopbook.transfer import feedback, first_order  # noqa: F401
 
 
@@ -20,10 +16,3 @@ def picture(K_1, T_1, K_2, T_2):
     wires = "y_SP e Integral k_i f u Jacket 1 Glue 2 x_1, 1 3 k_2 9 - f, 2 4 k_1 7 - f, 4 5 6 - e"
     blocks = {"Integral": r"\frac{1}{s}", "Jacket": lag(K_2, T_2), "Glue": lag(K_1, T_1)}
     return diagrams.grid_diagram(layout, wires, blocks | {name: name for name in ("k_i", "k_1", "k_2")})
-
-
-def solution_picture(loop, L):
-    """The glue after a setpoint step, with these gains."""
-    times = np.linspace(0, 15 * float(L), 301)
-    curves = {"setpoint": (1, "setpoint"), "glue": (System(loop).step(times), "measurement")}
-    return time_plot(curves, times, ylabel="$x_1$ [K]")

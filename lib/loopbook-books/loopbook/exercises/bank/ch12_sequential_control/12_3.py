@@ -48,10 +48,9 @@ def way(order, step):
 
 
 def _chart(ways):
-    steps = {"Weigh": {}} | {step: {} for step, _ in ways}
-    return Chart(
-        "mass", {}, steps, "Weigh", [("Weigh", *one) for one in ways], final=" ".join(step for step, _ in ways)
-    )
+    sizes = [size for size, _ in ways]
+    steps = {step: {} for step in ("Weigh", *sizes)}
+    return Chart("mass", {}, steps, "Weigh", [("Weigh", *one) for one in ways], final=" ".join(sizes))
 
 
 def run(ways, eggs):
