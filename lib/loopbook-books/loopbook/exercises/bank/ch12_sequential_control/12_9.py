@@ -1,8 +1,7 @@
 """Python beside the page of exercise 12.9."""
 
 from loopbook.diagrams import control_valve, instrumentation_diagram, tank
-from loopbook.exercises.bank.ch12_sequential_control.shared import PRESSED, TANK_NAMES, written  # noqa: F401
-from loopbook.exercises.kinds.sequential_chart import SequentialChart
+from loopbook.exercises.bank.ch12_sequential_control.shared import PRESSED, tank_chart, written  # noqa: F401
 
 SCENARIOS_OF_BATCH = [
     ("", 2, {"start": PRESSED}),
@@ -40,15 +39,8 @@ def _demands_on_batch(full, T_SP, hold, low):
 
 def asked_chart(key, *givens):
     """A chart that does on the tank what is demanded."""
-    return SequentialChart(
-        key,
-        {"start": "", "level": "m", "temperature": "°C"},
-        ["inlet", "heater", "outlet"],
-        _demands_on_batch(*givens),
-        SCENARIOS_OF_BATCH,
-        what="the chart of the tank",
-        also={name: TANK_NAMES[name] for name in ("start", "level", "temperature", "inlet", "outlet", "heater")},
-    )
+    inputs, outputs = {"start": "", "level": "m", "temperature": "°C"}, ["inlet", "heater", "outlet"]
+    return tank_chart(key, inputs, outputs, _demands_on_batch(*givens), SCENARIOS_OF_BATCH)
 
 
 def complaint(chart, *givens):

@@ -1,5 +1,7 @@
 """What several exercises of chapter 12 need."""
 
+from loopbook.exercises.kinds.sequential_chart import SequentialChart
+
 #: Other names under which one knows the signals of the tank, as Figure 12.2 has them.
 TANK_NAMES = {
     "start": ["button", "S"],
@@ -43,3 +45,9 @@ def left_on(outputs, boxes, seen, also="", without=""):
 def switched_on(outputs, boxes, seen):
     """The outputs that some steps switch on, whatever switches them off."""
     return [output for output in outputs if (output, True) in executed(boxes, seen)]
+
+
+def tank_chart(key, inputs, outputs, demands, scenarios):
+    """A chart that does on the tank what is demanded."""
+    also = {name: TANK_NAMES[name] for name in (*inputs, *outputs) if name in TANK_NAMES}
+    return SequentialChart(key, inputs, outputs, demands, scenarios, what="the chart of the tank", also=also)
