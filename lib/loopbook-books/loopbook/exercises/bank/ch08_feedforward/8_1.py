@@ -1,20 +1,7 @@
 """Python beside the page of exercise 8.1."""
 
-import itertools
-
 from loopbook import diagrams
-from loopbook.expressions import parse
-
-
-def apart(values):
-    """Whether no two of the values can be taken for one another."""
-    return all(abs(x - y) > 0.03 * abs(x) for x, y in itertools.permutations(values, 2))
-
-
-def in_numbers(formula, w_c, T_SP, T_c, T_h):
-    """The feedforward with the numbers of the dairy."""
-    values = {"w_c": w_c, "T_SP": T_SP, "T_c": T_c, "T_h": T_h}
-    return parse(formula).subs({symbol: values[symbol.name] for symbol in parse(formula).free_symbols})
+from loopbook.exercises.bank.ch08_feedforward.shared import in_numbers  # noqa: F401
 
 
 def picture(T_SP, T_c, T_h):

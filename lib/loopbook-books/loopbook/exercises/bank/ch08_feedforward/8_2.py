@@ -2,30 +2,18 @@
 
 import numpy as np
 
-from loopbook.expressions import parse
+from loopbook.exercises.bank.ch08_feedforward.shared import in_numbers  # noqa: F401
 from loopbook.figures import time_plot
-
-
-def in_numbers(formula, m, D, F_w, v, a):
-    """The feedforward with the numbers of the trolley."""
-    values = {"m": m, "D": D, "F_w": F_w, "v_SP": v, "a_SP": a}
-    return parse(formula).subs({symbol: values[symbol.name] for symbol in parse(formula).free_symbols})
-
-
-def _setpoint(v, rise):
-    times = np.linspace(0, 2 * float(rise), 401)
-    return times, np.minimum(times / float(rise), 1) * float(v)
 
 
 def picture(v, rise):
     """The setpoint of the speed against time: an even rise from zero, then constant."""
-    times, speed = _setpoint(v, rise)
-    return time_plot({"$v_{SP}$": (speed, "setpoint")}, times, ylabel="speed [m/s]", low=True)
+    speed = {"$v_{SP}$": (np.array([0, v, v], float), "setpoint")}
+    return time_plot(speed, [0, rise, 2 * rise], ylabel="speed [m/s]", low=True)
 
 
-def solution_picture(inertia, D, v, rise, F_w):
+def solution_picture(rise, F_w, F_rise, F_after):
     """The force that the feedforward asks for: it rises with the speed, and falls where the rise ends."""
-    times, speed = _setpoint(v, rise)
-    force = float(inertia) * (times <= float(rise)) + float(D) * speed + float(F_w)
-    panels = [{"$v_{SP}$": (speed, "setpoint")}, {"$F_f$": (force, "control signal")}]
-    return time_plot(panels, times, ylabel=["speed [m/s]", "force [N]"], low=True)
+    force = np.array([F_rise - F_after + F_w, F_rise, F_after, F_after], float)
+    times = [0, rise, 1.0001 * rise, 2 * rise]
+    return time_plot({"$F_f$": (force, "control signal")}, times, ylabel="force [N]", low=True)

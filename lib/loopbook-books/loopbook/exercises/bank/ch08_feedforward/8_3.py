@@ -1,9 +1,6 @@
 """Python beside the page of exercise 8.3."""
 
-import numpy as np
-
 from loopbook import diagrams
-from loopbook.figures import time_plot
 from loopbook.transfer import first_order, initial_gain, simplified, static_gain  # noqa: F401
 
 
@@ -12,11 +9,3 @@ def picture(K, T, tau, K_d, T_d, tau_d):
     G = diagrams.block(rf"\frac{{{float(K):g}}}{{{T}s+1}}e^{{-{tau}s}}")
     G_d = diagrams.block(rf"\frac{{-{K_d}}}{{{T_d}s+1}}e^{{-{tau_d}s}}")
     return diagrams.block_diagram("u", G, diagrams.disturbance("d", G_d), "y")
-
-
-def solution_picture(wait, T, T_d, u_end):
-    """What the feedforward adds to the control signal after the step of the milk flow."""
-    wait, T_d, end = float(wait), float(T_d), float(u_end)
-    times = np.linspace(0, wait + 4 * T_d, 400)
-    u = (times >= wait) * end * (1 + (float(T) / T_d - 1) * np.exp(-(times - wait) / T_d))
-    return time_plot({"feedforward [%]": (u, "control signal")}, times, low=True).level(end, "in the end")

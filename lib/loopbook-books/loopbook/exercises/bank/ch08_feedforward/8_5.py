@@ -1,15 +1,8 @@
 """Python beside the page of exercise 8.5."""
 
-import itertools
-
 import numpy as np
 
 from loopbook.figures import time_plot
-
-
-def apart(values):
-    """Whether no two of the values can be taken for one another."""
-    return all(abs(x - y) > 0.03 * abs(x) for x, y in itertools.permutations(values, 2))
 
 
 def _needed(u_0, u_full, d):

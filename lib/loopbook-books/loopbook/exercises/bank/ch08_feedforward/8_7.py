@@ -5,8 +5,8 @@ import numpy as np
 from loopbook.figures import time_plot
 
 
-def curves(drop, given, T, shift, order):
-    """Times and temperatures: without feedforward, and on the three days A, B and C, each with its fault."""
+def curves(drop, given, T, shift):
+    """Times and temperatures: without feedforward, with a wrong gain, too late, and too early."""
     drop, given, T, shift = map(float, (drop, given, T, shift))
     times = np.linspace(0, 8 * T, 401)
     begins = shift + 0.5 * T  # so that even what comes too early comes after the step
@@ -15,9 +15,8 @@ def curves(drop, given, T, shift, order):
         x = np.maximum(times - moment, 0) / T
         return drop * (1 - np.exp(-x) * (1 + x))
 
-    steam = given * pushed(begins), pushed(begins + shift), pushed(begins - shift)
-    days = dict(sorted(zip(order, (one - pushed(begins) for one in steam), strict=True)))
-    return times, -pushed(begins), *days.values()
+    cold = -pushed(begins)
+    return times, cold, cold + given * pushed(begins), cold + pushed(begins + shift), cold + pushed(begins - shift)
 
 
 def last(values):

@@ -20,19 +20,13 @@ def tried(span, finest):
     return next(bits for bits in range(1, 40) if count_up(span, bits) <= finest)
 
 
-def in_kilograms(span, inaccuracy, drift, warming):
-    """The largest error, its two parts one after the other, in kg."""
-    return 10 * span * inaccuracy + 10 * span * sum([drift] * int(warming))
-
-
 def picture(span, bits):
     """A silo on load cells of 0 to {span}; the input of the controller makes {bits} bits of their signal."""
-    layout = """
-        silo  cells  input  controller"""
     parts = {
         "silo": draw.silo(),
         "cells": f"Load cells\n$0$ to ${written(span)}$ t",
         "input": f"Input\n${written(bits)}$ bits",
         "controller": "Controller",
     }
-    return draw.instrumentation_diagram(layout, "", "silo cells input controller", parts)
+    row = " ".join(parts)
+    return draw.instrumentation_diagram(row, "", row, parts)

@@ -1,9 +1,9 @@
 """Python beside the page of exercise 9.4."""
 
 import numpy as np
-import sympy
 
 from exercisebook.authoring import expression
+from loopbook.exercises.bank.ch08_feedforward.shared import in_numbers  # noqa: F401
 from loopbook.figures import time_plot
 
 
@@ -12,17 +12,12 @@ def formula_of(moves):
     return expression(moves, "the ripple as a formula")
 
 
-def in_numbers(moves, *values):
-    """The formula of the ripple with numbers."""
-    return moves.subs(dict(zip(sympy.symbols("q A D P", positive=True), values, strict=True)))
-
-
 def moved(q, A, D, P):
     """How far the level moves in a cycle, in mm, from what flows in and what flows out."""
     n = 2000
     flows = np.where(np.arange(n) < n * float(D), float(q), 0.0)
     level = np.cumsum(flows - flows.mean()) * float(P / A) / n
-    return float(level.max() - level.min())
+    return float(np.ptp(level))
 
 
 def picture(q, D):
@@ -30,13 +25,3 @@ def picture(q, D):
     cycles = np.linspace(0, 3, 601)[:-1]
     flow = np.where(cycles % 1 < float(D), float(q), 0.0)
     return time_plot({"pump [L/s]": (flow, "control signal")}, cycles, xlabel="time in cycles, $t/P$", low=True)
-
-
-def solution_picture(D, height, P):
-    """Three of the longest cycles: the level, and the pump."""
-    times = np.linspace(0, 3 * float(P), 601)[:-1]
-    share = (times / float(P)) % 1
-    runs = share < float(D)
-    level = float(height) * np.where(runs, share / float(D), (1 - share) / (1 - float(D)))
-    panels = [{"level [mm]": (level, "measurement")}, {"pump": (runs.astype(float), "control signal")}]
-    return time_plot(panels, times, low=True)

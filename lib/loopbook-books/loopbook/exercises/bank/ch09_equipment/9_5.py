@@ -1,7 +1,5 @@
 """Python beside the page of exercise 9.5."""
 
-import math
-
 import numpy as np
 from sympy import Piecewise, lambdify
 
@@ -17,22 +15,17 @@ def in_turn(first, second, at):
 def _cycles(full, T, on, P, number):
     """Times and temperatures in cycles from room temperature on, in small exact steps."""
     full, T, on, P = map(float, (full, T, on, P))
-    times, y, now = np.linspace(0, number * P, 200 * number + 1), [], 0.0
-    for time in times:
-        y.append(now)
+    times, y = np.linspace(0, number * P, 200 * number + 1), [0.0]
+    for time in times[:-1]:
         end = full if time % P < on - 1e-9 else 0.0
-        now = end + (now - end) * math.exp(-times[1] / T)
+        y.append(end + (y[-1] - end) * np.exp(-times[1] / T))
     return times, np.array(y)
 
 
 def settled(full, T, on, P):
-    """Mean and ripple of a cycle in the end: over one period the oven loses what it gets."""
-    a, b, low = math.exp(-on / T), math.exp(-(P - on) / T), 0.0
-    for _ in range(200):
-        high = full + (low - full) * a
-        low = high * b
-    area = full * on - (full - low) * T * (1 - a) + high * T * (1 - b)
-    return [area / P, high - low]
+    """Mean and ripple of the twentieth cycle."""
+    y = _cycles(full, T, on, P, 20)[1][-201:]
+    return [np.trapezoid(y) / 200, np.ptp(y)]
 
 
 def farthest(y, full, T, on, P):

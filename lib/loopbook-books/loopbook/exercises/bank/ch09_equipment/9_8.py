@@ -6,8 +6,6 @@ import numpy as np
 
 from loopbook.figures import plane_plot
 
-AXES = "opening [%]", "flow [%]"
-
 
 def _installed(kind, authority, opening):
     """The flow in percent and its slope, for an opening in percent, of a valve in series with a pipe."""
@@ -27,39 +25,29 @@ def slope_at(kind, authority, opening):
     return float(_installed(kind, authority, opening)[1])
 
 
-def rise(kind, authority, opening):
-    """The slope by two flows close together."""
-    return (flow_at(kind, authority, opening + 0.01) - flow_at(kind, authority, opening - 0.01)) / 0.02
-
-
 def opening_for(kind, authority, flow):
     """Where the curve reaches a flow."""
     openings = np.linspace(0, 100, 10001)
     return float(np.interp(float(flow), _installed(kind, authority, openings)[0], openings))
 
 
-def seen(wrong, right):
-    """A wrong value, where a ruler tells it from the right one."""
-    return right if 0.75 < wrong / right < 1.3 else wrong
+def _curve(kind, authority, points, tangents):
+    x = np.linspace(0, 100, 201)
+    curves = {"valve": (x, _installed(kind, authority, x)[0], "measurement")} | tangents
+    plot = plane_plot(curves, "opening [%]", "flow [%]", xlim=(0, 100), ylim=(0, 105))
+    for name, (opening, flow) in points.items():
+        plot.text(float(opening) - 3, float(flow) + 5, name)
+    return plot.points(*np.array([*points.values()], float).T, "working points")
 
 
-def picture(kind, authority, low, high):
+def picture(kind, authority, low, high, q_A, q_B):
     """The flow against the opening of the valve, as measured in the plant, with the points A and B."""
-    x = np.linspace(0, 100, 201)
-    plot = plane_plot(
-        {"valve": (x, _installed(kind, authority, x)[0], "measurement")}, *AXES, xlim=(0, 100), ylim=(0, 105)
-    )
-    flows = [float(_installed(kind, authority, opening)[0]) for opening in (low, high)]
-    plot.points([float(low), float(high)], flows, "working points")
-    return plot.text(float(low) - 3, flows[0] + 5, "A").text(float(high) - 3, flows[1] + 5, "B")
+    return _curve(kind, authority, {"A": (low, q_A), "B": (high, q_B)}, {})
 
 
-def solution_picture(kind, authority, low, high):
+def solution_picture(kind, authority, low, high, q_A, q_B, gain_A, gain_B):
     """The curve with its tangents at A and B."""
-    x = np.linspace(0, 100, 201)
-    curves = {"flow [%]": (x, _installed(kind, authority, x)[0], "measurement")}
-    for name, at in (("A", low), ("B", high)):
-        flow, slope = _installed(kind, authority, at)
-        near = np.array([-15.0, 15.0])
-        curves[f"tangent at {name}"] = (float(at) + near, flow + slope * near)
-    return plane_plot(curves, *AXES, xlim=(0, 100), ylim=(0, 105))
+    near = np.array([-15.0, 15.0])
+    lines = {"tangent at A": (low, q_A, gain_A), "tangent at B": (high, q_B, gain_B)}
+    tangents = {name: (float(x) + near, float(q) + slope * near) for name, (x, q, slope) in lines.items()}
+    return _curve(kind, authority, {"A": (low, q_A), "B": (high, q_B)}, tangents)

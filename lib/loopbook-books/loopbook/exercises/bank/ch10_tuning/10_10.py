@@ -3,25 +3,22 @@
 from functools import lru_cache
 
 import numpy as np
-from sympy import Rational, exp
+from sympy import Rational
 
-from loopbook.expressions import exact, s
+from loopbook.deadtime import Loop
 from loopbook.figures import time_plot
 from loopbook.pid import PID
 from loopbook.signals import stepwise
+from loopbook.transfer import first_order
 
-_FAULTS = {
-    "gain too high": (2.4, 1),
-    "gain too low": (0.22, 1),
-    "integral time too short": (1, 0.3),
+#: By which factors gain and integral time are wrong.
+FACTORS = {
+    "gain too high": (Rational("2.4"), 1),
+    "gain too low": (Rational("0.22"), 1),
+    "integral time too short": (1, Rational("0.3")),
     "integral time too long": (1, 8),
 }
 _DEAD_TIMES = np.linspace(0, 60, 601)
-
-
-def faults():
-    """What may be wrong."""
-    return [*_FAULTS]
 
 
 def minutes(delay):
@@ -32,12 +29,9 @@ def minutes(delay):
 @lru_cache
 def response(ratio, fault):
     """The response of an oven to its setpoint and, 30 dead times later, to a load; the dead time is one."""
-    from loopbook.deadtime import Loop
-
-    gain, time = _FAULTS.get(fault, (1, 1))
-    pid = PID(Rational(ratio, 2) * exact(gain), ratio * exact(time))
-    load = stepwise(0, {30: Rational(3, 5)})
-    return Loop(exp(-s) / (ratio * s + 1), pid).run(_DEAD_TIMES, setpoint=1, load=load)["y"]
+    gain, time = FACTORS.get(fault, (1, 1))
+    loop = Loop(first_order(1, ratio, 1), PID(ratio * gain / 2, ratio * time))
+    return loop.run(_DEAD_TIMES, setpoint=1, load=stepwise(0, {30: Rational(3, 5)}))["y"]
 
 
 def seen_in(y):

@@ -5,6 +5,7 @@ from math import pi
 import numpy as np
 
 from loopbook.figures import time_plot
+from loopbook.identification import limit_cycle
 from loopbook.tuning import ziegler_nichols_ultimate as ziegler_nichols_ultimate
 
 
@@ -14,11 +15,9 @@ def _record(low, high, middle, a, period, periods):
     return times, np.where(wave >= 0, float(high), float(low)), float(middle) - float(a) * wave
 
 
-def of_the_record(low, high, middle, a, period):
+def of_the_record(*givens):
     """What the library reads off the record."""
-    from loopbook.identification import limit_cycle
-
-    return limit_cycle(*_record(low, high, middle, a, period, 5))
+    return limit_cycle(*_record(*givens, 5))
 
 
 def picture(low, high, middle, a, period):

@@ -2,7 +2,6 @@
 
 from functools import lru_cache
 from math import pi, sqrt
-from types import SimpleNamespace
 
 import numpy as np
 
@@ -30,16 +29,14 @@ def _bath(tried):
 
 
 def in_the_record(tried, place):
-    """The oscillation in the part with the ultimate gain: its period, how it decays, and how far the valve goes."""
+    """The part with the ultimate gain: its period, by how much the oscillation decays, and the valve at its limits."""
     times, _, y, u = _bath(tuple(map(float, tried)))
     part = times // _EACH == int(place) - 1
-    since, y, u = times[part] % _EACH, y[part], u[part] - 50
-    late = since > 1
-    middle = (y[late].max() + y[late].min()) / 2
-    up = since[1:][(y[:-1] < middle) & (y[1:] >= middle) & late[1:]]
-    swing = [np.ptp(y[(since >= at) & (since < at + 1)]) for at in (up[0], up[-1] - 1)]
-    period = (up[-1] - up[0]) / (len(up) - 1)
-    return SimpleNamespace(period=period, decay=swing[1] / swing[0], reach=np.abs(u).max() / 50)
+    y, u = y[part & (times % _EACH > 1)], u[part]
+    middle = (y.max() + y.min()) / 2
+    tops = np.flatnonzero((y[:-1] < middle) & (y[1:] >= middle))
+    first, last = (np.ptp(y[at : at + tops[1] - tops[0]]) for at in (tops[0], tops[-2]))
+    return [np.diff(tops).mean() * times[1], last / first, min(u.min(), 100 - u.max())]
 
 
 def picture(K_u, P_u, tried):

@@ -3,12 +3,11 @@
 import numpy as np
 
 from loopbook import diagrams
-from loopbook.figures import time_plot
 
 
 def openings(u, split, action):
     """The openings of the vent and of the inlet, in %."""
-    u, split = np.array(u, float), float(split)
+    u, split = float(u), float(split)
     falling, rising = np.interp(u, [0, split], [100, 0]), np.interp(u, [split, 100], [0, 100])
     return [falling, rising] if action == "reverse" else [rising, falling]
 
@@ -26,10 +25,3 @@ def picture(action, u):
     names = {"mode": f"{action} action, $u$ = {u} $\\%$"}
     pipes, signals = "nitrogen inlet 3 vent outside, 3 tank", "3 PT PC 4 inlet, PC 5 vent, mode PC"
     return diagrams.instrumentation_diagram(layout, pipes, signals, parts, names)
-
-
-def solution_picture(split, action):
-    """The openings of the two valves over the whole range of the control signal."""
-    u = np.linspace(0, 100, 201)
-    vent, inlet = openings(u, split, action)
-    return time_plot({"vent": vent, "inlet": inlet}, u, xlabel="$u$ [%]", ylabel="opening [%]", low=True)

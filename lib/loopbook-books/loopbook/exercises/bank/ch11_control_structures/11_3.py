@@ -1,19 +1,11 @@
 """Python beside the page of exercise 11.3."""
 
-from loopbook import diagrams
+from loopbook.exercises.bank.ch11_control_structures.shared import vessels
 
 
 def with_valve(action, name, closing):
     """The action of a controller: the other one where its valve closes as the signal rises."""
     return {"reverse": "direct", "direct": "reverse"}[action] if name in closing else action
-
-
-def except_for(closing):
-    """What the statement says of the valves that close."""
-    two = "and" in closing
-    return ("two exceptions: the valves of {} are open" if two else "one exception: the valve of {} is open").format(
-        closing
-    )
 
 
 def highest_in_the_end(place, closing, actions):
@@ -30,16 +22,5 @@ def highest_in_the_end(place, closing, actions):
 
 def picture(place):
     """The four tanks, and the flow controller in one of the five pipes."""
-    tanks, pipes, above, far = ["milk"], ["milk"], ["."], ["."]
-    for n in range(5):
-        if n == place:
-            tanks, above, far = [*tanks, "FT", "V"], [*above, "FC", "9"], [*far, ".", "."]
-            pipes += ["FT", "V"]
-        if n < 4:
-            tanks, above, far = [*tanks, f"T{n + 1}"], [*above, f"LT{n + 1}"], [*far, f"LC{n + 1}"]
-            pipes.append(f"T{n + 1}")
-    rows = [[*far, "."], [*above, "."], [*tanks, "filling"]]
-    layout = "\n".join(" ".join(row) for row in rows)
-    parts = {f"T{n}": diagrams.vessel(str(n), filled=0.5) for n in range(1, 5)} | {"V": diagrams.control_valve()}
-    signals = ", ".join(["FT FC 9 V", *(f"T{n} LT{n} LC{n}" for n in range(1, 5))])
-    return diagrams.instrumentation_diagram(layout, " ".join([*pipes, "filling"]), signals, parts)
+    pipes = [["FT", "V"] if n == place else [] for n in range(5)]
+    return vessels("milk", pipes, "filling", {"FT": ("FC", "."), "V": ("9", ".")}, "FT FC 9 V")

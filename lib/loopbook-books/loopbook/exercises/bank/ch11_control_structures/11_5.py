@@ -1,20 +1,7 @@
 """Python beside the page of exercise 11.5."""
 
-import sympy
-from sympy import diff  # noqa: F401
-
 from loopbook import diagrams
-from loopbook.expressions import t
-
-
-def at(x, time):
-    """The value of a function of time."""
-    return x.subs(t, time)
-
-
-def limit(x):
-    """What a function of time approaches."""
-    return sympy.limit(x, t, sympy.oo)
+from loopbook.transfer import first_order, step_response  # noqa: F401
 
 
 def picture(A, F):

@@ -5,13 +5,7 @@ from loopbook.sequence import Chart
 
 
 def _chart(m):
-    """The chart of the machine."""
-    steps = {
-        "Wait": {"u_cap": False},
-        "Fill": {"u_valve": True},
-        "Cap": {"u_valve": False, "u_cap": True},
-        "Away": {},
-    }
+    steps = {"Wait": {"u_cap": False}, "Fill": {"u_valve": True}, "Cap": {"u_valve": False, "u_cap": True}, "Away": {}}
     ways = [("Wait", "Fill", "bottle"), ("Fill", "Cap", f"mass >= {float(m):g}"), ("Cap", "Away", "TRUE")]
     ways.append(("Away", "Wait", "NOT bottle"))
     return Chart(("bottle", "mass"), {"u_valve": False, "u_cap": False}, steps, "Wait", ways)

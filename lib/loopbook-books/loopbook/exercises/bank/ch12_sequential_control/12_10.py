@@ -1,9 +1,7 @@
 """Python beside the page of exercise 12.10."""
 
-from loopbook.exercises.bank.ch12_sequential_control.shared import TANK_NAMES, written  # noqa: F401
-from loopbook.exercises.kinds.sequential_chart import SequentialChart
+from loopbook.exercises.bank.ch12_sequential_control.shared import PRESSED, tank_chart, written  # noqa: F401
 
-PRESSED = "Wait.X AND Wait.T >= 20 AND Wait.T < 24"
 SCENARIOS_OF_ALARM = [
     ("", 2, {"start": PRESSED, "reset": "FALSE"}),
     ("if the level transmitter gets stuck", 2, {
@@ -50,15 +48,8 @@ def _demands_on_alarm(full, limit):
 
 def asked_chart(key, *givens):
     """A chart that does on the tank what is demanded."""
-    return SequentialChart(
-        key,
-        {"start": "", "reset": "", "level": "m"},
-        ["inlet", "outlet", "horn"],
-        _demands_on_alarm(*givens),
-        SCENARIOS_OF_ALARM,
-        what="the chart of the tank",
-        also={**{name: TANK_NAMES[name] for name in ("start", "level", "inlet", "outlet")}, "horn": ["alarm horn"]},
-    )
+    inputs, outputs = {"start": "", "reset": "", "level": "m"}, ["inlet", "outlet", "horn"]
+    return tank_chart(key, inputs, outputs, _demands_on_alarm(*givens), SCENARIOS_OF_ALARM)
 
 
 def complaint(chart, *givens):

@@ -14,23 +14,24 @@ BRANCHES = {
 }
 
 
-def conditions(order, w_1, w_2):
-    """The conditions of the branches in their order."""
-    return [condition.format(w_1, w_2) for condition in BRANCHES[order]]
+def branches_of(order, w_1, w_2):
+    """The branches in their order: pairs of a step and its condition."""
+    conditions = [condition.format(w_1, w_2) for condition in BRANCHES[order]]
+    return list(zip(order.split(), conditions, strict=True))
 
 
-def in_lines(order, w_1, w_2):
+def in_lines(ways):
     """The branches in a list."""
-    pairs = zip(order.split(), conditions(order, w_1, w_2), strict=True)
-    return "\n".join(f"{n}. to `{size}`: `{condition}`" for n, (size, condition) in enumerate(pairs, start=1))
+    return "\n".join(f"{n}. to `{size}`: `{condition}`" for n, (size, condition) in enumerate(ways, start=1))
 
 
-def branch(order, w_1, w_2, egg, true, place):
+def branch(ways, egg, true, place):
     """The step of that condition, at a place among those that are true, or false, for an egg; None if there is none."""
+    holds = {"<": lambda limit: egg < limit, ">=": lambda limit: egg >= limit}
     found = []
-    for step, condition in zip(order.split(), conditions(order, w_1, w_2), strict=True):
-        _, relation, limit = f"{condition} x x".split()[:3]
-        is_true = egg < int(limit) if relation == "<" else relation == "x" or egg >= int(limit)
+    for step, condition in ways:
+        _, *parts = condition.split()
+        is_true = holds[parts[0]](int(parts[1])) if parts else True
         found += [step] * (bool(is_true) == true)
     return found[int(place)] if place < len(found) and found else None
 
@@ -46,17 +47,18 @@ def way(order, step):
     return f"not {' and not '.join(f'`{name}`' for name in before)}, but " if before else "immediately "
 
 
-def _chart(order, w_1, w_2):
-    ways = [("Weigh", *one) for one in zip(order.split(), conditions(order, w_1, w_2), strict=True)]
-    return Chart("mass", {}, {step: {} for step in ("Weigh", *order.split())}, "Weigh", ways, final=order)
+def _chart(ways):
+    sizes = [size for size, _ in ways]
+    steps = {step: {} for step in ("Weigh", *sizes)}
+    return Chart("mass", {}, steps, "Weigh", [("Weigh", *one) for one in ways], final=" ".join(sizes))
 
 
-def run(order, w_1, w_2, eggs):
+def run(ways, eggs):
     """Where the chart sends eggs."""
-    chart = _chart(order, w_1, w_2)
+    chart = _chart(ways)
     return [scan_by_scan(chart, mass=[float(egg)] * 2).active[-1][0] for egg in eggs]
 
 
-def picture(order, w_1, w_2):
+def picture(ways):
     """The chart: from Weigh three branches lead to the sizes, from left to right in the order of the list."""
-    return sequential_function_chart(_chart(order, w_1, w_2))
+    return sequential_function_chart(_chart(ways))

@@ -3,10 +3,16 @@
 from types import SimpleNamespace
 
 from loopbook.diagrams import sequential_function_chart
-from loopbook.exercises.bank.ch12_sequential_control.shared import listed
+from loopbook.exercises.bank.ch12_sequential_control.shared import (  # noqa: F401
+    assigned,
+    executed,
+    left_on,
+    listed,
+    switched_on,
+)
 from loopbook.sequence import Chart
 
-MIXED = ["inlet", "heater", "stirrer", "drain", "lamp"]
+OUTPUTS = ["inlet", "heater", "stirrer", "drain", "lamp"]
 
 
 def actions_of(heater_off, lamp):
@@ -25,31 +31,6 @@ def actions_of(heater_off, lamp):
     return steps
 
 
-def _done(boxes, seen):
-    return [pair for step in seen for pair in boxes[step].items()]
-
-
-def left_on(boxes, seen, also="", without=""):
-    """What the actions of some steps leave on, and what one takes to be on as well or overlooks."""
-    on = dict(_done(boxes, seen)) | {also: True, without: False}
-    return [output for output in MIXED if on.get(output)]
-
-
-def switched_on(boxes, seen):
-    """What these steps switch on."""
-    return [output for output in MIXED if (output, True) in _done(boxes, seen)]
-
-
-def in_order(boxes, seen):
-    """The actions of some steps, one after the other."""
-    return listed(f"`{output} := {str(on).upper()}`" for output, on in _done(boxes, seen))
-
-
-def in_code(steps):
-    """Steps in a sentence."""
-    return " and ".join(f"`{step}`" for step in steps)
-
-
 def _chart(boxes, mix):
     ways = [
         ("Wait", ("Fill", "Warm"), "start"),
@@ -59,16 +40,15 @@ def _chart(boxes, mix):
         ("Mix", "Drain", f"Mix.T >= {mix}"),
         ("Drain", "Wait", "empty"),
     ]
-    return Chart(("start", "full", "hot", "empty"), dict.fromkeys(MIXED, False), boxes, "Wait", ways)
+    return Chart(("start", "full", "hot", "empty"), dict.fromkeys(OUTPUTS, False), boxes, "Wait", ways)
 
 
-def run(boxes, mix, start, full, hot):
-    """What is active and on after each scan."""
+def run(boxes, mix, **moments):
+    """What is active and on after each scan, with the moments from which on inputs are true."""
     chart, found = _chart(boxes, mix), []
     for time in range(60):
-        inputs = {"start": time >= start, "full": time >= full, "hot": time >= hot, "empty": False}
-        on = chart.update({name: int(bool(value)) for name, value in inputs.items()}, time)
-        found.append(SimpleNamespace(active=list(chart.active), on=[output for output in MIXED if on[output]]))
+        on = chart.update({"empty": 0} | {name: int(bool(time >= at)) for name, at in moments.items()}, time)
+        found.append(SimpleNamespace(active=list(chart.active), on=[output for output in OUTPUTS if on[output]]))
     return found
 
 

@@ -1,14 +1,12 @@
 """Python beside the page of exercise 12.9."""
 
 from loopbook.diagrams import control_valve, instrumentation_diagram, tank
-from loopbook.exercises.bank.ch12_sequential_control.shared import TANK_NAMES, written  # noqa: F401
-from loopbook.exercises.kinds.sequential_chart import SequentialChart
+from loopbook.exercises.bank.ch12_sequential_control.shared import PRESSED, tank_chart, written  # noqa: F401
 
-PRESSED = "Wait.X AND Wait.T >= 20 AND Wait.T < 24"
 SCENARIOS_OF_BATCH = [
     ("", 2, {"start": PRESSED}),
     ("if the supply fails for a while", 1, {
-        "start": "Wait.X AND Wait.T >= 20 AND Wait.T < 24",
+        "start": PRESSED,
         "no_supply": "Fill.X AND Fill.T >= 60 AND Fill.T < 1000",
     }),
     ("if somebody presses start during the batch", 1, {
@@ -25,19 +23,11 @@ def _demands_on_batch(full, T_SP, hold, low):
         ("the tank runs over", "overflow > 0.1"),
         ("the heater is on while the level is still below 0.4 m", "heater AND level < 0.4"),
         ("inlet and outlet are open together", "inlet AND outlet"),
-        (
-            f"the inlet is closed, although start was pressed and the level has not reached {full} m",
-            "NOT inlet",
-            "Fill",
-        ),
+        (f"the inlet is closed, although start was pressed and the level is below {full} m", "NOT inlet", "Fill"),
         ("the inlet opens, although nobody has pressed start", "inlet", "Wait"),
         (f"the inlet is still open, although the level has reached {full} m", "inlet", "Heat Hold Empty"),
         (f"the heater is on before the level has reached {full} m", "heater", "Fill"),
-        (
-            f"the heater stays off, although the tank is full and the water is colder than {T_SP} °C",
-            "NOT heater",
-            "Heat",
-        ),
+        (f"the heater stays off, although the full tank is colder than {T_SP} °C", "NOT heater", "Heat"),
         (f"the heater is still on, although the water has reached {T_SP} °C", "heater", "Hold Empty"),
         ("the heater is on, although nobody has pressed start", "heater", "Wait"),
         (f"the outlet opens before the water has been held for {hold} s", "outlet", "Hold"),
@@ -49,15 +39,8 @@ def _demands_on_batch(full, T_SP, hold, low):
 
 def asked_chart(key, *givens):
     """A chart that does on the tank what is demanded."""
-    return SequentialChart(
-        key,
-        {"start": "", "level": "m", "temperature": "°C"},
-        ["inlet", "heater", "outlet"],
-        _demands_on_batch(*givens),
-        SCENARIOS_OF_BATCH,
-        what="the chart of the tank",
-        also=TANK_NAMES,
-    )
+    inputs, outputs = {"start": "", "level": "m", "temperature": "°C"}, ["inlet", "heater", "outlet"]
+    return tank_chart(key, inputs, outputs, _demands_on_batch(*givens), SCENARIOS_OF_BATCH)
 
 
 def complaint(chart, *givens):

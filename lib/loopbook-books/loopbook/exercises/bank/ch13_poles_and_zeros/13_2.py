@@ -1,25 +1,18 @@
-"""The pressure of exercise 13.2."""
+"""Python beside the page of exercise 13.2."""
 
 import numpy as np
 
+from loopbook.deadtime import System
+from loopbook.exercises.bank.ch13_poles_and_zeros.shared import at  # noqa: F401
 from loopbook.figures import time_plot
-from loopbook.laplace import evaluate
-from loopbook.oscillation import oscillation
-from loopbook.transfer import step_response
-
-__all__ = ["at", "oscillation", "picture", "step_response"]
+from loopbook.oscillation import oscillation  # noqa: F401
+from loopbook.transfer import step_response  # noqa: F401
 
 
-def at(y, time):
-    """The value of a function of time."""
-    return float(evaluate(y, [float(time)])[0])
-
-
-def picture(before, after, P, real, imaginary):
+def picture(before, after, P, loop):
     """The pressure after the step of its setpoint: a damped oscillation around the new setpoint."""
-    times, real, w = np.linspace(0, float(P) * 2.2, 301), float(real), float(imaginary)
-    wave = np.exp(real * times) * (np.cos(w * times) - real / w * np.sin(w * times))
-    pressure = float(after) - float(after - before) * wave
+    times = np.linspace(0, float(P) * 2.2, 301)
+    pressure = float(before) + float(after - before) * System(loop).step(times)
     curves = {"pressure": (pressure, "measurement"), "setpoint": (after, "setpoint")}
     plot = time_plot(curves, times, ylabel="pressure [bar]", low=True)
     return plot.mark(P / 2, "first peak", "pressure").mark(3 * P / 2, "next peak", "pressure")

@@ -1,19 +1,12 @@
-"""The levels of exercise 13.5."""
+"""Python beside the page of exercise 13.5."""
 
 import numpy as np
 from scipy.optimize import brentq
 
-from loopbook.exercises.bank.ch13_poles_and_zeros.shared import factor
+from loopbook.exercises.bank.ch13_poles_and_zeros.shared import at, factor  # noqa: F401
 from loopbook.figures import time_plot
 from loopbook.laplace import evaluate
-from loopbook.transfer import step_response, zeros
-
-__all__ = ["at", "back_at_zero", "factor", "picture", "solution_picture", "step_response", "zeros"]
-
-
-def at(y, time):
-    """The value of a function of time."""
-    return float(evaluate(y, [float(time)])[0])
+from loopbook.transfer import step_response, zeros  # noqa: F401
 
 
 def back_at_zero(y, before, after):

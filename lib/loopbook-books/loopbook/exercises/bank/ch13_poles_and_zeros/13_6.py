@@ -1,78 +1,49 @@
-"""The tank of exercise 13.6, and the design of its controller."""
-
-from math import atan2, atanh, exp, inf, sin, sinh, sqrt
+"""Python beside the page of exercise 13.6."""
 
 import numpy as np
-import sympy
 
 from loopbook import diagrams
 from loopbook.deadtime import System
-from loopbook.exercises import authoring
+from loopbook.exercises.authoring import criterion, design, pi_controller, settings, stable
+from loopbook.exercises.bank.ch08_feedforward.shared import in_numbers  # noqa: F401
 from loopbook.expressions import s
 from loopbook.figures import time_plot
 from loopbook.oscillation import oscillation
+from loopbook.transfer import simplified
 
-__all__ = ["calm", "damping", "highest", "picture"]
 
-
-def damping(Kp, Ti, A):
+def damping(pid, A):
     """The damping of a level under PI control, from its transfer function."""
-    return oscillation(1 / (A * Ti * s**2 + Kp * Ti * s + Kp)).zeta
+    return oscillation(simplified(s / (A * s + pid.expr))).zeta
 
 
-def highest(Kp, Ti, A, d):
-    """The largest rise of the level [cm] in its exact response to a step of the inflow."""
-    times = np.linspace(0, 4 * float(Ti), 4001)
-    return 100 * float(d) * System(Ti * s / (A * Ti * s**2 + Kp * Ti * s + Kp)).step(times).max()
+def highest(pid, A, d):
+    """The largest rise of the level after a step of the inflow, in cm."""
+    times = np.linspace(0, 20 * float(A / pid.Kp), 4001)
+    return 100 * System(simplified(d / (A * s + pid.expr))).step(times).max()
 
 
-def _zeta(pid, A):
-    Kp, Ti = float(pid.Kp), float(pid.Ti)
-    return sqrt(Kp * Ti / A) / 2 if Kp > 0 and Ti > 0 else -inf
+def _trends(pid, A, d, h_max, r_max):
+    """Level and outflow after the step of the inflow, with their limits."""
+    times = np.linspace(0, 4 * max(float(pid.Ti) if pid.Ti.is_finite else 0, float(A / pid.Kp)), 301)
+    level = 100 * System(simplified(d / (A * s + pid.expr))).step(times)
+    outflow = System(simplified(d * pid.expr / (A * s + pid.expr))).step(times)
+    steepest = np.where(float(r_max) * times <= 1.1 * float(d), float(r_max) * times, np.nan)
+    panels = [{"level": (level, "measurement")}, {"outflow": outflow, "steepest allowed": (steepest, "setpoint")}]
+    plot = time_plot(panels, times, xlabel="$t$ [min]", ylabel=["level [cm]", "outflow [m³/min]"], low=True)
+    return plot.level(h_max, "highest allowed")
 
 
-def _peak(pid, A, d):
-    """The largest deviation of a level under PI control after a step d of the inflow, in closed form."""
-    Kp, Ti = float(pid.Kp), float(pid.Ti)
-    if Kp <= 0 or Ti <= 0:
-        return inf
-    if Ti == inf:
-        return d / Kp
-    w, zeta = sqrt(Kp / (A * Ti)), _zeta(pid, A)
-    if abs(zeta - 1) < 1e-6:
-        return d / (A * w * exp(1))
-    root = sqrt(abs(zeta**2 - 1))
-    x = (atanh(root / zeta) if zeta > 1 else atan2(root, zeta)) / root
-    return d / (A * w * root) * exp(-zeta * x) * (sinh if zeta > 1 else sin)(root * x)
-
-
-def calm(A, d, h_max, r_max, design):
+def calm(A, d, h_max, r_max, pid):
     """A PI controller that keeps the limits of level and outflow, and whose level does not oscillate."""
-    area, flow = float(A), float(d)
-
-    def trends(pid):
-        process, C = 1 / (A * s), pid.expr
-        times = np.linspace(0, 4 * max(float(pid.Ti) if pid.Ti.is_finite else 0, float(A / pid.Kp)), 301)
-        level = 100 * System(sympy.cancel(d * process / (1 + process * C))).step(times)
-        outflow = System(sympy.cancel(d * process * C / (1 + process * C))).step(times)
-        steepest = np.where(float(r_max) * times <= 1.1 * flow, float(r_max) * times, np.nan)
-        curves = {"outflow": outflow, "steepest allowed": (steepest, "setpoint")}
-        signals = [{"level": (level, "measurement")}, curves]
-        labels = ["level [cm]", "outflow [m³/min]"]
-        plot = time_plot(signals, times, xlabel="$t$ [min]", ylabel=labels, low=True)
-        return plot.level(h_max, "highest allowed")
-
-    first_change = "the first change of the outflow"
-    return authoring.design(
-        authoring.settings(design, gain="m²/min", time="min", what="the settings of the controller"),
-        authoring.pi_controller(),
-        authoring.stable(by=lambda pid: pid.Kp > 0 and pid.Ti > 0),
-        authoring.criterion("the damping", lambda pid: _zeta(pid, area), above=1),
-        authoring.criterion(
-            "the largest rise of the level", lambda pid: 100 * _peak(pid, area, flow), below=h_max, unit="cm"
-        ),
-        authoring.criterion(first_change, lambda pid: float(pid.Kp) / area * flow, below=r_max, unit="m³/min²"),
-        draws=trends,
+    return design(
+        settings(pid, gain="m²/min", time="min", what="the settings of the controller"),
+        pi_controller(),
+        stable(by=lambda pid: pid.Kp > 0),
+        criterion("the damping", lambda pid: damping(pid, A), above=1),
+        criterion("the largest rise of the level", lambda pid: highest(pid, A, d), below=h_max, unit="cm"),
+        criterion("the first change of the outflow", lambda pid: float(pid.Kp / A * d), below=r_max, unit="m³/min²"),
+        draws=lambda pid: _trends(pid, A, d, h_max, r_max),
     )
 
 

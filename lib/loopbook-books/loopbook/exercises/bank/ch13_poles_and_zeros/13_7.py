@@ -1,4 +1,6 @@
-"""The sensitivity of exercise 13.7, of a loop x exp(-s)/s with the dead time as the unit of time."""
+"""Python beside the page of exercise 13.7: a loop x exp(-s)/s with the dead time as the unit of time."""
+
+from functools import lru_cache
 
 import numpy as np
 from scipy.optimize import brentq
@@ -6,12 +8,12 @@ from scipy.optimize import brentq
 from loopbook.figures import plane_plot
 from loopbook.stability import margins
 from loopbook.transfer import integrator
-from plainmath.tables import rounded
 
-__all__ = [
-    "curve", "helps_until", "integrator", "largest", "margins", "peak_at", "picture", "sensitivity", "solution_picture",
-    "three_digits",
-]  # fmt: skip
+
+@lru_cache
+def margins_of(x):
+    """What the library says of the loop, its largest sensitivity among it."""
+    return margins(integrator(x, 1))
 
 
 def sensitivity(x, w):
@@ -21,25 +23,9 @@ def sensitivity(x, w):
     return found if found.ndim else float(found)
 
 
-def largest(x):
-    """The height of the peak."""
-    return float(sensitivity(x, np.linspace(0.8, 2.2, 1401)).max())
-
-
-def peak_at(x):
-    """The frequency of the peak."""
-    w = np.linspace(0.8, 2.2, 1401)
-    return float(w[sensitivity(x, w).argmax()])
-
-
 def helps_until(x, limit=1):
     """The frequency up to which the size of the sensitivity is below a limit."""
-    return brentq(lambda w: sensitivity(x, w) - float(limit), 0.01, peak_at(x))
-
-
-def three_digits(value):
-    """A number as texts show it, with three digits."""
-    return float(rounded(float(value), 3))
+    return brentq(lambda w: sensitivity(x, w) - float(limit), 0.01, margins_of(x).omega_ms)
 
 
 def curve(x, delay):
