@@ -2,11 +2,9 @@
 
 import numpy as np
 
-from loopbook.deadtime import Loop
+from loopbook import PID, Loop, first_order, integrator, margins
 from loopbook.figures import time_plot
-from loopbook.pid import PID
-from loopbook.stability import dominant_poles, margins
-from loopbook.transfer import first_order, integrator
+from loopbook.stability import dominant_poles
 
 __all__ = ["first_order", "first_pole", "margins", "solution_picture"]
 
