@@ -1,14 +1,10 @@
-"""Python beside the page of exercise A.8."""
+"""The diagrams of exercise A.8."""
 
 import re
 
 from loopbook import diagrams as draw
-from loopbook.exercises import authoring
 from loopbook.exercises.connections import connections
 from loopbook.exercises.diagram_layout import drawn
-
-PROCESS = {"inlet": "pipe", "vessel": "vessel", "outlet": "pipe"}
-ALSO = {"inlet": ["inlet pipe", "in", "feed"], "vessel": ["tank", "drum"], "outlet": ["outlet pipe", "out"]}
 
 
 def written(lines, **names):
@@ -16,20 +12,14 @@ def written(lines, **names):
     return "\n".join(line.format(**names) for line in lines if line)
 
 
-def asked_diagram(key):
-    """The connections of a diagram."""
-    return authoring.instrument_diagram(key, PROCESS, "the instruments of the vessel", ALSO)
-
-
 def loop_letters(diagram, number):
     """What the instruments of a loop do, by the letter behind the first one."""
     return sorted({tag[1] for tag in re.findall(rf"\b[A-Z]+(?={number}\b)", diagram)})
 
 
-def picture(a):
+def picture(n):
     """A vessel with its inlet and its outlet: a temperature is measured in the vessel, its controller acts on a valve
     in the inlet by a pneumatic signal, and an indicator shows it."""
-    n = a - 4
     layout = f"""
         .   1      TC{n}   .      .    .
         .   .      .       .      .    .
@@ -43,4 +33,4 @@ def picture(a):
 
 def solution_picture(diagram):
     """The cascade: the transmitter and controller above the vessel, the flow loop at the {pipe}, and the alarm."""
-    return drawn(connections(asked_diagram(diagram).key), PROCESS)
+    return drawn(connections(diagram), {"inlet": "pipe", "vessel": "vessel", "outlet": "pipe"})
