@@ -15,10 +15,10 @@ def least(H, end):
     return float(min(System(H).step(np.linspace(0, float(end), 2001))))
 
 
-def picture(process, T1):
+def picture(K, process, T1):
     """The temperature after a step of the feed valve by 1 %: first it falls below zero, then it rises to its end."""
     times = np.linspace(0, float(5 * T1), 401)
-    curves = {"$y$": (System(process).step(times), "measurement")}
+    curves = {"$y$": (System(K * process).step(times), "measurement")}
     return time_plot(curves, times, "The process alone", "$t$ [min]", "temperature [K]")
 
 

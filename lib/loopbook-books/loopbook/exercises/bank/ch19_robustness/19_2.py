@@ -13,6 +13,7 @@ __all__ = ["first_order", "margins", "solution_picture", "unstable_closed_loop_p
 def solution_picture(x, delay):
     """The poles nearest to the axis: those on its right are the unstable ones."""
     found = lambertw(-float(x), np.arange(-7, 7)) / float(delay)
-    axis = {"imaginary axis": ([0, 0], [min(found.imag), max(found.imag)], "setpoint")}
-    plot = plane_plot(axis, "real part [1/s]", "imaginary part [rad/s]")
+    high, wide = 1.1 * max(abs(found.imag)), 1.15 * max(abs(found.real))
+    axis = {"imaginary axis": ([0, 0], [-high, high], "setpoint")}
+    plot = plane_plot(axis, "real part [1/s]", "imaginary part [rad/s]", xlim=(-wide, wide), ylim=(-high, high))
     return plot.points(found.real, found.imag, "poles", "x")

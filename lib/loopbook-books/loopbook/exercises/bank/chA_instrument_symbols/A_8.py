@@ -3,6 +3,7 @@
 import re
 
 from loopbook import diagrams as draw
+from loopbook.exercises import authoring
 from loopbook.exercises.connections import connections
 from loopbook.exercises.diagram_layout import drawn
 
@@ -33,4 +34,5 @@ def picture(n):
 
 def solution_picture(diagram):
     """The cascade: the transmitter and controller above the vessel, the flow loop at the {pipe}, and the alarm."""
-    return drawn(connections(diagram), {"inlet": "pipe", "vessel": "vessel", "outlet": "pipe"})
+    process = {"inlet": "pipe", "vessel": "vessel", "outlet": "pipe"}
+    return drawn(connections(authoring.instrument_diagram(diagram, process).key), process)
