@@ -1,12 +1,10 @@
 """The responses of exercise 14.1."""
 
-from loopbook.approximation import half_rule
-from loopbook.deadtime import System
-from loopbook.exercises.bank.ch14_model_approximation.shared import beside, equation, times_until
+from loopbook import System, first_order, half_rule
+from loopbook.exercises.bank.ch14_model_approximation.shared import beside, times_until
 from loopbook.figures import time_plot
-from loopbook.transfer import first_order
 
-__all__ = ["equation", "half_rule", "picture", "solution_picture"]
+__all__ = ["half_rule", "picture", "solution_picture"]
 
 
 def picture(g, theta_0, T_inv, tau_3):
@@ -18,5 +16,6 @@ def picture(g, theta_0, T_inv, tau_3):
 
 def solution_picture(g, tau, theta, tau_1, tau_2):
     """The process and its model: the model waits while the process goes the wrong way; then they stay together."""
-    systems = {"process": g, "model": first_order(1, tau, theta)}
-    return beside(systems, times_until(2.5 * (tau_1 + tau_2)), "The column and its model")
+    return beside(
+        {"process": g, "model": first_order(1, tau, theta)}, 2.5 * (tau_1 + tau_2), "The column and its model"
+    )

@@ -1,8 +1,8 @@
 """The responses of exercise 14.3."""
 
+from loopbook import dead_time
 from loopbook.approximation import zero_rule
-from loopbook.exercises.bank.ch14_model_approximation.shared import beside, times_until
-from loopbook.transfer import dead_time
+from loopbook.exercises.bank.ch14_model_approximation.shared import beside
 
 __all__ = ["solution_picture", "zero_rule"]
 
@@ -10,4 +10,4 @@ __all__ = ["solution_picture", "zero_rule"]
 def solution_picture(part, instead, theta):
     """The step response of zero and lag behind the dead time, and of what takes their place."""
     systems = {"zero and lag": part * dead_time(theta), "instead": instead * dead_time(theta)}
-    return beside(systems, times_until(6 * theta), "What the loop sees", "$t$ [s]")
+    return beside(systems, 6 * theta, "What the loop sees", "$t$ [s]")

@@ -1,26 +1,14 @@
 """The responses of exercise 14.5."""
 
 import numpy as np
-from scipy.optimize import brentq
 
+from loopbook import System, dead_time, first_order
 from loopbook.approximation import pade
-from loopbook.deadtime import System
-from loopbook.exercises.bank.ch14_model_approximation.shared import times_until
+from loopbook.exercises.bank.ch14_model_approximation.shared import step_at, times_until
 from loopbook.figures import time_plot
 from loopbook.laplace import evaluate
-from loopbook.transfer import dead_time, first_order
 
-__all__ = ["at", "back_at_zero", "dead_time", "first_order", "is_step_response", "pade", "solution_picture"]
-
-
-def at(y, time):
-    """The value of a function of time."""
-    return float(evaluate(y, [float(time)])[0])
-
-
-def back_at_zero(y, before, after):
-    """The time between two others at which a response is zero."""
-    return brentq(lambda time: at(y, time), float(before), float(after))
+__all__ = ["dead_time", "first_order", "is_step_response", "pade", "solution_picture", "step_at"]
 
 
 def is_step_response(y, H, end):

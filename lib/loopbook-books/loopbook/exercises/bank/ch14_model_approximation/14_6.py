@@ -1,14 +1,11 @@
 """The design of exercise 14.6."""
 
-from loopbook.approximation import half_rule
-from loopbook.deadtime import Loop
+from loopbook import Loop, half_rule, margins, simc
 from loopbook.exercises.authoring import criterion, design, largest_sensitivity, pi_controller, settings, stable
-from loopbook.exercises.bank.ch14_model_approximation.shared import equation, times_until
+from loopbook.exercises.bank.ch14_model_approximation.shared import times_until
 from loopbook.figures import time_plot
-from loopbook.stability import margins
-from loopbook.tuning import simc
 
-__all__ = ["equation", "half_rule", "margins", "quick_and_robust", "simc", "somewhat_more"]
+__all__ = ["half_rule", "margins", "quick_and_robust", "simc", "somewhat_more"]
 
 
 def somewhat_more(area):

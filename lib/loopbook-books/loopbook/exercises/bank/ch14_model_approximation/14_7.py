@@ -1,19 +1,21 @@
 """The responses of exercise 14.7."""
 
+import functools
+
 import numpy as np
 
-from loopbook.approximation import half_rule as by_half_rule
-from loopbook.deadtime import System
-from loopbook.exercises.bank.ch14_model_approximation.shared import equation, times_until
+from loopbook import System
+from loopbook import half_rule as by_half_rule
+from loopbook.exercises.bank.ch14_model_approximation.shared import times_until
 from loopbook.figures import time_plot
 
-__all__ = ["begins", "by_half_rule", "curves", "equation", "picture"]
+__all__ = ["begins", "by_half_rule", "curves", "picture"]
 
 
+@functools.lru_cache(maxsize=8)
 def curves(order, tau_1, process, *models):
     """Times, the response of the process, and the curves A to D; the order has the letters of the models."""
-    times = times_until(3 * tau_1)
-    by_letter = dict(zip(order, models, strict=True))
+    times, by_letter = times_until(3 * tau_1), dict(zip(order, models, strict=True))
     return times, *(System(H).step(times) for H in (process, *(by_letter[letter] for letter in "ABCD")))
 
 

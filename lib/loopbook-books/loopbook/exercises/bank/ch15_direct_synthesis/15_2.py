@@ -1,13 +1,13 @@
-"""Python beside the page of exercise 15.2."""
+"""The loop of exercise 15.2."""
 
 import numpy as np
 
-from loopbook import diagrams
-from loopbook.deadtime import Loop
+from loopbook import PID, Loop, diagrams, integrator
 from loopbook.figures import time_plot
-from loopbook.pid import PID
-from loopbook.synthesis import direct_synthesis, imc  # noqa: F401
-from loopbook.transfer import feedback, integrator, static_gain  # noqa: F401
+from loopbook.synthesis import direct_synthesis, imc
+from loopbook.transfer import feedback, static_gain
+
+__all__ = ["direct_synthesis", "feedback", "imc", "integrator", "picture", "solution_picture", "static_gain"]
 
 
 def picture(process):
@@ -19,5 +19,5 @@ def picture(process):
 def solution_picture(process, gain, controller, total, load):
     """The level after the load with both controllers: with the gain alone it stays away, with the PI it returns."""
     times, both = np.linspace(0, float(12 * total), 401), {"gain alone": PID(gain), "with the lead": controller}
-    curves = {name: np.array(load * Loop(process, pid).regulator.step(times), float) for name, pid in both.items()}
+    curves = {name: float(load) * Loop(process, pid).regulator.step(times) for name, pid in both.items()}
     return time_plot(curves, times, "The level after the load", "$t$ [min]", "deviation [%]")

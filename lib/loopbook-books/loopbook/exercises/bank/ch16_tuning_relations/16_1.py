@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
+from loopbook import integrator
 from loopbook.figures import time_plot
-from loopbook.transfer import integrator
 from loopbook.tuning import ziegler_nichols_reaction
 
 __all__ = ["integrator", "picture", "reaction_curve", "steepest", "ziegler_nichols_reaction"]
@@ -14,8 +14,7 @@ __all__ = ["integrator", "picture", "reaction_curve", "steepest", "ziegler_nicho
 def reaction_curve(slope, theta):
     """Times, and the rise of two equal lags behind a dead time whose steepest tangent crosses zero at `theta`."""
     slope, theta = float(slope), float(theta)
-    lag = 2 * theta  # its tangent crosses zero 3 - e lags after the dead time
-    times = np.linspace(0, 6 * theta, 401)
+    lag, times = 2 * theta, np.linspace(0, 6 * theta, 401)  # its tangent crosses zero 3 - e lags after the dead time
     late = np.maximum(times - theta + (3 - math.e) * lag, 0) / lag
     return times, slope * math.e * lag * (1 - (1 + late) * np.exp(-late))
 

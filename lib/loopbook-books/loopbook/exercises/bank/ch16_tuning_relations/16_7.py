@@ -1,15 +1,15 @@
 """The design of exercise 16.7."""
 
+import math
+
 import numpy as np
 
-from loopbook.deadtime import Loop
+from loopbook import Loop, first_order, margins
 from loopbook.exercises.authoring import criterion, design, largest_sensitivity, pi_controller, settings, stable
 from loopbook.figures import time_plot
 from loopbook.ise import ise, pi_first_order
-from loopbook.stability import margins
-from loopbook.transfer import first_order
 
-__all__ = ["ISE", "between_two_rules", "first_order", "ise", "largest_sensitivity_of", "margins", "two_digits"]
+__all__ = ["ISE", "Loop", "between_two_rules", "first_order", "ise", "margins", "two_digits"]
 
 
 def two_digits(value):
@@ -19,14 +19,7 @@ def two_digits(value):
 
 def ISE(pid, K, tau, theta):
     """The ISE after a load step of one percent."""
-    given = (float(x) for x in (K, tau, theta, pid.Kp, pid.Ti))
-    return float(pi_first_order(*given, "regulator", unstable=float("inf")))
-
-
-def largest_sensitivity_of(pid, K, tau, theta):
-    """The largest sensitivity of the loop."""
-    w = np.geomspace(0.001, 20, 3000) / float(theta)
-    return float(max(abs(Loop(first_order(K, tau, theta), pid).S.frequency(w))))
+    return pi_first_order(*map(float, (K, tau, theta, pid.Kp, pid.Ti)), "regulator", math.inf)
 
 
 def between_two_rules(K, tau, theta, pid, limit):

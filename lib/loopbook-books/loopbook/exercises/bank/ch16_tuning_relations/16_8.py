@@ -1,32 +1,31 @@
 """The record of exercise 16.8."""
 
+import functools
 import math
 
 import numpy as np
 
-from loopbook.deadtime import Loop
+from loopbook import PID, Loop, integrator
 from loopbook.figures import time_plot
-from loopbook.pid import PID
-from loopbook.transfer import integrator
 
 
+@functools.lru_cache(maxsize=8)
 def record(low, step, delay, left):
     """Times and temperature after a step of the setpoint; moments, and heights as shares, of peak, trough and peak.
 
     With s = -sigma + j omega in s + k e^{-s} = 0, in dead times, tan omega = omega/sigma.
     """
     omega = math.atan(2 * math.pi / math.log(100 / float(left)))
-    gain = omega * math.exp(-omega / math.tan(omega)) / math.sin(omega)
-    delay, period = float(delay), 2 * math.pi * float(delay) / omega
-    times = np.linspace(0, 3 * period, 3001)
-    y = Loop(integrator(gain / delay, delay), PID(1)).servo.step(times) - 1
+    gain = omega * math.exp(-omega / math.tan(omega)) / math.sin(omega) / float(delay)
+    times = np.linspace(0, 6 * math.pi * float(delay) / omega, 3001)
+    y = Loop(integrator(gain, delay), PID(1)).servo.step(times) - 1
     first = np.argmax(y)
-    trough = np.argmin(np.where((times > times[first]) & (times < times[first] + 0.75 * period), y, 1))
+    trough = first + np.argmin(y[first:])
     extremes = [first, trough, trough + np.argmax(y[trough:])]
     return times[::5], float(low) + float(step) * (1 + y[::5]), times[extremes].tolist(), y[extremes].tolist()
 
 
 def picture(t, y, end):
     """The temperature after the step of the setpoint: it overshoots, and then oscillates around the new setpoint."""
-    curves = {"temperature": (y, "measurement"), "setpoint": (np.full(len(t), float(end)), "setpoint")}
+    curves = {"temperature": (y, "measurement"), "setpoint": (float(end), "setpoint")}
     return time_plot(curves, t, "A step of the setpoint", "$t$ [min]", "temperature [°C]")

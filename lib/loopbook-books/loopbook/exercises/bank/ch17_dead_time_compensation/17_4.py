@@ -1,25 +1,16 @@
 """The course of exercise 17.4."""
 
-import numpy as np
-
-from loopbook.deadtime import Loop
-from loopbook.exercises.bank.ch17_dead_time_compensation.shared import predictor, times_until
+from loopbook import Loop, first_order
+from loopbook.exercises.bank.ch17_dead_time_compensation.shared import is_step_response, predictor, times_until
 from loopbook.figures import time_plot
 from loopbook.laplace import evaluate
-from loopbook.transfer import first_order
 
-__all__ = ["at", "first_order", "is_load_response", "predictor", "solution_picture"]
+__all__ = ["Loop", "at", "first_order", "is_step_response", "predictor", "solution_picture"]
 
 
 def at(y, time):
     """The value of a function of time."""
     return float(evaluate(y, [float(time)])[0])
-
-
-def is_load_response(y, process, controller, load, end):
-    """Whether a function of time is the response of a loop to a step of the load."""
-    times = times_until(end)[1:-1]
-    return np.allclose(evaluate(y, times), float(load) * Loop(process, controller).regulator.step(times), atol=1e-5)
 
 
 def solution_picture(y, end, T, time):

@@ -4,22 +4,19 @@ import math
 
 import numpy as np
 
+from loopbook import Loop, first_order
 from loopbook.exercises.authoring import criterion, design, pi_controller, settings, stable
 from loopbook.exercises.bank.ch17_dead_time_compensation.shared import predictor, times_until
 from loopbook.figures import time_plot
 from loopbook.ise import ise, pi_first_order
 from loopbook.stability import is_closed_loop_stable
-from loopbook.transfer import first_order
 
 __all__ = ["first_order", "is_closed_loop_stable", "ise", "largest_M", "predictor", "safe_and_quick"]
 
 
 def _M(K, T, off, pid, w):
     """The size of M at the frequencies w."""
-    Kp, Ti, Td, Tf = (float(x) for x in (pid.Kp, pid.Ti, pid.Td, pid.Tf))
-    jw = 1j * w
-    L = Kp * (1 + 1 / (Ti * jw) + Td * jw / (Tf * jw + 1)) * float(K) / (float(T) * jw + 1)
-    return abs(L / (1 + L)) * 2 * abs(np.sin(w * float(off) / 2))
+    return abs(Loop(first_order(K, T), pid).T.frequency(w)) * 2 * abs(np.sin(w * float(off) / 2))
 
 
 def largest_M(K, T, off, pid):
@@ -31,10 +28,7 @@ def safe_and_quick(K, T, model_delay, off, limit, controller):
     """A PI controller with |M| below 0.8, and with an ISE of at most a limit where the model is right."""
 
     def error(pid):
-        Kp, Ti = float(pid.Kp), float(pid.Ti)
-        if Kp <= 0 or math.isinf(Ti):
-            return math.inf
-        return float(model_delay) + pi_first_order(float(K), float(T), 0, Kp, Ti, unstable=math.inf)
+        return float(model_delay) + pi_first_order(*map(float, (K, T, 0, pid.Kp, pid.Ti)), unstable=math.inf)
 
     def size(pid):
         w = times_until(12 / off)[1:]

@@ -1,35 +1,26 @@
 """The runs of exercise 17.6."""
 
+import functools
+
 import numpy as np
 
-from loopbook.deadtime import Loop
-from loopbook.exercises import authoring
+from loopbook import PID, Loop, first_order
 from loopbook.exercises.bank.ch17_dead_time_compensation.shared import predictor
 from loopbook.figures import time_plot
-from loopbook.pid import PID
-from loopbook.transfer import first_order
 
 
-def dead_time(delay):
-    """The dead time of the process, which is read off the picture."""
-    return authoring.number(delay, "min", "the dead time of the process", within=0.06)
-
-
+@functools.lru_cache(maxsize=8)
 def run(K, T, delay, model):
     """Times, output and control signal after a unit step of the setpoint, with the lag cancelled and T_C = T."""
-    loop = Loop(first_order(K, T, delay), predictor(K, T, model, PID(1 / K, T)))
     times = np.linspace(0, float(3 * max(delay, model) + 2 * T), 601)
+    loop = Loop(first_order(K, T, delay), predictor(K, T, model, PID(1 / K, T)))
     return times, loop.servo.step(times), loop.setpoint_to_control.step(times)
 
 
 def first_moved(t, signal):
-    """When a signal leaves the value with which it begins."""
-    return t[np.flatnonzero(abs(signal - signal[0]) > 1e-9)[0]]
-
-
-def rises(signal):
-    """Whether a signal leaves the value with which it begins upwards."""
-    return bool(signal[np.flatnonzero(abs(signal - signal[0]) > 1e-9)[0]] > signal[0])
+    """When a signal leaves the value with which it begins, and whether it rises then."""
+    place = np.flatnonzero(abs(signal - signal[0]) > 1e-9)[0]
+    return [t[place], bool(signal[place] > signal[0])]
 
 
 def picture(t, y, u):

@@ -3,18 +3,17 @@
 import numpy as np
 from sympy import exp
 
-from loopbook import diagrams
-from loopbook.expressions import s
-from loopbook.transfer import feedback, first_order
+from loopbook import closed_loop, diagrams, first_order, s
+from loopbook.laplace import evaluate
 
 
 def predictor(K, T, model, pid):
     """A PI controller with a lag, less the same lag behind the dead time of the model, fed back around it."""
-    return feedback(pid.expr, first_order(K, T) - first_order(K, T, model))
+    return closed_loop(pid, first_order(K, T) - first_order(K, T, model))
 
 
 def predictor_diagram(K, T, delay):
-    """A Smith predictor: the process, the controller, and the model with its dead time in a block of its own."""
+    """Block diagram of the predictor: controller C, process, and the model with its dead time behind the model."""
     layout = """
         .     .  .  .  .  .  .  .  .  .
         y_SP  e  C  u  1  .  P  .  2  y
@@ -28,3 +27,9 @@ def predictor_diagram(K, T, delay):
 def times_until(end):
     """Times for a picture."""
     return np.linspace(0, float(end), 401)
+
+
+def is_step_response(y, H, end):
+    """Whether a function of time is the response of a system to a unit step."""
+    times = times_until(end)[1:-1]
+    return np.allclose(evaluate(y, times), H.step(times), atol=1e-5)

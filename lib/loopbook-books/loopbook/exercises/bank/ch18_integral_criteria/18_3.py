@@ -2,10 +2,9 @@
 
 import numpy as np
 
+from loopbook import integrator, margins
 from loopbook.figures import plane_plot
 from loopbook.ise import ise
-from loopbook.stability import margins
-from loopbook.transfer import integrator
 
 __all__ = ["integrator", "ise", "margins", "solution_picture"]
 

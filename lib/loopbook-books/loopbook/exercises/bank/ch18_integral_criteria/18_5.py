@@ -4,29 +4,19 @@ import math
 
 import numpy as np
 
-from loopbook.deadtime import Loop
+from loopbook import Loop, first_order, integrator, margins
 from loopbook.exercises.authoring import criterion, design, largest_sensitivity, pi_controller, settings, stable
 from loopbook.figures import time_plot
 from loopbook.ise import ise, pi_first_order
-from loopbook.stability import margins
-from loopbook.transfer import first_order
 
-__all__ = ["first_order", "ise", "margins", "quick_and_robust", "sensitivity"]
-
-
-def sensitivity(x):
-    """The largest sensitivity of an integrator with dead time; x is the gain of the loop times the dead time."""
-    w = np.linspace(0.01, 6, 4000)
-    return float(max(1 / abs(1 + float(x) * np.exp(-1j * w) / (1j * w))))
+__all__ = ["Loop", "first_order", "integrator", "ise", "margins", "quick_and_robust"]
 
 
 def quick_and_robust(K, T, delay, controller, limit):
     """A PI controller with a largest sensitivity of 1.8 and an ISE of at most a limit."""
 
     def error(pid):
-        if not 0 < pid.Ti < math.inf:
-            return math.inf
-        return float(pi_first_order(*map(float, (K, T, delay, pid.Kp, pid.Ti)), "servo", math.inf))
+        return pi_first_order(*map(float, (K, T, delay, pid.Kp, pid.Ti)), "servo", math.inf)
 
     def response(pid):
         times = np.linspace(0, 10 * float(delay), 401)

@@ -6,20 +6,18 @@ from scipy.integrate import simpson
 from loopbook.figures import time_plot
 
 
-def _corners(wait, fall, down, up, depth):
-    """The corners of an error that waits, falls through zero, and comes back: times and values."""
-    return np.cumsum([0, wait, fall, down, up]).astype(float), np.array([1, 1, 0, -float(depth), 0])
-
-
 def errors(wait, fall, down, up, depth, change):
-    """Times, and both errors: after the change with a worse beginning, or with one more oscillation at the end."""
-    corners, e = _corners(wait, fall, down, up, depth)
+    """Times, and both errors: after the change with a worse beginning, or with one more oscillation at the end.
+
+    And the corners of the error, which waits, falls through zero, and comes back: times and values.
+    """
+    corners, e = np.cumsum([0, wait, fall, down, up]).astype(float), np.array([1, 1, 0, -float(depth), 0])
     times = np.linspace(0, corners[-1] + 7, 20 * int(corners[-1] + 7) + 1)
     if change == "beginning":
         changed = corners, np.array([1, 1.8, *e[2:]])
     else:
         changed = np.append(corners, corners[-1] + [3.0, 6.0]), np.append(e, [0.6 * float(depth), 0])
-    return times, np.interp(times, corners, e), np.interp(times, *changed)
+    return times, np.interp(times, corners, e), np.interp(times, *changed), (corners, e)
 
 
 def integrals(t, e):
@@ -27,11 +25,10 @@ def integrals(t, e):
     return [float(simpson(one, x=t)) for one in (abs(e), e**2, t * abs(e))]
 
 
-def picture(wait, fall, down, up, depth, t, e, changed):
+def picture(t, e, changed, corners):
     """The error in straight lines: it stays at one, falls below zero, and returns; dashed, after the change."""
     curves = {"error": (e, "measurement"), "after the change": (changed, "setpoint")}
-    plot = time_plot(curves, t, "After a unit step of the setpoint", ylabel="error")
-    return plot.points(*_corners(wait, fall, down, up, depth), "corners")
+    return time_plot(curves, t, "After a unit step of the setpoint", ylabel="error").points(*corners, "corners")
 
 
 def solution_picture(t, e):

@@ -1,20 +1,19 @@
 """The poles of exercise 19.2."""
 
 import numpy as np
+from scipy.special import lambertw
 
+from loopbook import first_order, margins
 from loopbook.figures import plane_plot
-from loopbook.stability import margins, unstable_closed_loop_poles
-from loopbook.transfer import first_order
+from loopbook.stability import unstable_closed_loop_poles
 
 __all__ = ["first_order", "margins", "solution_picture", "unstable_closed_loop_poles"]
 
 
 def solution_picture(x, delay):
     """The poles nearest to the axis: those on its right are the unstable ones."""
-    from scipy.special import lambertw
-
     found = lambertw(-float(x), np.arange(-7, 7)) / float(delay)
-    high, wide = 1.1 * float(max(abs(found.imag))), 1.15 * float(max(abs(found.real)))
+    high, wide = 1.1 * max(abs(found.imag)), 1.15 * max(abs(found.real))
     axis = {"imaginary axis": ([0, 0], [-high, high], "setpoint")}
     plot = plane_plot(axis, "real part [1/s]", "imaginary part [rad/s]", xlim=(-wide, wide), ylim=(-high, high))
     return plot.points(found.real, found.imag, "poles", "x")

@@ -2,9 +2,8 @@
 
 import numpy as np
 
+from loopbook import first_order, margins
 from loopbook.figures import time_plot
-from loopbook.stability import margins
-from loopbook.transfer import first_order
 
 __all__ = ["first_order", "margins", "picture"]
 

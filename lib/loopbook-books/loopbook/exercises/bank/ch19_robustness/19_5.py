@@ -1,38 +1,31 @@
-"""The design of exercise 19.5, and the robustness plots that it is shown in."""
+"""The design of exercise 19.5."""
 
 import math
 
 import numpy as np
 
+from loopbook import first_order
 from loopbook.exercises.authoring import criterion, design, pi_controller, settings, stable
 from loopbook.exercises.bank.ch19_robustness.shared import robustness_plot, three_digits
 from loopbook.ise import ise, pi_first_order
 from loopbook.stability import robust_in_window, robustness_pi_first_order
-from loopbook.transfer import first_order
 
 __all__ = ["distance", "first_order", "ise", "load_ISE", "robust_and_quick", "robust_in_window", "three_digits"]
 
 
 def distance(K, T, delay, Kp, Ti):
     """The least quotient of the limit of stability and the upper sides of Shinskey's window."""
-    if Kp <= 0 or not 0 < Ti < math.inf:
-        return 0.0
     k = np.geomspace(0.5, 2, 201)
-    return float((robustness_pi_first_order(K, T, delay, Kp, Ti, k) / np.where(k < 1, 2 * k, 2 / k)).min())
+    return float(min(robustness_pi_first_order(K, T, delay, Kp, Ti, k) / (2 * np.minimum(k, 1 / k))))
 
 
 def load_ISE(K, T, delay, Kp, Ti):
     """The integral of the squared error after a unit step of the load; infinite for an unstable loop."""
-    if not 0 < Ti < math.inf:
-        return math.inf
     return float(pi_first_order(*map(float, (K, T, delay, Kp, Ti)), "regulator", math.inf))
 
 
 def robust_and_quick(K, T, delay, controller, limit):
     """A PI controller that keeps the window, and whose ISE after a load is at most a limit."""
-
-    def far(pid):
-        return distance(K, T, delay, pid.Kp, pid.Ti)
 
     def error(pid):
         return load_ISE(K, T, delay, pid.Kp, pid.Ti)
@@ -41,7 +34,7 @@ def robust_and_quick(K, T, delay, controller, limit):
         settings(controller, time="s", what="the settings of the PI controller"),
         pi_controller(),
         stable(by=lambda pid: error(pid) < math.inf),
-        criterion("the distance from the window", far, above=1),
+        criterion("the distance from the window", lambda pid: distance(K, T, delay, pid.Kp, pid.Ti), above=1),
         criterion("the ISE after the load step", error, below=limit, unit="s"),
         draws=lambda pid: robustness_plot(K, T, delay, pid.Kp, pid.Ti),
     )

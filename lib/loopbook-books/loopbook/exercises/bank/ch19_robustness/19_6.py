@@ -5,11 +5,13 @@ import math
 import numpy as np
 from scipy.optimize import brentq
 
-from loopbook.exercises.bank.ch19_robustness.shared import nyquist, three_digits
-from loopbook.stability import margins, unstable_closed_loop_poles
-from loopbook.transfer import first_order
+from loopbook import first_order, margins
+from loopbook.exercises.bank.ch19_robustness.shared import three_digits
+from loopbook.figures import plane_plot
+from loopbook.stability import unstable_closed_loop_poles
 
-__all__ = ["loop", "margins", "picture", "points", "solution_picture", "three_digits", "unstable_closed_loop_poles"]
+__all__ = ["first_order", "margins", "picture", "points", "solution_picture", "three_digits"]
+__all__ += ["unstable_closed_loop_poles"]
 
 
 def size_at(r, turn):
@@ -25,14 +27,12 @@ def points(k, r):
     return float(k) * np.exp(-1j * w) / (1 + 1j * float(r) * w)
 
 
-def loop(k, r, delay):
-    """The loop transfer function, in minutes."""
-    return first_order(k, r * delay, delay)
-
-
 def picture(L, x, y, crossover):
     """The last part of a Nyquist curve, which turns around the origin, with the unit circle and the point -1."""
-    plot = nyquist(L, (-1.25, 1.15), (-1.35, 1.05))
+    circle = np.exp(1j * np.linspace(0, 2 * np.pi, 200))
+    curves = {r"$L(j\omega)$": (L.real, L.imag), "unit circle": (circle.real, circle.imag, 3)}
+    window = {"xlim": (-1.25, 1.15), "ylim": (-1.35, 1.05), "equal": True}
+    plot = plane_plot(curves, "real part", "imaginary part", **window).points([-1], [0], "$-1$", "x")
     plot.axes.set_xticks(np.arange(-1.2, 1.2, 0.2))
     plot.axes.set_yticks(np.arange(-1.2, 1.2, 0.2))
     plot.axes.minorticks_on()

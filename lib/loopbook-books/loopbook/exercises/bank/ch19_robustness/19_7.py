@@ -1,31 +1,27 @@
 """The runs of exercise 19.7."""
 
+import cmath
+import functools
+
 import numpy as np
+import sympy
 
-from loopbook.deadtime import Loop
-from loopbook.exercises import authoring
+from loopbook import PID, Loop, closed_loop, first_order
 from loopbook.figures import time_plot
-from loopbook.pid import PID
-from loopbook.stability import is_closed_loop_stable
-from loopbook.transfer import feedback, first_order
 
 
-def dead_time(value, what):
-    """A dead time that is read off the figure."""
-    return authoring.number(value, "min", what, within=0.04)
+def loop(K, T, delay, model, T_c):
+    """A Smith predictor whose model has another dead time."""
+    pid = PID(T / (K * T_c), T)
+    return Loop(first_order(K, T, delay), closed_loop(pid, first_order(K, T) - first_order(K, T, model)))
 
 
-def _loop(K, T, delay, model, T_c):
-    """Process and controller: a Smith predictor whose model has another dead time."""
-    inner = first_order(K, T) - first_order(K, T, model)
-    return first_order(K, T, delay), feedback(PID(T / (K * T_c), Ti=T).expr, inner)
-
-
+@functools.lru_cache(maxsize=8)
 def run(K, T, delay, model, T_c, step):
     """The step of the setpoint, exactly as the loop makes it: times, output and control signal."""
     times = np.linspace(0, 4 * float(delay), 481)
-    found = Loop(*_loop(K, T, delay, model, T_c)).run(times, setpoint=step)
-    return times, found["y"], found["u"]
+    it = loop(K, T, delay, model, T_c)
+    return times, float(step) * it.servo.step(times), float(step) * it.setpoint_to_control.step(times)
 
 
 def first_moved(t, y):
@@ -33,10 +29,15 @@ def first_moved(t, y):
     return t[np.flatnonzero(np.abs(y) > 1e-9)[0] - 1]
 
 
-def is_stable(K, T, delay, model, T_c):
-    """Whether the loop with the wrong model is stable."""
-    process, controller = _loop(K, T, delay, model, T_c)
-    return is_closed_loop_stable(process * controller)
+def added(M, delay, model):
+    """The value of M at one point, given as text."""
+    return complex(sympy.sympify(M).subs({"theta": delay, "theta_m": model, "s": 0.1 + 0.2j}))
+
+
+def in_loop(K, T, delay, model, T_c):
+    """What the loop has there beside T_C s + 1 in its characteristic equation."""
+    s = 0.1 + 0.2j
+    return cmath.exp(-s * delay) / loop(K, T, delay, model, T_c).servo(s) - T_c * s - 1
 
 
 def picture(t, y, u, step):

@@ -12,14 +12,6 @@ def three_digits(value):
     return float(rounded(float(value), 3))
 
 
-def nyquist(curve, xlim, ylim):
-    """A Nyquist curve with the unit circle and the point -1."""
-    circle = np.exp(1j * np.linspace(0, 2 * np.pi, 200))
-    curves = {r"$L(j\omega)$": (curve.real, curve.imag), "unit circle": (circle.real, circle.imag, 3)}
-    plot = plane_plot(curves, "real part", "imaginary part", xlim=xlim, ylim=ylim, equal=True)
-    return plot.points([-1], [0], "$-1$", "x")
-
-
 def robustness_plot(K, T, delay, Kp, Ti):
     """The limit of stability over the gain ratio, with Shinskey's window."""
     ratios = np.geomspace(0.4, 2.5, 81)

@@ -1,4 +1,4 @@
-"""Python beside the page of exercise A.2."""
+"""The drawing of exercise A.2."""
 
 from loopbook import diagrams as draw
 from loopbook.instruments import decode
@@ -12,14 +12,6 @@ HEARD_BY = {"IC": "valve", "IT": "controller", "AH": "horn", "AL": "horn"}
 def one_by_one(letters):
     """The letters of a text."""
     return list(letters)
-
-
-def phrase(tag):
-    """A tag in words; none where it is read as nothing."""
-    try:
-        return decode(tag).words
-    except ValueError:
-        return ""
 
 
 def is_read_as(tag, device, measured):

@@ -1,4 +1,4 @@
-"""Python beside the page of exercise A.3."""
+"""The loops of exercise A.3."""
 
 from loopbook import instruments
 from loopbook.exercises import authoring
@@ -17,11 +17,6 @@ def loops(first, places):
 def others(*these):
     """The places of the other loops."""
     return [place for place in range(1, 5) if place not in these]
-
-
-def joined(numbers):
-    """Numbers in a sentence."""
-    return " and ".join(numbers)
 
 
 def tags_of(first, watched, lacking):
@@ -45,17 +40,7 @@ def by_number(tags, first):
     return "\n".join(["| loop | tags |", "|---|---|", *rows])
 
 
-def with_all(tags, letters):
-    """The loops whose tags have all these letters behind the first one, as the library collects them."""
-    found = instruments.loops(tags).items()
-    return [str(n) for n, loop in found if all(any(one in tag[1:] for tag in _texts(loop)) for one in letters)]
-
-
-def without(tags, letter, but=""):
-    """The loops in whose tags a letter is missing, although another one is there."""
-    lacking = [n for n in instruments.loops(tags) if str(n) not in with_all(tags, letter)]
-    return [n for n in lacking if not but or str(n) in with_all(tags, but)]
-
-
-def _texts(loop):
-    return ["".join(part.letter for part in tag.parts) for tag in loop]
+def having(tags, letters, none=""):
+    """The loops with all these letters behind the first ones, and with none of others, as the library collects them."""
+    found = {n: {part.letter for tag in loop for part in tag.parts[1:]} for n, loop in instruments.loops(tags).items()}
+    return [n for n, own in found.items() if {*letters} <= own and not own & {*none}]

@@ -1,7 +1,8 @@
-"""Python beside the page of exercise A.5."""
+"""The tags of exercise A.5."""
 
-from loopbook import diagrams as draw
 from loopbook.instruments import decode
+
+__all__ = ["all_tags", "decode", "functions", "tagged"]
 
 
 def tagged(quantity, letters, numbers):
@@ -18,23 +19,6 @@ def all_tags(quantity, n, alarm):
     return sorted(tagged(quantity, right + wrong, n) + tagged(quantity, ["T", "V"], n + 1))
 
 
-def solution_picture(transmitter, controller, valve, bell, switch):
-    """The loop on a drawing: transmitter, controller in the control room, valve, alarm and switch."""
-    layout = f"""
-        in  tank  {transmitter}  {controller}  {bell}
-        .   tank  {switch}  .     .
-        .   1     P1   {valve}   out"""
-    parts = {"tank": draw.tank(), "P1": draw.pump("P1"), valve: draw.control_valve(valve)}
-    parts |= {controller: draw.instrument(controller, "panel"), bell: draw.instrument(bell, "panel", "shared")}
-    wires = f"tank {transmitter} {controller} {valve}, {controller} {bell}, tank {switch} P1"
-    return draw.instrumentation_diagram(layout, f"in tank 1 P1 {valve} out", wires, parts)
-
-
-def are_read_as(tags, functions, n):
-    """Whether the tags are read as these functions, and have the number."""
-    return [" ".join(decode(tag).functions) for tag in tags] == functions and all(tag.endswith(str(n)) for tag in tags)
-
-
-def limit_of(tag):
-    """The letters of the limit."""
-    return "".join(part.letter for part in decode(tag).at("limit"))
+def functions(tags):
+    """What each instrument does, and the number of its loop, as the library reads the tags."""
+    return [f"{' '.join(decode(tag).functions)} {decode(tag).loop}" for tag in tags]

@@ -1,89 +1,48 @@
-"""Python beside the page of exercise A.6."""
+"""The drawing of exercise A.6."""
 
 from loopbook import diagrams as draw
 
 PLACES = {"panel": "a solid line across it", "behind": "a dashed line across it", "field": "no line across it"}
 
 
-class _Plant:
-    """Three loops, of a flow, a temperature and a level, one of them with a fault.
-
-    Attributes:
-        tags: of each loop, transmitter, controller and valve.
-    """
-
-    def __init__(self, first, case, places, shared):
-        self.letter, self.fault = case[0], case[2:]
-        self.numbers = dict(zip("FTL", range(int(first), int(first) + 3), strict=True))
-        self.tags = {x: [f"{x}{kind}{n}" for kind in "TCV"] for x, n in self.numbers.items()}
-        if self.fault == "wrong letter":
-            self.tags[self.letter][0] = f"{ {'F': 'P', 'T': 'F', 'L': 'T'}[self.letter] }T{self.numbers[self.letter]}"
-        if self.fault == "wrong number":
-            self.tags[self.letter][2] = f"{self.letter}V{int(first) + 5}"
-        self.places = dict(zip("FTL", places.split(), strict=True))
-        self.shared = "FTL"[int(shared) - 1]
-
-    @property
-    def pipes(self):
-        (FT, _, FV), (TT, _, TV), (_, _, LV) = self.tags.values()
-        FT = "" if self._lacks("F") else FT
-        before, behind = (TT, "") if self.fault == "wrong place" else ("", TT)
-        behind = "" if self._lacks("T") else behind
-        return f"feed P1 {FT} {FV} {before} E1 {behind} 1 T1 2 {LV} product, steam {TV} E1 water".replace("  ", " ")
-
-    def _lacks(self, letter):
-        return self.fault == "no transmitter" and letter == self.letter
-
-    @property
-    def signals(self):
-        paths = []
-        for letter, (T, C, V) in self.tags.items():
-            path = ["T1"] * (letter == "L") + [T, C, V]
-            if self._lacks(letter):
-                path = [C, V]
-            elif letter == self.letter and self.fault == "no signal to the valve":
-                path = path[:-1]
-            paths.append(" ".join(path))
-        return ", ".join(paths)
-
-    @property
-    def readable(self):
-        """The controllers that can be read in the control room."""
-        return [self.tags[x][1] for x, place in self.places.items() if place == "panel"]
-
-    @property
-    def drawn(self):
-        return ", ".join(f"{self.tags[x][1]} with {PLACES[place]}" for x, place in self.places.items())
-
-    def picture(self):
-        (FT, FC, FV), (TT, TC, TV), (LT, LC, LV) = self.tags.values()
-        early = self.fault == "wrong place"
-        before, behind = (TT, ".") if early else (".", TT)
-        left, right = (TC, ".") if early else (".", TC)
-        FT, behind, LT = ("." if self._lacks(x) else tag for x, tag in zip("FTL", (FT, behind, LT), strict=True))
-        layout = f"""
-            .     .   .     .     .           steam  .  .           .  .     .     .
-            .     .   {FC}  .     {left}      {TV}   .  {right}     .  .     .     .
-            feed  P1  {FT}  {FV}  {before}    E1     .  {behind}    1  .     .     .
-            .     .   .     .     .           water  .  .          T1  {LT}  {LC}  .
-            .     .   .     .     .           .      .  .          T1  .     .     .
-            .     .   .     .     .           .      .  .          2   .     {LV}  product"""
-        parts = {"P1": draw.pump("P1"), "E1": draw.heat_exchanger("E1", kind="shell and tube"), "T1": draw.tank()}
-        parts |= {valve: draw.control_valve(valve) for valve in (FV, TV, LV)}
-        for letter, place in self.places.items():
-            device = "shared" if letter == self.shared and place != "field" else "discrete"
-            parts[self.tags[letter][1]] = draw.instrument(self.tags[letter][1], place, device)
-        return draw.instrumentation_diagram(layout, self.pipes, self.signals, parts)
+def tags_of(first, case):
+    """The tags of each loop as they are drawn: transmitter, controller and valve."""
+    letter, fault = case[0], case[2:]
+    tags = {x: [f"{x}{kind}{int(first) + n}" for kind in "TCV"] for n, x in enumerate("FTL")}
+    if fault == "no transmitter":
+        tags[letter][0] = ""
+    if fault == "wrong letter":
+        tags[letter][0] = {"F": "P", "T": "F", "L": "T"}[letter] + tags[letter][0][1:]
+    if fault == "wrong number":
+        tags[letter][2] = f"{letter}V{int(first) + 5}"
+    return tags
 
 
-def plant_of(first, case, places, shared):
-    """The plant with its fault."""
-    return _Plant(first, case, places, shared)
+def pipes_of(first, case):
+    """The pipes, with what is in them in the order of the flow."""
+    (FT, _, FV), (TT, _, TV), (_, _, LV) = tags_of(first, case).values()
+    before, behind = (TT, "") if case.endswith("wrong place") else ("", TT)
+    path = f"feed P1 {FT} {FV} {before} E1 {behind} 1 T1 2 {LV} product, steam {TV} E1 water"
+    return " ".join(path.split())
+
+
+def signals_of(first, case):
+    """The signals, each from where it is measured to where it ends."""
+    paths = []
+    for letter, (T, C, V) in tags_of(first, case).items():
+        path = [*["T1"] * (letter == "L"), T, C, V] if T else [C, V]
+        paths.append(" ".join(path[:-1] if case == f"{letter} no signal to the valve" else path))
+    return ", ".join(paths)
 
 
 def arrows(paths):
     """The same paths with arrows, and without the corners of the drawing."""
     return ", ".join(" → ".join(x for x in path.split() if not x.isdigit()) for path in paths.split(", "))
+
+
+def after(case):
+    """The fault, behind the letter of its loop."""
+    return case[2:]
 
 
 def places_of(places):
@@ -97,15 +56,14 @@ def drawn_as(first, places, among):
     return [f"{letter}C{int(first) + n}" for n, (letter, place) in found if place in among.split()]
 
 
-def joined(names):
-    """Names in a sentence."""
-    return " and ".join(names)
+def lines_across(controllers, places):
+    """Which line is drawn across each controller."""
+    return ", ".join(f"{C} with {PLACES[place]}" for C, place in zip(controllers, places.split(), strict=True))
 
 
-def examined(plant):
+def examined(pipes, signals):
     """The number of the faulty loop and its fault, as one finds them along the signals and the pipes."""
-    pipes = plant.pipes.split()
-    for path in plant.signals.split(", "):
+    for path in signals.split(", "):
         tags = [tag for tag in path.split() if tag != "T1"]
         number = next(int(tag[2:]) for tag in tags if tag[1] == "C")
         kinds, letters, numbers = ({tag[part] for tag in tags} for part in (slice(1, 2), slice(1), slice(2, None)))
@@ -117,11 +75,25 @@ def examined(plant):
             return [number, "wrong place"]
 
 
-def picture(plant):
-    """A P&I diagram. Its pipes are, in the way of the flow: {pipes}; its signals: {signals}. Drawn are {drawn}."""
-    return plant.picture()
+def picture(first, case, places, shared):
+    """A P&I diagram. Its pipes are, in the direction of the flow: {pipes}; its signals: {signals}. Drawn are
+    {drawn}."""
+    (FT, FC, FV), (TT, TC, TV), (LT, LC, LV) = ([tag or "." for tag in tags] for tags in tags_of(first, case).values())
+    before, left, behind, right = (TT, TC, ".", ".") if case.endswith("wrong place") else (".", ".", TT, TC)
+    layout = f"""
+        .     .   .     .     .           steam  .  .           .  .     .     .
+        .     .   {FC}  .     {left}      {TV}   .  {right}     .  .     .     .
+        feed  P1  {FT}  {FV}  {before}    E1     .  {behind}    1  .     .     .
+        .     .   .     .     .           water  .  .          T1  {LT}  {LC}  .
+        .     .   .     .     .           .      .  .          T1  .     .     .
+        .     .   .     .     .           .      .  .          2   .     {LV}  product"""
+    parts = {"P1": draw.pump("P1"), "E1": draw.heat_exchanger("E1", kind="shell and tube"), "T1": draw.tank()}
+    parts |= {valve: draw.control_valve(valve) for valve in (FV, TV, LV)}
+    for n, (C, place) in enumerate(zip((FC, TC, LC), places.split(), strict=True), start=1):
+        parts[C] = draw.instrument(C, place, "shared" if n == shared and place != "field" else "discrete")
+    return draw.instrumentation_diagram(layout, pipes_of(first, case), signals_of(first, case), parts)
 
 
 def solution_picture(first, places, shared):
     """The same plant without the fault."""
-    return _Plant(first, "F nothing", places, shared).picture()
+    return picture(first, "F nothing", places, shared)

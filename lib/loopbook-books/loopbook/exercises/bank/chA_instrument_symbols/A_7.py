@@ -1,9 +1,6 @@
-"""Python beside the page of exercise A.7."""
-
-import functools
+"""The symbols of exercise A.7."""
 
 from loopbook import diagrams as draw
-from loopbook.exercises import authoring
 
 #: Symbols by their names: how each is drawn, and how it looks.
 VALVES = {
@@ -48,14 +45,9 @@ CONDUCTORS = {
 SYMBOLS = {"valve": VALVES, "machine": MACHINES, "apparatus": APPARATUS, "line": CONDUCTORS}
 
 
-def _name_of(kind, key):
-    """The name of a symbol."""
-    return authoring.word(key, SYMBOLS[kind], what=f"the {kind}")
-
-
-name_of_valve, name_of_machine, name_of_apparatus, name_of_line = (
-    functools.partial(_name_of, kind) for kind in SYMBOLS
-)
+def names(kind):
+    """The names of the symbols of a kind."""
+    return list(SYMBOLS[kind])
 
 
 def look(kind, name):

@@ -1,4 +1,4 @@
-"""Python beside the page of exercise A.8."""
+"""The diagrams of exercise A.8."""
 
 import re
 
@@ -7,18 +7,10 @@ from loopbook.exercises import authoring
 from loopbook.exercises.connections import connections
 from loopbook.exercises.diagram_layout import drawn
 
-PROCESS = {"inlet": "pipe", "vessel": "vessel", "outlet": "pipe"}
-ALSO = {"inlet": ["inlet pipe", "in", "feed"], "vessel": ["tank", "drum"], "outlet": ["outlet pipe", "out"]}
-
 
 def written(lines, **names):
     """The lines of a diagram with tags, without those that are empty."""
     return "\n".join(line.format(**names) for line in lines if line)
-
-
-def asked_diagram(key):
-    """The connections of a diagram."""
-    return authoring.instrument_diagram(key, PROCESS, "the instruments of the vessel", ALSO)
 
 
 def loop_letters(diagram, number):
@@ -26,10 +18,9 @@ def loop_letters(diagram, number):
     return sorted({tag[1] for tag in re.findall(rf"\b[A-Z]+(?={number}\b)", diagram)})
 
 
-def picture(a):
+def picture(n):
     """A vessel with its inlet and its outlet: a temperature is measured in the vessel, its controller acts on a valve
     in the inlet by a pneumatic signal, and an indicator shows it."""
-    n = a - 4
     layout = f"""
         .   1      TC{n}   .      .    .
         .   .      .       .      .    .
@@ -43,4 +34,5 @@ def picture(a):
 
 def solution_picture(diagram):
     """The cascade: the transmitter and controller above the vessel, the flow loop at the {pipe}, and the alarm."""
-    return drawn(connections(asked_diagram(diagram).key), PROCESS)
+    process = {"inlet": "pipe", "vessel": "vessel", "outlet": "pipe"}
+    return drawn(connections(authoring.instrument_diagram(diagram, process).key), process)
