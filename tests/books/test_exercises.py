@@ -301,11 +301,11 @@ def test_the_key_of_a_page_has_a_second_way(exercise):
     for student in of_the_day(STUDENTS, 3, exercise.number):
         question = exercise.question.__wrapped__(exercise, student)
         ways = list(exercise.second_ways(question.values))
-        for text, holds in ways:
+        for text, holds, _ in ways:
             assert holds, f"{text} does not hold for {question.values}"
     for name, kind in exercise.question().key.items():
         if isinstance(kind, kinds.Number | kinds.Numbers | kinds.Poles | kinds.Expression | kinds.Settings):
-            assert any(re.search(rf"\b{name}\b", text) for text, _ in ways), f"nothing below Check is about {name}"
+            assert any(re.search(rf"\b{name}\b", text) for text, *_ in ways), f"nothing below Check is about {name}"
 
 
 def _finite(kind):

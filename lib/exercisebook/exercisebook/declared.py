@@ -112,8 +112,8 @@ class Declared:
         """
         return call(self.key, {**values, **changes}).get(name) if changes.keys() <= self.parameters.keys() else None
 
-    def second_ways(self, values: Mapping[str, Value]) -> Iterable[tuple[str, bool]]:
-        """Yield what has to hold for some values of the parameters, where that is said, each with whether it does."""
+    def second_ways(self, values: Mapping[str, Value]) -> Iterable[tuple[str, bool, str]]:
+        """Yield what has to hold for some values of the parameters, each with whether it does, and its sides."""
         return ()
 
     def __repr__(self) -> str:

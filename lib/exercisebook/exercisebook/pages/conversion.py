@@ -18,7 +18,7 @@ from exercisebook.pages.formula import Formula
 from exercisebook.units import registry, spelled
 
 #: Functions of a number without unit, of an angle, and those whose value has the unit of what they are of.
-_OF_RATIO = {"exp", "log", "log10", "log2", "asin", "acos", "atan"}
+_OF_RATIO = {"exp", "log", "ln", "log10", "log2", "asin", "acos", "atan"}
 _OF_ANGLE = {"sin", "cos", "tan"}
 _KEEPING = {"abs", "floor", "ceil", "round"}
 _OF_EQUALS = {"min", "max", "sum", "atan2"}

@@ -11,6 +11,7 @@ import ast
 import contextlib
 import math
 import operator
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -86,6 +87,7 @@ def _rounded(value, digits=0):
 FUNCTIONS: dict[str, Callable[..., Any]] = {
     "exp": _of_numbers(math.exp, sympy.exp),
     "log": _of_numbers(math.log, sympy.log),
+    "ln": _of_numbers(math.log, sympy.log),
     "log10": _of_numbers(math.log10, lambda value: sympy.log(value, 10)),
     "log2": _of_numbers(math.log2, lambda value: sympy.log(value, 2)),
     "sqrt": _sqrt,
@@ -185,6 +187,13 @@ class Formula:
         return Formula(self.text, tree, self.names)
 
 
+def _explained(text):
+    """Why a text is likely to be no formula; empty where that is not known."""
+    if re.search(r"(?<![=<>!])=(?!=)", text.partition("(")[0]):
+        return "two sides are compared by =="
+    return "every product needs a *" if re.search(r"[\w)] +[\w(]", text) else ""
+
+
 _KNOWN_NODES = (
     ast.Constant, ast.Name, ast.BinOp, ast.UnaryOp, ast.BoolOp, ast.Compare, ast.IfExp, ast.Call, ast.List, ast.Tuple,
     ast.Dict, ast.Subscript, ast.Attribute,
@@ -210,7 +219,9 @@ def read(text: str, known: Mapping[str, Any], functions: Mapping[str, Any]) -> F
     try:
         tree = ast.parse(" ".join(text.split()), mode="eval").body
     except SyntaxError as error:
-        raise ValueError(f"{text}: cannot be read, {error.msg}") from None
+        raise ValueError(f"{text}: cannot be read, {_explained(text) or error.msg}") from None
+    if isinstance(tree, ast.Tuple) and not text.lstrip().startswith("("):
+        raise ValueError(f"{text}: there is a comma: expected a decimal point, or a list in brackets, [1, 2]")
 
     def refuse(why):
         raise ValueError(f"{text}: {why}")
@@ -237,6 +248,8 @@ def read(text: str, known: Mapping[str, Any], functions: Mapping[str, Any]) -> F
                 refuse(f"{name!r} is no name of a quantity")
         operators = [getattr(node, "op", None), *getattr(node, "ops", ())]
         known_operators = (*_OPERATORS, *_COMPARISONS, ast.USub, ast.Not, ast.And, ast.Or)
+        if isinstance(getattr(node, "op", None), ast.BitXor):
+            refuse("^ is no power: expected **")
         if not isinstance(node, _KNOWN_NODES) or any(op and type(op) not in known_operators for op in operators):
             refuse(f"{ast.unparse(node)} is nothing that a formula may say")
         for part in ast.iter_child_nodes(node):

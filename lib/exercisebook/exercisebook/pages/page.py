@@ -25,13 +25,18 @@ from exercisebook.pages import conversion, formula, parts
 from exercisebook.pages.graph import Graph
 from exercisebook.pages.parts import Front, PageError, PageText
 from exercisebook.parameters import Parameter, Value, between, call, choice
+from exercisebook.units import is_unit
 from plainmath.validation import did_you_mean
 
 _RANGE = re.compile(r"(\S+) *(?:…|\.\.\.) *(\S+?)(?: +by +(\S+))?")
+#: One space before brackets with a unit, where there should be two.
+_ONE_SPACE = re.compile(r"\S \[([^\]]*)\]$")
 _FORMULA = re.compile(r"(\w+(?:, *\w+)*) *=(?!=) *(.+?)(?:  +\[(.*)\])?")
 _CODE, _KIND = re.compile(r"`([^`]+)`[ ,:\n]*"), re.compile(r"[ ,:\n]*`([^`]+)`\.?$")
 #: A name in braces that are LaTeX's: of an argument, an index or an exponent.
 _LATEX = re.compile(r"(?:[_^]|\\(?:[dt]?frac(?:\{[^{}]*\})?|sqrt|text|math[a-z]+|operatorname|dot|bar|hat)) ?\{(\w+)\}")
+#: Names in braces that are no argument of LaTeX's; a letter alone may be set apart by braces.
+_ANY_PLACE = re.compile(r"(?<![\\\w}_^{])\{([A-Za-z]\w+)\}(?!\})")
 _PLACE, _GIVEN = re.compile(r"(?<!\{)\{(\w+)\}(?!\})"), re.compile(r"\.given\(([^()]*)\)")
 #: Two ways to a value agree, and a change is none, within this fraction.
 SAME = 1e-6
@@ -67,7 +72,7 @@ class Page(Exercise):
         super().__init__(page.number, page.title, page.points, where, key, insight)
         self.changes = list(self._read_mistakes())
         for part in (page.statement, *map(page.section, ("Mistakes", "Hints", "Solution", "Insight"))):
-            self._look_at_braces(part)
+            self._look_at_places(part)
         for of in (self._at_once, self._carried):
             self.mistakes += [
                 (sentence, _naming(functools.partial(of, place), parameters))
@@ -88,12 +93,13 @@ class Page(Exercise):
     # ---- reading
 
     @contextlib.contextmanager
-    def _at(self, line):
-        """Say file and line of what cannot be read."""
+    def _at(self, line, last=0):
+        """Say file and line of what cannot be read, and that indented lines below belong to it."""
         try:
             yield
         except ValueError as error:
-            raise PageError(self.page.file, line, str(error)) from error
+            says = f"{error} (with line {last}, which is indented)" if last > line else str(error)
+            raise PageError(self.page.file, line, says) from error
 
     def _read(self, text, also=None):
         """A formula of the quantities that are known so far, whose functions are those of the page or others."""
@@ -103,8 +109,8 @@ class Page(Exercise):
     def _read_formulas(self):
         """Read the formulas into the graph; return the conditions, each with the number of formulas above it."""
         conditions = []
-        for line, text in self.page.section("Formulas").lines():
-            with self._at(line):
+        for line, text, last in self.page.section("Formulas").lines():
+            with self._at(line, last):
                 if text.startswith("where "):
                     conditions.append((len(self.graph.formulas), self._read(text.removeprefix("where "))))
                 else:
@@ -124,6 +130,8 @@ class Page(Exercise):
         found = _FORMULA.fullmatch(text)
         if not found:
             raise ValueError(f"{text!r} is no formula: expected one such as 'v = way/t  [m/s]', or 'where v > 0'")
+        if (unit := _ONE_SPACE.search(text)) and unit[1] and is_unit(unit[1]):
+            raise ValueError(f"{text!r} has one space before the unit: expected two")
         names = [name.strip() for name in found[1].split(",")]
         one, unit = self._with_units(self._read(found[2]), found[3])
         for place, name in enumerate(names):
@@ -134,6 +142,8 @@ class Page(Exercise):
             self._units[name], self.units[name] = unit, found[3] or ""
 
     def _read_asked(self):
+        if "Asked" not in self.page.sections:
+            raise PageError(self.page.file, self.page.line, f"exercise {self.page.number} has no section Asked")
         for line, text in self.page.section("Asked").items():
             with self._at(line):
                 name = _CODE.match(text)
@@ -141,7 +151,8 @@ class Page(Exercise):
                     raise ValueError(f"{text!r} names no quantity: expected one such as '`v` the speed of the car'")
                 words = text[name.end() :]
                 kind = _KIND.search(words)
-                one = self._read(kind[1] if kind else "number()", {**MAKERS, **self.functions})
+                spelled = kind[1] if kind else "number()"
+                one = self._read(f"{spelled}()" if spelled.isidentifier() else spelled, {**MAKERS, **self.functions})
                 if not (isinstance(one.tree, ast.Call) and one.tree.func.id in {*MAKERS, *self.functions}):
                     raise ValueError(f"{one.text} is no kind of answers: {did_you_mean(one.text, MAKERS)}")
                 if one.tree.func.id in MAKERS and name[1] not in self.units:
@@ -167,13 +178,20 @@ class Page(Exercise):
             raise ValueError(f"{name!r} is no quantity of this page: {did_you_mean(name, known)}")
         return name, self._read(found[2])
 
-    def _look_at_braces(self, part):
+    def _look_at_places(self, part):
+        """Refuse names in braces that are no quantity, or LaTeX's, and a formula without an end."""
+        known = [*self.units, *(name for name in self._asked if name not in self.units)]
+        if part.source.count("$") % 2:
+            raise PageError(part.file, part.line, "a $ in this section has no other one")
         for place, line in enumerate(part.source.splitlines()):
-            for found in _LATEX.finditer(line):
-                name = found[1]
-                if name in self.units or name in self._asked:
-                    says = f"{found[0]}: write {{{{{name}}}}} for the letter, or {{ {{{name}}} }} for its value"
-                    raise PageError(part.file, part.line + place, says)
+            with self._at(part.line + place):
+                for found in _LATEX.finditer(line):
+                    if (name := found[1]) in known:
+                        says = f"write {{{{{name}}}}} for the letter, or {{ {{{name}}} }} for its value"
+                        raise ValueError(f"{found[0]}: {says}")
+                for found in _ANY_PLACE.finditer(line):
+                    if (name := found[1]) not in known:
+                        raise ValueError(f"{found[0]}: there is no {name!r}: {did_you_mean(name, known)}")
 
     # ---- what follows for some values of the givens
 
@@ -224,12 +242,16 @@ class Page(Exercise):
         maker = one.tree.func.id
         if maker in self.functions:
             return one(quantities, self.functions)
-        said = {part.arg for part in one.tree.keywords} | {"unit"} - {*inspect.signature(MAKERS[maker]).parameters}
+        signature = inspect.signature(MAKERS[maker])
+        said = {part.arg for part in one.tree.keywords} | {"unit"} - {*signature.parameters}
         usual = {"what": words or name} | ({} if "unit" in said else {"unit": self.units[name]})
 
         def make(*parts, **named):
             named = usual | {word: _plain(value) for word, value in named.items()}
-            return MAKERS[maker](quantities[name], *map(_plain, parts), **named)
+            try:
+                return MAKERS[maker](quantities[name], *map(_plain, parts), **named)
+            except TypeError:
+                raise ValueError(f"expected arguments such as {signature}") from None
 
         return one(quantities, {**self.functions, maker: make})
 
@@ -280,26 +302,27 @@ class Page(Exercise):
     def _drawing(self, draw, **values):
         return call(draw, self.quantities(values))
 
-    def second_ways(self, values: Mapping[str, Value]) -> Iterator[tuple[str, bool]]:
-        """Yield what the section Check says, each with whether it holds for some values of the givens.
+    def second_ways(self, values: Mapping[str, Value]) -> Iterator[tuple[str, bool, str]]:
+        """Yield what the section Check says, each with whether it holds for some values of the givens, and its sides.
 
         ``K = ...`` is another way to K; ``a == b``, to one part in a million, and other conditions hold as they are.
         """
         right = self.quantities(values)
-        for line, text in self.page.section("Check").lines():
-            with self._at(line):
+        for line, text, last in self.page.section("Check").lines():
+            with self._at(line, last):
                 found = _FORMULA.fullmatch(text)
-                if found:
+                if found and found[1] in right:
                     one = self._with_units(self._read(found[2]), self.units[found[1]] or None)[0]
-                    yield text, are_same(one(right, self.functions), right[found[1]])
+                    value = one(right, self.functions)
+                    yield text, are_same(value, right[found[1]]), f"{_short(right[found[1]])}, not {_short(value)}"
                     continue
                 one = self._with_units(self._read(text))[0]
                 match one.tree:
                     case ast.Compare(left, [ast.Eq()], [other]):
-                        sides = (one.with_tree(side)(right, self.functions) for side in (left, other))
-                        yield text, are_same(*sides)
+                        sides = [one.with_tree(side)(right, self.functions) for side in (left, other)]
+                        yield text, are_same(*sides), " and ".join(map(_short, sides))
                     case _:
-                        yield text, bool(one(right, self.functions))
+                        yield text, bool(one(right, self.functions)), ""
 
 
 def are_same(one: Any, other: Any) -> bool:
@@ -331,6 +354,11 @@ def _is_as_good(kind, value):
         return None
 
 
+def _short(value):
+    """A value as it is shown to an author."""
+    return f"{float(value):.6g}" if formula.is_number(value) and value.is_real is not False else str(value)
+
+
 def _plain(value):
     """A number as Python has it; anything else as it is."""
     if isinstance(value, sympy.Rational):
@@ -351,6 +379,8 @@ def _givens(page: PageText) -> Iterator[tuple[str, Parameter]]:
                 yield name, between(low, high, unit, reference=example, step=step)
             else:
                 words = [formula.word(one.strip()) for one in values.split(",")]
+                if len(words) < 2:
+                    raise ValueError(f"{values!r} is no range: expected one as '50 … 400 by 10', or several values")
                 yield name, choice(*words, unit=unit, reference=formula.word(reference) if reference else None)
         except ValueError as error:
             raise PageError(page.file, line, str(error)) from error

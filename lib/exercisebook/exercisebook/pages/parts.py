@@ -58,18 +58,24 @@ class Part:
             elif cells is not None and token.type == "tr_close":
                 yield self.line + line, cells
 
-    def lines(self) -> Iterator[tuple[int, str]]:
-        """Yield the lines of its blocks of code, without what follows #. One that is indented belongs to that above."""
+    def lines(self) -> Iterator[tuple[int, str, int]]:
+        """Yield the formulas of its blocks of code, without what follows #, each with its lines.
+
+        A line that is indented belongs to that above.
+
+        Returns:
+            The first line, the text, and the last line.
+        """
         for token in _tokens(self.source):
             if token.type != "fence":
                 continue
-            found: list[tuple[int, str]] = []
+            found: list[tuple[int, str, int]] = []
             for number, line in enumerate(token.content.splitlines(), self.line + token.map[0] + 1):
                 text = re.sub(r"(^|\s)#.*", "", line).rstrip()
                 if found and text.startswith(" "):
-                    found[-1] = (found[-1][0], f"{found[-1][1]} {text.strip()}")
+                    found[-1] = (found[-1][0], f"{found[-1][1]} {text.strip()}", number)
                 elif text:
-                    found.append((number, text))
+                    found.append((number, text, number))
             yield from found
 
     def items(self) -> Iterator[tuple[int, str]]:

@@ -180,9 +180,10 @@ def other_answers(variant: Variant) -> Iterator[Seen]:
 def second_ways(variant: Variant) -> Iterator[Seen]:
     """What an exercise says has to hold, as another way to its key, does."""
     try:
-        for text, holds in variant.exercise.second_ways(variant.question.values):
+        for text, holds, sides in variant.exercise.second_ways(variant.question.values):
             if not holds:
-                yield Seen(WRONG, f"the check {text} does not hold", variant.question.with_values.strip())
+                example = f"{sides}{variant.question.with_values}".strip()
+                yield Seen(WRONG, f"the check {text} does not hold", example)
     except ValueError as problem:
         yield Seen(WRONG, f"a check fails: {problem}")
 
