@@ -356,7 +356,7 @@ def _is_as_good(kind, value):
 
 def _short(value):
     """A value as it is shown to an author."""
-    return f"{float(value):.6g}" if formula.is_number(value) and value.is_real is not False else str(value)
+    return f"{float(value):.6g}" if formula.is_number(value) and not complex(value).imag else str(value)
 
 
 def _plain(value):
