@@ -246,13 +246,13 @@ WRONG_CHARTS = {
     ),
     "an action that never comes": (
         lines(heat="Heat: inlet off"),
-        "the heater stays off, although the tank is full and the water is colder than 60 °C: "
+        "the heater stays off, although the full tank is colder than 60 °C: "
         "Heat does not switch it on; Heat is active and waits for temperature >= 60",
     ),
     "no return": (
         lines(to_wait="Empty -> End: level <= 0.12", wait="Wait (initial): outlet off", end="End: outlet off"),
-        "after the first round, at t = 970 s the inlet is closed, although start was pressed and the level has not "
-        "reached 0.9 m: End does not switch it on; End is active, and no transition leaves it",
+        "after the first round, at t = 970 s the inlet is closed, although start was pressed and the level is "
+        "below 0.9 m: End does not switch it on; End is active, and no transition leaves it",
     ),
     "by the clock": (
         lines(to_heat="Fill -> Heat: 171 s"),

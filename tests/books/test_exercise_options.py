@@ -84,5 +84,5 @@ def test_no_option_of_the_bank_is_read_as_another_one():
         assert all(sum(bare(one) in row for one in among) < 2 for row in SAME), "a row holds two options"
         for option in among:
             assert named(option, among) == named(option.upper(), among) == option
-            for text in (f"not {option}", f"hardly {option}", f"un{option}", f"{option} or {among[0]}"):
+            for text in (f"not {option}", f"hardly {option}", f"un-{option}", f"{option} or {among[0]}"):
                 assert named(text, among) != option

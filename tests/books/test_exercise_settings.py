@@ -124,7 +124,7 @@ JUDGED = [
     (PARALLEL, PID(2, Ti=8, Td=2), MISTAKE, "numbers of the serial form"),
     (PARALLEL, PID(2.5, Ti=1.6, Td=10), MISTAKE, "exchanged"),
     (PARALLEL, PID(2.5, Ti=10, Td=1.6, form="serial"), WRONG, "not right"),
-    (STABLE, PID(1, Ti=2), WRONG, "that would be right in min"),
+    (STABLE, PID(1, Ti=2), WRONG, "asked is that the loop is stable, and it is not so"),
     (STABLE, PID(1, Ti=99), WRONG, "asked is that the loop is stable"),
 ]
 

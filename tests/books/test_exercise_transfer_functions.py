@@ -74,8 +74,8 @@ def tank(
         ({"H": "3*exp(-8*s)/(s + 40)"}, "its poles are one divided by those that it should have"),
         ({"H": "7*exp(-8*s)/(40*s + 1)"}, "it is right but for a constant factor"),
         ({"H": "3*exp(-8*s)/(40*s + 1)/(5*s + 1)"}, "it has too many poles"),
-        ({"M": "3/(40*s + 1 - 3)", "gain": -1.5}, "gain: this fits what you have for"),
-        ({"M": "3/(40*s + 1 + 9)", "T_M": 4}, "T_M: this fits what you have for"),
+        ({"M": "3/(40*s + 1 - 3)", "gain": -1.5}, "gain: this is right for what you have for"),
+        ({"M": "3/(40*s + 1 + 9)", "T_M": 4}, "T_M: this is right for what you have for"),
     ],
 )
 def test_responses(given, says):

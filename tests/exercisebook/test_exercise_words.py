@@ -65,10 +65,10 @@ def test_judging(subtests):
 #: {options: {option: the ways to say it}}; what is under None is none of them.
 SAID = {
     ("mass point", "motion", "momentum", "mean velocity"): {
-        "mass point": ["mass-point", "Mass Point", "the mass_point", "MASSPOINT.", "(mass point)", "mass piont", "mass"],
+        "mass point": ["mass-point", "Mass Point", "the mass_point", "MASSPOINT.", "(mass point)", "mass piont"],
         "momentum": ["a momentum", "momentun", "momntum"],
-        "mean velocity": ["mean velocty", "mean-velocity", "velocity", "its mean velocity is meant"],
-        None: ["mo", "not the momentum", "momentum or motion", "both", "the", "", "?", "x" * 300],
+        "mean velocity": ["mean velocty", "mean-velocity", "its mean velocity is meant"],
+        None: ["mass", "mo", "velocity", "not the momentum", "momentum or motion", "both", "the", "", "?", "x" * 300],
     },
     ("yes", "no"): {
         "yes": ["Yes.", "true", "y"],

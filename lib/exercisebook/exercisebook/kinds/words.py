@@ -24,15 +24,14 @@ _BETWEEN = re.compile(r"(?<=[^\W\d])[\s_‐‑-]+(?=\w)|(?<=\w)[\s_‐‑-]+(?=[
 _NONE = re.compile(r"none(?: of them| of these)?|nothing|no one|not any|no \w+|[-–∅]|\[\]", re.IGNORECASE)
 #: What denies the words of a sentence, turns them, or leaves them open.
 _DENIED = re.compile(
-    r"\b(?:not|no|never|neither|nor|without|less|more|or|but|instead|rather|opposite|if|either|both|un|non|hardly)\b"
+    r"\b(?:not|no|never|neither|nor|without|less|more|or|but|instead|rather|opposite|if|either|both|un|non|hardly|marginally|almost|nearly)\b"
     r"|n't|\?"
 )
 #: Words of a sentence that name nothing, and endings of words of some letters.
 _FILLING = re.compile(r"an?|the|its?|is|are|be|to|of|at|in|on|that|this|which|with|will|would|must|for|so|by|and")
 _ENDING = re.compile(r"(?<=..)(?:ing|ed|es|s|ly|e)$")
-#: An option is known from so many letters of its beginning.
+#: An option of one word is known from so many letters of its beginning.
 SHORTEST_BEGINNING = 3
-_DIGIT = re.compile(r"\d")
 _ONLY = re.compile(r"^(?:only|just|solely) ", re.IGNORECASE)
 _COUNTED = re.compile(r"(\D*)(\d+(?:\.\d+)?)(\D*)")
 _TRUTH = {True: "yes", False: "no"}
@@ -266,14 +265,16 @@ def _spelled(given, among):
 
 
 def _in_a_sentence(given, among):
-    """The options of which all words are in a sentence, or else those in which all words of a shorter text are."""
+    """The options of which all words are in a sentence, or else those of which all are but such as others have, too."""
     said, begun = _stems(given), given.strip().casefold()
     options = {one: _stems(one) for one in among}
     found = [one for one, stems in options.items() if stems and stems <= said]
-    found = [one for one in found if not _DIGIT.search("".join(said - options[one]))]
+    found = [one for one in found if not any(word[0].isdigit() for word in said - options[one])]
     found = [one for one in found if not any(options[one] < options[other] for other in found)]
-    found = found or [one for one, stems in options.items() if said and said <= stems]
-    found = found or [one for one in among if len(begun) >= SHORTEST_BEGINNING and one.casefold().startswith(begun)]
+    shared = {one: set().union(*(options[other] for other in among if other != one)) for one in among}
+    found = found or [one for one, stems in options.items() if said and said <= stems <= said | shared[one]]
+    if not found and len(begun) >= SHORTEST_BEGINNING:
+        found = [one for one in among if " " not in one and one.casefold().startswith(begun)]
     is_denied = len(found) == 1 and {*_DENIED.findall(found[0].casefold())} != {*_DENIED.findall(begun)}
     return [] if is_denied else found
 
