@@ -28,6 +28,7 @@ import functools
 import itertools
 import re
 import unicodedata
+from collections import Counter
 from collections.abc import Callable, Mapping
 from types import ModuleType
 from typing import TYPE_CHECKING
@@ -107,8 +108,8 @@ class Exercise(Declared):
             raise ValueError("student is an empty text: expected a name or an identification")
         if student is None:
             values = {name: parameter.reference for name, parameter in self.parameters.items()}
-            if not call(self.where, values):
-                raise ValueError(f"the reference variant of exercise {self.number} does not satisfy its condition")
+            if why := self.not_drawn(values):
+                raise ValueError(f"the reference variant of exercise {self.number} is none: {why}")
             return Question(self, student, values)
         return Question(self, student, self._drawn(student, {}))
 
@@ -133,15 +134,23 @@ class Exercise(Declared):
 
     def _drawn(self, student, kept):
         """The values of a student: some that are kept, and for the others the first draw that fulfils the condition."""
+        reasons: Counter[str] = Counter()
         for attempt in range(MOST_DRAWS):
             text = unicodedata.normalize("NFC", f"{self.number}|{student}|{attempt}")
             values = {
                 name: kept[name] if name in kept else one.draw(f"{text}|{name}")
                 for name, one in self.parameters.items()
             }
-            if call(self.where, values):
+            why = self.not_drawn(values)
+            if not why:
                 return values
-        raise ValueError(f"the condition of exercise {self.number} holds in none of {MOST_DRAWS} draws: widen it")
+            reasons[why] += 1
+        why, often = reasons.most_common(1)[0]
+        raise ValueError(f"exercise {self.number} has no variant in {MOST_DRAWS} draws: in {often} of them {why}")
+
+    def not_drawn(self, values: Mapping[str, Value]) -> str:
+        """Return why values are no variant; empty where they are one."""
+        return "" if call(self.where, values) else "its condition does not hold"
 
 
 def collected(module: ModuleType) -> dict[str, Exercise]:

@@ -224,7 +224,7 @@ def test_the_command_shows_a_student(command):
     result = command(GOOD, "--student", "s0007")
     assert result.exit_code == 0
     values = Assignment.of(HEAD + GOOD, "tried").question("s0007", "1").values
-    assert f"s0007: K = {float(values['K']):g}\N{NO-BREAK SPACE}K/%" in result.stdout
+    assert f"s0007: K = {float(values['K']):g} K/%" in result.stdout
     assert re.search(r"\n  right +[\d.]+ \(as it is\)", result.stdout)
     assert "\n              That is the rise for one percent." in result.stdout
     assert "(zero)" in result.stdout

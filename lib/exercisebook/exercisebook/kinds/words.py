@@ -48,6 +48,7 @@ class Word(Kind):
 
     def __init__(self, key: object, among: Iterable[str], what: str = "the word"):
         self.among = tuple(among)
+        _check_key([key], self.among, what)
         super().__init__(key, "", what, 0)
 
     @property
@@ -101,7 +102,9 @@ class Words(Kind):
 
     def __init__(self, key: Iterable[object], among: Iterable[str], what: str = "the words", ordered: bool = False):
         self.among, self.ordered = tuple(among), ordered
-        super().__init__(list(key), "", what, 0)
+        key = list(key)
+        _check_key(key, self.among, what)
+        super().__init__(key, "", what, 0)
 
     @property
     def asked(self) -> str:
@@ -182,6 +185,13 @@ class Words(Kind):
         """None of the words, and all of them."""
         found = {"no word": [], "all words": list(self.among)}
         yield from ((how, answer) for how, answer in found.items() if answer != self.key)
+
+
+def _check_key(words, among, what):
+    """Refuse a key that is none of the words, however near it is to one."""
+    for word in words:
+        if isinstance(word, str) and bare(word) not in map(bare, among):
+            raise ValueError(f"the key of {what} is {word!r}: expected one of {', '.join(among)}")
 
 
 def in_drawn_order(words: Iterable[str], text: str) -> tuple[str, ...]:

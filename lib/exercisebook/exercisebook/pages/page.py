@@ -66,10 +66,10 @@ class Page(Exercise):
         self.graph = Graph(list(parameters), {}, functions)
         self._conditions = self._read_formulas()
         self._asked = dict(self._read_asked())
-        key, where = (_naming(function, parameters) for function in (self._key, self._holds))
+        key = _naming(self._key, parameters)
         key.__doc__ = page.statement.text
         insight = " ".join(page.section("Insight").text.split())
-        super().__init__(page.number, page.title, page.points, where, key, insight)
+        super().__init__(page.number, page.title, page.points, lambda: True, key, insight)
         self.changes = list(self._read_mistakes())
         for part in (page.statement, *map(page.section, ("Mistakes", "Hints", "Solution", "Insight"))):
             self._look_at_places(part)
@@ -203,16 +203,20 @@ class Page(Exercise):
     def _quantities(self, givens):
         return self.graph.values(dict(givens))
 
-    def _holds(self, **values):
-        """Whether the conditions hold, each before the formulas below it are worked out, and no mistake is as good."""
+    def not_drawn(self, values: Mapping[str, Value]) -> str:
+        """Return the condition that does not hold, or the mistake that would be right; empty for a variant."""
         found, formulas, done = dict(values), list(self.graph.formulas.items()), 0
-        for above, condition in self._conditions:
+        for above, condition in self._conditions:  # each before the formulas below it are worked out
             for name, one in formulas[done:above] if condition.names & {*self.graph.formulas} else ():
                 found[name] = one(found, self.functions)
                 done = above
             if not condition(found, self.functions):
-                return False
-        return None not in self._wrong(tuple(values.items()))
+                return f"'where {condition.text}' does not hold"
+        for (_, changes), wrong in zip(self.changes, self._wrong(tuple(values.items())), strict=True):
+            if wrong is None:
+                made = "; ".join(f"{name} = {one.text}" for name, one in changes.items())
+                return f"the mistake '{made}' would be right"
+        return ""
 
     def _key(self, **values):
         quantities = self.quantities(values)

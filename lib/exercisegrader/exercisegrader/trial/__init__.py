@@ -218,7 +218,7 @@ def as_text(trial: Trial) -> str:
 
 
 def one_variant(assignment: Assignment, student: str, number: str) -> str:
-    """Return what a student sees and is told, as lines: the statement, and the answers of a trial with their verdicts.
+    """Return what a student sees and is told, as lines: the texts, and the answers of a trial with their verdicts.
 
     Raises GradingError where the variant fails.
     """
@@ -226,7 +226,7 @@ def one_variant(assignment: Assignment, student: str, number: str) -> str:
     question = variant.question
     units = {name: parameter.unit for name, parameter in question.exercise.parameters.items()}
     given = [f"{name} = {written(value, units[name])}" for name, value in question.values.items()]
-    lines = [str(question.statement).replace("\N{NO-BREAK SPACE}", " "), "", f"{student}: {', '.join(given)}"]
+    lines = [str(question.statement), "", f"{student}: {', '.join(given)}"]
     lines += [line for name in variant.by_hand for line in ("", f"{name}: a person marks it")]
     for name, kind in variant.key.items():
         lines += ["", f"{name}: the key is {kind.solution}"]
@@ -236,4 +236,10 @@ def one_variant(assignment: Assignment, student: str, number: str) -> str:
             told = variant.judged(name, answer)
             lines += [f"  {told.status:10}  {in_short(answer)} ({how})"]
             lines += [f"{'':14}{told.says}"] if told.says != told.status else []
-    return "\n".join(lines)
+    for rung, text in enumerate(question.rungs, start=1):
+        lines += ["", f"hint {rung}: {text}"]
+    if question.exercise.worked:
+        lines += ["", "solution:", question.solved().text]
+    if insight := question.exercise.insight:
+        lines += ["", f"insight: {question.filled_in(insight, also={})}"]
+    return "\n".join(lines).replace("\N{NO-BREAK SPACE}", " ")

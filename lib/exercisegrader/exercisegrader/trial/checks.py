@@ -126,6 +126,8 @@ def in_short(answer: object) -> str:
     """
     if isinstance(answer, np.ndarray | np.generic):
         answer = answer.tolist()
+    if isinstance(answer, sympy.Rational) and not answer.is_Integer:
+        answer = float(f"{float(answer):.6g}")
     return shortened(repr(answer), LONGEST_ANSWER)
 
 
