@@ -139,8 +139,10 @@ def _explained(kind, answer, mistakes, background):
         return MISTAKE, found.says, False
     for known in (mistakes, kind.mistakes()):
         near = [(kind.off_by(answer, wrong), sentence) for sentence, wrong in known if kind.is_value(answer, wrong)]
-        if near:  # the nearest one, of several the first
-            return MISTAKE, min(near, key=lambda one: one[0])[1], False
+        if near:  # the nearest one, of several the first; what follows from a wrong number is no mistake
+            off, sentence = min(near, key=lambda one: one[0])
+            nearer = [says for says, own in diagnoses.followed(kind, answer, background) if own < off]
+            return (WRONG, nearer[0], False) if nearer else (MISTAKE, sentence, False)
     try:
         with np.errstate(all="ignore"):
             found = diagnoses.explained(kind, answer, background)

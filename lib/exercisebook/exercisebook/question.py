@@ -29,9 +29,6 @@ if TYPE_CHECKING:
 
 #: In a solution, what is below it is left to the reader in the last hint.
 FADES = re.compile(r"^\*\*\*\n", re.MULTILINE)
-#: The numbers in a statement; of those that are no givens so many may be in a diagnosis.
-_NUMBERS = re.compile(r"(?<![\w.,])\d+(?:\.\d+)?(?![\w.]*\d)")
-MOST_SHOWN = 8
 #: After so many responses that name no mistake, the hint is offered.
 BARE = 2
 
@@ -98,12 +95,9 @@ class Question(Showing):
     def background(self) -> Background:
         """What the diagnoses of a wrong answer may know: the givens of the statement, and the key for others."""
         parameters = {name: one for name, one in self.exercise.parameters.items() if name in self.stated}
-        stated = {float(text) for text in _NUMBERS.findall(self.filled_in(self.exercise.statement))}
-        given = {float(self.values[name]) for name, one in parameters.items() if not isinstance(self.values[name], str)}
-        shown = [value for value in sorted(stated - given) if len(f"{value:g}".strip("0.").replace(".", "")) > 1]
         following = functools.partial(self.exercise.following, self.values)
         sources = {name: self.exercise.sources(name) for name in self.key}
-        return Background(self.key, self.values, parameters, following, shown[:MOST_SHOWN], sources)
+        return Background(self.key, self.values, parameters, following, sources)
 
     @functools.cached_property
     def stated(self) -> dict[str, Value]:

@@ -14,9 +14,9 @@ import importlib
 import pkgutil
 
 from exercisebook.diagnoses.background import Background
-from exercisebook.diagnoses.finding import Finding, explained, swapped
+from exercisebook.diagnoses.finding import Finding, explained, followed, swapped
 
 for _module in pkgutil.iter_modules(__path__):  # a module for a kind of answers registers by itself
     importlib.import_module(f"{__name__}.{_module.name}")
 
-__all__ = ["Background", "Finding", "explained", "swapped"]
+__all__ = ["Background", "Finding", "explained", "followed", "swapped"]

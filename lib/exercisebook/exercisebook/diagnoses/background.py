@@ -6,12 +6,11 @@ import contextlib
 import copy
 import itertools
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import sympy
 
 from exercisebook.kinds import Number
 from exercisebook.parameters import written
@@ -73,7 +72,6 @@ class Background:
         parameters: {name: `Parameter`}, those alone that the statement shows.
         following: returns the key of a quantity as it follows from changes, {name: value} of parameters or of other
             asked quantities, and its name; None where nothing says how.
-        shown: more numbers that the statement shows.
         sources: {name: names of all on which it depends}, by the formulas of the exercise.
 
     Attributes:
@@ -90,11 +88,10 @@ class Background:
         values: Mapping[str, Value] | None = None,
         parameters: Mapping[str, Parameter] | None = None,
         following: Callable[[Mapping[str, Any], str], Kind | None] = lambda changes, name: None,
-        shown: Sequence[float] = (),
         sources: Mapping[str, Collection[str]] | None = None,
     ):
         self.key, self.values, self.parameters, self.following = key or {}, values or {}, parameters or {}, following
-        self.shown, self.sources = shown, sources or {}
+        self.sources = sources or {}
         self._keys: dict[tuple[Any, ...], Kind | None] = {}
         self._given_up: set[str] = set()  # that a key took too long
 
@@ -209,8 +206,8 @@ def _likely_changes(background):
             yield how, {one: values[other], other: values[one]}
     yield from _other_words(background)
     for name in numbers:
-        # nothing of it, hardly anything where a key has no value for nothing, and as a factor
-        for nothing in (0 * values[name], values[name] / 10**6, values[name] ** 0):
+        # nothing of it, hardly anything where a key has no value for nothing, as a factor, and as an integral time
+        for nothing in (0 * values[name], values[name] / 10**6, values[name] ** 0, values[name] * 10**6):
             if values[name] != nothing:
                 yield f"that is what comes out without the {words(name)}", {name: nothing}
 
@@ -224,12 +221,8 @@ def _other_words(background):
 
 
 def _rarer_changes(background):
-    """A given twice or half as large, for another one, in a mistaken unit, with another sign, upside down."""
+    """A given for another one, in a mistaken unit, with another sign."""
     values, parameters, numbers, words = background.values, background.parameters, background.numbers, background.words
-    for name in numbers:
-        for much, factor in (("twice the", 2), ("half of the", sympy.S.Half)):
-            how = f"that is what comes out with {much} {words(name)}: is a factor of 2 lost, or too many, beside it?"
-            yield how, {name: factor * values[name]}
     for one, other in itertools.combinations(numbers, 2):
         if parameters[one].unit != parameters[other].unit and values[one] != values[other]:
             how = f"that is what comes out with the numbers of {words(one)} and {words(other)} interchanged"
@@ -241,9 +234,6 @@ def _rarer_changes(background):
                 yield how, {name: changed}
     for name in numbers:
         yield f"that is what comes out with another sign of the {words(name)}", {name: -values[name]}
-    for name in numbers:
-        if values[name] not in (0, 1, -1):
-            yield f"that is what comes out with one divided by the {words(name)}", {name: 1 / values[name]}
 
 
 def _mistaken(unit):

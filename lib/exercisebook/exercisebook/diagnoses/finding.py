@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import functools
 import itertools
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -64,6 +65,13 @@ def of_another(kind: Kind, answer: Any, background: Background) -> Finding | Non
                 return Finding(f"that is {had.words}, itself: asked here is {kind.asked}")
             return Finding("that fits another quantity that is asked for: have you interchanged the two?")
     return None
+
+
+def followed(kind: Kind, answer: Any, background: Background) -> Iterator[tuple[str, float]]:
+    """Yield from which wrong numbers before it an answer follows, and how far it is from what follows."""
+    for says, key in background.carried_on() if background.wrong_before else ():
+        if type(key) is type(kind) and kind.is_value(answer, key.key) and not kind.agrees(key.key):
+            yield says, kind.off_by(answer, key.key)
 
 
 def carried_on(kind: Kind, answer: Any, background: Background) -> Finding | None:

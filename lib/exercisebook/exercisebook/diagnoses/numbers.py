@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from decimal import Decimal
 
@@ -51,7 +51,6 @@ class Case:
             another one, and a sentence.
         before: a wrong number before it, in words, on which it depends; empty where there is none.
         carried: pairs of the number that follows from a wrong one before it, and a sentence.
-        shown: more numbers that the statement shows.
     """
 
     key: float
@@ -63,7 +62,6 @@ class Case:
     changed: Callable[[bool], Iterator[Wrong]] = lambda _: iter(())
     before: str = ""
     carried: Callable[[], Iterator[Wrong]] = lambda: iter(())
-    shown: Sequence[float] = ()
 
     def is_count(self, answer: float) -> bool:
         """Whether the number is exact, or both it and an answer look like small counts."""
@@ -246,14 +244,6 @@ def _with_given(case):
         if not _is_common(given.value):
             yield case.key * given.value, _as_large_as(given)
             yield case.key / given.value, _as_large_as(given)
-    for value in case.shown:
-        yield case.key * value, _as_large_as(Amount(value, "", f"{value:g}"))
-        yield case.key / value, _as_large_as(Amount(value, "", f"{value:g}"))
-    for other in case.others:
-        if not _is_common(other.value):
-            says = f"it is off by a factor as large as {other.words}: is that missing, or in it once too often?"
-            yield case.key * other.value, says
-            yield case.key / other.value, says
 
 
 _FACTORS = (
@@ -375,11 +365,14 @@ MORE = (
 def rounded(answer: float, key: float) -> bool:
     """Whether an answer is the key, rounded or cut off to the digits that the answer has.
 
-    >>> rounded(0.7, 2 / 3), rounded(0.6, 2 / 3), rounded(0.65, 2 / 3)
+    >>> rounded(0.7, 2 / 3), rounded(0.66, 2 / 3), rounded(0.65, 2 / 3)
     (True, True, False)
     """
-    _, half_unit = _digits(answer)
-    return abs(answer) < abs(key) + half_unit and abs(answer - key) < 2 * half_unit and answer * key > 0
+    digits, half_unit = _digits(answer)
+    off = abs(answer - key)
+    if digits == 1:  # nobody cuts 27 off to 20
+        return off < half_unit and answer * key > 0
+    return abs(answer) < abs(key) + half_unit and off < 2 * half_unit and answer * key > 0
 
 
 def _rounded(answer, case):
@@ -428,7 +421,7 @@ def size_of(answer: float, case: Case) -> str:
     if steps == 0:
         return ", though of about the right size"
     much = "much " if abs(steps) > 3 else ""
-    return f": {much}too {'large' if steps > 0 else 'small'}"
+    return f": {much}too {'large' if steps > 0 else 'small'}{' in size' if key < 0 else ''}"
 
 
 # -------------------------------------------------------------------------------------------------------- one number
@@ -481,6 +474,5 @@ def _(kind: Number, answer: float, background: Background) -> Finding:
             ((own, follows(words)) for words, own in of_formulas(kind.key, background)),
             numbers(background.carried_on()),
         ),
-        shown=background.shown,
     )
     return found_in(answer, case, kind.agrees) or in_general(answer, case)

@@ -487,7 +487,8 @@ def _number_of_text(text, unit, expected):
     if before:  # 3840 s = 64 min
         found = [_number_of_text(part, unit, expected) for part in (*before, line)]
         value = found[-1][0]
-        if all(abs(one - value) <= ROUNDED * (abs(value) or 1) for one, _ in found):
+        parts = (1, 100) if unit == "%" else (1,)  # 0.25 = 25 %
+        if all(any(abs(k * one - value) <= ROUNDED * (abs(value) or 1) for k in parts) for one, _ in found):
             return found[-1]
         raise Unreadable(f"{shortened(text, 40)!r} has two sides that differ: expected {expected}")
     line, remark = _in_digits_only(_BEHIND_IT.sub("", line) if not unit else line)
@@ -545,7 +546,9 @@ def _in_digits_only(line):
 
 
 def _in_unit_asked(value, named, unit, expected):
-    """A number that was given with a unit, in the asked one."""
+    """A number that was given with a unit, in the asked one; degrees are those of the asked unit."""
+    if unit in ("°C", "K") and re.fullmatch("deg(rees?)?", named):
+        named = unit
     if (units.spelled(named), unit) == ("°C", "K"):
         raise Unreadable(f"in °C, this may be a temperature or a difference of two: expected {expected}")
     value = _finite(complex(value), expected)

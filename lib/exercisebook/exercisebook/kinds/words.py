@@ -21,7 +21,7 @@ LONGEST, SHORTEST_WITH_A_SLIP = 200, 5
 _ARTICLE = re.compile(r"\b(?:an?|the)\s+(?=\w\w)")
 #: What two words may have between them or not; between digits it separates numbers.
 _BETWEEN = re.compile(r"(?<=[^\W\d])[\s_‐‑-]+(?=\w)|(?<=\w)[\s_‐‑-]+(?=[^\W\d])")
-_NONE = re.compile(r"none(?: of them| of these)?|nothing|no one|not any|no \w+|[-–∅]|\[\]", re.IGNORECASE)
+_NONE = re.compile(r"none(?: of them| of these)?|nothing|no one|not any|no(?: \w+)?|[-–∅]|\[\]", re.IGNORECASE)
 #: What denies the words of a sentence, turns them, or leaves them open.
 _DENIED = re.compile(
     r"\b(?:not|no|never|neither|nor|without|less|more|or|but|instead|rather|opposite|if|either|both|un|non|hardly|marginally|almost|nearly)\b"
@@ -265,11 +265,11 @@ def named(given: str, among: Sequence[str]) -> str | None:
 
 def _spelled(given, among):
     """The options that a text is, spelled in any way."""
-    if NONE in among and _NONE.fullmatch(given.strip()):
-        return [NONE]
     text = bare(given)
     if exact := [option for option in among if bare(option) == text][:1]:
         return exact
+    if NONE in among and _NONE.fullmatch(given.strip()):
+        return [NONE]
     meant = [option for option in among if any({bare(option), text} <= row for row in SAME)]
     return meant or [option for option in among if _has_a_slip(given, option)]
 
@@ -336,4 +336,6 @@ also_said(
     "no, false, n",
     "none, nothing",
     "as it was, unchanged, the same, no change",
+    "too long, too large, longer",
+    "too short, too small, shorter",
 )

@@ -78,7 +78,6 @@ def _in_part(kind, name, answer, background):
         background.givens,
         changed,
         wrong_before(background),
-        shown=background.shown,
     )
     named = found_in(float(value), case) or in_general(float(value), case)
     if named.is_bare:
