@@ -21,6 +21,6 @@ def highest_in_the_end(place, closing, actions):
 
 
 def picture(place):
-    """The four tanks, and the flow controller in one of the five pipes."""
+    """The four tanks in a row, and the flow controller {position}."""
     pipes = [["FT", "V"] if n == place else [] for n in range(5)]
     return vessels("milk", pipes, "filling", {"FT": ("FC", "."), "V": ("9", ".")}, "FT FC 9 V")
