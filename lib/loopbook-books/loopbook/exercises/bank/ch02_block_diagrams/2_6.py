@@ -36,7 +36,7 @@ def enough_damping(key, m, K, t_s):
 
     time = "the time after which the machine stays within 5 %"
     return design(
-        number(key, "N s/m", "the damping constant"),
+        number(key, "N s/m", "the damping constant", within=0.2),  # so near to a mistake it is that one
         criterion("the damping constant is positive", lambda D: D > 0),
         criterion("the overshoot", lambda D: 100 * moves(m, D, K).overshoot if D > 0 else math.inf, below=10, unit="%"),
         criterion(time, lambda D: moves(m, D, K).settling_time if D > 0 else math.inf, below=float(t_s), unit="s"),
