@@ -23,6 +23,8 @@ RIGHT, MISTAKE, WRONG, UNJUDGED, OPEN = "right", "mistake", "wrong", "not judged
 WAITING = "to be marked"
 #: Reading and comparing may take so many seconds: an answer may be a function, or an object with methods of its own.
 SECONDS = 5
+#: Two mistakes in a number have one value within this fraction of it.
+SAME = 1e-9
 
 
 @dataclass(frozen=True)
@@ -140,8 +142,10 @@ def _explained(kind, answer, mistakes, background):
     for known in (mistakes, kind.mistakes()):
         near = [(kind.off_by(answer, wrong), sentence) for sentence, wrong in known if kind.is_value(answer, wrong)]
         if near:  # the nearest one, of several the first; what follows from a wrong number is no mistake
-            off, sentence = min(near, key=lambda one: one[0])
-            nearer = [says for says, own in diagnoses.followed(kind, answer, background) if own < off]
+            same = SAME * abs(answer) if isinstance(answer, float) else 0.0
+            least = min(off for off, _ in near)
+            sentence = next(sentence for off, sentence in near if off <= least + same)
+            nearer = [says for says, off in diagnoses.followed(kind, answer, background) if off < least - same]
             return (WRONG, nearer[0], False) if nearer else (MISTAKE, sentence, False)
     try:
         with np.errstate(all="ignore"):

@@ -193,8 +193,9 @@ class Background:
 
 
 def follows(words: str) -> str:
-    """A sentence on a quantity that follows by the right way from a wrong one before it."""
-    return f"this is right for what you have for {words}, which is not right"
+    """A sentence on a quantity that follows by the right way from a wrong one before it, or from several."""
+    are = "are" if "` and " in words else "is"
+    return f"this is right for what you have for {words}, which {are} not right"
 
 
 def _likely_changes(background):

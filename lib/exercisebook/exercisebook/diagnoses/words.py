@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 from exercisebook.diagnoses.background import Background
-from exercisebook.diagnoses.finding import Finding, explained
+from exercisebook.diagnoses.finding import Finding, carried_on, explained
 from exercisebook.kinds import Word, Words
 from exercisebook.reading import listed
 
@@ -18,6 +18,8 @@ QUESTIONS: list[tuple[set[str], str]] = [
 
 @explained.register
 def _(kind: Word, answer: str, background: Background) -> Finding | None:
+    if found := carried_on(kind, answer, background):
+        return found
     for how, key in background.keys_of_other_words():
         if isinstance(key, Word) and key.key == answer:
             return Finding(how)
