@@ -26,7 +26,7 @@ def first_moved(t, signal):
 def first_top(t, signal):
     """When a signal has its first maximum above its beginning; the end of the times where it has none."""
     inner = signal[1:-1]
-    tops = np.flatnonzero((inner > signal[:-2]) & (inner > signal[2:]) & (inner > signal[0]))
+    tops = np.flatnonzero((inner > signal[:-2]) & (inner > signal[2:]) & (inner > signal[0] + 1e-6))
     return t[tops[0] + 1] if tops.size else t[-1]
 
 
