@@ -17,6 +17,12 @@ def is_step_response(y, H, end):
     return np.allclose(evaluate(y, times), System(H).step(times), atol=1e-6)
 
 
+def back_at_zero(y, after, end):
+    """When the response passes zero again behind its lowest point."""
+    times = np.linspace(float(after), float(end), 2001)
+    return times[np.flatnonzero(evaluate(y, times) > 0)[0]]
+
+
 def solution_picture(y, K, tau, theta, moment):
     """The response of the approximation dips below zero at first; the exact one waits for the dead time."""
     times = times_until(4 * tau)

@@ -23,6 +23,13 @@ def first_moved(t, signal):
     return [t[place], bool(signal[place] > signal[0])]
 
 
+def first_top(t, signal):
+    """When a signal has its first maximum above its beginning; the end of the times where it has none."""
+    inner = signal[1:-1]
+    tops = np.flatnonzero((inner > signal[:-2]) & (inner > signal[2:]) & (inner > signal[0] + 1e-6))
+    return t[tops[0] + 1] if tops.size else t[-1]
+
+
 def picture(t, y, u):
     """Above the weight, which waits and then rises; below the valve, which leaves its first position after a while."""
     panels = [{"weight": (y, "measurement")}, {"valve": (u, "control signal")}]
