@@ -125,6 +125,11 @@ def alone(given: object) -> Any:
     return alone(row[0]) if len(row) == 1 else row
 
 
+#: A name before a list or an array, and the call that makes an array.
+_NAMED_LIST = re.compile(r"^[^\W\d]\w* ?= ?(?=\[|(?:\w+\.)?(?:Matrix|array)\()")
+_ARRAY = re.compile(r"(?:\w+\.)?(?:Matrix|array)\((.*)\)")
+
+
 def listed_in(text: str) -> list[str]:
     """Return the parts of a text that lists several: "[1, 2]" or "1; 2".
 
@@ -136,7 +141,9 @@ def listed_in(text: str) -> list[str]:
     >>> listed_in("[[1, 2], [3, 4]]"), listed_in("1, 2 and 3")
     (['[1, 2]', '[3, 4]'], ['1', '2', '3'])
     """
-    text = " ".join(text.split())
+    text = _NAMED_LIST.sub("", " ".join(text.split()))
+    if array := _ARRAY.fullmatch(text):
+        text = array[1]
     if not text:
         return [text]
     inside = _unwrapped(text)

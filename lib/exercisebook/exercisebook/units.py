@@ -40,6 +40,7 @@ _CELSIUS = re.compile(r"\s*(°\s?C|º\s?C|℃|C|C\s?°|deg(rees?)?\.?\s?([Cc]els
 _LONGEST = 40
 #: Units as people write them, and what Pint knows them by.
 _SPELLINGS = {
+    "percentage points": "%",
     "percent": "%", "per cent": "%", "pct": "%", "percents": "%", "mins": "min", "hrs": "h", "secs": "s", "Sec": "s",
     "Min": "min", "Nm": "N m", "kNm": "kN m", "Nms": "N m s", "Ohm": "Ω", "Ohms": "Ω", "kOhm": "kΩ", "cbm": "m³",
     "degs": "deg", "Ns": "N s", "decibel": "dB", "decibels": "dB", "KW": "kW", "Kg": "kg", "sec.": "s", "min.": "min",

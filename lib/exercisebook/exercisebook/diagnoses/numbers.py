@@ -213,7 +213,7 @@ def _given(case):
 
 
 def _decibel(case):
-    if case.unit == "" and case.key > 0:
+    if case.unit == "" and case.key > 0 and case.key != 1:
         yield 20 * math.log10(case.key), "that is the value in dB; asked is the factor itself"
 
 
@@ -355,7 +355,7 @@ MORE = (
     Mistake("two givens", _two_givens, is_rarest=True),
     Mistake("beside a given", _beside_given, is_rarest=True),
     Mistake("power", _power, is_rare=True),
-    Mistake("rare factor", _rare_factor, is_rare=True),
+    Mistake("rare factor", _rare_factor, is_rarest=True),
 )
 
 
@@ -397,9 +397,7 @@ def in_general(answer: float, case: Case) -> Finding:
         return found
     is_counted = case.unit == "" and float(key).is_integer() and float(answer).is_integer()
     if key and not (is_counted or case.is_count(answer)) and not case.before and abs(answer / key - 1) < NEARBY:
-        says = "that is off by a few percent, which is more than the rounding of a result"
-        says += ": is a small term missing, or a value rounded or read off too coarsely on the way?"
-        return Finding(says, is_mistake=False)
+        return Finding("that is off by a few percent, which is more than the rounding of a result", is_mistake=False)
     says = f"not right{size_of(answer, case)}; asked: {case.asked}"
     more = to_check(case) if answer else ". What would it mean here if that were zero?"
     return Finding(says + more, is_mistake=False, is_bare=True)

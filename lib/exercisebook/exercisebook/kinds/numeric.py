@@ -43,6 +43,11 @@ _BEFORE_IT = re.compile(
     r"(?:[^\W\d]\w* ?)?[<>≥≤]=? ?)",
     re.IGNORECASE,
 )
+#: What is said before the number that counts, and a remark in brackets behind it.
+_AROUND = (
+    (re.compile(r"^.*(?:,|;| ) ?(?:so|thus|i\.e\.|that is) (?=\S*\d)"), ""),
+    (re.compile(r"(?<=[^-+*/·:(=]) \([^()]*[^\W\d_]{2}[^()]*\)$"), ""),
+)
 #: Units and spaces of LaTeX, and dollar signs around a number.
 _IN_LATEX = (
     (re.compile(r"\\(?:mathrm|text|mathit|operatorname|unit)\s*\{([^{}]*)\}"), r"\1"),
@@ -480,7 +485,7 @@ def one_number(given: object, unit: str, expected: str) -> tuple[complex, str]:
 
 
 def _number_of_text(text, unit, expected):
-    for pattern, meant in _IN_LATEX:
+    for pattern, meant in (*_IN_LATEX, *_AROUND):
         text = pattern.sub(meant, text)
     *before, line = _BEFORE_IT.sub("", plain(_BEFORE_IT.sub("", text.strip()))).split(" = ")
     before = [part for part in before if re.search(r"\d", part) and not _HAS_SYMBOLS.search(part)]  # 3 T_c = 30 min

@@ -276,10 +276,11 @@ def _spelled(given, among):
 
 def _in_a_sentence(given, among):
     """The options of which all words are in a sentence, or else those of which all are but such as others have, too."""
-    said, begun = _stems(given), given.strip().casefold()
+    said, begun = _stems(given), given.strip(" .").casefold()
     options = {one: _stems(one) for one in among}
     found = [one for one, stems in options.items() if stems and stems <= said]
-    found = [one for one in found if not any(word[0].isdigit() for word in said - options[one])]
+    if re.search(r"\d", "".join(among)):  # V1 is another valve than V1 2
+        found = [one for one in found if not any(word[0].isdigit() for word in said - options[one])]
     found = [one for one in found if not any(options[one] < options[other] for other in found)]
     shared = {one: set().union(*(options[other] for other in among if other != one)) for one in among}
     found = found or [one for one, stems in options.items() if said and said <= stems <= said | shared[one]]

@@ -387,7 +387,10 @@ def _of_text(text):
     left = _PAIR.sub("", inside[len(first) :])
     if not re.fullmatch(r"(?:[\s,;/]|and)*", left):
         return None
-    alone = [part for part in listed_in(first.strip(" ,;")) if part] if first.strip(" ,;") else []
+    first = first.strip(" ,;")
+    if call and re.fullmatch(r"[^\s,]+(?:,[^\s,]+)+", first):  # as in Python, where no comma is a decimal one
+        first = first.replace(",", ", ")
+    alone = [part for part in listed_in(first) if part] if first else []
     if not named and not call and not form and not re.search("[=:]", text):
         return text
     positional = dict(zip(NAMES, alone, strict=False))
