@@ -23,7 +23,10 @@ also_said(
     "PI, PI controller",
     "PD, PD controller",
     "PID, PID controller",
-    "check valve, non return valve",
+    "check valve, non return valve, one way valve",
+    "column with trays, plate column",
+    "hydraulic signal, hydraulic line",
+    "pneumatic signal, pneumatic line",
     "hand valve, manual valve",
     "safety valve, relief valve",
 )

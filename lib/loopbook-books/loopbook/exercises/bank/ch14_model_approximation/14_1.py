@@ -8,7 +8,7 @@ __all__ = ["half_rule", "picture", "solution_picture"]
 
 
 def picture(g, theta_0, T_inv, tau_3):
-    """The first minutes after a step of the steam: the composition rests, dips below zero, and then begins to rise."""
+    """The first minutes after a step of the steam: the composition waits, dips below zero, and then begins to rise."""
     times = times_until(2 * (theta_0 + T_inv + tau_3))
     curves = {"$y$": (System(g).step(times), "measurement")}
     return time_plot(curves, times, "The first minutes", "$t$ [min]", "share of the final value")

@@ -56,9 +56,12 @@ def drawn_as(first, places, among):
     return [f"{letter}C{int(first) + n}" for n, (letter, place) in found if place in among.split()]
 
 
-def lines_across(controllers, places):
-    """Which line is drawn across each controller."""
-    return ", ".join(f"{C} with {PLACES[place]}" for C, place in zip(controllers, places.split(), strict=True))
+def lines_across(controllers, places, shared):
+    """Which line is drawn across each controller, and around which one a square."""
+    drawn = [f"{C} with {PLACES[place]}" for C, place in zip(controllers, places.split(), strict=True)]
+    if places.split()[shared - 1] != "field":
+        drawn[shared - 1] += " and a square around it"
+    return ", ".join(drawn)
 
 
 def examined(pipes, signals):
