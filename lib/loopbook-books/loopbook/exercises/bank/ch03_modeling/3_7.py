@@ -11,7 +11,7 @@ from loopbook.figures import time_plot
 
 
 def picture(C):
-    """An RC circuit: the voltage v_in lies over the resistor R and the capacitor of {C} in a row, v_out over the
+    """An RC circuit: the voltage v_in is across the resistor R and the capacitor of {C} in series, v_out across the
     capacitor alone."""
     return draw.rc_circuit(capacitor=f"${written(C)}$ µF")
 
