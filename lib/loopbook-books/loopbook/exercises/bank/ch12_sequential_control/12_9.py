@@ -54,8 +54,8 @@ def solution_picture(chart, full, T_SP, hold, low):
 
 
 def picture(full):
-    """The tank with its transmitters of level and temperature, its inlet, outlet and heater, and your chart between
-    them, which hears the button start; the level of the full tank, {full}, is marked."""
+    """The tank with its transmitters of level and temperature, its inlet, outlet and heater, and between them your
+    chart, which reads the button start; the level of the full tank, {full}, is marked."""
     layout = """
         .      5     .     .     .     .    3    .
         water  V1    1     .     .     .    .    .

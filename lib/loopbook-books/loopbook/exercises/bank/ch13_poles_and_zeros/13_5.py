@@ -15,7 +15,7 @@ def back_at_zero(y, before, after):
 
 
 def picture(rate, K, tau):
-    """The two effects of 1 kg/s more feedwater, each alone: a ramp upwards, and a fall that ends."""
+    """The two effects of 1 kg/s more feedwater, each alone: a ramp upwards, and a fall that levels off."""
     times = np.linspace(0, float(4 * tau), 201)
     curves = {"more water": float(rate) * times, "fewer bubbles": float(-K) * (1 - np.exp(-times / float(tau)))}
     return time_plot(curves, times, ylabel="level [cm]", low=True)
