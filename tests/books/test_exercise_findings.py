@@ -107,10 +107,7 @@ def test_no_sentence_tells_the_key(monkeypatch):
     many = [*cases([None])]
     for question, name, kind in of_the_day(many, len(many) // 6, "key"):
         case = case_of(question, name, kind, monkeypatch)
-        known = (
-            {amount.value for amount in case.givens}
-            | {0, 1, 2, 4, 10, 60, 90, 100, 180, 360, 1000, 3600, 0.632}
-        )
+        known = {amount.value for amount in case.givens} | {0, 1, 2, 4, 10, 60, 90, 100, 180, 360, 1000, 3600, 0.632}
         if any(is_recognised(kind.key, value) for value in known if value):
             continue
         answers_ = [wrong for mistake in (*TABLE, *GIVENS, *FACTORS) for wrong, _ in mistake.wrongs(case)]
