@@ -1,7 +1,6 @@
 """Python beside the page of exercise 7.9."""
 
 import numpy as np
-from matplotlib.ticker import MaxNLocator
 from numpy import diff  # noqa: F401
 
 from loopbook.figures import time_plot
@@ -16,6 +15,8 @@ def staircase(q, seconds, h):
 
 def grid(seconds):
     """How many seconds are between two lines of the picture's grid."""
+    from matplotlib.ticker import MaxNLocator  # not before it is asked: in a page of the site it is loaded then
+
     return float(np.diff(MaxNLocator(9, steps=[1, 2, 2.5, 5, 10]).tick_values(0, 8 * float(seconds)))[0])
 
 
