@@ -1,7 +1,6 @@
 """Python beside the page of exercise 2.3."""
 
 import numpy as np
-from scipy.linalg import expm
 
 from exercisebook.parameters import written
 from loopbook import diagrams as draw
@@ -9,6 +8,8 @@ from loopbook import diagrams as draw
 
 def motion(m, D, K, y_start, t):
     """Position and speed of the real mass at a moment."""
+    from scipy.linalg import expm  # not before it is asked: a page of the site loads it then
+
     A = np.array([[0, 1], [-K / m, -D / m]], dtype=float)
     return (expm(A * float(t)) @ [float(y_start), 0]).tolist()
 

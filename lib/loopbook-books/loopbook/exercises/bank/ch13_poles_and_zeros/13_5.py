@@ -1,7 +1,6 @@
 """Python beside the page of exercise 13.5."""
 
 import numpy as np
-from scipy.optimize import brentq
 
 from loopbook.exercises.bank.ch13_poles_and_zeros.shared import at, factor  # noqa: F401
 from loopbook.figures import time_plot
@@ -11,6 +10,8 @@ from loopbook.transfer import step_response, zeros  # noqa: F401
 
 def back_at_zero(y, before, after):
     """The time between two others at which a response is zero."""
+    from scipy.optimize import brentq  # not before it is asked: a page of the site loads it then
+
     return brentq(lambda time: at(y, time), float(before), float(after))
 
 

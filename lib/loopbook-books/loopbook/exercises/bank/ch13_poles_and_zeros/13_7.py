@@ -3,7 +3,6 @@
 from functools import lru_cache
 
 import numpy as np
-from scipy.optimize import brentq
 
 from loopbook.figures import plane_plot
 from loopbook.stability import margins
@@ -25,6 +24,8 @@ def sensitivity(x, w):
 
 def helps_until(x, limit=1):
     """The frequency up to which the size of the sensitivity is below a limit."""
+    from scipy.optimize import brentq  # not before it is asked: a page of the site loads it then
+
     return brentq(lambda w: sensitivity(x, w) - float(limit), 0.01, margins_of(x).omega_ms)
 
 

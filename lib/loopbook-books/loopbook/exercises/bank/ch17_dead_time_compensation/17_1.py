@@ -1,7 +1,6 @@
 """The responses of exercise 17.1."""
 
 import numpy as np
-from scipy.integrate import simpson
 
 from loopbook import PID, Loop, System, first_order
 from loopbook.exercises.bank.ch17_dead_time_compensation.shared import predictor, times_until
@@ -13,6 +12,8 @@ __all__ = ["first_felt", "first_order", "integral_of_square", "ise", "picture", 
 
 def integral_of_square(K, T, until):
     """The integral of the square of the lag's response to a unit step."""
+    from scipy.integrate import simpson  # not before it is asked: a page of the site loads it then
+
     times = times_until(until)
     return simpson(System(first_order(K, T)).step(times) ** 2, x=times)
 

@@ -1,7 +1,6 @@
 """The errors of exercise 18.6, of straight lines."""
 
 import numpy as np
-from scipy.integrate import simpson
 
 from loopbook.figures import time_plot
 
@@ -22,6 +21,8 @@ def errors(wait, fall, down, up, depth, change):
 
 def integrals(t, e):
     """IAE, ISE and ITAE by Simpson's rule, which is exact for parabolas."""
+    from scipy.integrate import simpson  # not before it is asked: a page of the site loads it then
+
     return [float(simpson(one, x=t)) for one in (abs(e), e**2, t * abs(e))]
 
 

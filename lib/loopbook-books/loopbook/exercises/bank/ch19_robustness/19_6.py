@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-from scipy.optimize import brentq
 
 from loopbook import first_order, margins
 from loopbook.exercises.bank.ch19_robustness.shared import three_digits
@@ -16,6 +15,8 @@ __all__ += ["unstable_closed_loop_poles"]
 
 def size_at(r, turn):
     """The size of exp(-s)/(r s + 1) where its phase is turned back by an angle in radians."""
+    from scipy.optimize import brentq  # not before it is asked: a page of the site loads it then
+
     r, turn = float(r), float(turn)
     w = brentq(lambda w: w + math.atan(r * w) - turn, turn - math.pi / 2, turn)
     return 1 / math.hypot(1, r * w)
