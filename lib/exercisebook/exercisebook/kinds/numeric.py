@@ -43,10 +43,10 @@ _BEFORE_IT = re.compile(
     r"(?:[^\W\d]\w* ?)?[<>≥≤]=? ?)",
     re.IGNORECASE,
 )
-#: What is said before the number that counts, and a remark in brackets behind it.
+#: What is said before the number that counts, and a remark in brackets behind it, which is no second answer.
 _AROUND = (
     (re.compile(r"^.*(?:,|;| ) ?(?:so|thus|i\.e\.|that is) (?=\S*\d)"), ""),
-    (re.compile(r"(?<=[^-+*/·:(=]) \([^()]*[^\W\d_]{2}[^()]*\)$"), ""),
+    (re.compile(r"(?<=[^-+*/·:(=]) \((?!(?:or|not|no|if)\b)[^()\d]*[^\W\d_]{2}[^()\d]*\)$"), ""),
 )
 #: Units and spaces of LaTeX, and dollar signs around a number.
 _IN_LATEX = (
