@@ -142,10 +142,11 @@ def _explained(kind, answer, mistakes, background):
     for known in (mistakes, kind.mistakes()):
         near = [(kind.off_by(answer, wrong), sentence) for sentence, wrong in known if kind.is_value(answer, wrong)]
         if near:  # the nearest one, of several the first; what follows from a wrong number is no mistake
-            same = SAME * abs(answer) if isinstance(answer, float) else 0.0
-            least = min(off for off, _ in near)
+            is_number = isinstance(answer, float)
+            same, least = SAME * abs(answer) if is_number else 0.0, min(off for off, _ in near)
             sentence = next(sentence for off, sentence in near if off <= least + same)
-            nearer = [says for says, off in diagnoses.followed(kind, answer, background) if off < least - same]
+            followed = diagnoses.followed(kind, answer, background)
+            nearer = [says for says, off in followed if off < least - same or (off <= least and not is_number)]
             return (WRONG, nearer[0], False) if nearer else (MISTAKE, sentence, False)
     try:
         with np.errstate(all="ignore"):

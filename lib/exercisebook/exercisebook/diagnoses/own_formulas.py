@@ -24,7 +24,8 @@ def of_formulas(key: float, background: Background) -> Iterator[tuple[str, float
         background: with the formulas that are asked for, and what the reader has for them.
     """
     for name, kind in background.key.items():
-        if name != background.name and isinstance(kind, Expression):
+        follows = background.name in background.sources.get(name, ())  # the formula from the number
+        if name != background.name and isinstance(kind, Expression) and not follows:
             one = background.answered(name)
             if one and isinstance(one.answer, Formula) and not one.is_right:
                 for right, own in numbers_of(one.kind, one, background):

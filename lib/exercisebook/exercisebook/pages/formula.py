@@ -11,6 +11,7 @@ import ast
 import contextlib
 import math
 import operator
+import pkgutil
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -108,7 +109,10 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     "symbols": lambda names: sympy.symbols(names, positive=True),
     "Piecewise": lambda *parts: sympy.Piecewise(*map(tuple, parts)),
     "Heaviside": sympy.Heaviside,
+    "sorted": sorted,
 }
+#: What they may call besides, each with the place where it is; it is imported when a formula calls it.
+LIBRARY: dict[str, str] = {}
 NAMES: dict[str, Any] = {"pi": math.pi, "I": sympy.I, "s": s, "t": t, "True": True, "False": False}
 
 
@@ -136,6 +140,9 @@ class Formula:
             ValueError: where it has none, as a quotient by zero.
         """
         known = FUNCTIONS | (functions or {})
+
+        def called(name):
+            return known[name] if name in known else pkgutil.resolve_name(LIBRARY[name])
 
         def value(node):
             match node:
@@ -165,7 +172,7 @@ class Formula:
                 case ast.IfExp(test, body, orelse):
                     return value(body) if value(test) else value(orelse)
                 case ast.Call(ast.Name(name), arguments, keywords):
-                    return known[name](*map(value, arguments), **{one.arg: value(one.value) for one in keywords})
+                    return called(name)(*map(value, arguments), **{one.arg: value(one.value) for one in keywords})
                 case ast.List(parts) | ast.Tuple(parts):
                     return [value(part) for part in parts]
                 case ast.Dict(keys, parts):
@@ -236,8 +243,8 @@ def read(text: str, known: Mapping[str, Any], functions: Mapping[str, Any]) -> F
                 names.update({name} & {*known})
                 return
             case ast.Call(ast.Name(name), arguments, keywords):
-                if name not in FUNCTIONS and name not in functions:
-                    every = {**FUNCTIONS, **functions}
+                every = {**FUNCTIONS, **LIBRARY, **functions}
+                if name not in every:
                     refuse(f"there is no function {name!r}: {did_you_mean(name, every)}")
                 for part in (*arguments, *(one.value for one in keywords)):
                     look(part)

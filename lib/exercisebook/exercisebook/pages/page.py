@@ -411,21 +411,24 @@ def read(file: Path) -> dict[str, Page]:
 
 
 def beside(file: Path) -> dict[str, Callable[..., Any]]:
-    """Return the functions of the Python beside a page, which has its name: those that its formulas may call.
+    """Return the functions beside a page, which its formulas may call: of shared.py and of the Python with its name.
 
     Raises:
         PageError: where one has the name of a function of formulas or of a kind of answers.
     """
-    code = file.with_suffix(".py")
+    return _functions_of(file.with_name("shared.py")) | _functions_of(file.with_suffix(".py"))
+
+
+def _functions_of(code):
     if not code.exists():
         return {}
-    specification = importlib.util.spec_from_file_location(f"page_{file.stem}", code)
+    specification = importlib.util.spec_from_file_location(f"page_{code.stem}", code)
     assert specification
     assert specification.loader
     module = importlib.util.module_from_spec(specification)
     specification.loader.exec_module(module)
     found = {name: one for name, one in vars(module).items() if callable(one) and not name.startswith("_")}
-    for name in found.keys() & {*MAKERS, *formula.FUNCTIONS}:  # an import serves the Python alone
+    for name in found.keys() & {*MAKERS, *formula.FUNCTIONS, *formula.LIBRARY}:  # an import serves the Python alone
         if found.pop(name).__module__ == module.__name__:
             says = f"{name} is a function that all pages have: expected another name for this one"
             raise PageError(code.name, 1, says)

@@ -4,10 +4,9 @@ import importlib
 import pkgutil
 
 from exercisebook.pages import formula
-from loopbook.exercises import diagnoses, kinds
-from loopbook.pid import PID
+from loopbook.exercises import diagnoses, in_formulas, kinds
 
-formula.FUNCTIONS["PID"] = PID
+formula.LIBRARY |= in_formulas.LIBRARY
 
 for _package in (kinds, diagnoses):  # what is in a module of its own is found by itself
     for _module in pkgutil.iter_modules(_package.__path__):

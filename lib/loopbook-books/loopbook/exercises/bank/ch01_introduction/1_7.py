@@ -3,7 +3,6 @@
 from functools import lru_cache
 
 import numpy as np
-from numpy import interp  # noqa: F401
 
 from loopbook.figures import time_plot
 

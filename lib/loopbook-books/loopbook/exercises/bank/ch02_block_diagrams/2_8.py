@@ -1,7 +1,5 @@
 """Python beside the page of exercise 2.8."""
 
-from sympy import diff  # noqa: F401
-
 from exercisebook.parameters import written
 from loopbook import diagrams as draw
 

@@ -1,7 +1,6 @@
 """Python beside the page of exercise 3.2."""
 
 import sympy
-from sympy import diff, fraction, integrate, latex  # noqa: F401
 
 from loopbook import diagrams as draw
 

@@ -2,7 +2,6 @@
 
 from exercisebook.parameters import written
 from loopbook import diagrams as draw
-from loopbook.exercises.bank.ch03_modeling.shared import in_numbers  # noqa: F401
 
 
 def picture(m_1, m_2, J, r):

@@ -1,12 +1,7 @@
 """Python beside the page of exercise 3.6."""
 
-from sympy import diff  # noqa: F401
-
 from exercisebook.parameters import written
 from loopbook import diagrams as draw
-from loopbook.exercises.bank.ch03_modeling.shared import in_numbers  # noqa: F401
-from loopbook.transfer import initial_gain, static_gain  # noqa: F401
-from loopbook.transfer import poles as poles_of  # noqa: F401
 
 #: What lies above the output and what below, and whether the latter is a row.
 PARTS = {

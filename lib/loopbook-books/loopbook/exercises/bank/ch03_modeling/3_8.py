@@ -1,7 +1,6 @@
 """Python beside the page of exercise 3.8."""
 
 import numpy as np
-from numpy import gradient, interp  # noqa: F401
 
 from loopbook.figures import plane_plot
 

@@ -5,7 +5,6 @@ import numpy as np
 from exercisebook.parameters import written
 from loopbook.expressions import t
 from loopbook.figures import time_plot
-from loopbook.laplace import transform  # noqa: F401
 
 
 def picture(start, rate):

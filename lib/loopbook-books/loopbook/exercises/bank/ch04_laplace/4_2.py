@@ -6,7 +6,6 @@ from sympy import Heaviside
 from exercisebook.parameters import written
 from loopbook.expressions import t
 from loopbook.figures import time_plot
-from loopbook.laplace import final_value, transform  # noqa: F401
 
 
 def picture(q, begin, end):

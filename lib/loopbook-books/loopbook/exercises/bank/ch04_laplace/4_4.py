@@ -4,7 +4,6 @@ import numpy as np
 
 from exercisebook.parameters import written
 from loopbook.figures import time_plot
-from loopbook.laplace import inverse  # noqa: F401
 
 
 def picture(T, start, bath, rest):

@@ -2,9 +2,7 @@
 
 import numpy as np
 
-from loopbook.laplace import evaluate, final_value, inverse  # noqa: F401
-
-in_order = sorted
+from loopbook.laplace import evaluate, inverse
 
 
 def those_that_settle(signals):

@@ -6,8 +6,6 @@ from sympy import Heaviside
 from exercisebook.parameters import written
 from loopbook.expressions import t
 from loopbook.figures import time_plot
-from loopbook.laplace import transform  # noqa: F401
-from loopbook.transfer import response_time, static_gain  # noqa: F401
 
 
 def picture(full):

@@ -1,10 +1,8 @@
 """Python beside the page of exercise 4.7."""
 
 import numpy as np
-from numpy import interp  # noqa: F401
 
 from loopbook.figures import time_plot
-from loopbook.laplace import evaluate, final_value, inverse  # noqa: F401
 
 
 def reading(start, end, T):

@@ -5,7 +5,7 @@ import sympy
 from loopbook import diagrams
 
 
-def in_numbers(M, *gains):
+def gain_of(M, *gains):
     """The static gain of the whole for those of the blocks; None where it has none."""
     value = M.subs(dict(zip(sympy.symbols("H_1 H_2 H_3 H_4", positive=True), gains, strict=True)))
     return value if value.is_finite else None

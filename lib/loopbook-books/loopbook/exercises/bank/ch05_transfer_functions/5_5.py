@@ -5,7 +5,6 @@ import numpy as np
 from loopbook import diagrams
 from loopbook.exercises.authoring import criterion, design, number
 from loopbook.figures import time_plot
-from loopbook.transfer import feedback, response_time  # noqa: F401
 
 
 def in_two_digits(value):

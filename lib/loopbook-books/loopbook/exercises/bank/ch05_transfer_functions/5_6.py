@@ -3,7 +3,6 @@
 import numpy as np
 
 from loopbook.figures import time_plot
-from loopbook.transfer import initial_slope, zeros  # noqa: F401
 
 
 def curves(K, T_1, T_2, T_0, T_r, order):

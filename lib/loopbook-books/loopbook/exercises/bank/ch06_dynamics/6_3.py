@@ -1,8 +1,6 @@
 """Python beside the page of exercise 6.3."""
 
 from loopbook import diagrams
-from loopbook.exercises.bank.ch06_dynamics.shared import after  # noqa: F401
-from loopbook.transfer import dead_time, first_order, series  # noqa: F401
 
 
 def picture(V, V_pipe, F):

@@ -5,9 +5,7 @@ import math
 import numpy as np
 
 from loopbook.exercises.authoring import criterion, design, number
-from loopbook.exercises.bank.ch06_dynamics.shared import after  # noqa: F401
 from loopbook.figures import time_plot
-from loopbook.transfer import first_order  # noqa: F401
 
 
 def smooth_and_quick(V, *givens):

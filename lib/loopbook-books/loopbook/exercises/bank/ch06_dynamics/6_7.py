@@ -4,7 +4,6 @@ import numpy as np
 
 from loopbook import signals
 from loopbook.figures import time_plot
-from loopbook.identification import fit  # noqa: F401
 
 
 def record(start, T, u_1, du, y_1, dy, noise):

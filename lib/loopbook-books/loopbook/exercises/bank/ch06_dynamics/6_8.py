@@ -1,7 +1,6 @@
 """Python beside the page of exercise 6.8."""
 
 import numpy as np
-from numpy import interp  # noqa: F401
 
 from loopbook.figures import time_plot
 

@@ -8,7 +8,7 @@ from loopbook.deadtime import System
 from loopbook.expressions import s
 from loopbook.figures import time_plot
 from loopbook.pid import PID
-from loopbook.transfer import second_order, static_gain  # noqa: F401
+from loopbook.transfer import second_order
 
 
 @functools.lru_cache(maxsize=8)

@@ -1,7 +1,6 @@
 """Python beside the page of exercise 7.4."""
 
 from loopbook import diagrams
-from loopbook.transfer import feedback, first_order, static_gain  # noqa: F401
 
 
 def picture(K, T):

@@ -7,8 +7,6 @@ from loopbook.deadtime import Loop
 from loopbook.expressions import s
 from loopbook.figures import time_plot
 from loopbook.pid import PID
-from loopbook.stability import delay_margin as delay_margin_of  # noqa: F401
-from loopbook.stability import ultimate  # noqa: F401
 
 
 def picture(A, tau, K_p):

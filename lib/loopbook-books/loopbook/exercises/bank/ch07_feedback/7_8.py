@@ -4,8 +4,6 @@ import numpy as np
 
 from loopbook import signals
 from loopbook.figures import time_plot
-from loopbook.identification import fit  # noqa: F401
-from loopbook.laplace import final_value  # noqa: F401
 from loopbook.pid import LowpassFilter
 
 

@@ -1,10 +1,8 @@
 """Python beside the page of exercise 7.9."""
 
 import numpy as np
-from numpy import diff  # noqa: F401
 
 from loopbook.figures import time_plot
-from loopbook.transfer import initial_gain  # noqa: F401
 
 
 def staircase(q, seconds, h):

@@ -1,7 +1,6 @@
 """Python beside the page of exercise 8.1."""
 
 from loopbook import diagrams
-from loopbook.exercises.bank.ch08_feedforward.shared import in_numbers  # noqa: F401
 
 
 def picture(T_SP, T_c, T_h):

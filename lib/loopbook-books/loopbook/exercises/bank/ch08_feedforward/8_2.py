@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from loopbook.exercises.bank.ch08_feedforward.shared import in_numbers  # noqa: F401
 from loopbook.figures import time_plot
 
 

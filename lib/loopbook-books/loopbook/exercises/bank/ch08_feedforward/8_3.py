@@ -1,7 +1,6 @@
 """Python beside the page of exercise 8.3."""
 
 from loopbook import diagrams
-from loopbook.transfer import first_order, initial_gain, simplified, static_gain  # noqa: F401
 
 
 def picture(K, T, tau, K_d, T_d, tau_d):

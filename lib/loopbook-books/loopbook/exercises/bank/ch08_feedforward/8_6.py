@@ -9,7 +9,6 @@ from loopbook.exercises import authoring
 from loopbook.exercises.authoring import criterion, design
 from loopbook.figures import time_plot
 from loopbook.pid import LowpassFilter
-from loopbook.transfer import first_order, simplified, static_gain  # noqa: F401
 
 
 def _noise(sigma, T_f):

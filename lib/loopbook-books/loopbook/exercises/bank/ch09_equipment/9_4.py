@@ -3,7 +3,6 @@
 import numpy as np
 
 from exercisebook.authoring import expression
-from loopbook.exercises.bank.ch08_feedforward.shared import in_numbers  # noqa: F401
 from loopbook.figures import time_plot
 
 

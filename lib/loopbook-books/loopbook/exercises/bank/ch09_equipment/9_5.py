@@ -16,8 +16,8 @@ def _cycles(full, T, on, P, number):
     """Times and temperatures in cycles from room temperature on, in small exact steps."""
     full, T, on, P = map(float, (full, T, on, P))
     times, y = np.linspace(0, number * P, 200 * number + 1), [0.0]
-    for time in times[:-1]:
-        end = full if time % P < on - 1e-9 else 0.0
+    for step in range(200 * number):
+        end = full if step % 200 < round(200 * on / P) else 0.0
         y.append(end + (y[-1] - end) * np.exp(-times[1] / T))
     return times, np.array(y)
 

@@ -2,7 +2,6 @@
 
 from exercisebook.parameters import written
 from loopbook import diagrams as draw
-from loopbook.stability import margins  # noqa: F401
 
 
 def picture(K, T, tau, K_p):

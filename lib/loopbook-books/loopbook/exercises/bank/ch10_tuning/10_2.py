@@ -5,7 +5,6 @@ from math import log, pi
 import numpy as np
 
 from loopbook.figures import time_plot
-from loopbook.tuning import good_gain as good_gain
 
 
 def picture(t_1, t_2, T_ou):

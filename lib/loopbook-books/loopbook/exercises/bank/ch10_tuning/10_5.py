@@ -6,7 +6,6 @@ import numpy as np
 
 from loopbook.figures import time_plot
 from loopbook.identification import limit_cycle
-from loopbook.tuning import ziegler_nichols_ultimate as ziegler_nichols_ultimate
 
 
 def _record(low, high, middle, a, period, periods):

@@ -5,8 +5,6 @@ import numpy as np
 from loopbook.deadtime import Loop
 from loopbook.figures import time_plot
 from loopbook.pid import PID
-from loopbook.stability import margins as margins
-from loopbook.tuning import simc as simc
 
 
 def solution_picture(K_p, T_i, Kp, Ti, process, other):

@@ -12,7 +12,6 @@ from loopbook.figures import time_plot
 from loopbook.pid import PID
 from loopbook.signals import stepwise
 from loopbook.stability import is_closed_loop_stable
-from loopbook.tuning import simc as simc
 
 _INTEGRATOR = exp(-s) / s  # with the dead time as the unit of time and the slope 1
 

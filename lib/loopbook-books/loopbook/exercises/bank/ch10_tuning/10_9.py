@@ -6,7 +6,6 @@ from math import pi, sqrt
 import numpy as np
 
 from loopbook.figures import time_plot
-from loopbook.tuning import ziegler_nichols_ultimate as ziegler_nichols_ultimate
 
 _EACH = 5.5  # periods with each of the gains
 

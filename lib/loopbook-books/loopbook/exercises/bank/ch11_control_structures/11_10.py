@@ -2,7 +2,6 @@
 
 from loopbook import diagrams
 from loopbook.exercises.bank.ch11_control_structures.shared import lag
-from loopbook.transfer import feedback, first_order  # noqa: F401
 
 
 def picture(K_1, T_1, K_2, T_2):

@@ -3,8 +3,6 @@
 from exercisebook.parameters import written
 from loopbook import diagrams
 from loopbook.exercises.bank.ch11_control_structures.shared import lag
-from loopbook.transfer import feedback, first_order, second_order, static_gain  # noqa: F401
-from loopbook.transfer import poles as poles_of  # noqa: F401
 
 
 def picture(K_1, T_1, K_2, T_2, K_p2):

@@ -1,7 +1,6 @@
 """Python beside the page of exercise 11.5."""
 
 from loopbook import diagrams
-from loopbook.transfer import first_order, step_response  # noqa: F401
 
 
 def picture(A, F):

@@ -1,6 +1,5 @@
 """Python beside the page of exercise 11.6."""
 
-from loopbook.exercises.bank.ch08_feedforward.shared import in_numbers  # noqa: F401
 from loopbook.exercises.bank.ch11_control_structures.shared import cascade, lag
 
 

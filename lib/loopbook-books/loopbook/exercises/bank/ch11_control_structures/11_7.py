@@ -3,7 +3,6 @@
 from loopbook.approximation import half_rule
 from loopbook.exercises.bank.ch11_control_structures.shared import cascade, lag
 from loopbook.transfer import first_order
-from loopbook.tuning import simc  # noqa: F401
 
 
 def by_half_rule(K_1, T_1, K_2, T_2, delay):

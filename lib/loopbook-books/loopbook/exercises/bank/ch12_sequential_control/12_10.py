@@ -1,6 +1,6 @@
 """Python beside the page of exercise 12.10."""
 
-from loopbook.exercises.bank.ch12_sequential_control.shared import PRESSED, tank_chart, written  # noqa: F401
+from loopbook.exercises.bank.ch12_sequential_control.shared import PRESSED, tank_chart
 
 SCENARIOS_OF_ALARM = [
     ("", 2, {"start": PRESSED, "reset": "FALSE"}),

@@ -3,7 +3,7 @@
 from itertools import pairwise
 
 from loopbook.diagrams import sequential_function_chart
-from loopbook.exercises.bank.ch12_sequential_control.shared import assigned, left_on, listed, switched_on  # noqa: F401
+from loopbook.exercises.bank.ch12_sequential_control.shared import assigned, left_on, listed
 from loopbook.sequence import Chart
 
 OUTPUTS = ["pump", "heater", "dosing", "stirrer", "drain", "lamp"]

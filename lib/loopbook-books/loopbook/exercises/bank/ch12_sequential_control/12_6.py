@@ -1,7 +1,5 @@
 """Python beside the page of exercise 12.6."""
 
-from loopbook.exercises.bank.ch08_feedforward.shared import in_numbers  # noqa: F401
-
 
 def integral(A, K_v, h_0, h_1):
     """The time of emptying as the integral over the level, in s; K_v is in litres."""

@@ -3,13 +3,6 @@
 from types import SimpleNamespace
 
 from loopbook.diagrams import sequential_function_chart
-from loopbook.exercises.bank.ch12_sequential_control.shared import (  # noqa: F401
-    assigned,
-    executed,
-    left_on,
-    listed,
-    switched_on,
-)
 from loopbook.sequence import Chart
 
 OUTPUTS = ["inlet", "heater", "stirrer", "drain", "lamp"]

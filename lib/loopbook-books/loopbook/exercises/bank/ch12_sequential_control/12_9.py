@@ -1,7 +1,7 @@
 """Python beside the page of exercise 12.9."""
 
 from loopbook.diagrams import control_valve, instrumentation_diagram, tank
-from loopbook.exercises.bank.ch12_sequential_control.shared import PRESSED, tank_chart, written  # noqa: F401
+from loopbook.exercises.bank.ch12_sequential_control.shared import PRESSED, tank_chart
 
 SCENARIOS_OF_BATCH = [
     ("", 2, {"start": PRESSED}),

@@ -4,7 +4,6 @@ import numpy as np
 
 from loopbook.deadtime import System
 from loopbook.figures import time_plot
-from loopbook.transfer import initial_slope, static_gain  # noqa: F401
 
 
 def _response(M, g, until):

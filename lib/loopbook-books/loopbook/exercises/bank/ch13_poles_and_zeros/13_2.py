@@ -3,10 +3,7 @@
 import numpy as np
 
 from loopbook.deadtime import System
-from loopbook.exercises.bank.ch13_poles_and_zeros.shared import at  # noqa: F401
 from loopbook.figures import time_plot
-from loopbook.oscillation import oscillation  # noqa: F401
-from loopbook.transfer import step_response  # noqa: F401
 
 
 def picture(before, after, P, loop):

@@ -3,9 +3,8 @@
 import numpy as np
 
 from loopbook.deadtime import System
-from loopbook.exercises.bank.ch13_poles_and_zeros.shared import factor  # noqa: F401
 from loopbook.figures import time_plot
-from loopbook.transfer import first_order, initial_slope, zeros  # noqa: F401
+from loopbook.transfer import first_order
 
 
 def _steps(tau_1, systems):

@@ -1,10 +1,7 @@
 """Python beside the page of exercise 13.4."""
 
 from loopbook import diagrams
-from loopbook.exercises.bank.ch08_feedforward.shared import in_numbers  # noqa: F401
 from loopbook.exercises.bank.ch13_poles_and_zeros.shared import factor
-from loopbook.oscillation import oscillation  # noqa: F401
-from loopbook.transfer import feedback, second_order, static_gain  # noqa: F401
 
 
 def picture(k, tau_1, tau_2):

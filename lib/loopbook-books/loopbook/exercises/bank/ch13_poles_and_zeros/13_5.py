@@ -2,10 +2,9 @@
 
 import numpy as np
 
-from loopbook.exercises.bank.ch13_poles_and_zeros.shared import at, factor  # noqa: F401
+from loopbook.exercises.in_formulas import at
 from loopbook.figures import time_plot
 from loopbook.laplace import evaluate
-from loopbook.transfer import step_response, zeros  # noqa: F401
 
 
 def back_at_zero(y, before, after):

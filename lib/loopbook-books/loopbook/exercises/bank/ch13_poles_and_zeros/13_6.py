@@ -5,7 +5,6 @@ import numpy as np
 from loopbook import diagrams
 from loopbook.deadtime import System
 from loopbook.exercises.authoring import criterion, design, pi_controller, settings, stable
-from loopbook.exercises.bank.ch08_feedforward.shared import in_numbers  # noqa: F401
 from loopbook.expressions import s
 from loopbook.figures import time_plot
 from loopbook.oscillation import oscillation

@@ -1,10 +1,8 @@
 """The responses of exercise 14.1."""
 
-from loopbook import System, first_order, half_rule
+from loopbook import System, first_order
 from loopbook.exercises.bank.ch14_model_approximation.shared import beside, times_until
 from loopbook.figures import time_plot
-
-__all__ = ["half_rule", "picture", "solution_picture"]
 
 
 def picture(g, theta_0, T_inv, tau_3):

@@ -1,9 +1,6 @@
 """The responses of exercise 14.2."""
 
-from loopbook import half_rule
-from loopbook.exercises.bank.ch14_model_approximation.shared import beside, step_at
-
-__all__ = ["half_rule", "solution_picture", "step_at"]
+from loopbook.exercises.bank.ch14_model_approximation.shared import beside
 
 
 def solution_picture(g, g_1, g_2, tau_2):

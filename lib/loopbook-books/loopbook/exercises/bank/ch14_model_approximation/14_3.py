@@ -1,10 +1,7 @@
 """The responses of exercise 14.3."""
 
 from loopbook import dead_time
-from loopbook.approximation import zero_rule
 from loopbook.exercises.bank.ch14_model_approximation.shared import beside
-
-__all__ = ["solution_picture", "zero_rule"]
 
 
 def solution_picture(part, instead, theta):

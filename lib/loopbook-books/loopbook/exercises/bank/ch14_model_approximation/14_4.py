@@ -1,11 +1,8 @@
 """The loops of exercise 14.4."""
 
-from loopbook import PID, Loop, dead_time, first_order, ultimate
-from loopbook.approximation import pade
+from loopbook import PID, Loop, first_order
 from loopbook.exercises.bank.ch14_model_approximation.shared import times_until
 from loopbook.figures import time_plot
-
-__all__ = ["dead_time", "first_order", "pade", "solution_picture", "ultimate"]
 
 
 def solution_picture(g, T, theta, Ku):

@@ -2,13 +2,10 @@
 
 import numpy as np
 
-from loopbook import System, dead_time, first_order
-from loopbook.approximation import pade
-from loopbook.exercises.bank.ch14_model_approximation.shared import step_at, times_until
+from loopbook import System, first_order
+from loopbook.exercises.bank.ch14_model_approximation.shared import times_until
 from loopbook.figures import time_plot
 from loopbook.laplace import evaluate
-
-__all__ = ["dead_time", "first_order", "is_step_response", "pade", "solution_picture", "step_at"]
 
 
 def is_step_response(y, H, end):

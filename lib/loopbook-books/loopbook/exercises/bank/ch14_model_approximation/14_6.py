@@ -1,11 +1,9 @@
 """The design of exercise 14.6."""
 
-from loopbook import Loop, half_rule, margins, simc
+from loopbook import Loop
 from loopbook.exercises.authoring import criterion, design, largest_sensitivity, pi_controller, settings, stable
 from loopbook.exercises.bank.ch14_model_approximation.shared import times_until
 from loopbook.figures import time_plot
-
-__all__ = ["half_rule", "margins", "quick_and_robust", "simc", "somewhat_more"]
 
 
 def somewhat_more(area):

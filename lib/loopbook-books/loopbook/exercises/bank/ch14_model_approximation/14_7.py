@@ -5,11 +5,8 @@ import functools
 import numpy as np
 
 from loopbook import System
-from loopbook import half_rule as by_half_rule
 from loopbook.exercises.bank.ch14_model_approximation.shared import times_until
 from loopbook.figures import time_plot
-
-__all__ = ["begins", "by_half_rule", "curves", "picture"]
 
 
 @functools.lru_cache(maxsize=8)

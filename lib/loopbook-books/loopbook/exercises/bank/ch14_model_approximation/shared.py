@@ -11,11 +11,6 @@ def times_until(end):
     return np.linspace(0, float(end), 401)
 
 
-def step_at(H, time):
-    """The value of a step response at a time."""
-    return float(System(H).step([float(time)])[0])
-
-
 def beside(systems, end, title, xlabel="$t$ [min]", ylabel="share of the step"):
     """The step responses of a process and its models."""
     times, roles = times_until(end), ("process", "model", "second model", "third model")

@@ -2,12 +2,8 @@
 
 import numpy as np
 
-from loopbook import PID, Loop, diagrams, integrator
+from loopbook import PID, Loop, diagrams
 from loopbook.figures import time_plot
-from loopbook.synthesis import direct_synthesis, imc
-from loopbook.transfer import feedback, static_gain
-
-__all__ = ["direct_synthesis", "feedback", "imc", "integrator", "picture", "solution_picture", "static_gain"]
 
 
 def picture(process):

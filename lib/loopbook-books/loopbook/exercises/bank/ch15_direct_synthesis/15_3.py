@@ -1,9 +1,6 @@
 """The loop of exercise 15.3."""
 
-from loopbook import Loop, first_order, margins
-from loopbook.synthesis import imc
-
-__all__ = ["Loop", "first_order", "imc", "margins", "solution_picture"]
+from loopbook import Loop, first_order
 
 
 def solution_picture(K, T, delay, controller):

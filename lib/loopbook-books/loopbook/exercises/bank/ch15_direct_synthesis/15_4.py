@@ -4,10 +4,6 @@ import numpy as np
 
 from loopbook import System
 from loopbook.figures import time_plot
-from loopbook.synthesis import direct_synthesis
-from loopbook.transfer import step_response
-
-__all__ = ["direct_synthesis", "least", "picture", "solution_picture", "step_response"]
 
 
 def least(H, end):

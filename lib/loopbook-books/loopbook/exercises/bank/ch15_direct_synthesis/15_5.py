@@ -4,12 +4,10 @@ import math
 
 import numpy as np
 
-from loopbook import Loop, first_order, margins, simc
+from loopbook import Loop, first_order
 from loopbook.exercises.authoring import criterion, design, largest_sensitivity, pi_controller, settings, stable
 from loopbook.figures import time_plot
 from loopbook.ise import pi_first_order
-
-__all__ = ["Loop", "first_order", "margins", "recovery", "robust_and_quick", "simc"]
 
 
 def recovery(K, T, delay, controller):

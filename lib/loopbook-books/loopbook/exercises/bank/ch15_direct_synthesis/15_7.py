@@ -2,11 +2,7 @@
 
 import numpy as np
 
-from loopbook import first_order
 from loopbook.figures import time_plot
-from loopbook.synthesis import imc
-
-__all__ = ["first_order", "imc", "picture", "reached", "record_and_wish"]
 
 
 def _rise(times, T, delay):

@@ -4,11 +4,7 @@ import math
 
 import numpy as np
 
-from loopbook import integrator
 from loopbook.figures import time_plot
-from loopbook.tuning import ziegler_nichols_reaction
-
-__all__ = ["integrator", "picture", "reaction_curve", "steepest", "ziegler_nichols_reaction"]
 
 
 def reaction_curve(slope, theta):

@@ -5,9 +5,6 @@ import math
 import numpy as np
 
 from loopbook.figures import time_plot
-from loopbook.tuning import tyreus_luyben, ziegler_nichols_ultimate
-
-__all__ = ["cycle", "picture", "tyreus_luyben", "ziegler_nichols_ultimate"]
 
 
 def cycle(P_u):

@@ -2,11 +2,9 @@
 
 import functools
 
-from loopbook import integrator, ultimate
+from loopbook import integrator
 from loopbook.figures import time_plot
 from loopbook.identification import relay_experiment
-
-__all__ = ["cycle", "integrator", "solution_picture", "ultimate"]
 
 
 @functools.cache

@@ -2,11 +2,8 @@
 
 import numpy as np
 
-from loopbook import PID, Loop, first_order, simc
+from loopbook import PID, Loop, first_order
 from loopbook.figures import time_plot
-from loopbook.oscillation import oscillation
-
-__all__ = ["first_order", "oscillation", "simc", "solution_picture"]
 
 
 def solution_picture(K, T, tau, Kp, Ti, total):

@@ -1,9 +1,7 @@
 """What exercise 16.9 needs."""
 
-from loopbook import first_order, integrator, margins
+from loopbook import integrator
 from loopbook.stability import dominant_poles
-
-__all__ = ["first_order", "first_pole", "margins"]
 
 
 def first_pole(gain, delay):

@@ -3,11 +3,8 @@
 import numpy as np
 
 from loopbook import PID, Loop, System, first_order
-from loopbook.exercises.bank.ch17_dead_time_compensation.shared import predictor, times_until
+from loopbook.exercises.bank.ch17_dead_time_compensation.shared import times_until
 from loopbook.figures import time_plot
-from loopbook.ise import ise
-
-__all__ = ["first_felt", "first_order", "integral_of_square", "ise", "picture", "predictor"]
 
 
 def integral_of_square(K, T, until):

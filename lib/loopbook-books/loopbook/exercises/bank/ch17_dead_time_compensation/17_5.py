@@ -6,12 +6,9 @@ import numpy as np
 
 from loopbook import Loop, first_order
 from loopbook.exercises.authoring import criterion, design, pi_controller, settings, stable
-from loopbook.exercises.bank.ch17_dead_time_compensation.shared import predictor, times_until
+from loopbook.exercises.bank.ch17_dead_time_compensation.shared import times_until
 from loopbook.figures import time_plot
-from loopbook.ise import ise, pi_first_order
-from loopbook.stability import is_closed_loop_stable
-
-__all__ = ["first_order", "is_closed_loop_stable", "ise", "largest_M", "predictor", "safe_and_quick"]
+from loopbook.ise import pi_first_order
 
 
 def _M(K, T, off, pid, w):

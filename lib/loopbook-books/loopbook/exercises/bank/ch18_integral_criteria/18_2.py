@@ -1,9 +1,6 @@
 """The loop of exercise 18.2."""
 
 from loopbook import diagrams, integrator
-from loopbook.ise import ise
-
-__all__ = ["integrator", "ise", "picture"]
 
 
 def picture(K):

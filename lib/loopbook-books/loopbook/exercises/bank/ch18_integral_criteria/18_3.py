@@ -2,11 +2,7 @@
 
 import numpy as np
 
-from loopbook import integrator, margins
 from loopbook.figures import plane_plot
-from loopbook.ise import ise
-
-__all__ = ["integrator", "ise", "margins", "solution_picture"]
 
 
 def solution_picture(K, delay, Kp, ISE, best_gain, least_ISE):

@@ -4,12 +4,10 @@ import math
 
 import numpy as np
 
-from loopbook import Loop, first_order, integrator, margins
+from loopbook import Loop, first_order
 from loopbook.exercises.authoring import criterion, design, largest_sensitivity, pi_controller, settings, stable
 from loopbook.figures import time_plot
-from loopbook.ise import ise, pi_first_order
-
-__all__ = ["Loop", "first_order", "integrator", "ise", "margins", "quick_and_robust"]
+from loopbook.ise import pi_first_order
 
 
 def quick_and_robust(K, T, delay, controller, limit):

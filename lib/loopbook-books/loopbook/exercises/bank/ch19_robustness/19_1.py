@@ -1,8 +1,6 @@
 """The Nyquist curve of exercise 19.1."""
 
-from loopbook import PID, Loop, first_order, margins
-
-__all__ = ["Loop", "first_order", "margins", "solution_picture"]
+from loopbook import PID, Loop, first_order
 
 
 def solution_picture(K, T, delay, Kc):

@@ -2,11 +2,7 @@
 
 import numpy as np
 
-from loopbook import first_order, margins
 from loopbook.figures import plane_plot
-from loopbook.stability import unstable_closed_loop_poles
-
-__all__ = ["first_order", "margins", "solution_picture", "unstable_closed_loop_poles"]
 
 
 def solution_picture(x, delay):

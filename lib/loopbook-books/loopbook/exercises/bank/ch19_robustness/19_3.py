@@ -2,10 +2,7 @@
 
 import numpy as np
 
-from loopbook import first_order, margins
 from loopbook.figures import time_plot
-
-__all__ = ["first_order", "margins", "picture"]
 
 
 def picture(omega, period):

@@ -4,13 +4,10 @@ import math
 
 import numpy as np
 
-from loopbook import first_order
 from loopbook.exercises.authoring import criterion, design, pi_controller, settings, stable
-from loopbook.exercises.bank.ch19_robustness.shared import robustness_plot, three_digits
-from loopbook.ise import ise, pi_first_order
-from loopbook.stability import robust_in_window, robustness_pi_first_order
-
-__all__ = ["distance", "first_order", "ise", "load_ISE", "robust_and_quick", "robust_in_window", "three_digits"]
+from loopbook.exercises.bank.ch19_robustness.shared import robustness_plot
+from loopbook.ise import pi_first_order
+from loopbook.stability import robustness_pi_first_order
 
 
 def distance(K, T, delay, Kp, Ti):

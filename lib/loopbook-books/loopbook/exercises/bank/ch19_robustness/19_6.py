@@ -4,13 +4,7 @@ import math
 
 import numpy as np
 
-from loopbook import first_order, margins
-from loopbook.exercises.bank.ch19_robustness.shared import three_digits
 from loopbook.figures import plane_plot
-from loopbook.stability import unstable_closed_loop_poles
-
-__all__ = ["first_order", "margins", "picture", "points", "solution_picture", "three_digits"]
-__all__ += ["unstable_closed_loop_poles"]
 
 
 def size_at(r, turn):

@@ -2,8 +2,6 @@
 
 from loopbook.instruments import decode
 
-__all__ = ["all_tags", "decode", "functions", "tagged"]
-
 
 def tagged(quantity, letters, numbers):
     """The tags with these letters behind the first one, and one number or a number each; no letters are no tag."""

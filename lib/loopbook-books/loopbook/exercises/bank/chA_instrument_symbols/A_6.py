@@ -40,7 +40,7 @@ def arrows(paths):
     return ", ".join(" → ".join(x for x in path.split() if not x.isdigit()) for path in paths.split(", "))
 
 
-def after(case):
+def behind(case):
     """The fault, behind the letter of its loop."""
     return case[2:]
 
