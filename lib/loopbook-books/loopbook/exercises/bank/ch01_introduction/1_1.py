@@ -3,8 +3,8 @@
 _PLANTS = {
     "a greenhouse": {
         "r": "the 22 °C that tomatoes like",
-        "e": "what the air lacks to the 22 °C, in kelvin",
-        "u": "the opening that is asked of the heating valve",
+        "e": "how much colder than 22 °C the air is",
+        "u": "the requested opening of the heating valve",
         "d": "the sunshine on the glass",
         "y": "the temperature of the air",
         "n": "the jitter in the reading of the thermometer",
@@ -12,7 +12,7 @@ _PLANTS = {
     "a car with cruise control": {
         "r": "the 90 km/h that the driver has keyed in",
         "e": "how much slower than 90 km/h the car is",
-        "u": "the position that is asked of the throttle",
+        "u": "the requested position of the throttle",
         "d": "the slope of the road",
         "y": "the speed of the car",
         "n": "the jitter in the reading of the speedometer",
@@ -20,22 +20,22 @@ _PLANTS = {
     "a water tower": {
         "r": "the 6 m at which the water should stand",
         "e": "how far the water is below the 6 m",
-        "u": "the speed that is asked of the pump in the well",
+        "u": "the requested speed of the pump in the well",
         "d": "the water that the town draws from the tower",
         "y": "the height of the water in the tower",
         "n": "the waves under the level sensor, as its signal shows them",
     },
     "a ferry on its course": {
         "r": "the heading that the captain has ordered",
-        "e": "the angle from the heading of the ferry to the ordered one",
-        "u": "the angle that is asked of the rudder",
+        "e": "by how much the ferry must turn to reach the ordered heading",
+        "u": "the requested angle of the rudder",
         "d": "the wind from the side",
         "y": "the heading of the ferry",
         "n": "the trembling of the compass",
     },
     "an incubator for eggs": {
         "r": "the 37.7 °C that a hen would give",
-        "e": "the distance of the air from the 37.7 °C, with its sign",
+        "e": "how much colder than 37.7 °C the air is",
         "u": "the share of the time for which the heating coil is switched on",
         "d": "the cold air that comes in when somebody opens the door",
         "y": "the temperature of the air around the eggs",

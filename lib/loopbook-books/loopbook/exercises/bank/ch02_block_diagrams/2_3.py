@@ -15,6 +15,6 @@ def motion(m, D, K, y_start, t):
 
 
 def picture(m, D, K, y_0):
-    """A mass of {m} on a wall by a spring of {K} and a damper of {D}, before it is let go {y_0} from its rest."""
+    """A mass of {m} on a wall by a spring of {K} and a damper of {D}, still held {y_0} away from its rest."""
     parts = f"${written(m)}$ kg", f"${written(K)}$ N/m", f"${written(D)}$ N s/m"
     return draw.mass_spring_damper(*parts, force="", position=f"$y(0) = {written(y_0)}$ cm")

@@ -26,7 +26,7 @@ def kicks(K_p, T_i, T_d, step_SP, u_0, order):
 
 
 def picture(t, A, B, C, K_p, step_SP, u_0):
-    """Three control signals A, B and C after a setpoint step; what is too high is cut off."""
+    """Three control signals A, B and C after a setpoint step; values above the top of the picture are cut off."""
     jump = float(K_p * step_SP)
     limits = float(u_0) - 0.3 * jump, float(u_0) + 1.6 * jump
     return time_plot({"A": A, "B": B, "C": C}, t, ylabel="control signal [%]", ylim=limits)
