@@ -21,7 +21,7 @@ def tried(span, finest):
 
 
 def picture(span, bits):
-    """A silo on load cells of 0 to {span}; the input of the controller makes {bits} bits of their signal."""
+    """A silo on load cells of 0 to {span}; the input of the controller converts their signal to {bits} bits."""
     parts = {
         "silo": draw.silo(),
         "cells": f"Load cells\n$0$ to ${written(span)}$ t",

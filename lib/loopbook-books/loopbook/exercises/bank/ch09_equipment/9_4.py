@@ -20,7 +20,7 @@ def moved(q, A, D, P):
 
 
 def picture(q, D):
-    """The flow of the pump in three cycles: it runs for the share D of each."""
+    """The flow of the pump in three cycles: it runs for the fraction D of each."""
     cycles = np.linspace(0, 3, 601)[:-1]
     flow = np.where(cycles % 1 < float(D), float(q), 0.0)
     return time_plot({"pump [L/s]": (flow, "control signal")}, cycles, xlabel="time in cycles, $t/P$", low=True)

@@ -23,5 +23,5 @@ def picture(action, u):
     parts = {"inlet": diagrams.control_valve("inlet"), "vent": diagrams.control_valve("vent")}
     parts["tank"] = diagrams.vessel(filled=0.6)
     names = {"mode": f"{action} action, $u$ = {u} $\\%$"}
-    pipes, signals = "nitrogen inlet 3 vent outside, 3 tank", "3 PT PC 4 inlet, PC 5 vent, mode PC"
+    pipes, signals = "nitrogen inlet 3 vent outside, 3 tank", "3 PT PC 4 inlet, PC 5 vent"
     return diagrams.instrumentation_diagram(layout, pipes, signals, parts, names)
