@@ -56,7 +56,7 @@ _ESCAPED = {
     "\v": "v(?=ar)", "\a": "a(?=lpha)",
 }  # fmt: skip
 #: A quantity with its sign =, as "y(t) =", "dh/dt =" or "Y(s)/U(s) [K] =".
-_NAME = r"(?:\\?[^\W\d]\w*(?:_\(\w+\))?'*(?: ?\( ?\w+ ?\))?)"
+_NAME = r"(?:(?:\\d?dot ?\{? ?)?\\?[^\W\d]\w*(?:_\(\w+\))?\}?'*(?: ?\( ?\w+ ?\))?)"
 _PREFIX = re.compile(rf"^(?!lambda\b)(?:{_NAME}(?: ?/ ?{_NAME})? ?(?:\[[^\]=]*\] ?)?)? ?(?:=(?!=)|≈|:(?!=)) ?")
 _ABOUT = re.compile(r"^(?:~|≈|(?:ca|approx|approximately|about|around|circa|roughly|nearly)\b\.?) ?", re.IGNORECASE)
 

@@ -39,7 +39,8 @@ from exercisebook.reading import (
 _WITH_UNIT = re.compile(r"([+-]? ?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?) ?(.*)")
 #: What may be beside a number, on either side, and says nothing of its size.
 _BEFORE_IT = re.compile(
-    r"^(?:(?:at least|at most|at|after|only|exactly|(?:by )?(?:a )?factor(?: of)?|by|is|it is|magnitude|size) |"
+    r"^(?:±|\+/?-|(?:at least|at most|at|after|up to|times|only|exactly|(?:falls |rises )?by|"
+    r"(?:by )?(?:a )?factor(?: of)?|is|it is|magnitude|size) |"
     r"(?:[^\W\d]\w* ?)?[<>≥≤]=? ?)",
     re.IGNORECASE,
 )
@@ -47,6 +48,7 @@ _BEFORE_IT = re.compile(
 _AROUND = (
     (re.compile(r"^.*(?:,|;| ) ?(?:so|thus|i\.e\.|that is) (?=\S*\d)"), ""),
     (re.compile(r"(?<=[^-+*/·:(=]) \((?!(?:or|not|no|if)\b)[^()\d]*[^\W\d_]{2}[^()\d]*\)$"), ""),
+    (re.compile(r" too (?:low|high|large|small|much|little)\.?$"), ""),
 )
 #: Units and spaces of LaTeX, and dollar signs around a number.
 _IN_LATEX = (
@@ -81,7 +83,7 @@ _TIMES_BEFORE = re.compile(
 )
 #: A pair in one text, and the name of several poles before it, as "s_1,2 =".
 _PAIR = re.compile(r"±|\+ ?/ ?-|\\pm\b|\+-")
-_NAMES = re.compile(r"^\w+?_?[{(]?1 ?[,/] ?2[})]? ?= ?")
+_NAMES = re.compile(r"^\\?\w+?_?[{(]?1 ?[,/] ?2[})]? ?= ?")
 _WITH_UNITS = re.compile(
     r"\d+ ?(?:h|hours?|min|minutes?|m|kg)(?:,? (?:and )?[\d.,]+ ?(?:min|minutes?|s|sec|seconds?|g|cm))+"
 )
