@@ -37,6 +37,12 @@ def first_time(t, x, low, high):
     return float(there[0]) if there.size else None
 
 
+def settled(t, h):
+    """When a level has done 99 % of its way to where it is at rest; None if it still moves at the end."""
+    left = abs(h - h[-1]) / abs(h[-1] - h[0])
+    return float(t[left < 0.01][0]) if left[-40] < 0.01 else None
+
+
 def seen(t, h, u):
     """What the trend tells: when the level begins to move, what that says of the outflow, and what is wrong."""
     moved = h != h[0]

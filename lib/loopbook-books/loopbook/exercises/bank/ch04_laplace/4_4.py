@@ -7,12 +7,12 @@ from loopbook.figures import time_plot
 
 
 def picture(T, start, bath, rest):
-    """What is around the thermometer: {start} until t = 0, and {bath} from then on. The reading is drawn up to t = 0,
-    and also the line {rest} below the water."""
+    """The temperature around the thermometer: {start} until t = 0, and {bath} from then on. The reading is
+    drawn up to t = 0, and also the line {rest} below the water."""
     times = np.linspace(-float(T), 5 * float(T), 601)
     before = times < 0
     signals = {
-        "around it, $u$": (np.where(before, float(start), float(bath)), "setpoint"),
+        "surroundings, $u$": (np.where(before, float(start), float(bath)), "setpoint"),
         "reading, $y$": (np.where(before, float(start), np.nan), "measurement"),
         f"{written(rest)} K below": (np.where(before, np.nan, float(bath - rest)), "raw"),
     }

@@ -20,5 +20,5 @@ def curves(T, tau, order):
 
 
 def picture(t, A, B, C, D):
-    """Four step responses A to D, all from zero to one; they differ in how they begin."""
+    """Four step responses A to D, all from zero to one, each with a beginning of its own."""
     return time_plot({"A": A, "B": B, "C": C, "D": D}, t, ylabel="response")
