@@ -11,7 +11,8 @@ SCENARIOS_OF_BATCH = [
     }),
     ("if somebody presses start during the batch", 1, {
         "start": f"{PRESSED} OR Fill.X AND Fill.T >= 60 AND Fill.T < 64 "
-        "OR Heat.X AND Heat.T >= 60 AND Heat.T < 64 OR Empty.X AND Empty.T >= 30 AND Empty.T < 34",
+        "OR Heat.X AND Heat.T >= 60 AND Heat.T < 64 OR Hold.X AND Hold.T >= 30 AND Hold.T < 34 "
+        "OR Empty.X AND Empty.T >= 30 AND Empty.T < 34",
     }),
 ]  # fmt: skip
 

@@ -30,6 +30,11 @@ def first_top(t, signal):
     return t[tops[0] + 1] if tops.size else t[-1]
 
 
+def covered(t, y, share):
+    """When the weight has covered a share of the step."""
+    return t[np.argmax(y >= float(share))]
+
+
 def picture(t, y, u):
     """Above the weight, which waits and then rises; below the valve, which leaves its first position after a while."""
     panels = [{"weight": (y, "measurement")}, {"valve": (u, "control signal")}]

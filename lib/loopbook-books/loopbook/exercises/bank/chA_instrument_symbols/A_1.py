@@ -15,8 +15,7 @@ def letter_by_letter(letters):
 
 
 def picture(letters, loop):
-    """A part of a drawing: from a plant, in which something is measured, a line leads to the instrument
-    {letters}{loop}."""
+    """A part of a drawing: a plant, with a measuring line to the instrument {letters}{loop}."""
     layout = """
         .       instrument  .
         stream  Plant       product"""
