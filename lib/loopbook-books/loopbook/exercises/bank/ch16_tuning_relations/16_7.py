@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 
-from loopbook import Loop, first_order, margins
+from loopbook import Loop, first_order, margins, ultimate
 from loopbook.exercises.authoring import criterion, design, largest_sensitivity, pi_controller, settings, stable
 from loopbook.figures import time_plot
 from loopbook.ise import ise, pi_first_order
 
-__all__ = ["ISE", "Loop", "between_two_rules", "first_order", "ise", "margins", "two_digits"]
+__all__ = ["ISE", "Loop", "between_two_rules", "first_order", "ise", "margins", "two_digits", "ultimate"]
 
 
 def two_digits(value):
