@@ -17,7 +17,12 @@ def by_numpy(A):
 
 def largest_real(A):
     """The largest real part of an eigenvalue."""
-    return max(sympy.re(value) for value in by_numpy(A))
+    return largest(by_numpy(A))
+
+
+def largest(values):
+    """The largest real part of some numbers."""
+    return max(sympy.re(value) for value in values)
 
 
 def written(value):

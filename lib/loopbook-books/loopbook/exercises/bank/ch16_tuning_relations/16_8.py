@@ -28,4 +28,7 @@ def record(low, step, delay, left):
 def picture(t, y, end):
     """The temperature after the step of the setpoint: it overshoots, and then oscillates around the new setpoint."""
     curves = {"temperature": (y, "measurement"), "setpoint": (float(end), "setpoint")}
-    return time_plot(curves, t, "A step of the setpoint", "$t$ [min]", "temperature [°C]")
+    plot = time_plot(curves, t, "A step of the setpoint", "$t$ [min]", "temperature [°C]")
+    plot.figure.axes[0].minorticks_on()
+    plot.figure.axes[0].grid(which="minor", linewidth=0.3)
+    return plot

@@ -22,6 +22,11 @@ def points(k, r):
     return float(k) * np.exp(-1j * w) / (1 + 1j * float(r) * w)
 
 
+def leftmost(k, r):
+    """How far the curve goes to the left."""
+    return -float(points(k, r).real.min())
+
+
 def picture(L, x, y, crossover):
     """The last part of a Nyquist curve, which turns around the origin, with the unit circle and the point -1."""
     circle = np.exp(1j * np.linspace(0, 2 * np.pi, 200))
