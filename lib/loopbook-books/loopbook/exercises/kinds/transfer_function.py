@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import collections
+import functools
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import sympy
 
 from exercisebook.kinds.formula import Expression, in_other_time
-from plainmath.expressions import s
+from plainmath.expressions import parse, s
 
 if TYPE_CHECKING:
     from loopbook.types import Number
+
+
+#: A pole is on the imaginary axis where its real part is below this fraction of the other one.
+ON_AXIS = 1e-12
 
 
 class TransferFunction(Expression):
@@ -33,6 +39,13 @@ class TransferFunction(Expression):
         unit: str = "",
     ):
         super().__init__(key, what, symbols, within, unit)
+
+    def agrees(self, answer: Any) -> bool:
+        """Whether both have the same values, and as many poles on either side of the imaginary axis, on it and at zero.
+
+        A small term that is unstable changes no value by much, but it is another system.
+        """
+        return super().agrees(answer) and _poles_by_side(self.key.text) == _poles_by_side(answer.text)
 
     def mistakes(self) -> Iterator[tuple[str, Any]]:
         """Those of an expression, a forgotten dead time, its sign, and an s too many or too few."""
@@ -58,3 +71,26 @@ def _pade(x, order):
     if order == 1:
         return (1 + x / 2) / (1 - x / 2)
     return (1 + x / 2 + x**2 / 12) / (1 - x / 2 + x**2 / 12)
+
+
+@functools.lru_cache(maxsize=200)
+def _poles_by_side(text):
+    """How many poles are left of the imaginary axis, on it, right of it, and zero; none are told with other symbols."""
+    try:
+        expr = parse(text)
+    except ValueError:
+        return ()
+    delays = {one: sympy.Dummy() for one in expr.atoms(sympy.exp)}  # a dead time has no pole
+    below = sympy.fraction(sympy.cancel(sympy.together(expr.xreplace(delays))))[1]
+    if below.free_symbols - {s}:
+        return ()
+    sides = collections.Counter()
+    for factor, times in sympy.Poly(below, s).sqf_list()[1]:
+        for pole in factor.nroots(n=20):
+            sides[0 if pole == 0 else 2 + _side(pole)] += times
+    return sorted(sides.items())
+
+
+def _side(pole):
+    real, imaginary = pole.as_real_imag()
+    return 0 if abs(real) <= ON_AXIS * abs(imaginary) else int(sympy.sign(real))
