@@ -48,6 +48,27 @@ WRONG_FORMS = [
 ]
 
 
+#: What is the key for positive values of v alone.
+FOR_POSITIVE = ["-k*Abs(v)", "-k*sqrt(v**2)", "-k*Max(v, 0)", "-k*v*Heaviside(v)", "-k*v*sign(v)", "-k*v**2/abs(v)"]
+FOR_POSITIVE += ["-k*(v**4)**(1/4)", "-k*Piecewise((v, v > 0), (77, True))"]
+
+
+@pytest.mark.parametrize("given", FOR_POSITIVE)
+def test_a_symbol_may_be_negative_where_it_is_said(given):
+    assert is_right(expression("-k*v"), given)
+    assert not is_right(expression("-k*v", real="v"), given)
+
+
+def test_the_size_of_a_symbol_is_no_symbol_of_either_sign():
+    drag = expression("-k*v*Abs(v)", real="v")
+    assert is_right(drag, "-k*sqrt(v**2)*v")
+    assert not is_right(drag, "-k*v**2")
+    v = sympy.Symbol("v", real=True)
+    assert not is_right(expression(-2 * v), "-2*Abs(v)")
+    with pytest.raises(ValueError, match="real='v'"):
+        expression("-k*v*Abs(v)")
+
+
 #: Numbers that make a difference are one number, in whatever form.
 DIFFERENCES = [
     ("2.9*exp(-9*s)/(35*s + 1)", "2.9*exp(-9*s)/(110.25*s - 73.5*s + 1)"),
@@ -384,5 +405,6 @@ def test_numbers_lose_no_digits():
 
 def test_the_accuracy_is_said_in_words():
     assert expression(DELAYED).precision == "in any form, each number in it to 1\N{NO-BREAK SPACE}%"
-    assert expression("K/T", within=0).precision == "in any form, exact"
+    assert expression("K/T", within=0).precision == "in any form, exact, for positive symbols"
+    assert expression("k*v", real="v").precision.endswith(", v of either sign")
     assert "to the decimal of the largest that is added" in STEP.precision

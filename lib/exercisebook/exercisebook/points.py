@@ -9,7 +9,7 @@ import ast
 import contextlib
 import math
 import random
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 import numpy as np
 
@@ -29,16 +29,17 @@ MOST_MOMENTS = 20
 DRAWS = 6
 
 
-def points_for(key: Formula, seed: str = "") -> dict[str, np.ndarray]:
+def points_for(key: Formula, seed: str = "", real: Collection[str] = ()) -> dict[str, np.ndarray]:
     """Return values of the symbols of a formula at which others are compared with it: {symbol: array}.
 
     The symbol s takes complex values in the whole plane, of all sizes that the numbers of the key call for and of some
-    decades on either side; other symbols are positive, two of three near one and the others of eight orders of
-    magnitude.
+    decades on either side; other symbols are positive, or of either sign, two of three near one and the others of eight
+    orders of magnitude.
 
     Arguments:
         key: the formula; with a safe value at each of the points, if there are such.
         seed: what they are drawn from, beside the key.
+        real: the symbols that may be negative.
 
     >>> points = points_for(Formula("2*exp(-3*s)/(10*s + 1)", "s"), "a secret")
     >>> points["s"].shape, bool(np.isfinite(Formula("exp(-3*s)", "s")(**points)).all())
@@ -48,6 +49,8 @@ def points_for(key: Formula, seed: str = "") -> dict[str, np.ndarray]:
     sizes, kept = _sizes(key), []
     for draw in range(DRAWS):
         drawn = _drawn(key.symbols, sizes, dice, 1.0 if draw < DRAWS - 2 else 0.3)
+        for name in sorted(real):
+            drawn[name] = drawn[name] * [dice.choice((1, -1)) for _ in range(MOST)]
         kept.append({name: values[_safe(key, drawn)] for name, values in drawn.items()})
         found = {name: np.concatenate([one[name] for one in kept])[:MOST] for name in drawn}
         if not key.symbols or len(next(iter(found.values()))) >= (MOST if draw < DRAWS - 2 else FEWEST):

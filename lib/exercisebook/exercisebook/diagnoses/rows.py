@@ -86,7 +86,7 @@ def _slips(value, left, kind):
 
     for one in left:
         if one == 0:
-            if abs(value) <= kind.within * np.max(np.abs(kind.key), initial=1e-300):
+            if abs(value) <= kind.within * (np.max(np.abs(kind.key)) or 1):
                 yield "one should be exactly zero: an integrator has its pole nowhere else"
             continue
         for wrong, says in (

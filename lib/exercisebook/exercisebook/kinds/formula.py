@@ -35,8 +35,11 @@ class Expression(Kind):
         key: an expression, or a text that spells one.
         symbols: that an answer may have, all of the key's among them; a notebook that is handed out tells a wrong one.
             Those of the key, if not given: what symbols there are is then a part of the answer.
+        real: those that may be negative, as "v x"; others are positive. Of a key of SymPy's, its symbols with
+            ``real=True`` are as well.
     Raises:
-        ValueError: for a key with a symbol that is not among them.
+        ValueError: for a key with a symbol that is not among them, and where it has the sign or size of one that is said
+            to be positive.
 
     >>> R = Expression("R_1*R_2/(R_1 + R_2)", "the resistance of both")
     >>> R.agrees(R.read("1/(1/R1 + 1/R2)")[0])
@@ -44,13 +47,22 @@ class Expression(Kind):
     """
 
     def __init__(
-        self, key: Number | str, what: str = "the expression", symbols: str = "", within: float = 0.01, unit: str = ""
+        self,
+        key: Number | str,
+        what: str = "the expression",
+        symbols: str = "",
+        within: float = 0.01,
+        unit: str = "",
+        real: str = "",
     ):
-        self.expr = _expression(key)
+        self.expr = _expression(key, real)
+        self.real = real or " ".join(sorted(one.name for one in self.expr.free_symbols if _is_of_either_sign(one)))
         names, self._told = {symbol.name for symbol in self.expr.free_symbols}, symbols
         self.symbols = sorted(self.always.union(symbols.split() or names))
         if beyond := sorted(names.difference(self.symbols)):
             raise ValueError(f"the key has the symbol {beyond[0]}: expected only {listed(self.symbols)}")
+        if unknown := sorted({*real.split()} - {*self.symbols}):
+            raise ValueError(f"real has {unknown[0]}: expected some of {listed(self.symbols)}")
         super().__init__(self.expr, unit, what, within)
 
     ANY_FORM, EACH = "in any form, ", "each number in it "
@@ -58,7 +70,7 @@ class Expression(Kind):
     always: frozenset[str] = frozenset()
     #: Without a key, any symbol may occur.
     symbols: Sequence[str] | None = None
-    _told = ""
+    _told = real = ""
     _points: dict[str, np.ndarray] | None = None
 
     @classmethod
@@ -99,7 +111,7 @@ class Expression(Kind):
         """The same quantity with another key, compared at the same points."""
         self.points()
         other = super().like(value)
-        other.expr = None if isinstance(value, Formula) else _expression(value)
+        other.expr = None if isinstance(value, Formula) else _expression(value, self.real)
         return other
 
     @property
@@ -194,7 +206,14 @@ class Expression(Kind):
         return self._points
 
     def _drawn_points(self):
-        return points_for(self.key, self.seed)
+        return points_for(self.key, self.seed, self.real.split())
+
+    @property
+    def precision(self) -> str:
+        """As of other quantities, and what the symbols may be."""
+        symbols = [name for name in self.symbols or () if name not in ("s", "t")]
+        signs = f"{listed(self.real.split())} of either sign" if self.real else "for positive symbols"
+        return super().precision + (f", {signs}" if symbols and super().precision else "")
 
     def _demand_values(self, formula):
         usual = _usual_points(tuple(formula.symbols))
@@ -313,9 +332,18 @@ def _is_formula(text, symbols):
     return True
 
 
-def _expression(key):
-    """The key in SymPy; of a text, what it spells."""
-    return parse(key) if isinstance(key, str) else exact(key)
+def _expression(key, real=""):
+    """The key in SymPy; of a text, what it spells. Raises ValueError where it has the sign of a positive symbol."""
+    if not isinstance(key, str):
+        return exact(key)
+    for part in parse(key, " ".join(re.findall(r"[^\W\d]\w*", key))).atoms(sympy.Abs, sympy.sign):
+        for one in sorted({symbol.name for symbol in part.free_symbols} - {*real.split(), "s", "t"}):
+            raise ValueError(f"the key has {part}: expected real={one!r}, as {one} would be positive without it")
+    return parse(key, real)
+
+
+def _is_of_either_sign(symbol):
+    return symbol.is_real and symbol.is_positive is None and symbol.name not in ("s", "t")
 
 
 def in_other_time(kind: Expression, variable: str) -> Iterator[tuple[str, Formula]]:

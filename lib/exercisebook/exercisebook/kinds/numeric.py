@@ -365,7 +365,7 @@ class Poles(Kind):
 
     def sides(self, values: np.ndarray) -> list[int]:
         """On which side of the imaginary axis each of some values is: -1, 0 or 1."""
-        on_axis = ON_AXIS * np.max(np.abs(self.key), initial=0.0)
+        on_axis = ON_AXIS * (np.max(np.abs(self.key), initial=0.0) or 1.0)
         return [0 if abs(one.real) <= on_axis else int(np.sign(one.real)) for one in np.asarray(values)]
 
     def mistakes(self) -> Iterator[tuple[str, np.ndarray]]:
