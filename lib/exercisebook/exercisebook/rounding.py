@@ -79,7 +79,7 @@ class Rounded:
 
     Attributes:
         slopes: the difference that each number makes when it is off by as much as it may, at each point.
-        reach: the difference that all of them together may make; and `most`, with what it may be more than in proportion.
+        reach: the difference that all of them together may make; `most`, with what is more than in proportion.
         calm: where these differences tell the numbers, since they are small, and in proportion to what is changed.
     """
 
@@ -153,9 +153,9 @@ class Rounded:
     def changed(self, shares: np.ndarray) -> np.ndarray:
         """Its values with other numbers: in a row those for a row of shares of what they may be off by."""
         axes = (slice(None),) + (None,) * self.values.ndim
-        factors = {
-            id(one.node): 1 + (shares[:, k] * self.bounds[k])[axes] for k, ones in enumerate(self.numbers) for one in ones
-        }
+        factors = {}
+        for share, bound, ones in zip(shares.T, self.bounds, self.numbers, strict=True):
+            factors |= dict.fromkeys((id(one.node) for one in ones), 1 + (share * bound)[axes])
         return np.broadcast_to(self.formula.changed(factors, self.points), (len(shares), *self.values.shape))
 
     def reaches(self, target: np.ndarray, known: np.ndarray, left: float) -> bool:
