@@ -45,7 +45,9 @@ class TransferFunction(Expression):
 
         A small term that is unstable changes no value by much, but it is another system.
         """
-        return super().agrees(answer) and _poles_by_side(self.key.text) == _poles_by_side(answer.text)
+        return super().agrees(answer) and (
+            not (sides := _poles_by_side(self.key.text)) or sides == _poles_by_side(answer.text)
+        )
 
     def mistakes(self) -> Iterator[tuple[str, Any]]:
         """Those of an expression, a forgotten dead time, its sign, and an s too many or too few."""
@@ -75,13 +77,20 @@ def _pade(x, order):
 
 @functools.lru_cache(maxsize=200)
 def _poles_by_side(text):
-    """How many poles are left of the imaginary axis, on it, right of it, and zero; none are told with other symbols."""
+    """How many poles are left of the imaginary axis, on it, right of it, and zero.
+
+    None are told with other symbols, nor where a dead time is in a denominator.
+    """
     try:
         expr = parse(text)
     except ValueError:
         return ()
-    delays = {one: sympy.Dummy() for one in expr.atoms(sympy.exp)}  # a dead time has no pole
+    delays: dict[sympy.Expr, sympy.Expr] = {}  # a dead time has no pole
+    for one in expr.atoms(sympy.exp):
+        delays[one] = 1 / delays[1 / one] if 1 / one in delays else sympy.Dummy()
     below = sympy.fraction(sympy.cancel(sympy.together(expr.xreplace(delays))))[1]
+    for delay in below.free_symbols - {s}:  # above it stands as well
+        below = sympy.cancel(below / delay)
     if below.free_symbols - {s}:
         return ()
     sides = collections.Counter()
