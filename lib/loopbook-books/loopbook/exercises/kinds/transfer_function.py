@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import collections
 import functools
 from collections.abc import Iterator
@@ -46,7 +47,8 @@ class TransferFunction(Expression):
         A small term that is unstable changes no value by much, but it is another system.
         """
         return super().agrees(answer) and (
-            not (sides := _poles_by_side(self.key.text)) or sides == _poles_by_side(answer.text)
+            not (sides := _poles_by_side(ast.unparse(self.key.tree)))
+            or (_poles_by_side(ast.unparse(answer.tree)) or sides) == sides
         )
 
     def mistakes(self) -> Iterator[tuple[str, Any]]:
@@ -79,7 +81,7 @@ def _pade(x, order):
 def _poles_by_side(text):
     """How many poles are left of the imaginary axis, on it, right of it, and zero.
 
-    None are told with other symbols, nor where a dead time is in a denominator.
+    None are told with other symbols, where a dead time is in a denominator, and of what SymPy cannot work out.
     """
     try:
         expr = parse(text)
