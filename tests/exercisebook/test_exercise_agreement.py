@@ -48,6 +48,86 @@ WRONG_FORMS = [
 ]
 
 
+#: What is the key for positive values of v alone.
+FOR_POSITIVE = ["-k*Abs(v)", "-k*sqrt(v**2)", "-k*Max(v, 0)", "-k*v*Heaviside(v)", "-k*v*sign(v)", "-k*v**2/abs(v)"]
+FOR_POSITIVE += ["-k*(v**4)**(1/4)", "-k*Piecewise((v, v > 0), (77, True))"]
+
+
+@pytest.mark.parametrize("given", FOR_POSITIVE)
+def test_a_symbol_may_be_negative_where_it_is_said(given):
+    assert is_right(expression("-k*v"), given)
+    assert not is_right(expression("-k*v", real="v"), given)
+
+
+def test_the_size_of_a_symbol_is_no_symbol_of_either_sign():
+    drag = expression("-k*v*Abs(v)", real="v")
+    assert is_right(drag, "-k*sqrt(v**2)*v")
+    assert not is_right(drag, "-k*v**2")
+    v = sympy.Symbol("v", real=True)
+    assert not is_right(expression(-2 * v), "-2*Abs(v)")
+    with pytest.raises(ValueError, match="real='v'"):
+        expression("-k*v*Abs(v)")
+
+
+#: Numbers that make a difference are one number, in whatever form.
+DIFFERENCES = [
+    ("2.9*exp(-9*s)/(35*s + 1)", "2.9*exp(-9*s)/(110.25*s - 73.5*s + 1)"),
+    ("2.9*exp(-9*s)/(35*s + 1)", "2.9*exp(-9*s)/(110.25*s - 73.5*(s + 1) + 74.5)"),
+    ("2.9*exp(-9*s)/(35*s + 1)", "2.9*exp(-9*s)/((110.25*s*(s + 2) - 73.5*s*(s + 2))/(s + 2) + 1)"),
+    ("2.9*exp(-9*s)/(35*s + 1)", "2.9*exp(-30*s + 20.6*s)/(35*s + 1)"),
+    ("2.9*exp(-9*s)/(35*s + 1)", "2.9*exp(-30*s)*exp(20.6*s)/(35*s + 1)"),
+    ("2.9*exp(-9*s)/(35*s + 1)", "(8.9*exp(-9*s) - 5.85*exp(-9*s))/(35*s + 1)"),
+    ("5*x", "15*x - 9.8*x"),
+]
+
+
+@pytest.mark.parametrize(("key", "given"), DIFFERENCES)
+def test_a_number_is_not_a_difference(key, given):
+    kind = expression(key)
+    for seed in range(5):
+        kind.draw_from(f"{seed}")
+        assert not is_right(kind, given)
+
+
+@pytest.mark.parametrize("key", ["2*exp(-{}*s)/(10*s + 1)", "{}/(7*s + 1)", "2/({}*s + 1)", "k*exp(-{}*x)"])
+@pytest.mark.parametrize("value", [1, 3])
+def test_each_number_has_its_tolerance_also_where_it_is_one(key, value):
+    kind = expression(key.format(value))
+    for seed in range(5):
+        kind.draw_from(f"{seed}")
+        assert is_right(kind, key.format(1.009 * value))
+        assert not is_right(kind, key.format(1.011 * value))
+
+
+IN_TIME = ["5*(1 - exp(-(t - {0})/8))*Heaviside(t - {0})", "5*Heaviside(t - {})", "3*cos(t/{})", "2*exp(-t/{})"]
+
+
+@pytest.mark.parametrize("key", IN_TIME)
+@pytest.mark.parametrize("value", [1, 9])
+def test_a_moment_has_its_tolerance_at_every_draw(key, value):
+    kind = time_function(key.format(value), until=30)
+    for seed in range(5):
+        kind.draw_from(f"{seed}")
+        assert is_right(kind, key.format(1.009 * value))
+        assert not is_right(kind, key.format(1.012 * value))
+
+
+@pytest.mark.parametrize(
+    "spike",
+    [
+        "1e6*exp(-((t - 70.123)/0.01)**2)",
+        "500*(Heaviside(t - 50) - Heaviside(t - 50.01))",
+        "50*(Heaviside(t - 8.92) - Heaviside(t - 9.08))",
+    ],
+)
+def test_a_spike_between_the_times_is_seen(spike):
+    kind = time_function("20*(1 - exp(-(t - 9)/15))*Heaviside(t - 9)", until=100)
+    for seed in range(3):
+        kind.draw_from(f"{seed}")
+        assert is_right(kind, "20*(1 - exp(-(t - 9.05)/15))*Heaviside(t - 9.05)")
+        assert not is_right(kind, f"20*(1 - exp(-(t - 9)/15))*Heaviside(t - 9) + {spike}")
+
+
 @pytest.mark.parametrize(("key", "given"), RIGHT_FORMS)
 def test_each_number_may_be_rounded_in_any_form(key, given):
     kind = expression(key)
@@ -325,5 +405,6 @@ def test_numbers_lose_no_digits():
 
 def test_the_accuracy_is_said_in_words():
     assert expression(DELAYED).precision == "in any form, each number in it to 1\N{NO-BREAK SPACE}%"
-    assert expression("K/T", within=0).precision == "in any form, exact"
+    assert expression("K/T", within=0).precision == "in any form, exact, for positive symbols"
+    assert expression("k*v", real="v").precision.endswith(", v of either sign")
     assert "to the decimal of the largest that is added" in STEP.precision

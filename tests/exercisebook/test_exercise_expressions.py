@@ -16,7 +16,7 @@ X = sympy.Symbol("x")
 H = expression(3 * sympy.exp(-2 * s) / (5 * s + 1))
 Y = time_function(1 - sympy.exp(-t / 5), until=25, what="the response")
 LATER = time_function(sympy.Heaviside(t - 3) * (1 - sympy.exp(-(t - 3) / 5)), until=25, what="the response")
-METRES = time_function(2 * (1 - sympy.exp(-t / 5)), until=25, unit="m", what="the level")
+METRES = time_function(2 * (1 - sympy.exp(-t / 5)), until=25, unit="m", time="s", what="the level")
 BOX = expression(sympy.sympify("pi*r**2*h"), "the volume", unit="m³")
 pi_r2_h = sympy.pi * sympy.Symbol("r") ** 2 * sympy.Function("h")(t)
 LONG = time_function(1 - sympy.exp(-t / 5) + sympy.exp(-50 * t) / 300, until=2500, what="the response")
@@ -46,11 +46,19 @@ JUDGED = [
     (H, r"\frac{3}{5s+1} e^{-2s}", RIGHT, "read as ((3)/(5*s + 1))*e**(-2*s)"),
     (H, "3/(5s+1) e^(-2s) K", UNJUDGED, "without a unit"),  # or a factor
     # units behind numbers, and behind the whole
-    (H, "3/(5s+1) e^(-2s) K/%", RIGHT, "right, read without K/%"),
-    (H, "3/(5s+1) e^(-2s) rad/s/V", RIGHT, "right"),
-    (H, "3 K/%/(5s+1) e^(-2s)", RIGHT, "right, read without the units"),
-    (METRES, "2 m (1 - e^(-t/5 s))", RIGHT, "right, read without the units"),
-    (METRES, "2 m - 2 m e^(-t/(5 s))", RIGHT, "right, read without the units"),
+    (H, "3/(5s+1) e^(-2s) K/%", UNJUDGED, "the text ends in K/%: expected an expression in s, without a unit"),
+    (H, "3 K/%/(5s+1) e^(-2s)", UNJUDGED, "cannot be read"),
+    (H, "3/(5S+1)*exp(-2S)", UNJUDGED, "did you mean 's'"),
+    (H, "3m/(5s+1)*exp(-2s)", UNJUDGED, "'m' is not a symbol"),
+    (H, "20 + 0.5t", UNJUDGED, "'t' is not a symbol"),
+    (METRES, "2 m (1 - e^(-t/5 s))", RIGHT, "right, read as 2*(1 - e**(-t/5))"),
+    (METRES, "2 m - 2 m e^(-t/(5 s))", RIGHT, "right, read as 2 - 2*e**(-t/5)"),
+    (METRES, "200 cm*(1 - exp(-t/(5 s)))", RIGHT, "read as 200*(1 - exp(-t/5))*(1/100)"),
+    (METRES, "2 m (1 - e^(-t/5))", RIGHT, "right"),
+    (METRES, "2 m*(1 - exp(-t/(5 min)))", MISTAKE, "unit of time"),
+    (METRES, "2 - 2 m e^(-t/(5 s))", UNJUDGED, "meter is not a unit of the same quantity as a number without unit"),
+    (METRES, "2 kg*(1 - exp(-t/(5 s)))", UNJUDGED, "kilogram is not a unit of the same quantity as meter"),
+    (METRES, "2 - 2t/s", UNJUDGED, "'s' is not a symbol"),
     (METRES, "2(1 - e^(-t/(5 s))) m", RIGHT, "right"),
     (METRES, "2(1 - e^(-t/5)) m", RIGHT, "read as 2*(1 - e**(-t/5))"),
     (METRES, "200*(1 - exp(-t/5)) cm", RIGHT, "converted from cm"),

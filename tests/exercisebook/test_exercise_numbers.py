@@ -145,7 +145,9 @@ GIVEN = [
     (PAIR, [["-1 ± 2j"], ["-1+2j", "-1+-2j"], ["-1 + j2", "-1 - j2"]]),
     # what is nearly right beside something large
     (poles([0, -1000, -1]), [[1e-7, -1000, -1]]),
-    (poles([0, 0]), [[0, 0.005]]),
+    (poles([0, 0]), [[0, 1e-9]]),
+    (poles([2j, -2j]), [[1e-15 + 2.01j, 1e-15 - 2.01j]]),
+    (poles([-0.006 + 2j, -0.006 - 2j]), [[-0.0062 + 2.01j, -0.0062 - 2.01j]]),
     (number(0, "m", "the offset"), [0.005]),
 ]
 
@@ -230,7 +232,11 @@ JUDGED = [
     (poles([-2.5]), "-2,5", RIGHT, "read as -2.5"),
     (DOUBLE, "-2 (triple)", WRONG, "also more"),
     (poles([-1, -5]), "-1,5", WRONG, "none of these is right, and there should be more"),
-    (poles([0, -1000, -1]), [-0.5, -1000, -1], WRONG, "2 of 3"),
+    (poles([0, -1000, -1]), [-0.5, -1000, -1], MISTAKE, "2 of 3 are right; one should be exactly zero"),
+    (poles([0, -100]), [0.9, -100], MISTAKE, "one should be exactly zero"),
+    (poles([0, 0]), [0, 0.005], MISTAKE, "exactly zero"),
+    (poles([-0.006 + 2j, -0.006 - 2j]), [2j, -2j], MISTAKE, "on the wrong side of the imaginary axis, or beside it"),
+    (poles([-0.006 + 2j, -0.006 - 2j]), [0.01 + 2j, 0.01 - 2j], MISTAKE, "signs"),
 ]
 
 

@@ -21,6 +21,7 @@ import numpy as np
 from exercisebook.arithmetic import Decimals, worked_out
 from exercisebook.formulas import Formula
 from exercisebook.freedoms import freedoms, switches
+from exercisebook.points import moments_of
 from exercisebook.rounding import InRatio, InTime, Measure, Rounded
 
 #: The fraction by which forms of one expression differ: their digits may cancel.
@@ -81,7 +82,26 @@ def agree_in_time(key: Formula, given: Formula | np.ndarray, points: Mapping[str
     left = max((LEFT_OF_VALUES if isinstance(given, np.ndarray) else LEFT_IN_TIME) * within, EXACT)
     counts = ~near_switches(key, points, within)
     comparison = Comparison(key, points, within, measure, left, counts, counts)
-    return comparison.holds_of_values(given) if isinstance(given, np.ndarray) else comparison.holds_for(given)
+    if isinstance(given, np.ndarray):
+        return comparison.holds_of_values(given)
+    return comparison.holds_for(given) and not _has_spike(key, given, points["t"], within, measure)
+
+
+def _has_spike(key, given, times, within, measure):
+    """Whether a function leaves the key at a moment of its own, or the values of the key beside a moment of that."""
+    points = {"t": np.unique(np.concatenate([times, moments_of(given, times.max())]))}
+    found, expected = given.values_at(points), key.values_at(points)
+    allowed = measure.size * (Rounded.of(key, points, within, measure).most + MORE_THAN_KEY * within + EXACT)
+    far = np.abs(found - expected) > allowed
+    near = near_switches(key, points, within)
+    if not np.isfinite(found).all() or far[~near].any():
+        return True
+    if not far.any():
+        return False
+    beside = np.linspace(1 - 2.5 * within, 1 + 2.5 * within, 11)
+    values = np.real(key.values_at({"t": np.outer(points["t"][near & far], beside)}))
+    value, slack = np.real(found[near & far]), allowed[near & far]
+    return bool(np.any((value < np.min(values, axis=1) - slack) | (value > np.max(values, axis=1) + slack)))
 
 
 @dataclass(frozen=True)
@@ -154,9 +174,11 @@ def near_switches(key: Formula, points: Mapping[str, np.ndarray], within: float)
     near = np.zeros(shape, bool)
     for switch in switches(key.tree):
         nominal = np.real(worked_out(switch, Decimals(points)))
-        reach = sum(
+        # of its terms one is only the scale
+        reaches = [
             np.abs(np.real(worked_out(switch, Decimals(points), {id(one.node): 1 + within})) - nominal)
-            for one in freedoms(switch)
-        )
+            for one in freedoms(switch, is_switch=True)
+        ]
+        reach = np.sum(reaches, axis=0) - np.max(reaches, axis=0, initial=0)
         near = near | (np.abs(nominal) <= reach)
     return near

@@ -2,7 +2,8 @@
 
 A number that multiplies a product is one number, however it is written: 5/2, and the 5 and the 2 of 5*x/(2*y). In a
 factor as 40*s + 4 one of the two numbers says nothing new beside the number before the product: 1/(40*s + 4) is a
-0.25/(10*s + 1). What stands in an exponent alone, as in s**2, is exact.
+0.25/(10*s + 1). What stands in an exponent alone, as in s**2, is exact. In a function, a 1 is a number like any other,
+also where it is not written: exp(-s) is a dead time of 1.
 """
 
 from __future__ import annotations
@@ -34,72 +35,86 @@ _STEPS = {"Heaviside", "sign"}
 _SWITCHES = _STEPS | {"Min", "Max", "min", "max", "Abs", "abs"}
 
 
-def freedoms(tree: ast.expr) -> list[Freedom]:
+def freedoms(tree: ast.expr, is_switch: bool = False) -> list[Freedom]:
     """Return the numbers of a formula that may be rounded.
+
+    Arguments:
+        is_switch: whether it is what a step or a piece depends on, where 1 is a number, too.
 
     >>> from exercisebook.formulas import Formula
     >>> tree = Formula("5*exp(-10*s/3)/(2*(40*s + 4)*(s + 0.1))", "s").tree
     >>> [ast.unparse(one.node) for one in freedoms(tree)]
     ['-10 * s / 3', '40 * s', '0.1', '5 * exp(-10 * s / 3) / (2 * (40 * s + 4) * (s + 0.1))']
+    >>> [ast.unparse(one.node) for one in freedoms(Formula("exp(-(t - 1))", "t").tree)]
+    ['1', '-(t - 1)']
     """
-    return list(_of(tree, (), False))
+    return list(_of(tree, None if is_switch else (), _IN_SWITCH if is_switch else _PLAIN))
 
 
-def _of(node: ast.expr, beside: tuple[ast.expr, ...] | None, decides: bool) -> Iterator[Freedom]:
+#: Where a part stands: in no function, in one, or where a step or a piece begins. In a function, 1 is a number, too.
+_PLAIN, _IN_FUNCTION, _IN_SWITCH = range(3)
+
+
+def _of(node: ast.expr, beside: tuple[ast.expr, ...] | None, where: int) -> Iterator[Freedom]:
     """The numbers of a part; beside it are no other terms yet, or there is None that counts."""
+    decides = where == _IN_SWITCH
     match node:
         case _ if is_number(node):
-            if _says(node):
+            if _says(node) or (where and not _is_none(node)):
                 yield Freedom(node, beside or (), decides)
         case ast.BinOp(op=ast.Add() | ast.Sub()):
             terms = terms_of(node)
             for term in terms:
-                yield from _of(term, None if beside is None else tuple(terms), decides)
+                yield from _of(term, None if beside is None else tuple(terms), where)
         case ast.BinOp(op=ast.Mult() | ast.Div()) | ast.UnaryOp():
-            yield from _of_product(node, beside, decides)
+            yield from _of_product(node, beside, where)
         case ast.BinOp(op=ast.Pow()) if is_number(node.right):
-            yield from _of_product(node, beside, decides)
+            yield from _of_product(node, beside, where)
         case ast.Call(ast.Name("Piecewise")):
             for piece in node.args:
                 value, condition = piece.elts
-                yield from _of(value, beside, decides)
-                yield from _of(condition, None, True)
+                yield from _of(value, beside, where)
+                yield from _of(condition, None, _IN_SWITCH)
         case ast.Call():
             for argument in node.args:
-                yield from _of(argument, None, decides or node.func.id in _STEPS)
+                inside = _IN_SWITCH if decides or node.func.id in _STEPS else _IN_FUNCTION
+                yield from _of(argument, None, inside)
         case ast.Compare():
-            yield from _of(node.left, None, True)
-            yield from _of(node.comparators[0], None, True)
+            yield from _of(node.left, None, _IN_SWITCH)
+            yield from _of(node.comparators[0], None, _IN_SWITCH)
         case ast.BinOp():
-            yield from _of(node.left, None, decides)
-            yield from _of(node.right, None, decides)
+            yield from _of(node.left, None, where)
+            yield from _of(node.right, None, max(where, _IN_FUNCTION))
+        case _ if where:
+            yield Freedom(node, (), decides)
 
 
-def _of_product(node, beside, decides):
+def _of_product(node, beside, where):
     """The numbers in the factors of a product, and its own one."""
-    has_number, factors = False, list(_factors(node))
+    has_number, factors = where != _PLAIN, list(_factors(node))
     for factor in factors:
         if is_number(factor):
             has_number = has_number or _says(factor)
         elif _is_sum(factor):
             terms = terms_of(factor)
-            fixed = _fixed(terms)
+            fixed = _fixed(terms, where)
             has_number = has_number or fixed is not None
             inside = tuple(terms) if beside == () and _is_above(node, factor) else None
             for term in terms:
-                found = _of(term, inside, decides)
+                found = _of(term, inside, where)
                 yield from (one for one in found if term is not fixed or one.node is not term)
-        else:
-            yield from _of(factor, None, decides)
+        elif not isinstance(factor, ast.Name):
+            yield from _of(factor, None, where)
     if has_number:
-        yield Freedom(node, beside or (), decides)
+        yield Freedom(node, beside or (), where == _IN_SWITCH)
 
 
-def _fixed(terms):
+def _fixed(terms, where):
     """The term of a sum whose number says nothing new beside that of the product; None where each other one is 1."""
-    if not all(_has_number(term) for term in terms):
+    if where == _PLAIN and not all(_has_number(term) for term in terms):
         return None
-    return next((term for term in terms if is_number(term)), terms[0])
+    bare = (term for term in terms if not is_number(term) and not _has_number(term))
+    return next(bare, None) or next((term for term in terms if is_number(term)), terms[0])
 
 
 def _has_number(term):
@@ -178,3 +193,7 @@ def switches(tree: ast.expr) -> list[ast.expr]:
             case ast.Compare():
                 found.append(ast.BinOp(node.left, ast.Sub(), node.comparators[0]))
     return [one for one in found if not is_number(one)]
+
+
+def _is_none(node):
+    return isinstance(node, ast.Constant) and (not node.value or node.value is True)

@@ -9,7 +9,7 @@ import ast
 import contextlib
 import math
 import random
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 import numpy as np
 
@@ -23,20 +23,23 @@ MOST, FEWEST = 120, 40
 LARGEST = 1e200
 #: So many times are compared at most.
 MOST_TIMES = 300
+#: Of one part of a function, so many zeros are looked at.
+MOST_MOMENTS = 20
 #: So often points are drawn anew where the key has no safe value; the last ones from narrower ranges.
 DRAWS = 6
 
 
-def points_for(key: Formula, seed: str = "") -> dict[str, np.ndarray]:
+def points_for(key: Formula, seed: str = "", real: Collection[str] = ()) -> dict[str, np.ndarray]:
     """Return values of the symbols of a formula at which others are compared with it: {symbol: array}.
 
     The symbol s takes complex values in the whole plane, of all sizes that the numbers of the key call for and of some
-    decades on either side; other symbols are positive, two of three near one and the others of eight orders of
-    magnitude.
+    decades on either side; other symbols are positive, or of either sign, two of three near one and the others of eight
+    orders of magnitude.
 
     Arguments:
         key: the formula; with a safe value at each of the points, if there are such.
         seed: what they are drawn from, beside the key.
+        real: the symbols that may be negative.
 
     >>> points = points_for(Formula("2*exp(-3*s)/(10*s + 1)", "s"), "a secret")
     >>> points["s"].shape, bool(np.isfinite(Formula("exp(-3*s)", "s")(**points)).all())
@@ -46,6 +49,8 @@ def points_for(key: Formula, seed: str = "") -> dict[str, np.ndarray]:
     sizes, kept = _sizes(key), []
     for draw in range(DRAWS):
         drawn = _drawn(key.symbols, sizes, dice, 1.0 if draw < DRAWS - 2 else 0.3)
+        for name in sorted(real):
+            drawn[name] = drawn[name] * [dice.choice((1, -1)) for _ in range(MOST)]
         kept.append({name: values[_safe(key, drawn)] for name, values in drawn.items()})
         found = {name: np.concatenate([one[name] for one in kept])[:MOST] for name in drawn}
         if not key.symbols or len(next(iter(found.values()))) >= (MOST if draw < DRAWS - 2 else FEWEST):
@@ -137,3 +142,35 @@ def times_for(key: Formula, until: float, seed: str = "") -> np.ndarray:
             times += [moment * (1 + sign * share) for share in shares for sign in (1, -1)]
     times = [one for one in times if 0 < one < until]
     return np.array(sorted(times[:MOST_TIMES]))
+
+
+def moments_of(formula: Formula, until: float) -> np.ndarray:
+    """Return the times just before and after the moments at which some part of a function of time is zero.
+
+    There it may have a spike, or a step, that no drawn time would see.
+
+    >>> moments_of(Formula("5 + Heaviside(t - 3) - Heaviside(t - 3.01)", "t"), until=10).round(3).tolist()
+    [3.0, 3.0, 3.01, 3.01]
+    """
+    grid = until * np.linspace(1e-6, 1, 2001)
+    begins, ends, parts = [], [], []
+    for node in ast.walk(formula.tree):
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub) and not is_number(node):
+            signs = _real_values(node, grid) > 0
+            changes = np.flatnonzero(signs[1:] != signs[:-1])[:MOST_MOMENTS]
+            begins += [*grid[changes]]
+            ends += [*grid[changes + 1]]
+            parts += [node] * len(changes)
+    found = []
+    for begin, end, part in zip(begins[:MOST_TIMES], ends, parts, strict=False):
+        rises = _real_values(part, np.array([end]))[0] > 0
+        for _ in range(50):
+            middle = (begin + end) / 2
+            begin, end = (begin, middle) if (_real_values(part, np.array([middle]))[0] > 0) == rises else (middle, end)
+        found += [begin * (1 - 1e-9), end * (1 + 1e-9)]
+    return np.array(sorted(found))
+
+
+def _real_values(part, times):
+    with np.errstate(all="ignore"):
+        return np.broadcast_to(np.real(worked_out(part, Decimals({"t": times}))), times.shape)

@@ -20,6 +20,9 @@ BENT = 0.1
 STEPS = 8
 #: A formula of more numbers than these is compared as it stands.
 MOST_NUMBERS = 40
+#: Two numbers change the values in the same way where the cosine between what they change, seen at no fewer points, is
+#: 1 but for this.
+ALIKE, FEWEST = 1e-8, 4
 #: By this fraction numbers are changed to see what they do.
 _STEP = 1e-5
 
@@ -68,12 +71,15 @@ class InTime:
 class Rounded:
     """A formula whose numbers may be off, each by a fraction of it.
 
+    Numbers that change the values in the same way, as both of 110*s - 73*s, are off together, as the one number that
+    they make.
+
     Arguments:
         measure: how the difference of two values is measured.
 
     Attributes:
         slopes: the difference that each number makes when it is off by as much as it may, at each point.
-        reach: the difference that all of them together may make.
+        reach: the difference that all of them together may make; `most`, with what is more than in proportion.
         calm: where these differences tell the numbers, since they are small, and in proportion to what is changed.
     """
 
@@ -81,18 +87,43 @@ class Rounded:
         self.formula, self.points, self.measure = formula, points, measure
         self.values = formula.told_at(points)[0]
         found = [one for one in freedoms(formula.tree) if not one.decides]
-        self.numbers = found if len(found) <= MOST_NUMBERS else []
-        self.bounds = np.array([self._bound(one, within) for one in self.numbers])
+        self.numbers = [(one,) for one in found] if len(found) <= MOST_NUMBERS else []
+        self.bounds = np.array([self._bound(one, within) for (one,) in self.numbers])
+        self._look()
+        if merged := self._alike():
+            self.numbers = [sum((self.numbers[k] for k in group), ()) for group in merged]
+            self.bounds = np.array([min(self.bounds[group]) for group in merged])
+            self._look()
+
+    def _look(self):
+        """See what the numbers change."""
         count, axes = len(self.numbers), (slice(None),) + (None,) * self.values.ndim
         self.slopes, bent = np.zeros((count, *self.values.shape)), np.zeros(self.values.shape)
         if count:
             steps = _STEP / self.bounds
             shares = np.concatenate([np.diag(steps), np.diag(-steps), np.eye(count), -np.eye(count)])
             more, less, most, least = np.split(self.changed(shares), 4)
-            self.slopes = measure(more, less) / (2 * steps[axes])
-            bent = np.sum(np.abs(measure(most, self.values) + measure(least, self.values)), axis=0) / 2
+            self.slopes = self.measure(more, less) / (2 * steps[axes])
+            bent = np.sum(np.abs(self.measure(most, self.values) + self.measure(least, self.values)), axis=0) / 2
         self.reach = np.sum(np.abs(self.slopes), axis=0)
-        self.calm = np.isfinite(self.reach) & (self.reach < measure.most) & (bent < BENT)
+        self.calm = np.isfinite(self.reach) & (self.reach < self.measure.most) & (bent < BENT)
+        self.most = 1.5 * self.reach + bent
+
+    def _alike(self):
+        """The numbers in groups that change the values in the same way; none where each does so in its own."""
+        slopes = self.slopes[:, self.calm] / self.bounds[:, None]
+        size = np.linalg.norm(slopes, axis=1)
+        if slopes.shape[1] < FEWEST or not np.all(size > 0):
+            return []
+        groups: list[list[int]] = []
+        ways = slopes / size[:, None]
+        for k, way in enumerate(ways):
+            same = [group for group in groups if abs(np.vdot(ways[group[0]], way)) > 1 - ALIKE]
+            if same:
+                same[0].append(k)
+            else:
+                groups.append([k])
+        return groups if len(groups) < len(self.numbers) else []
 
     @classmethod
     def of(cls, formula: Formula, points: Mapping[str, np.ndarray], within: float, measure: Measure) -> Rounded:
@@ -122,14 +153,16 @@ class Rounded:
     def changed(self, shares: np.ndarray) -> np.ndarray:
         """Its values with other numbers: in a row those for a row of shares of what they may be off by."""
         axes = (slice(None),) + (None,) * self.values.ndim
-        factors = {id(one.node): 1 + (shares[:, k] * self.bounds[k])[axes] for k, one in enumerate(self.numbers)}
+        factors = {}
+        for share, bound, ones in zip(shares.T, self.bounds, self.numbers, strict=True):
+            factors |= dict.fromkeys((id(one.node) for one in ones), 1 + (share * bound)[axes])
         return np.broadcast_to(self.formula.changed(factors, self.points), (len(shares), *self.values.shape))
 
     def reaches(self, target: np.ndarray, known: np.ndarray, left: float) -> bool:
         """Whether it has the values of another formula with some of its numbers, up to what may be left."""
         calm = known & self.calm
         off = self.measure(target, self.values)
-        if not (self.numbers and calm.any() and np.all(np.abs(off[calm]) <= 1.5 * self.reach[calm] + left)):
+        if not (self.numbers and calm.any() and np.all(np.abs(off[calm]) <= self.most[calm] + left)):
             return False
         slopes = self.slopes[:, calm].T
         system, best = np.concatenate([slopes.real, slopes.imag]), np.zeros(len(self.numbers))

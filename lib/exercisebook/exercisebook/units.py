@@ -102,24 +102,26 @@ def convert(value: Number, unit: str, to: str) -> float:
         raise ValueError(f"{unit or 'a number without unit'} is not a unit of the same quantity as {to or 1}") from None
 
 
-def without_units(text: str, symbols: Iterable[str] = ()) -> str:
-    """Return a formula without the units behind its numbers; letters that are symbols are none.
+def with_names(text: str, symbols: Iterable[str] = ()) -> tuple[str, dict[str, str]]:
+    """Return a formula with a name for each unit behind a number, and {name: unit}; letters that are symbols are none.
 
-    >>> without_units("3 m - t/1600 m/s", ["t"]), without_units("e^(-t/75 s)", ["t"]), without_units("2 s + 1", ["s"])
-    ('3 - t/1600', 'e^(-t/75)', '2 s + 1')
+    >>> with_names("3 m - t/1600 m/s", ["t"]), with_names("2 s + 1", ["s"])
+    (('(3*_u0) - t/(1600*_u1)', {'_u0': 'm', '_u1': 'm/s'}), ('2 s + 1', {}))
     """
-    symbols = {*symbols, "e", "i", "j", "pi", "exp"}
+    symbols, found = {*symbols, "e", "i", "j", "pi", "exp"}, {}
 
-    def bare(found):
-        parts = re.split(r"( ?/ ?| |·)", found["unit"])
+    def named(quantity):
+        parts = re.split(r"( ?/ ?| |·)", quantity["unit"])
         while parts:
-            names = set(re.findall(r"[^\W\d_]+", unit := "".join(parts)))
-            if is_unit(unit) and not names & symbols:
-                return found["number"] + found["unit"][len(unit) :]
+            letters = set(re.findall(r"[^\W\d_]+", unit := "".join(parts)))
+            if is_unit(unit) and not letters & symbols:
+                name = f"_u{len(found)}"
+                found[name] = unit
+                return f"({quantity['number']}*{name})" + quantity["unit"][len(unit) :]
             del parts[-2:]
-        return found[0]
+        return quantity[0]
 
-    return _QUANTITY.sub(bare, text)
+    return _QUANTITY.sub(named, text), found
 
 
 def neighbours(unit: str) -> dict[str, Callable[[Number], float]]:

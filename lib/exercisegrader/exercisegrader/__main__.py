@@ -80,6 +80,7 @@ def release(
 
     try:
         given = load(assignment)
+        given.demand_own_secret()
         if nbgrader:
             from exercisegrader.nbgrader import source
             from exercisegrader.release import as_text
@@ -154,6 +155,10 @@ def try_out(
     except KeyboardInterrupt:
         fail("interrupted")
     console.print(trial.report(found), markup=False)
+    try:
+        given.demand_own_secret()
+    except GradingError as error:
+        errors.print(str(error), style="yellow", markup=False)
     if any(one.level == trial.WRONG for one in found):
         name = assignment if not students else f"{assignment} --students {students}"
         fail(f"something is wrong; {context.command_path} {name} --student ID --exercise N shows a variant")
@@ -221,6 +226,7 @@ def grade(
 
         class_list = students or assignment.with_name("roster.csv")
         given, roster = load(assignment), read_roster(class_list)
+        given.demand_own_secret()
         beside = class_list.with_name("extensions.csv")
         with progress("grading") as show:
             done = grade_all(

@@ -34,6 +34,8 @@ if TYPE_CHECKING:
     from exercisebook.question import Question
 
 SHORTEST_SECRET = 16
+#: What the secrets of the documentation and of the examples contain, which everybody knows.
+DOCUMENTED = ("of-your-own", "everybody-may-read")
 #: The ending of a file with pages, and what its block of TOML may say.
 PAGES, SETTINGS = ".md", ("secret", "due", "late")
 _NUMBER = re.compile(r"\w[\w.-]{0,19}")
@@ -123,6 +125,14 @@ class Assignment:
         """
         version, source = importlib.metadata.version("exercisegrader"), without_dates(self.source)
         return hashlib.sha256(f"{version}\n{source}".encode("utf-8", "surrogatepass")).hexdigest()
+
+    def demand_own_secret(self) -> None:
+        """Raise GradingError where the secret is one of the documentation, from which everybody can draw variants."""
+        if any(part in self.secret for part in DOCUMENTED):
+            raise GradingError(
+                f"the secret of {self.name}, {self.secret!r}, stands in the documentation, and whoever knows it knows "
+                f'everybody\'s numbers: expected one of your own, such as "{secrets.token_hex(16)}"'
+            )
 
     @property
     def record(self) -> Path | None:

@@ -117,7 +117,8 @@ def _result(task, outcome, exercises):
     status = MISSING if not task.label else NOT_RUN if outcome.refused else STOPPED if outcome.stopped else COMPLETE
     says = same_each_time(outcome.refused or outcome.stopped)
     errors = tuple(CellError(cell, same_each_time(text)) for cell, text in outcome.errors)
-    found = looks(task.student, outcome, exercises, answered(task.content), task.doubts)
+    is_released = not task.content or peek(task.content) is not None
+    found = looks(task.student, outcome, exercises, answered(task.content), task.doubts, is_released)
     owner = harmless(outcome.named[0]) if outcome.named else ""
     return Result(
         task.name, task.student, task.label, task.jailed, task.fingerprint, status, says, errors, tuple(found),

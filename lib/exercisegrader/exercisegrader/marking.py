@@ -38,6 +38,7 @@ class MarkedExercise:
         waiting: the quantities that wait for a person.
         is_by_hand: whether a person has marked the whole of it.
         decided: the quantities of which a person has said what they are worth.
+        so_far: its points while something in it waits.
     """
 
     judged: JudgedExercise
@@ -47,6 +48,7 @@ class MarkedExercise:
     waiting: tuple[str, ...] = ()
     is_by_hand: bool = False
     decided: tuple[str, ...] = ()
+    so_far: float = 0.0
 
     @classmethod
     def of(cls, judged: JudgedExercise, by_hand: Mapping[tuple[str, str], Mark] | None = None) -> Self:
@@ -78,7 +80,12 @@ class MarkedExercise:
         elif whole.comment:
             comments.append(whole.comment)
         earned, is_by_hand = None if waiting else sum_, whole.points is not None
-        return cls(judged, earned, tuple(comments), tuple(history), tuple(waiting), is_by_hand, tuple(decided))
+        return cls(judged, earned, tuple(comments), tuple(history), tuple(waiting), is_by_hand, tuple(decided), sum_)
+
+    @property
+    def known(self) -> float:
+        """Its points; while something waits, the rest counts already."""
+        return self.so_far if self.earned is None else self.earned
 
 
 @dataclass(frozen=True)
@@ -123,7 +130,7 @@ class Marked:
         by_hand, lateness = by_hand or {}, lateness or Lateness()
         exercises = tuple(MarkedExercise.of(one, by_hand) for one in result.exercises)
         whole = by_hand.get(("", ""), _NONE)
-        sum_ = sum(one.earned or 0 for one in exercises)
+        sum_ = sum(one.known for one in exercises)
         comments = [whole.comment] if whole.comment and whole.points is None else []
         if whole.points is not None:
             before = of_points(sum_, result.points)
@@ -162,7 +169,7 @@ class Marked:
         """The points; while something waits for a person, the rest counts already."""
         if self.total is not None or self.result.status in (MISSING, NOT_RUN):
             return self.total or 0.0
-        return max(0.0, sum(one.earned or 0 for one in self.exercises) - self.deduction)
+        return max(0.0, sum(one.known for one in self.exercises) - self.deduction)
 
 
 class Marking:

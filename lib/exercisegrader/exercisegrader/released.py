@@ -7,6 +7,7 @@ or the record of another assignment, is told and never graded by.
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import hmac
 import json
@@ -279,7 +280,7 @@ class Released:
         if any(doubted.values()) and len(some) < len(readable):
             doubted = self._doubted(assignment, readable)
         doubtful = {label: says for label, says in doubted.items() if says}
-        if len(doubtful) >= FEW and 2 * len(doubtful) > len(doubted):
+        if len(doubtful) >= FEW and 2 * len(doubtful) > len(doubted):  # a few of a class hurt themselves alone
             label, says = next(iter(doubtful.items()))
             advice = next(advice for begins, advice in _ADVICE.items() if says.startswith(begins))
             raise GradingError(
@@ -288,15 +289,11 @@ class Released:
             )
 
     def _doubted(self, assignment, submissions):
-        """What speaks against each of the notebooks that say what they are: {label: a sentence, or an empty text}."""
+        """What speaks against each of the notebooks that can be read: {label: a sentence, or an empty text}."""
         found = {}
         for one in submissions:
-            try:
-                imprint = peek(one.read())
-            except GradingError:
-                continue
-            if imprint:
-                found[one.label] = "".join(self.doubts(assignment, one.student.id, imprint)[:1])
+            with contextlib.suppress(GradingError):
+                found[one.label] = "".join(self.doubts(assignment, one.student.id, peek(one.read()))[:1])
         return found
 
 

@@ -10,7 +10,7 @@ import hashlib
 import hmac
 import json
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, Self
 
@@ -202,12 +202,17 @@ def same_each_time(says: str) -> str:
     return ADDRESS.sub("0x...", says)
 
 
+#: Where answers stand that do not arrive.
+_NOT_ARRIVED = "in a cell that is not run, in a comment or in a function that is not called, or without their names"
+
+
 def looks(
     student: str,
     outcome: Outcome,
     exercises: Sequence[JudgedExercise],
-    outside_code: Sequence[str] = (),
+    written: Mapping[str, Collection[str]] | None = None,
     doubts: Sequence[str] = (),
+    is_released: bool = True,
 ) -> list[Look]:
     """Return why an instructor should look at a submission, what is harmless last.
 
@@ -215,8 +220,9 @@ def looks(
         student: id.
         outcome: `events.Outcome`.
         exercises: as `judge.Judge.judge` returns them.
-        outside_code: the exercises that are answered in cells that are not run.
+        written: what the text of the notebook answers, as `sources.answered` returns it.
         doubts: what speaks against the notebook, by its imprint.
+        is_released: whether it has an imprint.
     """
     others = [name for name in outcome.named if name != student]
     says_of_others = f"it names another student: {', '.join(map(harmless, others[:3]))}"
@@ -225,11 +231,18 @@ def looks(
         lines = f"{outcome.odd} line{'s' if outcome.odd > 1 else ''}"
         found.append(Look(ODD, f"it told {lines} that could not be read as answers"))
     asked = {one.number: {answer.name for answer in one.answers} for one in exercises}
-    left = {one.number for one in exercises if any(answer.status == OPEN for answer in one.answers)}
-    for number in outside_code:
-        if number in left:
-            says = f"a cell that answers exercise {number} is no code cell, and is not run"
+    open_names = {one.number: {answer.name for answer in one.answers if answer.status == OPEN} for one in exercises}
+    left = {number for number, names in open_names.items() if names}
+    if outcome.errors or outcome.stopped:
+        written = {}  # what failed is told anyway
+    for number, names in (written or {}).items():
+        if open_names.get(number, set()) & {*names} or (number in left and "" in names):
+            says = f"exercise {number} is answered in the text of the notebook alone, {_NOT_ARRIVED}"
             found.append(Look(NO_CODE, says, number))
+    if left and not (is_released or outcome.answers or found or outcome.refused or outcome.errors or outcome.stopped):
+        found.append(
+            Look(NO_CODE, "it answers nothing and was not released by this assignment: is it another notebook?")
+        )
     more = []
     for number, given in outcome.answers.items():
         if number not in asked:

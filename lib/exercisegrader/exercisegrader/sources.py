@@ -26,10 +26,11 @@ MOST = 10 * 2**20
 # what has no end goes on to the end of the file, lest each quote in it is taken for another beginning
 _VALUE = re.compile(r'"[^"\\]*+(?:\\.[^"\\]*+)*+"?|[\[{]|[^\s\[\]{},:"]++', re.DOTALL)
 
-#: A call of the sheet at the beginning of a line: the exercise, and what is given until the first bracket that closes.
-_CALL = re.compile(r"""(?m)^[ \t]*sheet[ \t]*\.[ \t]*answer[ \t]*\(\s*["']?([^"',()\s]{1,40})["']?\s*,([^)]{0,2000})""")
+#: A call of the sheet, also in a comment: the exercise, and what is given until the first bracket that closes.
+_CALL = re.compile(r"""\bsheet[ \t]*\.[ \t]*answer[ \t]*\(\s*["']?([^"',()\s]{1,40})["']?\s*,([^)]{0,2000})""")
+_NAMED = re.compile(r"[\s#]*(\w+)\s*=(?!=)")
 #: What stands in the place of an answer before there is one.
-_PLACE = re.compile(r"=\s*(?:\.\.\.|None)\s*$")
+_PLACE = re.compile(r"(?:^|=)\s*(?:\.\.\.|None)\s*$")
 
 
 def too_large() -> str:
@@ -127,26 +128,25 @@ def _demand(holds, otherwise):
         raise ValueError(otherwise)
 
 
-def answered(content: bytes) -> tuple[str, ...]:
-    """Return the exercises that are answered in cells that are no code cells, without repetition.
+def answered(content: bytes) -> dict[str, set[str]]:
+    """Return what the text of a notebook answers, run or not: {exercise: names}; "" is an answer without a name.
 
-    A key of Jupyter turns a code cell into one of text, and nothing else tells.
-
-    What a call begins with counts, wherever it ends: such a cell need not be code.
+    A key of Jupyter turns a code cell into one of text, and nothing else tells; other calls stand in a comment, in a
+    function that nobody calls, or below ``%%script``. What a call begins with counts, wherever it ends: it need not be
+    code.
 
     Arguments:
         content: a notebook as `sources` returns it; empty where there is none.
 
-    >>> cells = [{"cell_type": "markdown", "source": "sheet.answer('3', K=2)"}]
+    >>> cells = [{"cell_type": "markdown", "source": "sheet.answer('3', K=2, T=...)"}]
     >>> answered(json.dumps({"cells": cells}).encode())
-    ('3',)
+    {'3': {'K'}}
     """
-    cells = json.loads(content)["cells"] if content else []
-    found = [
-        call[1]
-        for cell in cells
-        if cell["cell_type"] != "code"
-        for call in _CALL.finditer(cell["source"])
-        if any("=" in part and not _PLACE.search(part) for part in call[2].split(","))
-    ]
-    return tuple(dict.fromkeys(found))
+    found: dict[str, set[str]] = {}
+    for cell in json.loads(content)["cells"] if content else []:
+        for call in _CALL.finditer(cell["source"]):
+            for part in filter(str.strip, call[2].split(",")):
+                if not _PLACE.search(part):
+                    named = _NAMED.match(part)
+                    found.setdefault(call[1], set()).add(named[1] if named else "")
+    return found

@@ -42,12 +42,12 @@ _OPERATORS = {
 }
 
 
-def parse(text: str) -> sympy.Expr:
+def parse(text: str, real: str = "") -> sympy.Expr:
     """Return the SymPy expression that `text` spells, with every decimal number exact.
 
     Known are the operators ``+ - * / **``, brackets, the elementary functions, `pi`, `oo`, `I`, and the library's
-    own `s` and `t`. Any other name is a positive symbol, or an undefined function where it is called. Nothing is
-    ever evaluated as Python.
+    own `s` and `t`. Any other name is a positive symbol, or one of either sign if it is among `real`, as "v x", or an
+    undefined function where it is called. Nothing is ever evaluated as Python.
 
     Raises ValueError when the text says anything else, or something that has no value.
 
@@ -61,7 +61,7 @@ def parse(text: str) -> sympy.Expr:
     """
     if not isinstance(text, str):
         raise _unreadable(text)
-    return _parsed(str.__str__(text))
+    return _parsed(str.__str__(text), frozenset(real.split()))
 
 
 def _unreadable(text):
@@ -69,7 +69,7 @@ def _unreadable(text):
 
 
 @functools.lru_cache(maxsize=4096)  # a printed formula is read, proved and shown
-def _parsed(text):
+def _parsed(text, real):
     try:
         # an indented or broken line is no matter in a book's formula
         source = " ".join(text.split())
@@ -124,7 +124,8 @@ def _parsed(text):
             case ast.Constant():
                 return number(node)
             case ast.Name():
-                return _NAMES.get(node.id) or sympy.Symbol(name(node), positive=True)
+                signs = {"real": True} if node.id in real else {"positive": True}
+                return _NAMES.get(node.id) or sympy.Symbol(name(node), **signs)
             case ast.BinOp() if type(node.op) in _OPERATORS:
                 return operation(node)
             case ast.UnaryOp(op=ast.USub()):

@@ -22,7 +22,7 @@ def test_a_form_is_made_again_from_its_code_and_knows_no_key(code):
     form = eval(code, vars(answer_sheet))
     assert form.key is None
     assert form.asking == code
-    assert set(vars(form)) <= {"unit", "among", "ordered", "symbols", "_told"}
+    assert set(vars(form)) <= {"unit", "time", "among", "ordered", "symbols", "_told"}
     assert form.expected
 
 

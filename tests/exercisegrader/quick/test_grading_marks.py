@@ -140,7 +140,7 @@ def test_the_mark_of_a_whole_exercise_counts_more_than_those_in_it():
 def test_the_mark_of_the_whole_notebook_stands_as_it_is():
     found = Marked.of(result("s1"), {ALL: Mark(4, "ill")}, Lateness(0.5, "2 days late"))
     assert (found.total, found.waiting, found.deduction) == (4, (), 0)
-    assert found.comments == ('2 of 8 points before, 4 by hand for all of it: "ill"',)
+    assert found.comments == ('5 of 8 points before, 4 by hand for all of it: "ill"',)
     assert found.late == "2 days late; the points by hand for all of it stay as they are"
 
 

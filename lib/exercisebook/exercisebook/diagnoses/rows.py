@@ -86,6 +86,8 @@ def _slips(value, left, kind):
 
     for one in left:
         if one == 0:
+            if abs(value) <= kind.within * (np.max(np.abs(kind.key)) or 1):
+                yield "one should be exactly zero: an integrator has its pole nowhere else"
             continue
         for wrong, says in (
             (-one, "one has the wrong sign"),
@@ -97,7 +99,9 @@ def _slips(value, left, kind):
         ):
             if is_near(value, wrong) and not is_near(value, one):
                 yield says
-        if abs(value - one) <= NEARBY * abs(one):
+        if is_near(value, one):
+            yield "one is on the wrong side of the imaginary axis, or beside it: is that part stable?"
+        elif abs(value - one) <= NEARBY * abs(one):
             yield "one is off by a few percent, which is more than rounding explains"
         if one.imag and abs(value.real - one.real) <= kind.within * abs(one):
             yield "of one the real part is right, the imaginary part is not"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import contextlib
 import functools
 import re
 from collections.abc import Iterator, Sequence
@@ -15,8 +17,9 @@ from exercisebook.agreement import agree, agree_in_time
 from exercisebook.formulas import Formula, is_number
 from exercisebook.kinds.kind import AS_IT_IS, LINE, Kind, Tried, how_rounded, literal, rounded, with_unit
 from exercisebook.kinds.numeric import in_unit
+from exercisebook.pages import conversion
 from exercisebook.points import points_for, times_for
-from exercisebook.reading import Unreadable, alone, answered, listed, shortened, symbols_in
+from exercisebook.reading import Unreadable, alone, answered, listed, shortened, symbols_in, understood
 from exercisebook.wholes import WHOLES
 from plainmath.expressions import exact, parse
 
@@ -35,8 +38,11 @@ class Expression(Kind):
         key: an expression, or a text that spells one.
         symbols: that an answer may have, all of the key's among them; a notebook that is handed out tells a wrong one.
             Those of the key, if not given: what symbols there are is then a part of the answer.
+        real: those that may be negative, as "v x"; others are positive. Of a key of SymPy's, its symbols with
+            ``real=True`` are as well.
     Raises:
-        ValueError: for a key with a symbol that is not among them.
+        ValueError: for a key with a symbol that is not among them, and where it has the sign or size of one that is
+            not said to be of either sign.
 
     >>> R = Expression("R_1*R_2/(R_1 + R_2)", "the resistance of both")
     >>> R.agrees(R.read("1/(1/R1 + 1/R2)")[0])
@@ -44,13 +50,22 @@ class Expression(Kind):
     """
 
     def __init__(
-        self, key: Number | str, what: str = "the expression", symbols: str = "", within: float = 0.01, unit: str = ""
+        self,
+        key: Number | str,
+        what: str = "the expression",
+        symbols: str = "",
+        within: float = 0.01,
+        unit: str = "",
+        real: str = "",
     ):
-        self.expr = _expression(key)
+        self.expr = _expression(key, real)
+        self.real = real or " ".join(sorted(one.name for one in self.expr.free_symbols if _is_of_either_sign(one)))
         names, self._told = {symbol.name for symbol in self.expr.free_symbols}, symbols
         self.symbols = sorted(self.always.union(symbols.split() or names))
         if beyond := sorted(names.difference(self.symbols)):
             raise ValueError(f"the key has the symbol {beyond[0]}: expected only {listed(self.symbols)}")
+        if unknown := sorted({*real.split()} - {*self.symbols}):
+            raise ValueError(f"real has {unknown[0]}: expected some of {listed(self.symbols)}")
         super().__init__(self.expr, unit, what, within)
 
     ANY_FORM, EACH = "in any form, ", "each number in it "
@@ -58,7 +73,7 @@ class Expression(Kind):
     always: frozenset[str] = frozenset()
     #: Without a key, any symbol may occur.
     symbols: Sequence[str] | None = None
-    _told = ""
+    _told = real = time = ""
     _points: dict[str, np.ndarray] | None = None
 
     @classmethod
@@ -99,7 +114,7 @@ class Expression(Kind):
         """The same quantity with another key, compared at the same points."""
         self.points()
         other = super().like(value)
-        other.expr = None if isinstance(value, Formula) else _expression(value)
+        other.expr = None if isinstance(value, Formula) else _expression(value, self.real)
         return other
 
     @property
@@ -127,29 +142,49 @@ class Expression(Kind):
         try:
             formula = Formula(given, symbols)
             return formula, formula.remark
-        except Unreadable:
+        except Unreadable as problem:
             if not isinstance(given, str):
                 raise
             for text, unit in _with_units(given):
                 if any(re.search(rf"(?<![/(])\b{symbol}\b", unit) for symbol in symbols):  # a factor, perhaps
                     continue
-                bare = units.without_units(text, symbols)
                 try:
-                    return self._in_asked_unit(Formula(bare, symbols), unit)
+                    formula = Formula(text, symbols)
                 except Unreadable:
-                    if bare == text and _is_formula(text, symbols):
-                        raise
-            bare = units.without_units(given, symbols)
-            if bare == given or not _is_formula(bare, symbols):
-                raise
-            formula = Formula(bare, symbols)
-            return formula, f"read without the units, {formula.text}"
+                    continue
+                return self._in_asked_unit(formula, unit)
+            return self._of_quantities(given, symbols, problem)
+
+    def _of_quantities(self, given, symbols, problem):
+        """A formula of numbers with units, in the asked one; raises the problem that it is without units."""
+        if not self.unit or not {*symbols} <= {"t"}:
+            raise problem
+        for text, unit in ((given, ""), *_with_units(given)):
+            source, units_of = units.with_names(f"({text})*(1 {unit})" if unit else text, symbols)
+            with contextlib.suppress(Unreadable):
+                _, tree = understood(source, [*symbols, *units_of])
+                break
+        else:
+            raise problem
+        known = {name: conversion.unit_of(unit) for name, unit in units_of.items()}
+        has_time = any("[time]" in unit.dimensionality for unit in known.values())
+        known |= {"t": conversion.unit_of(self.time if has_time else "")}
+        known |= dict.fromkeys(("e", "E"), conversion.unit_of(""))
+        try:
+            tree, unit = conversion.converted(tree, known)
+            if unit is conversion.UNKNOWN:
+                raise problem
+            tree = conversion.times(tree, conversion.factor(unit, self.unit))
+        except Unreadable:
+            raise
+        except ValueError as error:
+            raise Unreadable(f"{error}: expected {self.expected}") from None
+        text = re.sub(r" (\*\*|[*/]) ", r"\1", ast.unparse(_Ones().visit(tree)))
+        return Formula(text, symbols), f"read as {text}"
 
     def _in_asked_unit(self, formula, unit):
         """A formula whose text ends in a unit, in the asked one."""
-        if not self.unit and "/" in unit:
-            return formula, f"read without {unit}, {formula.text}"
-        if not self.unit:  # a letter may be a factor
+        if not self.unit:
             raise Unreadable(f"the text ends in {unit}: expected {self.expected}, without a unit")
         try:
             zero, factor = (units.convert(value, unit, to=self.unit) for value in (0, 1))
@@ -194,7 +229,14 @@ class Expression(Kind):
         return self._points
 
     def _drawn_points(self):
-        return points_for(self.key, self.seed)
+        return points_for(self.key, self.seed, self.real.split())
+
+    @property
+    def precision(self) -> str:
+        """As of other quantities, and what the symbols may be."""
+        symbols = [name for name in self.symbols or () if name not in ("s", "t")]
+        signs = f"{listed(self.real.split())} of either sign" if self.real else "for positive symbols"
+        return super().precision + (f", {signs}" if symbols and super().precision else "")
 
     def _demand_values(self, formula):
         usual = _usual_points(tuple(formula.symbols))
@@ -268,6 +310,15 @@ class Expression(Kind):
                 yield f"those would be the values {in_unit(unit)}; asked: {self.asked}", self.expr * exact(converted(1))
 
 
+class _Ones(ast.NodeTransformer):
+    """Names of units are ones."""
+
+    def visit_BinOp(self, node):
+        node = self.generic_visit(node)
+        is_unit = isinstance(node.right, ast.Name) and node.right.id.startswith("_u")
+        return node.left if is_unit and isinstance(node.op, ast.Mult) else node
+
+
 def _with_rounded_numbers(expr, within):
     """An expression whose numbers are decimals of a few digits, except in powers, which are exact."""
     if isinstance(expr, sympy.Rational | sympy.Float):
@@ -305,17 +356,18 @@ def _with_units(text):
             yield text[: place.start()], unit
 
 
-def _is_formula(text, symbols):
-    try:
-        Formula(text, symbols)
-    except Unreadable:
-        return False
-    return True
+def _expression(key, real=""):
+    """The key in SymPy; of a text, what it spells. Raises ValueError where it has the sign of a positive symbol."""
+    if not isinstance(key, str):
+        return exact(key)
+    for part in parse(key, " ".join(re.findall(r"[^\W\d]\w*", key))).atoms(sympy.Abs, sympy.sign):
+        for one in sorted({symbol.name for symbol in part.free_symbols} - {*real.split(), "s", "t"}):
+            raise ValueError(f"the key has {part}: expected real={one!r}, as {one} would be positive without it")
+    return parse(key, real)
 
 
-def _expression(key):
-    """The key in SymPy; of a text, what it spells."""
-    return parse(key) if isinstance(key, str) else exact(key)
+def _is_of_either_sign(symbol):
+    return symbol.is_real and symbol.is_positive is None and symbol.name not in ("s", "t")
 
 
 def in_other_time(kind: Expression, variable: str) -> Iterator[tuple[str, Formula]]:
@@ -331,6 +383,7 @@ class TimeFunction(Expression):
 
     Arguments:
         until: the end of the times at which it is compared, in the unit of t.
+        time: the unit of t, which the statement says; without it, no number in an answer has a unit of time.
 
     >>> from plainmath.expressions import t
     >>> y = TimeFunction(1 - sympy.exp(-t / 5), until=25, what="the response")
@@ -341,12 +394,24 @@ class TimeFunction(Expression):
     always = frozenset({"t"})
     symbols = ("t",)
     until: float | None = None
+    FORM = ("unit", "time")
 
     def __init__(
-        self, key: Number | str, until: Number, unit: str = "", what: str = "the function of time", within: float = 0.01
+        self,
+        key: Number | str,
+        until: Number,
+        unit: str = "",
+        what: str = "the function of time",
+        within: float = 0.01,
+        time: str = "",
     ):
-        self.until = float(until)
+        self.until, self.time = float(until), time
         super().__init__(key, what, "", within, unit)
+
+    @property
+    def asked(self) -> str:
+        """The quantity with its unit, and the unit of t."""
+        return super().asked + (f", for t in {self.time}" if self.time else "")
 
     @property
     def expected(self) -> str:

@@ -91,6 +91,9 @@ _WITH_UNITS = re.compile(
 ROUNDED = 0.01
 #: A number below this fraction of the key is zero.
 NOTHING = 1e-9
+#: A pole is on the imaginary axis where its real part is below this fraction of the largest one: what is worked out in
+#: decimal numbers is not exactly there.
+ON_AXIS = 1e-6
 #: In so many other units the key is tried.
 MOST_UNITS = 2
 
@@ -294,6 +297,8 @@ class Numbers(Kind):
 class Poles(Kind):
     """Complex numbers in any order, as often as they occur, such as poles and zeros.
 
+    The side of the imaginary axis is a part of each, and so is that one is on the axis, or zero.
+
     >>> poles = Poles([-1, -1, -2])
     >>> poles.agrees(poles.read({-1: 2, -2: 1})[0])
     True
@@ -350,12 +355,18 @@ class Poles(Kind):
     def matched(self, answer: np.ndarray) -> dict[int, int]:
         """Which of the answer's values are among the key's, each taken once: {place in it: place in the key}."""
         allowed, pairs = _allowed(self.key, self.within, 1e-9), {}
+        sides, own_sides = self.sides(answer), self.sides(self.key)
         for place, value in enumerate(answer):
-            left = [k for k in range(len(self.key)) if k not in pairs.values()]
+            left = [k for k in range(len(self.key)) if k not in pairs.values() and sides[place] == own_sides[k]]
             nearest = min(left, key=lambda k, value=value: abs(value - self.key[k]), default=None)
             if nearest is not None and abs(value - self.key[nearest]) <= allowed[nearest]:
                 pairs[place] = nearest
         return pairs
+
+    def sides(self, values: np.ndarray) -> list[int]:
+        """On which side of the imaginary axis each of some values is: -1, 0 or 1."""
+        on_axis = ON_AXIS * (np.max(np.abs(self.key), initial=0.0) or 1.0)
+        return [0 if abs(one.real) <= on_axis else int(np.sign(one.real)) for one in np.asarray(values)]
 
     def mistakes(self) -> Iterator[tuple[str, np.ndarray]]:
         """All signs turned, times instead of poles, another unit."""

@@ -106,7 +106,7 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     "floor": _whole(math.floor),
     "ceil": _whole(math.ceil),
     "round": _rounded,
-    "symbols": lambda names: sympy.symbols(names, positive=True),
+    "symbols": lambda names, real=False: sympy.symbols(names, **({"real": True} if real else {"positive": True})),
     "Piecewise": lambda *parts: sympy.Piecewise(*map(tuple, parts)),
     "Heaviside": sympy.Heaviside,
     "sorted": sorted,

@@ -249,6 +249,8 @@ class Page(Exercise):
         signature = inspect.signature(MAKERS[maker])
         said = {part.arg for part in one.tree.keywords} | {"unit"} - {*signature.parameters}
         usual = {"what": words or name} | ({} if "unit" in said else {"unit": self.units[name]})
+        if "until" in said and "time" in signature.parameters:
+            usual["time"] = self._time_of(next(part.value for part in one.tree.keywords if part.arg == "until"))
 
         def make(*parts, **named):
             named = usual | {word: _plain(value) for word, value in named.items()}
@@ -258,6 +260,11 @@ class Page(Exercise):
                 raise ValueError(f"expected arguments such as {signature}") from None
 
         return one(quantities, {**self.functions, maker: make})
+
+    def _time_of(self, tree):
+        """The unit of time of a formula, as it stands; empty where it has none, as a number alone."""
+        unit = conversion.converted(tree, self._units)[1]
+        return next((time for time in ("s", "min", "h", "d") if unit == conversion.unit_of(time)), "")
 
     @functools.lru_cache(maxsize=8)  # noqa: B019 - the exercises live as long as the program
     def _wrong(self, givens):

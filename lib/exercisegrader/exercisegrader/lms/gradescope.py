@@ -93,7 +93,7 @@ def _test(marked, visibility, reveal):
     return {
         "number": exercise.number,
         "name": in_text(exercise.title),
-        "score": round(marked.earned or 0, 2),
+        "score": round(marked.known, 2),
         "max_score": round(exercise.points, 2),
         "status": "passed" if all(one.status == RIGHT for one in exercise.answers) else "failed",
         "output": "\n".join(of_exercise(marked, reveal)),

@@ -45,7 +45,8 @@ def equal_answers(results: Iterable[Result]) -> list[EqualAnswers]:
     """Return the equal answers that are worth a look, in the order of the exercises.
 
     They are those that are right for one student and not for another, whose key differs; and those that are wrong with
-    at least three significant digits for several students, whose keys differ. Words and choices are never among them.
+    at least three significant digits for several students, whose keys differ, unless a mistake explains it for
+    all of them. Words and choices are never among them.
 
     Arguments:
         results: of submissions.
@@ -66,7 +67,9 @@ def equal_answers(results: Iterable[Result]) -> list[EqualAnswers]:
         others = [(student, verdict.key) for student, verdict in given if verdict.status != RIGHT]
         keys_of_right, keys_of_others = {key for _, key in right}, {key for _, key in others}
         crossed = any(key not in keys_of_right for key in keys_of_others) and bool(right)
-        shared = len(keys_of_others) > 1 and digits >= DIGITS
+        # the same mistake makes the same number, where it does not depend on those that differ
+        is_explained = all(verdict.status in (RIGHT, MISTAKE) for _, verdict in given)
+        shared = len(keys_of_others) > 1 and digits >= DIGITS and not is_explained
         if crossed or shared:
             answer = answer_in_words(given[0][1].answer)
             of = tuple(student for student, _ in right), tuple(student for student, _ in others)

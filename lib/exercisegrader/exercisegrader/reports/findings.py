@@ -40,7 +40,7 @@ class Asked:
 
 @dataclass(frozen=True)
 class Exercise:
-    """An exercise with its mean points, None while all of them wait for a mark."""
+    """An exercise with its mean points, None while somebody's wait for a mark."""
 
     number: str
     title: str
@@ -127,11 +127,10 @@ def _exercises(marks):
             for answer in exercise.judged.answers:
                 counts.setdefault(answer.name, Counter(dict.fromkeys(STATUSES, 0)))[answer.status] += 1
         asked = tuple(Asked(number, name, count) for name, count in counts.items())
-        earned = [exercise.earned for exercise in given if exercise.earned is not None]
-        first = given[0].judged
-        exercises.append(
-            Exercise(number, first.title, first.points, statistics.fmean(earned) if earned else None, asked)
-        )
+        earned, first = [exercise.earned for exercise in given], given[0].judged
+        # those that wait would be missing in the mean, and those who left it open would not
+        mean = None if None in earned else statistics.fmean(earned)
+        exercises.append(Exercise(number, first.title, first.points, mean, asked))
     return sorted(exercises, key=lambda exercise: (exercise.mean is None, exercise.fraction))
 
 

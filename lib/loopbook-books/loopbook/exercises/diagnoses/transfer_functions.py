@@ -23,6 +23,9 @@ MOST_POLES, LEFT = 4, 1e-7
 def _(kind: TransferFunction, answer: Any, background: Background) -> Finding | None:
     if found := constant(kind, answer, background):
         return found
+    if Expression.agrees(kind, answer):
+        says = "its values are nearly right everywhere, but a pole of it is on the other side of the imaginary axis, "
+        return Finding(says + "on that axis, or at zero where none should be: that is another system")
     key, found = facts_of(kind.key, kind), facts_of(answer, kind)
     if found and key and found.get("poles") is not None and key.get("poles") is not None:
         poles, right = found["poles"], key["poles"]

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import ast
+import collections
+import functools
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import sympy
 
 from exercisebook.kinds.formula import Expression, in_other_time
-from plainmath.expressions import s
+from plainmath.expressions import parse, s
 
 if TYPE_CHECKING:
     from loopbook.types import Number
+
+
+#: A pole is on the imaginary axis where its real part is below this fraction of the other one.
+ON_AXIS = 1e-12
 
 
 class TransferFunction(Expression):
@@ -33,6 +40,16 @@ class TransferFunction(Expression):
         unit: str = "",
     ):
         super().__init__(key, what, symbols, within, unit)
+
+    def agrees(self, answer: Any) -> bool:
+        """Whether both have the same values, and as many poles on either side of the imaginary axis, on it and at zero.
+
+        A small term that is unstable changes no value by much, but it is another system.
+        """
+        return super().agrees(answer) and (
+            not (sides := _poles_by_side(ast.unparse(self.key.tree)))
+            or (_poles_by_side(ast.unparse(answer.tree)) or sides) == sides
+        )
 
     def mistakes(self) -> Iterator[tuple[str, Any]]:
         """Those of an expression, a forgotten dead time, its sign, and an s too many or too few."""
@@ -58,3 +75,33 @@ def _pade(x, order):
     if order == 1:
         return (1 + x / 2) / (1 - x / 2)
     return (1 + x / 2 + x**2 / 12) / (1 - x / 2 + x**2 / 12)
+
+
+@functools.lru_cache(maxsize=200)
+def _poles_by_side(text):
+    """How many poles are left of the imaginary axis, on it, right of it, and zero.
+
+    None are told with other symbols, where a dead time is in a denominator, and of what SymPy cannot work out.
+    """
+    try:
+        expr = parse(text)
+    except ValueError:
+        return ()
+    delays: dict[sympy.Expr, sympy.Expr] = {}  # a dead time has no pole
+    for one in expr.atoms(sympy.exp):
+        delays[one] = 1 / delays[1 / one] if 1 / one in delays else sympy.Dummy()
+    below = sympy.fraction(sympy.cancel(sympy.together(expr.xreplace(delays))))[1]
+    for delay in below.free_symbols - {s}:  # above it stands as well
+        below = sympy.cancel(below / delay)
+    if below.free_symbols - {s}:
+        return ()
+    sides = collections.Counter()
+    for factor, times in sympy.Poly(below, s).sqf_list()[1]:
+        for pole in factor.nroots(n=20):
+            sides[0 if pole == 0 else 2 + _side(pole)] += times
+    return sorted(sides.items())
+
+
+def _side(pole):
+    real, imaginary = pole.as_real_imag()
+    return 0 if abs(real) <= ON_AXIS * abs(imaginary) else int(sympy.sign(real))
