@@ -179,6 +179,12 @@ class Decimals:
         return np.select(conditions, [np.broadcast_to(value, shape) for value, _ in pairs], np.nan)
 
 
+@functools.lru_cache(maxsize=1000)  # the numbers of a formula are asked for at all points, and in all its changes
+def _is_as_written(value):
+    """Whether a number of a machine is the decimal that it is written as."""
+    return not math.isfinite(value) or Fraction(repr(value)) == value
+
+
 class Bounded(Decimals):
     """The same with an error beside each value, as pairs; a condition has one where it cannot be told.
 
@@ -199,7 +205,7 @@ class Bounded(Decimals):
     def number(self, value: complex) -> Any:
         """A number that stands in the formula, as it is written: few decimals are numbers of a machine."""
         value = complex(value)
-        is_exact = all(not math.isfinite(one) or Fraction(repr(one)) == one for one in (value.real, value.imag))
+        is_exact = _is_as_written(value.real) and _is_as_written(value.imag)
         return super().number(value), 0.0 if is_exact else LAST_DIGIT * abs(value)
 
     def named(self, name: str) -> Any:

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from exercisebook.kinds import Design
+
 if TYPE_CHECKING:
     from exercisebook.diagnoses.background import Background
     from exercisebook.kinds import Kind
@@ -40,6 +42,8 @@ def explained(kind: Kind, answer: Any, background: Background) -> Finding | None
         answer: as it was read.
         background: what else is known of the exercise.
     """
+    if isinstance(kind, Design):  # judged by its criteria, whatever its key: no other key makes an answer right
+        return of_another(kind, answer, background)
     return recomputed(kind, answer, background)
 
 

@@ -103,9 +103,10 @@ def _delay(values: Callable[[Any], Any]) -> float | None:
     >>> round(_delay(lambda s: np.exp(-3 * s) / (5 * s + 1)), 3)
     3.0
     """
-    for step in np.geomspace(1e7, 1e-7, 141):
-        with np.errstate(all="ignore"):
-            logs = np.log(np.abs(values(np.array([1, 2, 4]) * step)))
+    steps = np.geomspace(1e7, 1e-7, 141)
+    with np.errstate(all="ignore"):
+        rows = np.log(np.abs(values(steps[:, None] * [1, 2, 4])))  # one call, or each step takes as long
+    for step, logs in zip(steps, rows, strict=True):
         if np.isfinite(logs).all():
             size = abs(logs[2] - 2 * logs[1] + logs[0])  # of which a lag leaves next to nothing
             return float(-(logs[2] - 2 * logs[1] + logs[0]) / step) if size > 1 else 0.0
