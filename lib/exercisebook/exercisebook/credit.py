@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import asdict, dataclass
 
-#: What stands before the sentence of a mistake that is worth something, as "(50 %) The gain is missing."
+#: How the sentence of a mistake begins that is worth something, as "(50 %) The gain is missing."
 _WORTH = re.compile(r"\((\d{1,2}) ?%\) ")
 _WORDS = {
     "unit": "the right number in another unit",
@@ -33,7 +33,7 @@ class Credit:
     follows: float = 0
     mistake: float = 0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name, value in asdict(self).items():
             if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value < 100:
                 raise ValueError(f"credit for {name} is {value!r}: expected percent of the points, from 0 to 99")

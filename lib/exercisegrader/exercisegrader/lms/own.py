@@ -151,8 +151,9 @@ def points_csv(grades: Grades) -> str:
     for one, mark in grades.graded:
         points = {place: points for each in mark.exercises for place, points in each.by_place()}
         rows.append({"id": one.id, "name": one.name} | points)
-    head = [*dict.fromkeys(place for row in rows for place in row)] or ["id", "name"]
-    return as_text([head, *([row.get(place, "") for place in head] for row in rows)], bom=True)
+    places = [*dict.fromkeys(place for row in rows for place in row)] or ["id", "name"]
+    head = [*places, "graded without a jail"] if grades.without_jail else places
+    return as_text([head, *([row.get(place, "") for place in places] for row in rows)], bom=True)
 
 
 @output("feedback.zip", "the page of each student as a file by id, where the roster is your own")
