@@ -36,6 +36,7 @@ from typing import TYPE_CHECKING
 import sympy
 
 from exercisebook import plugins
+from exercisebook.credit import Credit
 from exercisebook.declared import Declared
 from exercisebook.kinds import MAKERS, Criterion, Kind, Number
 from exercisebook.late import Late
@@ -173,7 +174,7 @@ def in_order(exercises: Mapping[str, Exercise]) -> dict[str, Exercise]:
 
 
 plugins.load()
-__all__ = ["Exercise", "Late", "answers", "between", "choice", "collected", "criterion", "exercise", *MAKERS]
+__all__ = ["Credit", "Exercise", "Late", "answers", "between", "choice", "collected", "criterion", "exercise", *MAKERS]
 if taken := MAKERS.keys() & {*__all__[: -len(MAKERS)]}:
     raise ValueError(f"{min(taken)} is another function for authors: expected another name for this kind of answers")
 # the kinds of answers, under the names that read well in an exercise

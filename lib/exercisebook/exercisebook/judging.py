@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from exercisebook import diagnoses, units
+from exercisebook.credit import NOTHING, Credit, worth
 from exercisebook.kinds import Number
 from exercisebook.reading import NOT_ANSWERED, Unreadable, shortened
 from exercisebook.timeout import limited
@@ -38,6 +39,8 @@ class Verdict:
     is_bare: bool = field(default=False, repr=False)
     #: Why an instructor should see the answer; empty where there is no need.
     look: str = field(default="", repr=False)
+    #: What it brings of the points of the quantity, in percent, where it is not right and the author says so.
+    percent: float = field(default=0, repr=False)
 
     @property
     def is_right(self) -> bool:
@@ -64,6 +67,7 @@ def judge(
     given: object,
     mistakes: Iterable[tuple[str, Any]] = (),
     background: Background | None = None,
+    credit: Credit = NOTHING,
 ) -> Verdict:
     """Return the `Verdict` on an answer. Whatever the answer is, this raises nothing.
 
@@ -73,13 +77,14 @@ def judge(
         given: the answer, of any type.
         mistakes: those of the exercise, pairs of a sentence and a wrong value; they come before the general ones.
         background: what else is known of the exercise, for the general ones.
+        credit: what is worth something though it is not right.
 
     >>> from exercisebook.kinds import Number
     >>> judge("T", Number(120, "s", "the period"), 2)
     Verdict(name='T', status='mistake', says='that would be the value in min; asked: the period, in s')
     """
     try:
-        return Verdict(name, *limited(SECONDS, _judged, kind, given, mistakes, background))
+        return Verdict(name, *limited(SECONDS, _judged, kind, given, mistakes, background, credit))
     except Unreadable as problem:
         status = OPEN if str(problem) == NOT_ANSWERED else UNJUDGED
         return Verdict(name, status, harmless(str(problem)))
@@ -108,8 +113,8 @@ def _agrees(kind, given):
     return not any(kind.incomparable(answer)) and kind.agrees(answer)
 
 
-def _judged(kind, given, mistakes, background):
-    """Status, sentence, whether the sentence is bare, and why an instructor should look."""
+def _judged(kind, given, mistakes, background, credit):
+    """Status, sentence, whether the sentence is bare, why an instructor should look, and what it is worth."""
     answer, remark = kind.read(given)
     if kind.by_hand:
         return WAITING, "a person marks this" + (f" · {remark}" if remark else ""), False
@@ -119,11 +124,16 @@ def _judged(kind, given, mistakes, background):
     if kind.agrees(answer):
         return RIGHT, "right" + (f", {remark}" if remark else "")
     if named := _in_its_unit(kind, answer, remark):
-        return MISTAKE, f"the number is right, but in {kind.unit}: you have given it in {named}", False
-    status, says, is_bare = _explained(kind, answer, mistakes, background)
+        says = f"the number is right, but in {kind.unit}: you have given it in {named}"
+        return MISTAKE, says, False, "", credit.unit
+    status, says, is_bare, percent = _explained(kind, answer, mistakes, background, credit)
+    if credit.unit and any(kind.agrees(value) for _, value in kind.in_other_units(answer)):
+        percent = max(percent, credit.unit)
+    if credit.follows and background and any(diagnoses.followed(kind, answer, background)):
+        percent = max(percent, credit.follows)
     shown = harmless(kind.as_read(answer))
     said = f"read as {shown}" if shown else harmless(remark)
-    return status, says + (f" · {said}" if said else ""), is_bare
+    return status, says + (f" · {said}" if said else ""), is_bare, "", percent
 
 
 def _in_its_unit(kind, answer, remark):
@@ -134,11 +144,11 @@ def _in_its_unit(kind, answer, remark):
     return found[1] if kind.agrees(units.convert(answer, kind.unit, to=found[1])) else ""
 
 
-def _explained(kind, answer, mistakes, background):
-    """The same of an answer that is not right."""
+def _explained(kind, answer, mistakes, background, credit):
+    """Status, sentence, whether it is bare, and what a named mistake is worth, of an answer that is not right."""
     background = background or diagnoses.Background()
     if found := diagnoses.swapped(kind, answer, background):
-        return MISTAKE, found.says, False
+        return MISTAKE, found.says, False, 0
     for known in (mistakes, kind.mistakes()):
         near = [(kind.off_by(answer, wrong), sentence) for sentence, wrong in known if kind.is_value(answer, wrong)]
         if near:  # the nearest one, of several the first; what follows from a wrong number is no mistake
@@ -147,7 +157,11 @@ def _explained(kind, answer, mistakes, background):
             sentence = next(sentence for off, sentence in near if off <= least + same)
             followed = diagnoses.followed(kind, answer, background)
             nearer = [says for says, off in followed if off < least - same or (off <= least and not is_number)]
-            return (WRONG, nearer[0], False) if nearer else (MISTAKE, sentence, False)
+            if nearer:
+                return WRONG, nearer[0], False, 0
+            percent, sentence = worth(sentence)
+            is_own = known is mistakes
+            return MISTAKE, sentence, False, (credit.mistake if is_own else 0) if percent is None else percent
     try:
         with np.errstate(all="ignore"):
             found = diagnoses.explained(kind, answer, background)
@@ -156,9 +170,9 @@ def _explained(kind, answer, mistakes, background):
     except Exception:  # whatever a diagnosis stumbles over, the answer is wrong
         found = None
     if found:
-        return MISTAKE if found.is_mistake else WRONG, found.says, found.is_bare
+        return MISTAKE if found.is_mistake else WRONG, found.says, found.is_bare, 0
     hint = kind.hint(answer)
-    return WRONG, hint or f"not right; asked: {kind.asked}", not hint
+    return WRONG, hint or f"not right; asked: {kind.asked}", not hint, 0
 
 
 def harmless(text: str) -> str:

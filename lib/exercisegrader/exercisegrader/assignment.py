@@ -22,7 +22,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
-from exercisebook.authoring import Exercise, Late, collected
+from exercisebook.authoring import Credit, Exercise, Late, collected
+from exercisebook.credit import NOTHING
 from exercisebook.pages import page
 from exercisebook.pages.parts import PageError
 from exercisebook.parameters import of_text
@@ -37,7 +38,7 @@ SHORTEST_SECRET = 16
 #: What the secrets of the documentation and of the examples contain, which everybody knows.
 DOCUMENTED = ("of-your-own", "everybody-may-read")
 #: The ending of a file with pages, and what its block of TOML may say.
-PAGES, SETTINGS = ".md", ("secret", "due", "late")
+PAGES, SETTINGS = ".md", ("secret", "due", "late", "credit")
 _NUMBER = re.compile(r"\w[\w.-]{0,19}")
 
 
@@ -53,6 +54,7 @@ class Assignment:
         source: the text of the file.
         path: of the file; None where it was made from a text.
         policy: when it is due and what it costs to be late, from `DUE` and `LATE`; None where there is no `DUE`.
+        credit: what is worth something though it is not right, from `CREDIT`.
     """
 
     name: str
@@ -63,6 +65,7 @@ class Assignment:
     source: str
     path: Path | None = None
     policy: Policy | None = None
+    credit: Credit = NOTHING
 
     @classmethod
     def of(cls, source: str, name: str, path: Path | None = None) -> Self:
@@ -110,7 +113,11 @@ class Assignment:
             )
         for exercise in exercises.values():
             _check(exercise, file)
-        return cls(name, title.strip(), introduction.strip(), secret, exercises, source, path, policy_of(module, file))
+        credit = getattr(module, "CREDIT", NOTHING)
+        if not isinstance(credit, Credit):
+            raise GradingError(f"{file}: CREDIT is {credit!r}: expected one as Credit(unit=50, follows=50, mistake=25)")
+        policy = policy_of(module, file)
+        return cls(name, title.strip(), introduction.strip(), secret, exercises, source, path, policy, credit)
 
     @property
     def points(self) -> float:
@@ -191,6 +198,8 @@ def _paged(source, name, path):
             raise PageError(file, 1, f"there is no setting {unknown[0]!r}: {did_you_mean(unknown[0], SETTINGS)}")
         if "late" in settings:
             settings["late"] = Late(**settings["late"])
+        if "credit" in settings:
+            settings["credit"] = Credit(**settings["credit"])
     except (TypeError, ValueError) as problem:
         raise GradingError(str(problem)) from None
     module.__doc__ = f"{front.title}\n{front.introduction}"

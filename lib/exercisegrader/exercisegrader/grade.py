@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 from exercisebook.judging import harmless
 from exercisegrader import GradingError, NoJail, lms
 from exercisegrader.events import Outcome
-from exercisegrader.imprint import peek
+from exercisegrader.imprint import peek, what_it_is
 from exercisegrader.jail import USUAL, Jail, Limits, demand_hidden
 from exercisegrader.judge import Judge
 from exercisegrader.keeping import Kept, executed, source
@@ -117,8 +117,8 @@ def _result(task, outcome, exercises):
     status = MISSING if not task.label else NOT_RUN if outcome.refused else STOPPED if outcome.stopped else COMPLETE
     says = same_each_time(outcome.refused or outcome.stopped)
     errors = tuple(CellError(cell, same_each_time(text)) for cell, text in outcome.errors)
-    is_released = not task.content or peek(task.content) is not None
-    found = looks(task.student, outcome, exercises, answered(task.content), task.doubts, is_released)
+    if_empty = what_it_is(task.content)
+    found = looks(task.student, outcome, exercises, answered(task.content), task.doubts, if_empty)
     owner = harmless(outcome.named[0]) if outcome.named else ""
     return Result(
         task.name, task.student, task.label, task.jailed, task.fingerprint, status, says, errors, tuple(found),

@@ -67,10 +67,29 @@ def peek(content: bytes) -> Imprint | None:
     return Imprint.of(json.loads(content)["metadata"]) if content else None
 
 
+def what_it_is(content: bytes) -> str:
+    """Return what to say of a notebook that answers nothing; nothing of one that is as it was released.
+
+    Arguments:
+        content: a notebook as `sources.sources` returns it; empty where there is none.
+    """
+    if not content:
+        return ""
+    imprint = peek(content)
+    if imprint is None:
+        return "it answers nothing and was not released with this assignment: is it another notebook?"
+    cells = [(cell["cell_type"], cell["source"]) for cell in json.loads(content)["cells"]]
+    is_as_released = not imprint.cells or imprint.cells == _told(cells)
+    return "" if is_as_released else "it answers nothing, though somebody has worked in it"
+
+
 def cells_of(notebook: NotebookNode) -> str:
     """Return a text that changes with the cells of a notebook."""
-    sources = [(cell.cell_type, cell.source) for cell in notebook.cells]
-    return hashlib.sha256(json.dumps(sources).encode()).hexdigest()
+    return _told([(cell.cell_type, cell.source) for cell in notebook.cells])
+
+
+def _told(cells):
+    return hashlib.sha256(json.dumps(cells).encode()).hexdigest()
 
 
 def proofs(secret: str, student: str, numbers: Mapping[str, Mapping[str, str]]) -> dict[str, str]:

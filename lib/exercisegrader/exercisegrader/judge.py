@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from exercisebook import units
+from exercisebook.credit import NOTHING, Credit
 from exercisebook.judging import SECONDS, UNJUDGED, Verdict, judge
 from exercisebook.parameters import written
 from exercisebook.timeout import WAITING
@@ -135,6 +136,7 @@ def judged(
     given: Mapping[str, Any],
     hopeless: Collection[str] = (),
     at: Callable[[str], object] = lambda name: None,
+    credit: Credit = NOTHING,
 ) -> JudgedExercise:
     """Return what becomes of the answers to one exercise.
 
@@ -143,6 +145,7 @@ def judged(
         given: {name: plain data}.
         hopeless: names of quantities that cannot be judged.
         at: is told each name before it is judged.
+        credit: what is worth something though it is not right.
     """
     answers = []
     for name, kind in question.key.items():
@@ -153,9 +156,13 @@ def judged(
         elif says := unreadable(answer):
             verdict = Verdict(name, UNJUDGED, says)
         else:
-            verdict = judge(name, kind, answer, question.mistakes[name], question.background.of(name, given))
-        weight = question.exercise.weights.get(name, 1)
-        answers.append(JudgedAnswer(name, verdict.status, verdict.says, answer, kind.solution, weight, verdict.look))
+            verdict = judge(name, kind, answer, question.mistakes[name], question.background.of(name, given), credit)
+        weight, says = question.exercise.weights.get(name, 1), verdict.says
+        if verdict.percent:
+            says += f" · {verdict.percent:g}\N{NO-BREAK SPACE}% of its points"
+        answers.append(
+            JudgedAnswer(name, verdict.status, says, answer, kind.solution, weight, verdict.look, verdict.percent)
+        )
     exercise, asked = question.exercise, question.statement.below_heading
     numbers = tuple((name, written(value, exercise.parameters[name].unit)) for name, value in question.stated.items())
     return JudgedExercise(exercise.number, exercise.title, exercise.points, asked, numbers, tuple(answers))
@@ -192,7 +199,9 @@ def main() -> None:
                 question = assignment.question(job["student"], number, job["numbers"].get(number))
                 hopeless = [name for one, name in job["hopeless"] if one == number]
                 given = job["given"].get(number, {})
-                found = judged(question, given, hopeless, lambda name, n=number: say({"at": [n, name]}))
+                found = judged(
+                    question, given, hopeless, lambda name, n=number: say({"at": [n, name]}), assignment.credit
+                )
                 say({"exercise": asdict(found)})
         except (GradingError, ValueError) as problem:
             say({"failed": f"exercise {number} for student {job['student']}: {problem}"})

@@ -6,12 +6,12 @@
 from __future__ import annotations
 
 import datetime
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
-from exercisebook.judging import RIGHT, WAITING
+from exercisebook.judging import WAITING
 from exercisegrader.lateness import IN_TIME, Extensions, Lateness, lateness, read_extensions
 from exercisegrader.overrides import Mark, Notice, Overrides
 from exercisegrader.reports.wording import counted, number, of_points
@@ -39,6 +39,7 @@ class MarkedExercise:
         is_by_hand: whether a person has marked the whole of it.
         decided: the quantities of which a person has said what they are worth.
         so_far: its points while something in it waits.
+        by_quantity: the points that a person has given to single quantities.
     """
 
     judged: JudgedExercise
@@ -49,6 +50,7 @@ class MarkedExercise:
     is_by_hand: bool = False
     decided: tuple[str, ...] = ()
     so_far: float = 0.0
+    by_quantity: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
     def of(cls, judged: JudgedExercise, by_hand: Mapping[tuple[str, str], Mark] | None = None) -> Self:
@@ -58,13 +60,13 @@ class MarkedExercise:
         """
         by_hand = by_hand or {}
         whole = by_hand.get((judged.number, ""), _NONE)
-        sum_, comments, history, waiting, decided = 0.0, [], [], [], []
+        sum_, comments, history, waiting, by_quantity = 0.0, [], [], [], {}
         for one in judged.answers:
             mark, part = by_hand.get((judged.number, one.name), _NONE), judged.share(one)
-            by_grader = part if one.status == RIGHT else 0.0
+            by_grader = part * one.part
             if mark.points is not None:
                 sum_ += mark.points
-                decided.append(one.name)
+                by_quantity[one.name] = mark.points
                 said = "" if one.status == WAITING else f"{number(by_grader)} by the grader, "
                 history.append(f"{one.name}: {said}{of_points(mark.points, part)} by hand{_quoted(mark)}")
                 continue
@@ -76,11 +78,21 @@ class MarkedExercise:
         if whole.points is not None:
             by_grader = of_points(judged.earned, judged.points)
             history.append(f"{by_grader} by the grader, {number(whole.points)} by hand{_quoted(whole)}")
-            sum_, waiting, decided = whole.points, [], [one.name for one in judged.answers]
+            sum_, waiting = whole.points, []
         elif whole.comment:
             comments.append(whole.comment)
         earned, is_by_hand = None if waiting else sum_, whole.points is not None
-        return cls(judged, earned, tuple(comments), tuple(history), tuple(waiting), is_by_hand, tuple(decided), sum_)
+        decided = tuple(one.name for one in judged.answers if is_by_hand or one.name in by_quantity)
+        return cls(
+            judged, earned, tuple(comments), tuple(history), tuple(waiting), is_by_hand, decided, sum_, by_quantity
+        )
+
+    def by_place(self) -> Iterator[tuple[str, str]]:
+        """Yield the points of the exercise and of each of its quantities, as text, by number and name."""
+        yield self.judged.number, "" if self.earned is None else number(self.earned)
+        for one in self.judged.answers:
+            points = self.by_quantity.get(one.name, self.judged.share(one) * one.part)
+            yield f"{self.judged.number} {one.name}", "" if one.name in self.waiting else number(points)
 
     @property
     def known(self) -> float:

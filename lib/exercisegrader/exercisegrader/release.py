@@ -253,7 +253,8 @@ def _notebook(assignment, student, questions, version=None):
     """The notebook of a student; one of an earlier version where nothing else has changed."""
     version = installed().version if version is None else version
     person = f"**{as_markdown(student.name or student.id)}** (`{student.id}`)"
-    introduction = [f"# {assignment.title}", person, assignment.introduction, _HOW_TO_ANSWER, _needs(version)]
+    introduction = [f"# {assignment.title}", person, assignment.introduction, _HOW_TO_ANSWER]
+    introduction += [assignment.credit.says, _needs(version)]
     cells = [v4.new_markdown_cell("\n\n".join(part for part in introduction if part))]
     cells += map(v4.new_code_cell, set_up(assignment.title, student.id, questions))
     for number, question in questions.items():

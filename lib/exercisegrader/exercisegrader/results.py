@@ -49,6 +49,7 @@ class JudgedAnswer:
         key: the right answer, as a text for people.
         weight: what it counts among the quantities of its exercise.
         look: why an instructor should see it; empty where there is no need.
+        percent: of its points that it brings where it is not right.
     """
 
     name: str
@@ -58,6 +59,12 @@ class JudgedAnswer:
     key: str
     weight: float = 1
     look: str = ""
+    percent: float = 0
+
+    @property
+    def part(self) -> float:
+        """The part of its points that it brings."""
+        return 1.0 if self.status == RIGHT else self.percent / 100
 
 
 @dataclass(frozen=True)
@@ -84,8 +91,8 @@ class JudgedExercise:
 
     @property
     def earned(self) -> float:
-        """The points that its right answers bring."""
-        right = sum(one.weight for one in self.answers if one.status == RIGHT)
+        """The points that its answers bring."""
+        right = sum(one.weight * one.part for one in self.answers)
         return earned(self.points, right, sum(one.weight for one in self.answers))
 
     def share(self, answer: JudgedAnswer) -> float:
@@ -212,7 +219,7 @@ def looks(
     exercises: Sequence[JudgedExercise],
     written: Mapping[str, Collection[str]] | None = None,
     doubts: Sequence[str] = (),
-    is_released: bool = True,
+    if_empty: str = "",
 ) -> list[Look]:
     """Return why an instructor should look at a submission, what is harmless last.
 
@@ -222,7 +229,7 @@ def looks(
         exercises: as `judge.Judge.judge` returns them.
         written: what the text of the notebook answers, as `sources.answered` returns it.
         doubts: what speaks against the notebook, by its imprint.
-        is_released: whether it has an imprint.
+        if_empty: what to say where it answers nothing at all.
     """
     others = [name for name in outcome.named if name != student]
     says_of_others = f"it names another student: {', '.join(map(harmless, others[:3]))}"
@@ -239,10 +246,8 @@ def looks(
         if open_names.get(number, set()) & {*names} or (number in left and "" in names):
             says = f"exercise {number} is answered in the text of the notebook alone, {_NOT_ARRIVED}"
             found.append(Look(NO_CODE, says, number))
-    if left and not (is_released or outcome.answers or found or outcome.refused or outcome.errors or outcome.stopped):
-        found.append(
-            Look(NO_CODE, "it answers nothing and was not released by this assignment: is it another notebook?")
-        )
+    if if_empty and left and not (outcome.answers or found or outcome.refused or outcome.errors or outcome.stopped):
+        found.append(Look(NO_CODE, if_empty))
     more = []
     for number, given in outcome.answers.items():
         if number not in asked:

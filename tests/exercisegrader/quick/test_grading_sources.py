@@ -4,12 +4,16 @@ import contextlib
 import io
 import json
 
+import nbformat
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from exercisegrader import GradingError, sources
-from exercisegrader.sources import MOST
+from exercisegrader.events import Outcome
+from exercisegrader.imprint import cells_of, what_it_is
+from exercisegrader.results import JudgedAnswer, JudgedExercise, looks
+from exercisegrader.sources import MOST, answered
 
 
 def read(content):
@@ -152,3 +156,56 @@ def test_a_long_text_is_one_value(monkeypatch):
     picture = json.dumps('\\"[1, 2], \n' * 10**5).encode()
     assert of_code(read(START + picture + b"}]}")) == ["1"]
     assert "Unterminated" in refused(START + b'"' + b'\\"' * 10**6)  # and is not looked at from each quote again
+
+
+@pytest.mark.parametrize(
+    ("source", "names"),
+    [
+        ('sheet.answer("2", F=-4, a=...)', {"F"}),
+        ('sheet.answer("2", "-k*v", "-k*v/m")', {""}),
+        ('# sheet.answer("2", F=3)', {"F"}),
+        ('def later():\n    sheet.answer("2", F=3)', {"F"}),
+        ('%%script false\nsheet.answer("2", F=3)', {"F"}),
+        ('print("F =", 3)', set()),
+        ('sheet.answer("2", F=..., a=None)', set()),
+    ],
+)
+@pytest.mark.parametrize("kind", ["code", "markdown", "raw"])
+def test_what_is_answered_in_the_text_is_seen_wherever_it_stands(source, names, kind):
+    content = json.dumps({"cells": [{"cell_type": kind, "source": source}]}).encode()
+    assert answered(content) == ({"2": names} if names else {})
+
+
+NOTHING = JudgedExercise("2", "", 2, "", (), (JudgedAnswer("F", "open", "", None, "3"),))
+
+
+@pytest.mark.parametrize(
+    ("written", "outcome", "if_empty", "says"),
+    [
+        ({"2": {"F"}}, Outcome(), "", "exercise 2 is answered in the text of the notebook alone"),
+        ({"2": {""}}, Outcome(), "", "exercise 2 is answered in the text of the notebook alone"),
+        ({"2": {"F"}}, Outcome(errors=((3, "NameError"),)), "", ""),
+        ({"1": {"F"}}, Outcome(), "", ""),
+        ({}, Outcome(), "", ""),
+        ({}, Outcome(), "is it another notebook?", "is it another notebook?"),
+        ({}, Outcome(answers={"2": {"F": 1}}), "is it another notebook?", ""),
+    ],
+)
+def test_answers_that_do_not_arrive_are_told(written, outcome, if_empty, says):
+    found = looks("s1", outcome, [NOTHING], written, (), if_empty)
+    assert [one.says.startswith(says) for one in found] == ([True] if says else [])
+
+
+def test_a_notebook_that_answers_nothing_says_what_it_is():
+    cells = [nbformat.v4.new_code_cell("print(2)")]
+    notebook = nbformat.v4.new_notebook(cells=cells)
+
+    def is_told(released):
+        notebook.metadata["loopbook"] = {"assignment": "heater", "student": "s1", "released": released}
+        return what_it_is(sources.sources(io.BytesIO(nbformat.writes(notebook).encode())))
+
+    assert is_told(cells_of(notebook)) == ""
+    assert is_told("as it was before") == "it answers nothing, though somebody has worked in it"
+    del notebook.metadata["loopbook"]
+    assert "is it another notebook" in what_it_is(sources.sources(io.BytesIO(nbformat.writes(notebook).encode())))
+    assert what_it_is(b"") == ""

@@ -128,7 +128,7 @@ def _exercises(marks):
                 counts.setdefault(answer.name, Counter(dict.fromkeys(STATUSES, 0)))[answer.status] += 1
         asked = tuple(Asked(number, name, count) for name, count in counts.items())
         earned, first = [exercise.earned for exercise in given], given[0].judged
-        # those that wait would be missing in the mean, and those who left it open would not
+        # on average those who wait would be left out, and those who left it open would not
         mean = None if None in earned else statistics.fmean(earned)
         exercises.append(Exercise(number, first.title, first.points, mean, asked))
     return sorted(exercises, key=lambda exercise: (exercise.mean is None, exercise.fraction))

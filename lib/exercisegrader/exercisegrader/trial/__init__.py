@@ -133,7 +133,7 @@ class _Attempt:
             what = re.sub(r" (?:for|of \w+ for student) [^:]*(?=:)", "", str(problem), count=1)
             self.note(Seen(WRONG, shortened(what, LONGEST_PROBLEM)), student)
         else:
-            self.variants.append(Variant(student, place, question, process_time() - begin))
+            self.variants.append(Variant(student, place, question, process_time() - begin, self.assignment.credit))
             for seen in itertools.chain.from_iterable(check(self.variants[-1]) for check in OF_ONE):
                 self.note(seen, student)
         return True
@@ -222,7 +222,7 @@ def one_variant(assignment: Assignment, student: str, number: str) -> str:
 
     Raises GradingError where the variant fails.
     """
-    variant = Variant(student, 0, asked(assignment, student, number), 0.0)
+    variant = Variant(student, 0, asked(assignment, student, number), 0.0, assignment.credit)
     question = variant.question
     units = {name: parameter.unit for name, parameter in question.exercise.parameters.items()}
     given = [f"{name} = {written(value, units[name])}" for name, value in question.values.items()]
@@ -234,7 +234,8 @@ def one_variant(assignment: Assignment, student: str, number: str) -> str:
         tried += kind.wrong_forms()
         for how, answer in tried:
             told = variant.judged(name, answer)
-            lines += [f"  {told.status:10}  {in_short(answer)} ({how})"]
+            brings = f", {told.percent:g} % of the points" if told.percent else ""
+            lines += [f"  {told.status:10}  {in_short(answer)} ({how}){brings}"]
             lines += [f"{'':14}{told.says}"] if told.says != told.status else []
     for rung, text in enumerate(question.rungs, start=1):
         lines += ["", f"hint {rung}: {text}"]

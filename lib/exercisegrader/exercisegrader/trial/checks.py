@@ -19,6 +19,7 @@ import numpy as np
 import sympy
 
 from exercisebook import kinds
+from exercisebook.credit import NOTHING, Credit, worth
 from exercisebook.judging import MISTAKE, OPEN, SECONDS, UNJUDGED, Verdict, is_right, judge
 from exercisebook.kinds.kind import AS_IT_IS, rounded
 from exercisebook.parameters import call, written
@@ -77,15 +78,16 @@ class Variant:
         place: of the student among those with whom the exercise is tried.
         question: the `Question`.
         seconds: that the key took.
+        credit: what is worth something though it is not right.
 
     Attributes:
         key: of what is judged.
         by_hand: the names of what a person marks.
     """
 
-    def __init__(self, student: str, place: int, question: Question, seconds: float):
+    def __init__(self, student: str, place: int, question: Question, seconds: float, credit: Credit = NOTHING):
         self.student, self.place, self.question, self.seconds = student, place, question, seconds
-        self.exercise = question.exercise
+        self.exercise, self.credit = question.exercise, credit
         self.by_hand = [name for name, kind in question.key.items() if kind.by_hand]
         self.key = {name: kind for name, kind in question.key.items() if name not in self.by_hand}
         self.mistakes = {name: question.mistakes[name] for name in self.key}
@@ -98,7 +100,7 @@ class Variant:
         if says := unreadable(data):
             return Verdict(name, UNJUDGED, says)
         background = self.question.background.of(name, {name: data})
-        return judge(name, self.key[name], data, self.mistakes[name], background)
+        return judge(name, self.key[name], data, self.mistakes[name], background, self.credit)
 
     def is_right(self, name: str, answer: object) -> bool:
         """Whether an answer is right; faster than a verdict with its sentence."""
@@ -192,8 +194,9 @@ def second_ways(variant: Variant) -> Iterator[Seen]:
 
 def declared_mistakes(variant: Variant) -> Iterator[Seen]:
     """A declared mistake is wrong, and gets its own sentence."""
-    texts = {variant.question.filled_in(sentence): sentence for sentence, _ in variant.exercise.mistakes}
-    for name, mistakes in variant.mistakes.items():
+    texts = {worth(variant.question.filled_in(says))[1]: worth(says)[1] for says, _ in variant.exercise.mistakes}
+    for name, given in variant.mistakes.items():
+        mistakes = [(worth(text)[1], value) for text, value in given]
         # several wrong numbers may come from one cause; a wrong word is one of its own
         is_word = isinstance(variant.key[name], kinds.Word)
         for text, count in Counter(text for text, _ in mistakes if is_word).items():
@@ -214,6 +217,8 @@ def declared_mistakes(variant: Variant) -> Iterator[Seen]:
                 other = next((one for one in texts if told.says.startswith(one)), "")
                 gets = f'that of "{shortened(texts[other], LONGEST_ANSWER)}"' if other else "another sentence"
                 yield Seen(ODD, f"{mistake} gets {gets}", f"{in_short(value)}: {told.says}", OFTEN)
+            elif told.percent:
+                yield Seen(NOTE, f"{mistake} brings {told.percent:g} % of the points", example)
             elif type(variant.key[name]) is kinds.Number and variant.is_right(name, rounded(float(value))):
                 yield Seen(ODD, f"{mistake} is right when it is rounded", example, RARE)
 
