@@ -89,7 +89,14 @@ def test_a_number_is_not_a_difference(key, given):
         assert not is_right(kind, given)
 
 
-@pytest.mark.parametrize("key", ["2*exp(-{}*s)/(10*s + 1)", "{}/(7*s + 1)", "2/({}*s + 1)", "k*exp(-{}*x)"])
+EACH = [
+    "2*exp(-{}*s)/(10*s + 1)", "{}/(7*s + 1)", "2/({}*s + 1)", "(1 - {}*s)/(1 + s)**2", "1/(s - {})", "1/(s**2 + {})",
+    "1/({}*s + 1)**3", "k*exp(-{}*x)", "{}*sqrt(k/x)", "2*sqrt(k*x)*{}", "{}/sqrt(k)", "x/({}*sqrt(k))",
+    "({}*k + x)**2", "k*({} - exp(-x/y))", "{}*k - x",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("key", EACH)
 @pytest.mark.parametrize("value", [1, 3])
 def test_each_number_has_its_tolerance_also_where_it_is_one(key, value):
     kind = expression(key.format(value))
@@ -97,6 +104,27 @@ def test_each_number_has_its_tolerance_also_where_it_is_one(key, value):
         kind.draw_from(f"{seed}")
         assert is_right(kind, key.format(1.009 * value))
         assert not is_right(kind, key.format(1.011 * value))
+
+
+GROWING = [
+    ("exp(t/2)", "exp(t/2) - 1"),
+    ("exp(t/2)", "2*sinh(t/2)"),
+    ("20 + exp(t/3)", "exp(t/3)"),
+    ("5*exp(t/3) - 4", "5*exp(t/3) + 4"),
+    ("t**3", "t**3 + 50"),
+    ("2*(1 - exp(-t/5))", "2*(1 - exp(-t/5)) - 1000*exp(-10000*t)"),
+    ("2*(1 - exp(-t/5))", "2*(1 - exp(-t/5)) + Heaviside(t - 29.9)"),
+    ("2*(1 - exp(-t/5))", "2*(1 - exp(-t/5)) + exp(100*(t - 30))"),
+]
+
+
+@pytest.mark.parametrize(("key", "given"), GROWING)
+def test_the_first_moment_counts_of_a_function_that_grows_and_the_last_one(key, given):
+    kind = time_function(key, until=30)
+    for seed in range(5):
+        kind.draw_from(f"{seed}")
+        assert is_right(kind, key)
+        assert not is_right(kind, given)
 
 
 IN_TIME = ["5*(1 - exp(-(t - {0})/8))*Heaviside(t - {0})", "5*Heaviside(t - {})", "3*cos(t/{})", "2*exp(-t/{})"]
@@ -205,10 +233,13 @@ def test_random_keys_are_right_in_three_digits_and_wrong_with_one_number_off(see
     [
         ("5*x/(2*y)", ["5 * x / (2 * y)"]),
         ("1/(40*s + 4)", ["40 * s", "1 / (40 * s + 4)"]),
-        ("(2*s + 1)**2", ["2 * s"]),
+        ("(2*s + 1)**2", ["2 * s", "(2 * s + 1) ** 2"]),
+        ("(1 - s)/(s + 1)**2", ["1", "1", "(1 - s) / (s + 1) ** 2"]),
+        ("2*sqrt(x*y)", ["2 * sqrt(x * y)"]),
+        ("x**(1/3)", ["1 / 3", "x ** (1 / 3)"]),
         ("sqrt(2)*s**3", ["sqrt(2) * s ** 3"]),
-        ("x - 3*exp(y/4 - 0.5)", ["y / 4", "0.5", "3 * exp(y / 4 - 0.5)"]),
-        ("pi*x**2 + (1000 - 998)*y", ["(1000 - 998) * y"]),
+        ("x - 3*exp(y/4 - 0.5)", ["x", "y / 4", "0.5", "3 * exp(y / 4 - 0.5)"]),
+        ("pi*x**2 + (1000 - 998)*y", ["pi * x ** 2", "(1000 - 998) * y"]),
     ],
 )
 def test_what_belongs_together_is_one_number(text, found):

@@ -236,7 +236,13 @@ JUDGED = [
     (poles([0, -100]), [0.9, -100], MISTAKE, "one should be exactly zero"),
     (poles([0, 0]), [0, 0.005], MISTAKE, "exactly zero"),
     (poles([-0.006 + 2j, -0.006 - 2j]), [2j, -2j], MISTAKE, "on the wrong side of the imaginary axis, or beside it"),
-    (poles([-0.006 + 2j, -0.006 - 2j]), [0.01 + 2j, 0.01 - 2j], MISTAKE, "signs"),
+    (poles([-0.006 + 2j, -0.006 - 2j]), [0.01 + 2j, 0.01 - 2j], MISTAKE, "on the wrong side"),
+    (
+        poles([-0.001 + 1j, -0.001 - 1j]),
+        [-0.005 + 1j, -0.005 - 1j],
+        MISTAKE,
+        "the real part, which damps",
+    ),
 ]
 
 

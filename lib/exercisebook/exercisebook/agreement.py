@@ -29,6 +29,8 @@ EXACT = 1e-9
 #: With the best numbers, values differ by no more than this share of `within`; functions of time by no more than the
 #: second of it, and one that is given by its values, which may be of a simulation, by the third.
 LEFT, LEFT_IN_TIME, LEFT_OF_VALUES = 0.02, 0.005, 0.1
+#: A function of time is as large as it becomes soon, in this part of the times, and at least this part of the whole.
+SOON, SLIGHT = 0.1, 1e-6
 #: The key of a mistake must have a value at this part of the points.
 ENOUGH = 0.3
 #: An answer may differ from the key by so many times what the numbers of the key may change, and `within`; and all of
@@ -76,21 +78,36 @@ def agree_in_time(key: Formula, given: Formula | np.ndarray, points: Mapping[str
     expected, _ = key.told_at(points)
     if not np.isfinite(expected).any():
         return False
-    largest = np.nanmax(np.abs(expected))
-    size = np.nanmax(np.abs(expected - np.nanmean(expected)))
-    measure = InTime(float(size if size > EXACT * largest else largest or 1.0))
+    measure = InTime(_sizes(expected, points["t"], isinstance(given, np.ndarray)))
     left = max((LEFT_OF_VALUES if isinstance(given, np.ndarray) else LEFT_IN_TIME) * within, EXACT)
     counts = ~near_switches(key, points, within)
     comparison = Comparison(key, points, within, measure, left, counts, counts)
     if isinstance(given, np.ndarray):
         return comparison.holds_of_values(given)
-    return comparison.holds_for(given) and not _has_spike(key, given, points["t"], within, measure)
+    return comparison.holds_for(given) and not _has_spike(key, given, points["t"], within)
 
 
-def _has_spike(key, given, times, within, measure):
+def _sizes(expected, times, is_flat):
+    """The size of a function beside which a difference counts, at each time: of one that grows, of what is near there.
+
+    Where it is flat, it is the same at all times.
+    """
+    largest = np.nanmax(np.abs(expected))
+    size = np.nanmax(np.abs(expected - np.nanmean(expected)))
+    size = float(size if size > EXACT * largest else largest or 1.0)
+    if is_flat:
+        return np.full(times.shape, size)
+    order = np.argsort(times)
+    until = np.maximum.accumulate(np.nan_to_num(np.abs(expected[order])))
+    soon = np.searchsorted(times[order], times + SOON * times.max(), side="right") - 1
+    return np.clip(until[soon], SLIGHT * size, size)
+
+
+def _has_spike(key, given, times, within):
     """Whether a function leaves the key at a moment of its own, or the values of the key beside a moment of that."""
     points = {"t": np.unique(np.concatenate([times, moments_of(given, times.max())]))}
     found, expected = given.values_at(points), key.values_at(points)
+    measure = InTime(_sizes(expected, points["t"], False))
     allowed = measure.size * (Rounded.of(key, points, within, measure).most + MORE_THAN_KEY * within + EXACT)
     far = np.abs(found - expected) > allowed
     near = near_switches(key, points, within)

@@ -2,8 +2,8 @@
 
 A number that multiplies a product is one number, however it is written: 5/2, and the 5 and the 2 of 5*x/(2*y). In a
 factor as 40*s + 4 one of the two numbers says nothing new beside the number before the product: 1/(40*s + 4) is a
-0.25/(10*s + 1). What stands in an exponent alone, as in s**2, is exact. In a function, a 1 is a number like any other,
-also where it is not written: exp(-s) is a dead time of 1.
+0.25/(10*s + 1). What stands in an exponent alone, as in s**2, is exact, unless it is a decimal such as 0.33. A 1 is
+a number like any other, also where it is not written: exp(-s) is a dead time of 1.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import ast
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from exercisebook.arithmetic import Decimals, worked_out
 from exercisebook.formulas import is_number
 
 
@@ -39,80 +40,65 @@ def freedoms(tree: ast.expr, is_switch: bool = False) -> list[Freedom]:
     """Return the numbers of a formula that may be rounded.
 
     Arguments:
-        is_switch: whether it is what a step or a piece depends on, where 1 is a number, too.
+        is_switch: whether it is what a step or a piece depends on.
 
     >>> from exercisebook.formulas import Formula
     >>> tree = Formula("5*exp(-10*s/3)/(2*(40*s + 4)*(s + 0.1))", "s").tree
     >>> [ast.unparse(one.node) for one in freedoms(tree)]
     ['-10 * s / 3', '40 * s', '0.1', '5 * exp(-10 * s / 3) / (2 * (40 * s + 4) * (s + 0.1))']
-    >>> [ast.unparse(one.node) for one in freedoms(Formula("exp(-(t - 1))", "t").tree)]
-    ['1', '-(t - 1)']
+    >>> [ast.unparse(one.node) for one in freedoms(Formula("1 - exp(-(t - 1))", "t").tree)]
+    ['1', '1', '-(t - 1)', 'exp(-(t - 1))']
     """
-    return list(_of(tree, None if is_switch else (), _IN_SWITCH if is_switch else _PLAIN))
+    return list(_of(tree, None if is_switch else (), is_switch))
 
 
-#: Where a part stands: in no function, in one, or where a step or a piece begins. In a function, 1 is a number, too.
-_PLAIN, _IN_FUNCTION, _IN_SWITCH = range(3)
-
-
-def _of(node: ast.expr, beside: tuple[ast.expr, ...] | None, where: int) -> Iterator[Freedom]:
+def _of(node: ast.expr, beside: tuple[ast.expr, ...] | None, decides: bool) -> Iterator[Freedom]:
     """The numbers of a part; beside it are no other terms yet, or there is None that counts."""
-    decides = where == _IN_SWITCH
     match node:
         case _ if is_number(node):
-            if _says(node) or (where and not _is_none(node)):
+            if _says(node):
                 yield Freedom(node, beside or (), decides)
         case ast.BinOp(op=ast.Add() | ast.Sub()):
             terms = terms_of(node)
             for term in terms:
-                yield from _of(term, None if beside is None else tuple(terms), where)
-        case ast.BinOp(op=ast.Mult() | ast.Div()) | ast.UnaryOp():
-            yield from _of_product(node, beside, where)
-        case ast.BinOp(op=ast.Pow()) if is_number(node.right):
-            yield from _of_product(node, beside, where)
+                yield from _of(term, None if beside is None else tuple(terms), decides)
         case ast.Call(ast.Name("Piecewise")):
             for piece in node.args:
                 value, condition = piece.elts
-                yield from _of(value, beside, where)
-                yield from _of(condition, None, _IN_SWITCH)
-        case ast.Call():
-            for argument in node.args:
-                inside = _IN_SWITCH if decides or node.func.id in _STEPS else _IN_FUNCTION
-                yield from _of(argument, None, inside)
+                yield from _of(value, beside, decides)
+                yield from _of(condition, None, True)
         case ast.Compare():
-            yield from _of(node.left, None, _IN_SWITCH)
-            yield from _of(node.comparators[0], None, _IN_SWITCH)
-        case ast.BinOp():
-            yield from _of(node.left, None, where)
-            yield from _of(node.right, None, max(where, _IN_FUNCTION))
-        case _ if where:
-            yield Freedom(node, (), decides)
+            yield from _of(node.left, None, True)
+            yield from _of(node.comparators[0], None, True)
+        case _:
+            yield from _of_product(node, beside, decides)
 
 
-def _of_product(node, beside, where):
+def _of_product(node, beside, decides):
     """The numbers in the factors of a product, and its own one."""
-    has_number, factors = where != _PLAIN, list(_factors(node))
-    for factor in factors:
+    for factor in _factors(node):
         if is_number(factor):
-            has_number = has_number or _says(factor)
-        elif _is_sum(factor):
+            continue
+        if _is_sum(factor):
             terms = terms_of(factor)
-            fixed = _fixed(terms, where)
-            has_number = has_number or fixed is not None
             inside = tuple(terms) if beside == () and _is_above(node, factor) else None
+            fixed = _fixed(terms)
             for term in terms:
-                found = _of(term, inside, where)
-                yield from (one for one in found if term is not fixed or one.node is not term)
-        elif not isinstance(factor, ast.Name):
-            yield from _of(factor, None, where)
-    if has_number:
-        yield Freedom(node, beside or (), where == _IN_SWITCH)
+                yield from (one for one in _of(term, inside, decides) if term is not fixed or one.node is not term)
+        elif isinstance(factor, ast.Call):
+            is_step = decides or factor.func.id in _STEPS
+            for argument in factor.args:
+                yield from _of(argument, None, is_step)
+        elif isinstance(factor, ast.BinOp):  # a power with a symbol in its exponent
+            yield from _of(factor.left, None, decides)
+            yield from _of(factor.right, None, decides)
+    for exponent in _exponents(node):
+        yield Freedom(exponent, (), decides)
+    yield Freedom(node, beside or (), decides)
 
 
-def _fixed(terms, where):
-    """The term of a sum whose number says nothing new beside that of the product; None where each other one is 1."""
-    if where == _PLAIN and not all(_has_number(term) for term in terms):
-        return None
+def _fixed(terms):
+    """The term of a sum whose number says nothing new beside that of the product: one that has none, or is a number."""
     bare = (term for term in terms if not is_number(term) and not _has_number(term))
     return next(bare, None) or next((term for term in terms if is_number(term)), terms[0])
 
@@ -122,15 +108,29 @@ def _has_number(term):
 
 
 def _says(node):
-    """Whether a part without symbols has a number that may be rounded."""
+    """Whether a part without symbols has a number that may be rounded; zero has none."""
     match node:
         case ast.Constant():
-            return type(node.value) is not bool and node.value not in (0, 1)
+            return type(node.value) is not bool and node.value != 0
         case ast.BinOp(op=ast.Pow()):
             return _says(node.left)
         case ast.Name():
             return False
     return any(_says(part) for part in ast.iter_child_nodes(node) if isinstance(part, ast.expr))
+
+
+def _exponents(node):
+    """The exponents in a product that are no multiples of one half, which may be rounded."""
+    match node:
+        case ast.BinOp(op=ast.Mult() | ast.Div()):
+            yield from _exponents(node.left)
+            yield from _exponents(node.right)
+        case ast.UnaryOp():
+            yield from _exponents(node.operand)
+        case ast.BinOp(op=ast.Pow()) if is_number(node.right) and not is_number(node.left):
+            value = complex(worked_out(node.right, Decimals({})))
+            if (2 * value.real) % 1:
+                yield node.right
 
 
 def terms_of(node: ast.expr) -> list[ast.expr]:
@@ -150,7 +150,7 @@ def _is_sum(node):
 
 
 def _factors(node):
-    """What is multiplied and divided in a product; of a power what it is a power of."""
+    """What is multiplied and divided in a product; of a power, and of a root, what it is a power of."""
     match node:
         case _ if is_number(node):
             yield node
@@ -161,6 +161,8 @@ def _factors(node):
             yield from _factors(node.operand)
         case ast.BinOp(op=ast.Pow()) if is_number(node.right):
             yield from _factors(node.left)
+        case ast.Call(ast.Name("sqrt"), [argument]):
+            yield from _factors(argument)
         case _:
             yield node
 
@@ -193,7 +195,3 @@ def switches(tree: ast.expr) -> list[ast.expr]:
             case ast.Compare():
                 found.append(ast.BinOp(node.left, ast.Sub(), node.comparators[0]))
     return [one for one in found if not is_number(one)]
-
-
-def _is_none(node):
-    return isinstance(node, ast.Constant) and (not node.value or node.value is True)

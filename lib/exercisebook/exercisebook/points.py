@@ -132,8 +132,9 @@ def times_for(key: Formula, until: float, seed: str = "") -> np.ndarray:
     (True, True, (168,))
     """
     dice = random.Random(f"{seed}\n{key.text}")
-    early = [10 ** dice.uniform(-4, -2) for _ in range(20)]
-    times = [until * share for share in early + [(k + dice.random()) / 120 for k in range(120)]]
+    early = [10 ** dice.uniform(-9, -2) for _ in range(26)]
+    late = [1 - 10 ** dice.uniform(-9, -3) for _ in range(4)]
+    times = [until * share for share in early + late + [(k + dice.random()) / 120 for k in range(120)]]
     grid = until * np.linspace(0, 1, 2001)
     for switch in switches(key.tree):
         signs = np.real(worked_out(switch, Decimals({"t": grid}))) > 0

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -23,6 +22,8 @@ MOST_NUMBERS = 40
 #: Two numbers change the values in the same way where the cosine between what they change, seen at no fewer points, is
 #: 1 but for this.
 ALIKE, FEWEST = 1e-8, 4
+#: A term grows that becomes so many times what it is in the first third of the times.
+GROWN = 10
 #: By this fraction numbers are changed to see what they do.
 _STEP = 1e-5
 
@@ -52,16 +53,23 @@ class InRatio:
         return np.where(one == other, 0, np.log(one / other))
 
 
-@dataclass(frozen=True)
 class InTime:
-    """Beside the size of a function.
+    """Beside the size of a function, which may be another one at each time.
 
-    >>> InTime(20)(np.array([11.0]), np.array([10.0]))
+    >>> InTime(np.array([20]))(np.array([11.0]), np.array([10.0]))
     array([0.05])
     """
 
-    size: float
     most = np.inf
+
+    def __init__(self, size: np.ndarray):
+        self.size = size
+
+    def __eq__(self, other: object) -> bool:
+        """Whether both measure in the same way."""
+        return isinstance(other, InTime) and np.array_equal(self.size, other.size)
+
+    __hash__ = None
 
     def __call__(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
         """The difference."""
@@ -142,13 +150,15 @@ class Rounded:
         changing, constant = {}, {}
         for term in one.beside:
             values = np.broadcast_to(worked_out(term, Decimals(self.points)), self.values.shape)
+            early = values[: len(values) // 3]  # what grows without end is known to the decimal that it begins with
+            values = early if np.max(np.abs(values)) > GROWN * np.max(np.abs(early)) else values
             by_place = changing if np.ptp(values.real) else constant
             by_place[id(term)] = np.ptp(values.real) or np.max(np.abs(values))
         others = changing if id(one.node) in changing else changing | constant
         own, largest = others.get(id(one.node), 0), max(others.values(), default=0)
         if not (0 < own < np.inf and largest < np.inf):
             return within
-        return max(within, 0.5 * 10 ** np.floor(np.log10(within * largest)) / own)
+        return max(within, 0.5 * 10 ** np.floor(np.log10(within * largest) + 0.01) / own)
 
     def changed(self, shares: np.ndarray) -> np.ndarray:
         """Its values with other numbers: in a row those for a row of shares of what they may be off by."""

@@ -96,9 +96,11 @@ def convert(value: Number, unit: str, to: str) -> float:
         return 10 ** (float(value) / 20)
     if re.search("rad|deg", unit + to):
         unit, to = unit.replace("Hz", "turn/s"), to.replace("Hz", "turn/s")
+    if (unit, to) in (("", "dB"), ("%", "dB")):
+        return 20 * math.log10(float(value) / (100 if unit else 1)) if value > 0 else -math.inf
     try:
         return float(registry().Quantity(float(value), _parsed(unit)).to(_parsed(to)).magnitude)
-    except (pint.PintError, OverflowError):
+    except (pint.PintError, OverflowError, TypeError):  # a logarithm of a Fraction
         raise ValueError(f"{unit or 'a number without unit'} is not a unit of the same quantity as {to or 1}") from None
 
 

@@ -102,4 +102,4 @@ def _is_right_with(key, kind, answer):
         return False
     wrong = copy.copy(kind)  # with its own symbols, times and tolerance
     wrong.key = key.key
-    return wrong.agrees(answer) and not wrong.agrees(kind.key)
+    return wrong.may_agree(answer) and wrong.agrees(answer) and not wrong.agrees(kind.key)

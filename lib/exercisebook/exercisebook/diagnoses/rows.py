@@ -100,7 +100,9 @@ def _slips(value, left, kind):
             if is_near(value, wrong) and not is_near(value, one):
                 yield says
         if is_near(value, one):
-            yield "one is on the wrong side of the imaginary axis, or beside it: is that part stable?"
+            is_beside = kind.sides([value]) != kind.sides([one])
+            wrong_side = "one is on the wrong side of the imaginary axis, or beside it: is that part stable?"
+            yield wrong_side if is_beside else "of one the real part, which damps, is not right"
         elif abs(value - one) <= NEARBY * abs(one):
             yield "one is off by a few percent, which is more than rounding explains"
         if one.imag and abs(value.real - one.real) <= kind.within * abs(one):

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from plainmath.types import Number
 
 
+#: At about so many points an answer is looked at first; it may be off by this fraction, at this part of them by more.
+FEW, FIRST_LOOK, MOST_OFF = 15, 0.1, 0.3
 #: Of a formula that is shown as it was read, so many characters.
 LONGEST_SHOWN = 120
 
@@ -263,6 +265,22 @@ class Expression(Kind):
         at = [f"{name} = {_number(np.broadcast_to(values, missing.shape)[place])}" for name, values in points.items()]
         says = f"this has no value at {', '.join(at)}, where the answer has one" if at else "this has no value"
         return says, f"{says} (at {missing.sum()} of {told.sum()} points): {shortened(answer.text, LONGEST_SHOWN)}"
+
+    def may_agree(self, answer: Any) -> bool:
+        """Whether both are near each other at a few points."""
+        points = self.points()
+        shape = np.broadcast_shapes(*(np.shape(values) for values in points.values())) or (1,)
+        found = np.broadcast_to(answer if isinstance(answer, np.ndarray) else answer(**points), shape)
+        finite = np.flatnonzero(np.isfinite(found))
+        if not finite.size:
+            return True
+        few = finite[:: max(1, finite.size // FEW)]
+        values = np.broadcast_to(
+            self.key(**{name: np.broadcast_to(one, shape)[few] for name, one in points.items()}), few.shape
+        )
+        with np.errstate(all="ignore"):
+            off = np.abs(values - found[few]) > FIRST_LOOK * np.maximum(np.abs(found[few]), 1e-12)
+        return bool(np.mean(off | ~np.isfinite(values)) <= MOST_OFF)
 
     def agrees(self, answer: Any) -> bool:
         """Whether both have the same values, but for the rounding of numbers."""

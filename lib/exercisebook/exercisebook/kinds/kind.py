@@ -259,6 +259,10 @@ class Kind:
         """How far an answer is from the value of a mistake, where two are near; of most kinds nothing tells."""
         return 0.0
 
+    def may_agree(self, answer: Any) -> bool:
+        """Whether an answer may agree, by a look that is quicker than to compare it; most kinds are quick anyway."""
+        return True
+
     def in_other_units(self, answer: Any) -> Iterable[tuple[str, Any]]:
         """What an answer would be if it had been given in another unit: pairs of the unit and the value."""
         return ()

@@ -41,7 +41,7 @@ _WITH_UNIT = re.compile(r"([+-]? ?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?) ?(.*)")
 _BEFORE_IT = re.compile(
     r"^(?:±|\+/?-|(?:at least|at most|at|after|up to|times|only|exactly|(?:falls |rises )?by|"
     r"(?:by )?(?:a )?factor(?: of)?|is|it is|magnitude|size) |"
-    r"(?:[^\W\d]\w* ?)?[<>≥≤]=? ?)",
+    r"(?:[^\W\d]\w* ?)?[<>≥≤]=?(?![<>≥≤=]) ?)",
     re.IGNORECASE,
 )
 #: What is said before the number that counts, and a remark in brackets behind it, which is no second answer.
@@ -93,7 +93,9 @@ ROUNDED = 0.01
 NOTHING = 1e-9
 #: A pole is on the imaginary axis where its real part is below this fraction of the largest one: what is worked out in
 #: decimal numbers is not exactly there.
-ON_AXIS = 1e-6
+ON_AXIS = 1e-9
+#: The real part of a pole, which damps, may be off by so many times the accuracy.
+DAMPING = 5
 #: In so many other units the key is tried.
 MOST_UNITS = 2
 
@@ -354,14 +356,19 @@ class Poles(Kind):
 
     def matched(self, answer: np.ndarray) -> dict[int, int]:
         """Which of the answer's values are among the key's, each taken once: {place in it: place in the key}."""
-        allowed, pairs = _allowed(self.key, self.within, 1e-9), {}
+        allowed, pairs = _allowed(self.key, self.within, 1e-12), {}
         sides, own_sides = self.sides(answer), self.sides(self.key)
         for place, value in enumerate(answer):
             left = [k for k in range(len(self.key)) if k not in pairs.values() and sides[place] == own_sides[k]]
             nearest = min(left, key=lambda k, value=value: abs(value - self.key[k]), default=None)
-            if nearest is not None and abs(value - self.key[nearest]) <= allowed[nearest]:
+            if nearest is not None and self._is_near(value, self.key[nearest], allowed[nearest]):
                 pairs[place] = nearest
         return pairs
+
+    def _is_near(self, value, key, allowed):
+        """Whether a pole is where it should be; one of little damping has that damping, too."""
+        off = abs(value.real - key.real)
+        return abs(value - key) <= allowed and (key.real == 0 or off <= DAMPING * self.within * abs(key.real))
 
     def sides(self, values: np.ndarray) -> list[int]:
         """On which side of the imaginary axis each of some values is: -1, 0 or 1."""

@@ -259,7 +259,8 @@ def named(given: str, among: Sequence[str]) -> str | None:
     >>> named("It must be tuned at B.", ["A", "B"]), named("a load lowering it", ["a load that lowers it", "noise"])
     ('B', 'a load that lowers it')
     """
-    found = [] if len(given) > LONGEST else _spelled(given, among) or _in_a_sentence(given, among)
+    is_denied = re.match(r"\s*(?:[¬!~≠/]|<>)", given)  # not stable, as programs write it
+    found = [] if len(given) > LONGEST or is_denied else _spelled(given, among) or _in_a_sentence(given, among)
     return found[0] if len(found) == 1 else None
 
 

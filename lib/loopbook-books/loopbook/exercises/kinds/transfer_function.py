@@ -8,6 +8,7 @@ import functools
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+import mpmath
 import sympy
 
 from exercisebook.kinds.formula import Expression, in_other_time
@@ -42,14 +43,14 @@ class TransferFunction(Expression):
         super().__init__(key, what, symbols, within, unit)
 
     def agrees(self, answer: Any) -> bool:
-        """Whether both have the same values, and as many poles on either side of the imaginary axis, on it and at zero.
+        """Whether both have the same values, are as proper, and have as many poles on each side of the imaginary axis.
 
-        A small term that is unstable changes no value by much, but it is another system.
+        A small term that is unstable, or improper, changes no value by much, but it is another system.
         """
-        return super().agrees(answer) and (
-            not (sides := _poles_by_side(ast.unparse(self.key.tree)))
-            or (_poles_by_side(ast.unparse(answer.tree)) or sides) == sides
-        )
+        if not super().agrees(answer):
+            return False
+        own, other = (_structure(ast.unparse(one.tree)) for one in (self.key, answer))
+        return own is None or other is None or own == other
 
     def mistakes(self) -> Iterator[tuple[str, Any]]:
         """Those of an expression, a forgotten dead time, its sign, and an s too many or too few."""
@@ -78,28 +79,31 @@ def _pade(x, order):
 
 
 @functools.lru_cache(maxsize=200)
-def _poles_by_side(text):
-    """How many poles are left of the imaginary axis, on it, right of it, and zero.
+def _structure(text):
+    """By how much it is proper, and how many poles are left of the imaginary axis, on it, right of it, and zero.
 
-    None are told with other symbols, where a dead time is in a denominator, and of what SymPy cannot work out.
+    Empty for what is no rational function with dead times above; None with other symbols than s, and for what SymPy
+    cannot work out.
     """
     try:
         expr = parse(text)
-    except ValueError:
-        return ()
-    delays: dict[sympy.Expr, sympy.Expr] = {}  # a dead time has no pole
-    for one in expr.atoms(sympy.exp):
-        delays[one] = 1 / delays[1 / one] if 1 / one in delays else sympy.Dummy()
-    below = sympy.fraction(sympy.cancel(sympy.together(expr.xreplace(delays))))[1]
-    for delay in below.free_symbols - {s}:  # above it stands as well
-        below = sympy.cancel(below / delay)
-    if below.free_symbols - {s}:
-        return ()
-    sides = collections.Counter()
-    for factor, times in sympy.Poly(below, s).sqf_list()[1]:
-        for pole in factor.nroots(n=20):
-            sides[0 if pole == 0 else 2 + _side(pole)] += times
-    return sorted(sides.items())
+        if expr.free_symbols - {s}:
+            return None
+        delays: dict[sympy.Expr, sympy.Expr] = {}  # a dead time has no pole
+        for one in expr.atoms(sympy.exp):
+            delays[one] = 1 / delays[1 / one] if 1 / one in delays else sympy.Dummy()
+        above, below = sympy.fraction(sympy.cancel(sympy.together(expr.xreplace(delays))))
+        for delay in below.free_symbols - {s}:  # above it stands as well
+            below = sympy.cancel(below / delay)
+        if below.free_symbols - {s} or not (below.is_polynomial(s) and above.is_polynomial(s)):
+            return ()
+        sides = collections.Counter()
+        for factor, times in sympy.Poly(below, s).sqf_list()[1]:
+            for pole in factor.nroots(n=20, maxsteps=200):
+                sides[0 if pole == 0 else 2 + _side(pole)] += times
+        return sympy.degree(above, s) - sympy.degree(below, s), sorted(sides.items())
+    except (ValueError, ArithmeticError, sympy.PolynomialError, NotImplementedError, mpmath.libmp.NoConvergence):
+        return None
 
 
 def _side(pole):
