@@ -20,6 +20,10 @@ if TYPE_CHECKING:
 
 #: A pole is on the imaginary axis where its real part is below this fraction of the other one.
 ON_AXIS = 1e-12
+#: The longest dead time is so many times the unit of all of them, at most.
+MOST_SHORTEST = 200
+#: A coefficient that is smaller than this part of the largest one is none.
+TRACE = 1e-30
 
 
 class TransferFunction(Expression):
@@ -89,21 +93,32 @@ def _structure(text):
         expr = parse(text)
         if expr.free_symbols - {s}:
             return None
-        delays: dict[sympy.Expr, sympy.Expr] = {}  # a dead time has no pole
-        for one in expr.atoms(sympy.exp):
-            delays[one] = 1 / delays[1 / one] if 1 / one in delays else sympy.Dummy()
-        above, below = sympy.fraction(sympy.cancel(sympy.together(expr.xreplace(delays))))
-        for delay in below.free_symbols - {s}:  # above it stands as well
-            below = sympy.cancel(below / delay)
-        if below.free_symbols - {s} or not (below.is_polynomial(s) and above.is_polynomial(s)):
+        exps = {one: one.args[0].coeff(s) for one in expr.atoms(sympy.exp)}
+        shortest, delay = functools.reduce(sympy.gcd, exps.values(), sympy.Integer(0)), sympy.Dummy()
+        if any(one.args[0] != many * s for one, many in exps.items()):
             return ()
+        if any(abs(many / shortest) > MOST_SHORTEST for many in exps.values()):
+            return None
+        powers = {one: delay ** (-many / shortest) for one, many in exps.items()}  # a dead time has no pole
+        above, below = sympy.fraction(sympy.cancel(sympy.together(expr.xreplace(powers))))
+        below = sympy.cancel(below / delay ** sympy.Poly(below, delay).monoms()[-1][0])  # above it stands as well
+        if delay in below.free_symbols or not (below.is_polynomial(s) and above.is_polynomial(s, delay)):
+            return ()
+        above, below = (_without_traces(sympy.Poly(one, s)) for one in (above.subs(delay, sympy.Rational(2, 3)), below))
         sides = collections.Counter()
-        for factor, times in sympy.Poly(below, s).sqf_list()[1]:
+        for factor, times in below.sqf_list()[1]:
             for pole in factor.nroots(n=20, maxsteps=200):
                 sides[0 if pole == 0 else 2 + _side(pole)] += times
-        return sympy.degree(above, s) - sympy.degree(below, s), sorted(sides.items())
+        return above.degree() - below.degree(), sorted(sides.items())
     except (ValueError, ArithmeticError, sympy.PolynomialError, NotImplementedError, mpmath.libmp.NoConvergence):
         return None
+
+
+def _without_traces(polynomial):
+    """A polynomial without coefficients that are nothing beside the others in decimal numbers."""
+    largest = max(map(abs, polynomial.all_coeffs()))
+    found = {powers: one for powers, one in polynomial.terms() if abs(one) > TRACE * largest}
+    return sympy.Poly(found, s) if found else polynomial
 
 
 def _side(pole):
