@@ -145,8 +145,9 @@ def answered(content: bytes) -> dict[str, set[str]]:
     found: dict[str, set[str]] = {}
     for cell in json.loads(content)["cells"] if content else []:
         for call in _CALL.finditer(cell["source"]):
-            for part in filter(str.strip, call[2].split(",")):
-                if not _PLACE.search(part):
-                    named = _NAMED.match(part)
+            for place, part in enumerate(call[2].split(",")):
+                named = _NAMED.match(part)
+                is_alone = place == 0 and part.strip() and not part.lstrip().startswith("**")  # others come later
+                if (named or is_alone) and not _PLACE.search(part):
                     found.setdefault(call[1], set()).add(named[1] if named else "")
     return found

@@ -164,6 +164,7 @@ def test_a_long_text_is_one_value(monkeypatch):
         ('sheet.answer("2", F=-4, a=...)', {"F"}),
         ('sheet.answer("2", "-k*v", "-k*v/m")', {""}),
         ('# sheet.answer("2", F=3)', {"F"}),
+        ('sheet.answer("2", F=[-1, -2], **{"a": None})', {"F"}),
         ('def later():\n    sheet.answer("2", F=3)', {"F"}),
         ('%%script false\nsheet.answer("2", F=3)', {"F"}),
         ('print("F =", 3)', set()),
