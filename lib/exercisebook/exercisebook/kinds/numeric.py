@@ -39,7 +39,7 @@ from exercisebook.reading import (
 _WITH_UNIT = re.compile(r"([+-]? ?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?) ?(.*)")
 #: What may be beside a number, on either side, and says nothing of its size.
 _BEFORE_IT = re.compile(
-    r"^(?:±|\+/?-|(?:at least|at most|at|after|up to|times|only|exactly|(?:falls |rises )?by|"
+    r"^(?:(?:at least|at most|at|after|up to|times|only|exactly|(?:falls |rises )?by|"
     r"(?:by )?(?:a )?factor(?: of)?|is|it is|magnitude|size) |"
     r"(?:[^\W\d]\w* ?)?[<>≥≤]=?(?![<>≥≤=]) ?)",
     re.IGNORECASE,
