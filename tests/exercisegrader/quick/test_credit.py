@@ -9,7 +9,9 @@ from exercisegrader import GradingError
 from exercisegrader.assignment import Assignment
 from exercisegrader.judge import judged
 from exercisegrader.marking import Mark, Marked
+from exercisegrader.release import notebook
 from exercisegrader.results import Result
+from exercisegrader.student import Student
 from exercisegrader.trial import one_variant, report, try_all
 
 TEXT = """# Springs
@@ -89,6 +91,7 @@ def test_what_they_bring_is_a_part_of_the_points():
 def test_the_author_and_the_students_are_told():
     own = assignment()
     assert "the right number in another unit brings 50 %" in own.credit.says
+    assert own.credit.says in notebook(own, Student("s1", "Ada")).cells[0].source
     assert Credit().says == ""
     said = report(list(try_all(own, ["s1", "s2"])))
     assert 'W: the mistake "The force was not as large from the beginning." brings 30 % of the points' in said
