@@ -24,7 +24,7 @@ PARTS = {
         "Python with NumPy and SymPy",
         ("numpy",),
         ("loopbook", "sympy", "mpmath", "pint", "flexcache", "flexparser", "platformdirs", "typing-extensions",
-         "markdown-it-py", "mdurl", "latex2mathml"),
+         "markdown-it-py", "mdurl", "latex2mathml", "lark"),
         (),
     ),
     "scipy": ("SciPy", ("openblas", "scipy"), (), ("scipy",)),

@@ -2,8 +2,8 @@
 
 import pytest
 
+from exercisebook.grammar import Unreadable
 from exercisebook.judging import MISTAKE, RIGHT, UNJUDGED, WRONG, judge
-from exercisebook.reading import Unreadable
 from loopbook.exercises import bank
 from loopbook.exercises.charts.notation import read_chart
 from loopbook.exercises.charts.running import SCAN

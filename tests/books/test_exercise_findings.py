@@ -12,7 +12,7 @@ from draws import STUDENTS, THOROUGH, of_the_day
 from exercisebook.diagnoses import explained
 from exercisebook.diagnoses import numbers as in_numbers
 from exercisebook.diagnoses.numbers import FACTORS, GIVENS, MORE, TABLE, found_in, is_recognised
-from exercisebook.reading import Unreadable
+from exercisebook.grammar import Unreadable
 from loopbook.exercises import bank
 from loopbook.exercises.kinds import Expression, Number
 

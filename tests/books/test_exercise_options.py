@@ -2,9 +2,9 @@
 
 import pytest
 
+from exercisebook.grammar import Unreadable
 from exercisebook.judging import RIGHT, WRONG
 from exercisebook.kinds.words import SAME, bare, named
-from exercisebook.reading import Unreadable
 from judged import assert_judged
 from loopbook.exercises import bank
 from loopbook.exercises.authoring import word

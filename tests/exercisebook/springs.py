@@ -6,8 +6,8 @@ from unittest import mock
 
 import sympy
 
+from exercisebook.grammar import Unreadable
 from exercisebook.kinds.kind import MAKERS, PARTS, Kind
-from exercisebook.reading import Unreadable
 from exercisebook.wholes import WHOLES, Whole
 
 

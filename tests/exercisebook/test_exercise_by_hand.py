@@ -15,9 +15,9 @@ from drawings import png as stored
 from draws import THOROUGH
 from exercisebook import authoring, png
 from exercisebook.authoring import answers, between, exercise, figure, number, text
+from exercisebook.grammar import Unreadable
 from exercisebook.judging import OPEN, UNJUDGED, WAITING
 from exercisebook.kinds.by_hand import LONGEST
-from exercisebook.reading import Unreadable
 from judged import assert_judged
 
 SKETCH = figure("the path", key="it is a parabola")

@@ -43,11 +43,11 @@ JUDGED = [
     (Y, "3-1,500*t", UNJUDGED, "comma as a point"),
     (Y, "1 - e^(-0,2t)", RIGHT, "read as 1 - e**(-0.2*t)"),
     (Y, "1/2t", UNJUDGED, "may be .../(2*t) or (.../2)*t"),
-    (H, r"\frac{3}{5s+1} e^{-2s}", RIGHT, "read as ((3)/(5*s + 1))*e**(-2*s)"),
+    (H, r"\frac{3}{5s+1} e^{-2s}", RIGHT, "read as 3/(5*s + 1)*e**(-2*s)"),
     (H, "3/(5s+1) e^(-2s) K", UNJUDGED, "without a unit"),  # or a factor
     # units behind numbers, and behind the whole
     (H, "3/(5s+1) e^(-2s) K/%", UNJUDGED, "the text ends in K/%: expected an expression in s, without a unit"),
-    (H, "3 K/%/(5s+1) e^(-2s)", UNJUDGED, "cannot be read"),
+    (H, "3 K/%/(5s+1) e^(-2s)", UNJUDGED, "'K' is not a symbol"),
     (H, "3/(5S+1)*exp(-2S)", UNJUDGED, "did you mean 's'"),
     (H, "3m/(5s+1)*exp(-2s)", UNJUDGED, "'m' is not a symbol"),
     (H, "20 + 0.5t", UNJUDGED, "'t' is not a symbol"),
@@ -58,7 +58,7 @@ JUDGED = [
     (METRES, "2 m*(1 - exp(-t/(5 min)))", MISTAKE, "unit of time"),
     (METRES, "2 - 2 m e^(-t/(5 s))", UNJUDGED, "meter is not a unit of the same quantity as a number without unit"),
     (METRES, "2 kg*(1 - exp(-t/(5 s)))", UNJUDGED, "kilogram is not a unit of the same quantity as meter"),
-    (METRES, "2 - 2t/s", UNJUDGED, "'s' is not a symbol"),
+    (METRES, "2 - 2t/s", UNJUDGED, "not a unit of the same quantity"),
     (METRES, "2(1 - e^(-t/(5 s))) m", RIGHT, "right"),
     (METRES, "2(1 - e^(-t/5)) m", RIGHT, "read as 2*(1 - e**(-t/5))"),
     (METRES, "200*(1 - exp(-t/5)) cm", RIGHT, "converted from cm"),

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 import contributing
 from exercisebook import authoring
+from exercisebook.grammar import Unreadable
 from exercisebook.kinds import MAKERS, Kind
 from exercisebook.kinds.words import bare
-from exercisebook.reading import Unreadable
 from judged import EVERY_KIND, assert_is_made_again, assert_is_tried_in_its_forms, assert_reads_back
 
 

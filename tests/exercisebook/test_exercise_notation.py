@@ -2,13 +2,14 @@
 
 import pytest
 
-from exercisebook import notation
+from exercisebook import grammar
 from exercisebook.agreement import agree
 from exercisebook.authoring import expression
 from exercisebook.formulas import Formula
+from exercisebook.grammar import Unreadable
 from exercisebook.judging import RIGHT, judge
 from exercisebook.points import points_for
-from exercisebook.reading import Unreadable, listed_in
+from exercisebook.reading import listed_in
 
 #: {symbols: {formula in Python's notation: the ways to write it, between bars}}.
 READ = {
@@ -43,7 +44,7 @@ READ = {
             r" | \frac{20}{s} + \frac{0,5}{s^2}"
         ),
         "(1 - 2*s)/(1 + 2*s)": r"\frac{1-2s}{1+2s} | [1 − 2s]/[1 + 2s] | (1–2s)/(1+2s)",
-        "exp(-s)": "e^-s | e^{-s} | e**-s | exp -s | e^(-s) | e^−s | e^(-1s) | E^(-s)",
+        "exp(-s)": "e^-s | e^{-s} | e**-s | e^(-s) | e^−s | e^(-1s) | E^(-s)",
         "exp(-2*s)*(1 + s)": "e^(-2s)(1+s) | (1+s)e^-2s | (1 + s) e^{-2s} | exp(-2s)(1+s)",
     },
     "t": {
@@ -136,7 +137,7 @@ def test_a_formula_is_read_as_it_is_meant_and_said_in_pythons_notation():
 
 
 def test_letters_that_are_the_same_in_other_books_are_read(monkeypatch):
-    monkeypatch.setattr(notation, "SAME_LETTERS", {"kb": "kboltz", "kboltz": "kb"})
+    monkeypatch.setattr(grammar, "SAME_LETTERS", {"kb": "kboltz", "kboltz": "kb"})
     assert Formula("T k_boltz", "k_B T").text == "T*k_B"
 
 
@@ -146,6 +147,7 @@ DOUBTFUL = {
         "1/2s": "set brackets", "1/10s+1": "set brackets", "2/s(s+1)": "set brackets", "1/(s+1)(s+2)": "set brackets",
         "3/s s": "set brackets", "s/2(s+1)": "set brackets", "1/s2": "", "s2": "", "s 2": "", "2 3": "", "(s+1)2": "",
         "e^-2s/5": "needs brackets", "e^-2 s": "needs brackets", "e^-s(s+1)": "needs brackets", "exp^-2s": "",
+        "exp -s": "needs brackets",
         "sin^-1(s)": "inverse", "ln 2/3": "brackets", "sin s s": "brackets", "sqrt 2s/3": "", "√2s": "brackets",
         "2e-3s": "may be", "e(-3s)": "has a ^", "1,500*s": "may be", "12,300": "may be", "1,2,3": "", "0,5,5": "",
         "2,5;3": "", "(s+1": "", "s+1)": "", "s+": "", "*s": "", "2**": "", "2//s": "", "s!": "", "S": "did you mean",

@@ -177,7 +177,7 @@ JUDGED = [
             (True, "truth value"),
             (np.ma.masked, "missing"),
             ("10 dozen s", "is not a number"),
-            ("1 m^9^9^9", "is not a number"),
+            ("1 m^9^9^9", "a power that is no number"),
             ("1" * 5000, "5000 characters"),
             ("1,200", "1,200 may be 1.200 or 1200"),
             ("100 = 120 s", "two sides that differ"),
@@ -185,7 +185,7 @@ JUDGED = [
     ),
     *(
         (PERIOD, text, UNJUDGED, "")
-        for text in ("120 ± 5", "120 s 3", "1 2 0", "120 s or 130 s", "120 m", "12 0 s", "between 100 and 140")
+        for text in ("120 s 3", "1 2 0", "120 s or 130 s", "120 m", "12 0 s", "between 100 and 140")
     ),
     (SHARE, 25, MISTAKE, "in percent"),
     (ANGLE, 60, MISTAKE, "in deg"),
@@ -207,12 +207,9 @@ JUDGED = [
     (number(99), "12,375", WRONG, "· read as 12.375"),
     # numbers with units, worked out
     (number(1.5, "K/%"), "15 K / 10 %", RIGHT, "right, read as 1.5"),
-    (FOUR, "15 K / 11 %", UNJUDGED, "do not make min"),
-    (FOUR, "8 min - 4", UNJUDGED, "do not make min"),
-    *(
-        (FOUR, text, UNJUDGED, "")
-        for text in ("2 min ** 2", " + ".join(["1 s"] * 30), f"{'(' * 120}1 s{')' * 120} * 2", "1e300 min * 1e300")
-    ),
+    (FOUR, "15 K / 11 %", UNJUDGED, "not a unit of the same quantity as min"),
+    (FOUR, "8 min - 4", UNJUDGED, "a number without unit is not a unit of the same quantity"),
+    *((FOUR, text, UNJUDGED, "") for text in ("2 min ** 2", f"{'(' * 1200}1 s{')' * 1200}", "1e300 min * 1e300")),
     # rows and tables
     (A, [[0, -2], [1, -3]], MISTAKE, "rows and columns"),
     (A, [0, 1, -2, -3], UNJUDGED, "expected 2 by 2"),

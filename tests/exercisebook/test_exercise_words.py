@@ -5,9 +5,9 @@ import pytest
 import sympy
 
 from exercisebook.authoring import word, words
+from exercisebook.grammar import Unreadable
 from exercisebook.judging import MISTAKE, RIGHT, UNJUDGED, WRONG
 from exercisebook.kinds.words import SAME, also_said
-from exercisebook.reading import Unreadable
 from judged import assert_judged
 
 STEPS = words(["S2", "S4"], ["S1", "S2", "S3", "S4"], "the active steps")

@@ -21,7 +21,7 @@ from typing import Any
 import mpmath
 import numpy as np
 
-from exercisebook.reading import CONSTANTS, Unreadable
+from exercisebook.grammar import CONSTANTS, Unreadable
 
 #: The last digit of a decimal number.
 LAST_DIGIT = 2.0**-52

@@ -6,8 +6,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from exercisebook.notation import bare
-from exercisebook.reading import Unreadable
+from exercisebook.grammar import Unreadable, bare
 from exercisebook.wholes import WHOLES
 
 if TYPE_CHECKING:

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from exercisebook.arithmetic import Bounded, Decimals, NoValue, in_digits, worked_out
-from exercisebook.reading import CONSTANTS, Unreadable, shortened, spelled, understood
+from exercisebook.grammar import CONSTANTS, Unreadable, read, shortened
+from exercisebook.reading import spelled
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -48,10 +49,9 @@ class Formula:
 
     def __init__(self, given: object, symbols: str | Iterable[str] = ()):
         self.symbols = symbols.split() if isinstance(symbols, str) else list(symbols)
-        self.text = spelled(given)
-        source, tree = understood(self.text, self.symbols)
-        self.text, self.remark = (source, f"read as {source}") if source else (self.text, "")
-        self.tree = tree
+        found = read(spelled(given), self.symbols)
+        self.tree, self.text = found.tree, found.text
+        self.remark = f"read as {found.text}" if found.is_other else ""
         self._kept: list[tuple[Mapping[str, np.ndarray], np.ndarray, np.ndarray, np.ndarray]] = []
         self.rounded: list[Any] = []
 
@@ -160,6 +160,15 @@ class Formula:
             raise Unreadable("the expression is very long: expected a simpler one") from None
         except (ArithmeticError, TypeError, ValueError):
             raise Unreadable(f"{shortened(self.text)} has no value: expected another expression") from None
+
+
+def value_of(tree: ast.expr) -> complex:
+    """Return the value of a tree without symbols; NaN where it has none. Raises Unreadable for a Piecewise without one.
+
+    >>> value_of(Formula("1/3").tree)
+    (0.3333333333333333+0j)
+    """
+    return complex(Formula("1").with_tree(tree).values_at({}))
 
 
 def is_number(node: ast.expr) -> bool:

@@ -11,8 +11,9 @@ import numpy as np
 
 from exercisebook import diagnoses, units
 from exercisebook.credit import NOTHING, Credit, worth
+from exercisebook.grammar import Unreadable, shortened
 from exercisebook.kinds import Number
-from exercisebook.reading import NOT_ANSWERED, Unreadable, shortened
+from exercisebook.reading import NOT_ANSWERED
 from exercisebook.timeout import limited
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ import sys
 import zlib
 from typing import Any
 
-from exercisebook.reading import Unreadable
+from exercisebook.grammar import Unreadable
 
 #: Bytes of a picture, and pixels along a side.
 LARGEST, LONGEST_SIDE = 300_000, 2000
@@ -80,7 +80,7 @@ def checked(data: Any) -> bytes:
     >>> checked({"png": "iVBORw0KGgo="})
     Traceback (most recent call last):
     ...
-    exercisebook.reading.Unreadable: this picture is damaged: expected a PNG file
+    exercisebook.grammar.Unreadable: this picture is damaged: expected a PNG file
     """
     if not is_data(data):
         raise Unreadable(f"this is not a picture: expected {_EXPECTED}")

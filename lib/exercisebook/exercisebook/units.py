@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import ast
 import functools
 import math
-import operator
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -104,28 +102,6 @@ def convert(value: Number, unit: str, to: str) -> float:
         raise ValueError(f"{unit or 'a number without unit'} is not a unit of the same quantity as {to or 1}") from None
 
 
-def with_names(text: str, symbols: Iterable[str] = ()) -> tuple[str, dict[str, str]]:
-    """Return a formula with a name for each unit behind a number, and {name: unit}; letters that are symbols are none.
-
-    >>> with_names("3 m - t/1600 m/s", ["t"]), with_names("2 s + 1", ["s"])
-    (('(3*_u0) - t/(1600*_u1)', {'_u0': 'm', '_u1': 'm/s'}), ('2 s + 1', {}))
-    """
-    symbols, found = {*symbols, "e", "i", "j", "pi", "exp"}, {}
-
-    def named(quantity):
-        parts = re.split(r"( ?/ ?| |·)", quantity["unit"])
-        while parts:
-            letters = set(re.findall(r"[^\W\d_]+", unit := "".join(parts)))
-            if is_unit(unit) and not letters & symbols:
-                name = f"_u{len(found)}"
-                found[name] = unit
-                return f"({quantity['number']}*{name})" + quantity["unit"][len(unit) :]
-            del parts[-2:]
-        return quantity[0]
-
-    return _QUANTITY.sub(named, text), found
-
-
 def neighbours(unit: str) -> dict[str, Callable[[Number], float]]:
     """Return the units in which a value may have been meant: {unit: what 1 of the asked unit is in it, or a function}.
 
@@ -170,69 +146,6 @@ def spelled(unit: str) -> str:
     unit = _SPELLED.sub(lambda name: _SPELLINGS[name[0]], unit)
     unit = re.sub(r"(?<=\S) per (?=\S)", "/", unit)
     return re.sub(r"\b[A-Z](?=[a-z]{3})", lambda letter: letter[0].lower(), unit)
-
-
-#: A number with its unit in a text that is worked out.
-_ONE = r"(?:%|°C?|[^\W\d_]+[²³]?)"
-_QUANTITY = re.compile(
-    rf"(?P<number>(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?:/\d+(?= ?[^\W\d]))?)"
-    rf" ?(?P<unit>{_ONE}(?:(?: ?/ ?| |·)(?:{_ONE}|\({_ONE}(?:[ ·]{_ONE})*\)))*)"
-)
-_OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv}
-MOST_QUANTITIES, LONGEST_ARITHMETIC = 20, 200
-
-
-def worked_out(text: str, to: str) -> float:
-    """Return what numbers with units make together, in a unit; a temperature in °C counts in K.
-
-    Raises ValueError for a text that is none of this, and where the units do not fit.
-
-    >>> worked_out("15 K / (10 %)", to="K/%"), worked_out("8 bar - 50 kPa", to="bar"), worked_out("90° - 35°", to="°")
-    (1.5, 7.5, 55.0)
-    """
-    import pint
-
-    units: list[str] = []
-
-    def named(found):
-        parts = re.split(r"( ?/ ?| |·)", found["unit"])
-        while not is_unit(unit := "".join(parts)):
-            del parts[-2:]
-            if not parts:
-                return found[0]
-        units.append(_on_kelvin(unit))
-        return f"({found['number']}*_{len(units) - 1})" + found["unit"][len(unit) :]
-
-    source = _QUANTITY.sub(named, text[: LONGEST_ARITHMETIC + 1]).strip()
-    if not 0 < len(units) <= MOST_QUANTITIES or len(text) > LONGEST_ARITHMETIC:
-        raise ValueError(f"{text[:40]!r} is no arithmetic of numbers with units")
-
-    def value(node):
-        match node:
-            case ast.Constant(int() | float()):
-                return registry().Quantity(float(node.value))
-            case ast.Name() if node.id[1:].isdigit() and node.id[0] == "_":
-                return registry().Quantity(1.0, _parsed(units[int(node.id[1:])]))
-            case ast.UnaryOp(ast.USub()):
-                return -value(node.operand)
-            case ast.BinOp() if type(node.op) in _OPERATORS:
-                return _OPERATORS[type(node.op)](value(node.left), value(node.right))
-            case ast.Call(ast.Name("exp" | "sqrt"), [argument]):
-                part = value(argument)
-                return part**0.5 if node.func.id == "sqrt" else registry().Quantity(math.exp(part.to("").magnitude))
-        raise ValueError(f"{text[:40]!r} is no arithmetic of numbers with units")
-
-    try:
-        return float(value(ast.parse(source, mode="eval").body).to(_parsed(_on_kelvin(to))).magnitude)
-    except pint.PintError:
-        raise ValueError(f"the units in {text[:40]!r} do not make {to or 'a number'}") from None
-    except (SyntaxError, ArithmeticError, RecursionError, MemoryError):
-        raise ValueError(f"{text[:40]!r} is no arithmetic of numbers with units") from None
-
-
-def _on_kelvin(unit):
-    """A unit in which °C is K: differences of temperatures, and what is added to one, are the same in both."""
-    return re.sub("° ?C", "K", spelled(unit))
 
 
 @functools.cache

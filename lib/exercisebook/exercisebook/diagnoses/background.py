@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from exercisebook.grammar import Unreadable
 from exercisebook.kinds import Number
 from exercisebook.parameters import written
-from exercisebook.reading import Unreadable
 from exercisebook.timeout import limited
 
 if TYPE_CHECKING:

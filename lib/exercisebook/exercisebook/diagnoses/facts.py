@@ -16,8 +16,8 @@ import sympy
 
 from exercisebook.diagnoses.background import Background
 from exercisebook.diagnoses.finding import Finding
+from exercisebook.grammar import listed
 from exercisebook.kinds import Expression, TimeFunction
-from exercisebook.reading import listed
 
 #: Two facts are the same up to this fraction, or what is asked if that is more.
 SAME = 0.01

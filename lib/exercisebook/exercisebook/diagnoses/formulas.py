@@ -18,8 +18,8 @@ from exercisebook import agreement, formulas
 from exercisebook.diagnoses import facts
 from exercisebook.diagnoses.background import Background
 from exercisebook.diagnoses.finding import Finding, explained, recomputed
+from exercisebook.grammar import listed
 from exercisebook.kinds import Expression
-from exercisebook.reading import listed
 
 #: A number in place of a symbol is sought from this power of ten on, and is told in digits that make such a difference.
 LEAST_SIZE, SHORTENED = -6, 1e-3

@@ -6,8 +6,8 @@ from collections import Counter
 
 from exercisebook.diagnoses.background import Background
 from exercisebook.diagnoses.finding import Finding, carried_on, explained
+from exercisebook.grammar import listed
 from exercisebook.kinds import Word, Words
-from exercisebook.reading import listed
 
 #: What to ask oneself where there is the choice between such words.
 QUESTIONS: list[tuple[set[str], str]] = [

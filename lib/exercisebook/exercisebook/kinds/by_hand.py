@@ -6,8 +6,9 @@ from collections.abc import Iterable
 from typing import Any, NoReturn
 
 from exercisebook import png
+from exercisebook.grammar import Unreadable
 from exercisebook.kinds.kind import ELSEWHERE, LINES, Kind
-from exercisebook.reading import NOT_ANSWERED, Unreadable, answered
+from exercisebook.reading import NOT_ANSWERED, answered
 from plainmath.validation import whole
 
 #: Characters of a text.

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from exercisebook.grammar import Unreadable
 from exercisebook.kinds.kind import Kind, Tried
-from exercisebook.reading import Unreadable
 from exercisebook.timeout import limited
 
 if TYPE_CHECKING:

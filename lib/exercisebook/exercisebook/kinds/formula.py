@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import ast
-import contextlib
 import functools
 import re
 from collections.abc import Iterator, Sequence
@@ -15,11 +13,12 @@ import sympy
 from exercisebook import units
 from exercisebook.agreement import agree, agree_in_time
 from exercisebook.formulas import Formula, is_number
+from exercisebook.grammar import Unreadable, in_python, listed, shortened
 from exercisebook.kinds.kind import AS_IT_IS, LINE, Kind, Tried, how_rounded, literal, rounded, with_unit
 from exercisebook.kinds.numeric import in_unit
-from exercisebook.pages import conversion
 from exercisebook.points import points_for, times_for
-from exercisebook.reading import Unreadable, alone, answered, listed, shortened, symbols_in, understood
+from exercisebook.quantities import quantities
+from exercisebook.reading import alone, answered, symbols_in
 from exercisebook.wholes import WHOLES
 from plainmath.expressions import exact, parse
 
@@ -161,27 +160,15 @@ class Expression(Kind):
         """A formula of numbers with units, in the asked one; raises the problem that it is without units."""
         if not self.unit or not {*symbols} <= {"t"}:
             raise problem
-        for text, unit in ((given, ""), *_with_units(given)):
-            source, units_of = units.with_names(f"({text})*(1 {unit})" if unit else text, symbols)
-            with contextlib.suppress(Unreadable):
-                _, tree = understood(source, [*symbols, *units_of])
-                break
-        else:
-            raise problem
-        known = {name: conversion.unit_of(unit) for name, unit in units_of.items()}
-        has_time = any("[time]" in unit.dimensionality for unit in known.values())
-        known |= {"t": conversion.unit_of(self.time if has_time else "")}
-        known |= dict.fromkeys(("e", "E"), conversion.unit_of(""))
         try:
-            tree, unit = conversion.converted(tree, known)
-            if unit is conversion.UNKNOWN:
+            *_, quantity = quantities(given, symbols)
+            if not quantity.units:
                 raise problem
-            tree = conversion.times(tree, conversion.factor(unit, self.unit))
+            text = in_python(quantity.in_unit(self.unit, self.time))
         except Unreadable:
-            raise
+            raise problem from None
         except ValueError as error:
             raise Unreadable(f"{error}: expected {self.expected}") from None
-        text = re.sub(r" (\*\*|[*/]) ", r"\1", ast.unparse(_Ones().visit(tree)))
         return Formula(text, symbols), f"read as {text}"
 
     def _in_asked_unit(self, formula, unit):
@@ -326,15 +313,6 @@ class Expression(Kind):
         for unit, converted in units.neighbours(self.unit).items():
             if converted(0) == 0:
                 yield f"those would be the values {in_unit(unit)}; asked: {self.asked}", self.expr * exact(converted(1))
-
-
-class _Ones(ast.NodeTransformer):
-    """Names of units are ones."""
-
-    def visit_BinOp(self, node):
-        node = self.generic_visit(node)
-        is_unit = isinstance(node.right, ast.Name) and node.right.id.startswith("_u")
-        return node.left if is_unit and isinstance(node.op, ast.Mult) else node
 
 
 def _with_rounded_numbers(expr, within):

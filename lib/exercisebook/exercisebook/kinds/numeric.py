@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import math
 import re
 from collections.abc import Iterator
@@ -11,8 +12,9 @@ from typing import Any
 import numpy as np
 import sympy
 
-from exercisebook import notation, units
-from exercisebook.formulas import Formula
+from exercisebook import units
+from exercisebook.formulas import value_of
+from exercisebook.grammar import Doubtful, NotRead, Unreadable, in_python, shortened
 from exercisebook.kinds.kind import (
     ALL_DIGITS,
     AS_IT_IS,
@@ -24,53 +26,20 @@ from exercisebook.kinds.kind import (
     rounded,
     with_unit,
 )
-from exercisebook.reading import (
-    LONGEST_BY_HAND,
-    Unreadable,
-    alone,
-    answered,
-    in_a_row,
-    listed_in,
-    members,
-    plain,
-    shortened,
-)
+from exercisebook.quantities import quantities
+from exercisebook.reading import alone, answered, in_a_row, listed_in, members
 
-_WITH_UNIT = re.compile(r"([+-]? ?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?) ?(.*)")
 #: What may be beside a number, on either side, and says nothing of its size.
 _BEFORE_IT = re.compile(
-    r"^(?:(?:at least|at most|at|after|up to|times|only|exactly|(?:falls |rises )?by|"
+    r"^(?:.*(?:,|;| ) ?(?:so|thus|i\.e\.|that is) (?=\S*\d))?"
+    r"(?:(?:at least|at most|at|after|up to|times|only|exactly|(?:falls |rises )?by|"
     r"(?:by )?(?:a )?factor(?: of)?|is|it is|magnitude|size) |"
-    r"(?:[^\W\d]\w* ?)?[<>≥≤]=?(?![<>≥≤=]) ?)",
+    r"(?:[^\W\d]\w* ?)?(?:[<>≥≤]=?(?![<>≥≤=])|\\[lg]eq?\b) ?){0,2}",
     re.IGNORECASE,
 )
-#: What is said before the number that counts, and a remark in brackets behind it, which is no second answer.
-_AROUND = (
-    (re.compile(r"^.*(?:,|;| ) ?(?:so|thus|i\.e\.|that is) (?=\S*\d)"), ""),
-    (re.compile(r"(?<=[^-+*/·:(=]) \((?!(?:or|not|no|if)\b)[^()\d]*[^\W\d_]{2}[^()\d]*\)$"), ""),
-    (re.compile(r" too (?:low|high|large|small|much|little)\.?$"), ""),
-)
-#: Units and spaces of LaTeX, and dollar signs around a number.
-_IN_LATEX = (
-    (re.compile(r"\\(?:mathrm|text|mathit|operatorname|unit)\s*\{([^{}]*)\}"), r"\1"),
-    (re.compile(r"^\s*\$|\$\s*\.?\s*$"), ""),
-    (re.compile(r"\\[,;:! ]|(?<=\d)~"), " "),
-    (re.compile(r"\\%"), "%"),
-    (re.compile(r"\^\{?\s*\\circ\s*\}?"), "°"),
-)
-#: A letter with an index, which is no unit.
-_HAS_SYMBOLS = re.compile(r"[^\W\d_]_\w")
 _BEHIND_IT = re.compile(
-    r" times(?: (?:larger|bigger|greater|higher|longer|faster|more|as (?:large|much|big|high|long|fast)))?$"
-)
-_WORDS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
-#: Numbers that are not written in digits alone, and how they are.
-_OTHER_NUMBERS = (
-    (re.compile(rf"^({'|'.join(_WORDS)})(?= |$)", re.IGNORECASE), lambda found: str(_WORDS.index(found[1].lower()))),
-    (re.compile(r"^none$", re.IGNORECASE), "0"),
-    (re.compile(r"^([+-]?)(\d{1,3}) (\d{1,2}/\d{1,3})(?![\d./])"), r"\1(\2 + \3)"),
-    (re.compile(r"^([+-]?)(\d{1,3})\((1/2|1/4|3/4)\)"), r"\1(\2 + \3)"),
-    (re.compile(r"^[+-]?\d{1,3}(?:[ ']\d{3})+(?![\d'])"), lambda found: re.sub("[ ']", "", found[0])),
+    r" too (?:low|high|large|small|much|little)\.?$|(?<=[%\w]) of (?:the |its |full )*[a-z ]+$"
+    r"|(?<=[\d)]) times(?: (?:larger|bigger|greater|higher|longer|faster|more|as (?:large|much|big|high|long|fast)))?$"
 )
 #: Poles that occur several times: "-2 (double)", "double pole at -2".
 _TIMES = {"double": 2, "twice": 2, "triple": 3, "two times": 2, "three times": 3, "2 times": 2, "3 times": 3}
@@ -84,9 +53,6 @@ _TIMES_BEFORE = re.compile(
 #: A pair in one text, and the name of several poles before it, as "s_1,2 =".
 _PAIR = re.compile(r"±|\+ ?/ ?-|\\pm\b|\+-")
 _NAMES = re.compile(r"^\\?\w+?_?[{(]?1 ?[,/] ?2[})]? ?= ?")
-_WITH_UNITS = re.compile(
-    r"\d+ ?(?:h|hours?|min|minutes?|m|kg)(?:,? (?:and )?[\d.,]+ ?(?:min|minutes?|s|sec|seconds?|g|cm))+"
-)
 #: A mistake is recognised in a rounded value, too, by as much as its digits tell and no more than this.
 ROUNDED = 0.01
 #: A number below this fraction of the key is zero.
@@ -505,69 +471,38 @@ def one_number(given: object, unit: str, expected: str) -> tuple[complex, str]:
 
 
 def _number_of_text(text, unit, expected):
-    for pattern, meant in (*_IN_LATEX, *_AROUND):
-        text = pattern.sub(meant, text)
-    *before, line = _BEFORE_IT.sub("", plain(_BEFORE_IT.sub("", text.strip()))).split(" = ")
-    before = [part for part in before if re.search(r"\d", part) and not _HAS_SYMBOLS.search(part)]  # 3 T_c = 30 min
-    if before:  # 3840 s = 64 min
-        found = [_number_of_text(part, unit, expected) for part in (*before, line)]
-        value = found[-1][0]
-        parts = (1, 100) if unit == "%" else (1,)  # 0.25 = 25 %
-        if all(any(abs(k * one - value) <= ROUNDED * (abs(value) or 1) for k in parts) for one, _ in found):
-            return found[-1]
-        raise Unreadable(f"{shortened(text, 40)!r} has two sides that differ: expected {expected}")
-    line, remark = _in_digits_only(_BEHIND_IT.sub("", line) if not unit else line)
-    parts = _WITH_UNITS.fullmatch(line) and re.findall(r"([\d.,]+ ?[^\W\d_]+)", line)
-    if parts:  # 1 h 4 min
-        found = [_number_of_text(part, unit, expected)[0] for part in parts]
-        return sum(found), f"read as {' + '.join(parts)}"
-    match = _WITH_UNIT.fullmatch(line)
-    if match and match[2] and not re.search(r"\bpi\b|π", match[2]):  # Pint takes pi for a unit
-        named = f"1{match[2]}" if match[2].startswith("/") else match[2]
-        if units.is_unit(named):
-            return _with(remark, *_in_unit_asked(float(match[1].replace(" ", "")), named, unit, expected))
-    # arithmetic, and perhaps a unit after one of the spaces, or a percent sign
-    spaces = [found.start() for found in re.finditer(r" |(?<=\S)[%°]", line)] if len(line) <= LONGEST_BY_HAND else []
-    says, ends = "", [len(line), *spaces]
-    for end in ends:
-        named = line[end:].strip()
-        if named and not units.is_unit(named):
-            continue
-        try:
-            formula = Formula(line[:end])
-            value = complex(formula.values_at({}))
-        except Unreadable as problem:
-            says = says or str(problem)
-            continue
-        found = _in_unit_asked(value, named, unit, expected) if named else (_finite(value, expected), "")
-        return _with(remark or formula.remark, *found)
-    try:  # 15 K / 11 %
-        value = _finite(complex(units.worked_out(line, unit)), expected)
-        return value, f"read as {with_unit(in_digits(value), unit)}"
-    except ValueError as doubt:
-        if "do not make" in str(doubt):
-            raise Unreadable(f"{doubt}: expected {expected}") from None
-        if re.search("may be|needs? brackets", says):
-            raise Unreadable(says) from None
-    raise Unreadable(f"{shortened(text, 40)!r} is a text that is not a number: expected {expected}")
-
-
-def _with(remark, value, other):
-    """A value with two remarks in one."""
-    return value, ", ".join(one for one in (remark, other) if one)
-
-
-def _in_digits_only(line):
-    """A number in a word, a mixed one, or with spaces between its thousands, in digits, and a remark on it."""
-    for pattern, meant in _OTHER_NUMBERS:
-        read, times = pattern.subn(meant, line, count=1)
-        if times:
-            return read, f"read as {read}"
+    line = _BEHIND_IT.sub("", _BEFORE_IT.sub("", " ".join(text.split()), count=1))
     try:
-        read = re.sub(r"(?<=[%\w]) of (?:the |its |full )*[a-z ]+$", "", notation.decimal_points(line))
-    except notation.Ambiguous as doubt:
+        found = [_in_asked(one, unit, expected) for one in quantities(line)]
+    except Doubtful as doubt:
         raise Unreadable(str(doubt)) from None
-    return read, "" if read == line else f"read as {read}"
+    except NotRead:
+        raise Unreadable(f"{shortened(text, 40)!r} is a text that is not a number: expected {expected}") from None
+    value, remark = found[-1]
+    parts = (1, 100) if unit == "%" else (1,)  # 0.25 = 25 %
+    for one, _ in found[:-1]:
+        if not any(abs(k * one - value) <= ROUNDED * (abs(value) or 1) for k in parts):
+            raise Unreadable(f"{shortened(text, 40)!r} has two sides that differ: expected {expected}")
+    return value, remark
+
+
+def _in_asked(quantity, unit, expected):
+    """A quantity in the asked unit, and a remark."""
+    if quantity.apart is None:
+        try:
+            value = _finite(value_of(quantity.in_unit(unit)), expected)
+        except ValueError as problem:
+            raise Unreadable(f"{problem}: expected {expected}") from None
+        return value, f"read as {in_digits(value)} {unit}".strip()
+    number, named = quantity.apart
+    value = _finite(value_of(number), expected)
+    remark = f"read as {in_python(number)} {named}".strip() if quantity.is_other else ""
+    if len(quantity.units) > 1 and isinstance(number, ast.BinOp):  # 15 K / 10 %
+        remark = f"read as {in_digits(value)} {named}"
+    if not named:
+        return value, remark
+    value, converted = _in_unit_asked(value, named, unit, expected)
+    return value, ", ".join(one for one in (remark, converted) if one)
 
 
 def _in_unit_asked(value, named, unit, expected):

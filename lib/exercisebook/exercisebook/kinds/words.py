@@ -11,8 +11,9 @@ from typing import Any, Self
 import sympy
 from sympy.logic.boolalg import BooleanAtom
 
+from exercisebook.grammar import Unreadable, shortened
 from exercisebook.kinds.kind import AS_IT_IS, NONE, ONE, ORDER, SEVERAL, Kind, Tried
-from exercisebook.reading import Unreadable, alone, answered, in_a_row, members, shortened
+from exercisebook.reading import alone, answered, in_a_row, members
 
 #: What is usually said for the same, a set for each; see `also_said`.
 SAME: list[frozenset[str]] = []

@@ -13,7 +13,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from exercisebook.reading import Unreadable, shortened
+from exercisebook.grammar import Unreadable, shortened
 from loopbook.exercises.charts.signals import Signals
 from loopbook.sequence import Chart, Transition
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 
-from exercisebook.reading import Unreadable, shortened
+from exercisebook.grammar import Unreadable, shortened
 from exercisebook.units import convert
 from loopbook.sequence import Formula
 from plainmath.validation import did_you_mean

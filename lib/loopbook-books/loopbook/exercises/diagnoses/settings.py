@@ -17,8 +17,8 @@ from exercisebook.diagnoses.numbers import (
     to_check,
     wrong_before,
 )
+from exercisebook.grammar import listed
 from exercisebook.kinds.numeric import near
-from exercisebook.reading import listed
 from loopbook.exercises.kinds.settings import NAMES, Settings, other_form
 from loopbook.pid import PID
 

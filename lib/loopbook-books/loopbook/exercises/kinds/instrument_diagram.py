@@ -6,8 +6,9 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
+from exercisebook.grammar import LONGEST, Unreadable, shortened
 from exercisebook.kinds.kind import AS_IT_IS, LINES, Kind, Tried
-from exercisebook.reading import LONGEST, Unreadable, alone, answered, in_a_row, shortened
+from exercisebook.reading import alone, answered, in_a_row
 from loopbook.exercises.connections import ELECTRICAL, PNEUMATIC, TAG, Connection, connections
 from loopbook.instruments import Tag, decode
 from plainmath.validation import did_you_mean

@@ -7,8 +7,9 @@ import textwrap
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
+from exercisebook.grammar import Unreadable
 from exercisebook.kinds.kind import AS_IT_IS, LINES, Kind, Tried
-from exercisebook.reading import Unreadable, alone, answered, in_a_row
+from exercisebook.reading import alone, answered, in_a_row
 from exercisebook.timeout import limited
 from loopbook.exercises.charts.notation import WrittenChart, read_chart
 from loopbook.exercises.charts.signals import Signals

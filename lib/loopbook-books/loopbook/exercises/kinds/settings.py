@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 import sympy
 
-from exercisebook import notation, units
+from exercisebook import grammar, units
 from exercisebook.asked_names import also_called
 from exercisebook.formulas import Formula
+from exercisebook.grammar import Unreadable, bare, listed, shortened
 from exercisebook.kinds.kind import AS_IT_IS, PARTS, Kind, Tried, how_rounded, literal, rounded, with_unit
 from exercisebook.kinds.numeric import in_digits, near, one_number
-from exercisebook.notation import bare
-from exercisebook.reading import Unreadable, alone, answered, in_a_row, listed, listed_in, shortened
+from exercisebook.reading import alone, answered, in_a_row, listed_in
 from exercisebook.wholes import Whole
 from loopbook.pid import PID
 from plainmath.expressions import exact
@@ -49,7 +49,7 @@ also_called(
     "settings controller pid pi c",
     "h g m tf transferfunction",
 )
-notation.SAME_LETTERS |= {"kc": "kp", "kp": "kc"}
+grammar.SAME_LETTERS |= {"kc": "kp", "kp": "kc"}
 
 
 class Settings(Kind):
@@ -368,10 +368,7 @@ def _of_text(text):
     """
     if len(text) > LONGEST:
         return None
-    try:
-        text = " ".join(notation.from_latex(text).split()).rstrip(".")
-    except notation.Ambiguous:
-        return None
+    text = " ".join(re.sub(r"^\{|\}$|\$|\\(?=[,;!: ])|\\(?=[A-Za-z]\w*\s*=)", " ", text.strip()).split()).rstrip(".")
     text = re.sub(r"^(?:in )?(?:the )?(serial|series|cascade|parallel|ideal)(?: form)? ?[:,] ?(.*)$", r"\2 (\1)", text)
     form = _FORM.search(text)
     text = _FORM.sub("", text)
