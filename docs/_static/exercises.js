@@ -265,17 +265,18 @@
       for (const one of field.querySelectorAll("[aria-invalid]")) one.removeAttribute("aria-invalid");
       clearTimeout(this.later);
       this.later = setTimeout(() => this.try({ answers: this.answers(), response: null }), 200);
-      clearTimeout(this.soon);
-      this.soon = setTimeout(() => this.typeset(input), 80);
+      this.typeset(input);
     }
 
-    // A formula in two dimensions, as Python reads it where Python is there: it is not loaded for that. What is not whole
-    // is grey; where it cannot be read (yet), that is what could be read last.
+    // A formula in two dimensions, as Python reads it where Python is there: it is not loaded for that, and asked one
+    // thing at a time. What is not whole is grey; where it cannot be read (yet), that is what could be read last.
     async typeset(input) {
       const { value: text, dataset: { symbols } } = input;
-      if (!symbols || !judge?.library) return;
+      if (!symbols || !judge?.library || input.isAsked) return;
+      input.isAsked = true;
       const { mathml } = await ask({ do: "typeset", text, symbols }).catch(() => ({}));
-      if (input.value !== text) return; // more was typed meanwhile
+      input.isAsked = false;
+      if (input.value !== text) this.typeset(input); // more was typed meanwhile
       const place = input.closest(".field").querySelector(".typeset");
       place.classList.toggle("stale", !mathml || text.split("(").length > text.split(")").length);
       if (mathml || !text.trim()) place.innerHTML = mathml ?? "";

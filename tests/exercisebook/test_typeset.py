@@ -57,5 +57,5 @@ def test_a_field_asks_for_it_without_an_exercise_and_has_keys():
 
 def test_the_response_shows_how_a_formula_was_read():
     response = Response("1.1", (judge("y", Expression("2*exp(-K/5)"), "2e^(-K/5)"),), 1)
-    assert "right, read as $2 e^{-K/5}$" in response._repr_html_()
+    assert r"right, read as $\displaystyle 2 e^{-K/5}$" in response._repr_html_()
     assert repr(response).endswith("right, read as 2*e**(-K/5)")

@@ -55,7 +55,7 @@ class Verdict:
     def shown(self) -> str:
         """The sentence with the formula in two dimensions, between two dollars, where it says how that was read."""
         words, read, _ = self.says.rpartition("read as ")
-        return f"{words}{read}${self.formula}$" if read and self.formula else self.says
+        return rf"{words}{read}$\displaystyle {self.formula}$" if read and self.formula else self.says
 
 
 def earned(points: float, right: float, asked: float) -> float:
