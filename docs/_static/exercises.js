@@ -153,6 +153,9 @@
       else this.ownButton.remove();
       this.form.addEventListener("input", (event) => this.typed(event.target));
       this.form.addEventListener("click", (event) => this.putIn(event.target));
+      this.form.addEventListener("mousedown", (event) => {
+        if (event.target.closest(".key")) event.preventDefault(); // the field keeps the focus, and its keyboard
+      });
       this.form.addEventListener("keydown", (event) => {
         const isWhole = event.key === "Enter" && (event.ctrlKey || event.metaKey);
         if (isWhole && event.target.tagName === "TEXTAREA") this.form.requestSubmit(this.checkButton);
@@ -262,12 +265,41 @@
       for (const one of field.querySelectorAll("[aria-invalid]")) one.removeAttribute("aria-invalid");
       clearTimeout(this.later);
       this.later = setTimeout(() => this.try({ answers: this.answers(), response: null }), 200);
+      this.typeset(input);
+    }
+
+    // A formula in two dimensions, as Python reads it where Python is there: it is not loaded for that, and asked one
+    // thing at a time. What is not whole is grey; where it cannot be read (yet), that is what could be read last.
+    async typeset(input) {
+      const { value: text, dataset: { symbols } } = input;
+      if (!symbols || !judge?.library || input.isAsked) return;
+      input.isAsked = true;
+      const { mathml } = await ask({ do: "typeset", text, symbols }).catch(() => ({}));
+      input.isAsked = false;
+      if (input.value !== text) this.typeset(input); // more was typed meanwhile
+      const place = input.closest(".field").querySelector(".typeset");
+      place.classList.toggle("stale", !mathml || text.split("(").length > text.split(")").length);
+      if (mathml || !text.trim()) place.innerHTML = mathml ?? "";
+    }
+
+    // A key writes at the cursor, around what is selected, and leaves the cursor where one types on; or it moves on.
+    write({ dataset: { writes } }, input) {
+      const { selectionStart: from, selectionEnd: to, value } = input;
+      const [before, after] = writes.split("|");
+      const space = /^\w/.test(before) && /\w$/.test(value.slice(0, from)) ? " " : ""; // T and s are not Ts
+      const chosen = after === undefined ? "" : value.slice(from, to);
+      const next = value.indexOf("()", from) + 1 || value.indexOf(")", from) + 1 || value.length;
+      if (writes) input.setRangeText(space + before + chosen + (after ?? ""), from, to);
+      input.selectionStart = input.selectionEnd = writes ? from + (space + before + chosen).length : next;
+      this.typed(input);
     }
 
     // A word in a list that has an order: its button writes it behind what is there.
-    putIn(button) {
-      if (!button.classList.contains("word")) return;
+    putIn(target) {
+      const button = target.closest(".word, .key");
+      if (!button) return;
       const input = button.closest(".field").querySelector("input");
+      if (button.matches(".key")) return this.write(button, input);
       input.value = [input.value.trim().replace(/,$/, ""), button.textContent].filter(Boolean).join(", ");
       this.typed(input);
     }
@@ -293,6 +325,7 @@
         all.tried[this.key] = { ...tried, answers, attempts: (tried.attempts ?? 0) + 1, response: wordsOf(response) };
       });
       this.showVerdicts(reply);
+      for (const input of this.fields.querySelectorAll("[data-symbols]")) this.typeset(input);
     }
 
     showVerdicts(reply) {
@@ -666,6 +699,12 @@
   for (const element of document.querySelectorAll(".progress-of-chapter")) summaries.push(new OfChapter(element));
   for (const element of document.querySelectorAll(".progress-of-all")) summaries.push(new OfAll(element));
   for (const summary of summaries) summary.showProgress();
+  // A telephone's keyboard covers the page and moves nothing in it: the row of keys is lifted above it.
+  const { visualViewport: view } = window;
+  view?.addEventListener("resize", () => {
+    const covered = document.documentElement.clientHeight - view.height - view.offsetTop;
+    document.documentElement.style.setProperty("--keyboard", `${Math.max(0, covered)}px`);
+  });
   window.addEventListener("storage", ({ key }) => {
     if (key === KEY) for (const show of [...exercises, ...summaries]) show.showProgress();
   });

@@ -16,7 +16,7 @@ const LIBRARY = "python_stdlib.zip";
 const MEGABYTE = 1e6;
 
 /** Seconds that may pass on a usual computer: until the key of an exercise is computed, and until an answer is judged. */
-const LIMIT = { prepare: 60, check: 3 };
+const LIMIT = { prepare: 60, check: 3, typeset: 10 };
 
 /** Seconds after which a download of which nothing more comes is given up. */
 const PATIENCE = 30;
@@ -252,16 +252,19 @@ class Python {
   }
 
   /** Tell the page that something begins now which may take so long; on a slow device longer. */
-  begin(id, seconds) {
-    self.postMessage({ begun: id, limit: Math.round(seconds * this.judge.slowness()) });
+  begin(id, seconds, slowness = this.judge.slowness()) {
+    self.postMessage({ begun: id, limit: Math.round(seconds * slowness) });
   }
 
   async answer(id, request) {
-    this.begin(id, LIMIT.prepare);
-    await this.complete(() => ["", this.judge.prepare(request)]);
     const { do: what } = JSON.parse(request);
+    const isTyping = what === "typeset"; // then there is no key, and no time to measure how slow it is here
+    if (!isTyping) {
+      this.begin(id, LIMIT.prepare);
+      await this.complete(() => ["", this.judge.prepare(request)]);
+    }
     return this.complete(() => {
-      this.begin(id, LIMIT[what] ?? LIMIT.prepare);
+      this.begin(id, LIMIT[what] ?? LIMIT.prepare, isTyping ? 1 : undefined);
       const reply = this.judge.reply(request);
       try {
         return reply.toJs();

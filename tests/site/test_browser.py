@@ -120,7 +120,8 @@ class TestJupyterLab:
         assert "H_u: right" in wrong, wrong
         assert "pole: With such a pole the speed would run away" in wrong
         assert "H_M: not answered yet" in wrong
-        right = desk.answer("5.1", 'H_u="1.5/(0.6*s + 0.2)", H_M="-1/(0.6*s + 0.2)", pole=-1/3')
+        right = desk.answer("5.1", 'H_u="1.5/(0.6s + 0.2)", H_M="-1/(0.6*s + 0.2)", pole=-1/3')
+        expect(desk.cell('exercise("5.1").check(').locator("mjx-mfrac")).to_have_count(1)  # how it was read
         desk.screenshot("right")
         assert "right" in right.splitlines()[0], right
 

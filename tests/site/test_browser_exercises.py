@@ -14,7 +14,7 @@ from docs.browser import site
 from playwright.sync_api import expect
 
 import browser_runtime
-from browser import DESKTOP, PATIENCE, PHONE, SCREENSHOTS, Complaints, serious, served
+from browser import DESKTOP, PATIENCE, PHONE, SCREENSHOTS, WATCH, Complaints, seen, serious, served
 from loopbook.exercises import exercise
 from loopbook.exercises.forms import answer
 
@@ -25,6 +25,7 @@ TUNING, SEQUENCES, SYMBOLS = (
 #: What takes the place of judge.js: it says how far loading is, and asks this process.
 JUDGE = """
 export class Judge {
+  library = window.loopbookExercises.version;
   constructor({ onProgress }) { this.onProgress = onProgress; }
   async ask(request) {
     this.onProgress({ share: 0.4, says: "Python, 10 of 25 MB" });
@@ -275,6 +276,45 @@ class TestKindsOfFields:
         form.field("chart").press("Control+Enter")
         expect(form.verdict("chart")).not_to_be_empty()
         assert reader.requests[0]["answers"]["chart"].endswith("\n")
+
+
+class TestAFormulaWhileItIsTyped:
+    def test_it_is_shown_in_two_dimensions_once_python_is_there(self, reader):
+        reader.page.add_init_script(WATCH)
+        reader.go("chapters/14_model_approximation.html")
+        form = reader.exercise("14.2")
+        form.field("g_1").press_sequentially("2/(5s)")
+        reader.page.wait_for_function("localStorage.loopbook?.includes('2/(5s)')")
+        form.check()
+        assert reader.requests[0]["do"] == "check"
+        first, second = (form.locator(f'.field[data-name="{name}"] .typeset') for name in ("g_1", "g_2"))
+        expect(first.locator("mfrac")).to_be_visible()
+        before = seen(reader.page)["moved"]
+        for more, is_whole in (("2e^(-0.5s)/(5s(4.5s + 1", False), ("))", True), (" + ", False)):
+            form.field("g_2").press_sequentially(more)
+            expect(second).to_have_class("typeset" if is_whole else "typeset stale")
+            expect(second.locator("mfrac msup")).to_be_visible()
+        assert seen(reader.page)["moved"] == before
+        form.screenshot("formula")
+
+    def test_a_telephone_has_keys_for_it(self, chromium, address):
+        reader = Reader(chromium, address, viewport=PHONE, has_touch=True, is_mobile=True).with_python_here()
+        reader.go()
+        form = reader.exercise("10.4")
+        keys = form.locator(".keys")
+        expect(keys).to_be_hidden()
+        form.field("Ti").tap()
+        for key in ("fraction", "T", "tau", "on to the next bracket", "power of e", "T_C", "on to the next bracket"):
+            keys.get_by_role("button", name=key, exact=True).tap()
+        expect(form.field("Ti")).to_have_value("(T tau)/(e^(T_C))")
+        form.field("Ti").press("Control+a")
+        keys.get_by_role("button", name="root").tap()  # of what is selected
+        expect(form.field("Ti")).to_have_value("sqrt((T tau)/(e^(T_C)))")
+        expect(form.field("Ti")).to_be_focused()
+        assert keys.bounding_box()["y"] + keys.bounding_box()["height"] == PHONE["height"]
+        reader.page.screenshot(path=SCREENSHOTS / "exercise_phone_keys.png")
+        reader.context.close()
+        assert reader.complaints == []
 
 
 class TestHelp:
@@ -607,6 +647,9 @@ class TestPythonInThePage:
             form.check()
             expect(form.verdict("pid")).to_contain_text("the overshoot is")
             expect(form.says.locator("img")).to_be_visible()
+            form = reader.exercise("10.4")
+            form.fill_in(Ti="4T^2/(T_C + tau")
+            expect(form.locator(".typeset mfrac")).to_be_visible()
             form = reader.exercise("10.2")
             form.locator("button.own").click()
             reader.page.get_by_label("Your name").fill("Mira")

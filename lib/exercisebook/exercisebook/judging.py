@@ -11,8 +11,10 @@ import numpy as np
 
 from exercisebook import diagnoses, units
 from exercisebook.credit import NOTHING, Credit, worth
+from exercisebook.formulas import Formula
 from exercisebook.grammar import Unreadable, shortened
 from exercisebook.kinds import Number
+from exercisebook.latex import latex
 from exercisebook.reading import NOT_ANSWERED
 from exercisebook.timeout import limited
 
@@ -42,11 +44,19 @@ class Verdict:
     look: str = field(default="", repr=False)
     #: What it brings of the points of the quantity, in percent, where it is not right and the author says so.
     percent: float = field(default=0, repr=False)
+    #: The formula that was read, in LaTeX; empty for other answers.
+    formula: str = field(default="", repr=False)
 
     @property
     def is_right(self) -> bool:
         """Whether the answer counts."""
         return self.status == RIGHT
+
+    @property
+    def shown(self) -> str:
+        """The sentence with the formula in two dimensions, between two dollars, where it says how that was read."""
+        words, read, _ = self.says.rpartition("read as ")
+        return rf"{words}{read}$\displaystyle {self.formula}$" if read and self.formula else self.says
 
 
 def earned(points: float, right: float, asked: float) -> float:
@@ -115,15 +125,16 @@ def _agrees(kind, given):
 
 
 def _judged(kind, given, mistakes, background, credit):
-    """Status, sentence, whether the sentence is bare, why an instructor should look, and what it is worth."""
+    """Status, sentence, whether it is bare, why an instructor should look, what it is worth, and the formula."""
     answer, remark = kind.read(given)
     if kind.by_hand:
         return WAITING, "a person marks this" + (f" · {remark}" if remark else ""), False
     says, look = kind.incomparable(answer)
     if says:
         return WRONG, harmless(says), False, harmless(look)
+    formula = latex(answer.tree) if isinstance(answer, Formula) else ""
     if kind.agrees(answer):
-        return RIGHT, "right" + (f", {remark}" if remark else "")
+        return RIGHT, "right" + (f", {remark}" if remark else ""), False, "", 0, formula
     if named := _in_its_unit(kind, answer, remark):
         says = f"the number is right, but in {kind.unit}: you have given it in {named}"
         return MISTAKE, says, False, "", credit.unit
@@ -134,7 +145,7 @@ def _judged(kind, given, mistakes, background, credit):
         percent = max(percent, credit.follows)
     shown = harmless(kind.as_read(answer))
     said = f"read as {shown}" if shown else harmless(remark)
-    return status, says + (f" · {said}" if said else ""), is_bare, "", percent
+    return status, says + (f" · {said}" if said else ""), is_bare, "", percent, formula
 
 
 def _in_its_unit(kind, answer, remark):

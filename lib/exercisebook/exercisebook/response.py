@@ -132,7 +132,7 @@ class Response(Showing):
             mark, colour = MARKS[verdict.status]
             lines.append(
                 f'<div><span style="color: {colour}">{mark}</span> <code>{_escape(verdict.name)}</code>: '
-                f"{_escape(verdict.says)}</div>"
+                f"{_escape(verdict.shown)}</div>"
             )
         lines += [f"<div>{_escape(note)}</div>" for note in self.notes]
         return "\n".join([*lines, "</div>"])

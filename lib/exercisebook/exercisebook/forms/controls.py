@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from exercisebook.forms.fields import Field
 from exercisebook.forms.text import escaped
+from exercisebook.forms.typeset import keys
 from exercisebook.kinds.kind import ELSEWHERE, LINE, LINES, NONE, ONE, ORDER, PARTS, SEVERAL
 
 #: Up to so many words are buttons beside each other, and up to so many where no other field has the same words.
@@ -46,12 +47,13 @@ def html(number: str, field: Field, beside: Sequence[Field] = ()) -> str:
     demands = "; ".join(field.more.get("demands", ()))
     demands = f'<p class="help">such that {demands}</p>' if demands else ""
     help_ = f'<p class="help" id="{place}-help">{field.help}</p>' if field.help else ""
+    typeset = _typeset(field.symbols) if field.symbols else ""
     said = f'<p class="verdict" id="{place}-verdict"></p>'
     body = _BODIES[field.control](place, field, beside)
     wide = " wide" if _is_wide(field, is_group) else ""
     return (
         f'<{tag} class="field {field.control}{wide}" data-name="{escaped(field.name)}" data-control="{field.control}">'
-        f"{head}{demands}{body}{help_}{said}</{tag}>"
+        f"{head}{demands}{body}{help_}{typeset}{said}</{tag}>"
     )
 
 
@@ -90,10 +92,21 @@ def _unit(place, unit):
 def _line(place, field, beside):
     unit = [f"{place}-unit"] if field.unit else []
     size = "short" if field.kind in SHORT_KINDS else "long"
+    symbols = f' data-symbols="{escaped(" ".join(field.symbols))}"' if field.symbols else ""
     return (
         f'<span class="box"><input type="text" id="{place}" class="{size}" {_PLAIN} '
-        f"{_described(place, field, *unit)}>{_unit(place, field.unit)}</span>"
+        f"{_described(place, field, *unit)}{symbols}>{_unit(place, field.unit)}</span>"
     )
+
+
+def _typeset(symbols):
+    """The place for what is typed in two dimensions, which repeats the field, and the keys that a telephone shows."""
+    buttons = "".join(
+        f'<button type="button" class="key" aria-label="{escaped(name)}" data-writes="{escaped(writes)}">{key}</button>'
+        for name, key, writes in keys(symbols)
+    )
+    row = f'<div class="keys" role="group" aria-label="keys for the formula" hidden>{buttons}</div>'
+    return f'<div class="typeset" aria-hidden="true"></div>{row}'
 
 
 def _lines(place, field, beside):

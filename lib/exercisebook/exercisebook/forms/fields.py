@@ -22,6 +22,7 @@ class Field:
         help: how an answer looks, as HTML; empty where that is plain.
         words: to choose from.
         parts: of something whole: (name, what it is, unit).
+        symbols: of a formula, which is shown in two dimensions while it is typed.
         weight: what the quantity counts, where others count 1.
     """
 
@@ -33,6 +34,7 @@ class Field:
     help: str = ""
     words: tuple[str, ...] = ()
     parts: tuple[tuple[str, str, str], ...] = ()
+    symbols: tuple[str, ...] = ()
     weight: float = 1
     more: dict[str, Any] = field(default_factory=dict)
 

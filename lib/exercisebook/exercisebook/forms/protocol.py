@@ -11,6 +11,7 @@ from typing import Any
 from exercisebook import naming, notes, plugins
 from exercisebook.errors import ExerciseError
 from exercisebook.forms.sheet import Sheet
+from exercisebook.forms.typeset import mathml
 from exercisebook.question import Question
 from plainmath.validation import did_you_mean
 
@@ -37,7 +38,8 @@ class Desk:
         - check, with ``answers``: ``{right, says, html, verdicts: [{name, status, says, html}]}``;
         - prepare: ``{}``; the key is computed and judged, so that the first answer takes no longer than the next one;
         - hint, with a ``rung`` from 1: ``{html}``;
-        - solution: ``{html}``. Whether an attempt comes first is for the page to say.
+        - solution: ``{html}``. Whether an attempt comes first is for the page to say;
+        - typeset, with the ``text`` of a formula and its ``symbols``, for no exercise: ``{mathml}``, how it is read.
 
         What cannot be answered has the reply ``{"problem": "one sentence"}``.
         """
@@ -46,10 +48,13 @@ class Desk:
             if not isinstance(request, dict):
                 raise ExerciseError("the request is no table: expected one with do and exercise")
             do = request.get("do")
-            if not isinstance(do, str) or do not in _REPLIES:
+            if do == "typeset":
+                reply = {"mathml": mathml(str(request.get("text", "")), str(request.get("symbols", "")).split())}
+            elif not isinstance(do, str) or do not in _REPLIES:
                 raise ExerciseError(f"the request asks to do {do!r}: {did_you_mean(str(do), _REPLIES)}")
-            with notes.off():
-                reply = _REPLIES[do](self._sheet(request.get("exercise"), _name(request.get("student"))), request)
+            else:
+                with notes.off():
+                    reply = _REPLIES[do](self._sheet(request.get("exercise"), _name(request.get("student"))), request)
         except (ExerciseError, ValueError) as problem:
             reply = {"problem": str(problem)}
         return json.dumps(reply, ensure_ascii=False)

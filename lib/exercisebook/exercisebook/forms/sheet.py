@@ -153,7 +153,7 @@ class Sheet:
         question = self.question
         response = question.check(**self._given(answers))
         notes = [self._in_a_page(note) for note in response.notes]
-        verdicts = [{"name": v.name, "status": v.status, "says": v.says, "html": sentence(v.says)}
+        verdicts = [{"name": v.name, "status": v.status, "says": v.says, "html": sentence(v.shown)}
                     for v in response.verdicts]  # fmt: skip
         lines = [f"<p>{note}</p>" for note in notes] + [image(picture) for picture in response.pictures]
         return {

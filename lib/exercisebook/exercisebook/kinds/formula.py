@@ -291,7 +291,7 @@ class Expression(Kind):
     def field(self) -> dict[str, Any]:
         """A line."""
         says = f"an expression in {', '.join(self.symbols)}" if self.symbols else "an expression"
-        return {"control": LINE, "help": says}
+        return {"control": LINE, "help": says, "symbols": tuple(self.symbols or ())}
 
     def right_forms(self) -> Iterator[Tried]:
         """The formula as an expression of SymPy, multiplied out, in one fraction, and with rounded numbers."""
