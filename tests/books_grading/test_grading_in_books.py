@@ -16,10 +16,10 @@ from assignments import SECRET, students
 from exercisebook.judging import RIGHT, UNJUDGED, WAITING, judge
 from exercisegrader import nbgrader
 from exercisegrader.assignment import Assignment
+from exercisegrader.inside import answer_sheet
+from exercisegrader.inside.plain import plain
 from exercisegrader.release import as_text, notebook
 from exercisegrader.reports import pages
-from exercisegrader.student_side import answer_sheet
-from exercisegrader.student_side.plain import plain
 from loopbook import notebooks, s
 from loopbook.deadtime import System
 from loopbook.exercises import bank

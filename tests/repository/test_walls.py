@@ -26,7 +26,7 @@ MAY_IMPORT = {
 #: What of loopbook is in the package of the books, with names within `loopbook`.
 OF_THE_BOOKS = {path.stem for path in (LIB / "loopbook-books" / "loopbook").iterdir()}
 #: What runs beside a submission, in the jail and in the student's notebook.
-STUDENT_SIDE = "exercisegrader.student_side"
+INSIDE = "exercisegrader.inside"
 #: The order in which a reader meets the modules of loopbook; the groups on one line do not know each other.
 ORDER = [
     ["types"],
@@ -173,8 +173,8 @@ def test_a_module_of_loopbook_imports_only_what_stands_above_it():
 def test_what_runs_beside_a_submission_knows_nothing_of_the_judge():
     found = {}
     for (_, name), path in modules().items():
-        if name.startswith(STUDENT_SIDE):
-            known = (f"{STUDENT_SIDE}.", "exercisegrader.student_side")
+        if name.startswith(INSIDE):
+            known = (f"{INSIDE}.", "exercisegrader.inside")
             found[name] = [
                 one for one in imports_of(path) if one.startswith("exercisegrader") and not one.startswith(known)
             ]

@@ -25,8 +25,8 @@ from typing import TYPE_CHECKING, Self
 from exercisebook import plugins
 from exercisegrader import GradingError, NoJail
 from exercisegrader.events import Scene, Story
-from exercisegrader.student_side.confinement import HOME
-from exercisegrader.student_side.fork_server import KILL
+from exercisegrader.inside.confinement import HOME
+from exercisegrader.inside.fork_server import KILL
 
 if TYPE_CHECKING:
     from exercisegrader.events import Outcome, Shown
@@ -142,7 +142,7 @@ class Jail:
     def _start(self):
         ours, theirs = socket.socketpair()
         home = {} if self.jailed else dict.fromkeys(("HOME", "TMPDIR"), tempfile.gettempdir())
-        line = [*(command() if self.jailed else ()), PYTHON, "-m", "exercisegrader.student_side.fork_server"]
+        line = [*(command() if self.jailed else ()), PYTHON, "-m", "exercisegrader.inside.fork_server"]
         with theirs, tempfile.TemporaryFile() as complaints:
             self.process = subprocess.Popen(
                 [*line, *(["jailed"] if self.jailed else [])],

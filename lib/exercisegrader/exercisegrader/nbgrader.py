@@ -17,8 +17,8 @@ from nbformat import v4
 
 from exercisebook import judging
 from exercisebook.kinds.kind import literal
+from exercisegrader.inside.plain import unreadable
 from exercisegrader.release import answer_call, asked, bare, set_up, statement_cells, wrapped
-from exercisegrader.student_side.plain import unreadable
 
 if TYPE_CHECKING:
     from nbformat import NotebookNode

@@ -296,7 +296,7 @@ def installed() -> Installed:
     [plugin] = [*importlib.metadata.entry_points(group=GROUP)][:1] or [None]
     about = importlib.metadata.metadata(plugin.dist.name if plugin else "exercisegrader")
     links = dict(one.split(", ") for one in about.get_all("Project-URL"))
-    module = plugin.value if plugin else "exercisegrader.student_side.answer_sheet"
+    module = plugin.value if plugin else "exercisegrader.inside.answer_sheet"
     return Installed(module, importlib.metadata.version(about["Name"]), links["Repository"])
 
 

@@ -60,8 +60,8 @@ def test_beside_a_submission_nothing_of_the_judge_is_imported(jail):
         """
     ours, *loaded = told(jail, source)["loaded"]
     assert ours == "exercisegrader"
-    assert [name for name in loaded if not f"{name}.".startswith("exercisegrader.student_side.")] == []
-    assert "exercisegrader.student_side.shell" in loaded
+    assert [name for name in loaded if not f"{name}.".startswith("exercisegrader.inside.")] == []
+    assert "exercisegrader.inside.shell" in loaded
 
 
 def test_many_small_processes_are_one_large_one(jail):

@@ -19,7 +19,7 @@ from IPython.core.interactiveshell import InteractiveShell
 from traitlets.config import Config
 
 from exercisebook.judging import harmless
-from exercisegrader.student_side import answer_sheet
+from exercisegrader.inside import answer_sheet
 
 
 class _Quiet(DisplayHook):
@@ -123,7 +123,7 @@ def run(
     random.seed(0), np.random.seed(0)  # the same numbers each time it is graded
     showing = None
     if show:
-        from exercisegrader.student_side.showing import Showing
+        from exercisegrader.inside.showing import Showing
 
         showing = Showing(interpreter, tell)
     for number, source in enumerate(sources, start=1):

@@ -21,7 +21,7 @@ import sys
 import tempfile
 from multiprocessing.connection import wait
 
-from exercisegrader.student_side import confinement
+from exercisegrader.inside import confinement
 
 #: How often (s) a submission's processes are looked at.
 WATCH = 0.1
@@ -203,7 +203,7 @@ def _submission(shell, call_filter, limits, size, notebook, events, folder):
         _tell(4, {"refused": f"no process could be made for it ({type(problem).__name__}: {problem})"})
         os._exit(1)
     try:
-        from exercisegrader.student_side import shell as runner
+        from exercisegrader.inside import shell as runner
 
         first = os.getpid()
 
@@ -224,8 +224,8 @@ def _tell(descriptor, event):
 
 def _libraries():
     """Import what notebooks use, and use it once, so that each submission finds it done; returns the shell."""
-    from exercisegrader.student_side import rehearsal
-    from exercisegrader.student_side.shell import shell
+    from exercisegrader.inside import rehearsal
+    from exercisegrader.inside.shell import shell
 
     made = shell()
     rehearsal.rehearse()
