@@ -110,8 +110,9 @@ def command() -> list[str]:
         )
     line = [program, "--die-with-parent", "--new-session", "--hostname", "jail"]
     line += ["--unshare-pid", "--unshare-ipc", "--unshare-net", "--unshare-uts", "--unshare-cgroup-try"]
-    if os.geteuid() == 0:  # the fork server itself becomes nobody; the walls are built with root's rights
-        line += ["--cap-drop", "ALL", "--cap-add", "CAP_SETUID", "--cap-add", "CAP_SETGID"]
+    if os.geteuid() == 0:  # the fork server becomes nobody, for which it takes these, and keeps none
+        line += ["--cap-drop", "ALL"]
+        line += [word for name in ("SETUID", "SETGID", "SETPCAP") for word in ("--cap-add", f"CAP_{name}")]
     folders = [str(folder) for path in visible() for folder in [*Path(path).parents][-2::-1]]
     for folder in dict.fromkeys(folders):  # for nobody to pass through
         line += ["--perms", "0755", "--dir", folder]

@@ -1,15 +1,19 @@
 """The walls around a submission, tried from inside: what once got through them, and no longer does."""
 
+import ctypes
 import json
 import os
+import re
 import signal
 import threading
+from pathlib import Path
 from textwrap import dedent
 
 import pytest
 
 from exercisegrader import NoJail
 from exercisegrader.events import Story
+from exercisegrader.inside import confinement
 from exercisegrader.jail import MEGA, Jail, Limits
 from needs import needs_jail
 
@@ -62,6 +66,17 @@ def test_beside_a_submission_nothing_of_the_judge_is_imported(jail):
     assert ours == "exercisegrader"
     assert [name for name in loaded if not f"{name}.".startswith("exercisegrader.inside.")] == []
     assert "exercisegrader.inside.shell" in loaded
+
+
+def test_of_the_rights_of_root_nothing_is_left(jail):
+    """Those of the fork server, which has none to give to a submission."""
+    inner = [jail.process.pid]
+    while children := Path(f"/proc/{inner[-1]}/task/{inner[-1]}/children").read_text().split():
+        inner.append(int(children[0]))
+    status = Path(f"/proc/{inner[-1]}/status").read_text()
+    assert not re.search(r"^(Uid|Gid):.*\t0\b", status, re.MULTILINE)
+    sets = r"^Cap(?:Inh|Prm|Eff|Bnd|Amb):\t(\w+)" if os.geteuid() == 0 else r"^Cap(?:Prm|Eff|Amb):\t(\w+)"
+    assert {int(found, 16) for found in re.findall(sets, status, re.MULTILINE)} == {0}
 
 
 def test_many_small_processes_are_one_large_one(jail):
@@ -151,9 +166,9 @@ def test_what_no_limit_counts_cannot_be_had(jail):
         )
         """
     assert told(jail, source) == {
-        "locks": "ENOLCK", "few_terminals": True, "buffers": "EPERM", "host": "EAFNOSUPPORT", "packets": "EAFNOSUPPORT",
-        "local": "done", "pages": "EPERM", "pipes": "EPERM", "watches": "EPERM",
-        "processors": "EPERM", "semaphores": "EPERM",
+        "locks": "ENOSYS", "few_terminals": True, "buffers": "ENOSYS", "host": "ENOSYS", "packets": "ENOSYS",
+        "local": "done", "pages": "ENOSYS", "pipes": "ENOSYS", "watches": "ENOSYS",
+        "processors": "ENOSYS", "semaphores": "ENOSYS",
     }  # fmt: skip
 
 
@@ -186,6 +201,43 @@ def test_limits_of_the_kernel_are_set(jail):
         "CPU": LIMITS.cpu, "FSIZE": LIMITS.file, "NOFILE": 256, "NPROC": LIMITS.processes, "CORE": 1, "RTPRIO": 0,
         "NICE": 0,
     }  # fmt: skip
+
+
+@pytest.mark.parametrize("machine", [0xC000003E, 0xC00000B7], ids=["x86_64", "aarch64"])
+def test_the_calls_that_are_allowed_have_these_names_on_each_machine(machine):
+    resolve = ctypes.CDLL("libseccomp.so.2").seccomp_syscall_resolve_name_arch
+    numbers = {name: resolve(machine, name.encode()) for name in " ".join(confinement._ALLOWED.values()).split()}
+    assert {name for name, number in numbers.items() if number == -1} <= {"fchmodat2", "futex_waitv"}  # new ones
+    needed = {"openat", "read", "mmap", "execve", "wait4", "futex", "epoll_pwait", "rt_sigreturn", "getrandom"}
+    assert all(numbers[name] >= 0 for name in needed)
+
+
+def test_what_libraries_do_is_allowed(jail):
+    source = """
+        import asyncio, concurrent.futures, matplotlib.pyplot, multiprocessing, shutil, subprocess, sys, tempfile
+        from concurrent.futures import ThreadPoolExecutor
+        import numpy as np, scipy.integrate, sympy
+
+        program = "import numpy, scipy.optimize, sympy; print(numpy.linalg.inv(numpy.eye(2)).sum())"
+
+        async def heard():
+            echo = await asyncio.create_subprocess_exec("echo", "a", stdout=asyncio.subprocess.PIPE)
+            return (await echo.communicate())[0].decode()
+
+        matplotlib.pyplot.plot([1, 2]), matplotlib.pyplot.savefig("a.pdf"), shutil.copy2("a.pdf", "b.pdf")
+        with tempfile.TemporaryFile() as file, ThreadPoolExecutor(4) as threads:
+            np.save(file, np.ones(9))
+            squares = [*threads.map(lambda x: x * x, range(3))]
+        with multiprocessing.get_context("spawn").Pool(1) as pool:
+            lengths = pool.map(len, ["a"])
+        sheet.answer(
+            "1", squares=squares, lengths=lengths, heard=await heard(),
+            end=scipy.integrate.solve_ivp(lambda t, y: 0 * y, (0, 1), [1]).y[0, -1],
+            program=subprocess.run([sys.executable, "-c", program], capture_output=True, text=True).stdout,
+        )
+        """
+    expected = {"squares": [0, 1, 4], "lengths": [1], "heard": "a\n", "end": 1, "program": "2.0\n"}
+    assert told(jail, source) == expected
 
 
 def test_shell_escapes_have_a_terminal(jail):
