@@ -208,7 +208,6 @@ def grade(
     cell_seconds: Annotated[float, typer.Option(min=1, help="What a cell may take.")] = 60,
     seconds: Annotated[float, typer.Option(min=1, help="What a notebook may take.")] = 180,
     megabytes: Annotated[int, typer.Option(min=100, help="Memory that a notebook may take.")] = 1024,
-    cluster: Annotated[str | None, typer.Option(help="Address of a Dask scheduler whose workers grade.")] = None,
     without_jail: Annotated[
         bool, typer.Option("--without-jail", help="Run submissions with your own rights; every output says so.")
     ] = False,
@@ -218,7 +217,6 @@ def grade(
 
     try:
         from exercisegrader.assignment import load
-        from exercisegrader.cluster import connected
         from exercisegrader.grade import grade as grade_all
         from exercisegrader.grade import here
         from exercisegrader.jail import MEGA, Limits
@@ -234,7 +232,7 @@ def grade(
                 roster,
                 submissions,
                 to,
-                place=here(workers) if cluster is None else connected(cluster),
+                place=here(workers),
                 extensions=extensions or (beside if os.path.lexists(beside) else None),
                 only=only or (),
                 regrade=regrade,
