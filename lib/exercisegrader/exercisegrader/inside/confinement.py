@@ -215,7 +215,7 @@ def call_filter() -> tuple[ctypes.CDLL, int]:
     for name in " ".join(_ALLOWED.values()).split():
         allow(name)
     for name, cases in _ALLOWED_WITH.items():
-        for values in cases:  # all 64 bits are compared: the kernel itself would pass over half of them
+        for values in cases:  # all 64 bits are compared, of which the kernel itself would take the lower half
             allow(name, *(_Comparison(place, _EQUAL, value) for place, value in values.items()))
     # the flags of clone3 are out of a filter's sight; without it the C library takes clone
     allow("clone", _Comparison(0, _MASKED_EQUAL, sum(_NEW.values()) | _NEW_CGROUP, 0))
