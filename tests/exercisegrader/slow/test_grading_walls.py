@@ -14,7 +14,7 @@ import pytest
 from exercisegrader import NoJail
 from exercisegrader.events import Story
 from exercisegrader.inside import confinement
-from exercisegrader.jail import MEGA, Jail, Limits
+from exercisegrader.jail import MEGA, Jail, Limits, in_cgroup
 from needs import needs_jail
 
 pytestmark = needs_jail
@@ -186,6 +186,33 @@ def test_a_crowd_stays_on_one_processor(jail):
         sheet.answer("1", processors=len(os.sched_getaffinity(0)))
         """
     assert told(jail, source) == {"processors": 1}
+
+
+def test_where_systemd_has_a_cgroup_the_jail_is_in_one(monkeypatch, tmp_path):
+    """By a program that notes what it is asked for and runs the rest, for few machines of tests have systemd."""
+    program = tmp_path / "systemd-run"
+    program.write_text(
+        f'#!/bin/sh\necho "$@" >> {tmp_path}/asked\nuntil [ "$1" = -- ]; do shift; done\nshift\nexec "$@"'
+    )
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=":")
+    monkeypatch.setenv("XDG_RUNTIME_DIR", "/run/user/1000")
+    in_cgroup.cache_clear()
+    with Jail(limits=LIMITS) as inside:
+        assert told(inside, "import os\nsheet.answer('1', user='XDG_RUNTIME_DIR' in os.environ)") == {"user": False}
+    in_cgroup.cache_clear()
+    tried, asked = (tmp_path / "asked").read_text().splitlines()
+    bounds = f"MemoryMax={(512 + 300 + 128) * MEGA} --property MemorySwapMax=0 --property TasksMax=96 -- "
+    assert f"{bounds}true" in tried
+    assert f"{bounds}/" in asked
+
+
+def test_where_systemd_has_none_there_is_no_cgroup(monkeypatch):
+    for program in ("/nowhere/systemd-run", "/bin/false", None):
+        monkeypatch.setattr("shutil.which", lambda name, program=program: program)
+        in_cgroup.cache_clear()
+        assert in_cgroup(1, 1) == ()
+    in_cgroup.cache_clear()
 
 
 def test_limits_of_the_kernel_are_set(jail):
