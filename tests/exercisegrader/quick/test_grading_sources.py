@@ -142,20 +142,8 @@ def test_damage_is_a_sentence(noise, place):
             read(bytes(content))
 
 
-@pytest.mark.parametrize(
-    "outputs",
-    [b"[" + b"[], " * 500, b"[" + b'{"a":1}, ' * 200, b"[" + b"1.5, " * 500, b"[" + b'"ab", ' * 500, b'"' * 999],
-)
-def test_short_values_are_counted_before_they_take_memory(monkeypatch, outputs):
-    monkeypatch.setattr(sources, "MOST_VALUES", 500)
-    assert refused(START + outputs) == "the file is not a notebook that can be read: it has more than 500 values"
-
-
-def test_a_long_text_is_one_value(monkeypatch):
-    monkeypatch.setattr(sources, "MOST_VALUES", 20)
-    picture = json.dumps('\\"[1, 2], \n' * 10**5).encode()
-    assert of_code(read(START + picture + b"}]}")) == ["1"]
-    assert "Unterminated" in refused(START + b'"' + b'\\"' * 10**6)  # and is not looked at from each quote again
+def test_a_file_beyond_all_is_not_read():
+    assert refused(b" " * 60 * 2**20) == "the file is larger than 50 MiB: expected one without its outputs"
 
 
 @pytest.mark.parametrize(
