@@ -71,37 +71,27 @@ def _read(stream):
     content = stream.read(LARGEST + 1)
     if len(content) > LARGEST:
         raise GradingError(TOO_LARGE)
-    encoding = json.detect_encoding(content)
+    _demand(content.strip(), "it is empty")
     try:
-        text = content.decode(encoding)
-    except UnicodeDecodeError:
-        raise ValueError(f"it is no text in {encoding.upper()}") from None
-    _demand(text and not text.isspace(), "it is empty")
-    notebook = json.loads(text)
+        notebook = json.loads(content)
+    except UnicodeDecodeError as problem:
+        raise ValueError(f"it is no text in {problem.encoding.upper()}") from None
     _demand(isinstance(notebook, dict), "it is no dictionary")
     return notebook
 
 
 def _cells(notebook):
     """The cells of a notebook in the one form. Raises ValueError."""
-    form = notebook.get("nbformat")
+    form, cells = notebook.get("nbformat"), notebook.get("cells")
     _demand(isinstance(form, int), "it has no number nbformat")
-    if form >= 4:
-        return [_cell(cell, "source") for cell in _list(notebook, "cells")]
-    return [_cell(cell, "input") for sheet in _list(notebook, "worksheets") for cell in _list(sheet, "cells")]
+    _demand(form >= 4, "it is of before 2015: open and save it in Jupyter")
+    _demand(isinstance(cells, list), "it has no list of cells")
+    return [_cell(cell) for cell in cells]
 
 
-def _list(inside, name):
-    found = inside.get(name) if isinstance(inside, dict) else None
-    _demand(isinstance(found, list), f"it has no list of {name}")
-    return found
-
-
-def _cell(cell, code):
-    """A cell in the one form, whose code is under that name."""
+def _cell(cell):
     _demand(isinstance(cell, dict) and "cell_type" in cell, "it has a cell without a type")
-    kind = cell["cell_type"] if cell["cell_type"] in ("code", "raw") else "markdown"
-    source = cell.get(code if kind == "code" else "source")
+    kind, source = cell["cell_type"] if cell["cell_type"] in ("code", "raw") else "markdown", cell.get("source")
     if isinstance(source, list) and all(isinstance(line, str) for line in source):
         source = "".join(source)
     if kind == "code":

@@ -80,15 +80,6 @@ def test_the_last_of_two_counts_as_everywhere():
     assert of_code(read(content)) == ["a"]
 
 
-def test_notebooks_of_before_2015():
-    old = {"nbformat": 3, "metadata": {"name": "x"}, "worksheets": []}
-    old["worksheets"] = [
-        {"cells": [{"cell_type": "code", "input": ["x = 1\n", "y"], "outputs": [1], "language": "python"}]},
-        {"cells": [{"cell_type": "heading", "level": 2, "source": "A"}, {"cell_type": "code", "input": "z"}]},
-    ]
-    assert of_code(read(json.dumps(old).encode())) == ["x = 1\ny", "z"]
-
-
 START = b'{"nbformat": 4, "cells": [{"cell_type": "code", "source": "1", "outputs": '
 
 
@@ -102,7 +93,7 @@ START = b'{"nbformat": 4, "cells": [{"cell_type": "code", "source": "1", "output
         (b"PK\x03\x04\xff\xfe", "it is no text in UTF-8"),
         (b'{"nbformat": 4}', "it has no list of cells"),
         (b'{"nbformat": 4, "cells": {"a": 1}}', "it has no list of cells"),
-        (b'{"nbformat": 3, "worksheets": [1]}', "it has no list of cells"),
+        (b'{"nbformat": 3, "worksheets": [1]}', "it is of before 2015: open and save it in Jupyter"),
         (b'{"nbformat": 4, "cells": [], "metadata": []}', "its metadata are no dictionary"),
         (b'{"nbformat": "4", "cells": []}', "it has no number nbformat"),
         (b'{"nbformat": 4, "cells": []} x', "Extra data"),
