@@ -41,7 +41,7 @@ _ALLOWED = {
         rename renameat renameat2 link linkat symlink symlinkat unlink unlinkat truncate ftruncate fallocate fadvise64
         readahead fsync fdatasync sync_file_range flock chmod fchmod fchmodat fchmodat2 chown fchown lchown fchownat
         umask utime utimes futimesat utimensat getxattr lgetxattr fgetxattr listxattr llistxattr flistxattr dup dup2
-        dup3 pipe pipe2 ioctl
+        dup3 pipe pipe2
     """,
     "waiting": """
         poll ppoll select pselect6 epoll_create epoll_create1 epoll_ctl epoll_wait epoll_pwait epoll_pwait2 eventfd
@@ -71,16 +71,24 @@ _ALLOWED = {
 }
 #: Of these calls some uses alone, by the values of arguments, {its place: value}: of sockets those that stay within the
 #: namespaces, local ones and the internet's, without larger buffers; of fcntl neither locks on parts of files, of which
-#: the kernel keeps as many as one likes, nor larger pipes; of prctl no further filters.
+#: the kernel keeps as many as one likes, nor larger pipes; of prctl no further filters; of ioctl what terminals and
+#: files are asked, and no other drivers of terminals.
 _ALLOWED_WITH = {
     "socket": [{0: family} for family in (1, 2, 10)],
     "socketpair": [{0: 1}],
     "setsockopt": [{1: level, 2: option} for level, option in ((1, 2), (1, 9), (1, 15), (6, 1), (41, 26))],
     "fcntl": [{1: command} for command in (0, 1, 2, 3, 4, 8, 9, 1030, 1032)],
+    "ioctl": [
+        {1: request} for request in (
+            0x5401, 0x5402, 0x5403, 0x5404, 0x5409, 0x540A, 0x540B, 0x540E, 0x540F, 0x5410, 0x5411, 0x5413, 0x5414,
+            0x541B, 0x5421, 0x5422, 0x5429, 0x5441, 0x5450, 0x5451, 0x40045431, 0x80045430, 0x80045439,
+            0x402C542B, 0x402C542C, 0x402C542D, 0x802C542A,
+        )
+    ],
     "prctl": [{0: option} for option in (1, 2, 3, 4, 15, 16, 23, 38, 39, 0x53564D41)],
 }  # fmt: skip
 _ALLOW, _NO_SUCH_CALL = 0x7FFF0000, 0x00050000 | errno.ENOSYS
-_EQUAL, _MASKED_EQUAL = 4, 7
+_MASKED_EQUAL = 7
 
 
 class _Comparison(ctypes.Structure):
@@ -215,8 +223,8 @@ def call_filter() -> tuple[ctypes.CDLL, int]:
     for name in " ".join(_ALLOWED.values()).split():
         allow(name)
     for name, cases in _ALLOWED_WITH.items():
-        for values in cases:  # all 64 bits are compared, of which the kernel itself would take the lower half
-            allow(name, *(_Comparison(place, _EQUAL, value) for place, value in values.items()))
+        for values in cases:  # of the 64 bits of an argument, the kernel takes the lower half for these
+            allow(name, *(_Comparison(place, _MASKED_EQUAL, 0xFFFFFFFF, value) for place, value in values.items()))
     # the flags of clone3 are out of a filter's sight; without it the C library takes clone
     allow("clone", _Comparison(0, _MASKED_EQUAL, sum(_NEW.values()) | _NEW_CGROUP, 0))
     return library, made
