@@ -216,7 +216,7 @@ def test_the_calls_that_are_allowed_have_these_names_on_each_machine(machine):
     assert all(numbers[name] >= 0 for name in needed)
 
 
-def test_what_libraries_do_is_allowed(jail):
+def test_what_libraries_do_is_allowed():
     source = """
         import asyncio, concurrent.futures, matplotlib.pyplot, multiprocessing, shutil, subprocess, sys, tempfile
         from concurrent.futures import ThreadPoolExecutor
@@ -241,7 +241,8 @@ def test_what_libraries_do_is_allowed(jail):
         )
         """
     expected = {"squares": [0, 1, 4], "lengths": [1], "heard": "a\n", "end": 1, "program": "2.0\n"}
-    assert told(jail, source) == expected
+    with Jail() as patient:  # it starts Python three times, on a machine that may be busy
+        assert told(patient, source) == expected
 
 
 def test_shell_escapes_have_a_terminal(jail):
