@@ -275,7 +275,9 @@ class Jail:
             if events in ready and not story.read(events):
                 watched.remove(events)  # nothing more will come: the process is about to end
             done = self._control in ready
-            if done or (monotonic() < due and not story.too_long):
+            # it may have ended in time while this process read the large file of somebody else
+            is_late = monotonic() >= due and not wait([self._control], 0)
+            if done or not (is_late or story.too_long):
                 continue
             if why:  # it was to be ended, and was not: then everything in these walls is
                 break
