@@ -146,7 +146,7 @@ def _import_libraries():
     import pkgutil
 
     import loopbook
-    from exercisegrader.student_side import rehearsal
+    from exercisegrader.inside import rehearsal
 
     for name in LIBRARIES:
         importlib.import_module(name)

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from draws import THOROUGH, of_the_day
-from exercisegrader.student_side import answer_sheet
+from exercisegrader.inside import answer_sheet
 from judged import assert_is_made_again, assert_reads_back
 from loopbook.exercises import authoring, bank
 from loopbook.exercises.kinds import MAKERS

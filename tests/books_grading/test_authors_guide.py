@@ -8,9 +8,9 @@ import pytest
 from exercisebook.judging import RIGHT
 from exercisegrader import trial
 from exercisegrader.assignment import Assignment, load
+from exercisegrader.inside.answer_sheet import FORMS
 from exercisegrader.release import notebook
 from exercisegrader.student import Student
-from exercisegrader.student_side.answer_sheet import FORMS
 from loopbook.exercises.kinds import MAKERS
 
 ROOT = Path(__file__).parents[2]

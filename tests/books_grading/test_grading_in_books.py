@@ -11,20 +11,17 @@ import nbformat
 import pytest
 import sympy
 
-import assignments
 from assignments import SECRET, students
 from exercisebook.judging import RIGHT, UNJUDGED, WAITING, judge
-from exercisegrader import nbgrader
 from exercisegrader.assignment import Assignment
+from exercisegrader.inside import answer_sheet
+from exercisegrader.inside.plain import plain
 from exercisegrader.release import as_text, notebook
 from exercisegrader.reports import pages
-from exercisegrader.student_side import answer_sheet
-from exercisegrader.student_side.plain import plain
 from loopbook import notebooks, s
 from loopbook.deadtime import System
 from loopbook.exercises import bank
 from loopbook.exercises.authoring import criterion, design, figure, settings, transfer_function
-from loopbook.exercises.kinds import Design
 from loopbook.figures import stacked, time_plot
 from loopbook.pid import PID
 
@@ -130,11 +127,6 @@ def test_a_released_notebook_runs_in_a_kernel_of_its_own_and_says_what_it_needs(
     assert done.stdout.endswith("3 of 3 not answered yet\n"), done.stderr
 
 
-def test_nbgrader_gives_all_points_to_the_solution_and_none_to_an_empty_sheet(tuning):
-    made = nbgrader.source(tuning, "s1001")
-    assert (assignments.nbgraded(made, solved=True), assignments.nbgraded(made, solved=False)) == (4, 0)
-
-
 # The chapters.
 
 each_chapter = pytest.mark.parametrize("chapter", bank.chapters())
@@ -170,12 +162,6 @@ def test_plain_data_is_judged_as_the_answer_itself(chapter):
                 assert place >= len(readable) or form.written(form.read(data)[0]), f"{name} = {data}"
                 verdicts = {judge(name, kind, one, question.mistakes[name]).status for one in (answer, data)}
                 assert len(verdicts) == 1, f"{name} = {answer!r}, {data!r}"
-
-
-def test_nbgrader_gives_to_a_person_what_cannot_be_written_into_a_cell():
-    keys = [one.question().key for chapter in bank.chapters() for one in bank.exercises(chapter).values()]
-    by_hand = [kind.what for key in keys for kind in key.values() if not (kind.making or isinstance(kind, Design))]
-    assert len(by_hand) == 1  # it has pieces
 
 
 def test_every_formula_in_the_sentences_on_mistakes_is_mathml():

@@ -30,6 +30,13 @@ def test_a_value_is_a_text_and_comes_back(value):
     assert type(again) is type(value)
 
 
+def test_a_text_is_read_and_never_run():
+    with pytest.raises(ValueError, match="not a number, a name or a known operation"):
+        of_text("__import__('os').getpid()")
+    with pytest.raises(ValueError, match="not the same when it is read again"):
+        as_text(sympy.Symbol("x"))
+
+
 def test_values_of_before_hold_and_others_are_drawn_for_them():
     @exercise("1", title="Dead time", where=lambda T, delay: delay < T)
     def lag(T=between(2, 9, "s"), delay=between(1, 9, "s")):

@@ -1,7 +1,5 @@
 """An assignment to release and to grade, whose text a test may change."""
 
-import ast
-
 from exercisegrader.assignment import Assignment
 from exercisegrader.student import Student
 
@@ -60,20 +58,3 @@ def students(*names):
 def tuning():
     """The assignment, with all kinds of answers."""
     return Assignment.of(written(), "tuning")
-
-
-def nbgraded(notebook, solved):
-    """The points that the hidden tests of a source for nbgrader give, to the solution or to what a student gets."""
-    names, points = {}, 0
-    for cell in notebook.cells:
-        marks, source = cell.metadata.nbgrader, cell.source
-        if marks.solution and not solved:
-            source = source[: source.index("### BEGIN")] + source[source.index("### END") :]
-        if cell.cell_type == "code":
-            *body, last = ast.parse(source).body
-            exec(compile(ast.Module(body, []), "cell", "exec"), names)
-            if marks.grade and not marks.solution:
-                points += eval(compile(ast.Expression(last.value), "cell", "eval"), names)
-            else:
-                exec(compile(ast.Module([last], []), "cell", "exec"), names)
-    return points

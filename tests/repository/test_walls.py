@@ -26,7 +26,7 @@ MAY_IMPORT = {
 #: What of loopbook is in the package of the books, with names within `loopbook`.
 OF_THE_BOOKS = {path.stem for path in (LIB / "loopbook-books" / "loopbook").iterdir()}
 #: What runs beside a submission, in the jail and in the student's notebook.
-STUDENT_SIDE = "exercisegrader.student_side"
+INSIDE = "exercisegrader.inside."
 #: The order in which a reader meets the modules of loopbook; the groups on one line do not know each other.
 ORDER = [
     ["types"],
@@ -94,6 +94,11 @@ def package_of(name):
 def across(package, names):
     """The names of those that are imported from a package which this one may not know."""
     return {name for name in names if package_of(name) not in {None, package, *MAY_IMPORT[package]}}
+
+
+def outside(names):
+    """Those of the grader's modules among the names that are not beside a submission."""
+    return {one for one in names if one.partition(".")[0] == "exercisegrader" and not f"{one}.".startswith(INSIDE)}
 
 
 def circles(graph):
@@ -170,14 +175,9 @@ def test_a_module_of_loopbook_imports_only_what_stands_above_it():
     assert {name: wrong for name, wrong in found.items() if wrong} == {}
 
 
-def test_what_runs_beside_a_submission_knows_nothing_of_the_judge():
-    found = {}
-    for (_, name), path in modules().items():
-        if name.startswith(STUDENT_SIDE):
-            known = (f"{STUDENT_SIDE}.", "exercisegrader.student_side")
-            found[name] = [
-                one for one in imports_of(path) if one.startswith("exercisegrader") and not one.startswith(known)
-            ]
+def test_inside_imports_nothing_of_outside():
+    found = {name: outside(imports_of(path)) for (_, name), path in modules().items() if f"{name}.".startswith(INSIDE)}
+    assert len(found) > 5
     assert {name: wrong for name, wrong in found.items() if wrong} == {}
 
 
@@ -207,6 +207,11 @@ def test_importing_a_package_does_not_import_another_beside_it(package):
 )
 def test_an_import_through_a_wall_is_found(package, source, wrong):
     assert across(package, imported(source)) == wrong
+
+
+def test_an_import_from_inside_to_outside_is_found():
+    names = imported("from exercisegrader.inside import plain\nfrom exercisegrader import judge, inside")
+    assert outside(names) == {"exercisegrader.judge"}
 
 
 @pytest.mark.parametrize(

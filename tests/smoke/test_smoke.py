@@ -10,7 +10,7 @@ import pytest
 from matplotlib import pyplot
 
 from courses import Course
-from exercisegrader.student_side.rehearsal import rehearse
+from exercisegrader.inside.rehearsal import rehearse
 from loopbook.exercises.bank import exercises
 from needs import needs_jail
 from test_book import Page

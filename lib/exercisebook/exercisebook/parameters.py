@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import sympy
 
 from exercisebook import units
-from plainmath.expressions import exact
+from plainmath.expressions import exact, parse
 from plainmath.validation import did_you_mean, exact_positive
 
 if TYPE_CHECKING:
@@ -140,24 +140,27 @@ def written(value: Number | str, unit: str = "") -> str:
 def as_text(value: Value) -> str:
     """Return a value as a text that `of_text` reads back exactly; a word stands in quotes.
 
+    Raises ValueError for an expression that no text spells, as one of symbols that may be negative.
+
     >>> as_text(sympy.Rational(5, 2)), as_text(sympy.sqrt(2)), as_text("open")
     ('5/2', 'sqrt(2)', "'open'")
     """
     if isinstance(value, str):
         return f"'{value}'"
-    text = str(value)
-    return text if of_text(text) == value else sympy.srepr(value)
+    if of_text(text := str(value)) != value:
+        raise ValueError(f"the value {text} is not the same when it is read again: expected a number or a word")
+    return text
 
 
 def of_text(text: str) -> Value:
-    """Return the value that `as_text` wrote. It evaluates the text: take none from others.
+    """Return the value that `as_text` wrote; nothing in it is evaluated. Raises ValueError for what is none.
 
     >>> of_text("5/2") == sympy.Rational(5, 2), of_text("'5/2'")
     (True, '5/2')
     """
     if text.startswith("'"):
         return text[1:-1]
-    return sympy.Rational(text) if re.fullmatch(r"-?[0-9]+(/[0-9]+)?", text) else sympy.sympify(text)
+    return sympy.Rational(text) if re.fullmatch(r"-?[0-9]+(/[0-9]+)?", text) else parse(text)
 
 
 def call(function: Callable[..., Any], values: Mapping[str, Any]) -> Any:

@@ -66,7 +66,6 @@ def release(
             "--for", help="Pack them, too, as students get them there: canvas, moodle or drive, a shared one."
         ),
     ] = None,
-    nbgrader: Annotated[bool, typer.Option(help="Write one source assignment for nbgrader instead.")] = False,
 ) -> None:
     """Write one notebook per student: own numbers, places for answers, nothing of the key.
 
@@ -74,25 +73,15 @@ def release(
     joined later or with a statement that was mended, everybody keeps the numbers of the record, whatever the ranges
     are by then, and no notebook is replaced unless --replace says so.
     """
-    from exercisegrader import GradingError
+    from exercisegrader import GradingError, lms
     from exercisegrader.assignment import load
     from exercisegrader.files import write
+    from exercisegrader.release import release
+    from exercisegrader.roster import read_roster
 
     try:
         given = load(assignment)
         given.demand_own_secret()
-        if nbgrader:
-            from exercisegrader.nbgrader import source
-            from exercisegrader.release import as_text
-
-            path = to / f"{given.name}.ipynb"
-            write(path, as_text(source(given)))
-            console.print(f"the source notebook of {given.title!r} is {path}", markup=False)
-            return
-        from exercisegrader import lms
-        from exercisegrader.release import release
-        from exercisegrader.roster import read_roster
-
         roster = read_roster(students or assignment.with_name("roster.csv"))
         if place:
             lms.demand_place(place)
@@ -208,7 +197,6 @@ def grade(
     cell_seconds: Annotated[float, typer.Option(min=1, help="What a cell may take.")] = 60,
     seconds: Annotated[float, typer.Option(min=1, help="What a notebook may take.")] = 180,
     megabytes: Annotated[int, typer.Option(min=100, help="Memory that a notebook may take.")] = 1024,
-    cluster: Annotated[str | None, typer.Option(help="Address of a Dask scheduler whose workers grade.")] = None,
     without_jail: Annotated[
         bool, typer.Option("--without-jail", help="Run submissions with your own rights; every output says so.")
     ] = False,
@@ -218,7 +206,6 @@ def grade(
 
     try:
         from exercisegrader.assignment import load
-        from exercisegrader.cluster import connected
         from exercisegrader.grade import grade as grade_all
         from exercisegrader.grade import here
         from exercisegrader.jail import MEGA, Limits
@@ -234,7 +221,7 @@ def grade(
                 roster,
                 submissions,
                 to,
-                place=here(workers) if cluster is None else connected(cluster),
+                place=here(workers),
                 extensions=extensions or (beside if os.path.lexists(beside) else None),
                 only=only or (),
                 regrade=regrade,

@@ -14,7 +14,7 @@ from time import monotonic
 from typing import Any, BinaryIO
 
 from exercisebook.judging import harmless
-from exercisegrader.student_side.plain import DEEPEST, MOST_DIGITS
+from exercisegrader.inside.plain import DEEPEST, MOST_DIGITS
 
 #: So many exercises, quantities of one, and errors are kept.
 MOST = 200

@@ -1,7 +1,7 @@
 """Grading a class: collect, run, judge, keep, report. Interrupted at any moment, the same call goes on.
 
-Each submission is one task, which knows nothing of the others. It runs on a thread of this machine, or on a worker of
-a Dask cluster; on both, the student's code is in a child, behind the jail's walls.
+Each submission is one task, which knows nothing of the others. It is followed by a thread; the student's code is in a
+child, behind the jail's walls.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ WAITING = 2
 
 @dataclass(frozen=True)
 class Task:
-    """A submission to be graded, as a worker gets it: plain values, for a worker may be another machine."""
+    """A submission to be graded, as a worker gets it: plain values."""
 
     name: str
     source: str
@@ -194,8 +194,7 @@ def grade(
         students: the roster.
         submissions: folder or zip file.
         folder: where results and reports go.
-        place: where submissions are graded, ``here(workers)`` or ``cluster.connected(address)``; ``here(1)`` if not
-            given.
+        place: where submissions are graded, ``here(workers)``; ``here(1)`` if not given.
         extensions: the file that grants them to single students, if there is one.
         only: ids of the students to grade; all if empty.
         regrade: grade again what has a result.

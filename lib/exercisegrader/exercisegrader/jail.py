@@ -3,10 +3,16 @@
 The list of what is visible inside is `visible`: the system's programs and libraries, Python, its packages, and this
 library, all read-only. There is no network, no environment, no descriptor but one for the events, and nothing else of
 the machine.
+
+What a submission takes is bounded three times. Each process has limits of its own (`inside.confinement`). The fork
+server looks at all of them together each tenth of a second, and says why it ends them (`inside.fork_server`). Where
+systemd gives this user a cgroup, the jail runs in one that bounds memory and tasks, also what the kernel holds for them
+and nobody sees; elsewhere, as in a container, the first two have to do.
 """
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 import shutil
@@ -25,8 +31,8 @@ from typing import TYPE_CHECKING, Self
 from exercisebook import plugins
 from exercisegrader import GradingError, NoJail
 from exercisegrader.events import Scene, Story
-from exercisegrader.student_side.confinement import HOME
-from exercisegrader.student_side.fork_server import KILL
+from exercisegrader.inside.confinement import HOME
+from exercisegrader.inside.fork_server import KILL
 
 if TYPE_CHECKING:
     from exercisegrader.events import Outcome, Shown
@@ -38,8 +44,12 @@ STARTING = 120
 PATIENCE = 2
 #: What the end of a process may take (s).
 STUBBORN = 10
+#: What the fork server itself may hold, in memory (bytes) and in tasks; and what systemd may take to answer (s).
+OWN_MEMORY, OWN_TASKS, ANSWER = 512 * MEGA, 32, 5
 SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/etc/ld.so.cache", "/etc/fonts", "/etc/localtime")
 PYTHON = os.path.abspath(sys.executable)
+#: Where systemd of a user is found.
+RUNTIME = "XDG_RUNTIME_DIR"
 ENVIRONMENT = {
     "HOME": HOME,
     "TMPDIR": HOME,
@@ -108,10 +118,11 @@ def command() -> list[str]:
             f"there is no jail here, {why}: install bubblewrap and libseccomp2 on a Linux machine, "
             "or say --without-jail and every output is marked so"
         )
-    line = [program, "--die-with-parent", "--new-session", "--hostname", "jail"]
+    line = [program, "--die-with-parent", "--new-session", "--hostname", "jail", "--unsetenv", RUNTIME]
     line += ["--unshare-pid", "--unshare-ipc", "--unshare-net", "--unshare-uts", "--unshare-cgroup-try"]
-    if os.geteuid() == 0:  # the fork server itself becomes nobody; the walls are built with root's rights
-        line += ["--cap-drop", "ALL", "--cap-add", "CAP_SETUID", "--cap-add", "CAP_SETGID"]
+    if os.geteuid() == 0:  # the fork server becomes nobody, for which it takes these, and keeps none
+        line += ["--cap-drop", "ALL"]
+        line += [word for name in ("SETUID", "SETGID", "SETPCAP") for word in ("--cap-add", f"CAP_{name}")]
     folders = [str(folder) for path in visible() for folder in [*Path(path).parents][-2::-1]]
     for folder in dict.fromkeys(folders):  # for nobody to pass through
         line += ["--perms", "0755", "--dir", folder]
@@ -122,6 +133,29 @@ def command() -> list[str]:
         line += ["--symlink", HOME.lstrip("/"), "/tmp"]
     line += ["--remount-ro", "/dev", "--remount-ro", "/", "--chdir", HOME, "--"]
     return line
+
+
+@functools.cache
+def in_cgroup(memory: int, tasks: int) -> tuple[str, ...]:
+    """Return how a command begins that runs in a cgroup of its own, by systemd; nothing where that is not possible.
+
+    Arguments:
+        memory: of all in it (bytes).
+        tasks: their number.
+    """
+    line = [shutil.which("systemd-run") or "", "--scope", "--quiet", "--collect", *(["--user"] if os.geteuid() else [])]
+    for bound in (f"MemoryMax={memory}", "MemorySwapMax=0", f"TasksMax={tasks}"):
+        line += ["--property", bound]
+    try:
+        subprocess.run([*line, "--", "true"], env=_systemd(), capture_output=True, timeout=ANSWER, check=True)
+    except (OSError, subprocess.SubprocessError):  # there is none, or it has nothing for this user
+        return ()
+    return (*line, "--")
+
+
+def _systemd():
+    """The environment in which systemd is found; bubblewrap takes it away again."""
+    return ENVIRONMENT | {name: os.environ[name] for name in (RUNTIME,) if name in os.environ}
 
 
 class Jail:
@@ -141,15 +175,18 @@ class Jail:
 
     def _start(self):
         ours, theirs = socket.socketpair()
-        home = {} if self.jailed else dict.fromkeys(("HOME", "TMPDIR"), tempfile.gettempdir())
-        line = [*(command() if self.jailed else ()), PYTHON, "-m", "exercisegrader.student_side.fork_server"]
+        around = _systemd() if self.jailed else ENVIRONMENT | dict.fromkeys(("HOME", "TMPDIR"), tempfile.gettempdir())
+        line = [PYTHON, "-m", "exercisegrader.inside.fork_server"]
+        if self.jailed:
+            memory = OWN_MEMORY + self.limits.memory + 2 * self.limits.disk
+            line = [*in_cgroup(memory, OWN_TASKS + self.limits.processes), *command(), *line, "jailed"]
         with theirs, tempfile.TemporaryFile() as complaints:
             self.process = subprocess.Popen(
-                [*line, *(["jailed"] if self.jailed else [])],
+                line,
                 stdin=theirs,
                 stdout=subprocess.DEVNULL,
                 stderr=complaints,
-                env=ENVIRONMENT | home,
+                env=around,
                 cwd="/",
             )
             theirs.close()
@@ -238,7 +275,9 @@ class Jail:
             if events in ready and not story.read(events):
                 watched.remove(events)  # nothing more will come: the process is about to end
             done = self._control in ready
-            if done or (monotonic() < due and not story.too_long):
+            # it may have ended in time while this process read the large file of somebody else
+            is_late = monotonic() >= due and not wait([self._control], 0)
+            if done or not (is_late or story.too_long):
                 continue
             if why:  # it was to be ended, and was not: then everything in these walls is
                 break

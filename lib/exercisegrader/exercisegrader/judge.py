@@ -23,8 +23,8 @@ from exercisebook.judging import SECONDS, UNJUDGED, Verdict, judge
 from exercisebook.parameters import written
 from exercisebook.timeout import WAITING
 from exercisegrader import GradingError
+from exercisegrader.inside.plain import unreadable
 from exercisegrader.results import JudgedAnswer, JudgedExercise
-from exercisegrader.student_side.plain import unreadable
 
 if TYPE_CHECKING:
     from exercisebook.question import Question

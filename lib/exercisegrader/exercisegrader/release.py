@@ -6,10 +6,8 @@ import base64
 import enum
 import html
 import importlib.metadata
-import io
-import itertools
 import re
-import tokenize
+import textwrap
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -44,6 +42,9 @@ GROUP = "exercisegrader.answer_sheets"
 _NOT_FILLED_IN = re.compile(r"\$\$.*?\$\$|\$.*?\$|`.*?`", re.DOTALL)
 #: The place of a value; in front of it is none of what LaTeX has before a brace.
 _PLACE = re.compile(r"(?<![\w\\{}])\{([^\W\d]\w*)\}(?!\})")
+#: The first bracket of a line of code, with what is before it, and what of the code is never broken.
+_OPENING = re.compile(r"""[^"'(\[{]*[(\[{]""")
+_TOGETHER = re.compile(r""""(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*'|(?<!,) +""")
 _HOW_TO_ANSWER = (
     "Put your answers in the places of the dots and run the cells: each shows how your answer is read, and nothing "
     "about right or wrong. You can answer as often as you like before you save this notebook and hand it in; the last "
@@ -296,7 +297,7 @@ def installed() -> Installed:
     [plugin] = [*importlib.metadata.entry_points(group=GROUP)][:1] or [None]
     about = importlib.metadata.metadata(plugin.dist.name if plugin else "exercisegrader")
     links = dict(one.split(", ") for one in about.get_all("Project-URL"))
-    module = plugin.value if plugin else "exercisegrader.student_side.answer_sheet"
+    module = plugin.value if plugin else "exercisegrader.inside.answer_sheet"
     return Installed(module, importlib.metadata.version(about["Name"]), links["Repository"])
 
 
@@ -309,20 +310,15 @@ def _reading(question):
     return "\n".join(["<details><summary>How your answers are read</summary>", "", *lines, "", "</details>"])
 
 
-def asked(
-    assignment: Assignment, student_id: str | None, number: str, values: Mapping[str, str] | None = None
-) -> Question:
+def asked(assignment: Assignment, student_id: str, number: str, values: Mapping[str, str] | None = None) -> Question:
     """Return a student's question, with all that will be needed of it. Raises GradingError where that fails.
 
     Arguments:
         assignment, number, values: as `Assignment.question` takes them.
-        student_id: whose; the reference variant if it is None.
+        student_id: whose.
     """
     try:
-        if student_id is None:
-            question = assignment.exercises[number].question()
-        else:
-            question = assignment.question(student_id, number, values)
+        question = assignment.question(student_id, number, values)
         check_names(question)
         _check_places(question)
         _check_key(question)
@@ -330,8 +326,7 @@ def asked(
     except GradingError:
         raise
     except Exception as problem:  # the functions are the author's
-        whose = f" for student {student_id}" if student_id else ""
-        raise GradingError(f"exercise {number} of {assignment.name}{whose}: {problem}") from problem
+        raise GradingError(f"exercise {number} of {assignment.name} for student {student_id}: {problem}") from problem
     return question
 
 
@@ -417,7 +412,7 @@ def answer_call(number: str, values: Mapping[str, str]) -> str:
 
 
 def wrapped(code: str) -> str:
-    """Return a line of code with a bracket as lines that are not too long, broken after commas, outer ones first.
+    """Return a line of code with a bracket as lines that are not too long, broken after commas.
 
     >>> print(wrapped(f"sheet.asks({', '.join(['1', *(f'angle_{k}=number()' for k in range(5))])})"))
     sheet.asks(
@@ -427,40 +422,12 @@ def wrapped(code: str) -> str:
     """
     if len(code) <= MOST_COLUMNS:
         return code
-    opening, outer, inner = _places(code)
-    if opening is None:
+    opening = _OPENING.match(code)
+    if not opening:
         return code
-    lines, closing = [""], len(code) - 1
-    for start, end in _pieces(opening, outer, closing):
-        breaks = [place for place in inner if start < place < end] if end - start > MOST_COLUMNS - 4 else []
-        if breaks and lines[-1]:  # what needs several lines begins on one of its own
-            lines.append("")
-        for piece in (code[begin:stop].strip() for begin, stop in _pieces(start, breaks, end)):
-            if lines[-1] and len(lines[-1]) + 1 + len(piece) > MOST_COLUMNS - 4:
-                lines.append("")
-            lines[-1] += f" {piece}" if lines[-1] else piece
-    return "\n".join([code[:opening], *(f"    {line}" for line in lines), code[closing:]])
-
-
-def _places(code):
-    """Where the first bracket of some code has opened, and where its commas end: its own, and those further inside."""
-    opening, depth, outer, inner = None, 0, [], []
-    for token in tokenize.generate_tokens(io.StringIO(code).readline):
-        if token.type != tokenize.OP:
-            continue
-        if token.string in "([{":
-            opening = opening or token.end[1]
-            depth += 1
-        elif token.string in ")]}":
-            depth -= 1
-        elif token.string == "," and depth:
-            (outer if depth == 1 else inner).append(token.end[1])
-    return opening, outer, inner
-
-
-def _pieces(start, places, end):
-    """Pairs of a beginning and an end, from each of the places to the next."""
-    return list(itertools.pairwise([start, *places, end]))
+    inside = _TOGETHER.sub(lambda found: found[0].replace(" ", "\0"), code[opening.end() : -1])
+    lines = textwrap.wrap(inside, MOST_COLUMNS - 4, break_long_words=False, break_on_hyphens=False)
+    return "\n".join([opening[0], *(f"    {line}" for line in lines), code[-1]]).replace("\0", " ")
 
 
 def as_markdown(text: str) -> str:

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
     from exercisegrader.assignment import Assignment
     from exercisegrader.events import Outcome
+    from exercisegrader.inside.plain import Plain
     from exercisegrader.jail import Limits
-    from exercisegrader.student_side.plain import Plain
 
 #: What became of a submission: nothing handed in, nothing that could be run, run in part, run to its end.
 MISSING, NOT_RUN, STOPPED, COMPLETE = "missing", "not run", "stopped", "complete"

@@ -154,7 +154,7 @@ def _submission(student, notebooks, latest):
             problem = f"{_several(notebooks)}; {why}; keep one"
     entry = one.entry
     if not problem and entry.size > sources.LARGEST:
-        problem = sources.too_large()
+        problem = sources.TOO_LARGE
     opens = None if problem else entry.open
     return Submission(student, entry.label, problem, student.handed_in, one.owner.late, chosen, opens)
 

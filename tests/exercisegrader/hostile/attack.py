@@ -55,9 +55,7 @@ class Target:
     outside: str = "/nowhere"
     port: int = 0
     socket: str = "/nowhere.sock"
-    setup: str = (
-        'from exercisegrader.student_side.answer_sheet import AnswerSheet\n\nsheet = AnswerSheet("", student="")'
-    )
+    setup: str = 'from exercisegrader.inside.answer_sheet import AnswerSheet\n\nsheet = AnswerSheet("", student="")'
     megabytes: int = 4000
     processes: int = 1500
 

@@ -229,11 +229,13 @@ ATTACKS = (
     _file("wrong kernel", "R", _changed(metadata=_KERNEL)),
     _file("wrong kernel", "a path", _changed(metadata=_EVIL), _EITHER),
     _file("wrong kernel", "none", _changed(metadata={}), _EITHER),
-    _file(_LARGE, "spaces", lambda cells: notebook(cells) + b" " * 10**8, _RIGHT),
-    _file(_LARGE, "a picture of 100 MB", _replaced(_OUTPUTS, b'"outputs": ["' + b"A" * 10**8 + b'"]'), _RIGHT),
+    _file(_LARGE, "spaces", lambda cells: notebook(cells) + b" " * 4 * 10**7, _RIGHT),
+    _file(_LARGE, "a picture of 40 MB", _replaced(_OUTPUTS, b'"outputs": ["' + b"A" * 4 * 10**7 + b'"]'), _RIGHT),
     _file(_LARGE, "an output without an end", _replaced(_OUTPUTS, b'"outputs": ["' + b"A" * 10**8)),
-    _file(_LARGE, "pictures beyond all", lambda cells: notebook(cells) + b" " * (200 * 2**20)),
-    _file(_LARGE, "outputs of brackets", _replaced(_OUTPUTS, b'"outputs": [' + b"[[[]]]," * 6 * 10**6 + b"{}]")),
+    _file(_LARGE, "pictures beyond all", lambda cells: notebook(cells) + b" " * (50 * 2**20)),
+    _file(
+        _LARGE, "outputs of brackets", _replaced(_OUTPUTS, b'"outputs": [' + b"[[[]]]," * 6 * 10**6 + b"{}]"), _RIGHT
+    ),
     _file(_LARGE, "one cell of 10 MB", lambda cells: notebook([*cells, "x = '" + "y" * 10**7 + "'"]), _EITHER),
     _file(_LARGE, "comments of 9 MB", lambda cells: notebook([*cells, "#" * 9 * 10**6]), _EITHER),
     _file(_LARGE, "100,000 cells", lambda cells: notebook([*cells, *["pass"] * 100_000]), _EITHER),

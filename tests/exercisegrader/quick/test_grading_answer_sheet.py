@@ -7,8 +7,8 @@ import sympy
 from exercisebook.authoring import criterion, design, expression, number, numbers, poles, word, words
 from exercisebook.formulas import Formula
 from exercisebook.reading import Unreadable
-from exercisegrader.student_side import answer_sheet
-from exercisegrader.student_side.plain import plain
+from exercisegrader.inside import answer_sheet
+from exercisegrader.inside.plain import plain
 from judged import EVERY_KIND
 from odd_answers import CIRCLE, Odd
 from plainmath.expressions import s

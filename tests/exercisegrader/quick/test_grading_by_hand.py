@@ -5,8 +5,8 @@ from matplotlib import pyplot
 
 from drawings import Drawing, png
 from exercisebook.png import as_data
-from exercisegrader.student_side import answer_sheet
-from exercisegrader.student_side.plain import LONGEST_TEXT, plain, unreadable
+from exercisegrader.inside import answer_sheet
+from exercisegrader.inside.plain import LONGEST_TEXT, plain, unreadable
 
 
 @pytest.fixture

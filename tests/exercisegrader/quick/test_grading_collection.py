@@ -190,7 +190,7 @@ def test_a_file_that_has_changed_since(tmp_path, becomes, monkeypatch):
         os.mkfifo(path)
     elif becomes == "folder":
         path.mkdir()
-    with pytest.raises(GradingError, match=r"^the file (cannot be read: |is larger than 1 MiB)"):
+    with pytest.raises(GradingError, match=r"^the file (cannot be read: |is larger than 50 MiB)"):
         found.read()
 
 
@@ -200,7 +200,7 @@ def test_a_notebook_that_is_too_large(tmp_path, monkeypatch):
     (tmp_path / "s1002.ipynb").write_bytes(notebook("1").encode().ljust(2**20 + 1))
     fits, large = collect(tmp_path, CLASS, "a").submissions
     assert source(fits) == "1"
-    assert large.problem == "the file is larger than 1 MiB"
+    assert large.problem == sources.TOO_LARGE
 
 
 @takes_any_name
@@ -361,7 +361,7 @@ def test_two_members_of_one_name(packed):
 def test_a_zip_bomb_is_known_by_what_is_read(packed, monkeypatch):
     monkeypatch.setattr(sources, "LARGEST", 2**20)
     bomb = ("s1001.ipynb", b" " * (2**20 + 1))
-    assert packed(bomb).submissions[0].problem == "the file is larger than 1 MiB"
+    assert packed(bomb).submissions[0].problem == sources.TOO_LARGE
 
     def smaller(content):
         """The same, announced as a thousand bytes."""

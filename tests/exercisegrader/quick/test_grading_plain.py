@@ -14,8 +14,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from exercisebook.judging import UNJUDGED, judge
-from exercisegrader.student_side import answer_sheet
-from exercisegrader.student_side.plain import LONGEST_TEXT, MOST_VALUES, plain, unreadable
+from exercisegrader.inside import answer_sheet
+from exercisegrader.inside.plain import LONGEST_TEXT, MOST_VALUES, plain, unreadable
 from judged import EVERY_KIND
 from odd_answers import CIRCLE, Odd
 from plainmath.expressions import s, t

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from assignments import HEAD, ONE, students, written
-from exercisegrader import GradingError, nbgrader
+from exercisegrader import GradingError
 from exercisegrader.assignment import Assignment
 from exercisegrader.release import as_markdown, as_text, asked, installed, notebook, release, wrapped
 
@@ -128,16 +128,15 @@ def test_nothing_is_written_where_a_variant_fails(tmp_path, key, says):
 def test_what_an_author_overlooks_is_said_before_anything_is_written(tmp_path, old, new, says):
     text = written()
     assert old in text
-    for make in (release, lambda given, *_: nbgrader.source(given)):
-        with pytest.raises(GradingError, match=re.escape(says)):
-            make(Assignment.of(text.replace(old, new), "tuning"), students("Ada"), tmp_path)
+    with pytest.raises(GradingError, match=re.escape(says)):
+        release(Assignment.of(text.replace(old, new), "tuning"), students("Ada"), tmp_path)
     assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("text", [r"$\frac{a}{b} {c}$", r"$${c}$$", "`{c}`", r"\begin{align}", "{{c}}", "{1}", "x_{c}"])
 def test_braces_of_formulas_and_code_stay(text):
     twice = ONE.format('"1"', 1, "y=number(x)").replace('"x is {x}"', f'r"""{text}"""')
-    question = asked(Assignment.of(HEAD + twice, "twice"), None, "1")
+    question = asked(Assignment.of(HEAD + twice, "twice"), "s1", "1")
     assert text.replace("{{c}}", "{c}") in question.statement.body
 
 

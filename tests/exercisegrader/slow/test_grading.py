@@ -1,4 +1,4 @@
-"""Grading a class from end to end: release, submissions, grades; interrupted, resumed, on a cluster, without a jail."""
+"""Grading a class from end to end: release, submissions, grades; interrupted, resumed, without a jail."""
 
 import dataclasses
 import html
@@ -22,7 +22,6 @@ from executors import lasting
 from exercisegrader import GradingError, NoJail, jail
 from exercisegrader.__main__ import app
 from exercisegrader.assignment import load
-from exercisegrader.cluster import connected
 from exercisegrader.grade import grade, here
 from exercisegrader.imprint import peek
 from exercisegrader.judge import Judge
@@ -182,14 +181,6 @@ class TestAClass:
             course.grade("kept of one", only=["s2"])  # without being asked again
         assert b"* 3," in (folder / "notebooks" / "s2.html").read_bytes()
         assert b"* 3," in (folder / "notebooks" / "s2.ipynb").read_bytes()
-
-    def test_a_dask_cluster(self, course, graded):
-        distributed = pytest.importorskip("distributed")
-        with distributed.LocalCluster(
-            n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None, silence_logs=50
-        ) as cluster:
-            course.grade("cluster", place=connected(cluster.scheduler_address))
-        assert files(course.folder / "cluster") == files(graded[1])
 
     @pytest.mark.parametrize("bytes_of_a_file", [1000, 4000])
     def test_a_disk_that_is_full_is_a_sentence_and_later_goes_on(self, course, graded, bytes_of_a_file):

@@ -12,8 +12,8 @@ from exercisebook.judging import MISTAKE, RIGHT, WRONG
 from exercisegrader.reports.wording import answer_in_words
 
 if TYPE_CHECKING:
+    from exercisegrader.inside.plain import Plain
     from exercisegrader.results import Result
-    from exercisegrader.student_side.plain import Plain
 
 #: Equal wrong answers are a coincidence when they have fewer significant digits.
 DIGITS = 3

@@ -20,7 +20,7 @@ from exercisebook.response import MARKS
 from exercisegrader.reports import wording
 
 if TYPE_CHECKING:
-    from exercisegrader.student_side.plain import Plain
+    from exercisegrader.inside.plain import Plain
 
 #: The colours of the statuses on a dark ground; those on a light one are the response's.
 ON_DARK = {

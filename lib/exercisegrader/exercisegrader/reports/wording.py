@@ -13,8 +13,8 @@ from exercisegrader.results import NO_CODE, UNASKED
 from plainmath.tables import plain_words
 
 if TYPE_CHECKING:
+    from exercisegrader.inside.plain import Plain
     from exercisegrader.results import JudgedAnswer, Result
-    from exercisegrader.student_side.plain import Plain
 
 #: The line that every output carries where student code ran with nothing around it.
 NO_JAIL = "Graded without a jail: nothing kept the code of the notebook from the grader, and results can be forged."

@@ -24,7 +24,7 @@ from exercisebook.judging import MISTAKE, OPEN, SECONDS, UNJUDGED, Verdict, is_r
 from exercisebook.kinds.kind import AS_IT_IS, rounded
 from exercisebook.parameters import call, written
 from exercisebook.reading import listed, shortened
-from exercisegrader.student_side.plain import Plain, plain, unreadable
+from exercisegrader.inside.plain import Plain, plain, unreadable
 
 if TYPE_CHECKING:
     from exercisebook.kinds import Kind

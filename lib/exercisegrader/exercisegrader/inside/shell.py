@@ -19,7 +19,7 @@ from IPython.core.interactiveshell import InteractiveShell
 from traitlets.config import Config
 
 from exercisebook.judging import harmless
-from exercisegrader.student_side import answer_sheet
+from exercisegrader.inside import answer_sheet
 
 
 class _Quiet(DisplayHook):
@@ -76,20 +76,6 @@ def shell() -> InteractiveShell:
     return made
 
 
-def _cells(content):
-    """The sources of the code cells of a notebook, and the student whom it names; raises ValueError where it is none.
-
-    `sources.sources` has looked at it before; this is for whoever runs anything else.
-    """
-    try:
-        notebook = json.loads(content)
-        found = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
-        named = notebook.get("metadata", {}).get("loopbook")
-    except (ValueError, TypeError, LookupError, AttributeError, RecursionError):
-        raise ValueError("the file is not a notebook that can be read") from None
-    return found, named.get("student") if isinstance(named, dict) else None
-
-
 def run(
     content: bytes,
     interpreter: InteractiveShell,
@@ -100,21 +86,17 @@ def run(
     """Run a notebook, cell after cell; after an error the next cell follows.
 
     Arguments:
-        content: a notebook as `sources.sources` returns it, or another one of nbformat 4, as bytes.
+        content: a notebook as `sources.sources` returns it.
         interpreter: the shell.
-        tell: a function that takes an event, a dictionary with one entry: "refused" with a sentence, "made for" with
-            the student that the notebook names, "cell" with the number of a code cell that begins, "error" with the
-            cell and a sentence, "answer" with student, exercise and what was given, "end".
+        tell: a function that takes an event, a dictionary with one entry: "made for" with the student that the notebook
+            names, "cell" with the number of a code cell that begins, "error" with the cell and a sentence, "answer"
+            with student, exercise and what was given, "end".
         seconds: that a cell may take.
         show: tell also what the cells show, as `showing.Showing` does.
     """
-    try:
-        sources, student = _cells(content)
-    except ValueError as problem:
-        tell({"refused": str(problem)})
-        return
-    if isinstance(student, str):
-        tell({"made for": student})
+    notebook = json.loads(content)
+    if imprint := notebook["metadata"].get("loopbook"):
+        tell({"made for": imprint["student"]})
     answer_sheet.deliver = lambda student, exercise, given: tell(
         {"answer": {"student": student, "exercise": exercise, "given": given}}
     )
@@ -123,9 +105,10 @@ def run(
     random.seed(0), np.random.seed(0)  # the same numbers each time it is graded
     showing = None
     if show:
-        from exercisegrader.student_side.showing import Showing
+        from exercisegrader.inside.showing import Showing
 
         showing = Showing(interpreter, tell)
+    sources = (cell["source"] for cell in notebook["cells"] if cell["cell_type"] == "code")
     for number, source in enumerate(sources, start=1):
         tell({"cell": number})
         if showing:

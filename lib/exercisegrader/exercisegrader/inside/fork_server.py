@@ -1,9 +1,8 @@
-"""The fork server: it waits in the jail with all libraries imported, and forks for each submission.
+"""The fork server, the first of three roles: it waits in the jail with all libraries imported, and forks.
 
 It never sees a notebook: it hands two descriptors on, one to read the notebook from and one to tell events to. For
-each submission it forks a guard, which moves into namespaces of its own (users, processes, files, network, IPC) and
-covers what was writable. The guard forks the first process of those namespaces, which limits itself, gives up every
-right, and only then reads the notebook. When that process ends, everything it started ends with it.
+each submission it forks a `guard`, which forks the `submission`; meanwhile it looks at what their processes take. When
+the submission's first process ends, everything that it started ends with it.
 
 Without a jail the same happens without the namespaces.
 """
@@ -14,14 +13,12 @@ import contextlib
 import gc
 import json
 import os
-import shutil
 import signal
 import socket
 import sys
-import tempfile
 from multiprocessing.connection import wait
 
-from exercisegrader.student_side import confinement
+from exercisegrader.inside import confinement, guard
 
 #: How often (s) a submission's processes are looked at.
 WATCH = 0.1
@@ -65,11 +62,11 @@ def _reply(control, data):
 def _job(control, prepared, limits, notebook, events):
     """Run one submission; returns {"exit": code, or minus the signal, "memory": whether it was ended for that}."""
     ended, ending = os.pipe()
-    guard = os.fork()
-    if guard == 0:
+    forked = os.fork()
+    if forked == 0:
         os.close(ended)
         control.close()
-        _guard(prepared, limits, notebook, events, ending)
+        guard.watch_over(prepared, limits, notebook, events, ending)
     for descriptor in (notebook, events, ending):
         os.close(descriptor)
     too_much = False
@@ -78,24 +75,24 @@ def _job(control, prepared, limits, notebook, events):
         if ended in ready:
             break
         if control in ready:
-            os.kill(guard, signal.SIGTERM)
+            os.kill(forked, signal.SIGTERM)
             if not control.recv(4096):  # the grader is gone
                 break
         if prepared[1] and not too_much:  # without a jail, its processes cannot be told from others
-            others = _processes(guard)
+            others = _processes(forked)
             _hold_together(others)
-            too_much = _is_too_much(others, guard, limits["memory"])
+            too_much = _is_too_much(others, forked, limits["memory"])
             if too_much:
-                os.kill(guard, signal.SIGTERM)
+                os.kill(forked, signal.SIGTERM)
     code = int(os.read(ended, 20) or -signal.SIGKILL)
     os.close(ended)
-    os.waitpid(guard, 0)
+    os.waitpid(forked, 0)
     return {"exit": code, "memory": too_much}
 
 
-def _processes(guard):
-    """The processes of the submission, as the jail numbers them."""
-    passed = {"1", str(guard), str(os.getpid())}
+def _processes(forked):
+    """The processes of the submission, as the jail numbers them: all but the guard and this one."""
+    passed = {"1", str(forked), str(os.getpid())}
     return [name for name in os.listdir("/proc") if name.isdigit() and name not in passed]
 
 
@@ -112,9 +109,9 @@ def _hold_together(processes):
                 os.sched_setaffinity(task, last)
 
 
-def _is_too_much(processes, guard, memory):
+def _is_too_much(processes, forked, memory):
     """Whether processes hold more memory (bytes) than that, beyond what they share with this one, and in sockets."""
-    most = memory + _resident("self") - SOCKET * _sockets(guard)
+    most = memory + _resident("self") - SOCKET * _sockets(forked)
     if sum(map(_resident, processes)) <= most:  # which counts what they share several times
         return False
     return sum(map(_share, processes)) > most
@@ -137,95 +134,19 @@ def _share(process):
         return _resident(process)
 
 
-def _sockets(guard):
+def _sockets(forked):
     """The number of sockets in the network of the submission, which is the guard's too."""
     try:
-        with open(f"/proc/{guard}/net/sockstat") as file:
+        with open(f"/proc/{forked}/net/sockstat") as file:
             return int(file.readline().split()[-1])
     except (OSError, ValueError, IndexError):
         return 0
 
 
-def _guard(prepared, limits, notebook, events, ending):
-    """Fork the submission's first process, wait for it, and tell how it ended; SIGTERM ends it."""
-    shell, call_filter = prepared
-    first = 0
-
-    def end(number, frame):
-        with contextlib.suppress(ProcessLookupError):  # it has ended by itself
-            os.kill(first, signal.SIGKILL)
-
-    signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGTERM])  # until there is something to end
-    signal.signal(signal.SIGTERM, end)
-    folder = confinement.HOME if call_filter else tempfile.mkdtemp(prefix="loopbook-")
-    size = confinement.address_space()
-    try:
-        if call_filter:
-            confinement.confine(limits["disk"])
-        first = os.fork()
-    except OSError as problem:
-        _tell(events, {"refused": f"no process could be made for it ({problem})"})
-        os._exit(1)
-    if first == 0:
-        signal.signal(signal.SIGTERM, signal.SIG_DFL)
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGTERM])
-        _submission(shell, call_filter, limits, size, notebook, events, folder)
-    for descriptor in (notebook, events):
-        os.close(descriptor)
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGTERM])
-    _, status = os.waitpid(first, 0)
-    if not call_filter:
-        with contextlib.suppress(OSError):
-            os.killpg(first, signal.SIGKILL)
-        shutil.rmtree(folder, ignore_errors=True)
-    os.write(ending, str(os.waitstatus_to_exitcode(status)).encode())
-    os._exit(0)
-
-
-def _submission(shell, call_filter, limits, size, notebook, events, folder):
-    """Be the submission's first process: run the notebook with nothing else in reach, and end."""
-    try:
-        os.setsid()
-        os.dup2(notebook, 3)
-        os.dup2(events, 4)
-        os.closerange(5, os.sysconf("SC_OPEN_MAX"))
-        nothing = os.open(os.devnull, os.O_RDWR)
-        for standard in range(3):
-            os.dup2(nothing, standard)
-        os.close(nothing)
-        os.chdir(folder)
-        confinement.limit(limits, size, jailed=bool(call_filter))
-        if call_filter:
-            confinement.surrender(call_filter)
-        with open(3, "rb") as file:
-            content = file.read()
-    except BaseException as problem:
-        _tell(4, {"refused": f"no process could be made for it ({type(problem).__name__}: {problem})"})
-        os._exit(1)
-    try:
-        from exercisegrader.student_side import shell as runner
-
-        first = os.getpid()
-
-        def tell(event):
-            if os.getpid() == first:  # a copy of it, which it forked, runs on through the same cells
-                _tell(4, event)
-
-        runner.run(content, shell, tell, limits["cell"], limits["show"])
-    finally:
-        os._exit(0)
-
-
-def _tell(descriptor, event):
-    line = json.dumps(event, allow_nan=False).encode() + b"\n"
-    while line:
-        line = line[os.write(descriptor, line) :]
-
-
 def _libraries():
     """Import what notebooks use, and use it once, so that each submission finds it done; returns the shell."""
-    from exercisegrader.student_side import rehearsal
-    from exercisegrader.student_side.shell import shell
+    from exercisegrader.inside import rehearsal
+    from exercisegrader.inside.shell import shell
 
     made = shell()
     rehearsal.rehearse()

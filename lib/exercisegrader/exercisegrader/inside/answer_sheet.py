@@ -16,7 +16,7 @@ from exercisebook import plugins, png
 from exercisebook.judging import harmless
 from exercisebook.kinds import MAKERS
 from exercisebook.reading import NOT_ANSWERED, Unreadable, shortened
-from exercisegrader.student_side.plain import Plain, plain, unreadable
+from exercisegrader.inside.plain import Plain, plain, unreadable
 from plainmath.validation import did_you_mean
 
 if TYPE_CHECKING:
