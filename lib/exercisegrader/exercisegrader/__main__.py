@@ -268,5 +268,29 @@ def grade(
         fail(f"{len(done.failures)} not graded")
 
 
+@app.command()
+def term(
+    folder: Annotated[Path, typer.Argument(help="With the grades of each assignment in a folder, and term.toml.")],
+) -> None:
+    """Write the table of a term: a row for each student, a column for each assignment, and what they come to.
+
+    Weights, what is dropped, and who is excused from what stand in term.toml in the folder. What is
+    missing or waits for a mark is said.
+    """
+    from exercisegrader import GradingError
+    from exercisegrader.files import write
+    from exercisegrader.term import Term
+
+    try:
+        found = Term(folder)
+        write(folder / "term.csv", found.table())
+    except GradingError as error:
+        fail(str(error))
+    for sentence in found.notes():
+        errors.print(sentence, style="yellow", markup=False)
+    count = f"{len(found.students)} students in {', '.join(found.points)}"
+    console.print(f"{count}; {folder / 'term.csv'} has them", markup=False)
+
+
 if __name__ == "__main__":
     app()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -52,6 +53,15 @@ class Student:
     system: str = field(default="", compare=False)
     row: tuple[str, ...] = field(default=(), compare=False, repr=False)
     table: Table | None = field(default=None, compare=False, repr=False)
+
+
+def parts(students: Sequence[Student]) -> dict[str, str]:
+    """Return the name of the files for whoever marks a student's section, by the student's id.
+
+    It is "all" in a class without sections, and "others" for those who have none in a class with some.
+    """
+    rest = "others" if any(student.section for student in students) else "all"
+    return {one.id: re.sub(r"\W+", "_", one.section).strip("_")[:80] or rest for one in students}
 
 
 class Roll:

@@ -109,7 +109,7 @@ def everything(text, formulas=False):
     grades = Grades(title, [student], [mark], [text, "another"], [text], reveal=True, notebooks=["s1"])
     yield feedback(grades, student, mark)
     yield summary(grades)
-    yield to_mark(grades)
+    yield to_mark(grades, "all")
     yield executed(result, b"", [], text)
 
 

@@ -385,7 +385,7 @@ def test_answers_to_be_marked_have_a_column_where_there_are_any():
 def test_each_file_that_was_written_is_told_and_no_other(tmp_path):
     write_all(tmp_path, TITLE, CLASS, RESULTS, notes=["other numbers than at the release"])
     text = (tmp_path / "summary.html").read_text(encoding="utf-8")
-    of_all = [one for one in registered() if not one.is_for_each_student]
+    of_all = [one for one in registered() if "{" not in one.file]
     told = {one.file for one in of_all if f"<code>{one.file}</code>" in text and one.what in read(text)}
     assert told == {path.name for path in tmp_path.iterdir() if path.is_file()} - {"summary.html"}
     assert "grades.csv" in told

@@ -52,9 +52,10 @@ each_output = pytest.mark.parametrize(
 
 
 @each_output
-def test_an_output_is_one_file_or_one_for_each_student(one):
-    assert len(texts(one)) == (len(RESULTS) if one.is_for_each_student else 1)
-    assert len(texts(one, [])) == (0 if one.is_for_each_student else 1)
+def test_an_output_is_one_file_or_one_for_each_student_or_section(one):
+    sections = 2 if one.is_for_each_part else 1
+    assert len(texts(one)) == (len(RESULTS) if one.is_for_each_student else sections)
+    assert len(texts(one, [])) == (0 if one.is_for_each_student else sections)
 
 
 @each_output
@@ -67,7 +68,7 @@ def test_keys_are_shown_only_where_they_are_revealed(one, reveal):
         for one in result.result.exercises
     )
     result = changed(result, exercises=exercises_)
-    (text,) = texts(one, [result], reveal=reveal)
+    text, *_ = texts(one, [result], reveal=reveal)
     assert text.count("KEY") == (4 if reveal and one.is_for_each_student else 0)
 
 

@@ -37,6 +37,6 @@ def summary(grades: Grades) -> str:
         files=[
             one
             for one in registered()
-            if one.file != OWN and (there is None or one.is_for_each_student or (there / one.file).exists())
+            if one.file != OWN and (there is None or "{" in one.file or (there / one.file).exists())
         ],
     )
