@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from exercisegrader.reports.outputs import output
 from exercisegrader.reports.wording import number
+from exercisegrader.results import MISSING, NOT_RUN
 from exercisegrader.tables import as_text
 
 if TYPE_CHECKING:
@@ -40,7 +41,8 @@ def points_csv(grades: Grades) -> str:
     for one, mark in grades.graded:
         total = "" if mark.total is None else number(mark.total)
         who = {ID: one.id, NAME: one.name, SECTION: one.section, "code": mark.code, STATE: mark.state, TOTAL: total}
-        points = {place: points for each in mark.exercises for place, points in each.by_place()}
+        judged = () if mark.state in (MISSING, NOT_RUN) else mark.exercises
+        points = {place: points for each in judged for place, points in each.by_place()}
         rows.append(who | {POSSIBLE: number(mark.result.points), "deducted": number(mark.deduction)} | points)
     columns = [*dict.fromkeys(column for row in rows for column in row)] or [ID, TOTAL, POSSIBLE]
     head = [*columns, JAILLESS] if grades.without_jail else columns
