@@ -164,26 +164,7 @@ def try_out(
         fail(f"something is wrong; {context.command_path} {name} --student ID --exercise N shows a variant")
 
 
-class Grade(typer.core.TyperCommand):
-    """A command that lists, where its help is asked for, what it writes."""
-
-    def written(self) -> list[str]:
-        """The outputs that are registered, each as its file and what it is."""
-        from exercisegrader import GradingError
-        from exercisegrader.reports import registered
-
-        try:
-            return [f"{output.file}: {output.what}" for output in registered()]
-        except GradingError as error:
-            fail(str(error))
-
-    def format_help(self, context: typer.Context, formatter: object) -> None:
-        """Print the help, and the list."""
-        self.epilog = "\n\n".join(["What is written:", *self.written()])
-        super().format_help(context, formatter)
-
-
-@app.command(cls=Grade)
+@app.command()
 def grade(
     assignment: Annotated[Path, typer.Argument(help="The assignment that was released.")],
     submissions: Annotated[Path, typer.Argument(help="Their folder, or the zip file of Canvas or Moodle.")],

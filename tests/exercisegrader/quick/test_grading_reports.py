@@ -7,11 +7,9 @@ from dataclasses import replace
 from unittest import mock
 
 import pytest
-from typer.testing import CliRunner
 
 import contributing
 from exercisegrader import GradingError, reports
-from exercisegrader.__main__ import app
 from exercisegrader.lms.gradescope import results_json
 from exercisegrader.reports.outputs import output, registered
 from exercisegrader.student import Student
@@ -85,12 +83,6 @@ def test_what_a_student_writes_leaves_no_output_torn(one):
     hostile = Student("s1003", HOSTILE)
     for text in (*texts(one, [STOPPED], [hostile]), results_json(grades(), hostile, STOPPED)):
         assert re.search(r"[\x00-\x09\x0b-\x1f\x7f-\x9f\u202e]", text) is None
-
-
-def test_the_command_lists_every_output():
-    told = " ".join(CliRunner().invoke(app, ["grade", "--help"], env={"COLUMNS": "200"}).output.split())
-    for one in registered():
-        assert f"{one.file}: {one.what}" in told
 
 
 def test_two_outputs_with_one_file_are_refused():

@@ -151,7 +151,7 @@ def _equal(results):
         what = line(_place(one.number, one.name), ": ", code(one.answer))
         found.setdefault((one.right, one.others), []).append((one.points, what))
     for (right, others), given in found.items():
-        whose = f"right for {', '.join(right)}, not for {', '.join(others)}" if right else "wrong for all"
+        whose = f"right for {', '.join(right)}, not for {', '.join(others)}"
         points, answers = zip(*given, strict=True)
         yield Case((*right, *others), sum(points), lines(*answers, whose))
 

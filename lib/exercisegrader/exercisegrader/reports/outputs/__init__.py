@@ -1,7 +1,7 @@
 """The files that grading leaves behind. The modules of this folder make some, and register them by `output`.
 
-So do the learning management systems in `exercisegrader.lms`. What is registered is written, is listed by
-``exercisegrader grade --help``, and is tested.
+So do the learning management systems in `exercisegrader.lms`. What is registered is written, is listed in the summary
+and in the guide, and is tested.
 """
 
 from __future__ import annotations
@@ -127,7 +127,7 @@ def output(file: str, what: str) -> Callable[[_Function], _Function]:
 
     Arguments:
         file: its place in the folder of the grades, with "{student}" in it for a file for each student, or "{part}".
-        what: it is, and for whom, for the list of ``exercisegrader grade --help``.
+        what: it is, and for whom, for the list in the summary.
     Raises:
         GradingError: for a file that is made already.
 
