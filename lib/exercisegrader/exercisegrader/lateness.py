@@ -7,8 +7,7 @@ The module of an assignment says both::
 
 A time lasts to the end of its minute, a date without a time to the end of its day. Days are counted from the due date,
 those that have begun, by the clock on the wall; what comes within the grace costs nothing, and days are then counted
-from its end. The percentage is one of what was earned. Times that name no zone are of the same place as the due date;
-where that names none either, all of them are of one place, and a time with a zone is refused.
+from its end. The percentage is one of what was earned. Other times that name no zone are of the place of the due date.
 """
 
 from __future__ import annotations
@@ -16,7 +15,6 @@ from __future__ import annotations
 import datetime
 import re
 import zoneinfo
-from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import timedelta
 from pathlib import Path
@@ -73,14 +71,12 @@ def _zone(name):
 
 
 def written(when: datetime.datetime) -> str:
-    """Return a moment as people write it, with its zone where it has one.
+    """Return a moment as people write it, with its zone.
 
-    >>> written(moment("2026-12-01 23:59 Europe/Berlin")), written(moment("2026-12-01"))
-    ('2026-12-01 23:59 Europe/Berlin', '2026-12-01 23:59')
+    >>> written(moment("2026-12-01 Europe/Berlin")), written(moment("2026-12-01 23:59+01:00"))
+    ('2026-12-01 23:59 Europe/Berlin', '2026-12-01 23:59 UTC+01:00')
     """
-    zone = when.tzinfo
-    name = "" if zone is None else getattr(zone, "key", "") or when.tzname()
-    return f"{when:%Y-%m-%d %H:%M} {name}".strip()
+    return f"{when:%Y-%m-%d %H:%M} {getattr(when.tzinfo, 'key', '') or when.tzname()}"
 
 
 def lasting(span: timedelta) -> str:
@@ -117,7 +113,7 @@ class Policy:
 def policy_of(module: object, file: str) -> Policy | None:
     """Return the policy of an assignment's module; None where it says nothing of it.
 
-    Raises GradingError for a `DUE` that cannot be read, a `LATE` of another form, and a `LATE` without a `DUE`.
+    Raises GradingError for a `DUE` that cannot be read or names no zone, a `LATE` of another form or without a `DUE`.
     """
     due, late = getattr(module, "DUE", None), getattr(module, "LATE", None)
     if due is None and late is None:
@@ -131,9 +127,12 @@ def policy_of(module: object, file: str) -> Policy | None:
             "at_most=50, accepted_days=7), with Late from exercisebook.authoring"
         )
     try:
-        return Policy(moment(due), late)
+        when = moment(due)
+        if when.tzinfo is None:
+            raise ValueError(f"{due!r} names no time zone: expected one, as in {due + ' Europe/Berlin'!r}")
     except ValueError as problem:
         raise GradingError(f"{file}: DUE: {problem}") from None
+    return Policy(when, late)
 
 
 def without_dates(source: str) -> str:
@@ -173,12 +172,10 @@ def lateness(
         handed_in: when it was handed in; a time without a zone is of the place of the due date.
         late: whether the LMS says that it is late; None where it says nothing.
         until: an extension for this student.
-    Raises:
-        GradingError: where the time has a zone and the due date has none.
 
-    >>> policy = Policy(moment("2026-12-01 23:59"), Late(percent=10, per="day"))
+    >>> policy = Policy(moment("2026-12-01 23:59 UTC"), Late(percent=10, per="day"))
     >>> lateness(policy, moment("2026-12-03 02:00")).says
-    'handed in 1 day 2 h late (due 2026-12-01 23:59): 20 % of the points are deducted'
+    'handed in 1 day 2 h late (due 2026-12-01 23:59 UTC): 20 % of the points are deducted'
     >>> lateness(policy, late=True).says
     'handed in late, by how much is not known: nothing is deducted'
     """
@@ -190,11 +187,6 @@ def lateness(
         granted = f" (there is an extension to {written(until)})" if until else ""
         look = f"{says}{granted}; add a column handed_in to the roster, or a row to marks.csv"
         return Lateness(0, says, look) if late else Lateness()
-    if due.tzinfo is None and handed_in.tzinfo is not None:
-        raise GradingError(
-            f"a submission was handed in at {written(handed_in)}, and DUE names no time zone: expected one, as in "
-            f'DUE = "{written(policy.due)} Europe/Berlin"'
-        )
     handed_in = handed_in.replace(tzinfo=due.tzinfo) if handed_in.tzinfo is None else handed_in.astimezone(due.tzinfo)
     if _instant(handed_in) <= _instant(due):
         is_extended = until and _instant(handed_in) > _instant(policy.due)
@@ -215,26 +207,16 @@ def lateness(
 
 def _instant(when):
     """A moment for comparisons: of two with one zone Python compares the clocks on the wall."""
-    return when.astimezone(datetime.UTC) if when.tzinfo else when
+    return when.astimezone(datetime.UTC)
 
 
-@dataclass(frozen=True)
-class Extensions:
-    """The extensions of one assignment.
+def read_extensions(
+    path: str | Path, roll: Roll, assignment: str, policy: Policy | None
+) -> tuple[dict[str, datetime.datetime], list[str]]:
+    """Return the extensions of a file, {student's id: the last moment}, and sentences on rows of no effect here.
 
-    Attributes:
-        until: {student's id: the last moment}.
-        notes: sentences on rows that have no effect here.
-    """
-
-    until: Mapping[str, datetime.datetime]
-    notes: tuple[str, ...] = ()
-
-
-def read_extensions(path: str | Path, roll: Roll, assignment: str, policy: Policy | None) -> Extensions:
-    """Return the extensions that a file grants: student, until, and perhaps assignment, one row for each.
-
-    A row without an assignment is for every one. Of several rows for a student the latest time counts.
+    A row has student, until, and perhaps assignment; without one it is for every one. Of several rows for a student the
+    latest time counts.
 
     Arguments:
         path: of the file.
@@ -259,7 +241,7 @@ def read_extensions(path: str | Path, roll: Roll, assignment: str, policy: Polic
             why = f"{assignment} has no DUE"
         else:
             try:
-                when = _extended(row["until"], policy.due)
+                when = moment(row["until"], policy.due.tzinfo).astimezone(policy.due.tzinfo)
             except ValueError as problem:
                 faults.add(line, str(problem))
             else:
@@ -271,12 +253,4 @@ def read_extensions(path: str | Path, roll: Roll, assignment: str, policy: Polic
             idle.setdefault(why, []).append(said)
     faults.demand_none()
     start = f"{sheet.table.path.name}, of no effect here"
-    return Extensions(until, tuple(f"{start}: {in_short(who)}, {why}" for why, who in idle.items()))
-
-
-def _extended(text, due):
-    """The moment that a text means, by the clock of the due date. Raises ValueError where they cannot be compared."""
-    when = moment(text, due.tzinfo)
-    if when.tzinfo and not due.tzinfo:
-        raise ValueError(f"{text!r} names a time zone, and DUE names none: expected one in both")
-    return when.astimezone(due.tzinfo) if when.tzinfo else when
+    return until, [f"{start}: {in_short(who)}, {why}" for why, who in idle.items()]

@@ -6,13 +6,13 @@
 from __future__ import annotations
 
 import datetime
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from exercisebook.judging import WAITING
-from exercisegrader.lateness import IN_TIME, Extensions, Lateness, lateness, read_extensions
+from exercisegrader.lateness import IN_TIME, Lateness, lateness, read_extensions
 from exercisegrader.overrides import TO_MARK, Mark, Notice, Overrides, code
 from exercisegrader.reports.wording import counted, number, of_points
 from exercisegrader.results import MISSING, NOT_RUN, JudgedExercise, Result
@@ -218,13 +218,15 @@ class Marking:
         extensions: Path | None = None,
         also: Mapping[str, str] | None = None,
     ):
-        self.assignment, self.extensions = assignment, Extensions({})
+        self.assignment = assignment
+        self.extensions: dict[str, datetime.datetime] = {}
+        self._idle: list[str] = []
         graded = [path.stem for path in (folder / "results").glob("*.json")]
         ids = [student.id for student in students]
         self.codes = {student: code(assignment.secret, student) for student in (*ids, *graded)}
         roll = Roll(ids, {**(also or {}), **{code: student for student, code in self.codes.items()}}, graded)
         if extensions:
-            self.extensions = read_extensions(extensions, roll, assignment.name, assignment.policy)
+            self.extensions, self._idle = read_extensions(extensions, roll, assignment.name, assignment.policy)
         self.overrides = Overrides(folder, assignment, roll, parts(students))
         self._at: dict[str, datetime.datetime | None] = {}
 
@@ -232,13 +234,8 @@ class Marking:
         """Read the marks by hand, and note what has changed; `Overrides.read` says more."""
         self.overrides.read(result_of)
 
-    def demand_comparable(self, submissions: Iterable[Submission]) -> None:
-        """Raise GradingError where a time of a submission cannot be compared with the due date: one has no zone."""
-        for submission in submissions:
-            self._lateness(submission)
-
     def _lateness(self, submission):
-        until = self.extensions.until.get(submission.student.id)
+        until = self.extensions.get(submission.student.id)
         return lateness(self.assignment.policy, submission.handed_in, submission.late, until)
 
     def marked(self, results: Sequence[Result], submissions: Mapping[str, Submission]) -> list[Marked]:
@@ -273,14 +270,14 @@ class Marking:
             late = [mark for mark in handed_in if mark.late and not mark.late.startswith(IN_TIME)]
             unknown = [one for mark in handed_in if not mark.late and self._at.get(one := mark.result.student) is None]
             found.append(f"D{str(policy)[1:]}. {counted(len(late), 'submission')} came late.")
-            if until := self.extensions.until:
+            if until := self.extensions:
                 found[-1] += f" {counted(len(until), 'student')} {'has' if len(until) == 1 else 'have'} an extension."
             if unknown:
                 found.append(
                     f"Of {counted(len(unknown), 'submission')} nothing says when it was handed in: it counts as in "
                     "time. A column handed_in in the roster says it."
                 )
-        found += self.extensions.notes
+        found += self._idle
         by_hand = sum(mark.points is not None for mark in self.overrides.marks.values())
         if by_hand:
             found.append(f"{counted(by_hand, 'mark')} by hand.")

@@ -434,7 +434,6 @@ def test_submissions_are_late_by_the_roster_or_by_their_names(tmp_path):
     late = datetime.datetime(2026, 12, 2, 12, 0)
     handed = (handed_in(CLASS[0], late), handed_in(CLASS[1], None, True), handed_in(CLASS[2], None))
     submissions = {one.student.id: one for one in handed}
-    marking.demand_comparable(submissions.values())
     results = [result(student.id, sketch=OPEN, why=OPEN) for student in CLASS]
     marking.read({one.student: one for one in results}.get)
     marks = marking.marked(results, submissions)
@@ -445,13 +444,6 @@ def test_submissions_are_late_by_the_roster_or_by_their_names(tmp_path):
         "Of 1 submission nothing says when it was handed in: it counts as in time. A column handed_in in the roster "
         "says it.",
     ]
-
-
-def test_a_time_that_cannot_be_compared_is_said_before_anything_is_graded(tmp_path):
-    marking = Marking(tmp_path, Assignment.of(SOURCE + 'DUE = "2026-12-01"\n', "responses"), CLASS)
-    at = datetime.datetime(2026, 12, 2, 12, 0, tzinfo=datetime.UTC)
-    with pytest.raises(GradingError, match="DUE names no time zone: expected one"):
-        marking.demand_comparable([handed_in(CLASS[0], at)])
 
 
 # Interrupted.

@@ -11,8 +11,8 @@ from exercisegrader.lateness import Lateness
 from exercisegrader.lms.gradescope import results_json
 from exercisegrader.marking import Marked, Notice
 from exercisegrader.overrides import Mark
-from exercisegrader.reports import pages, write_all
-from exercisegrader.reports.concerns import KINDS, concerns
+from exercisegrader.reports import write_all
+from exercisegrader.reports.concerns import concerns
 from exercisegrader.reports.equal_answers import equal_answers
 from exercisegrader.reports.findings import Findings
 from exercisegrader.reports.outputs import registered
@@ -168,11 +168,6 @@ def page_of(mark, **more):
 
 
 # What to look at.
-
-
-def test_there_is_advice_on_each_kind_of_concern():
-    advice = pages._TEMPLATES.get_template("advice.html").module.advice
-    assert len({str(advice(kind)) for kind in (*KINDS, "nothing")}) == len(KINDS) + 1
 
 
 def told(marks, complaints=()):

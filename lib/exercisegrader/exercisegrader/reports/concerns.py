@@ -18,22 +18,34 @@ if TYPE_CHECKING:
 
     from exercisegrader.marking import Marked
 
-#: The kinds of concerns, as headings; the template ``advice.html`` says what to do about each. Where equal points are
-#: at stake in two of them, this is their order.
-KINDS = (
-    NOT_RUNNING := "Notebooks that could not be run",
-    NOBODYS := "Files that were not graded",
-    TO_MARK := "Answers that wait for a mark",
-    TO_DECIDE := "Marks and times that need a decision",
-    CUT_SHORT := "Notebooks that were stopped before all answers were in",
-    FAILED := "Cells that failed, with answers left open",
-    MISPLACED := "Answers that do not count where they stand",
-    UNREAD := "Answers that could not be judged",
-    FLAGGED := "Answers that were judged and are unusual",
-    OF_ANOTHER := "Notebooks that say they are somebody else's",
-    TELLS_TOO_MUCH := "Notebooks that sent the grader something else than answers",
-    EQUAL := "Equal answers where the numbers differ",
-)
+_BY_HAND = "To give points, enter them in marks.csv and grade again."
+#: The kinds of concerns, as headings, and what to do about each. Where equal points are at stake in two of them, this
+#: is their order.
+ADVICE = {
+    (NOT_RUNNING := "Notebooks that could not be run"): "The grade is an empty cell, and no zero. Repair the file, or "
+    f"ask the student for another one, and grade again. {_BY_HAND}",
+    (NOBODYS := "Files that were not graded"): "Somebody is missing, and one of these files may be theirs: give it a "
+    "name or a folder that says whose it is, and grade again.",
+    (TO_MARK := "Answers that wait for a mark"): "The grade is an empty cell until there are points. The folder "
+    "to_mark has a page of them for each section, and beside it a table for the points: give both to whoever marks, put "
+    "the table back where it was, and grade again.",
+    (TO_DECIDE := "Marks and times that need a decision"): "It stays as it is until you say otherwise, in marks.csv or "
+    "in the file that is named.",
+    (CUT_SHORT := "Notebooks that were stopped before all answers were in"): "Open answers earn nothing. More time or "
+    f"memory may help (--cell-seconds, --seconds, --megabytes). {_BY_HAND}",
+    (FAILED := "Cells that failed, with answers left open"): "Open answers earn nothing. The cell may have worked only "
+    f"after another one that is gone. {_BY_HAND}",
+    (MISPLACED := "Answers that do not count where they stand"): "They have a name that is not asked, or are in a cell "
+    f"that is not run; what is asked was left open and earns nothing. {_BY_HAND}",
+    (UNREAD := "Answers that could not be judged"): f"They earn nothing, but you may see what was meant. {_BY_HAND}",
+    (FLAGGED := "Answers that were judged and are unusual"): f"The verdict stands unless you say otherwise. {_BY_HAND}",
+    (OF_ANOTHER := "Notebooks that say they are somebody else's"): "They were graded with the numbers of the student "
+    "who handed them in. Ask whose work they are.",
+    (TELLS_TOO_MUCH := "Notebooks that sent the grader something else than answers"): "They gain nothing by it: what "
+    "could not be read does not count. Look at the notebook to see what it tried.",
+    (EQUAL := "Equal answers where the numbers differ"): "The right answers of these students differ, so theirs should "
+    "differ too. It is a reason to ask, not evidence.",
+}
 
 
 @dataclass(frozen=True)
@@ -61,7 +73,7 @@ def concerns(marks: Collection[Marked], complaints: Sequence[str] = ()) -> tuple
     found: dict[str | None, list[Case]] = {}
     for kind, case in _cases(marks, complaints):
         found.setdefault(kind, []).append(case)
-    costly = {kind: sorted(found[kind], key=lambda case: -case.points) for kind in KINDS if kind in found}
+    costly = {kind: sorted(found[kind], key=lambda case: -case.points) for kind in ADVICE if kind in found}
     return dict(sorted(costly.items(), key=lambda one: -one[1][0].points)), found.get(None, [])
 
 

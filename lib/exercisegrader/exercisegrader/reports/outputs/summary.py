@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from exercisegrader.reports.concerns import concerns
+from exercisegrader.reports.concerns import ADVICE, concerns
 from exercisegrader.reports.findings import Findings
 from exercisegrader.reports.outputs import output, registered
 from exercisegrader.reports.pages import page
@@ -33,6 +33,7 @@ def summary(grades: Grades) -> str:
         names={student.id: student.name for student in grades.students},
         most=MOST_CASES,
         costly=costly,
+        advice=ADVICE,
         harmless=harmless,
         files=[
             one
