@@ -197,10 +197,12 @@ class Overrides:
             yield line, (known, numbers.get(number.casefold(), number), row["quantity"]), row
 
     def _marks(self):
-        """The marks that count. Raises GradingError with all faults of a table."""
+        """The marks that count. Raises GradingError with all faults."""
         marks: dict[Place, Mark] = {}
+        told: list[str] = []
         for sheet in self._sheets:
-            faults, own = Faults(sheet.table.path.name), {}
+            file = sheet.table.path.relative_to(self.folder).as_posix()
+            faults, own = Faults(file), {}
             for line, place, row in self._placed(sheet):
                 if place[0] in self.roll.former:
                     self.former.add(place[0])
@@ -210,7 +212,6 @@ class Overrides:
                     own.pop(place, None)  # the last row counts, and is in its place
                     given = tables.number(row["points"])
                     points = given if given is None else min(given, self._most(place))
-                    file = sheet.table.path.relative_to(self.folder).as_posix()
                     own[place] = line, Mark(points, row.get("comment", ""), file)
             for place, (line, mark) in own.items():
                 before = marks.get(place, Mark())
@@ -221,7 +222,9 @@ class Overrides:
                     also = f"{before.file} says {written(before.points)}"
                     faults.add(line, f"{at}: the points are {written(mark.points)}, and {also}: expected one of them")
                 marks[place] = mark
-            faults.demand_none()
+            told += faults.told()
+        if told:
+            raise GradingError("\n".join(told))
         return marks
 
     def _fault_of_points(self, place, text):

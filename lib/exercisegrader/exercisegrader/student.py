@@ -87,7 +87,8 @@ class Roll:
 
     def fault(self, said: str) -> str:
         """Return a sentence on what is no id."""
-        return f"there is no student {said!r} on the roster: {did_you_mean(said, self.ids, 'expected an id')}"
+        meant = did_you_mean(said, [*self.ids, *self._known], "expected an id")
+        return f"there is no student {said!r} on the roster: {meant}"
 
 
 def in_short(names: Sequence[str]) -> str:

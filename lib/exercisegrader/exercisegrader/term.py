@@ -49,6 +49,7 @@ class Term:
 
     def __init__(self, folder: Path):
         self.students: dict[str, tuple[str, str]] = {}
+        self._ids: dict[str, str] = {}
         self._without_jail = False
         self._cells = {}
         for path in sorted(folder.glob("*/points.csv")):
@@ -73,7 +74,8 @@ class Term:
         self._without_jail |= JAILLESS in sheet.table.header
         faults, cells = tables.Faults(path.name), {}
         for line, row in sheet.rows:
-            student, points, possible = row[ID], tables.number(row[TOTAL]), tables.number(row[POSSIBLE])
+            student = self._ids.setdefault(row[ID].casefold(), row[ID])  # a list of one's own may have other capitals
+            points, possible = tables.number(row[TOTAL]), tables.number(row[POSSIBLE])
             if not possible or (points is None and row[TOTAL]):
                 faults.add(line, f"{row[TOTAL]!r} of {row[POSSIBLE]!r}: expected numbers, the first perhaps none")
             elif not student or student in cells:

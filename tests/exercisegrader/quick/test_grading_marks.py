@@ -234,8 +234,14 @@ def test_what_the_instructor_says_counts_more_than_a_table_of_a_section(folder):
 
 def test_two_tables_that_say_different_points_are_told(folder):
     folder.write(f"{CODES['s1']},1,sketch,1,", file="to_mark/A.csv")
-    says = "B.csv, line 2: exercise 1, sketch: the points are 0.5, and to_mark/A.csv says 1: expected one of them"
-    assert folder.faults(f"{CODES['s1']},1,sketch,0.5,", file="to_mark/B.csv") == [says]
+    says = (
+        "to_mark/B.csv, line 2: exercise 1, sketch: the points are 0.5, and to_mark/A.csv says 1: expected one of them"
+    )
+    folder.write("s1,1,T,8,")
+    assert folder.faults(f"{CODES['s1']},1,sketch,0.5,", file="to_mark/B.csv") == [
+        says, "marks.csv, line 2: the points are 8: expected 0 to 3 for exercise 1, T",
+    ]  # fmt: skip
+    folder.write()
     folder.write("s1,1,sketch,1,", file="to_mark/B.csv")
     assert folder.run(result("s1"))["s1"].waiting == (WHY,)
 
@@ -406,12 +412,12 @@ def test_a_marker_sees_all_answers_of_a_section_to_a_question_and_not_whose_they
     grades = Grades("Responses", CLASS, marks)
     page = to_mark(grades, "B")
     text = Checker(page).text
-    assert "<title>Responses: to be marked</title>" in page
+    assert "<title>Responses: to be marked, B</title>" in page
     assert page.count(f'src="data:image/png;base64,{PICTURE["png"]}"') == 2
     assert "<b>" not in page
     both = sorted([CODES["s2"], CODES["s3"]])
     assert [Checker(heading).text for heading in re.findall(r"<h\d>.*</h\d>", page)] == [
-        "Responses: to be marked", "Exercise 1 · A lag · sketch", *both, "Exercise 1 · A lag · why", CODES["s3"],
+        "Responses: to be marked, B", "Exercise 1 · A lag · sketch", *both, "Exercise 1 · A lag · why", CODES["s3"],
     ]  # fmt: skip
     assert "To look for: one lag" in text
     assert "each worth at most\n1.5 of 6 points" in text

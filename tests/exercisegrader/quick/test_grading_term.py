@@ -20,7 +20,7 @@ s2,Bo,Tue,graded,9,15
 s3,Cy,Tue,missing,,15
 """
 LOOP = """\ufeffID;Name;Section;State;Total;Possible
-s1;Ada L.;Mon;graded;2,5;5
+S1;Ada L.;Mon;graded;2,5;5
 s2;;;waits;;5
 s4;Di;Mon;graded;4;5
 """

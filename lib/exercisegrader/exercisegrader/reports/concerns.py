@@ -27,8 +27,8 @@ ADVICE = {
     (NOBODYS := "Files that were not graded"): "Somebody is missing, and one of these files may be theirs: give it a "
     "name or a folder that says whose it is, and grade again.",
     (TO_MARK := "Answers that wait for a mark"): "The grade is an empty cell until there are points. The folder "
-    "to_mark has a page of them for each section, and beside it a table for the points: give both to whoever marks, put "
-    "the table back where it was, and grade again.",
+    "to_mark has a page of them for each section, and beside it a table for the points: give both to whoever marks, "
+    "put the table back where it was, and grade again.",
     (TO_DECIDE := "Marks and times that need a decision"): "It stays as it is until you say otherwise, in marks.csv or "
     "in the file that is named.",
     (CUT_SHORT := "Notebooks that were stopped before all answers were in"): "Open answers earn nothing. More time or "

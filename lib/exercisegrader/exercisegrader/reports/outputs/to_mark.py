@@ -30,7 +30,7 @@ def to_mark(grades: Grades, part: str) -> str:
                     given.append((mark.code, exercise, answer))
     return page(
         "to_mark.html",
-        f"{in_text(grades.title)}: to be marked",
+        f"{in_text(grades.title)}: to be marked, {part}",
         grades=grades,
         part=part,
         questions=[given for given in questions.values() if given],
