@@ -22,9 +22,8 @@ from exercisegrader.results import MISSING, NOT_RUN
 from exercisegrader.student import in_short
 from plainmath.validation import did_you_mean
 
-#: States of a student in an assignment, besides those in its table.
+#: States of a student in an assignment, besides those in its table; and what is said of them.
 EXCUSED, UNKNOWN = "excused", "not in the table"
-#: What is to be said of a state.
 _SAYS = {
     MISSING: "missing, which counts as nothing",
     WAITS: "waiting for a mark: no total yet",
@@ -49,8 +48,7 @@ class Term:
 
     def __init__(self, folder: Path):
         self.students: dict[str, tuple[str, str]] = {}
-        self._ids: dict[str, str] = {}
-        self._without_jail = False
+        self._without_jail, self._ids = False, dict[str, str]()
         self._cells = {}
         for path in sorted(folder.glob("*/points.csv")):
             try:

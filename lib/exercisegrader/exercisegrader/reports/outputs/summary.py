@@ -13,8 +13,6 @@ from exercisegrader.reports.wording import in_text
 if TYPE_CHECKING:
     from exercisegrader.reports.outputs import Grades
 
-#: So many cases of one kind are told.
-MOST_CASES = 100
 #: The file of this summary.
 OWN = "summary.html"
 
@@ -23,7 +21,6 @@ OWN = "summary.html"
 def summary(grades: Grades) -> str:
     """Return the summary; where the folder is known, files that are not there are not told."""
     found, there = Findings(grades), grades.folder
-    costly, harmless = concerns(grades.marks, grades.complaints)
     return page(
         "summary.html",
         f"{in_text(grades.title)}: summary",
@@ -31,10 +28,8 @@ def summary(grades: Grades) -> str:
         found=found,
         graded={mark.result.student for mark in grades.marks},
         names={student.id: student.name for student in grades.students},
-        most=MOST_CASES,
-        costly=costly,
+        costly=concerns(grades.marks, grades.complaints),
         advice=ADVICE,
-        harmless=harmless,
         files=[
             one
             for one in registered()
