@@ -170,12 +170,6 @@ def grade(
     submissions: Annotated[Path, typer.Argument(help="Their folder, or the zip file of Canvas or Moodle.")],
     to: Annotated[Path, typer.Option(help="Folder for grades and feedback; after an interruption, the same one.")],
     students: Annotated[Path | None, typer.Option(help=ROSTER)] = None,
-    extensions: Annotated[
-        Path | None,
-        typer.Option(
-            help="Extensions as CSV: student, until, assignment; if not given, extensions.csv beside the roster."
-        ),
-    ] = None,
     only: Annotated[list[str] | None, typer.Option(help="Id of a student; grade this one and keep the others.")] = None,
     regrade: Annotated[bool, typer.Option("--regrade", help="Grade again what is graded.")] = False,
     reveal: Annotated[bool, typer.Option("--reveal", help="Show the right answers in the feedback.")] = False,
@@ -194,7 +188,10 @@ def grade(
         bool, typer.Option("--without-jail", help="Run submissions with your own rights; every output says so.")
     ] = False,
 ) -> None:
-    """Run the submissions of a class in a jail, judge their answers, and write grades and feedback."""
+    """Run the submissions of a class in a jail, judge their answers, and write grades and feedback.
+
+    Extensions are in extensions.csv beside the roster: student, until, and perhaps assignment.
+    """
     from exercisegrader import GradingError
 
     try:
@@ -216,7 +213,7 @@ def grade(
                 submissions,
                 to,
                 place=here(workers) if cluster is None else connected(cluster),
-                extensions=extensions or (beside if os.path.lexists(beside) else None),
+                extensions=beside if os.path.lexists(beside) else None,
                 only=only or (),
                 regrade=regrade,
                 jailed=not without_jail,

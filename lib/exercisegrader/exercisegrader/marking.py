@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import datetime
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
@@ -133,7 +133,6 @@ class Marked:
         by_hand: Mapping[tuple[str, str], Mark] | None = None,
         lateness: Lateness | None = None,
         looks: tuple[Notice, ...] = (),
-        code: str = "",
     ) -> Self:
         """Return a result with what was added to it.
 
@@ -143,7 +142,6 @@ class Marked:
                 exercise the whole notebook.
             lateness: of the submission.
             looks: why an instructor should see to it.
-            code: of the student.
         """
         by_hand, lateness = by_hand or {}, lateness or Lateness()
         exercises = tuple(MarkedExercise.of(one, by_hand) for one in result.exercises)
@@ -159,7 +157,7 @@ class Marked:
         deduction = 0.0 if whole.points is not None else lateness.part * sum_
         if lateness.look and whole.points is None:
             looks = (*looks, Notice(max(sum_, result.earned), lateness.look))
-        return cls(result, exercises, late, deduction, tuple(comments), looks, whole.points, code)
+        return cls(result, exercises, late, deduction, tuple(comments), looks, whole.points)
 
     @property
     def waiting(self) -> tuple[tuple[str, str], ...]:
@@ -234,10 +232,6 @@ class Marking:
         """Read the marks by hand, and note what has changed; `Overrides.read` says more."""
         self.overrides.read(result_of)
 
-    def _lateness(self, submission):
-        until = self.extensions.get(submission.student.id)
-        return lateness(self.assignment.policy, submission.handed_in, submission.late, until)
-
     def marked(self, results: Sequence[Result], submissions: Mapping[str, Submission]) -> list[Marked]:
         """Return the results with what they count, and add a row, where `Overrides.add` says, for each that waits.
 
@@ -257,10 +251,11 @@ class Marking:
         return marks
 
     def _marked(self, result, submission):
-        late = self._lateness(submission) if submission and result.status != MISSING else Lateness()
-        changed = self.overrides.changed_since(result)
-        by_hand = self.overrides.of(result.student)
-        return Marked.of(result, by_hand, late, tuple(changed), self.codes[result.student])
+        late, until = Lateness(), self.extensions.get(result.student)
+        if submission and result.status != MISSING:
+            late = lateness(self.assignment.policy, submission.handed_in, submission.late, until)
+        by_hand, changed = self.overrides.of(result.student), self.overrides.changed_since(result)
+        return replace(Marked.of(result, by_hand, late, tuple(changed)), code=self.codes[result.student])
 
     def notes(self, marks: Sequence[Marked]) -> list[str]:
         """Return sentences on what was applied."""

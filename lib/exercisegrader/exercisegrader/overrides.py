@@ -131,14 +131,13 @@ class Overrides:
             self._read_history()
 
     def _demand_all_tables(self):
-        gone: dict[str, int] = {}
-        for place, row in self._noted.items():
-            if (row["to"] or row["comment"]) and place not in self.marks and not (self.folder / _file(row)).exists():
-                gone[_file(row)] = gone.get(_file(row), 0) + 1
-        for file, count in gone.items():
+        known = [(_file(row), place) for place, row in self._noted.items() if row["to"] or row["comment"]]
+        gone = [file for file, place in known if place not in self.marks and not (self.folder / file).exists()]
+        if gone:
+            count = gone.count(gone[0])
             raise GradingError(
-                f"{self.folder / file} is gone, and marks_history.csv knows {count} row{'s' * (count > 1)} of it: put "
-                "the file back, or move the history away as well"
+                f"{self.folder / gone[0]} is gone, and marks_history.csv knows {count} row{'s' * (count > 1)} of it: "
+                "put the file back, or move the history away as well"
             )
 
     def of(self, student: str) -> dict[tuple[str, str], Mark]:
@@ -170,11 +169,11 @@ class Overrides:
         Whose it is says the code of the student. What is in a table stays as it is, byte for byte: the rows are written
         behind it. One that is saved meanwhile is not touched: the next run adds the rows.
         """
-        have = {place for sheet in self._sheets for _, place, _ in self._placed(sheet)}
+        have = {(sheet.table.path, place) for sheet in self._sheets for _, place, _ in self._placed(sheet)}
         more: dict[Path, list[dict[str, str]]] = {self.path: []}
         for student, *asked in waiting:
-            if (student, *asked) not in have:
-                path = self.folder / TO_MARK / f"{self.parts[student]}.csv"
+            path = self.folder / TO_MARK / f"{self.parts[student]}.csv"
+            if (path, (student, *asked)) not in have:  # who has another section by now has a row in its table, too
                 cells = code(self.assignment.secret, student), *asked
                 more.setdefault(path, []).append(dict(zip(COLUMNS, cells, strict=False)))
         there = {sheet.table.path: sheet for sheet in self._sheets}

@@ -202,6 +202,12 @@ def test_whose_answers_they_are_is_not_to_be_seen_by_their_order(folder):
     assert len({*CODES.values(), *others}) == 2 * len(CLASS)
 
 
+def test_who_moves_to_another_section_waits_there(folder):
+    folder.write(f"{CODES['s2']},1,sketch,,", file="to_mark/A.csv")
+    folder.run(result("s2", why=OPEN))
+    assert folder.table("B").read_text().count(CODES["s2"]) == 1
+
+
 @pytest.mark.parametrize(
     ("sections", "found"),
     [(["", ""], ["all", "all"]), (["Mon 9:00", ""], ["Mon_9_00", "others"]), (["../x", "Ä/B"], ["x", "Ä_B"])],
