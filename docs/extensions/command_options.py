@@ -4,6 +4,7 @@ import typer
 from sphinx.util.docutils import SphinxDirective
 
 from exercisegrader import __main__ as grader
+from exercisegrader.reports.outputs import registered
 from loopbook.__main__ import app
 
 
@@ -15,8 +16,8 @@ def described(name):
         word = parameter.opts[0] if parameter.param_type_name == "option" else parameter.name.upper()
         if word != "--help":
             lines.append(f"| `{word}` | {parameter.help}{_default(parameter)} |")
-    if isinstance(command, grader.Grade):
-        lines += ["", "What is written:", "", *(f"- {line}" for line in command.written())]
+    if name == "grade":
+        lines += ["", "What is written:", "", *(f"- {output.file}: {output.what}" for output in registered())]
     return lines
 
 

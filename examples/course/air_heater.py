@@ -32,7 +32,7 @@ from loopbook.pid import PID
 
 # Whoever knows it can compute the variants: an assignment that counts has a secret of its own, and stays secret itself.
 SECRET = "an-example-that-everybody-may-read"
-DUE = "2026-11-20 23:59"
+DUE = "2026-11-20 23:59 Europe/Berlin"
 LATE = Late(percent=10, per="day", grace_minutes=15, at_most=50)
 
 

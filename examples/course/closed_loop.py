@@ -11,7 +11,7 @@ from sympy import exp, log, pi, sqrt
 from loopbook.exercises.authoring import Late, answers, between, exercise, figure, number, text
 
 SECRET = "another-example-that-everybody-may-read"
-DUE = "2026-12-11 23:59"
+DUE = "2026-12-11 23:59 Europe/Berlin"
 LATE = Late(percent=10, per="day", grace_minutes=15, at_most=50)
 
 

@@ -313,9 +313,9 @@ def closed_loop(assignment):
         time = f"{times[one.id]:%A, %-d %B %Y, %-I:%M %p}" if one.id in times else "-"
         status = "Submitted for grading" if one.id in times else "No submission"
         row = [f"Participant {numbers[one.id]}", one.name, one.id, one.email, status, "", f"{assignment.points:.2f}"]
-        rows.append([*row, "Yes", time, "-", ""])
+        rows.append([*row, "Yes", time, "-", "", one.section])
     head = "Identifier,Full name,ID number,Email address,Status,Grade,Maximum grade,Grade can be changed"
-    last = ["Last modified (submission)", "Last modified (grade)", "Feedback comments"]
+    last = ["Last modified (submission)", "Last modified (grade)", "Feedback comments", "section"]
     write_table(Path("worksheet.csv"), [*head.split(","), *last], rows)
 
 

@@ -94,13 +94,28 @@ class TestATerm:
     def test_what_waited_is_marked_and_moodle_gets_its_worksheet(self, term):
         folder = term[0] / "grades" / "closed_loop"
         assert "11 answers to be marked" in term[1]
-        assert all(row["points"] for row in table(folder / "marks.csv"))
+        marked = {part: table(folder / "to_mark" / f"{part}.csv") for part in ("Monday", "Thursday")}
+        assert {part: len(rows) for part, rows in marked.items()} == {"Monday": 7, "Thursday": 4}
+        assert all(row["points"] and not row["student"].startswith("s1") for rows in marked.values() for row in rows)
         filled = {row["ID number"]: row["Grade"] for row in table(folder / "moodle_grades.csv")}
         assert {student for student, grade in filled.items() if grade} == {
             "s1001", "s1002", "s1004", "s1005", "s1007", "s1013",
         }  # fmt: skip
         with zipfile.ZipFile(folder / "moodle_feedback.zip") as archive:
             assert any("Océane Lefèvre" in name for name in archive.namelist())
+
+    def test_the_term_has_one_table(self, term):
+        folder, said = term
+        rows = {row["id"]: row for row in table(folder / "grades" / "term.csv")}
+        assert len(rows) == 13
+        both = rows["s1001"]
+        assert both["air_heater of 15"] == "15"
+        assert both["section"] == "Monday"
+        late, only = rows["s1013"], float(rows["s1013"]["closed_loop of 7"])
+        assert late["air_heater of 15"] == "excused"
+        assert float(late["total in percent"]) == pytest.approx(100 * only / 7, abs=0.01)
+        assert (rows["s1011"]["air_heater of 15"], rows["s1011"]["total in percent"]) == ("missing", "0")
+        assert "air_heater: s1011 missing, which counts as nothing" in said
 
     def test_the_notebook_of_the_complaint_is_kept(self, term):
         kept = (term[0] / "grades" / "air_heater" / "notebooks" / "s1005.html").read_text(encoding="utf-8")

@@ -10,7 +10,7 @@ from exercisegrader.reports import write_all
 from exercisegrader.results import OWNER, Look
 from small_class import CLASS, HOSTILE, MISSING, NAMED, STOPPED, TITLE, by_hand, changed
 
-PAGES = ("summary.html", "to_mark.html", *(f"feedback/{student.id}/feedback.html" for student in CLASS))
+PAGES = ("summary.html", "to_mark/A.html", *(f"feedback/{student.id}/feedback.html" for student in CLASS))
 
 
 @pytest.fixture(scope="class")

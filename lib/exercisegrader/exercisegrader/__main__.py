@@ -153,37 +153,12 @@ def try_out(
         fail(f"something is wrong; {context.command_path} {name} --student ID --exercise N shows a variant")
 
 
-class Grade(typer.core.TyperCommand):
-    """A command that lists, where its help is asked for, what it writes."""
-
-    def written(self) -> list[str]:
-        """The outputs that are registered, each as its file and what it is."""
-        from exercisegrader import GradingError
-        from exercisegrader.reports import registered
-
-        try:
-            return [f"{output.file}: {output.what}" for output in registered()]
-        except GradingError as error:
-            fail(str(error))
-
-    def format_help(self, context: typer.Context, formatter: object) -> None:
-        """Print the help, and the list."""
-        self.epilog = "\n\n".join(["What is written:", *self.written()])
-        super().format_help(context, formatter)
-
-
-@app.command(cls=Grade)
+@app.command()
 def grade(
     assignment: Annotated[Path, typer.Argument(help="The assignment that was released.")],
     submissions: Annotated[Path, typer.Argument(help="Their folder, or the zip file of Canvas or Moodle.")],
     to: Annotated[Path, typer.Option(help="Folder for grades and feedback; after an interruption, the same one.")],
     students: Annotated[Path | None, typer.Option(help=ROSTER)] = None,
-    extensions: Annotated[
-        Path | None,
-        typer.Option(
-            help="Extensions as CSV: student, until, assignment; if not given, extensions.csv beside the roster."
-        ),
-    ] = None,
     only: Annotated[list[str] | None, typer.Option(help="Id of a student; grade this one and keep the others.")] = None,
     regrade: Annotated[bool, typer.Option("--regrade", help="Grade again what is graded.")] = False,
     reveal: Annotated[bool, typer.Option("--reveal", help="Show the right answers in the feedback.")] = False,
@@ -201,7 +176,10 @@ def grade(
         bool, typer.Option("--without-jail", help="Run submissions with your own rights; every output says so.")
     ] = False,
 ) -> None:
-    """Run the submissions of a class in a jail, judge their answers, and write grades and feedback."""
+    """Run the submissions of a class in a jail, judge their answers, and write grades and feedback.
+
+    Extensions are in extensions.csv beside the roster: student, until, and perhaps assignment.
+    """
     from exercisegrader import GradingError
 
     try:
@@ -222,7 +200,7 @@ def grade(
                 submissions,
                 to,
                 place=here(workers),
-                extensions=extensions or (beside if os.path.lexists(beside) else None),
+                extensions=beside if os.path.lexists(beside) else None,
                 only=only or (),
                 regrade=regrade,
                 jailed=not without_jail,
@@ -253,6 +231,30 @@ def grade(
     console.print(f"{counts}; {to / 'summary.html'} tells the rest", markup=False)
     if done.failures:
         fail(f"{len(done.failures)} not graded")
+
+
+@app.command()
+def term(
+    folder: Annotated[Path, typer.Argument(help="With the grades of each assignment in a folder, and term.toml.")],
+) -> None:
+    """Write the table of a term: a row for each student, a column for each assignment, and what they come to.
+
+    Weights, what is dropped, and who is excused from what stand in term.toml in the folder. What is
+    missing or waits for a mark is said.
+    """
+    from exercisegrader import GradingError
+    from exercisegrader.files import write
+    from exercisegrader.term import Term
+
+    try:
+        found = Term(folder)
+        write(folder / "term.csv", found.table())
+    except GradingError as error:
+        fail(str(error))
+    for sentence in found.notes():
+        errors.print(sentence, style="yellow", markup=False)
+    count = f"{len(found.students)} students in {', '.join(found.points)}"
+    console.print(f"{count}; {folder / 'term.csv'} has them", markup=False)
 
 
 if __name__ == "__main__":

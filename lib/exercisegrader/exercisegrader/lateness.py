@@ -5,10 +5,9 @@ The module of an assignment says both::
     DUE = "2026-12-01 23:59 Europe/Berlin"
     LATE = Late(percent=10, per="day", grace_minutes=15, at_most=50)
 
-A time without seconds lasts to the end of its minute, a date without a time to the end of its day. Days are counted
-from the due date, those that have begun, by the clock on the wall; what comes within the grace costs nothing, and days
-are then counted from its end. The percentage is one of what was earned. Times that name no zone are of the same place
-as the due date; where that names none either, all of them are of one place, and a time with a zone is refused.
+A time lasts to the end of its minute, a date without a time to the end of its day. Days are counted from the due date,
+those that have begun, by the clock on the wall; what comes within the grace costs nothing, and days are then counted
+from its end. The percentage is one of what was earned. Other times that name no zone are of the place of the due date.
 """
 
 from __future__ import annotations
@@ -16,7 +15,6 @@ from __future__ import annotations
 import datetime
 import re
 import zoneinfo
-from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import timedelta
 from pathlib import Path
@@ -25,6 +23,7 @@ from typing import TYPE_CHECKING
 from exercisebook.judging import harmless
 from exercisebook.late import Late
 from exercisegrader import GradingError
+from exercisegrader.student import in_short
 from exercisegrader.tables import Faults, read_sheet
 from plainmath.validation import did_you_mean
 
@@ -33,14 +32,13 @@ if TYPE_CHECKING:
 
 #: How the sentence on an extension begins.
 IN_TIME = "in time by"
-_MOMENT = re.compile(r"(\d{4}-\d\d-\d\d)(?:[ T](\d\d:\d\d)(:\d\d)?)?(?: ?(Z|[+-]\d\d:\d\d)| ([A-Za-z]\S*))?", re.ASCII)
 _DATES = re.compile(
     r"""^(?:(?:DUE|due) = (["'])[^"'\n]*\1|LATE = Late\([^()]*\)|late = \{[^{}]*\})[ \t]*(?:#.*)?\n""", re.MULTILINE
 )
 
 
 def moment(text: str, zone: datetime.tzinfo | None = None) -> datetime.datetime:
-    """Return the last moment that a text means: of its minute, where it has no seconds; of its day, without a time.
+    """Return the last moment of the minute that a text means; of the day, where it says no time.
 
     Arguments:
         text: a date, and perhaps a time and a zone: Europe/Berlin, UTC, +01:00.
@@ -53,15 +51,13 @@ def moment(text: str, zone: datetime.tzinfo | None = None) -> datetime.datetime:
     >>> moment("2026-12-31").isoformat()
     '2026-12-31T23:59:59.999999'
     """
-    found = _MOMENT.fullmatch(text.strip())
+    day, *rest = text.split() or [""]
+    place = rest.pop() if rest and rest[-1][0].isalpha() and rest[-1] != "Z" else ""
+    said = day + "".join(rest) if "T" in day else f"{day} {''.join(rest) or '23:59'}"
     try:
-        if not found:
-            raise ValueError("it has another form")
-        day, time, seconds, offset, place = found.groups()
-        when = datetime.datetime.fromisoformat(f"{day} {time or '23:59'}{seconds or ':59'}.999999{offset or ''}")
-    except ValueError as problem:
-        says = f"{harmless(repr(text))} is not a date and time ({problem})"
-        raise ValueError(f"{says}: expected one such as 2026-12-01 23:59") from None
+        when = datetime.datetime.fromisoformat(said).replace(second=59, microsecond=999_999)
+    except ValueError:
+        raise ValueError(f"{harmless(repr(text))} is not a date and time: expected one as 2026-12-01 23:59") from None
     return when if when.tzinfo else when.replace(tzinfo=_zone(place) if place else zone)
 
 
@@ -75,14 +71,12 @@ def _zone(name):
 
 
 def written(when: datetime.datetime) -> str:
-    """Return a moment as people write it, with its zone where it has one.
+    """Return a moment as people write it, with its zone.
 
-    >>> written(moment("2026-12-01 23:59 Europe/Berlin")), written(moment("2026-12-01"))
-    ('2026-12-01 23:59 Europe/Berlin', '2026-12-01 23:59')
+    >>> written(moment("2026-12-01 Europe/Berlin")), written(moment("2026-12-01 23:59+01:00"))
+    ('2026-12-01 23:59 Europe/Berlin', '2026-12-01 23:59 UTC+01:00')
     """
-    zone = when.tzinfo
-    name = "" if zone is None else getattr(zone, "key", "") or when.tzname()
-    return f"{when:%Y-%m-%d %H:%M} {name}".strip()
+    return f"{when:%Y-%m-%d %H:%M} {getattr(when.tzinfo, 'key', '') or when.tzname()}"
 
 
 def lasting(span: timedelta) -> str:
@@ -92,11 +86,9 @@ def lasting(span: timedelta) -> str:
     ('1 day 3 h', '1 h 35 min', 'less than 1 min')
     """
     minutes = int(span / timedelta(minutes=1))
-    days, minutes = divmod(minutes, 24 * 60)
-    hours, minutes = divmod(minutes, 60)
-    parts = [f"{days} day{'' if days == 1 else 's'}" if days else "", f"{hours} h" if hours else ""]
-    parts.append(f"{minutes} min" if minutes and not days else "")
-    return " ".join(filter(None, parts)) or "less than 1 min"
+    days, hours, minutes = minutes // (24 * 60), minutes // 60 % 24, minutes % 60
+    parts = [(days, "day" if days == 1 else "days"), (hours, "h"), (0 if days else minutes, "min")]
+    return " ".join(f"{count} {unit}" for count, unit in parts if count) or "less than 1 min"
 
 
 @dataclass(frozen=True)
@@ -121,7 +113,7 @@ class Policy:
 def policy_of(module: object, file: str) -> Policy | None:
     """Return the policy of an assignment's module; None where it says nothing of it.
 
-    Raises GradingError for a `DUE` that cannot be read, a `LATE` of another form, and a `LATE` without a `DUE`.
+    Raises GradingError for a `DUE` that cannot be read or names no zone, a `LATE` of another form or without a `DUE`.
     """
     due, late = getattr(module, "DUE", None), getattr(module, "LATE", None)
     if due is None and late is None:
@@ -135,9 +127,12 @@ def policy_of(module: object, file: str) -> Policy | None:
             "at_most=50, accepted_days=7), with Late from exercisebook.authoring"
         )
     try:
-        return Policy(moment(due), late)
+        when = moment(due)
+        if when.tzinfo is None:
+            raise ValueError(f"{due!r} names no time zone: expected one, as in {due + ' Europe/Berlin'!r}")
     except ValueError as problem:
         raise GradingError(f"{file}: DUE: {problem}") from None
+    return Policy(when, late)
 
 
 def without_dates(source: str) -> str:
@@ -147,10 +142,6 @@ def without_dates(source: str) -> str:
     'x = 1\\ny = 2\\n'
     """
     return _DATES.sub("", source)
-
-
-def _percent(fraction):
-    return f"{100 * fraction:.4g} %"
 
 
 @dataclass(frozen=True)
@@ -181,77 +172,51 @@ def lateness(
         handed_in: when it was handed in; a time without a zone is of the place of the due date.
         late: whether the LMS says that it is late; None where it says nothing.
         until: an extension for this student.
-    Raises:
-        GradingError: where the time has a zone and the due date has none.
 
-    >>> policy = Policy(moment("2026-12-01 23:59"), Late(percent=10, per="day"))
+    >>> policy = Policy(moment("2026-12-01 23:59 UTC"), Late(percent=10, per="day"))
     >>> lateness(policy, moment("2026-12-03 02:00")).says
-    'handed in 1 day 2 h late (due 2026-12-01 23:59): 20 % of the points are deducted'
+    'handed in 1 day 2 h late (due 2026-12-01 23:59 UTC): 20 % of the points are deducted'
     >>> lateness(policy, late=True).says
     'handed in late, by how much is not known: nothing is deducted'
     """
     if policy is None:
         return Lateness(says="handed in late, says the learning management system") if late else Lateness()
-    due = max(policy.due, until) if until else policy.due
+    due = max(policy.due, until or policy.due, key=_instant)
     if handed_in is None:
-        if not late:
-            return Lateness()
         says = "handed in late, by how much is not known: nothing is deducted"
-        look = "it is late, by how much is not known, and nothing is deducted"
-        look += f" (there is an extension to {written(until)})" if until else ""
-        return Lateness(0, says, f"{look}: add a column handed_in to the roster, or a row to marks.csv")
-    if due.tzinfo is None and handed_in.tzinfo is not None:
-        raise GradingError(
-            f"a submission was handed in at {written(handed_in)}, and DUE names no time zone: expected one, as in "
-            f'DUE = "{written(policy.due)} Europe/Berlin"'
-        )
+        granted = f" (there is an extension to {written(until)})" if until else ""
+        look = f"{says}{granted}; add a column handed_in to the roster, or a row to marks.csv"
+        return Lateness(0, says, look) if late else Lateness()
     handed_in = handed_in.replace(tzinfo=due.tzinfo) if handed_in.tzinfo is None else handed_in.astimezone(due.tzinfo)
     if _instant(handed_in) <= _instant(due):
-        if _instant(handed_in) > _instant(policy.due):
-            return Lateness(0, f"{IN_TIME} an extension to {written(until)}")
-        return Lateness()
+        is_extended = until and _instant(handed_in) > _instant(policy.due)
+        return Lateness(says=f"{IN_TIME} an extension to {written(due)}" if is_extended else "")
     terms = policy.late
     if terms and terms.per == "hour":
         by = _instant(handed_in) - _instant(due)
     else:  # as clocks on the wall say: the same time of the next day is a day later
-        by = handed_in.replace(tzinfo=None) - due.replace(tzinfo=None)
-    by = max(by, timedelta(microseconds=1))
+        by = max(handed_in.replace(tzinfo=None) - due.replace(tzinfo=None), timedelta(microseconds=1))
     how = f"handed in {lasting(by)} late ({'extended to' if due != policy.due else 'due'} {written(due)})"
     if terms and terms.refuses(by):
         return Lateness(1, f"{how}, after the last day on which it is accepted: all points are deducted")
     if terms and (part := terms.costs(by)):
-        return Lateness(part, f"{how}: {_percent(part)} of the points are deducted")
+        return Lateness(part, f"{how}: {100 * part:.4g} % of the points are deducted")
     within = f", within the grace of {lasting(terms.grace)}" if terms and by <= terms.grace else ""
     return Lateness(0, f"{how}{within}: nothing is deducted")
 
 
 def _instant(when):
     """A moment for comparisons: of two with one zone Python compares the clocks on the wall."""
-    return when.astimezone(datetime.UTC) if when.tzinfo else when
-
-
-@dataclass(frozen=True)
-class Extensions:
-    """The extensions of one assignment.
-
-    Attributes:
-        until: {student's id: the last moment}.
-        notes: sentences on rows that have no effect here.
-    """
-
-    until: Mapping[str, datetime.datetime]
-    notes: tuple[str, ...] = ()
+    return when.astimezone(datetime.UTC)
 
 
 def read_extensions(
-    path: str | Path,
-    roll: Roll,
-    assignment: str,
-    policy: Policy | None,
-) -> Extensions:
-    """Return the extensions that a file grants: student, until, and perhaps assignment, one row for each.
+    path: str | Path, roll: Roll, assignment: str, policy: Policy | None
+) -> tuple[dict[str, datetime.datetime], list[str]]:
+    """Return the extensions of a file, {student's id: the last moment}, and sentences on rows of no effect here.
 
-    A row without an assignment is for every one.
+    A row has student, until, and perhaps assignment; without one it is for every one. Of several rows for a student the
+    latest time counts.
 
     Arguments:
         path: of the file.
@@ -259,47 +224,33 @@ def read_extensions(
         assignment: the name of this one.
         policy: its policy.
     Raises:
-        GradingError: with all faults, each with its line: a student who is not on the roster, what is no time, a time
-            before the due date, two rows for one student.
+        GradingError: with all faults, each with its line: a student who is not on the roster, what is no time.
     """
     sheet = read_sheet(path, ["student", "until"], ["assignment"])
-    faults, until, lines, others, early, left = Faults(sheet.table.path.name), {}, {}, {}, [], []
+    faults, until, idle = Faults(sheet.table.path.name), {}, {}
     for line, row in sheet.rows:
         of, said = row.get("assignment", ""), row["student"]
-        student = roll.find(said)
+        student, why = roll.find(said), ""
         if of and of.casefold() != assignment.casefold():
-            others[of] = others.get(of, 0) + 1
-        elif not student and said in roll.former:
-            left.append(said)
+            why = f"for the assignment {of!r}"
+        elif said in roll.former:
+            why = "no longer on the roster"
         elif not student:
             faults.add(line, roll.fault(said))
-        elif policy is not None:
+        elif policy is None:
+            why = f"{assignment} has no DUE"
+        else:
             try:
-                when = _extended(row["until"], policy.due)
+                when = moment(row["until"], policy.due.tzinfo).astimezone(policy.due.tzinfo)
             except ValueError as problem:
                 faults.add(line, str(problem))
-                continue
-            if _instant(when) >= _instant(policy.due):
-                first = lines.setdefault((student, bool(of)), line)
-                if first != line:
-                    faults.add(line, f"{student!r} has an extension in line {first} already: expected one")
-                until[student] = max(when, until.get(student, when), key=_instant)
-            elif of:
-                due = written(policy.due)
-                faults.add(line, f"{row['until']!r} is before the due date, {due}: expected a later time")
             else:
-                early.append(student)
+                if _instant(when) < _instant(policy.due):
+                    why = "before the due date"
+                else:
+                    until[student] = max(when, until.get(student, when), key=_instant)
+        if why:
+            idle.setdefault(why, []).append(said)
     faults.demand_none()
-    notes = [f"{count} for the assignment {name!r}" for name, count in others.items()]
-    notes += [f"{', '.join(early)}: before the due date"] if early else []
-    notes += [f"{', '.join(left)}: no longer on the roster"] if left else []
-    notes += [f"{assignment} has no DUE"] if policy is None and sheet.rows else []
-    return Extensions(until, tuple(f"{sheet.table.path.name}, of no effect here: {note}" for note in notes))
-
-
-def _extended(text, due):
-    """The moment that a text means, by the clock of the due date. Raises ValueError where they cannot be compared."""
-    when = moment(text, due.tzinfo)
-    if when.tzinfo and not due.tzinfo:
-        raise ValueError(f"{text!r} names a time zone, and DUE names none: expected one in both")
-    return when.astimezone(due.tzinfo) if when.tzinfo else when
+    start = f"{sheet.table.path.name}, of no effect here"
+    return until, [f"{start}: {in_short(who)}, {why}" for why, who in idle.items()]

@@ -6,23 +6,25 @@
 from __future__ import annotations
 
 import datetime
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from exercisebook.judging import WAITING
-from exercisegrader.lateness import IN_TIME, Extensions, Lateness, lateness, read_extensions
-from exercisegrader.overrides import Mark, Notice, Overrides
+from exercisegrader.lateness import IN_TIME, Lateness, lateness, read_extensions
+from exercisegrader.overrides import TO_MARK, Mark, Notice, Overrides, code
 from exercisegrader.reports.wording import counted, number, of_points
 from exercisegrader.results import MISSING, NOT_RUN, JudgedExercise, Result
-from exercisegrader.student import Roll
+from exercisegrader.student import Roll, parts
 
 if TYPE_CHECKING:
     from exercisegrader.assignment import Assignment
     from exercisegrader.student import Student
     from exercisegrader.submissions import Submission
 
+#: What there is of a student, besides `results.MISSING` and `results.NOT_RUN`.
+GRADED, WAITS = "graded", "waits"
 _NONE = Mark()
 
 
@@ -112,6 +114,7 @@ class Marked:
         comments: of the instructor on the whole of it.
         looks: why an instructor should see to it, besides what the result says.
         by_hand: the points of the whole, where a person has marked it; nothing is deducted from these.
+        code: what whoever marks knows the student by.
     """
 
     result: Result
@@ -121,6 +124,7 @@ class Marked:
     comments: tuple[str, ...] = ()
     looks: tuple[Notice, ...] = ()
     by_hand: float | None = None
+    code: str = ""
 
     @classmethod
     def of(
@@ -177,6 +181,13 @@ class Marked:
         return max(0.0, sum(one.earned or 0 for one in self.exercises) - self.deduction)
 
     @property
+    def state(self) -> str:
+        """What there is: GRADED where there are points, `results.MISSING`, `results.NOT_RUN`, or WAITS for a mark."""
+        if self.total is not None:
+            return GRADED
+        return self.result.status if self.result.status in (MISSING, NOT_RUN) else WAITS
+
+    @property
     def known(self) -> float:
         """The points; while something waits for a person, the rest counts already."""
         if self.total is not None or self.result.status in (MISSING, NOT_RUN):
@@ -205,29 +216,24 @@ class Marking:
         extensions: Path | None = None,
         also: Mapping[str, str] | None = None,
     ):
-        self.assignment, self.extensions = assignment, Extensions({})
+        self.assignment = assignment
+        self.extensions: dict[str, datetime.datetime] = {}
+        self._idle: list[str] = []
         graded = [path.stem for path in (folder / "results").glob("*.json")]
-        roll = Roll([student.id for student in students], also, graded)
+        ids = [student.id for student in students]
+        self.codes = {student: code(assignment.secret, student) for student in (*ids, *graded)}
+        roll = Roll(ids, {**(also or {}), **{code: student for student, code in self.codes.items()}}, graded)
         if extensions:
-            self.extensions = read_extensions(extensions, roll, assignment.name, assignment.policy)
-        self.overrides = Overrides(folder, assignment, roll)
+            self.extensions, self._idle = read_extensions(extensions, roll, assignment.name, assignment.policy)
+        self.overrides = Overrides(folder, assignment, roll, parts(students))
         self._at: dict[str, datetime.datetime | None] = {}
 
     def read(self, result_of: Callable[[str], Result | None]) -> None:
         """Read the marks by hand, and note what has changed; `Overrides.read` says more."""
         self.overrides.read(result_of)
 
-    def demand_comparable(self, submissions: Iterable[Submission]) -> None:
-        """Raise GradingError where a time of a submission cannot be compared with the due date: one has no zone."""
-        for submission in submissions:
-            self._lateness(submission)
-
-    def _lateness(self, submission):
-        until = self.extensions.until.get(submission.student.id)
-        return lateness(self.assignment.policy, submission.handed_in, submission.late, until)
-
     def marked(self, results: Sequence[Result], submissions: Mapping[str, Submission]) -> list[Marked]:
-        """Return the results with what they count, and add a row to ``marks.csv`` for each answer that waits.
+        """Return the results with what they count, and add a row, where `Overrides.add` says, for each that waits.
 
         Arguments:
             results: in the order of the roster.
@@ -240,13 +246,16 @@ class Marking:
         asked = dict.fromkeys(
             (one.number, answer.name) for result in results for one in result.exercises for answer in one.answers
         )
-        self.overrides.add((mark.result.student, *place) for place in asked for mark in marks if place in mark.waiting)
+        unordered = sorted(marks, key=lambda mark: mark.code)  # the order of the roster would tell whose it is
+        self.overrides.add((one.result.student, *place) for place in asked for one in unordered if place in one.waiting)
         return marks
 
     def _marked(self, result, submission):
-        late = self._lateness(submission) if submission and result.status != MISSING else Lateness()
-        changed = self.overrides.changed_since(result)
-        return Marked.of(result, self.overrides.of(result.student), late, tuple(changed))
+        late, until = Lateness(), self.extensions.get(result.student)
+        if submission and result.status != MISSING:
+            late = lateness(self.assignment.policy, submission.handed_in, submission.late, until)
+        by_hand, changed = self.overrides.of(result.student), self.overrides.changed_since(result)
+        return replace(Marked.of(result, by_hand, late, tuple(changed)), code=self.codes[result.student])
 
     def notes(self, marks: Sequence[Marked]) -> list[str]:
         """Return sentences on what was applied."""
@@ -256,24 +265,25 @@ class Marking:
             late = [mark for mark in handed_in if mark.late and not mark.late.startswith(IN_TIME)]
             unknown = [one for mark in handed_in if not mark.late and self._at.get(one := mark.result.student) is None]
             found.append(f"D{str(policy)[1:]}. {counted(len(late), 'submission')} came late.")
-            if until := self.extensions.until:
+            if until := self.extensions:
                 found[-1] += f" {counted(len(until), 'student')} {'has' if len(until) == 1 else 'have'} an extension."
             if unknown:
                 found.append(
                     f"Of {counted(len(unknown), 'submission')} nothing says when it was handed in: it counts as in "
                     "time. A column handed_in in the roster says it."
                 )
-        found += self.extensions.notes
+        found += self._idle
         by_hand = sum(mark.points is not None for mark in self.overrides.marks.values())
         if by_hand:
-            found.append(f"{counted(by_hand, 'mark')} by hand in marks.csv.")
+            found.append(f"{counted(by_hand, 'mark')} by hand.")
         if waiting := sum(len(mark.waiting) for mark in marks):
             found.append(
-                f"{counted(waiting, 'answer')} to be marked: to_mark.html shows them, marks.csv has a row for each."
+                f"{counted(waiting, 'answer')} to be marked: the folder {TO_MARK} has a page of them and a table for "
+                "the points, for each section, without names."
             )
         if former := self.overrides.former:
             found.append(
-                f"marks.csv has rows of {', '.join(sorted(former))}, no longer on the roster: they stay there."
+                f"There are marks of {', '.join(sorted(former))}, no longer on the roster: they stay where they are."
             )
         if self.overrides.withdrawn:
             found.append(f"{counted(self.overrides.withdrawn, 'mark')} by hand withdrawn since the last time.")

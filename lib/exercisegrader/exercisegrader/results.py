@@ -31,9 +31,9 @@ if TYPE_CHECKING:
 #: What became of a submission: nothing handed in, nothing that could be run, run in part, run to its end.
 MISSING, NOT_RUN, STOPPED, COMPLETE = "missing", "not run", "stopped", "complete"
 #: Kinds of `Look`.
-OWNER, ODD, UNASKED, NO_CODE, EXTRA = "owner", "odd lines", "unasked", "no code", "extra"
+OWNER, ODD, UNASKED, NO_CODE = "owner", "odd lines", "unasked", "no code"
 #: So many answers to what is not asked are told.
-MOST_EXTRA = 20
+MOST_UNASKED = 20
 #: An address of memory, in an error's text, differs from run to run.
 ADDRESS = re.compile(r"\b0x[0-9a-fA-F]{6,}\b")
 
@@ -121,7 +121,7 @@ class Look:
     Attributes:
         kind: OWNER where it names another student, ODD where it told lines that are not answers, UNASKED where it
             answers what is not asked and leaves open what is, NO_CODE where what is left open stands in a cell that is
-            not run, EXTRA where it answers what is not asked besides, which is harmless.
+            not run.
         says: the reason, in a sentence.
         exercise: the one whose open answers may be meant; empty where it may be any.
     """
@@ -221,7 +221,7 @@ def looks(
     doubts: Sequence[str] = (),
     if_empty: str = "",
 ) -> list[Look]:
-    """Return why an instructor should look at a submission, what is harmless last.
+    """Return why an instructor should look at a submission.
 
     Arguments:
         student: id.
@@ -249,16 +249,15 @@ def looks(
     if if_empty and left and not (outcome.answers or found or outcome.refused or outcome.errors or outcome.stopped):
         found.append(Look(NO_CODE, if_empty))
     more = []
-    for number, given in outcome.answers.items():
-        if number not in asked:
+    for number, given in outcome.answers.items() if left else ():
+        if number not in asked and given:
             says = f"it answers {harmless(repr(number))}, which is not an exercise of this assignment"
-            more.append(Look(UNASKED if left and given else EXTRA, says))
-        elif extra := [name for name in given if name not in asked[number]]:
+            more.append(Look(UNASKED, says))
+        elif number in left and (extra := [name for name in given if name not in asked[number]]):
             named = in_short([harmless(repr(name)) for name in extra])
             says = f"in exercise {number} it answers {named}, which {'are' if extra[1:] else 'is'} not asked"
-            more.append(Look(UNASKED, says, number) if number in left else Look(EXTRA, says))
-    more.sort(key=lambda look: (look.kind == EXTRA, look.says))
-    return [*found, *more[:MOST_EXTRA]]
+            more.append(Look(UNASKED, says, number))
+    return [*found, *sorted(more, key=lambda look: look.says)[:MOST_UNASKED]]
 
 
 class Results:

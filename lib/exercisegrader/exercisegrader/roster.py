@@ -16,7 +16,7 @@ POSSIBLE_ID = re.compile(
     r"(?!(?i:con|prn|aux|nul|com\d|lpt\d)(?:\.|$))[A-Za-z0-9][A-Za-z0-9._@-]{0,99}(?<!\.)", re.ASCII
 )
 #: What an instructor may add to any export.
-_ADDED = {"handedin": "handed_in"}
+_ADDED = {"handedin": "handed_in", "section": "section"}
 #: A time as Moodle writes it, in English and in the English of the United States.
 _LONG_FORMS = ("%A, %d %B %Y, %I:%M %p", "%A, %B %d, %Y, %I:%M %p")
 
@@ -24,11 +24,10 @@ _LONG_FORMS = ("%A, %d %B %Y, %I:%M %p", "%A, %B %d, %Y, %I:%M %p")
 def read_roster(path: str | Path) -> tuple[Student, ...]:
     """The students of a roster, in its order: a file of comma-, semicolon- or tab-separated values.
 
-    It is one of your own with the columns id and name (`lms.own` says which others), or an export
-    of a system in `lms`, to which a column "handed in" may be added; both in UTF-8. Of an export, the id of each
-    student is in the first of the system's columns that is full in this row: in Canvas SIS User ID, SIS Login ID, ID;
-    in Moodle ID number, Username, the number in Identifier, Email address. `lms.remarks` says where ids come from
-    different columns.
+    It is one of your own with the columns id and name (`lms.own` says which others), or an export of a system in `lms`,
+    to which columns "handed in" and "section" may be added; both in UTF-8. Of an export, the id of each student is in
+    the first of the system's columns that is full in this row: in Canvas SIS User ID, SIS Login ID, ID; in Moodle ID
+    number, Username, the number in Identifier, Email address. `lms.remarks` says where ids come from different columns.
 
     Raises GradingError with all that is wrong, a line for each fault: a file that is missing or no text, an unknown
     header, a roster without students; an id that is missing, impossible or not unique, a row with more cells than the

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -54,6 +55,15 @@ class Student:
     table: Table | None = field(default=None, compare=False, repr=False)
 
 
+def parts(students: Sequence[Student]) -> dict[str, str]:
+    """Return the name of the files for whoever marks a student's section, by the student's id.
+
+    It is "all" in a class without sections, and "others" for those who have none in a class with some.
+    """
+    rest = "others" if any(student.section for student in students) else "all"
+    return {one.id: re.sub(r"\W+", "_", one.section).strip("_")[:80] or rest for one in students}
+
+
 class Roll:
     """The ids of a roster, as they are found in tables of an instructor: without regard to capitals.
 
@@ -77,7 +87,8 @@ class Roll:
 
     def fault(self, said: str) -> str:
         """Return a sentence on what is no id."""
-        return f"there is no student {said!r} on the roster: {did_you_mean(said, self.ids, 'expected an id')}"
+        meant = did_you_mean(said, [*self.ids, *self._known], "expected an id")
+        return f"there is no student {said!r} on the roster: {meant}"
 
 
 def in_short(names: Sequence[str]) -> str:

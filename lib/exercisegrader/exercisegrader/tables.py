@@ -58,12 +58,16 @@ class Faults:
         """Note a fault in a line."""
         self._found.append((line, says))
 
+    def told(self) -> list[str]:
+        """Return a sentence on each of them, and one on how many more there are."""
+        more = len(self._found) - MOST_FAULTS
+        told = [f"{self.name}, line {line}: {says}" for line, says in self._found[:MOST_FAULTS]]
+        return told + ([f"{self.name}: {more} more such faults"] if more > 0 else [])
+
     def demand_none(self) -> None:
         """Raise GradingError with all of them, each in a line, where there is one."""
-        if self._found:
-            more = len(self._found) - MOST_FAULTS
-            told = [f"{self.name}, line {line}: {says}" for line, says in self._found[:MOST_FAULTS]]
-            raise GradingError("\n".join(told + ([f"{self.name}: {more} more such faults"] if more > 0 else [])))
+        if told := self.told():
+            raise GradingError("\n".join(told))
 
 
 def places(header: Sequence[str], heads: Mapping[str, str]) -> dict[str, int]:

@@ -101,7 +101,7 @@ def everything(text, formulas=False):
     title, status = (text if formulas else text.replace("$", "")), [*MARKS]
     answers = [JudgedAnswer(text, one, title, None if one == WAITING else text, text, 1, text) for one in status]
     judged = JudgedExercise(text, title, 4, text, ((text, text),), tuple(answers))
-    looks = tuple(Look(kind, text) for kind in ("owner", "odd lines", "unasked", "no code", "extra"))
+    looks = tuple(Look(kind, text) for kind in ("owner", "odd lines", "unasked", "no code"))
     result = Result(text, "s1", text, False, "", "stopped", text, (CellError(1, text),), looks, (judged,), text, text)
     exercise = MarkedExercise(judged, 1, (text,), (text,), (text,))
     mark = Marked(result, (exercise,), text or "late", 1, (text,), (Notice(1, text),))
@@ -109,7 +109,7 @@ def everything(text, formulas=False):
     grades = Grades(title, [student], [mark], [text, "another"], [text], reveal=True, notebooks=["s1"])
     yield feedback(grades, student, mark)
     yield summary(grades)
-    yield to_mark(grades)
+    yield to_mark(grades, "all")
     yield executed(result, b"", [], text)
 
 

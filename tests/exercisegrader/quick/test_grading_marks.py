@@ -16,11 +16,11 @@ from exercisegrader import GradingError, tables
 from exercisegrader.assignment import Assignment
 from exercisegrader.lateness import Lateness
 from exercisegrader.marking import Marked, Marking, Notice
-from exercisegrader.overrides import HISTORY, Mark
+from exercisegrader.overrides import HISTORY, Mark, code
 from exercisegrader.reports.outputs import Grades
 from exercisegrader.reports.outputs.to_mark import to_mark
 from exercisegrader.results import JudgedAnswer, JudgedExercise, Result
-from exercisegrader.student import Student
+from exercisegrader.student import Student, parts
 from exercisegrader.submissions import Submission
 from whole_pages import Checker
 
@@ -42,7 +42,8 @@ def gain(K=between(2, 6, "K/%")):
     return answers(K=number(K, "K/%"), y=number(2 * K), z=number(3 * K))
 '''
 ASSIGNMENT = Assignment.of(SOURCE, "responses")
-CLASS = [Student(f"s{k}", name) for k, name in enumerate(["Ada", "Ben", "Cy"], start=1)]
+CLASS = [Student(f"s{k}", name, section=name[:1]) for k, name in enumerate(["Ada", "Ben", "Bo"], start=1)]
+CODES = {one.id: code(ASSIGNMENT.secret, one.id) for one in CLASS}
 PICTURE = png.as_data(picture())
 #: Where a mark by hand may be.
 T, SKETCH, WHY, Y = ("1", "T"), ("1", "sketch"), ("1", "why"), ("2", "y")
@@ -78,10 +79,14 @@ class Folder:
         self.notes = marking.notes(list(self.marked.values()))
         return self.marked
 
-    def write(self, *rows, head="student,exercise,quantity,points,comment"):
+    def table(self, part):
+        return self.path / "to_mark" / f"{part}.csv"
+
+    def write(self, *rows, head="student,exercise,quantity,points,comment", file="marks.csv"):
         saved = self.path / "saved"  # as programs do: the new file takes the place of the old one
         saved.write_bytes("".join(f"{row}\r\n" for row in (head, *rows)).encode())
-        saved.replace(self.marks)
+        (self.path / file).parent.mkdir(exist_ok=True)
+        saved.replace(self.path / file)
 
     def faults(self, *rows, **given):
         self.write(*rows, **given)
@@ -173,14 +178,78 @@ def test_what_is_late_costs_a_part_of_what_was_earned_by_hand_too():
 # The table.
 
 
-def test_a_row_is_added_for_each_answer_that_waits(folder):
+def test_a_row_is_added_for_each_answer_that_waits_in_the_table_of_the_section(folder):
     folder.run(result("s1"), result("s2", why=OPEN), result("s3", sketch=OPEN, why=OPEN))
-    text = "student,exercise,quantity,points,comment\r\ns1,1,sketch,,\r\ns2,1,sketch,,\r\ns1,1,why,,\r\n"
-    assert folder.marks.read_bytes() == b"\xef\xbb\xbf" + text.encode()
+    head = "\ufeffstudent,exercise,quantity,points,comment"
+    assert folder.marks.read_bytes().decode() == f"{head}\r\n"
+    assert folder.table("A").read_bytes().decode().split("\r\n") == [
+        head, f"{CODES['s1']},1,sketch,,", f"{CODES['s1']},1,why,,", "",
+    ]  # fmt: skip
+    before = folder.table("B").read_bytes()
+    assert before.decode().split("\r\n") == [head, f"{CODES['s2']},1,sketch,,", ""]
     folder.run(result("s1"), result("s2"), result("s3", sketch=OPEN, why=OPEN))
-    assert folder.marks.read_bytes() == b"\xef\xbb\xbf" + text.encode() + b"s2,1,why,,\r\n"
+    assert folder.table("B").read_bytes() == before + f"{CODES['s2']},1,why,,\r\n".encode()
     assert not folder.history.exists()
-    assert folder.notes == ["4 answers to be marked: to_mark.html shows them, marks.csv has a row for each."]
+    (note,) = folder.notes
+    assert note.startswith("4 answers to be marked: the folder to_mark has a page")
+
+
+def test_whose_answers_they_are_is_not_to_be_seen_by_their_order(folder):
+    folder.run(*(result(one.id) for one in CLASS))
+    rows = [line.partition(",")[0] for line in folder.table("B").read_text().splitlines()[1:]]
+    assert rows == 2 * sorted([CODES["s2"], CODES["s3"]])
+    others = {code("another secret of many letters", one.id) for one in CLASS}
+    assert len({*CODES.values(), *others}) == 2 * len(CLASS)
+
+
+def test_who_moves_to_another_section_waits_there(folder):
+    folder.write(f"{CODES['s2']},1,sketch,,", file="to_mark/A.csv")
+    folder.run(result("s2", why=OPEN))
+    assert folder.table("B").read_text().count(CODES["s2"]) == 1
+
+
+@pytest.mark.parametrize(
+    ("sections", "found"),
+    [(["", ""], ["all", "all"]), (["Mon 9:00", ""], ["Mon_9_00", "others"]), (["../x", "Ä/B"], ["x", "Ä_B"])],
+)
+def test_each_section_has_files_of_its_own(sections, found):
+    assert [*parts([Student(f"s{k}", "", section=one) for k, one in enumerate(sections)]).values()] == found
+
+
+def test_marks_come_back_by_their_codes_in_any_table_of_the_folder(folder):
+    folder.run(result("s1"), result("s2"))
+    folder.write(f"{CODES['s1']},1,sketch,1,units", file="to_mark/A (1).csv")  # as a browser names what comes twice
+    folder.write(f"{CODES['s2'].upper()},1,why,0.5,", f"{CODES['s2']},1,sketch,,short", file="to_mark/B.csv")
+    found = folder.run(result("s1"), result("s2"))
+    assert found["s1"].exercises[0].history == ('sketch: 1 of 1.5 points by hand: "units"',)
+    assert found["s2"].exercises[0].history == ("why: 0.5 of 1.5 points by hand",)
+    assert found["s2"].exercises[0].comments == ("sketch: short",)
+    assert folder.changes() == [
+        ("s1", "1", "sketch", "", "1"),
+        ("s2", "1", "why", "", "0.5"),
+        ("s2", "1", "sketch", "", ""),
+    ]
+
+
+def test_what_the_instructor_says_counts_more_than_a_table_of_a_section(folder):
+    folder.write(f"{CODES['s1']},1,sketch,1,units", f"{CODES['s1']},1,why,1,", file="to_mark/A.csv")
+    folder.write("s1,1,sketch,1.5,yes", "s1,1,why,,well")
+    history = folder.run(result("s1"))["s1"].exercises[0].history
+    assert history == ('sketch: 1.5 of 1.5 points by hand: "yes"', 'why: 1 of 1.5 points by hand: "well"')
+
+
+def test_two_tables_that_say_different_points_are_told(folder):
+    folder.write(f"{CODES['s1']},1,sketch,1,", file="to_mark/A.csv")
+    says = (
+        "to_mark/B.csv, line 2: exercise 1, sketch: the points are 0.5, and to_mark/A.csv says 1: expected one of them"
+    )
+    folder.write("s1,1,T,8,")
+    assert folder.faults(f"{CODES['s1']},1,sketch,0.5,", file="to_mark/B.csv") == [
+        says, "marks.csv, line 2: the points are 8: expected 0 to 3 for exercise 1, T",
+    ]  # fmt: skip
+    folder.write()
+    folder.write("s1,1,sketch,1,", file="to_mark/B.csv")
+    assert folder.run(result("s1"))["s1"].waiting == (WHY,)
 
 
 @pytest.mark.parametrize("ending", ["\r\n", "\n"])
@@ -192,12 +261,13 @@ def test_what_a_spreadsheet_left_stays_byte_for_byte(folder, delimiter, mark, en
     head = ["Mine", "Student", "Exercise", "Quantity", "Points", "Comment"]
     rows = [head, ["x", "S1", "1", "sketch", *quoted], [""] * 6, ["", "s1", "", "", "", "nice"]]
     table = mark + ending.join(map(delimiter.join, rows)) + (ending if is_whole else "")
-    folder.marks.write_bytes(table.encode())
+    folder.table("A").parent.mkdir()
+    folder.table("A").write_bytes(table.encode())
     found = folder.run(result("s1"))["s1"]
     assert found.exercises[0].history[0].startswith("sketch: 1.5 of 1.5 points by hand")
     assert found.comments == ("nice",)
-    added = delimiter.join(["", "s1", "1", "why", "", ""])
-    assert folder.marks.read_bytes() == (table + ("" if is_whole else ending) + added + ending).encode()
+    added = delimiter.join(["", CODES["s1"], "1", "why", "", ""])
+    assert folder.table("A").read_bytes() == (table + ("" if is_whole else ending) + added + ending).encode()
 
 
 def test_of_several_rows_for_a_place_the_last_counts(folder):
@@ -248,26 +318,26 @@ def test_an_id_of_the_roster_stands_for_the_one_that_was_released(folder):
 
 
 def test_who_has_left_the_class_stops_nobody(folder):
-    folder.write("s1,1,sketch,1,", "s2,1,sketch,1,")
+    folder.write("s1,1,sketch,1,", f"{CODES['s2']},1,sketch,1,")
     folder.run(result("s1"), result("s2"))
     (folder.path / "results").mkdir()
     (folder.path / "results" / "s2.json").touch()
     marking = Marking(folder.path, ASSIGNMENT, CLASS[:1])
     marking.read({"s1": result("s1")}.get)
     marks = marking.marked([result("s1")], {})
-    assert "marks.csv has rows of s2, no longer on the roster: they stay there." in marking.notes(marks)
+    assert "There are marks of s2, no longer on the roster: they stay where they are." in marking.notes(marks)
     assert len(folder.changes()) == 2
     assert folder.run(result("s1"), result("s2"))["s2"].waiting == (("1", "why"),)
 
 
 def test_a_file_that_is_saved_meanwhile_is_not_touched(folder):
-    folder.write("s1,1,sketch,1,")
+    folder.write("s1,1,sketch,1,", file="to_mark/A.csv")
     marking = Marking(folder.path, ASSIGNMENT, CLASS)
     marking.read({"s1": result("s1")}.get)
-    folder.write("s1,1,sketch,0.5,")
-    saved = folder.marks.read_bytes()
+    folder.write("s1,1,sketch,0.5,", file="to_mark/A.csv")
+    saved = folder.table("A").read_bytes()
     marking.marked([result("s1")], {})
-    assert folder.marks.read_bytes() == saved
+    assert folder.table("A").read_bytes() == saved
     assert folder.run(result("s1"))["s1"].exercises[0].history[0].startswith("sketch: 0.5")
 
 
@@ -302,11 +372,12 @@ def test_a_mark_for_a_student_without_a_result_is_noted_later(folder):
     assert folder.changes() == [("s1", "1", "sketch", "", "1")]
 
 
-def test_a_table_that_is_gone_is_asked_for(folder):
-    folder.write("s1,1,sketch,1,")
+@pytest.mark.parametrize("file", ["marks.csv", "to_mark/A.csv"])
+def test_a_table_that_is_gone_is_asked_for(folder, file):
+    folder.write("s1,1,sketch,1,", file=file)
     folder.run(result("s1"))
-    folder.marks.unlink()
-    with pytest.raises(GradingError, match=r"marks\.csv is gone, and marks_history\.csv knows 1 row of it"):
+    (folder.path / file).unlink()
+    with pytest.raises(GradingError, match=rf"{file} is gone, and marks_history\.csv knows 1 row of it"):
         folder.run(result("s1"))
     folder.history.unlink()
     assert folder.run(result("s1"))["s1"].waiting
@@ -342,24 +413,24 @@ def test_another_answer_to_what_is_marked_by_hand_is_told(folder):
 # In the reports.
 
 
-def test_a_marker_sees_all_answers_to_a_question_on_one_page(folder):
-    marks = list(folder.run(result("s1"), result("s2", why=OPEN)).values())
-    page = to_mark(Grades("Responses", CLASS, marks))
+def test_a_marker_sees_all_answers_of_a_section_to_a_question_and_not_whose_they_are(folder):
+    marks = list(folder.run(*(result(one.id, why=OPEN if one.id == "s2" else WAITING) for one in CLASS)).values())
+    grades = Grades("Responses", CLASS, marks)
+    page = to_mark(grades, "B")
     text = Checker(page).text
-    assert "<title>Responses: to be marked</title>" in page
+    assert "<title>Responses: to be marked, B</title>" in page
     assert page.count(f'src="data:image/png;base64,{PICTURE["png"]}"') == 2
-    assert "late" in text
     assert "<b>" not in page
+    both = sorted([CODES["s2"], CODES["s3"]])
     assert [Checker(heading).text for heading in re.findall(r"<h\d>.*</h\d>", page)] == [
-        "Responses: to be marked", "Exercise 1 · A lag · sketch", "Ada (s1)", "Ben (s2)", "Exercise 1 · A lag · why",
-        "Ada (s1)",
+        "Responses: to be marked, B", "Exercise 1 · A lag · sketch", *both, "Exercise 1 · A lag · why", CODES["s3"],
     ]  # fmt: skip
-    assert "<code>s1,1,why,,</code>" in page
     assert "To look for: one lag" in text
     assert "each worth at most\n1.5 of 6 points" in text
-    folder.write("s1,1,sketch,1,units", "s1,1,why,0,", "s2,1,sketch,1.5,")
-    marks = list(folder.run(result("s1"), result("s2", why=OPEN)).values())
-    assert "0 answers to 0 questions." in to_mark(Grades("Responses", CLASS, marks))
+    assert not [one for one in CLASS if one.name in text or one.id in re.findall(r"\w+", text)]
+    folder.write(f"{CODES['s1']},1,sketch,1,units", f"{CODES['s1']},1,why,0,", file="to_mark/A.csv")
+    marks = list(folder.run(result("s1"), result("s2")).values())
+    assert "0 answers to 0 questions." in to_mark(Grades("Responses", CLASS, marks), "A")
 
 
 # What is late.
@@ -375,7 +446,6 @@ def test_submissions_are_late_by_the_roster_or_by_their_names(tmp_path):
     late = datetime.datetime(2026, 12, 2, 12, 0)
     handed = (handed_in(CLASS[0], late), handed_in(CLASS[1], None, True), handed_in(CLASS[2], None))
     submissions = {one.student.id: one for one in handed}
-    marking.demand_comparable(submissions.values())
     results = [result(student.id, sketch=OPEN, why=OPEN) for student in CLASS]
     marking.read({one.student: one for one in results}.get)
     marks = marking.marked(results, submissions)
@@ -386,13 +456,6 @@ def test_submissions_are_late_by_the_roster_or_by_their_names(tmp_path):
         "Of 1 submission nothing says when it was handed in: it counts as in time. A column handed_in in the roster "
         "says it.",
     ]
-
-
-def test_a_time_that_cannot_be_compared_is_said_before_anything_is_graded(tmp_path):
-    marking = Marking(tmp_path, Assignment.of(SOURCE + 'DUE = "2026-12-01"\n', "responses"), CLASS)
-    at = datetime.datetime(2026, 12, 2, 12, 0, tzinfo=datetime.UTC)
-    with pytest.raises(GradingError, match="DUE names no time zone: expected one"):
-        marking.demand_comparable([handed_in(CLASS[0], at)])
 
 
 # Interrupted.
@@ -421,6 +484,8 @@ def test_a_run_that_is_killed_loses_nothing(folder):
         found = folder.run(result("s1"), result("s2"), result("s3"))
         assert f'"round {k}"' in found["s1"].exercises[0].history[0]
         assert ("s1", "1", "sketch") in [one[:3] for one in folder.changes()[-2:]]
-        rows = folder.marks.read_bytes().decode().splitlines()
-        assert len(rows) == len(set(rows)) == 8
+        assert folder.marks.read_bytes().decode().splitlines() == rows
+        for part, count in {"A": 1, "B": 4}.items():
+            waiting = folder.table(part).read_bytes().decode().splitlines()
+            assert len(waiting) == len(set(waiting)) == 1 + count
     assert len(folder.changes()) == 31

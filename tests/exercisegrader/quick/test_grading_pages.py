@@ -9,17 +9,17 @@ import pytest
 from exercisebook.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WRONG
 from exercisegrader.lateness import Lateness
 from exercisegrader.lms.gradescope import results_json
-from exercisegrader.marking import Marked, MarkedExercise, Notice
+from exercisegrader.marking import Marked, Notice
 from exercisegrader.overrides import Mark
-from exercisegrader.reports import pages, write_all
-from exercisegrader.reports.concerns import KINDS, concerns
-from exercisegrader.reports.equal_answers import equal_answers, significant_digits
+from exercisegrader.reports import write_all
+from exercisegrader.reports.concerns import concerns
+from exercisegrader.reports.equal_answers import equal_answers
 from exercisegrader.reports.findings import Findings
 from exercisegrader.reports.outputs import registered
 from exercisegrader.reports.outputs.feedback import feedback
 from exercisegrader.reports.outputs.summary import summary
 from exercisegrader.reports.wording import answer_in_words
-from exercisegrader.results import CellError, JudgedAnswer, JudgedExercise, Look
+from exercisegrader.results import CellError, Look
 from small_class import (
     ADA,
     BOB,
@@ -72,6 +72,7 @@ def with_answer(mark, number, name, **fields):
     return changed(mark, exercises=exercises)
 
 
+ADAS = 2 * float(gain.question(ADA.id).values["K"])
 NOT_RUN = result_of(BOB, {}, status="not run", says="two notebooks: a.ipynb and <b>.ipynb; keep one")
 
 
@@ -169,26 +170,16 @@ def page_of(mark, **more):
 # What to look at.
 
 
-def test_there_is_advice_on_each_kind_of_concern():
-    advice = pages._TEMPLATES.get_template("advice.html").module.advice
-    assert len({str(advice(kind)) for kind in (*KINDS, "nothing")}) == len(KINDS) + 1
-
-
 def told(marks, complaints=()):
-    """The concerns by their titles: pairs of the students and the points of each case; and the harmless ones."""
-    costly, harmless = concerns(marks, complaints)
-    cases = {kind: [(*case.students, round(case.points, 3)) for case in found] for kind, found in costly.items()}
-    return cases, [case.students for case in harmless]
+    """The concerns by their titles: pairs of the students and the points of each case."""
+    found = concerns(marks, complaints)
+    return {kind: [(*case.students, round(case.points, 3)) for case in cases] for kind, cases in found.items()}
 
 
 FAILED = (CellError(9, "NameError: x"),)
 HALF = result_of(BOB, {"1": {"K": 1.0}})
 UNREAD = result_of(BOB, {"1": {"H": "K | x", "K": 1.0}}, errors=FAILED)
-LOOKS = (
-    Look("owner", "it names another student: s1001"),
-    Look("odd lines", "it told 3"),
-    Look("extra", "it answers '9'"),
-)
+LOOKS = (Look("owner", "it names another student: s1001"), Look("odd lines", "it told 3"))
 OF_ANOTHER = changed(NAMED, looks=LOOKS[:1])
 EITHER = [changed(result_of(one, {"2": {"action": "either"}}), student=one.id) for one in CLASS[:2]]
 NOBODYS = "x_<y>.ipynb: is named after no student of the roster"
@@ -199,73 +190,68 @@ NOT_COUNTED, ODD = (
     "Notebooks that sent the grader something else than answers",
 )
 WAITS, DECIDE = "Answers that wait for a mark", "Marks and times that need a decision"
-#: Marks and complaints, with the costly cases by their titles and the students of the harmless ones.
+#: Marks and complaints, with the cases by their titles.
 CONCERNS = {
-    "all is well": ([RIGHT_ALL, NAMED, MISSING], [], {}, []),
+    "all is well": ([RIGHT_ALL, NAMED, MISSING], [], {}),
     "the costliest case of a kind first": (
         [*EITHER, result_of(EVE, {"1": {"H": "K | $x$"}})],
         [],
         {UNJUDGEABLE: [("s1003", 1.333), ("s1001", 1), ("s1002", 1)]},
-        [],
     ),
     "what hangs on an answer by its weight": (
-        [with_answer(result_of(BOB, {"1": {"H": "K | x"}}), "1", "H", weight=2)], [], {UNJUDGEABLE: [("s1002", 2)]}, [],
+        [with_answer(result_of(BOB, {"1": {"H": "K | x"}}), "1", "H", weight=2)], [], {UNJUDGEABLE: [("s1002", 2)]},
     ),
     "of somebody else, and odd lines": (
         [changed(NAMED, looks=LOOKS)],
         [],
         {"Notebooks that say they are somebody else's": [("s1002", 5)], ODD: [("s1002", 3.667)]},
-        [("s1002",)],
     ),
-    "chosen of several": ([changed(NAMED, chosen="it"), MISSING], ["s1002/heater.ipynb: it"], {}, [("s1002",)]),
-    "failed after the answers were in": ([changed(RIGHT_ALL, errors=FAILED)], [], {}, [("s1001",)]),
-    "said of the choice alone": ([changed(HALF, says="of two notebooks the latest")], [], {}, [("s1002",)]),
-    "failed before": ([changed(HALF, errors=FAILED)], [], {OPEN_CELLS: [("s1002", 3.667)]}, []),
-    "waits for a mark": ([by_hand({TEXT: Mark(1)})], [], {WAITS: [("s1001", 3)]}, []),
+    "chosen of several": ([changed(NAMED, chosen="it"), MISSING], ["s1002/heater.ipynb: it"], {}),
+    "failed after the answers were in": ([changed(RIGHT_ALL, errors=FAILED)], [], {}),
+    "said of the choice alone": ([changed(HALF, says="of two notebooks the latest")], [], {}),
+    "failed before": ([changed(HALF, errors=FAILED)], [], {OPEN_CELLS: [("s1002", 3.667)]}),
+    "waits for a mark": ([by_hand({TEXT: Mark(1)})], [], {WAITS: [("s1001", 3)]}),
     "wait for marks": (
         [by_hand(), changed(by_hand(), student="s1002")],
         [],
         {WAITS: [("s1001", "s1002", 3), ("s1001", "s1002", 1)]},
-        [],
     ),
     "needs a decision": (
         [Marked.of(NAMED.result, looks=(Notice(2, "changed"),)), Marked.of(MISSING.result, looks=(Notice(5, "late"),))],
         [],
         {DECIDE: [("s1004", 5), ("s1002", 2)]},
-        [],
     ),
-    "unread": ([UNREAD], [], {UNJUDGEABLE: [("s1002", 1.333)], OPEN_CELLS: [("s1002", 2.333)]}, []),
-    "unread and decided": ([Marked.of(UNREAD.result, {("1", "H"): Mark(1)})], [], {OPEN_CELLS: [("s1002", 2.333)]}, []),
+    "unread": ([UNREAD], [], {UNJUDGEABLE: [("s1002", 1.333)], OPEN_CELLS: [("s1002", 2.333)]}),
+    "unread and decided": ([Marked.of(UNREAD.result, {("1", "H"): Mark(1)})], [], {OPEN_CELLS: [("s1002", 2.333)]}),
     "decided exercise by exercise": (
-        [Marked.of(UNREAD.result, {("1", ""): Mark(1), ("2", "action"): Mark(0)})], [], {}, [("s1002",)],
+        [Marked.of(UNREAD.result, {("1", ""): Mark(1), ("2", "action"): Mark(0)})], [], {},
     ),
-    "decided as a whole": ([Marked.of(UNREAD.result, {("", ""): Mark(2)})], [], {}, [("s1002",)]),
-    "not run and decided": ([Marked.of(NOT_RUN.result, {("", ""): Mark(2)})], [], {}, [("s1002",)]),
-    "of another and decided": ([Marked.of(OF_ANOTHER.result, {("", ""): Mark(2)})], [], {}, [("s1002",)]),
-    "a file of nobody": ([RIGHT_ALL], [NOBODYS], {}, [()]),
+    "decided as a whole": ([Marked.of(UNREAD.result, {("", ""): Mark(2)})], [], {}),
+    "not run and decided": ([Marked.of(NOT_RUN.result, {("", ""): Mark(2)})], [], {}),
+    "of another and decided": ([Marked.of(OF_ANOTHER.result, {("", ""): Mark(2)})], [], {}),
+    "a file of nobody": ([RIGHT_ALL], [NOBODYS], {}),
     "a file of nobody where somebody is missing": (
-        [RIGHT_ALL, MISSING], [NOBODYS], {"Files that were not graded": [(5,)]}, [],
+        [RIGHT_ALL, MISSING], [NOBODYS], {"Files that were not graded": [(5,)]},
     ),
-    "a file beside another": ([RIGHT_ALL, MISSING], [BESIDE], {}, [(ADA.id,)]),
+    "a file beside another": ([RIGHT_ALL, MISSING], [BESIDE], {}),
     "not run, once": (
         [NOT_RUN, MISSING],
         [f"{NOT_RUN.result.file}: {NOT_RUN.result.says}"],
         {"Notebooks that could not be run": [("s1002", 5)]},
-        [],
     ),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("what", CONCERNS)
 def test_what_is_to_look_at(what):
-    marks, complaints, cases, harmless = CONCERNS[what]
-    assert told(marks, complaints) == (cases, harmless)
+    marks, complaints, cases = CONCERNS[what]
+    assert told(marks, complaints) == cases
 
 
 def test_what_may_cost_most_comes_first():
     waits = replace(with_answer(RIGHT_ALL, "2", "action", weight=1), exercises=RIGHT_ALL.exercises)
     flagged = with_answer(NAMED, "1", "T", look="it has no value at $t = 0$")
-    cases, harmless = told([waits, flagged, STOPPED, NOT_RUN])
+    cases = told([waits, flagged, STOPPED, NOT_RUN])
     unjudged = cases.pop(UNJUDGEABLE)
     assert [*cases.items()] == [
         ("Notebooks that could not be run", [("s1002", 5)]),
@@ -275,46 +261,38 @@ def test_what_may_cost_most_comes_first():
         (ODD, [("s1003", 0)]),  # and they brought nothing
     ]
     assert unjudged[0][0] == "s1003"
-    assert harmless == []
 
 
 @pytest.mark.parametrize("kind", ["unasked", "no code"])
 def test_answers_that_do_not_count_where_they_stand_cost_what_is_open(kind):
     mark = changed(HALF, looks=(Look(kind, "in exercise 1 it answers 'k'", "1"),))
-    assert told([mark]) == ({NOT_COUNTED: [("s1002", 2.667)]}, [])
+    assert told([mark]) == {NOT_COUNTED: [("s1002", 2.667)]}
     anywhere = changed(mark, looks=(Look(kind, "it answers '11'"),))
-    assert told([anywhere]) == ({NOT_COUNTED: [("s1002", 3.667)]}, [])
+    assert told([anywhere]) == {NOT_COUNTED: [("s1002", 3.667)]}
     decided = Marked.of(mark.result, {("1", ""): Mark(4)})
-    assert told([decided]) == ({}, [("s1002",)])
+    assert told([decided]) == {}
     for text in (read(page_of(mark)), results_json(grades([mark]), BOB, mark)):
         assert "in exercise 1 it answers 'k'" in text
 
 
 def test_the_summary_says_what_is_to_look_at():
-    assert "Nothing." in read(summary(grades([RIGHT_ALL])))
-    text = read(summary(grades([changed(RIGHT_ALL, errors=FAILED)])))
-    assert "1 remark that costs nothing" in text
-    assert "cell 9: NameError: x" in text
+    assert "Nothing." in read(summary(grades([changed(RIGHT_ALL, errors=FAILED)])))
+    assert "cell 9: NameError: x" in read(summary(grades([changed(HALF, errors=FAILED)])))
     waits = read(summary(grades([by_hand(), changed(by_hand(), student="s1002")])))
     assert re.search("3 · .?sketch.?; to look for: it begins after the dead time", waits)
     look = "exercise 1, K: marked by hand with 1, and the answer has changed since"
     assert look in read(summary(grades([Marked.of(NAMED.result, looks=(Notice(2, look),))])))
-    for marks in ([], [RIGHT_ALL], [MISSING]):
+    for marks in ([], [MISSING]):
         assert NOBODYS in read(summary(grades(marks, [NOBODYS])))
     complaint = f"{NOT_RUN.result.file}: {NOT_RUN.result.says}"
     assert read(summary(grades([NOT_RUN, MISSING], [complaint]))).count("keep one") == 1
 
 
 def test_equal_answers_are_told():
-    marks = [given(ADA, 123.4), given(BOB, "123.4")]
-    assert told(marks)[0] == {"Equal answers where the numbers differ": [("s1001", "s1002", 1.333)]}
-    (row,) = [row for row in rows(summary(grades(marks))) if "123.4" in row]
-    assert row.endswith(" 1.33 1 · K: 123.4 wrong for all")
-    copied = 2 * float(gain.question(ADA.id).values["K"])
-    cases, _ = told([given(ADA, copied, "3.217/(s + 1)"), given(BOB, copied, "3.217/(s + 1)")])
-    assert [one[:2] for one in cases["Equal answers where the numbers differ"]] == [("s1001", "s1002")] * 2
-    text = read(summary(grades([given(ADA, copied), given(BOB, copied)])))
-    assert "right for s1001, not for s1002" in text
+    marks = [given(ADA, ADAS), given(BOB, ADAS)]
+    assert told(marks) == {"Equal answers where the numbers differ": [("s1001", "s1002", 1.333)]}
+    (row,) = [row for row in rows(summary(grades(marks))) if f": {ADAS}" in row]
+    assert row.endswith(f" 1.33 1 · K: {ADAS} right for s1001, not for s1002")
 
 
 # The summary.
@@ -344,12 +322,6 @@ def test_the_summary_of_nothing():
         assert "0 submissions" in read(summary(grades(marks, students=students)))
 
 
-def test_many_cases_of_one_kind_are_cut():
-    many = [changed(result_of(ADA, {"1": {"H": "K | $x$"}}), student=f"s{k}") for k in range(103)]
-    text = read(summary(grades(many)))
-    assert "There are 3 more, on the pages of the students." in text
-
-
 def test_pages_lead_to_each_other_and_to_the_notebooks_that_were_kept():
     text = summary(grades([STOPPED, MISSING], notebooks=["s1003"]))
     assert '<a href="feedback/s1003/feedback.html"><bdi>=HYPERLINK(1)</bdi>' in text
@@ -362,17 +334,10 @@ def test_pages_lead_to_each_other_and_to_the_notebooks_that_were_kept():
     assert link not in page_of(NAMED, notebooks=["s1001"])
 
 
-def test_late_hand_ins_and_marks_by_hand_are_in_the_summary():
+def test_late_hand_ins_are_in_the_summary():
     late = Marked.of(NAMED.result, lateness=Lateness(0.2, "2 days late: 20 % of the points are deducted"))
-    marked = Marked.of(RIGHT_ALL.result, {("1", ""): Mark(3.5, "no axes"), ("2", "action"): Mark(None, "good")})
-    of_all = Marked.of(NOT_RUN.result, {("", ""): Mark(4, "on paper")})
-    found = rows(summary(grades([late, marked])))
+    found = rows(summary(grades([late])))
     assert "Bob Bode (s1002) 0.73 2 days late: 20 % of the points are deducted" in found
-    assert 'Ada Lovelace (s1001) 1 4 3.5 4 of 4 points by the grader, 3.5 by hand: "no axes"' in found
-    assert "Ada Lovelace (s1001) 2 1 1 action: good" in found
-    says = 'all of it 0 4 0 of 5 points before, 4 by hand for all of it: "on paper"'
-    assert f"Bob Bode (s1002) {says}" in rows(summary(grades([of_all])))
-    assert "by hand" not in read(summary(grades([RIGHT_ALL, NAMED])))
 
 
 def test_answers_to_be_marked_have_a_column_where_there_are_any():
@@ -385,7 +350,7 @@ def test_answers_to_be_marked_have_a_column_where_there_are_any():
 def test_each_file_that_was_written_is_told_and_no_other(tmp_path):
     write_all(tmp_path, TITLE, CLASS, RESULTS, notes=["other numbers than at the release"])
     text = (tmp_path / "summary.html").read_text(encoding="utf-8")
-    of_all = [one for one in registered() if not one.is_for_each_student]
+    of_all = [one for one in registered() if "{" not in one.file]
     told = {one.file for one in of_all if f"<code>{one.file}</code>" in text and one.what in read(text)}
     assert told == {path.name for path in tmp_path.iterdir() if path.is_file()} - {"summary.html"}
     assert "grades.csv" in told
@@ -450,33 +415,10 @@ def test_a_mistake_is_one_whatever_the_numbers_in_its_sentence():
     assert Findings(grades(hours[:1])).mistakes[0][2] == "The 40\N{NO-BREAK SPACE}s are not in hours."
 
 
-def summing(points, earned):
-    """A marked result of so many points of those possible."""
-    exercise_ = JudgedExercise("1", "Gain", points, "", (), (JudgedAnswer("K", WRONG, "", 1, "2"),))
-    return Marked(replace(RIGHT_ALL.result, exercises=(exercise_,)), (MarkedExercise(exercise_, earned),))
-
-
-@pytest.mark.parametrize("points", [0.5, 1, 3, 5, 10, 24, 37, 100, 250])
-def test_every_sum_has_its_place_in_the_distribution(points):
-    earned = [points * k / 30 for k in range(31)]
-    steps = Findings(grades([summing(points, sum_) for sum_ in earned])).steps
-    assert sum(count for _, _, count in steps) == 31
-    assert steps[0][0] == 0
-    assert steps[-1][1] == points
-    assert 1 <= len(steps) <= 12
-
-
-def test_the_distribution_has_a_bar_for_each_step():
-    page = summary(grades())
-    found = [row for row in rows(page) if re.match(r"[\d.]+ to [\d.]+", row)]
-    assert found[:3] == ["0 to 0.5 1", "0.5 to 1", "1 to 1.5"]
-    assert re.findall(r'class="bar" style="width: (.*?)"', page) == ["20.0rem"] * 3
-
-
-def test_a_sum_of_thirds_is_not_below_its_step():
-    steps = Findings(grades([summing(5, 1 / 3 + 1 / 3 + 1 / 3 - 1e-16)])).steps
-    assert [count for _, _, count in steps if count] == [1]
-    assert next(lower for lower, _, count in steps if count) == 1
+def test_where_the_middle_half_of_a_class_is():
+    many = [changed(NAMED if k % 2 else RIGHT_ALL, student=f"s{k}") for k in range(8)]
+    assert "over 8 grades; half of them are from 3.67 to 5." in read(summary(grades(many, students=[])))
+    assert "half of them" not in read(summary(grades(many[:7], students=[])))
 
 
 # Equal answers.
@@ -491,41 +433,17 @@ def equal(marks):
 
 
 def test_an_answer_that_is_right_for_another_student_is_reported():
-    copied = 2 * float(gain.question(ADA.id).values["K"])
-    (found,) = equal([given(ADA, copied), given(BOB, f"{copied} K/%"), given(BOB, copied), given(ZOE, 1.0)])
+    (found,) = equal([given(ADA, ADAS), given(BOB, f"{ADAS} K/%"), given(BOB, ADAS), given(ZOE, 1.0)])
     assert (found.number, found.name, found.right, found.others) == ("1", "K", (ADA.id,), (BOB.id,))
 
 
-def test_an_equal_wrong_expression_is_reported_in_any_spacing():
-    (found,) = equal([given(ADA, None, "3.217/(s + 1)"), given(BOB, None, "3.217 / (s+1)")])
-    assert (found.name, found.right, found.others) == ("H", (), (ADA.id, BOB.id))
+def test_an_expression_is_reported_in_any_spacing():
+    (found,) = equal([given(ADA, None, "4.4/(40*s + 1)"), given(BOB, None, "4.4 / (40*s+1)")])
+    assert (found.name, found.right, found.others) == ("H", (ADA.id,), (BOB.id,))
 
 
 def test_equal_answers_that_mean_little_are_not_reported():
-    assert equal([given(ADA, 100), given(BOB, 100)]) == []  # few digits
-    assert equal([given(ADA, None, way="direct"), given(BOB, None, way="direct")]) == []  # words
-    assert equal([given(ADA, 123.4), given(ADA, 123.4)]) == []  # the same numbers
+    assert equal([given(ADA, 123.4), given(BOB, 123.4)]) == []  # wrong for both
+    assert equal([given(EVE, None, way="reverse"), given(BOB, None, way="reverse")]) == []  # words
+    assert equal([given(ADA, ADAS), given(ADA, ADAS)]) == []  # the same numbers
     assert equal([given(ADA, None), given(BOB, None)]) == []  # nothing
-
-
-@pytest.mark.parametrize(
-    ("answer", "digits"),
-    [
-        (0, 1),
-        (2.0, 1),
-        (0.00250, 2),
-        (1e-7, 1),
-        (2.345e10, 4),
-        (1200, 2),
-        (True, 0),
-        (None, 0),
-        ("S12, S13", 0),
-        ("K/(T*s + 1)", 1),
-        ("2.50 min", 2),
-        (".125", 3),
-        ([1, 2.345], 4),
-        ({"unreadable": "it has no form"}, 0),
-    ],
-)
-def test_significant_digits(answer, digits):
-    assert significant_digits(answer) == digits

@@ -2,7 +2,7 @@
 
 Each module of this folder is one: a class with ``@system``, and functions with ``@output`` for the files in its form. A
 new one is a new module here and nothing else: rosters are then recognised, the names in its downloads are read, and its
-files are written and listed by ``exercisegrader grade --help``.
+files are written and listed in the summary.
 """
 
 from __future__ import annotations

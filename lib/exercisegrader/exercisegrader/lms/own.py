@@ -128,34 +128,6 @@ def grades_csv(grades: Grades) -> str:
     return as_text([["id", "name", head], *rows], bom=True)
 
 
-@output("points.csv", "the points of each quantity by id, for any table")
-def points_csv(grades: Grades) -> str:
-    """Return the points as CSV: id, name, a column for each exercise and one for each of its quantities.
-
-    A cell is empty where somebody has nothing to judge, or where it waits for a mark. What a person has given counts in
-    the column of the exercise; what is deducted for being late is in `grades.csv` alone.
-
-    >>> from types import SimpleNamespace as Student
-    >>> from exercisegrader.marking import Marked
-    >>> from exercisegrader.reports.outputs import Grades
-    >>> from exercisegrader.results import JudgedAnswer, JudgedExercise, Result
-    >>> answers = (JudgedAnswer("K", "right", "right", 2, "2"), JudgedAnswer("T", "wrong", "not right", 3, "4 s"))
-    >>> exercise = JudgedExercise("1", "Gain", 3, "", (), answers)
-    >>> result = Result("tuning", "s1", "s1.ipynb", True, "", "complete", "", (), (), (exercise,))
-    >>> print(points_csv(Grades("Tuning", [Student(id="s1", name="Ada")], [Marked.of(result)]))[1:])
-    id,name,1,1 K,1 T
-    s1,Ada,1.5,1.5,0
-    <BLANKLINE>
-    """
-    rows = []
-    for one, mark in grades.graded:
-        points = {place: points for each in mark.exercises for place, points in each.by_place()}
-        rows.append({"id": one.id, "name": one.name} | points)
-    places = [*dict.fromkeys(place for row in rows for place in row)] or ["id", "name"]
-    head = [*places, "graded without a jail"] if grades.without_jail else places
-    return as_text([head, *([row.get(place, "") for place in places] for row in rows)], bom=True)
-
-
 @output("feedback.zip", "the page of each student as a file by id, where the roster is your own")
 def feedback_zip(grades: Grades) -> bytes | None:
     """Return a zip file with a page of feedback for each student, named by the id.

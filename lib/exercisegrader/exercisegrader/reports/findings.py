@@ -13,15 +13,14 @@ from exercisegrader.reports.wording import STATUSES, verdict_and_reading
 from exercisegrader.results import MISSING, NOT_RUN
 
 if TYPE_CHECKING:
-    from exercisegrader.marking import Marked
     from exercisegrader.reports.outputs import Grades
 
 #: So many of the named mistakes are told.
 MOST_MISTAKES = 15
 #: A number in a sentence, but not the one in a name such as T_0.
 _NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?!\w)")
-#: Into so many steps the points are divided.
-STEPS = 10
+#: Of fewer grades the mean and the median tell all.
+FEWEST_QUARTERS = 8
 
 
 @dataclass(frozen=True)
@@ -61,9 +60,9 @@ class Findings:
         handed_in: the marks of those who handed something in.
         missing: the ids of those who did not, and `ungraded` of those without any result.
         counts: how many are missing, and so on, each with these words.
-        late, by_hand: the marks of those who were late or have an extension, and those to which a person has added.
+        late: the marks of those who were late or have an extension.
         points: of the assignment.
-        sums: the points of those who have a grade, with their `mean` and `median`.
+        sums: the points of those who have a grade, with their `mean`, `median` and the ends of the `middle` half.
         exercises: the hardest first.
         asked: their quantities, and `statuses` which the answers to these may have.
         mistakes: number of exercise, quantity, sentence and count, the most common first.
@@ -82,36 +81,16 @@ class Findings:
             (waiting, "waiting for a mark"),
         ]  # fmt: skip
         self.late = [mark for mark in marks if mark.late]
-        self.by_hand = [mark for mark in marks if _is_touched(mark)]
         self.points: float = max((mark.result.points for mark in marks), default=0)
         self.sums: list[float] = [mark.total for mark in marks if mark.total is not None]
         self.mean, self.median = (of(self.sums or [0.0]) for of in (statistics.fmean, statistics.median))
         run = [mark for mark in self.handed_in if mark.result.status != NOT_RUN]
+        quarters = statistics.quantiles(self.sums) if len(self.sums) >= FEWEST_QUARTERS else []
+        self.middle: list[float] = quarters[::2]
         self.exercises: list[Exercise] = _exercises(run)
         self.asked = [asked for one in self.exercises for asked in one.asked]
         self.statuses = [one for one in STATUSES if one != WAITING or any(each.counts[one] for each in self.asked)]
         self.mistakes: list[tuple[str, str, str, int]] = _mistakes([mark.result for mark in run])
-
-    @property
-    def steps(self) -> list[tuple[float, float, int]]:
-        """The distribution: triples of lower end, upper end and how many sums are from the one up to below the other.
-
-        The last step holds the full points too.
-        """
-        width = self.points / STEPS
-        # rounding: three thirds of a point are one
-        places = Counter(min(STEPS - 1, int(round(earned / width, 9))) for earned in self.sums)
-        return [(k * width, (k + 1) * width, places[k]) for k in range(STEPS)]
-
-    @property
-    def most(self) -> int:
-        """The number of sums in the fullest of the steps."""
-        return max(count for *_, count in self.steps)
-
-
-def _is_touched(mark: Marked) -> bool:
-    """Whether a person has given points, or a comment."""
-    return mark.by_hand is not None or bool(mark.comments) or any(one.comments or one.history for one in mark.exercises)
 
 
 def _exercises(marks):

@@ -1,7 +1,7 @@
 """The files that grading leaves behind. The modules of this folder make some, and register them by `output`.
 
-So do the learning management systems in `exercisegrader.lms`. What is registered is written, is listed by
-``exercisegrader grade --help``, and is tested.
+So do the learning management systems in `exercisegrader.lms`. What is registered is written, is listed in the summary
+and in the guide, and is tested.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
 
 from exercisegrader import GradingError
+from exercisegrader.student import parts
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -21,8 +22,8 @@ if TYPE_CHECKING:
     from exercisegrader.marking import Marked
     from exercisegrader.student import Student
 
-#: What stands in the name of a file that is made for each student.
-STUDENT = "{student}"
+#: What stands in the name of a file that is made for each student, or for whoever marks a section.
+STUDENT, PART = "{student}", "{part}"
 #: The packages whose modules register outputs.
 PACKAGES = (__name__, "exercisegrader.lms")
 
@@ -74,10 +75,11 @@ class Grades:
 
 @dataclass(frozen=True)
 class Output:
-    """A file that grading leaves behind, or one for each student.
+    """A file that grading leaves behind, or one for each student or section.
 
     Attributes:
-        file: its place in the folder of the grades; where it holds "{student}", there is one for each, named by the id.
+        file: its place in the folder of the grades; where it holds "{student}", there is one for each, named by the id,
+            and where it holds "{part}" one for each of the `parts`.
         what: it is, and for whom, in some words.
         content: makes what it holds, as `output` says.
     """
@@ -91,16 +93,22 @@ class Output:
         """Whether there is one for each student."""
         return STUDENT in self.file
 
+    @property
+    def is_for_each_part(self) -> bool:
+        """Whether there is one for whoever marks a section."""
+        return PART in self.file
+
     def files(self, grades: Grades) -> Iterator[tuple[str, str | bytes]]:
         """Yield the places of the files and their contents.
 
         Raises GradingError where the function returns a text that no file can hold.
         """
-        for file, of_one in (
-            [(self.file.replace(STUDENT, one[0].id), one) for one in grades.graded]
-            if self.is_for_each_student
-            else [(self.file, ())]
-        ):
+        each: list[tuple[str, tuple[object, ...]]] = [(self.file, ())]
+        if self.is_for_each_student:
+            each = [(self.file.replace(STUDENT, one[0].id), one) for one in grades.graded]
+        elif self.is_for_each_part:
+            each = [(self.file.replace(PART, part), (part,)) for part in sorted({*parts(grades.students).values()})]
+        for file, of_one in each:
             made = self.content(grades, *of_one)
             if isinstance(made, str) and (torn := re.search("[\ud800-\udfff]", made)):
                 raise GradingError(
@@ -114,12 +122,12 @@ class Output:
 def output(file: str, what: str) -> Callable[[_Function], _Function]:
     """Register a function as what makes a file; it returns the text, or the bytes, that the file holds.
 
-    It takes `Grades`; where a file is made for each student, the student and the `Marked` as well. It returns None
-    where there is no such file for this roster.
+    It takes `Grades`; where a file is made for each student, the student and the `Marked` as well, and where it is made
+    for each section, its name as `parts` has it. It returns None where there is no such file for this roster.
 
     Arguments:
-        file: its place in the folder of the grades, with "{student}" in it for a file for each student.
-        what: it is, and for whom, for the list of ``exercisegrader grade --help``.
+        file: its place in the folder of the grades, with "{student}" in it for a file for each student, or "{part}".
+        what: it is, and for whom, for the list in the summary.
     Raises:
         GradingError: for a file that is made already.
 

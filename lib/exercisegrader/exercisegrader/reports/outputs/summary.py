@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from exercisegrader.reports.concerns import concerns
+from exercisegrader.reports.concerns import ADVICE, concerns
 from exercisegrader.reports.findings import Findings
 from exercisegrader.reports.outputs import output, registered
 from exercisegrader.reports.pages import page
@@ -13,8 +13,6 @@ from exercisegrader.reports.wording import in_text
 if TYPE_CHECKING:
     from exercisegrader.reports.outputs import Grades
 
-#: So many cases of one kind are told.
-MOST_CASES = 100
 #: The file of this summary.
 OWN = "summary.html"
 
@@ -23,7 +21,6 @@ OWN = "summary.html"
 def summary(grades: Grades) -> str:
     """Return the summary; where the folder is known, files that are not there are not told."""
     found, there = Findings(grades), grades.folder
-    costly, harmless = concerns(grades.marks, grades.complaints)
     return page(
         "summary.html",
         f"{in_text(grades.title)}: summary",
@@ -31,12 +28,11 @@ def summary(grades: Grades) -> str:
         found=found,
         graded={mark.result.student for mark in grades.marks},
         names={student.id: student.name for student in grades.students},
-        most=MOST_CASES,
-        costly=costly,
-        harmless=harmless,
+        costly=concerns(grades.marks, grades.complaints),
+        advice=ADVICE,
         files=[
             one
             for one in registered()
-            if one.file != OWN and (there is None or one.is_for_each_student or (there / one.file).exists())
+            if one.file != OWN and (there is None or "{" in one.file or (there / one.file).exists())
         ],
     )
