@@ -17,33 +17,14 @@ import numpy as np
 import sympy
 from sympy.core.function import AppliedUndef
 
-from exercisebook.grammar import CONSTANTS, LONGEST, MOST_NODES, Unreadable, listed, read, shortened  # noqa: F401
+from exercisebook.grammar import CONSTANTS, MOST_NODES, Unreadable, read
 
 #: What is left of an answer cell that nobody has filled in.
 NOT_ANSWERED = "not answered yet"
 #: Of what gives one value after another, so many are read.
 MOST_VALUES = 10_000
-#: A text that somebody typed, and not a program, has so many characters.
-LONGEST_BY_HAND = 600
 #: Brackets around a whole list.
 MOST_BRACKETS = 10
-
-#: Signs as they are printed, and as Python writes them.
-_SIGNS = str.maketrans(
-    dict.fromkeys("−–‐‑﹣－", "-") | dict.fromkeys("·⋅×∙•∗", "*") | dict.fromkeys("÷∕⁄", "/")
-    | {"∞": "oo", "½": "(1/2)", "¼": "(1/4)", "¾": "(3/4)", "⅓": "(1/3)", "⅔": "(2/3)", "≤": "<=", "≥": ">=", "’": "'"}
-)  # fmt: skip
-_RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
-_LOWERED = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
-#: What Python makes of the LaTeX in a text that is not raw: of ``\\tau`` a tab and "au".
-_ESCAPED = {
-    "\t": "t(?=au|heta|imes|ext|frac)", "\f": "f(?=rac)", "\r": "r(?=ight|m)", "\b": "b(?=eta|ig)",
-    "\v": "v(?=ar)", "\a": "a(?=lpha)",
-}  # fmt: skip
-#: A quantity with its sign =, as "y(t) =", "dh/dt =" or "Y(s)/U(s) [K] =".
-_NAME = r"(?:(?:\\d?dot ?\{? ?)?\\?[^\W\d]\w*(?:_\(\w+\))?\}?'*(?: ?\( ?\w+ ?\))?)"
-_PREFIX = re.compile(rf"^(?!lambda\b)(?:{_NAME}(?: ?/ ?{_NAME})? ?(?:\[[^\]=]*\] ?)?)? ?(?:=(?!=)|≈|:(?!=)) ?")
-_ABOUT = re.compile(r"^(?:~|≈|(?:ca|approx|approximately|about|around|circa|roughly|nearly)\b\.?) ?", re.IGNORECASE)
 
 # --------------------------------------------------------------------------------------------------------- values
 
@@ -149,28 +130,6 @@ def _unwrapped(text):
 
 
 # ------------------------------------------------------------------------------------------------------- formulas
-
-
-def plain(text: str) -> str:
-    """Return a text in one line, with Python's signs, and without a name and = before it or a full stop behind it.
-
-    Raises Unreadable for a long one.
-
-    >>> plain("T_i = 2 · 10 min"), plain("dh/dt ≈ 3 m."), plain("ca. 20 s")
-    ('2 * 10 min', '3 m', '20 s')
-    """
-    if len(text) > LONGEST:
-        raise Unreadable(f"the text has {len(text)} characters: expected at most {LONGEST}")
-    for made, meant in _ESCAPED.items():
-        if made in text:
-            text = re.sub(made + meant[1:], "\\\\" + meant[0], text)
-    line = " ".join(text.translate(_SIGNS).split())
-    line = re.sub("[₀-₉]+", lambda low: "_" + low[0].translate(_LOWERED), line)
-    line = re.sub(r"√ ?(?=\()", "sqrt", line)
-    line = re.sub(r"√", " sqrt ", line).strip()
-    line = _ABOUT.sub("", _PREFIX.sub("", line))
-    line = re.sub(r"(?<=.),? \(?(?:approx|approximately|roughly|or so)\b\.?\)?$", "", line)
-    return re.sub(r"(?<=[^\d\s.])\.$", "", line)
 
 
 def symbols_in(given: object) -> list[str]:

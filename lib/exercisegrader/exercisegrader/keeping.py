@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from markupsafe import Markup
 
 from exercisebook import png
-from exercisebook.reading import Unreadable
+from exercisebook.grammar import Unreadable
 from exercisegrader.files import write
 from exercisegrader.reports.pages import line, page, picture, several_lines
 

@@ -16,9 +16,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Self
 
+from exercisebook.grammar import listed
 from exercisebook.judging import harmless
 from exercisebook.parameters import as_text
-from exercisebook.reading import listed
 from exercisegrader import GradingError
 from exercisegrader.files import write
 from exercisegrader.imprint import Imprint, peek, proofs, sealed

@@ -6,7 +6,7 @@ import sympy
 
 from exercisebook.authoring import criterion, design, expression, number, numbers, poles, word, words
 from exercisebook.formulas import Formula
-from exercisebook.reading import Unreadable
+from exercisebook.grammar import Unreadable
 from exercisegrader.inside import answer_sheet
 from exercisegrader.inside.plain import plain
 from judged import EVERY_KIND

@@ -13,9 +13,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from exercisebook import plugins, png
+from exercisebook.grammar import Unreadable, shortened
 from exercisebook.judging import harmless
 from exercisebook.kinds import MAKERS
-from exercisebook.reading import NOT_ANSWERED, Unreadable, shortened
+from exercisebook.reading import NOT_ANSWERED
 from exercisegrader.inside.plain import Plain, plain, unreadable
 from plainmath.validation import did_you_mean
 

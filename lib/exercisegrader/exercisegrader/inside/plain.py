@@ -20,8 +20,9 @@ import sympy
 
 from exercisebook import png
 from exercisebook.formulas import Formula
+from exercisebook.grammar import Unreadable
 from exercisebook.judging import harmless
-from exercisebook.reading import Unreadable, alone, spelled
+from exercisebook.reading import alone, spelled
 from exercisebook.wholes import WHOLES
 
 DEEPEST, MOST_VALUES, LONGEST_TEXT, MOST_TEXT, MOST_DIGITS = 8, 2000, 5000, 50_000, 300

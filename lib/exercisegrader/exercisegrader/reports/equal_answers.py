@@ -11,7 +11,6 @@ from exercisebook.judging import MISTAKE, RIGHT, WRONG
 from exercisegrader.reports.wording import answer_in_words
 
 if TYPE_CHECKING:
-    from exercisegrader.inside.plain import Plain
     from exercisegrader.results import Result
 
 #: A digit of a number, and not one in a name such as S2.

@@ -6,8 +6,8 @@ import re
 from typing import TYPE_CHECKING
 
 from exercisebook import png
+from exercisebook.grammar import shortened
 from exercisebook.judging import MISTAKE, OPEN, RIGHT, UNJUDGED, WAITING, WRONG
-from exercisebook.reading import shortened
 from exercisebook.wholes import WHOLES
 from exercisegrader.results import NO_CODE, UNASKED
 from plainmath.tables import plain_words

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from time import perf_counter, process_time
 from typing import TYPE_CHECKING
 
+from exercisebook.grammar import listed, shortened
 from exercisebook.parameters import written
-from exercisebook.reading import listed, shortened
 from exercisebook.timeout import limited
 from exercisegrader import GradingError
 from exercisegrader.release import asked

@@ -20,10 +20,10 @@ import sympy
 
 from exercisebook import kinds
 from exercisebook.credit import NOTHING, Credit, worth
+from exercisebook.grammar import listed, shortened
 from exercisebook.judging import MISTAKE, OPEN, SECONDS, UNJUDGED, Verdict, is_right, judge
 from exercisebook.kinds.kind import AS_IT_IS, rounded
 from exercisebook.parameters import call, written
-from exercisebook.reading import listed, shortened
 from exercisegrader.inside.plain import Plain, plain, unreadable
 
 if TYPE_CHECKING:
