@@ -17,7 +17,7 @@ from loopbook.deadtime.loop import MODES
 from loopbook.ise.family import ise_family
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.quasipolynomials.symbols import broadcast_values, fraction_of, with_values
-from loopbook.stability.counting import count_roots
+from loopbook.stability.counting import count_closed
 from loopbook.stability.sensitivity import largest_sensitivities
 from loopbook.transfer import transfer_function
 from plainmath.validation import one_of, times_from_zero
@@ -94,7 +94,7 @@ class Family:
     @functools.cached_property
     def is_stable(self) -> np.ndarray:
         """Whether each closed loop is stable; a pole that controller and process cancel is not seen."""
-        return (count_roots(self._closed) == 0).reshape(self.shape)
+        return (count_closed(*self._open) == 0).reshape(self.shape)
 
     def Ms(self) -> np.ndarray:
         """Return the largest sensitivities, the largest values of abs(1/(1 + L)); infinite for unstable loops."""

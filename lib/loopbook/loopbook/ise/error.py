@@ -10,7 +10,7 @@ import numpy as np
 from loopbook.deadtime import Loop
 from loopbook.quasipolynomials import DelayFraction, read
 from loopbook.quasipolynomials.arrays import Quasipolynomials
-from loopbook.quasipolynomials.fraction import Quasipolynomial, taylor_coefficient
+from loopbook.quasipolynomials.fraction import Quasipolynomial, lowest_term, taylor_coefficient
 from loopbook.stability import StabilityLimitError, unstable_roots
 
 __all__ = ["ErrorFraction", "NotApplicableError", "UnstableLoopError", "error_of"]
@@ -52,6 +52,7 @@ class ErrorFraction:
     D: Quasipolynomial
     pole: int
     earliest: Fraction  # when the error begins
+    removable: int = 0  # zeros of D at the origin that N has as well
 
     @classmethod
     def of(cls, E: object) -> ErrorFraction | None:
@@ -69,9 +70,11 @@ class ErrorFraction:
         pole = min(next(k for k, c in enumerate(part) if c) for part in D.values())
         if pole:
             D = {delay: part[pole:] for delay, part in D.items()}
-        found = cls(fraction, N, D, pole, first)
+        # zeros of D at the origin that only its dead times make, as those of a moving average do
+        removable = max(0, min(lowest_term(D)[0], lowest_term(N)[0] - pole))
+        found = cls(fraction, N, D, pole, first, removable)
         try:
-            unstable = unstable_roots(D)
+            unstable = unstable_roots(D, removable)
         except StabilityLimitError:
             raise UnstableLoopError(
                 f"E(s) = {fraction.expr} is not stable: it has poles on the imaginary axis"

@@ -194,7 +194,7 @@ def slow_modes(fraction: ErrorFraction, rate: float) -> Modes | None:
 
     None if there are too many, or they are not found, as `roots_right_of` says.
     """
-    poles = roots_right_of(fraction.sums(rate)[1], -1.0, MOST_MODES)
+    poles = roots_right_of(fraction.sums(rate)[1], -1.0, MOST_MODES, fraction.removable)
     exact = [None] if poles is None else [_exact(fraction, p * rate) for p in poles]
     if any(e is None for e in exact):
         return None

@@ -10,7 +10,7 @@ import numpy as np
 
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.quasipolynomials.fraction import Quasipolynomial, plus
-from loopbook.stability.counting import ENDLESS, ON_LIMIT, count_roots
+from loopbook.stability.counting import ENDLESS, ON_LIMIT, count_closed, count_roots
 from loopbook.stability.enclosures import Exact
 
 if TYPE_CHECKING:
@@ -154,7 +154,7 @@ def confirm_gains(loops: Loops, gains: np.ndarray, frequencies: np.ndarray) -> N
                 break
             changed = gains[points] * (1 - share if inside else 1 + share)
             near = frequencies[points] / loops.unit[points]
-            counts = count_roots(loops.B[points] + changed * loops.A[points], near=near)
+            counts = count_closed(loops.A[points], loops.B[points], changed, near)
             if (wrong := np.flatnonzero(((counts == 0) != inside) & (counts != ON_LIMIT))).size:
                 raise ArithmeticError(
                     f"the ultimate gain {gains[points[wrong[0]]]:.12g} is not confirmed: just "

@@ -27,7 +27,7 @@ from loopbook.transfer import transfer_function
 from plainmath.expressions import s
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
 ON_LIMIT, ENDLESS = -1, 10**9  # in place of a number of roots
 MOST_INTERVALS, MORE_INTERVALS = 400_000, 2_000  # in all, and for each quasipolynomial
@@ -80,15 +80,14 @@ def unstable_poles(x: object) -> float:
     """
     if not _is_loop(x):
         H = open_loop(x, zero=True)
-        return _count_of(H.denominator, _removable(H.numerator, H.denominator), lambda: H.expr)
+        return _count_of(H.denominator, removable(H), lambda: H.expr)
     process, controller = x.process_fraction, x.controller_fraction
     below = times(controller.denominator, process.denominator)
     parts = plus(times(controller.numerator, process.numerator), below)
     if _degree(parts) < _degree(below) or len(parts.get(Fraction(0), ())) < _degree(parts):
         _fraction(x.open_fraction)  # raises for what is improper
         raise ValueError(f"the algebraic loop of {x.open_fraction.expr} has no solution")
-    removable = sum(_removable(H.numerator, H.denominator) for H in (process, controller))
-    count = _count_of(parts, removable, lambda: x)
+    count = _count_of(parts, removable(process) + removable(controller), lambda: x)
     R = getattr(x, "setpoint_fraction", None)
     if R is not None and controller != R and R.denominator != controller.denominator:
         count += _of_prefilter(R, controller, x)
@@ -130,11 +129,10 @@ def unstable_closed_loop_poles(loop: object) -> float:
     2
     """
     L = open_loop(loop, zero=True)
-    removable = _removable(L.numerator, L.denominator)
-    return _count_of(characteristic(L), removable, lambda: f"the closed loop of {L.expr}")
+    return _count_of(characteristic(L), removable(L), lambda: f"the closed loop of {L.expr}")
 
 
-def unstable_roots(denominator: Mapping) -> float:
+def unstable_roots(denominator: Mapping, removable: int = 0) -> float:
     """Return the number of roots in the right half-plane of a sum of polynomials with dead times.
 
     The argument principle counts them, by the phase of the sum along the imaginary axis. On an interval of frequency
@@ -144,6 +142,7 @@ def unstable_roots(denominator: Mapping) -> float:
 
     Arguments:
         denominator: ``{delay: coefficients}``, the lowest power first, as `System.denominator` is.
+        removable: how many roots at zero do not count, because a numerator has them as well.
     Returns:
         An integer; ``math.inf`` where the highest power returns with dead times so strongly that there is no end of
         roots.
@@ -165,7 +164,7 @@ def unstable_roots(denominator: Mapping) -> float:
         parts = plus(parts, {delay: tuple(int(c * divisor) for c in part)})
     if Fraction(0) not in parts or any(delay < 0 for delay in parts):
         raise ValueError(f"the sum is {expression(parts)}: expected a part without dead time, and later ones")
-    return _count_of(parts, 0, lambda: expression(parts))
+    return _count_of(parts, removable, lambda: expression(parts))
 
 
 # ---- from what is given to quasipolynomials
@@ -231,9 +230,9 @@ def _degree(parts: Quasipolynomial) -> int:
     return max((len(part) for part in parts.values()), default=0)
 
 
-def _removable(above: Quasipolynomial, below: Quasipolynomial) -> int:
-    """How many zeros at s = 0 numerator and denominator have in common, by their dead times."""
-    return min(lowest_term(above)[0], lowest_term(below)[0]) if above else 0
+def removable(H: DelayFraction) -> int:
+    """How many zeros at s = 0 numerator and denominator have in common, by their dead times: (1 - exp(-s))/s."""
+    return min(lowest_term(H.numerator)[0], lowest_term(H.denominator)[0]) if H.numerator else 0
 
 
 def _of_prefilter(R: DelayFraction, C: DelayFraction, loop: object) -> float:
@@ -241,7 +240,8 @@ def _of_prefilter(R: DelayFraction, C: DelayFraction, loop: object) -> float:
     rest = R / C if C.numerator else R
     # the poles of R/C that are no zeros of C
     own = DelayFraction(rest.denominator, C.numerator or {Fraction(0): (1,)}).numerator
-    return _count_of(own, _removable(rest.numerator, own), lambda: f"the block from the setpoint of {loop}")
+    both = min(lowest_term(rest.numerator)[0], lowest_term(own)[0]) if rest.numerator else 0
+    return _count_of(own, both, lambda: f"the block from the setpoint of {loop}")
 
 
 def _count_of(parts: Quasipolynomial, removable: int, name: Callable[[], object]) -> float:
@@ -262,6 +262,56 @@ def _count_of(parts: Quasipolynomial, removable: int, name: Callable[[], object]
 
 
 # ---- counting
+
+
+def count_closed(
+    A: Quasipolynomials, B: Quasipolynomials, factor: float | np.ndarray = 1.0, near: np.ndarray | None = None
+) -> np.ndarray:
+    """The number of unstable poles of many closed loops of ``factor*A/B``, as `count_roots` returns it.
+
+    Zeros at the origin that A and B have in common are no poles, as in a moving average (1 - exp(-s))/s, and where the
+    highest power of B vanishes, as of a lag that is zero, the loop is one of lower order.
+    """
+    counts = np.empty(max(A.count, B.count))
+    for points, above, below in of_one_order(A, B):
+        closed = below + (factor[points] if np.ndim(factor) else factor) * above
+        removable = shared_at_origin(above, below)
+        for n in set(removable.tolist()):
+            some = removable == n
+            hints = None if near is None else near[points][some]
+            counts[points[some]] = count_roots(closed[some], removable=n, near=hints)
+    return counts
+
+
+def of_one_order(
+    A: Quasipolynomials, B: Quasipolynomials
+) -> Iterator[tuple[np.ndarray, Quasipolynomials, Quasipolynomials]]:
+    """Many loops A/B, as groups in which the highest power of B does not vanish: which ones, and their A and B.
+
+    Raises ValueError where A has a higher power than B.
+    """
+    count = max(A.count, B.count)
+    A, B = (
+        Quasipolynomials(np.broadcast_to(x.coefficients, (*x.coefficients.shape[:2], count)), x.delays) for x in (A, B)
+    )
+    rows = [np.pad(x.coefficients, ((0, 0), (0, max(A.order, B.order) - x.order), (0, 0))) for x in (A, B)]
+    tops = [x.any(axis=0)[::-1].argmax(axis=0) for x in rows]
+    if (tops[0] < tops[1]).any() and not (rows[0][:, :, tops[0] < tops[1]] == 0).all():
+        raise ValueError("the loop is improper: expected no more zeros than poles")
+    for top in set(tops[1].tolist()):
+        points = np.flatnonzero(tops[1] == top)
+        end = rows[0].shape[1] - top
+        yield points, *(Quasipolynomials(x[:, :end, points], y.delays[:, points]) for x, y in zip(rows, (A, B)))
+
+
+def shared_at_origin(A: Quasipolynomials, B: Quasipolynomials) -> np.ndarray:
+    """How many zeros at the origin A and B have in common, for each point."""
+    vanish = [abs(x.coefficients[:, 0].sum(axis=0)) <= 1e-14 * abs(x.coefficients[:, 0]).sum(axis=0) for x in (A, B)]
+    shared = np.zeros(A.count, dtype=int)
+    if len(some := np.flatnonzero(vanish[0] & vanish[1])):
+        (a, _), (b, _) = (origin(x[some], 2 * B.order + 6) for x in (A, B))
+        shared[some] = np.argmax((a != 0) | (b != 0), axis=0)
+    return shared
 
 
 def count_roots(

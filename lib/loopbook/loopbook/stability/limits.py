@@ -9,7 +9,7 @@ import numpy as np
 
 from loopbook.quasipolynomials.arrays import Quasipolynomials
 from loopbook.stability.confirmation import confirm, confirm_gains
-from loopbook.stability.counting import count_roots, fraction_sums, open_loop
+from loopbook.stability.counting import count_closed, fraction_sums, open_loop
 from loopbook.stability.crossings import Real, asked, steps
 from loopbook.stability.high_frequencies import HighFrequencies
 from loopbook.stability.loops import Loops
@@ -180,7 +180,7 @@ def _stable_range(loops: Loops) -> tuple[np.ndarray, np.ndarray]:
             unlimited = next_gain[points] >= LARGEST
             middle = np.where(unlimited, 2 * lower[points] + 1, (lower[points] + next_gain[points]) / 2)
             # between two gains that bring poles to the axis their number does not change: one gain stands for all
-            good = count_roots(loops.B[points] + middle * loops.A[points]) == 0
+            good = count_closed(loops.A[points], loops.B[points], middle) == 0
             stable = points[good]
             found[stable] = np.where(unlimited[good], math.inf, next_gain[stable])
             place[stable] = np.where(unlimited[good], math.inf, next_place[stable] * unit[stable])
@@ -192,7 +192,7 @@ def _stable_range(loops: Loops) -> tuple[np.ndarray, np.ndarray]:
         far_out = np.flatnonzero(searched & ((done * longest > MOST_TURNS) | (done > FURTHEST)))
         if len(far_out):
             least = np.maximum(lower, _least_gain(loops, done))[far_out]
-            still = count_roots(loops.B[far_out] + (lower[far_out] + least) / 2 * loops.A[far_out]) == 0
+            still = count_closed(loops.A[far_out], loops.B[far_out], (lower[far_out] + least) / 2) == 0
             if still.any():
                 k = far_out[still][0]
                 raise ValueError(

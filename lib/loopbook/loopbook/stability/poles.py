@@ -9,7 +9,7 @@ import numpy as np
 import sympy
 
 from loopbook.quasipolynomials.arrays import Quasipolynomials
-from loopbook.stability.counting import ENDLESS, ON_LIMIT, characteristic, count_roots, open_loop
+from loopbook.stability.counting import ENDLESS, ON_LIMIT, characteristic, count_roots, open_loop, removable
 from loopbook.stability.difference import prevailing
 from plainmath.expressions import s
 from plainmath.validation import whole
@@ -45,16 +45,17 @@ def dominant_poles(loop: object, count: int = 2) -> list[complex]:
     [(-0.3181+1.3372j), (-0.3181-1.3372j)]
     """
     L = open_loop(loop)
-    return dominant_roots(characteristic(L), count, f"the closed loop of {L.expr}")
+    return dominant_roots(characteristic(L), count, f"the closed loop of {L.expr}", removable(L))
 
 
-def dominant_roots(parts: Quasipolynomial, count: int | None, name: str) -> list[complex]:
+def dominant_roots(parts: Quasipolynomial, count: int | None, name: str, removable: int = 0) -> list[complex]:
     """Return the roots of a quasipolynomial with the largest real parts, as `dominant_poles` does.
 
     Arguments:
         parts: ``{delay: coefficients}``, the lowest power first, with a part without dead time.
         count: how many; None means all of a polynomial, and two where there are infinitely many.
         name: of what has the roots as its poles, for errors.
+        removable: how many roots at zero are no poles, because a numerator removes them.
     """
     if count is not None:
         whole("count", count)
@@ -64,15 +65,17 @@ def dominant_roots(parts: Quasipolynomial, count: int | None, name: str) -> list
     else:
         count = 2 if count is None else count
         sums = Quasipolynomials.exact(parts, len(parts[0]) - 1, parts[0][-1])
-        found = _of_sum(sums, count, name)
+        found = sorted(_of_sum(sums, count + removable, name), key=abs)[removable:]
     upper = [p for p in found if p.imag >= 0]
     poles = [q for p in sorted(upper, key=lambda p: (-p.real, p.imag)) for q in ([p, p.conjugate()] if p.imag else [p])]
     end = count + 1 if len(poles) > count and poles[count - 1].imag > 0 else count
     return [complex(np.complex128(p)) for p in poles[:end]]
 
 
-def roots_right_of(sums: Quasipolynomials, left: float, most: int) -> list[complex] | None:
+def roots_right_of(sums: Quasipolynomials, left: float, most: int, removable: int = 0) -> list[complex] | None:
     """Return all roots of a stable quasipolynomial to the right of a line, of each pair the upper one.
+
+    So many of those at zero do not count.
 
     None where they are more than so many, or not found: multiple ones, or some on the line itself.
     """
@@ -84,11 +87,12 @@ def roots_right_of(sums: Quasipolynomials, left: float, most: int) -> list[compl
         number = int(count_roots(shifted)[0])
     except ValueError:
         return None
-    if not 0 <= number <= most:
+    if not removable <= number <= most:
         return None
-    found = _inside(sums, left, 0.0, number) if number else []
-    right = sum(2 if p.imag else 1 for p in found) == number and len(set(found)) == len(found)
-    return found if right else None
+    found = _inside(sums, left, -left / 2 if removable else 0.0, number) if number else []
+    right = sum(2 if p.imag else 1 for p in found) == number
+    found = sorted(found, key=abs)[removable:]
+    return found if right and len(set(found)) == len(found) else None
 
 
 def _of_sum(sums, count, name):

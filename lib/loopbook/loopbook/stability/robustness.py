@@ -11,7 +11,7 @@ import numpy as np
 
 from loopbook.quasipolynomials import DelayFraction
 from loopbook.quasipolynomials.arrays import Quasipolynomials
-from loopbook.stability.counting import count_roots, fraction_sums, open_loop
+from loopbook.stability.counting import count_closed, fraction_sums, open_loop
 from loopbook.stability.crossings import SizeOne, asked, difference, phase_left, steps
 from loopbook.stability.loops import Loops
 from plainmath.validation import positive_numbers
@@ -137,7 +137,7 @@ def _stable_delays(A: Quasipolynomials, B: Quasipolynomials) -> list[list[tuple[
     earliest = np.full(len(decided), math.inf)
     np.minimum.at(earliest, which, np.where(first > 0, first, period))
     earliest = np.where(earliest < math.inf, earliest, 1.0)
-    begun = count_roots(loops.B + loops.A.delayed(earliest / 2))
+    begun = count_closed(loops.A.delayed(earliest / 2), loops.B)
     for k, point in enumerate(decided):
         mine, unit = which == k, float(loops.unit[k])
         regions[point] = [

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from loopbook.quasipolynomials.arrays import Quasipolynomials
-from loopbook.stability.counting import count_roots
+from loopbook.stability.counting import count_closed, of_one_order
 from loopbook.stability.crossings import asked, below, steps
 from loopbook.stability.enclosures import UndecidedError
 from loopbook.stability.loops import ENOUGH, Loops, positive_beyond, square
@@ -30,19 +30,12 @@ def largest_sensitivities(A: Quasipolynomials, B: Quasipolynomials) -> np.ndarra
     >>> largest_sensitivities(A, B).round(3).tolist()
     [1.307, 1.59, nan]
     """
-    count = max(A.count, B.count)
-    A, B = (
-        Quasipolynomials(
-            np.broadcast_to(x.coefficients, (*x.coefficients.shape[:2], count)),
-            np.broadcast_to(x.delays, (len(x.delays), count)),
-        )
-        for x in (A, B)
-    )
-    found = np.full(count, math.nan)
-    stable = np.flatnonzero(count_roots(B + A) == 0)
-    for start in range(0, len(stable), AT_ONCE):
-        points = stable[start : start + AT_ONCE]
-        found[points] = _largest(Loops(A[points], B[points]))
+    found = np.full(max(A.count, B.count), math.nan)
+    for points, above, below in of_one_order(A, B):
+        stable = np.flatnonzero(count_closed(above, below) == 0)
+        for start in range(0, len(stable), AT_ONCE):
+            some = stable[start : start + AT_ONCE]
+            found[points[some]] = _largest(Loops(above[some], below[some]))
     return found
 
 
