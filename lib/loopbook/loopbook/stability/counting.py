@@ -301,7 +301,10 @@ def of_one_order(
     for top in set(tops[1].tolist()):
         points = np.flatnonzero(tops[1] == top)
         end = rows[0].shape[1] - top
-        yield points, *(Quasipolynomials(x[:, :end, points], y.delays[:, points]) for x, y in zip(rows, (A, B)))
+        above, below = (
+            Quasipolynomials(x[:, :end, points], y.delays[:, points]) for x, y in zip(rows, (A, B), strict=True)
+        )
+        yield points, above, below
 
 
 def shared_at_origin(A: Quasipolynomials, B: Quasipolynomials) -> np.ndarray:
