@@ -50,6 +50,8 @@ _PARTS = {"½": (1, 2), "¼": (1, 4), "¾": (3, 4), "⅓": (1, 3), "⅔": (2, 3)
 _ESCAPED = re.compile("\t(?=au|heta|imes|ext|frac)|\f(?=rac)|\r(?=ight|m)|\b(?=eta|ig)|\v(?=ar)|\a(?=lpha)")
 #: A word of LaTeX around a name, which is the name.
 UPRIGHT = re.compile(r"\\(?:mathrm|mathbf|mathit|text|operatorname|rm) *\{ *(\w+) *\}")
+#: What a comma is that is a decimal one, and so between no two values.
+DECIMAL = "‚"
 _LETTERS = {"\t": "t", "\f": "f", "\r": "r", "\b": "b", "\v": "v", "\a": "a"}
 
 
@@ -87,17 +89,11 @@ def in_python(tree: ast.expr) -> str:
 
 
 @functools.cache
-def _parser(commas):
-    """The parser; numbers have decimal commas for one, and for the other a comma is between two values."""
-    numbers = r"\d[\d.,]*\d|\d\.?|[.,]\d+" if commas else r"\d+\.?\d*(?:\.\d+)*|\.\d+"
-    numbers = rf"\d{{1,3}}(?:[ ']\d{{3}})+(?![\d ']*\d)(?:[.,]\d+)?|{numbers}"
+def parser() -> lark.Lark:
+    """Return the parser, which takes its time to be built; a decimal comma is a `DECIMAL` for it."""
     grammar = resources.files(__package__).joinpath("formula.lark").read_text(encoding="utf-8")
-    return lark.Lark(
-        grammar.replace("NUMBERS", numbers),
-        parser="lalr",
-        propagate_positions=True,
-        lexer_callbacks={"UNIT": lambda unit: unit.update(type="NAME")},
-    )
+    names = {"UNIT": lambda unit: unit.update(type="NAME")}
+    return lark.Lark(grammar, parser="lalr", propagate_positions=True, lexer_callbacks=names)
 
 
 def read(text: str, symbols: Collection[str] | None) -> Read:
@@ -176,7 +172,7 @@ class Reader:
     def parsed(self) -> lark.Tree:
         """The parse tree of the text."""
         try:
-            found = _parser(self.commas).parse(self.text)
+            found = parser().parse(re.sub(r"(?<=\d),(?=\d)", DECIMAL, self.text) if self.commas else self.text)
         except lark.UnexpectedInput as problem:
             raise NotRead(self._unexpected(problem)) from None
         self._clear_commas(found)
@@ -204,9 +200,9 @@ class Reader:
 
     def _clear_commas(self, parsed):
         """Raise Doubtful for 1,500, which few write with zeros at the end, unless another comma is a decimal one."""
-        numbers = [leaf for leaf in leaves(parsed) if leaf.type == "NUMBER" and re.fullmatch(r"\d+,\d+", leaf)]
-        if numbers and all(re.fullmatch("(?!0+,)\\d{1,3},[0-9]00", number) for number in numbers):
-            whole, part = numbers[0].split(",")
+        numbers = [leaf for leaf in leaves(parsed) if leaf.type == "NUMBER" and re.fullmatch(rf"\d+{DECIMAL}\d+", leaf)]
+        if numbers and all(re.fullmatch(rf"(?!0+{DECIMAL})\d{{1,3}}{DECIMAL}[0-9]00", number) for number in numbers):
+            whole, part = numbers[0].split(DECIMAL)
             raise Doubtful(f"{whole},{part} may be {whole}.{part} or {whole}{part}: write the decimal comma as a point")
 
     # A formula, perhaps in pieces.
@@ -769,6 +765,7 @@ def negative(tree: ast.expr) -> ast.expr:
 
 def _value(text):
     """A number, with a decimal comma or separators of thousands where these are clear."""
+    text = text.replace(DECIMAL, ",")
     if re.fullmatch(r"\d{1,3}(?:,\d{3})+\.\d+|\d{1,3}(?:,\d{3}){2,}", text):
         text = text.replace(",", "")
     elif re.fullmatch(r"\d{1,3}(?:\.\d{3})+,\d+|\d{1,3}(?:\.\d{3}){2,}", text):
