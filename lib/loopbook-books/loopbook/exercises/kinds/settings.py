@@ -312,6 +312,7 @@ _OTHER_NAMES = {
     "kp": "Kp", "kc": "Kp", "k": "Kp", "gain": "Kp", "p": "Kp", "ti": "Ti", "taui": "Ti", "td": "Td", "taud": "Td",
     "tf": "Tf", "tauf": "Tf", "form": "form", "ki": "Ki", "kd": "Kd", "integraltime": "Ti", "derivativetime": "Td",
     "proportionalgain": "Kp", "controllergain": "Kp", "integralgain": "Ki", "derivativegain": "Kd", "resettime": "Ti",
+    "kr": "Kp", "tn": "Ti", "tv": "Td",
 }  # fmt: skip
 _CONTROLLER = r"(?:(?:an?|the) )?(?:PID?|PD|P|controller|settings)(?:[ -](?:controller|settings))?"
 _CALL = re.compile(rf"(?:{_CONTROLLER})? ?\((.*)\)", re.IGNORECASE | re.DOTALL)
@@ -367,7 +368,7 @@ def _of_text(text):
     """
     if len(text) > LONGEST:
         return None
-    text = " ".join(re.sub(r"^\{|\}$|\$|\\(?=[,;!: ])|\\(?=[A-Za-z]\w*\s*=)", " ", text.strip()).split()).rstrip(".")
+    text = " ".join(re.sub(r"^\{|\}$|\$|\\[,;!: ]|\\(?=[A-Za-z]\w*\s*=)", " ", text.strip()).split()).rstrip(".")
     text = re.sub(r"^(?:in )?(?:the )?(serial|series|cascade|parallel|ideal)(?: form)? ?[:,] ?(.*)$", r"\2 (\1)", text)
     form = _FORM.search(text)
     text = _FORM.sub("", text)
